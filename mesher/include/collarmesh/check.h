@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "collarmesh/tet_mesh.h"
+
+namespace collarmesh {
+
+struct CheckOptions {
+  double radius_edge = 2;      ///< bound outside collars
+  double distance = 0;         ///< surface distance tolerance on smooth patches and curves, absolute; 0: 1e-3 of the diagonal
+  double collar_angle = 150;   ///< largest dihedral angle in collars, degrees
+  std::size_t findings_per_guarantee = 20;  ///< more are counted, not listed
+};
+
+/// A guarantee that does not hold, and where.
+struct Finding {
+  std::string guarantee;    ///< short stable name, e.g. "positive_volume", "watertight", "region_volume"
+  std::string message;      ///< full sentence with ids, coordinates, measured and allowed value
+  std::vector<Index> ids;   ///< of the mesh entities concerned
+  Point where;
+};
+
+struct CheckReport {
+  std::vector<Finding> findings;
+  std::size_t findings_total = 0;  ///< with those not listed
+  // What was measured:
+  std::size_t tets = 0, points = 0, faces = 0, edges = 0, collar_tets = 0;
+  double max_radius_edge = 0;          ///< outside collars
+  double min_dihedral = 180, max_dihedral = 0;  ///< outside collars
+  double max_collar_dihedral = 0;
+  double max_surface_distance = 0;     ///< two-sided, on smooth patches and curves
+  double median_edge = 0;
+  std::vector<double> region_volumes;  ///< by region index, [0] unused
+
+  bool passed() const { return findings_total == 0; }
+};
+
+/// Recompute every guarantee from the mesh alone, independently of how it was made: positive
+/// volumes, conformity, watertight regions, region volumes, curves as unions of edges, facets as
+/// unions of faces with equal area, radius-edge ratio, surface distance.
+/// A mesh read from a file (no feature indices) is matched to the complex by tags and position.
+CheckReport check(const TetMesh& mesh, const Plc& plc, const CheckOptions& options = {});
+
+}  // namespace collarmesh

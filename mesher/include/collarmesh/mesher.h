@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "collarmesh/plc.h"
+#include "collarmesh/progress.h"
+#include "collarmesh/tet_mesh.h"
+
+namespace collarmesh {
+
+/// What `generate` aims at. Lengths are absolute, in input units, and are target edge lengths:
+/// the median edge of a large mesh comes out near them.
+struct MeshOptions {
+  double size = 0;                       ///< target edge length everywhere; 0: 1/20 of the diagonal
+  double size_min = 0;                   ///< never ask for less than this because of gradation or fields; 0: none
+  std::map<Tag, double> region_size;     ///< target edge length by region tag
+  std::map<Tag, double> patch_size;      ///< by patch tag
+  std::map<Tag, double> curve_size;      ///< by curve tag
+  double gradation = 0;                  ///< growth of size per unit length away from a finer patch, curve or region; 0: unlimited
+  std::function<double(const Point&)> size_field;  ///< target edge length at a point; may be empty
+  double radius_edge = 2;                ///< bound on circumradius / shortest edge in the regions; at least 1
+  double exterior_radius_edge = 8;       ///< the same outside every region
+  double vertex_ratio = 0;               ///< bound on largest circumradius / shortest edge at a vertex in the regions (paper, section 1.2); 0: none, else > 2 sqrt 2
+  double theta = 0.3;                    ///< warp distance relative to a gap ball's radius (paper, Procedure 2); 0: never warp
+  double distance = 0;                   ///< surface distance tolerance on smooth patches and curves; 0: 1e-3 of the diagonal
+  std::uint64_t seed = 0;                ///< of the offsets; same input, options and seed: same mesh
+  std::size_t max_vertices = 0;          ///< budget; 0: none
+  std::size_t max_memory = 0;            ///< budget in bytes for the mesh structures; 0: none
+  double time_limit = 0;                 ///< budget in seconds; 0: none
+};
+
+enum class MeshStatus {
+  complete,        ///< the refinement ended; `check` certifies the mesh
+  guarantee_missed,///< the refinement ended but could not meet a bound; `message` says which and where
+  budget_hit,      ///< vertices, memory or time; no mesh
+  cancelled        ///< no mesh
+};
+
+struct MeshStatistics {
+  std::size_t vertices_inserted = 0;  ///< of the whole triangulation, the box and the outside included
+  std::size_t cells = 0;
+  std::size_t exact_predicates = 0;   ///< decisions the floating-point filter left to exact arithmetic
+  std::size_t warps = 0, yields = 0;  ///< destroy() calls that warped to input or yielded to a lower ball
+  std::size_t peak_bytes = 0;         ///< of the mesh structures
+  double seconds = 0;
+};
+
+struct MeshResult {
+  MeshStatus status = MeshStatus::complete;
+  std::string message;  ///< for statuses other than complete: what, where (coordinates), what to do next
+  Point where;
+  TetMesh mesh;
+  MeshStatistics statistics;
+};
+
+/// Mesh a complex: Sparse Voronoi Refinement (paper, Procedure 1).
+/// Preconditions: `plc` comes from `build_plc` and has no crease (`find_creases` is empty).
+/// Guarantee (status complete): every tet in a region has circumradius / shortest edge <= radius_edge;
+/// curves are unions of edges, patches unions of faces, planar ones exactly up to rounding and smooth
+/// ones within `distance`.
+/// Throws OptionError when options contradict each other.
+/// Cost: near linear in the output.
+MeshResult generate(const Plc& plc, const MeshOptions& options = {}, const Execution& execution = {});
+
+}  // namespace collarmesh

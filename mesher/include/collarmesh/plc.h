@@ -1,0 +1,82 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "collarmesh/geometry.h"
+
+namespace collarmesh {
+
+/// A piecewise-linear complex: the features that a mesh has to conform to, and the regions they
+/// bound. Points that are no feature by themselves (the tessellation of smooth curves and patches,
+/// collinear and coplanar points of the input) are in `points` only.
+///
+/// Vertices, curves and patches are closed under taking boundaries. Features meet only in common
+/// features. Made by `build_plc`.
+struct Plc {
+  /// A feature of dimension 0: a point that the mesh must have as a vertex.
+  struct Vertex {
+    Index point = none;
+    Tag tag = 0;
+    std::vector<Index> curves;   ///< sorted; the curves that contain it
+    std::vector<Index> patches;  ///< sorted; the patches that contain it
+  };
+
+  /// A feature of dimension 1: a chain of segments that one straight or smooth edge was cut into.
+  /// Mesh vertices may lie anywhere on its polyline.
+  struct Curve {
+    std::vector<Index> points;  ///< the polyline, at least 2; a closed curve does not repeat its first
+    std::array<Index, 2> ends{none, none};  ///< vertices; both none for a closed curve without one; equal for a loop at one vertex
+    bool closed = false;        ///< closed without any vertex on it (ends are none)
+    bool straight = false;      ///< within the planar tolerance of its chord
+    Tag tag = 0;
+    std::vector<Index> patches;  ///< sorted; the patches that contain it (in their border or interior)
+  };
+  // A loop at one vertex repeats that vertex' point at the end of `points`.
+
+  /// A feature of dimension 2: a planar polygonal facet with holes, or the facets that one smooth
+  /// face was cut into. Its triangles are oriented alike: `regions[0]` lies behind them (opposite to
+  /// the normal (b-a) x (c-a)), `regions[1]` in front. They form an orientable manifold with border.
+  struct Patch {
+    Index first_triangle = 0, triangle_count = 0;  ///< its range in `triangles`
+    bool planar = false;    ///< all its points within the planar tolerance of one plane
+    Vector normal;          ///< unit; of the plane if planar, else zero
+    Point origin;           ///< a point on that plane
+    std::array<Index, 2> regions{0, 0};
+    Tag tag = 0;
+    std::vector<Index> curves;    ///< sorted; border and embedded curves
+    std::vector<Index> vertices;  ///< sorted; all its feature vertices, on curves or embedded alone
+    Index file = 0;               ///< the soup it came from
+  };
+
+  struct Triangle {
+    std::array<Index, 3> points;
+    Index patch = none;
+  };
+
+  struct Region {
+    Tag tag = 0;          ///< region number, or what a region point gave
+    double volume = 0;    ///< of the complex, input units cubed
+    double size = 0;      ///< target edge length, 0: none given
+    std::string name;     ///< for messages: file name or tag
+  };
+
+  std::vector<Point> points;
+  std::vector<Vertex> vertices;
+  std::vector<Curve> curves;
+  std::vector<Patch> patches;
+  std::vector<Triangle> triangles;
+  std::vector<Region> regions;  ///< regions[0] is the outside (and every hole)
+
+  Box bounds;
+  double planar_tolerance = 0;   ///< absolute, input units: used to build this complex
+  double largest_deviation = 0;  ///< absolute: how far merging (weld, planar, collinear) moved the input at most
+
+  /// Is the patch among those that contain this vertex / curve? Cost: logarithmic in the list.
+  bool vertex_on_patch(Index vertex, Index patch) const;
+  bool curve_on_patch(Index curve, Index patch) const;
+  bool vertex_on_curve(Index vertex, Index curve) const;
+};
+
+}  // namespace collarmesh

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "collarmesh/error.h"
+#include "collarmesh/plc.h"
+#include "collarmesh/polygon_soup.h"
+
+namespace collarmesh {
+
+struct PlcOptions {
+  double feature_angle = 30;        ///< degrees; edges that deviate more from flat are segments. 0: every non-coplanar edge
+  double planar_tolerance = 1e-6;   ///< relative to the bounding-box diagonal; 0: the exact predicate
+  double weld = 1e-9;               ///< relative to the bounding-box diagonal; closer points are one
+  bool require_solid = true;        ///< a complex that bounds no region is an error
+};
+
+/// Build the complex of one or several soups: weld, orient, merge coplanar and collinear
+/// neighbours, find curves, patches and regions, and validate.
+/// Regions are numbered from 1 in soup order (DESIGN: a nested inward-oriented shell is a cavity, an
+/// outward one a region of its own; region and hole points decide for their soup).
+/// Throws PlcError with every fault found.
+/// Cost: O(n log n) for n corners.
+Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options = {});
+
+/// Two features that meet at an acute angle (paper, Definition 1).
+struct Crease {
+  enum class Kind { facets, segments, segment_and_facet, facets_in_vertex, patch_fold };
+  Kind kind;
+  double angle;            ///< degrees
+  Index curve = none;      ///< the crease curve, when it is one
+  Index vertex = none;     ///< the crease vertex, when it is one
+  std::array<Index, 2> features{none, none};  ///< the two features (patches or curves, by kind)
+  Point where;
+};
+
+/// All creases with an angle below the threshold (degrees), smallest angle first.
+std::vector<Crease> find_creases(const Plc& plc, double threshold = 70.53);
+
+/// What a complex is, for people: counts, angles, sizes.
+struct PlcSummary {
+  Index points = 0, vertices = 0, curves = 0, straight_curves = 0, patches = 0, planar_patches = 0,
+        triangles = 0, regions = 0;
+  double diagonal = 0;
+  double smallest_angle = 180;   ///< degrees, between any two features that meet
+  double shortest_segment = 0;   ///< between adjacent feature vertices, input units
+  double spread = 0;             ///< diagonal / shortest feature length
+  double largest_deviation = 0;
+  std::vector<Crease> creases;   ///< below the threshold given
+};
+PlcSummary summarize(const Plc& plc, double crease_threshold = 70.53);
+
+/// One sentence for people: what meets what, where, at which angle.
+std::string describe(const Plc& plc, const Crease& crease);
+
+}  // namespace collarmesh

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "collarmesh/geometry.h"
+
+namespace collarmesh {
+
+/// What a file or a program hands over: points, polygonal facets and loose segments, unmerged and
+/// unchecked. `build_plc` turns one or several soups into a piecewise-linear complex.
+///
+/// A facet is a set of polygons in one plane, as in TetGen's .poly: polygons of three or more
+/// corners bound it, a polygon of two corners is a segment inside it and one of one corner a point
+/// inside it; a hole is cut out by naming a point in it. A triangle is a facet of one polygon.
+/// Storage is flat: facet f owns polygons [facets[f].first_polygon, facets[f+1].first_polygon),
+/// polygon q owns corners [polygon_starts[q], polygon_starts[q+1]).
+class PolygonSoup {
+ public:
+  struct Facet {
+    Index first_polygon = 0;
+    Tag tag = 0;
+  };
+  struct Segment {
+    Index a = 0, b = 0;
+    Tag tag = 0;
+  };
+  struct FacetHole {
+    Index facet = 0;
+    Point point;
+  };
+  /// A point that names the region it lies in, its tag and optionally its target edge length.
+  struct RegionPoint {
+    Point point;
+    Tag tag = 0;
+    double size = 0;  ///< absolute, input units; 0: none
+  };
+
+  std::string name;  ///< for messages: the file's path
+  std::vector<Point> points;
+  std::vector<Tag> point_tags;  ///< one per point, or empty
+  std::vector<Segment> segments;
+  std::vector<RegionPoint> region_points;  ///< .poly: with hole_points they decide for their file
+  std::vector<Point> hole_points;          ///< the region around each is empty
+  std::vector<FacetHole> facet_holes;
+
+  /// Start a facet; the polygons added next belong to it.
+  void begin_facet(Tag tag = 0) { facets_.push_back({polygon_count(), tag}); }
+
+  /// Add a polygon (point indices, in order, first corner not repeated) to the facet begun last.
+  void add_polygon(std::span<const Index> corners) {
+    corners_.insert(corners_.end(), corners.begin(), corners.end());
+    polygon_starts_.push_back(static_cast<Index>(corners_.size()));
+  }
+
+  /// A facet that is one polygon.
+  void add_facet(std::span<const Index> corners, Tag tag = 0) {
+    begin_facet(tag);
+    add_polygon(corners);
+  }
+
+  Index facet_count() const { return static_cast<Index>(facets_.size()); }
+  Index polygon_count() const { return static_cast<Index>(polygon_starts_.size() - 1); }
+  Tag facet_tag(Index facet) const { return facets_[facet].tag; }
+  /// The polygons of a facet: [first, last).
+  std::array<Index, 2> facet_polygons(Index facet) const {
+    return {facets_[facet].first_polygon,
+            facet + 1 < facets_.size() ? facets_[facet + 1].first_polygon : polygon_count()};
+  }
+  std::span<const Index> polygon(Index polygon) const {
+    return {corners_.data() + polygon_starts_[polygon],
+            corners_.data() + polygon_starts_[polygon + 1]};
+  }
+
+ private:
+  std::vector<Facet> facets_;
+  std::vector<Index> polygon_starts_{0};
+  std::vector<Index> corners_;
+};
+
+}  // namespace collarmesh

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "collarmesh/geometry.h"
+
+namespace collarmesh {
+
+/// A conforming tetrahedral mesh with everything a solver's set-up needs to find its way back to
+/// the input: regions, tagged boundary and interface triangles, tagged curve edges.
+/// Every array of a group (tets, faces, edges, points) has the same length.
+struct TetMesh {
+  /// The feature of the complex a mesh vertex lies on: the one of lowest dimension.
+  struct VertexFeature {
+    std::uint8_t dimension = 3;  ///< 0 vertex, 1 curve, 2 patch, 3 none (inside a region)
+    Index feature = none;        ///< index of it in the complex; none when unknown (read from a file)
+  };
+
+  std::vector<Point> points;
+  std::vector<VertexFeature> features;  ///< one per point, or empty (read from a file)
+
+  /// Corners a, b, c, d with six_volume(a, b, c, d) > 0.
+  std::vector<std::array<Index, 4>> tets;
+  std::vector<Index> tet_region;           ///< index of the region in the complex, from 1
+  std::vector<Tag> tet_tag;                ///< tag of that region
+  std::vector<std::uint8_t> tet_collar;    ///< 0 outside collars, 1 star, 2 book
+
+  /// Boundary, interface and internal-facet triangles; the normal (b-a) x (c-a) points from
+  /// face_regions[0] to face_regions[1]. A boundary triangle has its solid in [0] and 0 in [1].
+  std::vector<std::array<Index, 3>> faces;
+  std::vector<std::array<Index, 2>> face_regions;
+  std::vector<Index> face_patch;  ///< index of the patch in the complex, none when unknown
+  std::vector<Tag> face_tag;      ///< tag of that patch
+
+  /// Edges on curves.
+  std::vector<std::array<Index, 2>> edges;
+  std::vector<Index> edge_curve;  ///< index of the curve in the complex, none when unknown
+  std::vector<Tag> edge_tag;
+};
+
+/// Shape measures of one tetrahedron.
+struct TetQuality {
+  double volume;        ///< signed
+  double radius_edge;   ///< circumradius / shortest edge; infinite for a flat one
+  double min_dihedral;  ///< degrees
+  double max_dihedral;  ///< degrees
+};
+TetQuality measure(const Point& a, const Point& b, const Point& c, const Point& d);
+
+}  // namespace collarmesh
