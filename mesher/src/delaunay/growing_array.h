@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cassert>
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+namespace collarmesh {
+
+/// A vector of plain data that grows with realloc: large blocks are remapped by the system instead
+/// of being copied, so growth never holds two copies in memory.
+template <class T>
+class GrowingArray {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+ public:
+  GrowingArray() = default;
+  GrowingArray(const GrowingArray&) = delete;
+  GrowingArray& operator=(const GrowingArray&) = delete;
+  ~GrowingArray() { std::free(data_); }
+
+  std::size_t size() const { return size_; }
+  std::size_t bytes() const { return capacity_ * sizeof(T); }
+  T& operator[](std::size_t i) {
+    assert(i < size_);
+    return data_[i];
+  }
+  const T& operator[](std::size_t i) const {
+    assert(i < size_);
+    return data_[i];
+  }
+
+  void push_back(const T& value) {
+    const T copy = value;
+    if (size_ == capacity_) reserve(size_ + size_ / 2 + 64);
+    data_[size_++] = copy;
+  }
+  void resize(std::size_t n, const T& value = T()) {
+    const T copy = value;
+    if (n > capacity_) reserve(n + n / 2 + 64);
+    for (; size_ < n; ++size_) data_[size_] = copy;
+    size_ = n;
+  }
+
+ private:
+  void reserve(std::size_t n) {
+    void* grown = std::realloc(static_cast<void*>(data_), n * sizeof(T));
+    if (grown == nullptr) throw std::bad_alloc();
+    data_ = static_cast<T*>(grown);
+    capacity_ = n;
+  }
+
+  T* data_ = nullptr;
+  std::size_t size_ = 0, capacity_ = 0;
+};
+
+}  // namespace collarmesh

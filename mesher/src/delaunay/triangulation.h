@@ -1,0 +1,145 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "collarmesh/geometry.h"
+#include "delaunay/growing_array.h"
+
+namespace collarmesh {
+
+/// A face of a cell: 4 * cell + index of the opposite corner. Names the face from that cell's side.
+using FaceId = std::uint32_t;
+inline constexpr FaceId no_face = none;
+inline Index cell_of(FaceId face) { return face >> 2; }
+inline unsigned corner_of(FaceId face) { return face & 3U; }
+inline FaceId face_id(Index cell, unsigned corner) { return 4 * cell + corner; }
+
+/// The corners of the face opposite corner i, seen counterclockwise from outside the cell.
+inline constexpr std::array<std::array<unsigned, 3>, 4> face_corners{
+    {{{1, 2, 3}}, {{0, 3, 2}}, {{0, 1, 3}}, {{0, 2, 1}}}};
+
+/// The cells whose circumspheres hold a point, with their border: what its insertion replaces.
+/// A caller keeps one and reuses it: no allocation in the steady state.
+struct ConflictZone {
+  Point point;
+  std::vector<Index> cells;
+  std::vector<FaceId> border;     ///< faces of zone cells towards cells outside the zone (or the hull)
+  std::vector<Index> vertices;    ///< of the zone's cells: the new vertex' neighbours
+  std::vector<Index> created;     ///< after insert: the new cell over border[i], the new vertex in the corner opposite that face
+  std::vector<FaceId> outer;      ///< after insert: the face beyond border[i], seen from outside; no_face on the hull
+};
+
+/// Delaunay triangulation of points inside a box, as flat arrays (DESIGN section 6).
+///
+/// The box' eight corners are vertices 0 to 7; everything stays inside, so there are no infinite
+/// cells. A cell is four vertices, positively oriented (`six_volume` > 0), and four neighbours, with
+/// its circumsphere and an error bound beside it. Ties (cospherical points) are not in conflict.
+/// Cells are recycled; `generation` tells whether an id still means the same cell.
+class Triangulation {
+ public:
+  explicit Triangulation(const Box& box);
+
+  Index vertex_count() const { return static_cast<Index>(vertices_.size()); }
+  /// Cells in use and free ones: every id is below this.
+  Index cell_capacity() const { return static_cast<Index>(cells_.size()); }
+  Index cell_count() const { return static_cast<Index>(cells_.size() - free_cells_.size()); }
+
+  const Point& point(Index vertex) const { return vertices_[vertex].point; }
+  /// Some cell that has this vertex.
+  Index incident_cell(Index vertex) const { return vertices_[vertex].cell; }
+
+  const std::array<Index, 4>& corners(Index cell) const { return cells_[cell].corners; }
+  /// The same face seen from the other cell; no_face on the hull.
+  FaceId opposite(FaceId face) const { return cells_[cell_of(face)].neighbours[corner_of(face)]; }
+  std::array<Index, 3> face_vertices(FaceId face) const {
+    const auto& v = corners(cell_of(face));
+    const auto& f = face_corners[corner_of(face)];
+    return {v[f[0]], v[f[1]], v[f[2]]};
+  }
+  bool alive(Index cell) const { return cells_[cell].corners[0] != none; }
+  /// Changes whenever the cell is destroyed.
+  std::uint32_t generation(Index cell) const { return states_[cell].generation; }
+
+  const Point& circumcentre(Index cell) const { return spheres_[cell].centre; }
+  double squared_radius(Index cell) const { return spheres_[cell].squared_radius; }
+
+  /// Is p strictly inside the cell's circumsphere? Always the exact answer.
+  bool in_conflict(Index cell, const Point& p) const {
+    const Sphere& s = spheres_[cell];
+    const double d = squared_distance(p, s.centre);
+    const double difference = s.squared_radius - d;
+    if (std::fabs(difference) > s.margin * (s.squared_radius + d)) return difference > 0;
+    return in_conflict_exact(cell, p);
+  }
+
+  /// Find all cells in conflict with p. Precondition: `start` is in conflict with p.
+  /// Cost: linear in the zone. The zone stays valid until the next insertion.
+  void find_conflict_zone(const Point& p, Index start, ConflictZone& zone);
+
+  /// A cell around `vertex` that is in conflict with p; none if there is none. If `vertex` is a
+  /// nearest vertex of p there always is one, unless p is a vertex.
+  Index conflicting_cell_around(Index vertex, const Point& p);
+
+  /// Replace the zone's cells by those that join its border to zone.point.
+  /// Returns the new vertex; fills zone.created and zone.outer.
+  Index insert(ConflictZone& zone);
+
+  /// The cells that have this vertex, in no particular order.
+  void incident_cells(Index vertex, std::vector<Index>& cells);
+  /// The vertices joined to this one by an edge.
+  void adjacent_vertices(Index vertex, std::vector<Index>& adjacent);
+
+  /// A fresh stamp for marking vertices, and the marks.
+  std::uint32_t new_vertex_stamp() { return ++vertex_stamp_; }
+  bool stamp_vertex(Index vertex, std::uint32_t stamp) {
+    if (vertices_[vertex].stamp == stamp) return false;
+    vertices_[vertex].stamp = stamp;
+    return true;
+  }
+
+  std::size_t exact_decisions() const { return exact_decisions_; }
+  std::size_t bytes() const;
+
+ private:
+  struct Vertex {
+    Point point;
+    Index cell;
+    std::uint32_t stamp;
+    std::uint32_t local;  // index in the zone's list of vertices, during an insertion
+  };
+  struct Cell {
+    std::array<Index, 4> corners;
+    std::array<FaceId, 4> neighbours;
+  };
+  struct Sphere {
+    Point centre;
+    double squared_radius;
+    double margin;  // relative error bound of the conflict test
+  };
+  struct State {
+    std::uint32_t mark;        // 2 * search: seen, not in conflict; 2 * search + 1: in conflict
+    std::uint32_t generation;
+  };
+
+  bool in_conflict_exact(Index cell, const Point& p) const;
+  Sphere circumsphere(const std::array<Index, 4>& corners) const;
+  Index new_cell();
+  void link(FaceId a, FaceId b);
+  void link_created(ConflictZone& zone);
+  void link_created_by_sorting(ConflictZone& zone);
+
+  GrowingArray<Vertex> vertices_;
+  GrowingArray<Cell> cells_;
+  GrowingArray<Sphere> spheres_;
+  GrowingArray<State> states_;
+  std::vector<Index> free_cells_;
+  std::uint32_t search_ = 0;
+  std::uint32_t vertex_stamp_ = 0;
+  mutable std::size_t exact_decisions_ = 0;
+  std::vector<FaceId> edge_table_;
+  std::vector<Index> scratch_;
+};
+
+}  // namespace collarmesh
