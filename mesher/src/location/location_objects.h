@@ -1,0 +1,79 @@
+#pragma once
+
+#include <vector>
+
+#include "collarmesh/geometry.h"
+
+namespace collarmesh {
+
+/// What is not in the mesh yet but must be found from it: an unresolved point (radius 0) or the
+/// protective ball of a subsegment. Each is kept at the mesh vertex whose Voronoi cell contains its
+/// centre, that is, at its nearest vertex (DESIGN section 6).
+class LocationObjects {
+ public:
+  enum class Kind : std::uint8_t { point, subsegment };
+  struct Object {
+    Point centre;
+    double squared_radius;
+    Index vertex;          ///< nearest mesh vertex
+    Index previous, next;  ///< in that vertex' list
+    Index owner;           ///< index of the unresolved point or subsegment
+    Kind kind;
+  };
+
+  const Object& operator[](Index object) const { return objects_[object]; }
+  /// First object at a mesh vertex, none if it has none; follow `next`.
+  Index first_at(Index vertex) const { return vertex < first_.size() ? first_[vertex] : none; }
+
+  Index add(Kind kind, Index owner, const Point& centre, double squared_radius, Index vertex) {
+    Index object;
+    if (free_.empty()) {
+      object = static_cast<Index>(objects_.size());
+      objects_.emplace_back();
+    } else {
+      object = free_.back();
+      free_.pop_back();
+    }
+    objects_[object] = {centre, squared_radius, none, none, none, owner, kind};
+    attach(object, vertex);
+    return object;
+  }
+
+  void remove(Index object) {
+    detach(object);
+    free_.push_back(object);
+  }
+
+  void move(Index object, Index vertex) {
+    detach(object);
+    attach(object, vertex);
+  }
+
+  std::size_t bytes() const {
+    return objects_.capacity() * sizeof(Object) + first_.capacity() * sizeof(Index);
+  }
+
+ private:
+  void attach(Index object, Index vertex) {
+    if (vertex >= first_.size()) first_.resize(vertex + vertex / 2 + 16, none);
+    Object& o = objects_[object];
+    o.vertex = vertex;
+    o.previous = none;
+    o.next = first_[vertex];
+    if (o.next != none) objects_[o.next].previous = object;
+    first_[vertex] = object;
+  }
+
+  void detach(Index object) {
+    const Object& o = objects_[object];
+    if (o.previous != none) objects_[o.previous].next = o.next;
+    else first_[o.vertex] = o.next;
+    if (o.next != none) objects_[o.next].previous = o.previous;
+  }
+
+  std::vector<Object> objects_;
+  std::vector<Index> free_;
+  std::vector<Index> first_;
+};
+
+}  // namespace collarmesh

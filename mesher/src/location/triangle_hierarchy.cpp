@@ -1,0 +1,206 @@
+#include "location/triangle_hierarchy.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "delaunay/predicates.h"
+
+namespace collarmesh {
+
+namespace {
+
+double squared_distance_to_box(const Point& p, const Box& box) {
+  double sum = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double d = std::max({box.min[axis] - p[axis], 0.0, p[axis] - box.max[axis]});
+    sum += d * d;
+  }
+  return sum;
+}
+
+double squared_distance_to_segment(const Point& p, const Point& a, const Point& b) {
+  const Vector u = b - a;
+  const double length = squared_norm(u);
+  const double t = length > 0 ? std::clamp(dot(p - a, u) / length, 0.0, 1.0) : 0.0;
+  return squared_distance(p, a + t * u);
+}
+
+// Could the segment pq meet the box? Slab test, widened by the rounding of its own arithmetic.
+bool may_meet(const Point& p, const Point& q, const Box& box) {
+  double from = 0, to = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double slack = 1e-14 * (std::fabs(p[axis]) + std::fabs(q[axis]) +
+                                  std::fabs(box.min[axis]) + std::fabs(box.max[axis]));
+    const double low = box.min[axis] - slack, high = box.max[axis] + slack;
+    const double step = q[axis] - p[axis];
+    if (std::min(p[axis], q[axis]) > high || std::max(p[axis], q[axis]) < low) return false;
+    if (std::fabs(step) <= slack) continue;
+    const double t0 = (low - p[axis]) / step, t1 = (high - p[axis]) / step;
+    from = std::max(from, std::min(t0, t1) - 1e-14);
+    to = std::min(to, std::max(t0, t1) + 1e-14);
+    if (from > to) return false;
+  }
+  return true;
+}
+
+int side(const Point& a, const Point& b, const Point& c, const Point& p) {
+  const int sign = predicates::orientation(a, b, c, p);
+  return sign != 0 ? sign : predicates::cross_product_sign_exact(a, b, a, c);
+}
+
+// On which side does the line pq pass the edge ab?
+int passes(const Point& p, const Point& q, const Point& a, const Point& b) {
+  const int sign = predicates::orientation(p, q, a, b);
+  return sign != 0 ? sign : predicates::cross_product_sign_exact(p, q, a, b);
+}
+
+int crossing_direction(const Point& p, const Point& q, const std::array<Point, 3>& t) {
+  const int to = side(t[0], t[1], t[2], q);
+  if (to == 0 || side(t[0], t[1], t[2], p) == to) return 0;
+  const int first = passes(p, q, t[0], t[1]);
+  if (first == 0 || passes(p, q, t[1], t[2]) != first || passes(p, q, t[2], t[0]) != first)
+    return 0;
+  return to;
+}
+
+}  // namespace
+
+double squared_distance_to_triangle(const Point& p, const Point& a, const Point& b,
+                                    const Point& c) {
+  const Vector n = cross(b - a, c - a);
+  const double nn = squared_norm(n);
+  const bool inside = nn > 0 && dot(cross(b - a, p - a), n) >= 0 &&
+                      dot(cross(c - b, p - b), n) >= 0 && dot(cross(a - c, p - c), n) >= 0;
+  const double to_border =
+      std::min({squared_distance_to_segment(p, a, b), squared_distance_to_segment(p, b, c),
+                squared_distance_to_segment(p, c, a)});
+  if (!inside) return to_border;
+  // The normal of a needle is noise: the border bounds the distance from above.
+  const double height = dot(p - a, n);
+  return std::min(to_border, height * height / nn);
+}
+
+TriangleHierarchy::TriangleHierarchy(std::span<const Point> points,
+                                     std::vector<std::array<Index, 3>> triangles)
+    : points_(points), triangles_(std::move(triangles)) {
+  if (triangles_.empty()) return;
+  std::vector<Point> centres;
+  centres.reserve(triangles_.size());
+  for (const auto& t : triangles_)
+    centres.push_back((points_[t[0]] + points_[t[1]] + points_[t[2]]) / 3);
+  std::vector<Index> order(triangles_.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  nodes_.reserve(2 * triangles_.size());
+  build(order, centres, none);
+}
+
+Index TriangleHierarchy::build(std::span<Index> order, std::span<const Point> centres,
+                               Index parent) {
+  const auto node = static_cast<Index>(nodes_.size());
+  nodes_.push_back({{}, 0, parent, none, none, 0});
+  Box box;
+  if (order.size() == 1) {
+    for (const Index point : triangles_[order[0]]) box.add(points_[point]);
+    nodes_[node].right = order[0];
+  } else {
+    Box spread;
+    for (const Index triangle : order) spread.add(centres[triangle]);
+    const Vector sides = spread.max - spread.min;
+    const std::size_t axis = sides.x >= sides.y && sides.x >= sides.z ? 0 : sides.y >= sides.z ? 1 : 2;
+    const auto middle = order.begin() + static_cast<std::ptrdiff_t>(order.size() / 2);
+    std::nth_element(order.begin(), middle, order.end(), [&](Index a, Index b) {
+      return centres[a][axis] != centres[b][axis] ? centres[a][axis] < centres[b][axis] : a < b;
+    });
+    const std::size_t half = order.size() / 2;
+    const Index left = build(order.subspan(0, half), centres, node);
+    const Index right = build(order.subspan(half), centres, node);
+    nodes_[node].left = left;
+    nodes_[node].right = right;
+    box = nodes_[left].box;
+    box.add(nodes_[right].box);
+  }
+  nodes_[node].box = box;
+  const Vector sides = box.max - box.min;
+  nodes_[node].extent = std::max({sides.x, sides.y, sides.z});
+  return node;
+}
+
+void TriangleHierarchy::nodes_in_ball(const Point& centre, double radius,
+                                      std::span<const Index> from, std::vector<Index>& found) {
+  found.clear();
+  ++stamp_;
+  for (Index node : from) {
+    while (nodes_[node].parent != none && nodes_[nodes_[node].parent].extent <= radius)
+      node = nodes_[node].parent;
+    descend(node, centre, radius, found);
+  }
+}
+
+void TriangleHierarchy::descend(Index index, const Point& centre, double radius,
+                                std::vector<Index>& found) {
+  Node& node = nodes_[index];
+  if (node.stamp == stamp_) return;
+  node.stamp = stamp_;
+  const double reach = radius * radius * (1 + 1e-9);
+  if (squared_distance_to_box(centre, node.box) > reach) return;
+  if (node.left == none) {
+    const auto t = corners(node.right);
+    if (squared_distance_to_triangle(centre, t[0], t[1], t[2]) <= reach) found.push_back(index);
+  } else if (node.extent <= radius) {
+    found.push_back(index);
+  } else {
+    descend(node.left, centre, radius, found);
+    descend(node.right, centre, radius, found);
+  }
+}
+
+void TriangleHierarchy::crossings(const Point& p, const Point& q, std::span<const Index> nodes,
+                                  std::vector<Crossing>& found) const {
+  found.clear();
+  std::array<Index, 128> stack;
+  for (const Index start : nodes) {
+    std::size_t top = 0;
+    stack[top++] = start;
+    while (top > 0) {
+      const Node& node = nodes_[stack[--top]];
+      if (!may_meet(p, q, node.box)) continue;
+      if (node.left != none) {
+        stack[top++] = node.left;
+        stack[top++] = node.right;
+      } else if (const int direction = crossing_direction(p, q, corners(node.right));
+                 direction != 0) {
+        found.push_back({node.right, direction});
+      }
+    }
+  }
+}
+
+double TriangleHierarchy::squared_distance_to(const Point& p, double bound,
+                                              Index* nearest) const {
+  if (nodes_.empty()) return bound;
+  std::array<Index, 128> stack;
+  std::size_t top = 0;
+  stack[top++] = root();
+  while (top > 0) {
+    const Node& node = nodes_[stack[--top]];
+    if (squared_distance_to_box(p, node.box) >= bound) continue;
+    if (node.left == none) {
+      const auto t = corners(node.right);
+      const double d = squared_distance_to_triangle(p, t[0], t[1], t[2]);
+      if (d < bound && nearest != nullptr) *nearest = node.right;
+      bound = std::min(bound, d);
+      continue;
+    }
+    const bool left_first = squared_distance_to_box(p, nodes_[node.left].box) <
+                            squared_distance_to_box(p, nodes_[node.right].box);
+    stack[top++] = left_first ? node.right : node.left;
+    stack[top++] = left_first ? node.left : node.right;
+  }
+  return bound;
+}
+
+std::size_t TriangleHierarchy::bytes() const {
+  return nodes_.capacity() * sizeof(Node) + triangles_.capacity() * sizeof(triangles_[0]);
+}
+
+}  // namespace collarmesh

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "collarmesh/geometry.h"
+
+namespace collarmesh {
+
+/// Bounding-volume hierarchy over triangles (DESIGN section 6). A set of its nodes stands for the
+/// triangles below them: a mesh vertex carries the nodes that meet its Voronoi cell, coarse ones
+/// while the cell is large, so that neither memory nor queries grow with the input's resolution.
+class TriangleHierarchy {
+ public:
+  /// A triangle that a segment crosses; `direction` is +1 when it goes from behind the triangle to
+  /// its front (the side its normal points to), else -1.
+  struct Crossing {
+    Index triangle;
+    int direction;
+  };
+
+  /// The points are kept by reference.
+  TriangleHierarchy(std::span<const Point> points, std::vector<std::array<Index, 3>> triangles);
+
+  bool empty() const { return nodes_.empty(); }
+  Index root() const { return 0; }
+  std::array<Point, 3> corners(Index triangle) const {
+    const auto& t = triangles_[triangle];
+    return {points_[t[0]], points_[t[1]], points_[t[2]]};
+  }
+
+  /// Replace `found` by the nodes that meet the ball, each at the coarsest level whose extent does
+  /// not exceed the radius. Precondition: the nodes of `from` cover every triangle that meets it.
+  /// Conservative: a node found may hold no triangle that meets the ball.
+  /// Cost: linear in the nodes found plus the levels between them and `from`.
+  void nodes_in_ball(const Point& centre, double radius, std::span<const Index> from,
+                     std::vector<Index>& found);
+
+  /// Replace `found` by the triangles below `nodes` that the segment pq crosses. Exact; ties are
+  /// broken by moving the segment by (e, e^2, e^3) for an infinitesimal e, so that a closed surface
+  /// is crossed an even number of times by every segment with both ends on one side.
+  void crossings(const Point& p, const Point& q, std::span<const Index> nodes,
+                 std::vector<Crossing>& found) const;
+
+  /// Squared distance from p to the nearest triangle, if below `bound` (else `bound`, and `nearest`
+  /// is left alone).
+  double squared_distance_to(const Point& p, double bound = INFINITY,
+                             Index* nearest = nullptr) const;
+
+  std::size_t bytes() const;
+
+ private:
+  struct Node {
+    Box box;
+    double extent;         // longest side of the box
+    Index parent;
+    Index left, right;     // a leaf has left == none and its triangle in right
+    std::uint32_t stamp;
+  };
+
+  Index build(std::span<Index> order, std::span<const Point> centres, Index parent);
+  void descend(Index node, const Point& centre, double radius, std::vector<Index>& found);
+
+  std::span<const Point> points_;
+  std::vector<std::array<Index, 3>> triangles_;
+  std::vector<Node> nodes_;
+  std::uint32_t stamp_ = 0;
+};
+
+/// Squared distance from p to the triangle abc.
+double squared_distance_to_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
+
+}  // namespace collarmesh

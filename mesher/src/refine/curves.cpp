@@ -1,0 +1,211 @@
+// Curves: chains of subsegments with protective balls (DESIGN sections 7 and 13).
+#include <algorithm>
+
+#include "refine/refinement.h"
+
+namespace collarmesh {
+
+namespace {
+
+// A curve that is this much longer than its chord gets inner seeds: its first ball would miss it.
+constexpr double seeded_length_per_chord = 1.2;
+// An arc may leave its chord by this share of the chord: about 60 degrees of turning.
+constexpr double largest_sagitta_per_chord = 0.15;
+
+}  // namespace
+
+void Refinement::prepare_curves() {
+  for (Index c = 0; c < plc_.curves.size(); ++c) {
+    const Plc::Curve& curve = plc_.curves[c];
+    std::vector<double> lengths{0};
+    const auto& points = curve.points;
+    for (std::size_t i = 1; i < points.size(); ++i)
+      lengths.push_back(lengths.back() + distance(points_[points[i - 1]], points_[points[i]]));
+    if (curve.closed)
+      lengths.push_back(lengths.back() + distance(points_[points.back()], points_[points[0]]));
+    arc_lengths_.push_back(std::move(lengths));
+    add_curve_chain(c);
+  }
+}
+
+void Refinement::add_curve_chain(Index c) {
+  const Plc::Curve& curve = plc_.curves[c];
+  const double length = arc_lengths_[c].back();
+  const auto seed = [&](double parameter) {
+    return add_unresolved(curve_point(c, parameter), 1, c);
+  };
+  std::vector<std::pair<Index, double>> chain;
+  const Index first = curve.closed ? seed(0) : curve.ends[0];
+  const Index last = curve.closed ? first : curve.ends[1];
+  const double chord = distance(unresolved_[first].point, unresolved_[last].point);
+  chain.push_back({first, 0});
+  if (length > seeded_length_per_chord * chord)
+    for (const double share : {1.0 / 3, 2.0 / 3}) chain.push_back({seed(share * length), share * length});
+  chain.push_back({last, length});
+  for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
+    const auto index = static_cast<Index>(pending_.size());
+    pending_.push_back({c, {chain[i].first, chain[i + 1].first}, {chain[i].second, chain[i + 1].second}});
+    for (const Index point : pending_.back().points) unresolved_[point].pending.push_back(index);
+  }
+}
+
+// A point has become a mesh vertex: first subsegments that waited for it may start.
+void Refinement::point_resolved(Index point) {
+  const std::vector<Index> waiting = std::move(unresolved_[point].pending);
+  for (const Index index : waiting) {
+    PendingSubsegment& p = pending_[index];
+    if (--p.missing > 0) continue;
+    const std::array<Index, 2> ends{unresolved_[p.points[0]].vertex, unresolved_[p.points[1]].vertex};
+    add_subsegment(p.curve, ends, p.parameters, ends[0]);
+  }
+}
+
+Point Refinement::curve_point(Index c, double parameter) const {
+  const auto& lengths = arc_lengths_[c];
+  const auto& points = plc_.curves[c].points;
+  auto after = static_cast<std::size_t>(std::upper_bound(lengths.begin(), lengths.end(), parameter) -
+                                        lengths.begin());
+  after = std::clamp<std::size_t>(after, 1, lengths.size() - 1);
+  const double step = lengths[after] - lengths[after - 1];
+  const double t = step > 0 ? std::clamp((parameter - lengths[after - 1]) / step, 0.0, 1.0) : 0.0;
+  const Point& a = points_[points[after - 1]];
+  const Point& b = points_[points[after % points.size()]];
+  return a + t * (b - a);
+}
+
+// Where the curve between two parameters meets the bisector plane of a and b: bisection on the sign
+// of |xa| - |xb| over the polyline's points, then linear on one segment.
+double Refinement::bisecting_parameter(Index c, const Point& a, const Point& b, double from,
+                                       double to) const {
+  const auto nearer_to_a = [&](const Point& p) {
+    return squared_distance(p, b) - squared_distance(p, a);
+  };
+  const auto& lengths = arc_lengths_[c];
+  auto first = static_cast<std::size_t>(std::upper_bound(lengths.begin(), lengths.end(), from) - lengths.begin());
+  auto last = static_cast<std::size_t>(std::lower_bound(lengths.begin(), lengths.end(), to) - lengths.begin());
+  double low = from, high = to;
+  while (first < last) {
+    const std::size_t middle = (first + last) / 2;
+    if (nearer_to_a(curve_point(c, lengths[middle])) > 0) {
+      low = lengths[middle];
+      first = middle + 1;
+    } else {
+      high = lengths[middle];
+      last = middle;
+    }
+  }
+  const double at_low = nearer_to_a(curve_point(c, low));
+  const double at_high = nearer_to_a(curve_point(c, high));
+  return at_low > at_high ? low + (high - low) * std::clamp(at_low / (at_low - at_high), 0.0, 1.0)
+                          : 0.5 * (low + high);
+}
+
+Index Refinement::nearest_vertex(const Point& p, Index from) {
+  double best = squared_distance(p, mesh_.point(from));
+  for (;;) {
+    mesh_.adjacent_vertices(from, cells_scratch_);
+    Index next = from;
+    for (const Index v : cells_scratch_) {
+      const double d = squared_distance(p, mesh_.point(v));
+      if (d >= best) continue;
+      best = d;
+      next = v;
+    }
+    if (next == from) return from;
+    from = next;
+  }
+}
+
+Index Refinement::add_subsegment(Index curve, std::array<Index, 2> ends,
+                                 std::array<double, 2> parameters, Index nearby) {
+  Index index;
+  std::uint32_t stamp = 0;
+  if (free_subsegments_.empty()) {
+    index = static_cast<Index>(subsegments_.size());
+    subsegments_.emplace_back();
+  } else {
+    index = free_subsegments_.back();
+    free_subsegments_.pop_back();
+    stamp = subsegments_[index].stamp;
+  }
+  Subsegment& s = subsegments_[index];
+  const Point a = mesh_.point(ends[0]), b = mesh_.point(ends[1]);
+  s = {curve, ends, parameters, {}, 0, 0, none, stamp, true};
+  s.centre_parameter = bisecting_parameter(curve, a, b, parameters[0], parameters[1]);
+  s.centre = frame_.rounded(curve_point(curve, s.centre_parameter));
+  s.squared_radius = std::max(squared_distance(s.centre, a), squared_distance(s.centre, b));
+  const Index nearest = nearest_vertex(s.centre, nearby);
+  s.object = objects_.add(LocationObjects::Kind::subsegment, index, s.centre, s.squared_radius, nearest);
+  const bool empty = nearest == ends[0] || nearest == ends[1] ||
+                     squared_distance(s.centre, mesh_.point(nearest)) > s.squared_radius;
+  if (!empty || too_coarse(s)) encroach(index);
+  return index;
+}
+
+void Refinement::encroach(Index subsegment) {
+  const Subsegment& s = subsegments_[subsegment];
+  queue_.push(WorkQueue::encroached_subsegments, s.squared_radius, {subsegment, s.stamp});
+}
+
+bool Refinement::too_coarse(const Subsegment& s) const {
+  const Point a = mesh_.point(s.ends[0]), b = mesh_.point(s.ends[1]);
+  const double length = sizing_.subsegment_length(s.curve, s.centre);
+  const double chord = squared_distance(a, b);
+  if (chord > length * length) return true;
+  if (plc_.curves[s.curve].straight) return false;
+  const double sagitta = std::min(distance_, largest_sagitta_per_chord * std::sqrt(chord));
+  const auto leaves_chord = [&](const Point& p) {
+    const double t = chord > 0 ? std::clamp(dot(p - a, b - a) / chord, 0.0, 1.0) : 0.0;
+    return squared_distance(p, a + t * (b - a)) > sagitta * sagitta;
+  };
+  const auto& lengths = arc_lengths_[s.curve];
+  const auto first = std::upper_bound(lengths.begin(), lengths.end(), s.parameters[0]);
+  const auto last = std::lower_bound(first, lengths.end(), s.parameters[1]);
+  return leaves_chord(s.centre) || std::any_of(first, last, [&](double parameter) {
+           return leaves_chord(curve_point(s.curve, parameter));
+         });
+}
+
+bool Refinement::destroy_subsegment(Index index) {
+  const Subsegment s = subsegments_[index];
+  if (s.squared_radius < floor_ * floor_) {
+    give_up(s.centre, "a curve could not be resolved with edges longer than 1e-10 of the diagonal");
+    return false;
+  }
+  const Index nearest = objects_[s.object].vertex;
+  const Index cell = mesh_.conflicting_cell_around(nearest, s.centre);
+  Index vertex = nearest;
+  if (cell == none) {
+    // A vertex lies on the centre already: it joins the curve.
+    if (nearest == s.ends[0] || nearest == s.ends[1]) return false;
+    if (vertices_[nearest].dimension > 1) {
+      vertices_[nearest].dimension = 1;
+      vertices_[nearest].feature = s.curve;
+    }
+    remove_subsegment(index);
+  } else {
+    mesh_.find_conflict_zone(s.centre, cell, zone_);
+    const Candidate candidate{s.centre, s.squared_radius, s.centre, 1, s.curve, cell};
+    if (const Index point = warp_target(candidate); point != none) {
+      ++warps_;
+      insert_point(point);
+      if (subsegments_[index].alive && subsegments_[index].stamp == s.stamp) encroach(index);
+      return true;
+    }
+    remove_subsegment(index);
+    vertex = force_insert(1, s.curve);
+  }
+  add_subsegment(s.curve, {s.ends[0], vertex}, {s.parameters[0], s.centre_parameter}, vertex);
+  add_subsegment(s.curve, {vertex, s.ends[1]}, {s.centre_parameter, s.parameters[1]}, vertex);
+  return true;
+}
+
+void Refinement::remove_subsegment(Index subsegment) {
+  Subsegment& s = subsegments_[subsegment];
+  objects_.remove(s.object);
+  s.alive = false;
+  ++s.stamp;
+  free_subsegments_.push_back(subsegment);
+}
+
+}  // namespace collarmesh

@@ -1,0 +1,46 @@
+#include <fmt/format.h>
+
+#include "collarmesh/error.h"
+#include "collarmesh/mesher.h"
+#include "refine/refinement.h"
+
+namespace collarmesh {
+
+namespace {
+
+void require(bool holds, const std::string& message) {
+  if (!holds) throw OptionError(message);
+}
+
+void validate(const MeshOptions& o) {
+  require(o.size >= 0 && o.size_min >= 0 && o.distance >= 0 && o.gradation >= 0,
+          "sizes, distance and gradation must not be negative; 0 stands for the default");
+  require(o.size == 0 || o.size_min <= o.size,
+          fmt::format("size-min {} exceeds size {}; make it smaller", o.size_min, o.size));
+  require(o.radius_edge >= 1 && o.exterior_radius_edge >= o.radius_edge,
+          "radius-edge must be at least 1, and at most its bound outside");
+  require(o.vertex_ratio == 0 || o.vertex_ratio > 2.83,
+          "vertex-ratio must exceed 2 sqrt 2 (the proved bound); 0 switches it off");
+  require(o.theta >= 0 && o.theta < 0.45, "theta must be in [0, 0.45)");
+  for (const auto* sizes : {&o.region_size, &o.patch_size, &o.curve_size})
+    for (const auto& [tag, size] : *sizes)
+      require(size > 0, fmt::format("the size of tag {} must be positive", tag));
+}
+
+}  // namespace
+
+MeshResult generate(const Plc& plc, const MeshOptions& options, const Execution& execution) {
+  validate(options);
+  require(plc.regions.size() < 0xffff, "more than 65534 regions are not supported");
+  Refinement refinement(plc, options, execution);
+  MeshResult result;
+  result.status = refinement.run();
+  result.statistics = refinement.statistics();
+  result.message = refinement.message();
+  if (!result.message.empty()) result.where = refinement.where();
+  if (result.status == MeshStatus::complete || result.status == MeshStatus::guarantee_missed)
+    result.mesh = refinement.extract();
+  return result;
+}
+
+}  // namespace collarmesh

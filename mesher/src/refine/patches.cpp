@@ -1,0 +1,264 @@
+// Patches: the restricted Delaunay triangulation of the mesh to each patch, and the region labels of
+// the cells (DESIGN section 7).
+#include <algorithm>
+#include <cassert>
+
+#include "refine/refinement.h"
+
+namespace collarmesh {
+
+namespace {
+
+constexpr std::uint16_t unlabelled = 0xffff;
+constexpr std::size_t seeds_per_closed_patch = 4;
+
+// Of some points, those that are far from each other: each next one is the farthest from all before.
+std::vector<Index> spread_points(const std::vector<Index>& candidates, const std::vector<Point>& points,
+                                 std::size_t count) {
+  std::vector<Index> chosen{candidates[0]};
+  std::vector<double> gap(candidates.size(), INFINITY);
+  while (chosen.size() < std::min(count, candidates.size())) {
+    std::size_t farthest = 0;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      gap[i] = std::min(gap[i], squared_distance(points[candidates[i]], points[chosen.back()]));
+      if (gap[i] > gap[farthest]) farthest = i;
+    }
+    if (gap[farthest] == 0) break;
+    chosen.push_back(candidates[farthest]);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+// A closed patch has no border to start from: seed it.
+void Refinement::prepare_patches() {
+  for (Index patch = 0; patch < plc_.patches.size(); ++patch) {
+    const Plc::Patch& p = plc_.patches[patch];
+    if (!p.curves.empty() || !p.vertices.empty()) continue;
+    std::vector<Index> candidates;
+    for (Index t = p.first_triangle; t < p.first_triangle + p.triangle_count; ++t)
+      candidates.insert(candidates.end(), plc_.triangles[t].points.begin(), plc_.triangles[t].points.end());
+    std::sort(candidates.begin(), candidates.end());
+    candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
+    for (const Index point : spread_points(candidates, points_, seeds_per_closed_patch))
+      add_unresolved(points_[point], 2, patch);
+  }
+}
+
+// The box' corners lie outside every region.
+void Refinement::label_from_outside(Index cell) {
+  const Index root = hierarchy_.root();
+  crossings_.clear();
+  if (!hierarchy_.empty())
+    hierarchy_.crossings(mesh_.point(0), mesh_.circumcentre(cell), {&root, 1}, crossings_);
+  labels_[cell] = {static_cast<std::uint16_t>(region_beyond(0)), 0, 0};
+}
+
+bool Refinement::on_patch(Index vertex, Index patch) const {
+  const MeshVertex& v = vertices_[vertex];
+  if (v.dimension == 2) return v.feature == patch;
+  if (v.dimension == 1) return plc_.curve_on_patch(v.feature, patch);
+  return v.dimension == 0 && plc_.vertex_on_patch(v.feature, patch);
+}
+
+// The region at the end of a segment that starts in `region` and has just been intersected
+// (crossings_). Each crossing leaves one region and enters another; the one that is entered once
+// more than left is where the segment ends, whatever the order of the crossings.
+Index Refinement::region_beyond(Index region) const {
+  if (crossings_.empty()) return region;
+  std::vector<std::pair<Index, int>> balance{{region, 1}};
+  const auto add = [&](Index r, int change) {
+    for (auto& [other, count] : balance)
+      if (other == r) {
+        count += change;
+        return;
+      }
+    balance.push_back({r, change});
+  };
+  for (const auto& crossing : crossings_) {
+    const auto& regions = plc_.patches[plc_.triangles[crossing.triangle].patch].regions;
+    const bool forward = crossing.direction > 0;
+    add(regions[forward ? 1 : 0], 1);
+    add(regions[forward ? 0 : 1], -1);
+  }
+  for (const auto& [r, count] : balance)
+    if (count > 0) return r;
+  return region;
+}
+
+std::span<const Index> Refinement::fewest_nodes(FaceId face) const {
+  const auto v = mesh_.face_vertices(face);
+  std::span<const Index> best = nodes_of(v[0]);
+  for (const Index vertex : {v[1], v[2]})
+    if (vertices_[vertex].node_count < best.size()) best = nodes_of(vertex);
+  return best;
+}
+
+void Refinement::find_crossings(FaceId face, std::span<const Index> nodes) {
+  hierarchy_.crossings(mesh_.circumcentre(cell_of(face)),
+                       mesh_.circumcentre(cell_of(mesh_.opposite(face))), nodes, crossings_);
+}
+
+// Label one of the new cells from across the zone's border, best where no patch can be in between;
+// when the zone is the whole box, from the box' corner. Returns its index in the zone.
+std::size_t Refinement::first_label() {
+  std::size_t seed = zone_.created.size();
+  for (std::size_t i = 0; i < zone_.created.size(); ++i) {
+    if (zone_.outer[i] == no_face) continue;
+    seed = i;
+    if (fewest_nodes(zone_.outer[i]).empty()) break;
+  }
+  if (seed < zone_.created.size()) {
+    const FaceId outer = zone_.outer[seed];
+    find_crossings(outer, fewest_nodes(outer));
+    labels_[zone_.created[seed]].region =
+        static_cast<std::uint16_t>(region_beyond(labels_[cell_of(outer)].region));
+    return seed;
+  }
+  label_from_outside(zone_.created[0]);
+  return 0;
+}
+
+// Labels of the new cells, and restricted triangles among the faces between them.
+void Refinement::label_created_cells(Index vertex) {
+  for (const Index cell : zone_.created) labels_[cell] = {unlabelled, 0, 0};
+  const std::size_t seed = first_label();
+  const std::uint16_t region = labels_[zone_.created[seed]].region;
+  if (vertices_[vertex].node_count == 0) {
+    for (const Index cell : zone_.created) labels_[cell].region = region;
+    return;
+  }
+  const auto nodes = nodes_of(vertex);
+  cells_scratch_.assign(1, zone_.created[seed]);
+  while (!cells_scratch_.empty()) {
+    const Index cell = cells_scratch_.back();
+    cells_scratch_.pop_back();
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      if (mesh_.corners(cell)[corner] == vertex || (labels_[cell].judged >> corner & 1U)) continue;
+      const FaceId face = face_id(cell, corner), other = mesh_.opposite(face);
+      if (other == no_face) continue;
+      labels_[cell_of(other)].judged |= static_cast<std::uint8_t>(1U << corner_of(other));
+      find_crossings(face, nodes);
+      if (!crossings_.empty()) restrict_face(face);
+      if (labels_[cell_of(other)].region != unlabelled) continue;
+      labels_[cell_of(other)].region = static_cast<std::uint16_t>(region_beyond(labels_[cell].region));
+      cells_scratch_.push_back(cell_of(other));
+    }
+  }
+}
+
+// The dual edges of the zone's border faces have become shorter, their ends are rounded anew: look
+// again at those that were marked and those whose labels say that they should be.
+void Refinement::mark_border_faces() {
+  for (std::size_t i = 0; i < zone_.border.size(); ++i) {
+    const FaceId outer = zone_.outer[i];
+    const FaceId before = zone_.border[i];
+    if (outer == no_face) continue;
+    const Index created = zone_.created[i];
+    const bool was_marked = labels_[cell_of(outer)].marked >> corner_of(outer) & 1U;
+    if (!was_marked && labels_[created].region == labels_[cell_of(outer)].region) continue;
+    const FaceId face = face_id(created, corner_of(before));
+    if (was_marked) unmark(outer);
+    find_crossings(face, fewest_nodes(face));
+    if (!crossings_.empty()) restrict_face(face);
+  }
+  for (const Index cell : zone_.cells)
+    for (unsigned corner = 0; corner < 4; ++corner)
+      if (labels_[cell].marked >> corner & 1U) forget_inner_mark(face_id(cell, corner));
+  for (const Index cell : zone_.created)
+    for (unsigned corner = 0, marked = labels_[cell].marked; marked != 0; ++corner, marked >>= 1) {
+      const FaceId face = face_id(cell, corner);
+      if ((marked & 1U) && !restricted(face).judged) judge_triangle(face);
+    }
+}
+
+// Marks of the zone's destroyed cells: the record of a face between two of them is dropped by the
+// second; a border face' was dropped or replaced already.
+void Refinement::forget_inner_mark(FaceId face) {
+  labels_[cell_of(face)].marked &= static_cast<std::uint8_t>(~(1U << corner_of(face)));
+  const FaceId other = mesh_.opposite(face);
+  if (other == no_face || mesh_.alive(cell_of(other))) return;
+  if (!(labels_[cell_of(other)].marked >> corner_of(other) & 1U))
+    free_restricted_.push_back(marks_[cell_of(face)][corner_of(face)]);
+}
+
+// Drop the mark on the cell's side that is alive; the record goes with it.
+void Refinement::unmark(FaceId face) {
+  labels_[cell_of(face)].marked &= static_cast<std::uint8_t>(~(1U << corner_of(face)));
+  free_restricted_.push_back(marks_[cell_of(face)][corner_of(face)]);
+}
+
+void Refinement::restrict_face(FaceId face) {
+  Index record;
+  if (free_restricted_.empty()) {
+    record = static_cast<Index>(restricted_.size());
+    restricted_.emplace_back();
+  } else {
+    record = free_restricted_.back();
+    free_restricted_.pop_back();
+  }
+  for (const FaceId side : {face, mesh_.opposite(face)}) {
+    labels_[cell_of(side)].marked |= static_cast<std::uint8_t>(1U << corner_of(side));
+    marks_[cell_of(side)][corner_of(side)] = record;
+  }
+  const auto v = mesh_.face_vertices(face);
+  const Point& corner = mesh_.point(v[0]);
+  RestrictedTriangle& t = restricted_[record];
+  t = {};
+  t.several_sheets = crossings_.size() > 1;
+  t.squared_radius = -1;
+  for (const auto& crossing : crossings_) {
+    const Point x = crossing_point(face, crossing.triangle);
+    const double r2 = squared_distance(x, corner);
+    if (r2 <= t.squared_radius) continue;
+    t.x = x;
+    t.squared_radius = r2;
+    t.triangle = crossing.triangle;
+  }
+  const Index patch = patch_of(t);
+  t.resolved_vertices = on_patch(v[0], patch) && on_patch(v[1], patch) && on_patch(v[2], patch);
+  if (t.resolved_vertices && plc_.patches[patch].planar && !t.several_sheets) {
+    t.x = triangle_circumcentre(face);
+    t.squared_radius = squared_distance(t.x, corner);
+  }
+}
+
+Point Refinement::crossing_point(FaceId face, Index triangle) const {
+  const Point& p = mesh_.circumcentre(cell_of(face));
+  const Point& q = mesh_.circumcentre(cell_of(mesh_.opposite(face)));
+  const auto t = hierarchy_.corners(triangle);
+  const Vector n = cross(t[1] - t[0], t[2] - t[0]);
+  const double hp = dot(p - t[0], n), hq = dot(q - t[0], n);
+  const double share = hp == hq ? 0.5 : std::clamp(hp / (hp - hq), 0.0, 1.0);
+  return p + share * (q - p);
+}
+
+Point Refinement::triangle_circumcentre(FaceId face) const {
+  const auto v = mesh_.face_vertices(face);
+  const Point& a = mesh_.point(v[0]);
+  const Vector u = mesh_.point(v[1]) - a, w = mesh_.point(v[2]) - a;
+  const Vector n = cross(u, w);
+  const double nn = squared_norm(n);
+  if (nn == 0) return crossing_point(face, restricted(face).triangle);
+  return a + (squared_norm(w) * cross(n, u) + squared_norm(u) * cross(w, n)) / (2 * nn);
+}
+
+void Refinement::judge_triangle(FaceId face) {
+  RestrictedTriangle& t = restricted(face);
+  t.judged = true;
+  const WorkQueue::Entry entry{face, mesh_.generation(cell_of(face))};
+  if (!t.resolved_vertices || t.several_sheets || too_far(face, t))
+    queue_.push(WorkQueue::unresolved_triangles, t.squared_radius, entry);
+  else if (const double size = sizing_.triangle_radius(patch_of(t), t.x);
+           t.squared_radius > size * size)
+    queue_.push(WorkQueue::large_triangles, t.squared_radius, entry);
+}
+
+// On a smooth patch: is the triangle's circumcentre farther from the surface than the tolerance?
+bool Refinement::too_far(FaceId face, const RestrictedTriangle& t) const {
+  if (plc_.patches[patch_of(t)].planar) return false;
+  return squared_distance(triangle_circumcentre(face), t.x) > distance_ * distance_;
+}
+
+}  // namespace collarmesh

@@ -1,0 +1,504 @@
+// Sparse Voronoi Refinement: the work loop, destroy and force_insert (paper, Procedures 1 to 3;
+// what differs from the paper and why is in DESIGN section 12 and doc/architecture.md).
+#include "refine/refinement.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace collarmesh {
+
+namespace {
+
+// The insertion of a centre is moved by a pseudo-random offset of this share of its ball's radius:
+// exact centres of cospherical input make flat cells whose refinement never ends (DESIGN, 11).
+constexpr double cell_offset = 0.05;
+constexpr double triangle_offset = 0.1;
+// Hierarchy nodes of a vertex are filtered again after so many insertions in its star.
+constexpr std::uint16_t insertions_between_refreshes = 12;
+// No ball smaller than this share of the diagonal is destroyed: it ends what would never end.
+constexpr double floor_per_diagonal = 1e-10;
+constexpr std::size_t steps_between_reports = 512;
+
+// A box well away from the input; slightly different in each axis so that its corners are not
+// cospherical with points of symmetric input.
+Box surrounding_box(const Box& bounds) {
+  const Vector sides = bounds.max - bounds.min;
+  const double extent = std::max({sides.x, sides.y, sides.z});
+  const Vector reach = 0.5 * sides + extent * Vector{0.87, 0.89, 0.91};
+  Box box;
+  box.add(bounds.centre() - reach);
+  box.add(bounds.centre() + reach);
+  return box;
+}
+
+Box framed(const Box& bounds, const Frame& frame) {
+  Box box;
+  box.add(frame.inside(bounds.min));
+  box.add(frame.inside(bounds.max));
+  return box;
+}
+
+std::vector<Point> framed(const std::vector<Point>& points, const Frame& frame) {
+  std::vector<Point> moved;
+  moved.reserve(points.size());
+  for (const Point& p : points) moved.push_back(frame.inside(p));
+  return moved;
+}
+
+std::vector<std::array<Index, 3>> corner_lists(const Plc& plc) {
+  std::vector<std::array<Index, 3>> lists;
+  lists.reserve(plc.triangles.size());
+  for (const Plc::Triangle& t : plc.triangles) lists.push_back(t.points);
+  return lists;
+}
+
+}  // namespace
+
+Refinement::Refinement(const Plc& plc, const MeshOptions& options, const Execution& execution)
+    : plc_(plc),
+      options_(options),
+      execution_(execution),
+      frame_(plc.bounds),
+      points_(framed(plc.points, frame_)),
+      sizing_(plc, options, frame_),
+      diagonal_(plc.bounds.diagonal()),
+      distance_(options.distance > 0 ? options.distance : 1e-3 * diagonal_),
+      floor_(floor_per_diagonal * diagonal_),
+      box_(surrounding_box(framed(plc.bounds, frame_))),
+      mesh_(box_),
+      hierarchy_(points_, corner_lists(plc)),
+      queue_(squared_distance(box_.min, box_.max)),
+      random_state_(options.seed),
+      started_(std::chrono::steady_clock::now()) {
+  start();
+}
+
+void Refinement::start() {
+  vertices_.resize(mesh_.vertex_count());
+  if (!hierarchy_.empty()) {
+    node_pool_.push_back(hierarchy_.root());
+    for (MeshVertex& v : vertices_) v.node_count = 1;
+  }
+  labels_.resize(mesh_.cell_capacity());
+  marks_.resize(mesh_.cell_capacity());
+  for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) label_from_outside(cell);
+  for (Index i = 0; i < plc_.vertices.size(); ++i)
+    add_unresolved(points_[plc_.vertices[i].point], 0, i);
+  prepare_curves();
+  prepare_patches();
+  for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) judge_cell(cell);
+}
+
+Index Refinement::add_unresolved(const Point& p, std::uint8_t dimension, Index feature) {
+  const auto index = static_cast<Index>(unresolved_.size());
+  Index nearest = 0;
+  if (mesh_.vertex_count() == 8) {
+    for (Index corner = 1; corner < 8; ++corner)
+      if (squared_distance(p, mesh_.point(corner)) < squared_distance(p, mesh_.point(nearest)))
+        nearest = corner;
+  } else {
+    nearest = nearest_vertex(p, last_vertex());
+  }
+  unresolved_.push_back({p, dimension, feature});
+  unresolved_[index].object =
+      objects_.add(LocationObjects::Kind::point, index, p, 0, nearest);
+  queue_point(index);
+  return index;
+}
+
+// The stamp of a queued point is the exponent of its ball, so that a stale entry is noticed.
+void Refinement::queue_point(Index point) {
+  const double r2 = squared_distance(
+      unresolved_[point].point, mesh_.point(objects_[unresolved_[point].object].vertex));
+  queue_.push(WorkQueue::unresolved_points, r2,
+              {point, static_cast<std::uint32_t>(std::ilogb(std::max(r2, 1e-300)))});
+}
+
+MeshStatus Refinement::run() {
+  WorkQueue::Item item;
+  for (;;) {
+    while (queue_.pop(item)) {
+      process(item);
+      if (++steps_ % steps_between_reports != 0) continue;
+      if (execution_.cancelled() || !report_progress()) return MeshStatus::cancelled;
+      if (out_of_budget()) return MeshStatus::budget_hit;
+    }
+    if (!check_surface()) break;
+  }
+  relabel_flat_cells();
+  seconds_ = elapsed();
+  return message_.empty() ? MeshStatus::complete : MeshStatus::guarantee_missed;
+}
+
+void Refinement::process(const WorkQueue::Item& item) {
+  const auto [id, stamp] = item.entry;
+  switch (item.priority) {
+    case WorkQueue::encroached_subsegments:
+      if (subsegments_[id].alive && subsegments_[id].stamp == stamp) destroy_subsegment(id);
+      break;
+    case WorkQueue::skinny_cells:
+    case WorkQueue::large_cells:
+      if (mesh_.alive(id) && mesh_.generation(id) == stamp) destroy_cell(item);
+      break;
+    case WorkQueue::unresolved_points:
+      resolve_point(item);
+      break;
+    case WorkQueue::unresolved_triangles:
+    case WorkQueue::large_triangles:
+      if (mesh_.alive(cell_of(id)) && mesh_.generation(cell_of(id)) == stamp)
+        destroy_triangle(item);
+      break;
+    case WorkQueue::priority_count:
+      break;
+  }
+}
+
+void Refinement::destroy_cell(const WorkQueue::Item& item) {
+  const Index cell = item.entry.id;
+  const double r2 = mesh_.squared_radius(cell);
+  const auto candidate = cell_candidate(cell);
+  if (!candidate || !destroy(*candidate)) return;
+  // It may have yielded or warped to something that left this cell alive.
+  if (mesh_.alive(cell) && mesh_.generation(cell) == item.entry.stamp)
+    queue_.push(item.priority, r2, item.entry);
+}
+
+void Refinement::destroy_triangle(const WorkQueue::Item& item) {
+  const FaceId face = item.entry.id;
+  if (!(labels_[cell_of(face)].marked >> corner_of(face) & 1U)) return;
+  const RestrictedTriangle t = restricted(face);
+  if (t.given_up) return;
+  const auto candidate = triangle_candidate(face);
+  if (!candidate || !destroy(*candidate)) {
+    restricted(face).given_up = true;
+    return;
+  }
+  if (mesh_.alive(cell_of(face)) && mesh_.generation(cell_of(face)) == item.entry.stamp &&
+      (labels_[cell_of(face)].marked >> corner_of(face) & 1U))
+    queue_.push(item.priority, t.squared_radius, item.entry);
+}
+
+void Refinement::resolve_point(const WorkQueue::Item& item) {
+  const UnresolvedPoint& p = unresolved_[item.entry.id];
+  if (p.vertex != none) return;
+  const double r2 = squared_distance(p.point, mesh_.point(objects_[p.object].vertex));
+  if (std::ilogb(std::max(r2, 1e-300)) < static_cast<int>(item.entry.stamp)) {
+    queue_point(item.entry.id);  // the mesh has become finer here since: others are larger
+    return;
+  }
+  insert_point(item.entry.id);
+}
+
+bool Refinement::insert_point(Index index) {
+  UnresolvedPoint& p = unresolved_[index];
+  const Index nearest = objects_[p.object].vertex;
+  const Index cell = mesh_.conflicting_cell_around(nearest, p.point);
+  if (cell == none) {
+    // A vertex is there already: it takes over the feature.
+    MeshVertex& v = vertices_[nearest];
+    if (p.dimension < v.dimension) {
+      v.dimension = p.dimension;
+      v.feature = p.feature;
+    }
+    p.vertex = nearest;
+    objects_.remove(p.object);
+    point_resolved(index);
+    return true;
+  }
+  objects_.remove(p.object);
+  mesh_.find_conflict_zone(p.point, cell, zone_);
+  p.vertex = mesh_.vertex_count();
+  force_insert(p.dimension, p.feature);
+  point_resolved(index);
+  return true;
+}
+
+bool Refinement::destroy(Candidate candidate) {
+  for (;;) {
+    if (candidate.squared_radius < floor_ * floor_) {
+      give_up(candidate.point, "the refinement did not end before edges became shorter than 1e-10 "
+                               "of the diagonal");
+      return false;
+    }
+    mesh_.find_conflict_zone(candidate.point, candidate.start, zone_);
+    if (const Index point = warp_target(candidate); point != none) {
+      ++warps_;
+      return insert_point(point);
+    }
+    if (const Index subsegment = encroached_subsegment(candidate); subsegment != none) {
+      ++yields_;
+      return destroy_subsegment(subsegment);
+    }
+    if (candidate.dimension == 3) {
+      if (const FaceId face = encroached_triangle(candidate); face != no_face) {
+        const auto lower = triangle_candidate(face);
+        if (lower && lower->squared_radius >= floor_ * floor_) {
+          ++yields_;
+          candidate = *lower;
+          continue;
+        }
+      }
+    }
+    force_insert(candidate.dimension, candidate.feature);
+    return true;
+  }
+}
+
+// The unresolved point of lowest containment dimension within theta r of the ball's centre. Those
+// near enough are in a list of the zone's vertices (DESIGN section 6).
+Index Refinement::warp_target(const Candidate& candidate) const {
+  Index best = none;
+  double reach = options_.theta * options_.theta * candidate.squared_radius;
+  std::uint8_t dimension = candidate.dimension;
+  for (const Index v : zone_.vertices)
+    for (Index o = objects_.first_at(v); o != none; o = objects_[o].next) {
+      const auto& object = objects_[o];
+      if (object.kind != LocationObjects::Kind::point) continue;
+      const UnresolvedPoint& p = unresolved_[object.owner];
+      const double d = squared_distance(p.point, candidate.ball_centre);
+      if (p.dimension > dimension || (p.dimension == dimension && best == none) || d > reach)
+        continue;
+      if (p.dimension == dimension && best != none &&
+          d >= squared_distance(unresolved_[best].point, candidate.ball_centre))
+        continue;
+      best = object.owner;
+      dimension = p.dimension;
+    }
+  return best;
+}
+
+Index Refinement::encroached_subsegment(const Candidate& candidate) const {
+  if (candidate.dimension <= 1) return none;
+  Index best = none;
+  double deepest = 0;
+  for (const Index v : zone_.vertices)
+    for (Index o = objects_.first_at(v); o != none; o = objects_[o].next) {
+      const auto& object = objects_[o];
+      if (object.kind != LocationObjects::Kind::subsegment) continue;
+      const double depth =
+          object.squared_radius - squared_distance(candidate.point, object.centre);
+      if (depth < 0 || (best != none && depth <= deepest)) continue;
+      best = object.owner;
+      deepest = depth;
+    }
+  return best;
+}
+
+// A surface gap ball lies in the union of its two cells' balls, so the marked faces of the zone are
+// all that the candidate can encroach.
+FaceId Refinement::encroached_triangle(const Candidate& candidate) const {
+  FaceId best = no_face;
+  double deepest = 0;
+  for (const Index cell : zone_.cells)
+    for (unsigned corner = 0, marked = labels_[cell].marked; marked != 0; ++corner, marked >>= 1) {
+      if (!(marked & 1U)) continue;
+      const RestrictedTriangle& t = restricted(face_id(cell, corner));
+      const double depth = t.squared_radius - squared_distance(candidate.point, t.x);
+      if (depth <= deepest || t.given_up) continue;
+      best = face_id(cell, corner);
+      deepest = depth;
+    }
+  return best;
+}
+
+Index Refinement::force_insert(std::uint8_t dimension, Index feature) {
+  const Index vertex = mesh_.insert(zone_);
+  MeshVertex made;
+  made.dimension = dimension;
+  made.feature = feature;
+  vertices_.push_back(made);
+  labels_.resize(mesh_.cell_capacity());
+  marks_.resize(mesh_.cell_capacity());
+  inherit_nodes(vertex);
+  label_created_cells(vertex);
+  mark_border_faces();
+  relocate_objects(vertex);
+  for (const Index cell : zone_.created) judge_cell(cell);
+  return vertex;
+}
+
+void Refinement::relocate_objects(Index vertex) {
+  const Point p = mesh_.point(vertex);
+  for (const Index neighbour : zone_.vertices)
+    for (Index o = objects_.first_at(neighbour), next = none; o != none; o = next) {
+      const auto& object = objects_[o];
+      next = object.next;
+      const double d = squared_distance(p, object.centre);
+      const bool nearer = d < squared_distance(mesh_.point(neighbour), object.centre);
+      if (object.kind == LocationObjects::Kind::subsegment && d <= object.squared_radius)
+        encroach(object.owner);
+      if (nearer) objects_.move(o, vertex);
+    }
+}
+
+// A new vertex' Voronoi cell is cut out of its neighbours' cells: their nodes cover it.
+void Refinement::inherit_nodes(Index vertex) {
+  seeds_scratch_.clear();
+  for (const Index neighbour : zone_.vertices) {
+    const auto nodes = nodes_of(neighbour);
+    if (nodes.empty()) continue;
+    seeds_scratch_.insert(seeds_scratch_.end(), nodes.begin(), nodes.end());
+    ++vertices_[neighbour].insertions;
+  }
+  if (seeds_scratch_.empty()) return;
+  double largest = 0;
+  for (const Index cell : zone_.created) largest = std::max(largest, mesh_.squared_radius(cell));
+  hierarchy_.nodes_in_ball(mesh_.point(vertex), std::sqrt(largest), seeds_scratch_, nodes_scratch_);
+  store_nodes(vertices_[vertex], nodes_scratch_);
+  for (const Index neighbour : zone_.vertices)
+    if (vertices_[neighbour].insertions >= insertions_between_refreshes) refresh_nodes(neighbour);
+}
+
+void Refinement::refresh_nodes(Index vertex) {
+  mesh_.incident_cells(vertex, cells_scratch_);
+  double largest = 0;
+  for (const Index cell : cells_scratch_) largest = std::max(largest, mesh_.squared_radius(cell));
+  const auto nodes = nodes_of(vertex);
+  seeds_scratch_.assign(nodes.begin(), nodes.end());
+  hierarchy_.nodes_in_ball(mesh_.point(vertex), std::sqrt(largest), seeds_scratch_, nodes_scratch_);
+  store_nodes(vertices_[vertex], nodes_scratch_);
+  vertices_[vertex].insertions = 0;
+}
+
+void Refinement::store_nodes(MeshVertex& vertex, const std::vector<Index>& nodes) {
+  if (nodes.size() > vertex.node_count) {
+    vertex.first_node = static_cast<Index>(node_pool_.size());
+    node_pool_.insert(node_pool_.end(), nodes.begin(), nodes.end());
+  } else {
+    std::copy(nodes.begin(), nodes.end(), node_pool_.begin() + vertex.first_node);
+  }
+  vertex.node_count = static_cast<Index>(nodes.size());
+}
+
+double Refinement::shortest_squared_edge(Index cell) const {
+  const auto& v = mesh_.corners(cell);
+  const Point &a = mesh_.point(v[0]), &b = mesh_.point(v[1]), &c = mesh_.point(v[2]),
+              &d = mesh_.point(v[3]);
+  return std::min({squared_distance(a, b), squared_distance(a, c), squared_distance(a, d),
+                   squared_distance(b, c), squared_distance(b, d), squared_distance(c, d)});
+}
+
+void Refinement::judge_cell(Index cell) {
+  const Index region = labels_[cell].region;
+  const double r2 = mesh_.squared_radius(cell);
+  const Point& centre = mesh_.circumcentre(cell);
+  const double bound = region == 0 ? options_.exterior_radius_edge : options_.radius_edge;
+  if (r2 > bound * bound * shortest_squared_edge(cell)) {
+    if (inside_box(centre))
+      queue_.push(WorkQueue::skinny_cells, r2, {cell, mesh_.generation(cell)});
+    return;
+  }
+  const double size = sizing_.cell_radius(region, centre);
+  if (r2 > size * size) queue_.push(WorkQueue::large_cells, r2, {cell, mesh_.generation(cell)});
+}
+
+std::optional<Refinement::Candidate> Refinement::cell_candidate(Index cell) {
+  const double r2 = mesh_.squared_radius(cell);
+  const Point& centre = mesh_.circumcentre(cell);
+  const Point p =
+      frame_.rounded(centre + cell_offset * std::sqrt(r2 / 3) * random_in_cube());
+  if (!inside_box(p) || !mesh_.in_conflict(cell, p)) return std::nullopt;
+  return Candidate{p, r2, centre, 3, none, cell};
+}
+
+std::optional<Refinement::Candidate> Refinement::triangle_candidate(FaceId face) {
+  const RestrictedTriangle& t = restricted(face);
+  const Index patch = patch_of(t);
+  Point p = t.x;
+  if (plc_.patches[patch].planar && t.resolved_vertices) {
+    const auto v = mesh_.face_vertices(face);
+    const Vector n = cross(mesh_.point(v[1]) - mesh_.point(v[0]), mesh_.point(v[2]) - mesh_.point(v[0]));
+    const Vector offset = triangle_offset * std::sqrt(t.squared_radius / 3) * random_in_cube();
+    const double nn = squared_norm(n);
+    if (nn > 0) p = p + offset - (dot(offset, n) / nn) * n;
+  }
+  p = frame_.rounded(p);
+  const FaceId other = mesh_.opposite(face);
+  Index start = none;
+  if (mesh_.in_conflict(cell_of(face), p)) start = cell_of(face);
+  else if (other != no_face && mesh_.in_conflict(cell_of(other), p)) start = cell_of(other);
+  else start = mesh_.conflicting_cell_around(mesh_.face_vertices(face)[0], p);
+  if (start == none) return std::nullopt;
+  return Candidate{p, t.squared_radius, t.x, 2, patch, start};
+}
+
+bool Refinement::inside_box(const Point& p) const {
+  return p.x > box_.min.x && p.x < box_.max.x && p.y > box_.min.y && p.y < box_.max.y &&
+         p.z > box_.min.z && p.z < box_.max.z;
+}
+
+// splitmix64 (Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014).
+Vector Refinement::random_in_cube() {
+  const auto next = [this] {
+    std::uint64_t z = (random_state_ += 0x9e3779b97f4a7c15ULL);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
+  };
+  const double x = next(), y = next();
+  return {x, y, next()};
+}
+
+void Refinement::give_up(const Point& where, const std::string& what) {
+  if (!message_.empty()) return;
+  where_ = where;
+  const Point p = frame_.outside(where);
+  message_ = fmt::format("{} near ({:.9g}, {:.9g}, {:.9g}); look at the input there", what, p.x,
+                         p.y, p.z);
+}
+
+double Refinement::elapsed() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
+}
+
+std::size_t Refinement::bytes() const {
+  return mesh_.bytes() + hierarchy_.bytes() + objects_.bytes() + queue_.bytes() +
+         labels_.bytes() + marks_.bytes() + vertices_.capacity() * sizeof(MeshVertex) +
+         restricted_.capacity() * sizeof(RestrictedTriangle) +
+         node_pool_.capacity() * sizeof(Index) + unresolved_.capacity() * sizeof(UnresolvedPoint) +
+         subsegments_.capacity() * sizeof(Subsegment);
+}
+
+bool Refinement::out_of_budget() {
+  peak_bytes_ = std::max(peak_bytes_, bytes());
+  const auto spent = [&](const std::string& what) {
+    message_.clear();
+    give_up(mesh_.point(last_vertex()), what);
+    return true;
+  };
+  if (options_.max_vertices > 0 && mesh_.vertex_count() > options_.max_vertices)
+    return spent(fmt::format("the budget of {} vertices is spent; the last one is",
+                             options_.max_vertices));
+  if (options_.max_memory > 0 && peak_bytes_ > options_.max_memory)
+    return spent(fmt::format("the budget of {} bytes is spent; the last vertex is",
+                             options_.max_memory));
+  if (options_.time_limit > 0 && elapsed() > options_.time_limit)
+    return spent(fmt::format("the time limit of {} s is reached; the last vertex is",
+                             options_.time_limit));
+  return false;
+}
+
+bool Refinement::report_progress() {
+  if (!execution_.progress) return true;
+  const double now = elapsed();
+  if (now - reported_ < 0.1) return true;
+  reported_ = now;
+  const double share = mesh_.cell_count() / sizing_.expected_cells();
+  fraction_ = std::max(fraction_, std::min(0.98, share));
+  return execution_.progress({"refine", fraction_, mesh_.vertex_count(), mesh_.cell_count()});
+}
+
+MeshStatistics Refinement::statistics() const {
+  MeshStatistics s;
+  s.vertices_inserted = mesh_.vertex_count();
+  s.cells = mesh_.cell_count();
+  s.exact_predicates = mesh_.exact_decisions();
+  s.warps = warps_;
+  s.yields = yields_;
+  s.peak_bytes = std::max(peak_bytes_, bytes());
+  s.seconds = seconds_ > 0 ? seconds_ : elapsed();
+  return s;
+}
+
+}  // namespace collarmesh

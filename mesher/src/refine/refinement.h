@@ -1,0 +1,232 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "collarmesh/mesher.h"
+#include "delaunay/triangulation.h"
+#include "location/location_objects.h"
+#include "location/triangle_hierarchy.h"
+#include "refine/frame.h"
+#include "refine/sizing.h"
+#include "refine/work_queue.h"
+
+namespace collarmesh {
+
+/// Sparse Voronoi Refinement of a complex (paper, Procedures 1 to 3; DESIGN sections 6 to 8): owns
+/// the only mutable Delaunay triangulation and everything that hangs on its vertices and cells.
+///
+/// refinement.cpp holds the loop, destroy and force_insert; curves.cpp the subsegments;
+/// patches.cpp labels and restricted triangles; surface_check.cpp what is looked at when the queue
+/// has run empty; extract.cpp turns the result into a TetMesh.
+class Refinement {
+ public:
+  Refinement(const Plc& plc, const MeshOptions& options, const Execution& execution);
+
+  /// Refine until nothing is left to do, a budget is spent or the caller cancels.
+  MeshStatus run();
+  /// After run() returned complete or guarantee_missed.
+  TetMesh extract() const;
+
+  const std::string& message() const { return message_; }
+  Point where() const { return frame_.outside(where_); }
+  MeshStatistics statistics() const;
+
+ private:
+  /// What refinement knows of a mesh vertex besides its position.
+  struct MeshVertex {
+    std::uint8_t dimension = 3;   // containment dimension: of the lowest feature it lies on
+    std::uint16_t insertions = 0; // in its star since its nodes were filtered last
+    Index feature = none;         // index of that vertex, curve or patch of the complex
+    Index first_node = 0, node_count = 0;  // in node_pool_: hierarchy nodes that meet B(v, R_v)
+  };
+  /// An input point, or a seed, that is not in the mesh yet.
+  struct UnresolvedPoint {
+    Point point;
+    std::uint8_t dimension;
+    Index feature;
+    Index object = none;        // in objects_, none once it is a mesh vertex
+    Index vertex = none;        // the mesh vertex it became
+    std::vector<Index> pending = {};  // first subsegments that wait for it
+  };
+  /// A piece of a curve between two mesh vertices that are consecutive on it, with its protective
+  /// ball (DESIGN section 7): centred where the curve meets the bisector plane of the ends.
+  struct Subsegment {
+    Index curve;
+    std::array<Index, 2> ends;        // mesh vertices
+    std::array<double, 2> parameters; // arc length along the curve
+    Point centre;
+    double centre_parameter;
+    double squared_radius;
+    Index object;
+    std::uint32_t stamp;
+    bool alive;
+  };
+  /// A subsegment of a curve's first chain, waiting for its ends to be inserted.
+  struct PendingSubsegment {
+    Index curve;
+    std::array<Index, 2> points;       // unresolved points
+    std::array<double, 2> parameters;
+    unsigned missing = 2;
+  };
+  /// A Delaunay triangle whose dual edge crosses a patch at x, with its surface gap ball B(x, r).
+  struct RestrictedTriangle {
+    Point x;
+    double squared_radius;
+    Index triangle;                    // of the complex, crossed at x
+    bool resolved_vertices;            // all three vertices lie on the patch
+    bool several_sheets;               // the dual edge crosses the surface more than once
+    bool given_up;                     // at the floor: no further insertion here
+    bool judged;
+  };
+  struct CellLabel {
+    std::uint16_t region = 0;
+    std::uint8_t marked = 0;           // bit i: the face opposite corner i is restricted
+    std::uint8_t judged = 0;           // bit i: that face has been intersected with the patches
+  };
+  /// A point about to be inserted.
+  struct Candidate {
+    Point point;
+    double squared_radius;             // of the ball that is destroyed
+    Point ball_centre;
+    std::uint8_t dimension;
+    Index feature;
+    Index start;                       // a cell in conflict with the point
+  };
+
+  // refinement.cpp
+  void start();
+  Index add_unresolved(const Point& p, std::uint8_t dimension, Index feature);
+  void queue_point(Index point);
+  void process(const WorkQueue::Item& item);
+  void destroy_cell(const WorkQueue::Item& item);
+  void destroy_triangle(const WorkQueue::Item& item);
+  void resolve_point(const WorkQueue::Item& item);
+  bool insert_point(Index point);
+  /// Paper, Procedure 2. False when nothing could be inserted.
+  bool destroy(Candidate candidate);
+  Index warp_target(const Candidate& candidate) const;
+  Index encroached_subsegment(const Candidate& candidate) const;
+  FaceId encroached_triangle(const Candidate& candidate) const;
+  /// Paper, Procedure 3. Precondition: zone_ is the point's.
+  Index force_insert(std::uint8_t dimension, Index feature);
+  void relocate_objects(Index vertex);
+  void inherit_nodes(Index vertex);
+  void refresh_nodes(Index vertex);
+  void store_nodes(MeshVertex& vertex, const std::vector<Index>& nodes);
+  std::span<const Index> nodes_of(Index vertex) const {
+    return {node_pool_.data() + vertices_[vertex].first_node, vertices_[vertex].node_count};
+  }
+  double shortest_squared_edge(Index cell) const;
+  void judge_cell(Index cell);
+  std::optional<Candidate> cell_candidate(Index cell);
+  std::optional<Candidate> triangle_candidate(FaceId face);
+  Index last_vertex() const { return mesh_.vertex_count() - 1; }
+  bool inside_box(const Point& p) const;
+  Vector random_in_cube();
+  void give_up(const Point& where, const std::string& what);
+  double elapsed() const;
+  std::size_t bytes() const;
+  bool out_of_budget();
+  bool report_progress();
+
+  // curves.cpp
+  void prepare_curves();
+  void add_curve_chain(Index curve);
+  void point_resolved(Index point);
+  Point curve_point(Index curve, double parameter) const;
+  double bisecting_parameter(Index curve, const Point& a, const Point& b, double from, double to) const;
+  Index nearest_vertex(const Point& p, Index from);
+  Index add_subsegment(Index curve, std::array<Index, 2> ends, std::array<double, 2> parameters,
+                       Index nearby);
+  void encroach(Index subsegment);
+  bool too_coarse(const Subsegment& s) const;
+  bool destroy_subsegment(Index subsegment);
+  void remove_subsegment(Index subsegment);
+
+  // patches.cpp
+  void prepare_patches();
+  void label_from_outside(Index cell);
+  std::size_t first_label();
+  bool on_patch(Index vertex, Index patch) const;
+  Index region_beyond(Index region) const;
+  std::span<const Index> fewest_nodes(FaceId face) const;
+  void find_crossings(FaceId face, std::span<const Index> nodes);
+  void label_created_cells(Index vertex);
+  void mark_border_faces();
+  void forget_inner_mark(FaceId face);
+  void unmark(FaceId face);
+  void restrict_face(FaceId face);
+  Point crossing_point(FaceId face, Index triangle) const;
+  Point triangle_circumcentre(FaceId face) const;
+  void judge_triangle(FaceId face);
+  bool too_far(FaceId face, const RestrictedTriangle& t) const;
+  Index patch_of(const RestrictedTriangle& t) const { return plc_.triangles[t.triangle].patch; }
+  const RestrictedTriangle& restricted(FaceId face) const {
+    return restricted_[marks_[cell_of(face)][corner_of(face)]];
+  }
+  RestrictedTriangle& restricted(FaceId face) {
+    return restricted_[marks_[cell_of(face)][corner_of(face)]];
+  }
+
+  // surface_check.cpp
+  /// Look at the whole restricted surface and queue what is wrong. False when nothing is.
+  bool check_surface();
+  bool check_patch_topology();
+  bool check_patch_distance();
+  bool check_flat_cells();
+  std::vector<FaceId> marked_faces() const;
+  void refine_triangle(FaceId face);
+  bool flat_on_patch(Index cell) const;
+  void relabel_flat_cells();
+  void toggle_mark(FaceId face, const RestrictedTriangle& record);
+
+  // extract.cpp
+  void extract_face(FaceId face, const std::vector<Index>& number, TetMesh& mesh) const;
+
+  const Plc& plc_;
+  const MeshOptions options_;
+  const Execution& execution_;
+  Frame frame_;
+  std::vector<Point> points_;   // of the complex, in the frame
+  Sizing sizing_;
+  double diagonal_, distance_, floor_;
+  Box box_;
+
+  Triangulation mesh_;
+  TriangleHierarchy hierarchy_;
+  LocationObjects objects_;
+  WorkQueue queue_;
+  ConflictZone zone_;
+
+  std::vector<MeshVertex> vertices_;
+  GrowingArray<CellLabel> labels_;
+  GrowingArray<std::array<Index, 4>> marks_;   // restricted triangles of marked faces
+  std::vector<RestrictedTriangle> restricted_;
+  std::vector<Index> free_restricted_;
+  std::vector<Index> node_pool_;
+
+  std::vector<UnresolvedPoint> unresolved_;
+  std::vector<PendingSubsegment> pending_;
+  std::vector<std::vector<double>> arc_lengths_;  // of every curve's polyline points
+  std::vector<Subsegment> subsegments_;
+  std::vector<Index> free_subsegments_;
+
+  std::vector<TriangleHierarchy::Crossing> crossings_;
+  std::vector<Index> nodes_scratch_, cells_scratch_, seeds_scratch_;
+
+  std::uint64_t random_state_;
+  std::size_t warps_ = 0, yields_ = 0;
+  std::size_t steps_ = 0, peak_bytes_ = 0;
+  std::chrono::steady_clock::time_point started_;
+  double seconds_ = 0, reported_ = -1, fraction_ = 0;
+  std::string message_;
+  Point where_;
+  unsigned surface_rounds_ = 0;
+};
+
+}  // namespace collarmesh

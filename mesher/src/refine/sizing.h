@@ -1,0 +1,47 @@
+#pragma once
+
+#include <vector>
+
+#include "collarmesh/mesher.h"
+#include "refine/frame.h"
+
+namespace collarmesh {
+
+/// Turns the requested target edge lengths into bounds on circumradii (DESIGN section 14).
+/// The factors are measured: with them the median edge of a unit box comes out at the target
+/// (doc/architecture.md).
+class Sizing {
+ public:
+  Sizing(const Plc& plc, const MeshOptions& options, const Frame& frame);
+
+  /// Largest allowed circumradius of a cell of this region at this point; infinite outside.
+  double cell_radius(Index region, const Point& p) const {
+    return region == 0 ? INFINITY : cell_radius_per_edge * limited(region_size_[region], p);
+  }
+  /// Largest allowed radius of a surface gap ball of this patch at this point.
+  double triangle_radius(Index patch, const Point& p) const {
+    return triangle_radius_per_edge * limited(patch_size_[patch], p);
+  }
+  /// Largest allowed length of a subsegment of this curve at this point.
+  double subsegment_length(Index curve, const Point& p) const {
+    return subsegment_length_per_edge * limited(curve_size_[curve], p);
+  }
+  /// About how many cells the whole domain will take.
+  double expected_cells() const { return expected_cells_; }
+
+ private:
+  static constexpr double cell_radius_per_edge = 0.9;
+  static constexpr double triangle_radius_per_edge = 0.8;
+  static constexpr double subsegment_length_per_edge = 1.4;
+
+  double limited(double size, const Point& p) const {
+    return field_ ? std::min(size, std::max(field_(frame_.outside(p)), size_min_)) : size;
+  }
+
+  std::vector<double> region_size_, patch_size_, curve_size_;  // target edge lengths by index
+  std::function<double(const Point&)> field_;
+  Frame frame_;
+  double size_min_ = 0, expected_cells_ = 1;
+};
+
+}  // namespace collarmesh
