@@ -14,8 +14,10 @@ namespace {
 // exact centres of cospherical input make flat cells whose refinement never ends (DESIGN, 11).
 constexpr double cell_offset = 0.05;
 constexpr double triangle_offset = 0.1;
-// Hierarchy nodes of a vertex are filtered again after so many insertions in its star.
-constexpr std::uint16_t insertions_between_refreshes = 12;
+// Hierarchy nodes of a vertex are filtered again after so many insertions in its star: rarely on the
+// surface, where they never run out.
+constexpr std::uint16_t insertions_between_refreshes = 16;
+constexpr std::uint16_t insertions_between_surface_refreshes = 48;
 // No ball smaller than this share of the diagonal is destroyed: it ends what would never end.
 constexpr double floor_per_diagonal = 1e-10;
 constexpr std::size_t steps_between_reports = 512;
@@ -347,7 +349,10 @@ void Refinement::inherit_nodes(Index vertex) {
   hierarchy_.nodes_in_ball(mesh_.point(vertex), std::sqrt(largest), seeds_scratch_, nodes_scratch_);
   store_nodes(vertices_[vertex], nodes_scratch_);
   for (const Index neighbour : zone_.vertices)
-    if (vertices_[neighbour].insertions >= insertions_between_refreshes) refresh_nodes(neighbour);
+    if (vertices_[neighbour].insertions >= (vertices_[neighbour].dimension == 3
+                                                ? insertions_between_refreshes
+                                                : insertions_between_surface_refreshes))
+      refresh_nodes(neighbour);
 }
 
 void Refinement::refresh_nodes(Index vertex) {

@@ -30,9 +30,9 @@ class Sizing {
   double expected_cells() const { return expected_cells_; }
 
  private:
-  static constexpr double cell_radius_per_edge = 0.9;
-  static constexpr double triangle_radius_per_edge = 0.8;
-  static constexpr double subsegment_length_per_edge = 1.4;
+  static constexpr double cell_radius_per_edge = 0.79;
+  static constexpr double triangle_radius_per_edge = 0.7;
+  static constexpr double subsegment_length_per_edge = 1.3;
 
   double limited(double size, const Point& p) const {
     return field_ ? std::min(size, std::max(field_(frame_.outside(p)), size_min_)) : size;
