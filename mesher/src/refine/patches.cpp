@@ -250,9 +250,14 @@ void Refinement::judge_triangle(FaceId face) {
   const WorkQueue::Entry entry{face, mesh_.generation(cell_of(face))};
   if (!t.resolved_vertices || t.several_sheets || too_far(face, t))
     queue_.push(WorkQueue::unresolved_triangles, t.squared_radius, entry);
-  else if (const double size = sizing_.triangle_radius(patch_of(t), t.x);
-           t.squared_radius > size * size)
+  else if (too_large(face, t))
     queue_.push(WorkQueue::large_triangles, t.squared_radius, entry);
+}
+
+bool Refinement::too_large(FaceId face, const RestrictedTriangle& t) const {
+  const double graded = graded_size(mesh_.face_vertices(face), std::sqrt(t.squared_radius));
+  const double size = sizing_.triangle_radius(patch_of(t), t.x, graded);
+  return t.squared_radius > size * size;
 }
 
 // On a smooth patch: is the triangle's circumcentre farther from the surface than the tolerance?

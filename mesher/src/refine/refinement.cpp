@@ -84,6 +84,8 @@ void Refinement::start() {
   }
   labels_.resize(mesh_.cell_capacity());
   marks_.resize(mesh_.cell_capacity());
+  if (options_.gradation > 0) target_size_.resize(mesh_.vertex_count(), INFINITY);
+  if (options_.vertex_ratio > 0) shortest_edge_.resize(mesh_.vertex_count(), INFINITY);
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) label_from_outside(cell);
   for (Index i = 0; i < plc_.vertices.size(); ++i)
     add_unresolved(points_[plc_.vertices[i].point], 0, i);
@@ -126,7 +128,7 @@ MeshStatus Refinement::run() {
       if (execution_.cancelled() || !report_progress()) return MeshStatus::cancelled;
       if (out_of_budget()) return MeshStatus::budget_hit;
     }
-    if (!check_surface()) break;
+    if (!check_surface() && !check_gradation()) break;
   }
   relabel_flat_cells();
   seconds_ = elapsed();
@@ -314,6 +316,8 @@ Index Refinement::force_insert(std::uint8_t dimension, Index feature) {
   marks_.resize(mesh_.cell_capacity());
   inherit_nodes(vertex);
   label_created_cells(vertex);
+  grade_vertex(vertex);
+  note_edges(vertex);
   mark_border_faces();
   relocate_objects(vertex);
   for (const Index cell : zone_.created) judge_cell(cell);
@@ -394,8 +398,39 @@ void Refinement::judge_cell(Index cell) {
       queue_.push(WorkQueue::skinny_cells, r2, {cell, mesh_.generation(cell)});
     return;
   }
-  const double size = sizing_.cell_radius(region, centre);
-  if (r2 > size * size) queue_.push(WorkQueue::large_cells, r2, {cell, mesh_.generation(cell)});
+  if (region == 0) return;
+  const auto& v = mesh_.corners(cell);
+  const double size = sizing_.cell_radius(region, centre, graded_size(v, std::sqrt(r2)));
+  if (r2 > size * size || uneven_at_vertex(cell))
+    queue_.push(WorkQueue::large_cells, r2, {cell, mesh_.generation(cell)});
+}
+
+// The paper's stronger quality measure (section 1.2): a circumradius against the shortest edge at a
+// vertex.
+bool Refinement::uneven_at_vertex(Index cell) const {
+  if (options_.vertex_ratio == 0) return false;
+  const auto& v = mesh_.corners(cell);
+  double shortest = INFINITY;
+  for (const Index vertex : v) shortest = std::min(shortest, shortest_edge_[vertex]);
+  const double bound = options_.vertex_ratio * shortest;
+  return mesh_.squared_radius(cell) > bound * bound;
+}
+
+// The nearest neighbour of a vertex is always joined to it, so the shortest edge at a vertex only
+// ever shrinks. Where it did, older cells may have become uneven.
+void Refinement::note_edges(Index vertex) {
+  if (options_.vertex_ratio == 0) return;
+  shortest_edge_.resize(mesh_.vertex_count(), INFINITY);
+  for (const Index neighbour : zone_.vertices) {
+    const double length = distance(mesh_.point(vertex), mesh_.point(neighbour));
+    shortest_edge_[vertex] = std::min(shortest_edge_[vertex], length);
+    if (length >= shortest_edge_[neighbour]) continue;
+    shortest_edge_[neighbour] = length;
+    mesh_.incident_cells(neighbour, cells_scratch_);
+    for (const Index cell : cells_scratch_)
+      if (labels_[cell].region != 0 && uneven_at_vertex(cell))
+        queue_.push(WorkQueue::large_cells, mesh_.squared_radius(cell), {cell, mesh_.generation(cell)});
+  }
 }
 
 std::optional<Refinement::Candidate> Refinement::cell_candidate(Index cell) {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,8 +22,9 @@ namespace collarmesh {
 /// the only mutable Delaunay triangulation and everything that hangs on its vertices and cells.
 ///
 /// refinement.cpp holds the loop, destroy and force_insert; curves.cpp the subsegments;
-/// patches.cpp labels and restricted triangles; surface_check.cpp what is looked at when the queue
-/// has run empty; extract.cpp turns the result into a TetMesh.
+/// patches.cpp labels and restricted triangles; gradation.cpp target sizes at vertices;
+/// surface_check.cpp what is looked at when the queue has run empty; extract.cpp turns the result
+/// into a TetMesh.
 class Refinement {
  public:
   Refinement(const Plc& plc, const MeshOptions& options, const Execution& execution);
@@ -123,6 +125,8 @@ class Refinement {
   }
   double shortest_squared_edge(Index cell) const;
   void judge_cell(Index cell);
+  bool uneven_at_vertex(Index cell) const;
+  void note_edges(Index vertex);
   std::optional<Candidate> cell_candidate(Index cell);
   std::optional<Candidate> triangle_candidate(FaceId face);
   Index last_vertex() const { return mesh_.vertex_count() - 1; }
@@ -164,6 +168,7 @@ class Refinement {
   Point crossing_point(FaceId face, Index triangle) const;
   Point triangle_circumcentre(FaceId face) const;
   void judge_triangle(FaceId face);
+  bool too_large(FaceId face, const RestrictedTriangle& t) const;
   bool too_far(FaceId face, const RestrictedTriangle& t) const;
   Index patch_of(const RestrictedTriangle& t) const { return plc_.triangles[t.triangle].patch; }
   const RestrictedTriangle& restricted(FaceId face) const {
@@ -171,6 +176,18 @@ class Refinement {
   }
   RestrictedTriangle& restricted(FaceId face) {
     return restricted_[marks_[cell_of(face)][corner_of(face)]];
+  }
+
+  // gradation.cpp
+  void grade_vertex(Index vertex);
+  /// Spread target sizes over the whole mesh; queue what has become too large. False when nothing has.
+  bool check_gradation();
+  /// The target edge length that gradation imposes on a simplex whose ball has this radius.
+  double graded_size(std::span<const Index> corners, double reach) const {
+    if (target_size_.size() == 0) return INFINITY;
+    double size = INFINITY;
+    for (const Index v : corners) size = std::min(size, target_size_[v]);
+    return size + options_.gradation * reach;
   }
 
   // surface_check.cpp
@@ -204,6 +221,8 @@ class Refinement {
   ConflictZone zone_;
 
   std::vector<MeshVertex> vertices_;
+  GrowingArray<double> target_size_;    // of every vertex, with gradation only
+  GrowingArray<double> shortest_edge_;  // at every vertex, with a vertex ratio only
   GrowingArray<CellLabel> labels_;
   GrowingArray<std::array<Index, 4>> marks_;   // restricted triangles of marked faces
   std::vector<RestrictedTriangle> restricted_;
@@ -226,7 +245,7 @@ class Refinement {
   double seconds_ = 0, reported_ = -1, fraction_ = 0;
   std::string message_;
   Point where_;
-  unsigned surface_rounds_ = 0;
+  unsigned surface_rounds_ = 0, gradation_rounds_ = 0;
 };
 
 }  // namespace collarmesh

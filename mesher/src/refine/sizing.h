@@ -15,16 +15,26 @@ class Sizing {
   Sizing(const Plc& plc, const MeshOptions& options, const Frame& frame);
 
   /// Largest allowed circumradius of a cell of this region at this point; infinite outside.
-  double cell_radius(Index region, const Point& p) const {
-    return region == 0 ? INFINITY : cell_radius_per_edge * limited(region_size_[region], p);
+  /// `graded` is a target edge length that gradation imposes, here and below.
+  double cell_radius(Index region, const Point& p, double graded) const {
+    return region == 0 ? INFINITY
+                       : cell_radius_per_edge * std::min(graded, limited(region_size_[region], p));
   }
   /// Largest allowed radius of a surface gap ball of this patch at this point.
-  double triangle_radius(Index patch, const Point& p) const {
-    return triangle_radius_per_edge * limited(patch_size_[patch], p);
+  double triangle_radius(Index patch, const Point& p, double graded) const {
+    return triangle_radius_per_edge * std::min(graded, limited(patch_size_[patch], p));
   }
   /// Largest allowed length of a subsegment of this curve at this point.
-  double subsegment_length(Index curve, const Point& p) const {
-    return subsegment_length_per_edge * limited(curve_size_[curve], p);
+  double subsegment_length(Index curve, const Point& p, double graded) const {
+    return subsegment_length_per_edge * std::min(graded, limited(curve_size_[curve], p));
+  }
+  /// The target edge length at a mesh vertex on this feature (`dimension` 1: curve, 2: patch).
+  double feature_size(unsigned dimension, Index feature, const Point& p) const {
+    return limited(dimension == 1 ? curve_size_[feature] : patch_size_[feature], p);
+  }
+  /// The target edge length inside a region; infinite outside.
+  double region_size(Index region, const Point& p) const {
+    return region == 0 ? INFINITY : limited(region_size_[region], p);
   }
   /// About how many cells the whole domain will take.
   double expected_cells() const { return expected_cells_; }

@@ -42,6 +42,7 @@ class WorkQueue {
     const auto bucket = static_cast<unsigned>(std::clamp(below, 0, static_cast<int>(bucket_count) - 1));
     buckets_[priority][bucket].push_back(entry);
     first_[priority] = std::min(first_[priority], bucket);
+    ++pushed_;
   }
 
   /// Take the next entry: largest ball of the first priority that has any. False when empty.
@@ -59,6 +60,9 @@ class WorkQueue {
     return false;
   }
 
+  /// Entries pushed so far.
+  std::size_t pushed() const { return pushed_; }
+
   std::size_t bytes() const {
     std::size_t sum = 0;
     for (const auto& priority : buckets_)
@@ -71,6 +75,7 @@ class WorkQueue {
   int largest_exponent_;
   std::array<std::array<std::vector<Entry>, bucket_count>, priority_count> buckets_;
   std::array<unsigned, priority_count> first_{};
+  std::size_t pushed_ = 0;
 };
 
 }  // namespace collarmesh
