@@ -1,0 +1,169 @@
+#include "location/triangle_hierarchy.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+namespace collarmesh {
+namespace {
+
+using Triangles = std::vector<std::array<Index, 3>>;
+
+struct Soup {
+  std::vector<Point> points;
+  Triangles triangles;
+};
+
+Soup random_triangles(std::size_t n, double extent) {
+  std::mt19937_64 random(17);
+  std::uniform_real_distribution<double> unit(0, 1);
+  Soup soup;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Point at{unit(random), unit(random), unit(random)};
+    for (int k = 0; k < 3; ++k)
+      soup.points.push_back(at + extent * Point{unit(random), unit(random), unit(random)});
+    const auto first = static_cast<Index>(3 * i);
+    soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  return soup;
+}
+
+// The surface of [0, n]^3 in unit squares, each cut in two: full of ties for axis-parallel segments.
+Soup box_surface(int n) {
+  Soup soup;
+  const auto corner = [&](int axis, int side, int i, int j) {
+    Point p;
+    p[static_cast<std::size_t>(axis)] = side * n;
+    p[static_cast<std::size_t>((axis + 1) % 3)] = i;
+    p[static_cast<std::size_t>((axis + 2) % 3)] = j;
+    const auto found = std::find(soup.points.begin(), soup.points.end(), p);
+    if (found != soup.points.end()) return static_cast<Index>(found - soup.points.begin());
+    soup.points.push_back(p);
+    return static_cast<Index>(soup.points.size() - 1);
+  };
+  for (int axis = 0; axis < 3; ++axis)
+    for (int side = 0; side < 2; ++side)
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+          const Index a = corner(axis, side, i, j), b = corner(axis, side, i + 1, j),
+                      c = corner(axis, side, i + 1, j + 1), d = corner(axis, side, i, j + 1);
+          if (side == 1) soup.triangles.insert(soup.triangles.end(), {{a, b, c}, {a, c, d}});
+          else soup.triangles.insert(soup.triangles.end(), {{a, c, b}, {a, d, c}});
+        }
+  return soup;
+}
+
+TEST(TriangleHierarchy, NodesInABallCoverItsTriangles) {
+  const Soup soup = random_triangles(500, 0.05);
+  TriangleHierarchy hierarchy(soup.points, soup.triangles);
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<Index> coarse, fine;
+  std::vector<TriangleHierarchy::Crossing> crossings;
+  for (int k = 0; k < 200; ++k) {
+    const Point centre{unit(random), unit(random), unit(random)};
+    const double radius = 0.3 * unit(random);
+    const Index root = hierarchy.root();
+    hierarchy.nodes_in_ball(centre, 0.6, {&root, 1}, coarse);
+    hierarchy.nodes_in_ball(centre, radius, coarse, fine);
+    // Any segment inside the ball must find the same crossings from these nodes as from the root.
+    for (int s = 0; s < 10; ++s) {
+      const auto inside = [&] {
+        const Vector d{unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5};
+        return centre + radius * unit(random) / norm(d) * d;
+      };
+      const Point p = inside(), q = inside();
+      hierarchy.crossings(p, q, fine, crossings);
+      std::vector<Index> found, expected;
+      for (const auto& crossing : crossings) found.push_back(crossing.triangle);
+      hierarchy.crossings(p, q, {&root, 1}, crossings);
+      for (const auto& crossing : crossings) expected.push_back(crossing.triangle);
+      std::sort(found.begin(), found.end());
+      std::sort(expected.begin(), expected.end());
+      ASSERT_EQ(found, expected);
+    }
+  }
+}
+
+TEST(TriangleHierarchy, NodesDoNotOverlap) {
+  const Soup soup = random_triangles(300, 0.05);
+  TriangleHierarchy hierarchy(soup.points, soup.triangles);
+  const Index root = hierarchy.root();
+  std::vector<Index> first, second, both;
+  hierarchy.nodes_in_ball({0.4, 0.5, 0.5}, 0.05, {&root, 1}, first);
+  hierarchy.nodes_in_ball({0.5, 0.5, 0.5}, 0.3, {&root, 1}, second);
+  both = first;
+  both.insert(both.end(), second.begin(), second.end());
+  std::vector<Index> found;
+  hierarchy.nodes_in_ball({0.45, 0.5, 0.5}, 0.15, both, found);
+  std::vector<TriangleHierarchy::Crossing> crossings;
+  hierarchy.crossings({0.31, 0.5, 0.5}, {0.59, 0.5, 0.5}, found, crossings);
+  std::vector<Index> triangles;
+  for (const auto& crossing : crossings) triangles.push_back(crossing.triangle);
+  std::sort(triangles.begin(), triangles.end());
+  EXPECT_EQ(std::adjacent_find(triangles.begin(), triangles.end()), triangles.end());
+}
+
+TEST(TriangleHierarchy, AClosedSurfaceIsCrossedConsistentlyWhateverTheTies) {
+  constexpr int n = 4;
+  const Soup soup = box_surface(n);
+  const TriangleHierarchy hierarchy(soup.points, soup.triangles);
+  const Index root = hierarchy.root();
+  std::vector<TriangleHierarchy::Crossing> crossings;
+  std::mt19937_64 random(2);
+  // Half-integer lattice points: on faces, edges, corners and diagonals of the tessellation.
+  std::uniform_int_distribution<int> lattice(-2, 2 * n + 2);
+  const auto point = [&] {
+    return 0.5 * Point{double(lattice(random)), double(lattice(random)), double(lattice(random))};
+  };
+  // A point on the surface counts as moved by (e, e^2, e^3).
+  const auto inside = [&](const Point& p) {
+    return p.x >= 0 && p.x < n && p.y >= 0 && p.y < n && p.z >= 0 && p.z < n;
+  };
+  for (int k = 0; k < 20000; ++k) {
+    const Point p = point(), q = point();
+    hierarchy.crossings(p, q, {&root, 1}, crossings);
+    int depth = inside(p) ? 1 : 0;
+    for (const auto& crossing : crossings) depth -= crossing.direction;
+    ASSERT_EQ(depth, inside(q) ? 1 : 0) << p.x << ' ' << p.y << ' ' << p.z << " to " << q.x << ' '
+                                        << q.y << ' ' << q.z;
+  }
+}
+
+TEST(TriangleHierarchy, DistanceEqualsBruteForce) {
+  const Soup soup = random_triangles(400, 0.2);
+  const TriangleHierarchy hierarchy(soup.points, soup.triangles);
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> unit(-0.5, 1.5);
+  for (int k = 0; k < 300; ++k) {
+    const Point p{unit(random), unit(random), unit(random)};
+    double expected = INFINITY;
+    for (const auto& t : soup.triangles)
+      expected = std::min(expected, squared_distance_to_triangle(p, soup.points[t[0]], soup.points[t[1]],
+                                                                 soup.points[t[2]]));
+    Index nearest = none;
+    ASSERT_EQ(hierarchy.squared_distance_to(p, INFINITY, &nearest), expected);
+    ASSERT_LT(nearest, soup.triangles.size());
+  }
+}
+
+TEST(TriangleHierarchy, DistanceToATriangleIsThatOfSampledPoints) {
+  const Point a{0, 0, 0}, b{1, 0, 0}, c{0.2, 0.9, 0.1};
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> unit(-1, 2);
+  for (int k = 0; k < 50; ++k) {
+    const Point p{unit(random), unit(random), unit(random)};
+    double sampled = INFINITY;
+    for (int i = 0; i <= 200; ++i)
+      for (int j = 0; i + j <= 200; ++j)
+        sampled = std::min(sampled, distance(p, a + i / 200.0 * (b - a) + j / 200.0 * (c - a)));
+    const double d = std::sqrt(squared_distance_to_triangle(p, a, b, c));
+    EXPECT_LE(d, sampled + 1e-12);
+    EXPECT_GE(d, sampled - 0.006);
+  }
+}
+
+}  // namespace
+}  // namespace collarmesh
