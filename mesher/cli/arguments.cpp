@@ -1,0 +1,254 @@
+#include "arguments.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+
+#include "collarmesh/io/tet_mesh_io.h"
+
+namespace collarmesh::cli {
+
+namespace {
+
+template <class Number>
+bool parse_whole(std::string_view text, Number& number) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+/// A finite number in an interval, so that "nan" and "inf" are refused as well.
+CLI::Validator number_in(double low, double high, const std::string& name) {
+  return CLI::Validator(
+      [=](std::string& text) {
+        double number = 0;
+        if (parse_whole(text, number) && number >= low && number <= high) return std::string();
+        return fmt::format("'{}' is not {}", text, name);
+      },
+      "");
+}
+
+const CLI::Validator length = number_in(0, 1e300, "a length (a number >= 0 in input units)");
+const CLI::Validator fraction = number_in(0, 0.1, "a number from 0 to 0.1 (relative to the diagonal)");
+const CLI::Validator angle = number_in(0, 180, "an angle from 0 to 180 degrees");
+const CLI::Validator ratio = number_in(1, 1e300, "a ratio of at least 1");
+
+/// An option whose value 0 stands for a default that depends on the input.
+template <class T>
+CLI::Option* add(CLI::App& app, const std::string& name, T& value, const std::string& text,
+                 const std::string& default_text = {}) {
+  CLI::Option* option = app.add_option(name, value, text);
+  if (default_text.empty()) return option->capture_default_str();
+  return option->default_str(default_text);
+}
+
+CLI::Option* add_tag_values(CLI::App& app, const std::string& name, std::map<Tag, double>& sizes,
+                            const std::string& text) {
+  const auto store = [&sizes, name](const std::vector<std::string>& values) {
+    for (const std::string& value : values) {
+      try {
+        sizes.insert_or_assign(parse_tag_value(value).first, parse_tag_value(value).second);
+      } catch (const std::invalid_argument& error) {
+        throw CLI::ValidationError(name, error.what());
+      }
+    }
+  };
+  return app.add_option_function<std::vector<std::string>>(name, store, text)
+      ->type_name("TAG=VALUE")
+      ->allow_extra_args(false);
+}
+
+void add_complex_options(CLI::App& app, ComplexArguments& a) {
+  const std::string group = "The complex";
+  add(app, "--feature-angle", a.plc.feature_angle,
+      "Edges that deviate more than this from flat are segments, degrees; 0: every edge that is not flat")
+      ->check(angle)
+      ->group(group);
+  add(app, "--planar-tolerance", a.plc.planar_tolerance,
+      "Facets within this of one plane are one, relative to the diagonal; 0: exactly coplanar ones only")
+      ->check(fraction)
+      ->group(group);
+  add(app, "--weld", a.plc.weld, "Points closer than this are one, relative to the diagonal")
+      ->check(fraction)
+      ->group(group);
+  add(app, "--crease-angle", a.crease_angle, "Features that meet below this angle form a crease, degrees")
+      ->check(angle)
+      ->group(group);
+}
+
+void add_size_options(CLI::App& app, MeshOptions& m) {
+  const std::string group = "Size (target edge lengths, absolute, input units)";
+  add(app, "--size", m.size, "Everywhere", "1/20 of the diagonal")->check(length)->group(group);
+  add(app, "--size-min", m.size_min, "Never ask for less than this", "none")->check(length)->group(group);
+  add_tag_values(app, "--region-size", m.region_size, "In the regions with this tag; repeatable")
+      ->group(group);
+  add_tag_values(app, "--patch-size", m.patch_size, "On the patches with this tag; repeatable")->group(group);
+  add_tag_values(app, "--curve-size", m.curve_size, "On the curves with this tag; repeatable")->group(group);
+  add(app, "--gradation", m.gradation, "Growth of size per unit length away from finer features", "unlimited")
+      ->check(length)
+      ->group(group);
+}
+
+void add_quality_options(CLI::App& app, MeshOptions& m) {
+  const std::string group = "Quality";
+  add(app, "--radius-edge", m.radius_edge, "Bound on circumradius / shortest edge of a tetrahedron")
+      ->check(ratio)
+      ->group(group);
+  add(app, "--vertex-ratio", m.vertex_ratio,
+      "Bound on largest circumradius / shortest edge at a vertex, more than 2 sqrt 2", "none")
+      ->check(length)
+      ->group(group);
+  add(app, "--theta", m.theta, "Warp to input within this times a gap ball's radius; 0: never")
+      ->check(number_in(0, 0.449, "a number from 0 to below 0.45"))
+      ->group(group);
+  add(app, "--distance", m.distance,
+      "Largest distance from smooth surfaces and curves, absolute, input units", "1e-3 of the diagonal")
+      ->check(length)
+      ->group(group);
+  add(app, "--seed", m.seed, "Of the pseudo-random offsets: same input, options and seed, same mesh")
+      ->group(group);
+}
+
+void add_budget_options(CLI::App& app, MeshOptions& m) {
+  const std::string group = "Budgets (hitting one is exit code 5)";
+  add(app, "--max-vertices", m.max_vertices, "Vertices of the triangulation, outside included", "none")
+      ->group(group);
+  add(app, "--max-memory", m.max_memory, "Bytes of the mesh structures; K, M and G are understood", "none")
+      ->transform(CLI::AsSizeValue(false))
+      ->group(group)
+      ->type_name("BYTES");
+  add(app, "--time-limit", m.time_limit, "Seconds", "none")->check(length)->group(group);
+}
+
+void add_mesh_options(CLI::App& app, MeshArguments& a) {
+  app.add_option("INPUT", a.inputs,
+                 "Surfaces and complexes (.off .obj .stl .ply .om .poly .smesh); several are one complex")
+      ->type_name("FILE");
+  app.add_option("-o,--output", a.output, "The mesh to write: .vtu, .msh (Gmsh 4.1) or .mesh (Medit)")
+      ->type_name("FILE");
+  add_size_options(app, a.mesh);
+  add_quality_options(app, a.mesh);
+  add_complex_options(app, a.complex);
+  add_budget_options(app, a.mesh);
+  app.add_option("--report", a.report, "Write what was measured as JSON")->type_name("FILE.json");
+  const std::map<std::string, ProgressStyle> styles{
+      {"auto", ProgressStyle::automatic}, {"json", ProgressStyle::json}, {"none", ProgressStyle::none}};
+  app.add_option("--progress", a.progress, "auto (a bar on a terminal), json (one object a line) or none")
+      ->transform(CLI::CheckedTransformer(styles))
+      ->default_str("auto")
+      ->type_name("STYLE")
+      ->option_text("{auto,json,none}=auto");
+  app.add_flag("-v,--verbose", a.verbose, "Say more: time per stage, statistics");
+  app.add_flag("-q,--quiet", a.quiet, "Say nothing unless something is wrong")->excludes("--verbose");
+}
+
+CLI::App* add_check_command(CLI::App& app, CheckArguments& a) {
+  CLI::App* check = app.add_subcommand("check", "Certify a mesh against the input it was made from");
+  check->add_option("MESH", a.mesh, "A .vtu, .msh or .mesh file")->required()->type_name("FILE");
+  check->add_option("--against", a.inputs, "The input: one or several files")->required()->type_name("FILE");
+  add(*check, "--radius-edge", a.check.radius_edge, "Bound on circumradius / shortest edge of a tetrahedron")
+      ->check(ratio);
+  add(*check, "--distance", a.check.distance,
+      "Largest distance from smooth surfaces and curves, absolute, input units", "1e-3 of the diagonal")
+      ->check(length);
+  add(*check, "--findings", a.check.findings_per_guarantee, "List at most this many per guarantee");
+  add_complex_options(*check, a.complex);
+  check->add_flag("--json", a.json, "Print JSON");
+  return check;
+}
+
+CLI::App* add_info_command(CLI::App& app, InfoArguments& a) {
+  CLI::App* info = app.add_subcommand("info", "Say what the input is: features, regions, creases, angles");
+  info->add_option("INPUT", a.inputs, "Files of one complex, or one mesh (.vtu, .msh, .mesh)")
+      ->required()
+      ->type_name("FILE");
+  add_complex_options(*info, a.complex);
+  info->add_flag("--json", a.json, "Print JSON");
+  return info;
+}
+
+std::string extension_list(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  return extension.empty() ? "has no extension" : fmt::format("ends in '{}'", extension);
+}
+
+/// What one option alone cannot tell.
+void check_mesh_arguments(const MeshArguments& a) {
+  if (a.inputs.empty()) throw CLI::RequiredError("INPUT: a file to mesh");
+  if (a.output.empty()) throw CLI::RequiredError("--output: where to write the mesh");
+  if (!io::is_tet_mesh_format(a.output))
+    throw CLI::ValidationError(
+        "--output", fmt::format("'{}' {}; use .vtu, .msh or .mesh", a.output, extension_list(a.output)));
+  if (!a.report.empty() && std::filesystem::path(a.report) == std::filesystem::path(a.output))
+    throw CLI::ValidationError("--report", "names the same file as --output; choose another");
+  if (a.mesh.size > 0 && a.mesh.size_min > a.mesh.size)
+    throw CLI::ValidationError(
+        "--size-min", fmt::format("{} exceeds --size {}; make it smaller", a.mesh.size_min, a.mesh.size));
+  if (a.mesh.vertex_ratio != 0 && a.mesh.vertex_ratio <= 2 * std::sqrt(2.0))
+    throw CLI::ValidationError("--vertex-ratio", "must exceed 2 sqrt 2 = 2.83 (the proved bound)");
+}
+
+/// CLI11's help with our usage lines.
+class HelpText : public CLI::Formatter {
+ public:
+  HelpText() { column_width(34); }
+  std::string make_usage(const CLI::App* app, std::string name) const override {
+    if (app->get_parent() == nullptr)
+      return "Usage: collarmesh INPUT... -o OUT [options]\n"
+             "       collarmesh check MESH --against INPUT... [options]\n"
+             "       collarmesh info INPUT... [options]\n";
+    return CLI::Formatter::make_usage(app, name);
+  }
+};
+
+constexpr const char* footer =
+    "Exit codes: 0 every guarantee holds, 1 internal error, 2 usage, 3 unreadable input,\n"
+    "4 not a valid complex or an acute crease, 5 a budget was hit, 6 cancelled,\n"
+    "7 a guarantee is missed (the mesh is written), 8 cannot write. 1 to 6 and 8 write no mesh.\n"
+    "Lengths are in input units (millimetres for CAD files); 'diagonal' is the bounding box's.";
+
+}  // namespace
+
+std::pair<Tag, double> parse_tag_value(std::string_view text) {
+  const std::size_t equals = text.find('=');
+  std::pair<Tag, double> result;
+  if (equals == std::string_view::npos || !parse_whole(text.substr(0, equals), result.first) ||
+      !parse_whole(text.substr(equals + 1), result.second) || !std::isfinite(result.second) ||
+      result.second <= 0)
+    throw std::invalid_argument(
+        fmt::format("'{}' is not TAG=VALUE with a whole number and a positive length, as in 7=0.25", text));
+  return result;
+}
+
+std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
+  MeshArguments mesh;
+  CheckArguments check;
+  InfoArguments info;
+  CLI::App app("collarmesh: tetrahedral meshes of piecewise-linear complexes, certified", "collarmesh");
+  app.set_version_flag("--version", "collarmesh " COLLARMESH_VERSION);
+  app.formatter(std::make_shared<HelpText>());
+  app.footer(footer);
+  app.require_subcommand(0, 1);
+  add_mesh_options(app, mesh);
+  const CLI::App* check_command = add_check_command(app, check);
+  const CLI::App* info_command = add_info_command(app, info);
+  try {
+    app.parse(argc, argv);
+    const bool subcommand = check_command->parsed() || info_command->parsed();
+    if (!subcommand) check_mesh_arguments(mesh);
+    if (subcommand && (!mesh.inputs.empty() || !mesh.output.empty()))
+      throw CLI::ExtrasError(
+          {"a subcommand comes first: collarmesh check MESH ..., collarmesh info INPUT ..."});
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? ExitCode::success : ExitCode::usage;
+  }
+  if (check_command->parsed()) return Arguments(check);
+  if (info_command->parsed()) return Arguments(info);
+  return Arguments(mesh);
+}
+
+}  // namespace collarmesh::cli

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "collarmesh/check.h"
+#include "collarmesh/mesher.h"
+#include "collarmesh/plc_builder.h"
+#include "exit_code.h"
+
+namespace collarmesh::cli {
+
+enum class ProgressStyle { automatic, json, none };
+
+/// How files become a complex; all commands share it.
+struct ComplexArguments {
+  PlcOptions plc;
+  double crease_angle = 70.53;  ///< degrees
+};
+
+/// `collarmesh INPUT... -o OUT`
+struct MeshArguments {
+  std::vector<std::string> inputs;
+  std::string output;
+  ComplexArguments complex;
+  MeshOptions mesh;
+  std::string report;  ///< path, empty: none
+  ProgressStyle progress = ProgressStyle::automatic;
+  bool verbose = false;
+  bool quiet = false;
+};
+
+/// `collarmesh check MESH --against INPUT...`
+struct CheckArguments {
+  std::string mesh;
+  std::vector<std::string> inputs;
+  ComplexArguments complex;
+  CheckOptions check;
+  bool json = false;
+};
+
+/// `collarmesh info INPUT...`
+struct InfoArguments {
+  std::vector<std::string> inputs;
+  ComplexArguments complex;
+  bool json = false;
+};
+
+using Arguments = std::variant<MeshArguments, CheckArguments, InfoArguments>;
+
+/// Understand a command line. When there is nothing to run (help, version, a mistake) the text has
+/// been printed and the exit code is returned instead.
+std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv);
+
+/// "7=0.25" is {7, 0.25}. Throws std::invalid_argument saying what is expected.
+std::pair<Tag, double> parse_tag_value(std::string_view text);
+
+}  // namespace collarmesh::cli

@@ -1,0 +1,23 @@
+#include "check_command.h"
+
+#include <fmt/format.h>
+
+#include "input_files.h"
+#include "interrupt.h"
+#include "report.h"
+
+namespace collarmesh::cli {
+
+ExitCode check_command(const CheckArguments& arguments) {
+  const TetMesh mesh = read_mesh(arguments.mesh);
+  const Plc plc = build_plc(read_soups(arguments.inputs), arguments.complex.plc);
+  stop_if_interrupted();
+  const CheckReport report = check(mesh, plc, arguments.check);
+  if (arguments.json)
+    fmt::print("{}\n", check_json(report).dump(1));
+  else
+    fmt::print("{}", check_text(report));
+  return report.passed() ? ExitCode::success : ExitCode::guarantee_missed;
+}
+
+}  // namespace collarmesh::cli

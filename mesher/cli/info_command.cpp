@@ -1,0 +1,54 @@
+#include "info_command.h"
+
+#include <fmt/format.h>
+
+#include "collarmesh/error.h"
+#include "collarmesh/io/tet_mesh_io.h"
+#include "input_files.h"
+#include "interrupt.h"
+#include "report.h"
+
+namespace collarmesh::cli {
+
+namespace {
+
+void print_mesh(const std::string& path, bool as_json) {
+  const TetMesh mesh = read_mesh(path);
+  stop_if_interrupted();
+  const MeshMeasures measures = measure_mesh(mesh);
+  const double median = median_edge(mesh);
+  if (!as_json) {
+    fmt::print("{}  median edge {:.6g}\n", mesh_text(mesh, measures), median);
+    return;
+  }
+  nlohmann::ordered_json json{{"mesh", measures_json(mesh, measures)}};
+  json["mesh"]["median_edge"] = median;
+  fmt::print("{}\n", json.dump(1));
+}
+
+void print_complex(const InfoArguments& arguments) {
+  PlcOptions options = arguments.complex.plc;
+  options.require_solid = false;
+  const Plc plc = build_plc(read_soups(arguments.inputs), options);
+  stop_if_interrupted();
+  const PlcSummary summary = summarize(plc, arguments.complex.crease_angle);
+  if (arguments.json)
+    fmt::print("{}\n", nlohmann::ordered_json{{"complex", complex_json(plc, summary)}}.dump(1));
+  else
+    fmt::print("{}", complex_text(plc, summary));
+}
+
+}  // namespace
+
+ExitCode info_command(const InfoArguments& arguments) {
+  const std::string& first = arguments.inputs.front();
+  if (!io::is_tet_mesh_format(first))
+    print_complex(arguments);
+  else if (arguments.inputs.size() == 1)
+    print_mesh(first, arguments.json);
+  else
+    throw OptionError(fmt::format("{} is a mesh: info tells about one at a time", first));
+  return ExitCode::success;
+}
+
+}  // namespace collarmesh::cli

@@ -1,0 +1,102 @@
+#include "input_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <numeric>
+
+#include "collarmesh/error.h"
+#include "collarmesh/io/soup_io.h"
+#include "collarmesh/io/tet_mesh_io.h"
+#include "interrupt.h"
+#ifdef COLLARMESH_OPENMESH
+#include "collarmesh/openmesh_io.h"
+#endif
+
+namespace collarmesh::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+/// Levenshtein distance: letters to change, insert or remove.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+void require_file(const std::string& path) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored))
+    throw ReadError(fmt::format("{}: is a folder; name a file in it", path));
+  if (fs::exists(path, ignored)) return;
+  const std::string similar = similar_file(path);
+  throw ReadError(similar.empty() ? fmt::format("{}: no such file; check the name and the folder", path)
+                                  : fmt::format("{}: no such file; did you mean {}?", path, similar));
+}
+
+PolygonSoup read_soup(const std::string& path) {
+  require_file(path);
+#ifdef COLLARMESH_OPENMESH
+  if (lower(fs::path(path).extension().string()) == ".om") return openmesh_io::read_om(path);
+#endif
+  if (!io::is_soup_format(path))
+    throw ReadError(fmt::format(
+        "{}: its format is not known by its extension '{}'; use .off .obj .stl .ply .om .poly or .smesh",
+        path, fs::path(path).extension().string()));
+  return io::read_soup(path);
+}
+
+}  // namespace
+
+std::string similar_file(const std::string& path) {
+  const fs::path wanted(path);
+  const fs::path folder = wanted.has_parent_path() ? wanted.parent_path() : fs::path(".");
+  const std::string name = lower(wanted.filename().string());
+  std::size_t nearest = 1 + name.size() / 3;
+  std::string found;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string candidate = entry->path().filename().string();
+    const std::size_t distance = edit_distance(name, lower(candidate));
+    if (distance > nearest || (distance == nearest && !found.empty())) continue;
+    nearest = distance;
+    found = (wanted.parent_path() / candidate).string();
+  }
+  return found;
+}
+
+std::vector<PolygonSoup> read_soups(const std::vector<std::string>& paths) {
+  std::vector<PolygonSoup> soups;
+  for (const std::string& path : paths) {
+    stop_if_interrupted();
+    soups.push_back(read_soup(path));
+  }
+  return soups;
+}
+
+TetMesh read_mesh(const std::string& path) {
+  require_file(path);
+  if (!io::is_tet_mesh_format(path))
+    throw ReadError(fmt::format("{}: its format is not known by its extension '{}'; use .vtu, .msh or .mesh",
+                                path, fs::path(path).extension().string()));
+  return io::read_tet_mesh(path);
+}
+
+}  // namespace collarmesh::cli

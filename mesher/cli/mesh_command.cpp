@@ -1,0 +1,167 @@
+#include "mesh_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <optional>
+#include <set>
+
+#include "collarmesh/error.h"
+#include "collarmesh/io/tet_mesh_io.h"
+#include "input_files.h"
+#include "interrupt.h"
+#include "progress_display.h"
+#include "report.h"
+#include "staged_file.h"
+
+namespace collarmesh::cli {
+
+namespace {
+
+/// Begins stages, both in the display and in the timing.
+class Stages {
+ public:
+  Stages(ProgressStyle style, StageTimes& times) : display_(style), times_(times) {}
+
+  void begin(const std::string& phase, double begin, double end) {
+    stop_if_interrupted();
+    times_.begin(phase);
+    display_.begin_stage(phase, begin, end);
+  }
+  void update(const ProgressReport& report) { display_.update(report); }
+
+ private:
+  ProgressDisplay display_;
+  StageTimes& times_;
+};
+
+void require_no_crease(const Plc& plc, const std::vector<Crease>& creases, double threshold) {
+  if (creases.empty()) return;
+  constexpr std::size_t named = 5;
+  std::vector<PlcFault> faults;
+  for (const Crease& crease : creases) {
+    if (faults.size() == named) break;
+    faults.push_back({PlcFault::Kind::crease, describe(plc, crease), {}, crease.where});
+  }
+  const std::string more =
+      creases.size() > named ? fmt::format(" (the {} sharpest follow)", named) : std::string();
+  throw PlcError(
+      fmt::format("{} acute crease{} below {:.4g} degrees{}; this version cannot mesh acute creases yet. "
+                  "Round or remove them in the input, or try a smaller --crease-angle: refinement may then "
+                  "hit a budget (set --max-vertices)",
+                  creases.size(), creases.size() == 1 ? "" : "s", threshold, more),
+      std::move(faults));
+}
+
+template <class Features>
+void require_tags(const std::map<Tag, double>& sizes, const Features& features, const std::string& option,
+                  const std::string& what) {
+  std::set<Tag> tags;
+  for (const auto& feature : features) tags.insert(feature.tag);
+  for (const auto& [tag, size] : sizes) {
+    if (tags.count(tag) > 0) continue;
+    std::string known;
+    for (const Tag each : tags) {
+      if (known.size() > 60) {
+        known += ", ...";
+        break;
+      }
+      known += (known.empty() ? "" : ", ") + std::to_string(each);
+    }
+    throw OptionError(fmt::format("{} {}={}: no {} has the tag {}; the tags are {}", option, tag, size, what,
+                                  tag, known.empty() ? "none" : known));
+  }
+}
+
+void require_known_tags(const MeshOptions& options, const Plc& plc) {
+  const std::vector<Plc::Region> solids(
+      plc.regions.begin() + std::min<std::ptrdiff_t>(1, std::ssize(plc.regions)), plc.regions.end());
+  require_tags(options.region_size, solids, "--region-size", "region");
+  require_tags(options.patch_size, plc.patches, "--patch-size", "patch");
+  require_tags(options.curve_size, plc.curves, "--curve-size", "curve");
+}
+
+void build_complex(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
+  stages.begin("read", 0, 0.02);
+  const std::vector<PolygonSoup> soups = read_soups(arguments.inputs);
+  stages.begin("complex", 0.02, 0.08);
+  run.plc = build_plc(soups, arguments.complex.plc);
+  require_known_tags(arguments.mesh, run.plc);
+  run.summary = summarize(run.plc, arguments.complex.crease_angle);
+  require_no_crease(run.plc, run.summary.creases, arguments.complex.crease_angle);
+}
+
+void refine(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
+  stages.begin("refine", 0.08, 0.8);
+  Execution execution;
+  execution.cancel = &interrupt_flag();
+  execution.progress = [&stages](const ProgressReport& report) {
+    stages.update(report);
+    return true;
+  };
+  run.result = generate(run.plc, arguments.mesh, execution);
+}
+
+void certify(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
+  stages.begin("check", 0.8, 0.93);
+  CheckOptions options;
+  options.radius_edge = arguments.mesh.radius_edge;
+  options.distance = arguments.mesh.distance;
+  run.check = check(run.result.mesh, run.plc, options);
+  run.measures = measure_mesh(run.result.mesh);
+}
+
+void write_report(const std::string& path, const MeshArguments& arguments, const MeshRun& run) {
+  std::ofstream file(path);
+  file << run_json(arguments, run).dump(1) << '\n';
+  file.close();
+  if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path));
+}
+
+void write_files(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
+  stages.begin("write", 0.93, 1);
+  StagedFile mesh(arguments.output);
+  mesh.write([&](const std::string& path) { io::write_tet_mesh(path, run.result.mesh); });
+  run.times.end();
+  std::optional<StagedFile> report;
+  if (!arguments.report.empty()) {
+    report.emplace(arguments.report);
+    report->write([&](const std::string& path) { write_report(path, arguments, run); });
+  }
+  StagedFile::commit({&mesh, report ? &*report : nullptr});
+}
+
+void tell(const MeshArguments& arguments, const MeshRun& run) {
+  if (run.result.status == MeshStatus::guarantee_missed)
+    fmt::print(stderr, "collarmesh: a guarantee is missed: {}\n", run.result.message);
+  if (!run.check.passed()) fmt::print(stderr, "{}", check_text(run.check));
+  if (!arguments.quiet) fmt::print(stderr, "{}", run_text(arguments, run));
+}
+
+ExitCode mesh_and_write(const MeshArguments& arguments, MeshRun& run) {
+  Stages stages(arguments.quiet ? ProgressStyle::none : arguments.progress, run.times);
+  build_complex(arguments, stages, run);
+  refine(arguments, stages, run);
+  if (run.result.status == MeshStatus::cancelled) throw Cancelled();
+  if (run.result.status == MeshStatus::budget_hit) return ExitCode::budget_hit;
+  certify(arguments, stages, run);
+  write_files(arguments, stages, run);
+  return run.guarantees_hold() ? ExitCode::success : ExitCode::guarantee_missed;
+}
+
+}  // namespace
+
+ExitCode mesh_command(const MeshArguments& arguments) {
+  require_writable(arguments.output);
+  if (!arguments.report.empty()) require_writable(arguments.report);
+  MeshRun run;
+  const ExitCode code = mesh_and_write(arguments, run);
+  if (code == ExitCode::budget_hit)
+    fmt::print(stderr, "collarmesh: {}\n", run.result.message);
+  else
+    tell(arguments, run);
+  return code;
+}
+
+}  // namespace collarmesh::cli

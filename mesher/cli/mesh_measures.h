@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <map>
+
+#include "collarmesh/tet_mesh.h"
+
+namespace collarmesh::cli {
+
+/// The shapes of a mesh's tetrahedra, for summaries and reports.
+struct MeshMeasures {
+  static constexpr std::size_t bins = 18;
+
+  double min_dihedral = 180, max_dihedral = 0;  ///< degrees
+  double max_radius_edge = 0;
+  std::array<std::size_t, bins> min_dihedrals{};  ///< tets by their smallest dihedral angle, 10 degrees a bin
+  std::array<std::size_t, bins> max_dihedrals{};  ///< tets by their largest one
+  std::array<std::size_t, bins>
+      radius_edges{};  ///< tets by radius-edge ratio, 0.25 a bin, the last one is open
+  std::map<Index, double> region_volumes;
+};
+
+MeshMeasures measure_mesh(const TetMesh& mesh);
+
+/// Over distinct edges. Cost: O(n log n), 48 bytes per tet for a while.
+double median_edge(const TetMesh& mesh);
+
+}  // namespace collarmesh::cli

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "arguments.h"
+#include "collarmesh/progress.h"
+
+namespace collarmesh::cli {
+
+/// Shows how far a command is on standard error: a bar on a terminal, or one JSON object per line.
+/// The stages of the command share the fraction by fixed weights; it never decreases.
+class ProgressDisplay {
+ public:
+  explicit ProgressDisplay(ProgressStyle style);
+  ~ProgressDisplay();  ///< clears the bar
+  ProgressDisplay(const ProgressDisplay&) = delete;
+  ProgressDisplay& operator=(const ProgressDisplay&) = delete;
+
+  /// A stage begins that takes the part [begin, end] of the whole.
+  void begin_stage(std::string phase, double begin, double end);
+
+  /// News within the stage.
+  void update(const ProgressReport& report);
+
+ private:
+  enum class Form { bar, json, nothing };
+  using Clock = std::chrono::steady_clock;
+
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+  void redraw();
+  void print_json();
+  void keep_drawing();
+
+  Form form_;
+  Clock::time_point start_ = Clock::now();
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  bool finished_ = false;
+  std::string phase_;
+  double begin_ = 0, end_ = 0, fraction_ = 0, json_printed_ = -1;
+  std::size_t vertices_ = 0, tets_ = 0;
+  std::thread drawing_;
+};
+
+/// "[#####.....]  52%  refine  1.2M tets  3 s left": one line for people, at most `width` wide.
+std::string progress_line(const std::string& phase, double fraction, std::size_t tets, double seconds,
+                          std::size_t width);
+
+}  // namespace collarmesh::cli

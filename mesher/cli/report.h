@@ -1,0 +1,39 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "arguments.h"
+#include "collarmesh/check.h"
+#include "collarmesh/plc_builder.h"
+#include "mesh_measures.h"
+#include "stage_times.h"
+
+namespace collarmesh::cli {
+
+/// Everything one run of the mesher found out.
+struct MeshRun {
+  Plc plc;
+  PlcSummary summary;
+  MeshResult result;
+  MeshMeasures measures;
+  CheckReport check;
+  StageTimes times;
+
+  bool guarantees_hold() const { return result.status == MeshStatus::complete && check.passed(); }
+};
+
+// For programs (--report, --json):
+nlohmann::ordered_json complex_json(const Plc& plc, const PlcSummary& summary);
+nlohmann::ordered_json measures_json(const TetMesh& mesh, const MeshMeasures& measures);
+nlohmann::ordered_json check_json(const CheckReport& report);
+nlohmann::ordered_json run_json(const MeshArguments& arguments, const MeshRun& run);
+
+// For people, lines of text:
+std::string complex_text(const Plc& plc, const PlcSummary& summary);
+std::string mesh_text(const TetMesh& mesh, const MeshMeasures& measures);
+std::string check_text(const CheckReport& report);
+std::string run_text(const MeshArguments& arguments, const MeshRun& run);
+
+}  // namespace collarmesh::cli

@@ -1,0 +1,173 @@
+#include <cmath>
+
+#include "report.h"
+
+namespace collarmesh::cli {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+Json point_json(const Point& p) { return Json::array({p.x, p.y, p.z}); }
+
+/// JSON has no infinity.
+Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json sizes_json(const std::map<Tag, double>& sizes) {
+  Json json = Json::object();
+  for (const auto& [tag, size] : sizes) json[std::to_string(tag)] = size;
+  return json;
+}
+
+const char* kind_name(Crease::Kind kind) {
+  switch (kind) {
+    case Crease::Kind::facets: return "facets";
+    case Crease::Kind::segments: return "segments";
+    case Crease::Kind::segment_and_facet: return "segment_and_facet";
+    case Crease::Kind::facets_in_vertex: return "facets_in_vertex";
+    case Crease::Kind::patch_fold: return "patch_fold";
+  }
+  return "unknown";
+}
+
+const char* status_name(MeshStatus status) {
+  switch (status) {
+    case MeshStatus::complete: return "complete";
+    case MeshStatus::guarantee_missed: return "guarantee_missed";
+    case MeshStatus::budget_hit: return "budget_hit";
+    case MeshStatus::cancelled: return "cancelled";
+  }
+  return "unknown";
+}
+
+/// 0 stands for a default or for "none" in the options; null does so here.
+Json or_null(double value) { return value == 0 ? Json(nullptr) : Json(value); }
+
+Json options_json(const MeshArguments& a) {
+  const MeshOptions& m = a.mesh;
+  return {{"size", or_null(m.size)},
+          {"size_min", or_null(m.size_min)},
+          {"region_size", sizes_json(m.region_size)},
+          {"patch_size", sizes_json(m.patch_size)},
+          {"curve_size", sizes_json(m.curve_size)},
+          {"gradation", or_null(m.gradation)},
+          {"radius_edge", m.radius_edge},
+          {"vertex_ratio", or_null(m.vertex_ratio)},
+          {"theta", m.theta},
+          {"distance", or_null(m.distance)},
+          {"feature_angle", a.complex.plc.feature_angle},
+          {"planar_tolerance", a.complex.plc.planar_tolerance},
+          {"weld", a.complex.plc.weld},
+          {"crease_angle", a.complex.crease_angle},
+          {"seed", m.seed},
+          {"max_vertices", or_null(static_cast<double>(m.max_vertices))},
+          {"max_memory", or_null(static_cast<double>(m.max_memory))},
+          {"time_limit", or_null(m.time_limit)}};
+}
+
+Json statistics_json(const MeshStatistics& s) {
+  return {{"vertices_inserted", s.vertices_inserted},
+          {"cells", s.cells},
+          {"exact_predicates", s.exact_predicates},
+          {"warps", s.warps},
+          {"yields", s.yields},
+          {"peak_bytes", s.peak_bytes},
+          {"seconds", s.seconds}};
+}
+
+}  // namespace
+
+Json complex_json(const Plc& plc, const PlcSummary& s) {
+  Json regions = Json::array();
+  for (std::size_t r = 1; r < plc.regions.size(); ++r)
+    regions.push_back({{"region", r},
+                       {"tag", plc.regions[r].tag},
+                       {"name", plc.regions[r].name},
+                       {"volume", plc.regions[r].volume}});
+  Json creases = Json::array();
+  for (const Crease& crease : s.creases)
+    creases.push_back({{"kind", kind_name(crease.kind)},
+                       {"angle", crease.angle},
+                       {"where", point_json(crease.where)},
+                       {"message", describe(plc, crease)}});
+  return {{"points", s.points},
+          {"triangles", s.triangles},
+          {"vertices", s.vertices},
+          {"curves", s.curves},
+          {"straight_curves", s.straight_curves},
+          {"patches", s.patches},
+          {"planar_patches", s.planar_patches},
+          {"bounds", Json::array({point_json(plc.bounds.min), point_json(plc.bounds.max)})},
+          {"diagonal", s.diagonal},
+          {"smallest_angle", s.smallest_angle},
+          {"shortest_segment", number_json(s.shortest_segment)},
+          {"spread", number_json(s.spread)},
+          {"planar_tolerance", plc.planar_tolerance},
+          {"largest_deviation", s.largest_deviation},
+          {"regions", std::move(regions)},
+          {"creases", std::move(creases)}};
+}
+
+Json measures_json(const TetMesh& mesh, const MeshMeasures& m) {
+  Json volumes = Json::object();
+  for (const auto& [region, volume] : m.region_volumes) volumes[std::to_string(region)] = volume;
+  return {{"points", mesh.points.size()},
+          {"tets", mesh.tets.size()},
+          {"faces", mesh.faces.size()},
+          {"edges", mesh.edges.size()},
+          {"min_dihedral", m.min_dihedral},
+          {"max_dihedral", m.max_dihedral},
+          {"max_radius_edge", number_json(m.max_radius_edge)},
+          {"region_volumes", std::move(volumes)},
+          {"histograms",
+           {{"min_dihedral", {{"bin_width", 10}, {"tets", m.min_dihedrals}}},
+            {"max_dihedral", {{"bin_width", 10}, {"tets", m.max_dihedrals}}},
+            {"radius_edge", {{"bin_width", 0.25}, {"tets", m.radius_edges}}}}}};
+}
+
+Json check_json(const CheckReport& r) {
+  Json findings = Json::array();
+  for (const Finding& finding : r.findings)
+    findings.push_back({{"guarantee", finding.guarantee},
+                        {"message", finding.message},
+                        {"ids", finding.ids},
+                        {"where", point_json(finding.where)}});
+  Json volumes = Json::object();
+  for (std::size_t k = 1; k < r.region_volumes.size(); ++k) volumes[std::to_string(k)] = r.region_volumes[k];
+  return {{"passed", r.passed()},
+          {"findings_total", r.findings_total},
+          {"findings", std::move(findings)},
+          {"tets", r.tets},
+          {"points", r.points},
+          {"faces", r.faces},
+          {"edges", r.edges},
+          {"collar_tets", r.collar_tets},
+          {"max_radius_edge", number_json(r.max_radius_edge)},
+          {"min_dihedral", r.min_dihedral},
+          {"max_dihedral", r.max_dihedral},
+          {"max_collar_dihedral", r.max_collar_dihedral},
+          {"max_surface_distance", number_json(r.max_surface_distance)},
+          {"median_edge", r.median_edge},
+          {"region_volumes", std::move(volumes)}};
+}
+
+Json run_json(const MeshArguments& arguments, const MeshRun& run) {
+  Json seconds = Json::object();
+  for (const auto& [stage, time] : run.times.stages()) seconds[stage] = time;
+  seconds["total"] = run.times.total();
+  return {{"program", "collarmesh"},
+          {"version", COLLARMESH_VERSION},
+          {"inputs", arguments.inputs},
+          {"output", arguments.output},
+          {"options", options_json(arguments)},
+          {"status", status_name(run.result.status)},
+          {"message", run.result.message},
+          {"guarantees_hold", run.guarantees_hold()},
+          {"complex", complex_json(run.plc, run.summary)},
+          {"mesh", measures_json(run.result.mesh, run.measures)},
+          {"check", check_json(run.check)},
+          {"statistics", statistics_json(run.result.statistics)},
+          {"seconds", std::move(seconds)}};
+}
+
+}  // namespace collarmesh::cli

@@ -1,0 +1,117 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "report.h"
+
+namespace collarmesh::cli {
+
+namespace {
+
+using Out = std::back_insert_iterator<std::string>;
+
+/// Lists longer than this are cut; --json has them all.
+constexpr std::size_t listed = 20;
+
+void append_regions(std::string& text, const Plc& plc) {
+  for (std::size_t r = 1; r < std::min(plc.regions.size(), listed + 1); ++r)
+    fmt::format_to(Out(text), "  region {}: tag {}, volume {:.10g}{}\n", r, plc.regions[r].tag,
+                   plc.regions[r].volume,
+                   plc.regions[r].name.empty() ? "" : " (" + plc.regions[r].name + ")");
+  if (plc.regions.size() > listed + 1)
+    fmt::format_to(Out(text), "  ... and {} more regions\n", plc.regions.size() - listed - 1);
+}
+
+void append_creases(std::string& text, const Plc& plc, const std::vector<Crease>& creases) {
+  if (creases.empty()) {
+    text += "  no creases\n";
+    return;
+  }
+  fmt::format_to(Out(text), "  {} crease{}:\n", creases.size(), creases.size() == 1 ? "" : "s");
+  for (std::size_t k = 0; k < std::min(creases.size(), listed); ++k)
+    fmt::format_to(Out(text), "    {}\n", describe(plc, creases[k]));
+  if (creases.size() > listed) fmt::format_to(Out(text), "    ... and {} more\n", creases.size() - listed);
+}
+
+std::string shape_text(double min_dihedral, double max_dihedral, double max_radius_edge) {
+  return fmt::format("dihedral angles from {:.2f} to {:.2f} degrees, radius-edge at most {:.4g}",
+                     min_dihedral, max_dihedral, max_radius_edge);
+}
+
+std::string times_text(const StageTimes& times) {
+  std::string text;
+  for (const auto& [stage, seconds] : times.stages())
+    fmt::format_to(Out(text), "{}{} {:.2f}", text.empty() ? "" : ", ", stage, seconds);
+  return text;
+}
+
+}  // namespace
+
+std::string complex_text(const Plc& plc, const PlcSummary& s) {
+  std::string text;
+  fmt::format_to(Out(text),
+                 "complex: {} vertices, {} curves ({} straight), {} patches ({} planar), {} region{}\n",
+                 s.vertices, s.curves, s.straight_curves, s.patches, s.planar_patches, s.regions,
+                 s.regions == 1 ? "" : "s");
+  fmt::format_to(Out(text), "  made of {} points and {} triangles; diagonal {:.6g}\n", s.points, s.triangles,
+                 s.diagonal);
+  fmt::format_to(Out(text), "  from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n", plc.bounds.min.x,
+                 plc.bounds.min.y, plc.bounds.min.z, plc.bounds.max.x, plc.bounds.max.y, plc.bounds.max.z);
+  fmt::format_to(Out(text), "  smallest angle {:.4g} degrees, shortest segment {:.4g}, spread {:.4g}\n",
+                 s.smallest_angle, s.shortest_segment, s.spread);
+  fmt::format_to(Out(text), "  merging moved the input by at most {:.3g}\n", s.largest_deviation);
+  append_regions(text, plc);
+  append_creases(text, plc, s.creases);
+  return text;
+}
+
+std::string mesh_text(const TetMesh& mesh, const MeshMeasures& m) {
+  std::string text;
+  fmt::format_to(Out(text), "mesh: {} tets, {} points, {} boundary and interface triangles, {} curve edges\n",
+                 mesh.tets.size(), mesh.points.size(), mesh.faces.size(), mesh.edges.size());
+  fmt::format_to(Out(text), "  {}\n", shape_text(m.min_dihedral, m.max_dihedral, m.max_radius_edge));
+  std::size_t line = 0;
+  for (const auto& [region, volume] : m.region_volumes) {
+    if (++line > listed) break;
+    fmt::format_to(Out(text), "  region {}: volume {:.10g}\n", region, volume);
+  }
+  return text;
+}
+
+std::string check_text(const CheckReport& r) {
+  std::string text;
+  for (const Finding& finding : r.findings)
+    fmt::format_to(Out(text), "missed: {}: {}\n", finding.guarantee, finding.message);
+  if (r.findings_total > r.findings.size())
+    fmt::format_to(Out(text), "... and {} more findings\n", r.findings_total - r.findings.size());
+  fmt::format_to(Out(text), "{} tets, {} points, {} faces, {} edges; {}\n", r.tets, r.points, r.faces,
+                 r.edges, shape_text(r.min_dihedral, r.max_dihedral, r.max_radius_edge));
+  if (r.collar_tets > 0)
+    fmt::format_to(Out(text), "in collars: {} tets, dihedral angles to {:.2f} degrees\n", r.collar_tets,
+                   r.max_collar_dihedral);
+  fmt::format_to(Out(text), "surface distance at most {:.3g}, median edge {:.6g}\n", r.max_surface_distance,
+                 r.median_edge);
+  for (std::size_t k = 1; k < std::min(r.region_volumes.size(), listed + 1); ++k)
+    fmt::format_to(Out(text), "region {}: volume {:.10g}\n", k, r.region_volumes[k]);
+  text += r.passed() ? "every guarantee holds\n" : fmt::format("{} findings\n", r.findings_total);
+  return text;
+}
+
+std::string run_text(const MeshArguments& arguments, const MeshRun& run) {
+  std::string text = arguments.verbose ? complex_text(run.plc, run.summary) : "";
+  text += fmt::format("{}: ", arguments.output) + mesh_text(run.result.mesh, run.measures);
+  fmt::format_to(Out(text), "  median edge {:.4g}, surface distance at most {:.3g}\n", run.check.median_edge,
+                 run.check.max_surface_distance);
+  const MeshStatistics& s = run.result.statistics;
+  if (arguments.verbose)
+    fmt::format_to(Out(text),
+                   "  {} vertices inserted, {} cells, {} exact predicates, {} warps, {} yields, {:.1f} MB\n",
+                   s.vertices_inserted, s.cells, s.exact_predicates, s.warps, s.yields,
+                   static_cast<double>(s.peak_bytes) / 1e6);
+  if (run.guarantees_hold()) text += "  every guarantee holds\n";
+  fmt::format_to(Out(text), "  {:.2f} s ({})\n", run.times.total(), times_text(run.times));
+  return text;
+}
+
+}  // namespace collarmesh::cli
