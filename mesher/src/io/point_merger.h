@@ -1,0 +1,53 @@
+#pragma once
+
+#include <bit>
+#include <vector>
+
+#include "collarmesh/geometry.h"
+
+namespace collarmesh::io {
+
+/// Gives points of equal coordinates (0 and -0 are equal) one index. Appends new ones to `points`.
+/// Cost: constant per point, expected.
+class PointMerger {
+ public:
+  explicit PointMerger(std::vector<Point>& points) : points_(points), slots_(64, none) {}
+
+  Index add(const Point& p) {
+    if (2 * points_.size() >= slots_.size()) grow();
+    Index& slot = find(p);
+    if (slot == none) {
+      slot = static_cast<Index>(points_.size());
+      points_.push_back(p);
+    }
+    return slot;
+  }
+
+ private:
+  static std::uint64_t mixed(std::uint64_t h) {
+    h ^= h >> 32;
+    h *= 0x9e3779b97f4a7c15ULL;
+    return h ^ (h >> 29);
+  }
+  static std::uint64_t hash(const Point& p) {
+    std::uint64_t h = 0;
+    for (const double c : {p.x, p.y, p.z}) h = mixed(h + std::bit_cast<std::uint64_t>(c + 0.0));  // -0 + 0 is 0
+    return h;
+  }
+  /// The slot that holds the point, or the free one where it belongs.
+  Index& find(const Point& p) {
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t i = hash(p) & mask;
+    while (slots_[i] != none && !(points_[slots_[i]] == p)) i = (i + 1) & mask;
+    return slots_[i];
+  }
+  void grow() {
+    slots_.assign(2 * slots_.size(), none);
+    for (std::size_t i = 0; i < points_.size(); ++i) find(points_[i]) = static_cast<Index>(i);
+  }
+
+  std::vector<Point>& points_;
+  std::vector<Index> slots_;
+};
+
+}  // namespace collarmesh::io

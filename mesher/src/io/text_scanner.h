@@ -1,0 +1,95 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "collarmesh/geometry.h"
+
+namespace collarmesh::io {
+
+/// Reads words and numbers from a text in memory and knows the line it is on. Line ends are \n or
+/// \r\n. Every failure is a ReadError "PATH: line N: what was expected and what was found".
+class TextScanner {
+ public:
+  /// `comment`: this character and what follows on its line are skipped; 0: no comments.
+  /// `first_line`: the number of the line at which `text` begins.
+  /// Precondition: `path` and `text` outlive the scanner.
+  TextScanner(const std::string& path, std::string_view text, char comment = '#', std::size_t first_line = 1)
+      : path_(path),
+        begin_(text.data()),
+        at_(begin_),
+        end_(begin_ + text.size()),
+        comment_(comment),
+        line_(first_line) {}
+
+  /// Nothing but blanks and comments left on this line?
+  bool at_line_end() {
+    skip_blanks();
+    return at_ == end_ || *at_ == '\n';
+  }
+  /// Nothing but blanks, comments and line ends left in the text?
+  bool at_end() {
+    while (at_line_end()) {
+      if (at_ == end_) return true;
+      skip_line();
+    }
+    return false;
+  }
+  /// Go to the begin of the next line.
+  void skip_line() {
+    while (at_ != end_ && *at_ != '\n') ++at_;
+    if (at_ == end_) return;
+    ++at_;
+    ++line_;
+  }
+
+  /// The next word, on this line or a later one. `what` names it in the error.
+  std::string_view word(std::string_view what);
+  /// The next word, not taken; empty at the end.
+  std::string_view peek();
+  /// The rest of this line without blanks around it; goes to the next line.
+  std::string_view rest_of_line();
+
+  double number(std::string_view what);
+  /// A finite number.
+  double coordinate(std::string_view what);
+  Point point(std::string_view what) {
+    const double x = coordinate(what), y = coordinate(what), z = coordinate(what);
+    return {x, y, z};
+  }
+  std::int64_t integer(std::string_view what);
+  /// How many of something follow, each of at least `least_bytes` bytes: more than the rest of the
+  /// text can hold is an error, and so is what `Index` cannot number.
+  Index count(std::string_view what, std::size_t least_bytes);
+  /// An index in [first, first + size), returned counted from 0.
+  Index index(std::string_view what, std::int64_t first, std::size_t size);
+
+  [[noreturn]] void fail(const std::string& message) const;
+  /// What was expected, and the word found instead.
+  [[noreturn]] void fail(std::string_view expected, std::string_view found) const;
+
+  std::size_t line() const { return line_; }
+  /// How many bytes are read, and left.
+  std::size_t offset() const { return static_cast<std::size_t>(at_ - begin_); }
+  std::size_t left() const { return static_cast<std::size_t>(end_ - at_); }
+
+ private:
+  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+  void skip_blanks() {
+    while (at_ != end_ && is_blank(*at_)) ++at_;
+    if (at_ != end_ && *at_ == comment_ && comment_ != 0)
+      while (at_ != end_ && *at_ != '\n') ++at_;
+  }
+
+  const std::string& path_;
+  const char* begin_;
+  const char* at_;
+  const char* end_;
+  char comment_;
+  std::size_t line_;
+};
+
+/// A piece of a file for a message: short, printable, in quotes.
+std::string quoted(std::string_view text);
+
+}  // namespace collarmesh::io
