@@ -1,0 +1,165 @@
+// From polygon soups to a complex. The order of the steps is that of `build_plc` at the end.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "collarmesh/plc_builder.h"
+#include "plc/cleanup.h"
+#include "plc/curves.h"
+#include "plc/facet_triangulation.h"
+#include "plc/faults.h"
+#include "plc/features.h"
+#include "plc/flat_clusters.h"
+#include "plc/orientation.h"
+#include "plc/regions.h"
+#include "plc/weld.h"
+
+namespace collarmesh {
+
+namespace {
+
+using namespace build;
+
+void name_soups(std::span<const PolygonSoup> soups, Draft& draft) {
+  for (Index s = 0; s < soups.size(); ++s) {
+    draft.soup_names.push_back(soups[s].name.empty() ? fmt::format("input {}", s + 1) : soups[s].name);
+    draft.soup_is_complex.push_back(is_complex(soups[s]));
+  }
+}
+
+// Points of a complex that nothing uses are vertices.
+void add_unused_points(const PointMap& map, Draft& draft) {
+  std::vector<bool> used(draft.points.size(), false);
+  for (const Corners& t : draft.triangles)
+    for (const Index p : t) used[p] = true;
+  for (const Segment& s : draft.segments) used[s.a] = used[s.b] = true;
+  for (Index s = 0; s < map.merged.size(); ++s)
+    if (draft.soup_is_complex[s])
+      for (const Index p : map.merged[s])
+        if (!used[p]) draft.loose_points.push_back(p);
+}
+
+void require_content(const Draft& draft, Faults& faults) {
+  if (draft.triangles.empty() && draft.segments.empty() && draft.loose_points.empty())
+    faults.add(PlcFault::Kind::empty, "The input holds no facet with an area; there is nothing to mesh.", {}, {});
+}
+
+void require_region(const Draft& draft, const EdgeTable& edges, const Regions& regions, Faults& faults) {
+  if (regions.list.size() > 1) return;
+  std::size_t count = 0;
+  Index first = none;
+  for (Index e = 0; e < edges.size(); ++e) {
+    if (edges.sides(e).size() != 1) continue;
+    if (count++ == 0) first = e;
+  }
+  if (count == 0) {
+    faults.add(PlcFault::Kind::empty, "The facets enclose no region; there is nothing to mesh.", {}, {});
+    return;
+  }
+  const auto [a, b] = edges.ends(first);
+  const Point &pa = draft.points[a], &pb = draft.points[b];
+  faults.add(PlcFault::Kind::open_boundary,
+             fmt::format("The surface is open and encloses nothing: {} border edge{}, the first one {} - {}; "
+                         "close it, or raise the weld distance if its borders should touch.",
+                         count, count == 1 ? "" : "s", text(pa), text(pb)),
+             {a, b}, 0.5 * (pa + pb));
+}
+
+// Patches in the complex with their triangles together; a patch whose front looks at the only
+// region, or at the one of the smaller number, is turned.
+void add_patches(Draft& draft, const Regions& regions, const std::vector<Index>& patch_of, Index patch_count, Plc& plc) {
+  std::vector<std::vector<Index>> triangles(patch_count);
+  for (Index t = 0; t < draft.triangles.size(); ++t) triangles[patch_of[t]].push_back(t);
+  for (Index p = 0; p < patch_count; ++p) {
+    const Index first = triangles[p].front();
+    Plc::Patch patch;
+    patch.first_triangle = static_cast<Index>(plc.triangles.size());
+    patch.triangle_count = static_cast<Index>(triangles[p].size());
+    patch.regions = {regions.of_side[back_side(first)], regions.of_side[front_side(first)]};
+    patch.tag = draft.origins[first].tag;
+    patch.file = draft.origins[first].soup;
+    fit_plane(draft, triangles[p], patch);
+    const bool turn = patch.regions[0] == 0 && patch.regions[1] != 0;
+    if (turn) {
+      std::swap(patch.regions[0], patch.regions[1]);
+      if (patch.planar) patch.normal = -1.0 * patch.normal;
+    }
+    for (const Index t : triangles[p]) {
+      Corners corners = draft.triangles[t];
+      if (turn) std::swap(corners[1], corners[2]);
+      plc.triangles.push_back({corners, p});
+    }
+    plc.patches.push_back(std::move(patch));
+  }
+}
+
+void sort_unique(std::vector<Index>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+// Curves already know their patches and vertices their curves.
+void link_patches(const Draft& draft, Plc& plc) {
+  for (Index c = 0; c < plc.curves.size(); ++c)
+    for (const Index p : plc.curves[c].patches) plc.patches[p].curves.push_back(c);
+  std::vector<Index> vertex_at(draft.points.size(), none);
+  for (Index v = 0; v < plc.vertices.size(); ++v) vertex_at[plc.vertices[v].point] = v;
+  for (const Plc::Triangle& t : plc.triangles)
+    for (const Index point : t.points)
+      if (vertex_at[point] != none) plc.vertices[vertex_at[point]].patches.push_back(t.patch);
+  for (Index v = 0; v < plc.vertices.size(); ++v) {
+    sort_unique(plc.vertices[v].patches);
+    for (const Index p : plc.vertices[v].patches) plc.patches[p].vertices.push_back(v);
+  }
+}
+
+void check_options(const PlcOptions& options) {
+  if (!(options.feature_angle >= 0 && options.feature_angle <= 180))
+    throw OptionError(fmt::format("The feature angle is {}; it must lie between 0 and 180 degrees.", options.feature_angle));
+  for (const auto& [name, value] : {std::pair{"planar tolerance", options.planar_tolerance}, std::pair{"weld distance", options.weld}})
+    if (!(value >= 0 && value < 1))
+      throw OptionError(fmt::format("The {} is {}; it is relative to the diagonal and must lie between 0 and 1.", name, value));
+}
+
+}  // namespace
+
+Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options) {
+  check_options(options);
+  Draft draft;
+  Faults faults;
+  name_soups(soups, draft);
+  const PointMap map = weld_points(soups, options.weld, draft, faults);
+  faults.raise();
+  draft.planar_tolerance = options.planar_tolerance * draft.bounds.diagonal();
+
+  triangulate_facets(soups, map, draft, faults);
+  add_unused_points(map, draft);
+  remove_collinear_triangles(draft);
+  remove_twins_within_soups(draft);
+  require_content(draft, faults);
+  orient_components(draft, faults);
+  merge_twins_across_soups(draft);
+  const EdgeTable edges(draft.triangles, draft.points.size());
+  faults.raise();
+
+  const Regions regions = find_regions(draft, edges, soups, faults);
+  faults.raise();
+  if (options.require_solid) require_region(draft, edges, regions, faults);
+  faults.raise();
+
+  const auto segments = find_segments(draft, edges, find_flat_clusters(draft, edges), options.feature_angle);
+  std::vector<Index> patch_of;
+  const Index patch_count = find_patches(draft, edges, segments, patch_of);
+  Plc plc;
+  find_curves(draft, edges, segments, patch_of, options.feature_angle, plc);
+  add_patches(draft, regions, patch_of, patch_count, plc);
+  link_patches(draft, plc);
+  plc.points = std::move(draft.points);
+  plc.regions = regions.list;
+  plc.bounds = draft.bounds;
+  plc.planar_tolerance = draft.planar_tolerance;
+  plc.largest_deviation = draft.largest_deviation;
+  return plc;
+}
+
+}  // namespace collarmesh

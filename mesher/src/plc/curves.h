@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "plc/draft.h"
+#include "plc/edges.h"
+#include "plc/features.h"
+
+namespace collarmesh::build {
+
+/// Chain the segments to curves and find the vertices that end them. Fills plc.vertices and
+/// plc.curves with everything but Vertex::patches; `patch_of` gives the patch of each triangle.
+/// A curve passes a point where exactly two segments meet that bound the same patches, have the
+/// same tag, turn by less than the feature angle (degrees; 0: only within the planar tolerance of a
+/// straight line), and where the surface is one fan of triangles.
+void find_curves(Draft& draft, const EdgeTable& edges, const std::vector<FeatureSegment>& segments,
+                 const std::vector<Index>& patch_of, double feature_angle, Plc& plc);
+
+}  // namespace collarmesh::build

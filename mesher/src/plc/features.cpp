@@ -1,0 +1,158 @@
+#include "plc/features.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "delaunay/predicates.h"
+
+namespace collarmesh::build {
+
+namespace {
+
+class SegmentTest {
+ public:
+  SegmentTest(const Draft& draft, const EdgeTable& edges, const FlatClusters& clusters, double feature_angle)
+      : draft_(draft),
+        edges_(edges),
+        clusters_(clusters),
+        every_fold_(feature_angle <= 0),
+        smallest_cosine_(std::cos(feature_angle * std::numbers::pi / 180)) {}
+
+  bool operator()(Index edge) const {
+    const auto sides = edges_.sides(edge);
+    if (sides.size() != 2) return true;
+    const Index s = sides[0] / 3, t = sides[1] / 3;
+    if (draft_.origins[s].soup != draft_.origins[t].soup || draft_.origins[s].tag != draft_.origins[t].tag) return true;
+    if (clusters_.seed[s] == clusters_.seed[t]) return false;
+    return every_fold_ || dot(clusters_.normal[s], clusters_.normal[t]) < smallest_cosine_;
+  }
+
+ private:
+  const Draft& draft_;
+  const EdgeTable& edges_;
+  const FlatClusters& clusters_;
+  bool every_fold_;
+  double smallest_cosine_;
+};
+
+// Collects the extent of points along a normal.
+struct Extent {
+  Vector normal;
+  double low = INFINITY, high = -INFINITY;
+  double deviation(double reference) const { return std::fmax(high - reference, reference - low); }
+};
+
+std::vector<Index> corners_of(const Draft& draft, const std::vector<Index>& triangles) {
+  std::vector<Index> points;
+  for (const Index t : triangles) points.insert(points.end(), draft.triangles[t].begin(), draft.triangles[t].end());
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return points;
+}
+
+double deviation_from(const Draft& draft, const std::vector<Index>& points, const Point& origin, const Vector& normal) {
+  double largest = 0;
+  for (const Index p : points) largest = std::fmax(largest, std::fabs(dot(normal, draft.points[p] - origin)));
+  return largest;
+}
+
+// With tolerance 0 the points have to be exactly in the plane of the triangle.
+bool exactly_in_plane(const Draft& draft, const std::vector<Index>& points, Index triangle) {
+  return std::all_of(points.begin(), points.end(), [&](Index p) {
+    return predicates::orientation(draft.corner(triangle, 0), draft.corner(triangle, 1), draft.corner(triangle, 2),
+                                   draft.points[p]) == 0;
+  });
+}
+
+}  // namespace
+
+std::vector<FeatureSegment> find_segments(const Draft& draft, const EdgeTable& edges, const FlatClusters& clusters,
+                                          double feature_angle) {
+  std::vector<FeatureSegment> named;
+  for (const Segment& s : draft.segments)
+    named.push_back({std::min(s.a, s.b), std::max(s.a, s.b), edges.find(s.a, s.b), s.tag});
+  std::stable_sort(named.begin(), named.end(), [](const FeatureSegment& s, const FeatureSegment& t) {
+    return std::array{s.edge, s.a, s.b} < std::array{t.edge, t.a, t.b};
+  });
+  named.erase(std::unique(named.begin(), named.end(),
+                          [](const auto& s, const auto& t) { return s.a == t.a && s.b == t.b; }),
+              named.end());
+
+  std::vector<FeatureSegment> segments;
+  const SegmentTest is_segment(draft, edges, clusters, feature_angle);
+  auto next = named.begin();
+  for (Index e = 0; e < edges.size(); ++e) {
+    if (next != named.end() && next->edge == e)
+      segments.push_back(*next++);
+    else if (is_segment(e))
+      segments.push_back({edges.ends(e)[0], edges.ends(e)[1], e, 0});
+  }
+  segments.insert(segments.end(), next, named.end());
+  return segments;
+}
+
+Index find_patches(const Draft& draft, const EdgeTable& edges, const std::vector<FeatureSegment>& segments,
+                   std::vector<Index>& patch_of) {
+  std::vector<bool> is_segment(edges.size(), false);
+  for (const FeatureSegment& s : segments)
+    if (s.edge != none) is_segment[s.edge] = true;
+  patch_of.assign(draft.triangles.size(), none);
+  Index count = 0;
+  std::vector<Index> stack;
+  for (Index first = 0; first < draft.triangles.size(); ++first) {
+    if (patch_of[first] != none) continue;
+    patch_of[first] = count;
+    stack.assign(1, first);
+    while (!stack.empty()) {
+      const Index t = stack.back();
+      stack.pop_back();
+      for (unsigned i = 0; i < 3; ++i) {
+        const Index edge = edges.edge_of(3 * t + i);
+        if (is_segment[edge]) continue;
+        for (const Index side : edges.sides(edge)) {
+          if (patch_of[side / 3] != none) continue;
+          patch_of[side / 3] = count;
+          stack.push_back(side / 3);
+        }
+      }
+    }
+    ++count;
+  }
+  return count;
+}
+
+void fit_plane(Draft& draft, const std::vector<Index>& triangles, Plc::Patch& patch) {
+  Index largest = triangles[0];
+  double largest_area = 0;
+  Vector mean{};
+  for (const Index t : triangles) {
+    const Vector n = cross(draft.corner(t, 1) - draft.corner(t, 0), draft.corner(t, 2) - draft.corner(t, 0));
+    mean = mean + n;
+    if (norm(n) <= largest_area) continue;
+    largest = t;
+    largest_area = norm(n);
+  }
+  const std::vector<Index> points = corners_of(draft, triangles);
+  const auto accept = [&](const Point& origin, const Vector& normal) {
+    const double deviation = deviation_from(draft, points, origin, normal);
+    if (draft.planar_tolerance > 0 ? deviation > draft.planar_tolerance : !exactly_in_plane(draft, points, largest))
+      return false;
+    patch.planar = true;
+    patch.origin = origin;
+    patch.normal = normal;
+    draft.largest_deviation = std::max(draft.largest_deviation, deviation);
+    return true;
+  };
+  if (accept(draft.corner(largest, 0), unit_normal(draft, largest)) || norm(mean) == 0) return;
+  // The mean plane lies nearer to all of them than that of one triangle.
+  Extent extent{mean / norm(mean)};
+  const Point& base = draft.corner(largest, 0);
+  for (const Index p : points) {
+    extent.low = std::fmin(extent.low, dot(extent.normal, draft.points[p] - base));
+    extent.high = std::fmax(extent.high, dot(extent.normal, draft.points[p] - base));
+  }
+  if (draft.planar_tolerance > 0) accept(base + 0.5 * (extent.low + extent.high) * extent.normal, extent.normal);
+}
+
+}  // namespace collarmesh::build

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "plc/draft.h"
+#include "plc/edges.h"
+#include "plc/flat_clusters.h"
+
+namespace collarmesh::build {
+
+/// A straight piece of the curves to be.
+struct FeatureSegment {
+  Index a = 0, b = 0;
+  Index edge = none;  ///< in the edge table, none if no triangle has it
+  Tag tag = 0;
+};
+
+/// The segments: edges that the input names, that are not shared by exactly two triangles, between
+/// different tags or soups, or where the surface turns by more than the feature angle (degrees).
+std::vector<FeatureSegment> find_segments(const Draft& draft, const EdgeTable& edges, const FlatClusters& clusters,
+                                          double feature_angle);
+
+/// For each triangle its patch: connected across the edges that are no segments. Numbered by first
+/// triangle. Returns the number of patches.
+Index find_patches(const Draft& draft, const EdgeTable& edges, const std::vector<FeatureSegment>& segments,
+                   std::vector<Index>& patch_of);
+
+/// A plane that all points of the patch lie in within the tolerance: then sets planar, normal,
+/// origin. Raises the draft's deviation.
+void fit_plane(Draft& draft, const std::vector<Index>& triangles, Plc::Patch& patch);
+
+}  // namespace collarmesh::build

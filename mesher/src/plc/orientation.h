@@ -1,0 +1,14 @@
+#pragma once
+
+#include "plc/draft.h"
+#include "plc/faults.h"
+
+namespace collarmesh::build {
+
+/// Orient the triangles of each soup alike across every edge that exactly two of its triangles share.
+/// A component keeps the orientation that turns the fewest triangles; one where any had to be
+/// turned says nothing about inside and outside (Origin::oriented). A component that cannot be
+/// oriented is a fault.
+void orient_components(Draft& draft, Faults& faults);
+
+}  // namespace collarmesh::build

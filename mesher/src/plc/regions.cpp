@@ -1,0 +1,311 @@
+#include "plc/regions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "plc/shells.h"
+
+namespace collarmesh::build {
+
+namespace {
+
+constexpr std::size_t largest_attempt = 1000;
+
+// A sum that keeps what rounding loses (Neumaier 1974).
+class Sum {
+ public:
+  void add(double value) {
+    const double total = sum_ + value;
+    lost_ += std::fabs(sum_) >= std::fabs(value) ? (sum_ - total) + value : (value - total) + sum_;
+    sum_ = total;
+  }
+  double value() const { return sum_ + lost_; }
+
+ private:
+  double sum_ = 0, lost_ = 0;
+};
+
+// A bounded chamber, that is, one that a component of the surface encloses.
+struct Chamber {
+  Index inner_shell = none;  // of the component that encloses it
+  bool complex = false;
+  bool claimed = false;        // a facet has its back towards it
+  bool behind_claimed = false; // a facet that has its front towards it has its back towards a claimed one
+  Index claiming_surface = none;  // a soup that is a surface
+  Index hole_soup = none;
+  std::array<Index, 2> rank{none, none};  // first soup and triangle
+  Index region = none;
+};
+
+class RegionFinder {
+ public:
+  RegionFinder(const Draft& draft, const EdgeTable& edges, Faults& faults)
+      : draft_(draft),
+        faults_(faults),
+        count_(static_cast<Index>(draft.triangles.size())),
+        outside_(2 * count_),
+        components_(count_),
+        shells_(find_shells(draft, edges)),
+        chambers_(shells_),
+        caster_(draft),
+        outer_shell_(count_, none) {
+    for (Index e = 0; e < edges.size(); ++e)
+      for (const Index side : edges.sides(e)) components_.unite(side / 3, edges.sides(e)[0] / 3);
+  }
+
+  Regions run(std::span<const PolygonSoup> soups) {
+    nest_components();
+    if (!faults_.empty()) return {};
+    find_bounded_chambers();
+    place_points(soups);
+    decide();
+    number();
+    Regions result;
+    fill(result);
+    return result;
+  }
+
+ private:
+  struct Parameters {
+    Tag tag = 0;
+    double size = 0;
+    Index shell = none;  // inner shell of the chamber
+  };
+
+  double reach() const { return 2 * draft_.bounds.diagonal(); }
+
+  // A line through each component tells its outermost shell and what that one sees.
+  void nest_components() {
+    std::vector<Index> largest(count_, none);
+    std::vector<double> area(count_);
+    for (Index t = 0; t < count_; ++t) {
+      area[t] = squared_norm(cross(draft_.corner(t, 1) - draft_.corner(t, 0), draft_.corner(t, 2) - draft_.corner(t, 0)));
+      Index& best = largest[components_.find(t)];
+      if (best == none || area[t] > area[best]) best = t;
+    }
+    for (Index c = 0; c < count_; ++c)
+      if (components_.find(c) == c && outer_shell_[c] == none) cast_through(c, largest[c]);
+  }
+
+  void cast_through(Index component, Index triangle) {
+    for (std::size_t attempt = 0; attempt < largest_attempt; ++attempt) {
+      // Weights of the corners that move with the attempts.
+      const Vector w = generic_direction(attempt + 7);
+      const double wa = 1 + 0.9 * w.x, wb = 1 + 0.9 * w.y, wc = 1 + 0.9 * w.z;
+      const Point at = (wa * draft_.corner(triangle, 0) + wb * draft_.corner(triangle, 1) + wc * draft_.corner(triangle, 2)) /
+                       (wa + wb + wc);
+      const Vector reach_out = reach() * generic_direction(attempt);
+      const auto crossings = caster_.cast(at - reach_out, at + reach_out);
+      if (!crossings) continue;
+      join_along(*crossings);
+      if (outer_shell_[component] != none) return;
+    }
+    faults_.add(PlcFault::Kind::degenerate_facet,
+                fmt::format("The facets around {} are too thin to tell their inside from their outside; remove them.",
+                            text(draft_.corner(triangle, 0))),
+                {draft_.triangles[triangle][0]}, draft_.corner(triangle, 0));
+  }
+
+  void join_along(const std::vector<LineCaster::Crossing>& crossings) {
+    Index seen = outside_;
+    for (const auto& crossing : crossings) {
+      Index& outer = outer_shell_[components_.find(crossing.triangle)];
+      if (outer == none) outer = shells_.find(crossing.entry_side());
+      chambers_.unite(seen, crossing.entry_side());
+      seen = crossing.exit_side();
+    }
+    chambers_.unite(seen, outside_);
+  }
+
+  bool is_outer(Index shell) { return outer_shell_[components_.find(shell / 2)] == shell; }
+
+  // Number the inner shells, and say what the facets on each claim.
+  void find_bounded_chambers() {
+    chamber_of_shell_.assign(2 * count_, none);
+    for (Index side = 0; side < 2 * count_; ++side) {
+      const Index shell = shells_.find(side);
+      if (is_outer(shell)) continue;
+      if (chamber_of_shell_[shell] == none) {
+        chamber_of_shell_[shell] = static_cast<Index>(list_.size());
+        list_.emplace_back().inner_shell = shell;
+      }
+      claim(list_[chamber_of_shell_[shell]], side, draft_.origins[side / 2]);
+    }
+    for (const Claim& c : draft_.claims)
+      if (const Index at = chamber_at(c.side); at != none)
+        add_claim(list_[at], c.soup, c.side / 2);
+    for (Index side = 1; side < 2 * count_; side += 2) {
+      if (!draft_.origins[side / 2].oriented) continue;
+      const Index front = chamber_at(side), back = chamber_at(side - 1);
+      if (front != none && back != none && list_[back].claimed) list_[front].behind_claimed = true;
+    }
+    for (Chamber& chamber : list_)
+      if (chamber.rank[0] == none) chamber.rank = rank_unclaimed(chamber);
+  }
+
+  // The bounded chamber whose inner shell this side is on.
+  Index chamber_at(Index side) { return chamber_of_shell_[shells_.find(side)]; }
+
+  void claim(Chamber& chamber, Index side, const Origin& origin) {
+    if (draft_.soup_is_complex[origin.soup]) {
+      chamber.complex = true;
+      chamber.rank = std::min(chamber.rank, {origin.soup, side / 2});
+    } else if (origin.oriented && side % 2 == 0) {
+      add_claim(chamber, origin.soup, side / 2);
+    }
+  }
+
+  void add_claim(Chamber& chamber, Index soup, Index triangle) {
+    chamber.rank = std::min(chamber.rank, {soup, triangle});
+    if (draft_.soup_is_complex[soup]) {
+      chamber.complex = true;
+      return;
+    }
+    chamber.claimed = true;
+    chamber.claiming_surface = std::min(chamber.claiming_surface, soup);
+  }
+
+  std::array<Index, 2> rank_unclaimed(const Chamber& chamber) const {
+    const Index triangle = chamber.inner_shell / 2;
+    return {draft_.origins[triangle].soup, triangle};
+  }
+
+  void place_points(std::span<const PolygonSoup> soups) {
+    for (Index s = 0; s < soups.size(); ++s) {
+      for (const Point& hole : soups[s].hole_points) {
+        const auto shell = enclosing_shell(hole, "hole", soups[s].name);
+        if (shell) list_[chamber_of_shell_[*shell]].hole_soup = s;
+      }
+      for (const auto& point : soups[s].region_points) {
+        const auto shell = enclosing_shell(point.point, "region", soups[s].name);
+        if (shell) parameters_.push_back({point.tag, point.size, *shell});
+      }
+    }
+  }
+
+  // The inner shell of the bounded chamber that a point lies in; nothing outside of all.
+  std::optional<Index> enclosing_shell(const Point& point, const char* what, const std::string& soup) {
+    for (std::size_t attempt = 0; attempt < largest_attempt; ++attempt) {
+      const auto crossings = caster_.cast(point, point + reach_to(point) * generic_direction(attempt));
+      if (!crossings) continue;
+      if (crossings->empty()) return std::nullopt;
+      return inner_shell_of(chambers_.find(crossings->front().entry_side()));
+    }
+    faults_.add(PlcFault::Kind::bad_point,
+                fmt::format("{}: the {} point {} lies on a facet; move it inside.", soup, what, text(point)), {}, point);
+    return std::nullopt;
+  }
+
+  double reach_to(const Point& point) const { return reach() + 2 * distance(point, draft_.bounds.centre()); }
+
+  std::optional<Index> inner_shell_of(Index chamber) {
+    for (const Chamber& c : list_)
+      if (chambers_.same(c.inner_shell, chamber)) return c.inner_shell;
+    return std::nullopt;
+  }
+
+  // From the outside inwards: what encloses a chamber is decided before it.
+  void decide() {
+    region_of_chamber_.assign(2 * count_ + 1, none);
+    region_of_chamber_[chambers_.find(outside_)] = 0;
+    std::multimap<Index, Index> children;
+    for (Index i = 0; i < list_.size(); ++i) children.emplace(parent(list_[i]), i);
+    std::vector<Index> stack{chambers_.find(outside_)};
+    while (!stack.empty()) {
+      const Index around = stack.back();
+      stack.pop_back();
+      const auto [first, last] = children.equal_range(around);
+      for (auto child = first; child != last; ++child) {
+        Chamber& chamber = list_[child->second];
+        chamber.region = is_region(chamber, region_of_chamber_[around] != 0) ? 1 : 0;
+        const Index set = chambers_.find(chamber.inner_shell);
+        region_of_chamber_[set] = chamber.region;
+        stack.push_back(set);
+      }
+    }
+  }
+
+  // The chamber around the component that encloses this one.
+  Index parent(const Chamber& chamber) {
+    return chambers_.find(outer_shell_[components_.find(chamber.inner_shell / 2)]);
+  }
+
+  static bool is_region(const Chamber& chamber, bool inside_region) {
+    const bool filled = chamber.claiming_surface != none && chamber.claiming_surface != chamber.hole_soup;
+    if (chamber.hole_soup != none) return filled;
+    return chamber.complex || chamber.claimed || !(inside_region || chamber.behind_claimed);
+  }
+
+  // Regions are numbered from 1 by their first soup, then by their first triangle.
+  void number() {
+    std::vector<Index> order;
+    for (Index i = 0; i < list_.size(); ++i)
+      if (list_[i].region != 0) order.push_back(i);
+    std::sort(order.begin(), order.end(), [&](Index a, Index b) { return list_[a].rank < list_[b].rank; });
+    for (Index n = 0; n < order.size(); ++n) {
+      list_[order[n]].region = n + 1;
+      region_of_chamber_[chambers_.find(list_[order[n]].inner_shell)] = n + 1;
+    }
+  }
+
+  void fill(Regions& result) {
+    result.of_side.resize(2 * count_);
+    for (Index side = 0; side < 2 * count_; ++side)
+      result.of_side[side] = region_of_chamber_[chambers_.find(side)];
+    result.list.emplace_back().name = "outside";
+    std::vector<const Chamber*> by_region{nullptr};
+    for (const Chamber& c : list_) {
+      if (c.region == 0) continue;
+      if (c.region >= by_region.size()) by_region.resize(c.region + 1);
+      by_region[c.region] = &c;
+    }
+    for (Index r = 1; r < by_region.size(); ++r) {
+      const std::string& soup = draft_.soup_names[by_region[r]->rank[0]];
+      result.list.push_back({static_cast<Tag>(r), 0, 0, soup.empty() ? fmt::format("region {}", r) : soup});
+    }
+    for (const Parameters& p : parameters_) {
+      const Index r = list_[chamber_of_shell_[p.shell]].region;
+      if (r == 0) continue;
+      result.list[r].tag = p.tag;
+      result.list[r].size = p.size;
+    }
+    add_volumes(result);
+  }
+
+  void add_volumes(Regions& result) const {
+    std::vector<Sum> sums(result.list.size());
+    const Point centre = draft_.bounds.centre();
+    for (Index t = 0; t < count_; ++t) {
+      const double v = six_volume(draft_.corner(t, 0), draft_.corner(t, 1), draft_.corner(t, 2), centre);
+      sums[result.of_side[back_side(t)]].add(-v);
+      sums[result.of_side[front_side(t)]].add(v);
+    }
+    for (std::size_t r = 1; r < sums.size(); ++r) result.list[r].volume = sums[r].value() / 6;
+  }
+
+  const Draft& draft_;
+  Faults& faults_;
+  Index count_;
+  Index outside_;              // the element of the sets that stands for it
+  DisjointSets components_;    // of triangles
+  DisjointSets shells_;        // of sides, within components
+  DisjointSets chambers_;      // of sides
+  LineCaster caster_;
+  std::vector<Index> outer_shell_;  // by component
+  std::vector<Chamber> list_;
+  std::vector<Index> chamber_of_shell_;   // index in list_
+  std::vector<Index> region_of_chamber_;  // by representative
+  std::vector<Parameters> parameters_;
+};
+
+}  // namespace
+
+Regions find_regions(const Draft& draft, const EdgeTable& edges, std::span<const PolygonSoup> soups, Faults& faults) {
+  return RegionFinder(draft, edges, faults).run(soups);
+}
+
+}  // namespace collarmesh::build

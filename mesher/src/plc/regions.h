@@ -1,0 +1,25 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "plc/draft.h"
+#include "plc/edges.h"
+#include "plc/faults.h"
+
+namespace collarmesh::build {
+
+struct Regions {
+  std::vector<Plc::Region> list;     ///< [0] is the outside
+  std::vector<Index> of_side;        ///< by triangle side (Claim::side)
+};
+
+/// Which volume each triangle side looks at. Chambers are the components of space without the
+/// triangles; a chamber of a complex is a region unless a hole point lies in it. A chamber of a
+/// surface is a region if a facet has its back towards it, or if no region encloses it.
+/// Precondition: triangles meet in common edges and corners only.
+/// Faults: region and hole points on a facet.
+Regions find_regions(const Draft& draft, const EdgeTable& edges, std::span<const PolygonSoup> soups, Faults& faults);
+
+}  // namespace collarmesh::build
