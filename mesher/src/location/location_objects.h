@@ -11,13 +11,17 @@ namespace collarmesh {
 /// centre, that is, at its nearest vertex (DESIGN section 6).
 class LocationObjects {
  public:
-  enum class Kind : std::uint8_t { point, subsegment };
+  enum class Kind : std::uint8_t {
+    point,               ///< an unresolved point
+    subsegment,          ///< a subsegment with both ends in the mesh
+    pending_subsegment   ///< a curve's first subsegment, an end of which is still unresolved
+  };
   struct Object {
     Point centre;
     double squared_radius;
     Index vertex;          ///< nearest mesh vertex
     Index previous, next;  ///< in that vertex' list
-    Index owner;           ///< index of the unresolved point or subsegment
+    Index owner;           ///< index of what it is, among those of its kind
     Kind kind;
   };
 

@@ -25,23 +25,37 @@ double squared_distance_to_segment(const Point& p, const Point& a, const Point& 
   return squared_distance(p, a + t * u);
 }
 
-// Could the segment pq meet the box? Slab test, widened by the rounding of its own arithmetic.
-bool may_meet(const Point& p, const Point& q, const Box& box) {
-  double from = 0, to = 1;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double slack = 1e-14 * (std::fabs(p[axis]) + std::fabs(q[axis]) +
-                                  std::fabs(box.min[axis]) + std::fabs(box.max[axis]));
-    const double low = box.min[axis] - slack, high = box.max[axis] + slack;
-    const double step = q[axis] - p[axis];
-    if (std::min(p[axis], q[axis]) > high || std::max(p[axis], q[axis]) < low) return false;
-    if (std::fabs(step) <= slack) continue;
-    const double t0 = (low - p[axis]) / step, t1 = (high - p[axis]) / step;
-    from = std::max(from, std::min(t0, t1) - 1e-14);
-    to = std::min(to, std::max(t0, t1) + 1e-14);
-    if (from > to) return false;
+// A segment ready for many box tests: separating axes, widened by the rounding of their arithmetic
+// (Akenine-Moeller, Haines, Hoffman: Real-Time Rendering, segment against box).
+class SegmentAgainstBoxes {
+ public:
+  SegmentAgainstBoxes(const Point& p, const Point& q)
+      : centre_(0.5 * (p + q)),
+        half_(0.5 * (q - p)),
+        reach_{std::fabs(half_.x), std::fabs(half_.y), std::fabs(half_.z)},
+        slack_(1e-14 * (std::fabs(p.x) + std::fabs(p.y) + std::fabs(p.z) + std::fabs(q.x) +
+                        std::fabs(q.y) + std::fabs(q.z))) {}
+
+  bool may_meet(const Box& box) const {
+    const Vector d2 = box.min + box.max, size2 = box.max - box.min;
+    const double slack = slack_ + 1e-14 * (std::fabs(d2.x) + std::fabs(d2.y) + std::fabs(d2.z) +
+                                           size2.x + size2.y + size2.z);
+    const Vector d{std::fabs(centre_.x - 0.5 * d2.x), std::fabs(centre_.y - 0.5 * d2.y),
+                   std::fabs(centre_.z - 0.5 * d2.z)};
+    const Vector e{0.5 * size2.x + slack, 0.5 * size2.y + slack, 0.5 * size2.z + slack};
+    if (d.x > e.x + reach_.x || d.y > e.y + reach_.y || d.z > e.z + reach_.z) return false;
+    const Vector m = centre_ - 0.5 * d2;
+    return std::fabs(m.y * half_.z - m.z * half_.y) <= (e.y * reach_.z + e.z * reach_.y) * widen &&
+           std::fabs(m.z * half_.x - m.x * half_.z) <= (e.x * reach_.z + e.z * reach_.x) * widen &&
+           std::fabs(m.x * half_.y - m.y * half_.x) <= (e.x * reach_.y + e.y * reach_.x) * widen;
   }
-  return true;
-}
+
+ private:
+  static constexpr double widen = 1 + 1e-12;
+  Point centre_;
+  Vector half_, reach_;
+  double slack_;
+};
 
 int side(const Point& a, const Point& b, const Point& c, const Point& p) {
   const int sign = predicates::orientation(a, b, c, p);
@@ -97,7 +111,7 @@ TriangleHierarchy::TriangleHierarchy(std::span<const Point> points,
 Index TriangleHierarchy::build(std::span<Index> order, std::span<const Point> centres,
                                Index parent) {
   const auto node = static_cast<Index>(nodes_.size());
-  nodes_.push_back({{}, 0, parent, none, none, 0});
+  nodes_.push_back({{}, 0, parent, none, none, 0, 0});
   Box box;
   if (order.size() == 1) {
     for (const Index point : triangles_[order[0]]) box.add(points_[point]);
@@ -130,6 +144,8 @@ void TriangleHierarchy::nodes_in_ball(const Point& centre, double radius,
   found.clear();
   ++stamp_;
   for (Index node : from) {
+    if (nodes_[node].seed_stamp == stamp_) continue;
+    nodes_[node].seed_stamp = stamp_;
     while (nodes_[node].parent != none && nodes_[nodes_[node].parent].extent <= radius)
       node = nodes_[node].parent;
     descend(node, centre, radius, found);
@@ -157,13 +173,14 @@ void TriangleHierarchy::descend(Index index, const Point& centre, double radius,
 void TriangleHierarchy::crossings(const Point& p, const Point& q, std::span<const Index> nodes,
                                   std::vector<Crossing>& found) const {
   found.clear();
+  const SegmentAgainstBoxes segment(p, q);
   std::array<Index, 128> stack;
   for (const Index start : nodes) {
     std::size_t top = 0;
     stack[top++] = start;
     while (top > 0) {
       const Node& node = nodes_[stack[--top]];
-      if (!may_meet(p, q, node.box)) continue;
+      if (!segment.may_meet(node.box)) continue;
       if (node.left != none) {
         stack[top++] = node.left;
         stack[top++] = node.right;
@@ -172,6 +189,46 @@ void TriangleHierarchy::crossings(const Point& p, const Point& q, std::span<cons
         found.push_back({node.right, direction});
       }
     }
+  }
+}
+
+bool TriangleHierarchy::triangles_in_ball(const Point& centre, double radius,
+                                          std::span<const Index> nodes, std::size_t most,
+                                          std::vector<LocalTriangle>& local) const {
+  local.clear();
+  const double reach = radius * radius * (1 + 1e-9);
+  std::array<Index, 128> stack;
+  for (const Index start : nodes) {
+    std::size_t top = 0;
+    stack[top++] = start;
+    while (top > 0) {
+      const Node& node = nodes_[stack[--top]];
+      if (squared_distance_to_box(centre, node.box) > reach) continue;
+      if (node.left != none) {
+        stack[top++] = node.left;
+        stack[top++] = node.right;
+        continue;
+      }
+      if (local.size() == most) return false;
+      local.push_back({node.box, node.right});
+    }
+  }
+  return true;
+}
+
+void TriangleHierarchy::crossings(const Point& p, const Point& q,
+                                  std::span<const LocalTriangle> local,
+                                  std::vector<Crossing>& found) const {
+  found.clear();
+  Box range;
+  range.add(p);
+  range.add(q);
+  for (const LocalTriangle& t : local) {
+    if (t.box.min.x > range.max.x || t.box.max.x < range.min.x || t.box.min.y > range.max.y ||
+        t.box.max.y < range.min.y || t.box.min.z > range.max.z || t.box.max.z < range.min.z)
+      continue;
+    if (const int direction = crossing_direction(p, q, corners(t.triangle)); direction != 0)
+      found.push_back({t.triangle, direction});
   }
 }
 

@@ -21,6 +21,12 @@ class TriangleHierarchy {
     int direction;
   };
 
+  /// A triangle with its box, for many queries in one small neighbourhood.
+  struct LocalTriangle {
+    Box box;
+    Index triangle;
+  };
+
   /// The points are kept by reference.
   TriangleHierarchy(std::span<const Point> points, std::vector<std::array<Index, 3>> triangles);
 
@@ -44,6 +50,15 @@ class TriangleHierarchy {
   void crossings(const Point& p, const Point& q, std::span<const Index> nodes,
                  std::vector<Crossing>& found) const;
 
+  /// Replace `local` by the triangles below `nodes` that meet the ball. False, and `local` is
+  /// unusable, when there are more than `most`.
+  bool triangles_in_ball(const Point& centre, double radius, std::span<const Index> nodes,
+                         std::size_t most, std::vector<LocalTriangle>& local) const;
+
+  /// The same as crossings() above, among given triangles.
+  void crossings(const Point& p, const Point& q, std::span<const LocalTriangle> local,
+                 std::vector<Crossing>& found) const;
+
   /// Squared distance from p to the nearest triangle, if below `bound` (else `bound`, and `nearest`
   /// is left alone).
   double squared_distance_to(const Point& p, double bound = INFINITY,
@@ -57,7 +72,7 @@ class TriangleHierarchy {
     double extent;         // longest side of the box
     Index parent;
     Index left, right;     // a leaf has left == none and its triangle in right
-    std::uint32_t stamp;
+    std::uint32_t stamp, seed_stamp;
   };
 
   Index build(std::span<Index> order, std::span<const Point> centres, Index parent);

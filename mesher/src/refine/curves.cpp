@@ -45,7 +45,12 @@ void Refinement::add_curve_chain(Index c) {
   for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
     const auto index = static_cast<Index>(pending_.size());
     pending_.push_back({c, {chain[i].first, chain[i + 1].first}, {chain[i].second, chain[i + 1].second}});
-    for (const Index point : pending_.back().points) unresolved_[point].pending.push_back(index);
+    PendingSubsegment& p = pending_.back();
+    for (const Index point : p.points) unresolved_[point].pending.push_back(index);
+    const Point a = unresolved_[p.points[0]].point, b = unresolved_[p.points[1]].point;
+    const Point centre = curve_point(c, bisecting_parameter(c, a, b, p.parameters[0], p.parameters[1]));
+    p.object = objects_.add(LocationObjects::Kind::pending_subsegment, index, centre,
+                            squared_distance(centre, a), nearest_box_corner(centre));
   }
 }
 
@@ -55,9 +60,18 @@ void Refinement::point_resolved(Index point) {
   for (const Index index : waiting) {
     PendingSubsegment& p = pending_[index];
     if (--p.missing > 0) continue;
+    objects_.remove(p.object);
     const std::array<Index, 2> ends{unresolved_[p.points[0]].vertex, unresolved_[p.points[1]].vertex};
     add_subsegment(p.curve, ends, p.parameters, ends[0]);
   }
+}
+
+// A mesh vertex lies in the ball of a first subsegment: its ends come next, before skinny cells.
+void Refinement::hurry_ends(const PendingSubsegment& pending) {
+  for (const Index end : pending.points)
+    if (unresolved_[end].object != none && unresolved_[end].vertex == none)
+      queue_.push(WorkQueue::ends_of_encroached_subsegments,
+                  objects_[pending.object].squared_radius, {end, 0});
 }
 
 Point Refinement::curve_point(Index c, double parameter) const {

@@ -97,18 +97,21 @@ void Refinement::start() {
 Index Refinement::add_unresolved(const Point& p, std::uint8_t dimension, Index feature) {
   const auto index = static_cast<Index>(unresolved_.size());
   Index nearest = 0;
-  if (mesh_.vertex_count() == 8) {
-    for (Index corner = 1; corner < 8; ++corner)
-      if (squared_distance(p, mesh_.point(corner)) < squared_distance(p, mesh_.point(nearest)))
-        nearest = corner;
-  } else {
-    nearest = nearest_vertex(p, last_vertex());
-  }
+  if (mesh_.vertex_count() > 8) nearest = nearest_vertex(p, last_vertex());
+  else nearest = nearest_box_corner(p);
   unresolved_.push_back({p, dimension, feature});
   unresolved_[index].object =
       objects_.add(LocationObjects::Kind::point, index, p, 0, nearest);
   queue_point(index);
   return index;
+}
+
+Index Refinement::nearest_box_corner(const Point& p) const {
+  Index nearest = 0;
+  for (Index corner = 1; corner < 8; ++corner)
+    if (squared_distance(p, mesh_.point(corner)) < squared_distance(p, mesh_.point(nearest)))
+      nearest = corner;
+  return nearest;
 }
 
 // The stamp of a queued point is the exponent of its ball, so that a stale entry is noticed.
@@ -144,6 +147,9 @@ void Refinement::process(const WorkQueue::Item& item) {
     case WorkQueue::skinny_cells:
     case WorkQueue::large_cells:
       if (mesh_.alive(id) && mesh_.generation(id) == stamp) destroy_cell(item);
+      break;
+    case WorkQueue::ends_of_encroached_subsegments:
+      if (unresolved_[id].vertex == none) insert_point(id);
       break;
     case WorkQueue::unresolved_points:
       resolve_point(item);
@@ -230,9 +236,9 @@ bool Refinement::destroy(Candidate candidate) {
       ++warps_;
       return insert_point(point);
     }
-    if (const Index subsegment = encroached_subsegment(candidate); subsegment != none) {
+    if (const Index ball = encroached_ball(candidate); ball != none) {
       ++yields_;
-      return destroy_subsegment(subsegment);
+      return destroy_ball(objects_[ball], candidate.point);
     }
     if (candidate.dimension == 3) {
       if (const FaceId face = encroached_triangle(candidate); face != no_face) {
@@ -272,21 +278,36 @@ Index Refinement::warp_target(const Candidate& candidate) const {
   return best;
 }
 
-Index Refinement::encroached_subsegment(const Candidate& candidate) const {
+// The protective ball on a curve that the candidate lies deepest in.
+Index Refinement::encroached_ball(const Candidate& candidate) const {
   if (candidate.dimension <= 1) return none;
   Index best = none;
   double deepest = 0;
   for (const Index v : zone_.vertices)
     for (Index o = objects_.first_at(v); o != none; o = objects_[o].next) {
       const auto& object = objects_[o];
-      if (object.kind != LocationObjects::Kind::subsegment) continue;
+      if (object.kind == LocationObjects::Kind::point) continue;
       const double depth =
           object.squared_radius - squared_distance(candidate.point, object.centre);
       if (depth < 0 || (best != none && depth <= deepest)) continue;
-      best = object.owner;
+      best = o;
       deepest = depth;
     }
   return best;
+}
+
+// A curve's first subsegments guard it before their ends are in the mesh: what would encroach them
+// brings the ends in, so that nothing comes too close to a curve that is not resolved yet.
+bool Refinement::destroy_ball(LocationObjects::Object ball, const Point& intruder) {
+  if (ball.kind == LocationObjects::Kind::subsegment) return destroy_subsegment(ball.owner);
+  Index nearest = none;
+  for (const Index end : pending_[ball.owner].points) {
+    if (unresolved_[end].vertex != none) continue;
+    if (nearest == none || squared_distance(intruder, unresolved_[end].point) <
+                               squared_distance(intruder, unresolved_[nearest].point))
+      nearest = end;
+  }
+  return insert_point(nearest);
 }
 
 // A surface gap ball lies in the union of its two cells' balls, so the marked faces of the zone are
@@ -332,8 +353,10 @@ void Refinement::relocate_objects(Index vertex) {
       next = object.next;
       const double d = squared_distance(p, object.centre);
       const bool nearer = d < squared_distance(mesh_.point(neighbour), object.centre);
-      if (object.kind == LocationObjects::Kind::subsegment && d <= object.squared_radius)
-        encroach(object.owner);
+      if (d <= object.squared_radius) {
+        if (object.kind == LocationObjects::Kind::subsegment) encroach(object.owner);
+        else if (object.kind == LocationObjects::Kind::pending_subsegment) hurry_ends(pending_[object.owner]);
+      }
       if (nearer) objects_.move(o, vertex);
     }
 }

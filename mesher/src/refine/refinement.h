@@ -73,6 +73,7 @@ class Refinement {
     Index curve;
     std::array<Index, 2> points;       // unresolved points
     std::array<double, 2> parameters;
+    Index object = none;
     unsigned missing = 2;
   };
   /// A Delaunay triangle whose dual edge crosses a patch at x, with its surface gap ball B(x, r).
@@ -103,6 +104,7 @@ class Refinement {
   // refinement.cpp
   void start();
   Index add_unresolved(const Point& p, std::uint8_t dimension, Index feature);
+  Index nearest_box_corner(const Point& p) const;
   void queue_point(Index point);
   void process(const WorkQueue::Item& item);
   void destroy_cell(const WorkQueue::Item& item);
@@ -112,7 +114,8 @@ class Refinement {
   /// Paper, Procedure 2. False when nothing could be inserted.
   bool destroy(Candidate candidate);
   Index warp_target(const Candidate& candidate) const;
-  Index encroached_subsegment(const Candidate& candidate) const;
+  Index encroached_ball(const Candidate& candidate) const;
+  bool destroy_ball(LocationObjects::Object ball, const Point& intruder);
   FaceId encroached_triangle(const Candidate& candidate) const;
   /// Paper, Procedure 3. Precondition: zone_ is the point's.
   Index force_insert(std::uint8_t dimension, Index feature);
@@ -142,6 +145,7 @@ class Refinement {
   void prepare_curves();
   void add_curve_chain(Index curve);
   void point_resolved(Index point);
+  void hurry_ends(const PendingSubsegment& pending);
   Point curve_point(Index curve, double parameter) const;
   double bisecting_parameter(Index curve, const Point& a, const Point& b, double from, double to) const;
   Index nearest_vertex(const Point& p, Index from);
@@ -236,6 +240,7 @@ class Refinement {
   std::vector<Index> free_subsegments_;
 
   std::vector<TriangleHierarchy::Crossing> crossings_;
+  std::vector<TriangleHierarchy::LocalTriangle> local_triangles_;
   std::vector<Index> nodes_scratch_, cells_scratch_, seeds_scratch_;
 
   std::uint64_t random_state_;

@@ -17,6 +17,7 @@ class WorkQueue {
  public:
   enum Priority : unsigned {
     encroached_subsegments,
+    ends_of_encroached_subsegments,  ///< unresolved ends of a curve's first subsegments
     skinny_cells,
     unresolved_points,
     unresolved_triangles,
