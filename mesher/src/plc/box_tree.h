@@ -6,15 +6,15 @@
 
 namespace collarmesh::build {
 
-/// A hierarchy of boxes that finds the pairs of items whose boxes meet.
+/// A hierarchy of boxes that finds the pairs of items whose boxes meet, and the items near a segment.
 class BoxTree {
  public:
   explicit BoxTree(std::vector<Box> boxes);
 
-  /// Calls visit(i) for every item whose box meets the given box, or may.
+  /// Calls visit(i, j) once for every pair of items whose boxes meet.
   template <class Visit>
-  void for_each_near(const Box& box, const Visit& visit) const {
-    if (!nodes_.empty()) descend(0, [&](const Box& b) { return meet(b, box); }, visit);
+  void for_each_pair(const Visit& visit) const {
+    if (!nodes_.empty()) pairs_within(0, visit);
   }
 
   /// Calls visit(i) for every item whose box meets the segment pq, or may.
@@ -50,6 +50,37 @@ class BoxTree {
     }
     for (Index i = n.first; i < n.first + n.count; ++i)
       if (test(boxes_[items_[i]])) visit(items_[i]);
+  }
+
+  template <class Visit>
+  void pairs_within(Index node, const Visit& visit) const {
+    const Node& n = nodes_[node];
+    if (n.count == 0) {
+      pairs_within(node + 1, visit);
+      pairs_within(n.first, visit);
+      pairs_between(node + 1, n.first, visit);
+      return;
+    }
+    for (Index i = n.first; i < n.first + n.count; ++i)
+      for (Index j = i + 1; j < n.first + n.count; ++j)
+        if (meet(boxes_[items_[i]], boxes_[items_[j]])) visit(items_[i], items_[j]);
+  }
+
+  template <class Visit>
+  void pairs_between(Index a, Index b, const Visit& visit) const {
+    const Node &m = nodes_[a], &n = nodes_[b];
+    if (!meet(m.box, n.box)) return;
+    if (m.count == 0) {
+      pairs_between(a + 1, b, visit);
+      pairs_between(m.first, b, visit);
+    } else if (n.count == 0) {
+      pairs_between(a, b + 1, visit);
+      pairs_between(a, n.first, visit);
+    } else {
+      for (Index i = m.first; i < m.first + m.count; ++i)
+        for (Index j = n.first; j < n.first + n.count; ++j)
+          if (meet(boxes_[items_[i]], boxes_[items_[j]])) visit(items_[i], items_[j]);
+    }
   }
 
   std::vector<Box> boxes_;

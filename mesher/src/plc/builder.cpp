@@ -10,6 +10,7 @@
 #include "plc/faults.h"
 #include "plc/features.h"
 #include "plc/flat_clusters.h"
+#include "plc/intersections.h"
 #include "plc/orientation.h"
 #include "plc/regions.h"
 #include "plc/weld.h"
@@ -65,8 +66,8 @@ void require_region(const Draft& draft, const EdgeTable& edges, const Regions& r
              {a, b}, 0.5 * (pa + pb));
 }
 
-// Patches in the complex with their triangles together; a patch whose front looks at the only
-// region, or at the one of the smaller number, is turned.
+// Patches in the complex with their triangles together. A patch between a region in front of it and
+// the outside behind it is turned.
 void add_patches(Draft& draft, const Regions& regions, const std::vector<Index>& patch_of, Index patch_count, Plc& plc) {
   std::vector<std::vector<Index>> triangles(patch_count);
   for (Index t = 0; t < draft.triangles.size(); ++t) triangles[patch_of[t]].push_back(t);
@@ -140,6 +141,7 @@ Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options) {
   orient_components(draft, faults);
   merge_twins_across_soups(draft);
   const EdgeTable edges(draft.triangles, draft.points.size());
+  find_intersections(draft, edges, faults);
   faults.raise();
 
   const Regions regions = find_regions(draft, edges, soups, faults);

@@ -1,0 +1,211 @@
+#include "plc/intersections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "delaunay/predicates.h"
+#include "plc/box_tree.h"
+#include "plc/exact.h"
+#include "plc/meeting.h"
+
+namespace collarmesh::build {
+
+namespace {
+
+// A triangle, a loose segment or a loose point.
+struct Simplex {
+  Corners points{none, none, none};
+  unsigned size = 0;
+  std::span<const Index> corners() const { return {points.data(), size}; }
+};
+
+// The corners of two simplices, common ones first.
+struct Pair {
+  Simplex first, second;
+  unsigned common = 0;
+};
+
+class IntersectionFinder {
+ public:
+  IntersectionFinder(const Draft& draft, const EdgeTable& edges) : draft_(draft) {
+    for (const Corners& t : draft.triangles) simplices_.push_back({t, 3});
+    std::vector<std::array<Index, 2>> loose;
+    for (const Segment& s : draft.segments)
+      if (edges.find(s.a, s.b) == none) loose.push_back({std::min(s.a, s.b), std::max(s.a, s.b)});
+    std::sort(loose.begin(), loose.end());
+    loose.erase(std::unique(loose.begin(), loose.end()), loose.end());
+    for (const auto& [a, b] : loose) simplices_.push_back({{a, b, none}, 2});
+    for (const Index p : draft.loose_points) simplices_.push_back({{p, none, none}, 1});
+  }
+
+  void run(Faults& faults) {
+    std::vector<Box> boxes(simplices_.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      for (const Index p : simplices_[i].corners()) boxes[i].add(draft_.points[p]);
+    std::vector<std::pair<Index, Index>> found;
+    BoxTree(std::move(boxes)).for_each_pair([&](Index i, Index j) {
+      if (illegal(ordered(i, j))) found.push_back(std::minmax(i, j));
+    });
+    std::sort(found.begin(), found.end());
+    for (const auto& [i, j] : found) report(i, j, faults);
+  }
+
+ private:
+  const Point& at(Index p) const { return draft_.points[p]; }
+
+  Pair ordered(Index i, Index j) const {
+    Pair pair{simplices_[i], simplices_[j], 0};
+    if (pair.first.size < pair.second.size) std::swap(pair.first, pair.second);
+    for (unsigned a = 0; a < pair.first.size; ++a)
+      for (unsigned b = pair.common; b < pair.second.size; ++b) {
+        if (pair.first.points[a] != pair.second.points[b]) continue;
+        std::swap(pair.first.points[a], pair.first.points[pair.common]);
+        std::swap(pair.second.points[b], pair.second.points[pair.common]);
+        ++pair.common;
+        break;
+      }
+    return pair;
+  }
+
+  // Do they meet in more than their common corners? The first one has at least as many corners.
+  bool illegal(const Pair& pair) const {
+    const auto& f = pair.first.points;
+    const auto& s = pair.second.points;
+    if (pair.common == pair.second.size) return false;
+    if (pair.second.size == 1)
+      return pair.first.size == 3 ? point_on_triangle(at(s[0]), at(f[0]), at(f[1]), at(f[2]))
+                                  : pair.first.size == 2 && point_on_segment(at(s[0]), at(f[0]), at(f[1]));
+    if (pair.first.size == 2)
+      return pair.common == 1 ? overlap(f[0], f[1], s[1]) : segments_meet(at(f[0]), at(f[1]), at(s[0]), at(s[1]));
+    if (pair.second.size == 2) return segment_illegal(pair);
+    if (pair.common == 2) return folded(f, s);
+    return pair.common == 1 ? fans_meet(f, s) : triangles_meet(f, s);
+  }
+
+  // Two segments from a that lie on one ray.
+  bool overlap(Index a, Index b, Index c) const {
+    return collinear(at(a), at(b), at(c)) && !between(at(b), at(a), at(c));
+  }
+
+  bool segment_illegal(const Pair& pair) const {
+    const auto& f = pair.first.points;
+    const auto& s = pair.second.points;
+    if (pair.common == 0) return segment_meets_triangle(at(s[0]), at(s[1]), at(f[0]), at(f[1]), at(f[2]));
+    return point_on_triangle(at(s[1]), at(f[0]), at(f[1]), at(f[2])) ||
+           segments_meet(at(s[0]), at(s[1]), at(f[1]), at(f[2]));
+  }
+
+  // Triangles on a common edge that lie on each other.
+  bool folded(const Corners& f, const Corners& s) const {
+    return predicates::orientation(at(f[0]), at(f[1]), at(f[2]), at(s[2])) == 0 &&
+           same_side(at(f[0]), at(f[1]), at(f[2]), at(s[2]));
+  }
+
+  // Triangles with one common corner that meet elsewhere: then the side of one opposite to it meets
+  // the other.
+  bool fans_meet(const Corners& f, const Corners& s) const {
+    return segment_meets_triangle(at(f[1]), at(f[2]), at(s[0]), at(s[1]), at(s[2])) ||
+           segment_meets_triangle(at(s[1]), at(s[2]), at(f[0]), at(f[1]), at(f[2]));
+  }
+
+  bool triangles_meet(const Corners& f, const Corners& s) const {
+    if (apart(f, s) || apart(s, f)) return false;
+    for (unsigned i = 0; i < 3; ++i) {
+      const unsigned j = (i + 1) % 3;
+      if (segment_meets_triangle(at(f[i]), at(f[j]), at(s[0]), at(s[1]), at(s[2])) ||
+          segment_meets_triangle(at(s[i]), at(s[j]), at(f[0]), at(f[1]), at(f[2])))
+        return true;
+    }
+    return false;
+  }
+
+  // Does the plane of f have all of s on one side?
+  bool apart(const Corners& f, const Corners& s) const {
+    const int side = predicates::orientation(at(f[0]), at(f[1]), at(f[2]), at(s[0]));
+    return side != 0 && side == predicates::orientation(at(f[0]), at(f[1]), at(f[2]), at(s[1])) &&
+           side == predicates::orientation(at(f[0]), at(f[1]), at(f[2]), at(s[2]));
+  }
+
+  void report(Index i, Index j, Faults& faults) const {
+    if (faults.full(PlcFault::Kind::intersection)) {
+      faults.add(PlcFault::Kind::intersection, {}, {}, {});
+      return;
+    }
+    const Pair pair = ordered(i, j);
+    const Index touching = touching_corner(pair);
+    const Point where = touching != none ? at(touching) : meeting_point(pair);
+    std::vector<Index> points(pair.first.corners().begin(), pair.first.corners().end());
+    for (unsigned k = pair.common; k < pair.second.size; ++k) points.push_back(pair.second.points[k]);
+    const char* how = touching != none ? "touch without a common corner" : "intersect";
+    faults.add(PlcFault::Kind::intersection,
+               fmt::format("The {} and the {} {} at {}; cut them along their intersection or move them apart.",
+                           name(i), name(j), how, text(where)),
+               std::move(points), where);
+  }
+
+  std::string name(Index i) const {
+    const Simplex& s = simplices_[i];
+    if (s.size == 3) return fmt::format("facet {} of {}", draft_.origins[i].facet, draft_.soup_names[draft_.origins[i].soup]);
+    if (s.size == 2) return fmt::format("segment {} - {}", text(at(s.points[0])), text(at(s.points[1])));
+    return fmt::format("point {}", text(at(s.points[0])));
+  }
+
+  // A corner of one, not common, that lies on the other.
+  Index touching_corner(const Pair& pair) const {
+    for (unsigned k = pair.common; k < pair.second.size; ++k)
+      if (on(pair.second.points[k], pair.first)) return pair.second.points[k];
+    for (unsigned k = pair.common; k < pair.first.size; ++k)
+      if (on(pair.first.points[k], pair.second)) return pair.first.points[k];
+    return none;
+  }
+
+  bool on(Index p, const Simplex& s) const {
+    if (s.size == 3) return point_on_triangle(at(p), at(s.points[0]), at(s.points[1]), at(s.points[2]));
+    return s.size == 2 && point_on_segment(at(p), at(s.points[0]), at(s.points[1]));
+  }
+
+  // Rounded, for messages.
+  Point meeting_point(const Pair& pair) const {
+    if (const auto p = piercing_point(pair.first, pair.second, pair.common)) return *p;
+    if (const auto p = piercing_point(pair.second, pair.first, pair.common)) return *p;
+    Box first, second;
+    for (const Index p : pair.first.corners()) first.add(at(p));
+    for (const Index p : pair.second.corners()) second.add(at(p));
+    Box both;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      both.min[axis] = std::max(first.min[axis], second.min[axis]);
+      both.max[axis] = std::min(first.max[axis], second.max[axis]);
+    }
+    return both.centre();
+  }
+
+  // Where a side of the first one pierces the second, a triangle.
+  std::optional<Point> piercing_point(const Simplex& first, const Simplex& second, unsigned common) const {
+    if (first.size < 2 || second.size < 3) return std::nullopt;
+    const auto& s = second.points;
+    for (unsigned i = 0; i < first.size; ++i) {
+      const unsigned j = (i + 1) % first.size;
+      if (common > 0 && (i < common || j < common)) continue;
+      const Point &p = at(first.points[i]), &q = at(first.points[j]);
+      if (!segment_meets_triangle(p, q, at(s[0]), at(s[1]), at(s[2]))) continue;
+      const double from = six_volume(at(s[0]), at(s[1]), at(s[2]), p), to = six_volume(at(s[0]), at(s[1]), at(s[2]), q);
+      if (from != to) return p + from / (from - to) * (q - p);
+    }
+    return std::nullopt;
+  }
+
+  const Draft& draft_;
+  std::vector<Simplex> simplices_;
+};
+
+}  // namespace
+
+void find_intersections(const Draft& draft, const EdgeTable& edges, Faults& faults) {
+  IntersectionFinder(draft, edges).run(faults);
+}
+
+}  // namespace collarmesh::build
