@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "collarmesh/tet_mesh.h"
+
+/// One writer and one reader per format of tetrahedral meshes.
+namespace collarmesh::io {
+
+void write_vtu(const std::string& path, const TetMesh& mesh);
+void write_msh(const std::string& path, const TetMesh& mesh);
+void write_medit(const std::string& path, const TetMesh& mesh);
+
+TetMesh read_vtu(const std::string& path);
+TetMesh read_msh(const std::string& path);
+TetMesh read_medit(const std::string& path);
+
+}  // namespace collarmesh::io
