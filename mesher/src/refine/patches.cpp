@@ -38,14 +38,19 @@ void Refinement::prepare_patches() {
   for (Index patch = 0; patch < plc_.patches.size(); ++patch) {
     const Plc::Patch& p = plc_.patches[patch];
     if (!p.curves.empty() || !p.vertices.empty()) continue;
-    std::vector<Index> candidates;
-    for (Index t = p.first_triangle; t < p.first_triangle + p.triangle_count; ++t)
-      candidates.insert(candidates.end(), plc_.triangles[t].points.begin(), plc_.triangles[t].points.end());
-    std::sort(candidates.begin(), candidates.end());
-    candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
-    for (const Index point : spread_points(candidates, points_, seeds_per_closed_patch))
+    for (const Index point : spread_points(tessellation_points(p), points_, seeds_per_closed_patch))
       add_unresolved(points_[point], 2, patch);
   }
+}
+
+std::vector<Index> Refinement::tessellation_points(const Plc::Patch& patch) const {
+  std::vector<Index> points;
+  points.reserve(3 * std::size_t{patch.triangle_count});
+  for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t)
+    points.insert(points.end(), plc_.triangles[t].points.begin(), plc_.triangles[t].points.end());
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return points;
 }
 
 // The box' corners lie outside every region.

@@ -158,6 +158,7 @@ class Refinement {
 
   // patches.cpp
   void prepare_patches();
+  std::vector<Index> tessellation_points(const Plc::Patch& patch) const;
   void label_from_outside(Index cell);
   std::size_t first_label();
   bool on_patch(Index vertex, Index patch) const;

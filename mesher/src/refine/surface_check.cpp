@@ -121,12 +121,11 @@ bool Refinement::check_patch_distance() {
     const auto triangle_count = triangles[patch].size();
     const TriangleHierarchy surface(positions, std::move(triangles[patch]));
     std::vector<std::pair<double, Index>> farthest(triangle_count + 1, {0, none});
-    for (Index t = p.first_triangle; t < p.first_triangle + p.triangle_count; ++t)
-      for (const Index point : plc_.triangles[t].points) {
-        Index nearest = static_cast<Index>(triangle_count);
-        const double d = surface.squared_distance_to(points_[point], INFINITY, &nearest);
-        if (d > distance_ * distance_ && d > farthest[nearest].first) farthest[nearest] = {d, point};
-      }
+    for (const Index point : tessellation_points(p)) {
+      auto nearest = static_cast<Index>(triangle_count);
+      const double d = surface.squared_distance_to(points_[point], INFINITY, &nearest);
+      if (d > distance_ * distance_ && d > farthest[nearest].first) farthest[nearest] = {d, point};
+    }
     for (const auto& [d, point] : farthest) {
       if (point == none) continue;
       add_unresolved(points_[point], 2, patch);
