@@ -1,0 +1,85 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "collarmesh/plc_builder.h"
+#include "plc/angles.h"
+#include "plc/faults.h"
+
+namespace collarmesh {
+
+namespace {
+
+// An angle this much below the threshold may be rounding (degrees).
+constexpr double angle_rounding = 1e-6;
+
+std::vector<Crease> below(std::vector<Crease> angles, double threshold) {
+  std::erase_if(angles, [&](const Crease& c) { return c.angle >= threshold - angle_rounding; });
+  std::stable_sort(angles.begin(), angles.end(), [](const Crease& a, const Crease& b) { return a.angle < b.angle; });
+  return angles;
+}
+
+double shortest_segment(const Plc& plc) {
+  double shortest = INFINITY;
+  for (const Plc::Curve& curve : plc.curves) {
+    if (curve.closed || curve.ends[0] == curve.ends[1]) continue;
+    shortest = std::min(shortest, distance(plc.points[curve.points.front()], plc.points[curve.points.back()]));
+  }
+  return std::isfinite(shortest) ? shortest : 0;
+}
+
+std::string name(const char* what, Index index, Tag tag) {
+  return tag == 0 ? fmt::format("{} {}", what, index) : fmt::format("{} {} (tag {})", what, index, tag);
+}
+std::string patch_name(const Plc& plc, Index p) { return name("patch", p, plc.patches[p].tag); }
+std::string curve_name(const Plc& plc, Index c) { return name("curve", c, plc.curves[c].tag); }
+
+}  // namespace
+
+std::vector<Crease> find_creases(const Plc& plc, double threshold) {
+  return below(build::measure_angles(plc), threshold);
+}
+
+PlcSummary summarize(const Plc& plc, double crease_threshold) {
+  PlcSummary summary;
+  summary.points = static_cast<Index>(plc.points.size());
+  summary.vertices = static_cast<Index>(plc.vertices.size());
+  summary.curves = static_cast<Index>(plc.curves.size());
+  for (const Plc::Curve& c : plc.curves) summary.straight_curves += c.straight ? 1 : 0;
+  summary.patches = static_cast<Index>(plc.patches.size());
+  for (const Plc::Patch& p : plc.patches) summary.planar_patches += p.planar ? 1 : 0;
+  summary.triangles = static_cast<Index>(plc.triangles.size());
+  summary.regions = static_cast<Index>(plc.regions.size()) - 1;
+  summary.diagonal = plc.bounds.diagonal();
+  summary.shortest_segment = shortest_segment(plc);
+  if (summary.shortest_segment > 0) summary.spread = summary.diagonal / summary.shortest_segment;
+  summary.largest_deviation = plc.largest_deviation;
+  std::vector<Crease> angles = build::measure_angles(plc);
+  for (const Crease& c : angles) summary.smallest_angle = std::min(summary.smallest_angle, c.angle);
+  summary.creases = below(std::move(angles), crease_threshold);
+  return summary;
+}
+
+std::string describe(const Plc& plc, const Crease& crease) {
+  const auto [f, g] = crease.features;
+  const std::string where = build::text(crease.where);
+  switch (crease.kind) {
+    case Crease::Kind::facets:
+      return fmt::format("The {} and the {} meet along the {} at {:.2f} degrees near {}.", patch_name(plc, f),
+                         patch_name(plc, g), curve_name(plc, crease.curve), crease.angle, where);
+    case Crease::Kind::segments:
+      return fmt::format("The {} and the {} meet at {:.2f} degrees in {}.", curve_name(plc, f), curve_name(plc, g),
+                         crease.angle, where);
+    case Crease::Kind::segment_and_facet:
+      return fmt::format("The {} meets the {} at {:.2f} degrees in {}.", curve_name(plc, f), patch_name(plc, g),
+                         crease.angle, where);
+    case Crease::Kind::facets_in_vertex:
+      return fmt::format("The {} and the {} meet only in the point {}, at {:.2f} degrees.", patch_name(plc, f),
+                         patch_name(plc, g), where, crease.angle);
+    case Crease::Kind::patch_fold:
+      return fmt::format("The {} folds by {:.2f} degrees in {}.", patch_name(plc, f), crease.angle, where);
+  }
+  return {};
+}
+
+}  // namespace collarmesh
