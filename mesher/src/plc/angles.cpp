@@ -47,24 +47,28 @@ double smallest_angle_along(const Arc& a, double a0, const Arc& b, double b0, do
   return best;
 }
 
-// The smallest angle between rays that are `apart` along the fan.
+// The smallest angle between rays that are `apart` along the fan: two positions move along it, from
+// one border of a sector to the next.
 double smallest_angle_apart(const std::vector<Arc>& arcs, double apart, bool closed) {
   const double total = arcs.back().from + arcs.back().length;
   const double last = closed ? total : total - apart;
-  double best = 180;
   std::size_t i = 0, j = 0;
-  double s = 0;
-  const auto wrapped = [&](double t) { return t >= total ? t - total : t; };
   while (j + 1 < arcs.size() && arcs[j].from + arcs[j].length <= apart) ++j;
-  while (i < arcs.size() && s <= last) {
-    const double a0 = s - arcs[i].from, b0 = std::fmax(0, wrapped(s + apart) - arcs[j].from);
-    const double to_next_i = arcs[i].length - a0, to_next_j = arcs[j].length - b0;
-    const double length = std::fmax(0, std::min({to_next_i, to_next_j, last - s}));
-    best = std::fmin(best, smallest_angle_along(arcs[i], a0, arcs[j], b0, length));
-    s += length;
-    if (last - s <= 0) break;
-    if (to_next_i <= to_next_j) s = arcs[i].from + arcs[i].length, ++i;
-    if (to_next_j <= to_next_i) j = (j + 1) % arcs.size();
+  double best = 180, s = 0, lap = 0;
+  while (i < arcs.size() && s < last) {
+    const double a0 = s - arcs[i].from, b0 = std::fmax(0, s + apart - lap - arcs[j].from);
+    const double to_next_i = arcs[i].length - a0, to_next_j = std::fmax(0, arcs[j].length - b0);
+    best = std::fmin(best, smallest_angle_along(arcs[i], a0, arcs[j], b0, std::min({to_next_i, to_next_j, last - s})));
+    if (to_next_i <= to_next_j) {
+      s = arcs[i].from + arcs[i].length;
+      ++i;
+    } else {
+      s += to_next_j;
+      if (++j < arcs.size()) continue;
+      if (!closed) break;
+      j = 0;
+      lap = total;
+    }
   }
   return best;
 }
