@@ -61,7 +61,7 @@ class SampleMesh {
   void add_points() {
     for (Index i = 0; i < (n_ + 1) * (n_ + 1) * (2 * n_ + 1); ++i) {
       const Grid g = grid(i);
-      mesh_.points.push_back({g[0] / 3.0, g[1] * 0.1 + 1e-17, (g[2] + 1.0 / 7) * 1e5});
+      mesh_.points.push_back({g[0] / 3.0, g[1] * 0.1 + 1e-17, (g[2] + 1.0 / 7) * 0.3});
       const unsigned bits = planes(g);
       TetMesh::VertexFeature f;
       for (unsigned rest = bits; rest != 0; rest &= rest - 1) --f.dimension;

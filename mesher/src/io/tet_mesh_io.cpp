@@ -20,7 +20,7 @@ struct TetMeshFormat {
 };
 
 constexpr std::array<TetMeshFormat, 3> tet_mesh_formats{
-    {{".vtu", write_vtu, nullptr}, {".msh", nullptr, nullptr}, {".mesh", nullptr, nullptr}}};
+    {{".vtu", write_vtu, nullptr}, {".msh", write_msh, nullptr}, {".mesh", write_medit, nullptr}}};
 
 constexpr std::string_view known = "tetrahedral meshes are .vtu, .msh (Gmsh) and .mesh (Medit)";
 

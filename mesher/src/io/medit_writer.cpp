@@ -1,0 +1,58 @@
+// Medit's text format (.mesh; P. Frey, "MEDIT: an interactive mesh visualization software", 2001).
+// References: of vertices the dimension of their feature (0 if unknown), of tets the region, of
+// triangles and edges the tag. Corners are the vertices that are features, for remeshers to keep.
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "io/file_writer.h"
+#include "io/tet_mesh_formats.h"
+
+namespace collarmesh::io {
+
+namespace {
+
+template <class Cell, class Reference>
+void write_cells(FileWriter& out, std::string_view keyword, const std::vector<Cell>& cells,
+                 const std::vector<Reference>& references) {
+  if (cells.empty()) return;
+  out << '\n' << keyword << '\n' << cells.size() << '\n';
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    for (const Index v : cells[i]) out << std::size_t{v} + 1 << ' ';
+    out << references[i] << '\n';
+  }
+}
+
+void write_vertices(FileWriter& out, const TetMesh& mesh) {
+  out << "\nVertices\n" << mesh.points.size() << '\n';
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    const Point& p = mesh.points[v];
+    out << p.x << ' ' << p.y << ' ' << p.z << ' ' << (mesh.features.empty() ? 0 : int{mesh.features[v].dimension})
+        << '\n';
+  }
+}
+
+void write_corners(FileWriter& out, const TetMesh& mesh) {
+  const auto is_corner = [](const TetMesh::VertexFeature& f) { return f.dimension == 0; };
+  const auto count = std::count_if(mesh.features.begin(), mesh.features.end(), is_corner);
+  if (count == 0) return;
+  out << "\nCorners\n" << count << '\n';
+  for (std::size_t v = 0; v < mesh.features.size(); ++v)
+    if (is_corner(mesh.features[v])) out << v + 1 << '\n';
+}
+
+}  // namespace
+
+void write_medit(const std::string& path, const TetMesh& mesh) {
+  FileWriter out(path);
+  out << "# Written by collarmesh.\nMeshVersionFormatted 2\n\nDimension 3\n";
+  write_vertices(out, mesh);
+  write_cells(out, "Tetrahedra", mesh.tets, mesh.tet_region);
+  write_cells(out, "Triangles", mesh.faces, mesh.face_tag);
+  write_cells(out, "Edges", mesh.edges, mesh.edge_tag);
+  write_corners(out, mesh);
+  out << "\nEnd\n";
+  out.commit();
+}
+
+}  // namespace collarmesh::io

@@ -1,0 +1,168 @@
+#include "io/msh_entities.h"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <utility>
+
+namespace collarmesh::io {
+
+namespace {
+
+/// Gives each pair of a feature and a tag an entity of one dimension. Its number is that of the
+/// feature while that is known and free.
+class EntityTable {
+ public:
+  explicit EntityTable(std::vector<MshEntity>& entities) : entities_(entities) {}
+
+  /// `number`: wanted, 0 if the feature is unknown.
+  Index find(Index number, Tag tag) {
+    const std::pair key(number, tag);
+    if (key == last_key_ && last_ != none) return last_;
+    const auto [found, added] = by_key_.try_emplace(key, static_cast<Index>(entities_.size()));
+    if (added) add(number, tag);
+    last_key_ = key;
+    return last_ = found->second;
+  }
+
+  /// The entity of a feature whatever its tag.
+  Index find(Index number) {
+    const auto found = by_number_.find(number);
+    return found != by_number_.end() ? found->second : find(number, 0);
+  }
+
+  /// Number the entities that did not get the number wanted. Returns whether there were any.
+  bool number_the_rest() {
+    int next = 1;
+    for (const MshEntity& e : entities_) next = std::max(next, e.number + 1);
+    bool any = false;
+    for (MshEntity& e : entities_) {
+      if (e.number != 0) continue;
+      e.number = next++;
+      any = true;
+    }
+    return any;
+  }
+
+ private:
+  void add(Index number, Tag tag) {
+    MshEntity entity;
+    entity.tag = tag;
+    if (number != 0 && by_number_.try_emplace(number, static_cast<Index>(entities_.size())).second)
+      entity.number = static_cast<int>(number);
+    entities_.push_back(entity);
+  }
+
+  std::vector<MshEntity>& entities_;
+  std::map<std::pair<Index, Tag>, Index> by_key_;
+  std::map<Index, Index> by_number_;
+  std::pair<Index, Tag> last_key_;
+  Index last_ = none;
+};
+
+Index number_of(Index feature) { return feature == none ? 0 : feature + 1; }
+
+using Tables = std::array<EntityTable, 4>;
+
+void assign_cells(const TetMesh& mesh, Tables& tables, MshEntities& result) {
+  for (std::size_t i = 0; i < mesh.tets.size(); ++i)
+    result.of_tet.push_back(tables[3].find(mesh.tet_region[i], mesh.tet_tag[i]));
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i)
+    result.of_face.push_back(tables[2].find(number_of(mesh.face_patch[i]), mesh.face_tag[i]));
+  for (std::size_t i = 0; i < mesh.edges.size(); ++i)
+    result.of_edge.push_back(tables[1].find(number_of(mesh.edge_curve[i]), mesh.edge_tag[i]));
+}
+
+template <class Cells>
+void place_corners(const Cells& cells, const std::vector<Index>& entities, std::uint8_t dimension, MshEntities& result) {
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    for (const Index v : cells[i]) result.of_point[v] = {dimension, entities[i]};
+}
+
+/// By the features of the vertices where they are known, else by the cells around.
+void place_points(const TetMesh& mesh, Tables& tables, MshEntities& result) {
+  if (mesh.tets.empty()) tables[3].find(1);
+  result.of_point.resize(mesh.points.size());
+  place_corners(mesh.tets, result.of_tet, 3, result);
+  place_corners(mesh.faces, result.of_face, 2, result);
+  place_corners(mesh.edges, result.of_edge, 1, result);
+  for (std::size_t v = 0; v < mesh.features.size(); ++v) {
+    const auto [dimension, feature] = mesh.features[v];
+    if (dimension < 3 && feature != none)
+      result.of_point[v] = {dimension, tables[dimension].find(number_of(feature))};
+  }
+}
+
+void find_boxes(const TetMesh& mesh, MshEntities& result) {
+  const auto add = [&](const auto& cells, const std::vector<Index>& entities, std::size_t dimension) {
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      for (const Index v : cells[i]) result.of_dimension[dimension][entities[i]].box.add(mesh.points[v]);
+  };
+  add(mesh.tets, result.of_tet, 3);
+  add(mesh.faces, result.of_face, 2);
+  add(mesh.edges, result.of_edge, 1);
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    const MshEntities::Place& place = result.of_point[v];
+    result.of_dimension[place.dimension][place.entity].box.add(mesh.points[v]);
+  }
+}
+
+void find_boundaries(const TetMesh& mesh, MshEntities& result) {
+  std::set<std::pair<Index, int>> pairs;  // region and signed surface
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    const int surface = result.of_dimension[2][result.of_face[i]].number;
+    if (mesh.face_regions[i][0] != 0) pairs.emplace(mesh.face_regions[i][0], surface);
+    if (mesh.face_regions[i][1] != 0) pairs.emplace(mesh.face_regions[i][1], -surface);
+  }
+  for (MshEntity& volume : result.of_dimension[3]) {
+    const auto region = static_cast<Index>(volume.number);
+    for (auto at = pairs.lower_bound({region, std::numeric_limits<int>::min()}); at != pairs.end() && at->first == region;
+         ++at)
+      volume.boundary.push_back(at->second);
+  }
+}
+
+/// A tag that Gmsh takes is its own number; the others get free ones, above all tags if they fit.
+std::map<Tag, int> number_tags(const std::vector<MshEntity>& entities) {
+  constexpr Tag limit = std::numeric_limits<int>::max();
+  std::map<Tag, int> numbers;
+  Tag next = 1;
+  for (const MshEntity& e : entities)
+    if (e.tag > 0 && e.tag < limit) {
+      numbers.emplace(e.tag, static_cast<int>(e.tag));
+      next = std::max(next, e.tag + 1);
+    }
+  if (next + static_cast<Tag>(entities.size()) > limit) next = 1;
+  for (const MshEntity& e : entities)
+    if (!numbers.contains(e.tag)) {
+      while (numbers.contains(next)) ++next;
+      numbers.emplace(e.tag, static_cast<int>(next++));
+    }
+  return numbers;
+}
+
+void find_physicals(MshEntities& result) {
+  for (std::size_t dimension = 1; dimension <= 3; ++dimension) {
+    result.physicals[dimension] = number_tags(result.of_dimension[dimension]);
+    for (MshEntity& e : result.of_dimension[dimension]) e.physical = result.physicals[dimension].at(e.tag);
+  }
+}
+
+}  // namespace
+
+MshEntities find_entities(const TetMesh& mesh) {
+  MshEntities result;
+  auto& lists = result.of_dimension;
+  Tables tables{EntityTable(lists[0]), EntityTable(lists[1]), EntityTable(lists[2]), EntityTable(lists[3])};
+  assign_cells(mesh, tables, result);
+  place_points(mesh, tables, result);
+  result.numbers_are_features = !mesh.features.empty();
+  for (EntityTable& table : tables)
+    if (table.number_the_rest()) result.numbers_are_features = false;
+  find_boxes(mesh, result);
+  find_boundaries(mesh, result);
+  find_physicals(result);
+  return result;
+}
+
+}  // namespace collarmesh::io

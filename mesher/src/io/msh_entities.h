@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include "collarmesh/tet_mesh.h"
+
+namespace collarmesh::io {
+
+/// Gmsh's view of a mesh: every cell and node belongs to an entity (a point, curve, surface or
+/// volume with a number), and entities of one tag to a physical group.
+struct MshEntity {
+  int number = 0;        ///< positive, unique in its dimension
+  Tag tag = 0;
+  int physical = 0;      ///< number of the physical group; 0 none
+  Box box;
+  std::vector<int> boundary;  ///< of a volume: surfaces, negative where they point inwards
+};
+
+struct MshEntities {
+  std::array<std::vector<MshEntity>, 4> of_dimension;
+  /// The entity (position in of_dimension[3], [2], [1]) of every tet, face, edge.
+  std::vector<Index> of_tet, of_face, of_edge;
+  struct Place {
+    std::uint8_t dimension = 3;
+    Index entity = 0;
+  };
+  std::vector<Place> of_point;
+  std::array<std::map<Tag, int>, 4> physicals;  ///< number by tag
+  bool numbers_are_features = false;
+};
+
+MshEntities find_entities(const TetMesh& mesh);
+
+}  // namespace collarmesh::io

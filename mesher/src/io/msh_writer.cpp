@@ -1,0 +1,173 @@
+// Gmsh's format 4.1 as text (Gmsh's reference manual, "MSH file format"). Entities are the features:
+// a volume per region, a surface per patch, a curve per curve, a point per vertex. A physical group
+// holds what has one tag. Cells are numbered in the order tets, faces, edges; $ElementData "collar"
+// is given for all of them in the order of the file, as meshio needs it.
+#include <array>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "io/file_writer.h"
+#include "io/msh_entities.h"
+#include "io/msh_format.h"
+#include "io/tet_mesh_formats.h"
+
+namespace collarmesh::io {
+
+namespace {
+
+void write_physical_names(FileWriter& out, const MshEntities& entities) {
+  std::size_t count = 0;
+  for (const auto& numbers : entities.physicals) count += numbers.size();
+  out << "$PhysicalNames\n" << count << '\n';
+  for (std::size_t dimension = 0; dimension < 4; ++dimension)
+    for (const auto& [tag, number] : entities.physicals[dimension])
+      out << dimension << ' ' << number << " \"" << physical_name_prefix[dimension] << tag << "\"\n";
+  out << "$EndPhysicalNames\n";
+}
+
+void write_point(FileWriter& out, const Point& p) { out << p.x << ' ' << p.y << ' ' << p.z; }
+
+void write_entity(FileWriter& out, const MshEntity& entity, std::size_t dimension) {
+  out << entity.number << ' ';
+  write_point(out, entity.box.min);
+  if (dimension > 0) {
+    out << ' ';
+    write_point(out, entity.box.max);
+  }
+  if (entity.physical == 0) out << " 0";
+  else out << " 1 " << entity.physical;
+  if (dimension > 0) {
+    out << ' ' << entity.boundary.size();
+    for (const int surface : entity.boundary) out << ' ' << surface;
+  }
+  out << '\n';
+}
+
+void write_entities(FileWriter& out, const MshEntities& entities) {
+  out << "$Entities\n";
+  for (std::size_t dimension = 0; dimension < 4; ++dimension)
+    out << entities.of_dimension[dimension].size() << (dimension < 3 ? ' ' : '\n');
+  for (std::size_t dimension = 0; dimension < 4; ++dimension)
+    for (const MshEntity& entity : entities.of_dimension[dimension]) write_entity(out, entity, dimension);
+  out << "$EndEntities\n";
+}
+
+/// What is in each entity of one dimension, in the order of the mesh.
+struct Groups {
+  std::vector<Index> starts, members;
+
+  Groups(std::size_t entity_count, std::span<const Index> entity_of) : starts(entity_count + 1), members(entity_of.size()) {
+    for (const Index e : entity_of)
+      if (e != none) ++starts[e + 1];
+    for (std::size_t e = 0; e < entity_count; ++e) starts[e + 1] += starts[e];
+    std::vector<Index> next = starts;
+    for (std::size_t i = 0; i < entity_of.size(); ++i)
+      if (entity_of[i] != none) members[next[entity_of[i]]++] = static_cast<Index>(i);
+  }
+  std::span<const Index> of(std::size_t entity) const {
+    return {members.data() + starts[entity], members.data() + starts[entity + 1]};
+  }
+  std::size_t filled() const {
+    std::size_t count = 0;
+    for (std::size_t e = 0; e + 1 < starts.size(); ++e) count += starts[e] != starts[e + 1] ? 1 : 0;
+    return count;
+  }
+};
+
+std::vector<Groups> group_points(const MshEntities& entities) {
+  std::vector<Groups> result;
+  std::vector<Index> entity_of(entities.of_point.size());
+  for (std::size_t dimension = 0; dimension < 4; ++dimension) {
+    for (std::size_t v = 0; v < entity_of.size(); ++v)
+      entity_of[v] = entities.of_point[v].dimension == dimension ? entities.of_point[v].entity : none;
+    result.emplace_back(entities.of_dimension[dimension].size(), entity_of);
+  }
+  return result;
+}
+
+void write_nodes(FileWriter& out, const TetMesh& mesh, const MshEntities& entities) {
+  const std::vector<Groups> groups = group_points(entities);
+  std::size_t blocks = 0;
+  for (const Groups& g : groups) blocks += g.filled();
+  const std::size_t n = mesh.points.size();
+  out << "$Nodes\n" << blocks << ' ' << n << ' ' << (n > 0 ? 1 : 0) << ' ' << n << '\n';
+  for (std::size_t dimension = 0; dimension < 4; ++dimension)
+    for (std::size_t e = 0; e < entities.of_dimension[dimension].size(); ++e) {
+      const std::span<const Index> members = groups[dimension].of(e);
+      if (members.empty()) continue;
+      out << dimension << ' ' << entities.of_dimension[dimension][e].number << " 0 " << members.size() << '\n';
+      for (const Index v : members) out << std::size_t{v} + 1 << '\n';
+      for (const Index v : members) {
+        write_point(out, mesh.points[v]);
+        out << '\n';
+      }
+    }
+  out << "$EndNodes\n";
+}
+
+template <class Cell>
+void write_cells(FileWriter& out, const std::vector<Cell>& cells, const std::vector<MshEntity>& entities,
+                 const Groups& groups, int dimension, int type, std::size_t first_number) {
+  for (std::size_t e = 0; e < entities.size(); ++e) {
+    const std::span<const Index> members = groups.of(e);
+    if (members.empty()) continue;
+    out << dimension << ' ' << entities[e].number << ' ' << type << ' ' << members.size() << '\n';
+    for (const Index i : members) {
+      out << first_number + i;
+      for (const Index v : cells[i]) out << ' ' << std::size_t{v} + 1;
+      out << '\n';
+    }
+  }
+}
+
+/// The three kinds of cells by entity, and the number of the first cell of each kind.
+struct CellGroups {
+  Groups tets, faces, edges;
+  std::size_t first_face, first_edge, count;
+
+  CellGroups(const TetMesh& mesh, const MshEntities& entities)
+      : tets(entities.of_dimension[3].size(), entities.of_tet),
+        faces(entities.of_dimension[2].size(), entities.of_face),
+        edges(entities.of_dimension[1].size(), entities.of_edge),
+        first_face(mesh.tets.size() + 1),
+        first_edge(first_face + mesh.faces.size()),
+        count(first_edge - 1 + mesh.edges.size()) {}
+};
+
+void write_elements(FileWriter& out, const TetMesh& mesh, const MshEntities& entities, const CellGroups& groups) {
+  out << "$Elements\n"
+      << groups.tets.filled() + groups.faces.filled() + groups.edges.filled() << ' ' << groups.count << ' '
+      << (groups.count > 0 ? 1 : 0) << ' ' << groups.count << '\n';
+  write_cells(out, mesh.tets, entities.of_dimension[3], groups.tets, 3, gmsh_tet, 1);
+  write_cells(out, mesh.faces, entities.of_dimension[2], groups.faces, 2, gmsh_triangle, groups.first_face);
+  write_cells(out, mesh.edges, entities.of_dimension[1], groups.edges, 1, gmsh_line, groups.first_edge);
+  out << "$EndElements\n";
+}
+
+void write_collar(FileWriter& out, const TetMesh& mesh, const CellGroups& groups) {
+  out << "$ElementData\n1\n\"collar\"\n1\n0\n3\n0\n1\n" << groups.count << '\n';
+  for (const Index i : groups.tets.members) out << std::size_t{i} + 1 << ' ' << mesh.tet_collar[i] << '\n';
+  for (const Index i : groups.faces.members) out << groups.first_face + i << " 0\n";
+  for (const Index i : groups.edges.members) out << groups.first_edge + i << " 0\n";
+  out << "$EndElementData\n";
+}
+
+}  // namespace
+
+void write_msh(const std::string& path, const TetMesh& mesh) {
+  FileWriter out(path);
+  const MshEntities entities = find_entities(mesh);
+  const CellGroups groups(mesh, entities);
+  out << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\nWritten by collarmesh.\n";
+  if (entities.numbers_are_features) out << msh_numbers_are_features << '\n';
+  out << "$EndComments\n";
+  write_physical_names(out, entities);
+  write_entities(out, entities);
+  write_nodes(out, mesh, entities);
+  write_elements(out, mesh, entities, groups);
+  write_collar(out, mesh, groups);
+  out.commit();
+}
+
+}  // namespace collarmesh::io
