@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/file_writer.h"
+#include "io/medit_format.h"
 #include "io/tet_mesh_formats.h"
 
 namespace collarmesh::io {
@@ -45,7 +46,7 @@ void write_corners(FileWriter& out, const TetMesh& mesh) {
 
 void write_medit(const std::string& path, const TetMesh& mesh) {
   FileWriter out(path);
-  out << "# Written by collarmesh.\nMeshVersionFormatted 2\n\nDimension 3\n";
+  out << medit_signature << "MeshVersionFormatted 2\n\nDimension 3\n";
   write_vertices(out, mesh);
   write_cells(out, "Tetrahedra", mesh.tets, mesh.tet_region);
   write_cells(out, "Triangles", mesh.faces, mesh.face_tag);

@@ -20,7 +20,7 @@ struct TetMeshFormat {
 };
 
 constexpr std::array<TetMeshFormat, 3> tet_mesh_formats{
-    {{".vtu", write_vtu, nullptr}, {".msh", write_msh, nullptr}, {".mesh", write_medit, nullptr}}};
+    {{".vtu", write_vtu, nullptr}, {".msh", write_msh, read_msh}, {".mesh", write_medit, read_medit}}};
 
 constexpr std::string_view known = "tetrahedral meshes are .vtu, .msh (Gmsh) and .mesh (Medit)";
 
@@ -35,7 +35,7 @@ const TetMeshFormat* find_format(const std::string& path) {
 
 void write_tet_mesh(const std::string& path, const TetMesh& mesh) {
   const TetMeshFormat* format = find_format(path);
-  if (format == nullptr || format->write == nullptr) throw WriteError(fmt::format("{}: unknown kind of file; {}", path, known));
+  if (format == nullptr) throw WriteError(fmt::format("{}: unknown kind of file; {}", path, known));
   format->write(path, mesh);
 }
 

@@ -22,12 +22,12 @@
 #include "io/base64.h"
 #include "io/file_writer.h"
 #include "io/tet_mesh_formats.h"
+#include "io/vtu_format.h"
 
 namespace collarmesh::io {
 
 namespace {
 
-constexpr std::uint8_t vtk_line = 3, vtk_triangle = 5, vtk_tet = 10;
 constexpr std::size_t block_bytes = 1 << 18;  // a multiple of every value's size, as some readers ask
 
 template <class T>

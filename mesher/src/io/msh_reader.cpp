@@ -1,0 +1,358 @@
+// Reads Gmsh's formats 4.1 (text and binary) and 2.2 (text): first-order tetrahedra, triangles and
+// lines. Tags are physical groups, or entities where there is none.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <string_view>
+#include <vector>
+
+#include "collarmesh/error.h"
+#include "io/complete_mesh.h"
+#include "io/file_bytes.h"
+#include "io/msh_format.h"
+#include "io/msh_sections.h"
+#include "io/number_text.h"
+#include "io/tet_mesh_formats.h"
+
+namespace collarmesh::io {
+
+namespace {
+
+struct Node {
+  std::uint64_t number = 0;
+  Point point;
+  std::uint8_t dimension = 3;
+  int entity = 0;
+};
+
+struct Cell {
+  std::uint64_t number = 0;
+  std::array<Index, 4> corners{};  ///< positions in Contents::nodes
+  int entity = 0;
+  Tag tag = 0;
+};
+
+struct Contents {
+  std::vector<Node> nodes;                                    ///< in the order of their numbers
+  bool dense = false;                                         ///< are the numbers 1, 2, ...?
+  std::array<std::vector<Cell>, 4> cells;                     ///< by dimension
+  std::array<std::map<int, int>, 4> physical_of_entity;       ///< the first one
+  std::array<std::map<int, Tag>, 4> tag_of_physical;          ///< where its name says so
+  std::vector<std::pair<std::uint64_t, double>> collar;       ///< cell number and value
+  bool numbers_are_features = false;
+};
+
+Tag tag_of_physical(const Contents& contents, std::size_t dimension, int physical) {
+  const auto named = contents.tag_of_physical[dimension].find(physical);
+  return named != contents.tag_of_physical[dimension].end() ? named->second : physical;
+}
+
+Tag tag_of_entity(const Contents& contents, std::size_t dimension, int entity) {
+  const auto found = contents.physical_of_entity[dimension].find(entity);
+  return found == contents.physical_of_entity[dimension].end() ? entity
+                                                                : tag_of_physical(contents, dimension, found->second);
+}
+
+template <class Item>
+void sort_by_number(std::vector<Item>& items) {
+  const auto less = [](const Item& a, const Item& b) { return a.number < b.number; };
+  if (!std::is_sorted(items.begin(), items.end(), less)) std::stable_sort(items.begin(), items.end(), less);
+}
+
+template <class Values>
+void sort_nodes(Values& values, Contents& contents) {
+  std::vector<Node>& nodes = contents.nodes;
+  sort_by_number(nodes);
+  const auto twice = std::adjacent_find(nodes.begin(), nodes.end(),
+                                        [](const Node& a, const Node& b) { return a.number == b.number; });
+  if (twice != nodes.end()) values.fail(fmt::format("two nodes have the number {}", twice->number));
+  contents.dense = !nodes.empty() && nodes.front().number == 1 && nodes.back().number == nodes.size();
+}
+
+template <class Values>
+Index read_corner(Values& values, const Contents& contents) {
+  const std::vector<Node>& nodes = contents.nodes;
+  const std::uint64_t number = values.number("a node of an element");
+  if (contents.dense && number - 1 < nodes.size()) return static_cast<Index>(number - 1);
+  const auto found = std::lower_bound(nodes.begin(), nodes.end(), number,
+                                      [](const Node& node, std::uint64_t n) { return node.number < n; });
+  if (found == nodes.end() || found->number != number)
+    values.fail(fmt::format("an element has the node {}, but no node has that number", number));
+  return static_cast<Index>(found - nodes.begin());
+}
+
+/// A tetrahedron has 4 corners, a point, of dimension -1 here, has 1.
+template <class Values>
+void read_corners(Values& values, const Contents& contents, int dimension, Cell& cell) {
+  const std::size_t n = dimension < 0 ? 1 : static_cast<std::size_t>(dimension) + 1;
+  for (std::size_t k = 0; k < n; ++k) cell.corners[k] = read_corner(values, contents);
+}
+
+template <class Values>
+std::size_t read_dimension(Values& values) {
+  const int dimension = values.integer("the dimension of an entity");
+  if (dimension < 0 || dimension > 3) values.fail(fmt::format("the dimension of an entity is {}", dimension));
+  return static_cast<std::size_t>(dimension);
+}
+
+/// The dimension of the cells to be read; -1: points, which are skipped.
+template <class Values>
+int dimension_of_type(Values& values, int type) {
+  switch (type) {
+    case gmsh_line: return 1;
+    case gmsh_triangle: return 2;
+    case gmsh_tet: return 3;
+    case gmsh_point: return -1;
+    default:
+      values.fail(fmt::format("elements of type {} are not supported, only first-order tetrahedra (4), triangles (2) "
+                              "and lines (1)", type));
+  }
+}
+
+void read_physical_names(MshText values, Contents& contents) {
+  const Index n = values.count("the number of physical names", 3);
+  for (Index i = 0; i < n; ++i) {
+    const std::size_t dimension = read_dimension(values);
+    const int physical = values.integer("the number of a physical group");
+    std::string_view name = values.text().rest_of_line();
+    if (name.size() >= 2) name = name.substr(1, name.size() - 2);  // the quotes
+    Tag tag = 0;
+    const std::string_view prefix = physical_name_prefix[dimension];
+    if (name.starts_with(prefix) && parse(name.substr(prefix.size()), tag))
+      contents.tag_of_physical[dimension][physical] = tag;
+  }
+}
+
+template <class Values>
+void read_entities(Values values, Contents& contents) {
+  std::array<Index, 4> counts;
+  for (Index& count : counts) count = values.count("the number of entities", 4);
+  for (std::size_t dimension = 0; dimension < 4; ++dimension)
+    for (Index i = 0; i < counts[dimension]; ++i) {
+      const int number = values.integer("the number of an entity");
+      for (int k = 0; k < (dimension == 0 ? 3 : 6); ++k) values.real("the box of an entity");
+      const Index physicals = values.count("the number of physical groups", 1);
+      for (Index k = 0; k < physicals; ++k)
+        contents.physical_of_entity[dimension].try_emplace(number, std::abs(values.integer("a physical group")));
+      const Index boundary = dimension == 0 ? 0 : values.count("the number of bounding entities", 1);
+      for (Index k = 0; k < boundary; ++k) values.integer("a bounding entity");
+    }
+}
+
+template <class Values>
+void read_nodes(Values values, Contents& contents) {
+  const Index blocks = values.count("the number of blocks", 4);
+  const Index total = values.count("the number of nodes", 4);
+  values.number("the smallest number of a node");
+  values.number("the largest number of a node");
+  contents.nodes.reserve(total);
+  for (Index b = 0; b < blocks; ++b) {
+    const std::size_t dimension = read_dimension(values);
+    const int entity = values.integer("the number of an entity");
+    const int parametric = values.integer("the flag for parametric nodes");
+    const Index n = values.count("the number of nodes of a block", 4);
+    const std::size_t first = contents.nodes.size();
+    for (Index i = 0; i < n; ++i)
+      contents.nodes.push_back({values.number("the number of a node"), {}, static_cast<std::uint8_t>(dimension), entity});
+    for (std::size_t i = first; i < contents.nodes.size(); ++i) {
+      contents.nodes[i].point = values.point("a coordinate of a node");
+      for (std::size_t k = 0; parametric != 0 && k < dimension; ++k) values.real("a parameter of a node");
+    }
+  }
+  if (contents.nodes.size() != total)
+    values.fail(fmt::format("expected {} nodes, found {}", total, contents.nodes.size()));
+  sort_nodes(values, contents);
+}
+
+template <class Values>
+void read_elements(Values values, Contents& contents) {
+  const Index blocks = values.count("the number of blocks", 4);
+  const Index total = values.count("the number of elements", 2);
+  values.number("the smallest number of an element");
+  values.number("the largest number of an element");
+  std::size_t found = 0;
+  for (Index b = 0; b < blocks; ++b) {
+    const std::size_t entity_dimension = read_dimension(values);
+    const int entity = values.integer("the number of an entity");
+    const int dimension = dimension_of_type(values, values.integer("the type of elements"));
+    const Index n = values.count("the number of elements of a block", 2);
+    found += n;
+    const Tag tag = tag_of_entity(contents, entity_dimension, entity);
+    for (Index i = 0; i < n; ++i) {
+      Cell cell{values.number("the number of an element"), {}, entity, tag};
+      read_corners(values, contents, dimension, cell);
+      if (dimension > 0) contents.cells[static_cast<std::size_t>(dimension)].push_back(cell);
+    }
+  }
+  if (found != total) values.fail(fmt::format("expected {} elements, found {}", total, found));
+}
+
+void read_nodes_2(MshText values, Contents& contents) {
+  const Index n = values.count("the number of nodes", 4);
+  contents.nodes.reserve(n);
+  for (Index i = 0; i < n; ++i) {
+    Node node;
+    node.number = values.number("the number of a node");
+    node.point = values.point("a coordinate of a node");
+    contents.nodes.push_back(node);
+  }
+  sort_nodes(values, contents);
+}
+
+void read_elements_2(MshText values, Contents& contents) {
+  const Index n = values.count("the number of elements", 4);
+  for (Index i = 0; i < n; ++i) {
+    Cell cell;
+    cell.number = values.number("the number of an element");
+    const int dimension = dimension_of_type(values, values.integer("the type of an element"));
+    const Index tags = values.count("the number of tags", 1);
+    int physical = 0;
+    for (Index k = 0; k < tags; ++k) {
+      const int tag = values.integer("a tag of an element");
+      if (k == 0) physical = std::abs(tag);
+      if (k == 1) cell.entity = tag;
+    }
+    read_corners(values, contents, dimension, cell);
+    if (dimension < 0) continue;
+    const auto d = static_cast<std::size_t>(dimension);
+    cell.tag = physical != 0 ? tag_of_physical(contents, d, physical) : cell.entity;
+    contents.cells[d].push_back(cell);
+  }
+}
+
+/// $ElementData in the text part of its head; its values follow as text too.
+void read_collar(MshText values, Contents& contents) {
+  const Index strings = values.count("the number of texts", 1);
+  if (strings == 0) return;
+  values.text().skip_line();
+  if (values.text().rest_of_line() != "\"collar\"") return;
+  for (Index i = 1; i < strings; ++i) values.text().rest_of_line();
+  const Index reals = values.count("the number of reals", 1);
+  for (Index i = 0; i < reals; ++i) values.real("a real");
+  const Index integers = values.count("the number of integers", 1);
+  std::array<int, 3> head{0, 1, 0};
+  for (Index i = 0; i < integers; ++i) {
+    const int value = values.integer("an integer");
+    if (i < head.size()) head[i] = value;
+  }
+  if (head[1] != 1) values.fail(fmt::format("collar has {} components, but has to have 1", head[1]));
+  for (int i = 0; i < head[2]; ++i) {
+    const std::uint64_t number = values.number("the number of an element");
+    contents.collar.emplace_back(number, values.real("a value of collar"));
+  }
+}
+
+struct Format {
+  double version = 0;
+  bool binary = false;
+  std::endian order = std::endian::little;
+};
+
+Format read_format(const std::string& path, const MshSection& section) {
+  MshText values(path, section);
+  if (section.name != "MeshFormat") values.fail("expected $MeshFormat first");
+  Format format;
+  format.version = values.real("the version");
+  format.binary = values.integer("0 for text or 1 for binary") != 0;
+  const int size = values.integer("the size of numbers");
+  const bool old = format.version >= 2 && format.version < 3 && !format.binary;
+  if (format.version != 4.1 && !old)
+    values.fail(fmt::format("version {}{} is not supported, only 4.1 and 2 as text; let Gmsh convert it",
+                            format.version, format.binary ? " (binary)" : ""));
+  if (size != 8) values.fail(fmt::format("numbers of {} bytes are not supported, only of 8", size));
+  if (!format.binary) return format;
+  const std::size_t one = std::min(section.body.find('\n') + 1, section.body.size());
+  if (ByteReader(path, section.body.substr(one), format.order, section.first_byte + one).get<std::int32_t>("the number 1") != 1)
+    format.order = std::endian::big;
+  return format;
+}
+
+/// Calls `read` with the values of a section as text or bytes.
+template <class Read>
+void with_values(const std::string& path, const MshSection& section, const Format& format, Read read) {
+  if (format.binary) read(MshBinary(path, section, format.order));
+  else read(MshText(path, section));
+}
+
+void read_section(const std::string& path, const MshSection& section, const Format& format, Contents& contents) {
+  const bool old = format.version < 4;
+  if (section.name == "PhysicalNames")
+    read_physical_names(MshText(path, section), contents);
+  else if (section.name == "Comments")
+    contents.numbers_are_features = section.body.find(msh_numbers_are_features) != std::string_view::npos;
+  else if (section.name == "Entities" && !old)
+    with_values(path, section, format, [&](auto values) { read_entities(values, contents); });
+  else if (section.name == "Nodes" && old)
+    read_nodes_2(MshText(path, section), contents);
+  else if (section.name == "Nodes")
+    with_values(path, section, format, [&](auto values) { read_nodes(values, contents); });
+  else if (section.name == "Elements" && old)
+    read_elements_2(MshText(path, section), contents);
+  else if (section.name == "Elements")
+    with_values(path, section, format, [&](auto values) { read_elements(values, contents); });
+  else if (section.name == "ElementData" && !format.binary)
+    read_collar(MshText(path, section), contents);
+}
+
+template <std::size_t corners>
+void add_cells(const std::vector<Cell>& cells, std::vector<std::array<Index, corners>>& to, std::vector<Tag>& tags) {
+  to.reserve(cells.size());
+  tags.reserve(cells.size());
+  for (const Cell& cell : cells) {
+    std::copy_n(cell.corners.begin(), corners, to.emplace_back().begin());
+    tags.push_back(cell.tag);
+  }
+}
+
+Index feature_of(int entity) { return static_cast<Index>(entity - 1); }
+
+void add_features(const Contents& contents, TetMesh& mesh) {
+  for (const Cell& cell : contents.cells[3]) mesh.tet_region.push_back(static_cast<Index>(cell.entity));
+  for (const Cell& cell : contents.cells[2]) mesh.face_patch.push_back(feature_of(cell.entity));
+  for (const Cell& cell : contents.cells[1]) mesh.edge_curve.push_back(feature_of(cell.entity));
+  for (const Node& node : contents.nodes)
+    mesh.features.push_back({node.dimension, node.dimension == 3 ? none : feature_of(node.entity)});
+}
+
+void add_collar(Contents& contents, TetMesh& mesh) {
+  auto& values = contents.collar;
+  if (values.empty()) return;
+  if (!std::is_sorted(values.begin(), values.end())) std::sort(values.begin(), values.end());
+  for (const Cell& cell : contents.cells[3]) {
+    const auto found = std::lower_bound(values.begin(), values.end(), std::pair(cell.number, -1.0));
+    const bool given = found != values.end() && found->first == cell.number;
+    mesh.tet_collar.push_back(given ? static_cast<std::uint8_t>(std::clamp(found->second, 0.0, 2.0)) : 0);
+  }
+}
+
+/// Nodes and cells come in the order of their numbers.
+TetMesh make_mesh(Contents& contents) {
+  TetMesh mesh;
+  for (const Node& node : contents.nodes) mesh.points.push_back(node.point);
+  for (std::vector<Cell>& cells : contents.cells) sort_by_number(cells);
+  add_cells(contents.cells[3], mesh.tets, mesh.tet_tag);
+  add_cells(contents.cells[2], mesh.faces, mesh.face_tag);
+  add_cells(contents.cells[1], mesh.edges, mesh.edge_tag);
+  if (contents.numbers_are_features) add_features(contents, mesh);
+  add_collar(contents, mesh);
+  complete_mesh(mesh);
+  return mesh;
+}
+
+}  // namespace
+
+TetMesh read_msh(const std::string& path) {
+  const std::string text = read_bytes(path);
+  const std::vector<MshSection> sections = split_msh(path, text);
+  if (sections.empty()) TextScanner(path, text).fail("expected $MeshFormat, found the end of the file");
+  const Format format = read_format(path, sections.front());
+  Contents contents;
+  for (const MshSection& section : sections) read_section(path, section, format, contents);
+  if (contents.cells[3].empty())
+    throw ReadError(fmt::format("{}: line {}: expected tetrahedra, found none", path, sections.back().first_line));
+  return make_mesh(contents);
+}
+
+}  // namespace collarmesh::io

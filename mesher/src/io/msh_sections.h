@@ -1,0 +1,72 @@
+#pragma once
+
+#include <bit>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "collarmesh/geometry.h"
+#include "io/byte_reader.h"
+#include "io/text_scanner.h"
+
+namespace collarmesh::io {
+
+/// The part of a .msh file between $NAME and $EndNAME.
+struct MshSection {
+  std::string_view name, body;
+  std::size_t first_line = 1;  ///< of the body
+  std::size_t first_byte = 0;
+};
+
+/// Cost: linear. Throws ReadError if a section has no end.
+std::vector<MshSection> split_msh(const std::string& path, std::string_view text);
+
+/// The values of a section of a text file.
+class MshText {
+ public:
+  MshText(const std::string& path, const MshSection& section) : scan_(path, section.body, 0, section.first_line) {}
+
+  int integer(std::string_view what) {
+    const std::int64_t value = scan_.integer(what);
+    if (value < -0x80000000LL || value > 0x7fffffffLL) scan_.fail(fmt::format("{}, {}, is too large", what, value));
+    return static_cast<int>(value);
+  }
+  std::uint64_t number(std::string_view what) {
+    const std::int64_t value = scan_.integer(what);
+    if (value < 0) scan_.fail(fmt::format("{}, {}, is negative", what, value));
+    return static_cast<std::uint64_t>(value);
+  }
+  /// A count of things of at least so many numbers each; more than the section can hold is an error.
+  Index count(std::string_view what, std::size_t numbers) { return scan_.count(what, 2 * numbers); }
+  double real(std::string_view what) { return scan_.number(what); }
+  Point point(std::string_view what) { return scan_.point(what); }
+  [[noreturn]] void fail(const std::string& message) const { scan_.fail(message); }
+  TextScanner& text() { return scan_; }
+
+ private:
+  TextScanner scan_;
+};
+
+/// The values of a section of a binary file.
+class MshBinary {
+ public:
+  MshBinary(const std::string& path, const MshSection& section, std::endian order)
+      : bytes_(path, section.body, order, section.first_byte) {}
+
+  int integer(std::string_view what) { return bytes_.get<std::int32_t>(what); }
+  std::uint64_t number(std::string_view what) { return bytes_.get<std::uint64_t>(what); }
+  Index count(std::string_view what, std::size_t numbers) {
+    const std::uint64_t value = number(what);
+    if (value > bytes_.left() / (4 * numbers) || value >= none)
+      fail(fmt::format("{} is {}, but only {} bytes follow; the file is cut off or wrong", what, value, bytes_.left()));
+    return static_cast<Index>(value);
+  }
+  double real(std::string_view what) { return bytes_.get<double>(what); }
+  Point point(std::string_view what);
+  [[noreturn]] void fail(const std::string& message) const { bytes_.fail(message); }
+
+ private:
+  ByteReader bytes_;
+};
+
+}  // namespace collarmesh::io

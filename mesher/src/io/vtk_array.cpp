@@ -1,0 +1,201 @@
+#include "io/vtk_array.h"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <optional>
+
+#include "io/base64.h"
+
+namespace collarmesh::io {
+
+namespace {
+
+/// zlib never packs better than 1 to 1032.
+constexpr std::uint64_t largest_ratio = 1032;
+
+struct TypeName {
+  std::string_view name;
+  VtkType type;
+  std::size_t size;
+};
+constexpr std::array<TypeName, 10> types{{{"Int8", VtkType::i8, 1},
+                                          {"UInt8", VtkType::u8, 1},
+                                          {"Int16", VtkType::i16, 2},
+                                          {"UInt16", VtkType::u16, 2},
+                                          {"Int32", VtkType::i32, 4},
+                                          {"UInt32", VtkType::u32, 4},
+                                          {"Int64", VtkType::i64, 8},
+                                          {"UInt64", VtkType::u64, 8},
+                                          {"Float32", VtkType::f32, 4},
+                                          {"Float64", VtkType::f64, 8}}};
+
+template <class T>
+T value_at(std::string_view bytes, std::size_t at, std::endian order) {
+  std::array<char, sizeof(T)> raw;
+  std::memcpy(raw.data(), bytes.data() + at, sizeof(T));
+  if (order != std::endian::native) std::reverse(raw.begin(), raw.end());
+  return std::bit_cast<T>(raw);
+}
+
+/// Takes bytes off the front of what is stored.
+class Stored {
+ public:
+  Stored(std::string_view text, bool base64) : text_(text), base64_(base64) {}
+
+  /// How many bytes are left at most.
+  std::size_t left() const { return base64_ ? text_.size() / 4 * 3 : text_.size(); }
+
+  /// In base64 a run of bytes ends with its own padding.
+  std::string take(std::uint64_t count) {
+    std::string bytes = peek(count);
+    text_.remove_prefix(base64_ ? base64_size(count) : count);
+    return bytes;
+  }
+
+  std::string peek(std::uint64_t count) const {
+    const std::uint64_t size = base64_ && count <= left() ? base64_size(count) : count;
+    if (count > left() + 2 || size > text_.size())
+      throw VtkArrayError{fmt::format("expected {} bytes of values, found {}", count, left())};
+    if (!base64_) return std::string(text_.substr(0, size));
+    std::optional<std::string> bytes = base64_decode(text_.substr(0, size));
+    if (!bytes) throw VtkArrayError{"the values are no base64"};
+    bytes->resize(std::min<std::size_t>(bytes->size(), count));
+    return *std::move(bytes);
+  }
+
+  /// Is the run of so many bytes padded, so that it ends there?
+  bool ends_after(std::size_t count) const {
+    return base64_ && base64_size(count) <= text_.size() && text_[base64_size(count) - 1] == '=';
+  }
+
+ private:
+  std::string_view text_;
+  bool base64_;
+};
+
+std::uint64_t header_number(std::string_view header, std::size_t i, const VtkStorage& storage) {
+  return storage.header_bytes == 8 ? value_at<std::uint64_t>(header, 8 * i, storage.order)
+                                   : value_at<std::uint32_t>(header, 4 * i, storage.order);
+}
+
+/// A number of bytes, then the bytes; some writers encode the number by itself.
+std::string decode_plain(Stored& stored, const VtkStorage& storage) {
+  const std::string header = stored.peek(storage.header_bytes);
+  if (header.size() < storage.header_bytes) throw VtkArrayError{"expected the size of the values, found too few bytes"};
+  const std::uint64_t size = header_number(header, 0, storage);
+  if (size > stored.left()) throw VtkArrayError{fmt::format("expected {} bytes of values, found {}", size, stored.left())};
+  if (stored.ends_after(storage.header_bytes)) {
+    stored.take(storage.header_bytes);
+    return stored.take(size);
+  }
+  return stored.take(storage.header_bytes + size).substr(storage.header_bytes);
+}
+
+void inflate_block(std::string_view packed, std::uint64_t size, std::string& bytes) {
+  if (size / largest_ratio > packed.size())
+    throw VtkArrayError{fmt::format("a block of {} compressed bytes cannot hold {}", packed.size(), size)};
+  const std::size_t before = bytes.size();
+  bytes.resize(before + size);
+  uLongf got = size;
+  const int status = uncompress(reinterpret_cast<Bytef*>(bytes.data() + before), &got,
+                                reinterpret_cast<const Bytef*>(packed.data()), packed.size());
+  if (status != Z_OK || got != size) throw VtkArrayError{"a compressed block is damaged"};
+}
+
+/// The number of blocks, their size, the size of the last one if it is smaller, the compressed
+/// sizes; then the blocks.
+std::string decode_compressed(Stored& stored, const VtkStorage& storage) {
+  const std::string first = stored.peek(storage.header_bytes);
+  if (first.size() < storage.header_bytes) throw VtkArrayError{"expected the number of blocks, found too few bytes"};
+  const std::uint64_t blocks = header_number(first, 0, storage);
+  if (blocks == 0) return {};
+  if (blocks > stored.left() / storage.header_bytes)
+    throw VtkArrayError{fmt::format("expected {} blocks, found {} bytes", blocks, stored.left())};
+  const std::string header = stored.take((3 + blocks) * storage.header_bytes);
+  const std::uint64_t block_size = header_number(header, 1, storage), last_size = header_number(header, 2, storage);
+  std::uint64_t packed_size = 0;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const std::uint64_t size = header_number(header, 3 + b, storage);
+    if (size > stored.left() - packed_size)
+      throw VtkArrayError{fmt::format("block {} has {} bytes, but only {} are there", b, size, stored.left() - packed_size)};
+    packed_size += size;
+  }
+  const std::string packed = stored.take(packed_size);
+  std::string bytes;
+  std::size_t at = 0;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const std::uint64_t size = header_number(header, 3 + b, storage);
+    inflate_block(std::string_view(packed).substr(at, size), b + 1 == blocks && last_size != 0 ? last_size : block_size, bytes);
+    at += size;
+  }
+  return bytes;
+}
+
+template <class From, class To>
+std::vector<To> convert(std::string_view bytes, std::endian order) {
+  std::vector<To> values;
+  values.reserve(bytes.size() / sizeof(From));
+  for (std::size_t at = 0; at + sizeof(From) <= bytes.size(); at += sizeof(From))
+    values.push_back(static_cast<To>(value_at<From>(bytes, at, order)));
+  return values;
+}
+
+/// Real numbers that no integer can hold become -1, which no index or count is.
+template <class From>
+std::vector<std::int64_t> convert_to_integers(std::string_view bytes, std::endian order) {
+  std::vector<std::int64_t> values;
+  for (const From value : convert<From, From>(bytes, order))
+    values.push_back(value > From{-9e18} && value < From{9e18} ? static_cast<std::int64_t>(value) : -1);
+  return values;
+}
+
+}  // namespace
+
+VtkType vtk_type(std::string_view name) {
+  for (const TypeName& known : types)
+    if (known.name == name) return known.type;
+  return VtkType::unknown;
+}
+
+std::size_t vtk_size(VtkType type) {
+  for (const TypeName& known : types)
+    if (known.type == type) return known.size;
+  return 0;
+}
+
+std::string decode_vtk_array(std::string_view text, bool base64, const VtkStorage& storage) {
+  Stored stored(text, base64);
+  return storage.compressed ? decode_compressed(stored, storage) : decode_plain(stored, storage);
+}
+
+template <class To>
+std::vector<To> convert_vtk_values(std::string_view bytes, VtkType type, std::endian order) {
+  constexpr bool to_integers = std::is_integral_v<To>;
+  switch (type) {
+    case VtkType::i8: return convert<std::int8_t, To>(bytes, order);
+    case VtkType::u8: return convert<std::uint8_t, To>(bytes, order);
+    case VtkType::i16: return convert<std::int16_t, To>(bytes, order);
+    case VtkType::u16: return convert<std::uint16_t, To>(bytes, order);
+    case VtkType::i32: return convert<std::int32_t, To>(bytes, order);
+    case VtkType::u32: return convert<std::uint32_t, To>(bytes, order);
+    case VtkType::i64: return convert<std::int64_t, To>(bytes, order);
+    case VtkType::u64: return convert<std::uint64_t, To>(bytes, order);
+    case VtkType::f32:
+      if constexpr (to_integers) return convert_to_integers<float>(bytes, order);
+      else return convert<float, To>(bytes, order);
+    case VtkType::f64:
+      if constexpr (to_integers) return convert_to_integers<double>(bytes, order);
+      else return convert<double, To>(bytes, order);
+    case VtkType::unknown: break;
+  }
+  return {};
+}
+
+template std::vector<double> convert_vtk_values(std::string_view, VtkType, std::endian);
+template std::vector<std::int64_t> convert_vtk_values(std::string_view, VtkType, std::endian);
+
+}  // namespace collarmesh::io

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Values of VTK's XML formats as they are stored outside the XML: blocks of bytes, raw or base64,
+/// compressed or not.
+namespace collarmesh::io {
+
+enum class VtkType { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64, unknown };
+
+VtkType vtk_type(std::string_view name);
+std::size_t vtk_size(VtkType type);
+
+/// How the whole file stores arrays.
+struct VtkStorage {
+  std::endian order = std::endian::little;
+  std::size_t header_bytes = 4;  ///< of the numbers that describe blocks
+  bool compressed = false;
+};
+
+/// What is wrong with stored values: for the caller to add the file and the place.
+struct VtkArrayError {
+  std::string message;
+};
+
+/// The bytes of an array that begins where `stored` begins. Throws VtkArrayError.
+/// Allocates no more than the stored bytes can hold.
+std::string decode_vtk_array(std::string_view stored, bool base64, const VtkStorage& storage);
+
+/// Numbers of any type as doubles or 64-bit integers.
+template <class To>
+std::vector<To> convert_vtk_values(std::string_view bytes, VtkType type, std::endian order);
+
+}  // namespace collarmesh::io
