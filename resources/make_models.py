@@ -143,19 +143,18 @@ def add_plate(surface, outline, holes, place, thickness, open_edges=()):
         surface.wall([place(*p, 0) for p in backwards], [place(*p, thickness) for p in backwards])
 
 
-def rounded_leg(length, width, radius):
-    """Outline of a leg: straight at u = 0 (its last edge), corners rounded at u = length."""
-    quarter = SEGMENTS // 4
-    return ([(0, 0)] + arc((length - radius, radius), radius, -90, 0, quarter)
-            + arc((length - radius, width - radius), radius, 0, 90, quarter) + [(0, width)])
+def chamfered_leg(length, width, chamfer):
+    """Outline of a leg: straight at u = 0 (its last edge), corners cut at u = length."""
+    return [(0, 0), (length - chamfer, 0), (length, chamfer), (length, width - chamfer),
+            (length - chamfer, width), (0, width)]
 
 
 def bracket():
     """A bent bracket of 80 x 50 x 60 with two bolt holes in each leg; bend radii 8 and 18."""
     surface, width, thickness, inner, hole = Surface(), 50, 10, 8, 5.5
     outer = inner + thickness
-    base = rounded_leg(80 - outer, width, 10)
-    upright = rounded_leg(60 - outer, width, 10)
+    base = chamfered_leg(80 - outer, width, 10)
+    upright = chamfered_leg(60 - outer, width, 10)
     # The upright's (u, v, w) is (z, y, x) mirrored in y, so that it stays right-handed.
     add_plate(surface, base, [circle((38, 13), hole), circle((38, 37), hole)],
               lambda u, v, w: (outer + u, v, w), thickness, open_edges={len(base) - 1})

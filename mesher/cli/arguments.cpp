@@ -32,6 +32,22 @@ CLI::Validator number_in(double low, double high, const std::string& name) {
       "");
 }
 
+/// CLI11 reads "-5" into an unsigned number without complaint.
+const CLI::Validator count = CLI::Validator(
+    [](std::string& text) {
+      std::uint64_t number = 0;
+      return parse_whole(text, number) ? std::string() : fmt::format("'{}' is not a whole number >= 0", text);
+    },
+    "");
+
+/// "4G" to bytes.
+const CLI::Validator memory = CLI::Validator(
+    [](std::string& text) {
+      return text.empty() || text[0] == '-' ? fmt::format("'{}' is not a size such as 4G", text)
+                                            : CLI::AsSizeValue(false)(text);
+    },
+    "");
+
 const CLI::Validator length = number_in(0, 1e300, "a length (a number >= 0 in input units)");
 const CLI::Validator fraction = number_in(0, 0.1, "a number from 0 to 0.1 (relative to the diagonal)");
 const CLI::Validator angle = number_in(0, 180, "an angle from 0 to 180 degrees");
@@ -110,15 +126,17 @@ void add_quality_options(CLI::App& app, MeshOptions& m) {
       ->check(length)
       ->group(group);
   add(app, "--seed", m.seed, "Of the pseudo-random offsets: same input, options and seed, same mesh")
+      ->check(count)
       ->group(group);
 }
 
 void add_budget_options(CLI::App& app, MeshOptions& m) {
   const std::string group = "Budgets (hitting one is exit code 5)";
   add(app, "--max-vertices", m.max_vertices, "Vertices of the triangulation, outside included", "none")
+      ->check(count)
       ->group(group);
   add(app, "--max-memory", m.max_memory, "Bytes of the mesh structures; K, M and G are understood", "none")
-      ->transform(CLI::AsSizeValue(false))
+      ->transform(memory)
       ->group(group)
       ->type_name("BYTES");
   add(app, "--time-limit", m.time_limit, "Seconds", "none")->check(length)->group(group);
@@ -143,7 +161,7 @@ void add_mesh_options(CLI::App& app, MeshArguments& a) {
       ->type_name("STYLE")
       ->option_text("{auto,json,none}=auto");
   app.add_flag("-v,--verbose", a.verbose, "Say more: time per stage, statistics");
-  app.add_flag("-q,--quiet", a.quiet, "Say nothing unless something is wrong")->excludes("--verbose");
+  app.add_flag("-q,--quiet", a.quiet, "Say nothing unless something is wrong");
 }
 
 CLI::App* add_check_command(CLI::App& app, CheckArguments& a) {
@@ -155,7 +173,8 @@ CLI::App* add_check_command(CLI::App& app, CheckArguments& a) {
   add(*check, "--distance", a.check.distance,
       "Largest distance from smooth surfaces and curves, absolute, input units", "1e-3 of the diagonal")
       ->check(length);
-  add(*check, "--findings", a.check.findings_per_guarantee, "List at most this many per guarantee");
+  add(*check, "--findings", a.check.findings_per_guarantee, "List at most this many per guarantee")
+      ->check(count);
   add_complex_options(*check, a.complex);
   check->add_flag("--json", a.json, "Print JSON");
   return check;
@@ -183,6 +202,7 @@ void check_mesh_arguments(const MeshArguments& a) {
   if (!io::is_tet_mesh_format(a.output))
     throw CLI::ValidationError(
         "--output", fmt::format("'{}' {}; use .vtu, .msh or .mesh", a.output, extension_list(a.output)));
+  if (a.verbose && a.quiet) throw CLI::ValidationError("--quiet", "contradicts --verbose; use one of them");
   if (!a.report.empty() && std::filesystem::path(a.report) == std::filesystem::path(a.output))
     throw CLI::ValidationError("--report", "names the same file as --output; choose another");
   if (a.mesh.size > 0 && a.mesh.size_min > a.mesh.size)

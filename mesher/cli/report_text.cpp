@@ -68,7 +68,7 @@ std::string complex_text(const Plc& plc, const PlcSummary& s) {
 
 std::string mesh_text(const TetMesh& mesh, const MeshMeasures& m) {
   std::string text;
-  fmt::format_to(Out(text), "mesh: {} tets, {} points, {} boundary and interface triangles, {} curve edges\n",
+  fmt::format_to(Out(text), "{} tets, {} points, {} boundary and interface triangles, {} curve edges\n",
                  mesh.tets.size(), mesh.points.size(), mesh.faces.size(), mesh.edges.size());
   fmt::format_to(Out(text), "  {}\n", shape_text(m.min_dihedral, m.max_dihedral, m.max_radius_edge));
   std::size_t line = 0;

@@ -1,0 +1,119 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "arguments.h"
+#include "collarmesh/error.h"
+#include "input_files.h"
+#include "mesh_measures.h"
+#include "progress_display.h"
+#include "staged_file.h"
+
+namespace collarmesh::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FolderTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "collarmesh-XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    folder = name;
+  }
+  void TearDown() override { fs::remove_all(folder); }
+  std::size_t entries() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+  }
+  static void write(const std::string& path, const std::string& text) { std::ofstream(path) << text; }
+
+  fs::path folder;
+};
+
+using StagedFileTest = FolderTest;
+using SimilarFileTest = FolderTest;
+
+TEST(TagValue, Parsed) {
+  EXPECT_EQ(parse_tag_value("7=0.25"), (std::pair<Tag, double>(7, 0.25)));
+  EXPECT_EQ(parse_tag_value("-3=1e-3"), (std::pair<Tag, double>(-3, 1e-3)));
+}
+
+TEST(TagValue, MistakesSayWhatIsExpected) {
+  for (const char* text :
+       {"", "7", "=1", "7=", "7=0", "7=-1", "7=nan", "7=inf", "a=1", "7=1x", "1.5=2", "7 =1"})
+    EXPECT_THROW(parse_tag_value(text), std::invalid_argument) << text;
+}
+
+TEST(ProgressLine, TellsPhasePercentAndTimeLeft) {
+  const std::string line = progress_line("refine", 0.5, 1234567, 3, 200);
+  EXPECT_NE(line.find("[############............]  50%  refine"), std::string::npos) << line;
+  EXPECT_NE(line.find("1.2M tets"), std::string::npos);
+  EXPECT_NE(line.find("3 s left"), std::string::npos);
+}
+
+TEST(ProgressLine, FitsTheTerminal) { EXPECT_EQ(progress_line("refine", 1, 10, 3, 20).size(), 20U); }
+
+TEST_F(StagedFileTest, AppearsOnCommitOnly) {
+  const fs::path target = folder / "a.txt";
+  {
+    StagedFile file(target);
+    file.write([](const std::string& path) { write(path, "text"); });
+    EXPECT_FALSE(fs::exists(target));
+    StagedFile::commit({&file, nullptr});
+    EXPECT_TRUE(fs::exists(target));
+  }
+  EXPECT_EQ(entries(), 1U);
+}
+
+TEST_F(StagedFileTest, DisappearsWithoutCommit) {
+  {
+    StagedFile file(folder / "a.txt");
+    file.write([](const std::string& path) { write(path, "text"); });
+  }
+  EXPECT_EQ(entries(), 0U);
+}
+
+TEST_F(StagedFileTest, ErrorsNameTheTarget) {
+  StagedFile file(folder / "a.txt");
+  try {
+    file.write([](const std::string& path) { throw WriteError(path + ": disk full"); });
+    FAIL();
+  } catch (const WriteError& error) {
+    EXPECT_EQ(error.what(), (folder / "a.txt").string() + ": disk full");
+  }
+}
+
+TEST_F(StagedFileTest, MissingFolderIsAnError) {
+  EXPECT_THROW(require_writable(folder / "no" / "a.txt"), WriteError);
+  EXPECT_THROW(require_writable(folder), WriteError);
+  EXPECT_NO_THROW(require_writable(folder / "a.txt"));
+}
+
+TEST_F(SimilarFileTest, FindsTypos) {
+  write(folder / "bracket.off", "");
+  write(folder / "box.off", "");
+  EXPECT_EQ(similar_file(folder / "bracet.off"), folder / "bracket.off");
+  EXPECT_EQ(similar_file(folder / "BOX.OFF"), folder / "box.off");
+  EXPECT_EQ(similar_file(folder / "quite_different.stl"), "");
+  EXPECT_EQ(similar_file(folder / "no" / "box.off"), "");
+}
+
+TEST(MeshMeasures, OfOneTet) {
+  TetMesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.tets = {{0, 1, 2, 3}};
+  mesh.tet_region = {1};
+  const MeshMeasures m = measure_mesh(mesh);
+  EXPECT_NEAR(m.region_volumes.at(1), 1. / 6, 1e-15);
+  EXPECT_NEAR(m.max_dihedral, 90, 1e-9);
+  EXPECT_NEAR(m.min_dihedral, 54.7356, 1e-4);
+  EXPECT_NEAR(m.max_radius_edge, std::sqrt(3) / 2, 1e-12);
+  EXPECT_EQ(m.min_dihedrals[5], 1U);
+  EXPECT_EQ(m.radius_edges[3], 1U);
+  EXPECT_NEAR(median_edge(mesh), std::sqrt(2), 1e-12);
+}
+
+}  // namespace
+}  // namespace collarmesh::cli

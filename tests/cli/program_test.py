@@ -1,0 +1,385 @@
+"""The program as its users meet it: exit codes, messages, files, signals.
+
+Run by ctest with COLLARMESH_PROGRAM set; each class is one ctest.
+"""
+
+import json
+import math
+import os
+import pathlib
+import pty
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+PROGRAM = os.environ["COLLARMESH_PROGRAM"]
+SOURCES = pathlib.Path(__file__).resolve().parents[2]
+MODELS = SOURCES / "resources" / "models"
+COORDINATES = re.compile(r"\(?-?\d[\d.e+-]*, ?-?\d[\d.e+-]*, ?-?\d[\d.e+-]*\)?")
+
+BOX_FACES = [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
+
+
+def box_points(low=(0, 0, 0), high=(1, 1, 1)):
+    return [(x, y, z) for z in (low[2], high[2])
+            for x, y in ((low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1]))]
+
+
+def off_text(points, faces):
+    lines = ["OFF", f"{len(points)} {len(faces)} 0"]
+    lines += [" ".join(map(str, p)) for p in points]
+    lines += [" ".join(map(str, (len(f), *f))) for f in faces]
+    return "\n".join(lines) + "\n"
+
+
+def wedge_text(degrees):
+    """A prism whose cross-section has this angle at the edge from (0, 0, 0) to (0, 0, 1)."""
+    t = math.radians(degrees)
+    corners = [(0, 0), (1, 0), (math.cos(t), math.sin(t))]
+    points = [(x, y, z) for z in (0, 1) for x, y in corners]
+    return off_text(points, [(0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)])
+
+
+class ProgramTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="collarmesh-test-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        self.box = self.write("box.off", off_text(box_points(), BOX_FACES))
+        self.out = self.folder / "out.vtu"
+
+    def write(self, name, text):
+        path = self.folder / name
+        path.write_text(text)
+        return path
+
+    def run_program(self, *arguments, timeout=120):
+        return subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, timeout=timeout,
+                              capture_output=True, text=True)
+
+    def expect(self, code, *arguments, says=(), writes=False):
+        """Run; check the exit code, what the messages say and whether the mesh is there."""
+        run = self.run_program(*arguments)
+        self.assertEqual(run.returncode, code, run.stderr + run.stdout)
+        for text in says:
+            self.assertRegex(run.stderr + run.stdout, text)
+        self.assertEqual(self.out.exists(), writes)
+        self.assert_nothing_left()
+        return run
+
+    def assert_nothing_left(self):
+        left = [p.name for p in self.folder.iterdir() if p.name.startswith(".") or "tmp" in p.name]
+        self.assertEqual(left, [], "temporary files were left")
+
+
+class Usage(ProgramTest):
+    def test_help_tells_defaults_and_codes(self):
+        run = self.expect(0, "--help")
+        for text in ("1/20 of the diagonal", "1e-3 of the diagonal", "70.53", "--theta", "Exit codes", "check", "info"):
+            self.assertIn(text, run.stdout)
+        for command in ("check", "info"):
+            self.assertIn("--feature-angle", self.expect(0, command, "--help").stdout)
+
+    def test_version(self):
+        self.assertRegex(self.expect(0, "--version").stdout, r"collarmesh \d+\.\d+\.\d+")
+
+    def test_mistakes(self):
+        for arguments in ((), (self.box,), ("-o", self.out), (self.box, "-o", self.out, "--sise", "1"),
+                          (self.box, "-o", self.out, "--size", "nan"), (self.box, "-o", self.out, "--size", "-1"),
+                          (self.box, "-o", self.out, "--size", "small"), (self.box, "-o", self.out, "--radius-edge", "0.5"),
+                          (self.box, "-o", self.out, "--region-size", "1"), (self.box, "-o", self.out, "--theta", "0.7"),
+                          (self.box, "-o", self.out, "-v", "-q"), (self.box, "-o", self.out, "--progress", "loud"),
+                          (self.box, "-o", self.out, "--max-memory", "much"), ("check", self.out), ("info",),
+                          (self.box, "-o", self.out, "--max-vertices", "-5")):
+            with self.subTest(arguments=arguments):
+                self.assertNotEqual(self.expect(2, *arguments).stderr, "")
+
+    def test_contradictions(self):
+        self.expect(2, self.box, "-o", self.out, "--size", "0.1", "--size-min", "0.2", says=["size-min"])
+        self.expect(2, self.box, "-o", self.out, "--vertex-ratio", "2", says=["vertex-ratio"])
+        self.expect(2, self.box, "-o", self.out, "--report", self.out, says=["report"])
+
+    def test_unknown_output_format_is_told_before_reading(self):
+        self.expect(2, "no_such_file.off", "-o", "mesh.xyz", says=["xyz", r"\.vtu"])
+
+    def test_unknown_tag_is_told_with_the_known_ones(self):
+        self.expect(2, MODELS / "two_boxes.poly", "-o", self.out, "--region-size", "9=0.1", says=["9", "1, 2"])
+
+    def test_sizes_are_repeatable_and_leave_the_inputs_alone(self):
+        self.expect(0, "--size", "0.5", "--region-size", "1=0.4", "--region-size", "2=0.3", MODELS / "two_boxes.poly",
+                    "-o", self.out, "--max-memory", "1G", writes=True)
+
+
+class Unreadable(ProgramTest):
+    def test_typo_proposes_the_similar_name(self):
+        self.expect(3, "bax.off", "-o", self.out, says=[r"bax\.off", r"did you mean box\.off"])
+
+    def test_missing(self):
+        self.expect(3, "nothing_like_it.stl", "-o", self.out, says=["no such file"])
+        self.expect(3, self.folder / "no" / "box.off", "-o", self.out, says=["no such file"])
+        self.expect(3, "info", "nothing_like_it.stl", says=["no such file"])
+        self.expect(3, "check", "nothing_like_it.vtu", "--against", self.box, says=["no such file"])
+
+    def test_folder(self):
+        self.expect(3, self.folder, "-o", self.out, says=["folder"])
+
+    def test_unknown_format(self):
+        self.expect(3, self.write("part.xyz", "1 2 3"), "-o", self.out, says=[r"\.xyz", r"\.off"])
+
+    def test_truncated(self):
+        text = self.box.read_text()
+        self.expect(3, self.write("half.off", text[:len(text) // 2]), "-o", self.out, says=[r"half\.off", r"\d"])
+
+    def test_garbage_mesh(self):
+        for name in ("bad.vtu", "bad.msh", "bad.mesh"):
+            with self.subTest(name=name):
+                self.expect(3, "check", self.write(name, "not a mesh"), "--against", self.box, says=[name])
+
+
+class InvalidComplex(ProgramTest):
+    def test_open_surface(self):
+        self.expect(4, self.write("open.off", off_text(box_points(), BOX_FACES[1:])), "-o", self.out, says=[COORDINATES])
+
+    def test_intersection(self):
+        other = self.write("other.off", off_text(box_points((0.5, 0.5, 0.5), (2, 2, 2)), BOX_FACES))
+        self.expect(4, self.box, other, "-o", self.out, says=[COORDINATES])
+
+    def test_empty(self):
+        self.assertIn(self.run_program(self.write("none.off", "OFF\n0 0 0\n"), "-o", self.out).returncode, (3, 4))
+
+    def test_crease_is_named(self):
+        self.expect(4, self.write("wedge.off", wedge_text(30)), "-o", self.out,
+                    says=[r"\b30\b|29\.99|30\.0", COORDINATES, "crease", "--crease-angle"])
+
+    def test_crease_below_a_smaller_threshold_is_meshed(self):
+        wedge = self.write("wedge.off", wedge_text(60))
+        self.expect(4, wedge, "-o", self.out, says=["crease"])
+        run = self.run_program(wedge, "-o", self.out, "--crease-angle", "50", "--size", "0.3", "--max-vertices", "100000")
+        self.assertIn(run.returncode, (0, 5, 7), run.stderr)
+
+
+class Budgets(ProgramTest):
+    def test_vertices(self):
+        self.expect(5, self.box, "-o", self.out, "--size", "0.02", "--max-vertices", "200", says=["200", COORDINATES])
+
+    def test_memory(self):
+        self.expect(5, self.box, "-o", self.out, "--size", "0.01", "--max-memory", "200K", says=[COORDINATES])
+
+    def test_time(self):
+        begin = time.monotonic()
+        self.expect(5, self.box, "-o", self.out, "--size", "0.002", "--time-limit", "0.5", says=[COORDINATES])
+        self.assertLess(time.monotonic() - begin, 10)
+
+
+class Cancelling(ProgramTest):
+    def start_long_run(self):
+        process = subprocess.Popen([PROGRAM, self.box, "-o", self.out, "--size", "0.002", "--progress", "json"],
+                                   cwd=self.folder, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
+        for line in process.stderr:
+            if json.loads(line)["phase"] == "refine":
+                break
+        time.sleep(0.3)
+        return process
+
+    def test_interrupt_stops_within_a_second(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with self.subTest(signal=number):
+                process = self.start_long_run()
+                begin = time.monotonic()
+                process.send_signal(number)
+                _, messages = process.communicate(timeout=20)
+                self.assertLess(time.monotonic() - begin, 2)  # a second, on a busy machine
+                self.assertEqual(process.returncode, 6, messages)
+                self.assertIn("cancelled", messages)
+                self.assertFalse(self.out.exists())
+                self.assert_nothing_left()
+
+    def test_interrupt_at_any_time_leaves_no_half_file(self):
+        arguments = [PROGRAM, str(self.box), "-o", str(self.out), "--size", "0.05", "-q"]
+        begin = time.monotonic()
+        self.assertEqual(subprocess.run(arguments, cwd=self.folder).returncode, 0)
+        duration, complete = time.monotonic() - begin, self.out.stat().st_size
+        for k in range(10):
+            self.out.unlink(missing_ok=True)
+            process = subprocess.Popen(arguments, cwd=self.folder, stderr=subprocess.DEVNULL)
+            time.sleep(0.02 + duration * k / 9)
+            process.send_signal(signal.SIGINT)
+            code = process.wait(timeout=20)
+            self.assertIn(code, (0, 6, -signal.SIGINT))
+            self.assertEqual(self.out.exists(), code == 0)
+            if code == 0:
+                self.assertEqual(self.out.stat().st_size, complete)
+            self.assert_nothing_left()
+
+
+class Guarantees(ProgramTest):
+    def test_mesh_and_check_in_every_format(self):
+        for extension in ("vtu", "msh", "mesh"):
+            with self.subTest(format=extension):
+                mesh = self.folder / f"mesh.{extension}"
+                self.assertEqual(self.run_program(self.box, "-o", mesh, "--size", "0.2").returncode, 0)
+                run = self.run_program("check", mesh, "--against", self.box)
+                self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+                self.assertIn("every guarantee holds", run.stdout)
+
+    def test_check_finds_what_is_missed(self):
+        self.expect(0, self.box, "-o", self.out, "--size", "0.2", writes=True)
+        run = self.expect(7, "check", self.out, "--against", self.box, "--radius-edge", "1", writes=True)
+        self.assertRegex(run.stdout, COORDINATES)
+        larger = self.write("larger.off", off_text(box_points(high=(1, 1, 1.5)), BOX_FACES))
+        run = self.expect(7, "check", self.out, "--against", larger, "--json", writes=True)
+        report = json.loads(run.stdout)
+        self.assertFalse(report["passed"])
+        self.assertGreater(len(report["findings"]), 0)
+        self.assertTrue(all(f["message"] and len(f["where"]) == 3 for f in report["findings"]))
+
+    def test_region_volumes_are_exact(self):
+        report = self.folder / "report.json"
+        self.expect(0, MODELS / "two_boxes.poly", "-o", self.out, "--report", report, writes=True)
+        volumes = json.loads(report.read_text())["check"]["region_volumes"]
+        self.assertAlmostEqual(volumes["1"], 2, places=12)
+        self.assertAlmostEqual(volumes["2"], 1, places=12)
+
+    def test_several_files_are_one_complex(self):
+        other = self.write("other.off", off_text(box_points((1, 0, 0), (2, 1, 1)), BOX_FACES))
+        self.expect(0, self.box, other, "-o", self.out, "--size", "0.3", writes=True)
+        run = self.run_program("info", self.box, other, "--json")
+        self.assertEqual([r["volume"] for r in json.loads(run.stdout)["complex"]["regions"]], [1, 1])
+
+    def test_sample_models(self):
+        for model in sorted(MODELS.iterdir()):
+            with self.subTest(model=model.name):
+                run = self.run_program(model, "-o", self.out)
+                self.assertEqual(run.returncode, 0, run.stderr)
+
+
+class Writing(ProgramTest):
+    def test_missing_folder_is_told_before_reading(self):
+        self.expect(8, "no_such_file.off", "-o", self.folder / "no" / "out.vtu", says=["does not exist"])
+        self.expect(8, self.box, "-o", self.out, "--report", self.folder / "no" / "r.json", says=["does not exist"])
+
+    def test_folder_in_the_way(self):
+        (self.folder / "taken.vtu").mkdir()
+        self.expect(8, self.box, "-o", self.folder / "taken.vtu", says=["is a folder"])
+
+    def test_file_in_the_way(self):
+        self.expect(8, self.box, "-o", self.box / "out.vtu", says=["not a folder"])
+
+    def test_unwritable_folder(self):
+        locked = "/proc" if os.geteuid() == 0 else self.folder / "locked"
+        if os.geteuid() != 0:
+            locked.mkdir(mode=0o555)
+        self.expect(8, self.box, "-o", f"{locked}/out.vtu", says=["cannot write"])
+
+    def test_replaces_a_file_from_before(self):
+        self.out.write_text("old")
+        self.expect(0, self.box, "-o", self.out, "--size", "0.5", writes=True)
+        self.assertGreater(self.out.stat().st_size, 100)
+
+
+class Progress(ProgramTest):
+    def test_json_lines(self):
+        run = self.run_program(self.box, "-o", self.out, "--size", "0.05", "--progress", "json", "-q")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(run.stderr, "", "-q silences progress too")
+        run = self.run_program(self.box, "-o", self.out, "--size", "0.03", "--progress", "json")
+        lines = [json.loads(line) for line in run.stderr.splitlines() if line.startswith("{")]
+        self.assertTrue(all(set(line) == {"phase", "fraction", "vertices", "tets", "seconds"} for line in lines))
+        fractions = [line["fraction"] for line in lines]
+        self.assertEqual(fractions, sorted(fractions))
+        self.assertTrue(0 <= fractions[0] and fractions[-1] <= 1)
+        phases = [line["phase"] for line in lines]
+        self.assertEqual([p for p in ("read", "complex", "refine", "check", "write") if p not in phases], [])
+
+    def test_nothing_but_the_summary_without_a_terminal(self):
+        run = self.run_program(self.box, "-o", self.out, "--size", "0.05")
+        self.assertNotIn("\r", run.stderr)
+        self.assertEqual(run.stdout, "")
+        self.assertIn("every guarantee holds", run.stderr)
+
+    def test_quiet_and_verbose(self):
+        quiet = self.run_program(self.box, "-o", self.out, "--size", "0.3", "-q")
+        self.assertEqual((quiet.returncode, quiet.stderr, quiet.stdout), (0, "", ""))
+        verbose = self.run_program(self.box, "-o", self.out, "--size", "0.3", "-v")
+        self.assertIn("vertices inserted", verbose.stderr)
+
+    def test_bar_on_a_terminal(self):
+        ours, theirs = pty.openpty()
+        process = subprocess.Popen([PROGRAM, self.box, "-o", self.out, "--size", "0.015"], cwd=self.folder, stderr=theirs)
+        os.close(theirs)
+        shown = b""
+        while True:
+            try:
+                block = os.read(ours, 4096)
+            except OSError:
+                break
+            if not block:
+                break
+            shown += block
+        os.close(ours)
+        self.assertEqual(process.wait(timeout=60), 0)
+        self.assertRegex(shown.decode(), r"\[#*\.*\] +\d+%  refine")
+        self.assertRegex(shown.decode(), r"\d+ s left")
+
+
+class Reports(ProgramTest):
+    def test_report(self):
+        path = self.folder / "report.json"
+        self.expect(0, self.box, "-o", self.out, "--size", "0.2", "--seed", "5", "--report", path, writes=True)
+        report = json.loads(path.read_text())
+        self.assertEqual(report["inputs"], [str(self.box)])
+        self.assertEqual((report["options"]["size"], report["options"]["seed"]), (0.2, 5))
+        self.assertTrue(report["guarantees_hold"] and report["check"]["passed"])
+        self.assertAlmostEqual(report["check"]["region_volumes"]["1"], 1, places=12)
+        self.assertEqual(report["mesh"]["tets"], report["check"]["tets"])
+        self.assertEqual(sum(report["mesh"]["histograms"]["radius_edge"]["tets"]), report["mesh"]["tets"])
+        self.assertLessEqual(report["mesh"]["max_radius_edge"], 2)
+        self.assertGreater(report["seconds"]["total"], 0)
+        self.assertEqual(report["complex"]["curves"], 12)
+
+    def test_no_report_of_a_failure(self):
+        path = self.folder / "report.json"
+        self.expect(5, self.box, "-o", self.out, "--size", "0.02", "--max-vertices", "100", "--report", path)
+        self.assertFalse(path.exists())
+
+    def test_info(self):
+        run = self.expect(0, "info", self.box)
+        for text in ("8 vertices", "12 curves", "6 patches", "volume 1", "no creases"):
+            self.assertIn(text, run.stdout)
+        complex_ = json.loads(self.expect(0, "info", self.box, "--json").stdout)["complex"]
+        self.assertEqual((complex_["vertices"], complex_["patches"], complex_["smallest_angle"]), (8, 6, 90))
+        wedge = json.loads(self.expect(0, "info", self.write("wedge.off", wedge_text(30)), "--json").stdout)["complex"]
+        self.assertAlmostEqual(wedge["creases"][0]["angle"], 30, places=6)
+
+    def test_info_of_a_mesh(self):
+        self.expect(0, self.box, "-o", self.out, "--size", "0.3", writes=True)
+        mesh = json.loads(self.expect(0, "info", self.out, "--json", writes=True).stdout)["mesh"]
+        self.assertAlmostEqual(sum(mesh["region_volumes"].values()), 1, places=12)
+        self.assertIn("tets", self.expect(0, "info", self.out, writes=True).stdout)
+
+
+class Reproducibility(ProgramTest):
+    def test_same_bytes(self):
+        for model in ("bracket.off", "two_boxes.poly"):
+            meshes = []
+            for k, seed in enumerate((0, 0, 1)):
+                mesh = self.folder / f"{k}.vtu"
+                self.assertEqual(self.run_program(MODELS / model, "-o", mesh, "--seed", seed).returncode, 0)
+                meshes.append(mesh.read_bytes())
+            self.assertEqual(meshes[0], meshes[1])
+            self.assertNotEqual(meshes[0], meshes[2])
+
+
+class Documentation(ProgramTest):
+    def test_readme_has_every_option(self):
+        readme = (SOURCES / "README.md").read_text()
+        for option in set(re.findall(r"--[a-z][a-z-]+", self.run_program("--help").stdout)):
+            self.assertIn(f"`{option}", readme)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,19 @@
+#include <collarmesh/check.h>
+#include <collarmesh/io/soup_io.h>
+#include <collarmesh/io/tet_mesh_io.h>
+#include <collarmesh/mesher.h>
+#include <collarmesh/plc_builder.h>
+
+#include <cstdio>
+
+// consumer SURFACE MESH: mesh a file and certify the result.
+int main(int argc, char** argv) {
+  if (argc != 3) return 2;
+  const collarmesh::PolygonSoup soups[] = {collarmesh::io::read_soup(argv[1])};
+  const collarmesh::Plc plc = collarmesh::build_plc(soups);
+  const collarmesh::MeshResult result = collarmesh::generate(plc);
+  const collarmesh::CheckReport report = collarmesh::check(result.mesh, plc);
+  collarmesh::io::write_tet_mesh(argv[2], result.mesh);
+  std::printf("%zu tets, %zu findings\n", result.mesh.tets.size(), report.findings_total);
+  return result.status == collarmesh::MeshStatus::complete && report.passed() ? 0 : 1;
+}

@@ -1,0 +1,134 @@
+"""Mesh every file of a corpus and judge the meshes.
+
+    corpus_test.py PROGRAM [-k WORD] [--keep FOLDER]
+
+COLLARMESH_CORPUS names the folder; its MANIFEST.tsv says what to expect of each file. Files are
+meshed at 1/25 of their bounding box' diagonal. COLLARMESH_JUDGE may name an independent checker:
+    JUDGE MESH --surface FILE [--exact | --distance D]; exit code 0 when everything holds.
+Exit code 77 (skipped) without a corpus.
+"""
+
+import argparse
+import concurrent.futures
+import csv
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import time
+
+CORPUS = os.environ.get("COLLARMESH_CORPUS", "")
+JUDGE = os.environ.get("COLLARMESH_JUDGE", "")
+TIME_LIMIT = 300  # seconds per file
+RELATIVE_SIZE = 1 / 25
+RELATIVE_DISTANCE = 1e-3
+EXACT = ("cross", "star", "itemb")  # exactly coplanar ones; every .poly file is, too
+COORDINATES = re.compile(r"-?\d[\d.e+-]*, ?-?\d[\d.e+-]*, ?-?\d")
+
+
+class Failed(Exception):
+    pass
+
+
+def run(*arguments, limit=TIME_LIMIT):
+    try:
+        return subprocess.run(list(map(str, arguments)), capture_output=True, text=True, timeout=limit)
+    except subprocess.TimeoutExpired:
+        raise Failed(f"still running after {limit} s")
+
+
+def expected_codes(expect):
+    """Exit codes that fit what the manifest expects; none: the file is skipped."""
+    if expect.startswith("CAD:"):
+        return None
+    if expect.startswith("mesh: acute creases"):
+        return {4}
+    if expect.startswith("mesh:"):
+        return {0, 4}
+    return {3, 4}
+
+
+def diagonal_of(program, path):
+    info = run(program, "info", path, "--json")
+    return json.loads(info.stdout)["complex"]["diagonal"] if info.returncode == 0 else None
+
+
+def judge(path, mesh, diagonal):
+    exact = path.suffix == ".poly" or path.stem in EXACT
+    tolerance = ["--exact"] if exact else ["--distance", RELATIVE_DISTANCE * diagonal]
+    result = run(sys.executable, JUDGE, mesh, "--surface", path, *tolerance)
+    if result.returncode != 0:
+        raise Failed("judge: " + (result.stdout + result.stderr).strip().splitlines()[-1])
+
+
+def first_crease(messages):
+    """The line that names a crease; without one an exit code 4 is not what was expected."""
+    lines = messages.splitlines()
+    named = [line.strip() for line in lines if "degrees" in line and COORDINATES.search(line)]
+    if not any("crease" in line for line in lines) or not named:
+        raise Failed("exit code 4 without a crease: " + lines[0])
+    return named[0]
+
+
+def mesh_one(program, path, expect, folder):
+    """What happened, as a line for the table. Throws Failed."""
+    diagonal = diagonal_of(program, path)
+    mesh = folder / (path.name + ".vtu")
+    size = [] if diagonal is None else ["--size", diagonal * RELATIVE_SIZE]
+    report = folder / (path.name + ".json")
+    result = run(program, path, "-o", mesh, *size, "--time-limit", TIME_LIMIT, "--report", report)
+    if result.returncode not in expected_codes(expect):
+        raise Failed(f"exit code {result.returncode}: {(result.stderr.splitlines() or [''])[0]}")
+    if result.returncode == 0:
+        found = json.loads(report.read_text())
+        if JUDGE:
+            judge(path, mesh, diagonal)
+        return f"{found['mesh']['tets']} tets in {found['seconds']['refine']:.2f} s" + (", judged" if JUDGE else "")
+    if mesh.exists():
+        raise Failed(f"a mesh was written in spite of exit code {result.returncode}")
+    if not result.stderr.strip():
+        raise Failed(f"exit code {result.returncode} without a message")
+    if expect.startswith("mesh:"):
+        return "crease: " + first_crease(result.stderr)
+    return f"refused ({result.returncode}): {result.stderr.splitlines()[0]}"
+
+
+def outcome(program, path, expect, folder):
+    if expected_codes(expect) is None:
+        return "skipped", "no reader of CAD files yet"
+    begin = time.monotonic()
+    try:
+        return "ok", mesh_one(program, path, expect, folder) + f" [{time.monotonic() - begin:.1f} s]"
+    except Failed as failure:
+        return "FAILED", f"{failure} [{time.monotonic() - begin:.1f} s]"
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("program")
+    parser.add_argument("-k", default="", help="only files whose name contains this")
+    parser.add_argument("--keep", help="folder for the meshes")
+    arguments = parser.parse_args()
+    if not CORPUS:
+        print("COLLARMESH_CORPUS is not set: no corpus to run")
+        return 77
+    corpus = pathlib.Path(CORPUS)
+    with open(corpus / "MANIFEST.tsv", newline="") as manifest:
+        rows = [row for row in csv.DictReader(manifest, delimiter="\t") if arguments.k in row["name"]]
+    failures = 0
+    with tempfile.TemporaryDirectory() as temporary, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        folder = pathlib.Path(arguments.keep or temporary)
+        results = [pool.submit(outcome, arguments.program, corpus / row["name"], row["expect"], folder) for row in rows]
+        for row, result in zip(rows, results):
+            verdict, text = result.result()
+            failures += verdict == "FAILED"
+            print(f"{verdict:8}{row['name']:45}{row['expect'][:32]:34}{text}", flush=True)
+    print(f"{len(rows)} files, {failures} failed")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
