@@ -135,7 +135,8 @@ void write_files(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
 void tell(const MeshArguments& arguments, const MeshRun& run) {
   if (run.result.status == MeshStatus::guarantee_missed)
     fmt::print(stderr, "collarmesh: a guarantee is missed: {}\n", run.result.message);
-  if (!run.check.passed()) fmt::print(stderr, "{}", check_text(run.check));
+  constexpr std::size_t listed = 10;
+  fmt::print(stderr, "{}", findings_text(run.check, arguments.verbose ? run.check.findings.size() : listed));
   if (!arguments.quiet) fmt::print(stderr, "{}", run_text(arguments, run));
 }
 

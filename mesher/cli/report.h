@@ -33,6 +33,7 @@ nlohmann::ordered_json run_json(const MeshArguments& arguments, const MeshRun& r
 // For people, lines of text:
 std::string complex_text(const Plc& plc, const PlcSummary& summary);
 std::string mesh_text(const TetMesh& mesh, const MeshMeasures& measures);
+std::string findings_text(const CheckReport& report, std::size_t listed);
 std::string check_text(const CheckReport& report);
 std::string run_text(const MeshArguments& arguments, const MeshRun& run);
 

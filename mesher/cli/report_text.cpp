@@ -79,12 +79,18 @@ std::string mesh_text(const TetMesh& mesh, const MeshMeasures& m) {
   return text;
 }
 
-std::string check_text(const CheckReport& r) {
+std::string findings_text(const CheckReport& r, std::size_t most) {
   std::string text;
-  for (const Finding& finding : r.findings)
-    fmt::format_to(Out(text), "missed: {}: {}\n", finding.guarantee, finding.message);
-  if (r.findings_total > r.findings.size())
-    fmt::format_to(Out(text), "... and {} more findings\n", r.findings_total - r.findings.size());
+  const std::size_t count = std::min(most, r.findings.size());
+  for (std::size_t k = 0; k < count; ++k)
+    fmt::format_to(Out(text), "missed: {}: {}\n", r.findings[k].guarantee, r.findings[k].message);
+  if (r.findings_total > count)
+    fmt::format_to(Out(text), "... and {} more findings\n", r.findings_total - count);
+  return text;
+}
+
+std::string check_text(const CheckReport& r) {
+  std::string text = findings_text(r, r.findings.size());
   fmt::format_to(Out(text), "{} tets, {} points, {} faces, {} edges; {}\n", r.tets, r.points, r.faces,
                  r.edges, shape_text(r.min_dihedral, r.max_dihedral, r.max_radius_edge));
   if (r.collar_tets > 0)
