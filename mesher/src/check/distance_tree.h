@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "collarmesh/geometry.h"
+
+namespace collarmesh::checks {
+
+/// Finds the nearest of many triangles, which may be degenerate. A hierarchy of boxes.
+class DistanceTree {
+ public:
+  using Triangle = std::array<Point, 3>;
+
+  /// Cost: O(n log n).
+  explicit DistanceTree(std::vector<Triangle> triangles);
+
+  struct Nearest {
+    double distance;
+    Index triangle;  ///< as numbered in the constructor; none if there are no triangles
+  };
+  /// Ends early once something as near as `enough` is found. A `hint`, a triangle that is probably
+  /// near, makes it faster.
+  Nearest nearest(const Point& p, double enough = 0, Index hint = none) const;
+
+ private:
+  struct Node {
+    Box box;
+    Index first, count;  // a leaf's triangles; count 0: `first` is the right child, the left one follows the node
+  };
+  static constexpr Index leaf_size = 4;
+
+  void build(Index first, Index last);
+  double squared_distance_to(Index node, const Point& p) const;
+
+  std::vector<Triangle> triangles_;  // in the order of the leaves
+  std::vector<Index> number_;        // of each in the constructor's order
+  std::vector<Index> place_;         // inverse of number_
+  std::vector<Node> nodes_;
+};
+
+}  // namespace collarmesh::checks

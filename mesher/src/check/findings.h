@@ -1,0 +1,55 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <initializer_list>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "collarmesh/check.h"
+
+namespace collarmesh::checks {
+
+/// A point in a message.
+struct At {
+  Point point;
+};
+
+/// Collects what does not hold. Of each guarantee the first findings are listed, all are counted.
+class Findings {
+ public:
+  Findings(CheckReport& report, std::size_t listed_per_guarantee)
+      : report_(report), listed_per_guarantee_(listed_per_guarantee) {}
+
+  template <class... Arguments>
+  void add(std::string_view guarantee, const Point& where, std::initializer_list<Index> ids,
+           fmt::format_string<Arguments...> message, Arguments&&... arguments) {
+    ++report_.findings_total;
+    if (++count(guarantee) > listed_per_guarantee_) return;
+    report_.findings.push_back(
+        {std::string(guarantee), fmt::format(message, std::forward<Arguments>(arguments)...), ids, where});
+  }
+
+  /// How many were found so far, with those not listed.
+  std::size_t total() const { return report_.findings_total; }
+
+ private:
+  std::size_t& count(std::string_view guarantee);
+
+  CheckReport& report_;
+  std::size_t listed_per_guarantee_;
+  std::vector<std::pair<std::string_view, std::size_t>> counts_;
+};
+
+}  // namespace collarmesh::checks
+
+template <>
+struct fmt::formatter<collarmesh::checks::At> {
+  constexpr auto parse(format_parse_context& context) { return context.begin(); }
+  template <class Context>
+  auto format(const collarmesh::checks::At& at, Context& context) const {
+    return fmt::format_to(context.out(), "({:.12g}, {:.12g}, {:.12g})", at.point.x, at.point.y, at.point.z);
+  }
+};

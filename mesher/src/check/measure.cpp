@@ -1,0 +1,91 @@
+// Shape measures of a tetrahedron.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "collarmesh/tet_mesh.h"
+
+namespace collarmesh {
+
+namespace {
+
+template <class Real>
+struct Vector3 {
+  Real x, y, z;
+
+  Vector3(Real x_, Real y_, Real z_) : x(x_), y(y_), z(z_) {}
+  Vector3(const Point& from, const Point& to)
+      : x(Real(to.x) - Real(from.x)), y(Real(to.y) - Real(from.y)), z(Real(to.z) - Real(from.z)) {}
+  friend Vector3 operator+(const Vector3& a, const Vector3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend Vector3 operator*(Real s, const Vector3& a) { return {s * a.x, s * a.y, s * a.z}; }
+  friend Real dot(const Vector3& a, const Vector3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+  friend Vector3 cross(const Vector3& a, const Vector3& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  }
+};
+
+// An angle in [0, pi] as a direction in the upper half plane.
+template <class Real>
+struct Direction {
+  Real x, y;
+
+  bool less_than(const Direction& other) const { return x * other.y - y * other.x > 0; }
+  double degrees() const { return static_cast<double>(std::atan2(y, x)) * 180 / std::numbers::pi; }
+};
+
+template <class Real>
+struct Measures {
+  TetQuality quality;
+  Real conditioning;  ///< |determinant| / longest edge cubed: rounding is amplified by its inverse
+};
+
+template <class Real>
+Measures<Real> measure_as(const Point& a, const Point& b, const Point& c, const Point& d) {
+  using V = Vector3<Real>;
+  const V ab(a, b), ac(a, c), ad(a, d), bc(b, c), bd(b, d), cd(c, d);
+  const Real l_ab = dot(ab, ab), l_ac = dot(ac, ac), l_ad = dot(ad, ad), l_bc = dot(bc, bc),
+             l_bd = dot(bd, bd), l_cd = dot(cd, cd);
+  const auto [shortest, longest] = std::minmax({l_ab, l_ac, l_ad, l_bc, l_bd, l_cd});
+
+  // Normals of the faces opposite each corner, all outward (or all inward if the tet is inverted).
+  const V n_a = cross(bc, bd), n_b = cross(ad, ac), n_c = cross(ab, ad), n_d = cross(ac, ab);
+  const Real determinant = -dot(n_d, ad);
+  const Real size = std::abs(determinant);
+  TetQuality quality;
+  quality.volume = static_cast<double>(determinant / 6);
+
+  // |ad|^2 (ab x ac) + |ac|^2 (ad x ab) + |ab|^2 (ac x ad) = 2 det (circumcentre - a)
+  const V numerator = Real(-1) * (l_ad * n_d + l_ac * n_c + l_ab * n_b);
+  quality.radius_edge = size > 0
+                            ? static_cast<double>(std::sqrt(dot(numerator, numerator) / shortest) / (2 * size))
+                            : std::numeric_limits<double>::infinity();
+
+  // Two normals n, m with a common edge e: -n.m = |n||m| cos, |n x m| = |e| |det| = |n||m| sin.
+  const std::array<Direction<Real>, 6> angles{{{-dot(n_c, n_d), std::sqrt(l_ab) * size},
+                                               {-dot(n_b, n_d), std::sqrt(l_ac) * size},
+                                               {-dot(n_b, n_c), std::sqrt(l_ad) * size},
+                                               {-dot(n_a, n_d), std::sqrt(l_bc) * size},
+                                               {-dot(n_a, n_c), std::sqrt(l_bd) * size},
+                                               {-dot(n_a, n_b), std::sqrt(l_cd) * size}}};
+  Direction<Real> least = angles[0], greatest = angles[0];
+  for (const Direction<Real>& angle : angles) {
+    if (angle.less_than(least)) least = angle;
+    if (greatest.less_than(angle)) greatest = angle;
+  }
+  quality.min_dihedral = least.degrees();
+  quality.max_dihedral = greatest.degrees();
+  return {quality, size / (longest * std::sqrt(longest))};
+}
+
+}  // namespace
+
+// Rounding errors of volume, radius and angles grow with longest^3 / determinant: flat tets are
+// measured with more digits.
+TetQuality measure(const Point& a, const Point& b, const Point& c, const Point& d) {
+  const Measures<double> measures = measure_as<double>(a, b, c, d);
+  if (measures.conditioning > 1e-4) return measures.quality;
+  return measure_as<long double>(a, b, c, d).quality;
+}
+
+}  // namespace collarmesh

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <vector>
+
+#include "check/subject.h"
+
+namespace collarmesh::checks {
+
+/// A side of a face of one patch.
+struct PatchEdge {
+  std::array<Index, 2> ends;  ///< sorted
+  Index place;                ///< of the face in the patch' list of faces
+  Index face;
+  bool ascending;             ///< runs from the smaller to the larger point, with the face turned as its patch
+
+  friend bool operator<(const PatchEdge& a, const PatchEdge& b) {
+    return a.ends != b.ends ? a.ends < b.ends : a.face < b.face;
+  }
+};
+
+/// How the curves cut the patches: by the complex, and by the edges of the mesh.
+class CurveUses {
+ public:
+  explicit CurveUses(const Subject& subject);
+
+  /// How many triangles of the patch meet at each place of the curve in the complex.
+  std::size_t triangles_at(Index curve, Index patch) const;
+  /// The curve of a mesh edge (sorted points), none if it is on none.
+  Index curve_of(const std::array<Index, 2>& edge) const;
+  /// The mesh edges of a curve.
+  const Grouping& edges() const { return edges_by_curve_; }
+
+ private:
+  struct CurveEdge {
+    std::array<Index, 2> ends;
+    Index curve;
+    friend bool operator<(const CurveEdge& a, const CurveEdge& b) { return a.ends < b.ends; }
+  };
+  const Plc& plc_;
+  std::vector<std::array<Index, 3>> complex_edges_;  // sorted points, patch: one for each triangle side
+  std::vector<CurveEdge> mesh_edges_;
+  Grouping edges_by_curve_;
+};
+
+/// Is the face turned against its patch (its regions are the patch' in reverse)?
+inline bool reversed(const Subject& subject, Index face) {
+  const auto& given = subject.mesh.face_regions[face];
+  const auto& own = subject.plc.patches[subject.match.face_patch[face]].regions;
+  return own[0] != own[1] && given[0] == own[1] && given[1] == own[0];
+}
+
+/// The faces of a patch form a surface that is turned one way and ends at the patch' curves.
+void check_patch_topology(const Subject& subject, Index patch, const std::vector<Index>& faces, const CurveUses& uses,
+                          Findings& findings);
+
+}  // namespace collarmesh::checks

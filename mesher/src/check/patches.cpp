@@ -1,0 +1,221 @@
+// Every patch as a union of faces: tags, regions, planes, areas and distances.
+#include <algorithm>
+#include <cmath>
+
+#include "check/distance_tree.h"
+#include "check/patch_topology.h"
+#include "check/polyline.h"
+#include "check/subject.h"
+
+namespace collarmesh::checks {
+
+namespace {
+
+class PatchCheck {
+ public:
+  PatchCheck(const Subject& subject, Index patch, const Index* first, const Index* last, CheckReport& report,
+             Findings& findings)
+      : subject_(subject),
+        id_(patch),
+        patch_(subject.plc.patches[patch]),
+        faces_(first, last),
+        allowed_(subject.patch_allowance[patch]),
+        report_(report),
+        findings_(findings) {}
+
+  void run(const CurveUses& uses) {
+    if (faces_.empty()) {
+      if (!patch_is_outside(subject_.plc, id_)) report_missing();
+      return;
+    }
+    check_patch_topology(subject_, id_, faces_, uses, findings_);
+    if (patch_.planar) {
+      check_plane();
+      check_area();
+    } else {
+      check_faces_against_patch();
+      check_patch_against_faces();
+    }
+  }
+
+ private:
+  const Plc::Triangle& triangle(Index i) const { return subject_.plc.triangles[patch_.first_triangle + i]; }
+  double triangle_area(Index i) const {
+    const Plc::Triangle& t = triangle(i);
+    return area(subject_.plc_corner(t, 0), subject_.plc_corner(t, 1), subject_.plc_corner(t, 2));
+  }
+  std::array<Point, 3> corners(Index face) const {
+    const auto& f = subject_.mesh.faces[face];
+    return {subject_.point(f[0]), subject_.point(f[1]), subject_.point(f[2])};
+  }
+
+  void report_missing() {
+    const Point& where = subject_.plc_corner(triangle(0), 0);
+    findings_.add(guarantee::patch_border, where, {id_},
+                  "Patch {} (tag {}) at {} has no faces; it was lost, or its faces are tagged with another patch.", id_,
+                  patch_.tag, At{where});
+  }
+
+  void check_plane() {
+    for (const Index point : points()) {
+      const double off = std::fabs(dot(subject_.point(point) - patch_.origin, patch_.normal));
+      if (off > allowed_)
+        findings_.add(guarantee::patch_plane, subject_.point(point), {id_, point},
+                      "Point {} at {} is {:.6g} off the plane of patch {} (tag {}), allowed is {:.6g}; a vertex was moved "
+                      "or belongs to another patch.",
+                      point, At{subject_.point(point)}, off, id_, patch_.tag, allowed_);
+    }
+  }
+
+  std::vector<Index> points() const {
+    std::vector<Index> points;
+    for (const Index f : faces_) points.insert(points.end(), subject_.mesh.faces[f].begin(), subject_.mesh.faces[f].end());
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    return points;
+  }
+
+  // Areas as seen along the plane's normal. An internal facet may be turned either way.
+  void check_area() {
+    std::vector<double> areas;
+    long double found = 0;
+    for (const Index f : faces_) {
+      const auto [a, b, c] = corners(f);
+      areas.push_back(0.5 * dot(cross(b - a, c - a), patch_.normal) * (reversed(subject_, f) ? -1 : 1));
+      found += std::fabs(areas.back());
+    }
+    const bool turned = patch_.regions[0] == patch_.regions[1] &&
+                        std::count_if(areas.begin(), areas.end(), [](double a) { return a < 0; }) * 2 >
+                            static_cast<std::ptrdiff_t>(areas.size());
+    for (std::size_t i = 0; i < areas.size(); ++i) check_fold(faces_[i], turned ? -areas[i] : areas[i]);
+    compare_area(static_cast<double>(found));
+  }
+
+  void check_fold(Index face, double signed_area) {
+    const auto [a, b, c] = corners(face);
+    const double longest = std::max({distance(a, b), distance(b, c), distance(c, a)});
+    if (signed_area >= -longest * allowed_) return;
+    const Point where = subject_.centroid(subject_.mesh.faces[face]);
+    findings_.add(guarantee::patch_orientation, where, {id_, face},
+                  "Face {} at {} is turned against the plane of its patch {} (tag {}): the surface folds back on itself "
+                  "or the face lists its corners the wrong way round.",
+                  face, At{where}, id_, patch_.tag);
+  }
+
+  // The area may differ where the border does: by its length times how far it may move.
+  void compare_area(double found) {
+    long double expected = 0;
+    for (Index i = 0; i < patch_.triangle_count; ++i) expected += triangle_area(i);
+    double allowed = 1e-9 * static_cast<double>(expected);
+    for (const Index c : patch_.curves) allowed += subject_.curve_allowance[c] * length(subject_.plc.curves[c]);
+    const double difference = found - static_cast<double>(expected);
+    if (std::fabs(difference) <= allowed) return;
+    const Point& where = subject_.plc_corner(triangle(0), 0);
+    findings_.add(guarantee::patch_area, where, {id_},
+                  "The faces of patch {} (tag {}) at {} have an area of {:.15g}, the patch has {:.15g}; the difference "
+                  "{:.6g} is above the allowed {:.6g}. Faces are missing or doubled.",
+                  id_, patch_.tag, At{where}, found, static_cast<double>(expected), difference, allowed);
+  }
+
+  double length(const Plc::Curve& curve) const {
+    double sum = 0;
+    for (std::size_t i = 1; i < curve.points.size(); ++i)
+      sum += distance(subject_.plc.points[curve.points[i - 1]], subject_.plc.points[curve.points[i]]);
+    if (curve.closed)
+      sum += distance(subject_.plc.points[curve.points.back()], subject_.plc.points[curve.points.front()]);
+    return sum;
+  }
+
+  // Corners, centre, and two points on each side and six inside.
+  void check_faces_against_patch() {
+    std::vector<DistanceTree::Triangle> triangles;
+    for (Index i = 0; i < patch_.triangle_count; ++i)
+      triangles.push_back(
+          {subject_.plc_corner(triangle(i), 0), subject_.plc_corner(triangle(i), 1), subject_.plc_corner(triangle(i), 2)});
+    const DistanceTree patch(std::move(triangles));
+    Index hint = none;
+    constexpr int steps = 3;
+    for (const Index face : faces_) {
+      const auto [a, b, c] = corners(face);
+      for (int i = 0; i <= steps; ++i)
+        for (int j = 0; i + j <= steps; ++j) {
+          const Point sample = (i * a + j * b + (steps - i - j) * c) / steps;
+          const auto nearest = patch.nearest(sample, enough(), hint);
+          hint = nearest.triangle;
+          measure(nearest.distance, face, sample, "Face {} of patch {} (tag {}) is {:.6g} away from the patch at {}");
+        }
+    }
+  }
+
+  void check_patch_against_faces() {
+    std::vector<DistanceTree::Triangle> triangles;
+    for (const Index face : faces_) triangles.push_back(corners(face));
+    const DistanceTree faces(std::move(triangles));
+    Index hint = none;
+    for (Index i = 0; i < patch_.triangle_count; ++i) {
+      const Point &a = subject_.plc_corner(triangle(i), 0), &b = subject_.plc_corner(triangle(i), 1),
+                  &c = subject_.plc_corner(triangle(i), 2);
+      for (const Point& sample : {a, b, c, (a + b + c) / 3}) {
+        const auto nearest = faces.nearest(sample, enough(), hint);
+        hint = nearest.triangle;
+        measure(nearest.distance, faces_[nearest.triangle], sample,
+                "Face {}, the nearest of patch {} (tag {}), is {:.6g} away from the patch' point at {}");
+      }
+    }
+  }
+
+  /// Distances below this change neither the maximum nor the verdict.
+  double enough() const { return std::fmin(report_.max_surface_distance, allowed_); }
+
+  void measure(double distance, Index face, const Point& where,
+               fmt::format_string<Index&, Index&, const Tag&, double&, At> what) {
+    report_.max_surface_distance = std::fmax(report_.max_surface_distance, distance);
+    if (distance <= allowed_) return;
+    findings_.add(guarantee::patch_distance, where, {id_, face}, "{}, allowed is {:.6g}; use a smaller size there or "
+                  "allow a larger distance.",
+                  fmt::format(what, face, id_, patch_.tag, distance, At{where}), allowed_);
+  }
+
+  const Subject& subject_;
+  Index id_;
+  const Plc::Patch& patch_;
+  std::vector<Index> faces_;
+  double allowed_;
+  CheckReport& report_;
+  Findings& findings_;
+};
+
+void check_labels(const Subject& subject, Index face, Findings& findings) {
+  const TetMesh& mesh = subject.mesh;
+  const Index id = subject.match.face_patch[face];
+  const Point where = subject.centroid(mesh.faces[face]);
+  if (id == none) {
+    findings.add(guarantee::patch_tag, where, {face},
+                 "Face {} at {} has tag {}, which no patch of the complex has; correct the tag.", face, At{where},
+                 mesh.face_tag[face]);
+    return;
+  }
+  const Plc::Patch& patch = subject.plc.patches[id];
+  if (mesh.face_tag[face] != patch.tag)
+    findings.add(guarantee::patch_tag, where, {face},
+                 "Face {} at {} has tag {}, its patch {} has {}; correct the tag or the patch.", face, At{where},
+                 mesh.face_tag[face], id, patch.tag);
+  const auto& regions = mesh.face_regions[face];
+  if (regions != patch.regions && !reversed(subject, face))
+    findings.add(guarantee::patch_regions, where, {face},
+                 "Face {} at {} separates the regions {} and {}, its patch {} (tag {}) separates {} and {}; a region is "
+                 "wrong or the face belongs to another patch.",
+                 face, At{where}, regions[0], regions[1], id, patch.tag, patch.regions[0], patch.regions[1]);
+}
+
+}  // namespace
+
+void check_patches(const Subject& subject, CheckReport& report, Findings& findings) {
+  for (Index f = 0; f < subject.mesh.faces.size(); ++f) check_labels(subject, f, findings);
+  const CurveUses uses(subject);
+  const Grouping by_patch(subject.match.face_patch, subject.plc.patches.size());
+  for (Index p = 0; p < subject.plc.patches.size(); ++p)
+    PatchCheck(subject, p, by_patch.begin(p), by_patch.end(p), report, findings).run(uses);
+}
+
+}  // namespace collarmesh::checks

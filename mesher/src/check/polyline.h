@@ -1,0 +1,50 @@
+#pragma once
+
+#include <vector>
+
+#include "collarmesh/geometry.h"
+
+namespace collarmesh::checks {
+
+/// Distance from p to the segment ab, and where along it (0 to 1) the nearest point lies.
+struct NearestOnSegment {
+  double distance, parameter;
+};
+NearestOnSegment nearest_on_segment(const Point& p, const Point& a, const Point& b);
+
+/// A chain of segments with positions measured by arc length from its start. A closed one repeats
+/// its first point at the end.
+class Polyline {
+ public:
+  /// Precondition: at least two points.
+  explicit Polyline(std::vector<Point> points);
+
+  double length() const { return arc_.back(); }
+  const std::vector<Point>& points() const { return points_; }
+
+  struct Nearest {
+    double arc, distance;
+  };
+  /// Of the part between two positions. Cost: linear in that part, plus a bisection.
+  Nearest nearest(const Point& p, double from, double to) const;
+  Nearest nearest(const Point& p) const { return nearest(p, 0, length()); }
+
+  Point at(double arc) const;
+
+  /// The corners strictly between two positions: [first, last).
+  struct Range {
+    std::size_t first, last;
+  };
+  Range corners_between(double from, double to) const;
+
+  /// Of a closed one: the same, started elsewhere.
+  Polyline started_at(double arc) const;
+
+ private:
+  std::size_t segment_at(double arc) const;
+
+  std::vector<Point> points_;
+  std::vector<double> arc_;  // by point
+};
+
+}  // namespace collarmesh::checks

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "check/findings.h"
+#include "check/guarantees.h"
+#include "collarmesh/check.h"
+
+/// The certificate: one file per group of guarantees, each a function that adds findings. Nothing
+/// here knows how the mesh was made.
+namespace collarmesh::checks {
+
+/// Which feature of the complex the entities of the mesh belong to.
+struct FeatureMatch {
+  std::vector<Index> face_patch;    ///< by face of the mesh, none if it has no patch
+  std::vector<Index> edge_curve;    ///< by edge of the mesh, none if it has no curve
+  std::vector<Index> vertex_point;  ///< by vertex of the complex: its mesh point, none if there is none
+};
+
+/// What is judged, and by which measures.
+struct Subject {
+  const TetMesh& mesh;
+  const Plc& plc;
+  CheckOptions options;  ///< with the distance filled in
+  double rounding = 0;   ///< absolute: how far rounding may move a point off a straight line or a plane
+  std::vector<double> curve_allowance, patch_allowance;  ///< absolute: how far the mesh may be from each
+  FeatureMatch match;
+
+  const Point& point(Index i) const { return mesh.points[i]; }
+  Point centroid(const std::array<Index, 3>& f) const { return (point(f[0]) + point(f[1]) + point(f[2])) / 3; }
+  Point midpoint(const std::array<Index, 2>& e) const { return 0.5 * (point(e[0]) + point(e[1])); }
+  const Point& plc_corner(const Plc::Triangle& t, unsigned i) const { return plc.points[t.points[i]]; }
+};
+
+/// Items in groups by a key below `groups`; items whose key is none are left out.
+class Grouping {
+ public:
+  Grouping(const std::vector<Index>& keys, std::size_t groups) : first_(groups + 1, 0) {
+    for (const Index key : keys)
+      if (key != none) ++first_[key + 1];
+    for (std::size_t g = 0; g < groups; ++g) first_[g + 1] += first_[g];
+    items_.resize(first_[groups]);
+    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+    for (Index i = 0; i < keys.size(); ++i)
+      if (keys[i] != none) items_[next[keys[i]]++] = i;
+  }
+  const Index* begin(std::size_t group) const { return items_.data() + first_[group]; }
+  const Index* end(std::size_t group) const { return items_.data() + first_[group + 1]; }
+  std::size_t size(std::size_t group) const { return first_[group + 1] - first_[group]; }
+
+ private:
+  std::vector<std::size_t> first_;
+  std::vector<Index> items_;
+};
+
+inline std::array<Index, 2> sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
+
+inline double area(const Point& a, const Point& b, const Point& c) { return 0.5 * norm(cross(b - a, c - a)); }
+
+/// Equal lengths and indices in range. If false, nothing else can be looked at.
+bool check_arrays(const TetMesh& mesh, const Plc& plc, Findings& findings);
+
+/// Finite, distinct, used by tets. False if one is not finite.
+bool check_points(const Subject& subject, Findings& findings);
+
+/// Volumes, shapes, edge lengths and region volumes of all tets.
+void check_tets(const Subject& subject, CheckReport& report, Findings& findings);
+
+/// Tets against each other and against the listed faces.
+void check_conformity(const Subject& subject, Findings& findings);
+
+void check_watertight(const Subject& subject, Findings& findings);
+
+/// Precondition: report.region_volumes is filled in.
+void check_region_volumes(const Subject& subject, const CheckReport& report, Findings& findings);
+
+/// How far the mesh may be from straight curves and planar patches: their own deviation from
+/// straight or planar (a few times, vertices are extrapolated from others) but not more than the
+/// complex' planar tolerance; from others the distance tolerance; in each case also the rounding.
+std::vector<double> curve_allowances(const Subject& subject);
+std::vector<double> patch_allowances(const Subject& subject);
+
+/// Find the features by the indices in the mesh; where it has none, by tags and position.
+FeatureMatch match_features(const TetMesh& mesh, const Plc& plc, double rounding);
+
+void check_vertices(const Subject& subject, Findings& findings);
+void check_listed_edges(const Subject& subject, Findings& findings);
+void check_curves(const Subject& subject, CheckReport& report, Findings& findings);
+void check_patches(const Subject& subject, CheckReport& report, Findings& findings);
+
+/// The region of the complex that a point not on any patch lies in.
+Index region_at(const Plc& plc, const Point& p);
+
+/// Does a feature lie outside all regions, so that the mesh does not have it?
+bool curve_is_outside(const Plc& plc, Index curve);
+bool vertex_is_outside(const Plc& plc, Index vertex);
+bool patch_is_outside(const Plc& plc, Index patch);
+
+}  // namespace collarmesh::checks

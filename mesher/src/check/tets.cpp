@@ -1,0 +1,90 @@
+// Volumes and shapes of the tets.
+#include <algorithm>
+#include <cmath>
+
+#include "check/orientation.h"
+#include "check/subject.h"
+
+namespace collarmesh::checks {
+
+namespace {
+
+constexpr double slack = 1 + 1e-9;  // of the bounds on shape, relative
+
+struct Corners {
+  const Point &a, &b, &c, &d;
+  Point centre() const { return 0.25 * ((a + b) + (c + d)); }
+};
+
+void check_orientation(Index tet, const Corners& p, const TetQuality& quality, Findings& findings) {
+  const int sign = exact_orientation(p.a, p.b, p.c, p.d);
+  if (sign > 0) return;
+  findings.add(guarantee::positive_volume, p.centre(), {tet},
+               "Tet {} with corners {}, {}, {}, {} {} (volume {:.6g}); a solver cannot use it. If the mesher made "
+               "this mesh, report it with the input and the options.",
+               tet, At{p.a}, At{p.b}, At{p.c}, At{p.d}, sign == 0 ? "is flat" : "is inverted", quality.volume);
+}
+
+void check_shape(Index tet, const Corners& p, const TetQuality& quality, const Subject& subject, CheckReport& report,
+                 Findings& findings) {
+  const CheckOptions& options = subject.options;
+  if (subject.mesh.tet_collar[tet] != 0) {
+    ++report.collar_tets;
+    report.max_collar_dihedral = std::max(report.max_collar_dihedral, quality.max_dihedral);
+    if (quality.max_dihedral > options.collar_angle * slack)
+      findings.add(guarantee::collar_dihedral, p.centre(), {tet},
+                   "Tet {} of a collar at {} has a dihedral angle of {:.6g} degrees, allowed are {:.6g}; a smaller "
+                   "size there resolves the crease better.",
+                   tet, At{p.centre()}, quality.max_dihedral, options.collar_angle);
+    return;
+  }
+  report.max_radius_edge = std::max(report.max_radius_edge, quality.radius_edge);
+  report.min_dihedral = std::min(report.min_dihedral, quality.min_dihedral);
+  report.max_dihedral = std::max(report.max_dihedral, quality.max_dihedral);
+  if (!(quality.radius_edge <= options.radius_edge * slack))
+    findings.add(guarantee::radius_edge, p.centre(), {tet},
+                 "Tet {} at {} has circumradius / shortest edge {:.9g}, allowed is {:.9g}; refine with that bound, or "
+                 "check against the bound that the mesh was made with.",
+                 tet, At{p.centre()}, quality.radius_edge, options.radius_edge);
+}
+
+void add_edge_lengths(const Corners& p, std::vector<float>& lengths) {
+  for (const double squared : {squared_distance(p.a, p.b), squared_distance(p.a, p.c), squared_distance(p.a, p.d),
+                               squared_distance(p.b, p.c), squared_distance(p.b, p.d), squared_distance(p.c, p.d)})
+    lengths.push_back(static_cast<float>(std::sqrt(squared)));
+}
+
+void check_region_tag(Index tet, const Corners& p, const Subject& subject, Findings& findings) {
+  const Index region = subject.mesh.tet_region[tet];
+  const Tag tag = subject.mesh.tet_tag[tet], expected = subject.plc.regions[region].tag;
+  if (tag != expected)
+    findings.add(guarantee::region_tag, p.centre(), {tet},
+                 "Tet {} at {} has tag {}, its region {} has {}; correct the tag or the region.", tet, At{p.centre()},
+                 tag, region, expected);
+}
+
+}  // namespace
+
+void check_tets(const Subject& subject, CheckReport& report, Findings& findings) {
+  const TetMesh& mesh = subject.mesh;
+  std::vector<float> lengths;
+  lengths.reserve(6 * mesh.tets.size());
+  std::vector<long double> volumes(subject.plc.regions.size(), 0);
+  for (Index tet = 0; tet < mesh.tets.size(); ++tet) {
+    const auto& t = mesh.tets[tet];
+    const Corners p{mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]};
+    const TetQuality quality = measure(p.a, p.b, p.c, p.d);
+    check_orientation(tet, p, quality, findings);
+    check_shape(tet, p, quality, subject, report, findings);
+    check_region_tag(tet, p, subject, findings);
+    volumes[mesh.tet_region[tet]] += quality.volume;
+    add_edge_lengths(p, lengths);
+  }
+  report.region_volumes.assign(volumes.begin(), volumes.end());
+  if (lengths.empty()) return;
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  report.median_edge = *middle;
+}
+
+}  // namespace collarmesh::checks

@@ -1,0 +1,69 @@
+// The complex' vertices in the mesh, and what the mesh says its points lie on.
+#include "check/subject.h"
+
+namespace collarmesh::checks {
+
+namespace {
+
+void check_presence(const Subject& subject, Findings& findings) {
+  const Plc& plc = subject.plc;
+  for (Index v = 0; v < plc.vertices.size(); ++v) {
+    const Point& where = plc.points[plc.vertices[v].point];
+    if (subject.match.vertex_point[v] != none || vertex_is_outside(plc, v)) continue;
+    findings.add(guarantee::vertex_present, where, {v},
+                 "Vertex {} of the complex at {} is not a point of the mesh; a feature was lost there.", v, At{where});
+  }
+}
+
+// For each mesh point the feature of one dimension that lists it, if there is just one.
+class FeatureOfPoint {
+ public:
+  explicit FeatureOfPoint(std::size_t points) : feature_(points, none), several_(points, false) {}
+
+  void add(Index point, Index feature) {
+    if (feature_[point] != none && feature_[point] != feature) several_[point] = true;
+    feature_[point] = feature;
+  }
+  bool any(Index point) const { return feature_[point] != none; }
+  bool only(Index point, Index feature) const { return feature_[point] == feature && !several_[point]; }
+
+ private:
+  std::vector<Index> feature_;
+  std::vector<bool> several_;
+};
+
+}  // namespace
+
+void check_vertices(const Subject& subject, Findings& findings) {
+  check_presence(subject, findings);
+  const TetMesh& mesh = subject.mesh;
+  if (mesh.features.empty()) return;
+  FeatureOfPoint vertices(mesh.points.size()), curves(mesh.points.size()), patches(mesh.points.size());
+  const FeatureMatch& match = subject.match;
+  for (Index v = 0; v < match.vertex_point.size(); ++v)
+    if (match.vertex_point[v] != none) vertices.add(match.vertex_point[v], v);
+  for (Index e = 0; e < mesh.edges.size(); ++e)
+    if (match.edge_curve[e] != none)
+      for (const Index p : mesh.edges[e]) curves.add(p, match.edge_curve[e]);
+  for (Index f = 0; f < mesh.faces.size(); ++f)
+    if (match.face_patch[f] != none)
+      for (const Index p : mesh.faces[f]) patches.add(p, match.face_patch[f]);
+  for (Index p = 0; p < mesh.points.size(); ++p) {
+    const auto [dimension, feature] = mesh.features[p];
+    if (dimension < 3 && feature == none) continue;  // unknown
+    const bool holds = dimension == 0   ? vertices.only(p, feature)
+                       : vertices.any(p) ? false
+                       : dimension == 1 ? curves.only(p, feature)
+                       : curves.any(p)  ? false
+                       : dimension == 2 ? patches.only(p, feature)
+                                        : !patches.any(p);
+    if (holds) continue;
+    findings.add(guarantee::vertex_feature, mesh.points[p], {p},
+                 "Point {} at {} says that it lies on the feature {} of dimension {}, but the vertices, edges and faces "
+                 "there say otherwise; correct its feature.",
+                 p, At{mesh.points[p]}, dimension == 3 ? "none" : std::to_string(feature),
+                 static_cast<unsigned>(dimension));
+  }
+}
+
+}  // namespace collarmesh::checks

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "collarmesh/plc.h"
+#include "collarmesh/tet_mesh.h"
+
+/// Right meshes that no mesher made, to judge judges by.
+namespace collarmesh::testing {
+
+struct MeshedComplex {
+  Plc plc;
+  TetMesh mesh;
+};
+
+/// The unit box cut into n^3 cubes of six tets each (Kuhn, Some combinatorial lemmas in topology, 1960).
+MeshedComplex meshed_box(Index n);
+
+/// two_boxes(), each cut like that.
+MeshedComplex meshed_two_boxes(Index n);
+
+/// box_with_dangling_facet(0.5): a free facet inside. Precondition: n is a multiple of 4.
+MeshedComplex meshed_box_with_facet(Index n);
+
+/// The unit ball: an icosphere of the frequency, joined to its centre, against one that is `finer`
+/// times as fine.
+MeshedComplex meshed_ball(unsigned frequency, unsigned finer);
+
+/// A cylinder of radius and height 1, joined to its centre, against one with `finer` times as many
+/// segments: smooth closed curves, planar patches with a smooth border.
+MeshedComplex meshed_cylinder(unsigned segments, unsigned finer);
+
+/// The mesh as one reads it from a file: without features.
+TetMesh without_features(TetMesh mesh);
+
+}  // namespace collarmesh::testing

@@ -1,0 +1,82 @@
+// Meshes that keep every guarantee pass, with and without feature indices, and are measured right.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "collarmesh/check.h"
+#include "support/meshes.h"
+
+namespace collarmesh {
+namespace {
+
+using namespace collarmesh::testing;
+
+std::string all_messages(const CheckReport& report) {
+  std::string text;
+  for (const Finding& f : report.findings) text += f.guarantee + ": " + f.message + "\n";
+  return text;
+}
+
+void expect_pass(const MeshedComplex& m, const CheckOptions& options = {}) {
+  const CheckReport with = check(m.mesh, m.plc, options);
+  EXPECT_TRUE(with.passed()) << all_messages(with);
+  const CheckReport without = check(without_features(m.mesh), m.plc, options);
+  EXPECT_TRUE(without.passed()) << all_messages(without);
+}
+
+TEST(CheckRightMeshes, Box) {
+  for (const Index n : {1, 2, 5}) expect_pass(meshed_box(n));
+}
+
+TEST(CheckRightMeshes, TwoRegions) { expect_pass(meshed_two_boxes(3)); }
+
+TEST(CheckRightMeshes, DanglingFacet) { expect_pass(meshed_box_with_facet(4)); }
+
+TEST(CheckRightMeshes, SmoothClosedPatch) { expect_pass(meshed_ball(4, 4), {.distance = 0.05}); }
+
+TEST(CheckRightMeshes, SmoothCurvesAndPlanarPatches) { expect_pass(meshed_cylinder(12, 4), {.distance = 0.05}); }
+
+TEST(CheckRightMeshes, Moved) {
+  const double far = 1e6 * std::sqrt(3.0);
+  for (const auto& [scale, shift] : {std::pair{1.0, far}, {1e-6, 0.0}, {1e6, 0.0}, {1e-6, 1e-6 * far}}) {
+    MeshedComplex m = meshed_two_boxes(2);
+    const auto move = [&](Point& p) { p = scale * p + Point{shift, -shift, 0.7 * shift}; };
+    for (Point& p : m.mesh.points) move(p);
+    for (Point& p : m.plc.points) move(p);
+    for (Plc::Patch& p : m.plc.patches) move(p.origin);
+    Box bounds;
+    for (const Point& p : m.plc.points) bounds.add(p);
+    m.plc.bounds = bounds;
+    expect_pass(m);
+  }
+}
+
+TEST(CheckRightMeshes, MeasuresOfTheBox) {
+  const MeshedComplex m = meshed_box(4);
+  const CheckReport report = check(m.mesh, m.plc);
+  EXPECT_EQ(report.tets, 6 * 64U);
+  EXPECT_EQ(report.points, 125U);
+  EXPECT_EQ(report.faces, 6 * 2 * 16U);
+  EXPECT_EQ(report.edges, 12 * 4U);
+  EXPECT_EQ(report.collar_tets, 0U);
+  EXPECT_NEAR(report.max_radius_edge, std::sqrt(3.0) / 2, 1e-12);
+  EXPECT_NEAR(report.min_dihedral, 45, 1e-12);
+  EXPECT_NEAR(report.max_dihedral, 90, 1e-12);
+  EXPECT_NEAR(report.median_edge, std::sqrt(2.0) / 4, 1e-6);
+  ASSERT_EQ(report.region_volumes.size(), 2U);
+  EXPECT_NEAR(report.region_volumes[1], 1, 1e-14);
+  EXPECT_EQ(report.max_surface_distance, 0);
+}
+
+TEST(CheckRightMeshes, MeasuresOfTheBall) {
+  const MeshedComplex m = meshed_ball(3, 8);
+  const CheckReport report = check(m.mesh, m.plc, {.distance = 0.1});
+  // The farthest places are the centres of the large faces, near a point of the fine sphere.
+  double sagitta = 0;
+  for (const auto& f : m.mesh.faces)
+    sagitta = std::fmax(sagitta, 1 - norm((m.mesh.points[f[0]] + m.mesh.points[f[1]] + m.mesh.points[f[2]]) / 3));
+  EXPECT_NEAR(report.max_surface_distance, sagitta, 0.05 * sagitta);
+}
+
+}  // namespace
+}  // namespace collarmesh
