@@ -16,7 +16,7 @@ logged() {
   shift
   "$@" >>"$log" 2>&1 && return
   local code=$?
-  tail -n 60 "$log" >&2
+  grep -Ev '^\[ *[0-9]+[/%]' "$log" | tail -n 40 >&2
   return $code
 }
 
