@@ -10,6 +10,7 @@
 #include "plc/faults.h"
 #include "plc/features.h"
 #include "plc/flat_clusters.h"
+#include "plc/interfaces.h"
 #include "plc/intersections.h"
 #include "plc/orientation.h"
 #include "plc/regions.h"
@@ -139,7 +140,10 @@ Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options) {
   remove_twins_within_soups(draft);
   require_content(draft, faults);
   orient_components(draft, faults);
-  merge_twins_across_soups(draft);
+  if (soups.size() > 1) {
+    unify_interfaces(draft);
+    merge_twins_across_soups(draft);
+  }
   const EdgeTable edges(draft.triangles, draft.points.size());
   find_intersections(draft, edges, faults);
   faults.raise();

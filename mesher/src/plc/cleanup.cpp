@@ -75,6 +75,17 @@ void add_cut(const Corners& triangle, const Origin& origin, const CollinearGroup
   }
 }
 
+void add_cut(const Segment& segment, const CollinearGroups& groups, Draft& result) {
+  Segment piece = segment;
+  for (const Index cut : groups.cuts(segment.a, segment.b)) {
+    piece.b = cut;
+    result.segments.push_back(piece);
+    piece.a = cut;
+  }
+  piece.b = segment.b;
+  result.segments.push_back(piece);
+}
+
 struct Twin {
   Corners key;  // sorted corners
   Index triangle;
@@ -128,7 +139,9 @@ void remove_collinear_triangles(Draft& draft) {
     else
       add_cut(draft.triangles[t], draft.origins[t], groups, result);
   }
+  for (const Segment& segment : draft.segments) add_cut(segment, groups, result);
   draft.triangles = std::move(result.triangles);
+  draft.segments = std::move(result.segments);
   draft.origins = std::move(result.origins);
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
@@ -52,6 +54,11 @@ struct Draft {
   double planar_tolerance = 0;   ///< absolute
   double largest_deviation = 0;  ///< absolute
 
+  /// How far rounding alone may move points off a plane.
+  double rounding() const {
+    const auto reach = [](const Point& p) { return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}); };
+    return 32 * 2.2e-16 * std::max(reach(bounds.min), reach(bounds.max));
+  }
   const Point& corner(Index triangle, unsigned i) const { return points[triangles[triangle][i]]; }
   void add_triangle(const Corners& corners, const Origin& origin) {
     triangles.push_back(corners);

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plc/exact.h"
+
 namespace collarmesh::build {
 
 namespace {
@@ -86,14 +88,11 @@ class FacetTriangulator {
     return false;
   }
 
-  // Coordinates are rounded, so some units in their last place are always allowed.
   bool is_planar(const Facet& facet, const Plane& plane) {
     Index worst = none;
-    double deviation = 0, size = 0;
+    double deviation = 0;
     const auto measure = [&](Index p) {
-      const Point& at = draft_.points[p];
-      size = std::max({size, std::fabs(at.x), std::fabs(at.y), std::fabs(at.z)});
-      const double d = std::fabs(dot(plane.normal, at - plane.origin));
+      const double d = std::fabs(dot(plane.normal, draft_.points[p] - plane.origin));
       if (d <= deviation) return;
       deviation = d;
       worst = p;
@@ -101,7 +100,7 @@ class FacetTriangulator {
     for (const auto& loop : facet.loops) std::for_each(loop.begin(), loop.end(), measure);
     for (const auto& segment : facet.segments) std::for_each(segment.begin(), segment.end(), measure);
     std::for_each(facet.points.begin(), facet.points.end(), measure);
-    const double limit = std::max(draft_.planar_tolerance, 32 * 2.2e-16 * size);
+    const double limit = std::max(draft_.planar_tolerance, draft_.rounding());
     if (deviation <= limit) {
       draft_.largest_deviation = std::max(draft_.largest_deviation, deviation);
       return true;
@@ -121,6 +120,7 @@ class FacetTriangulator {
     const Vector& n = plane.normal;
     const double x = std::fabs(n.x), y = std::fabs(n.y), z = std::fabs(n.z);
     axis_ = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+    if (cut_convex_quadrangle(facet)) return;
     try {
       PlaneTriangulation plane_mesh;
       insert(facet, plane_mesh);
@@ -133,6 +133,23 @@ class FacetTriangulator {
                               text(where)),
                   facet.loops[0], where);
     }
+  }
+
+  // The shortcut for the commonest polygon.
+  bool cut_convex_quadrangle(const Facet& facet) {
+    if (facet.loops.size() > 1 || facet.loops[0].size() != 4 || !facet.segments.empty() || !facet.points.empty() ||
+        !facet.holes.empty())
+      return false;
+    const auto& q = facet.loops[0];
+    const auto at = [&](std::size_t i) -> const Point& { return draft_.points[q[i % 4]]; };
+    const int turn = planar_orientation(axis_, at(0), at(1), at(2));
+    if (turn == 0) return false;
+    for (std::size_t i = 1; i < 4; ++i)
+      if (planar_orientation(axis_, at(i), at(i + 1), at(i + 2)) != turn) return false;
+    const std::size_t from = squared_distance(at(0), at(2)) <= squared_distance(at(1), at(3)) ? 0 : 1;
+    for (const std::size_t i : {from, from + 2})
+      draft_.add_triangle({q[i % 4], q[(i + 1) % 4], q[(i + 2) % 4]}, {facet.tag, facet.soup, facet.number});
+    return true;
   }
 
   void insert(const Facet& facet, PlaneTriangulation& mesh) {

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "delaunay/predicates.h"
-
 namespace collarmesh::build {
 
 namespace {
@@ -40,7 +38,6 @@ class SegmentTest {
 struct Extent {
   Vector normal;
   double low = INFINITY, high = -INFINITY;
-  double deviation(double reference) const { return std::fmax(high - reference, reference - low); }
 };
 
 std::vector<Index> corners_of(const Draft& draft, const std::vector<Index>& triangles) {
@@ -55,14 +52,6 @@ double deviation_from(const Draft& draft, const std::vector<Index>& points, cons
   double largest = 0;
   for (const Index p : points) largest = std::fmax(largest, std::fabs(dot(normal, draft.points[p] - origin)));
   return largest;
-}
-
-// With tolerance 0 the points have to be exactly in the plane of the triangle.
-bool exactly_in_plane(const Draft& draft, const std::vector<Index>& points, Index triangle) {
-  return std::all_of(points.begin(), points.end(), [&](Index p) {
-    return predicates::orientation(draft.corner(triangle, 0), draft.corner(triangle, 1), draft.corner(triangle, 2),
-                                   draft.points[p]) == 0;
-  });
 }
 
 }  // namespace
@@ -136,8 +125,7 @@ void fit_plane(Draft& draft, const std::vector<Index>& triangles, Plc::Patch& pa
   const std::vector<Index> points = corners_of(draft, triangles);
   const auto accept = [&](const Point& origin, const Vector& normal) {
     const double deviation = deviation_from(draft, points, origin, normal);
-    if (draft.planar_tolerance > 0 ? deviation > draft.planar_tolerance : !exactly_in_plane(draft, points, largest))
-      return false;
+    if (deviation > std::max(draft.planar_tolerance, draft.rounding())) return false;
     patch.planar = true;
     patch.origin = origin;
     patch.normal = normal;
@@ -152,7 +140,7 @@ void fit_plane(Draft& draft, const std::vector<Index>& triangles, Plc::Patch& pa
     extent.low = std::fmin(extent.low, dot(extent.normal, draft.points[p] - base));
     extent.high = std::fmax(extent.high, dot(extent.normal, draft.points[p] - base));
   }
-  if (draft.planar_tolerance > 0) accept(base + 0.5 * (extent.low + extent.high) * extent.normal, extent.normal);
+  accept(base + 0.5 * (extent.low + extent.high) * extent.normal, extent.normal);
 }
 
 }  // namespace collarmesh::build

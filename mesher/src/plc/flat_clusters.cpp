@@ -56,11 +56,16 @@ class ClusterFinder {
         const auto sides = edges_.sides(edges_.edge_of(3 * t + i));
         if (sides.size() != 2) continue;
         const Index side = sides[0] / 3 == t ? sides[1] : sides[0];
-        if (result_.seed[side / 3] != none || !in_plane(side, seed)) continue;
+        if (result_.seed[side / 3] != none || !(same_facet(t, side / 3) || in_plane(side, seed))) continue;
         result_.seed[side / 3] = seed;
         stack_.push_back(side / 3);
       }
     }
+  }
+
+  // A polygon is one plane, whatever rounding has done to its corners.
+  bool same_facet(Index s, Index t) const {
+    return draft_.origins[s].soup == draft_.origins[t].soup && draft_.origins[s].facet == draft_.origins[t].facet;
   }
 
   // Does the triangle lie in the plane of the seed, seen from the same side?

@@ -1,0 +1,178 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "collarmesh/plc_builder.h"
+#include "support/plc_shapes.h"
+
+namespace collarmesh {
+namespace {
+
+using Kind = PlcFault::Kind;
+
+std::optional<PlcError> error_of(const std::vector<PolygonSoup>& soups, const PlcOptions& options = {}) {
+  try {
+    build_plc(soups, options);
+  } catch (const PlcError& error) {
+    return error;
+  }
+  return std::nullopt;
+}
+
+void expect_fault(const std::vector<PolygonSoup>& soups, Kind kind, const std::string& part_of_message = {}) {
+  const auto error = error_of(soups);
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->faults[0].kind, kind) << error->what();
+  EXPECT_NE(std::string(error->what()).find(part_of_message), std::string::npos) << error->what();
+}
+
+TEST(PlcFaults, PointThatIsNotFinite) {
+  PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  soup.name = "cube.off";
+  soup.points[3].y = NAN;
+  expect_fault({soup}, Kind::bad_point, "cube.off: point 3");
+}
+
+TEST(PlcFaults, IndexOutOfRange) {
+  PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  soup.add_facet(std::array<Index, 3>{0, 1, 8});
+  expect_fault({soup}, Kind::bad_point, "facet 6 uses point 8");
+  soup = testing::box({0, 0, 0}, {1, 1, 1});
+  soup.segments.push_back({0, 99, 0});
+  expect_fault({soup}, Kind::bad_point, "segment 0 uses point 99");
+}
+
+TEST(PlcFaults, NothingToMesh) {
+  expect_fault({}, Kind::empty);
+  expect_fault({PolygonSoup{}}, Kind::empty);
+}
+
+TEST(PlcFaults, WarpedPolygon) {
+  PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  soup.points[7].z = 1.01;
+  const auto error = error_of({soup});
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->faults.size(), 1U);
+  EXPECT_EQ(error->faults[0].kind, Kind::non_planar_polygon);
+  EXPECT_NE(error->faults[0].message.find("facet 1"), std::string::npos) << error->what();
+}
+
+TEST(PlcFaults, FacetWithoutArea) {
+  PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  soup.points.insert(soup.points.end(), {{2, 0, 0}, {3, 0, 0}, {4, 0, 0}, {5, 0, 0}});
+  soup.add_facet(std::array<Index, 4>{8, 9, 10, 11});
+  expect_fault({soup}, Kind::degenerate_facet, "facet 6");
+}
+
+TEST(PlcFaults, PolygonWithCrossingEdges) {
+  PolygonSoup soup;
+  soup.points = {{0, 0, 0}, {3, 3, 0}, {4, 0, 0}, {0, 2, 0}};
+  soup.add_facet(std::array<Index, 4>{0, 1, 2, 3});
+  expect_fault({soup}, Kind::intersection, "cross each other");
+}
+
+TEST(PlcFaults, MoebiusStrip) { expect_fault({testing::moebius_strip(20)}, Kind::not_orientable, "Moebius"); }
+
+TEST(PlcFaults, OpenBox) {
+  const auto error = error_of({testing::without_facet(testing::box({0, 0, 0}, {1, 1, 1}), 1)});
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->faults[0].kind, Kind::open_boundary);
+  EXPECT_NE(error->faults[0].message.find("4 border edges"), std::string::npos) << error->what();
+  EXPECT_DOUBLE_EQ(error->faults[0].where.z, 1);
+  PlcOptions options;
+  options.require_solid = false;
+  const PolygonSoup open = testing::without_facet(testing::box({0, 0, 0}, {1, 1, 1}), 1);
+  const Plc plc = build_plc({&open, 1}, options);
+  EXPECT_EQ(plc.regions.size(), 1U);
+  EXPECT_EQ(plc.patches.size(), 5U);
+}
+
+TEST(PlcFaults, CrossingFacets) {
+  const auto error = error_of({testing::box({0, 0, 0}, {1, 1, 1}), testing::box({0.5, 0.4, 0.3}, {2, 2, 2})});
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->faults[0].kind, Kind::intersection);
+  for (const PlcFault& fault : error->faults) {
+    const Point& p = fault.where;
+    EXPECT_TRUE(p.x <= 1 && p.y <= 1 && p.z <= 1 && p.x >= 0.5 && p.y >= 0.4 && p.z >= 0.3);
+  }
+}
+
+TEST(PlcFaults, OverlappingFacets) {
+  expect_fault({testing::box({0, 0, 0}, {1, 1, 1}), testing::box({1, 0.25, 0.25}, {2, 0.75, 0.75})}, Kind::intersection);
+}
+
+TEST(PlcFaults, FoldedFacets) {
+  PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  soup.points.insert(soup.points.end(), {{3, 0, 0}, {4, 0, 0}, {3.2, 1, 0}, {3.7, 1, 0}});
+  soup.add_facet(std::array<Index, 3>{8, 9, 10});
+  soup.add_facet(std::array<Index, 3>{9, 8, 11});
+  expect_fault({soup}, Kind::intersection);
+}
+
+TEST(PlcFaults, CornerOnAnotherEdge) {
+  // The upper side is cut in two, its neighbours are not.
+  PolygonSoup soup = testing::without_facet(testing::box({0, 0, 0}, {1, 1, 1}), 1);
+  soup.points.push_back({0.5, 0, 1});
+  soup.add_facet(std::array<Index, 3>{4, 8, 6});
+  soup.add_facet(std::array<Index, 4>{8, 5, 7, 6});
+  expect_fault({soup}, Kind::intersection, "touch without a common corner at (0.5, 0, 1)");
+}
+
+TEST(PlcFaults, LooseSegmentThroughAFacet) {
+  PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  soup.points.insert(soup.points.end(), {{0.3, 0.4, -1}, {0.3, 0.4, 0.5}});
+  soup.segments.push_back({8, 9, 0});
+  expect_fault({soup}, Kind::intersection, "(0.3, 0.4, 0)");
+}
+
+TEST(PlcFaults, LooseSegmentsThatCross) {
+  PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  soup.points.insert(soup.points.end(), {{0.2, 0.2, 0.5}, {0.8, 0.8, 0.5}, {0.2, 0.8, 0.5}, {0.8, 0.2, 0.5}});
+  soup.segments = {{8, 9, 0}, {10, 11, 0}};
+  expect_fault({soup}, Kind::intersection, "segment");
+}
+
+TEST(PlcFaults, LooseSegmentAlongAnEdge) {
+  PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  soup.points.push_back({0.5, 0, 0});
+  soup.segments.push_back({0, 8, 0});
+  expect_fault({soup}, Kind::intersection);
+}
+
+TEST(PlcFaults, LoosePointOnAFacet) {
+  PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  soup.points.push_back({0.25, 0.5, 1});
+  soup.add_facet(std::array<Index, 1>{8});
+  expect_fault({soup}, Kind::intersection, "(0.25, 0.5, 1)");
+}
+
+TEST(PlcFaults, ManyFaultsAreCountedAndTheFirstListed) {
+  PolygonSoup soup;
+  for (int i = 0; i < 40; ++i) {
+    const auto first = static_cast<Index>(soup.points.size());
+    soup.points.insert(soup.points.end(), {{std::cos(i), std::sin(i), 0}, {-std::cos(i), -std::sin(i), 0}, {0, 0.001 * i, 1}});
+    soup.add_facet(std::array<Index, 3>{first, first + 1, first + 2});
+  }
+  const auto error = error_of({soup});
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->faults.size(), 50U);
+  EXPECT_NE(std::string(error->what()).find("other faults"), std::string::npos) << error->what();
+}
+
+TEST(PlcFaults, OptionsOutOfRange) {
+  const PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  PlcOptions options;
+  options.feature_angle = -1;
+  EXPECT_THROW(build_plc({&soup, 1}, options), OptionError);
+  options = {};
+  options.weld = 1;
+  EXPECT_THROW(build_plc({&soup, 1}, options), OptionError);
+  options = {};
+  options.planar_tolerance = NAN;
+  EXPECT_THROW(build_plc({&soup, 1}, options), OptionError);
+}
+
+}  // namespace
+}  // namespace collarmesh

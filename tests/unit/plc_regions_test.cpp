@@ -1,0 +1,208 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "collarmesh/plc_builder.h"
+#include "support/plc_shapes.h"
+
+namespace collarmesh {
+namespace {
+
+using testing::box;
+using testing::findings;
+using testing::joined;
+using testing::reversed;
+
+Plc build(const std::vector<PolygonSoup>& soups, const PlcOptions& options = {}) {
+  Plc plc = build_plc(soups, options);
+  EXPECT_EQ(findings(plc), std::vector<std::string>{});
+  return plc;
+}
+
+std::vector<double> volumes(const Plc& plc) {
+  std::vector<double> result;
+  for (std::size_t r = 1; r < plc.regions.size(); ++r) result.push_back(plc.regions[r].volume);
+  return result;
+}
+
+void expect_volumes(const Plc& plc, const std::vector<double>& expected) {
+  const auto actual = volumes(plc);
+  ASSERT_EQ(actual.size(), expected.size());
+  for (std::size_t i = 0; i < actual.size(); ++i) EXPECT_NEAR(actual[i], expected[i], 1e-12 * expected[i]);
+}
+
+TEST(PlcRegions, TwoBoxesInTwoSoupsShareTheirFace) {
+  const Plc plc = build({box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {3, 1, 1})});
+  expect_volumes(plc, {1, 2});
+  EXPECT_EQ(plc.patches.size(), 11U);
+  EXPECT_EQ(std::count_if(plc.patches.begin(), plc.patches.end(),
+                          [](const auto& p) { return p.regions == std::array<Index, 2>{1, 2}; }),
+            1);
+}
+
+TEST(PlcRegions, InterfaceWithDifferentTriangles) {
+  const Plc plc = build({testing::subdivided_box({0, 0, 0}, {1, 1, 1}, 1), box({1, 0, 0}, {3, 1, 1}),
+                         testing::shuffled(testing::subdivided_box({0, 0, 1}, {1, 1, 4}, 1), 5, false)});
+  expect_volumes(plc, {1, 2, 3});
+  EXPECT_EQ(plc.patches.size(), 16U);
+}
+
+TEST(PlcRegions, InterfaceOfOtherDiagonal) {
+  PolygonSoup first = box({0, 0, 0}, {1, 1, 1});
+  PolygonSoup second;
+  second.points = box({1, 0, 0}, {2, 1, 1}).points;
+  for (const auto& t : {std::array<Index, 3>{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                        {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}})
+    second.add_facet(t);
+  expect_volumes(build({first, second}), {1, 1});
+  std::swap(first, second);
+  expect_volumes(build({first, second}), {1, 1});
+  // The mirrored diagonal.
+  PolygonSoup third;
+  third.points = second.points;
+  for (const auto& t : {std::array<Index, 3>{0, 2, 1}, {2, 3, 1}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                        {2, 6, 3}, {6, 7, 3}, {0, 4, 2}, {4, 6, 2}, {1, 3, 5}, {3, 7, 5}})
+    third.add_facet(t);
+  expect_volumes(build({third, first}), {1, 1});
+}
+
+TEST(PlcRegions, NestedInwardShellIsACavity) {
+  expect_volumes(build({joined({box({0, 0, 0}, {3, 3, 3}), reversed(box({1, 1, 1}, {2, 2, 2}))})}), {26});
+}
+
+TEST(PlcRegions, NestedOutwardShellIsARegion) {
+  expect_volumes(build({joined({box({0, 0, 0}, {3, 3, 3}), box({1, 1, 1}, {2, 2, 2})})}), {26, 1});
+  expect_volumes(build({box({1, 1, 1}, {2, 2, 2}), box({0, 0, 0}, {3, 3, 3})}), {1, 26});
+}
+
+TEST(PlcRegions, SolidInACavity) {
+  const Plc plc = build({joined({box({0, 0, 0}, {5, 5, 5}), reversed(box({1, 1, 1}, {4, 4, 4})), box({2, 2, 2}, {3, 3, 3})})});
+  expect_volumes(plc, {125 - 27, 1});
+}
+
+TEST(PlcRegions, InsertFillsACavityExactly) {
+  const PolygonSoup block = joined({box({0, 0, 0}, {3, 3, 3}), reversed(box({1, 1, 1}, {2, 2, 2}))});
+  expect_volumes(build({block, box({1, 1, 1}, {2, 2, 2})}), {26, 1});
+}
+
+TEST(PlcRegions, CavityThatTouchesTheWallInAnEdge) {
+  // The cavity's edge lies on the box' edge: a non-manifold edge.
+  PolygonSoup soup;
+  soup.points = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2}, {0, 2, 2},
+                 {0.5, 1, 0.5}, {0.5, 1, 1.5}, {1.5, 1, 0.5}, {1.5, 1, 1.5}, {1, 0, 0.5}, {1, 0, 1.5}};
+  const auto facet = [&](std::vector<Index> corners) { soup.add_facet(corners); };
+  facet({0, 3, 2, 1});
+  facet({4, 5, 6, 7});
+  facet({1, 2, 6, 5});
+  facet({3, 7, 6, 2});
+  facet({0, 4, 7, 3});
+  // The front wall y = 0 with the segment 12-13 as a slit.
+  facet({0, 1, 12});
+  facet({1, 5, 13, 12});
+  facet({5, 4, 13});
+  facet({4, 0, 12, 13});
+  // A triangular prism behind it, normals inwards (away from the solid).
+  facet({10, 8, 12});
+  facet({9, 11, 13});
+  facet({8, 9, 13, 12});
+  facet({10, 11, 9, 8});
+  facet({12, 13, 11, 10});
+  const double cavity = 0.5;
+  expect_volumes(build({soup}), {8 - cavity});
+}
+
+TEST(PlcRegions, InwardShellAloneIsASolid) {
+  const Plc plc = build({reversed(box({0, 0, 0}, {1, 1, 1}))});
+  expect_volumes(plc, {1});
+  for (const auto& patch : plc.patches) EXPECT_EQ(patch.regions, (std::array<Index, 2>{1, 0}));
+}
+
+TEST(PlcRegions, MixedUpOrientationGoesByNesting) {
+  const PolygonSoup soup = joined({testing::shuffled(box({0, 0, 0}, {5, 5, 5}), 1, true),
+                                   testing::shuffled(box({1, 1, 1}, {4, 4, 4}), 2, true),
+                                   testing::shuffled(box({2, 2, 2}, {3, 3, 3}), 4, true)});
+  expect_volumes(build({soup}), {125 - 27, 1});
+}
+
+TEST(PlcRegions, BoxesThatTouchInAnEdge) {
+  expect_volumes(build({joined({box({0, 0, 0}, {1, 1, 1}), box({1, 1, 0}, {2, 2, 1})})}), {1, 1});
+}
+
+TEST(PlcRegions, InternalFacetSeparatesTwoRegions) {
+  PolygonSoup soup = box({0, 0, 0}, {1, 1, 1});
+  soup.add_facet(std::array<Index, 4>{0, 1, 7, 6}, 5);
+  const Plc plc = build({soup});
+  expect_volumes(plc, {0.5, 0.5});
+}
+
+TEST(PlcRegions, DanglingFacetSeparatesNothing) {
+  PolygonSoup soup = testing::subdivided_box({0, 0, 0}, {1, 1, 1}, 2);
+  const auto point_at = [&](const Point& p) {
+    return static_cast<Index>(std::find(soup.points.begin(), soup.points.end(), p) - soup.points.begin());
+  };
+  const std::array<Index, 3> fin{point_at({0.5, 0.5, 0}), point_at({0.5, 1, 0}), static_cast<Index>(soup.points.size())};
+  soup.points.push_back({0.5, 0.7, 0.6});
+  soup.add_facet(fin);
+  const Plc plc = build({soup});
+  expect_volumes(plc, {1});
+  EXPECT_EQ(plc.patches.size(), 7U);
+  EXPECT_EQ(plc.patches.back().regions, (std::array<Index, 2>{1, 1}));
+}
+
+TEST(PlcRegions, OpenSheetBesideASolid) {
+  PolygonSoup sheet;
+  sheet.points = {{3, 0, 0}, {4, 0, 0}, {4, 1, 0}};
+  sheet.add_facet(std::array<Index, 3>{0, 1, 2});
+  const Plc plc = build({box({0, 0, 0}, {1, 1, 1}), sheet});
+  expect_volumes(plc, {1});
+  EXPECT_EQ(plc.patches.back().regions, (std::array<Index, 2>{0, 0}));
+}
+
+TEST(PlcRegions, HoleAndRegionPointsDecideForAComplex) {
+  PolygonSoup soup = joined({box({0, 0, 0}, {5, 5, 5}), box({1, 1, 1}, {2, 2, 2}), box({3, 3, 3}, {4, 4, 4})});
+  soup.name = "parts.poly";
+  expect_volumes(build({soup}), {123, 1, 1});
+  soup.hole_points = {{1.5, 1.5, 1.5}};
+  soup.region_points = {{{3.5, 3.5, 3.5}, 70, 0.25}, {{0.5, 0.5, 0.5}, 60, 0}, {{9, 9, 9}, 50, 0}};
+  const Plc plc = build({soup});
+  expect_volumes(plc, {123, 1});
+  EXPECT_EQ(plc.regions[1].tag, 60);
+  EXPECT_EQ(plc.regions[2].tag, 70);
+  EXPECT_EQ(plc.regions[2].size, 0.25);
+}
+
+TEST(PlcRegions, PointOnAFacetIsAFault) {
+  PolygonSoup soup = box({0, 0, 0}, {1, 1, 1});
+  soup.hole_points = {{0.5, 0.5, 0}};
+  EXPECT_THROW(build_plc({&soup, 1}), PlcError);
+}
+
+TEST(PlcRegions, ManyNestedShells) {
+  std::vector<PolygonSoup> shells;
+  double expected = 0;
+  for (int i = 1; i <= 20; ++i) {
+    const PolygonSoup shell = testing::sphere(3, i, {0.1 * i, 0, 0});
+    shells.push_back(i % 2 == 0 ? shell : reversed(shell));
+    const PolygonSoup alone[] = {shell};
+    expected += (i % 2 == 0 ? 1 : -1) * build_plc(alone).regions[1].volume;
+  }
+  const Plc plc = build({joined(shells)});
+  EXPECT_EQ(plc.regions.size(), 11U);
+  double sum = 0;
+  for (const double v : volumes(plc)) sum += v;
+  EXPECT_NEAR(sum, expected, 1e-9 * expected);
+}
+
+TEST(PlcRegions, NamesComeFromTheirSoups) {
+  PolygonSoup first = box({0, 0, 0}, {1, 1, 1}), second = box({2, 0, 0}, {3, 1, 1});
+  first.name = "first.off";
+  second.name = "second.off";
+  const Plc plc = build({first, second});
+  EXPECT_EQ(plc.regions[1].name, "first.off");
+  EXPECT_EQ(plc.regions[2].name, "second.off");
+  EXPECT_EQ(plc.patches.back().file, 1U);
+}
+
+}  // namespace
+}  // namespace collarmesh
