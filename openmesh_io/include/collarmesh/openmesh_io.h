@@ -1,0 +1,3 @@
+#pragma once
+
+#include "collarmesh/openmesh_io/read_om.h"

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+/// OpenMesh 9's reader of .om files takes counts and indices as they are: a wrong one makes it
+/// allocate gigabytes or write outside its arrays. So a file's layout is checked before OpenMesh sees it.
+namespace collarmesh::openmesh_io {
+
+struct OmLayout {
+  std::uint32_t vertices = 0, faces = 0, edges = 0;
+  /// The header and the chunks of positions, topology and deleted faces: what is needed and safe to read.
+  /// Custom properties and what follows them are left out.
+  std::string safe_bytes;
+};
+
+/// Throws ReadError "PATH: byte N: ...".
+OmLayout check_om_layout(const std::string& path, std::string_view bytes);
+
+}  // namespace collarmesh::openmesh_io
