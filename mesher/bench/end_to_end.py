@@ -1,0 +1,192 @@
+#!/usr/bin/env python3
+"""collarmesh beside TetGen and Gmsh HXT at the same numbers of tetrahedra, in one run.
+
+For the unit box and five parts of a corpus: each mesher's size is searched until it makes the wanted
+number of tets (within 10%), then the programs run in turn, some rounds, each pinned to one core. Prints
+Markdown tables of medians. Sizes found are kept in the folder for temporary files.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import statistics
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from inputs import Surface, box, read_surface
+from meshers import Collarmesh, GmshHxt, MeshRun, TetGen, triangulation_seconds
+from processes import ProgramFailed, pin_to_core
+from tables import exponent, machine, seconds, si, table, tets_text
+from tuning import SizeCache, size_for, tolerance
+
+# Closed, without acute creases, with sharp edges or smooth; all three meshers can do them.
+default_parts = ["joint.off", "spool.off", "plate_holes.STL", "handle.off", "itemb.off"]
+
+
+@dataclass
+class Cell:
+    """One mesher on one input at one count: medians over the rounds, or why there are none."""
+    runs: list[MeshRun] = field(default_factory=list)
+    triangulation: list[float] = field(default_factory=list)
+    failure: str = ""
+
+    def median(self, member: str) -> float:
+        return statistics.median(getattr(r, member) for r in self.runs)
+
+    @property
+    def tets(self) -> int:
+        return self.runs[-1].tets
+
+
+def measure(meshers, surface: Surface, target: int, options, cache: SizeCache) -> dict[str, Cell]:
+    """One table row each: search the sizes, then run in turn."""
+    cells = {m.name: Cell() for m in meshers}
+    sizes = {}
+    for mesher in meshers:
+        try:
+            folder = work_folder(cache, mesher, surface)
+            mesher.prepare(surface, folder)
+            sizes[mesher.name] = size_for(mesher, surface, target, folder, cache)
+        except ProgramFailed as failure:
+            cells[mesher.name].failure = str(failure)
+    for _ in range(options.rounds):
+        for mesher in meshers:
+            cell = cells[mesher.name]
+            if cell.failure:
+                continue
+            folder = work_folder(cache, mesher, surface)
+            try:
+                cell.runs.append(mesher.mesh(surface, sizes[mesher.name], folder))
+                if isinstance(mesher, Collarmesh):
+                    program = options.build / "bin" / "triangulate_points"
+                    cell.triangulation.append(
+                        triangulation_seconds(program, folder / "mesh.vtu", options.time_limit))
+            except ProgramFailed as failure:
+                cell.failure = str(failure)
+    return cells
+
+
+def work_folder(cache: SizeCache, mesher, surface: Surface) -> Path:
+    folder = cache.folder / f"{surface.name}_{mesher.name.replace(' ', '_')}"
+    folder.mkdir(exist_ok=True)
+    return folder
+
+
+def main_rows(surface: Surface, target: int, cells: dict[str, Cell]) -> list[list[str]]:
+    rows = []
+    for name, cell in cells.items():
+        if cell.failure:
+            rows.append([surface.name, si(target), name, cell.failure, *[""] * 6])
+            continue
+        mark = "" if abs(cell.tets / target - 1) <= tolerance else " *"
+        refinement = cell.median("refinement_cpu")
+        structures = cell.median("structure_bytes") / cell.tets
+        rows.append([surface.name, si(target), name, tets_text(cell.runs[-1]) + mark,
+                     seconds(cell.median("cpu")), si(cell.tets / cell.median("cpu")),
+                     seconds(refinement), si(cell.tets / refinement),
+                     f"{cell.median('peak_bytes') / cell.tets:.0f}",
+                     f"{structures:.0f}" if structures > 0 else ""])
+    return rows
+
+
+main_header = ["input", "target", "mesher", "tets", "CPU s", "tets/s", "refinement s", "refinement tets/s",
+               "peak bytes/tet", "structure bytes/tet"]
+
+
+def ratio_row(surface: Surface, target: int, cells: dict[str, Cell]) -> list[str]:
+    """Our refinement's speed over the peers', our time over bare triangulation."""
+    def speed(name: str) -> float | None:
+        cell = cells.get(name)
+        return None if cell is None or cell.failure else cell.tets / cell.median("refinement_cpu")
+
+    ours = speed("collarmesh")
+    if ours is None:
+        return [surface.name, si(target), "", "", "", ""]
+    text = [f"{ours / peer:.2f}" if peer else "" for peer in (speed("TetGen"), speed("Gmsh HXT"))]
+    cell = cells["collarmesh"]
+    triangulation = statistics.median(cell.triangulation)
+    stages = cell.runs[-1].stages or {}
+    rest = ", ".join(f"{stage} {seconds(t)}" for stage, t in stages.items() if stage != "total")
+    return [surface.name, si(target), *text,
+            f"{cell.median('refinement_cpu') / triangulation:.2f}", rest]
+
+
+ratio_header = ["input", "target", "speed / TetGen's", "speed / HXT's", "time / bare triangulation",
+                "stages, s"]
+
+
+def slope(small: Cell, large: Cell) -> float:
+    return exponent(small.tets, small.median("refinement_cpu"), large.tets, large.median("refinement_cpu"))
+
+
+def exponent_rows(surface: Surface, results: dict[int, dict[str, Cell]]) -> list[list[str]]:
+    rows = []
+    targets = sorted(results)
+    for small, large in zip(targets, targets[1:]):
+        row = [surface.name, f"{si(small)} to {si(large)}"]
+        for name in results[small]:
+            a, b = results[small][name], results[large][name]
+            usable = not a.failure and not b.failure and b.tets > 2 * a.tets
+            row.append(f"{slope(a, b):.2f}" if usable else "")
+        rows.append(row)
+    return rows
+
+
+def count(text: str) -> int:
+    return int(float(text.lower().replace("k", "e3").replace("m", "e6")))
+
+
+def parse() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    root = Path(__file__).resolve().parents[2]
+    parser.add_argument("--build", type=Path, default=root / "build" / "bench",
+                        help="build folder configured with COLLARMESH_BENCH (default: build/bench)")
+    parser.add_argument("--corpus", type=Path, default=os.environ.get("COLLARMESH_CORPUS"),
+                        help="folder of the parts (default: $COLLARMESH_CORPUS); without one, the box alone")
+    parser.add_argument("--parts", nargs="*", default=default_parts)
+    parser.add_argument("--targets", nargs="*", type=count, default=[10_000, 100_000, 1_000_000],
+                        help="numbers of tets, such as 10k 1M")
+    parser.add_argument("--large", action="store_true", help="also 5M tets")
+    parser.add_argument("--no-box", action="store_true")
+    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--time-limit", type=float, default=600, help="seconds for one run of one program")
+    parser.add_argument("--core", type=int, help="the core to run on (default: the last one)")
+    options = parser.parse_args()
+    if options.large:
+        options.targets = sorted({*options.targets, 5_000_000})
+    return options
+
+
+def main() -> int:
+    options = parse()
+    about = machine(options.build)
+    pin_to_core(options.core)
+    meshers = [Collarmesh(options.build / "bin" / "collarmesh", options.time_limit),
+               TetGen(options.time_limit), GmshHxt(options.time_limit)]
+    surfaces = [] if options.no_box else [box()]
+    if options.corpus:
+        surfaces += [read_surface(Path(options.corpus) / part) for part in options.parts]
+    cache = SizeCache()
+    rows, ratios, exponents = [], [], []
+    for surface in surfaces:
+        results = {}
+        for target in options.targets:
+            print(f"{surface.name}, {si(target)} tets ...", file=sys.stderr, flush=True)
+            results[target] = measure(meshers, surface, target, options, cache)
+            rows += main_rows(surface, target, results[target])
+            ratios.append(ratio_row(surface, target, results[target]))
+        exponents += exponent_rows(surface, results)
+    print(about + ". " + ", ".join(f"{m.name} {m.version()}" for m in meshers)
+          + f". Medians of {options.rounds}. * is further than {tolerance:.0%} from the target; "
+          "(7) is exit code 7: meshed, but a guarantee is missed.\n")
+    print(table(main_header, rows) + "\n")
+    print(table(ratio_header, ratios) + "\n")
+    print(table(["input", "exponent of refinement time in tets", *[m.name for m in meshers]], exponents))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,137 @@
+"""collarmesh and its peers behind one interface: a surface and a size in, measures out.
+
+The size parameter is a target edge length for all; where a mesher wants a volume it is that of the
+regular tetrahedron with this edge.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import shutil
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+from inputs import Surface
+from processes import Measured, ProgramFailed, run
+
+
+@dataclass
+class MeshRun:
+    tets: int
+    cpu: float                 # seconds of the whole program
+    refinement_cpu: float      # seconds of what the mesher calls refinement
+    peak_bytes: int            # of the whole program
+    structure_bytes: int = 0   # what the mesher says its structures took; 0: says nothing
+    stages: dict | None = None
+    guarantee_missed: bool = False
+
+
+def _number(pattern: str, text: str) -> float:
+    match = re.search(pattern, text)
+    if match is None:
+        raise ProgramFailed(f"nothing like '{pattern}' in the output")
+    return float(match.group(1))
+
+
+class Collarmesh:
+    name = "collarmesh"
+    guarantee_missed = 7   # exit code: there is a mesh, but it is not certified
+
+    def __init__(self, program: Path, time_limit: float, arguments: list[str] | None = None):
+        self.program, self.time_limit, self.arguments = program, time_limit, arguments or []
+
+    def version(self) -> str:
+        printed = subprocess.run([self.program, "--version"], capture_output=True, text=True)
+        return printed.stdout.strip().replace("collarmesh ", "")
+
+    def signature(self) -> str:
+        """Changes when the meshes may change."""
+        state = self.program.stat()
+        return f"{state.st_size}-{state.st_mtime_ns} {' '.join(self.arguments)}"
+
+    def prepare(self, surface: Surface, folder: Path) -> None:
+        surface.write(folder / "input")
+
+    def mesh(self, surface: Surface, size: float, folder: Path) -> MeshRun:
+        command = [str(self.program), f"input{surface.suffix}", "-o", "mesh.vtu", "--size", f"{size:.17g}",
+                   "--report", "report.json", "--progress", "none", "-q", *self.arguments]
+        measured = run(command, folder, self.time_limit, accepted=(0, self.guarantee_missed))
+        report = json.loads((folder / "report.json").read_text())
+        # The report has wall seconds; the share of the core we had turns them into CPU seconds.
+        share = min(1.0, measured.cpu / measured.wall)
+        stages = {stage: seconds * share for stage, seconds in report["seconds"].items()}
+        return MeshRun(report["mesh"]["tets"], measured.cpu, stages["refine"], measured.peak_bytes,
+                       report["statistics"]["peak_bytes"], stages,
+                       measured.exit_code == self.guarantee_missed)
+
+
+class TetGen:
+    name = "TetGen"
+
+    def __init__(self, time_limit: float, program: str = "tetgen", quality: str = "1.414"):
+        self.program, self.time_limit, self.quality = program, time_limit, quality
+
+    def version(self) -> str:
+        return _debian_version("tetgen")
+
+    signature = version
+
+    def prepare(self, surface: Surface, folder: Path) -> None:
+        surface.write(folder / "input")
+
+    def mesh(self, surface: Surface, size: float, folder: Path) -> MeshRun:
+        limit = "" if math.isinf(size) else f"a{size ** 3 / (6 * math.sqrt(2)):.20f}"
+        measured = run([self.program, f"-pq{self.quality}{limit}", f"input{surface.suffix}"], folder,
+                       self.time_limit)
+        return MeshRun(int(_number(r"Mesh tetrahedra: +(\d+)", measured.output)), measured.cpu,
+                       _number(r"Refinement seconds: +([\d.e+-]+)", measured.output), measured.peak_bytes)
+
+
+class GmshHxt:
+    name = "Gmsh HXT"
+
+    def __init__(self, time_limit: float, program: str = "gmsh"):
+        self.program, self.time_limit = program, time_limit
+
+    def version(self) -> str:
+        return _debian_version("gmsh")
+
+    signature = version
+
+    def prepare(self, surface: Surface, folder: Path) -> None:
+        if surface.name != "box":
+            surface.write_stl(folder / "input.stl")
+
+    def mesh(self, surface: Surface, size: float, folder: Path) -> MeshRun:
+        (folder / "input.geo").write_text(self._model(surface) + f"Mesh.MeshSizeMin = {size:.17g};\n"
+                                          f"Mesh.MeshSizeMax = {size:.17g};\n")
+        measured = run([self.program, "-3", "-algo", "hxt", "-nt", "1", "input.geo", "-bin", "-o",
+                        "mesh.msh"], folder, self.time_limit)
+        if "Error" in measured.output:
+            raise ProgramFailed(re.search(r"Error +: (.*)", measured.output).group(1))
+        return MeshRun(int(_number(r"Final tet. mesh contains (\d+) tetrahedra", measured.output)),
+                       measured.cpu, _number(r"Done meshing 3D \(.*CPU ([\d.e+-]+)s", measured.output),
+                       measured.peak_bytes)
+
+    @staticmethod
+    def _model(surface: Surface) -> str:
+        if surface.name == "box":
+            return 'SetFactory("OpenCASCADE");\nBox(1) = {0, 0, 0, 1, 1, 1};\n'
+        return ('Merge "input.stl";\nClassifySurfaces{30*Pi/180, 1, 1, Pi};\nCreateGeometry;\n'
+                "Surface Loop(1) = Surface{:};\nVolume(1) = {1};\n")
+
+
+def _debian_version(package: str) -> str:
+    if shutil.which("dpkg-query") is None:
+        return "unknown"
+    query = subprocess.run(["dpkg-query", "-W", "-f", "${Version}", package], capture_output=True, text=True)
+    return query.stdout.strip() or "unknown"
+
+
+def triangulation_seconds(program: Path, mesh: Path, time_limit: float) -> float:
+    """CPU seconds of CGAL's Delaunay triangulation of a mesh' vertices."""
+    measured: Measured = run([str(program), str(mesh)], mesh.parent, time_limit)
+    return _number(r"([\d.e+-]+) s", measured.output)

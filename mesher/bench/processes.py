@@ -1,0 +1,52 @@
+"""Run a program and measure it: CPU seconds, wall seconds, peak memory."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import threading
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+
+class ProgramFailed(Exception):
+    """A program ended with an error, was killed or spent its time."""
+
+
+@dataclass
+class Measured:
+    cpu: float         # seconds, user + system
+    wall: float        # seconds
+    peak_bytes: int    # largest resident set
+    output: str        # standard output and standard error, mixed
+    exit_code: int
+
+
+def pin_to_core(core: int | None) -> None:
+    """This process and all it starts run on one core: the last one we may use unless named."""
+    allowed = sorted(os.sched_getaffinity(0))
+    os.sched_setaffinity(0, {allowed[-1] if core is None else core})
+
+
+def run(command: list[str], folder: Path, time_limit: float, accepted: tuple[int, ...] = (0,)) -> Measured:
+    """Raises ProgramFailed with the last lines of output unless the exit code is an accepted one."""
+    log = folder / "output.txt"
+    begin = time.perf_counter()
+    with open(log, "wb") as out:
+        process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=out,
+                                   stderr=subprocess.STDOUT)
+    timer = threading.Timer(time_limit, process.kill)
+    timer.start()
+    _, status, usage = os.wait4(process.pid, 0)
+    timer.cancel()
+    wall = time.perf_counter() - begin
+    process.returncode = os.waitstatus_to_exitcode(status)
+    output = log.read_text(errors="replace")
+    cpu = usage.ru_utime + usage.ru_stime
+    if process.returncode in accepted:
+        return Measured(cpu, wall, usage.ru_maxrss * 1024, output, process.returncode)
+    if wall >= time_limit:
+        raise ProgramFailed(f"not done in {time_limit:g} s")
+    tail = " / ".join(output.strip().splitlines()[-3:])
+    raise ProgramFailed(f"exit code {process.returncode}: {tail}")

@@ -1,0 +1,45 @@
+// Complex and refinement alone, without certificate and output: what profile.sh looks at.
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <span>
+
+#include "collarmesh/error.h"
+#include "collarmesh/io/soup_io.h"
+#include "collarmesh/mesher.h"
+#include "collarmesh/plc_builder.h"
+
+namespace {
+
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+void refine(const char* path, double size) {
+  const collarmesh::PolygonSoup soup = collarmesh::io::read_soup(path);
+  const collarmesh::Plc plc = collarmesh::build_plc(std::span(&soup, 1));
+  const double begin = cpu_seconds();
+  collarmesh::MeshOptions options;
+  options.size = size;
+  const collarmesh::MeshResult result = collarmesh::generate(plc, options);
+  const double seconds = cpu_seconds() - begin;
+  const auto tets = static_cast<double>(result.mesh.tets.size());
+  std::printf(
+      "complex %.3f s, refinement %.3f s, %.0f tets, %.0f tets/s, %.0f bytes/tet, %zu exact predicates\n",
+      begin, seconds, tets, tets / seconds, static_cast<double>(result.statistics.peak_bytes) / tets,
+      result.statistics.exact_predicates);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: refine INPUT SIZE\n");
+    return 2;
+  }
+  try {
+    refine(argv[1], std::atof(argv[2]));
+  } catch (const collarmesh::Error& error) {
+    std::fprintf(stderr, "refine: %s\n", error.what());
+    return 3;
+  }
+  return 0;
+}
