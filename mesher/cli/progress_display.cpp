@@ -38,7 +38,7 @@ std::string progress_line(const std::string& phase, double fraction, std::size_t
   std::string line = fmt::format("[{}{}] {:3.0f}%  {}", std::string(filled, '#'),
                                  std::string(bar_width - filled, '.'), 100 * fraction, phase);
   if (tets > 0) line += fmt::format("  {} tets", rounded_count(tets));
-  if (seconds > 1 && fraction > 0.02)
+  if (seconds > 0.5 && fraction > 0.02)
     line += fmt::format("  {} left", rounded_time(seconds * (1 - fraction) / fraction));
   return line.substr(0, width);
 }

@@ -286,7 +286,7 @@ class Progress(ProgramTest):
         run = self.run_program(self.box, "-o", self.out, "--size", "0.05", "--progress", "json", "-q")
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertEqual(run.stderr, "", "-q silences progress too")
-        run = self.run_program(self.box, "-o", self.out, "--size", "0.03", "--progress", "json")
+        run = self.run_program(self.box, "-o", self.out, "--size", "0.04", "--progress", "json")
         lines = [json.loads(line) for line in run.stderr.splitlines() if line.startswith("{")]
         self.assertTrue(all(set(line) == {"phase", "fraction", "vertices", "tets", "seconds"} for line in lines))
         fractions = [line["fraction"] for line in lines]
@@ -309,7 +309,7 @@ class Progress(ProgramTest):
 
     def test_bar_on_a_terminal(self):
         ours, theirs = pty.openpty()
-        process = subprocess.Popen([PROGRAM, self.box, "-o", self.out, "--size", "0.015"], cwd=self.folder, stderr=theirs)
+        process = subprocess.Popen([PROGRAM, self.box, "-o", self.out, "--size", "0.025"], cwd=self.folder, stderr=theirs)
         os.close(theirs)
         shown = b""
         while True:

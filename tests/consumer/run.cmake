@@ -12,4 +12,7 @@ must(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G ${GENERATOR} -D CMAKE_BUI
   -D CMAKE_CXX_FLAGS=${CXX_FLAGS} -D CMAKE_PREFIX_PATH=${WORK}/prefix)
 must(${CMAKE_COMMAND} --build ${WORK}/build)
 must(${WORK}/build/consumer ${MODEL} ${WORK}/box.vtu)
+if(EXISTS ${WORK}/build/openmesh_consumer)
+  must(${WORK}/build/openmesh_consumer)
+endif()
 must(${WORK}/prefix/bin/collarmesh check ${WORK}/box.vtu --against ${MODEL})

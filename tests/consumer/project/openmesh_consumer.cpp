@@ -1,0 +1,12 @@
+#include <collarmesh/error.h>
+#include <collarmesh/openmesh_io.h>
+
+// A file that is not there is an error that names it.
+int main() {
+  try {
+    collarmesh::openmesh_io::read_om("missing.om");
+  } catch (const collarmesh::ReadError&) {
+    return 0;
+  }
+  return 1;
+}
