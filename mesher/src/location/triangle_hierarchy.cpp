@@ -9,15 +9,6 @@ namespace collarmesh {
 
 namespace {
 
-double squared_distance_to_box(const Point& p, const Box& box) {
-  double sum = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double d = std::max({box.min[axis] - p[axis], 0.0, p[axis] - box.max[axis]});
-    sum += d * d;
-  }
-  return sum;
-}
-
 double squared_distance_to_segment(const Point& p, const Point& a, const Point& b) {
   const Vector u = b - a;
   const double length = squared_norm(u);
@@ -78,6 +69,15 @@ int crossing_direction(const Point& p, const Point& q, const std::array<Point, 3
 }
 
 }  // namespace
+
+double squared_distance_to_box(const Point& p, const Box& box) {
+  double sum = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double d = std::max({box.min[axis] - p[axis], 0.0, p[axis] - box.max[axis]});
+    sum += d * d;
+  }
+  return sum;
+}
 
 double squared_distance_to_triangle(const Point& p, const Point& a, const Point& b,
                                     const Point& c) {
@@ -230,30 +230,6 @@ void TriangleHierarchy::crossings(const Point& p, const Point& q,
     if (const int direction = crossing_direction(p, q, corners(t.triangle)); direction != 0)
       found.push_back({t.triangle, direction});
   }
-}
-
-double TriangleHierarchy::squared_distance_to(const Point& p, double bound,
-                                              Index* nearest) const {
-  if (nodes_.empty()) return bound;
-  std::array<Index, 128> stack;
-  std::size_t top = 0;
-  stack[top++] = root();
-  while (top > 0) {
-    const Node& node = nodes_[stack[--top]];
-    if (squared_distance_to_box(p, node.box) >= bound) continue;
-    if (node.left == none) {
-      const auto t = corners(node.right);
-      const double d = squared_distance_to_triangle(p, t[0], t[1], t[2]);
-      if (d < bound && nearest != nullptr) *nearest = node.right;
-      bound = std::min(bound, d);
-      continue;
-    }
-    const bool left_first = squared_distance_to_box(p, nodes_[node.left].box) <
-                            squared_distance_to_box(p, nodes_[node.right].box);
-    stack[top++] = left_first ? node.right : node.left;
-    stack[top++] = left_first ? node.left : node.right;
-  }
-  return bound;
 }
 
 std::size_t TriangleHierarchy::bytes() const {

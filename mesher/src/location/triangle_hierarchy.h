@@ -62,7 +62,13 @@ class TriangleHierarchy {
   /// Squared distance from p to the nearest triangle, if below `bound` (else `bound`, and `nearest`
   /// is left alone).
   double squared_distance_to(const Point& p, double bound = INFINITY,
-                             Index* nearest = nullptr) const;
+                             Index* nearest = nullptr) const {
+    return squared_distance_to(p, bound, nearest, [](Index) { return true; });
+  }
+  /// The same among the triangles that `counts` accepts.
+  template <class Counts>
+  double squared_distance_to(const Point& p, double bound, Index* nearest,
+                             const Counts& counts) const;
 
   std::size_t bytes() const;
 
@@ -84,7 +90,36 @@ class TriangleHierarchy {
   std::uint32_t stamp_ = 0;
 };
 
-/// Squared distance from p to the triangle abc.
+/// Squared distance from p to the triangle abc, which may be degenerate.
 double squared_distance_to_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
+/// Squared distance from p to the box; 0 inside.
+double squared_distance_to_box(const Point& p, const Box& box);
+
+template <class Counts>
+double TriangleHierarchy::squared_distance_to(const Point& p, double bound, Index* nearest,
+                                              const Counts& counts) const {
+  if (nodes_.empty()) return bound;
+  std::array<Index, 128> stack;
+  std::size_t top = 0;
+  stack[top++] = root();
+  while (top > 0) {
+    const Node& node = nodes_[stack[--top]];
+    if (squared_distance_to_box(p, node.box) >= bound) continue;
+    if (node.left == none) {
+      if (!counts(node.right)) continue;
+      const auto t = corners(node.right);
+      const double d = squared_distance_to_triangle(p, t[0], t[1], t[2]);
+      if (d >= bound) continue;
+      bound = d;
+      if (nearest != nullptr) *nearest = node.right;
+      continue;
+    }
+    const bool left_first = squared_distance_to_box(p, nodes_[node.left].box) <
+                            squared_distance_to_box(p, nodes_[node.right].box);
+    stack[top++] = left_first ? node.right : node.left;
+    stack[top++] = left_first ? node.left : node.right;
+  }
+  return bound;
+}
 
 }  // namespace collarmesh

@@ -30,18 +30,32 @@ void Refinement::prepare_curves() {
 
 void Refinement::add_curve_chain(Index c) {
   const Plc::Curve& curve = plc_.curves[c];
-  const double length = arc_lengths_[c].back();
+  if (collars_.is_crease_curve(c)) return;  // covered by balls
+  double from = 0, to = arc_lengths_[c].back();
   const auto seed = [&](double parameter) {
     return add_unresolved(curve_point(c, parameter), 1, c);
   };
+  // Clipped where it leaves a vertex ball.
+  std::array<Index, 2> ends = curve.ends;
+  for (const bool at_start : {true, false}) {
+    if (curve.closed) continue;
+    const Index ball = collars_.ball_at_vertex(curve.ends[at_start ? 0 : 1]);
+    if (ball == none) continue;
+    double& parameter = at_start ? from : to;
+    parameter = leaving_parameter(c, collars_.balls()[ball], at_start);
+    ends[at_start ? 0 : 1] = seed(parameter);
+    clipped_ends_.push_back({c, ball, ends[at_start ? 0 : 1]});
+  }
   std::vector<std::pair<Index, double>> chain;
-  const Index first = curve.closed ? seed(0) : curve.ends[0];
-  const Index last = curve.closed ? first : curve.ends[1];
+  const Index first = curve.closed ? seed(0) : ends[0];
+  const Index last = curve.closed ? first : ends[1];
+  const double length = to - from;
   const double chord = distance(unresolved_[first].point, unresolved_[last].point);
-  chain.push_back({first, 0});
+  chain.push_back({first, from});
   if (length > seeded_length_per_chord * chord)
-    for (const double share : {1.0 / 3, 2.0 / 3}) chain.push_back({seed(share * length), share * length});
-  chain.push_back({last, length});
+    for (const double share : {1.0 / 3, 2.0 / 3})
+      chain.push_back({seed(from + share * length), from + share * length});
+  chain.push_back({last, to});
   for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
     const auto index = static_cast<Index>(pending_.size());
     pending_.push_back({c, {chain[i].first, chain[i + 1].first}, {chain[i].second, chain[i + 1].second}});
@@ -52,6 +66,18 @@ void Refinement::add_curve_chain(Index c) {
     p.object = objects_.add(LocationObjects::Kind::pending_subsegment, index, centre,
                             squared_distance(centre, a), nearest_box_corner(centre));
   }
+}
+
+// Where a curve leaves the ball at one of its ends: bisection, the ball meets it in one arc.
+double Refinement::leaving_parameter(Index c, const CollarBall& ball, bool at_start) const {
+  const double length = arc_lengths_[c].back();
+  double inside = at_start ? 0 : length, outside = at_start ? length / 2 : length / 2;
+  for (int step = 0; step < 200; ++step) {
+    const double middle = 0.5 * (inside + outside);
+    if (middle == inside || middle == outside) break;
+    (distance(curve_point(c, middle), ball.centre) < ball.radius ? inside : outside) = middle;
+  }
+  return outside;
 }
 
 // A point has become a mesh vertex: first subsegments that waited for it may start.

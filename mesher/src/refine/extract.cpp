@@ -17,12 +17,32 @@ TetMesh Refinement::extract() const {
     return number[v];
   };
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
-    if (!mesh_.alive(cell) || labels_[cell].region == 0) continue;
+    if (!mesh_.alive(cell) || labels_[cell].region == 0 || labels_[cell].in_collar) continue;
     const auto& v = mesh_.corners(cell);
     mesh.tets.push_back({vertex(v[0]), vertex(v[1]), vertex(v[2]), vertex(v[3])});
     mesh.tet_region.push_back(labels_[cell].region);
     mesh.tet_tag.push_back(plc_.regions[labels_[cell].region].tag);
     mesh.tet_collar.push_back(0);
+  }
+  for (const auto& tet : stitched_.tets) {
+    const auto& v = tet.corners;
+    mesh.tets.push_back({vertex(v[0]), vertex(v[1]), vertex(v[2]), vertex(v[3])});
+    mesh.tet_region.push_back(tet.region);
+    mesh.tet_tag.push_back(plc_.regions[tet.region].tag);
+    mesh.tet_collar.push_back(tet.collar);
+  }
+  for (const auto& face : stitched_.faces) {
+    const auto& v = face.corners;
+    mesh.faces.push_back({vertex(v[0]), vertex(v[1]), vertex(v[2])});
+    mesh.face_regions.push_back(face.regions);
+    mesh.face_patch.push_back(face.patch);
+    mesh.face_tag.push_back(plc_.patches[face.patch].tag);
+  }
+  for (const auto& edge : stitched_.edges) {
+    if (number[edge.corners[0]] == none || number[edge.corners[1]] == none) continue;
+    mesh.edges.push_back({number[edge.corners[0]], number[edge.corners[1]]});
+    mesh.edge_curve.push_back(edge.curve);
+    mesh.edge_tag.push_back(plc_.curves[edge.curve].tag);
   }
   for (const FaceId face : marked_faces()) extract_face(face, number, mesh);
   for (const Subsegment& s : subsegments_) {
@@ -37,6 +57,7 @@ TetMesh Refinement::extract() const {
 // Oriented so that the normal points from the first region to the second: as the patch is, except
 // that a boundary's solid comes first.
 void Refinement::extract_face(FaceId face, const std::vector<Index>& number, TetMesh& mesh) const {
+  if (labels_[cell_of(face)].in_collar || labels_[cell_of(mesh_.opposite(face))].in_collar) return;
   const RestrictedTriangle& t = restricted(face);
   const Plc::Patch& patch = plc_.patches[patch_of(t)];
   // face_vertices is counterclockwise from outside its cell: the normal leaves that cell.

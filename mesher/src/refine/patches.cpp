@@ -59,7 +59,7 @@ void Refinement::label_from_outside(Index cell) {
   crossings_.clear();
   if (!hierarchy_.empty())
     hierarchy_.crossings(mesh_.point(0), mesh_.circumcentre(cell), {&root, 1}, crossings_);
-  labels_[cell] = {static_cast<std::uint16_t>(region_beyond(0)), 0, 0};
+  labels_[cell] = {static_cast<std::uint16_t>(region_beyond(0)), 0, 0, false};
 }
 
 bool Refinement::on_patch(Index vertex, Index patch) const {
@@ -129,7 +129,7 @@ std::size_t Refinement::first_label() {
 
 // Labels of the new cells, and restricted triangles among the faces between them.
 void Refinement::label_created_cells(Index vertex) {
-  for (const Index cell : zone_.created) labels_[cell] = {unlabelled, 0, 0};
+  for (const Index cell : zone_.created) labels_[cell] = {unlabelled, 0, 0, false};
   const std::size_t seed = first_label();
   const std::uint16_t region = labels_[zone_.created[seed]].region;
   if (vertices_[vertex].node_count == 0) {
@@ -237,6 +237,7 @@ void Refinement::restrict_face(FaceId face) {
     t.x = triangle_circumcentre(face);
     t.squared_radius = squared_distance(t.x, corner);
   }
+  t.in_collar = vertices_[v[0]].near_collar && collars_.ball_containing(t.x) != none;
 }
 
 Point Refinement::crossing_point(FaceId face, Index triangle) const {
@@ -262,6 +263,7 @@ Point Refinement::triangle_circumcentre(FaceId face) const {
 void Refinement::judge_triangle(FaceId face) {
   RestrictedTriangle& t = restricted(face);
   t.judged = true;
+  if (t.in_collar) return;
   const WorkQueue::Entry entry{face, mesh_.generation(cell_of(face))};
   if (!t.resolved_vertices || t.several_sheets || too_far(face, t))
     queue_.push(WorkQueue::unresolved_triangles, t.squared_radius, entry);

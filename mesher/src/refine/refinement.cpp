@@ -70,6 +70,8 @@ Refinement::Refinement(const Plc& plc, const MeshOptions& options, const Executi
       box_(surrounding_box(framed(plc.bounds, frame_))),
       mesh_(box_),
       hierarchy_(points_, corner_lists(plc)),
+      collars_(plc, points_, find_creases(plc, options.crease_angle),
+               [this](const Point& p) { return sizing_.default_size(p); }, options.seed),
       queue_(squared_distance(box_.min, box_.max)),
       random_state_(options.seed),
       started_(std::chrono::steady_clock::now()) {
@@ -89,6 +91,7 @@ void Refinement::start() {
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) label_from_outside(cell);
   for (Index i = 0; i < plc_.vertices.size(); ++i)
     add_unresolved(points_[plc_.vertices[i].point], 0, i);
+  prepare_collars();
   prepare_curves();
   prepare_patches();
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) judge_cell(cell);
@@ -131,9 +134,10 @@ MeshStatus Refinement::run() {
       if (execution_.cancelled() || !report_progress()) return MeshStatus::cancelled;
       if (out_of_budget()) return MeshStatus::budget_hit;
     }
-    if (!check_surface() && !check_gradation()) break;
+    if (!check_surface() && !check_gradation() && !check_collars()) break;
   }
   relabel_flat_cells();
+  rip_and_stitch();
   seconds_ = elapsed();
   return message_.empty() ? MeshStatus::complete : MeshStatus::guarantee_missed;
 }
@@ -320,7 +324,7 @@ FaceId Refinement::encroached_triangle(const Candidate& candidate) const {
       if (!(marked & 1U)) continue;
       const RestrictedTriangle& t = restricted(face_id(cell, corner));
       const double depth = t.squared_radius - squared_distance(candidate.point, t.x);
-      if (depth <= deepest || t.given_up) continue;
+      if (depth <= deepest || t.given_up || t.in_collar) continue;
       best = face_id(cell, corner);
       deepest = depth;
     }
@@ -336,7 +340,9 @@ Index Refinement::force_insert(std::uint8_t dimension, Index feature) {
   labels_.resize(mesh_.cell_capacity());
   marks_.resize(mesh_.cell_capacity());
   inherit_nodes(vertex);
+  vertices_[vertex].near_collar = meets_collar(vertex);
   label_created_cells(vertex);
+  find_collar_cells(vertex);
   grade_vertex(vertex);
   note_edges(vertex);
   mark_border_faces();
@@ -412,6 +418,7 @@ double Refinement::shortest_squared_edge(Index cell) const {
 }
 
 void Refinement::judge_cell(Index cell) {
+  if (labels_[cell].in_collar) return;
   const Index region = labels_[cell].region;
   const double r2 = mesh_.squared_radius(cell);
   const Point& centre = mesh_.circumcentre(cell);
@@ -459,8 +466,8 @@ void Refinement::note_edges(Index vertex) {
 std::optional<Refinement::Candidate> Refinement::cell_candidate(Index cell) {
   const double r2 = mesh_.squared_radius(cell);
   const Point& centre = mesh_.circumcentre(cell);
-  const Point p =
-      frame_.rounded(centre + cell_offset * std::sqrt(r2 / 3) * random_in_cube());
+  Point p = frame_.rounded(centre + cell_offset * std::sqrt(r2 / 3) * random_in_cube());
+  if (collars_.ball_containing(p) != none) p = frame_.rounded(centre);
   if (!inside_box(p) || !mesh_.in_conflict(cell, p)) return std::nullopt;
   return Candidate{p, r2, centre, 3, none, cell};
 }
@@ -475,6 +482,7 @@ std::optional<Refinement::Candidate> Refinement::triangle_candidate(FaceId face)
     const Vector offset = triangle_offset * std::sqrt(t.squared_radius / 3) * random_in_cube();
     const double nn = squared_norm(n);
     if (nn > 0) p = p + offset - (dot(offset, n) / nn) * n;
+    if (collars_.ball_containing(p) != none) p = t.x;
   }
   p = frame_.rounded(p);
   const FaceId other = mesh_.opposite(face);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "collar/collar_system.h"
 #include "collarmesh/mesher.h"
 #include "delaunay/triangulation.h"
 #include "location/location_objects.h"
@@ -42,6 +43,7 @@ class Refinement {
   /// What refinement knows of a mesh vertex besides its position.
   struct MeshVertex {
     std::uint8_t dimension = 3;   // containment dimension: of the lowest feature it lies on
+    bool near_collar = false;     // B(v, R_v) meets a collar ball
     std::uint16_t insertions = 0; // in its star since its nodes were filtered last
     Index feature = none;         // index of that vertex, curve or patch of the complex
     Index first_node = 0, node_count = 0;  // in node_pool_: hierarchy nodes that meet B(v, R_v)
@@ -85,11 +87,13 @@ class Refinement {
     bool several_sheets;               // the dual edge crosses the surface more than once
     bool given_up;                     // at the floor: no further insertion here
     bool judged;
+    bool in_collar;                    // x lies in a collar ball: none of refinement's business
   };
   struct CellLabel {
     std::uint16_t region = 0;
     std::uint8_t marked = 0;           // bit i: the face opposite corner i is restricted
     std::uint8_t judged = 0;           // bit i: that face has been intersected with the patches
+    bool in_collar = false;            // its circumcentre lies in a collar ball
   };
   /// A point about to be inserted.
   struct Candidate {
@@ -147,6 +151,7 @@ class Refinement {
   void point_resolved(Index point);
   void hurry_ends(const PendingSubsegment& pending);
   Point curve_point(Index curve, double parameter) const;
+  double leaving_parameter(Index curve, const CollarBall& ball, bool at_start) const;
   double bisecting_parameter(Index curve, const Point& a, const Point& b, double from, double to) const;
   Index nearest_vertex(const Point& p, Index from);
   Index add_subsegment(Index curve, std::array<Index, 2> ends, std::array<double, 2> parameters,
@@ -198,6 +203,7 @@ class Refinement {
   // surface_check.cpp
   /// Look at the whole restricted surface and queue what is wrong. False when nothing is.
   bool check_surface();
+  std::vector<bool> vertices_at_collars() const;
   bool check_patch_topology();
   bool check_patch_distance();
   bool check_flat_cells();
@@ -209,6 +215,67 @@ class Refinement {
 
   // extract.cpp
   void extract_face(FaceId face, const std::vector<Index>& number, TetMesh& mesh) const;
+
+  // collar_surface.cpp
+  /// A face between a cell inside the collars and one outside, with the ball that its dual edge
+  /// enters first and the point where it does (paper, Definition 9).
+  struct CollarTriangle {
+    FaceId face;    // of the cell outside
+    Index ball;
+    Point representation;
+    bool several;   // its dual edge meets the collar surface more than once
+    bool poor;
+  };
+  void prepare_collars();
+  bool meets_collar(Index vertex) const;
+  void find_collar_cells(Index vertex);
+  bool check_collars();
+  std::vector<CollarTriangle> collar_triangles();
+  std::optional<CollarTriangle> collar_triangle(FaceId outer);
+  void take_in_flat_cells();
+  void judge_collar_edges(std::vector<CollarTriangle>& triangles) const;
+  bool poorly_represented(const CollarTriangle& t);
+  bool crosses_patch(Index a, Index b);
+  bool spans_patch(std::span<const Index> corners) const;
+  bool on_crease(Index vertex) const;
+  bool repair(const CollarTriangle& t);
+  bool insert_on_collar(const Point& p, std::uint8_t dimension, Index feature, Index nearby);
+  std::span<const Index> patches_through(const CollarBall& ball) const;
+
+  bool poor_book(const CollarTriangle& t, const CollarTriangle& u,
+                 const std::array<Index, 2>& edge) const;
+  Index ball_vertex(Index ball) const { return unresolved_[ball_points_[ball]].vertex; }
+
+  // rip_and_stitch.cpp
+  /// What takes the place of the cells inside the collars, in mesh vertices.
+  struct Stitched {
+    struct Tet {
+      std::array<Index, 4> corners;
+      Index region;
+      std::uint8_t collar;  // 1 star, 2 book
+    };
+    struct Face {
+      std::array<Index, 3> corners;
+      std::array<Index, 2> regions;
+      Index patch;
+    };
+    struct Edge {
+      std::array<Index, 2> corners;
+      Index curve;
+    };
+    std::vector<Tet> tets;
+    std::vector<Face> faces;
+    std::vector<Edge> edges;
+  };
+  /// Where a curve that is no crease leaves the ball at its end.
+  struct ClippedEnd {
+    Index curve, ball;
+    Index point;  // unresolved
+  };
+  void rip_and_stitch();
+  void stitch_books(const std::vector<CollarTriangle>& triangles);
+  void stitch_faces(const std::vector<CollarTriangle>& triangles);
+  Index patch_between(const std::array<Index, 3>& corners, Index a, Index b) const;
 
   const Plc& plc_;
   const MeshOptions options_;
@@ -222,6 +289,11 @@ class Refinement {
   Triangulation mesh_;
   TriangleHierarchy hierarchy_;
   LocationObjects objects_;
+  CollarSystem collars_;
+  std::vector<Index> ball_points_;           // unresolved points at the balls' centres
+  std::vector<ClippedEnd> clipped_ends_;
+  Stitched stitched_;
+  std::vector<std::pair<Index, Index>> taken_in_;  // flat cells given to the collar of a ball
   WorkQueue queue_;
   ConflictZone zone_;
 
@@ -251,7 +323,7 @@ class Refinement {
   double seconds_ = 0, reported_ = -1, fraction_ = 0;
   std::string message_;
   Point where_;
-  unsigned surface_rounds_ = 0, gradation_rounds_ = 0;
+  unsigned surface_rounds_ = 0, gradation_rounds_ = 0, collar_rounds_ = 0;
 };
 
 }  // namespace collarmesh

@@ -19,6 +19,7 @@ Sizing::Sizing(const Plc& plc, const MeshOptions& options, const Frame& frame)
     : field_(options.size_field), frame_(frame), size_min_(options.size_min) {
   const double global =
       options.size > 0 ? options.size : plc.bounds.diagonal() / default_sizes_per_diagonal;
+  global_size_ = global;
   for (const Plc::Region& region : plc.regions) {
     double size = std::min(global, size_of_tag(options.region_size, region.tag));
     if (region.size > 0) size = std::min(size, region.size);

@@ -36,6 +36,8 @@ class Sizing {
   double region_size(Index region, const Point& p) const {
     return region == 0 ? INFINITY : limited(region_size_[region], p);
   }
+  /// The target edge length where nothing finer is asked for.
+  double default_size(const Point& p) const { return limited(global_size_, p); }
   /// About how many cells the whole domain will take.
   double expected_cells() const { return expected_cells_; }
 
@@ -51,7 +53,7 @@ class Sizing {
   std::vector<double> region_size_, patch_size_, curve_size_;  // target edge lengths by index
   std::function<double(const Point&)> field_;
   Frame frame_;
-  double size_min_ = 0, expected_cells_ = 1;
+  double size_min_ = 0, expected_cells_ = 1, global_size_ = INFINITY;
 };
 
 }  // namespace collarmesh

@@ -60,6 +60,16 @@ void Refinement::refine_triangle(FaceId face) {
               {face, mesh_.generation(cell_of(face))});
 }
 
+// Which mesh vertices belong to a cell inside the collars.
+std::vector<bool> Refinement::vertices_at_collars() const {
+  std::vector<bool> at(mesh_.vertex_count(), false);
+  if (collars_.empty()) return at;
+  for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell)
+    if (mesh_.alive(cell) && labels_[cell].in_collar)
+      for (const Index v : mesh_.corners(cell)) at[v] = true;
+  return at;
+}
+
 // Every edge of a patch's triangles lies in two of them, or on one of the patch's curves; every
 // subsegment has triangles of all the patches that its curve bounds.
 bool Refinement::check_patch_topology() {
@@ -71,6 +81,7 @@ bool Refinement::check_patch_topology() {
   }
   std::sort(uses.begin(), uses.end());
   std::vector<EdgeUse> on_curves;
+  const std::vector<bool> at_collars = vertices_at_collars();
   bool found = false;
   for (Index s = 0; s < subsegments_.size(); ++s) {
     const Subsegment& subsegment = subsegments_[s];
@@ -92,6 +103,9 @@ bool Refinement::check_patch_topology() {
                                         EdgeUse{uses[i].patch, uses[i].edge, 0});
     if (curve != on_curves.end() && curve->patch == uses[i].patch && curve->edge == uses[i].edge)
       continue;
+    // The patch goes on inside a collar.
+    const auto at_collar = [&](Index v) { return at_collars[v]; };
+    if (std::all_of(uses[i].edge.begin(), uses[i].edge.end(), at_collar)) continue;
     std::size_t largest = i;
     for (std::size_t k = i; k < j; ++k)
       if (restricted(uses[k].face).squared_radius > restricted(uses[largest].face).squared_radius)
@@ -124,7 +138,7 @@ bool Refinement::check_patch_distance() {
     for (const Index point : tessellation_points(p)) {
       auto nearest = static_cast<Index>(triangle_count);
       const double d = surface.squared_distance_to(points_[point], INFINITY, &nearest);
-      if (d > distance_ * distance_ && d > farthest[nearest].first) farthest[nearest] = {d, point};
+      if (d > distance_ * distance_ && collars_.ball_containing(points_[point]) == none && d > farthest[nearest].first) farthest[nearest] = {d, point};
     }
     for (const auto& [d, point] : farthest) {
       if (point == none) continue;
@@ -154,7 +168,7 @@ bool Refinement::flat_on_patch(Index cell) const {
 bool Refinement::check_flat_cells() {
   bool found = false;
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
-    if (!mesh_.alive(cell) || labels_[cell].region == 0 || labels_[cell].marked == 0 ||
+    if (!mesh_.alive(cell) || labels_[cell].region == 0 || labels_[cell].marked == 0 || labels_[cell].in_collar ||
         !flat_on_patch(cell))
       continue;
     for (unsigned corner = 0; corner < 4; ++corner) {
@@ -174,7 +188,7 @@ bool Refinement::check_flat_cells() {
 // Four cocircular vertices of a boundary facet can make a flat cell just inside: it belongs outside.
 void Refinement::relabel_flat_cells() {
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
-    if (!mesh_.alive(cell) || labels_[cell].region == 0 || labels_[cell].marked == 0 ||
+    if (!mesh_.alive(cell) || labels_[cell].region == 0 || labels_[cell].marked == 0 || labels_[cell].in_collar ||
         !flat_on_patch(cell))
       continue;
     RestrictedTriangle record;

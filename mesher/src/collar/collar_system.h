@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "collarmesh/plc_builder.h"
+#include "location/triangle_hierarchy.h"
+
+namespace collarmesh {
+
+/// The gap size g of the paper (Definition 2) at points of vertices and curves: the distance to the
+/// nearest feature that does not contain the point.
+class GapSize {
+ public:
+  /// Both are kept by reference; `points` are those of the complex, possibly in another frame.
+  GapSize(const Plc& plc, std::span<const Point> points);
+
+  double at_vertex(Index vertex) const;
+  /// Precondition: p lies on the curve and is none of its ends.
+  double on_curve(Index curve, const Point& p) const;
+
+ private:
+  struct Element {
+    std::uint8_t dimension;
+    Index feature;
+  };
+  const Plc& plc_;
+  std::span<const Point> points_;
+  std::vector<Element> elements_;
+  TriangleHierarchy hierarchy_;
+};
+
+/// A ball on a crease (paper, Definition 7).
+struct CollarBall {
+  Point centre;
+  double radius;
+  std::uint8_t dimension;  ///< 0: at a crease vertex, 1: on a crease curve
+  Index feature;           ///< of that vertex or curve
+  double parameter;        ///< arc length along the curve, for dimension 1
+};
+
+/// Two consecutive balls of a crease; their spheres meet in a circle.
+struct CollarLink {
+  std::array<Index, 2> balls;
+  Index curve;
+};
+
+/// A point that the mesh must have for the collar surface to follow the features: where a patch
+/// meets a circle, or where a curve that is no crease leaves a vertex ball.
+struct CornerPoint {
+  Point point;
+  std::uint8_t dimension;  ///< 2: on a patch, 1: on a curve
+  Index feature;
+};
+
+/// The union of balls that covers every crease, and its own features (paper, section 3.2; DESIGN
+/// section 9). Balls of different creases are disjoint; consecutive ones overlap deeply.
+class CollarSystem {
+ public:
+  CollarSystem() = default;
+  /// Place balls on all creases: radius a third of the gap size, never more than the size allows,
+  /// shrunk by up to 8% (seeded) so that spheres are generic.
+  CollarSystem(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases,
+               const std::function<double(const Point&)>& size, std::uint64_t seed);
+
+  bool empty() const { return balls_.empty(); }
+  const std::vector<CollarBall>& balls() const { return balls_; }
+  const std::vector<CollarLink>& links() const { return links_; }
+  const std::vector<CornerPoint>& corners() const { return corners_; }
+  bool is_crease_curve(Index curve) const { return !empty() && crease_curve_[curve]; }
+  /// The ball at a crease vertex, none at other vertices.
+  Index ball_at_vertex(Index vertex) const { return empty() ? none : vertex_ball_[vertex]; }
+  bool consecutive(Index a, Index b) const;
+
+  /// A ball that contains p in its interior, none if there is none.
+  Index ball_containing(const Point& p) const;
+  /// Does any ball meet the ball B(p, radius)?
+  bool meets(const Point& p, double radius) const;
+  /// Replace `found` by the balls that meet the segment pq.
+  void balls_on_segment(const Point& p, const Point& q, std::vector<Index>& found) const;
+
+ private:
+  struct Node {
+    Box box;
+    Index left, right;  // a leaf has left == none and its ball in right
+  };
+  Index build(std::span<Index> order);
+  template <class Meets, class Visit>
+  void visit(const Meets& meets_box, const Visit& visit_ball) const;
+
+  std::vector<CollarBall> balls_;
+  std::vector<CollarLink> links_;
+  std::vector<CornerPoint> corners_;
+  std::vector<bool> crease_curve_;
+  std::vector<Index> vertex_ball_;
+  std::vector<std::array<Index, 2>> consecutive_;  // sorted pairs
+  std::vector<Node> nodes_;
+
+  friend class CollarPlacement;
+};
+
+}  // namespace collarmesh

@@ -1,0 +1,311 @@
+// The collar surface as a restricted Delaunay triangulation (paper, section 4; DESIGN section 9):
+// which cells lie inside the collars, whether the triangles between inside and outside represent
+// the surface well enough to be stitched to the balls' centres, and the insertion of points on the
+// surface, lower dimension first, where they do not.
+#include <algorithm>
+
+#include "delaunay/predicates.h"
+#include "refine/refinement.h"
+
+namespace collarmesh {
+
+namespace {
+
+constexpr unsigned most_rounds = 200;
+// A representation point this close to an arc, in radii of its ball, is moved onto the arc: lower
+// dimension first is what keeps collars small.
+constexpr double arc_reach = 0.7;
+// ... unless a mesh vertex is this close to the arc's point already, in radii of the empty ball.
+constexpr double arc_clearance = 0.5;
+constexpr double on_sphere = 1e-6;
+
+double radians(double degrees) { return degrees * 3.14159265358979323846 / 180; }
+
+}  // namespace
+
+void Refinement::prepare_collars() {
+  if (collars_.empty()) return;
+  for (MeshVertex& v : vertices_) v.near_collar = true;
+  for (const CollarBall& ball : collars_.balls())
+    ball_points_.push_back(ball.dimension == 0 ? ball.feature
+                                               : add_unresolved(ball.centre, 1, ball.feature));
+  for (const CornerPoint& corner : collars_.corners())
+    add_unresolved(corner.point, corner.dimension, corner.feature);
+}
+
+bool Refinement::meets_collar(Index vertex) const {
+  if (collars_.empty()) return false;
+  if (std::none_of(zone_.vertices.begin(), zone_.vertices.end(),
+                   [&](Index v) { return vertices_[v].near_collar; }))
+    return false;
+  double largest = 0;
+  for (const Index cell : zone_.created) largest = std::max(largest, mesh_.squared_radius(cell));
+  return collars_.meets(mesh_.point(vertex), std::sqrt(largest));
+}
+
+void Refinement::find_collar_cells(Index vertex) {
+  if (!vertices_[vertex].near_collar) return;
+  for (const Index cell : zone_.created)
+    labels_[cell].in_collar = collars_.ball_containing(mesh_.circumcentre(cell)) != none;
+}
+
+std::span<const Index> Refinement::patches_through(const CollarBall& ball) const {
+  return ball.dimension == 0 ? plc_.vertices[ball.feature].patches : plc_.curves[ball.feature].patches;
+}
+
+bool Refinement::on_crease(Index vertex) const {
+  const MeshVertex& v = vertices_[vertex];
+  return (v.dimension == 0 && collars_.ball_at_vertex(v.feature) != none) ||
+         (v.dimension == 1 && collars_.is_crease_curve(v.feature));
+}
+
+bool Refinement::spans_patch(std::span<const Index> corners) const {
+  for (const Index v : corners) {
+    const MeshVertex& m = vertices_[v];
+    if (m.dimension == 3) return false;
+  }
+  const MeshVertex& m = vertices_[corners[0]];
+  const auto contains_all = [&](Index patch) {
+    return std::all_of(corners.begin(), corners.end(), [&](Index v) { return on_patch(v, patch); });
+  };
+  if (m.dimension == 2) return contains_all(m.feature);
+  const auto& patches = m.dimension == 0 ? plc_.vertices[m.feature].patches : plc_.curves[m.feature].patches;
+  return std::any_of(patches.begin(), patches.end(), contains_all);
+}
+
+// Look at the collar surface when everything else is done. False when nothing was found.
+bool Refinement::check_collars() {
+  if (collars_.empty() || !message_.empty()) return false;
+  take_in_flat_cells();
+  std::vector<CollarTriangle> triangles = collar_triangles();
+  for (CollarTriangle& t : triangles) t.poor = poorly_represented(t);
+  judge_collar_edges(triangles);
+  bool found = false;
+  for (const CollarTriangle& t : triangles) {
+    if (!t.poor || labels_[cell_of(t.face)].region == 0) continue;
+    // An earlier repair may have changed this one: it is judged again in the next round.
+    if (!mesh_.alive(cell_of(t.face)) || mesh_.opposite(t.face) == no_face) continue;
+    const auto now = collar_triangle(t.face);
+    if (!now || !(now->representation == t.representation)) continue;
+    found |= repair(t);
+  }
+  if (found && ++collar_rounds_ > most_rounds) {
+    give_up(collars_.balls()[0].centre, "the collar surface did not settle; the first collar is");
+    return false;
+  }
+  return found;
+}
+
+std::vector<Refinement::CollarTriangle> Refinement::collar_triangles() {
+  std::vector<CollarTriangle> triangles;
+  for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
+    if (!mesh_.alive(cell) || labels_[cell].in_collar) continue;
+    const auto& v = mesh_.corners(cell);
+    if (std::none_of(v.begin(), v.end(), [&](Index i) { return vertices_[i].near_collar; })) continue;
+    for (unsigned corner = 0; corner < 4; ++corner)
+      if (const auto t = collar_triangle(face_id(cell, corner))) triangles.push_back(*t);
+  }
+  return triangles;
+}
+
+// The face seen from a cell outside, if its dual edge meets the collar surface.
+std::optional<Refinement::CollarTriangle> Refinement::collar_triangle(FaceId outer) {
+  const FaceId inner = mesh_.opposite(outer);
+  if (inner == no_face || labels_[cell_of(outer)].in_collar) return std::nullopt;
+  const bool inside = labels_[cell_of(inner)].in_collar;
+  if (!inside && cell_of(inner) < cell_of(outer)) return std::nullopt;
+  for (const auto& [cell, ball] : taken_in_)
+    if (cell == cell_of(inner)) {
+      const Point centre = collars_.balls()[ball].centre;
+      const Vector d = triangle_circumcentre(outer) - centre;
+      return CollarTriangle{outer, ball, centre + collars_.balls()[ball].radius / norm(d) * d, false, false};
+    }
+  const Point p = mesh_.circumcentre(cell_of(outer)), q = mesh_.circumcentre(cell_of(inner));
+  collars_.balls_on_segment(p, q, nodes_scratch_);
+  if (nodes_scratch_.empty()) return std::nullopt;
+  // The parts of the dual edge inside each ball, as parameters from p to q.
+  struct Part {
+    double from, to;
+    Index ball;
+  };
+  std::vector<Part> parts;
+  const Vector d = q - p;
+  const double length = squared_norm(d);
+  for (const Index index : nodes_scratch_) {
+    const CollarBall& ball = collars_.balls()[index];
+    const double middle = dot(ball.centre - p, d) / length;
+    const double off = squared_distance(ball.centre, p + middle * d);
+    const double half = std::sqrt(std::max(0.0, (ball.radius * ball.radius - off) / length));
+    parts.push_back({middle - half, middle + half, index});
+  }
+  std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.from < b.from; });
+  double covered = parts[0].to;
+  bool several = !inside;
+  for (const Part& part : parts) {
+    if (part.from > covered) several = true;
+    covered = std::max(covered, part.to);
+  }
+  return CollarTriangle{outer, parts[0].ball, p + parts[0].from * d, several, false};
+}
+
+// Corner points of neighbouring circles on neighbouring sheets are cocircular: a flat cell of them
+// just outside the collar is given to it.
+void Refinement::take_in_flat_cells() {
+  std::erase_if(taken_in_, [&](const auto& t) {
+    return !mesh_.alive(t.first) || !labels_[t.first].in_collar;
+  });
+  for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
+    if (!mesh_.alive(cell) || labels_[cell].in_collar || labels_[cell].region == 0) continue;
+    const auto& v = mesh_.corners(cell);
+    if (std::any_of(v.begin(), v.end(), [&](Index i) {
+          return !vertices_[i].near_collar || vertices_[i].dimension == 3;
+        }))
+      continue;
+    const Point &a = mesh_.point(v[0]), &b = mesh_.point(v[1]), &c = mesh_.point(v[2]), &d = mesh_.point(v[3]);
+    const double longest = std::max({squared_distance(a, b), squared_distance(a, c), squared_distance(a, d)});
+    if (std::fabs(six_volume(a, b, c, d)) > 1e-7 * longest * std::sqrt(longest)) continue;
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      const FaceId other = mesh_.opposite(face_id(cell, corner));
+      if (other == no_face || !labels_[cell_of(other)].in_collar) continue;
+      const auto t = collar_triangle(face_id(cell, corner));
+      if (!t) continue;
+      const CollarBall& ball = collars_.balls()[t->ball];
+      const bool on_its_sphere = std::all_of(v.begin(), v.end(), [&](Index i) {
+        return std::fabs(distance(mesh_.point(i), ball.centre) - ball.radius) < on_sphere * ball.radius;
+      });
+      if (!on_its_sphere) continue;
+      labels_[cell].in_collar = true;
+      taken_in_.push_back({cell, t->ball});
+      break;
+    }
+  }
+}
+
+// The triangle alone: everything but what its neighbours decide.
+bool Refinement::poorly_represented(const CollarTriangle& t) {
+  const Index outer = cell_of(t.face);
+  const FaceId inner = mesh_.opposite(t.face);
+  if (labels_[outer].region == 0 && (t.several ? labels_[cell_of(inner)].region == 0 : true)) return false;
+  if (t.several) return true;
+  const auto v = mesh_.face_vertices(t.face);
+  for (const Index vertex : v)
+    if (on_crease(vertex)) return true;
+  // A patch between the outer cell and the sphere: the star tet would lie on its other side.
+  if (labels_[outer].marked >> corner_of(t.face) & 1U && !restricted(t.face).in_collar) return true;
+  const CollarBall& ball = collars_.balls()[t.ball];
+  const Index centre_vertex = unresolved_[ball_points_[t.ball]].vertex;
+  if (centre_vertex == none) return true;
+  if (spans_patch(std::array{v[0], v[1], v[2], centre_vertex})) return true;
+  const Point &a = mesh_.point(v[0]), &b = mesh_.point(v[1]), &c = mesh_.point(v[2]);
+  if (predicates::orientation(a, b, c, ball.centre) <= 0) return true;
+  const TetQuality quality = measure(a, b, c, ball.centre);
+  if (quality.max_dihedral > options_.collar_angle) return true;
+  const bool taken = std::any_of(taken_in_.begin(), taken_in_.end(), [&](const auto& x) { return x.first == cell_of(inner); });
+  if (!taken) {
+    const Vector along = mesh_.circumcentre(cell_of(inner)) - mesh_.circumcentre(outer);
+    const Vector normal = ball.centre - t.representation;
+    if (dot(along, normal) < std::cos(radians(options_.representation_angle)) * norm(along) * norm(normal))
+      return true;
+  }
+  return crosses_patch(v[0], v[1]) || crosses_patch(v[1], v[2]) || crosses_patch(v[2], v[0]);
+}
+
+bool Refinement::crosses_patch(Index a, Index b) {
+  const Index root = hierarchy_.root();
+  hierarchy_.crossings(mesh_.point(a), mesh_.point(b), {&root, 1}, crossings_);
+  return std::any_of(crossings_.begin(), crossings_.end(), [&](const auto& crossing) {
+    const Index patch = plc_.triangles[crossing.triangle].patch;
+    return !on_patch(a, patch) && !on_patch(b, patch);
+  });
+}
+
+// What neighbours decide: every edge has two triangles, of one ball or of consecutive ones, and then
+// the book tet between their centres is not inverted and keeps the angle bound.
+void Refinement::judge_collar_edges(std::vector<CollarTriangle>& triangles) const {
+  struct Use {
+    std::array<Index, 2> edge;
+    std::size_t triangle;
+  };
+  std::vector<Use> uses;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const auto v = mesh_.face_vertices(triangles[i].face);
+    for (unsigned k = 0; k < 3; ++k)
+      uses.push_back({{std::min(v[k], v[(k + 1) % 3]), std::max(v[k], v[(k + 1) % 3])}, i});
+  }
+  std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) {
+    return a.edge != b.edge ? a.edge < b.edge : a.triangle < b.triangle;
+  });
+  for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
+    for (j = i; j < uses.size() && uses[j].edge == uses[i].edge;) ++j;
+    bool poor = j - i != 2;
+    if (!poor) {
+      const CollarTriangle &t = triangles[uses[i].triangle], &u = triangles[uses[i + 1].triangle];
+      poor = t.ball != u.ball && (!collars_.consecutive(t.ball, u.ball) || poor_book(t, u, uses[i].edge));
+    }
+    if (poor)
+      for (std::size_t k = i; k < j; ++k) triangles[uses[k].triangle].poor = true;
+  }
+}
+
+bool Refinement::poor_book(const CollarTriangle& t, const CollarTriangle& u,
+                           const std::array<Index, 2>& edge) const {
+  if (labels_[cell_of(t.face)].region == 0 && labels_[cell_of(u.face)].region == 0) return false;
+  if (labels_[cell_of(t.face)].region != labels_[cell_of(u.face)].region) return true;
+  const auto v = mesh_.face_vertices(t.face);
+  unsigned first = 0;
+  while (!(v[first] == edge[0] && v[(first + 1) % 3] == edge[1]) &&
+         !(v[first] == edge[1] && v[(first + 1) % 3] == edge[0]))
+    ++first;
+  const Point &a = mesh_.point(v[first]), &b = mesh_.point(v[(first + 1) % 3]);
+  const Point &p = collars_.balls()[t.ball].centre, &q = collars_.balls()[u.ball].centre;
+  return predicates::orientation(b, a, q, p) <= 0 ||
+         measure(b, a, q, p).max_dihedral > options_.collar_angle;
+}
+
+// Insert the representation point, or the nearest point of an arc where a patch through the ball's
+// centre meets the sphere.
+bool Refinement::repair(const CollarTriangle& t) {
+  const CollarBall& ball = collars_.balls()[t.ball];
+  const auto v = mesh_.face_vertices(t.face);
+  const double clearance = arc_clearance * distance(t.representation, mesh_.point(v[0]));
+  Point best = t.representation;
+  Index patch = none;
+  double nearest = arc_reach * ball.radius;
+  for (const Index p : patches_through(ball)) {
+    const Vector n = plc_.patches[p].normal;
+    if (!plc_.patches[p].planar) continue;
+    const Vector d = t.representation - ball.centre;
+    const Vector in_plane = d - dot(d, n) * n;
+    if (norm(in_plane) < 1e-3 * ball.radius) continue;
+    const Point arc = frame_.rounded(ball.centre + ball.radius / norm(in_plane) * in_plane);
+    const double off = distance(arc, t.representation);
+    if (off >= nearest) continue;
+    if (hierarchy_.squared_distance_to(arc, 1e-12 * ball.radius * ball.radius, nullptr, [&](Index triangle) {
+          return plc_.triangles[triangle].patch == p;
+        }) >= 1e-12 * ball.radius * ball.radius)
+      continue;
+    const Index other = collars_.ball_containing(ball.centre + (1 + 1e-9) * (arc - ball.centre));
+    if (other != none) continue;
+    if (distance(arc, mesh_.point(nearest_vertex(arc, v[0]))) < clearance) continue;
+    nearest = off;
+    best = arc;
+    patch = p;
+  }
+  return insert_on_collar(best, patch == none ? 3 : 2, patch, v[0]);
+}
+
+bool Refinement::insert_on_collar(const Point& p, std::uint8_t dimension, Index feature, Index nearby) {
+  const Point rounded = frame_.rounded(p);
+  const Index nearest = nearest_vertex(rounded, nearby);
+  const Index cell = mesh_.conflicting_cell_around(nearest, rounded);
+  const double gap = distance(rounded, mesh_.point(nearest));
+  if (cell == none || gap < floor_) {
+    give_up(rounded, "the collar surface could not be resolved");
+    return false;
+  }
+  mesh_.find_conflict_zone(rounded, cell, zone_);
+  force_insert(dimension, feature);
+  return true;
+}
+
+}  // namespace collarmesh

@@ -1,0 +1,119 @@
+// Rip and stitch (paper, Procedure 5; DESIGN section 10): the cells inside the collars are dropped;
+// each triangle of the collar surface makes a star tet with its ball's centre, each edge between
+// triangles of consecutive balls a book tet with the two centres.
+#include <algorithm>
+
+#include "refine/refinement.h"
+
+namespace collarmesh {
+
+namespace {
+
+struct FaceUse {
+  std::array<Index, 3> key;   // sorted mesh vertices
+  std::array<Index, 3> face;  // counterclockwise from outside its tet
+  Index region;               // of the tet
+};
+
+FaceUse face_use(const std::array<Index, 3>& face, Index region) {
+  FaceUse use{face, face, region};
+  std::sort(use.key.begin(), use.key.end());
+  return use;
+}
+
+}  // namespace
+
+void Refinement::rip_and_stitch() {
+  if (collars_.empty()) return;
+  const std::vector<CollarTriangle> triangles = collar_triangles();
+  for (const CollarTriangle& t : triangles) {
+    const Index region = labels_[cell_of(t.face)].region;
+    if (region == 0 || t.several) continue;
+    const auto v = mesh_.face_vertices(t.face);
+    stitched_.tets.push_back({{v[0], v[1], v[2], ball_vertex(t.ball)}, region, 1});
+  }
+  stitch_books(triangles);
+  stitch_faces(triangles);
+  for (const CollarLink& link : collars_.links())
+    stitched_.edges.push_back({{ball_vertex(link.balls[0]), ball_vertex(link.balls[1])}, link.curve});
+  for (const ClippedEnd& end : clipped_ends_)
+    stitched_.edges.push_back({{ball_vertex(end.ball), unresolved_[end.point].vertex}, end.curve});
+}
+
+void Refinement::stitch_books(const std::vector<CollarTriangle>& triangles) {
+  struct Side {
+    std::array<Index, 2> key;   // sorted edge
+    std::array<Index, 2> edge;  // as it runs around its triangle
+    Index ball, region;
+  };
+  std::vector<Side> sides;
+  for (const CollarTriangle& t : triangles) {
+    const Index region = labels_[cell_of(t.face)].region;
+    if (region == 0 || t.several) continue;
+    const auto v = mesh_.face_vertices(t.face);
+    for (unsigned k = 0; k < 3; ++k) {
+      const Index a = v[k], b = v[(k + 1) % 3];
+      sides.push_back({{std::min(a, b), std::max(a, b)}, {a, b}, t.ball, region});
+    }
+  }
+  std::stable_sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.key < b.key; });
+  for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
+    const Side &s = sides[i], &other = sides[i + 1];
+    if (s.key != other.key || s.ball == other.ball) continue;
+    stitched_.tets.push_back(
+        {{s.edge[1], s.edge[0], ball_vertex(other.ball), ball_vertex(s.ball)}, s.region, 2});
+  }
+}
+
+// Faces of the new tets that lie on patches: where two regions meet, or on a patch inside one.
+void Refinement::stitch_faces(const std::vector<CollarTriangle>& triangles) {
+  std::vector<FaceUse> uses;
+  for (const auto& tet : stitched_.tets)
+    for (const auto& f : face_corners)
+      uses.push_back(face_use({tet.corners[f[0]], tet.corners[f[1]], tet.corners[f[2]]}, tet.region));
+  for (const CollarTriangle& t : triangles) {
+    const Index region = labels_[cell_of(t.face)].region;
+    if (region != 0 && !t.several) uses.push_back(face_use(mesh_.face_vertices(t.face), region));
+  }
+  std::stable_sort(uses.begin(), uses.end(), [](const FaceUse& a, const FaceUse& b) { return a.key < b.key; });
+  for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
+    for (j = i; j < uses.size() && uses[j].key == uses[i].key;) ++j;
+    const Index beyond = j - i > 1 ? uses[i + 1].region : 0;
+    const Index patch = patch_between(uses[i].key, uses[i].region, beyond);
+    if (patch == none) {
+      if (uses[i].region != beyond || j - i > 2)
+        give_up(mesh_.point(uses[i].key[0]), "a collar could not be stitched to its surroundings");
+      continue;
+    }
+    auto face = uses[i].face;
+    std::array<Index, 2> regions{uses[i].region, beyond};
+    const Vector n = cross(mesh_.point(face[1]) - mesh_.point(face[0]), mesh_.point(face[2]) - mesh_.point(face[0]));
+    const bool reversed = regions[0] == regions[1] ? dot(n, plc_.patches[patch].normal) < 0
+                                                   : beyond != 0 && regions[0] != plc_.patches[patch].regions[0];
+    if (reversed) {
+      std::swap(face[1], face[2]);
+      std::swap(regions[0], regions[1]);
+    }
+    stitched_.faces.push_back({face, regions, patch});
+  }
+}
+
+// The patch that all three vertices lie on and that separates these regions, none if there is none.
+Index Refinement::patch_between(const std::array<Index, 3>& corners, Index a, Index b) const {
+  const auto separates = [&](Index patch) {
+    const auto& r = plc_.patches[patch].regions;
+    return ((r[0] == a && r[1] == b) || (r[0] == b && r[1] == a)) &&
+           std::all_of(corners.begin(), corners.end(), [&](Index v) { return on_patch(v, patch); });
+  };
+  for (const Index corner : corners) {
+    const MeshVertex& v = vertices_[corner];
+    if (v.dimension == 3) return none;
+    if (v.dimension == 2) return separates(v.feature) ? v.feature : none;
+  }
+  const MeshVertex& v = vertices_[corners[0]];
+  const auto& patches = v.dimension == 0 ? plc_.vertices[v.feature].patches : plc_.curves[v.feature].patches;
+  const auto found = std::find_if(patches.begin(), patches.end(), separates);
+  return found == patches.end() ? none : *found;
+}
+
+}  // namespace collarmesh
