@@ -54,7 +54,8 @@ class FeatureMaker {
       const auto& points = plc_.curves[c].points;
       bool on = false;
       for (std::size_t i = plc_.curves[c].closed ? 0 : 1; i < points.size() && !on; ++i)
-        on = distance_to_segment(p, plc_.points[points[i == 0 ? points.size() - 1 : i - 1]], plc_.points[points[i]]) < near;
+        on = distance_to_segment(p, plc_.points[points[i == 0 ? points.size() - 1 : i - 1]],
+                                 plc_.points[points[i]]) < near;
       if (on) found.push_back(c);
     }
     return found;
@@ -123,7 +124,8 @@ class FeatureMaker {
   void add_edges() {
     std::set<std::array<Index, 2>> edges;
     for (const Corners& f : mesh_.faces)
-      for (unsigned i = 0; i < 3; ++i) edges.insert({std::min(f[i], f[(i + 1) % 3]), std::max(f[i], f[(i + 1) % 3])});
+      for (unsigned i = 0; i < 3; ++i)
+        edges.insert({std::min(f[i], f[(i + 1) % 3]), std::max(f[i], f[(i + 1) % 3])});
     for (const auto& edge : edges)
       for (const Index c : curves_[edge[0]])
         if (std::count(curves_[edge[1]].begin(), curves_[edge[1]].end(), c) != 0) {
@@ -188,11 +190,14 @@ MeshedComplex meshed_two_boxes(Index n) {
   const Plc plc = build_plc({&soup, 1});
   TetMesh mesh = kuhn_mesh(n, 2 * n);
   const Index below = plc.regions[1].tag == 10 ? 1 : 2;
-  for (Index t = 0; t < mesh.tets.size(); ++t) mesh.tet_region[t] = t < mesh.tets.size() / 2 ? below : 3 - below;
+  for (Index t = 0; t < mesh.tets.size(); ++t)
+    mesh.tet_region[t] = t < mesh.tets.size() / 2 ? below : 3 - below;
   return with_features(std::move(mesh), soup);
 }
 
-MeshedComplex meshed_box_with_facet(Index n) { return with_features(kuhn_mesh(n, n), box_with_dangling_facet(0.5)); }
+MeshedComplex meshed_box_with_facet(Index n) {
+  return with_features(kuhn_mesh(n, n), box_with_dangling_facet(0.5));
+}
 
 MeshedComplex meshed_ball(unsigned frequency, unsigned finer) {
   return with_features(star_mesh(icosphere(1, frequency), {0, 0, 0}), icosphere(1, frequency * finer));

@@ -33,7 +33,9 @@ class SoupMaker {
     begin_facet(tag);
     polygon(corners);
   }
-  void facet(std::initializer_list<Point> corners, Tag tag) { facet(std::span(corners.begin(), corners.size()), tag); }
+  void facet(std::initializer_list<Point> corners, Tag tag) {
+    facet(std::span(corners.begin(), corners.size()), tag);
+  }
   void facet_hole(const Point& p) { soup_.facet_holes.push_back({soup_.facet_count() - 1, p}); }
 
   PolygonSoup soup_;
@@ -45,7 +47,8 @@ class SoupMaker {
 double between(double a, double b, unsigned i, unsigned n) { return i == n ? b : a + (b - a) * i / n; }
 
 // One side of a box: the grid of the axes after `axis`, where that axis is at one end.
-void add_box_side(SoupMaker& maker, const Point& min, const Point& max, std::size_t axis, bool at_max, unsigned n) {
+void add_box_side(SoupMaker& maker, const Point& min, const Point& max, std::size_t axis, bool at_max,
+                  unsigned n) {
   const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
   const auto corner = [&](unsigned i, unsigned j) {
     Point p;
@@ -100,7 +103,8 @@ void add_band(SoupMaker& maker, const std::vector<Point>& low, const std::vector
   }
 }
 
-std::vector<Point> arc(const Point& centre, double radius, double from_degrees, double to_degrees, unsigned n) {
+std::vector<Point> arc(const Point& centre, double radius, double from_degrees, double to_degrees,
+                       unsigned n) {
   std::vector<Point> points;
   for (unsigned i = 0; i <= n; ++i) {
     const double angle = between(from_degrees, to_degrees, i, n) * pi / 180;
@@ -159,11 +163,22 @@ PolygonSoup revolution(std::span<const Point> profile, unsigned segments, bool c
 
 PolygonSoup icosphere(double radius, unsigned frequency) {
   const double g = std::numbers::phi;
-  const std::array<Point, 12> corners{{{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                                       {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}}};
+  const std::array<Point, 12> corners{{{-1, g, 0},
+                                       {1, g, 0},
+                                       {-1, -g, 0},
+                                       {1, -g, 0},
+                                       {0, -1, g},
+                                       {0, 1, g},
+                                       {0, -1, -g},
+                                       {0, 1, -g},
+                                       {g, 0, -1},
+                                       {g, 0, 1},
+                                       {-g, 0, -1},
+                                       {-g, 0, 1}}};
   constexpr std::array<std::array<Index, 3>, 20> faces{
-      {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-       {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8}, {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}}};
+      {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+       {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+       {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
   // Points are named by their integer weights of the corners, so that neighbouring faces share them.
   std::map<std::vector<std::array<Index, 2>>, Index> numbers;
   PolygonSoup soup;
@@ -187,13 +202,15 @@ PolygonSoup icosphere(double radius, unsigned frequency) {
       for (Index j = 0; i + j < frequency; ++j) {
         const auto at = [&](Index u, Index v) { return point(face, {u, v, frequency - u - v}); };
         soup.add_facet(std::array{at(i, j), at(i + 1, j), at(i, j + 1)}, 1);
-        if (i + j + 1 < frequency) soup.add_facet(std::array{at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)}, 1);
+        if (i + j + 1 < frequency)
+          soup.add_facet(std::array{at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)}, 1);
       }
   return soup;
 }
 
 PolygonSoup icosphere_of(double radius, std::size_t triangles) {
-  return icosphere(radius, std::max(1U, static_cast<unsigned>(std::lround(std::sqrt(double(triangles) / 20)))));
+  return icosphere(radius,
+                   std::max(1U, static_cast<unsigned>(std::lround(std::sqrt(double(triangles) / 20)))));
 }
 
 PolygonSoup uv_sphere(double radius, unsigned rings, unsigned segments) {
@@ -217,7 +234,8 @@ PolygonSoup torus(double major, double minor, unsigned major_segments, unsigned 
 
 PolygonSoup cone(double radius, double height, unsigned segments, unsigned rings) {
   std::vector<Point> profile{{0, 0, 0}};
-  for (unsigned i = 0; i <= rings; ++i) profile.push_back({between(radius, 0, i, rings), 0, between(0, height, i, rings)});
+  for (unsigned i = 0; i <= rings; ++i)
+    profile.push_back({between(radius, 0, i, rings), 0, between(0, height, i, rings)});
   return revolution(profile, segments);
 }
 
@@ -329,8 +347,9 @@ PolygonSoup random_prism(std::uint32_t seed) {
   }
   const Vector axis = random_direction(random);
   const double shear = 0.1 * unit(random), degrees = 360 * unit(random);
-  const auto sheared = transformed(extrusion(polygon, 0.5 + unit(random)),
-                                   [&](const Point& p) { return Point{p.x + shear * p.z, p.y, p.z}; });
+  const auto sheared = transformed(extrusion(polygon, 0.5 + unit(random)), [&](const Point& p) {
+    return Point{p.x + shear * p.z, p.y, p.z};
+  });
   return rotated(sheared, axis, degrees);
 }
 
@@ -378,8 +397,8 @@ PolygonSoup rotated(const PolygonSoup& soup, const Vector& axis, double degrees)
 namespace {
 
 // The same soup with its facets in the given order, corners renumbered and perhaps turned.
-PolygonSoup rebuilt(const PolygonSoup& soup, const std::vector<Index>& facets, const std::vector<Index>& number,
-                    bool turn) {
+PolygonSoup rebuilt(const PolygonSoup& soup, const std::vector<Index>& facets,
+                    const std::vector<Index>& number, bool turn) {
   PolygonSoup result;
   result.name = soup.name;
   result.region_points = soup.region_points;

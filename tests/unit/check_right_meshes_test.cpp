@@ -34,7 +34,9 @@ TEST(CheckRightMeshes, DanglingFacet) { expect_pass(meshed_box_with_facet(4)); }
 
 TEST(CheckRightMeshes, SmoothClosedPatch) { expect_pass(meshed_ball(4, 4), {.distance = 0.05}); }
 
-TEST(CheckRightMeshes, SmoothCurvesAndPlanarPatches) { expect_pass(meshed_cylinder(12, 4), {.distance = 0.05}); }
+TEST(CheckRightMeshes, SmoothCurvesAndPlanarPatches) {
+  expect_pass(meshed_cylinder(12, 4), {.distance = 0.05});
+}
 
 TEST(CheckRightMeshes, Moved) {
   const double far = 1e6 * std::sqrt(3.0);
@@ -74,7 +76,8 @@ TEST(CheckRightMeshes, MeasuresOfTheBall) {
   // The farthest places are the centres of the large faces, near a point of the fine sphere.
   double sagitta = 0;
   for (const auto& f : m.mesh.faces)
-    sagitta = std::fmax(sagitta, 1 - norm((m.mesh.points[f[0]] + m.mesh.points[f[1]] + m.mesh.points[f[2]]) / 3));
+    sagitta =
+        std::fmax(sagitta, 1 - norm((m.mesh.points[f[0]] + m.mesh.points[f[1]] + m.mesh.points[f[2]]) / 3));
   EXPECT_NEAR(report.max_surface_distance, sagitta, 0.05 * sagitta);
 }
 

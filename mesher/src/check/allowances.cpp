@@ -36,7 +36,8 @@ std::vector<double> patch_allowances(const Subject& subject) {
   for (const Plc::Triangle& t : plc.triangles) {
     const Plc::Patch& patch = plc.patches[t.patch];
     for (const Index i : t.points)
-      deviations[t.patch] = std::max(deviations[t.patch], std::fabs(dot(plc.points[i] - patch.origin, patch.normal)));
+      deviations[t.patch] =
+          std::max(deviations[t.patch], std::fabs(dot(plc.points[i] - patch.origin, patch.normal)));
   }
   for (Index p = 0; p < plc.patches.size(); ++p)
     allowances.push_back(plc.patches[p].planar ? flat_allowance(deviations[p], subject)

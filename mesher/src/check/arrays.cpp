@@ -9,10 +9,11 @@ namespace collarmesh::checks {
 
 namespace {
 
-void check_length(std::size_t length, std::size_t expected, const char* array, const char* of, Findings& findings) {
+void check_length(std::size_t length, std::size_t expected, const char* array, const char* of,
+                  Findings& findings) {
   if (length != expected)
-    findings.add(guarantee::valid_arrays, {}, {}, "The mesh has {} {} for {} {}; give one for each.", length, array,
-                 expected, of);
+    findings.add(guarantee::valid_arrays, {}, {}, "The mesh has {} {} for {} {}; give one for each.", length,
+                 array, expected, of);
 }
 
 template <std::size_t n>
@@ -21,12 +22,13 @@ void check_corners(const std::vector<std::array<Index, n>>& entities, const TetM
   for (Index i = 0; i < entities.size(); ++i)
     for (std::size_t k = 0; k < n; ++k) {
       const Index corner = entities[i][k];
-      const bool repeated = std::find(entities[i].begin(), entities[i].begin() + k, corner) != entities[i].begin() + k;
+      const bool repeated =
+          std::find(entities[i].begin(), entities[i].begin() + k, corner) != entities[i].begin() + k;
       if (corner < mesh.points.size() && !repeated) continue;
       const Point where = corner < mesh.points.size() ? mesh.points[corner] : Point{};
       findings.add(guarantee::valid_arrays, where, {i},
-                   "{} {} has point {} as corner {}{}; the mesh has {} points. Its writer is at fault.", kind, i, corner,
-                   k, repeated ? " again" : "", mesh.points.size());
+                   "{} {} has point {} as corner {}{}; the mesh has {} points. Its writer is at fault.", kind,
+                   i, corner, k, repeated ? " again" : "", mesh.points.size());
     }
 }
 
@@ -35,9 +37,21 @@ void check_range(const std::vector<Index>& values, std::size_t first, std::size_
                  const char* of, const char* value, Findings& findings) {
   for (Index i = 0; i < values.size(); ++i)
     if ((values[i] < first || values[i] >= end) && !(optional && values[i] == none))
-      findings.add(guarantee::valid_arrays, {}, {i},
-                   "{} {} has {} {}, the complex has {} to {}; check the mesh against the complex it was made from.",
-                   of, i, value, values[i], first, static_cast<std::ptrdiff_t>(end) - 1);
+      findings.add(
+          guarantee::valid_arrays, {}, {i},
+          "{} {} has {} {}, the complex has {} to {}; check the mesh against the complex it was made from.",
+          of, i, value, values[i], first, static_cast<std::ptrdiff_t>(end) - 1);
+}
+
+void check_face_regions(const TetMesh& mesh, const Plc& plc, Findings& findings) {
+  for (Index f = 0; f < mesh.face_regions.size(); ++f)
+    for (const Index region : mesh.face_regions[f])
+      if (region >= plc.regions.size())
+        findings.add(
+            guarantee::valid_arrays, {}, {f},
+            "Face {} has region {} on a side, the complex has 0 to {}; check the mesh against the complex it "
+            "was made from.",
+            f, region, static_cast<std::ptrdiff_t>(plc.regions.size()) - 1);
 }
 
 void check_lengths(const TetMesh& mesh, Findings& findings) {
@@ -58,10 +72,11 @@ void check_features(const TetMesh& mesh, const Plc& plc, Findings& findings) {
   for (Index i = 0; i < mesh.features.size(); ++i) {
     const auto [dimension, feature] = mesh.features[i];
     if (dimension > 3 || (dimension < 3 && feature != none && feature >= counts[dimension]))
-      findings.add(guarantee::valid_arrays, {}, {i},
-                   "Point {} names the feature {} of dimension {}, which the complex does not have; check the mesh "
-                   "against the complex it was made from.",
-                   i, feature, static_cast<unsigned>(dimension));
+      findings.add(
+          guarantee::valid_arrays, {}, {i},
+          "Point {} names the feature {} of dimension {}, which the complex does not have; check the mesh "
+          "against the complex it was made from.",
+          i, feature, static_cast<unsigned>(dimension));
   }
 }
 
@@ -84,8 +99,8 @@ void check_distinct(const TetMesh& mesh, Findings& findings) {
     const Index first = points[i - 1].index, second = points[i].index;
     if (points[i - 1].place() == points[i].place())
       findings.add(guarantee::distinct_points, mesh.points[first], {first, second},
-                   "Points {} and {} are both at {}; the mesh is cut open or doubled there, merge them.", first, second,
-                   At{mesh.points[first]});
+                   "Points {} and {} are both at {}; the mesh is cut open or doubled there, merge them.",
+                   first, second, At{mesh.points[first]});
   }
 }
 
@@ -108,6 +123,7 @@ bool check_arrays(const TetMesh& mesh, const Plc& plc, Findings& findings) {
   check_corners(mesh.faces, mesh, "Face", findings);
   check_corners(mesh.edges, mesh, "Edge", findings);
   check_range(mesh.tet_region, 1, plc.regions.size(), false, "Tet", "region", findings);
+  check_face_regions(mesh, plc, findings);
   check_range(mesh.face_patch, 0, plc.patches.size(), true, "Face", "patch", findings);
   check_range(mesh.edge_curve, 0, plc.curves.size(), true, "Edge", "curve", findings);
   check_features(mesh, plc, findings);
@@ -121,8 +137,8 @@ bool check_points(const Subject& subject, Findings& findings) {
     const Point& p = mesh.points[i];
     if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) continue;
     finite = false;
-    findings.add(guarantee::finite_points, {}, {i}, "Point {} has the coordinates {}; every one must be finite.", i,
-                 At{p});
+    findings.add(guarantee::finite_points, {}, {i},
+                 "Point {} has the coordinates {}; every one must be finite.", i, At{p});
   }
   if (!finite) return false;
   check_distinct(mesh, findings);

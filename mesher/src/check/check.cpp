@@ -29,7 +29,8 @@ double largest_coordinate(const Box& box) {
 Subject make_subject(const TetMesh& mesh, const Plc& plc, const CheckOptions& options) {
   constexpr double epsilon = 0x1p-52;
   const Box box = bounds_of(plc);
-  Subject subject{mesh, plc, options, 1e-12 * box.diagonal() + 8 * epsilon * largest_coordinate(box), {}, {}, {}};
+  Subject subject{mesh, plc, options, 1e-12 * box.diagonal() + 8 * epsilon * largest_coordinate(box),
+                  {},   {},  {}};
   if (!(subject.options.distance > 0)) subject.options.distance = 1e-3 * box.diagonal();
   subject.curve_allowance = curve_allowances(subject);
   subject.patch_allowance = patch_allowances(subject);

@@ -71,7 +71,8 @@ class UseTable {
   void for_each_triangle(const Visit& visit) const {
     for (Index smallest = 0; smallest + 1 < first_.size(); ++smallest)
       for (std::size_t i = first_[smallest], j = i; i < first_[smallest + 1]; i = j) {
-        while (j < first_[smallest + 1] && uses_[j].middle == uses_[i].middle && uses_[j].largest == uses_[i].largest)
+        while (j < first_[smallest + 1] && uses_[j].middle == uses_[i].middle &&
+               uses_[j].largest == uses_[i].largest)
           ++j;
         visit(std::array{smallest, uses_[i].middle, uses_[i].largest}, std::span(uses_).subspan(i, j - i));
       }
@@ -129,12 +130,14 @@ class ConformityCheck {
 
   void check_sides() {
     if (sides_.size() < 2 || (sides_.size() == 2 && sides_[0].odd() != sides_[1].odd())) return;
-    findings_.add(guarantee::conforming, where(), {corners_[0], corners_[1], corners_[2], sides_[0].tet(), sides_[1].tet()},
-                  "The face of points {}, {}, {} at {} is a side of {} tets, {} of them {} and {} on one side of it; "
-                  "tets overlap there. If the mesher made this mesh, report it with the input and the options.",
-                  corners_[0], corners_[1], corners_[2], At{where()}, sides_.size(),
-                  sides_[0].odd() == sides_[1].odd() ? "the first two" : "more than one", sides_[0].tet(),
-                  sides_[1].tet());
+    findings_.add(
+        guarantee::conforming, where(),
+        {corners_[0], corners_[1], corners_[2], sides_[0].tet(), sides_[1].tet()},
+        "The face of points {}, {}, {} at {} is a side of {} tets, {} of them {} and {} on one side of it; "
+        "tets overlap there. If the mesher made this mesh, report it with the input and the options.",
+        corners_[0], corners_[1], corners_[2], At{where()}, sides_.size(),
+        sides_[0].odd() == sides_[1].odd() ? "the first two" : "more than one", sides_[0].tet(),
+        sides_[1].tet());
   }
 
   void check_listing() {
@@ -143,10 +146,11 @@ class ConformityCheck {
                     "Faces {} and {} are the same triangle of points {}, {}, {} at {}; list it once.",
                     listed_[0].face(), listed_[1].face(), corners_[0], corners_[1], corners_[2], At{where()});
     if (sides_.empty())
-      findings_.add(guarantee::listed_faces, where(), {listed_[0].face()},
-                    "Face {} of points {}, {}, {} at {} is a side of no tet; its tets are missing or it does not "
-                    "belong to the mesh.",
-                    listed_[0].face(), corners_[0], corners_[1], corners_[2], At{where()});
+      findings_.add(
+          guarantee::listed_faces, where(), {listed_[0].face()},
+          "Face {} of points {}, {}, {} at {} is a side of no tet; its tets are missing or it does not "
+          "belong to the mesh.",
+          listed_[0].face(), corners_[0], corners_[1], corners_[2], At{where()});
     else if (listed_.empty())
       check_unlisted();
     else
@@ -155,16 +159,18 @@ class ConformityCheck {
 
   void check_unlisted() {
     if (sides_.size() == 1)
-      findings_.add(guarantee::listed_faces, where(), {sides_[0].tet()},
-                    "The face of points {}, {}, {} at {} has tet {} on one side and nothing on the other, and is not "
-                    "among the boundary faces; the mesh has a hole there or the face is missing.",
-                    corners_[0], corners_[1], corners_[2], At{where()}, sides_[0].tet());
+      findings_.add(
+          guarantee::listed_faces, where(), {sides_[0].tet()},
+          "The face of points {}, {}, {} at {} has tet {} on one side and nothing on the other, and is not "
+          "among the boundary faces; the mesh has a hole there or the face is missing.",
+          corners_[0], corners_[1], corners_[2], At{where()}, sides_[0].tet());
     else if (sides_.size() == 2 && region(sides_[0]) != region(sides_[1]))
-      findings_.add(guarantee::listed_faces, where(), {sides_[0].tet(), sides_[1].tet()},
-                    "The face of points {}, {}, {} at {} separates tet {} in region {} from tet {} in region {} and is "
-                    "not among the faces; a tet's region is wrong or the face is missing.",
-                    corners_[0], corners_[1], corners_[2], At{where()}, sides_[0].tet(), region(sides_[0]),
-                    sides_[1].tet(), region(sides_[1]));
+      findings_.add(
+          guarantee::listed_faces, where(), {sides_[0].tet(), sides_[1].tet()},
+          "The face of points {}, {}, {} at {} separates tet {} in region {} from tet {} in region {} and is "
+          "not among the faces; a tet's region is wrong or the face is missing.",
+          corners_[0], corners_[1], corners_[2], At{where()}, sides_[0].tet(), region(sides_[0]),
+          sides_[1].tet(), region(sides_[1]));
   }
 
   // The normal of a tet's side leaves the tet: the tet on a face's first side has it turned alike.
@@ -174,15 +180,17 @@ class ConformityCheck {
     const Index face = listed.face();
     const auto& given = subject_.mesh.face_regions[face];
     if (given == regions) return;
-    findings_.add(guarantee::face_regions, where(), {face},
-                  "Face {} of points {}, {}, {} at {} is listed between the regions {} (behind its normal) and {}, its "
-                  "tets are in {} and {}; turn it or correct its regions.",
-                  face, corners_[0], corners_[1], corners_[2], At{where()}, given[0], given[1], regions[0], regions[1]);
+    findings_.add(
+        guarantee::face_regions, where(), {face},
+        "Face {} of points {}, {}, {} at {} is listed between the regions {} (behind its normal) and {}, its "
+        "tets are in {} and {}; turn it or correct its regions.",
+        face, corners_[0], corners_[1], corners_[2], At{where()}, given[0], given[1], regions[0], regions[1]);
   }
 
   void report_twins(Index first, Index second) {
     findings_.add(guarantee::distinct_tets, where(), {first, second},
-                  "Tets {} and {} at {} have the same four corners; list the tet once.", first, second, At{where()});
+                  "Tets {} and {} at {} have the same four corners; list the tet once.", first, second,
+                  At{where()});
   }
 
   Index opposite(const Use& side) const { return subject_.mesh.tets[side.tet()][side.corner()]; }
@@ -207,7 +215,8 @@ struct BoundaryEdge {
   }
 };
 
-void add_edges(const std::array<Index, 3>& face, Index region, int direction, std::vector<BoundaryEdge>& edges) {
+void add_edges(const std::array<Index, 3>& face, Index region, int direction,
+               std::vector<BoundaryEdge>& edges) {
   if (region == 0) return;
   for (unsigned i = 0; i < 3; ++i) {
     const Index a = face[i], b = face[(i + 1) % 3];
@@ -219,7 +228,9 @@ void add_edges(const std::array<Index, 3>& face, Index region, int direction, st
 
 void check_conformity(const Subject& subject, Findings& findings) {
   ConformityCheck check(subject, findings);
-  UseTable(subject.mesh).for_each_triangle([&](const auto& corners, auto uses) { check.triangle(corners, uses); });
+  UseTable(subject.mesh).for_each_triangle([&](const auto& corners, auto uses) {
+    check.triangle(corners, uses);
+  });
 }
 
 // The faces of a region, turned outward, have no boundary: every edge is passed as often one way as
@@ -240,7 +251,8 @@ void check_watertight(const Subject& subject, Findings& findings) {
     const auto& [a, b] = edges[i].ends;
     const Point where = subject.midpoint(edges[i].ends);
     findings.add(guarantee::watertight, where, {a, b, edges[i].region},
-                 "The faces around region {} do not close at the edge of points {} and {} at {}: it is passed {} time{} "
+                 "The faces around region {} do not close at the edge of points {} and {} at {}: it is "
+                 "passed {} time{} "
                  "more often one way than the other; a face is missing, doubled or turned there.",
                  edges[i].region, a, b, At{where}, std::abs(sum), std::abs(sum) == 1 ? "" : "s");
   }

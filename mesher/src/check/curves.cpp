@@ -25,7 +25,8 @@ void mark_edges_of_tets(const TetMesh& mesh, std::vector<ListedEdge>& edges) {
       if (!at_edge[t[i]]) continue;
       for (unsigned j = i + 1; j < 4; ++j) {
         if (!at_edge[t[j]]) continue;
-        const auto [first, last] = std::equal_range(edges.begin(), edges.end(), ListedEdge{sorted(t[i], t[j]), none});
+        const auto [first, last] =
+            std::equal_range(edges.begin(), edges.end(), ListedEdge{sorted(t[i], t[j]), none});
         for (auto e = first; e != last; ++e) e->in_tet = true;
       }
     }
@@ -46,7 +47,8 @@ class CurveCheck {
 
   void run() {
     if (edges_.empty()) {
-      if (!curve_is_outside(subject_.plc, id_)) report_gap(subject_.plc.points[curve_.points[0]], "has no edges");
+      if (!curve_is_outside(subject_.plc, id_))
+        report_gap(subject_.plc.points[curve_.points[0]], "has no edges");
       return;
     }
     if (!curve_.closed && (end_point(0) == none || end_point(1) == none)) return;  // a vertex is missing
@@ -59,8 +61,8 @@ class CurveCheck {
 
   void report_gap(const Point& where, const std::string& what) {
     findings_.add(guarantee::curve_cover, where, {id_},
-                  "Curve {} (tag {}) {} at {}; it must be one chain of mesh edges from end to end.", id_, curve_.tag,
-                  what, At{where});
+                  "Curve {} (tag {}) {} at {}; it must be one chain of mesh edges from end to end.", id_,
+                  curve_.tag, what, At{where});
   }
 
   // Puts the points of the edges into chain_, in order. False (with findings) if they are no chain.
@@ -84,8 +86,9 @@ class CurveCheck {
       if (is_loop() && at == start) break;
     }
     if (chain_.size() == edges_.size() + 1) return true;
-    report_gap(subject_.point(chain_.back()), fmt::format("has {} edges that its chain does not reach, which ends",
-                                                          edges_.size() + 1 - chain_.size()));
+    report_gap(subject_.point(chain_.back()),
+               fmt::format("has {} edges that its chain does not reach, which ends",
+                           edges_.size() + 1 - chain_.size()));
     return false;
   }
 
@@ -99,7 +102,8 @@ class CurveCheck {
       const auto degree = degree_at(point);
       if (degree == expected) return;
       good = false;
-      report_gap(subject_.point(point), fmt::format("has {} edges where it should have {}", degree, expected));
+      report_gap(subject_.point(point),
+                 fmt::format("has {} edges where it should have {}", degree, expected));
     };
     if (!curve_.closed)
       for (unsigned i = 0; i < (is_loop() ? 1 : 2); ++i) expect(end_point(i), is_loop() ? 2 : 1);
@@ -164,12 +168,13 @@ class CurveCheck {
   void measure(double distance, Index point, const Point& where) {
     if (!curve_.straight) report_.max_surface_distance = std::fmax(report_.max_surface_distance, distance);
     if (distance <= allowed_) return;
-    findings_.add(guarantee::curve_distance, where, {id_, point},
-                  "The edges of curve {} (tag {}) and the curve are {:.6g} apart at {} (mesh point {}), allowed is "
-                  "{:.6g}; {}.",
-                  id_, curve_.tag, distance, At{where}, point, allowed_,
-                  curve_.straight ? "the point is off the straight edge"
-                                  : "use a smaller size there or allow a larger distance");
+    findings_.add(
+        guarantee::curve_distance, where, {id_, point},
+        "The edges of curve {} (tag {}) and the curve are {:.6g} apart at {} (mesh point {}), allowed is "
+        "{:.6g}; {}.",
+        id_, curve_.tag, distance, At{where}, point, allowed_,
+        curve_.straight ? "the point is off the straight edge"
+                        : "use a smaller size there or allow a larger distance");
   }
 
   const Subject& subject_;
@@ -195,13 +200,14 @@ void check_listed_edges(const Subject& subject, Findings& findings) {
     const auto& [ends, edge, in_tet] = edges[i];
     const Point where = subject.midpoint(ends);
     if (!in_tet)
-      findings.add(guarantee::listed_edges, where, {edge},
-                   "Edge {} of points {} and {} at {} is an edge of no tet; the mesh does not follow the curve there.",
-                   edge, ends[0], ends[1], At{where});
+      findings.add(
+          guarantee::listed_edges, where, {edge},
+          "Edge {} of points {} and {} at {} is an edge of no tet; the mesh does not follow the curve there.",
+          edge, ends[0], ends[1], At{where});
     if (i > 0 && edges[i - 1].ends == ends)
       findings.add(guarantee::listed_edges, where, {edges[i - 1].edge, edge},
-                   "Edges {} and {} at {} have the same points {} and {}; list the edge once.", edges[i - 1].edge, edge,
-                   At{where}, ends[0], ends[1]);
+                   "Edges {} and {} at {} have the same points {} and {}; list the edge once.",
+                   edges[i - 1].edge, edge, At{where}, ends[0], ends[1]);
   }
 }
 
@@ -212,12 +218,12 @@ void check_curves(const Subject& subject, CheckReport& report, Findings& finding
     const Point where = subject.midpoint(mesh.edges[e]);
     if (curve == none)
       findings.add(guarantee::curve_tag, where, {e},
-                   "Edge {} at {} has tag {}, which no curve of the complex has; correct the tag.", e, At{where},
-                   mesh.edge_tag[e]);
+                   "Edge {} at {} has tag {}, which no curve of the complex has; correct the tag.", e,
+                   At{where}, mesh.edge_tag[e]);
     else if (mesh.edge_tag[e] != subject.plc.curves[curve].tag)
       findings.add(guarantee::curve_tag, where, {e},
-                   "Edge {} at {} has tag {}, its curve {} has {}; correct the tag or the curve.", e, At{where},
-                   mesh.edge_tag[e], curve, subject.plc.curves[curve].tag);
+                   "Edge {} at {} has tag {}, its curve {} has {}; correct the tag or the curve.", e,
+                   At{where}, mesh.edge_tag[e], curve, subject.plc.curves[curve].tag);
   }
   const Grouping by_curve(subject.match.edge_curve, subject.plc.curves.size());
   for (Index c = 0; c < subject.plc.curves.size(); ++c)

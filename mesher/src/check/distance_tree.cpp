@@ -32,7 +32,9 @@ double squared_distance_to_triangle(const Point& p, const DistanceTree::Triangle
 }
 
 double squared_distance_to_box(const Point& p, const Box& box) {
-  const auto beyond = [](double x, double low, double high) { return x < low ? low - x : x > high ? x - high : 0; };
+  const auto beyond = [](double x, double low, double high) {
+    return x < low ? low - x : x > high ? x - high : 0;
+  };
   const Vector d{beyond(p.x, box.min.x, box.max.x), beyond(p.y, box.min.y, box.max.y),
                  beyond(p.z, box.min.z, box.max.z)};
   return squared_norm(d);
@@ -66,9 +68,9 @@ void DistanceTree::build(Index first, Index last) {
   const Vector extent = middles.max - middles.min;
   const std::size_t axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
   const Index half = first + (last - first) / 2;
-  std::nth_element(number_.begin() + first, number_.begin() + half, number_.begin() + last, [&](Index i, Index j) {
-    return middle(triangles_[i])[axis] < middle(triangles_[j])[axis];
-  });
+  std::nth_element(
+      number_.begin() + first, number_.begin() + half, number_.begin() + last,
+      [&](Index i, Index j) { return middle(triangles_[i])[axis] < middle(triangles_[j])[axis]; });
   build(first, half);
   nodes_[node].first = static_cast<Index>(nodes_.size());
   nodes_[node].count = 0;
@@ -103,7 +105,8 @@ DistanceTree::Nearest DistanceTree::nearest(const Point& p, double enough, Index
       }
     }
     if (node.count != 0) continue;
-    Waiting near{index + 1, squared_distance_to(index + 1, p)}, far{node.first, squared_distance_to(node.first, p)};
+    Waiting near{index + 1, squared_distance_to(index + 1, p)},
+        far{node.first, squared_distance_to(node.first, p)};
     if (far.squared < near.squared) std::swap(near, far);
     if (far.squared < least) stack[size++] = far;
     if (near.squared < least) stack[size++] = near;

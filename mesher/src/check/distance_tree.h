@@ -27,7 +27,8 @@ class DistanceTree {
  private:
   struct Node {
     Box box;
-    Index first, count;  // a leaf's triangles; count 0: `first` is the right child, the left one follows the node
+    Index first,
+        count;  // a leaf's triangles; count 0: `first` is the right child, the left one follows the node
   };
   static constexpr Index leaf_size = 4;
 

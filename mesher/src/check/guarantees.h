@@ -9,17 +9,18 @@ inline constexpr char finite_points[] = "finite_points";          ///< no NaN, n
 inline constexpr char distinct_points[] = "distinct_points";      ///< no two at one place
 inline constexpr char referenced_points[] = "referenced_points";  ///< every point is a corner of a tet
 inline constexpr char region_tag[] = "region_tag";                ///< a tet's tag is its region's
-inline constexpr char vertex_feature[] = "vertex_feature";        ///< what a vertex says it lies on, it lies on
+inline constexpr char vertex_feature[] = "vertex_feature";  ///< what a vertex says it lies on, it lies on
 
 // The tets
 inline constexpr char positive_volume[] = "positive_volume";  ///< by exact arithmetic
 inline constexpr char distinct_tets[] = "distinct_tets";
-inline constexpr char conforming[] = "conforming";            ///< a face has at most two tets, on its two sides
-inline constexpr char radius_edge[] = "radius_edge";          ///< outside collars
+inline constexpr char conforming[] = "conforming";    ///< a face has at most two tets, on its two sides
+inline constexpr char radius_edge[] = "radius_edge";  ///< outside collars
 inline constexpr char collar_dihedral[] = "collar_dihedral";  ///< in collars
 
 // The regions
-inline constexpr char listed_faces[] = "listed_faces";    ///< faces hold the boundary and the interfaces, once each
+inline constexpr char listed_faces[] =
+    "listed_faces";  ///< faces hold the boundary and the interfaces, once each
 inline constexpr char face_regions[] = "face_regions";    ///< a face's regions are those of its tets
 inline constexpr char watertight[] = "watertight";        ///< the faces around a region form a closed surface
 inline constexpr char region_volume[] = "region_volume";  ///< is the complex' own
@@ -32,13 +33,13 @@ inline constexpr char curve_cover[] = "curve_cover";        ///< its edges are o
 inline constexpr char curve_distance[] = "curve_distance";  ///< the chain and the curve are close
 
 // Its patches
-inline constexpr char patch_tag[] = "patch_tag";                  ///< a face's tag is its patch's
-inline constexpr char patch_regions[] = "patch_regions";          ///< a face's regions are its patch's
-inline constexpr char patch_manifold[] = "patch_manifold";        ///< its faces form a surface, without pinches
+inline constexpr char patch_tag[] = "patch_tag";            ///< a face's tag is its patch's
+inline constexpr char patch_regions[] = "patch_regions";    ///< a face's regions are its patch's
+inline constexpr char patch_manifold[] = "patch_manifold";  ///< its faces form a surface, without pinches
 inline constexpr char patch_orientation[] = "patch_orientation";  ///< its faces are oriented alike
-inline constexpr char patch_border[] = "patch_border";            ///< its faces end at its curves and nowhere else
-inline constexpr char patch_plane[] = "patch_plane";              ///< planar: its faces lie in the plane
-inline constexpr char patch_area[] = "patch_area";                ///< planar: its faces have its area
-inline constexpr char patch_distance[] = "patch_distance";        ///< smooth: two-sided
+inline constexpr char patch_border[] = "patch_border";      ///< its faces end at its curves and nowhere else
+inline constexpr char patch_plane[] = "patch_plane";        ///< planar: its faces lie in the plane
+inline constexpr char patch_area[] = "patch_area";          ///< planar: its faces have its area
+inline constexpr char patch_distance[] = "patch_distance";  ///< smooth: two-sided
 
 }  // namespace collarmesh::guarantee

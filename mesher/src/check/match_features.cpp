@@ -16,7 +16,9 @@ namespace {
 
 class DisjointPieces {
  public:
-  explicit DisjointPieces(std::size_t n) : parents_(n) { std::iota(parents_.begin(), parents_.end(), Index{0}); }
+  explicit DisjointPieces(std::size_t n) : parents_(n) {
+    std::iota(parents_.begin(), parents_.end(), Index{0});
+  }
 
   Index find(Index i) {
     while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
@@ -96,7 +98,8 @@ std::vector<Index> match_vertices(const TetMesh& mesh, const Plc& plc, double ro
   std::vector<Index> points(plc.vertices.size(), none);
   for (Index p = 0; p < mesh.features.size(); ++p) {
     const auto [dimension, feature] = mesh.features[p];
-    if (dimension == 0 && feature != none && distance(mesh.points[p], plc.points[plc.vertices[feature].point]) <= rounding)
+    if (dimension == 0 && feature != none &&
+        distance(mesh.points[p], plc.points[plc.vertices[feature].point]) <= rounding)
       points[feature] = p;
   }
   if (std::find(points.begin(), points.end(), none) == points.end()) return points;
@@ -121,7 +124,9 @@ class Ballot {
     std::vector<double> most(pieces, 0);
     for (std::size_t i = 0, j = 0; i < votes_.size(); i = j) {
       double sum = 0;
-      for (j = i; j < votes_.size() && votes_[j].piece == votes_[i].piece && votes_[j].feature == votes_[i].feature; ++j)
+      for (j = i;
+           j < votes_.size() && votes_[j].piece == votes_[i].piece && votes_[j].feature == votes_[i].feature;
+           ++j)
         sum += votes_[j].weight;
       if (sum <= most[votes_[i].piece]) continue;
       most[votes_[i].piece] = sum;
@@ -161,12 +166,15 @@ DisjointPieces face_pieces(const TetMesh& mesh) {
   struct Side {
     std::array<Index, 2> ends;
     Index face;  // none: an edge on a curve
-    bool operator<(const Side& other) const { return ends != other.ends ? ends < other.ends : face < other.face; }
+    bool operator<(const Side& other) const {
+      return ends != other.ends ? ends < other.ends : face < other.face;
+    }
   };
   std::vector<Side> sides;
   for (const auto& e : mesh.edges) sides.push_back({sorted(e[0], e[1]), none});
   for (Index f = 0; f < mesh.faces.size(); ++f)
-    for (unsigned i = 0; i < 3; ++i) sides.push_back({sorted(mesh.faces[f][i], mesh.faces[f][(i + 1) % 3]), f});
+    for (unsigned i = 0; i < 3; ++i)
+      sides.push_back({sorted(mesh.faces[f][i], mesh.faces[f][(i + 1) % 3]), f});
   std::sort(sides.begin(), sides.end());
   DisjointPieces pieces(mesh.faces.size());
   const auto alike = [&](Index f, Index g) {
@@ -196,7 +204,8 @@ std::vector<Index> match_edges(const TetMesh& mesh, const Plc& plc, const std::v
   Ballot ballot;
   for (Index e = 0; e < mesh.edges.size(); ++e) {
     const Point &a = mesh.points[mesh.edges[e][0]], &b = mesh.points[mesh.edges[e][1]];
-    if (curves[e] == none) ballot.vote(pieces.find(e), nearest.find(mesh.edge_tag[e], 0.5 * (a + b)), distance(a, b));
+    if (curves[e] == none)
+      ballot.vote(pieces.find(e), nearest.find(mesh.edge_tag[e], 0.5 * (a + b)), distance(a, b));
   }
   const auto elected = ballot.count(mesh.edges.size());
   for (Index e = 0; e < mesh.edges.size(); ++e)

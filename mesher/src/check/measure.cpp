@@ -30,7 +30,10 @@ template <class Real>
 struct Direction {
   Real x, y;
 
-  bool less_than(const Direction& other) const { return x * other.y - y * other.x > 0; }
+  bool less_than(const Direction& other) const {
+    const Real turn = x * other.y - y * other.x;
+    return turn > 0 || (turn == 0 && x > 0 && other.x < 0);  // the latter: 0 and pi
+  }
   double degrees() const { return static_cast<double>(std::atan2(y, x)) * 180 / std::numbers::pi; }
 };
 
@@ -57,9 +60,9 @@ Measures<Real> measure_as(const Point& a, const Point& b, const Point& c, const 
 
   // |ad|^2 (ab x ac) + |ac|^2 (ad x ab) + |ab|^2 (ac x ad) = 2 det (circumcentre - a)
   const V numerator = Real(-1) * (l_ad * n_d + l_ac * n_c + l_ab * n_b);
-  quality.radius_edge = size > 0
-                            ? static_cast<double>(std::sqrt(dot(numerator, numerator) / shortest) / (2 * size))
-                            : std::numeric_limits<double>::infinity();
+  quality.radius_edge =
+      size > 0 ? static_cast<double>(std::sqrt(dot(numerator, numerator) / shortest) / (2 * size))
+               : std::numeric_limits<double>::infinity();
 
   // Two normals n, m with a common edge e: -n.m = |n||m| cos, |n x m| = |e| |det| = |n||m| sin.
   const std::array<Direction<Real>, 6> angles{{{-dot(n_c, n_d), std::sqrt(l_ab) * size},

@@ -30,7 +30,8 @@ Hit first_hit(const Plc& plc, const Point& p, const Vector& direction) {
       // directions decide better; without a hit it does not count.
       continue;
     }
-    const double u = dot(ap, h) / determinant, v = dot(direction, q) / determinant, t = dot(ac, q) / determinant;
+    const double u = dot(ap, h) / determinant, v = dot(direction, q) / determinant,
+                 t = dot(ac, q) / determinant;
     if (u < -margin || v < -margin || u + v > 1 + margin || t < 0) continue;
     if (u < margin || v < margin || u + v > 1 - margin) hit.doubtful = true;
     if (t < hit.along) {

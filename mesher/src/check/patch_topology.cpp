@@ -15,14 +15,16 @@ CurveUses::CurveUses(const Subject& subject)
   std::sort(complex_edges_.begin(), complex_edges_.end());
   for (Index e = 0; e < subject.mesh.edges.size(); ++e)
     if (subject.match.edge_curve[e] != none)
-      mesh_edges_.push_back({sorted(subject.mesh.edges[e][0], subject.mesh.edges[e][1]), subject.match.edge_curve[e]});
+      mesh_edges_.push_back(
+          {sorted(subject.mesh.edges[e][0], subject.mesh.edges[e][1]), subject.match.edge_curve[e]});
   std::sort(mesh_edges_.begin(), mesh_edges_.end());
 }
 
 std::size_t CurveUses::triangles_at(Index curve, Index patch) const {
   const auto& points = plc_.curves[curve].points;
   const auto [a, b] = sorted(points[0], points[1]);
-  const auto [first, last] = std::equal_range(complex_edges_.begin(), complex_edges_.end(), std::array{a, b, patch});
+  const auto [first, last] =
+      std::equal_range(complex_edges_.begin(), complex_edges_.end(), std::array{a, b, patch});
   return static_cast<std::size_t>(last - first);
 }
 
@@ -37,8 +39,13 @@ class TopologyCheck {
  public:
   TopologyCheck(const Subject& subject, Index patch, const std::vector<Index>& faces, const CurveUses& uses,
                 Findings& findings)
-      : subject_(subject), id_(patch), patch_(subject.plc.patches[patch]), faces_(faces), uses_(uses),
-        findings_(findings), fans_(3 * faces.size()) {
+      : subject_(subject),
+        id_(patch),
+        patch_(subject.plc.patches[patch]),
+        faces_(faces),
+        uses_(uses),
+        findings_(findings),
+        fans_(3 * faces.size()) {
     std::iota(fans_.begin(), fans_.end(), Index{0});
     for (Index place = 0; place < faces_.size(); ++place) add_sides(place);
     std::sort(sides_.begin(), sides_.end());
@@ -75,24 +82,27 @@ class TopologyCheck {
     if (last - first == expected) {
       if (expected == 2 && side.ascending == sides_[first + 1].ascending)
         findings_.add(guarantee::patch_orientation, where, {side.face, sides_[first + 1].face},
-                      "Faces {} and {} of patch {} (tag {}) are turned against each other at {}; turn one.", side.face,
-                      sides_[first + 1].face, id_, patch_.tag, At{where});
+                      "Faces {} and {} of patch {} (tag {}) are turned against each other at {}; turn one.",
+                      side.face, sides_[first + 1].face, id_, patch_.tag, At{where});
       return;
     }
     if (of_patch)
-      findings_.add(guarantee::patch_border, where, {id_, side.ends[0], side.ends[1]},
-                    "Patch {} (tag {}) has {} faces at the edge of points {} and {} on its curve {} at {}, in the "
-                    "complex it has {}; faces are missing or tagged with another patch.",
-                    id_, patch_.tag, last - first, side.ends[0], side.ends[1], curve, At{where}, expected);
+      findings_.add(
+          guarantee::patch_border, where, {id_, side.ends[0], side.ends[1]},
+          "Patch {} (tag {}) has {} faces at the edge of points {} and {} on its curve {} at {}, in the "
+          "complex it has {}; faces are missing or tagged with another patch.",
+          id_, patch_.tag, last - first, side.ends[0], side.ends[1], curve, At{where}, expected);
     else if (last - first == 1)
-      findings_.add(guarantee::patch_border, where, {id_, side.face},
-                    "Patch {} (tag {}) ends at the edge of points {} and {} at {}, where the complex has none of its "
-                    "curves; faces or edges are missing or tagged with another feature.",
-                    id_, patch_.tag, side.ends[0], side.ends[1], At{where});
+      findings_.add(
+          guarantee::patch_border, where, {id_, side.face},
+          "Patch {} (tag {}) ends at the edge of points {} and {} at {}, where the complex has none of its "
+          "curves; faces or edges are missing or tagged with another feature.",
+          id_, patch_.tag, side.ends[0], side.ends[1], At{where});
     else
-      findings_.add(guarantee::patch_manifold, where, {id_, side.face},
-                    "Patch {} (tag {}) has {} faces at the edge of points {} and {} at {}; a surface has two.", id_,
-                    patch_.tag, last - first, side.ends[0], side.ends[1], At{where});
+      findings_.add(
+          guarantee::patch_manifold, where, {id_, side.face},
+          "Patch {} (tag {}) has {} faces at the edge of points {} and {} at {}; a surface has two.", id_,
+          patch_.tag, last - first, side.ends[0], side.ends[1], At{where});
   }
 
   // Every edge of the patch' curves has faces of it.
@@ -107,7 +117,8 @@ class TopologyCheck {
         if (side != sides_.end() && side->ends == ends) continue;
         const Point where = subject_.midpoint(ends);
         findings_.add(guarantee::patch_border, where, {id_, *e},
-                      "Patch {} (tag {}) has no face at edge {} of its curve {} at {}; faces are missing or tagged with "
+                      "Patch {} (tag {}) has no face at edge {} of its curve {} at {}; faces are missing or "
+                      "tagged with "
                       "another patch.",
                       id_, patch_.tag, *e, curve, At{where});
       }
@@ -134,16 +145,18 @@ class TopologyCheck {
   void check_fans() {
     std::vector<std::array<Index, 2>> fans;  // point, fan
     for (Index place = 0; place < faces_.size(); ++place)
-      for (unsigned i = 0; i < 3; ++i) fans.push_back({subject_.mesh.faces[faces_[place]][i], fan(3 * place + i)});
+      for (unsigned i = 0; i < 3; ++i)
+        fans.push_back({subject_.mesh.faces[faces_[place]][i], fan(3 * place + i)});
     std::sort(fans.begin(), fans.end());
     fans.erase(std::unique(fans.begin(), fans.end()), fans.end());
     for (std::size_t i = 1; i < fans.size(); ++i) {
       const Index point = fans[i][0];
       if (fans[i - 1][0] != point || (i > 1 && fans[i - 2][0] == point) || is_vertex(point)) continue;
-      findings_.add(guarantee::patch_manifold, subject_.point(point), {id_, point},
-                    "The faces of patch {} (tag {}) touch in point {} at {} without sharing an edge; the surface is "
-                    "pinched there, use a smaller size.",
-                    id_, patch_.tag, point, At{subject_.point(point)});
+      findings_.add(
+          guarantee::patch_manifold, subject_.point(point), {id_, point},
+          "The faces of patch {} (tag {}) touch in point {} at {} without sharing an edge; the surface is "
+          "pinched there, use a smaller size.",
+          id_, patch_.tag, point, At{subject_.point(point)});
     }
   }
 
@@ -165,8 +178,8 @@ class TopologyCheck {
 
 }  // namespace
 
-void check_patch_topology(const Subject& subject, Index patch, const std::vector<Index>& faces, const CurveUses& uses,
-                          Findings& findings) {
+void check_patch_topology(const Subject& subject, Index patch, const std::vector<Index>& faces,
+                          const CurveUses& uses, Findings& findings) {
   TopologyCheck(subject, patch, faces, uses, findings).run();
 }
 

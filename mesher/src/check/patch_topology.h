@@ -11,7 +11,7 @@ struct PatchEdge {
   std::array<Index, 2> ends;  ///< sorted
   Index place;                ///< of the face in the patch' list of faces
   Index face;
-  bool ascending;             ///< runs from the smaller to the larger point, with the face turned as its patch
+  bool ascending;  ///< runs from the smaller to the larger point, with the face turned as its patch
 
   friend bool operator<(const PatchEdge& a, const PatchEdge& b) {
     return a.ends != b.ends ? a.ends < b.ends : a.face < b.face;
@@ -50,7 +50,7 @@ inline bool reversed(const Subject& subject, Index face) {
 }
 
 /// The faces of a patch form a surface that is turned one way and ends at the patch' curves.
-void check_patch_topology(const Subject& subject, Index patch, const std::vector<Index>& faces, const CurveUses& uses,
-                          Findings& findings);
+void check_patch_topology(const Subject& subject, Index patch, const std::vector<Index>& faces,
+                          const CurveUses& uses, Findings& findings);
 
 }  // namespace collarmesh::checks

@@ -51,9 +51,10 @@ class PatchCheck {
 
   void report_missing() {
     const Point& where = subject_.plc_corner(triangle(0), 0);
-    findings_.add(guarantee::patch_border, where, {id_},
-                  "Patch {} (tag {}) at {} has no faces; it was lost, or its faces are tagged with another patch.", id_,
-                  patch_.tag, At{where});
+    findings_.add(
+        guarantee::patch_border, where, {id_},
+        "Patch {} (tag {}) at {} has no faces; it was lost, or its faces are tagged with another patch.", id_,
+        patch_.tag, At{where});
   }
 
   void check_plane() {
@@ -61,7 +62,8 @@ class PatchCheck {
       const double off = std::fabs(dot(subject_.point(point) - patch_.origin, patch_.normal));
       if (off > allowed_)
         findings_.add(guarantee::patch_plane, subject_.point(point), {id_, point},
-                      "Point {} at {} is {:.6g} off the plane of patch {} (tag {}), allowed is {:.6g}; a vertex was moved "
+                      "Point {} at {} is {:.6g} off the plane of patch {} (tag {}), allowed is {:.6g}; a "
+                      "vertex was moved "
                       "or belongs to another patch.",
                       point, At{subject_.point(point)}, off, id_, patch_.tag, allowed_);
     }
@@ -69,7 +71,8 @@ class PatchCheck {
 
   std::vector<Index> points() const {
     std::vector<Index> points;
-    for (const Index f : faces_) points.insert(points.end(), subject_.mesh.faces[f].begin(), subject_.mesh.faces[f].end());
+    for (const Index f : faces_)
+      points.insert(points.end(), subject_.mesh.faces[f].begin(), subject_.mesh.faces[f].end());
     std::sort(points.begin(), points.end());
     points.erase(std::unique(points.begin(), points.end()), points.end());
     return points;
@@ -97,7 +100,8 @@ class PatchCheck {
     if (signed_area >= -longest * allowed_) return;
     const Point where = subject_.centroid(subject_.mesh.faces[face]);
     findings_.add(guarantee::patch_orientation, where, {id_, face},
-                  "Face {} at {} is turned against the plane of its patch {} (tag {}): the surface folds back on itself "
+                  "Face {} at {} is turned against the plane of its patch {} (tag {}): the surface folds "
+                  "back on itself "
                   "or the face lists its corners the wrong way round.",
                   face, At{where}, id_, patch_.tag);
   }
@@ -107,14 +111,16 @@ class PatchCheck {
     long double expected = 0;
     for (Index i = 0; i < patch_.triangle_count; ++i) expected += triangle_area(i);
     double allowed = 1e-9 * static_cast<double>(expected);
-    for (const Index c : patch_.curves) allowed += subject_.curve_allowance[c] * length(subject_.plc.curves[c]);
+    for (const Index c : patch_.curves)
+      allowed += subject_.curve_allowance[c] * length(subject_.plc.curves[c]);
     const double difference = found - static_cast<double>(expected);
     if (std::fabs(difference) <= allowed) return;
     const Point& where = subject_.plc_corner(triangle(0), 0);
-    findings_.add(guarantee::patch_area, where, {id_},
-                  "The faces of patch {} (tag {}) at {} have an area of {:.15g}, the patch has {:.15g}; the difference "
-                  "{:.6g} is above the allowed {:.6g}. Faces are missing or doubled.",
-                  id_, patch_.tag, At{where}, found, static_cast<double>(expected), difference, allowed);
+    findings_.add(
+        guarantee::patch_area, where, {id_},
+        "The faces of patch {} (tag {}) at {} have an area of {:.15g}, the patch has {:.15g}; the difference "
+        "{:.6g} is above the allowed {:.6g}. Faces are missing or doubled.",
+        id_, patch_.tag, At{where}, found, static_cast<double>(expected), difference, allowed);
   }
 
   double length(const Plc::Curve& curve) const {
@@ -130,8 +136,8 @@ class PatchCheck {
   void check_faces_against_patch() {
     std::vector<DistanceTree::Triangle> triangles;
     for (Index i = 0; i < patch_.triangle_count; ++i)
-      triangles.push_back(
-          {subject_.plc_corner(triangle(i), 0), subject_.plc_corner(triangle(i), 1), subject_.plc_corner(triangle(i), 2)});
+      triangles.push_back({subject_.plc_corner(triangle(i), 0), subject_.plc_corner(triangle(i), 1),
+                           subject_.plc_corner(triangle(i), 2)});
     const DistanceTree patch(std::move(triangles));
     Index hint = none;
     constexpr int steps = 3;
@@ -142,7 +148,8 @@ class PatchCheck {
           const Point sample = (i * a + j * b + (steps - i - j) * c) / steps;
           const auto nearest = patch.nearest(sample, enough(), hint);
           hint = nearest.triangle;
-          measure(nearest.distance, face, sample, "Face {} of patch {} (tag {}) is {:.6g} away from the patch at {}");
+          measure(nearest.distance, face, sample,
+                  "Face {} of patch {} (tag {}) is {:.6g} away from the patch at {}");
         }
     }
   }
@@ -171,7 +178,8 @@ class PatchCheck {
                fmt::format_string<Index&, Index&, const Tag&, double&, At> what) {
     report_.max_surface_distance = std::fmax(report_.max_surface_distance, distance);
     if (distance <= allowed_) return;
-    findings_.add(guarantee::patch_distance, where, {id_, face}, "{}, allowed is {:.6g}; use a smaller size there or "
+    findings_.add(guarantee::patch_distance, where, {id_, face},
+                  "{}, allowed is {:.6g}; use a smaller size there or "
                   "allow a larger distance.",
                   fmt::format(what, face, id_, patch_.tag, distance, At{where}), allowed_);
   }
@@ -191,19 +199,20 @@ void check_labels(const Subject& subject, Index face, Findings& findings) {
   const Point where = subject.centroid(mesh.faces[face]);
   if (id == none) {
     findings.add(guarantee::patch_tag, where, {face},
-                 "Face {} at {} has tag {}, which no patch of the complex has; correct the tag.", face, At{where},
-                 mesh.face_tag[face]);
+                 "Face {} at {} has tag {}, which no patch of the complex has; correct the tag.", face,
+                 At{where}, mesh.face_tag[face]);
     return;
   }
   const Plc::Patch& patch = subject.plc.patches[id];
   if (mesh.face_tag[face] != patch.tag)
     findings.add(guarantee::patch_tag, where, {face},
-                 "Face {} at {} has tag {}, its patch {} has {}; correct the tag or the patch.", face, At{where},
-                 mesh.face_tag[face], id, patch.tag);
+                 "Face {} at {} has tag {}, its patch {} has {}; correct the tag or the patch.", face,
+                 At{where}, mesh.face_tag[face], id, patch.tag);
   const auto& regions = mesh.face_regions[face];
   if (regions != patch.regions && !reversed(subject, face))
     findings.add(guarantee::patch_regions, where, {face},
-                 "Face {} at {} separates the regions {} and {}, its patch {} (tag {}) separates {} and {}; a region is "
+                 "Face {} at {} separates the regions {} and {}, its patch {} (tag {}) separates {} and {}; "
+                 "a region is "
                  "wrong or the face belongs to another patch.",
                  face, At{where}, regions[0], regions[1], id, patch.tag, patch.regions[0], patch.regions[1]);
 }

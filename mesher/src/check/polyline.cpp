@@ -14,7 +14,8 @@ NearestOnSegment nearest_on_segment(const Point& p, const Point& a, const Point&
 }
 
 Polyline::Polyline(std::vector<Point> points) : points_(std::move(points)), arc_(1, 0) {
-  for (std::size_t i = 1; i < points_.size(); ++i) arc_.push_back(arc_.back() + distance(points_[i - 1], points_[i]));
+  for (std::size_t i = 1; i < points_.size(); ++i)
+    arc_.push_back(arc_.back() + distance(points_[i - 1], points_[i]));
 }
 
 std::size_t Polyline::segment_at(double arc) const {
@@ -54,7 +55,8 @@ Polyline Polyline::started_at(double arc) const {
   const std::size_t segment = segment_at(arc);
   std::vector<Point> points{at(arc)};
   points.insert(points.end(), points_.begin() + static_cast<std::ptrdiff_t>(segment) + 1, points_.end());
-  points.insert(points.end(), points_.begin() + 1, points_.begin() + static_cast<std::ptrdiff_t>(segment) + 1);
+  points.insert(points.end(), points_.begin() + 1,
+                points_.begin() + static_cast<std::ptrdiff_t>(segment) + 1);
   points.push_back(points.front());
   return Polyline(std::move(points));
 }

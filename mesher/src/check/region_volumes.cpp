@@ -41,11 +41,13 @@ void check_region_volumes(const Subject& subject, const CheckReport& report, Fin
     const double expected = static_cast<double>(regions[r].six_volume / 6), found = report.region_volumes[r];
     const double allowed = 1e-12 * std::fabs(expected) + regions[r].allowed;
     if (std::fabs(found - expected) <= allowed) continue;
-    findings.add(guarantee::region_volume, plc.bounds.centre(), {r},
-                 "The tets of region {} (tag {}) have a volume of {:.15g}, the complex encloses {:.15g}; the difference "
-                 "{:.6g} is above the allowed {:.6g}. Tets are missing or in a wrong region, or the surface was not "
-                 "reproduced.",
-                 r, plc.regions[r].tag, found, expected, found - expected, allowed);
+    findings.add(
+        guarantee::region_volume, plc.bounds.centre(), {r},
+        "The tets of region {} (tag {}) have a volume of {:.15g}, the complex encloses {:.15g}; the "
+        "difference "
+        "{:.6g} is above the allowed {:.6g}. Tets are missing or in a wrong region, or the surface was not "
+        "reproduced.",
+        r, plc.regions[r].tag, found, expected, found - expected, allowed);
   }
 }
 

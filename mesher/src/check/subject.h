@@ -30,7 +30,9 @@ struct Subject {
   FeatureMatch match;
 
   const Point& point(Index i) const { return mesh.points[i]; }
-  Point centroid(const std::array<Index, 3>& f) const { return (point(f[0]) + point(f[1]) + point(f[2])) / 3; }
+  Point centroid(const std::array<Index, 3>& f) const {
+    return (point(f[0]) + point(f[1]) + point(f[2])) / 3;
+  }
   Point midpoint(const std::array<Index, 2>& e) const { return 0.5 * (point(e[0]) + point(e[1])); }
   const Point& plc_corner(const Plc::Triangle& t, unsigned i) const { return plc.points[t.points[i]]; }
 };

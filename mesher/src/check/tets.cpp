@@ -19,38 +19,42 @@ struct Corners {
 void check_orientation(Index tet, const Corners& p, const TetQuality& quality, Findings& findings) {
   const int sign = exact_orientation(p.a, p.b, p.c, p.d);
   if (sign > 0) return;
-  findings.add(guarantee::positive_volume, p.centre(), {tet},
-               "Tet {} with corners {}, {}, {}, {} {} (volume {:.6g}); a solver cannot use it. If the mesher made "
-               "this mesh, report it with the input and the options.",
-               tet, At{p.a}, At{p.b}, At{p.c}, At{p.d}, sign == 0 ? "is flat" : "is inverted", quality.volume);
+  findings.add(
+      guarantee::positive_volume, p.centre(), {tet},
+      "Tet {} with corners {}, {}, {}, {} {} (volume {:.6g}); a solver cannot use it. If the mesher made "
+      "this mesh, report it with the input and the options.",
+      tet, At{p.a}, At{p.b}, At{p.c}, At{p.d}, sign == 0 ? "is flat" : "is inverted", quality.volume);
 }
 
-void check_shape(Index tet, const Corners& p, const TetQuality& quality, const Subject& subject, CheckReport& report,
-                 Findings& findings) {
+void check_shape(Index tet, const Corners& p, const TetQuality& quality, const Subject& subject,
+                 CheckReport& report, Findings& findings) {
   const CheckOptions& options = subject.options;
   if (subject.mesh.tet_collar[tet] != 0) {
     ++report.collar_tets;
     report.max_collar_dihedral = std::max(report.max_collar_dihedral, quality.max_dihedral);
     if (quality.max_dihedral > options.collar_angle * slack)
-      findings.add(guarantee::collar_dihedral, p.centre(), {tet},
-                   "Tet {} of a collar at {} has a dihedral angle of {:.6g} degrees, allowed are {:.6g}; a smaller "
-                   "size there resolves the crease better.",
-                   tet, At{p.centre()}, quality.max_dihedral, options.collar_angle);
+      findings.add(
+          guarantee::collar_dihedral, p.centre(), {tet},
+          "Tet {} of a collar at {} has a dihedral angle of {:.6g} degrees, allowed are {:.6g}; a smaller "
+          "size there resolves the crease better.",
+          tet, At{p.centre()}, quality.max_dihedral, options.collar_angle);
     return;
   }
   report.max_radius_edge = std::max(report.max_radius_edge, quality.radius_edge);
   report.min_dihedral = std::min(report.min_dihedral, quality.min_dihedral);
   report.max_dihedral = std::max(report.max_dihedral, quality.max_dihedral);
   if (!(quality.radius_edge <= options.radius_edge * slack))
-    findings.add(guarantee::radius_edge, p.centre(), {tet},
-                 "Tet {} at {} has circumradius / shortest edge {:.9g}, allowed is {:.9g}; refine with that bound, or "
-                 "check against the bound that the mesh was made with.",
-                 tet, At{p.centre()}, quality.radius_edge, options.radius_edge);
+    findings.add(
+        guarantee::radius_edge, p.centre(), {tet},
+        "Tet {} at {} has circumradius / shortest edge {:.9g}, allowed is {:.9g}; refine with that bound, or "
+        "check against the bound that the mesh was made with.",
+        tet, At{p.centre()}, quality.radius_edge, options.radius_edge);
 }
 
 void add_edge_lengths(const Corners& p, std::vector<float>& lengths) {
-  for (const double squared : {squared_distance(p.a, p.b), squared_distance(p.a, p.c), squared_distance(p.a, p.d),
-                               squared_distance(p.b, p.c), squared_distance(p.b, p.d), squared_distance(p.c, p.d)})
+  for (const double squared :
+       {squared_distance(p.a, p.b), squared_distance(p.a, p.c), squared_distance(p.a, p.d),
+        squared_distance(p.b, p.c), squared_distance(p.b, p.d), squared_distance(p.c, p.d)})
     lengths.push_back(static_cast<float>(std::sqrt(squared)));
 }
 
@@ -59,8 +63,8 @@ void check_region_tag(Index tet, const Corners& p, const Subject& subject, Findi
   const Tag tag = subject.mesh.tet_tag[tet], expected = subject.plc.regions[region].tag;
   if (tag != expected)
     findings.add(guarantee::region_tag, p.centre(), {tet},
-                 "Tet {} at {} has tag {}, its region {} has {}; correct the tag or the region.", tet, At{p.centre()},
-                 tag, region, expected);
+                 "Tet {} at {} has tag {}, its region {} has {}; correct the tag or the region.", tet,
+                 At{p.centre()}, tag, region, expected);
 }
 
 }  // namespace

@@ -11,7 +11,8 @@ void check_presence(const Subject& subject, Findings& findings) {
     const Point& where = plc.points[plc.vertices[v].point];
     if (subject.match.vertex_point[v] != none || vertex_is_outside(plc, v)) continue;
     findings.add(guarantee::vertex_present, where, {v},
-                 "Vertex {} of the complex at {} is not a point of the mesh; a feature was lost there.", v, At{where});
+                 "Vertex {} of the complex at {} is not a point of the mesh; a feature was lost there.", v,
+                 At{where});
   }
 }
 
@@ -51,15 +52,16 @@ void check_vertices(const Subject& subject, Findings& findings) {
   for (Index p = 0; p < mesh.points.size(); ++p) {
     const auto [dimension, feature] = mesh.features[p];
     if (dimension < 3 && feature == none) continue;  // unknown
-    const bool holds = dimension == 0   ? vertices.only(p, feature)
+    const bool holds = dimension == 0    ? vertices.only(p, feature)
                        : vertices.any(p) ? false
-                       : dimension == 1 ? curves.only(p, feature)
-                       : curves.any(p)  ? false
-                       : dimension == 2 ? patches.only(p, feature)
-                                        : !patches.any(p);
+                       : dimension == 1  ? curves.only(p, feature)
+                       : curves.any(p)   ? false
+                       : dimension == 2  ? patches.only(p, feature)
+                                         : !patches.any(p);
     if (holds) continue;
     findings.add(guarantee::vertex_feature, mesh.points[p], {p},
-                 "Point {} at {} says that it lies on the feature {} of dimension {}, but the vertices, edges and faces "
+                 "Point {} at {} says that it lies on the feature {} of dimension {}, but the vertices, "
+                 "edges and faces "
                  "there say otherwise; correct its feature.",
                  p, At{mesh.points[p]}, dimension == 3 ? "none" : std::to_string(feature),
                  static_cast<unsigned>(dimension));
