@@ -50,13 +50,15 @@ TEST(PlcInvariance, MovingScalingAndShufflingChangeNothing) {
     const auto volumes = sorted_volumes(reference);
     for (std::uint64_t seed = 1; seed <= 6; ++seed)
       for (const double scale : {1e-6, 1.0, 1e6}) {
-        const PolygonSoup soup = testing::shuffled(testing::moved(shape, seed, scale, 10 * scale), seed, false);
+        const PolygonSoup soup =
+            testing::shuffled(testing::moved(shape, seed, scale, 10 * scale), seed, false);
         const Plc plc = build_plc({&soup, 1});
         EXPECT_EQ(findings(plc), std::vector<std::string>{});
         EXPECT_EQ(counts(plc), expected);
         const auto actual = sorted_volumes(plc);
         for (std::size_t r = 0; r < volumes.size(); ++r)
-          EXPECT_NEAR(actual[r], volumes[r] * scale * scale * scale, 1e-9 * volumes[r] * scale * scale * scale);
+          EXPECT_NEAR(actual[r], volumes[r] * scale * scale * scale,
+                      1e-9 * volumes[r] * scale * scale * scale);
       }
   }
 }
@@ -67,7 +69,8 @@ TEST(PlcInvariance, SameInputSameComplex) {
   ASSERT_EQ(first.points.size(), second.points.size());
   EXPECT_EQ(std::memcmp(first.points.data(), second.points.data(), first.points.size() * sizeof(Point)), 0);
   ASSERT_EQ(first.triangles.size(), second.triangles.size());
-  for (std::size_t t = 0; t < first.triangles.size(); ++t) EXPECT_EQ(first.triangles[t].points, second.triangles[t].points);
+  for (std::size_t t = 0; t < first.triangles.size(); ++t)
+    EXPECT_EQ(first.triangles[t].points, second.triangles[t].points);
 }
 
 // Grids of boxes with common walls, some missing: every box that is there is one region.
@@ -80,7 +83,8 @@ TEST(PlcInvariance, RandomGridsOfBoxesHaveOneRegionEach) {
         for (int z = 0; z < 3; ++z) {
           if (random() % 3 == 0) continue;
           const Point at{static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
-          soups.push_back(testing::shuffled(testing::subdivided_box(at, at + Point{1, 1, 1}, 1), random(), false));
+          soups.push_back(
+              testing::shuffled(testing::subdivided_box(at, at + Point{1, 1, 1}, 1), random(), false));
         }
     const auto apart = build_plc(soups);
     EXPECT_EQ(findings(apart), std::vector<std::string>{});
@@ -102,7 +106,8 @@ TEST(PlcInvariance, RandomPolygonsWithHolesKeepTheirArea) {
       const auto first = static_cast<Index>(soup.points.size());
       std::vector<Index> corners;
       for (Index i = 0; i < n; ++i) {
-        const double t = 2 * std::numbers::pi * (i + 0.8 * unit(random)) / n, r = smallest + (largest - smallest) * unit(random);
+        const double t = 2 * std::numbers::pi * (i + 0.8 * unit(random)) / n,
+                     r = smallest + (largest - smallest) * unit(random);
         corners.push_back(static_cast<Index>(soup.points.size()));
         soup.points.push_back(centre + r * Point{std::cos(t), std::sin(t), 0});
       }
@@ -132,7 +137,9 @@ TEST(PlcInvariance, RandomPolygonsWithHolesKeepTheirArea) {
     EXPECT_EQ(findings(plc), std::vector<std::string>{});
     double actual = 0;
     for (const auto& t : plc.triangles)
-      actual += norm(cross(plc.points[t.points[1]] - plc.points[t.points[0]], plc.points[t.points[2]] - plc.points[t.points[0]])) / 2;
+      actual += norm(cross(plc.points[t.points[1]] - plc.points[t.points[0]],
+                           plc.points[t.points[2]] - plc.points[t.points[0]])) /
+                2;
     EXPECT_NEAR(actual, expected, 1e-9 * expected) << seed;
     ASSERT_EQ(plc.patches.size(), 1U);
     EXPECT_TRUE(plc.patches[0].planar);

@@ -53,7 +53,12 @@ PolygonSoup box(const Point& min, const Point& max) {
   PolygonSoup soup;
   for (unsigned i = 0; i < 8; ++i)
     soup.points.push_back({i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z});
-  for (const auto& q : {std::array<Index, 4>{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}})
+  for (const auto& q : {std::array<Index, 4>{0, 2, 3, 1},
+                        {4, 5, 7, 6},
+                        {0, 1, 5, 4},
+                        {2, 6, 7, 3},
+                        {0, 4, 6, 2},
+                        {1, 3, 7, 5}})
     soup.add_facet(q);
   return soup;
 }
@@ -65,7 +70,8 @@ PolygonSoup subdivided_box(const Point& min, const Point& max, Index n) {
     const auto [at, added] = points.try_emplace(g, static_cast<Index>(soup.points.size()));
     if (added) {
       Point p;
-      for (std::size_t axis = 0; axis < 3; ++axis) p[axis] = min[axis] + (max[axis] - min[axis]) * g[axis] / n;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        p[axis] = min[axis] + (max[axis] - min[axis]) * g[axis] / n;
       soup.points.push_back(p);
     }
     return at->second;
@@ -129,7 +135,8 @@ PolygonSoup wedge(double angle_degrees, double length) {
   PolygonSoup soup;
   const double t = angle_degrees * pi / 180;
   for (const double z : {0.0, length})
-    for (const Point& p : {Point{0, 0, z}, Point{1, 0, z}, Point{std::cos(t), std::sin(t), z}}) soup.points.push_back(p);
+    for (const Point& p : {Point{0, 0, z}, Point{1, 0, z}, Point{std::cos(t), std::sin(t), z}})
+      soup.points.push_back(p);
   add(soup, {0, 2, 1});
   add(soup, {3, 4, 5});
   add(soup, {0, 1, 4, 3});
@@ -241,7 +248,8 @@ PolygonSoup shuffled(const PolygonSoup& soup, std::uint64_t seed, bool turn) {
     const auto polygon = soup.polygon(soup.facet_polygons(f)[0]);
     std::vector<Index> corners;
     for (const Index c : polygon) corners.push_back(to[c]);
-    std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(random() % corners.size()), corners.end());
+    std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(random() % corners.size()),
+                corners.end());
     if (turn && random() % 3 == 0) std::reverse(corners.begin(), corners.end());
     result.add_facet(corners, soup.facet_tag(f));
   }
@@ -286,17 +294,21 @@ class Findings {
   void expect(bool condition, const std::string& message) {
     if (!condition) list_.push_back(message);
   }
-  static bool holds(const std::vector<Index>& list, Index i) { return std::binary_search(list.begin(), list.end(), i); }
+  static bool holds(const std::vector<Index>& list, Index i) {
+    return std::binary_search(list.begin(), list.end(), i);
+  }
 
   void check_ranges() {
     Index next = 0;
     for (Index p = 0; p < plc_.patches.size(); ++p) {
       const Plc::Patch& patch = plc_.patches[p];
-      expect(patch.first_triangle == next && patch.triangle_count > 0, fmt::format("patch {} is not contiguous", p));
+      expect(patch.first_triangle == next && patch.triangle_count > 0,
+             fmt::format("patch {} is not contiguous", p));
       next = patch.first_triangle + patch.triangle_count;
       for (Index t = patch.first_triangle; t < next; ++t)
         expect(plc_.triangles[t].patch == p, fmt::format("triangle {} is not of patch {}", t, p));
-      for (const Index r : patch.regions) expect(r < plc_.regions.size(), fmt::format("patch {} has no region {}", p, r));
+      for (const Index r : patch.regions)
+        expect(r < plc_.regions.size(), fmt::format("patch {} has no region {}", p, r));
     }
     expect(next == plc_.triangles.size(), "triangles without a patch");
   }
@@ -315,7 +327,8 @@ class Findings {
       for (const Index p : plc_.vertices[v].patches)
         expect(holds(plc_.patches[p].vertices, v), fmt::format("patch {} does not know vertex {}", p, v));
       for (const Index c : plc_.vertices[v].curves) {
-        expect(plc_.curves[c].ends[0] == v || plc_.curves[c].ends[1] == v, fmt::format("curve {} does not end in vertex {}", c, v));
+        expect(plc_.curves[c].ends[0] == v || plc_.curves[c].ends[1] == v,
+               fmt::format("curve {} does not end in vertex {}", c, v));
         for (const Index p : plc_.curves[c].patches)
           expect(plc_.vertex_on_patch(v, p), fmt::format("vertex {} is on a curve of patch {} only", v, p));
       }
@@ -325,24 +338,27 @@ class Findings {
   // Inside a patch two triangles share an edge, running along it in opposite directions.
   void check_patches() {
     std::set<std::array<Index, 2>> on_curve;
-    for (const Plc::Curve& curve : plc_.curves) for_each_segment(curve, [&](Index a, Index b) {
-      on_curve.insert({a, b});
-      on_curve.insert({b, a});
-    });
+    for (const Plc::Curve& curve : plc_.curves)
+      for_each_segment(curve, [&](Index a, Index b) {
+        on_curve.insert({a, b});
+        on_curve.insert({b, a});
+      });
     std::map<std::array<Index, 3>, int> directed;  // patch, edge
     for (const Plc::Triangle& t : plc_.triangles)
       for (std::size_t i = 0; i < 3; ++i) ++directed[{t.patch, t.points[i], t.points[(i + 1) % 3]}];
     for (const auto& [key, count] : directed) {
       const auto [p, a, b] = key;
       if (on_curve.count({a, b}) > 0) continue;
-      expect(count == 1 && directed.count({p, b, a}) > 0, fmt::format("patch {} is no oriented manifold at {} {}", p, a, b));
+      expect(count == 1 && directed.count({p, b, a}) > 0,
+             fmt::format("patch {} is no oriented manifold at {} {}", p, a, b));
     }
     for (Index p = 0; p < plc_.patches.size(); ++p) {
       const Plc::Patch& patch = plc_.patches[p];
       if (!patch.planar) continue;
       for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t)
         for (const Index q : plc_.triangles[t].points)
-          expect(std::fabs(dot(patch.normal, plc_.points[q] - patch.origin)) <= std::max(plc_.planar_tolerance, 1e-13 * norm(plc_.points[q])),
+          expect(std::fabs(dot(patch.normal, plc_.points[q] - patch.origin)) <=
+                     std::max(plc_.planar_tolerance, 1e-13 * norm(plc_.points[q])),
                  fmt::format("point {} is not in the plane of patch {}", q, p));
     }
   }
@@ -365,10 +381,12 @@ class Findings {
       const Plc::Curve& curve = plc_.curves[c];
       for_each_segment(curve, [&](Index a, Index b) {
         const auto& at = patches_at[{std::min(a, b), std::max(a, b)}];
-        expect(std::vector<Index>(at.begin(), at.end()) == curve.patches, fmt::format("curve {} is not on its patches", c));
+        expect(std::vector<Index>(at.begin(), at.end()) == curve.patches,
+               fmt::format("curve {} is not on its patches", c));
       });
       if (curve.closed) continue;
-      expect(plc_.vertices[curve.ends[0]].point == curve.points.front() && plc_.vertices[curve.ends[1]].point == curve.points.back(),
+      expect(plc_.vertices[curve.ends[0]].point == curve.points.front() &&
+                 plc_.vertices[curve.ends[1]].point == curve.points.back(),
              fmt::format("curve {} does not end in its vertices", c));
     }
   }

@@ -54,7 +54,8 @@ TEST(PlcCreases, OutsideAngleOfAReflexEdgeCounts) {
   const double half = std::tan(20 * pi / 180);
   PolygonSoup soup;
   std::vector<Index> bottom, top;
-  const std::vector<Point> outline{{-2, -2, 0}, {2, -2, 0}, {2, 1, 0}, {half, 1, 0}, {0, 0, 0}, {-half, 1, 0}, {-2, 1, 0}};
+  const std::vector<Point> outline{{-2, -2, 0}, {2, -2, 0},    {2, 1, 0}, {half, 1, 0},
+                                   {0, 0, 0},   {-half, 1, 0}, {-2, 1, 0}};
   const auto n = static_cast<Index>(outline.size());
   for (Index i = 0; i < n; ++i) {
     soup.points.push_back(outline[i]);
@@ -83,7 +84,8 @@ TEST(PlcCreases, RegularTetrahedron) {
   const auto mixed = of_kind(creases, Kind::segment_and_facet);
   ASSERT_EQ(mixed.size(), 4U);
   EXPECT_NEAR(mixed[0].angle, std::atan(std::numbers::sqrt2) * 180 / pi, 1e-9);
-  EXPECT_NEAR(of_kind(find_creases(build(soup), 80), Kind::facets)[0].angle, std::acos(1.0 / 3) * 180 / pi, 1e-9);
+  EXPECT_NEAR(of_kind(find_creases(build(soup), 80), Kind::facets)[0].angle, std::acos(1.0 / 3) * 180 / pi,
+              1e-9);
 }
 
 TEST(PlcCreases, PyramidSidesMeetInTheApex) {
@@ -93,7 +95,8 @@ TEST(PlcCreases, PyramidSidesMeetInTheApex) {
   ASSERT_EQ(meeting.size(), 1U);
   // Their nearest rays are sides of the triangle between them.
   const double radius = std::tan(30 * pi / 180);
-  EXPECT_NEAR(meeting[0].angle, 2 * std::asin(radius / std::numbers::sqrt2 / std::hypot(1, radius)) * 180 / pi, 1e-6);
+  EXPECT_NEAR(meeting[0].angle,
+              2 * std::asin(radius / std::numbers::sqrt2 / std::hypot(1, radius)) * 180 / pi, 1e-6);
   EXPECT_NE(meeting[0].vertex, none);
 }
 
@@ -117,8 +120,8 @@ TEST(PlcCreases, SmoothPatchesDoNotFold) {
 
 TEST(PlcCreases, SegmentThatMeetsAFacetFromInside) {
   PolygonSoup soup = testing::subdivided_box({0, 0, 0}, {1, 1, 1}, 2);
-  const auto foot = static_cast<Index>(
-      std::find(soup.points.begin(), soup.points.end(), Point{0.5, 0.5, 0}) - soup.points.begin());
+  const auto foot = static_cast<Index>(std::find(soup.points.begin(), soup.points.end(), Point{0.5, 0.5, 0}) -
+                                       soup.points.begin());
   soup.points.push_back({0.5 + 0.3, 0.5, 0.3});
   soup.segments.push_back({foot, static_cast<Index>(soup.points.size() - 1), 0});
   const auto creases = find_creases(build(soup));
@@ -170,11 +173,13 @@ TEST(PlcCreases, SummaryCountsAndMeasures) {
 TEST(FoldAngle, OfFlatFansIsNeverAcute) {
   const auto fan = [](double total, int n) {
     std::vector<Vector> rays;
-    for (int i = 0; i <= n; ++i) rays.push_back({std::cos(total * i / n * pi / 180), std::sin(total * i / n * pi / 180), 0});
+    for (int i = 0; i <= n; ++i)
+      rays.push_back({std::cos(total * i / n * pi / 180), std::sin(total * i / n * pi / 180), 0});
     return rays;
   };
   for (const double total : {10.0, 90.0, 170.0, 180.0, 181.0, 270.0, 350.0})
-    for (const int n : {3, 7, 20}) EXPECT_GE(build::fold_angle(fan(total, n), false), 90 - 1e-9) << total << " " << n;
+    for (const int n : {3, 7, 20})
+      EXPECT_GE(build::fold_angle(fan(total, n), false), 90 - 1e-9) << total << " " << n;
   auto closed = fan(360, 11);
   closed.pop_back();
   EXPECT_NEAR(build::fold_angle(closed, true), 180, 1e-6);
@@ -186,7 +191,8 @@ TEST(SectorAngles, AgreeWithSampling) {
   EXPECT_NEAR(build::angle_between(Vector{-std::sqrt(0.5), 0, std::sqrt(0.5)}, s), 90, 1e-9);
   EXPECT_NEAR(build::angle_between(Vector{0, 0, 1}, s), 90, 1e-9);
   const double c = std::cos(0.2), d = std::sin(0.2);
-  EXPECT_NEAR(build::angle_between(s, {{c * std::sqrt(0.5), c * std::sqrt(0.5), d}, {0, 0, 1}}), 0.2 * 180 / pi, 1e-9);
+  EXPECT_NEAR(build::angle_between(s, {{c * std::sqrt(0.5), c * std::sqrt(0.5), d}, {0, 0, 1}}),
+              0.2 * 180 / pi, 1e-9);
 }
 
 }  // namespace

@@ -127,9 +127,17 @@ TEST(PlcFacets, CollinearTrianglesAreReplacedByCuts) {
   // A cube whose edges and diagonals carry extra points, closed by triangles without area.
   PolygonSoup soup;
   soup.points = testing::box({0, 0, 0}, {1, 1, 1}).points;
-  soup.points.insert(soup.points.end(), {{0.5, 0, 1}, {0.25, 0, 1}, {0.75, 0, 1}});  // 8, 9, 10 on the edge 4 5
+  soup.points.insert(soup.points.end(),
+                     {{0.5, 0, 1}, {0.25, 0, 1}, {0.75, 0, 1}});  // 8, 9, 10 on the edge 4 5
   const auto facet = [&](std::array<Index, 3> corners) { soup.add_facet(corners); };
-  for (const auto& t : {std::array<Index, 3>{0, 2, 3}, {0, 3, 1}, {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}})
+  for (const auto& t : {std::array<Index, 3>{0, 2, 3},
+                        {0, 3, 1},
+                        {2, 6, 7},
+                        {2, 7, 3},
+                        {0, 4, 6},
+                        {0, 6, 2},
+                        {1, 3, 7},
+                        {1, 7, 5}})
     facet(t);
   facet({0, 1, 4});
   facet({1, 5, 4});

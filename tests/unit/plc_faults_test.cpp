@@ -100,7 +100,8 @@ TEST(PlcFaults, CrossingFacets) {
 }
 
 TEST(PlcFaults, OverlappingFacets) {
-  expect_fault({testing::box({0, 0, 0}, {1, 1, 1}), testing::box({1, 0.25, 0.25}, {2, 0.75, 0.75})}, Kind::intersection);
+  expect_fault({testing::box({0, 0, 0}, {1, 1, 1}), testing::box({1, 0.25, 0.25}, {2, 0.75, 0.75})},
+               Kind::intersection);
 }
 
 TEST(PlcFaults, FoldedFacets) {
@@ -152,7 +153,8 @@ TEST(PlcFaults, ManyFaultsAreCountedAndTheFirstListed) {
   PolygonSoup soup;
   for (int i = 0; i < 40; ++i) {
     const auto first = static_cast<Index>(soup.points.size());
-    soup.points.insert(soup.points.end(), {{std::cos(i), std::sin(i), 0}, {-std::cos(i), -std::sin(i), 0}, {0, 0.001 * i, 1}});
+    soup.points.insert(soup.points.end(),
+                       {{std::cos(i), std::sin(i), 0}, {-std::cos(i), -std::sin(i), 0}, {0, 0.001 * i, 1}});
     soup.add_facet(std::array<Index, 3>{first, first + 1, first + 2});
   }
   const auto error = error_of({soup});

@@ -131,12 +131,14 @@ TEST(PlcFeatures, NamedSegmentsArePartsOfCurves) {
   const auto point_at = [&](const Point& p) {
     return static_cast<Index>(std::find(soup.points.begin(), soup.points.end(), p) - soup.points.begin());
   };
-  for (double x : {0.25, 0.5}) soup.segments.push_back({point_at({x, 0.5, 1}), point_at({x + 0.25, 0.5, 1}), 9});
+  for (double x : {0.25, 0.5})
+    soup.segments.push_back({point_at({x, 0.5, 1}), point_at({x + 0.25, 0.5, 1}), 9});
   const Plc plc = build(soup);
   EXPECT_EQ(plc.patches.size(), 6U);
   EXPECT_EQ(plc.curves.size(), 13U);
   EXPECT_EQ(plc.vertices.size(), 10U);
-  const auto named = std::find_if(plc.curves.begin(), plc.curves.end(), [](const auto& c) { return c.tag == 9; });
+  const auto named =
+      std::find_if(plc.curves.begin(), plc.curves.end(), [](const auto& c) { return c.tag == 9; });
   ASSERT_NE(named, plc.curves.end());
   EXPECT_EQ(named->points.size(), 3U);
   EXPECT_EQ(named->patches.size(), 1U);
@@ -159,7 +161,8 @@ TEST(PlcFeatures, LooseSegmentsAndPointsInsideARegion) {
 
 TEST(PlcFeatures, TouchingPointIsAVertex) {
   // Two smooth spheres that share one point.
-  const PolygonSoup soup = testing::joined({testing::sphere(16, 1, {0, 0, 0}), testing::sphere(16, 1, {2, 0, 0})});
+  const PolygonSoup soup =
+      testing::joined({testing::sphere(16, 1, {0, 0, 0}), testing::sphere(16, 1, {2, 0, 0})});
   const Plc plc = build(soup);
   ASSERT_EQ(plc.vertices.size(), 1U);
   EXPECT_EQ(plc.points[plc.vertices[0].point], (Point{1, 0, 0}));

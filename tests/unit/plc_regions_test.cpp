@@ -37,7 +37,9 @@ TEST(PlcRegions, TwoBoxesInTwoSoupsShareTheirFace) {
   expect_volumes(plc, {1, 2});
   EXPECT_EQ(plc.patches.size(), 11U);
   EXPECT_EQ(std::count_if(plc.patches.begin(), plc.patches.end(),
-                          [](const auto& p) { return p.regions == std::array<Index, 2>{1, 2}; }),
+                          [](const auto& p) {
+                            return p.regions == std::array<Index, 2>{1, 2};
+                          }),
             1);
 }
 
@@ -52,8 +54,18 @@ TEST(PlcRegions, InterfaceOfOtherDiagonal) {
   PolygonSoup first = box({0, 0, 0}, {1, 1, 1});
   PolygonSoup second;
   second.points = box({1, 0, 0}, {2, 1, 1}).points;
-  for (const auto& t : {std::array<Index, 3>{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                        {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}})
+  for (const auto& t : {std::array<Index, 3>{0, 2, 3},
+                        {0, 3, 1},
+                        {4, 5, 7},
+                        {4, 7, 6},
+                        {0, 1, 5},
+                        {0, 5, 4},
+                        {2, 6, 7},
+                        {2, 7, 3},
+                        {0, 4, 6},
+                        {0, 6, 2},
+                        {1, 3, 7},
+                        {1, 7, 5}})
     second.add_facet(t);
   expect_volumes(build({first, second}), {1, 1});
   std::swap(first, second);
@@ -61,8 +73,18 @@ TEST(PlcRegions, InterfaceOfOtherDiagonal) {
   // The mirrored diagonal.
   PolygonSoup third;
   third.points = second.points;
-  for (const auto& t : {std::array<Index, 3>{0, 2, 1}, {2, 3, 1}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                        {2, 6, 3}, {6, 7, 3}, {0, 4, 2}, {4, 6, 2}, {1, 3, 5}, {3, 7, 5}})
+  for (const auto& t : {std::array<Index, 3>{0, 2, 1},
+                        {2, 3, 1},
+                        {4, 5, 6},
+                        {5, 7, 6},
+                        {0, 1, 4},
+                        {1, 5, 4},
+                        {2, 6, 3},
+                        {6, 7, 3},
+                        {0, 4, 2},
+                        {4, 6, 2},
+                        {1, 3, 5},
+                        {3, 7, 5}})
     third.add_facet(t);
   expect_volumes(build({third, first}), {1, 1});
 }
@@ -77,7 +99,8 @@ TEST(PlcRegions, NestedOutwardShellIsARegion) {
 }
 
 TEST(PlcRegions, SolidInACavity) {
-  const Plc plc = build({joined({box({0, 0, 0}, {5, 5, 5}), reversed(box({1, 1, 1}, {4, 4, 4})), box({2, 2, 2}, {3, 3, 3})})});
+  const Plc plc = build(
+      {joined({box({0, 0, 0}, {5, 5, 5}), reversed(box({1, 1, 1}, {4, 4, 4})), box({2, 2, 2}, {3, 3, 3})})});
   expect_volumes(plc, {125 - 27, 1});
 }
 
@@ -89,8 +112,9 @@ TEST(PlcRegions, InsertFillsACavityExactly) {
 TEST(PlcRegions, CavityThatTouchesTheWallInAnEdge) {
   // The cavity's edge lies on the box' edge: a non-manifold edge.
   PolygonSoup soup;
-  soup.points = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2}, {0, 2, 2},
-                 {0.5, 1, 0.5}, {0.5, 1, 1.5}, {1.5, 1, 0.5}, {1.5, 1, 1.5}, {1, 0, 0.5}, {1, 0, 1.5}};
+  soup.points = {{0, 0, 0},     {2, 0, 0},     {2, 2, 0},   {0, 2, 0},     {0, 0, 2},
+                 {2, 0, 2},     {2, 2, 2},     {0, 2, 2},   {0.5, 1, 0.5}, {0.5, 1, 1.5},
+                 {1.5, 1, 0.5}, {1.5, 1, 1.5}, {1, 0, 0.5}, {1, 0, 1.5}};
   const auto facet = [&](std::vector<Index> corners) { soup.add_facet(corners); };
   facet({0, 3, 2, 1});
   facet({4, 5, 6, 7});
@@ -141,7 +165,8 @@ TEST(PlcRegions, DanglingFacetSeparatesNothing) {
   const auto point_at = [&](const Point& p) {
     return static_cast<Index>(std::find(soup.points.begin(), soup.points.end(), p) - soup.points.begin());
   };
-  const std::array<Index, 3> fin{point_at({0.5, 0.5, 0}), point_at({0.5, 1, 0}), static_cast<Index>(soup.points.size())};
+  const std::array<Index, 3> fin{point_at({0.5, 0.5, 0}), point_at({0.5, 1, 0}),
+                                 static_cast<Index>(soup.points.size())};
   soup.points.push_back({0.5, 0.7, 0.6});
   soup.add_facet(fin);
   const Plc plc = build({soup});
@@ -160,7 +185,8 @@ TEST(PlcRegions, OpenSheetBesideASolid) {
 }
 
 TEST(PlcRegions, HoleAndRegionPointsDecideForAComplex) {
-  PolygonSoup soup = joined({box({0, 0, 0}, {5, 5, 5}), box({1, 1, 1}, {2, 2, 2}), box({3, 3, 3}, {4, 4, 4})});
+  PolygonSoup soup =
+      joined({box({0, 0, 0}, {5, 5, 5}), box({1, 1, 1}, {2, 2, 2}), box({3, 3, 3}, {4, 4, 4})});
   soup.name = "parts.poly";
   expect_volumes(build({soup}), {123, 1, 1});
   soup.hole_points = {{1.5, 1.5, 1.5}};

@@ -37,7 +37,8 @@ std::vector<Arc> make_arcs(std::span<const Vector> rays, bool closed) {
 
 // The smallest angle between the rays a.at(a0 + s) and b.at(b0 + s) for s in [0, length].
 double smallest_angle_along(const Arc& a, double a0, const Arc& b, double b0, double length) {
-  const Vector ua = a.at(a0), va = a.at(a0 + std::numbers::pi / 2), ub = b.at(b0), vb = b.at(b0 + std::numbers::pi / 2);
+  const Vector ua = a.at(a0), va = a.at(a0 + std::numbers::pi / 2), ub = b.at(b0),
+               vb = b.at(b0 + std::numbers::pi / 2);
   double best = std::fmin(angle_between(ua, ub), angle_between(a.at(a0 + length), b.at(b0 + length)));
   // Their cosine is constant + p cos 2s + q sin 2s.
   const double p = dot(ua, ub) - dot(va, vb), q = dot(ua, vb) + dot(va, ub);
@@ -58,7 +59,8 @@ double smallest_angle_apart(const std::vector<Arc>& arcs, double apart, bool clo
   while (i < arcs.size() && s < last) {
     const double a0 = s - arcs[i].from, b0 = std::fmax(0, s + apart - lap - arcs[j].from);
     const double to_next_i = arcs[i].length - a0, to_next_j = std::fmax(0, arcs[j].length - b0);
-    best = std::fmin(best, smallest_angle_along(arcs[i], a0, arcs[j], b0, std::min({to_next_i, to_next_j, last - s})));
+    best = std::fmin(
+        best, smallest_angle_along(arcs[i], a0, arcs[j], b0, std::min({to_next_i, to_next_j, last - s})));
     if (to_next_i <= to_next_j) {
       s = arcs[i].from + arcs[i].length;
       ++i;
@@ -75,7 +77,9 @@ double smallest_angle_apart(const std::vector<Arc>& arcs, double apart, bool clo
 
 }  // namespace
 
-double angle_between(const Vector& u, const Vector& v) { return degrees * std::atan2(norm(cross(u, v)), dot(u, v)); }
+double angle_between(const Vector& u, const Vector& v) {
+  return degrees * std::atan2(norm(cross(u, v)), dot(u, v));
+}
 
 double angle_between(const Vector& ray, const Sector& sector) {
   const Vector normal = cross(sector.u, sector.v);
@@ -86,7 +90,8 @@ double angle_between(const Vector& ray, const Sector& sector) {
 }
 
 double angle_between(const Sector& s, const Sector& t) {
-  return std::min({angle_between(s.u, t), angle_between(s.v, t), angle_between(t.u, s), angle_between(t.v, s)});
+  return std::min(
+      {angle_between(s.u, t), angle_between(s.v, t), angle_between(t.u, s), angle_between(t.v, s)});
 }
 
 double fold_angle(std::span<const Vector> rays, bool closed) {
@@ -96,7 +101,8 @@ double fold_angle(std::span<const Vector> rays, bool closed) {
   if (closed) return smallest_angle_apart(arcs, 0.5 * total, true);
   double best = 180;
   for (const double apart : {0.5, 0.75, 1.0})
-    if (apart * std::numbers::pi <= total) best = std::fmin(best, smallest_angle_apart(arcs, apart * std::numbers::pi, false));
+    if (apart * std::numbers::pi <= total)
+      best = std::fmin(best, smallest_angle_apart(arcs, apart * std::numbers::pi, false));
   return best;
 }
 

@@ -23,10 +23,12 @@ Index BoxTree::build(Index first, Index last) {
   const Vector extent = centres.max - centres.min;
   const std::size_t axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
   const Index middle = first + (last - first) / 2;
-  std::nth_element(items_.begin() + first, items_.begin() + middle, items_.begin() + last, [&](Index a, Index b) {
-    const double ca = boxes_[a].min[axis] + boxes_[a].max[axis], cb = boxes_[b].min[axis] + boxes_[b].max[axis];
-    return ca != cb ? ca < cb : a < b;
-  });
+  std::nth_element(items_.begin() + first, items_.begin() + middle, items_.begin() + last,
+                   [&](Index a, Index b) {
+                     const double ca = boxes_[a].min[axis] + boxes_[a].max[axis],
+                                  cb = boxes_[b].min[axis] + boxes_[b].max[axis];
+                     return ca != cb ? ca < cb : a < b;
+                   });
   build(first, middle);
   const Index right = build(middle, last);
   nodes_[node].first = right;
@@ -39,13 +41,15 @@ bool BoxTree::may_meet(const Box& box, const Point& p, const Point& q) {
   const Point centre = box.centre(), half = 0.5 * (box.max - box.min);
   const Vector d = 0.5 * (q - p), m = 0.5 * (p + q) - centre;
   const Vector ad{std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)};
-  const double scale = std::max({std::fabs(centre.x), std::fabs(centre.y), std::fabs(centre.z), half.x + half.y + half.z,
-                                 ad.x + ad.y + ad.z, std::fabs(m.x), std::fabs(m.y), std::fabs(m.z)});
+  const double scale =
+      std::max({std::fabs(centre.x), std::fabs(centre.y), std::fabs(centre.z), half.x + half.y + half.z,
+                ad.x + ad.y + ad.z, std::fabs(m.x), std::fabs(m.y), std::fabs(m.z)});
   const double slack = 1e-14 * scale;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (std::fabs(m[axis]) > half[axis] + ad[axis] + slack) return false;
     const std::size_t i = (axis + 1) % 3, j = (axis + 2) % 3;
-    if (std::fabs(m[i] * d[j] - m[j] * d[i]) > half[i] * ad[j] + half[j] * ad[i] + slack * (ad[i] + ad[j] + scale))
+    if (std::fabs(m[i] * d[j] - m[j] * d[i]) >
+        half[i] * ad[j] + half[j] * ad[i] + slack * (ad[i] + ad[j] + scale))
       return false;
   }
   return true;

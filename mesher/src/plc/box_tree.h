@@ -20,7 +20,9 @@ class BoxTree {
   /// Calls visit(i) for every item whose box meets the segment pq, or may.
   template <class Visit>
   void for_each_near_segment(const Point& p, const Point& q, const Visit& visit) const {
-    if (!nodes_.empty()) descend(0, [&](const Box& b) { return may_meet(b, p, q); }, visit);
+    if (!nodes_.empty())
+      descend(
+          0, [&](const Box& b) { return may_meet(b, p, q); }, visit);
   }
 
  private:

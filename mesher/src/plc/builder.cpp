@@ -43,7 +43,8 @@ void add_unused_points(const PointMap& map, Draft& draft) {
 
 void require_content(const Draft& draft, Faults& faults) {
   if (draft.triangles.empty() && draft.segments.empty() && draft.loose_points.empty())
-    faults.add(PlcFault::Kind::empty, "The input holds no facet with an area; there is nothing to mesh.", {}, {});
+    faults.add(PlcFault::Kind::empty, "The input holds no facet with an area; there is nothing to mesh.", {},
+               {});
 }
 
 void require_region(const Draft& draft, const EdgeTable& edges, const Regions& regions, Faults& faults) {
@@ -69,7 +70,8 @@ void require_region(const Draft& draft, const EdgeTable& edges, const Regions& r
 
 // Patches in the complex with their triangles together. A patch between a region in front of it and
 // the outside behind it is turned.
-void add_patches(Draft& draft, const Regions& regions, const std::vector<Index>& patch_of, Index patch_count, Plc& plc) {
+void add_patches(Draft& draft, const Regions& regions, const std::vector<Index>& patch_of, Index patch_count,
+                 Plc& plc) {
   std::vector<std::vector<Index>> triangles(patch_count);
   for (Index t = 0; t < draft.triangles.size(); ++t) triangles[patch_of[t]].push_back(t);
   for (Index p = 0; p < patch_count; ++p) {
@@ -117,10 +119,13 @@ void link_patches(const Draft& draft, Plc& plc) {
 
 void check_options(const PlcOptions& options) {
   if (!(options.feature_angle >= 0 && options.feature_angle <= 180))
-    throw OptionError(fmt::format("The feature angle is {}; it must lie between 0 and 180 degrees.", options.feature_angle));
-  for (const auto& [name, value] : {std::pair{"planar tolerance", options.planar_tolerance}, std::pair{"weld distance", options.weld}})
+    throw OptionError(fmt::format("The feature angle is {}; it must lie between 0 and 180 degrees.",
+                                  options.feature_angle));
+  for (const auto& [name, value] :
+       {std::pair{"planar tolerance", options.planar_tolerance}, std::pair{"weld distance", options.weld}})
     if (!(value >= 0 && value < 1))
-      throw OptionError(fmt::format("The {} is {}; it is relative to the diagonal and must lie between 0 and 1.", name, value));
+      throw OptionError(fmt::format(
+          "The {} is {}; it is relative to the diagonal and must lie between 0 and 1.", name, value));
 }
 
 }  // namespace

@@ -149,8 +149,9 @@ void remove_twins_within_soups(Draft& draft) {
   const std::vector<Twin> order = sort_by_corners(draft);
   std::vector<bool> removed(draft.triangles.size(), false);
   for (std::size_t i = 1; i < order.size(); ++i)
-    removed[order[i].triangle] = order[i].key == order[i - 1].key &&
-                                 draft.origins[order[i].triangle].soup == draft.origins[order[i - 1].triangle].soup;
+    removed[order[i].triangle] =
+        order[i].key == order[i - 1].key &&
+        draft.origins[order[i].triangle].soup == draft.origins[order[i - 1].triangle].soup;
   compact(draft, removed);
 }
 

@@ -15,7 +15,8 @@ constexpr double angle_rounding = 1e-6;
 
 std::vector<Crease> below(std::vector<Crease> angles, double threshold) {
   std::erase_if(angles, [&](const Crease& c) { return c.angle >= threshold - angle_rounding; });
-  std::stable_sort(angles.begin(), angles.end(), [](const Crease& a, const Crease& b) { return a.angle < b.angle; });
+  std::stable_sort(angles.begin(), angles.end(),
+                   [](const Crease& a, const Crease& b) { return a.angle < b.angle; });
   return angles;
 }
 
@@ -23,7 +24,8 @@ double shortest_segment(const Plc& plc) {
   double shortest = INFINITY;
   for (const Plc::Curve& curve : plc.curves) {
     if (curve.closed || curve.ends[0] == curve.ends[1]) continue;
-    shortest = std::min(shortest, distance(plc.points[curve.points.front()], plc.points[curve.points.back()]));
+    shortest =
+        std::min(shortest, distance(plc.points[curve.points.front()], plc.points[curve.points.back()]));
   }
   return std::isfinite(shortest) ? shortest : 0;
 }
@@ -68,14 +70,14 @@ std::string describe(const Plc& plc, const Crease& crease) {
       return fmt::format("The {} and the {} meet along the {} at {:.2f} degrees near {}.", patch_name(plc, f),
                          patch_name(plc, g), curve_name(plc, crease.curve), crease.angle, where);
     case Crease::Kind::segments:
-      return fmt::format("The {} and the {} meet at {:.2f} degrees in {}.", curve_name(plc, f), curve_name(plc, g),
-                         crease.angle, where);
+      return fmt::format("The {} and the {} meet at {:.2f} degrees in {}.", curve_name(plc, f),
+                         curve_name(plc, g), crease.angle, where);
     case Crease::Kind::segment_and_facet:
-      return fmt::format("The {} meets the {} at {:.2f} degrees in {}.", curve_name(plc, f), patch_name(plc, g),
-                         crease.angle, where);
+      return fmt::format("The {} meets the {} at {:.2f} degrees in {}.", curve_name(plc, f),
+                         patch_name(plc, g), crease.angle, where);
     case Crease::Kind::facets_in_vertex:
-      return fmt::format("The {} and the {} meet only in the point {}, at {:.2f} degrees.", patch_name(plc, f),
-                         patch_name(plc, g), where, crease.angle);
+      return fmt::format("The {} and the {} meet only in the point {}, at {:.2f} degrees.",
+                         patch_name(plc, f), patch_name(plc, g), where, crease.angle);
     case Crease::Kind::patch_fold:
       return fmt::format("The {} folds by {:.2f} degrees in {}.", patch_name(plc, f), crease.angle, where);
   }

@@ -94,7 +94,8 @@ class CurveFinder {
     DisjointSets fans(3 * triangles.size());
     const auto corner_at = [&](Index side, Index point) {
       const Index t = side / 3;
-      return 3 * t + static_cast<Index>(std::find(triangles[t].begin(), triangles[t].end(), point) - triangles[t].begin());
+      return 3 * t + static_cast<Index>(std::find(triangles[t].begin(), triangles[t].end(), point) -
+                                        triangles[t].begin());
     };
     for (Index e = 0; e < edges_.size(); ++e)
       for (const Index side : edges_.sides(e).subspan(1))
@@ -208,7 +209,8 @@ class CurveFinder {
     if (first != last) {
       double largest = 0;
       for (const Index p : chain.points)
-        largest = std::fmax(largest, distance_to_chord(draft_.points[p], draft_.points[first], draft_.points[last]));
+        largest = std::fmax(largest,
+                            distance_to_chord(draft_.points[p], draft_.points[first], draft_.points[last]));
       curve.straight = chain.points.size() == 2 || largest <= draft_.planar_tolerance;
       if (curve.straight) draft_.largest_deviation = std::max(draft_.largest_deviation, largest);
     }

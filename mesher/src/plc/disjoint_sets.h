@@ -11,7 +11,9 @@ namespace collarmesh::build {
 /// Union-find over 0 .. n-1. The representative of a set is its smallest element.
 class DisjointSets {
  public:
-  explicit DisjointSets(std::size_t n) : parents_(n) { std::iota(parents_.begin(), parents_.end(), Index{0}); }
+  explicit DisjointSets(std::size_t n) : parents_(n) {
+    std::iota(parents_.begin(), parents_.end(), Index{0});
+  }
 
   Index find(Index i) {
     while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];

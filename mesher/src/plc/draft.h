@@ -56,7 +56,9 @@ struct Draft {
 
   /// How far rounding alone may move points off a plane.
   double rounding() const {
-    const auto reach = [](const Point& p) { return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}); };
+    const auto reach = [](const Point& p) {
+      return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+    };
     return 32 * 2.2e-16 * std::max(reach(bounds.min), reach(bounds.max));
   }
   const Point& corner(Index triangle, unsigned i) const { return points[triangles[triangle][i]]; }

@@ -26,10 +26,10 @@ class EdgeTable {
 
  private:
   std::vector<std::array<Index, 2>> ends_;
-  std::vector<Index> first_side_;     // by edge, and one more
+  std::vector<Index> first_side_;  // by edge, and one more
   std::vector<Index> sides_;
   std::vector<Index> edge_of_side_;
-  std::vector<Index> first_edge_;     // by smaller point, and one more
+  std::vector<Index> first_edge_;  // by smaller point, and one more
 };
 
 /// Does the side run from the smaller to the larger index?

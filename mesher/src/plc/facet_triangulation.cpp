@@ -17,10 +17,12 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<Index, Kernel>;
-using FaceBase = CGAL::Constrained_triangulation_face_base_2<
-    Kernel, CGAL::Triangulation_face_base_with_info_2<bool, Kernel>>;
+using FaceBase =
+    CGAL::Constrained_triangulation_face_base_2<Kernel,
+                                                CGAL::Triangulation_face_base_with_info_2<bool, Kernel>>;
 using PlaneTriangulation =
-    CGAL::Constrained_Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel,
+                                               CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
                                                CGAL::No_constraint_intersection_requiring_constructions_tag>;
 
 // A facet with the draft's point indices.
@@ -82,9 +84,10 @@ class FacetTriangulator {
       return true;
     }
     const Point& where = draft_.points[facet.loops[0][0]];
-    faults_.add(PlcFault::Kind::degenerate_facet,
-                fmt::format("The {} at {} has no area; remove it or correct its corners.", name(facet), text(where)),
-                facet.loops[0], where);
+    faults_.add(
+        PlcFault::Kind::degenerate_facet,
+        fmt::format("The {} at {} has no area; remove it or correct its corners.", name(facet), text(where)),
+        facet.loops[0], where);
     return false;
   }
 
@@ -106,11 +109,12 @@ class FacetTriangulator {
       return true;
     }
     const Point& where = draft_.points[worst];
-    faults_.add(PlcFault::Kind::non_planar_polygon,
-                fmt::format("The {} is not planar: its corner {} lies {:.3g} from its plane, {:.3g} is allowed; "
-                            "cut it into triangles or raise the planar tolerance.",
-                            name(facet), text(where), deviation, limit),
-                {worst}, where);
+    faults_.add(
+        PlcFault::Kind::non_planar_polygon,
+        fmt::format("The {} is not planar: its corner {} lies {:.3g} from its plane, {:.3g} is allowed; "
+                    "cut it into triangles or raise the planar tolerance.",
+                    name(facet), text(where), deviation, limit),
+        {worst}, where);
     return false;
   }
 
@@ -129,16 +133,16 @@ class FacetTriangulator {
     } catch (const PlaneTriangulation::Intersection_of_constraints_exception&) {
       const Point& where = draft_.points[facet.loops[0][0]];
       faults_.add(PlcFault::Kind::intersection,
-                  fmt::format("The edges of the {} (near {}) cross each other; correct its polygons.", name(facet),
-                              text(where)),
+                  fmt::format("The edges of the {} (near {}) cross each other; correct its polygons.",
+                              name(facet), text(where)),
                   facet.loops[0], where);
     }
   }
 
   // The shortcut for the commonest polygon.
   bool cut_convex_quadrangle(const Facet& facet) {
-    if (facet.loops.size() > 1 || facet.loops[0].size() != 4 || !facet.segments.empty() || !facet.points.empty() ||
-        !facet.holes.empty())
+    if (facet.loops.size() > 1 || facet.loops[0].size() != 4 || !facet.segments.empty() ||
+        !facet.points.empty() || !facet.holes.empty())
       return false;
     const auto& q = facet.loops[0];
     const auto at = [&](std::size_t i) -> const Point& { return draft_.points[q[i % 4]]; };
@@ -155,7 +159,8 @@ class FacetTriangulator {
   void insert(const Facet& facet, PlaneTriangulation& mesh) {
     corners_.clear();
     for (const auto& loop : facet.loops) corners_.insert(corners_.end(), loop.begin(), loop.end());
-    for (const auto& segment : facet.segments) corners_.insert(corners_.end(), segment.begin(), segment.end());
+    for (const auto& segment : facet.segments)
+      corners_.insert(corners_.end(), segment.begin(), segment.end());
     corners_.insert(corners_.end(), facet.points.begin(), facet.points.end());
     std::sort(corners_.begin(), corners_.end());
     corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
@@ -175,7 +180,8 @@ class FacetTriangulator {
   }
 
   std::size_t position(Index point) const {
-    return static_cast<std::size_t>(std::lower_bound(corners_.begin(), corners_.end(), point) - corners_.begin());
+    return static_cast<std::size_t>(std::lower_bound(corners_.begin(), corners_.end(), point) -
+                                    corners_.begin());
   }
 
   // Info is true for the faces that are no part of the facet.
@@ -215,7 +221,8 @@ class FacetTriangulator {
     // What the facet lies on both sides of is a segment that the input names.
     for (const auto& [face, i] : mesh.finite_edges()) {
       if (!face->is_constrained(i) || face->info() || face->neighbor(i)->info()) continue;
-      draft_.segments.push_back({face->vertex(mesh.cw(i))->info(), face->vertex(mesh.ccw(i))->info(), 0, facet.soup});
+      draft_.segments.push_back(
+          {face->vertex(mesh.cw(i))->info(), face->vertex(mesh.ccw(i))->info(), 0, facet.soup});
     }
   }
 
@@ -259,7 +266,8 @@ void add_polygon(std::span<const Index> polygon, const std::vector<Index>& merge
 
 }  // namespace
 
-void triangulate_facets(std::span<const PolygonSoup> soups, const PointMap& map, Draft& draft, Faults& faults) {
+void triangulate_facets(std::span<const PolygonSoup> soups, const PointMap& map, Draft& draft,
+                        Faults& faults) {
   FacetTriangulator triangulator(draft, faults);
   for (Index s = 0; s < soups.size(); ++s) {
     const PolygonSoup& soup = soups[s];

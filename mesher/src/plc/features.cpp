@@ -21,7 +21,8 @@ class SegmentTest {
     const auto sides = edges_.sides(edge);
     if (sides.size() != 2) return true;
     const Index s = sides[0] / 3, t = sides[1] / 3;
-    if (draft_.origins[s].soup != draft_.origins[t].soup || draft_.origins[s].tag != draft_.origins[t].tag) return true;
+    if (draft_.origins[s].soup != draft_.origins[t].soup || draft_.origins[s].tag != draft_.origins[t].tag)
+      return true;
     if (clusters_.seed[s] == clusters_.seed[t]) return false;
     return every_fold_ || dot(clusters_.normal[s], clusters_.normal[t]) < smallest_cosine_;
   }
@@ -42,13 +43,15 @@ struct Extent {
 
 std::vector<Index> corners_of(const Draft& draft, const std::vector<Index>& triangles) {
   std::vector<Index> points;
-  for (const Index t : triangles) points.insert(points.end(), draft.triangles[t].begin(), draft.triangles[t].end());
+  for (const Index t : triangles)
+    points.insert(points.end(), draft.triangles[t].begin(), draft.triangles[t].end());
   std::sort(points.begin(), points.end());
   points.erase(std::unique(points.begin(), points.end()), points.end());
   return points;
 }
 
-double deviation_from(const Draft& draft, const std::vector<Index>& points, const Point& origin, const Vector& normal) {
+double deviation_from(const Draft& draft, const std::vector<Index>& points, const Point& origin,
+                      const Vector& normal) {
   double largest = 0;
   for (const Index p : points) largest = std::fmax(largest, std::fabs(dot(normal, draft.points[p] - origin)));
   return largest;
@@ -56,8 +59,8 @@ double deviation_from(const Draft& draft, const std::vector<Index>& points, cons
 
 }  // namespace
 
-std::vector<FeatureSegment> find_segments(const Draft& draft, const EdgeTable& edges, const FlatClusters& clusters,
-                                          double feature_angle) {
+std::vector<FeatureSegment> find_segments(const Draft& draft, const EdgeTable& edges,
+                                          const FlatClusters& clusters, double feature_angle) {
   std::vector<FeatureSegment> named;
   for (const Segment& s : draft.segments)
     named.push_back({std::min(s.a, s.b), std::max(s.a, s.b), edges.find(s.a, s.b), s.tag});

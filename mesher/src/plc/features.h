@@ -18,8 +18,8 @@ struct FeatureSegment {
 
 /// The segments: edges that the input names, that are not shared by exactly two triangles, between
 /// different tags or soups, or where the surface turns by more than the feature angle (degrees).
-std::vector<FeatureSegment> find_segments(const Draft& draft, const EdgeTable& edges, const FlatClusters& clusters,
-                                          double feature_angle);
+std::vector<FeatureSegment> find_segments(const Draft& draft, const EdgeTable& edges,
+                                          const FlatClusters& clusters, double feature_angle);
 
 /// For each triangle its patch: connected across the edges that are no segments. Numbered by first
 /// triangle. Returns the number of patches.

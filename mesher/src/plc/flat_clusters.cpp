@@ -16,7 +16,8 @@ constexpr double needle_height = 10;
 constexpr double foldable_height = 2;
 
 double longest_side(const Draft& draft, Index t) {
-  return std::max({distance(draft.corner(t, 0), draft.corner(t, 1)), distance(draft.corner(t, 1), draft.corner(t, 2)),
+  return std::max({distance(draft.corner(t, 0), draft.corner(t, 1)),
+                   distance(draft.corner(t, 1), draft.corner(t, 2)),
                    distance(draft.corner(t, 2), draft.corner(t, 0))});
 }
 
@@ -27,7 +28,8 @@ class ClusterFinder {
     result_.seed.assign(draft.triangles.size(), none);
     result_.normal.resize(draft.triangles.size());
     for (Index t = 0; t < areas_.size(); ++t) {
-      areas_[t] = 0.5 * norm(cross(draft.corner(t, 1) - draft.corner(t, 0), draft.corner(t, 2) - draft.corner(t, 0)));
+      areas_[t] =
+          0.5 * norm(cross(draft.corner(t, 1) - draft.corner(t, 0), draft.corner(t, 2) - draft.corner(t, 0)));
       heights_[t] = 2 * areas_[t] / longest_side(draft, t);
       result_.normal[t] = unit_normal(draft, t);
     }
@@ -41,7 +43,8 @@ class ClusterFinder {
     for (const Index t : order)
       if (result_.seed[t] == none) grow(t);
     for (const Index t : order)
-      if (heights_[t] <= needle_height * draft_.planar_tolerance) result_.normal[t] = result_.normal[result_.seed[t]];
+      if (heights_[t] <= needle_height * draft_.planar_tolerance)
+        result_.normal[t] = result_.normal[result_.seed[t]];
     return std::move(result_);
   }
 
@@ -65,7 +68,8 @@ class ClusterFinder {
 
   // A polygon is one plane, whatever rounding has done to its corners.
   bool same_facet(Index s, Index t) const {
-    return draft_.origins[s].soup == draft_.origins[t].soup && draft_.origins[s].facet == draft_.origins[t].facet;
+    return draft_.origins[s].soup == draft_.origins[t].soup &&
+           draft_.origins[s].facet == draft_.origins[t].facet;
   }
 
   // Does the triangle lie in the plane of the seed, seen from the same side?

@@ -11,8 +11,8 @@ namespace collarmesh::build {
 /// that of their largest triangle, exactly if the tolerance is 0. They give needles, whose own
 /// normals are rounding noise, a normal to judge by.
 struct FlatClusters {
-  std::vector<Index> seed;      ///< by triangle: the largest of its cluster
-  std::vector<Vector> normal;   ///< by triangle, unit; of itself, or of its seed if it is a needle
+  std::vector<Index> seed;     ///< by triangle: the largest of its cluster
+  std::vector<Vector> normal;  ///< by triangle, unit; of itself, or of its seed if it is a needle
 };
 
 /// Cost: O(n log n).

@@ -15,7 +15,9 @@ using Border = std::vector<Index>;  // sorted edges
 class InterfaceFinder {
  public:
   explicit InterfaceFinder(Draft& draft)
-      : draft_(draft), edges_(draft.triangles, draft.points.size()), clusters_(find_flat_clusters(draft, edges_)) {}
+      : draft_(draft),
+        edges_(draft.triangles, draft.points.size()),
+        clusters_(find_flat_clusters(draft, edges_)) {}
 
   void run() {
     const auto clusters = clusters_on_common_edges();
@@ -78,7 +80,8 @@ class InterfaceFinder {
     }
     draft_.triangles.resize(kept);
     draft_.origins.resize(kept);
-    for (Index t = 0; t < added.triangles.size(); ++t) draft_.add_triangle(added.triangles[t], added.origins[t]);
+    for (Index t = 0; t < added.triangles.size(); ++t)
+      draft_.add_triangle(added.triangles[t], added.origins[t]);
   }
 
   Draft& draft_;

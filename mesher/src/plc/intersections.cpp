@@ -80,7 +80,8 @@ class IntersectionFinder {
       return pair.first.size == 3 ? point_on_triangle(at(s[0]), at(f[0]), at(f[1]), at(f[2]))
                                   : pair.first.size == 2 && point_on_segment(at(s[0]), at(f[0]), at(f[1]));
     if (pair.first.size == 2)
-      return pair.common == 1 ? overlap(f[0], f[1], s[1]) : segments_meet(at(f[0]), at(f[1]), at(s[0]), at(s[1]));
+      return pair.common == 1 ? overlap(f[0], f[1], s[1])
+                              : segments_meet(at(f[0]), at(f[1]), at(s[0]), at(s[1]));
     if (pair.second.size == 2) return segment_illegal(pair);
     if (pair.common == 2) return folded(f, s);
     return pair.common == 1 ? fans_meet(f, s) : triangles_meet(f, s);
@@ -141,15 +142,18 @@ class IntersectionFinder {
     std::vector<Index> points(pair.first.corners().begin(), pair.first.corners().end());
     for (unsigned k = pair.common; k < pair.second.size; ++k) points.push_back(pair.second.points[k]);
     const char* how = touching != none ? "touch without a common corner" : "intersect";
-    faults.add(PlcFault::Kind::intersection,
-               fmt::format("The {} and the {} {} at {}; cut them along their intersection or move them apart.",
-                           name(i), name(j), how, text(where)),
-               std::move(points), where);
+    faults.add(
+        PlcFault::Kind::intersection,
+        fmt::format("The {} and the {} {} at {}; cut them along their intersection or move them apart.",
+                    name(i), name(j), how, text(where)),
+        std::move(points), where);
   }
 
   std::string name(Index i) const {
     const Simplex& s = simplices_[i];
-    if (s.size == 3) return fmt::format("facet {} of {}", draft_.origins[i].facet, draft_.soup_names[draft_.origins[i].soup]);
+    if (s.size == 3)
+      return fmt::format("facet {} of {}", draft_.origins[i].facet,
+                         draft_.soup_names[draft_.origins[i].soup]);
     if (s.size == 2) return fmt::format("segment {} - {}", text(at(s.points[0])), text(at(s.points[1])));
     return fmt::format("point {}", text(at(s.points[0])));
   }
@@ -192,7 +196,8 @@ class IntersectionFinder {
       if (common > 0 && (i < common || j < common)) continue;
       const Point &p = at(first.points[i]), &q = at(first.points[j]);
       if (!segment_meets_triangle(p, q, at(s[0]), at(s[1]), at(s[2]))) continue;
-      const double from = six_volume(at(s[0]), at(s[1]), at(s[2]), p), to = six_volume(at(s[0]), at(s[1]), at(s[2]), q);
+      const double from = six_volume(at(s[0]), at(s[1]), at(s[2]), p),
+                   to = six_volume(at(s[0]), at(s[1]), at(s[2]), q);
       if (from != to) return p + from / (from - to) * (q - p);
     }
     return std::nullopt;

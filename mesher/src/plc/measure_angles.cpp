@@ -37,7 +37,10 @@ struct Ray {
 class AngleFinder {
  public:
   explicit AngleFinder(const Plc& plc)
-      : plc_(plc), triangles_(corners_of(plc)), edges_(triangles_, plc.points.size()), is_segment_(edges_.size(), false) {
+      : plc_(plc),
+        triangles_(corners_of(plc)),
+        edges_(triangles_, plc.points.size()),
+        is_segment_(edges_.size(), false) {
     for (const Plc::Curve& curve : plc.curves)
       for_each_segment(curve, [&](Index a, Index b) {
         if (const Index e = edges_.find(a, b); e != none) is_segment_[e] = true;
@@ -82,7 +85,8 @@ class AngleFinder {
     for (std::size_t p = 0; p + 1 < first_corner_.size(); ++p) first_corner_[p + 1] += first_corner_[p];
     corners_.resize(3 * triangles_.size());
     std::vector<Index> next(first_corner_.begin(), first_corner_.end() - 1);
-    for (Index corner = 0; corner < corners_.size(); ++corner) corners_[next[triangles_[corner / 3][corner % 3]]++] = corner;
+    for (Index corner = 0; corner < corners_.size(); ++corner)
+      corners_[next[triangles_[corner / 3][corner % 3]]++] = corner;
     visited_.assign(corners_.size(), false);
   }
 
@@ -120,7 +124,8 @@ class AngleFinder {
         for (std::size_t j = i + 1; j < sides.size(); ++j) {
           const double angle = angle_between(into_facet(sides[i]), into_facet(sides[j]));
           if (angle < best.angle)
-            best = {Kind::facets, angle, c, none, {patch_of(sides[i]), patch_of(sides[j])}, 0.5 * (at(a) + at(b))};
+            best = {Kind::facets,         angle, c, none, {patch_of(sides[i]), patch_of(sides[j])},
+                    0.5 * (at(a) + at(b))};
         }
     });
     if (best.features[0] != none) result_.push_back(best);
@@ -141,7 +146,8 @@ class AngleFinder {
   }
 
   Vector normal(Index t) const {
-    const Vector n = cross(at(triangles_[t][1]) - at(triangles_[t][0]), at(triangles_[t][2]) - at(triangles_[t][0]));
+    const Vector n =
+        cross(at(triangles_[t][1]) - at(triangles_[t][0]), at(triangles_[t][2]) - at(triangles_[t][0]));
     return n / norm(n);
   }
 
@@ -157,7 +163,8 @@ class AngleFinder {
       if (height(seen[next]) > noise_length()) return seen[next];
       for (Index side = 3 * seen[next]; side < 3 * seen[next] + 3; ++side) {
         const Index other = across(side);
-        if (other != none && std::find(seen.begin(), seen.end(), other / 3) == seen.end()) seen.push_back(other / 3);
+        if (other != none && std::find(seen.begin(), seen.end(), other / 3) == seen.end())
+          seen.push_back(other / 3);
       }
     }
     return triangle;
@@ -253,7 +260,8 @@ class AngleFinder {
         if (have_common_ray(fans[f], fans[g])) continue;
         for (std::size_t i = 0; i < fans[f].sector_count(); ++i)
           for (std::size_t j = 0; j < fans[g].sector_count(); ++j)
-            keep_smaller(best, angle_between(fans[f].sector(i), fans[g].sector(j)), fans[f].patch, fans[g].patch);
+            keep_smaller(best, angle_between(fans[f].sector(i), fans[g].sector(j)), fans[f].patch,
+                         fans[g].patch);
       }
     add(best);
   }
@@ -289,7 +297,9 @@ class AngleFinder {
                        [&](Index q) { return distance(at(p), at(q)) <= noise_length(); });
   }
 
-  Crease at_vertex(Kind kind, Index v) const { return {kind, 180, none, v, {none, none}, at(plc_.vertices[v].point)}; }
+  Crease at_vertex(Kind kind, Index v) const {
+    return {kind, 180, none, v, {none, none}, at(plc_.vertices[v].point)};
+  }
   static void keep_smaller(Crease& best, double angle, Index first, Index second) {
     if (angle >= best.angle) return;
     best.angle = angle;
@@ -302,10 +312,10 @@ class AngleFinder {
   const Plc& plc_;
   std::vector<Corners> triangles_;
   EdgeTable edges_;
-  std::vector<bool> is_segment_;  // by edge
+  std::vector<bool> is_segment_;               // by edge
   std::vector<Index> first_corner_, corners_;  // corners (3 t + i) at each point
-  std::vector<bool> visited_;     // corners that are in a fan already
-  std::vector<std::vector<Ray>> rays_;  // by vertex
+  std::vector<bool> visited_;                  // corners that are in a fan already
+  std::vector<std::vector<Ray>> rays_;         // by vertex
   std::vector<Crease> result_;
 };
 

@@ -34,7 +34,9 @@ bool coplanar_segments_meet(unsigned axis, const Point& a, const Point& b, const
 
 }  // namespace
 
-bool point_on_segment(const Point& p, const Point& a, const Point& b) { return collinear(a, b, p) && between(a, p, b); }
+bool point_on_segment(const Point& p, const Point& a, const Point& b) {
+  return collinear(a, b, p) && between(a, p, b);
+}
 
 bool point_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
   return orientation(a, b, c, p) == 0 && in_triangle(projection_axis(a, b, c), p, a, b, c);

@@ -56,11 +56,12 @@ class Orienter {
   void report(const std::array<Index, 2>& edge, Index triangle) {
     const Point &a = draft_.points[edge[0]], &b = draft_.points[edge[1]];
     const Origin& origin = draft_.origins[first_ + triangle];
-    faults_.add(PlcFault::Kind::not_orientable,
-                fmt::format("The surface of {} around facet {} has one side only (a Moebius strip); its facets "
-                            "disagree at the edge {} - {}; cut it there or remove it.",
-                            draft_.soup_names[origin.soup], origin.facet, text(a), text(b)),
-                {edge[0], edge[1]}, 0.5 * (a + b));
+    faults_.add(
+        PlcFault::Kind::not_orientable,
+        fmt::format("The surface of {} around facet {} has one side only (a Moebius strip); its facets "
+                    "disagree at the edge {} - {}; cut it there or remove it.",
+                    draft_.soup_names[origin.soup], origin.facet, text(a), text(b)),
+        {edge[0], edge[1]}, 0.5 * (a + b));
   }
 
   void apply() {

@@ -33,8 +33,8 @@ class Sum {
 struct Chamber {
   Index inner_shell = none;  // of the component that encloses it
   bool complex = false;
-  bool claimed = false;        // a facet has its back towards it
-  bool behind_claimed = false; // a facet that has its front towards it has its back towards a claimed one
+  bool claimed = false;           // a facet has its back towards it
+  bool behind_claimed = false;    // a facet that has its front towards it has its back towards a claimed one
   Index claiming_surface = none;  // a soup that is a surface
   Index hole_soup = none;
   std::array<Index, 2> rank{none, none};  // first soup and triangle
@@ -83,7 +83,8 @@ class RegionFinder {
     std::vector<Index> largest(count_, none);
     std::vector<double> area(count_);
     for (Index t = 0; t < count_; ++t) {
-      area[t] = squared_norm(cross(draft_.corner(t, 1) - draft_.corner(t, 0), draft_.corner(t, 2) - draft_.corner(t, 0)));
+      area[t] = squared_norm(
+          cross(draft_.corner(t, 1) - draft_.corner(t, 0), draft_.corner(t, 2) - draft_.corner(t, 0)));
       Index& best = largest[components_.find(t)];
       if (best == none || area[t] > area[best]) best = t;
     }
@@ -96,7 +97,8 @@ class RegionFinder {
       // Weights of the corners that move with the attempts.
       const Vector w = generic_direction(attempt + 7);
       const double wa = 1 + 0.9 * w.x, wb = 1 + 0.9 * w.y, wc = 1 + 0.9 * w.z;
-      const Point at = (wa * draft_.corner(triangle, 0) + wb * draft_.corner(triangle, 1) + wc * draft_.corner(triangle, 2)) /
+      const Point at = (wa * draft_.corner(triangle, 0) + wb * draft_.corner(triangle, 1) +
+                        wc * draft_.corner(triangle, 2)) /
                        (wa + wb + wc);
       const Vector reach_out = reach() * generic_direction(attempt);
       const auto crossings = caster_.cast(at - reach_out, at + reach_out);
@@ -104,10 +106,11 @@ class RegionFinder {
       join_along(*crossings);
       if (outer_shell_[component] != none) return;
     }
-    faults_.add(PlcFault::Kind::degenerate_facet,
-                fmt::format("The facets around {} are too thin to tell their inside from their outside; remove them.",
-                            text(draft_.corner(triangle, 0))),
-                {draft_.triangles[triangle][0]}, draft_.corner(triangle, 0));
+    faults_.add(
+        PlcFault::Kind::degenerate_facet,
+        fmt::format("The facets around {} are too thin to tell their inside from their outside; remove them.",
+                    text(draft_.corner(triangle, 0))),
+        {draft_.triangles[triangle][0]}, draft_.corner(triangle, 0));
   }
 
   void join_along(const std::vector<LineCaster::Crossing>& crossings) {
@@ -136,8 +139,7 @@ class RegionFinder {
       claim(list_[chamber_of_shell_[shell]], side, draft_.origins[side / 2]);
     }
     for (const Claim& c : draft_.claims)
-      if (const Index at = chamber_at(c.side); at != none)
-        add_claim(list_[at], c.soup, c.side / 2);
+      if (const Index at = chamber_at(c.side); at != none) add_claim(list_[at], c.soup, c.side / 2);
     for (Index side = 1; side < 2 * count_; side += 2) {
       if (!draft_.origins[side / 2].oriented) continue;
       const Index front = chamber_at(side), back = chamber_at(side - 1);
@@ -196,7 +198,8 @@ class RegionFinder {
       return inner_shell_of(chambers_.find(crossings->front().entry_side()));
     }
     faults_.add(PlcFault::Kind::bad_point,
-                fmt::format("{}: the {} point {} lies on a facet; move it inside.", soup, what, text(point)), {}, point);
+                fmt::format("{}: the {} point {} lies on a facet; move it inside.", soup, what, text(point)),
+                {}, point);
     return std::nullopt;
   }
 
@@ -290,10 +293,10 @@ class RegionFinder {
   const Draft& draft_;
   Faults& faults_;
   Index count_;
-  Index outside_;              // the element of the sets that stands for it
-  DisjointSets components_;    // of triangles
-  DisjointSets shells_;        // of sides, within components
-  DisjointSets chambers_;      // of sides
+  Index outside_;            // the element of the sets that stands for it
+  DisjointSets components_;  // of triangles
+  DisjointSets shells_;      // of sides, within components
+  DisjointSets chambers_;    // of sides
   LineCaster caster_;
   std::vector<Index> outer_shell_;  // by component
   std::vector<Chamber> list_;
@@ -304,7 +307,8 @@ class RegionFinder {
 
 }  // namespace
 
-Regions find_regions(const Draft& draft, const EdgeTable& edges, std::span<const PolygonSoup> soups, Faults& faults) {
+Regions find_regions(const Draft& draft, const EdgeTable& edges, std::span<const PolygonSoup> soups,
+                     Faults& faults) {
   return RegionFinder(draft, edges, faults).run(soups);
 }
 

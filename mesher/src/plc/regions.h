@@ -11,8 +11,8 @@
 namespace collarmesh::build {
 
 struct Regions {
-  std::vector<Plc::Region> list;     ///< [0] is the outside
-  std::vector<Index> of_side;        ///< by triangle side (Claim::side)
+  std::vector<Plc::Region> list;  ///< [0] is the outside
+  std::vector<Index> of_side;     ///< by triangle side (Claim::side)
 };
 
 /// Which volume each triangle side looks at. Chambers are the components of space without the
@@ -20,6 +20,7 @@ struct Regions {
 /// surface is a region if a facet has its back towards it, or if no region encloses it.
 /// Precondition: triangles meet in common edges and corners only.
 /// Faults: region and hole points on a facet.
-Regions find_regions(const Draft& draft, const EdgeTable& edges, std::span<const PolygonSoup> soups, Faults& faults);
+Regions find_regions(const Draft& draft, const EdgeTable& edges, std::span<const PolygonSoup> soups,
+                     Faults& faults);
 
 }  // namespace collarmesh::build

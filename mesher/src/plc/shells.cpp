@@ -104,10 +104,12 @@ std::optional<std::vector<LineCaster::Crossing>> LineCaster::cast(const Point& p
 
 LineCaster::Meeting LineCaster::meet(Index triangle, const Point& p, const Point& q) const {
   using predicates::orientation;
-  const Point &a = draft_.corner(triangle, 0), &b = draft_.corner(triangle, 1), &c = draft_.corner(triangle, 2);
+  const Point &a = draft_.corner(triangle, 0), &b = draft_.corner(triangle, 1),
+              &c = draft_.corner(triangle, 2);
   const int from = orientation(a, b, c, p), to = orientation(a, b, c, q);
   if (from * to > 0) return Meeting::none;
-  const auto [low, high] = std::minmax({orientation(p, q, a, b), orientation(p, q, b, c), orientation(p, q, c, a)});
+  const auto [low, high] =
+      std::minmax({orientation(p, q, a, b), orientation(p, q, b, c), orientation(p, q, c, a)});
   if (low < 0 && high > 0) return Meeting::none;
   if (low * high == 0 || from * to == 0) return Meeting::degenerate;
   return from < 0 ? Meeting::forward : Meeting::backward;

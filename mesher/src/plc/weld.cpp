@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 
 #include "plc/disjoint_sets.h"
@@ -43,7 +43,8 @@ std::vector<Index> find_used(const PolygonSoup& soup, Faults& faults) {
       for (const Index corner : soup.polygon(q)) use(soup, corner, "facet", f, used, faults);
   }
   for (Index s = 0; s < soup.segments.size(); ++s)
-    for (const Index end : {soup.segments[s].a, soup.segments[s].b}) use(soup, end, "segment", s, used, faults);
+    for (const Index end : {soup.segments[s].a, soup.segments[s].b})
+      use(soup, end, "segment", s, used, faults);
   return used;
 }
 
@@ -107,7 +108,8 @@ bool is_complex(const PolygonSoup& soup) {
          extension == ".smesh";
 }
 
-PointMap weld_points(std::span<const PolygonSoup> soups, double distance_limit, Draft& draft, Faults& faults) {
+PointMap weld_points(std::span<const PolygonSoup> soups, double distance_limit, Draft& draft,
+                     Faults& faults) {
   PointMap map;
   const UsedPoints all = collect(soups, map, faults);
   if (!faults.empty()) return map;
