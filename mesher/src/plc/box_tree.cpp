@@ -8,32 +8,51 @@ namespace collarmesh::build {
 
 BoxTree::BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)), items_(boxes_.size()) {
   std::iota(items_.begin(), items_.end(), Index{0});
+  nodes_.reserve(items_.size());
   if (!items_.empty()) build(0, static_cast<Index>(items_.size()));
 }
 
 Index BoxTree::build(Index first, Index last) {
   const auto node = static_cast<Index>(nodes_.size());
-  Box box, centres;
-  for (Index i = first; i < last; ++i) {
-    box.add(boxes_[items_[i]]);
-    centres.add(boxes_[items_[i]].centre());
+  nodes_.push_back({boxes_[items_[first]], first, last - first});
+  if (last - first <= leaf_size) {
+    for (Index i = first + 1; i < last; ++i) extend(nodes_[node].box, boxes_[items_[i]]);
+    return node;
   }
-  nodes_.push_back({box, first, last - first});
-  if (last - first <= leaf_size) return node;
-  const Vector extent = centres.max - centres.min;
-  const std::size_t axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+  const std::size_t axis = longest_axis(first, last);
   const Index middle = first + (last - first) / 2;
   std::nth_element(items_.begin() + first, items_.begin() + middle, items_.begin() + last,
                    [&](Index a, Index b) {
-                     const double ca = boxes_[a].min[axis] + boxes_[a].max[axis],
-                                  cb = boxes_[b].min[axis] + boxes_[b].max[axis];
+                     const double ca = position(a, axis), cb = position(b, axis);
                      return ca != cb ? ca < cb : a < b;
                    });
-  build(first, middle);
-  const Index right = build(middle, last);
-  nodes_[node].first = right;
-  nodes_[node].count = 0;
+  const Index left = build(first, middle), right = build(middle, last);
+  nodes_[node] = {nodes_[left].box, right, 0};
+  extend(nodes_[node].box, nodes_[right].box);
   return node;
+}
+
+void BoxTree::extend(Box& box, const Box& other) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.min[axis] = std::min(box.min[axis], other.min[axis]);
+    box.max[axis] = std::max(box.max[axis], other.max[axis]);
+  }
+}
+
+std::size_t BoxTree::longest_axis(Index first, Index last) const {
+  std::size_t longest = 0;
+  double longest_extent = -1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double low = position(items_[first], axis), high = low;
+    for (Index i = first + 1; i < last; ++i) {
+      low = std::min(low, position(items_[i], axis));
+      high = std::max(high, position(items_[i], axis));
+    }
+    if (high - low <= longest_extent) continue;
+    longest = axis;
+    longest_extent = high - low;
+  }
+  return longest;
 }
 
 bool BoxTree::may_meet(const Box& box, const Point& p, const Point& q) {
