@@ -38,6 +38,15 @@ TEST(CheckMatching, ByPositionAlone) {
   }
 }
 
+TEST(CheckMatching, RegionInPlaceOfItsTag) {
+  const MeshedComplex m = meshed_two_boxes(2);
+  TetMesh mesh = without_features(m.mesh);
+  mesh.tet_tag.assign(mesh.tet_region.begin(), mesh.tet_region.end());
+  EXPECT_TRUE(check(mesh, m.plc).passed());
+  mesh.tet_tag[0] = 5;
+  EXPECT_EQ(check(mesh, m.plc).findings_total, 1U);
+}
+
 TEST(CheckMatching, UnknownTagsMatchNothing) {
   MeshedComplex m = meshed_box(2);
   TetMesh mesh = without_features(m.mesh);
