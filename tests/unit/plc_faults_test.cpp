@@ -56,14 +56,14 @@ TEST(PlcFaults, WarpedPolygon) {
   ASSERT_TRUE(error);
   EXPECT_EQ(error->faults.size(), 1U);
   EXPECT_EQ(error->faults[0].kind, Kind::non_planar_polygon);
-  EXPECT_NE(error->faults[0].message.find("facet 1"), std::string::npos) << error->what();
+  EXPECT_NE(error->faults[0].message.find("Facet 1"), std::string::npos) << error->what();
 }
 
 TEST(PlcFaults, FacetWithoutArea) {
   PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
   soup.points.insert(soup.points.end(), {{2, 0, 0}, {3, 0, 0}, {4, 0, 0}, {5, 0, 0}});
   soup.add_facet(std::array<Index, 4>{8, 9, 10, 11});
-  expect_fault({soup}, Kind::degenerate_facet, "facet 6");
+  expect_fault({soup}, Kind::degenerate_facet, "Facet 6");
 }
 
 TEST(PlcFaults, PolygonWithCrossingEdges) {

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <string_view>
 
 #include "collarmesh/plc_builder.h"
 #include "plc/angles.h"
@@ -30,11 +32,18 @@ double shortest_segment(const Plc& plc) {
   return std::isfinite(shortest) ? shortest : 0;
 }
 
-std::string name(const char* what, Index index, Tag tag) {
-  return tag == 0 ? fmt::format("{} {}", what, index) : fmt::format("{} {} (tag {})", what, index, tag);
+std::string name(Index index, Tag tag) {
+  return tag == 0 ? fmt::format("{}", index) : fmt::format("{} (tag {})", index, tag);
 }
-std::string patch_name(const Plc& plc, Index p) { return name("patch", p, plc.patches[p].tag); }
-std::string curve_name(const Plc& plc, Index c) { return name("curve", c, plc.curves[c].tag); }
+std::string patch_name(const Plc& plc, Index p) { return name(p, plc.patches[p].tag); }
+std::string curve_name(const Plc& plc, Index c) { return name(c, plc.curves[c].tag); }
+
+std::string meet(const char* first_kind, const std::string& first, const char* second_kind,
+                 const std::string& second) {
+  const bool alike = std::string_view(first_kind).substr(1) == std::string_view(second_kind).substr(1);
+  if (alike && first == second) return fmt::format("{} {} meets itself", first_kind, first);
+  return fmt::format("{} {} meets {} {}", first_kind, first, second_kind, second);
+}
 
 }  // namespace
 
@@ -67,19 +76,20 @@ std::string describe(const Plc& plc, const Crease& crease) {
   const std::string where = build::text(crease.where);
   switch (crease.kind) {
     case Crease::Kind::facets:
-      return fmt::format("The {} and the {} meet along the {} at {:.2f} degrees near {}.", patch_name(plc, f),
-                         patch_name(plc, g), curve_name(plc, crease.curve), crease.angle, where);
+      return fmt::format("{} along {} at {:.2f} degrees near {}.",
+                         meet("Patch", patch_name(plc, f), "patch", patch_name(plc, g)),
+                         "curve " + curve_name(plc, crease.curve), crease.angle, where);
     case Crease::Kind::segments:
-      return fmt::format("The {} and the {} meet at {:.2f} degrees in {}.", curve_name(plc, f),
-                         curve_name(plc, g), crease.angle, where);
+      return fmt::format("{} at {:.2f} degrees in {}.",
+                         meet("Curve", curve_name(plc, f), "curve", curve_name(plc, g)), crease.angle, where);
     case Crease::Kind::segment_and_facet:
-      return fmt::format("The {} meets the {} at {:.2f} degrees in {}.", curve_name(plc, f),
-                         patch_name(plc, g), crease.angle, where);
+      return fmt::format("{} at {:.2f} degrees in {}.",
+                         meet("Curve", curve_name(plc, f), "patch", patch_name(plc, g)), crease.angle, where);
     case Crease::Kind::facets_in_vertex:
-      return fmt::format("The {} and the {} meet only in the point {}, at {:.2f} degrees.",
-                         patch_name(plc, f), patch_name(plc, g), where, crease.angle);
+      return fmt::format("{} only in the point {}, at {:.2f} degrees.",
+                         meet("Patch", patch_name(plc, f), "patch", patch_name(plc, g)), where, crease.angle);
     case Crease::Kind::patch_fold:
-      return fmt::format("The {} folds by {:.2f} degrees in {}.", patch_name(plc, f), crease.angle, where);
+      return fmt::format("Patch {} folds to {:.2f} degrees in {}.", patch_name(plc, f), crease.angle, where);
   }
   return {};
 }

@@ -63,7 +63,7 @@ class FacetTriangulator {
 
  private:
   std::string name(const Facet& facet) const {
-    return fmt::format("facet {} of {}", facet.number, draft_.soup_names[facet.soup]);
+    return fmt::format("{} of {}", facet.number, draft_.soup_names[facet.soup]);
   }
 
   bool find_plane(const Facet& facet, Plane& plane) {
@@ -84,10 +84,10 @@ class FacetTriangulator {
       return true;
     }
     const Point& where = draft_.points[facet.loops[0][0]];
-    faults_.add(
-        PlcFault::Kind::degenerate_facet,
-        fmt::format("The {} at {} has no area; remove it or correct its corners.", name(facet), text(where)),
-        facet.loops[0], where);
+    faults_.add(PlcFault::Kind::degenerate_facet,
+                fmt::format("Facet {} at {} has no area; remove it or correct its corners.", name(facet),
+                            text(where)),
+                facet.loops[0], where);
     return false;
   }
 
@@ -111,7 +111,7 @@ class FacetTriangulator {
     const Point& where = draft_.points[worst];
     faults_.add(
         PlcFault::Kind::non_planar_polygon,
-        fmt::format("The {} is not planar: its corner {} lies {:.3g} from its plane, {:.3g} is allowed; "
+        fmt::format("Facet {} is not planar: its corner {} lies {:.3g} from its plane, {:.3g} is allowed; "
                     "cut it into triangles or raise the planar tolerance.",
                     name(facet), text(where), deviation, limit),
         {worst}, where);
@@ -133,7 +133,7 @@ class FacetTriangulator {
     } catch (const PlaneTriangulation::Intersection_of_constraints_exception&) {
       const Point& where = draft_.points[facet.loops[0][0]];
       faults_.add(PlcFault::Kind::intersection,
-                  fmt::format("The edges of the {} (near {}) cross each other; correct its polygons.",
+                  fmt::format("The edges of facet {} (near {}) cross each other; correct its polygons.",
                               name(facet), text(where)),
                   facet.loops[0], where);
     }

@@ -142,20 +142,26 @@ class IntersectionFinder {
     std::vector<Index> points(pair.first.corners().begin(), pair.first.corners().end());
     for (unsigned k = pair.common; k < pair.second.size; ++k) points.push_back(pair.second.points[k]);
     const char* how = touching != none ? "touch without a common corner" : "intersect";
-    faults.add(
-        PlcFault::Kind::intersection,
-        fmt::format("The {} and the {} {} at {}; cut them along their intersection or move them apart.",
-                    name(i), name(j), how, text(where)),
-        std::move(points), where);
+    faults.add(PlcFault::Kind::intersection,
+               fmt::format("{} {} at {}; cut them along their intersection or move them apart.", name(i, j),
+                           how, text(where)),
+               std::move(points), where);
+  }
+
+  std::string name(Index i, Index j) const {
+    const bool one_soup = simplices_[i].size == 3 && simplices_[j].size == 3 &&
+                          draft_.origins[i].soup == draft_.origins[j].soup;
+    if (one_soup)
+      return fmt::format("Facets {} and {} of {}", draft_.origins[i].facet, draft_.origins[j].facet,
+                         draft_.soup_names[draft_.origins[i].soup]);
+    return fmt::format("The {} and the {}", name(i), name(j));
   }
 
   std::string name(Index i) const {
     const Simplex& s = simplices_[i];
-    if (s.size == 3)
-      return fmt::format("facet {} of {}", draft_.origins[i].facet,
-                         draft_.soup_names[draft_.origins[i].soup]);
     if (s.size == 2) return fmt::format("segment {} - {}", text(at(s.points[0])), text(at(s.points[1])));
-    return fmt::format("point {}", text(at(s.points[0])));
+    if (s.size == 1) return fmt::format("point {}", text(at(s.points[0])));
+    return fmt::format("facet {} of {}", draft_.origins[i].facet, draft_.soup_names[draft_.origins[i].soup]);
   }
 
   // A corner of one, not common, that lies on the other.
