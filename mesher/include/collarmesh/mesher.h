@@ -26,7 +26,7 @@ struct MeshOptions {
   double exterior_radius_edge = 8;       ///< the same outside every region
   double vertex_ratio = 0;               ///< bound on largest circumradius / shortest edge at a vertex in the regions (paper, section 1.2); 0: none, else > 2 sqrt 2
   double theta = 0.3;                    ///< warp distance relative to a gap ball's radius (paper, Procedure 2); 0: never warp
-  double crease_angle = 70.53;           ///< degrees; features that meet below it get a collar (DESIGN: Si 2009)
+  double crease_angle = 60;              ///< degrees; features that meet below it get a collar
   double collar_angle = 150;             ///< bound on dihedral angles in collars, degrees; 100 to 175
   double representation_angle = 50;      ///< bound on the tilt of collar triangles (paper, Definition 12), degrees
   double distance = 0;                   ///< surface distance tolerance on smooth patches and curves; 0: 1e-3 of the diagonal

@@ -36,7 +36,7 @@ struct Crease {
 };
 
 /// All creases with an angle below the threshold (degrees), smallest angle first.
-std::vector<Crease> find_creases(const Plc& plc, double threshold = 70.53);
+std::vector<Crease> find_creases(const Plc& plc, double threshold = 60);
 
 /// What a complex is, for people: counts, angles, sizes.
 struct PlcSummary {
@@ -49,7 +49,7 @@ struct PlcSummary {
   double largest_deviation = 0;
   std::vector<Crease> creases;   ///< below the threshold given
 };
-PlcSummary summarize(const Plc& plc, double crease_threshold = 70.53);
+PlcSummary summarize(const Plc& plc, double crease_threshold = 60);
 
 /// One sentence for people: what meets what, where, at which angle.
 std::string describe(const Plc& plc, const Crease& crease);

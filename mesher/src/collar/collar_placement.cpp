@@ -21,7 +21,7 @@ constexpr double deepest_step = 0.9;
 CollarPlacement::CollarPlacement(const Plc& plc, std::span<const Point> points,
                                  std::span<const Crease> creases,
                                  const std::function<double(const Point&)>& size,
-                                 std::uint64_t seed, CollarSystem& system)
+                                 double distance, std::uint64_t seed, CollarSystem& system)
     : plc_(plc),
       points_(points),
       creases_(creases),
@@ -29,7 +29,8 @@ CollarPlacement::CollarPlacement(const Plc& plc, std::span<const Point> points,
       gap_(plc, points),
       random_state_(seed ^ 0x5851f42d4c957f2dULL),
       system_(system),
-      lengths_(plc.curves.size()) {}
+      lengths_(plc.curves.size()),
+      distance_(distance) {}
 
 void CollarPlacement::place() {
   system_.crease_curve_.assign(plc_.curves.size(), false);
@@ -44,9 +45,13 @@ void CollarPlacement::place() {
       vertices.insert(vertices.end(), plc_.curves[c].ends.begin(), plc_.curves[c].ends.end());
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  find_sheets();
   for (const Index vertex : vertices) system_.vertex_ball_[vertex] = place_at_vertex(vertex);
-  for (Index c = 0; c < plc_.curves.size(); ++c)
-    if (system_.crease_curve_[c]) place_along_curve(c);
+  for (Index c = 0; c < plc_.curves.size(); ++c) {
+    if (!system_.crease_curve_[c]) continue;
+    if (plc_.curves[c].closed) place_around_closed_curve(c);
+    else place_along_curve(c);
+  }
   for (const CollarLink& link : system_.links_) add_circle_corners(link);
 }
 
@@ -66,40 +71,78 @@ Index CollarPlacement::place_at_vertex(Index vertex) {
 
 double CollarPlacement::radius_on_curve(Index curve, double parameter) const {
   const Point p = curve_point(curve, parameter);
-  return std::min(radius_per_gap * gap_.on_curve(curve, p), size_(p));
+  const double radius = std::min(radius_per_gap * gap_.on_curve(curve, p), size_(p));
+  return plc_.curves[curve].straight ? radius : flat_radius(curve, parameter, radius);
 }
 
+// The radius, made smaller until the curve leaves its chord and the patches theirs by no more than
+// the tolerance inside the ball: there they are replaced by straight edges and flat triangles.
+double CollarPlacement::flat_radius(Index curve, double parameter, double radius) const {
+  const Point centre = curve_point(curve, parameter);
+  const double length = lengths_[curve].back();
+  const auto sagitta = [&](double r) {
+    const Point a = curve_point(curve, parameter - r), b = curve_point(curve, parameter + r);
+    return std::sqrt(squared_distance_to_triangle(centre, a, b, b));
+  };
+  radius = std::min(radius, length / 8);
+  while (sagitta(radius) > 0.5 * distance_) radius *= 0.8;
+  return radius;
+}
+
+std::size_t CollarPlacement::curve_segment(Index curve, double parameter) const {
+  const auto& lengths = lengths_[curve];
+  const auto after = static_cast<std::size_t>(
+      std::upper_bound(lengths.begin(), lengths.end(), parameter) - lengths.begin());
+  return std::clamp<std::size_t>(after, 1, lengths.size() - 1) - 1;
+}
+
+// On a closed curve parameters wrap around.
 Point CollarPlacement::curve_point(Index curve, double parameter) const {
   const auto& lengths = lengths_[curve];
   const auto& points = plc_.curves[curve].points;
-  auto after = static_cast<std::size_t>(
-      std::upper_bound(lengths.begin(), lengths.end(), parameter) - lengths.begin());
-  after = std::clamp<std::size_t>(after, 1, lengths.size() - 1);
-  const double step = lengths[after] - lengths[after - 1];
-  const double t = step > 0 ? (parameter - lengths[after - 1]) / step : 0;
-  const Point& a = points_[points[after - 1]];
-  return a + t * (points_[points[after % points.size()]] - a);
+  if (plc_.curves[curve].closed) parameter -= lengths.back() * std::floor(parameter / lengths.back());
+  const std::size_t segment = curve_segment(curve, parameter);
+  const double step = lengths[segment + 1] - lengths[segment];
+  const double t = step > 0 ? std::clamp((parameter - lengths[segment]) / step, 0.0, 1.0) : 0;
+  const Point& a = points_[points[segment]];
+  return a + t * (points_[points[(segment + 1) % points.size()]] - a);
+}
+
+Index CollarPlacement::add_ball_on_curve(Index curve, double parameter) {
+  system_.balls_.push_back({curve_point(curve, parameter),
+                            radius_on_curve(curve, parameter) * shrink(), 1, curve, parameter});
+  return static_cast<Index>(system_.balls_.size() - 1);
 }
 
 void CollarPlacement::place_along_curve(Index curve) {
-  const auto& points = plc_.curves[curve].points;
-  auto& lengths = lengths_[curve];
-  lengths.assign(1, 0);
-  for (std::size_t i = 1; i < points.size(); ++i)
-    lengths.push_back(lengths.back() + distance(points_[points[i - 1]], points_[points[i]]));
   const auto& ends = plc_.curves[curve].ends;
   const std::array<Index, 2> end_balls{system_.vertex_ball_[ends[0]], system_.vertex_ball_[ends[1]]};
   const double from = system_.balls_[end_balls[0]].radius;
-  const double to = lengths.back() - system_.balls_[end_balls[1]].radius;
+  const double to = lengths_[curve].back() - system_.balls_[end_balls[1]].radius;
   Index previous = end_balls[0];
+  double before = 0;
   for (const double parameter : centre_parameters(curve, from, to)) {
-    const auto ball = static_cast<Index>(system_.balls_.size());
-    system_.balls_.push_back({curve_point(curve, parameter),
-                              radius_on_curve(curve, parameter) * shrink(), 1, curve, parameter});
-    system_.links_.push_back({{previous, ball}, curve});
+    const Index ball = add_ball_on_curve(curve, parameter);
+    system_.links_.push_back({{previous, ball}, curve, {before, parameter}});
     previous = ball;
+    before = parameter;
   }
-  system_.links_.push_back({{previous, end_balls[1]}, curve});
+  system_.links_.push_back({{previous, end_balls[1]}, curve, {before, lengths_[curve].back()}});
+}
+
+void CollarPlacement::place_around_closed_curve(Index curve) {
+  const double length = lengths_[curve].back();
+  std::vector<double> parameters = centre_parameters(curve, 0, length);
+  parameters.pop_back();  // the first one again
+  const auto first = static_cast<Index>(system_.balls_.size());
+  double before = 0;
+  for (const double parameter : parameters) {
+    const Index ball = add_ball_on_curve(curve, parameter);
+    if (ball != first) system_.links_.push_back({{ball - 1, ball}, curve, {before, parameter}});
+    before = parameter;
+  }
+  const auto last = static_cast<Index>(system_.balls_.size() - 1);
+  system_.links_.push_back({{last, first}, curve, {before, length}});
 }
 
 // From one vertex ball's sphere to the other's: natural steps first, then all of them compressed so
@@ -128,37 +171,86 @@ std::vector<double> CollarPlacement::centre_parameters(Index curve, double from,
   return centres;
 }
 
-// The points where the sheets of patches that meet at the crease pass through the circle of two
-// consecutive spheres.
+void CollarPlacement::find_sheets() {
+  std::vector<std::array<Index, 2>> segments;
+  for (Index c = 0; c < plc_.curves.size(); ++c) {
+    if (!system_.crease_curve_[c]) continue;
+    const auto& points = plc_.curves[c].points;
+    auto& lengths = lengths_[c];
+    lengths.assign(1, 0);
+    const std::size_t count = points.size() - (plc_.curves[c].closed ? 0 : 1);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Index a = points[i], b = points[(i + 1) % points.size()];
+      lengths.push_back(lengths.back() + distance(points_[a], points_[b]));
+      segments.push_back({std::min(a, b), std::max(a, b)});
+    }
+  }
+  std::sort(segments.begin(), segments.end());
+  for (Index t = 0; t < plc_.triangles.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Index a = plc_.triangles[t].points[i], b = plc_.triangles[t].points[(i + 1) % 3];
+      const std::array<Index, 2> edge{std::min(a, b), std::max(a, b)};
+      if (std::binary_search(segments.begin(), segments.end(), edge)) sheets_.push_back({edge, t});
+    }
+  std::sort(sheets_.begin(), sheets_.end());
+}
+
+std::vector<CollarPlacement::Sheet> CollarPlacement::sheets_at(Index curve, double parameter) const {
+  const auto& points = plc_.curves[curve].points;
+  const std::size_t segment = curve_segment(curve, parameter);
+  const Index a = points[segment], b = points[(segment + 1) % points.size()];
+  const std::array<Index, 2> edge{std::min(a, b), std::max(a, b)};
+  const Vector along = (points_[b] - points_[a]) / distance(points_[a], points_[b]);
+  std::vector<Sheet> sheets;
+  for (auto it = std::lower_bound(sheets_.begin(), sheets_.end(), std::pair{edge, Index{0}});
+       it != sheets_.end() && it->first == edge; ++it) {
+    for (const Index corner : plc_.triangles[it->second].points) {
+      if (corner == a || corner == b) continue;
+      const Vector w = points_[corner] - points_[a];
+      const Vector inwards = w - dot(w, along) * along;
+      sheets.push_back({plc_.triangles[it->second].patch, inwards / norm(inwards)});
+    }
+  }
+  return sheets;
+}
+
+// Where a sheet passes through the circle around `axis`. A plane's point is known; on a smooth patch
+// it is searched from the sheet's direction to both sides.
+Point CollarPlacement::sheet_point(const Sheet& sheet, const Point& centre, const Vector& axis,
+                                   double radius) const {
+  const Vector in_plane = sheet.direction - dot(sheet.direction, axis) * axis;
+  const Vector u = in_plane / norm(in_plane), v = cross(axis, u);
+  const auto at = [&](double angle) {
+    return centre + radius * (std::cos(angle) * u + std::sin(angle) * v);
+  };
+  if (plc_.patches[sheet.patch].planar) return at(0);
+  constexpr double step = 0.04, widest = 1.0;
+  for (double angle = 0; angle < widest; angle += step)
+    for (const double side : {1.0, -1.0}) {
+      double low = side * (angle - 0.5 * step), high = side * (angle + 0.5 * step);
+      if (!gap_.crosses(sheet.patch, at(low), at(high))) continue;
+      for (int k = 0; k < 50; ++k) {
+        const double middle = 0.5 * (low + high);
+        (gap_.crosses(sheet.patch, at(low), at(middle)) ? high : low) = middle;
+      }
+      return at(0.5 * (low + high));
+    }
+  return at(0);
+}
+
+// The points where the sheets that meet at the crease pass through the circle of two consecutive
+// spheres.
 void CollarPlacement::add_circle_corners(const CollarLink& link) {
   const CollarBall &a = system_.balls_[link.balls[0]], &b = system_.balls_[link.balls[1]];
-  const Vector axis = (b.centre - a.centre) / distance(a.centre, b.centre);
   const double d = distance(a.centre, b.centre);
+  const Vector axis = (b.centre - a.centre) / d;
   const double along = (d * d + a.radius * a.radius - b.radius * b.radius) / (2 * d);
   const double radius = std::sqrt(std::max(0.0, a.radius * a.radius - along * along));
   const Point centre = a.centre + along * axis;
-  const auto& points = plc_.curves[link.curve].points;
-  for (const Index patch : plc_.curves[link.curve].patches) {
-    const Plc::Patch& p = plc_.patches[patch];
-    std::vector<Vector> sheets;
-    for (Index t = p.first_triangle; t < p.first_triangle + p.triangle_count; ++t) {
-      const auto& corners = plc_.triangles[t].points;
-      for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t k = 0; k + 1 < points.size(); ++k) {
-          const Index u = corners[i], v = corners[(i + 1) % 3];
-          if (!((u == points[k] && v == points[k + 1]) || (v == points[k] && u == points[k + 1]))) continue;
-          const Vector w = points_[corners[(i + 2) % 3]] - centre;
-          const Vector inwards = w - dot(w, axis) * axis;
-          const Vector direction = inwards / norm(inwards);
-          const bool known = std::any_of(sheets.begin(), sheets.end(), [&](const Vector& s) {
-            return dot(s, direction) > 1 - 1e-9;
-          });
-          if (!known) sheets.push_back(direction);
-        }
-    }
-    for (const Vector& direction : sheets)
-      system_.corners_.push_back({centre + radius * direction, 2, patch});
-  }
+  const double parameter =
+      link.parameters[0] + (link.parameters[1] - link.parameters[0]) * along / d;
+  for (const Sheet& sheet : sheets_at(link.curve, parameter))
+    system_.corners_.push_back({sheet_point(sheet, centre, axis, radius), 2, sheet.patch});
 }
 
 }  // namespace collarmesh

@@ -8,19 +8,30 @@ namespace collarmesh {
 class CollarPlacement {
  public:
   CollarPlacement(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases,
-                  const std::function<double(const Point&)>& size, std::uint64_t seed,
-                  CollarSystem& system);
+                  const std::function<double(const Point&)>& size, double distance,
+                  std::uint64_t seed, CollarSystem& system);
   void place();
 
  private:
+  /// A side of a patch at a crease: the direction in which it leaves the curve.
+  struct Sheet {
+    Index patch;
+    Vector direction;  // unit, orthogonal to the curve
+  };
+
   Index place_at_vertex(Index vertex);
   void place_along_curve(Index curve);
+  void place_around_closed_curve(Index curve);
   std::vector<double> centre_parameters(Index curve, double from, double to) const;
+  Index add_ball_on_curve(Index curve, double parameter);
   double radius_on_curve(Index curve, double parameter) const;
+  double flat_radius(Index curve, double parameter, double radius) const;
   Point curve_point(Index curve, double parameter) const;
-  Vector curve_direction(Index curve, double parameter) const;
+  std::size_t curve_segment(Index curve, double parameter) const;
+  void find_sheets();
+  std::vector<Sheet> sheets_at(Index curve, double parameter) const;
+  Point sheet_point(const Sheet& sheet, const Point& centre, const Vector& axis, double radius) const;
   void add_circle_corners(const CollarLink& link);
-  void add_pierced_corners(Index ball);
   double shrink();
 
   const Plc& plc_;
@@ -31,6 +42,9 @@ class CollarPlacement {
   std::uint64_t random_state_;
   CollarSystem& system_;
   std::vector<std::vector<double>> lengths_;  // arc lengths of crease curves
+  double distance_;                           // tolerance on smooth patches and curves
+  // Triangles at the segments of crease curves, sorted: the segment's points, the triangle.
+  std::vector<std::pair<std::array<Index, 2>, Index>> sheets_;
 };
 
 }  // namespace collarmesh

@@ -9,8 +9,8 @@ namespace collarmesh {
 
 CollarSystem::CollarSystem(const Plc& plc, std::span<const Point> points,
                            std::span<const Crease> creases,
-                           const std::function<double(const Point&)>& size, std::uint64_t seed) {
-  CollarPlacement(plc, points, creases, size, seed, *this).place();
+                           const std::function<double(const Point&)>& size, double distance, std::uint64_t seed) {
+  CollarPlacement(plc, points, creases, size, distance, seed, *this).place();
   if (balls_.empty()) return;
   for (const CollarLink& link : links_)
     consecutive_.push_back({std::min(link.balls[0], link.balls[1]), std::max(link.balls[0], link.balls[1])});

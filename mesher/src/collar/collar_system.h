@@ -22,6 +22,11 @@ class GapSize {
   /// Precondition: p lies on the curve and is none of its ends.
   double on_curve(Index curve, const Point& p) const;
 
+  /// Does the segment pq cross the patch?
+  bool crosses(Index patch, const Point& p, const Point& q) const;
+  /// The point of the patch nearest to p.
+  Point nearest_on_patch(Index patch, const Point& p) const;
+
  private:
   struct Element {
     std::uint8_t dimension;
@@ -46,6 +51,7 @@ struct CollarBall {
 struct CollarLink {
   std::array<Index, 2> balls;
   Index curve;
+  std::array<double, 2> parameters;  ///< of the two centres on the curve, arc length
 };
 
 /// A point that the mesh must have for the collar surface to follow the features: where a patch
@@ -62,9 +68,10 @@ class CollarSystem {
  public:
   CollarSystem() = default;
   /// Place balls on all creases: radius a third of the gap size, never more than the size allows,
-  /// shrunk by up to 8% (seeded) so that spheres are generic.
+  /// shrunk by up to 8% (seeded) so that spheres are generic; on smooth curves and patches small
+  /// enough that what replaces them inside a ball stays within `distance`.
   CollarSystem(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases,
-               const std::function<double(const Point&)>& size, std::uint64_t seed);
+               const std::function<double(const Point&)>& size, double distance, std::uint64_t seed);
 
   bool empty() const { return balls_.empty(); }
   const std::vector<CollarBall>& balls() const { return balls_; }

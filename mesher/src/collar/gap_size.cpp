@@ -1,4 +1,4 @@
-#include <numeric>
+#include <algorithm>
 
 #include "collar/collar_system.h"
 
@@ -46,6 +46,25 @@ double GapSize::on_curve(Index curve, const Point& p) const {
     if (dimension == 1) return feature != curve;
     return !plc_.curve_on_patch(curve, feature);
   }));
+}
+
+bool GapSize::crosses(Index patch, const Point& p, const Point& q) const {
+  const Index root = hierarchy_.root();
+  std::vector<TriangleHierarchy::Crossing> crossings;
+  hierarchy_.crossings(p, q, {&root, 1}, crossings);
+  return std::any_of(crossings.begin(), crossings.end(), [&](const auto& crossing) {
+    const Element& element = elements_[crossing.triangle];
+    return element.dimension == 2 && element.feature == patch;
+  });
+}
+
+Point GapSize::nearest_on_patch(Index patch, const Point& p) const {
+  Index nearest = none;
+  hierarchy_.squared_distance_to(p, INFINITY, &nearest, [&](Index element) {
+    return elements_[element].dimension == 2 && elements_[element].feature == patch;
+  });
+  const auto t = hierarchy_.corners(nearest);
+  return nearest_point_on_triangle(p, t[0], t[1], t[2]);
 }
 
 }  // namespace collarmesh

@@ -9,11 +9,10 @@ namespace collarmesh {
 
 namespace {
 
-double squared_distance_to_segment(const Point& p, const Point& a, const Point& b) {
+Point nearest_point_on_segment(const Point& p, const Point& a, const Point& b) {
   const Vector u = b - a;
   const double length = squared_norm(u);
-  const double t = length > 0 ? std::clamp(dot(p - a, u) / length, 0.0, 1.0) : 0.0;
-  return squared_distance(p, a + t * u);
+  return a + (length > 0 ? std::clamp(dot(p - a, u) / length, 0.0, 1.0) : 0.0) * u;
 }
 
 // A segment ready for many box tests: separating axes, widened by the rounding of their arithmetic
@@ -79,19 +78,22 @@ double squared_distance_to_box(const Point& p, const Box& box) {
   return sum;
 }
 
-double squared_distance_to_triangle(const Point& p, const Point& a, const Point& b,
-                                    const Point& c) {
+Point nearest_point_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
+  Point best = nearest_point_on_segment(p, a, b);
+  for (const Point& q : {nearest_point_on_segment(p, b, c), nearest_point_on_segment(p, c, a)})
+    if (squared_distance(p, q) < squared_distance(p, best)) best = q;
   const Vector n = cross(b - a, c - a);
   const double nn = squared_norm(n);
   const bool inside = nn > 0 && dot(cross(b - a, p - a), n) >= 0 &&
                       dot(cross(c - b, p - b), n) >= 0 && dot(cross(a - c, p - c), n) >= 0;
-  const double to_border =
-      std::min({squared_distance_to_segment(p, a, b), squared_distance_to_segment(p, b, c),
-                squared_distance_to_segment(p, c, a)});
-  if (!inside) return to_border;
+  if (!inside) return best;
   // The normal of a needle is noise: the border bounds the distance from above.
-  const double height = dot(p - a, n);
-  return std::min(to_border, height * height / nn);
+  const Point foot = p - (dot(p - a, n) / nn) * n;
+  return squared_distance(p, foot) < squared_distance(p, best) ? foot : best;
+}
+
+double squared_distance_to_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
+  return squared_distance(p, nearest_point_on_triangle(p, a, b, c));
 }
 
 TriangleHierarchy::TriangleHierarchy(std::span<const Point> points,

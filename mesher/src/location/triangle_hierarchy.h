@@ -92,6 +92,8 @@ class TriangleHierarchy {
 
 /// Squared distance from p to the triangle abc, which may be degenerate.
 double squared_distance_to_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
+/// The point of the triangle abc, which may be degenerate, that is nearest to p.
+Point nearest_point_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
 /// Squared distance from p to the box; 0 inside.
 double squared_distance_to_box(const Point& p, const Box& box);
 

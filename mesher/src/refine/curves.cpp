@@ -10,6 +10,8 @@ namespace {
 // A curve that is this much longer than its chord gets inner seeds: its first ball would miss it.
 constexpr double seeded_length_per_chord = 1.2;
 // An arc may leave its chord by this share of the chord: about 60 degrees of turning.
+// Subsegments are split at most this share of their radius off the centre.
+constexpr double subsegment_offset = 0.1;
 constexpr double largest_sagitta_per_chord = 0.15;
 
 }  // namespace
@@ -213,19 +215,24 @@ bool Refinement::destroy_subsegment(Index index) {
     return false;
   }
   const Index nearest = objects_[s.object].vertex;
-  const Index cell = mesh_.conflicting_cell_around(nearest, s.centre);
-  Index vertex = nearest;
+  // A little off the centre: halves of symmetric curves would be cocircular.
+  const double parameter =
+      s.centre_parameter + subsegment_offset * std::sqrt(s.squared_radius) * random_in_cube().x;
+  const Point p = frame_.rounded(curve_point(s.curve, parameter));
+  const Index around = nearest_vertex(p, nearest);
+  const Index cell = mesh_.conflicting_cell_around(around, p);
+  Index vertex = around;
   if (cell == none) {
-    // A vertex lies on the centre already: it joins the curve.
-    if (nearest == s.ends[0] || nearest == s.ends[1]) return false;
-    if (vertices_[nearest].dimension > 1) {
-      vertices_[nearest].dimension = 1;
-      vertices_[nearest].feature = s.curve;
+    // A vertex is there already: it joins the curve.
+    if (around == s.ends[0] || around == s.ends[1]) return false;
+    if (vertices_[around].dimension > 1) {
+      vertices_[around].dimension = 1;
+      vertices_[around].feature = s.curve;
     }
     remove_subsegment(index);
   } else {
-    mesh_.find_conflict_zone(s.centre, cell, zone_);
-    const Candidate candidate{s.centre, s.squared_radius, s.centre, 1, s.curve, cell};
+    mesh_.find_conflict_zone(p, cell, zone_);
+    const Candidate candidate{p, s.squared_radius, s.centre, 1, s.curve, cell};
     if (const Index point = warp_target(candidate); point != none) {
       ++warps_;
       insert_point(point);
@@ -235,8 +242,8 @@ bool Refinement::destroy_subsegment(Index index) {
     remove_subsegment(index);
     vertex = force_insert(1, s.curve);
   }
-  add_subsegment(s.curve, {s.ends[0], vertex}, {s.parameters[0], s.centre_parameter}, vertex);
-  add_subsegment(s.curve, {vertex, s.ends[1]}, {s.centre_parameter, s.parameters[1]}, vertex);
+  add_subsegment(s.curve, {s.ends[0], vertex}, {s.parameters[0], parameter}, vertex);
+  add_subsegment(s.curve, {vertex, s.ends[1]}, {parameter, s.parameters[1]}, vertex);
   return true;
 }
 

@@ -14,7 +14,8 @@ constexpr std::size_t seeds_per_closed_patch = 4;
 // With at most so many triangles near a new vertex its dual edges are tested against all of them.
 constexpr std::size_t most_local_triangles = 96;
 
-// Of some points, those that are far from each other: each next one is the farthest from all before.
+}  // namespace
+
 std::vector<Index> spread_points(const std::vector<Index>& candidates, const std::vector<Point>& points,
                                  std::size_t count) {
   std::vector<Index> chosen{candidates[0]};
@@ -30,8 +31,6 @@ std::vector<Index> spread_points(const std::vector<Index>& candidates, const std
   }
   return chosen;
 }
-
-}  // namespace
 
 // A closed patch has no border to start from: seed it.
 void Refinement::prepare_patches() {

@@ -20,6 +20,8 @@ constexpr std::uint16_t insertions_between_refreshes = 16;
 constexpr std::uint16_t insertions_between_surface_refreshes = 48;
 // No ball smaller than this share of the diagonal is destroyed: it ends what would never end.
 constexpr double floor_per_diagonal = 1e-10;
+// A cell whose volume is below this share of its longest edge cubed is flat.
+constexpr double flat_volume = 1e-11;
 constexpr std::size_t steps_between_reports = 512;
 
 // A box well away from the input; slightly different in each axis so that its corners are not
@@ -71,7 +73,7 @@ Refinement::Refinement(const Plc& plc, const MeshOptions& options, const Executi
       mesh_(box_),
       hierarchy_(points_, corner_lists(plc)),
       collars_(plc, points_, find_creases(plc, options.crease_angle),
-               [this](const Point& p) { return sizing_.default_size(p); }, options.seed),
+               [this](const Point& p) { return sizing_.default_size(p); }, distance_, options.seed),
       queue_(squared_distance(box_.min, box_.max)),
       random_state_(options.seed),
       started_(std::chrono::steady_clock::now()) {
@@ -423,7 +425,7 @@ void Refinement::judge_cell(Index cell) {
   const double r2 = mesh_.squared_radius(cell);
   const Point& centre = mesh_.circumcentre(cell);
   const double bound = region == 0 ? options_.exterior_radius_edge : options_.radius_edge;
-  if (r2 > bound * bound * shortest_squared_edge(cell)) {
+  if (r2 > bound * bound * shortest_squared_edge(cell) || (region != 0 && flat(cell))) {
     if (inside_box(centre))
       queue_.push(WorkQueue::skinny_cells, r2, {cell, mesh_.generation(cell)});
     return;
@@ -433,6 +435,16 @@ void Refinement::judge_cell(Index cell) {
   const double size = sizing_.cell_radius(region, centre, graded_size(v, std::sqrt(r2)));
   if (r2 > size * size || uneven_at_vertex(cell))
     queue_.push(WorkQueue::large_cells, r2, {cell, mesh_.generation(cell)});
+}
+
+// Cocircular input makes cells whose volume is noise although their radius-edge ratio is not. Those
+// on one patch are seen to when the queue is empty.
+bool Refinement::flat(Index cell) const {
+  const auto& v = mesh_.corners(cell);
+  const Point &a = mesh_.point(v[0]), &b = mesh_.point(v[1]), &c = mesh_.point(v[2]), &d = mesh_.point(v[3]);
+  const double longest = std::max({squared_distance(a, b), squared_distance(a, c), squared_distance(a, d)});
+  const double volume = six_volume(a, b, c, d);
+  return volume * volume < flat_volume * flat_volume * longest * longest * longest && !spans_patch(v);
 }
 
 // The paper's stronger quality measure (section 1.2): a circumradius against the shortest edge at a

@@ -26,6 +26,11 @@ namespace collarmesh {
 /// patches.cpp labels and restricted triangles; gradation.cpp target sizes at vertices;
 /// surface_check.cpp what is looked at when the queue has run empty; extract.cpp turns the result
 /// into a TetMesh.
+/// Of some points, those that are far from each other: each next one is the farthest from all
+/// before. Cost: candidates times count.
+std::vector<Index> spread_points(const std::vector<Index>& candidates,
+                                 const std::vector<Point>& points, std::size_t count);
+
 class Refinement {
  public:
   Refinement(const Plc& plc, const MeshOptions& options, const Execution& execution);
@@ -132,6 +137,7 @@ class Refinement {
   }
   double shortest_squared_edge(Index cell) const;
   void judge_cell(Index cell);
+  bool flat(Index cell) const;
   bool uneven_at_vertex(Index cell) const;
   void note_edges(Index vertex);
   std::optional<Candidate> cell_candidate(Index cell);
@@ -205,6 +211,7 @@ class Refinement {
   bool check_surface();
   std::vector<bool> vertices_at_collars() const;
   bool check_patch_topology();
+  bool refine_distant_triangles();
   bool check_patch_distance();
   bool check_flat_cells();
   std::vector<FaceId> marked_faces() const;

@@ -11,7 +11,8 @@ namespace collarmesh {
 
 namespace {
 
-constexpr unsigned most_rounds = 40;
+constexpr unsigned most_rounds = 60;
+constexpr std::size_t seeds_per_missed_patch = 8;
 
 struct EdgeUse {
   Index patch;
@@ -116,6 +117,29 @@ bool Refinement::check_patch_topology() {
   return found;
 }
 
+// Triangles on smooth patches whose edges or middle leave the patch by more than the tolerance.
+bool Refinement::refine_distant_triangles() {
+  const double tolerance = distance_ * distance_;
+  bool found = false;
+  for (const FaceId face : marked_faces()) {
+    const RestrictedTriangle& t = restricted(face);
+    const Index patch = patch_of(t);
+    if (plc_.patches[patch].planar || t.in_collar || t.given_up) continue;
+    const auto v = mesh_.face_vertices(face);
+    const Point &a = mesh_.point(v[0]), &b = mesh_.point(v[1]), &c = mesh_.point(v[2]);
+    const std::array<Point, 4> samples{0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a), (a + b + c) / 3};
+    const bool distant = std::any_of(samples.begin(), samples.end(), [&](const Point& p) {
+      return hierarchy_.squared_distance_to(p, tolerance, nullptr, [&](Index triangle) {
+        return plc_.triangles[triangle].patch == patch;
+      }) >= tolerance;
+    });
+    if (!distant) continue;
+    refine_triangle(face);
+    found = true;
+  }
+  return found;
+}
+
 // A tessellation point of a smooth patch that is farther than the tolerance from the patch's
 // triangles becomes an unresolved point: the farthest one at each triangle, so that one insertion
 // serves all its neighbours.
@@ -126,13 +150,20 @@ bool Refinement::check_patch_distance() {
     if (!plc_.patches[patch].planar) triangles[patch].push_back(mesh_.face_vertices(face));
   }
   std::vector<Point> positions;
-  bool found = false;
+  bool found = refine_distant_triangles();
   for (Index patch = 0; patch < plc_.patches.size(); ++patch) {
     const Plc::Patch& p = plc_.patches[patch];
     if (p.planar) continue;
+    const auto triangle_count = triangles[patch].size();
+    if (triangle_count == 0) {  // missed as a whole: its dual edges cross it back and forth
+      const std::size_t seeds = seeds_per_missed_patch << std::min(surface_rounds_, 16U);
+      for (const Index point : spread_points(tessellation_points(p), points_, seeds))
+        add_unresolved(points_[point], 2, patch);
+      found = true;
+      continue;
+    }
     if (positions.empty())
       for (Index v = 0; v < mesh_.vertex_count(); ++v) positions.push_back(mesh_.point(v));
-    const auto triangle_count = triangles[patch].size();
     const TriangleHierarchy surface(positions, std::move(triangles[patch]));
     std::vector<std::pair<double, Index>> farthest(triangle_count + 1, {0, none});
     for (const Index point : tessellation_points(p)) {
