@@ -46,23 +46,27 @@ class LayoutCheck {
     }
     if (!has_positions_ && layout_.vertices > 0) fail("expected the positions of the vertices, found none");
     if (!has_faces_ && layout_.faces > 0) fail("expected the corners of the faces, found none");
-    if (!has_halfedges_ && layout_.faces > 0 && version_ >= version_2) fail("expected the halfedges, found none");
+    if (!has_halfedges_ && layout_.faces > 0 && version_ >= version_2)
+      fail("expected the halfedges, found none");
     layout_.safe_bytes.append(std::string_view("\x1c\0", 2));  // the sentinel
     return std::move(layout_);
   }
 
  private:
   void read_header() {
-    if (bytes_.size() < header_bytes || bytes_.substr(0, 2) != "OM") fail("expected an OpenMesh file (OM), found none");
+    if (bytes_.size() < header_bytes || bytes_.substr(0, 2) != "OM")
+      fail("expected an OpenMesh file (OM), found none");
     kind_ = bytes_[2];
-    if (kind_ != 'T' && kind_ != 'Q' && kind_ != 'P') fail("expected a mesh of triangles, quads or polygons (T, Q, P)");
+    if (kind_ != 'T' && kind_ != 'Q' && kind_ != 'P')
+      fail("expected a mesh of triangles, quads or polygons (T, Q, P)");
     version_ = static_cast<unsigned char>(bytes_[3]);
     at_ = 4;
     layout_.vertices = static_cast<std::uint32_t>(unsigned_value(4));
     layout_.faces = static_cast<std::uint32_t>(unsigned_value(4));
     layout_.edges = static_cast<std::uint32_t>(unsigned_value(4));
-    require(3 * sizeof(float) * std::uint64_t{layout_.vertices} + std::uint64_t{layout_.faces},
-            fmt::format("{} vertices, {} faces and {} edges", layout_.vertices, layout_.faces, layout_.edges));
+    require(
+        3 * sizeof(float) * std::uint64_t{layout_.vertices} + std::uint64_t{layout_.faces},
+        fmt::format("{} vertices, {} faces and {} edges", layout_.vertices, layout_.faces, layout_.edges));
     layout_.safe_bytes = bytes_.substr(0, at_);
   }
 
@@ -76,12 +80,17 @@ class LayoutCheck {
     require_order(chunk);
     const bool positions = chunk.values == Values::positions && chunk.entity == Entity::vertex;
     const bool face_status = chunk.values == Values::status && chunk.entity == Entity::face;
-    if (chunk.values == Values::topology) read_topology(chunk, count);
-    else if (chunk.values == Values::status) read_status(chunk, count);
-    else if (positions) read_positions(chunk, count);
-    else skip(count * chunk.components * chunk.value_bytes, "the values of a chunk");
+    if (chunk.values == Values::topology)
+      read_topology(chunk, count);
+    else if (chunk.values == Values::status)
+      read_status(chunk, count);
+    else if (positions)
+      read_positions(chunk, count);
+    else
+      skip(count * chunk.components * chunk.value_bytes, "the values of a chunk");
     // Old files do not say how many faces OpenMesh will make.
-    const bool needed = positions || chunk.values == Values::topology || (face_status && version_ >= version_2);
+    const bool needed =
+        positions || chunk.values == Values::topology || (face_status && version_ >= version_2);
     if (needed) layout_.safe_bytes.append(bytes_.substr(begin, at_ - begin));
     return true;
   }
@@ -129,8 +138,10 @@ class LayoutCheck {
         if (has_faces_) fail("the corners of the faces are given twice");
         has_faces_ = true;
         for (std::uint64_t i = 0; i < count; ++i)
-          if (version_ < version_2) read_corners(chunk);
-          else read_index(chunk, halfedges, false);
+          if (version_ < version_2)
+            read_corners(chunk);
+          else
+            read_index(chunk, halfedges, false);
         break;
       case Entity::halfedge:
         if (has_halfedges_) fail("the halfedges are given twice");
@@ -198,6 +209,8 @@ class LayoutCheck {
 
 }  // namespace
 
-OmLayout check_om_layout(const std::string& path, std::string_view bytes) { return LayoutCheck(path, bytes).run(); }
+OmLayout check_om_layout(const std::string& path, std::string_view bytes) {
+  return LayoutCheck(path, bytes).run();
+}
 
 }  // namespace collarmesh::openmesh_io

@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
   const collarmesh::TetMesh mesh =
       collarmesh::testing::sample_mesh(static_cast<collarmesh::Index>(std::strtoul(argv[1], nullptr, 10)));
   for (int i = 2; i < argc; ++i) collarmesh::io::write_tet_mesh(argv[i], mesh);
-  std::cout << mesh.points.size() << ' ' << mesh.tets.size() << ' ' << mesh.faces.size() << ' ' << mesh.edges.size()
-            << '\n';
+  std::cout << mesh.points.size() << ' ' << mesh.tets.size() << ' ' << mesh.faces.size() << ' '
+            << mesh.edges.size() << '\n';
   return 0;
 }

@@ -55,7 +55,9 @@ class SampleMesh {
     const unsigned key = plane_bits | (upright && upper ? 128U : 0U);
     int dimension = 3;
     for (unsigned bits = plane_bits; bits != 0; bits &= bits - 1) --dimension;
-    return features_[dimension].try_emplace(key, static_cast<Index>(features_[dimension].size())).first->second;
+    return features_[dimension]
+        .try_emplace(key, static_cast<Index>(features_[dimension].size()))
+        .first->second;
   }
 
   void add_points() {
@@ -90,7 +92,8 @@ class SampleMesh {
     mesh_.tets.push_back(t);
     mesh_.tet_region.push_back(region);
     mesh_.tet_tag.push_back(tag_of_region(region));
-    for (const auto& [a, b, c] : {std::array{1, 2, 3}, std::array{0, 3, 2}, std::array{0, 1, 3}, std::array{0, 2, 1}}) {
+    for (const auto& [a, b, c] :
+         {std::array{1, 2, 3}, std::array{0, 3, 2}, std::array{0, 1, 3}, std::array{0, 2, 1}}) {
       const auto k = [&t](int i) { return t[static_cast<std::size_t>(i)]; };
       add_face({k(a), k(b), k(c)}, region);
     }

@@ -29,7 +29,8 @@ class TemporaryFolder {
 
   std::string file(const std::string& name) const { return (path_ / name).string(); }
   std::string write(const std::string& name, std::string_view content) const {
-    std::ofstream(file(name), std::ios::binary).write(content.data(), static_cast<std::streamsize>(content.size()));
+    std::ofstream(file(name), std::ios::binary)
+        .write(content.data(), static_cast<std::streamsize>(content.size()));
     return file(name);
   }
   std::string read(const std::string& name) const {

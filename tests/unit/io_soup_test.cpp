@@ -96,16 +96,19 @@ TEST(IoOff, ReadsVariants) {
   expect_tetrahedron("a.OFF", crlf(off));
   expect_tetrahedron("a.off", "OFF 4 4 6\n" + points + faces);
   expect_tetrahedron("a.off", "4 4 6\n" + points + faces);
-  expect_tetrahedron("a.off", "OFF # a comment\n# another\n\n4 4 0 # counts\n\n" + points + "# faces\n" + faces + "\n\n");
+  expect_tetrahedron(
+      "a.off", "OFF # a comment\n# another\n\n4 4 0 # counts\n\n" + points + "# faces\n" + faces + "\n\n");
   expect_tetrahedron("a.off", off.substr(0, off.size() - 1));
-  expect_tetrahedron("a.off", "COFF\n4 4 0\n" + each_line(points, "", " 255 0 0 255") + each_line(faces, "", " 0.5 1 0"));
+  expect_tetrahedron(
+      "a.off", "COFF\n4 4 0\n" + each_line(points, "", " 255 0 0 255") + each_line(faces, "", " 0.5 1 0"));
   expect_tetrahedron("a.off", "NOFF\n4 4 0\n" + each_line(points, "", " 0 0 1") + faces);
   expect_tetrahedron("a.off", "STCNOFF\n4 4 0\n" + each_line(points, "  +", " 0 0 1 1 0 0 0.5 0.5") + faces);
 }
 
 TEST(IoOff, ReadsPolygonsAndLooseEdges) {
   const TemporaryFolder folder;
-  const PolygonSoup soup = io::read_soup(folder.write("a.off", "OFF\n4 2 0\n" + points + "4 0 1 2 3\n2 3 0\n"));
+  const PolygonSoup soup =
+      io::read_soup(folder.write("a.off", "OFF\n4 2 0\n" + points + "4 0 1 2 3\n2 3 0\n"));
   EXPECT_EQ(polygons_of(soup), (std::vector<std::vector<Index>>{{0, 1, 2, 3}}));
   ASSERT_EQ(soup.segments.size(), 1);
   EXPECT_EQ(soup.segments[0].a, 3);
@@ -122,7 +125,8 @@ TEST(IoOff, RefusesBadFiles) {
   expect_refused("a.off", replaced(off, "4 4", "4 3"), "line 10: expected the end of the file");
   expect_refused("a.off", replaced(off, "4 4", "4 5"), "line 11: ");
   expect_refused("a.off", replaced(off, "4 4", "3 4"), "line 6: ");
-  expect_refused("a.off", replaced(off, "4 4", "2000000000 4"), "line 2: the number of vertices is 2000000000");
+  expect_refused("a.off", replaced(off, "4 4", "2000000000 4"),
+                 "line 2: the number of vertices is 2000000000");
   expect_refused("a.off", replaced(off, "4 4", "4 2000000000"), "line 2: the number of faces is 2000000000");
   expect_refused("a.off", replaced(off, "4 4", "-4 4"), "line 2: ");
   expect_refused("a.off", replaced(off, "4 4", "99999999999999999999 4"), "line 2: ");
@@ -143,8 +147,9 @@ const std::string obj = obj_points + "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
 TEST(IoObj, ReadsVariants) {
   expect_tetrahedron("a.obj", obj);
   expect_tetrahedron("a.Obj", crlf("# a comment\n\nmtllib x.mtl\no name\n" + obj + "\n\n"));
-  expect_tetrahedron("a.obj", obj_points + "s off\nusemtl m\nvt 0 0\nvn 0 0 1\nf 1/1/1 3/1/1 2/1/1\nf 1//1 2//1 4//1\n"
-                                           "g part\nf 2/1 3/1 4/1\nf 1 4 3 # last");
+  expect_tetrahedron("a.obj", obj_points +
+                                  "s off\nusemtl m\nvt 0 0\nvn 0 0 1\nf 1/1/1 3/1/1 2/1/1\nf 1//1 2//1 4//1\n"
+                                  "g part\nf 2/1 3/1 4/1\nf 1 4 3 # last");
   expect_tetrahedron("a.obj", obj_points + "f -4 -2 -3\nf -4 -3 -1\nf 2 3 -1\nf 1 -1 -2\n");
   expect_tetrahedron("a.obj", "f 1 3 2\nf 1 2 4\n" + obj_points + "f 2 3 4\nf 1 4 3\n");
   expect_tetrahedron("a.obj", obj_points + "f 1 3 \\\n 2\nf 1 2 4\nf \\\n2 3 4\nf 1 4 3\n");
@@ -182,7 +187,8 @@ std::string stl_text() {
     text += " facet normal 0 0 0\n  outer loop\n";
     for (const Index v : face) {
       const Point& p = expected_points[v];
-      text += "   vertex " + std::to_string(p.x) + ' ' + std::to_string(p.y) + ' ' + std::to_string(p.z) + '\n';
+      text +=
+          "   vertex " + std::to_string(p.x) + ' ' + std::to_string(p.y) + ' ' + std::to_string(p.z) + '\n';
     }
     text += "  endloop\n endfacet\n";
   }
@@ -229,9 +235,11 @@ TEST(IoStl, ReadsVariants) {
 
 TEST(IoStl, ReadsSeveralSolidsAndMergesZeros) {
   const TemporaryFolder folder;
-  const std::string triangle = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex -0 1 -0\nendloop\nendfacet\n";
-  const PolygonSoup soup = io::read_soup(folder.write(
-      "a.stl", "solid a\n" + triangle + "endsolid\nsolid b\n" + all_replaced(triangle, "-0", "0") + "endsolid b\n"));
+  const std::string triangle =
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex -0 1 -0\nendloop\nendfacet\n";
+  const PolygonSoup soup =
+      io::read_soup(folder.write("a.stl", "solid a\n" + triangle + "endsolid\nsolid b\n" +
+                                              all_replaced(triangle, "-0", "0") + "endsolid b\n"));
   EXPECT_EQ(soup.points.size(), 3);
   EXPECT_EQ(soup.facet_count(), 2);
 }
@@ -242,9 +250,11 @@ TEST(IoStl, RefusesBadFiles) {
   expect_refused("a.stl", "short", "byte 0: ");
   expect_refused("a.stl", std::string(1000, '\7'), "byte 84: ");
   expect_refused("a.stl", text.substr(0, 200), "line ");
-  expect_refused("a.stl", text.substr(0, text.find("endsolid")), "line 30: expected facet or endsolid, found the end");
+  expect_refused("a.stl", text.substr(0, text.find("endsolid")),
+                 "line 30: expected facet or endsolid, found the end");
   expect_refused("a.stl", replaced(text, "vertex", "vertx"), "line 4: expected vertex, found 'vertx'");
-  expect_refused("a.stl", replaced(text, "  endloop", "   vertex 1 1 1\n  endloop"), "line 7: expected endloop");
+  expect_refused("a.stl", replaced(text, "  endloop", "   vertex 1 1 1\n  endloop"),
+                 "line 7: expected endloop");
   expect_refused("a.stl", text + "more", "line 31: expected solid, found 'more'");
   expect_refused("a.stl", replaced(text, "0.100000", "nan"), "line 4: expected a coordinate");
   expect_refused("a.stl", binary.substr(0, binary.size() - 1), "byte 84: ");
@@ -257,10 +267,10 @@ TEST(IoStl, RefusesBadFiles) {
 
 // .ply
 
-std::string ply_header(const std::string& format, const std::string& type = "double", const std::string& vertices = "4",
-                       const std::string& face_count = "4") {
-  return "ply\nformat " + format + " 1.0\ncomment made by hand\nelement vertex " + vertices + "\nproperty " + type +
-         " x\nproperty " + type + " y\nproperty " + type + " z\nelement face " + face_count +
+std::string ply_header(const std::string& format, const std::string& type = "double",
+                       const std::string& vertices = "4", const std::string& face_count = "4") {
+  return "ply\nformat " + format + " 1.0\ncomment made by hand\nelement vertex " + vertices + "\nproperty " +
+         type + " x\nproperty " + type + " y\nproperty " + type + " z\nelement face " + face_count +
          "\nproperty list uchar int vertex_indices\nend_header\n";
 }
 
@@ -280,17 +290,20 @@ TEST(IoPly, ReadsVariants) {
   expect_tetrahedron("a.ply", crlf(ply_header("ascii", "float") + points + faces));
   expect_tetrahedron("a.ply", ply_header("binary_little_endian") + ply_body(std::endian::little));
   expect_tetrahedron("a.ply", ply_header("binary_big_endian", "float64") + ply_body(std::endian::big));
-  expect_tetrahedron("a.ply",
-                     "ply\nformat ascii 1.0\nobj_info x\nelement face 4\nproperty int q\nproperty list uchar uint vertex_index\n"
-                     "element vertex 4\nproperty uchar red\nproperty double x\nproperty double y\nproperty double z\n"
-                     "property list uchar int foo\nelement other 2\nproperty float a\nend_header\n" +
-                         each_line(faces, "7 ", "") + each_line(points, "255 ", " 2 1 1") + "1\n2\n");
+  expect_tetrahedron(
+      "a.ply",
+      "ply\nformat ascii 1.0\nobj_info x\nelement face 4\nproperty int q\nproperty list uchar uint "
+      "vertex_index\n"
+      "element vertex 4\nproperty uchar red\nproperty double x\nproperty double y\nproperty double z\n"
+      "property list uchar int foo\nelement other 2\nproperty float a\nend_header\n" +
+          each_line(faces, "7 ", "") + each_line(points, "255 ", " 2 1 1") + "1\n2\n");
 }
 
 TEST(IoPly, ReadsEdges) {
   const TemporaryFolder folder;
-  const std::string header = replaced(ply_header("ascii"), "end_header",
-                                      "element edge 1\nproperty int vertex1\nproperty int vertex2\nend_header");
+  const std::string header =
+      replaced(ply_header("ascii"), "end_header",
+               "element edge 1\nproperty int vertex1\nproperty int vertex2\nend_header");
   const PolygonSoup soup = io::read_soup(folder.write("a.ply", header + points + faces + "1 3\n"));
   ASSERT_EQ(soup.segments.size(), 1);
   EXPECT_EQ(soup.segments[0].b, 3);
@@ -333,7 +346,8 @@ TEST(IoPly, RefusesBadFiles) {
 // All
 
 TEST(IoSoup, KnowsItsFormats) {
-  for (const char* name : {"a.off", "b/A.OBJ", "a.stl", "a.Ply", "a.poly", "a.smesh"}) EXPECT_TRUE(io::is_soup_format(name));
+  for (const char* name : {"a.off", "b/A.OBJ", "a.stl", "a.Ply", "a.poly", "a.smesh"})
+    EXPECT_TRUE(io::is_soup_format(name));
   for (const char* name : {"a.om", "a", "a.off.gz", "off"}) EXPECT_FALSE(io::is_soup_format(name));
   expect_error<ReadError>([] { io::read_soup("a.xyz"); }, "a.xyz", "unknown kind of file");
 }
@@ -343,7 +357,8 @@ TEST(IoSoup, NamesTheReasonOfTheSystem) {
   const std::string missing = folder.file("missing.off");
   expect_error<ReadError>([&] { io::read_soup(missing); }, missing, "No such file");
   std::filesystem::create_directory(folder.file("folder.off"));
-  expect_error<ReadError>([&] { io::read_soup(folder.file("folder.off")); }, folder.file("folder.off"), "is a folder");
+  expect_error<ReadError>([&] { io::read_soup(folder.file("folder.off")); }, folder.file("folder.off"),
+                          "is a folder");
 }
 
 TEST(IoSoup, KeepsEveryBitWhateverTheLocale) {
@@ -390,8 +405,10 @@ void expect_as_cgal(const std::string& path, Read read) {
 
 TEST(IoSoup, AgreesWithCgalOnWellFormedFiles) {
   const TemporaryFolder folder;
-  expect_as_cgal(folder.write("a.off", off), [](const std::string& f, auto& p, auto& t) { return CGAL::IO::read_OFF(f, p, t); });
-  expect_as_cgal(folder.write("a.obj", obj), [](const std::string& f, auto& p, auto& t) { return CGAL::IO::read_OBJ(f, p, t); });
+  expect_as_cgal(folder.write("a.off", off),
+                 [](const std::string& f, auto& p, auto& t) { return CGAL::IO::read_OFF(f, p, t); });
+  expect_as_cgal(folder.write("a.obj", obj),
+                 [](const std::string& f, auto& p, auto& t) { return CGAL::IO::read_OBJ(f, p, t); });
   for (const std::string& content : {stl_text(), stl_binary()})
     expect_as_cgal(folder.write("a.stl", content),
                    [](const std::string& f, auto& p, auto& t) { return CGAL::IO::read_STL(f, p, t); });

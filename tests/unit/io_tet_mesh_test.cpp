@@ -1,11 +1,11 @@
 // Tetrahedral meshes: what is written is read back to the last bit, as far as the format goes.
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
 #include <algorithm>
 #include <csignal>
 #include <fstream>
 #include <random>
-#include <sys/resource.h>
 #include <string>
 #include <vector>
 
@@ -124,7 +124,8 @@ void expect_two_tets(const TetMesh& mesh) {
 }
 
 const std::string medit =
-    "MeshVersionFormatted 1\nDimension\n3\n# comment\nVertices\n5\n0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 1\n1 1 1 1\n"
+    "MeshVersionFormatted 1\nDimension\n3\n# comment\nVertices\n5\n0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 1\n1 1 1 "
+    "1\n"
     "RequiredVertices\n2\n1\n2\nTriangles 2\n2 3 4 70\n1 2 3 80\n\nNormals\n1\n0 0 1e0\n"
     "Edges\n1\n1 2 5\nTetrahedra\n2\n1 2 3 4 9\n2 3 4 5 4\nEnd\n";
 
@@ -137,7 +138,8 @@ TEST(IoMedit, RefusesBadFiles) {
   expect_refused("a.mesh", "", "line 1: ");
   expect_refused("a.mesh", "garbage", "line 1: expected MeshVersionFormatted");
   expect_refused("a.mesh", replaced(medit, "Dimension\n3", "Dimension\n2"), "line 3: the dimension is 2");
-  expect_refused("a.mesh", replaced(medit, "Vertices\n5", "Vertices\n2000000000"), "line 6: the number of vertices is 2000000000");
+  expect_refused("a.mesh", replaced(medit, "Vertices\n5", "Vertices\n2000000000"),
+                 "line 6: the number of vertices is 2000000000");
   expect_refused("a.mesh", replaced(medit, "Vertices\n5", "Vertices\n6"), "line 12: expected a coordinate");
   expect_refused("a.mesh", replaced(medit, "Vertices\n5", "Vertices\n4"), "line 11: expected a keyword");
   expect_refused("a.mesh", replaced(medit, "1 0 0 1", "nan 0 0 1"), "line 8: expected a coordinate");
@@ -145,23 +147,29 @@ TEST(IoMedit, RefusesBadFiles) {
   expect_refused("a.mesh", replaced(medit, "1 2 3 4 9", "0 2 3 4 9"), "line 28: a corner is 0");
   expect_refused("a.mesh", replaced(medit, "Tetrahedra\n2", "Tetrahedra\n3"), "line 27: ");
   expect_refused("a.mesh", replaced(medit, "Tetrahedra\n2", "Tetrahedra\n2000000000"), "line 27: ");
-  expect_refused("a.mesh", replaced(medit, "Normals\n1\n0 0 1e0", "Hexahedra\n1\n1 2 3 4 5 1 2 3 0"), "line 21: Hexahedra");
+  expect_refused("a.mesh", replaced(medit, "Normals\n1\n0 0 1e0", "Hexahedra\n1\n1 2 3 4 5 1 2 3 0"),
+                 "line 21: Hexahedra");
   expect_refused("a.mesh", medit.substr(0, medit.find("5 4\nEnd")), "line 27: ");
   expect_refused("a.mesh", medit.substr(0, medit.find("Tetrahedra")), "expected tetrahedra, found none");
 }
 
 const std::string msh_41 =
-    "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n3 9 \"lower part\"\n2 70 \"patch 70\"\n$EndPhysicalNames\n"
+    "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n3 9 \"lower part\"\n2 70 \"patch "
+    "70\"\n$EndPhysicalNames\n"
     "$Entities\n1 1 2 2\n1 0 0 0 0\n3 0 0 0 1 0 0 1 5 0\n1 0 0 0 1 1 1 1 70 0\n2 0 0 0 1 1 0 1 80 0\n"
     "1 0 0 0 1 1 1 1 9 0\n4 0 0 0 1 1 1 0 0\n$EndEntities\n"
-    "$Nodes\n2 5 3 70\n2 1 0 2\n30\n3\n0 1 0\n0 0 0\n3 1 1 3\n5\n70\n40\n1 0 0 .5 .5 .5\n1 1 1 .5 .5 .5\n0 0 1 .5 .5 .5\n"
+    "$Nodes\n2 5 3 70\n2 1 0 2\n30\n3\n0 1 0\n0 0 0\n3 1 1 3\n5\n70\n40\n1 0 0 .5 .5 .5\n1 1 1 .5 .5 .5\n0 0 "
+    "1 .5 .5 .5\n"
     "$EndNodes\n"
-    "$Elements\n6 6 1 100\n0 1 15 1\n100 3\n1 3 1 1\n1 3 5\n2 1 2 1\n2 5 30 40\n2 2 2 1\n3 3 5 30\n3 4 4 1\n11 5 30 40 70\n"
+    "$Elements\n6 6 1 100\n0 1 15 1\n100 3\n1 3 1 1\n1 3 5\n2 1 2 1\n2 5 30 40\n2 2 2 1\n3 3 5 30\n3 4 4 "
+    "1\n11 5 30 40 70\n"
     "3 1 4 1\n10 3 5 30 40\n$EndElements\n$Unknown\nanything\n$EndUnknown\n";
 
 const std::string msh_22 =
-    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n$EndNodes\n"
-    "$Elements\n6\n1 15 2 0 1 1\n2 1 2 5 1 1 2\n3 2 2 70 1 2 3 4\n4 2 2 80 2 1 2 3\n5 4 2 9 1 1 2 3 4\n6 4 3 0 4 1 2 3 4 5\n"
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 "
+    "1\n$EndNodes\n"
+    "$Elements\n6\n1 15 2 0 1 1\n2 1 2 5 1 1 2\n3 2 2 70 1 2 3 4\n4 2 2 80 2 1 2 3\n5 4 2 9 1 1 2 3 4\n6 4 3 "
+    "0 4 1 2 3 4 5\n"
     "$EndElements\n";
 
 TEST(IoMsh, ReadsOthers) {
@@ -177,17 +185,21 @@ TEST(IoMsh, RefusesBadFiles) {
   expect_refused("a.msh", replaced(msh_41, "4.1 0 8", "4 0 8"), "line 2: version 4 is not supported");
   expect_refused("a.msh", replaced(msh_41, "4.1 0 8", "4.1 0 4"), "line 2: numbers of 4 bytes");
   expect_refused("a.msh", replaced(msh_41, "$Entities\n1 1 2 2", "$Entities\n1 1 2 2000000000"), "line 10: ");
-  expect_refused("a.msh", replaced(msh_41, "2 5 3 70", "2 2000000000 3 70"), "line 19: the number of nodes is 2000000000");
+  expect_refused("a.msh", replaced(msh_41, "2 5 3 70", "2 2000000000 3 70"),
+                 "line 19: the number of nodes is 2000000000");
   expect_refused("a.msh", replaced(msh_41, "2 5 3 70", "2 6 3 70"), "expected 6 nodes, found 5");
   expect_refused("a.msh", replaced(msh_41, "2 1 0 2\n", "2 1 0 2000000000\n"), "line 20: ");
-  expect_refused("a.msh", replaced(msh_41, "2 1 0 2\n", "7 1 0 2\n"), "line 20: the dimension of an entity is 7");
+  expect_refused("a.msh", replaced(msh_41, "2 1 0 2\n", "7 1 0 2\n"),
+                 "line 20: the dimension of an entity is 7");
   expect_refused("a.msh", replaced(msh_41, "\n5\n70\n", "\n5\n30\n"), "two nodes have the number 30");
   expect_refused("a.msh", replaced(msh_41, "1 1 1 .5", "inf 1 1 .5"), "line 30: ");
   expect_refused("a.msh", replaced(msh_41, "6 6 1 100", "6 7 1 100"), "expected 7 elements, found 6");
   expect_refused("a.msh", replaced(msh_41, "6 6 1 100", "2000000000 6 1 100"), "line 34: ");
-  expect_refused("a.msh", replaced(msh_41, "10 3 5 30 40", "10 3 5 30 41"), "line 46: an element has the node 41");
+  expect_refused("a.msh", replaced(msh_41, "10 3 5 30 40", "10 3 5 30 41"),
+                 "line 46: an element has the node 41");
   expect_refused("a.msh", replaced(msh_41, "3 1 4 1\n", "3 1 11 1\n"), "line 45: elements of type 11");
-  expect_refused("a.msh", msh_41.substr(0, msh_41.find("$EndElements")), "line 33: the section '$Elements' has no $EndElements");
+  expect_refused("a.msh", msh_41.substr(0, msh_41.find("$EndElements")),
+                 "line 33: the section '$Elements' has no $EndElements");
   expect_refused("a.msh", replaced(msh_22, "5 4 2 9 1 1 2 3 4", "5 4 2 9 1 1 2 3"), "line ");
   expect_refused("a.msh", replaced(msh_22, "4 0 0 1", "4 0 0 x"), "line 9: ");
   expect_refused("a.msh", msh_22.substr(0, msh_22.find("$Elements")), "expected tetrahedra, found none");
@@ -226,11 +238,12 @@ TEST(IoWrite, ReplacesAFileOrLeavesIt) {
 TEST(IoWrite, NamesTheReasonOfTheSystem) {
   const TemporaryFolder folder;
   const std::string path = folder.file("missing/a.vtu");
-  expect_error<WriteError>([&] { io::write_tet_mesh(path, sample_mesh(1)); }, path, "No such file or directory");
+  expect_error<WriteError>([&] { io::write_tet_mesh(path, sample_mesh(1)); }, path,
+                           "No such file or directory");
   std::filesystem::create_directory(folder.file("b.msh"));
   std::ofstream(folder.file("b.msh/x")) << "in the way";
-  expect_error<WriteError>([&] { io::write_tet_mesh(folder.file("b.msh"), sample_mesh(1)); }, folder.file("b.msh"),
-                           "cannot be written: ");
+  expect_error<WriteError>([&] { io::write_tet_mesh(folder.file("b.msh"), sample_mesh(1)); },
+                           folder.file("b.msh"), "cannot be written: ");
   EXPECT_EQ(folder.file_count(), 1);
 }
 

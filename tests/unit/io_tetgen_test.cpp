@@ -113,10 +113,11 @@ TEST(IoTetgen, HolesAndRegionsMayBeMissing) {
 
 TEST(IoTetgen, ReadsSmesh) {
   const TemporaryFolder folder;
-  const PolygonSoup soup = io::read_soup(folder.write("a.smesh",
-                                                      "5 3\r\n0 0 0 0\r\n1 1 0 0\r\n2 1 1 0\r\n3 0 1 0\r\n4 0.5 0.5 1\r\n"
-                                                      "3 1\r\n4 0 1 2\r\n  3 9\r\n3 0 1 4\r\n2 2 4 -3\r\n0\r\n0\r\n"
-                                                      "Anything may follow.\r\n"));
+  const PolygonSoup soup =
+      io::read_soup(folder.write("a.smesh",
+                                 "5 3\r\n0 0 0 0\r\n1 1 0 0\r\n2 1 1 0\r\n3 0 1 0\r\n4 0.5 0.5 1\r\n"
+                                 "3 1\r\n4 0 1 2\r\n  3 9\r\n3 0 1 4\r\n2 2 4 -3\r\n0\r\n0\r\n"
+                                 "Anything may follow.\r\n"));
   EXPECT_EQ(soup.points.size(), 5);
   EXPECT_TRUE(soup.point_tags.empty());
   ASSERT_EQ(soup.facet_count(), 2);
@@ -154,7 +155,8 @@ TEST(IoTetgen, RefusesBadFiles) {
   expect_refused(replaced(all, "2 1 -5", "2000000000 1 -5"), "line 13: ");
   expect_refused(replaced(all, "2 1 -5", "2 2000000000 -5"), "line 13: ");
   expect_refused(replaced(all, "4  1 2\n", "2000000000  1 2\n"), "line 14: ");
-  expect_refused(replaced(all, "   3 4", "   3 9"), "line 15: a corner of a polygon is 9, but has to be from 1 to 8");
+  expect_refused(replaced(all, "   3 4", "   3 9"),
+                 "line 15: a corner of a polygon is 9, but has to be from 1 to 8");
   expect_refused(replaced(all, "   3 4", "   3 0"), "line 15: ");
   expect_refused(replaced(all, "1  1.5 0.5 0", "1  1.5 0.5"), "line ");
   expect_refused(replaced(all, "2  3 7", "0"), "line ");

@@ -28,7 +28,8 @@ class ByteReader {
   T get(std::string_view what) {
     static_assert(std::is_arithmetic_v<T>);
     if (left() < sizeof(T))
-      fail(fmt::format("expected {} ({} bytes), found the end of the file after {}", what, sizeof(T), left()));
+      fail(
+          fmt::format("expected {} ({} bytes), found the end of the file after {}", what, sizeof(T), left()));
     std::array<char, sizeof(T)> raw;
     std::memcpy(raw.data(), bytes_.data() + at_, sizeof(T));
     at_ += sizeof(T);

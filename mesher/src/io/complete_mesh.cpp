@@ -11,7 +11,8 @@ namespace {
 using Triangle = std::array<Index, 3>;
 
 /// Seen from outside a positive tet, its faces run counterclockwise.
-constexpr std::array<std::array<std::size_t, 3>, 4> outward_faces{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+constexpr std::array<std::array<std::size_t, 3>, 4> outward_faces{
+    {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
 void orient_tets(TetMesh& mesh) {
   for (auto& [a, b, c, d] : mesh.tets)

@@ -10,8 +10,8 @@ namespace collarmesh::io {
 /// tets are turned to positive volume; arrays the file had nothing for are filled in: regions are
 /// numbered by ascending tag, faces get the regions of the tets beside them (and are turned if the
 /// outside would lie behind them), the rest gets 0 or none.
-/// Preconditions: points, tets, faces, edges are there and in range; other arrays have their length or are empty.
-/// Cost: expected linear.
+/// Preconditions: points, tets, faces, edges are there and in range; other arrays have their length or are
+/// empty. Cost: expected linear.
 void complete_mesh(TetMesh& mesh);
 
 }  // namespace collarmesh::io

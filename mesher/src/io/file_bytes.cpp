@@ -34,13 +34,15 @@ std::string read_bytes(const std::string& path) {
   const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rb"));
   if (!file) fail(path);
   std::string bytes;
-  const std::uintmax_t size = std::filesystem::is_regular_file(status) ? std::filesystem::file_size(path, error) : 0;
+  const std::uintmax_t size =
+      std::filesystem::is_regular_file(status) ? std::filesystem::file_size(path, error) : 0;
   if (!error && size > 0) {
     bytes.resize(size);
     bytes.resize(std::fread(bytes.data(), 1, size, file.get()));
   }
   std::array<char, 65536> block;
-  while (const std::size_t got = std::fread(block.data(), 1, block.size(), file.get())) bytes.append(block.data(), got);
+  while (const std::size_t got = std::fread(block.data(), 1, block.size(), file.get()))
+    bytes.append(block.data(), got);
   if (std::ferror(file.get())) fail(path);
   return bytes;
 }

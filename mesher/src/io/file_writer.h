@@ -28,8 +28,8 @@ class FileWriter {
     return *this;
   }
   template <class Number>
-    requires(std::integral<Number> || std::floating_point<Number>) && (!std::same_as<Number, bool>)
-  FileWriter& operator<<(Number value) {
+  requires(std::integral<Number> || std::floating_point<Number>) &&
+      (!std::same_as<Number, bool>)FileWriter& operator<<(Number value) {
     char* first = room(longest_number);
     used_ += static_cast<std::size_t>(std::to_chars(first, first + longest_number, value).ptr - first);
     return *this;

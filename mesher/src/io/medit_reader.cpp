@@ -49,7 +49,8 @@ void read_cells(TextScanner& scan, std::string_view what, std::vector<std::array
 
 void refuse_cells(TextScanner& scan, std::string_view keyword) {
   if (scan.count("the number of cells", 2) > 0)
-    scan.fail(fmt::format("{} are not supported, only first-order tetrahedra and their triangles and edges", keyword));
+    scan.fail(fmt::format("{} are not supported, only first-order tetrahedra and their triangles and edges",
+                          keyword));
 }
 
 void require_three_dimensions(TextScanner& scan) {
@@ -58,8 +59,8 @@ void require_three_dimensions(TextScanner& scan) {
 }
 
 bool is_unsupported_cell(std::string_view keyword) {
-  for (const std::string_view kind : {"Hexahedra", "Hexaedra", "Prisms", "Pyramids", "Quadrilaterals", "TetrahedraP2",
-                                      "TrianglesP2", "EdgesP2"})
+  for (const std::string_view kind : {"Hexahedra", "Hexaedra", "Prisms", "Pyramids", "Quadrilaterals",
+                                      "TetrahedraP2", "TrianglesP2", "EdgesP2"})
     if (keyword == kind) return true;
   return false;
 }
@@ -69,14 +70,22 @@ bool read_section(TextScanner& scan, TetMesh& mesh) {
   const std::string_view keyword = scan.word("a keyword or End");
   if (!is_keyword(keyword)) scan.fail("a keyword", keyword);
   if (keyword == "End") return false;
-  if (keyword == "MeshVersionFormatted") scan.integer("a version");
-  else if (keyword == "Dimension") require_three_dimensions(scan);
-  else if (keyword == "Vertices") read_vertices(scan, mesh);
-  else if (keyword == "Tetrahedra") read_cells(scan, "tetrahedra", mesh.tets, mesh.tet_tag, mesh.points.size());
-  else if (keyword == "Triangles") read_cells(scan, "triangles", mesh.faces, mesh.face_tag, mesh.points.size());
-  else if (keyword == "Edges") read_cells(scan, "edges", mesh.edges, mesh.edge_tag, mesh.points.size());
-  else if (is_unsupported_cell(keyword)) refuse_cells(scan, keyword);
-  else skip_numbers(scan);
+  if (keyword == "MeshVersionFormatted")
+    scan.integer("a version");
+  else if (keyword == "Dimension")
+    require_three_dimensions(scan);
+  else if (keyword == "Vertices")
+    read_vertices(scan, mesh);
+  else if (keyword == "Tetrahedra")
+    read_cells(scan, "tetrahedra", mesh.tets, mesh.tet_tag, mesh.points.size());
+  else if (keyword == "Triangles")
+    read_cells(scan, "triangles", mesh.faces, mesh.face_tag, mesh.points.size());
+  else if (keyword == "Edges")
+    read_cells(scan, "edges", mesh.edges, mesh.edge_tag, mesh.points.size());
+  else if (is_unsupported_cell(keyword))
+    refuse_cells(scan, keyword);
+  else
+    skip_numbers(scan);
   return true;
 }
 

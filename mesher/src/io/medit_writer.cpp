@@ -28,8 +28,8 @@ void write_vertices(FileWriter& out, const TetMesh& mesh) {
   out << "\nVertices\n" << mesh.points.size() << '\n';
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
     const Point& p = mesh.points[v];
-    out << p.x << ' ' << p.y << ' ' << p.z << ' ' << (mesh.features.empty() ? 0 : int{mesh.features[v].dimension})
-        << '\n';
+    out << p.x << ' ' << p.y << ' ' << p.z << ' '
+        << (mesh.features.empty() ? 0 : int{mesh.features[v].dimension}) << '\n';
   }
 }
 

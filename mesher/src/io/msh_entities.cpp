@@ -74,7 +74,8 @@ void assign_cells(const TetMesh& mesh, Tables& tables, MshEntities& result) {
 }
 
 template <class Cells>
-void place_corners(const Cells& cells, const std::vector<Index>& entities, std::uint8_t dimension, MshEntities& result) {
+void place_corners(const Cells& cells, const std::vector<Index>& entities, std::uint8_t dimension,
+                   MshEntities& result) {
   for (std::size_t i = 0; i < cells.size(); ++i)
     for (const Index v : cells[i]) result.of_point[v] = {dimension, entities[i]};
 }
@@ -116,8 +117,8 @@ void find_boundaries(const TetMesh& mesh, MshEntities& result) {
   }
   for (MshEntity& volume : result.of_dimension[3]) {
     const auto region = static_cast<Index>(volume.number);
-    for (auto at = pairs.lower_bound({region, std::numeric_limits<int>::min()}); at != pairs.end() && at->first == region;
-         ++at)
+    for (auto at = pairs.lower_bound({region, std::numeric_limits<int>::min()});
+         at != pairs.end() && at->first == region; ++at)
       volume.boundary.push_back(at->second);
   }
 }

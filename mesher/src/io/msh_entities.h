@@ -11,9 +11,9 @@ namespace collarmesh::io {
 /// Gmsh's view of a mesh: every cell and node belongs to an entity (a point, curve, surface or
 /// volume with a number), and entities of one tag to a physical group.
 struct MshEntity {
-  int number = 0;        ///< positive, unique in its dimension
+  int number = 0;  ///< positive, unique in its dimension
   Tag tag = 0;
-  int physical = 0;      ///< number of the physical group; 0 none
+  int physical = 0;  ///< number of the physical group; 0 none
   Box box;
   std::vector<int> boundary;  ///< of a volume: surfaces, negative where they point inwards
 };

@@ -35,12 +35,12 @@ struct Cell {
 };
 
 struct Contents {
-  std::vector<Node> nodes;                                    ///< in the order of their numbers
-  bool dense = false;                                         ///< are the numbers 1, 2, ...?
-  std::array<std::vector<Cell>, 4> cells;                     ///< by dimension
-  std::array<std::map<int, int>, 4> physical_of_entity;       ///< the first one
-  std::array<std::map<int, Tag>, 4> tag_of_physical;          ///< where its name says so
-  std::vector<std::pair<std::uint64_t, double>> collar;       ///< cell number and value
+  std::vector<Node> nodes;                               ///< in the order of their numbers
+  bool dense = false;                                    ///< are the numbers 1, 2, ...?
+  std::array<std::vector<Cell>, 4> cells;                ///< by dimension
+  std::array<std::map<int, int>, 4> physical_of_entity;  ///< the first one
+  std::array<std::map<int, Tag>, 4> tag_of_physical;     ///< where its name says so
+  std::vector<std::pair<std::uint64_t, double>> collar;  ///< cell number and value
   bool numbers_are_features = false;
 };
 
@@ -51,8 +51,9 @@ Tag tag_of_physical(const Contents& contents, std::size_t dimension, int physica
 
 Tag tag_of_entity(const Contents& contents, std::size_t dimension, int entity) {
   const auto found = contents.physical_of_entity[dimension].find(entity);
-  return found == contents.physical_of_entity[dimension].end() ? entity
-                                                                : tag_of_physical(contents, dimension, found->second);
+  return found == contents.physical_of_entity[dimension].end()
+             ? entity
+             : tag_of_physical(contents, dimension, found->second);
 }
 
 template <class Item>
@@ -106,8 +107,10 @@ int dimension_of_type(Values& values, int type) {
     case gmsh_tet: return 3;
     case gmsh_point: return -1;
     default:
-      values.fail(fmt::format("elements of type {} are not supported, only first-order tetrahedra (4), triangles (2) "
-                              "and lines (1)", type));
+      values.fail(
+          fmt::format("elements of type {} are not supported, only first-order tetrahedra (4), triangles (2) "
+                      "and lines (1)",
+                      type));
   }
 }
 
@@ -135,7 +138,8 @@ void read_entities(Values values, Contents& contents) {
       for (int k = 0; k < (dimension == 0 ? 3 : 6); ++k) values.real("the box of an entity");
       const Index physicals = values.count("the number of physical groups", 1);
       for (Index k = 0; k < physicals; ++k)
-        contents.physical_of_entity[dimension].try_emplace(number, std::abs(values.integer("a physical group")));
+        contents.physical_of_entity[dimension].try_emplace(number,
+                                                           std::abs(values.integer("a physical group")));
       const Index boundary = dimension == 0 ? 0 : values.count("the number of bounding entities", 1);
       for (Index k = 0; k < boundary; ++k) values.integer("a bounding entity");
     }
@@ -155,7 +159,8 @@ void read_nodes(Values values, Contents& contents) {
     const Index n = values.count("the number of nodes of a block", 4);
     const std::size_t first = contents.nodes.size();
     for (Index i = 0; i < n; ++i)
-      contents.nodes.push_back({values.number("the number of a node"), {}, static_cast<std::uint8_t>(dimension), entity});
+      contents.nodes.push_back(
+          {values.number("the number of a node"), {}, static_cast<std::uint8_t>(dimension), entity});
     for (std::size_t i = first; i < contents.nodes.size(); ++i) {
       contents.nodes[i].point = values.point("a coordinate of a node");
       for (std::size_t k = 0; parametric != 0 && k < dimension; ++k) values.real("a parameter of a node");
@@ -264,7 +269,8 @@ Format read_format(const std::string& path, const MshSection& section) {
   if (size != 8) values.fail(fmt::format("numbers of {} bytes are not supported, only of 8", size));
   if (!format.binary) return format;
   const std::size_t one = std::min(section.body.find('\n') + 1, section.body.size());
-  if (ByteReader(path, section.body.substr(one), format.order, section.first_byte + one).get<std::int32_t>("the number 1") != 1)
+  if (ByteReader(path, section.body.substr(one), format.order, section.first_byte + one)
+          .get<std::int32_t>("the number 1") != 1)
     format.order = std::endian::big;
   return format;
 }
@@ -272,11 +278,14 @@ Format read_format(const std::string& path, const MshSection& section) {
 /// Calls `read` with the values of a section as text or bytes.
 template <class Read>
 void with_values(const std::string& path, const MshSection& section, const Format& format, Read read) {
-  if (format.binary) read(MshBinary(path, section, format.order));
-  else read(MshText(path, section));
+  if (format.binary)
+    read(MshBinary(path, section, format.order));
+  else
+    read(MshText(path, section));
 }
 
-void read_section(const std::string& path, const MshSection& section, const Format& format, Contents& contents) {
+void read_section(const std::string& path, const MshSection& section, const Format& format,
+                  Contents& contents) {
   const bool old = format.version < 4;
   if (section.name == "PhysicalNames")
     read_physical_names(MshText(path, section), contents);
@@ -297,7 +306,8 @@ void read_section(const std::string& path, const MshSection& section, const Form
 }
 
 template <std::size_t corners>
-void add_cells(const std::vector<Cell>& cells, std::vector<std::array<Index, corners>>& to, std::vector<Tag>& tags) {
+void add_cells(const std::vector<Cell>& cells, std::vector<std::array<Index, corners>>& to,
+               std::vector<Tag>& tags) {
   to.reserve(cells.size());
   tags.reserve(cells.size());
   for (const Cell& cell : cells) {
@@ -351,7 +361,8 @@ TetMesh read_msh(const std::string& path) {
   Contents contents;
   for (const MshSection& section : sections) read_section(path, section, format, contents);
   if (contents.cells[3].empty())
-    throw ReadError(fmt::format("{}: line {}: expected tetrahedra, found none", path, sections.back().first_line));
+    throw ReadError(
+        fmt::format("{}: line {}: expected tetrahedra, found none", path, sections.back().first_line));
   return make_mesh(contents);
 }
 

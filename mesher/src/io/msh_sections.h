@@ -24,11 +24,13 @@ std::vector<MshSection> split_msh(const std::string& path, std::string_view text
 /// The values of a section of a text file.
 class MshText {
  public:
-  MshText(const std::string& path, const MshSection& section) : scan_(path, section.body, 0, section.first_line) {}
+  MshText(const std::string& path, const MshSection& section)
+      : scan_(path, section.body, 0, section.first_line) {}
 
   int integer(std::string_view what) {
     const std::int64_t value = scan_.integer(what);
-    if (value < -0x80000000LL || value > 0x7fffffffLL) scan_.fail(fmt::format("{}, {}, is too large", what, value));
+    if (value < -0x80000000LL || value > 0x7fffffffLL)
+      scan_.fail(fmt::format("{}, {}, is too large", what, value));
     return static_cast<int>(value);
   }
   std::uint64_t number(std::string_view what) {
@@ -58,7 +60,8 @@ class MshBinary {
   Index count(std::string_view what, std::size_t numbers) {
     const std::uint64_t value = number(what);
     if (value > bytes_.left() / (4 * numbers) || value >= none)
-      fail(fmt::format("{} is {}, but only {} bytes follow; the file is cut off or wrong", what, value, bytes_.left()));
+      fail(fmt::format("{} is {}, but only {} bytes follow; the file is cut off or wrong", what, value,
+                       bytes_.left()));
     return static_cast<Index>(value);
   }
   double real(std::string_view what) { return bytes_.get<double>(what); }

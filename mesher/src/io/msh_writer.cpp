@@ -35,8 +35,10 @@ void write_entity(FileWriter& out, const MshEntity& entity, std::size_t dimensio
     out << ' ';
     write_point(out, entity.box.max);
   }
-  if (entity.physical == 0) out << " 0";
-  else out << " 1 " << entity.physical;
+  if (entity.physical == 0)
+    out << " 0";
+  else
+    out << " 1 " << entity.physical;
   if (dimension > 0) {
     out << ' ' << entity.boundary.size();
     for (const int surface : entity.boundary) out << ' ' << surface;
@@ -57,7 +59,8 @@ void write_entities(FileWriter& out, const MshEntities& entities) {
 struct Groups {
   std::vector<Index> starts, members;
 
-  Groups(std::size_t entity_count, std::span<const Index> entity_of) : starts(entity_count + 1), members(entity_of.size()) {
+  Groups(std::size_t entity_count, std::span<const Index> entity_of)
+      : starts(entity_count + 1), members(entity_of.size()) {
     for (const Index e : entity_of)
       if (e != none) ++starts[e + 1];
     for (std::size_t e = 0; e < entity_count; ++e) starts[e + 1] += starts[e];
@@ -96,7 +99,8 @@ void write_nodes(FileWriter& out, const TetMesh& mesh, const MshEntities& entiti
     for (std::size_t e = 0; e < entities.of_dimension[dimension].size(); ++e) {
       const std::span<const Index> members = groups[dimension].of(e);
       if (members.empty()) continue;
-      out << dimension << ' ' << entities.of_dimension[dimension][e].number << " 0 " << members.size() << '\n';
+      out << dimension << ' ' << entities.of_dimension[dimension][e].number << " 0 " << members.size()
+          << '\n';
       for (const Index v : members) out << std::size_t{v} + 1 << '\n';
       for (const Index v : members) {
         write_point(out, mesh.points[v]);
@@ -135,7 +139,8 @@ struct CellGroups {
         count(first_edge - 1 + mesh.edges.size()) {}
 };
 
-void write_elements(FileWriter& out, const TetMesh& mesh, const MshEntities& entities, const CellGroups& groups) {
+void write_elements(FileWriter& out, const TetMesh& mesh, const MshEntities& entities,
+                    const CellGroups& groups) {
   out << "$Elements\n"
       << groups.tets.filled() + groups.faces.filled() + groups.edges.filled() << ' ' << groups.count << ' '
       << (groups.count > 0 ? 1 : 0) << ' ' << groups.count << '\n';

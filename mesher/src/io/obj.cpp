@@ -43,7 +43,8 @@ std::int64_t read_corner(TextScanner& scan, std::size_t points_so_far) {
   if (index > 0) return index - 1;
   const std::int64_t resolved = static_cast<std::int64_t>(points_so_far) + index;
   if (resolved < 0)
-    scan.fail(fmt::format("the corner {} counts back beyond the first of {} vertices so far", index, points_so_far));
+    scan.fail(fmt::format("the corner {} counts back beyond the first of {} vertices so far", index,
+                          points_so_far));
   return resolved;
 }
 
@@ -52,11 +53,13 @@ void read_element(TextScanner& scan, bool is_face, std::size_t points_so_far, El
   while (!end_of_statement(scan)) elements.corners.push_back(read_corner(scan, points_so_far));
   const std::size_t n = elements.corners.size() - first, least = is_face ? 3 : 2;
   if (n < least)
-    scan.fail(fmt::format("expected {} of at least {} corners, found {}", is_face ? "a face" : "a line", least, n));
+    scan.fail(
+        fmt::format("expected {} of at least {} corners, found {}", is_face ? "a face" : "a line", least, n));
   elements.list.push_back({first, line, is_face});
 }
 
-void require_in_range(const std::string& path, const Element& element, std::int64_t corner, std::size_t size) {
+void require_in_range(const std::string& path, const Element& element, std::int64_t corner,
+                      std::size_t size) {
   if (corner < static_cast<std::int64_t>(size)) return;
   TextScanner(path, {}, 0, element.line)
       .fail(fmt::format("a corner is vertex {}, but the file has {} vertices", corner + 1, size));
@@ -66,7 +69,8 @@ void add_elements(const std::string& path, const Elements& elements, PolygonSoup
   std::vector<Index> corners;
   for (std::size_t i = 0; i < elements.list.size(); ++i) {
     const Element& element = elements.list[i];
-    const std::size_t end = i + 1 < elements.list.size() ? elements.list[i + 1].first_corner : elements.corners.size();
+    const std::size_t end =
+        i + 1 < elements.list.size() ? elements.list[i + 1].first_corner : elements.corners.size();
     corners.clear();
     for (std::size_t k = element.first_corner; k < end; ++k) {
       require_in_range(path, element, elements.corners[k], soup.points.size());

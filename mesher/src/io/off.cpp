@@ -27,7 +27,8 @@ void read_keyword(TextScanner& scan) {
   if (rest == "4OFF" || rest == "nOFF" || rest == "4nOFF")
     scan.fail(fmt::format("{} has points of other than 3 coordinates; convert it to OFF", quoted(keyword)));
   if (rest != "OFF") scan.fail("the keyword OFF", keyword);
-  if (!scan.at_line_end() && scan.peek() == "BINARY") scan.fail("binary OFF is not supported; convert it to text");
+  if (!scan.at_line_end() && scan.peek() == "BINARY")
+    scan.fail("binary OFF is not supported; convert it to text");
 }
 
 void read_face(TextScanner& scan, std::vector<Index>& corners, PolygonSoup& soup) {
@@ -61,8 +62,8 @@ PolygonSoup read_off(const std::string& path) {
   std::vector<Index> corners;
   for (Index i = 0; i < face_count; ++i) read_face(scan, corners, soup);
   if (!scan.at_end())
-    scan.fail(fmt::format("expected the end of the file after {} vertices and {} faces, found {}", point_count,
-                          face_count, quoted(scan.peek())));
+    scan.fail(fmt::format("expected the end of the file after {} vertices and {} faces, found {}",
+                          point_count, face_count, quoted(scan.peek())));
   return soup;
 }
 

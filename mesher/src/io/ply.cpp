@@ -25,10 +25,10 @@ struct TypeName {
   Type type;
 };
 constexpr TypeName type_names[] = {
-    {"char", Type::i8},    {"uchar", Type::u8},   {"short", Type::i16},  {"ushort", Type::u16},
-    {"int", Type::i32},    {"uint", Type::u32},   {"float", Type::f32},  {"double", Type::f64},
-    {"int8", Type::i8},    {"uint8", Type::u8},   {"int16", Type::i16},  {"uint16", Type::u16},
-    {"int32", Type::i32},  {"uint32", Type::u32}, {"float32", Type::f32}, {"float64", Type::f64}};
+    {"char", Type::i8},   {"uchar", Type::u8},   {"short", Type::i16},   {"ushort", Type::u16},
+    {"int", Type::i32},   {"uint", Type::u32},   {"float", Type::f32},   {"double", Type::f64},
+    {"int8", Type::i8},   {"uint8", Type::u8},   {"int16", Type::i16},   {"uint16", Type::u16},
+    {"int32", Type::i32}, {"uint32", Type::u32}, {"float32", Type::f32}, {"float64", Type::f64}};
 
 std::size_t size_of(Type type) {
   switch (type) {
@@ -106,11 +106,14 @@ Header read_header(TextScanner& scan) {
     scan.skip_line();
     const std::string_view keyword = scan.word("end_header");
     if (keyword == "end_header") break;
-    if (keyword == "format") header.encoding = read_encoding(scan);
-    else if (keyword == "element") header.elements.push_back(read_element(scan));
+    if (keyword == "format")
+      header.encoding = read_encoding(scan);
+    else if (keyword == "element")
+      header.elements.push_back(read_element(scan));
     else if (keyword == "property" && !header.elements.empty())
       header.elements.back().properties.push_back(read_property(scan));
-    else if (keyword != "comment" && keyword != "obj_info") scan.fail("element, property or end_header", keyword);
+    else if (keyword != "comment" && keyword != "obj_info")
+      scan.fail("element, property or end_header", keyword);
   }
   scan.skip_line();
   return header;
@@ -186,21 +189,26 @@ class Body {
 
   void require_room(const Element& element) {
     std::size_t least = 0;
-    for (const Property& p : element.properties) least += Values::least_bytes(p.list_size == Type::none ? p.type : p.list_size);
+    for (const Property& p : element.properties)
+      least += Values::least_bytes(p.list_size == Type::none ? p.type : p.list_size);
     if (element.count > values_.left() / least)
-      values_.fail_at(fmt::format("expected {} elements '{}' of at least {} bytes, found {} bytes; the file is cut off or "
-                                  "its header is wrong", element.count, element.name, least, values_.left()));
+      values_.fail_at(fmt::format(
+          "expected {} elements '{}' of at least {} bytes, found {} bytes; the file is cut off or "
+          "its header is wrong",
+          element.count, element.name, least, values_.left()));
   }
 
   std::size_t column(const Element& element, std::string_view name, std::string_view other = {}) {
     for (std::size_t k = 0; k < element.properties.size(); ++k)
-      if (element.properties[k].name == name || (!other.empty() && element.properties[k].name == other)) return k;
+      if (element.properties[k].name == name || (!other.empty() && element.properties[k].name == other))
+        return k;
     values_.fail_at(fmt::format("the elements '{}' have no property '{}'", element.name, name));
     return 0;
   }
 
   void read_vertices(const Element& element) {
-    const std::array<std::size_t, 3> columns{column(element, "x"), column(element, "y"), column(element, "z")};
+    const std::array<std::size_t, 3> columns{column(element, "x"), column(element, "y"),
+                                             column(element, "z")};
     for (const std::size_t k : columns)
       if (element.properties[k].list_size != Type::none) values_.fail_at("a coordinate cannot be a list");
     soup_.points.reserve(element.count);
@@ -208,8 +216,10 @@ class Body {
       Point p;
       for (std::size_t k = 0; k < element.properties.size(); ++k) {
         const auto axis = std::find(columns.begin(), columns.end(), k);
-        if (axis == columns.end()) skip(element.properties[k]);
-        else p[static_cast<std::size_t>(axis - columns.begin())] = coordinate(element.properties[k].type);
+        if (axis == columns.end())
+          skip(element.properties[k]);
+        else
+          p[static_cast<std::size_t>(axis - columns.begin())] = coordinate(element.properties[k].type);
       }
       soup_.points.push_back(p);
     }
@@ -224,19 +234,27 @@ class Body {
 
   void read_face(const Element& element, std::size_t corners_column) {
     for (std::size_t k = 0; k < element.properties.size(); ++k)
-      if (k == corners_column) read_corners(element.properties[k]);
-      else skip(element.properties[k]);
-    if (corners_.size() < 2) values_.fail_at(fmt::format("expected a face of at least 2 corners, found {}", corners_.size()));
-    if (corners_.size() == 2) soup_.segments.push_back({corners_[0], corners_[1]});
-    else soup_.add_facet(corners_);
+      if (k == corners_column)
+        read_corners(element.properties[k]);
+      else
+        skip(element.properties[k]);
+    if (corners_.size() < 2)
+      values_.fail_at(fmt::format("expected a face of at least 2 corners, found {}", corners_.size()));
+    if (corners_.size() == 2)
+      soup_.segments.push_back({corners_[0], corners_[1]});
+    else
+      soup_.add_facet(corners_);
   }
 
   void read_edge(const Element& element, std::size_t a, std::size_t b) {
     PolygonSoup::Segment segment;
     for (std::size_t k = 0; k < element.properties.size(); ++k)
-      if (k == a) segment.a = corner(element.properties[k].type);
-      else if (k == b) segment.b = corner(element.properties[k].type);
-      else skip(element.properties[k]);
+      if (k == a)
+        segment.a = corner(element.properties[k].type);
+      else if (k == b)
+        segment.b = corner(element.properties[k].type);
+      else
+        skip(element.properties[k]);
     soup_.segments.push_back(segment);
   }
 
@@ -249,8 +267,10 @@ class Body {
 
   Index corner(Type type) {
     const std::int64_t value = values_.integer(type, "the index of a vertex");
-    if (value < 0 || value >= none || (points_known_ && value >= static_cast<std::int64_t>(soup_.points.size())))
-      values_.fail_at(fmt::format("a corner is vertex {}, but the file has {} vertices", value, soup_.points.size()));
+    if (value < 0 || value >= none ||
+        (points_known_ && value >= static_cast<std::int64_t>(soup_.points.size())))
+      values_.fail_at(
+          fmt::format("a corner is vertex {}, but the file has {} vertices", value, soup_.points.size()));
     largest_corner_ = std::max(largest_corner_, value);
     return static_cast<Index>(value);
   }
@@ -258,7 +278,8 @@ class Body {
   std::size_t list_length(const Property& property) {
     const std::int64_t n = values_.integer(property.list_size, "the length of a list");
     if (n < 0 || static_cast<std::uint64_t>(n) > values_.left() / Values::least_bytes(property.type))
-      values_.fail_at(fmt::format("a list of {} values does not fit into the {} bytes that follow", n, values_.left()));
+      values_.fail_at(
+          fmt::format("a list of {} values does not fit into the {} bytes that follow", n, values_.left()));
     return static_cast<std::size_t>(n);
   }
 
@@ -270,7 +291,8 @@ class Body {
   /// Faces may come before the vertices they refer to.
   void require_known_corners() {
     if (largest_corner_ >= static_cast<std::int64_t>(soup_.points.size()))
-      values_.fail_at(fmt::format("a corner is vertex {}, but the file has {} vertices", largest_corner_, soup_.points.size()));
+      values_.fail_at(fmt::format("a corner is vertex {}, but the file has {} vertices", largest_corner_,
+                                  soup_.points.size()));
   }
 
   Values values_;

@@ -31,7 +31,8 @@ class PointMerger {
   }
   static std::uint64_t hash(const Point& p) {
     std::uint64_t h = 0;
-    for (const double c : {p.x, p.y, p.z}) h = mixed(h + std::bit_cast<std::uint64_t>(c + 0.0));  // -0 + 0 is 0
+    for (const double c : {p.x, p.y, p.z})
+      h = mixed(h + std::bit_cast<std::uint64_t>(c + 0.0));  // -0 + 0 is 0
     return h;
   }
   /// The slot that holds the point, or the free one where it belongs.

@@ -37,7 +37,8 @@ const SoupFormat* find_format(const std::string& path) {
 PolygonSoup read_soup(const std::string& path) {
   const SoupFormat* format = find_format(path);
   if (format == nullptr)
-    throw ReadError(fmt::format("{}: unknown kind of file; surfaces are .off .obj .stl .ply .poly .smesh", path));
+    throw ReadError(
+        fmt::format("{}: unknown kind of file; surfaces are .off .obj .stl .ply .poly .smesh", path));
   PolygonSoup soup = format->read(path);
   soup.name = path;
   return soup;

@@ -92,8 +92,9 @@ PolygonSoup read_binary(const std::string& path, std::string_view bytes) {
   reader.skip(80, "the header of a binary STL file");
   const std::uint32_t count = reader.get<std::uint32_t>("the number of triangles");
   if (reader.left() != triangle_bytes * std::size_t{count})
-    reader.fail(fmt::format("expected {} triangles ({} bytes), found {} bytes; the file is cut off or no STL file", count,
-                            triangle_bytes * std::size_t{count}, reader.left()));
+    reader.fail(
+        fmt::format("expected {} triangles ({} bytes), found {} bytes; the file is cut off or no STL file",
+                    count, triangle_bytes * std::size_t{count}, reader.left()));
   PolygonSoup soup;
   PointMerger merger(soup.points);
   for (std::uint32_t i = 0; i < count; ++i) {

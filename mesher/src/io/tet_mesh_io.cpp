@@ -41,7 +41,8 @@ void write_tet_mesh(const std::string& path, const TetMesh& mesh) {
 
 TetMesh read_tet_mesh(const std::string& path) {
   const TetMeshFormat* format = find_format(path);
-  if (format == nullptr || format->read == nullptr) throw ReadError(fmt::format("{}: unknown kind of file; {}", path, known));
+  if (format == nullptr || format->read == nullptr)
+    throw ReadError(fmt::format("{}: unknown kind of file; {}", path, known));
   return format->read(path);
 }
 

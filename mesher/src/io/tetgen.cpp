@@ -16,7 +16,9 @@ namespace collarmesh::io {
 namespace {
 
 /// Do facet and node lines end with a marker? Missing flags are 0.
-bool marker_flag(TextScanner& scan) { return !scan.at_line_end() && scan.integer("the flag for boundary markers") != 0; }
+bool marker_flag(TextScanner& scan) {
+  return !scan.at_line_end() && scan.integer("the flag for boundary markers") != 0;
+}
 
 Tag marker(TextScanner& scan, bool given) {
   return given && !scan.at_line_end() ? scan.integer("a boundary marker") : 0;
@@ -49,10 +51,12 @@ std::int64_t read_nodes(TextScanner& scan, const NodeHeader& header, PolygonSoup
   for (Index i = 0; i < header.count; ++i) {
     const std::int64_t number = scan.integer("the number of a point");
     if (i == 0) first = number;
-    if (first != 0 && first != 1) scan.fail(fmt::format("the first point has number {}, but has to have 0 or 1", first));
+    if (first != 0 && first != 1)
+      scan.fail(fmt::format("the first point has number {}, but has to have 0 or 1", first));
     if (number != first + i) scan.fail(fmt::format("expected point number {}, found {}", first + i, number));
     soup.points.push_back(scan.point("a coordinate of a point"));
-    for (std::int64_t k = 0; k < header.attributes && !scan.at_line_end(); ++k) scan.number("an attribute of a point");
+    for (std::int64_t k = 0; k < header.attributes && !scan.at_line_end(); ++k)
+      scan.number("an attribute of a point");
     if (header.markers) soup.point_tags.push_back(marker(scan, true));
     scan.skip_line();
   }
@@ -150,7 +154,8 @@ double edge_of_volume(double volume) { return std::cbrt(6 * std::numbers::sqrt2 
 
 Tag region_tag(TextScanner& scan) {
   const double attribute = scan.coordinate("the attribute of a region");
-  if (std::abs(attribute) >= 0x1p62) scan.fail(fmt::format("the attribute of a region, {}, is too large", attribute));
+  if (std::abs(attribute) >= 0x1p62)
+    scan.fail(fmt::format("the attribute of a region, {}, is too large", attribute));
   return static_cast<Tag>(std::llround(attribute));
 }
 

@@ -85,9 +85,11 @@ std::uint64_t header_number(std::string_view header, std::size_t i, const VtkSto
 /// A number of bytes, then the bytes; some writers encode the number by itself.
 std::string decode_plain(Stored& stored, const VtkStorage& storage) {
   const std::string header = stored.peek(storage.header_bytes);
-  if (header.size() < storage.header_bytes) throw VtkArrayError{"expected the size of the values, found too few bytes"};
+  if (header.size() < storage.header_bytes)
+    throw VtkArrayError{"expected the size of the values, found too few bytes"};
   const std::uint64_t size = header_number(header, 0, storage);
-  if (size > stored.left()) throw VtkArrayError{fmt::format("expected {} bytes of values, found {}", size, stored.left())};
+  if (size > stored.left())
+    throw VtkArrayError{fmt::format("expected {} bytes of values, found {}", size, stored.left())};
   if (stored.ends_after(storage.header_bytes)) {
     stored.take(storage.header_bytes);
     return stored.take(size);
@@ -110,18 +112,21 @@ void inflate_block(std::string_view packed, std::uint64_t size, std::string& byt
 /// sizes; then the blocks.
 std::string decode_compressed(Stored& stored, const VtkStorage& storage) {
   const std::string first = stored.peek(storage.header_bytes);
-  if (first.size() < storage.header_bytes) throw VtkArrayError{"expected the number of blocks, found too few bytes"};
+  if (first.size() < storage.header_bytes)
+    throw VtkArrayError{"expected the number of blocks, found too few bytes"};
   const std::uint64_t blocks = header_number(first, 0, storage);
   if (blocks == 0) return {};
   if (blocks > stored.left() / storage.header_bytes)
     throw VtkArrayError{fmt::format("expected {} blocks, found {} bytes", blocks, stored.left())};
   const std::string header = stored.take((3 + blocks) * storage.header_bytes);
-  const std::uint64_t block_size = header_number(header, 1, storage), last_size = header_number(header, 2, storage);
+  const std::uint64_t block_size = header_number(header, 1, storage),
+                      last_size = header_number(header, 2, storage);
   std::uint64_t packed_size = 0;
   for (std::size_t b = 0; b < blocks; ++b) {
     const std::uint64_t size = header_number(header, 3 + b, storage);
     if (size > stored.left() - packed_size)
-      throw VtkArrayError{fmt::format("block {} has {} bytes, but only {} are there", b, size, stored.left() - packed_size)};
+      throw VtkArrayError{
+          fmt::format("block {} has {} bytes, but only {} are there", b, size, stored.left() - packed_size)};
     packed_size += size;
   }
   const std::string packed = stored.take(packed_size);
@@ -129,7 +134,8 @@ std::string decode_compressed(Stored& stored, const VtkStorage& storage) {
   std::size_t at = 0;
   for (std::size_t b = 0; b < blocks; ++b) {
     const std::uint64_t size = header_number(header, 3 + b, storage);
-    inflate_block(std::string_view(packed).substr(at, size), b + 1 == blocks && last_size != 0 ? last_size : block_size, bytes);
+    inflate_block(std::string_view(packed).substr(at, size),
+                  b + 1 == blocks && last_size != 0 ? last_size : block_size, bytes);
     at += size;
   }
   return bytes;
@@ -185,11 +191,15 @@ std::vector<To> convert_vtk_values(std::string_view bytes, VtkType type, std::en
     case VtkType::i64: return convert<std::int64_t, To>(bytes, order);
     case VtkType::u64: return convert<std::uint64_t, To>(bytes, order);
     case VtkType::f32:
-      if constexpr (to_integers) return convert_to_integers<float>(bytes, order);
-      else return convert<float, To>(bytes, order);
+      if constexpr (to_integers)
+        return convert_to_integers<float>(bytes, order);
+      else
+        return convert<float, To>(bytes, order);
     case VtkType::f64:
-      if constexpr (to_integers) return convert_to_integers<double>(bytes, order);
-      else return convert<double, To>(bytes, order);
+      if constexpr (to_integers)
+        return convert_to_integers<double>(bytes, order);
+      else
+        return convert<double, To>(bytes, order);
     case VtkType::unknown: break;
   }
   return {};

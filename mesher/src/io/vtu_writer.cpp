@@ -73,7 +73,8 @@ DataArray compressed(std::string_view name, const std::vector<T>& values, int co
   const std::string_view bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
   const std::size_t count = (bytes.size() + block_bytes - 1) / block_bytes;
   DataArray array{name, type_name<T>, components, {count, block_bytes, bytes.size() % block_bytes}, {}};
-  for (std::size_t at = 0; at < bytes.size(); at += block_bytes) append_compressed(bytes.substr(at, block_bytes), array);
+  for (std::size_t at = 0; at < bytes.size(); at += block_bytes)
+    append_compressed(bytes.substr(at, block_bytes), array);
   return array;
 }
 
@@ -83,7 +84,9 @@ struct Section {
   std::vector<DataArray> arrays;
 };
 
-std::size_t cell_count(const TetMesh& mesh) { return mesh.tets.size() + mesh.faces.size() + mesh.edges.size(); }
+std::size_t cell_count(const TetMesh& mesh) {
+  return mesh.tets.size() + mesh.faces.size() + mesh.edges.size();
+}
 
 /// One value per cell, from what each kind of cell has.
 template <class T, class OfTet, class OfFace, class OfEdge>
@@ -154,16 +157,17 @@ void add_labels(const TetMesh& mesh, Section& section) {
   section.arrays.push_back(compressed("region", per_cell<std::int32_t>(mesh, tet_region, either, zero)));
   section.arrays.push_back(compressed("region_back", per_cell<std::int32_t>(mesh, tet_region, back, zero)));
   section.arrays.push_back(compressed("region_front", per_cell<std::int32_t>(mesh, tet_region, front, zero)));
-  section.arrays.push_back(compressed(
-      "tag", per_cell<std::int64_t>(
-                 mesh, [&](std::size_t i) { return mesh.tet_tag[i]; }, [&](std::size_t i) { return mesh.face_tag[i]; },
-                 [&](std::size_t i) { return mesh.edge_tag[i]; })));
+  section.arrays.push_back(compressed("tag", per_cell<std::int64_t>(
+                                                 mesh, [&](std::size_t i) { return mesh.tet_tag[i]; },
+                                                 [&](std::size_t i) { return mesh.face_tag[i]; },
+                                                 [&](std::size_t i) { return mesh.edge_tag[i]; })));
   section.arrays.push_back(compressed(
       "feature", per_cell<std::int32_t>(
                      mesh, [](std::size_t) { return -1; }, [&](std::size_t i) { return mesh.face_patch[i]; },
                      [&](std::size_t i) { return mesh.edge_curve[i]; })));
-  section.arrays.push_back(compressed(
-      "collar", per_cell<std::uint8_t>(mesh, [&](std::size_t i) { return mesh.tet_collar[i]; }, zero, zero)));
+  section.arrays.push_back(
+      compressed("collar", per_cell<std::uint8_t>(
+                               mesh, [&](std::size_t i) { return mesh.tet_collar[i]; }, zero, zero)));
 }
 
 /// Programs that read the file do not all take infinity.
@@ -216,7 +220,8 @@ void write_vtu(const std::string& path, const TetMesh& mesh) {
                               point_data_section(mesh),
                               cell_data_section(mesh)};
   out << "<?xml version=\"1.0\"?>\n"
-         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" "
+         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+         "header_type=\"UInt64\" "
          "compressor=\"vtkZLibDataCompressor\">\n  <UnstructuredGrid>\n    <Piece NumberOfPoints=\""
       << mesh.points.size() << "\" NumberOfCells=\"" << cell_count(mesh) << "\">\n";
   std::size_t offset = 0;
