@@ -118,6 +118,9 @@ void add_quality_options(CLI::App& app, MeshOptions& m) {
       "Bound on largest circumradius / shortest edge at a vertex, more than 2 sqrt 2", "none")
       ->check(length)
       ->group(group);
+  add(app, "--collar-angle", m.collar_angle, "Bound on dihedral angles in the collars around creases, degrees")
+      ->check(number_in(100, 175, "a number from 100 to 175"))
+      ->group(group);
   add(app, "--theta", m.theta, "Warp to input within this times a gap ball's radius; 0: never")
       ->check(number_in(0, 0.449, "a number from 0 to below 0.45"))
       ->group(group);
@@ -227,7 +230,7 @@ class HelpText : public CLI::Formatter {
 
 constexpr const char* footer =
     "Exit codes: 0 every guarantee holds, 1 internal error, 2 usage, 3 unreadable input,\n"
-    "4 not a valid complex or an acute crease, 5 a budget was hit, 6 cancelled,\n"
+    "4 not a valid complex, 5 a budget was hit, 6 cancelled,\n"
     "7 a guarantee is missed (the mesh is written), 8 cannot write. 1 to 6 and 8 write no mesh.\n"
     "Lengths are in input units (millimetres for CAD files); 'diagonal' is the bounding box's.";
 

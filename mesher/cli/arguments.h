@@ -18,7 +18,7 @@ enum class ProgressStyle { automatic, json, none };
 /// How files become a complex; all commands share it.
 struct ComplexArguments {
   PlcOptions plc;
-  double crease_angle = 70.53;  ///< degrees
+  double crease_angle = 60;  ///< degrees
 };
 
 /// `collarmesh INPUT... -o OUT`

@@ -36,24 +36,6 @@ class Stages {
   StageTimes& times_;
 };
 
-void require_no_crease(const Plc& plc, const std::vector<Crease>& creases, double threshold) {
-  if (creases.empty()) return;
-  constexpr std::size_t named = 5;
-  std::vector<PlcFault> faults;
-  for (const Crease& crease : creases) {
-    if (faults.size() == named) break;
-    faults.push_back({PlcFault::Kind::crease, describe(plc, crease), {}, crease.where});
-  }
-  const std::string more =
-      creases.size() > named ? fmt::format(" (the {} sharpest follow)", named) : std::string();
-  throw PlcError(
-      fmt::format("{} acute crease{} below {:.4g} degrees{}; this version cannot mesh acute creases yet. "
-                  "Round or remove them in the input, or try a smaller --crease-angle: refinement may then "
-                  "hit a budget (set --max-vertices)",
-                  creases.size(), creases.size() == 1 ? "" : "s", threshold, more),
-      std::move(faults));
-}
-
 template <class Features>
 void require_tags(const std::map<Tag, double>& sizes, const Features& features, const std::string& option,
                   const std::string& what) {
@@ -89,7 +71,6 @@ void build_complex(const MeshArguments& arguments, Stages& stages, MeshRun& run)
   run.plc = build_plc(soups, arguments.complex.plc);
   require_known_tags(arguments.mesh, run.plc);
   run.summary = summarize(run.plc, arguments.complex.crease_angle);
-  require_no_crease(run.plc, run.summary.creases, arguments.complex.crease_angle);
 }
 
 void refine(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
@@ -100,7 +81,9 @@ void refine(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
     stages.update(report);
     return true;
   };
-  run.result = generate(run.plc, arguments.mesh, execution);
+  MeshOptions options = arguments.mesh;
+  options.crease_angle = arguments.complex.crease_angle;
+  run.result = generate(run.plc, options, execution);
 }
 
 void certify(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
@@ -108,6 +91,7 @@ void certify(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   CheckOptions options;
   options.radius_edge = arguments.mesh.radius_edge;
   options.distance = arguments.mesh.distance;
+  options.collar_angle = arguments.mesh.collar_angle;
   run.check = check(run.result.mesh, run.plc, options);
   run.measures = measure_mesh(run.result.mesh);
 }

@@ -78,7 +78,7 @@ class ProgramTest(unittest.TestCase):
 class Usage(ProgramTest):
     def test_help_tells_defaults_and_codes(self):
         run = self.expect(0, "--help")
-        for text in ("1/20 of the diagonal", "1e-3 of the diagonal", "70.53", "--theta", "Exit codes", "check", "info"):
+        for text in ("1/20 of the diagonal", "1e-3 of the diagonal", "--collar-angle", "--theta", "Exit codes", "check", "info"):
             self.assertIn(text, run.stdout)
         for command in ("check", "info"):
             self.assertIn("--feature-angle", self.expect(0, command, "--help").stdout)
@@ -150,15 +150,18 @@ class InvalidComplex(ProgramTest):
     def test_empty(self):
         self.assertIn(self.run_program(self.write("none.off", "OFF\n0 0 0\n"), "-o", self.out).returncode, (3, 4))
 
-    def test_crease_is_named(self):
-        self.expect(4, self.write("wedge.off", wedge_text(30)), "-o", self.out,
-                    says=[r"\b30\b|29\.99|30\.0", COORDINATES, "crease", "--crease-angle"])
 
-    def test_crease_below_a_smaller_threshold_is_meshed(self):
-        wedge = self.write("wedge.off", wedge_text(60))
-        self.expect(4, wedge, "-o", self.out, says=["crease"])
-        run = self.run_program(wedge, "-o", self.out, "--crease-angle", "50", "--size", "0.3", "--max-vertices", "100000")
-        self.assertIn(run.returncode, (0, 5, 7), run.stderr)
+class Creases(ProgramTest):
+    def test_a_sharp_wedge_gets_collars(self):
+        report = os.path.join(os.path.dirname(self.out), "report.json")
+        self.expect(0, self.write("wedge.off", wedge_text(10)), "-o", self.out, "--report", report)
+        with open(report) as file:
+            found = json.load(file)
+        self.assertGreater(len(found["complex"]["creases"]), 0)
+
+    def test_the_bound_in_collars_is_an_option(self):
+        self.expect(0, self.write("wedge.off", wedge_text(30)), "-o", self.out, "--collar-angle", "140")
+        self.expect(2, self.box, "-o", self.out, "--collar-angle", "99")
 
 
 class Budgets(ProgramTest):

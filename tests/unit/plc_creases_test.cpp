@@ -38,7 +38,7 @@ TEST(PlcCreases, WedgesOfManyAngles) {
     ASSERT_FALSE(facets.empty()) << angle;
     const double smallest = std::min(angle, (180 - angle) / 2);
     EXPECT_NEAR(facets[0].angle, smallest, 1e-6);
-    EXPECT_EQ(find_creases(plc).empty(), smallest >= 70.53);
+    EXPECT_EQ(find_creases(plc, 70.53).empty(), smallest >= 70.53);
     EXPECT_EQ(plc.curves[facets[0].curve].patches.size(), 2U);
   }
 }
@@ -108,7 +108,7 @@ TEST(PlcCreases, ConeApexFolds) {
     ASSERT_EQ(folds.size(), 1U) << aperture;
     EXPECT_NEAR(folds[0].angle, aperture, 0.1);
     EXPECT_EQ(folds[0].vertex, none);
-    EXPECT_EQ(of_kind(find_creases(plc), Kind::patch_fold).empty(), aperture > 70.53);
+    EXPECT_EQ(of_kind(find_creases(plc, 70.53), Kind::patch_fold).empty(), aperture > 70.53);
   }
 }
 
