@@ -45,7 +45,7 @@ void CollarPlacement::place() {
       vertices.insert(vertices.end(), plc_.curves[c].ends.begin(), plc_.curves[c].ends.end());
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  find_sheets();
+  find_sheets(vertices);
   for (const Index vertex : vertices) system_.vertex_ball_[vertex] = place_at_vertex(vertex);
   for (Index c = 0; c < plc_.curves.size(); ++c) {
     if (!system_.crease_curve_[c]) continue;
@@ -64,7 +64,8 @@ double CollarPlacement::shrink() {
 
 Index CollarPlacement::place_at_vertex(Index vertex) {
   const Point& centre = points_[plc_.vertices[vertex].point];
-  const double radius = std::min(radius_per_gap * gap_.at_vertex(vertex), size_(centre));
+  const double radius =
+      flat_radius_at(vertex, std::min(radius_per_gap * gap_.at_vertex(vertex), size_(centre)));
   system_.balls_.push_back({centre, radius * shrink(), 0, vertex, 0});
   return static_cast<Index>(system_.balls_.size() - 1);
 }
@@ -86,6 +87,48 @@ double CollarPlacement::flat_radius(Index curve, double parameter, double radius
   };
   radius = std::min(radius, length / 8);
   while (sagitta(radius) > 0.5 * distance_) radius *= 0.8;
+  const Vector axis = curve_point(curve, parameter + radius) - curve_point(curve, parameter - radius);
+  for (const Sheet& sheet : sheets_at(curve, parameter)) {
+    if (plc_.patches[sheet.patch].planar) continue;
+    while (leaves_chord(sheet.patch, centre, sheet_point(sheet, centre, axis / norm(axis), radius)))
+      radius *= 0.8;
+  }
+  return radius;
+}
+
+// Does the patch leave the straight line between two of its points by more than the tolerance?
+bool CollarPlacement::leaves_chord(Index patch, const Point& a, const Point& b) const {
+  const Point middle = 0.5 * (a + b);
+  return distance(middle, gap_.nearest_on_patch(patch, middle)) > 0.5 * distance_;
+}
+
+// The same at a vertex: along its curves, and on its smooth patches in the directions of their
+// triangles.
+double CollarPlacement::flat_radius_at(Index vertex, double radius) const {
+  const Point& centre = points_[plc_.vertices[vertex].point];
+  for (const Index c : plc_.vertices[vertex].curves) {
+    if (plc_.curves[c].straight) continue;
+    for (const bool at_start : {true, false}) {
+      if (plc_.curves[c].ends[at_start ? 0 : 1] != vertex) continue;
+      const double length = lengths_[c].back();
+      const auto at = [&](double r) { return curve_point(c, at_start ? r : length - r); };
+      radius = std::min(radius, length / 8);
+      const auto sagitta = [&](double r) {
+        return std::sqrt(squared_distance_to_triangle(at(0.5 * r), centre, at(r), at(r)));
+      };
+      while (sagitta(radius) > 0.5 * distance_) radius *= 0.8;
+    }
+  }
+  const auto corner = plc_.vertices[vertex].point;
+  for (auto it = std::lower_bound(fans_.begin(), fans_.end(), std::pair{corner, Index{0}});
+       it != fans_.end() && it->first == corner; ++it) {
+    const Plc::Triangle& t = plc_.triangles[it->second];
+    if (plc_.patches[t.patch].planar) continue;
+    const Point middle = (points_[t.points[0]] + points_[t.points[1]] + points_[t.points[2]]) / 3;
+    const Vector direction = (middle - centre) / distance(middle, centre);
+    while (leaves_chord(t.patch, centre, gap_.nearest_on_patch(t.patch, centre + radius * direction)))
+      radius *= 0.8;
+  }
   return radius;
 }
 
@@ -171,10 +214,9 @@ std::vector<double> CollarPlacement::centre_parameters(Index curve, double from,
   return centres;
 }
 
-void CollarPlacement::find_sheets() {
+void CollarPlacement::find_sheets(const std::vector<Index>& vertices) {
   std::vector<std::array<Index, 2>> segments;
   for (Index c = 0; c < plc_.curves.size(); ++c) {
-    if (!system_.crease_curve_[c]) continue;
     const auto& points = plc_.curves[c].points;
     auto& lengths = lengths_[c];
     lengths.assign(1, 0);
@@ -182,7 +224,7 @@ void CollarPlacement::find_sheets() {
     for (std::size_t i = 0; i < count; ++i) {
       const Index a = points[i], b = points[(i + 1) % points.size()];
       lengths.push_back(lengths.back() + distance(points_[a], points_[b]));
-      segments.push_back({std::min(a, b), std::max(a, b)});
+      if (system_.crease_curve_[c]) segments.push_back({std::min(a, b), std::max(a, b)});
     }
   }
   std::sort(segments.begin(), segments.end());
@@ -193,6 +235,13 @@ void CollarPlacement::find_sheets() {
       if (std::binary_search(segments.begin(), segments.end(), edge)) sheets_.push_back({edge, t});
     }
   std::sort(sheets_.begin(), sheets_.end());
+  std::vector<Index> corners;
+  for (const Index vertex : vertices) corners.push_back(plc_.vertices[vertex].point);
+  std::sort(corners.begin(), corners.end());
+  for (Index t = 0; t < plc_.triangles.size(); ++t)
+    for (const Index point : plc_.triangles[t].points)
+      if (std::binary_search(corners.begin(), corners.end(), point)) fans_.push_back({point, t});
+  std::sort(fans_.begin(), fans_.end());
 }
 
 std::vector<CollarPlacement::Sheet> CollarPlacement::sheets_at(Index curve, double parameter) const {

@@ -28,7 +28,9 @@ class CollarPlacement {
   double flat_radius(Index curve, double parameter, double radius) const;
   Point curve_point(Index curve, double parameter) const;
   std::size_t curve_segment(Index curve, double parameter) const;
-  void find_sheets();
+  void find_sheets(const std::vector<Index>& vertices);
+  bool leaves_chord(Index patch, const Point& a, const Point& b) const;
+  double flat_radius_at(Index vertex, double radius) const;
   std::vector<Sheet> sheets_at(Index curve, double parameter) const;
   Point sheet_point(const Sheet& sheet, const Point& centre, const Vector& axis, double radius) const;
   void add_circle_corners(const CollarLink& link);
@@ -41,10 +43,11 @@ class CollarPlacement {
   GapSize gap_;
   std::uint64_t random_state_;
   CollarSystem& system_;
-  std::vector<std::vector<double>> lengths_;  // arc lengths of crease curves
+  std::vector<std::vector<double>> lengths_;  // arc lengths of all curves
   double distance_;                           // tolerance on smooth patches and curves
   // Triangles at the segments of crease curves, sorted: the segment's points, the triangle.
   std::vector<std::pair<std::array<Index, 2>, Index>> sheets_;
+  std::vector<std::pair<Index, Index>> fans_;  // points of crease vertices, triangles there; sorted
 };
 
 }  // namespace collarmesh

@@ -21,6 +21,10 @@ void validate(const MeshOptions& o) {
           "radius-edge must be at least 1, and at most its bound outside");
   require(o.vertex_ratio == 0 || o.vertex_ratio > 2.83,
           "vertex-ratio must exceed 2 sqrt 2 (the proved bound); 0 switches it off");
+  require(o.crease_angle >= 0 && o.crease_angle <= 90, "crease-angle must be from 0 to 90 degrees");
+  require(o.representation_angle > 0 && o.representation_angle < 90,
+          "representation-angle must be between 0 and 90 degrees");
+  require(o.time_limit >= 0, "time-limit must not be negative; 0 stands for none");
   require(o.collar_angle >= 100 && o.collar_angle <= 175, "collar-angle must be from 100 to 175 degrees");
   require(o.theta >= 0 && o.theta < 0.45, "theta must be in [0, 0.45)");
   for (const auto* sizes : {&o.region_size, &o.patch_size, &o.curve_size})

@@ -22,6 +22,8 @@ constexpr std::uint16_t insertions_between_surface_refreshes = 48;
 constexpr double floor_per_diagonal = 1e-10;
 // A cell whose volume is below this share of its longest edge cubed is flat.
 constexpr double flat_volume = 1e-11;
+// The share of the distance tolerance that refinement aims at: it looks at a few points of a face.
+constexpr double distance_reserve = 0.75;
 constexpr std::size_t steps_between_reports = 512;
 
 // A box well away from the input; slightly different in each axis so that its corners are not
@@ -67,7 +69,7 @@ Refinement::Refinement(const Plc& plc, const MeshOptions& options, const Executi
       points_(framed(plc.points, frame_)),
       sizing_(plc, options, frame_),
       diagonal_(plc.bounds.diagonal()),
-      distance_(options.distance > 0 ? options.distance : 1e-3 * diagonal_),
+      distance_(distance_reserve * (options.distance > 0 ? options.distance : 1e-3 * diagonal_)),
       floor_(floor_per_diagonal * diagonal_),
       box_(surrounding_box(framed(plc.bounds, frame_))),
       mesh_(box_),
@@ -132,10 +134,9 @@ MeshStatus Refinement::run() {
   for (;;) {
     while (queue_.pop(item)) {
       process(item);
-      if (++steps_ % steps_between_reports != 0) continue;
-      if (execution_.cancelled() || !report_progress()) return MeshStatus::cancelled;
-      if (out_of_budget()) return MeshStatus::budget_hit;
+      if (++steps_ % steps_between_reports == 0 && stopped()) return stop_;
     }
+    if (stopped()) return stop_;
     if (!check_surface() && !check_gradation() && !check_collars()) break;
   }
   relabel_flat_cells();
@@ -541,6 +542,12 @@ std::size_t Refinement::bytes() const {
          restricted_.capacity() * sizeof(RestrictedTriangle) +
          node_pool_.capacity() * sizeof(Index) + unresolved_.capacity() * sizeof(UnresolvedPoint) +
          subsegments_.capacity() * sizeof(Subsegment);
+}
+
+bool Refinement::stopped() {
+  if (execution_.cancelled() || !report_progress()) stop_ = MeshStatus::cancelled;
+  else if (out_of_budget()) stop_ = MeshStatus::budget_hit;
+  return stop_ != MeshStatus::complete;
 }
 
 bool Refinement::out_of_budget() {

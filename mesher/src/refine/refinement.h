@@ -148,6 +148,7 @@ class Refinement {
   void give_up(const Point& where, const std::string& what);
   double elapsed() const;
   std::size_t bytes() const;
+  bool stopped();
   bool out_of_budget();
   bool report_progress();
 
@@ -323,6 +324,7 @@ class Refinement {
   std::vector<TriangleHierarchy::LocalTriangle> local_triangles_;
   std::vector<Index> nodes_scratch_, cells_scratch_, seeds_scratch_;
 
+  MeshStatus stop_ = MeshStatus::complete;
   std::uint64_t random_state_;
   std::size_t warps_ = 0, yields_ = 0;
   std::size_t steps_ = 0, peak_bytes_ = 0;

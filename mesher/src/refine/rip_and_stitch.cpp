@@ -2,6 +2,7 @@
 // each triangle of the collar surface makes a star tet with its ball's centre, each edge between
 // triangles of consecutive balls a book tet with the two centres.
 #include <algorithm>
+#include <iterator>
 
 #include "refine/refinement.h"
 
@@ -99,6 +100,7 @@ void Refinement::stitch_faces(const std::vector<CollarTriangle>& triangles) {
 }
 
 // The patch that all three vertices lie on and that separates these regions, none if there is none.
+// Two curves that meet at a crease can bound two such patches: then the nearer one.
 Index Refinement::patch_between(const std::array<Index, 3>& corners, Index a, Index b) const {
   const auto separates = [&](Index patch) {
     const auto& r = plc_.patches[patch].regions;
@@ -112,8 +114,17 @@ Index Refinement::patch_between(const std::array<Index, 3>& corners, Index a, In
   }
   const MeshVertex& v = vertices_[corners[0]];
   const auto& patches = v.dimension == 0 ? plc_.vertices[v.feature].patches : plc_.curves[v.feature].patches;
-  const auto found = std::find_if(patches.begin(), patches.end(), separates);
-  return found == patches.end() ? none : *found;
+  std::vector<Index> possible;
+  std::copy_if(patches.begin(), patches.end(), std::back_inserter(possible), separates);
+  if (possible.size() < 2) return possible.empty() ? none : possible[0];
+  const Point middle = (mesh_.point(corners[0]) + mesh_.point(corners[1]) + mesh_.point(corners[2])) / 3;
+  const auto distance_to = [&](Index patch) {
+    return hierarchy_.squared_distance_to(middle, INFINITY, nullptr, [&](Index triangle) {
+      return plc_.triangles[triangle].patch == patch;
+    });
+  };
+  return *std::min_element(possible.begin(), possible.end(),
+                           [&](Index x, Index y) { return distance_to(x) < distance_to(y); });
 }
 
 }  // namespace collarmesh
