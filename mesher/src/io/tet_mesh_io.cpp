@@ -20,7 +20,7 @@ struct TetMeshFormat {
 };
 
 constexpr std::array<TetMeshFormat, 3> tet_mesh_formats{
-    {{".vtu", write_vtu, nullptr}, {".msh", write_msh, read_msh}, {".mesh", write_medit, read_medit}}};
+    {{".vtu", write_vtu, read_vtu}, {".msh", write_msh, read_msh}, {".mesh", write_medit, read_medit}}};
 
 constexpr std::string_view known = "tetrahedral meshes are .vtu, .msh (Gmsh) and .mesh (Medit)";
 
@@ -41,8 +41,7 @@ void write_tet_mesh(const std::string& path, const TetMesh& mesh) {
 
 TetMesh read_tet_mesh(const std::string& path) {
   const TetMeshFormat* format = find_format(path);
-  if (format == nullptr || format->read == nullptr)
-    throw ReadError(fmt::format("{}: unknown kind of file; {}", path, known));
+  if (format == nullptr) throw ReadError(fmt::format("{}: unknown kind of file; {}", path, known));
   return format->read(path);
 }
 
