@@ -29,8 +29,11 @@ void Refinement::prepare_collars() {
   for (const CollarBall& ball : collars_.balls())
     ball_points_.push_back(ball.dimension == 0 ? ball.feature
                                                : add_unresolved(ball.centre, 1, ball.feature));
-  for (const CornerPoint& corner : collars_.corners())
-    add_unresolved(corner.point, corner.dimension, corner.feature);
+  for (const CornerPoint& corner : collars_.corners()) {
+    const bool planar = corner.dimension == 2 && plc_.patches[corner.feature].planar;
+    add_unresolved(planar ? on_plane(corner.feature, corner.point) : corner.point, corner.dimension,
+                   corner.feature);
+  }
 }
 
 bool Refinement::meets_collar(Index vertex) const {
@@ -78,7 +81,7 @@ bool Refinement::check_collars() {
   if (collars_.empty() || !message_.empty()) return false;
   take_in_flat_cells();
   std::vector<CollarTriangle> triangles = collar_triangles();
-  for (CollarTriangle& t : triangles) t.poor = poorly_represented(t);
+  for (CollarTriangle& t : triangles) t.poor = poorly_represented(t) || bends(t);
   judge_collar_edges(triangles);
   bool found = false;
   for (const CollarTriangle& t : triangles) {
@@ -210,6 +213,62 @@ bool Refinement::poorly_represented(const CollarTriangle& t) {
   return crosses_patch(v[0], v[1]) || crosses_patch(v[1], v[2]) || crosses_patch(v[2], v[0]);
 }
 
+bool Refinement::far_from_patch(Index patch, const Point& p) const {
+  const double tolerance = distance_ * distance_;
+  return hierarchy_.squared_distance_to(p, tolerance, nullptr, [&](Index triangle) {
+    return plc_.triangles[triangle].patch == patch;
+  }) >= tolerance;
+}
+
+// An edge on a smooth patch makes a face with the ball's centre there: does it leave the patch by
+// more than the tolerance?
+bool Refinement::bends(CollarTriangle& t) const {
+  if (labels_[cell_of(t.face)].region == 0) return false;
+  const CollarBall& ball = collars_.balls()[t.ball];
+  const auto v = mesh_.face_vertices(t.face);
+  for (const Index patch : patches_through(ball)) {
+    if (plc_.patches[patch].planar) continue;
+    for (unsigned k = 0; k < 3; ++k) {
+      const Index i = v[k], j = v[(k + 1) % 3];
+      if (!on_patch(i, patch) || !on_patch(j, patch)) continue;
+      const Point &a = mesh_.point(i), &b = mesh_.point(j);
+      const Point middle = 0.5 * (a + b);
+      if (squared_distance(a, b) < distance_ * distance_) continue;
+      if (!far_from_patch(patch, middle) && !far_from_patch(patch, (a + b + ball.centre) / 3)) continue;
+      t.bent_on = patch;
+      t.bent_at = middle;
+      return true;
+    }
+  }
+  return false;
+}
+
+// A point near a given one where a patch through the ball's centre meets its sphere.
+std::optional<Point> Refinement::arc_point(const CollarBall& ball, Index patch, const Point& near) const {
+  const auto on_sphere_towards = [&](const Point& p) {
+    const Vector d = p - ball.centre;
+    return ball.centre + ball.radius / norm(d) * d;
+  };
+  const auto nearest_on_patch = [&](const Point& p) {
+    Index nearest = none;
+    hierarchy_.squared_distance_to(p, INFINITY, &nearest, [&](Index triangle) {
+      return plc_.triangles[triangle].patch == patch;
+    });
+    const auto t = hierarchy_.corners(nearest);
+    return nearest_point_on_triangle(p, t[0], t[1], t[2]);
+  };
+  constexpr int most_projections = 40;
+  constexpr double close = 1e-9;
+  Point p = near;
+  for (int k = 0; k < most_projections; ++k) {
+    const Point q = nearest_on_patch(p);
+    if (squared_distance(q, ball.centre) < 1e-6 * ball.radius * ball.radius) return std::nullopt;
+    p = on_sphere_towards(q);
+    if (distance(p, q) < close * ball.radius) return plc_.patches[patch].planar ? on_plane(patch, p) : p;
+  }
+  return std::nullopt;
+}
+
 bool Refinement::crosses_patch(Index a, Index b) {
   const Index root = hierarchy_.root();
   hierarchy_.crossings(mesh_.point(a), mesh_.point(b), {&root, 1}, crossings_);
@@ -272,25 +331,22 @@ bool Refinement::repair(const CollarTriangle& t) {
   Index patch = none;
   double nearest = arc_reach * ball.radius;
   for (const Index p : patches_through(ball)) {
-    const Vector n = plc_.patches[p].normal;
-    if (!plc_.patches[p].planar) continue;
-    const Vector d = t.representation - ball.centre;
-    const Vector in_plane = d - dot(d, n) * n;
-    if (norm(in_plane) < 1e-3 * ball.radius) continue;
-    const Point arc = frame_.rounded(ball.centre + ball.radius / norm(in_plane) * in_plane);
-    const double off = distance(arc, t.representation);
+    const bool bent = t.bent_on == p;
+    if (!bent && !plc_.patches[p].planar) continue;
+    const auto found = arc_point(ball, p, bent ? t.bent_at : t.representation);
+    if (!found) continue;
+    const Point arc = frame_.rounded(*found);
+    const double off = bent ? 0 : distance(arc, t.representation);
     if (off >= nearest) continue;
-    if (hierarchy_.squared_distance_to(arc, 1e-12 * ball.radius * ball.radius, nullptr, [&](Index triangle) {
-          return plc_.triangles[triangle].patch == p;
-        }) >= 1e-12 * ball.radius * ball.radius)
-      continue;
     const Index other = collars_.ball_containing(ball.centre + (1 + 1e-9) * (arc - ball.centre));
     if (other != none) continue;
-    if (distance(arc, mesh_.point(nearest_vertex(arc, v[0]))) < clearance) continue;
+    const double gap = distance(arc, mesh_.point(nearest_vertex(arc, v[0])));
+    if (gap < (bent ? 0.1 * distance_ : clearance)) continue;
     nearest = off;
     best = arc;
     patch = p;
   }
+  if (t.bent_on != none && patch == none) return false;
   return insert_on_collar(best, patch == none ? 3 : 2, patch, v[0]);
 }
 
@@ -299,10 +355,7 @@ bool Refinement::insert_on_collar(const Point& p, std::uint8_t dimension, Index 
   const Index nearest = nearest_vertex(rounded, nearby);
   const Index cell = mesh_.conflicting_cell_around(nearest, rounded);
   const double gap = distance(rounded, mesh_.point(nearest));
-  if (cell == none || gap < floor_) {
-    give_up(rounded, "the collar surface could not be resolved");
-    return false;
-  }
+  if (cell == none || gap < floor_) return false;  // what stays poor is for the certificate to tell
   mesh_.find_conflict_zone(rounded, cell, zone_);
   force_insert(dimension, feature);
   return true;

@@ -233,8 +233,12 @@ void Refinement::restrict_face(FaceId face) {
   const Index patch = patch_of(t);
   t.resolved_vertices = on_patch(v[0], patch) && on_patch(v[1], patch) && on_patch(v[2], patch);
   if (t.resolved_vertices && plc_.patches[patch].planar && !t.several_sheets) {
-    t.x = triangle_circumcentre(face);
-    t.squared_radius = squared_distance(t.x, corner);
+    // A needle's circumcentre is noise; the crossing is not.
+    const Point centre = triangle_circumcentre(face);
+    if (squared_distance(centre, t.x) < 0.01 * t.squared_radius) {
+      t.x = centre;
+      t.squared_radius = squared_distance(t.x, corner);
+    }
   }
   t.in_collar = vertices_[v[0]].near_collar && collars_.ball_containing(t.x) != none;
 }

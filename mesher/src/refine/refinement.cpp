@@ -497,6 +497,7 @@ std::optional<Refinement::Candidate> Refinement::triangle_candidate(FaceId face)
     if (nn > 0) p = p + offset - (dot(offset, n) / nn) * n;
     if (collars_.ball_containing(p) != none) p = t.x;
   }
+  if (plc_.patches[patch].planar) p = on_plane(patch, p);
   p = frame_.rounded(p);
   const FaceId other = mesh_.opposite(face);
   Index start = none;
@@ -505,6 +506,12 @@ std::optional<Refinement::Candidate> Refinement::triangle_candidate(FaceId face)
   else start = mesh_.conflicting_cell_around(mesh_.face_vertices(face)[0], p);
   if (start == none) return std::nullopt;
   return Candidate{p, t.squared_radius, t.x, 2, patch, start};
+}
+
+// Needle triangles of a facet that is planar within a tolerance only have normals of their own.
+Point Refinement::on_plane(Index patch, const Point& p) const {
+  const Plc::Patch& plane = plc_.patches[patch];
+  return p - dot(p - frame_.inside(plane.origin), plane.normal) * plane.normal;
 }
 
 bool Refinement::inside_box(const Point& p) const {

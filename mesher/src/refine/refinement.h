@@ -143,6 +143,7 @@ class Refinement {
   std::optional<Candidate> cell_candidate(Index cell);
   std::optional<Candidate> triangle_candidate(FaceId face);
   Index last_vertex() const { return mesh_.vertex_count() - 1; }
+  Point on_plane(Index patch, const Point& p) const;
   bool inside_box(const Point& p) const;
   Vector random_in_cube();
   void give_up(const Point& where, const std::string& what);
@@ -233,6 +234,8 @@ class Refinement {
     Point representation;
     bool several;   // its dual edge meets the collar surface more than once
     bool poor;
+    Index bent_on = none;  // a smooth patch that an edge of it leaves too far ...
+    Point bent_at = {};    // ... at its middle
   };
   void prepare_collars();
   bool meets_collar(Index vertex) const;
@@ -243,6 +246,9 @@ class Refinement {
   void take_in_flat_cells();
   void judge_collar_edges(std::vector<CollarTriangle>& triangles) const;
   bool poorly_represented(const CollarTriangle& t);
+  bool bends(CollarTriangle& t) const;
+  bool far_from_patch(Index patch, const Point& p) const;
+  std::optional<Point> arc_point(const CollarBall& ball, Index patch, const Point& near) const;
   bool crosses_patch(Index a, Index b);
   bool spans_patch(std::span<const Index> corners) const;
   bool on_crease(Index vertex) const;

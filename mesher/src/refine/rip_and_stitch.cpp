@@ -116,15 +116,20 @@ Index Refinement::patch_between(const std::array<Index, 3>& corners, Index a, In
   const auto& patches = v.dimension == 0 ? plc_.vertices[v.feature].patches : plc_.curves[v.feature].patches;
   std::vector<Index> possible;
   std::copy_if(patches.begin(), patches.end(), std::back_inserter(possible), separates);
-  if (possible.size() < 2) return possible.empty() ? none : possible[0];
+  if (possible.empty() || (possible.size() == 1 && a != b)) return possible.empty() ? none : possible[0];
   const Point middle = (mesh_.point(corners[0]) + mesh_.point(corners[1]) + mesh_.point(corners[2])) / 3;
   const auto distance_to = [&](Index patch) {
     return hierarchy_.squared_distance_to(middle, INFINITY, nullptr, [&](Index triangle) {
       return plc_.triangles[triangle].patch == patch;
     });
   };
-  return *std::min_element(possible.begin(), possible.end(),
-                           [&](Index x, Index y) { return distance_to(x) < distance_to(y); });
+  const Index nearest = *std::min_element(possible.begin(), possible.end(), [&](Index x, Index y) {
+    return distance_to(x) < distance_to(y);
+  });
+  // Inside one region a face between vertices of a patch may lie beside it.
+  const double near = plc_.patches[nearest].planar ? std::max(plc_.planar_tolerance, 1e-9 * diagonal_)
+                                                   : distance_;
+  return a != b || distance_to(nearest) <= near * near ? nearest : none;
 }
 
 }  // namespace collarmesh

@@ -127,7 +127,9 @@ bool Refinement::refine_distant_triangles() {
     if (plc_.patches[patch].planar || t.in_collar || t.given_up) continue;
     const auto v = mesh_.face_vertices(face);
     const Point &a = mesh_.point(v[0]), &b = mesh_.point(v[1]), &c = mesh_.point(v[2]);
-    const std::array<Point, 4> samples{0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a), (a + b + c) / 3};
+    const std::array<Point, 10> samples{
+        (a + b + c) / 3, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a), (2 * a + b) / 3, (a + 2 * b) / 3,
+        (2 * b + c) / 3, (b + 2 * c) / 3, (2 * c + a) / 3, (c + 2 * a) / 3};
     const bool distant = std::any_of(samples.begin(), samples.end(), [&](const Point& p) {
       return hierarchy_.squared_distance_to(p, tolerance, nullptr, [&](Index triangle) {
         return plc_.triangles[triangle].patch == patch;
