@@ -51,6 +51,7 @@ const CLI::Validator memory = CLI::Validator(
 const CLI::Validator length = number_in(0, 1e300, "a length (a number >= 0 in input units)");
 const CLI::Validator fraction = number_in(0, 0.1, "a number from 0 to 0.1 (relative to the diagonal)");
 const CLI::Validator angle = number_in(0, 180, "an angle from 0 to 180 degrees");
+const CLI::Validator collar_angle = number_in(100, 175, "an angle from 100 to 175 degrees");
 const CLI::Validator ratio = number_in(1, 1e300, "a ratio of at least 1");
 
 /// An option whose value 0 stands for a default that depends on the input.
@@ -118,8 +119,9 @@ void add_quality_options(CLI::App& app, MeshOptions& m) {
       "Bound on largest circumradius / shortest edge at a vertex, more than 2 sqrt 2", "none")
       ->check(length)
       ->group(group);
-  add(app, "--collar-angle", m.collar_angle, "Bound on dihedral angles in the collars around creases, degrees")
-      ->check(number_in(100, 175, "a number from 100 to 175"))
+  add(app, "--collar-angle", m.collar_angle,
+      "Bound on dihedral angles in the collars around creases, degrees")
+      ->check(collar_angle)
       ->group(group);
   add(app, "--theta", m.theta, "Warp to input within this times a gap ball's radius; 0: never")
       ->check(number_in(0, 0.449, "a number from 0 to below 0.45"))
@@ -173,6 +175,8 @@ CLI::App* add_check_command(CLI::App& app, CheckArguments& a) {
   check->add_option("--against", a.inputs, "The input: one or several files")->required()->type_name("FILE");
   add(*check, "--radius-edge", a.check.radius_edge, "Bound on circumradius / shortest edge of a tetrahedron")
       ->check(ratio);
+  add(*check, "--collar-angle", a.check.collar_angle, "Bound on dihedral angles in collars, degrees")
+      ->check(collar_angle);
   add(*check, "--distance", a.check.distance,
       "Largest distance from smooth surfaces and curves, absolute, input units", "1e-3 of the diagonal")
       ->check(length);

@@ -59,6 +59,7 @@ Json options_json(const MeshArguments& a) {
           {"planar_tolerance", a.complex.plc.planar_tolerance},
           {"weld", a.complex.plc.weld},
           {"crease_angle", a.complex.crease_angle},
+          {"collar_angle", m.collar_angle},
           {"seed", m.seed},
           {"max_vertices", or_null(static_cast<double>(m.max_vertices))},
           {"max_memory", or_null(static_cast<double>(m.max_memory))},

@@ -153,15 +153,21 @@ class InvalidComplex(ProgramTest):
 
 class Creases(ProgramTest):
     def test_a_sharp_wedge_gets_collars(self):
-        report = os.path.join(os.path.dirname(self.out), "report.json")
-        self.expect(0, self.write("wedge.off", wedge_text(10)), "-o", self.out, "--report", report)
-        with open(report) as file:
-            found = json.load(file)
+        report = self.folder / "report.json"
+        wedge = self.write("wedge.off", wedge_text(10))
+        self.expect(0, wedge, "-o", self.out, "--report", report, writes=True)
+        found = json.loads(report.read_text())
         self.assertGreater(len(found["complex"]["creases"]), 0)
+        self.assertGreater(found["check"]["collar_tets"], 0)
+        self.expect(0, "check", self.out, "--against", wedge, writes=True)
 
     def test_the_bound_in_collars_is_an_option(self):
-        self.expect(0, self.write("wedge.off", wedge_text(30)), "-o", self.out, "--collar-angle", "140")
-        self.expect(2, self.box, "-o", self.out, "--collar-angle", "99")
+        wedge = self.write("wedge.off", wedge_text(30))
+        self.expect(0, wedge, "-o", self.out, "--collar-angle", "140", writes=True)
+        self.expect(0, "check", self.out, "--against", wedge, "--collar-angle", "140", writes=True)
+        self.expect(7, "check", self.out, "--against", wedge, "--collar-angle", "100", writes=True)
+        self.out.unlink()
+        self.expect(2, self.box, "-o", self.out, "--collar-angle", "99", says=["100 to 175"])
 
 
 class Budgets(ProgramTest):
