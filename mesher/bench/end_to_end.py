@@ -62,7 +62,7 @@ def measure(meshers, surface: Surface, target: int, options, cache: SizeCache) -
                 if isinstance(mesher, Collarmesh):
                     program = options.build / "bin" / "triangulate_points"
                     cell.triangulation.append(
-                        triangulation_seconds(program, folder / "mesh.vtu", options.time_limit))
+                        triangulation_seconds(program, folder / "mesh.msh", options.time_limit))
             except ProgramFailed as failure:
                 cell.failure = str(failure)
     return cells
@@ -103,18 +103,19 @@ def ratio_row(surface: Surface, target: int, cells: dict[str, Cell]) -> list[str
 
     ours = speed("collarmesh")
     if ours is None:
-        return [surface.name, si(target), "", "", "", ""]
+        return [surface.name, si(target), *[""] * 5]
     text = [f"{ours / peer:.2f}" if peer else "" for peer in (speed("TetGen"), speed("Gmsh HXT"))]
     cell = cells["collarmesh"]
     triangulation = statistics.median(cell.triangulation)
     stages = cell.runs[-1].stages or {}
     rest = ", ".join(f"{stage} {seconds(t)}" for stage, t in stages.items() if stage != "total")
     return [surface.name, si(target), *text,
-            f"{cell.median('refinement_cpu') / triangulation:.2f}", rest]
+            f"{cell.median('refinement_cpu') / triangulation:.2f}",
+            f"{cell.runs[-1].cells / cell.tets:.2f}", rest]
 
 
 ratio_header = ["input", "target", "speed / TetGen's", "speed / HXT's", "time / bare triangulation",
-                "stages, s"]
+                "cells / tets", "stages, s"]
 
 
 def slope(small: Cell, large: Cell) -> float:

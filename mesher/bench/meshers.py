@@ -27,6 +27,7 @@ class MeshRun:
     structure_bytes: int = 0   # what the mesher says its structures took; 0: says nothing
     stages: dict | None = None
     guarantee_missed: bool = False
+    cells: int = 0             # of the whole triangulation, outside the solid too; 0: says nothing
 
 
 def _number(pattern: str, text: str) -> float:
@@ -56,7 +57,7 @@ class Collarmesh:
         surface.write(folder / "input")
 
     def mesh(self, surface: Surface, size: float, folder: Path) -> MeshRun:
-        command = [str(self.program), f"input{surface.suffix}", "-o", "mesh.vtu", "--size", f"{size:.17g}",
+        command = [str(self.program), f"input{surface.suffix}", "-o", "mesh.msh", "--size", f"{size:.17g}",
                    "--report", "report.json", "--progress", "none", "-q", *self.arguments]
         measured = run(command, folder, self.time_limit, accepted=(0, self.guarantee_missed))
         report = json.loads((folder / "report.json").read_text())
@@ -65,7 +66,7 @@ class Collarmesh:
         stages = {stage: seconds * share for stage, seconds in report["seconds"].items()}
         return MeshRun(report["mesh"]["tets"], measured.cpu, stages["refine"], measured.peak_bytes,
                        report["statistics"]["peak_bytes"], stages,
-                       measured.exit_code == self.guarantee_missed)
+                       measured.exit_code == self.guarantee_missed, report["statistics"]["cells"])
 
 
 class TetGen:

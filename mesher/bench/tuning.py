@@ -12,7 +12,8 @@ trials = 8
 
 
 class SizeCache:
-    """A JSON file in the folder for temporary files; sizes are forgotten when a mesher changes."""
+    """A JSON file in the folder for temporary files: sizes and the signature of the mesher that they
+    were found for. When the mesher changes they are still good first guesses."""
 
     def __init__(self) -> None:
         self.folder = Path(tempfile.gettempdir()) / "collarmesh_bench"
@@ -20,11 +21,11 @@ class SizeCache:
         self.path = self.folder / "sizes.json"
         self.sizes = json.loads(self.path.read_text()) if self.path.exists() else {}
 
-    def get(self, key: str) -> float | None:
+    def get(self, key: str) -> tuple[float, str] | None:
         return self.sizes.get(key)
 
-    def put(self, key: str, size: float) -> None:
-        self.sizes[key] = size
+    def put(self, key: str, size: float, signature: str) -> None:
+        self.sizes[key] = size, signature
         self.path.write_text(json.dumps(self.sizes, indent=1))
 
 
@@ -32,26 +33,31 @@ def size_for(mesher, surface, target: int, folder: Path, cache: SizeCache) -> fl
     """The size at which `mesher` makes the wanted number of tets, within the tolerance; the nearest
     one found when its count jumps over it or never gets that low.
     Raises ProgramFailed when the mesher does."""
-    key = f"{mesher.name} {mesher.signature()} {surface.name} {len(surface.polygons)} {target}"
-    known = cache.get(key)
-    if known is not None:
-        return known
-    size = (surface.volume / (0.12 * target)) ** (1 / 3)
-    best, best_miss = size, math.inf
-    finer, coarser = 0.0, math.inf   # sizes that gave too many, too few
+    key = f"{mesher.name} {surface.name} {len(surface.polygons)} {target}"
+    size, signature = cache.get(key) or ((surface.volume / (0.12 * target)) ** (1 / 3), None)
+    if signature == mesher.signature():
+        return size
+    found: list[tuple[float, float]] = []   # log size, log(tets / target)
     for _ in range(trials):
-        tets = mesher.mesh(surface, size, folder).tets
-        miss = abs(math.log(tets / target))
-        if miss < best_miss:
-            best, best_miss = size, miss
-        if miss <= math.log(1 + tolerance) * 0.9 or size > 2 * surface.diagonal:
+        found.append((math.log(size), math.log(mesher.mesh(surface, size, folder).tets / target)))
+        if abs(found[-1][1]) <= 0.9 * math.log(1 + tolerance) or size > 2 * surface.diagonal:
             break
-        if tets > target:
-            finer = max(finer, size)
-        else:
-            coarser = min(coarser, size)
-        size *= (tets / target) ** (1 / 3)
-        if not finer < size < coarser:
-            size = finer * 2 if math.isinf(coarser) else math.sqrt(max(finer, coarser / 4) * coarser)
-    cache.put(key, best)
+        size = math.exp(_next_trial(found))
+    best = math.exp(min(found, key=lambda trial: abs(trial[1]))[0])
+    cache.put(key, best, mesher.signature())
     return best
+
+
+def _next_trial(found: list[tuple[float, float]]) -> float:
+    """A log size nearer to no miss: by the secant, where it makes sense, else as if tets ~ size^-3;
+    between the nearest sizes on both sides once they are known."""
+    at, miss = found[-1]
+    slope = -3.0
+    if len(found) > 1 and found[-2][0] != at:
+        slope = min(-0.5, max(-6.0, (miss - found[-2][1]) / (at - found[-2][0])))
+    proposed = at - miss / slope
+    finer = max((x for x, y in found if y > 0), default=-math.inf)
+    coarser = min((x for x, y in found if y < 0), default=math.inf)
+    if finer < coarser and not finer < proposed < coarser:
+        proposed = (finer + coarser) / 2
+    return proposed
