@@ -52,7 +52,8 @@ TEST(RefinementSizing, MedianEdgeIsNearTheTarget) {
     EXPECT_NEAR(meshed.report.median_edge, size, 0.2 * size);
   };
   for (const double size : {0.15, 0.05}) expect_near_target(testing::box(), size);
-  for (const double size : {0.2, 0.1}) expect_near_target(testing::icosphere(1, 16), size);
+  // At sizes whose triangles are close enough to the sphere anyway.
+  for (const double size : {0.12, 0.08}) expect_near_target(testing::icosphere(1, 16), size);
 }
 
 TEST(RefinementSizing, GlobalSizeBoundsCellsFacesAndEdges) {
@@ -237,7 +238,7 @@ TEST(RefinementQuality, VertexRatioIsKept) {
 
 TEST(RefinementQuality, TighterRadiusEdge) {
   for (const PolygonSoup& soup :
-       {testing::box(), testing::icosphere(1, 8), testing::l_shape()}) {
+       {testing::box(), testing::icosphere(1, 8), testing::plate_with_hole(1, 16)}) {
     MeshOptions options = with_size(0.4);
     options.radius_edge = 1.5;
     const Meshed meshed = mesh_of(soup, options);

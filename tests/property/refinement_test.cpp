@@ -81,6 +81,16 @@ TEST(RefinementShapes, PlateWithHole) {
 
 TEST(RefinementShapes, Sphere) { expect_close(testing::icosphere(1, 12), 0.4, 0.15, 4 * pi / 3, 4 * pi); }
 
+TEST(RefinementShapes, PlateWithSmoothHole) {
+  expect_close(testing::plate_with_hole(1, 64), 1, 0.4, 16 - pi, 2 * pi);
+}
+
+TEST(RefinementShapes, Cylinder) { expect_close(testing::cylinder(1, 2, 64, 3), 0.5, 0.2, 2 * pi, 8 * pi); }
+
+TEST(RefinementShapes, Torus) {
+  expect_close(testing::torus(2, 0.7, 64, 32), 0.6, 0.25, 2 * pi * pi * 2 * 0.49, 4 * pi * pi * 2 * 0.7);
+}
+
 TEST(RefinementShapes, NestedBoxes) {
   const auto boxes = testing::nested_boxes(3);
   const auto cube = [](double inset) { return std::pow(1 - 2 * inset, 3); };
@@ -129,6 +139,30 @@ TEST(RefinementShapes, LooseSegmentsAndPoints) {
 }
 
 // Small features, at sizes ten times theirs.
+
+// A sphere of radius 1 with a smooth bump on its pole: the radius grows by h exp(-(angle/w)^2).
+PolygonSoup bumped_sphere(double height, double width) {
+  std::vector<Point> profile;
+  const auto add = [&](double from_pole) {
+    const double radius = 1 + height * std::exp(-(from_pole / width) * (from_pole / width));
+    profile.push_back({radius * std::sin(from_pole), 0, radius * std::cos(from_pole)});
+  };
+  for (int i = 0; i <= 24; ++i) add(pi - (pi - 4 * width) * i / 24);
+  for (int i = 1; i <= 60; ++i) add(4 * width * (60 - i) / 60);
+  profile.front().x = profile.back().x = 0;
+  return testing::revolution(profile, 48);
+}
+
+TEST(RefinementSmallFeatures, ThinSpikeOnASphere) {
+  for (const double width : {0.1, 0.04}) {
+    SCOPED_TRACE(width);
+    const Meshed meshed = mesh_of(bumped_sphere(0.5, width), with_size(10 * width));
+    EXPECT_EQ(faults(meshed), "");
+    EXPECT_EQ(meshed.plc.curves.size(), 0U);
+    EXPECT_LE(testing::distance_to_faces(meshed.result.mesh, {0, 0, 1.5}),
+              1e-3 * meshed.plc.bounds.diagonal());
+  }
+}
 
 TEST(RefinementSmallFeatures, FilletedSpikeOnASphere) {
   const Meshed meshed = mesh_of(testing::spiked_sphere(0.03, 0.4), with_size(0.6));

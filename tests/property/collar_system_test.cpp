@@ -1,0 +1,298 @@
+// Gap size against brute force, and the balls of the collar system against their definitions (paper,
+// Definitions 2 and 7; DESIGN section 9), on every acute family.
+#include "collar/collar_system.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/acute_shapes.h"
+
+namespace collarmesh {
+namespace {
+
+using testing::AcuteShape;
+
+constexpr double size = 0.3;
+constexpr double crease_angle = 60;
+constexpr double rounding = 1e-9;
+
+double to_segment(const Point& p, const Point& a, const Point& b) {
+  const Vector d = b - a;
+  const double t = std::clamp(dot(p - a, d) / squared_norm(d), 0.0, 1.0);
+  return distance(p, a + t * d);
+}
+
+double to_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
+  const Vector n = cross(b - a, c - a);
+  const Point foot = p - (dot(p - a, n) / squared_norm(n)) * n;
+  const auto left_of = [&](const Point& u, const Point& v) { return dot(cross(v - u, foot - u), n) >= 0; };
+  if (left_of(a, b) && left_of(b, c) && left_of(c, a)) return distance(p, foot);
+  return std::min({to_segment(p, a, b), to_segment(p, b, c), to_segment(p, c, a)});
+}
+
+// The features that contain a point: one vertex with its curves and patches, or one curve with its patches.
+struct Containing {
+  Index vertex = none;
+  std::vector<Index> curves, patches;
+
+  bool has_curve(Index c) const { return std::find(curves.begin(), curves.end(), c) != curves.end(); }
+  bool has_patch(Index p) const { return std::find(patches.begin(), patches.end(), p) != patches.end(); }
+};
+
+Containing features_of_vertex(const Plc& plc, Index v) {
+  Containing features{v, {}, {}};
+  const Index point = plc.vertices[v].point;
+  for (Index c = 0; c < plc.curves.size(); ++c)
+    if (std::count(plc.curves[c].points.begin(), plc.curves[c].points.end(), point) > 0)
+      features.curves.push_back(c);
+  features.patches = plc.vertices[v].patches;
+  for (const auto& t : plc.triangles)
+    if (std::count(t.points.begin(), t.points.end(), point) > 0 && !features.has_patch(t.patch))
+      features.patches.push_back(t.patch);
+  return features;
+}
+
+double brute_force_gap(const Plc& plc, const Point& p, const Containing& features) {
+  double gap = INFINITY;
+  for (Index v = 0; v < plc.vertices.size(); ++v)
+    if (v != features.vertex) gap = std::min(gap, distance(p, plc.points[plc.vertices[v].point]));
+  for (Index c = 0; c < plc.curves.size(); ++c) {
+    if (features.has_curve(c)) continue;
+    const auto& points = plc.curves[c].points;
+    for (std::size_t i = 0; i + 1 < points.size() + (plc.curves[c].closed ? 1 : 0); ++i)
+      gap = std::min(gap, to_segment(p, plc.points[points[i]], plc.points[points[(i + 1) % points.size()]]));
+  }
+  for (const auto& t : plc.triangles)
+    if (!features.has_patch(t.patch))
+      gap = std::min(
+          gap, to_triangle(p, plc.points[t.points[0]], plc.points[t.points[1]], plc.points[t.points[2]]));
+  return gap;
+}
+
+// Points inside the segments of a curve.
+std::vector<Point> points_along(const Plc& plc, Index curve, unsigned per_segment) {
+  const Plc::Curve& c = plc.curves[curve];
+  std::vector<Point> samples;
+  for (std::size_t i = 0; i + 1 < c.points.size() + (c.closed ? 1 : 0); ++i) {
+    const Point &a = plc.points[c.points[i]], &b = plc.points[c.points[(i + 1) % c.points.size()]];
+    for (unsigned k = 1; k <= per_segment; ++k)
+      samples.push_back(a + double(k) / (per_segment + 1) * (b - a));
+  }
+  return samples;
+}
+
+std::vector<AcuteShape> shapes() {
+  using namespace testing;
+  std::vector<AcuteShape> all{wedge(60),
+                              wedge(20),
+                              wedge(1),
+                              fan(8),
+                              fan(40),
+                              sectors(12),
+                              pyramid(4, 30),
+                              pyramid(5, 2),
+                              star_prism(9, 0.4),
+                              spiked_octahedron(1),
+                              knife(5),
+                              two_knives(20, 20),
+                              comb(3, 10),
+                              pyramid_on_a_box(60),
+                              cubes_touching_in_an_edge(30),
+                              cubes_touching_in_a_corner(),
+                              facet_ending_inside(10),
+                              segment_meeting_a_facet(3),
+                              segment_near_a_crease(20, 0.03),
+                              facet_near_a_crease(20, 0.03),
+                              round_cone(45),
+                              lens(40),
+                              cut_torus(0.6)};
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    auto members = random_members(seed);
+    std::move(members.begin(), members.end(), std::back_inserter(all));
+  }
+  return all;
+}
+
+struct Placed {
+  explicit Placed(const AcuteShape& shape) : plc(build(shape)), creases(find_creases(plc, crease_angle)) {
+    system = CollarSystem(
+        plc, plc.points, creases, [](const Point&) { return size; }, 1e-3 * plc.bounds.diagonal(), 0);
+  }
+  static Plc build(const AcuteShape& shape) {
+    PlcOptions options;
+    options.feature_angle = shape.feature_angle;
+    return build_plc(shape.soups, options);
+  }
+  double gap(const CollarBall& ball) const {
+    return ball.dimension == 0
+               ? brute_force_gap(plc, ball.centre, features_of_vertex(plc, ball.feature))
+               : brute_force_gap(plc, ball.centre, {none, {ball.feature}, plc.curves[ball.feature].patches});
+  }
+
+  Plc plc;
+  std::vector<Crease> creases;
+  CollarSystem system;
+};
+
+// Both are infinite where every feature contains the point.
+void expect_equal(double gap, double expected, const char* kind, Index feature) {
+  if (std::isinf(expected)) {
+    EXPECT_TRUE(std::isinf(gap)) << kind << " " << feature;
+  } else {
+    EXPECT_NEAR(gap, expected, rounding * expected) << kind << " " << feature;
+  }
+}
+
+TEST(GapSize, EqualsBruteForceAtVerticesAndAlongCurves) {
+  for (const AcuteShape& shape : shapes()) {
+    SCOPED_TRACE(shape.name);
+    const Plc plc = Placed::build(shape);
+    const GapSize gap(plc, plc.points);
+    for (Index v = 0; v < plc.vertices.size(); ++v) {
+      const double expected =
+          brute_force_gap(plc, plc.points[plc.vertices[v].point], features_of_vertex(plc, v));
+      expect_equal(gap.at_vertex(v), expected, "vertex", v);
+    }
+    for (Index c = 0; c < plc.curves.size(); ++c)
+      for (const Point& p : points_along(plc, c, plc.curves[c].straight ? 5 : 1)) {
+        const double expected = brute_force_gap(plc, p, {none, {c}, plc.curves[c].patches});
+        expect_equal(gap.on_curve(c, p), expected, "curve", c);
+      }
+  }
+}
+
+TEST(CollarSystem, EveryCreaseHasABall) {
+  for (const AcuteShape& shape : shapes()) {
+    SCOPED_TRACE(shape.name);
+    const Placed placed(shape);
+    EXPECT_EQ(placed.system.empty(), placed.creases.empty());
+    for (const Crease& crease : placed.creases) {
+      if (crease.curve != none) {
+        EXPECT_TRUE(placed.system.is_crease_curve(crease.curve));
+      }
+      if (crease.vertex != none) {
+        EXPECT_NE(placed.system.ball_at_vertex(crease.vertex), none);
+      }
+      EXPECT_NE(placed.system.ball_containing(crease.where), none) << describe(placed.plc, crease);
+    }
+  }
+}
+
+TEST(CollarSystem, RadiiAreAtMostAThirdOfTheGapAndTheSize) {
+  for (const AcuteShape& shape : shapes()) {
+    SCOPED_TRACE(shape.name);
+    const Placed placed(shape);
+    for (const CollarBall& ball : placed.system.balls()) {
+      EXPECT_LE(ball.radius, placed.gap(ball) / 3 * (1 + rounding));
+      EXPECT_LE(ball.radius, size);
+    }
+  }
+}
+
+// May two balls meet: do they lie on one crease curve?
+bool on_one_crease(const Plc& plc, const CollarBall& a, const CollarBall& b) {
+  if (a.dimension == 1 && b.dimension == 1) return a.feature == b.feature;
+  if (a.dimension == b.dimension) return false;  // vertices
+  const CollarBall &at_vertex = a.dimension == 0 ? a : b, &on_curve = a.dimension == 0 ? b : a;
+  return plc.vertex_on_curve(at_vertex.feature, on_curve.feature);
+}
+
+TEST(CollarSystem, BallsOfDifferentCreasesAreDisjoint) {
+  for (const AcuteShape& shape : shapes()) {
+    SCOPED_TRACE(shape.name);
+    const Placed placed(shape);
+    const auto& balls = placed.system.balls();
+    for (Index i = 0; i < balls.size(); ++i)
+      for (Index j = i + 1; j < balls.size(); ++j)
+        if (!on_one_crease(placed.plc, balls[i], balls[j])) {
+          EXPECT_GT(distance(balls[i].centre, balls[j].centre), balls[i].radius + balls[j].radius)
+              << "balls " << i << " and " << j;
+        }
+  }
+}
+
+// Definition 7: what lies on the surface of the union and in two balls lies on a circle of two of them. Three
+// balls on a crease must not have a common point on the surface: a third ball holds no part of the circle.
+TEST(CollarSystem, NoThirdBallMeetsACircle) {
+  for (const AcuteShape& shape : shapes()) {
+    SCOPED_TRACE(shape.name);
+    if (shape.feature_angle > 0) continue;
+    const Placed placed(shape);
+    const auto& balls = placed.system.balls();
+    for (const CollarLink& link : placed.system.links()) {
+      const CollarBall &a = balls[link.balls[0]], &b = balls[link.balls[1]];
+      const double d = distance(a.centre, b.centre);
+      const double along = (d * d + a.radius * a.radius - b.radius * b.radius) / (2 * d);
+      const Vector axis = (b.centre - a.centre) / d;
+      const Point centre = a.centre + along * axis;
+      ASSERT_LT(std::fabs(along), a.radius);
+      const double radius = std::sqrt(a.radius * a.radius - along * along);
+      for (Index k = 0; k < balls.size(); ++k) {
+        if (k == link.balls[0] || k == link.balls[1]) continue;
+        // The distance of the third centre from the circle.
+        const Vector to_centre = balls[k].centre - centre;
+        const double height = dot(to_centre, axis);
+        const double off_axis = std::sqrt(std::max(0.0, squared_norm(to_centre) - height * height));
+        EXPECT_GE(std::hypot(height, off_axis - radius), balls[k].radius) << "ball " << k;
+      }
+    }
+  }
+}
+
+TEST(CollarSystem, ConsecutiveBallsOverlapDeeply) {
+  for (const AcuteShape& shape : shapes()) {
+    SCOPED_TRACE(shape.name);
+    const Placed placed(shape);
+    const auto& balls = placed.system.balls();
+    for (const CollarLink& link : placed.system.links()) {
+      const CollarBall &a = balls[link.balls[0]], &b = balls[link.balls[1]];
+      EXPECT_TRUE(placed.system.consecutive(link.balls[0], link.balls[1]));
+      EXPECT_LE(squared_distance(a.centre, b.centre),
+                (a.radius * a.radius + b.radius * b.radius) * (1 + rounding))
+          << "balls " << link.balls[0] << " and " << link.balls[1];
+    }
+  }
+}
+
+TEST(CollarSystem, CreasesAreCovered) {
+  for (const AcuteShape& shape : shapes()) {
+    SCOPED_TRACE(shape.name);
+    const Placed placed(shape);
+    for (Index c = 0; c < placed.plc.curves.size(); ++c) {
+      if (!placed.system.is_crease_curve(c)) continue;
+      for (const Index point : placed.plc.curves[c].points)
+        EXPECT_NE(placed.system.ball_containing(placed.plc.points[point]), none) << "curve " << c;
+      for (const Point& p : points_along(placed.plc, c, 200))
+        EXPECT_NE(placed.system.ball_containing(p), none)
+            << "curve " << c << " at " << p.x << ", " << p.y << ", " << p.z;
+    }
+  }
+}
+
+// Queries of the hierarchy against all balls.
+TEST(CollarSystem, QueriesEqualBruteForce) {
+  for (const AcuteShape& shape : {testing::fan(8), testing::star_prism(9, 0.4)}) {
+    const Placed placed(shape);
+    const auto& balls = placed.system.balls();
+    for (unsigned i = 0; i < 2000; ++i) {
+      const double t = i * 0.618034, r = 0.05 * (i % 5);
+      const Point p{2 * (t - std::floor(t)) - 1, std::sin(7.0 * i), 0.5 * std::cos(3.0 * i)};
+      const auto inside = [&](const CollarBall& b) { return distance(p, b.centre) < b.radius; };
+      const auto met = [&](const CollarBall& b) { return distance(p, b.centre) <= b.radius + r; };
+      EXPECT_EQ(placed.system.ball_containing(p) != none, std::any_of(balls.begin(), balls.end(), inside));
+      EXPECT_EQ(placed.system.meets(p, r), std::any_of(balls.begin(), balls.end(), met));
+      const Point q = balls[i % balls.size()].centre;
+      std::vector<Index> found, expected;
+      placed.system.balls_on_segment(p, q, found);
+      for (Index b = 0; b < balls.size(); ++b)
+        if (to_segment(balls[b].centre, p, q) < balls[b].radius) expected.push_back(b);
+      std::sort(found.begin(), found.end());
+      EXPECT_EQ(found, expected);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace collarmesh
