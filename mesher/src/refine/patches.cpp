@@ -250,7 +250,8 @@ Point Refinement::crossing_point(FaceId face, Index triangle) const {
   const Vector n = cross(t[1] - t[0], t[2] - t[0]);
   const double hp = dot(p - t[0], n), hq = dot(q - t[0], n);
   const double share = hp == hq ? 0.5 : std::clamp(hp / (hp - hq), 0.0, 1.0);
-  return p + share * (q - p);
+  // A dual edge almost in the triangle's plane crosses it, but where is noise: not beside it.
+  return nearest_point_on_triangle(p + share * (q - p), t[0], t[1], t[2]);
 }
 
 Point Refinement::triangle_circumcentre(FaceId face) const {
