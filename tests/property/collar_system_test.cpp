@@ -12,7 +12,7 @@
 namespace collarmesh {
 namespace {
 
-using testing::AcuteShape;
+namespace acute = testing::acute;
 
 constexpr double size = 0.3;
 constexpr double crease_angle = 60;
@@ -83,31 +83,31 @@ std::vector<Point> points_along(const Plc& plc, Index curve, unsigned per_segmen
   return samples;
 }
 
-std::vector<AcuteShape> shapes() {
-  using namespace testing;
-  std::vector<AcuteShape> all{wedge(60),
-                              wedge(20),
-                              wedge(1),
-                              fan(8),
-                              fan(40),
-                              sectors(12),
-                              pyramid(4, 30),
-                              pyramid(5, 2),
-                              star_prism(9, 0.4),
-                              spiked_octahedron(1),
-                              knife(5),
-                              two_knives(20, 20),
-                              comb(3, 10),
-                              pyramid_on_a_box(60),
-                              cubes_touching_in_an_edge(30),
-                              cubes_touching_in_a_corner(),
-                              facet_ending_inside(10),
-                              segment_meeting_a_facet(3),
-                              segment_near_a_crease(20, 0.03),
-                              facet_near_a_crease(20, 0.03),
-                              round_cone(45),
-                              lens(40),
-                              cut_torus(0.6)};
+std::vector<acute::Shape> shapes() {
+  using namespace acute;
+  std::vector<acute::Shape> all{wedge(60),
+                                wedge(20),
+                                wedge(1),
+                                fan(8),
+                                fan(40),
+                                sectors(12),
+                                pyramid(4, 30),
+                                pyramid(5, 2),
+                                star_prism(9, 0.4),
+                                spiked_octahedron(1),
+                                knife(5),
+                                two_knives(20, 20),
+                                comb(3, 10),
+                                pyramid_on_a_box(60),
+                                cubes_touching_in_an_edge(30),
+                                cubes_touching_in_a_corner(),
+                                facet_ending_inside(10),
+                                segment_meeting_a_facet(3),
+                                segment_near_a_crease(20, 0.03),
+                                facet_near_a_crease(20, 0.03),
+                                round_cone(45),
+                                lens(40),
+                                cut_torus(0.6)};
   for (std::uint32_t seed = 1; seed <= 4; ++seed) {
     auto members = random_members(seed);
     std::move(members.begin(), members.end(), std::back_inserter(all));
@@ -116,11 +116,11 @@ std::vector<AcuteShape> shapes() {
 }
 
 struct Placed {
-  explicit Placed(const AcuteShape& shape) : plc(build(shape)), creases(find_creases(plc, crease_angle)) {
+  explicit Placed(const acute::Shape& shape) : plc(build(shape)), creases(find_creases(plc, crease_angle)) {
     system = CollarSystem(
         plc, plc.points, creases, [](const Point&) { return size; }, 1e-3 * plc.bounds.diagonal(), 0);
   }
-  static Plc build(const AcuteShape& shape) {
+  static Plc build(const acute::Shape& shape) {
     PlcOptions options;
     options.feature_angle = shape.feature_angle;
     return build_plc(shape.soups, options);
@@ -146,7 +146,7 @@ void expect_equal(double gap, double expected, const char* kind, Index feature) 
 }
 
 TEST(GapSize, EqualsBruteForceAtVerticesAndAlongCurves) {
-  for (const AcuteShape& shape : shapes()) {
+  for (const acute::Shape& shape : shapes()) {
     SCOPED_TRACE(shape.name);
     const Plc plc = Placed::build(shape);
     const GapSize gap(plc, plc.points);
@@ -164,7 +164,7 @@ TEST(GapSize, EqualsBruteForceAtVerticesAndAlongCurves) {
 }
 
 TEST(CollarSystem, EveryCreaseHasABall) {
-  for (const AcuteShape& shape : shapes()) {
+  for (const acute::Shape& shape : shapes()) {
     SCOPED_TRACE(shape.name);
     const Placed placed(shape);
     EXPECT_EQ(placed.system.empty(), placed.creases.empty());
@@ -181,7 +181,7 @@ TEST(CollarSystem, EveryCreaseHasABall) {
 }
 
 TEST(CollarSystem, RadiiAreAtMostAThirdOfTheGapAndTheSize) {
-  for (const AcuteShape& shape : shapes()) {
+  for (const acute::Shape& shape : shapes()) {
     SCOPED_TRACE(shape.name);
     const Placed placed(shape);
     for (const CollarBall& ball : placed.system.balls()) {
@@ -200,7 +200,7 @@ bool on_one_crease(const Plc& plc, const CollarBall& a, const CollarBall& b) {
 }
 
 TEST(CollarSystem, BallsOfDifferentCreasesAreDisjoint) {
-  for (const AcuteShape& shape : shapes()) {
+  for (const acute::Shape& shape : shapes()) {
     SCOPED_TRACE(shape.name);
     const Placed placed(shape);
     const auto& balls = placed.system.balls();
@@ -216,7 +216,7 @@ TEST(CollarSystem, BallsOfDifferentCreasesAreDisjoint) {
 // Definition 7: what lies on the surface of the union and in two balls lies on a circle of two of them. Three
 // balls on a crease must not have a common point on the surface: a third ball holds no part of the circle.
 TEST(CollarSystem, NoThirdBallMeetsACircle) {
-  for (const AcuteShape& shape : shapes()) {
+  for (const acute::Shape& shape : shapes()) {
     SCOPED_TRACE(shape.name);
     if (shape.feature_angle > 0) continue;
     const Placed placed(shape);
@@ -242,7 +242,7 @@ TEST(CollarSystem, NoThirdBallMeetsACircle) {
 }
 
 TEST(CollarSystem, ConsecutiveBallsOverlapDeeply) {
-  for (const AcuteShape& shape : shapes()) {
+  for (const acute::Shape& shape : shapes()) {
     SCOPED_TRACE(shape.name);
     const Placed placed(shape);
     const auto& balls = placed.system.balls();
@@ -257,7 +257,7 @@ TEST(CollarSystem, ConsecutiveBallsOverlapDeeply) {
 }
 
 TEST(CollarSystem, CreasesAreCovered) {
-  for (const AcuteShape& shape : shapes()) {
+  for (const acute::Shape& shape : shapes()) {
     SCOPED_TRACE(shape.name);
     const Placed placed(shape);
     for (Index c = 0; c < placed.plc.curves.size(); ++c) {
@@ -273,7 +273,7 @@ TEST(CollarSystem, CreasesAreCovered) {
 
 // Queries of the hierarchy against all balls.
 TEST(CollarSystem, QueriesEqualBruteForce) {
-  for (const AcuteShape& shape : {testing::fan(8), testing::star_prism(9, 0.4)}) {
+  for (const acute::Shape& shape : {acute::fan(8), acute::star_prism(9, 0.4)}) {
     const Placed placed(shape);
     const auto& balls = placed.system.balls();
     for (unsigned i = 0; i < 2000; ++i) {

@@ -12,12 +12,12 @@
 namespace collarmesh {
 namespace {
 
-using testing::AcuteShape;
+namespace acute = testing::acute;
 using testing::Meshed;
 
 constexpr double size = 0.3;
 
-void expect_right(const AcuteShape& shape) {
+void expect_right(const acute::Shape& shape) {
   SCOPED_TRACE(shape.name);
   const Meshed meshed = testing::mesh_of(shape.soups, testing::with_size(size), shape.feature_angle);
   EXPECT_EQ(testing::faults(meshed), "");
@@ -31,12 +31,11 @@ void expect_right(const AcuteShape& shape) {
 }
 
 TEST(Collar, Wedges) {
-  for (const double angle : {80.0, 60.0, 40.0, 20.0, 10.0, 5.0, 2.0, 1.0})
-    expect_right(testing::wedge(angle));
+  for (const double angle : {80.0, 60.0, 40.0, 20.0, 10.0, 5.0, 2.0, 1.0}) expect_right(acute::wedge(angle));
 }
 
 TEST(Collar, WedgeHasStarsAndBooks) {
-  const AcuteShape wedge = testing::wedge(30);
+  const acute::Shape wedge = acute::wedge(30);
   const TetMesh mesh = testing::mesh_of(wedge.soups, testing::with_size(size), 0).result.mesh;
   std::array<std::size_t, 3> kinds{};
   for (const std::uint8_t kind : mesh.tet_collar) ++kinds.at(kind);
@@ -46,92 +45,91 @@ TEST(Collar, WedgeHasStarsAndBooks) {
 }
 
 TEST(Collar, Fans) {
-  for (const unsigned k : {3U, 4U, 5U, 6U, 8U, 16U}) expect_right(testing::fan(k));
-  for (const unsigned k : {3U, 4U, 6U}) expect_right(testing::fan(k, k));
+  for (const unsigned k : {3U, 4U, 5U, 6U, 8U, 16U}) expect_right(acute::fan(k));
+  for (const unsigned k : {3U, 4U, 6U}) expect_right(acute::fan(k, k));
 }
 
 TEST(Collar, Sectors) {
-  for (const unsigned k : {5U, 6U, 8U, 12U, 20U}) expect_right(testing::sectors(k));
+  for (const unsigned k : {5U, 6U, 8U, 12U, 20U}) expect_right(acute::sectors(k));
 }
 
 TEST(Collar, PyramidsAndNeedles) {
   for (const unsigned k : {3U, 4U, 7U})
-    for (const double angle : {60.0, 30.0, 10.0, 5.0, 2.0}) expect_right(testing::pyramid(k, angle));
+    for (const double angle : {60.0, 30.0, 10.0, 5.0, 2.0}) expect_right(acute::pyramid(k, angle));
 }
 
 TEST(Collar, StarPrisms) {
-  for (const unsigned points : {4U, 5U, 7U, 9U, 12U}) expect_right(testing::star_prism(points, 0.4));
-  expect_right(testing::star_prism(9, 0.2));
-  expect_right(testing::star_prism(12, 0.7));
+  for (const unsigned points : {4U, 5U, 7U, 9U, 12U}) expect_right(acute::star_prism(points, 0.4));
+  expect_right(acute::star_prism(9, 0.2));
+  expect_right(acute::star_prism(12, 0.7));
 }
 
 TEST(Collar, SpikedOctahedra) {
-  for (const double height : {0.2, 0.5, 1.0, 2.0}) expect_right(testing::spiked_octahedron(height));
+  for (const double height : {0.2, 0.5, 1.0, 2.0}) expect_right(acute::spiked_octahedron(height));
 }
 
 TEST(Collar, Knives) {
-  for (const double angle : {60.0, 30.0, 10.0, 5.0, 2.0}) expect_right(testing::knife(angle));
-  for (const double angle : {40.0, 20.0, 10.0}) expect_right(testing::two_knives(angle, 20));
+  for (const double angle : {60.0, 30.0, 10.0, 5.0, 2.0}) expect_right(acute::knife(angle));
+  for (const double angle : {40.0, 20.0, 10.0}) expect_right(acute::two_knives(angle, 20));
 }
 
 TEST(Collar, SolidsThatTouchInAnEdge) {
-  for (const double gap : {60.0, 20.0, 5.0}) expect_right(testing::wedges_touching_in_an_edge(30, gap));
-  for (const double gap : {90.0, 60.0, 30.0, 10.0}) expect_right(testing::cubes_touching_in_an_edge(gap));
+  for (const double gap : {60.0, 20.0, 5.0}) expect_right(acute::wedges_touching_in_an_edge(30, gap));
+  for (const double gap : {90.0, 60.0, 30.0, 10.0}) expect_right(acute::cubes_touching_in_an_edge(gap));
 }
 
 TEST(Collar, SolidsThatTouchInAVertex) {
   for (const unsigned k : {3U, 4U, 6U})
-    for (const double angle : {90.0, 60.0, 20.0, 5.0}) expect_right(testing::pyramids_tip_to_tip(k, angle));
-  expect_right(testing::cubes_touching_in_a_corner());
-  for (const double angle : {20.0, 60.0, 120.0, 160.0}) expect_right(testing::pyramid_on_a_box(angle));
+    for (const double angle : {90.0, 60.0, 20.0, 5.0}) expect_right(acute::pyramids_tip_to_tip(k, angle));
+  expect_right(acute::cubes_touching_in_a_corner());
+  for (const double angle : {20.0, 60.0, 120.0, 160.0}) expect_right(acute::pyramid_on_a_box(angle));
 }
 
 TEST(Collar, FacetsThatEndInside) {
-  for (const double angle : {70.0, 45.0, 20.0, 10.0, 3.0}) expect_right(testing::facet_ending_inside(angle));
+  for (const double angle : {70.0, 45.0, 20.0, 10.0, 3.0}) expect_right(acute::facet_ending_inside(angle));
 }
 
 TEST(Collar, SegmentsAlone) {
   for (const double angle : {70.0, 45.0, 20.0, 10.0, 3.0})
-    expect_right(testing::segment_meeting_a_facet(angle));
-  for (const unsigned count : {2U, 5U, 12U}) expect_right(testing::segments_from_a_point(count, count));
+    expect_right(acute::segment_meeting_a_facet(angle));
+  for (const unsigned count : {2U, 5U, 12U}) expect_right(acute::segments_from_a_point(count, count));
 }
 
 TEST(Collar, FeaturesThatPassCloseToACrease) {
   for (const double angle : {50.0, 20.0})
     for (const double distance : {0.3, 0.1, 0.03}) {
-      expect_right(testing::segment_near_a_crease(angle, distance));
-      expect_right(testing::segment_near_a_crease(angle, distance, true));
-      expect_right(testing::facet_near_a_crease(angle, distance));
+      expect_right(acute::segment_near_a_crease(angle, distance));
+      expect_right(acute::segment_near_a_crease(angle, distance, true));
+      expect_right(acute::facet_near_a_crease(angle, distance));
     }
 }
 
 TEST(Collar, Combs) {
   for (const unsigned teeth : {1U, 3U, 8U})
-    for (const double angle : {30.0, 10.0}) expect_right(testing::comb(teeth, angle));
+    for (const double angle : {30.0, 10.0}) expect_right(acute::comb(teeth, angle));
 }
 
 TEST(Collar, RandomMembersOfEveryFamily) {
   for (std::uint32_t seed = 1; seed <= 6; ++seed)
-    for (const AcuteShape& shape : testing::random_members(seed)) expect_right(shape);
+    for (const acute::Shape& shape : acute::random_members(seed)) expect_right(shape);
 }
 
 TEST(Collar, RoundCones) {
-  for (const double half_angle : {30.0}) expect_right(testing::round_cone(half_angle));
+  for (const double half_angle : {30.0}) expect_right(acute::round_cone(half_angle));
 }
 
 TEST(Collar, Lenses) {
-  for (const double angle : {120.0}) expect_right(testing::lens(angle));
+  for (const double angle : {120.0}) expect_right(acute::lens(angle));
 }
 
 TEST(Collar, CutTori) {
-  for (const double plane : {-0.3, 0.0, 0.3}) expect_right(testing::cut_torus(plane));
+  for (const double plane : {-0.3, 0.0, 0.3}) expect_right(acute::cut_torus(plane));
 }
 
 // At other sizes, seeds and bounds.
 TEST(Collar, SizesAndSeeds) {
-  const std::vector<AcuteShape> shapes{testing::wedge(20), testing::pyramid(4, 40),
-                                       testing::star_prism(5, 0.4)};
-  for (const AcuteShape& shape : shapes)
+  const std::vector<acute::Shape> shapes{acute::wedge(20), acute::pyramid(4, 40), acute::star_prism(5, 0.4)};
+  for (const acute::Shape& shape : shapes)
     for (const double edge : {1.0, 0.1})
       for (const std::uint64_t seed : {0U, 7U}) {
         SCOPED_TRACE(shape.name);
@@ -145,14 +143,14 @@ TEST(Collar, TighterAngle) {
   for (const double angle : {20.0, 40.0}) {
     MeshOptions options = testing::with_size(size);
     options.collar_angle = 140;
-    EXPECT_EQ(testing::faults(testing::mesh_of(testing::wedge(angle).soups, options, 0)), "");
+    EXPECT_EQ(testing::faults(testing::mesh_of(acute::wedge(angle).soups, options, 0)), "");
   }
 }
 
 // The same in any units and far from the origin.
 TEST(Collar, MovedAndScaled) {
-  const std::vector<AcuteShape> shapes{testing::wedge(20), testing::pyramid(5, 30), testing::sectors(8)};
-  for (const AcuteShape& shape : shapes) {
+  const std::vector<acute::Shape> shapes{acute::wedge(20), acute::pyramid(5, 30), acute::sectors(8)};
+  for (const acute::Shape& shape : shapes) {
     SCOPED_TRACE(shape.name);
     for (const double scale : {1e-6, 1e6}) {
       std::vector<PolygonSoup> soups = shape.soups;

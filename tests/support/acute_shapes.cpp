@@ -9,7 +9,7 @@
 
 #include "support/shapes.h"
 
-namespace collarmesh::testing {
+namespace collarmesh::testing::acute {
 
 namespace {
 
@@ -111,7 +111,7 @@ Vector random_direction(std::mt19937& random) {
   }
 }
 
-AcuteShape prism_over_star(const std::vector<double>& radii, const std::string& name) {
+Shape prism_over_star(const std::vector<double>& radii, const std::string& name) {
   std::vector<Point> polygon;
   for (std::size_t i = 0; i < radii.size(); ++i)
     polygon.push_back(
@@ -121,13 +121,13 @@ AcuteShape prism_over_star(const std::vector<double>& radii, const std::string& 
 
 }  // namespace
 
-AcuteShape wedge(double angle, double length) {
+Shape wedge(double angle, double length) {
   const auto triangle = triangle_with_angle(angle);
   return {
       fmt::format("wedge({}, {})", angle, length), {extrusion(triangle, length)}, length * area(triangle)};
 }
 
-AcuteShape fan(unsigned k, std::uint32_t seed) {
+Shape fan(unsigned k, std::uint32_t seed) {
   PolygonSoup soup = room({-1, -1, -0.5}, {1, 1, 0.5});
   std::mt19937 random(seed);
   std::vector<double> gaps;
@@ -143,20 +143,20 @@ AcuteShape fan(unsigned k, std::uint32_t seed) {
   return {fmt::format("fan({}, {})", k, seed), {soup}, 4};
 }
 
-AcuteShape sectors(unsigned k) {
-  AcuteShape shape{fmt::format("sectors({})", k), {}, 0.5 * area(regular_polygon(k, 1))};
+Shape sectors(unsigned k) {
+  Shape shape{fmt::format("sectors({})", k), {}, 0.5 * area(regular_polygon(k, 1))};
   const auto corners = regular_polygon(k, 1);
   for (unsigned i = 0; i < k; ++i)
     shape.soups.push_back(extrusion(std::vector<Point>{{0, 0, 0}, corners[i], corners[(i + 1) % k]}, 0.5));
   return shape;
 }
 
-AcuteShape pyramid(unsigned k, double apex_angle) {
+Shape pyramid(unsigned k, double apex_angle) {
   const auto base = regular_polygon(k, std::tan(radians(apex_angle / 2)));
   return {fmt::format("pyramid({}, {})", k, apex_angle), {cone_over(base, {0, 0, 1})}, area(base) / 3};
 }
 
-AcuteShape random_pyramid(std::uint32_t seed) {
+Shape random_pyramid(std::uint32_t seed) {
   std::mt19937 random(seed);
   const unsigned k = 3 + random() % 6;
   std::vector<Point> base;
@@ -167,13 +167,13 @@ AcuteShape random_pyramid(std::uint32_t seed) {
   return {fmt::format("random_pyramid({})", seed), {cone_over(base, apex)}, area(base) * height / 3};
 }
 
-AcuteShape star_prism(unsigned points, double inner_radius) {
+Shape star_prism(unsigned points, double inner_radius) {
   std::vector<double> radii;
   for (unsigned i = 0; i < points; ++i) radii.insert(radii.end(), {1, inner_radius});
   return prism_over_star(radii, fmt::format("star_prism({}, {})", points, inner_radius));
 }
 
-AcuteShape random_star_prism(unsigned points, std::uint32_t seed) {
+Shape random_star_prism(unsigned points, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::vector<double> radii;
   for (unsigned i = 0; i < points; ++i)
@@ -181,7 +181,7 @@ AcuteShape random_star_prism(unsigned points, std::uint32_t seed) {
   return prism_over_star(radii, fmt::format("random_star_prism({}, {})", points, seed));
 }
 
-AcuteShape spiked_octahedron(double height) {
+Shape spiked_octahedron(double height) {
   const double a = 0.4;
   PolygonSoup soup;
   Tag tag = 1;
@@ -198,7 +198,7 @@ AcuteShape spiked_octahedron(double height) {
   return {fmt::format("spiked_octahedron({})", height), {soup}, 4 * a * a * a / 3 + 8 * side * height / 3};
 }
 
-AcuteShape knife(double angle) {
+Shape knife(double angle) {
   const double half = 0.4 * std::tan(radians(angle / 2));
   const Point heel{0, 0, 0}, tip{1, 0.1, 0}, left{0, 0.4, half}, right{0, 0.4, -half};
   return {fmt::format("knife({})", angle),
@@ -206,9 +206,9 @@ AcuteShape knife(double angle) {
           std::fabs(six_volume(heel, tip, left, right)) / 6};
 }
 
-AcuteShape two_knives(double angle, double gap_angle) {
+Shape two_knives(double angle, double gap_angle) {
   const Point low{0, 0, 0}, high{0, 0, 1};
-  AcuteShape shape{fmt::format("two_knives({}, {})", angle, gap_angle), {}, 0};
+  Shape shape{fmt::format("two_knives({}, {})", angle, gap_angle), {}, 0};
   for (const double from : {0.0, angle + gap_angle}) {
     const Point p = on_circle(from, 0.5, 0.2), q = on_circle(from + angle, 0.5, 0.2);
     shape.soups.push_back(tetrahedron(low, high, p, q));
@@ -217,32 +217,32 @@ AcuteShape two_knives(double angle, double gap_angle) {
   return shape;
 }
 
-AcuteShape wedges_touching_in_an_edge(double angle, double gap_angle) {
-  const AcuteShape one = wedge(angle);
+Shape wedges_touching_in_an_edge(double angle, double gap_angle) {
+  const Shape one = wedge(angle);
   return {fmt::format("wedges_touching_in_an_edge({}, {})", angle, gap_angle),
           {one.soups[0], about_axis(one.soups[0], angle + gap_angle)},
           2 * one.volume};
 }
 
-AcuteShape cubes_touching_in_an_edge(double gap_angle) {
+Shape cubes_touching_in_an_edge(double gap_angle) {
   return {
       fmt::format("cubes_touching_in_an_edge({})", gap_angle), {box(), about_axis(box(), 90 + gap_angle)}, 2};
 }
 
-AcuteShape pyramids_tip_to_tip(unsigned k, double apex_angle) {
-  const AcuteShape one = pyramid(k, apex_angle);
+Shape pyramids_tip_to_tip(unsigned k, double apex_angle) {
+  const Shape one = pyramid(k, apex_angle);
   const PolygonSoup tip_down = rotated(translated(one.soups[0], {0, 0, -1}), {1, 0, 0}, 180);
   return {fmt::format("pyramids_tip_to_tip({}, {})", k, apex_angle),
           {translated(one.soups[0], {0, 0, -1}), tip_down},
           2 * one.volume};
 }
 
-AcuteShape cubes_touching_in_a_corner() {
+Shape cubes_touching_in_a_corner() {
   return {"cubes_touching_in_a_corner()", {box(), box({-1, -1, -1}, {0, 0, 0})}, 2};
 }
 
-AcuteShape pyramid_on_a_box(double apex_angle) {
-  const AcuteShape one = pyramid(5, apex_angle);
+Shape pyramid_on_a_box(double apex_angle) {
+  const Shape one = pyramid(5, apex_angle);
   // The tip is a point of the side z = 0.
   PolygonSoup base = room_with_mark({-1, -1, 0}, {1, 1, 0.5}, {{0, 0, 0}});
   base.region_points.clear();
@@ -252,7 +252,7 @@ AcuteShape pyramid_on_a_box(double apex_angle) {
   return {fmt::format("pyramid_on_a_box({})", apex_angle), {base, standing}, 2 + one.volume};
 }
 
-AcuteShape facet_ending_inside(double angle) {
+Shape facet_ending_inside(double angle) {
   const Point a{0.5, 0.3, 0}, b{0.5, 0.7, 0};
   PolygonSoup soup = room_with_mark({0, 0, 0}, {2, 1, 1}, {a, b});
   const Vector up = 0.8 * Vector{std::cos(radians(angle)), 0, std::sin(radians(angle))};
@@ -260,7 +260,7 @@ AcuteShape facet_ending_inside(double angle) {
   return {fmt::format("facet_ending_inside({})", angle), {soup}, 2};
 }
 
-AcuteShape segment_meeting_a_facet(double angle) {
+Shape segment_meeting_a_facet(double angle) {
   const Point foot{0.5, 0.4, 0};
   PolygonSoup soup = room_with_mark({0, 0, 0}, {2, 1, 1}, {foot});
   const auto from =
@@ -271,7 +271,7 @@ AcuteShape segment_meeting_a_facet(double angle) {
   return {fmt::format("segment_meeting_a_facet({})", angle), {soup}, 2};
 }
 
-AcuteShape segments_from_a_point(unsigned count, std::uint32_t seed) {
+Shape segments_from_a_point(unsigned count, std::uint32_t seed) {
   std::mt19937 random(seed);
   PolygonSoup soup = room({-1, -1, -1}, {1, 1, 1});
   const Index centre = add_point(soup, {0.02, 0.05, -0.03});
@@ -282,8 +282,8 @@ AcuteShape segments_from_a_point(unsigned count, std::uint32_t seed) {
   return {fmt::format("segments_from_a_point({}, {})", count, seed), {soup}, 8};
 }
 
-AcuteShape segment_near_a_crease(double angle, double distance, bool askew) {
-  AcuteShape shape = wedge(angle);
+Shape segment_near_a_crease(double angle, double distance, bool askew) {
+  Shape shape = wedge(angle);
   shape.name = fmt::format("segment_near_a_crease({}, {}, {})", angle, distance, askew);
   PolygonSoup& soup = shape.soups[0];
   soup.region_points = {{{0.9, 0, 0.5}, 1, 0}};
@@ -293,8 +293,8 @@ AcuteShape segment_near_a_crease(double angle, double distance, bool askew) {
   return shape;
 }
 
-AcuteShape facet_near_a_crease(double angle, double distance) {
-  AcuteShape shape = wedge(angle);
+Shape facet_near_a_crease(double angle, double distance) {
+  Shape shape = wedge(angle);
   shape.name = fmt::format("facet_near_a_crease({}, {})", angle, distance);
   PolygonSoup& soup = shape.soups[0];
   soup.region_points = {{{0.9, 0, 0.5}, 1, 0}};
@@ -302,7 +302,7 @@ AcuteShape facet_near_a_crease(double angle, double distance) {
   return shape;
 }
 
-AcuteShape comb(unsigned teeth, double angle) {
+Shape comb(unsigned teeth, double angle) {
   const double width = 2 * std::tan(radians(angle / 2)), length = teeth * 1.2 * width;
   std::vector<Point> outline{{0, 0, 0}, {length, 0, 0}};
   for (unsigned i = teeth; i-- > 0;) {
@@ -314,7 +314,7 @@ AcuteShape comb(unsigned teeth, double angle) {
   return {fmt::format("comb({}, {})", teeth, angle), {extrusion(outline, 0.3)}, 0.3 * area(outline)};
 }
 
-AcuteShape random_tetrahedron(std::uint32_t seed) {
+Shape random_tetrahedron(std::uint32_t seed) {
   std::mt19937 random(seed);
   for (;;) {
     std::array<Point, 4> p;
@@ -325,7 +325,7 @@ AcuteShape random_tetrahedron(std::uint32_t seed) {
   }
 }
 
-AcuteShape turned(AcuteShape shape, std::uint32_t seed) {
+Shape turned(Shape shape, std::uint32_t seed) {
   std::mt19937 random(seed);
   const Vector axis = random_direction(random);
   const double degrees = random_in(random, 0, 360);
@@ -334,12 +334,12 @@ AcuteShape turned(AcuteShape shape, std::uint32_t seed) {
   return shape;
 }
 
-std::vector<AcuteShape> random_members(std::uint32_t seed) {
+std::vector<Shape> random_members(std::uint32_t seed) {
   std::mt19937 random(seed);
   const auto count = [&](unsigned low, unsigned high) {
     return low + static_cast<unsigned>(random() % (high - low + 1));
   };
-  std::vector<AcuteShape> shapes;
+  std::vector<Shape> shapes;
   shapes.push_back(wedge(random_log(random, 1, 80), random_in(random, 0.3, 1.5)));
   shapes.push_back(fan(count(3, 14), seed));
   shapes.push_back(sectors(count(6, 14)));
@@ -361,16 +361,16 @@ std::vector<AcuteShape> random_members(std::uint32_t seed) {
   shapes.push_back(facet_near_a_crease(random_in(random, 10, 60), random_in(random, 0.02, 0.3)));
   shapes.push_back(comb(count(2, 6), random_in(random, 8, 40)));
   shapes.push_back(random_tetrahedron(seed));
-  for (AcuteShape& shape : shapes) shape = turned(std::move(shape), seed);
+  for (Shape& shape : shapes) shape = turned(std::move(shape), seed);
   return shapes;
 }
 
-AcuteShape round_cone(double half_angle) {
+Shape round_cone(double half_angle) {
   const double radius = std::tan(radians(half_angle));
   return {fmt::format("round_cone({})", half_angle), {cone(radius, 1, 48, 8)}, pi * radius * radius / 3, 30};
 }
 
-AcuteShape lens(double rim_angle) {
+Shape lens(double rim_angle) {
   // Two caps of a sphere whose tangents at the rim (radius 1) include the angle.
   const double half = radians(rim_angle / 2), radius = 1 / std::sin(half), depth = radius * std::cos(half);
   std::vector<Point> profile;
@@ -391,7 +391,7 @@ AcuteShape lens(double rim_angle) {
           30};
 }
 
-AcuteShape cut_torus(double plane) {
+Shape cut_torus(double plane) {
   const double major = 1, minor = 0.25, from = std::asin(plane);
   std::vector<Point> profile;
   constexpr int n = 16;
@@ -404,4 +404,4 @@ AcuteShape cut_torus(double plane) {
   return {fmt::format("cut_torus({})", plane), {revolution(profile, 64, true)}, 2 * pi * major * segment, 30};
 }
 
-}  // namespace collarmesh::testing
+}  // namespace collarmesh::testing::acute

@@ -8,9 +8,9 @@
 
 /// Inputs whose features meet at acute angles, one generator per family. Angles are in degrees; lengths are
 /// about 1, so that a target edge length of 0.3 suits all of them.
-namespace collarmesh::testing {
+namespace collarmesh::testing::acute {
 
-struct AcuteShape {
+struct Shape {
   std::string name;                ///< the call that makes it
   std::vector<PolygonSoup> soups;  ///< one complex
   double volume = 0;               ///< of all regions together, for the planar ones
@@ -18,83 +18,83 @@ struct AcuteShape {
 };
 
 /// A prism over a triangle with this angle between two sides of length 1.
-AcuteShape wedge(double angle, double length = 1);
+Shape wedge(double angle, double length = 1);
 
 /// A box with k rectangles inside that share one segment, at equal angles or (seed > 0) at random ones of
 /// at least a third of that.
-AcuteShape fan(unsigned k, std::uint32_t seed = 0);
+Shape fan(unsigned k, std::uint32_t seed = 0);
 
 /// A prism over a regular k-gon cut into k regions that share its axis.
-AcuteShape sectors(unsigned k);
+Shape sectors(unsigned k);
 
 /// A pyramid of height 1 over a regular k-gon; the angle is that between opposite sides of the cone around
 /// it. A few degrees make it a needle.
-AcuteShape pyramid(unsigned k, double apex_angle);
+Shape pyramid(unsigned k, double apex_angle);
 
 /// A pyramid over a random polygon around the origin, its apex anywhere above it.
-AcuteShape random_pyramid(std::uint32_t seed);
+Shape random_pyramid(std::uint32_t seed);
 
 /// A prism over a star of this many points, whose inner corners have this radius, the outer ones 1.
-AcuteShape star_prism(unsigned points, double inner_radius);
+Shape star_prism(unsigned points, double inner_radius);
 
 /// The same with random radii.
-AcuteShape random_star_prism(unsigned points, std::uint32_t seed);
+Shape random_star_prism(unsigned points, std::uint32_t seed);
 
 /// An octahedron with a spike of this height on every side.
-AcuteShape spiked_octahedron(double height);
+Shape spiked_octahedron(double height);
 
 /// A blade that is sharpened to this angle along one side and ends in a point.
-AcuteShape knife(double angle);
+Shape knife(double angle);
 
 /// Two knives that have the sharp side in common.
-AcuteShape two_knives(double angle, double gap_angle);
+Shape two_knives(double angle, double gap_angle);
 
 /// Two wedges that touch along their sharp edges only; the angle between them is the gap.
-AcuteShape wedges_touching_in_an_edge(double angle, double gap_angle);
+Shape wedges_touching_in_an_edge(double angle, double gap_angle);
 
 /// Two cubes that touch in an edge, one turned about it so far.
-AcuteShape cubes_touching_in_an_edge(double gap_angle);
+Shape cubes_touching_in_an_edge(double gap_angle);
 
 /// Two pyramids that touch with their tips only, both upright or one lying beside the other at a gap.
-AcuteShape pyramids_tip_to_tip(unsigned k, double apex_angle);
+Shape pyramids_tip_to_tip(unsigned k, double apex_angle);
 
 /// Two cubes that touch in a corner only.
-AcuteShape cubes_touching_in_a_corner();
+Shape cubes_touching_in_a_corner();
 
 /// A pyramid whose tip stands on the side of a box, as two solids.
-AcuteShape pyramid_on_a_box(double apex_angle);
+Shape pyramid_on_a_box(double apex_angle);
 
 /// A box with a facet that rises from its bottom at this angle and ends inside.
-AcuteShape facet_ending_inside(double angle);
+Shape facet_ending_inside(double angle);
 
 /// A box with a segment that rises from a point in its bottom at this angle and ends inside.
-AcuteShape segment_meeting_a_facet(double angle);
+Shape segment_meeting_a_facet(double angle);
 
 /// A box with some segments from one point inside, at random directions.
-AcuteShape segments_from_a_point(unsigned count, std::uint32_t seed);
+Shape segments_from_a_point(unsigned count, std::uint32_t seed);
 
 /// A wedge with a lone segment inside, parallel to its sharp edge at this distance or askew.
-AcuteShape segment_near_a_crease(double angle, double distance, bool askew = false);
+Shape segment_near_a_crease(double angle, double distance, bool askew = false);
 
 /// A wedge with a dangling facet inside whose border passes its sharp edge at this distance.
-AcuteShape facet_near_a_crease(double angle, double distance);
+Shape facet_near_a_crease(double angle, double distance);
 
 /// A bar with triangular teeth of height 1 and the given angle at their tips.
-AcuteShape comb(unsigned teeth, double angle);
+Shape comb(unsigned teeth, double angle);
 
 /// A tetrahedron of random corners, not too flat.
-AcuteShape random_tetrahedron(std::uint32_t seed);
+Shape random_tetrahedron(std::uint32_t seed);
 
 /// Members of the planar families with random parameters, turned at random.
-std::vector<AcuteShape> random_members(std::uint32_t seed);
+std::vector<Shape> random_members(std::uint32_t seed);
 
 /// Turned by a random rotation.
-AcuteShape turned(AcuteShape shape, std::uint32_t seed);
+Shape turned(Shape shape, std::uint32_t seed);
 
 /// Curved sharp rims. Their features need the feature angle 30.
-AcuteShape round_cone(double half_angle);
-AcuteShape lens(double rim_angle);
+Shape round_cone(double half_angle);
+Shape lens(double rim_angle);
 /// The upper part of a torus of radii 1 and 0.25, above a plane at this share of the minor radius.
-AcuteShape cut_torus(double plane);
+Shape cut_torus(double plane);
 
-}  // namespace collarmesh::testing
+}  // namespace collarmesh::testing::acute
