@@ -122,7 +122,7 @@ def actor_of(data, colours=None):
     look.SetEdgeColor(*EDGES)
     look.SetLineWidth(1.1)
     look.SetInterpolationToFlat()
-    look.SetAmbient(0.35)
+    look.SetAmbient(0.42)
     look.SetDiffuse(0.75)
     return actor
 

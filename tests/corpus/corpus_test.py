@@ -63,12 +63,19 @@ def is_exact(path):
     return path.suffix == ".poly" or path.stem in EXACT
 
 
-def judge(path, mesh, diagonal):
-    exact = is_exact(path)
-    tolerance = ["--exact"] if exact else ["--distance", RELATIVE_DISTANCE * diagonal]
-    result = run(sys.executable, JUDGE, mesh, "--surface", path, *tolerance)
+def judge(path, expect, mesh, diagonal):
+    """An independent word on a mesh: ", judged". Inputs that are no clean surface have no volume or
+    boundary to compare with; their meshes are judged by themselves."""
+    if not JUDGE or path.name in NOT_JUDGED:
+        return ""
+    against = []
+    if expect.startswith("mesh:"):
+        tolerance = ["--exact"] if is_exact(path) else ["--distance", RELATIVE_DISTANCE * diagonal]
+        against = ["--surface", path, *tolerance]
+    result = run(sys.executable, JUDGE, mesh, *against)
     if result.returncode != 0:
         raise Failed("judge: " + (result.stdout + result.stderr).strip().splitlines()[-1])
+    return ", judged" if against else ", judged by itself"
 
 
 def mesh_one(program, path, expect, folder):
@@ -83,9 +90,8 @@ def mesh_one(program, path, expect, folder):
         raise Failed(f"exit code {result.returncode}: {(result.stderr.splitlines() or [''])[0]}")
     if result.returncode == 0:
         found = json.loads(report.read_text())
-        if JUDGE and expect.startswith("mesh:") and path.name not in NOT_JUDGED:
-            judge(path, mesh, diagonal)
-        return f"{found['mesh']['tets']} tets in {found['seconds']['refine']:.2f} s" + (", judged" if JUDGE and path.name not in NOT_JUDGED else "")
+        judged = judge(path, expect, mesh, diagonal)
+        return f"{found['mesh']['tets']} tets in {found['seconds']['refine']:.2f} s{judged}"
     if mesh.exists():
         raise Failed(f"a mesh was written in spite of exit code {result.returncode}")
     if not result.stderr.strip():
