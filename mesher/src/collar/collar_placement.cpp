@@ -10,6 +10,9 @@ namespace {
 constexpr double radius_per_gap = 1.0 / 3;
 // Radii are shrunk by a random share of up to this, so that spheres are in general position.
 constexpr double largest_shrinkage = 0.08;
+// On curved creases radii change by at most this share of the way along the curve.
+constexpr double radius_slope = 1.0 / 3;
+constexpr int smoothing_samples = 8;
 // Consecutive centres are so many radii apart at most.
 constexpr double step_per_radius = 1.1;
 // Consecutive balls overlap so deeply that the angle at their circle stays below 90 degrees:
@@ -71,9 +74,26 @@ Index CollarPlacement::place_at_vertex(Index vertex) {
 }
 
 double CollarPlacement::radius_on_curve(Index curve, double parameter) const {
+  if (plc_.curves[curve].straight) return own_radius(curve, parameter);
+  // The flat radius jumps at the corners of a polyline; neighbours must not differ by more than a
+  // share of their distance, else a third ball reaches into the circle of two.
+  double radius = own_radius(curve, parameter);
+  const double reach = 2 * radius;
+  for (int k = 1; k <= smoothing_samples; ++k)
+    for (const double side : {-1.0, 1.0}) {
+      const double off = reach * k / smoothing_samples;
+      if (radius_slope * off >= radius) break;
+      radius = std::min(radius, own_radius(curve, parameter + side * off) + radius_slope * off);
+    }
+  return radius;
+}
+
+double CollarPlacement::own_radius(Index curve, double parameter) const {
+  if (!plc_.curves[curve].closed) parameter = std::clamp(parameter, 0.0, lengths_[curve].back());
   const Point p = curve_point(curve, parameter);
-  const double radius = std::min(radius_per_gap * gap_.on_curve(curve, p), size_(p));
-  return plc_.curves[curve].straight ? radius : flat_radius(curve, parameter, radius);
+  const double gap = gap_.on_curve(curve, p);
+  const double radius = std::min(radius_per_gap * gap, size_(p));
+  return plc_.curves[curve].straight || radius == 0 ? radius : flat_radius(curve, parameter, radius);
 }
 
 // The radius, made smaller until the curve leaves its chord and the patches theirs by no more than

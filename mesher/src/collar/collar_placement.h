@@ -25,6 +25,7 @@ class CollarPlacement {
   std::vector<double> centre_parameters(Index curve, double from, double to) const;
   Index add_ball_on_curve(Index curve, double parameter);
   double radius_on_curve(Index curve, double parameter) const;
+  double own_radius(Index curve, double parameter) const;
   double flat_radius(Index curve, double parameter, double radius) const;
   Point curve_point(Index curve, double parameter) const;
   std::size_t curve_segment(Index curve, double parameter) const;
