@@ -10,8 +10,10 @@ namespace {
 constexpr double radius_per_gap = 1.0 / 3;
 // Radii are shrunk by a random share of up to this, so that spheres are in general position.
 constexpr double largest_shrinkage = 0.08;
-// On curved creases radii change by at most this share of the way along the curve.
+// On curved creases radii change by at most this share of the way along the curve: towards an end of
+// an open one the gap size itself falls by a third of it.
 constexpr double radius_slope = 1.0 / 3;
+constexpr double closed_radius_slope = 0.25;
 constexpr int smoothing_samples = 8;
 // Consecutive centres are so many radii apart at most.
 constexpr double step_per_radius = 1.1;
@@ -79,11 +81,12 @@ double CollarPlacement::radius_on_curve(Index curve, double parameter) const {
   // share of their distance, else a third ball reaches into the circle of two.
   double radius = own_radius(curve, parameter);
   const double reach = 2 * radius;
+  const double slope = plc_.curves[curve].closed ? closed_radius_slope : radius_slope;
   for (int k = 1; k <= smoothing_samples; ++k)
     for (const double side : {-1.0, 1.0}) {
       const double off = reach * k / smoothing_samples;
-      if (radius_slope * off >= radius) break;
-      radius = std::min(radius, own_radius(curve, parameter + side * off) + radius_slope * off);
+      if (slope * off >= radius) break;
+      radius = std::min(radius, own_radius(curve, parameter + side * off) + slope * off);
     }
   return radius;
 }
