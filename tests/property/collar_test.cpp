@@ -45,9 +45,11 @@ TEST(Collar, WedgeHasStarsAndBooks) {
 }
 
 TEST(Collar, Fans) {
-  for (const unsigned k : {3U, 4U, 5U, 6U, 8U, 16U}) expect_right(acute::fan(k));
-  for (const unsigned k : {3U, 4U, 6U}) expect_right(acute::fan(k, k));
+  for (const unsigned k : {3U, 4U, 5U, 6U, 8U, 10U, 12U, 16U, 24U}) expect_right(acute::fan(k));
+  for (const unsigned k : {4U, 5U, 9U, 14U}) expect_right(acute::fan(k, k));
 }
+
+TEST(Collar, FanOfForty) { expect_right(acute::fan(40)); }
 
 TEST(Collar, Sectors) {
   for (const unsigned k : {5U, 6U, 8U, 12U, 20U}) expect_right(acute::sectors(k));
@@ -119,11 +121,11 @@ TEST(Collar, RoundCones) {
 }
 
 TEST(Collar, Lenses) {
-  for (const double angle : {120.0}) expect_right(acute::lens(angle));
+  for (const double angle : {120.0, 40.0}) expect_right(acute::lens(angle));
 }
 
 TEST(Collar, CutTori) {
-  for (const double plane : {-0.3, 0.0, 0.3}) expect_right(acute::cut_torus(plane));
+  for (const double plane : {-0.3, 0.0, 0.3, 0.9}) expect_right(acute::cut_torus(plane));
 }
 
 // At other sizes, seeds and bounds.
