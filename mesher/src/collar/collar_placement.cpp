@@ -259,6 +259,7 @@ void CollarPlacement::find_sheets(const std::vector<Index>& vertices) {
     }
   std::sort(sheets_.begin(), sheets_.end());
   std::vector<Index> corners;
+  corners.reserve(vertices.size());
   for (const Index vertex : vertices) corners.push_back(plc_.vertices[vertex].point);
   std::sort(corners.begin(), corners.end());
   for (Index t = 0; t < plc_.triangles.size(); ++t)

@@ -73,7 +73,7 @@ void Refinement::add_curve_chain(Index c) {
 // Where a curve leaves the ball at one of its ends: bisection, the ball meets it in one arc.
 double Refinement::leaving_parameter(Index c, const CollarBall& ball, bool at_start) const {
   const double length = arc_lengths_[c].back();
-  double inside = at_start ? 0 : length, outside = at_start ? length / 2 : length / 2;
+  double inside = at_start ? 0 : length, outside = length / 2;
   for (int step = 0; step < 200; ++step) {
     const double middle = 0.5 * (inside + outside);
     if (middle == inside || middle == outside) break;
