@@ -112,7 +112,9 @@ std::vector<acute::Shape> shapes() {
   return all;
 }
 
-std::vector<acute::Shape> curved_shapes() { return {acute::lens(40), acute::cut_torus(0.9)}; }
+std::vector<acute::Shape> curved_shapes() {
+  return {acute::round_cone(45), acute::lens(40), acute::cut_torus(0.9)};
+}
 
 struct Placed {
   explicit Placed(const acute::Shape& shape) : plc(build(shape)), creases(find_creases(plc, crease_angle)) {

@@ -117,7 +117,7 @@ TEST(Collar, RandomMembersOfEveryFamily) {
 }
 
 TEST(Collar, RoundCones) {
-  for (const double half_angle : {30.0}) expect_right(acute::round_cone(half_angle));
+  for (const double half_angle : {45.0, 30.0}) expect_right(acute::round_cone(half_angle));
 }
 
 TEST(Collar, Lenses) {

@@ -51,6 +51,13 @@ TEST(RefinementBudget, Time) {
   EXPECT_LT(result.statistics.seconds, 1);
 }
 
+// Also when the whole mesh takes few steps.
+TEST(RefinementBudget, OfASmallMesh) {
+  MeshOptions options = with_size(0.4);
+  options.max_vertices = 20;
+  expect_no_mesh(generate(box_complex(), options), MeshStatus::budget_hit);
+}
+
 TEST(RefinementBudget, EnoughIsNoHindrance) {
   MeshOptions options = with_size(0.2, 60);
   options.max_vertices = 100'000;
@@ -70,6 +77,13 @@ TEST(RefinementCancel, ByTheFlagFromAnotherThread) {
   other.join();
   expect_no_mesh(result, MeshStatus::cancelled);
   EXPECT_LT(result.statistics.seconds, 1.05);
+}
+
+TEST(RefinementCancel, BeforeTheStart) {
+  const std::atomic<bool> cancel = true;
+  Execution execution;
+  execution.cancel = &cancel;
+  expect_no_mesh(generate(box_complex(), with_size(0.4), execution), MeshStatus::cancelled);
 }
 
 TEST(RefinementCancel, ByTheProgressCallback) {
@@ -122,7 +136,15 @@ std::vector<BadOption> bad_options() {
           {"vertex_ratio", [](Options o) { o.vertex_ratio = 2.8; }},
           {"vertex_ratio below zero", [](Options o) { o.vertex_ratio = -4; }},
           {"theta", [](Options o) { o.theta = -0.1; }},
-          {"large theta", [](Options o) { o.theta = 0.5; }}};
+          {"large theta", [](Options o) { o.theta = 0.5; }},
+          {"crease_angle", [](Options o) { o.crease_angle = -1; }},
+          {"obtuse crease_angle", [](Options o) { o.crease_angle = 91; }},
+          {"crease_angle not a number", [](Options o) { o.crease_angle = nan; }},
+          {"collar_angle", [](Options o) { o.collar_angle = 99; }},
+          {"large collar_angle", [](Options o) { o.collar_angle = 176; }},
+          {"representation_angle", [](Options o) { o.representation_angle = 0; }},
+          {"large representation_angle", [](Options o) { o.representation_angle = 90; }},
+          {"time_limit", [](Options o) { o.time_limit = -1; }}};
 }
 
 TEST(RefinementOptions, BadOnesAreRefused) {
