@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -34,7 +35,7 @@ std::string rounded_time(double seconds) {
 std::string progress_line(const std::string& phase, double fraction, std::size_t tets, double seconds,
                           std::size_t width) {
   constexpr std::size_t bar_width = 24;
-  const auto filled = static_cast<std::size_t>(fraction * bar_width + 0.5);
+  const auto filled = static_cast<std::size_t>(std::lround(fraction * bar_width));
   std::string line = fmt::format("[{}{}] {:3.0f}%  {}", std::string(filled, '#'),
                                  std::string(bar_width - filled, '.'), 100 * fraction, phase);
   if (tets > 0) line += fmt::format("  {} tets", rounded_count(tets));
