@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <OpenMesh/Core/IO/MeshIO.hh>
-#include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -13,17 +12,14 @@
 #include <sstream>
 
 #include "collarmesh/error.h"
+#include "double_mesh.h"
 #include "om_layout.h"
 
 namespace collarmesh::openmesh_io {
 
 namespace {
 
-struct DoubleTraits : OpenMesh::DefaultTraits {
-  using Point = OpenMesh::Vec3d;
-  using Normal = OpenMesh::Vec3d;
-};
-using Mesh = OpenMesh::PolyMesh_ArrayKernelT<DoubleTraits>;
+using Mesh = DoubleMesh;
 
 [[noreturn]] void fail(const std::string& path, const std::string& message) {
   throw ReadError(fmt::format("{}: {}", path, message));
@@ -36,20 +32,6 @@ std::string read_bytes(const std::string& path) {
   if (file.bad()) fail(path, fmt::format("cannot be read: {}", std::strerror(errno)));
   return bytes;
 }
-
-/// OpenMesh reports to the standard error stream, a library of ours does not.
-class Quiet {
- public:
-  Quiet() : was_enabled_(omerr().is_enabled()) { omerr().disable(); }
-  ~Quiet() {
-    if (was_enabled_) omerr().enable();
-  }
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
-
- private:
-  bool was_enabled_;
-};
 
 Mesh load(const std::string& path, const OmLayout& layout) {
   const Quiet quiet;

@@ -62,6 +62,14 @@ struct Plc {
     std::string name;     ///< for messages: file name or tag
   };
 
+  /// What the builder changed in the input to make it a complex.
+  struct Cleanup {
+    Index welded_points = 0;         ///< points that became one with another
+    Index degenerate_triangles = 0;  ///< triangles without an area, dropped
+    Index repeated_triangles = 0;    ///< of one soup with the corners of another one, dropped
+    Index shared_triangles = 0;      ///< of several soups with the same corners, which became an interface
+  };
+
   std::vector<Point> points;
   std::vector<Vertex> vertices;
   std::vector<Curve> curves;
@@ -72,6 +80,7 @@ struct Plc {
   Box bounds;
   double planar_tolerance = 0;   ///< absolute, input units: used to build this complex
   double largest_deviation = 0;  ///< absolute: how far merging (weld, planar, collinear) moved the input at most
+  Cleanup cleanup;
 
   /// Is the patch among those that contain this vertex / curve? Cost: logarithmic in the list.
   bool vertex_on_patch(Index vertex, Index patch) const;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -44,6 +45,7 @@ class PolygonSoup {
   std::vector<RegionPoint> region_points;  ///< .poly: with hole_points they decide for their file
   std::vector<Point> hole_points;          ///< the region around each is empty
   std::vector<FacetHole> facet_holes;
+  std::optional<Tag> region_tag;  ///< of the regions that this surface is the first to bound; else their number
 
   /// Start a facet; the polygons added next belong to it.
   void begin_facet(Tag tag = 0) { facets_.push_back({polygon_count(), tag}); }

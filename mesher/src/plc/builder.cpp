@@ -170,6 +170,7 @@ Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options) {
   plc.bounds = draft.bounds;
   plc.planar_tolerance = draft.planar_tolerance;
   plc.largest_deviation = draft.largest_deviation;
+  plc.cleanup = draft.cleanup;
   return plc;
 }
 

@@ -109,8 +109,8 @@ bool same_orientation(const Corners& a, const Corners& b) {
   return b[(at + 1) % 3] == a[1];
 }
 
-// Remove the marked triangles; claims on the others move with them.
-void compact(Draft& draft, const std::vector<bool>& removed) {
+// Remove the marked triangles; claims on the others move with them. Returns how many there were.
+Index compact(Draft& draft, const std::vector<bool>& removed) {
   std::vector<Index> moved(draft.triangles.size());
   Index kept = 0;
   for (Index t = 0; t < draft.triangles.size(); ++t) {
@@ -119,9 +119,11 @@ void compact(Draft& draft, const std::vector<bool>& removed) {
     draft.triangles[kept] = draft.triangles[t];
     draft.origins[kept++] = draft.origins[t];
   }
+  const auto count = static_cast<Index>(draft.triangles.size()) - kept;
   draft.triangles.resize(kept);
   draft.origins.resize(kept);
   for (Claim& claim : draft.claims) claim.side = 2 * moved[claim.side / 2] + claim.side % 2;
+  return count;
 }
 
 }  // namespace
@@ -130,6 +132,7 @@ void remove_collinear_triangles(Draft& draft) {
   std::vector<Index> flat;
   for (Index t = 0; t < draft.triangles.size(); ++t)
     if (collinear(draft.corner(t, 0), draft.corner(t, 1), draft.corner(t, 2))) flat.push_back(t);
+  draft.cleanup.degenerate_triangles += static_cast<Index>(flat.size());
   if (flat.empty()) return;
   const CollinearGroups groups(draft, flat);
   Draft result;
@@ -152,7 +155,7 @@ void remove_twins_within_soups(Draft& draft) {
     removed[order[i].triangle] =
         order[i].key == order[i - 1].key &&
         draft.origins[order[i].triangle].soup == draft.origins[order[i - 1].triangle].soup;
-  compact(draft, removed);
+  draft.cleanup.repeated_triangles += compact(draft, removed);
 }
 
 void merge_twins_across_soups(Draft& draft) {
@@ -169,7 +172,7 @@ void merge_twins_across_soups(Draft& draft) {
     const bool alike = same_orientation(draft.triangles[kept], draft.triangles[dropped]);
     draft.claims.push_back({alike ? back_side(kept) : front_side(kept), draft.origins[dropped].soup});
   }
-  compact(draft, removed);
+  draft.cleanup.shared_triangles += compact(draft, removed);
 }
 
 }  // namespace collarmesh::build

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "collarmesh/geometry.h"
+#include "collarmesh/plc.h"
 #include "collarmesh/polygon_soup.h"
 
 /// The complex while `build_plc` makes it: welded points, triangles, explicit segments and points.
@@ -53,6 +54,7 @@ struct Draft {
   Box bounds;
   double planar_tolerance = 0;   ///< absolute
   double largest_deviation = 0;  ///< absolute
+  Plc::Cleanup cleanup;
 
   /// How far rounding alone may move points off a plane.
   double rounding() const {

@@ -65,7 +65,7 @@ class RegionFinder {
     decide();
     number();
     Regions result;
-    fill(result);
+    fill(soups, result);
     return result;
   }
 
@@ -255,7 +255,7 @@ class RegionFinder {
     }
   }
 
-  void fill(Regions& result) {
+  void fill(std::span<const PolygonSoup> soups, Regions& result) {
     result.of_side.resize(2 * count_);
     for (Index side = 0; side < 2 * count_; ++side)
       result.of_side[side] = region_of_chamber_[chambers_.find(side)];
@@ -267,8 +267,10 @@ class RegionFinder {
       by_region[c.region] = &c;
     }
     for (Index r = 1; r < by_region.size(); ++r) {
-      const std::string& soup = draft_.soup_names[by_region[r]->rank[0]];
-      result.list.push_back({static_cast<Tag>(r), 0, 0, soup.empty() ? fmt::format("region {}", r) : soup});
+      const Index soup = by_region[r]->rank[0];
+      const std::string& name = draft_.soup_names[soup];
+      result.list.push_back({soups[soup].region_tag.value_or(static_cast<Tag>(r)), 0, 0,
+                             name.empty() ? fmt::format("region {}", r) : name});
     }
     for (const Parameters& p : parameters_) {
       const Index r = list_[chamber_of_shell_[p.shell]].region;

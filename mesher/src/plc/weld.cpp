@@ -127,6 +127,7 @@ PointMap weld_points(std::span<const PolygonSoup> soups, double distance_limit, 
       draft.bounds.add(all.points[p]);
     } else {
       merged[p] = merged[first];
+      ++draft.cleanup.welded_points;
       draft.largest_deviation = std::max(draft.largest_deviation, distance(all.points[p], all.points[first]));
     }
   }

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <OpenMesh/Core/Utils/Property.hh>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "collarmesh/error.h"
+#include "collarmesh/geometry.h"
+
+namespace collarmesh::openmesh_io {
+
+// Names of the properties that `boundary_surface` writes and that are read unless others are named.
+// Tags are std::int64_t.
+inline constexpr const char* patch_tag = "collarmesh:patch_tag";      ///< of faces
+inline constexpr const char* curve_tag = "collarmesh:curve_tag";      ///< of edges
+inline constexpr const char* vertex_tag = "collarmesh:vertex_tag";    ///< of vertices
+inline constexpr const char* region_back = "collarmesh:region_back";  ///< of faces: int, the region behind
+inline constexpr const char* region_front = "collarmesh:region_front";
+inline constexpr const char* mesh_point =
+    "collarmesh:mesh_point";  ///< of vertices: int, index in TetMesh::points
+inline constexpr const char* mesh_face = "collarmesh:mesh_face";  ///< of faces: int, index in TetMesh::faces
+
+namespace detail {
+
+/// A property of integers of one of several types, found by its name.
+template <class Mesh, template <class> class Handle>
+class TagProperty {
+ public:
+  /// An empty name is no property, `optional` may be missing. Throws OptionError.
+  TagProperty(const Mesh& mesh, const std::string& name, std::string_view optional) : mesh_(mesh) {
+    if (name.empty()) return;
+    const bool found =
+        find<int>(name) || find<unsigned>(name) || find<std::int64_t>(name) || find<std::uint64_t>(name);
+    if (!found && name != optional)
+      throw OptionError("the OpenMesh mesh has no property '" + name +
+                        "' of type int, unsigned, std::int64_t or std::uint64_t; add it or name another one");
+  }
+
+  explicit operator bool() const { return handle_.index() != 0; }
+
+  /// Precondition: there is a property.
+  template <class Entity>
+  Tag operator[](Entity entity) const {
+    return std::visit(
+        [&](const auto& handle) -> Tag {
+          if constexpr (std::is_same_v<std::decay_t<decltype(handle)>, std::monostate>)
+            return 0;
+          else
+            return static_cast<Tag>(mesh_.property(handle, entity));
+        },
+        handle_);
+  }
+
+ private:
+  template <class Value>
+  bool find(const std::string& name) {
+    Handle<Value> handle;
+    if (!mesh_.get_property_handle(handle, name)) return false;
+    handle_ = handle;
+    return true;
+  }
+
+  const Mesh& mesh_;
+  std::variant<std::monostate, Handle<int>, Handle<unsigned>, Handle<std::int64_t>, Handle<std::uint64_t>>
+      handle_;
+};
+
+}  // namespace detail
+
+}  // namespace collarmesh::openmesh_io
