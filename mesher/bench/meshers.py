@@ -69,6 +69,12 @@ class Collarmesh:
                        measured.exit_code == self.guarantee_missed, report["statistics"]["cells"])
 
 
+    def describe(self, surface: Surface, folder: Path) -> dict:
+        """What the program says the complex is: diagonal, regions with their volumes and so on."""
+        command = [str(self.program), "info", f"input{surface.suffix}", "--json"]
+        return json.loads(run(command, folder, self.time_limit).output)["complex"]
+
+
 class TetGen:
     name = "TetGen"
 

@@ -69,15 +69,6 @@ int crossing_direction(const Point& p, const Point& q, const std::array<Point, 3
 
 }  // namespace
 
-double squared_distance_to_box(const Point& p, const Box& box) {
-  double sum = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double d = std::max({box.min[axis] - p[axis], 0.0, p[axis] - box.max[axis]});
-    sum += d * d;
-  }
-  return sum;
-}
-
 Point nearest_point_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
   Point best = nearest_point_on_segment(p, a, b);
   for (const Point& q : {nearest_point_on_segment(p, b, c), nearest_point_on_segment(p, c, a)})

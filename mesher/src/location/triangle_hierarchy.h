@@ -70,6 +70,11 @@ class TriangleHierarchy {
   double squared_distance_to(const Point& p, double bound, Index* nearest,
                              const Counts& counts) const;
 
+  /// Some triangle that `counts` accepts and whose squared distance from p is below `bound`; none if
+  /// there is no such triangle.
+  template <class Counts>
+  Index triangle_within(const Point& p, double bound, const Counts& counts) const;
+
   std::size_t bytes() const;
 
  private:
@@ -95,7 +100,15 @@ double squared_distance_to_triangle(const Point& p, const Point& a, const Point&
 /// The point of the triangle abc, which may be degenerate, that is nearest to p.
 Point nearest_point_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
 /// Squared distance from p to the box; 0 inside.
-double squared_distance_to_box(const Point& p, const Box& box);
+inline double squared_distance_to_box(const Point& p, const Box& box) {
+  const auto beyond = [](double from, double at, double to) {
+    const double below = from - at, above = at - to;
+    const double d = below > above ? below : above;
+    return d > 0 ? d : 0;
+  };
+  return squared_norm({beyond(box.min.x, p.x, box.max.x), beyond(box.min.y, p.y, box.max.y),
+                       beyond(box.min.z, p.z, box.max.z)});
+}
 
 template <class Counts>
 double TriangleHierarchy::squared_distance_to(const Point& p, double bound, Index* nearest,
@@ -122,6 +135,27 @@ double TriangleHierarchy::squared_distance_to(const Point& p, double bound, Inde
     stack[top++] = left_first ? node.left : node.right;
   }
   return bound;
+}
+
+template <class Counts>
+Index TriangleHierarchy::triangle_within(const Point& p, double bound, const Counts& counts) const {
+  if (nodes_.empty()) return none;
+  std::array<Index, 128> stack;
+  std::size_t top = 0;
+  stack[top++] = root();
+  while (top > 0) {
+    const Node& node = nodes_[stack[--top]];
+    if (squared_distance_to_box(p, node.box) >= bound) continue;
+    if (node.left != none) {
+      stack[top++] = node.left;
+      stack[top++] = node.right;
+      continue;
+    }
+    const auto t = corners(node.right);
+    if (counts(node.right) && squared_distance_to_triangle(p, t[0], t[1], t[2]) < bound)
+      return node.right;
+  }
+  return none;
 }
 
 }  // namespace collarmesh

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace collarmesh {
 
@@ -131,13 +132,20 @@ void Refinement::queue_point(Index point) {
 
 MeshStatus Refinement::run() {
   WorkQueue::Item item;
+  // Repairs of the collar surface come in many small rounds: let them settle before the rest is
+  // looked at again.
+  bool mending_collars = false;
   for (;;) {
     while (queue_.pop(item)) {
       process(item);
       if (++steps_ % steps_between_reports == 0 && stopped()) return stop_;
     }
     if (stopped()) return stop_;
-    if (!check_surface() && !check_gradation() && !check_collars()) break;
+    if (mending_collars && check_collars()) continue;
+    const bool collars_settled = std::exchange(mending_collars, false);
+    if (check_surface() || check_gradation()) continue;
+    if (collars_settled || !check_collars()) break;
+    mending_collars = true;
   }
   relabel_flat_cells();
   rip_and_stitch();

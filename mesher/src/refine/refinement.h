@@ -93,6 +93,13 @@ class Refinement {
     bool given_up;                     // at the floor: no further insertion here
     bool judged;
     bool in_collar;                    // x lies in a collar ball: none of refinement's business
+    bool known_near;                   // no sample of it is farther from its patch than the tolerance
+  };
+  /// A point of the complex on a smooth patch, with a triangle of the patch that it was near to.
+  struct TessellationPoint {
+    Index point;
+    FaceId near;
+    std::uint32_t generation;          // of the face's cell
   };
   struct CellLabel {
     std::uint16_t region = 0;
@@ -212,9 +219,12 @@ class Refinement {
   /// Look at the whole restricted surface and queue what is wrong. False when nothing is.
   bool check_surface();
   std::vector<bool> vertices_at_collars() const;
-  bool check_patch_topology();
-  bool refine_distant_triangles();
-  bool check_patch_distance();
+  bool check_patch_topology(const std::vector<FaceId>& faces);
+  bool refine_distant_triangles(const std::vector<FaceId>& faces);
+  void seed_missed_patch(Index patch);
+  void prepare_tessellation();
+  bool still_near(const TessellationPoint& p, Index patch) const;
+  bool resolve_distant_points(const std::vector<FaceId>& faces);
   bool check_flat_cells();
   std::vector<FaceId> marked_faces() const;
   void refine_triangle(FaceId face);
@@ -319,6 +329,8 @@ class Refinement {
   std::vector<RestrictedTriangle> restricted_;
   std::vector<Index> free_restricted_;
   std::vector<Index> node_pool_;
+  std::vector<TessellationPoint> tessellation_;         // of all smooth patches, one after the other
+  std::vector<std::size_t> first_tessellation_point_;   // of each patch; empty before the first check
 
   std::vector<UnresolvedPoint> unresolved_;
   std::vector<PendingSubsegment> pending_;

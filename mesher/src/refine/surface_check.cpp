@@ -14,25 +14,36 @@ namespace {
 constexpr unsigned most_rounds = 60;
 constexpr std::size_t seeds_per_missed_patch = 8;
 
+// An edge of a patch's triangle, or of a curve that bounds the patch.
 struct EdgeUse {
+  std::uint64_t edge;   // its two mesh vertices
   Index patch;
-  std::array<Index, 2> edge;
-  FaceId face;
+  FaceId face;          // or the subsegment
 
   friend bool operator<(const EdgeUse& a, const EdgeUse& b) {
-    if (a.patch != b.patch) return a.patch < b.patch;
     if (a.edge != b.edge) return a.edge < b.edge;
+    if (a.patch != b.patch) return a.patch < b.patch;
     return a.face < b.face;
   }
+  bool same_place(const EdgeUse& other) const { return edge == other.edge && patch == other.patch; }
 };
 
-std::array<Index, 2> sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
+std::uint64_t edge_between(Index a, Index b) {
+  return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+}
+
+bool has_use(const std::vector<EdgeUse>& sorted, const EdgeUse& wanted) {
+  const auto first = std::lower_bound(sorted.begin(), sorted.end(), EdgeUse{wanted.edge, wanted.patch, 0});
+  return first != sorted.end() && first->same_place(wanted);
+}
 
 }  // namespace
 
 bool Refinement::check_surface() {
   if (!message_.empty()) return false;
-  const bool found = check_patch_topology() | check_patch_distance() | check_flat_cells();
+  const std::vector<FaceId> faces = marked_faces();
+  const bool found = check_patch_topology(faces) | refine_distant_triangles(faces) |
+                     resolve_distant_points(faces) | check_flat_cells();
   if (found && ++surface_rounds_ > most_rounds) {
     give_up(points_[plc_.triangles[0].points[0]],
             fmt::format("the surface did not settle in {} rounds; the first point of the input is",
@@ -73,40 +84,33 @@ std::vector<bool> Refinement::vertices_at_collars() const {
 
 // Every edge of a patch's triangles lies in two of them, or on one of the patch's curves; every
 // subsegment has triangles of all the patches that its curve bounds.
-bool Refinement::check_patch_topology() {
-  std::vector<EdgeUse> uses;
-  for (const FaceId face : marked_faces()) {
+bool Refinement::check_patch_topology(const std::vector<FaceId>& faces) {
+  std::vector<EdgeUse> uses, on_curves;
+  uses.reserve(3 * faces.size());
+  for (const FaceId face : faces) {
     const auto v = mesh_.face_vertices(face);
     const Index patch = patch_of(restricted(face));
-    for (unsigned i = 0; i < 3; ++i) uses.push_back({patch, sorted(v[i], v[(i + 1) % 3]), face});
+    for (unsigned i = 0; i < 3; ++i) uses.push_back({edge_between(v[i], v[(i + 1) % 3]), patch, face});
   }
   std::sort(uses.begin(), uses.end());
-  std::vector<EdgeUse> on_curves;
-  const std::vector<bool> at_collars = vertices_at_collars();
   bool found = false;
   for (Index s = 0; s < subsegments_.size(); ++s) {
     const Subsegment& subsegment = subsegments_[s];
     if (!subsegment.alive) continue;
-    const auto edge = sorted(subsegment.ends[0], subsegment.ends[1]);
     for (const Index patch : plc_.curves[subsegment.curve].patches) {
-      on_curves.push_back({patch, edge, s});
-      const auto first = std::lower_bound(uses.begin(), uses.end(), EdgeUse{patch, edge, 0});
-      if (first != uses.end() && first->patch == patch && first->edge == edge) continue;
+      on_curves.push_back({edge_between(subsegment.ends[0], subsegment.ends[1]), patch, s});
+      if (has_use(uses, on_curves.back())) continue;
       encroach(s);
       found = true;
     }
   }
   std::sort(on_curves.begin(), on_curves.end());
+  const std::vector<bool> at_collars = vertices_at_collars();
   for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
-    for (j = i; j < uses.size() && uses[j].patch == uses[i].patch && uses[j].edge == uses[i].edge;) ++j;
-    if (j - i == 2) continue;
-    const auto curve = std::lower_bound(on_curves.begin(), on_curves.end(),
-                                        EdgeUse{uses[i].patch, uses[i].edge, 0});
-    if (curve != on_curves.end() && curve->patch == uses[i].patch && curve->edge == uses[i].edge)
-      continue;
+    for (j = i; j < uses.size() && uses[j].same_place(uses[i]);) ++j;
+    if (j - i == 2 || has_use(on_curves, uses[i])) continue;
     // The patch goes on inside a collar.
-    const auto at_collar = [&](Index v) { return at_collars[v]; };
-    if (std::all_of(uses[i].edge.begin(), uses[i].edge.end(), at_collar)) continue;
+    if (at_collars[uses[i].edge >> 32] && at_collars[uses[i].edge & 0xffffffff]) continue;
     std::size_t largest = i;
     for (std::size_t k = i; k < j; ++k)
       if (restricted(uses[k].face).squared_radius > restricted(uses[largest].face).squared_radius)
@@ -118,60 +122,96 @@ bool Refinement::check_patch_topology() {
 }
 
 // Triangles on smooth patches whose edges or middle leave the patch by more than the tolerance.
-bool Refinement::refine_distant_triangles() {
+bool Refinement::refine_distant_triangles(const std::vector<FaceId>& faces) {
   const double tolerance = distance_ * distance_;
   bool found = false;
-  for (const FaceId face : marked_faces()) {
-    const RestrictedTriangle& t = restricted(face);
+  for (const FaceId face : faces) {
+    RestrictedTriangle& t = restricted(face);
     const Index patch = patch_of(t);
-    if (plc_.patches[patch].planar || t.in_collar || t.given_up) continue;
+    if (plc_.patches[patch].planar || t.in_collar || t.given_up || t.known_near) continue;
     const auto v = mesh_.face_vertices(face);
     const Point &a = mesh_.point(v[0]), &b = mesh_.point(v[1]), &c = mesh_.point(v[2]);
     const std::array<Point, 10> samples{
         (a + b + c) / 3, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a), (2 * a + b) / 3, (a + 2 * b) / 3,
         (2 * b + c) / 3, (b + 2 * c) / 3, (2 * c + a) / 3, (c + 2 * a) / 3};
-    const bool distant = std::any_of(samples.begin(), samples.end(), [&](const Point& p) {
-      return hierarchy_.squared_distance_to(p, tolerance, nullptr, [&](Index triangle) {
-        return plc_.triangles[triangle].patch == patch;
-      }) >= tolerance;
+    Index near = t.triangle;   // the next sample is often near the same triangle
+    t.known_near = std::all_of(samples.begin(), samples.end(), [&](const Point& p) {
+      const auto corners = hierarchy_.corners(near);
+      if (squared_distance_to_triangle(p, corners[0], corners[1], corners[2]) < tolerance) return true;
+      const Index other = hierarchy_.triangle_within(
+          p, tolerance, [&](Index triangle) { return plc_.triangles[triangle].patch == patch; });
+      if (other != none) near = other;
+      return other != none;
     });
-    if (!distant) continue;
+    if (t.known_near) continue;
     refine_triangle(face);
     found = true;
   }
   return found;
 }
 
+// A patch that no triangle was found of: its dual edges cross it back and forth.
+void Refinement::seed_missed_patch(Index patch) {
+  const std::size_t seeds = seeds_per_missed_patch << std::min(surface_rounds_, 16U);
+  for (const Index point : spread_points(tessellation_points(plc_.patches[patch]), points_, seeds))
+    add_unresolved(points_[point], 2, patch);
+}
+
+void Refinement::prepare_tessellation() {
+  for (Index patch = 0; patch < plc_.patches.size(); ++patch) {
+    first_tessellation_point_.push_back(tessellation_.size());
+    if (plc_.patches[patch].planar) continue;
+    for (const Index point : tessellation_points(plc_.patches[patch]))
+      if (collars_.ball_containing(points_[point]) == none) tessellation_.push_back({point, no_face, 0});
+  }
+  first_tessellation_point_.push_back(tessellation_.size());
+}
+
+// Is the triangle that the point was near to when last looked at still there?
+bool Refinement::still_near(const TessellationPoint& p, Index patch) const {
+  if (p.near == no_face) return false;
+  const Index cell = cell_of(p.near);
+  return mesh_.alive(cell) && mesh_.generation(cell) == p.generation &&
+         (labels_[cell].marked >> corner_of(p.near) & 1U) && patch_of(restricted(p.near)) == patch;
+}
+
 // A tessellation point of a smooth patch that is farther than the tolerance from the patch's
 // triangles becomes an unresolved point: the farthest one at each triangle, so that one insertion
 // serves all its neighbours.
-bool Refinement::check_patch_distance() {
-  std::vector<std::vector<std::array<Index, 3>>> triangles(plc_.patches.size());
-  for (const FaceId face : marked_faces()) {
-    const Index patch = patch_of(restricted(face));
-    if (!plc_.patches[patch].planar) triangles[patch].push_back(mesh_.face_vertices(face));
-  }
+bool Refinement::resolve_distant_points(const std::vector<FaceId>& faces) {
+  if (first_tessellation_point_.empty()) prepare_tessellation();
+  std::vector<std::vector<FaceId>> faces_of(plc_.patches.size());
+  for (const FaceId face : faces)
+    if (const Index patch = patch_of(restricted(face)); !plc_.patches[patch].planar)
+      faces_of[patch].push_back(face);
   std::vector<Point> positions;
-  bool found = refine_distant_triangles();
+  bool found = false;
   for (Index patch = 0; patch < plc_.patches.size(); ++patch) {
-    const Plc::Patch& p = plc_.patches[patch];
-    if (p.planar) continue;
-    const auto triangle_count = triangles[patch].size();
-    if (triangle_count == 0) {  // missed as a whole: its dual edges cross it back and forth
-      const std::size_t seeds = seeds_per_missed_patch << std::min(surface_rounds_, 16U);
-      for (const Index point : spread_points(tessellation_points(p), points_, seeds))
-        add_unresolved(points_[point], 2, patch);
+    if (plc_.patches[patch].planar) continue;
+    if (faces_of[patch].empty()) {
+      seed_missed_patch(patch);
       found = true;
       continue;
     }
+    std::vector<TessellationPoint*> lost;
+    for (std::size_t i = first_tessellation_point_[patch]; i < first_tessellation_point_[patch + 1]; ++i)
+      if (!still_near(tessellation_[i], patch)) lost.push_back(&tessellation_[i]);
+    if (lost.empty()) continue;
     if (positions.empty())
       for (Index v = 0; v < mesh_.vertex_count(); ++v) positions.push_back(mesh_.point(v));
-    const TriangleHierarchy surface(positions, std::move(triangles[patch]));
-    std::vector<std::pair<double, Index>> farthest(triangle_count + 1, {0, none});
-    for (const Index point : tessellation_points(p)) {
-      auto nearest = static_cast<Index>(triangle_count);
-      const double d = surface.squared_distance_to(points_[point], INFINITY, &nearest);
-      if (d > distance_ * distance_ && collars_.ball_containing(points_[point]) == none && d > farthest[nearest].first) farthest[nearest] = {d, point};
+    std::vector<std::array<Index, 3>> corners;
+    for (const FaceId face : faces_of[patch]) corners.push_back(mesh_.face_vertices(face));
+    const TriangleHierarchy surface(positions, std::move(corners));
+    std::vector<std::pair<double, Index>> farthest(faces_of[patch].size(), {0, none});
+    for (TessellationPoint* p : lost) {
+      Index nearest = none;
+      const double d = surface.squared_distance_to(points_[p->point], INFINITY, &nearest);
+      if (d > distance_ * distance_) {
+        if (d > farthest[nearest].first) farthest[nearest] = {d, p->point};
+      } else {
+        p->near = faces_of[patch][nearest];
+        p->generation = mesh_.generation(cell_of(p->near));
+      }
     }
     for (const auto& [d, point] : farthest) {
       if (point == none) continue;
