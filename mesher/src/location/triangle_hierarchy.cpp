@@ -15,25 +15,36 @@ Point nearest_point_on_segment(const Point& p, const Point& a, const Point& b) {
   return a + (length > 0 ? std::clamp(dot(p - a, u) / length, 0.0, 1.0) : 0.0) * u;
 }
 
+Box box_around(const Point& p, const Point& q) {
+  Box box;
+  box.add(p);
+  box.add(q);
+  return box;
+}
+
+bool overlap(const Box& a, const Box& b) {
+  return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y &&
+         a.min.z <= b.max.z && b.min.z <= a.max.z;
+}
+
 // A segment ready for many box tests: separating axes, widened by the rounding of their arithmetic
 // (Akenine-Moeller, Haines, Hoffman: Real-Time Rendering, segment against box).
 class SegmentAgainstBoxes {
  public:
   SegmentAgainstBoxes(const Point& p, const Point& q)
-      : centre_(0.5 * (p + q)),
+      : range_(box_around(p, q)),
+        centre_(0.5 * (p + q)),
         half_(0.5 * (q - p)),
         reach_{std::fabs(half_.x), std::fabs(half_.y), std::fabs(half_.z)},
         slack_(1e-14 * (std::fabs(p.x) + std::fabs(p.y) + std::fabs(p.z) + std::fabs(q.x) +
                         std::fabs(q.y) + std::fabs(q.z))) {}
 
   bool may_meet(const Box& box) const {
+    if (!overlap(range_, box)) return false;
     const Vector d2 = box.min + box.max, size2 = box.max - box.min;
     const double slack = slack_ + 1e-14 * (std::fabs(d2.x) + std::fabs(d2.y) + std::fabs(d2.z) +
                                            size2.x + size2.y + size2.z);
-    const Vector d{std::fabs(centre_.x - 0.5 * d2.x), std::fabs(centre_.y - 0.5 * d2.y),
-                   std::fabs(centre_.z - 0.5 * d2.z)};
     const Vector e{0.5 * size2.x + slack, 0.5 * size2.y + slack, 0.5 * size2.z + slack};
-    if (d.x > e.x + reach_.x || d.y > e.y + reach_.y || d.z > e.z + reach_.z) return false;
     const Vector m = centre_ - 0.5 * d2;
     return std::fabs(m.y * half_.z - m.z * half_.y) <= (e.y * reach_.z + e.z * reach_.y) * widen &&
            std::fabs(m.z * half_.x - m.x * half_.z) <= (e.x * reach_.z + e.z * reach_.x) * widen &&
@@ -42,6 +53,7 @@ class SegmentAgainstBoxes {
 
  private:
   static constexpr double widen = 1 + 1e-12;
+  Box range_;
   Point centre_;
   Vector half_, reach_;
   double slack_;
@@ -185,6 +197,10 @@ void TriangleHierarchy::crossings(const Point& p, const Point& q, std::span<cons
   }
 }
 
+int TriangleHierarchy::crossing(const Point& p, const Point& q, Index triangle) const {
+  return crossing_direction(p, q, corners(triangle));
+}
+
 bool TriangleHierarchy::triangles_in_ball(const Point& centre, double radius,
                                           std::span<const Index> nodes, std::size_t most,
                                           std::vector<LocalTriangle>& local) const {
@@ -213,13 +229,9 @@ void TriangleHierarchy::crossings(const Point& p, const Point& q,
                                   std::span<const LocalTriangle> local,
                                   std::vector<Crossing>& found) const {
   found.clear();
-  Box range;
-  range.add(p);
-  range.add(q);
+  const Box range = box_around(p, q);
   for (const LocalTriangle& t : local) {
-    if (t.box.min.x > range.max.x || t.box.max.x < range.min.x || t.box.min.y > range.max.y ||
-        t.box.max.y < range.min.y || t.box.min.z > range.max.z || t.box.max.z < range.min.z)
-      continue;
+    if (!overlap(range, t.box)) continue;
     if (const int direction = crossing_direction(p, q, corners(t.triangle)); direction != 0)
       found.push_back({t.triangle, direction});
   }

@@ -50,6 +50,9 @@ class TriangleHierarchy {
   void crossings(const Point& p, const Point& q, std::span<const Index> nodes,
                  std::vector<Crossing>& found) const;
 
+  /// The direction in which the segment pq crosses one triangle; 0 when it does not.
+  int crossing(const Point& p, const Point& q, Index triangle) const;
+
   /// Replace `local` by the triangles below `nodes` that meet the ball. False, and `local` is
   /// unusable, when there are more than `most`.
   bool triangles_in_ball(const Point& centre, double radius, std::span<const Index> nodes,

@@ -162,6 +162,18 @@ void Refinement::label_created_cells(Index vertex) {
   }
 }
 
+// A border face' dual edge has become shorter, so that it crosses what it crossed, or nothing. Does it
+// still cross the triangle that it alone crossed, from the one label to the other?
+bool Refinement::crosses_as_before(FaceId outer, FaceId face) {
+  const RestrictedTriangle& t = restricted(outer);
+  if (t.several_sheets) return false;
+  const int direction = hierarchy_.crossing(mesh_.circumcentre(cell_of(outer)),
+                                            mesh_.circumcentre(cell_of(face)), t.triangle);
+  if (direction == 0) return false;
+  crossings_.assign(1, {t.triangle, direction});
+  return region_beyond(labels_[cell_of(outer)].region) == labels_[cell_of(face)].region;
+}
+
 // The dual edges of the zone's border faces have become shorter, their ends are rounded anew: look
 // again at those that were marked and those whose labels say that they should be.
 void Refinement::mark_border_faces() {
@@ -173,6 +185,12 @@ void Refinement::mark_border_faces() {
     const bool was_marked = labels_[cell_of(outer)].marked >> corner_of(outer) & 1U;
     if (!was_marked && labels_[created].region == labels_[cell_of(outer)].region) continue;
     const FaceId face = face_id(created, corner_of(before));
+    if (was_marked && crosses_as_before(outer, face)) {
+      labels_[created].marked |= static_cast<std::uint8_t>(1U << corner_of(face));
+      marks_[created][corner_of(face)] = marks_[cell_of(outer)][corner_of(outer)];
+      restricted(face).judged = false;   // it may have been queued as the destroyed cell's face
+      continue;
+    }
     if (was_marked) unmark(outer);
     find_crossings(face, fewest_nodes(face));
     if (!crossings_.empty()) restrict_face(face);

@@ -186,6 +186,7 @@ class Refinement {
   std::span<const Index> fewest_nodes(FaceId face) const;
   void find_crossings(FaceId face, std::span<const Index> nodes);
   void label_created_cells(Index vertex);
+  bool crosses_as_before(FaceId outer, FaceId face);
   void mark_border_faces();
   void forget_inner_mark(FaceId face);
   void unmark(FaceId face);
