@@ -164,11 +164,11 @@ void TriangleHierarchy::descend(Index index, const Point& centre, double radius,
   node.stamp = stamp_;
   const double reach = radius * radius * (1 + 1e-9);
   if (squared_distance_to_box(centre, node.box) > reach) return;
-  if (node.left == none) {
+  if (node.extent <= radius) {
+    found.push_back(index);
+  } else if (node.left == none) {
     const auto t = corners(node.right);
     if (squared_distance_to_triangle(centre, t[0], t[1], t[2]) <= reach) found.push_back(index);
-  } else if (node.extent <= radius) {
-    found.push_back(index);
   } else {
     descend(node.left, centre, radius, found);
     descend(node.right, centre, radius, found);

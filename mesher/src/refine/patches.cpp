@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint16_t unlabelled = 0xffff;
 constexpr std::size_t seeds_per_closed_patch = 4;
 // With at most so many triangles near a new vertex its dual edges are tested against all of them.
-constexpr std::size_t most_local_triangles = 96;
+constexpr std::size_t most_local_triangles = 48;
 
 }  // namespace
 
