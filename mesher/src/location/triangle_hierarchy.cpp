@@ -201,42 +201,6 @@ int TriangleHierarchy::crossing(const Point& p, const Point& q, Index triangle) 
   return crossing_direction(p, q, corners(triangle));
 }
 
-bool TriangleHierarchy::triangles_in_ball(const Point& centre, double radius,
-                                          std::span<const Index> nodes, std::size_t most,
-                                          std::vector<LocalTriangle>& local) const {
-  local.clear();
-  const double reach = radius * radius * (1 + 1e-9);
-  std::array<Index, 128> stack;
-  for (const Index start : nodes) {
-    std::size_t top = 0;
-    stack[top++] = start;
-    while (top > 0) {
-      const Node& node = nodes_[stack[--top]];
-      if (squared_distance_to_box(centre, node.box) > reach) continue;
-      if (node.left != none) {
-        stack[top++] = node.left;
-        stack[top++] = node.right;
-        continue;
-      }
-      if (local.size() == most) return false;
-      local.push_back({node.box, node.right});
-    }
-  }
-  return true;
-}
-
-void TriangleHierarchy::crossings(const Point& p, const Point& q,
-                                  std::span<const LocalTriangle> local,
-                                  std::vector<Crossing>& found) const {
-  found.clear();
-  const Box range = box_around(p, q);
-  for (const LocalTriangle& t : local) {
-    if (!overlap(range, t.box)) continue;
-    if (const int direction = crossing_direction(p, q, corners(t.triangle)); direction != 0)
-      found.push_back({t.triangle, direction});
-  }
-}
-
 std::size_t TriangleHierarchy::bytes() const {
   return nodes_.capacity() * sizeof(Node) + triangles_.capacity() * sizeof(triangles_[0]);
 }

@@ -21,12 +21,6 @@ class TriangleHierarchy {
     int direction;
   };
 
-  /// A triangle with its box, for many queries in one small neighbourhood.
-  struct LocalTriangle {
-    Box box;
-    Index triangle;
-  };
-
   /// The points are kept by reference.
   TriangleHierarchy(std::span<const Point> points, std::vector<std::array<Index, 3>> triangles);
 
@@ -52,15 +46,6 @@ class TriangleHierarchy {
 
   /// The direction in which the segment pq crosses one triangle; 0 when it does not.
   int crossing(const Point& p, const Point& q, Index triangle) const;
-
-  /// Replace `local` by the triangles below `nodes` that meet the ball. False, and `local` is
-  /// unusable, when there are more than `most`.
-  bool triangles_in_ball(const Point& centre, double radius, std::span<const Index> nodes,
-                         std::size_t most, std::vector<LocalTriangle>& local) const;
-
-  /// The same as crossings() above, among given triangles.
-  void crossings(const Point& p, const Point& q, std::span<const LocalTriangle> local,
-                 std::vector<Crossing>& found) const;
 
   /// Squared distance from p to the nearest triangle, if below `bound` (else `bound`, and `nearest`
   /// is left alone).

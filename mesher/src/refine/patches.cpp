@@ -11,8 +11,6 @@ namespace {
 
 constexpr std::uint16_t unlabelled = 0xffff;
 constexpr std::size_t seeds_per_closed_patch = 4;
-// With at most so many triangles near a new vertex its dual edges are tested against all of them.
-constexpr std::size_t most_local_triangles = 48;
 
 }  // namespace
 
@@ -136,10 +134,6 @@ void Refinement::label_created_cells(Index vertex) {
     return;
   }
   const auto nodes = nodes_of(vertex);
-  double radius = 0;
-  for (const Index cell : zone_.created) radius = std::max(radius, mesh_.squared_radius(cell));
-  const bool few = hierarchy_.triangles_in_ball(mesh_.point(vertex), std::sqrt(radius), nodes,
-                                                most_local_triangles, local_triangles_);
   cells_scratch_.assign(1, zone_.created[seed]);
   while (!cells_scratch_.empty()) {
     const Index cell = cells_scratch_.back();
@@ -149,11 +143,7 @@ void Refinement::label_created_cells(Index vertex) {
       const FaceId face = face_id(cell, corner), other = mesh_.opposite(face);
       if (other == no_face) continue;
       labels_[cell_of(other)].judged |= static_cast<std::uint8_t>(1U << corner_of(other));
-      if (few)
-        hierarchy_.crossings(mesh_.circumcentre(cell), mesh_.circumcentre(cell_of(other)),
-                             local_triangles_, crossings_);
-      else
-        find_crossings(face, nodes);
+      find_crossings(face, nodes);
       if (!crossings_.empty()) restrict_face(face);
       if (labels_[cell_of(other)].region != unlabelled) continue;
       labels_[cell_of(other)].region = static_cast<std::uint16_t>(region_beyond(labels_[cell].region));

@@ -340,7 +340,6 @@ class Refinement {
   std::vector<Index> free_subsegments_;
 
   std::vector<TriangleHierarchy::Crossing> crossings_;
-  std::vector<TriangleHierarchy::LocalTriangle> local_triangles_;
   std::vector<Index> nodes_scratch_, cells_scratch_, seeds_scratch_;
 
   MeshStatus stop_ = MeshStatus::complete;
