@@ -117,15 +117,18 @@ std::optional<Refinement::CollarTriangle> Refinement::collar_triangle(FaceId out
   if (inner == no_face || labels_[cell_of(outer)].in_collar) return std::nullopt;
   const bool inside = labels_[cell_of(inner)].in_collar;
   if (!inside && cell_of(inner) < cell_of(outer)) return std::nullopt;
-  for (const auto& [cell, ball] : taken_in_)
-    if (cell == cell_of(inner)) {
-      const Point centre = collars_.balls()[ball].centre;
-      const Vector d = triangle_circumcentre(outer) - centre;
-      return CollarTriangle{outer, ball, centre + collars_.balls()[ball].radius / norm(d) * d, false, false};
-    }
+  if (const auto taken = taken_in_.find(cell_of(inner)); taken != taken_in_.end()) {
+    const CollarBall& ball = collars_.balls()[taken->second];
+    const Vector d = triangle_circumcentre(outer) - ball.centre;
+    return CollarTriangle{outer, taken->second, ball.centre + ball.radius / norm(d) * d, false, false};
+  }
   const Point p = mesh_.circumcentre(cell_of(outer)), q = mesh_.circumcentre(cell_of(inner));
+  if (labels_[cell_of(outer)].off_collars >> corner_of(outer) & 1U) return std::nullopt;
   collars_.balls_on_segment(p, q, nodes_scratch_);
-  if (nodes_scratch_.empty()) return std::nullopt;
+  if (nodes_scratch_.empty()) {
+    labels_[cell_of(outer)].off_collars |= static_cast<std::uint8_t>(1U << corner_of(outer));
+    return std::nullopt;
+  }
   // The parts of the dual edge inside each ball, as parameters from p to q.
   struct Part {
     double from, to;
@@ -178,7 +181,7 @@ void Refinement::take_in_flat_cells() {
       });
       if (!on_its_sphere) continue;
       labels_[cell].in_collar = true;
-      taken_in_.push_back({cell, t->ball});
+      taken_in_[cell] = t->ball;
       break;
     }
   }

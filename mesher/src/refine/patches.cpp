@@ -56,7 +56,7 @@ void Refinement::label_from_outside(Index cell) {
   crossings_.clear();
   if (!hierarchy_.empty())
     hierarchy_.crossings(mesh_.point(0), mesh_.circumcentre(cell), {&root, 1}, crossings_);
-  labels_[cell] = {static_cast<std::uint16_t>(region_beyond(0)), 0, 0, false};
+  labels_[cell] = {.region = static_cast<std::uint16_t>(region_beyond(0))};
 }
 
 bool Refinement::on_patch(Index vertex, Index patch) const {
@@ -126,7 +126,7 @@ std::size_t Refinement::first_label() {
 
 // Labels of the new cells, and restricted triangles among the faces between them.
 void Refinement::label_created_cells(Index vertex) {
-  for (const Index cell : zone_.created) labels_[cell] = {unlabelled, 0, 0, false};
+  for (const Index cell : zone_.created) labels_[cell] = {.region = unlabelled};
   const std::size_t seed = first_label();
   const std::uint16_t region = labels_[zone_.created[seed]].region;
   if (vertices_[vertex].node_count == 0) {
@@ -171,6 +171,7 @@ void Refinement::mark_border_faces() {
     const FaceId outer = zone_.outer[i];
     const FaceId before = zone_.border[i];
     if (outer == no_face) continue;
+    labels_[cell_of(outer)].off_collars &= static_cast<std::uint8_t>(~(1U << corner_of(outer)));
     const Index created = zone_.created[i];
     const bool was_marked = labels_[cell_of(outer)].marked >> corner_of(outer) & 1U;
     if (!was_marked && labels_[created].region == labels_[cell_of(outer)].region) continue;

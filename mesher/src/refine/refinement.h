@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "collar/collar_system.h"
@@ -106,6 +107,7 @@ class Refinement {
     std::uint8_t marked = 0;           // bit i: the face opposite corner i is restricted
     std::uint8_t judged = 0;           // bit i: that face has been intersected with the patches
     bool in_collar = false;            // its circumcentre lies in a collar ball
+    std::uint8_t off_collars = 0;      // bit i: the dual edge of that face is known to meet no ball
   };
   /// A point about to be inserted.
   struct Candidate {
@@ -318,7 +320,7 @@ class Refinement {
   std::vector<Index> ball_points_;           // unresolved points at the balls' centres
   std::vector<ClippedEnd> clipped_ends_;
   Stitched stitched_;
-  std::vector<std::pair<Index, Index>> taken_in_;  // flat cells given to the collar of a ball
+  std::unordered_map<Index, Index> taken_in_;  // flat cells given to the collar of a ball
   WorkQueue queue_;
   ConflictZone zone_;
 
