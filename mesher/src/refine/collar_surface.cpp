@@ -118,9 +118,9 @@ std::optional<Refinement::CollarTriangle> Refinement::collar_triangle(FaceId out
   const bool inside = labels_[cell_of(inner)].in_collar;
   if (!inside && cell_of(inner) < cell_of(outer)) return std::nullopt;
   if (const auto taken = taken_in_.find(cell_of(inner)); taken != taken_in_.end()) {
-    const CollarBall& ball = collars_.balls()[taken->second];
+    const CollarBall& ball = collars_.balls()[taken->second.ball];
     const Vector d = triangle_circumcentre(outer) - ball.centre;
-    return CollarTriangle{outer, taken->second, ball.centre + ball.radius / norm(d) * d, false, false};
+    return CollarTriangle{outer, taken->second.ball, ball.centre + ball.radius / norm(d) * d, false, false};
   }
   const Point p = mesh_.circumcentre(cell_of(outer)), q = mesh_.circumcentre(cell_of(inner));
   if (labels_[cell_of(outer)].off_collars >> corner_of(outer) & 1U) return std::nullopt;
@@ -158,7 +158,7 @@ std::optional<Refinement::CollarTriangle> Refinement::collar_triangle(FaceId out
 // just outside the collar is given to it.
 void Refinement::take_in_flat_cells() {
   std::erase_if(taken_in_, [&](const auto& t) {
-    return !mesh_.alive(t.first) || !labels_[t.first].in_collar;
+    return !mesh_.alive(t.first) || mesh_.generation(t.first) != t.second.generation;
   });
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
     if (!mesh_.alive(cell) || labels_[cell].in_collar || labels_[cell].region == 0) continue;
@@ -181,7 +181,7 @@ void Refinement::take_in_flat_cells() {
       });
       if (!on_its_sphere) continue;
       labels_[cell].in_collar = true;
-      taken_in_[cell] = t->ball;
+      taken_in_[cell] = {t->ball, mesh_.generation(cell)};
       break;
     }
   }
@@ -206,7 +206,7 @@ bool Refinement::poorly_represented(const CollarTriangle& t) {
   if (predicates::orientation(a, b, c, ball.centre) <= 0) return true;
   const TetQuality quality = measure(a, b, c, ball.centre);
   if (quality.max_dihedral > options_.collar_angle) return true;
-  const bool taken = std::any_of(taken_in_.begin(), taken_in_.end(), [&](const auto& x) { return x.first == cell_of(inner); });
+  const bool taken = taken_in_.contains(cell_of(inner));
   if (!taken) {
     const Vector along = mesh_.circumcentre(cell_of(inner)) - mesh_.circumcentre(outer);
     const Vector normal = ball.centre - t.representation;

@@ -250,6 +250,11 @@ class Refinement {
     Index bent_on = none;  // a smooth patch that an edge of it leaves too far ...
     Point bent_at = {};    // ... at its middle
   };
+  /// A flat cell outside the balls that is given to the collar of one.
+  struct TakenIn {
+    Index ball;
+    std::uint32_t generation;  // of the cell
+  };
   void prepare_collars();
   bool meets_collar(Index vertex) const;
   void find_collar_cells(Index vertex);
@@ -320,7 +325,7 @@ class Refinement {
   std::vector<Index> ball_points_;           // unresolved points at the balls' centres
   std::vector<ClippedEnd> clipped_ends_;
   Stitched stitched_;
-  std::unordered_map<Index, Index> taken_in_;  // flat cells given to the collar of a ball
+  std::unordered_map<Index, TakenIn> taken_in_;  // by their cell
   WorkQueue queue_;
   ConflictZone zone_;
 
