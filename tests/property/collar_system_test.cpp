@@ -1,6 +1,7 @@
 // Gap size against brute force, and the balls of the collar system against their definitions (paper,
 // Definitions 2 and 7; DESIGN section 9), on every acute family.
 #include "collar/collar_system.h"
+#include "collar/gap_size.h"
 
 #include <gtest/gtest.h>
 
@@ -113,13 +114,20 @@ std::vector<acute::Shape> shapes() {
 }
 
 std::vector<acute::Shape> curved_shapes() {
-  return {acute::round_cone(45), acute::lens(40), acute::cut_torus(0.9)};
+  std::vector<acute::Shape> shapes;
+  for (const double half_angle : {45.0, 40.0, 30.0, 15.0, 5.0, 2.0})
+    shapes.push_back(acute::round_cone(half_angle));
+  for (const double angle : {60.0, 40.0, 20.0, 5.0}) shapes.push_back(acute::lens(angle));
+  for (const double plane : {0.5, 0.6, 0.75, 0.9, 0.95}) shapes.push_back(acute::cut_torus(plane));
+  return shapes;
 }
 
 struct Placed {
   explicit Placed(const acute::Shape& shape) : plc(build(shape)), creases(find_creases(plc, crease_angle)) {
-    system = CollarSystem(
-        plc, plc.points, creases, [](const Point&) { return size; }, 1e-3 * plc.bounds.diagonal(), 0);
+    CollarOptions options;
+    options.size = [](const Feature&, const Point&) { return size; };
+    options.distance = 1e-3 * plc.bounds.diagonal();
+    system = CollarSystem(plc, plc.points, creases, options);
   }
   static Plc build(const acute::Shape& shape) {
     PlcOptions options;
@@ -149,7 +157,8 @@ void expect_equal(double gap, double expected, const char* kind, Index feature) 
 void expect_gap_sizes(const acute::Shape& shape) {
   SCOPED_TRACE(shape.name);
   const Plc plc = Placed::build(shape);
-  const GapSize gap(plc, plc.points);
+  const FeatureHierarchy features(plc, plc.points);
+  const GapSize gap(plc, features);
   for (Index v = 0; v < plc.vertices.size(); ++v) {
     const double expected =
         brute_force_gap(plc, plc.points[plc.vertices[v].point], features_of_vertex(plc, v));
@@ -266,6 +275,20 @@ TEST(CollarSystem, KeepsItsDefinition) {
 
 TEST(CollarSystem, KeepsItsDefinitionOnCurvedCreases) {
   for (const acute::Shape& shape : curved_shapes()) expect_collar_system(shape);
+}
+
+// On a rim of one curvature the balls are alike: their radii differ by the random shrinkage and by what
+// the corners of the polyline add.
+TEST(CollarSystem, RadiiOnRoundRimsAreEven) {
+  for (const acute::Shape& shape :
+       {acute::round_cone(40), acute::lens(40), acute::lens(20), acute::cut_torus(0.6)}) {
+    SCOPED_TRACE(shape.name);
+    const Placed placed(shape);
+    const auto [smallest, largest] =
+        std::minmax_element(placed.system.balls().begin(), placed.system.balls().end(),
+                            [](const CollarBall& a, const CollarBall& b) { return a.radius < b.radius; });
+    EXPECT_LT(largest->radius, 1.5 * smallest->radius);
+  }
 }
 
 // Queries of the hierarchy against all balls.

@@ -107,7 +107,10 @@ TEST(PlcCreases, ConeApexFolds) {
     const auto folds = of_kind(find_creases(plc, 89), Kind::patch_fold);
     ASSERT_EQ(folds.size(), 1U) << aperture;
     EXPECT_NEAR(folds[0].angle, aperture, 0.1);
-    EXPECT_EQ(folds[0].vertex, none);
+    ASSERT_NE(folds[0].vertex, none);
+    EXPECT_EQ(plc.points[plc.vertices[folds[0].vertex].point], folds[0].where);
+    EXPECT_EQ(plc.vertices[folds[0].vertex].patches, std::vector<Index>{folds[0].features[0]});
+    EXPECT_TRUE(plc.vertices[folds[0].vertex].curves.empty());
     EXPECT_EQ(of_kind(find_creases(plc, 70.53), Kind::patch_fold).empty(), aperture > 70.53);
   }
 }

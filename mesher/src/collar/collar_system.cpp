@@ -7,10 +7,9 @@
 
 namespace collarmesh {
 
-CollarSystem::CollarSystem(const Plc& plc, std::span<const Point> points,
-                           std::span<const Crease> creases,
-                           const std::function<double(const Point&)>& size, double distance, std::uint64_t seed) {
-  CollarPlacement(plc, points, creases, size, distance, seed, *this).place();
+CollarSystem::CollarSystem(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases,
+                           const CollarOptions& options) {
+  if (creases.empty() || !CollarPlacement(plc, points, creases, options, *this).place()) balls_.clear();
   if (balls_.empty()) return;
   for (const CollarLink& link : links_)
     consecutive_.push_back({std::min(link.balls[0], link.balls[1]), std::max(link.balls[0], link.balls[1])});
@@ -80,8 +79,8 @@ Index CollarSystem::ball_containing(const Point& p) const {
   Index found = none;
   visit(
       [&](const Box& b) {
-        return p.x >= b.min.x && p.x <= b.max.x && p.y >= b.min.y && p.y <= b.max.y &&
-               p.z >= b.min.z && p.z <= b.max.z;
+        return p.x >= b.min.x && p.x <= b.max.x && p.y >= b.min.y && p.y <= b.max.y && p.z >= b.min.z &&
+               p.z <= b.max.z;
       },
       [&](Index ball) {
         if (squared_distance(p, balls_[ball].centre) >= balls_[ball].radius * balls_[ball].radius)

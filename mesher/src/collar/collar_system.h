@@ -5,38 +5,11 @@
 #include <span>
 #include <vector>
 
+#include "collar/feature_hierarchy.h"
 #include "collarmesh/plc.h"
 #include "collarmesh/plc_builder.h"
-#include "location/triangle_hierarchy.h"
 
 namespace collarmesh {
-
-/// The gap size g of the paper (Definition 2) at points of vertices and curves: the distance to the
-/// nearest feature that does not contain the point.
-class GapSize {
- public:
-  /// Both are kept by reference; `points` are those of the complex, possibly in another frame.
-  GapSize(const Plc& plc, std::span<const Point> points);
-
-  double at_vertex(Index vertex) const;
-  /// Precondition: p lies on the curve and is none of its ends.
-  double on_curve(Index curve, const Point& p) const;
-
-  /// Does the segment pq cross the patch?
-  bool crosses(Index patch, const Point& p, const Point& q) const;
-  /// The point of the patch nearest to p.
-  Point nearest_on_patch(Index patch, const Point& p) const;
-
- private:
-  struct Element {
-    std::uint8_t dimension;
-    Index feature;
-  };
-  const Plc& plc_;
-  std::span<const Point> points_;
-  std::vector<Element> elements_;
-  TriangleHierarchy hierarchy_;
-};
 
 /// A ball on a crease (paper, Definition 7).
 struct CollarBall {
@@ -44,7 +17,6 @@ struct CollarBall {
   double radius;
   std::uint8_t dimension;  ///< 0: at a crease vertex, 1: on a crease curve
   Index feature;           ///< of that vertex or curve
-  double parameter;        ///< arc length along the curve, for dimension 1
 };
 
 /// Two consecutive balls of a crease; their spheres meet in a circle.
@@ -62,6 +34,17 @@ struct CornerPoint {
   Index feature;
 };
 
+/// How large balls may be.
+struct CollarOptions {
+  /// Upper bound on the radius of a ball at a place on this vertex or curve.
+  std::function<double(const Feature&, const Point&)> size;
+  /// Absolute: how far what replaces smooth curves and patches inside a ball may be from them.
+  double distance = 0;
+  std::uint64_t seed = 0;
+  /// Asked now and then; when it says yes the system stays incomplete. May be empty.
+  std::function<bool()> stopped = {};
+};
+
 /// The union of balls that covers every crease, and its own features (paper, section 3.2; DESIGN
 /// section 9). Balls of different creases are disjoint; consecutive ones overlap deeply.
 class CollarSystem {
@@ -69,9 +52,10 @@ class CollarSystem {
   CollarSystem() = default;
   /// Place balls on all creases: radius a third of the gap size, never more than the size allows,
   /// shrunk by up to 8% (seeded) so that spheres are generic; on smooth curves and patches small
-  /// enough that what replaces them inside a ball stays within `distance`.
+  /// enough that what replaces them inside a ball stays within the distance.
+  /// Cost: O((n + b) log n) for n elements of the complex and b balls.
   CollarSystem(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases,
-               const std::function<double(const Point&)>& size, double distance, std::uint64_t seed);
+               const CollarOptions& options);
 
   bool empty() const { return balls_.empty(); }
   const std::vector<CollarBall>& balls() const { return balls_; }

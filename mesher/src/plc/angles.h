@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "collarmesh/plc_builder.h"
+#include "plc/features.h"
 
 /// Angles between rays and facets at a common point. Directions are unit vectors, angles degrees.
 namespace collarmesh::build {
@@ -25,8 +26,13 @@ double angle_between(const Sector& s, const Sector& t);
 /// aperture for a round cone, at least 90 for any open flat one.
 double fold_angle(std::span<const Vector> rays, bool closed);
 
-/// The smallest angle of each kind at each curve and vertex of the complex, and at each other
-/// point where a smooth patch folds by an angle below 90 degrees.
+/// The points where a smooth patch folds on itself by an angle below 90 degrees (the apex of a
+/// cone): they are vertices. Reads the patches and triangles of `plc` and its planar tolerance;
+/// needs no curves.
+std::vector<Index> find_folds(std::span<const Point> points, const Plc& plc,
+                              std::span<const FeatureSegment> segments);
+
+/// The smallest angle of each kind at each curve and vertex of the complex.
 std::vector<Crease> measure_angles(const Plc& plc);
 
 }  // namespace collarmesh::build

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "collarmesh/plc_builder.h"
+#include "plc/angles.h"
 #include "plc/cleanup.h"
 #include "plc/curves.h"
 #include "plc/facet_triangulation.h"
@@ -162,13 +163,14 @@ Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options) {
   std::vector<Index> patch_of;
   const Index patch_count = find_patches(draft, edges, segments, patch_of);
   Plc plc;
-  find_curves(draft, edges, segments, patch_of, options.feature_angle, plc);
+  plc.planar_tolerance = draft.planar_tolerance;
   add_patches(draft, regions, patch_of, patch_count, plc);
+  find_curves(draft, edges, segments, patch_of, find_folds(draft.points, plc, segments),
+              options.feature_angle, plc);
   link_patches(draft, plc);
   plc.points = std::move(draft.points);
   plc.regions = regions.list;
   plc.bounds = draft.bounds;
-  plc.planar_tolerance = draft.planar_tolerance;
   plc.largest_deviation = draft.largest_deviation;
   plc.cleanup = draft.cleanup;
   return plc;

@@ -20,7 +20,8 @@ double distance_to_chord(const Point& p, const Point& a, const Point& b) {
 class CurveFinder {
  public:
   CurveFinder(Draft& draft, const EdgeTable& edges, const std::vector<FeatureSegment>& segments,
-              const std::vector<Index>& patch_of, double feature_angle, Plc& plc)
+              const std::vector<Index>& patch_of, const std::vector<Index>& folds, double feature_angle,
+              Plc& plc)
       : draft_(draft),
         edges_(edges),
         segments_(segments),
@@ -29,6 +30,8 @@ class CurveFinder {
         largest_turn_(feature_angle * std::numbers::pi / 180),
         is_vertex_(draft.points.size(), false),
         used_(segments.size(), false) {
+    for (const Index p : draft.loose_points) is_vertex_[p] = true;
+    for (const Index p : folds) is_vertex_[p] = true;
     index_ends();
     collect_patches(patch_of);
   }
@@ -82,7 +85,6 @@ class CurveFinder {
   }
 
   void mark_vertices() {
-    for (const Index p : draft_.loose_points) is_vertex_[p] = true;
     mark_pinched_points();
     for (Index p = 0; p < draft_.points.size(); ++p)
       if (!segments_at(p).empty() && !passes(p)) is_vertex_[p] = true;
@@ -240,8 +242,9 @@ class CurveFinder {
 }  // namespace
 
 void find_curves(Draft& draft, const EdgeTable& edges, const std::vector<FeatureSegment>& segments,
-                 const std::vector<Index>& patch_of, double feature_angle, Plc& plc) {
-  CurveFinder(draft, edges, segments, patch_of, feature_angle, plc).run();
+                 const std::vector<Index>& patch_of, const std::vector<Index>& folds, double feature_angle,
+                 Plc& plc) {
+  CurveFinder(draft, edges, segments, patch_of, folds, feature_angle, plc).run();
 }
 
 }  // namespace collarmesh::build

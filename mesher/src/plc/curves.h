@@ -13,8 +13,10 @@ namespace collarmesh::build {
 /// plc.curves with everything but Vertex::patches; `patch_of` gives the patch of each triangle.
 /// A curve passes a point where exactly two segments meet that bound the same patches, have the
 /// same tag, turn by less than the feature angle (degrees; 0: only within the planar tolerance of a
-/// straight line), and where the surface is one fan of triangles.
+/// straight line), and where the surface is one fan of triangles. The points in `folds` are vertices
+/// too.
 void find_curves(Draft& draft, const EdgeTable& edges, const std::vector<FeatureSegment>& segments,
-                 const std::vector<Index>& patch_of, double feature_angle, Plc& plc);
+                 const std::vector<Index>& patch_of, const std::vector<Index>& folds, double feature_angle,
+                 Plc& plc);
 
 }  // namespace collarmesh::build

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "plc/angles.h"
-#include "plc/edges.h"
+#include "plc/fans.h"
 
 namespace collarmesh::build {
 
@@ -13,20 +12,8 @@ namespace {
 
 // Shorter edges and lower triangles than this many planar tolerances point anywhere.
 constexpr double noise = 10;
-// A fan whose normals all lie within this cosine of the first one is too flat to fold.
-constexpr double flat_fan_cosine = 0.866;
-
-// The triangles of one patch around a point, between segments.
-struct Fan {
-  Index patch = none;
-  bool closed = false;
-  std::vector<Index> rim;    // the other ends of their edges at the point, in order
-  std::vector<Vector> rays;  // towards them
-
-  std::size_t sector_count() const { return closed ? rim.size() : rim.size() - 1; }
-  Sector sector(std::size_t i) const { return {rays[i], rays[(i + 1) % rays.size()]}; }
-};
-
+// A patch that folds below this angle in a point has a vertex there (degrees).
+constexpr double folded = 90;
 // An end of a curve at a vertex.
 struct Ray {
   Index curve;
@@ -38,56 +25,31 @@ class AngleFinder {
  public:
   explicit AngleFinder(const Plc& plc)
       : plc_(plc),
-        triangles_(corners_of(plc)),
-        edges_(triangles_, plc.points.size()),
-        is_segment_(edges_.size(), false) {
-    for (const Plc::Curve& curve : plc.curves)
-      for_each_segment(curve, [&](Index a, Index b) {
-        if (const Index e = edges_.find(a, b); e != none) is_segment_[e] = true;
-      });
-    index_corners();
+        fans_(plc.points, plc.triangles, plc.patches, segments_of(plc)),
+        triangles_(fans_.triangles()) {
     collect_rays();
   }
 
   std::vector<Crease> run() {
     for (Index c = 0; c < plc_.curves.size(); ++c) measure_curve(c);
-    std::vector<Index> vertex_at(plc_.points.size(), none);
-    for (Index v = 0; v < plc_.vertices.size(); ++v) vertex_at[plc_.vertices[v].point] = v;
-    for (Index p = 0; p < plc_.points.size(); ++p) {
-      if (vertex_at[p] != none)
-        measure_vertex(vertex_at[p]);
-      else
-        measure_folds(p, none, fans_at(p, true));
-    }
+    for (Index v = 0; v < plc_.vertices.size(); ++v) measure_vertex(v);
     return std::move(result_);
   }
 
  private:
   using Kind = Crease::Kind;
 
-  static std::vector<Corners> corners_of(const Plc& plc) {
-    std::vector<Corners> triangles;
-    triangles.reserve(plc.triangles.size());
-    for (const Plc::Triangle& t : plc.triangles) triangles.push_back(t.points);
-    return triangles;
+  static std::vector<std::array<Index, 2>> segments_of(const Plc& plc) {
+    std::vector<std::array<Index, 2>> segments;
+    for (const Plc::Curve& curve : plc.curves)
+      for_each_segment(curve, [&](Index a, Index b) { segments.push_back({a, b}); });
+    return segments;
   }
 
   template <class Visit>
   static void for_each_segment(const Plc::Curve& curve, const Visit& visit) {
     for (std::size_t i = 0; i + 1 < curve.points.size(); ++i) visit(curve.points[i], curve.points[i + 1]);
     if (curve.closed) visit(curve.points.back(), curve.points.front());
-  }
-
-  void index_corners() {
-    first_corner_.assign(plc_.points.size() + 1, 0);
-    for (const Corners& t : triangles_)
-      for (const Index p : t) ++first_corner_[p + 1];
-    for (std::size_t p = 0; p + 1 < first_corner_.size(); ++p) first_corner_[p + 1] += first_corner_[p];
-    corners_.resize(3 * triangles_.size());
-    std::vector<Index> next(first_corner_.begin(), first_corner_.end() - 1);
-    for (Index corner = 0; corner < corners_.size(); ++corner)
-      corners_[next[triangles_[corner / 3][corner % 3]]++] = corner;
-    visited_.assign(corners_.size(), false);
   }
 
   const Point& at(Index p) const { return plc_.points[p]; }
@@ -117,9 +79,9 @@ class AngleFinder {
   void measure_curve(Index c) {
     Crease best{Kind::facets, 180, c, none, {none, none}, {}};
     for_each_segment(plc_.curves[c], [&](Index a, Index b) {
-      const Index edge = edges_.find(a, b);
+      const Index edge = fans_.edges().find(a, b);
       if (edge == none) return;
-      const auto sides = edges_.sides(edge);
+      const auto sides = fans_.edges().sides(edge);
       for (std::size_t i = 0; i < sides.size(); ++i)
         for (std::size_t j = i + 1; j < sides.size(); ++j) {
           const double angle = angle_between(into_facet(sides[i]), into_facet(sides[j]));
@@ -131,7 +93,7 @@ class AngleFinder {
     if (best.features[0] != none) result_.push_back(best);
   }
 
-  Index patch_of(Index side) const { return plc_.triangles[side / 3].patch; }
+  Index patch_of(Index side) const { return fans_.patch_of(side); }
 
   // Unit vector in the facet, orthogonal to the triangle's side.
   Vector into_facet(Index side) const {
@@ -162,7 +124,7 @@ class AngleFinder {
     for (std::size_t next = 0; next < seen.size() && seen.size() < 64; ++next) {
       if (height(seen[next]) > noise_length()) return seen[next];
       for (Index side = 3 * seen[next]; side < 3 * seen[next] + 3; ++side) {
-        const Index other = across(side);
+        const Index other = fans_.across(side);
         if (other != none && std::find(seen.begin(), seen.end(), other / 3) == seen.end())
           seen.push_back(other / 3);
       }
@@ -170,61 +132,9 @@ class AngleFinder {
     return triangle;
   }
 
-  // The side of the neighbour in the same patch, none at a segment.
-  Index across(Index side) const {
-    const Index edge = edges_.edge_of(side);
-    const auto sides = edges_.sides(edge);
-    if (is_segment_[edge] || sides.size() != 2) return none;
-    return sides[0] == side ? sides[1] : sides[0];
-  }
-
-  // The corner that follows (counterclockwise) or precedes this one in its fan.
-  Index next_corner(Index corner) const {
-    const Index side = across(corner - corner % 3 + (corner % 3 + 2) % 3);
-    return side;
-  }
-  Index previous_corner(Index corner) const {
-    const Index side = across(corner);
-    return side == none ? none : side - side % 3 + (side % 3 + 1) % 3;
-  }
-
-  std::vector<Fan> fans_at(Index p, bool smooth_only) {
-    std::vector<Fan> fans;
-    for (Index i = first_corner_[p]; i < first_corner_[p + 1]; ++i) {
-      const Index start = corners_[i];
-      if (visited_[start]) continue;
-      if (smooth_only && plc_.patches[patch_of(start)].planar) continue;
-      fans.push_back(make_fan(start));
-    }
-    return fans;
-  }
-
-  Fan make_fan(Index start) {
-    Index first = start;
-    for (Index c = previous_corner(start); c != none && c != start; c = previous_corner(c)) first = c;
-    Fan fan;
-    fan.patch = patch_of(start);
-    fan.closed = previous_corner(first) != none;
-    const Index p = triangles_[start / 3][start % 3];
-    Index last = first;
-    for (Index c = first; c != none && !visited_[c]; c = next_corner(c)) {
-      visited_[c] = true;
-      last = c;
-      fan.rim.push_back(triangles_[c / 3][(c % 3 + 1) % 3]);
-    }
-    if (!fan.closed) fan.rim.push_back(triangles_[last / 3][(last % 3 + 2) % 3]);
-    if (!fan.closed && fan.rim.size() > 2 && fan.rim.front() == fan.rim.back()) {
-      // A segment ends inside the patch: its two sides are one ray.
-      fan.rim.pop_back();
-      fan.closed = true;
-    }
-    for (const Index q : fan.rim) fan.rays.push_back(direction(p, q));
-    return fan;
-  }
-
   void measure_vertex(Index v) {
     const Index p = plc_.vertices[v].point;
-    const std::vector<Fan> fans = fans_at(p, false);
+    const std::vector<Fan> fans = fans_.at(p, false);
     measure_segments(v);
     measure_segments_and_facets(v, fans);
     measure_facets(v, fans);
@@ -275,26 +185,11 @@ class AngleFinder {
 
   void measure_folds(Index p, Index v, const std::vector<Fan>& fans) {
     for (const Fan& fan : fans) {
-      if (plc_.patches[fan.patch].planar || too_flat_to_fold(fan) || too_small(p, fan)) continue;
-      const double angle = fold_angle(fan.rays, fan.closed);
-      if (angle < 90) result_.push_back({Kind::patch_fold, angle, none, v, {fan.patch, fan.patch}, at(p)});
+      if (plc_.patches[fan.patch].planar) continue;
+      const double angle = fans_.fold(p, fan, noise_length());
+      if (angle < folded)
+        result_.push_back({Kind::patch_fold, angle, none, v, {fan.patch, fan.patch}, at(p)});
     }
-  }
-
-  static bool too_flat_to_fold(const Fan& fan) {
-    Vector first{};
-    for (std::size_t i = 0; i < fan.sector_count(); ++i) {
-      const Sector s = fan.sector(i);
-      const Vector n = cross(s.u, s.v);
-      if (i == 0) first = n / norm(n);
-      if (dot(first, n) < flat_fan_cosine * norm(n)) return false;
-    }
-    return true;
-  }
-
-  bool too_small(Index p, const Fan& fan) const {
-    return std::any_of(fan.rim.begin(), fan.rim.end(),
-                       [&](Index q) { return distance(at(p), at(q)) <= noise_length(); });
   }
 
   Crease at_vertex(Kind kind, Index v) const {
@@ -310,17 +205,30 @@ class AngleFinder {
   }
 
   const Plc& plc_;
-  std::vector<Corners> triangles_;
-  EdgeTable edges_;
-  std::vector<bool> is_segment_;               // by edge
-  std::vector<Index> first_corner_, corners_;  // corners (3 t + i) at each point
-  std::vector<bool> visited_;                  // corners that are in a fan already
-  std::vector<std::vector<Ray>> rays_;         // by vertex
+  PatchFans fans_;
+  const std::vector<Corners>& triangles_;
+  std::vector<std::vector<Ray>> rays_;  // by vertex
   std::vector<Crease> result_;
 };
 
 }  // namespace
 
 std::vector<Crease> measure_angles(const Plc& plc) { return AngleFinder(plc).run(); }
+
+std::vector<Index> find_folds(std::span<const Point> points, const Plc& plc,
+                              std::span<const FeatureSegment> segments) {
+  std::vector<std::array<Index, 2>> ends;
+  ends.reserve(segments.size());
+  for (const FeatureSegment& s : segments) ends.push_back({s.a, s.b});
+  PatchFans fans(points, plc.triangles, plc.patches, ends);
+  std::vector<Index> folds;
+  for (Index p = 0; p < points.size(); ++p) {
+    const std::vector<Fan> around = fans.at(p, true);
+    if (std::any_of(around.begin(), around.end(),
+                    [&](const Fan& fan) { return fans.fold(p, fan, noise * plc.planar_tolerance) < folded; }))
+      folds.push_back(p);
+  }
+  return folds;
+}
 
 }  // namespace collarmesh::build

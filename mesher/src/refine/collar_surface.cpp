@@ -24,6 +24,12 @@ double radians(double degrees) { return degrees * 3.14159265358979323846 / 180; 
 }  // namespace
 
 void Refinement::prepare_collars() {
+  CollarOptions options;
+  options.size = [this](const Feature& feature, const Point& p) { return collar_size(feature, p); };
+  options.distance = distance_;
+  options.seed = options_.seed;
+  options.stopped = [this] { return stopped(); };
+  collars_ = CollarSystem(plc_, points_, find_creases(plc_, options_.crease_angle), options);
   if (collars_.empty()) return;
   for (MeshVertex& v : vertices_) v.near_collar = true;
   for (const CollarBall& ball : collars_.balls())
@@ -34,6 +40,17 @@ void Refinement::prepare_collars() {
     add_unresolved(planar ? on_plane(corner.feature, corner.point) : corner.point, corner.dimension,
                    corner.feature);
   }
+}
+
+// The smallest target edge length of what is at this place of a vertex or curve.
+double Refinement::collar_size(const Feature& feature, const Point& p) const {
+  if (feature.dimension == 1) return sizing_.feature_size(1, feature.index, p);
+  double size = sizing_.default_size(p);
+  for (const Index curve : plc_.vertices[feature.index].curves)
+    size = std::min(size, sizing_.feature_size(1, curve, p));
+  for (const Index patch : plc_.vertices[feature.index].patches)
+    size = std::min(size, sizing_.feature_size(2, patch, p));
+  return size;
 }
 
 bool Refinement::meets_collar(Index vertex) const {

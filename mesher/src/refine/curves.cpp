@@ -17,25 +17,15 @@ constexpr double largest_sagitta_per_chord = 0.15;
 }  // namespace
 
 void Refinement::prepare_curves() {
-  for (Index c = 0; c < plc_.curves.size(); ++c) {
-    const Plc::Curve& curve = plc_.curves[c];
-    std::vector<double> lengths{0};
-    const auto& points = curve.points;
-    for (std::size_t i = 1; i < points.size(); ++i)
-      lengths.push_back(lengths.back() + distance(points_[points[i - 1]], points_[points[i]]));
-    if (curve.closed)
-      lengths.push_back(lengths.back() + distance(points_[points.back()], points_[points[0]]));
-    arc_lengths_.push_back(std::move(lengths));
-    add_curve_chain(c);
-  }
+  for (Index c = 0; c < plc_.curves.size(); ++c) add_curve_chain(c);
 }
 
 void Refinement::add_curve_chain(Index c) {
   const Plc::Curve& curve = plc_.curves[c];
   if (collars_.is_crease_curve(c)) return;  // covered by balls
-  double from = 0, to = arc_lengths_[c].back();
+  double from = 0, to = paths_.length(c);
   const auto seed = [&](double parameter) {
-    return add_unresolved(curve_point(c, parameter), 1, c);
+    return add_unresolved(paths_.point(c, parameter), 1, c);
   };
   // Clipped where it leaves a vertex ball.
   std::array<Index, 2> ends = curve.ends;
@@ -64,7 +54,7 @@ void Refinement::add_curve_chain(Index c) {
     PendingSubsegment& p = pending_.back();
     for (const Index point : p.points) unresolved_[point].pending.push_back(index);
     const Point a = unresolved_[p.points[0]].point, b = unresolved_[p.points[1]].point;
-    const Point centre = curve_point(c, bisecting_parameter(c, a, b, p.parameters[0], p.parameters[1]));
+    const Point centre = paths_.point(c, bisecting_parameter(c, a, b, p.parameters[0], p.parameters[1]));
     p.object = objects_.add(LocationObjects::Kind::pending_subsegment, index, centre,
                             squared_distance(centre, a), nearest_box_corner(centre));
   }
@@ -72,12 +62,12 @@ void Refinement::add_curve_chain(Index c) {
 
 // Where a curve leaves the ball at one of its ends: bisection, the ball meets it in one arc.
 double Refinement::leaving_parameter(Index c, const CollarBall& ball, bool at_start) const {
-  const double length = arc_lengths_[c].back();
+  const double length = paths_.length(c);
   double inside = at_start ? 0 : length, outside = length / 2;
   for (int step = 0; step < 200; ++step) {
     const double middle = 0.5 * (inside + outside);
     if (middle == inside || middle == outside) break;
-    (distance(curve_point(c, middle), ball.centre) < ball.radius ? inside : outside) = middle;
+    (distance(paths_.point(c, middle), ball.centre) < ball.radius ? inside : outside) = middle;
   }
   return outside;
 }
@@ -102,19 +92,6 @@ void Refinement::hurry_ends(const PendingSubsegment& pending) {
                   objects_[pending.object].squared_radius, {end, 0});
 }
 
-Point Refinement::curve_point(Index c, double parameter) const {
-  const auto& lengths = arc_lengths_[c];
-  const auto& points = plc_.curves[c].points;
-  auto after = static_cast<std::size_t>(std::upper_bound(lengths.begin(), lengths.end(), parameter) -
-                                        lengths.begin());
-  after = std::clamp<std::size_t>(after, 1, lengths.size() - 1);
-  const double step = lengths[after] - lengths[after - 1];
-  const double t = step > 0 ? std::clamp((parameter - lengths[after - 1]) / step, 0.0, 1.0) : 0.0;
-  const Point& a = points_[points[after - 1]];
-  const Point& b = points_[points[after % points.size()]];
-  return a + t * (b - a);
-}
-
 // Where the curve between two parameters meets the bisector plane of a and b: bisection on the sign
 // of |xa| - |xb| over the polyline's points, then linear on one segment.
 double Refinement::bisecting_parameter(Index c, const Point& a, const Point& b, double from,
@@ -122,13 +99,13 @@ double Refinement::bisecting_parameter(Index c, const Point& a, const Point& b, 
   const auto nearer_to_a = [&](const Point& p) {
     return squared_distance(p, b) - squared_distance(p, a);
   };
-  const auto& lengths = arc_lengths_[c];
+  const auto& lengths = paths_.lengths(c);
   auto first = static_cast<std::size_t>(std::upper_bound(lengths.begin(), lengths.end(), from) - lengths.begin());
   auto last = static_cast<std::size_t>(std::lower_bound(lengths.begin(), lengths.end(), to) - lengths.begin());
   double low = from, high = to;
   while (first < last) {
     const std::size_t middle = (first + last) / 2;
-    if (nearer_to_a(curve_point(c, lengths[middle])) > 0) {
+    if (nearer_to_a(paths_.point(c, lengths[middle])) > 0) {
       low = lengths[middle];
       first = middle + 1;
     } else {
@@ -136,8 +113,8 @@ double Refinement::bisecting_parameter(Index c, const Point& a, const Point& b, 
       last = middle;
     }
   }
-  const double at_low = nearer_to_a(curve_point(c, low));
-  const double at_high = nearer_to_a(curve_point(c, high));
+  const double at_low = nearer_to_a(paths_.point(c, low));
+  const double at_high = nearer_to_a(paths_.point(c, high));
   return at_low > at_high ? low + (high - low) * std::clamp(at_low / (at_low - at_high), 0.0, 1.0)
                           : 0.5 * (low + high);
 }
@@ -174,7 +151,7 @@ Index Refinement::add_subsegment(Index curve, std::array<Index, 2> ends,
   const Point a = mesh_.point(ends[0]), b = mesh_.point(ends[1]);
   s = {curve, ends, parameters, {}, 0, 0, none, stamp, true};
   s.centre_parameter = bisecting_parameter(curve, a, b, parameters[0], parameters[1]);
-  s.centre = frame_.rounded(curve_point(curve, s.centre_parameter));
+  s.centre = frame_.rounded(paths_.point(curve, s.centre_parameter));
   s.squared_radius = std::max(squared_distance(s.centre, a), squared_distance(s.centre, b));
   const Index nearest = nearest_vertex(s.centre, nearby);
   s.object = objects_.add(LocationObjects::Kind::subsegment, index, s.centre, s.squared_radius, nearest);
@@ -200,11 +177,11 @@ bool Refinement::too_coarse(const Subsegment& s) const {
     const double t = chord > 0 ? std::clamp(dot(p - a, b - a) / chord, 0.0, 1.0) : 0.0;
     return squared_distance(p, a + t * (b - a)) > sagitta * sagitta;
   };
-  const auto& lengths = arc_lengths_[s.curve];
+  const auto& lengths = paths_.lengths(s.curve);
   const auto first = std::upper_bound(lengths.begin(), lengths.end(), s.parameters[0]);
   const auto last = std::lower_bound(first, lengths.end(), s.parameters[1]);
   return leaves_chord(s.centre) || std::any_of(first, last, [&](double parameter) {
-           return leaves_chord(curve_point(s.curve, parameter));
+           return leaves_chord(paths_.point(s.curve, parameter));
          });
 }
 
@@ -218,7 +195,7 @@ bool Refinement::destroy_subsegment(Index index) {
   // A little off the centre: halves of symmetric curves would be cocircular.
   const double parameter =
       s.centre_parameter + subsegment_offset * std::sqrt(s.squared_radius) * random_in_cube().x;
-  const Point p = frame_.rounded(curve_point(s.curve, parameter));
+  const Point p = frame_.rounded(paths_.point(s.curve, parameter));
   const Index around = nearest_vertex(p, nearest);
   const Index cell = mesh_.conflicting_cell_around(around, p);
   Index vertex = around;

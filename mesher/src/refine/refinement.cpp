@@ -73,10 +73,9 @@ Refinement::Refinement(const Plc& plc, const MeshOptions& options, const Executi
       distance_(distance_reserve * (options.distance > 0 ? options.distance : 1e-3 * diagonal_)),
       floor_(floor_per_diagonal * diagonal_),
       box_(surrounding_box(framed(plc.bounds, frame_))),
+      paths_(plc, points_),
       mesh_(box_),
       hierarchy_(points_, corner_lists(plc)),
-      collars_(plc, points_, find_creases(plc, options.crease_angle),
-               [this](const Point& p) { return sizing_.default_size(p); }, distance_, options.seed),
       queue_(squared_distance(box_.min, box_.max)),
       random_state_(options.seed),
       started_(std::chrono::steady_clock::now()) {
@@ -97,6 +96,7 @@ void Refinement::start() {
   for (Index i = 0; i < plc_.vertices.size(); ++i)
     add_unresolved(points_[plc_.vertices[i].point], 0, i);
   prepare_collars();
+  if (stop_ != MeshStatus::complete) return;
   prepare_curves();
   prepare_patches();
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) judge_cell(cell);
@@ -135,7 +135,7 @@ MeshStatus Refinement::run() {
   // Repairs of the collar surface come in many small rounds: let them settle before the rest is
   // looked at again.
   bool mending_collars = false;
-  for (;;) {
+  while (stop_ == MeshStatus::complete) {
     while (queue_.pop(item)) {
       process(item);
       if (++steps_ % steps_between_reports == 0 && stopped()) return stop_;
@@ -147,6 +147,7 @@ MeshStatus Refinement::run() {
     if (collars_settled || !check_collars()) break;
     mending_collars = true;
   }
+  if (stop_ != MeshStatus::complete) return stop_;
   relabel_flat_cells();
   rip_and_stitch();
   seconds_ = elapsed();

@@ -12,6 +12,7 @@
 #include "collar/collar_system.h"
 #include "collarmesh/mesher.h"
 #include "delaunay/triangulation.h"
+#include "location/curve_paths.h"
 #include "location/location_objects.h"
 #include "location/triangle_hierarchy.h"
 #include "refine/frame.h"
@@ -167,7 +168,6 @@ class Refinement {
   void add_curve_chain(Index curve);
   void point_resolved(Index point);
   void hurry_ends(const PendingSubsegment& pending);
-  Point curve_point(Index curve, double parameter) const;
   double leaving_parameter(Index curve, const CollarBall& ball, bool at_start) const;
   double bisecting_parameter(Index curve, const Point& a, const Point& b, double from, double to) const;
   Index nearest_vertex(const Point& p, Index from);
@@ -256,6 +256,7 @@ class Refinement {
     std::uint32_t generation;  // of the cell
   };
   void prepare_collars();
+  double collar_size(const Feature& feature, const Point& p) const;
   bool meets_collar(Index vertex) const;
   void find_collar_cells(Index vertex);
   bool check_collars();
@@ -318,6 +319,8 @@ class Refinement {
   double diagonal_, distance_, floor_;
   Box box_;
 
+  CurvePaths paths_;
+
   Triangulation mesh_;
   TriangleHierarchy hierarchy_;
   LocationObjects objects_;
@@ -342,7 +345,6 @@ class Refinement {
 
   std::vector<UnresolvedPoint> unresolved_;
   std::vector<PendingSubsegment> pending_;
-  std::vector<std::vector<double>> arc_lengths_;  // of every curve's polyline points
   std::vector<Subsegment> subsegments_;
   std::vector<Index> free_subsegments_;
 

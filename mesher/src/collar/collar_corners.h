@@ -1,0 +1,38 @@
+#pragma once
+
+#include "collar/collar_system.h"
+#include "collar/crease_sheets.h"
+#include "collar/feature_hierarchy.h"
+#include "location/curve_paths.h"
+
+namespace collarmesh {
+
+/// Finds the points that the mesh must have on the collar surface (DESIGN section 9).
+class CollarCorners {
+ public:
+  /// All are kept by reference.
+  CollarCorners(const Plc& plc, const FeatureHierarchy& features, const CurvePaths& paths,
+                const CreaseSheets& sheets, std::vector<CornerPoint>& corners);
+
+  /// Where the sheets that meet at a crease pass through the circle of two consecutive balls' spheres.
+  void add_on_circle(const CollarLink& link, const CollarBall& a, const CollarBall& b);
+  /// Three points where a smooth patch that surrounds a crease vertex (a cone its apex) leaves the
+  /// vertex' ball.
+  void add_around(const CollarBall& ball);
+
+ private:
+  struct Circle {
+    Point centre;
+    Vector axis;  // unit
+    double radius;
+  };
+  std::vector<Point> crossings(Index patch, const Circle& circle) const;
+
+  const Plc& plc_;
+  const FeatureHierarchy& features_;
+  const CurvePaths& paths_;
+  const CreaseSheets& sheets_;
+  std::vector<CornerPoint>& corners_;
+};
+
+}  // namespace collarmesh

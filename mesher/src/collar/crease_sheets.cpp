@@ -1,0 +1,66 @@
+#include "collar/crease_sheets.h"
+
+#include <algorithm>
+
+namespace collarmesh {
+
+namespace {
+
+std::array<Index, 2> sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
+
+}  // namespace
+
+CreaseSheets::CreaseSheets(const Plc& plc, std::span<const Point> points, std::span<const Index> vertices,
+                           const std::vector<bool>& is_crease_curve)
+    : plc_(plc), points_(points) {
+  std::vector<std::array<Index, 2>> segments;
+  for (Index c = 0; c < plc.curves.size(); ++c) {
+    if (!is_crease_curve[c]) continue;
+    const auto& p = plc.curves[c].points;
+    for (std::size_t i = 0; i + 1 < p.size(); ++i) segments.push_back(sorted(p[i], p[i + 1]));
+    if (plc.curves[c].closed) segments.push_back(sorted(p.back(), p[0]));
+  }
+  std::sort(segments.begin(), segments.end());
+  std::vector<bool> is_vertex(points.size(), false);
+  for (const Index v : vertices) is_vertex[plc.vertices[v].point] = true;
+  for (Index t = 0; t < plc.triangles.size(); ++t) {
+    const auto& v = plc.triangles[t].points;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::array<Index, 2> side = sorted(v[i], v[(i + 1) % 3]);
+      if (std::binary_search(segments.begin(), segments.end(), side)) segments_.push_back({side, t});
+      if (is_vertex[v[i]] && !plc.patches[plc.triangles[t].patch].planar) vertices_.push_back({v[i], t});
+    }
+  }
+  std::sort(segments_.begin(), segments_.end());
+  std::sort(vertices_.begin(), vertices_.end());
+}
+
+std::vector<Sheet> CreaseSheets::at_segment(const std::array<Index, 2>& ends) const {
+  const auto [a, b] = ends;
+  const std::array<Index, 2> key = sorted(a, b);
+  const Vector along = (points_[b] - points_[a]) / distance(points_[a], points_[b]);
+  std::vector<Sheet> sheets;
+  for (auto it = std::lower_bound(segments_.begin(), segments_.end(), std::pair{key, Index{0}});
+       it != segments_.end() && it->first == key; ++it)
+    for (const Index corner : plc_.triangles[it->second].points) {
+      if (corner == a || corner == b) continue;
+      const Vector w = points_[corner] - points_[a];
+      const Vector inwards = w - dot(w, along) * along;
+      sheets.push_back({plc_.triangles[it->second].patch, inwards / norm(inwards)});
+    }
+  return sheets;
+}
+
+std::vector<Sheet> CreaseSheets::at_vertex(Index vertex) const {
+  const Index point = plc_.vertices[vertex].point;
+  std::vector<Sheet> sheets;
+  for (auto it = std::lower_bound(vertices_.begin(), vertices_.end(), std::pair{point, Index{0}});
+       it != vertices_.end() && it->first == point; ++it) {
+    const Plc::Triangle& t = plc_.triangles[it->second];
+    const Point middle = (points_[t.points[0]] + points_[t.points[1]] + points_[t.points[2]]) / 3;
+    sheets.push_back({t.patch, (middle - points_[point]) / distance(middle, points_[point])});
+  }
+  return sheets;
+}
+
+}  // namespace collarmesh

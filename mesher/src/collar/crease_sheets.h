@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "collarmesh/plc.h"
+
+namespace collarmesh {
+
+/// A side of a patch at a crease: the unit direction in which it leaves the crease.
+struct Sheet {
+  Index patch;
+  Vector direction;
+};
+
+/// The triangles at creases.
+class CreaseSheets {
+ public:
+  /// `points` are kept by reference. Of vertices and curves only the given ones are known.
+  CreaseSheets(const Plc& plc, std::span<const Point> points, std::span<const Index> vertices,
+               const std::vector<bool>& is_crease_curve);
+
+  /// At a segment of a crease curve, by its two points: orthogonal to it.
+  std::vector<Sheet> at_segment(const std::array<Index, 2>& ends) const;
+  /// At a crease vertex: through the middle of each triangle of smooth patches there.
+  std::vector<Sheet> at_vertex(Index vertex) const;
+
+ private:
+  const Plc& plc_;
+  std::span<const Point> points_;
+  std::vector<std::pair<std::array<Index, 2>, Index>> segments_;  // points, triangle; sorted
+  std::vector<std::pair<Index, Index>> vertices_;                 // point, triangle; sorted
+};
+
+}  // namespace collarmesh

@@ -1,0 +1,142 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "location/triangle_hierarchy.h"
+
+namespace collarmesh {
+
+/// A feature of a complex: a vertex, curve or patch.
+struct Feature {
+  std::uint8_t dimension;
+  Index index;
+  friend bool operator==(const Feature&, const Feature&) = default;
+};
+
+/// Bounding-volume hierarchy over the features of a complex and, below each, over the triangles,
+/// segments or the point it consists of. A query that leaves out a feature, or asks for one alone,
+/// never looks at what the others consist of: its cost is logarithmic however finely a feature is
+/// tessellated.
+class FeatureHierarchy {
+ public:
+  /// Both are kept by reference; `points` are those of the complex, possibly in another frame.
+  FeatureHierarchy(const Plc& plc, std::span<const Point> points);
+
+  /// A triangle, or a segment or point as a degenerate one.
+  using Element = std::array<Index, 3>;
+  /// The number of an element within its feature: of a curve's segment, or a patch's triangle.
+  Index number(Index element) const { return element - first_element_[feature_of_[element]]; }
+  std::array<Point, 3> corners(Index element) const {
+    const Element& e = elements_[element];
+    return {points_[e[0]], points_[e[1]], points_[e[2]]};
+  }
+  const Element& element(Index index) const { return elements_[index]; }
+
+  /// Distance from p to the nearest feature that `counts` accepts; infinite when there is none.
+  template <class Counts>
+  double distance_to_features(const Point& p, const Counts& counts) const;
+
+  /// Distance from p to the nearest element of the feature that `counts` accepts, if below `bound`
+  /// (else `bound`, and `nearest` is none).
+  template <class Counts>
+  double distance_within(Feature feature, const Point& p, double bound, Index& nearest,
+                         const Counts& counts) const;
+
+  /// The point of the feature nearest to p.
+  Point nearest_point(Feature feature, const Point& p) const;
+
+  /// Calls visit(element) for the elements of the feature whose box meets this one.
+  template <class Visit>
+  void visit_box(Feature feature, const Box& box, const Visit& visit) const;
+
+ private:
+  struct Node {
+    Box box;
+    Index left = none, right = none;  // a leaf has left == none and in right its element or feature
+  };
+
+  Index number_of(Feature feature) const { return first_feature_[feature.dimension] + feature.index; }
+  Index build(std::span<Index> order, std::span<const Box> boxes);
+  double squared_distance_to(const Point& p, Index element) const;
+  /// Nearest first; `leaf(index, bound)` lowers the bound.
+  template <class Leaf>
+  void descend(Index root, const Point& p, double& squared_bound, const Leaf& leaf) const;
+
+  std::span<const Point> points_;
+  std::array<Index, 3> first_feature_{};  // by dimension, in the numbering of all features
+  std::vector<Feature> features_;
+  std::vector<Element> elements_;     // by feature
+  std::vector<Index> feature_of_;     // by element
+  std::vector<Index> first_element_;  // by feature
+  std::vector<Index> roots_;          // by feature
+  std::vector<Node> nodes_;
+  Index root_ = none;
+};
+
+template <class Leaf>
+void FeatureHierarchy::descend(Index root, const Point& p, double& squared_bound, const Leaf& leaf) const {
+  std::array<Index, 128> stack;
+  std::size_t top = 0;
+  if (root != none) stack[top++] = root;
+  while (top > 0) {
+    const Node& node = nodes_[stack[--top]];
+    if (squared_distance_to_box(p, node.box) >= squared_bound) continue;
+    if (node.left == none) {
+      leaf(node.right);
+      continue;
+    }
+    const bool left_first = squared_distance_to_box(p, nodes_[node.left].box) <
+                            squared_distance_to_box(p, nodes_[node.right].box);
+    stack[top++] = left_first ? node.right : node.left;
+    stack[top++] = left_first ? node.left : node.right;
+  }
+}
+
+template <class Counts>
+double FeatureHierarchy::distance_to_features(const Point& p, const Counts& counts) const {
+  double bound = INFINITY;
+  descend(root_, p, bound, [&](Index feature) {
+    if (!counts(features_[feature])) return;
+    descend(roots_[feature], p, bound,
+            [&](Index element) { bound = std::fmin(bound, squared_distance_to(p, element)); });
+  });
+  return std::sqrt(bound);
+}
+
+template <class Counts>
+double FeatureHierarchy::distance_within(Feature feature, const Point& p, double bound, Index& nearest,
+                                         const Counts& counts) const {
+  nearest = none;
+  double squared = bound * bound;
+  descend(roots_[number_of(feature)], p, squared, [&](Index element) {
+    const double d = squared_distance_to(p, element);
+    if (d >= squared || !counts(element)) return;
+    squared = d;
+    nearest = element;
+  });
+  return nearest == none ? bound : std::sqrt(squared);
+}
+
+template <class Visit>
+void FeatureHierarchy::visit_box(Feature feature, const Box& box, const Visit& visit) const {
+  std::array<Index, 128> stack;
+  std::size_t top = 0;
+  stack[top++] = roots_[number_of(feature)];
+  while (top > 0) {
+    const Node& node = nodes_[stack[--top]];
+    if (node.box.min.x > box.max.x || node.box.max.x < box.min.x || node.box.min.y > box.max.y ||
+        node.box.max.y < box.min.y || node.box.min.z > box.max.z || node.box.max.z < box.min.z)
+      continue;
+    if (node.left == none) {
+      visit(node.right);
+    } else {
+      stack[top++] = node.left;
+      stack[top++] = node.right;
+    }
+  }
+}
+
+}  // namespace collarmesh

@@ -1,0 +1,186 @@
+#include "collar/flatness.h"
+
+#include <algorithm>
+
+namespace collarmesh {
+
+namespace {
+
+// The share of the distance tolerance that chords of the length of a radius may use up, and the share
+// of the radius: a polyline may turn by 30 degrees in one point.
+constexpr double deviation_per_distance = 0.5;
+constexpr double deviation_per_radius = 0.14;
+// A ball on a closed curve, or a loop, covers at most this share of it.
+constexpr double radius_per_length = 1.0 / 8;
+// Another piece of a feature counts as one that does not contain the centre: radii are a third of the
+// distance to it. A point of a curve is on another piece when it is so much farther along the curve
+// than through space.
+constexpr double pieces_per_radius = 3;
+constexpr double detour = 1.5;
+constexpr double rounding = 1e-6;  // of lengths, relative to the ball
+constexpr int most_steps = 60;
+
+}  // namespace
+
+Flatness::Flatness(const Plc& plc, const FeatureHierarchy& features, const CurvePaths& paths,
+                   const CreaseSheets& sheets, double distance)
+    : plc_(plc), features_(features), paths_(paths), sheets_(sheets), distance_(distance) {}
+
+bool Flatness::matters_on(Index curve) const {
+  const Plc::Curve& c = plc_.curves[curve];
+  return !c.straight || std::any_of(c.patches.begin(), c.patches.end(),
+                                    [&](Index patch) { return !plc_.patches[patch].planar; });
+}
+
+// Of a smooth feature the deviation grows with the square of the radius, at a bend linearly.
+template <class Deviation>
+double Flatness::shrunk(double radius, const Deviation& deviation) const {
+  for (int step = 0; step < most_steps; ++step) {
+    const double off = deviation(radius);
+    const double allowed = std::min(deviation_per_distance * distance_, deviation_per_radius * radius);
+    if (off <= allowed) break;
+    radius *= std::clamp(std::sqrt(allowed / off), 0.25, 0.97);
+  }
+  return radius;
+}
+
+// How far the curve between two parameters leaves its chord.
+double Flatness::off_chord(Index curve, double from, double to) const {
+  const Point a = paths_.point(curve, from), b = paths_.point(curve, to);
+  double largest = 0;
+  for (const double share : {0.25, 0.5, 0.75})
+    largest = std::fmax(
+        largest, squared_distance_to_triangle(paths_.point(curve, from + share * (to - from)), a, b, b));
+  return std::sqrt(largest);
+}
+
+// How far a patch leaves the chord from the centre to its point in the direction of a sheet.
+double Flatness::off_patch(const Sheet& sheet, const Point& centre, double radius) const {
+  const Point end = features_.nearest_point({2, sheet.patch}, centre + radius * sheet.direction);
+  const Point middle = 0.5 * (centre + end);
+  return distance(middle, features_.nearest_point({2, sheet.patch}, middle));
+}
+
+// The distance to pieces of the curve other than the one through the point, up to `reach`.
+double Flatness::other_arcs(Index curve, double parameter, double reach) const {
+  const Point p = paths_.point(curve, parameter);
+  const double length = paths_.length(curve);
+  Index nearest = none;
+  return features_.distance_within({1, curve}, p, reach, nearest, [&](Index element) {
+    const auto t = features_.corners(element);
+    const Point q = nearest_point_on_triangle(p, t[0], t[1], t[2]);
+    double along =
+        std::fabs(paths_.lengths(curve)[features_.number(element)] + distance(t[0], q) - parameter);
+    if (plc_.curves[curve].closed) along = std::min(along, length - along);
+    return along > detour * distance(p, q) + rounding * reach;
+  });
+}
+
+// The distance to triangles of the patch that are not connected inside the ball B(centre, reach) to
+// those with the given points (one point twice at a vertex), up to `reach`.
+double Flatness::other_sheets(Index patch, const Point& centre, double reach,
+                              const std::array<Index, 2>& points) const {
+  struct Side {
+    std::array<Index, 2> key;
+    std::size_t triangle;
+  };
+  struct Found {
+    double squared_distance;
+    bool reached;
+  };
+  std::vector<Found> found;
+  std::vector<Side> sides;
+  std::vector<std::size_t> stack;
+  Box box;
+  box.add(centre - reach * Vector{1, 1, 1});
+  box.add(centre + reach * Vector{1, 1, 1});
+  features_.visit_box({2, patch}, box, [&](Index element) {
+    const auto t = features_.corners(element);
+    const auto& v = features_.element(element);
+    const double d = squared_distance_to_triangle(centre, t[0], t[1], t[2]);
+    if (d > reach * reach) return;
+    const auto has = [&](Index point) { return std::find(v.begin(), v.end(), point) != v.end(); };
+    const bool here = has(points[0]) && has(points[1]);
+    if (here) stack.push_back(found.size());
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t j = (i + 1) % 3;
+      if (squared_distance_to_triangle(centre, t[i], t[j], t[j]) <= reach * reach)
+        sides.push_back({{std::min(v[i], v[j]), std::max(v[i], v[j])}, found.size()});
+    }
+    found.push_back({d, here});
+  });
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return a.key != b.key ? a.key < b.key : a.triangle < b.triangle;
+  });
+  std::vector<std::pair<std::size_t, std::size_t>> neighbours;
+  for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
+    if (sides[i].key != sides[i + 1].key) continue;
+    neighbours.push_back({sides[i].triangle, sides[i + 1].triangle});
+    neighbours.push_back({sides[i + 1].triangle, sides[i].triangle});
+  }
+  std::sort(neighbours.begin(), neighbours.end());
+  while (!stack.empty()) {
+    const std::size_t t = stack.back();
+    stack.pop_back();
+    for (auto it = std::lower_bound(neighbours.begin(), neighbours.end(), std::pair{t, std::size_t{0}});
+         it != neighbours.end() && it->first == t; ++it) {
+      if (found[it->second].reached) continue;
+      found[it->second].reached = true;
+      stack.push_back(it->second);
+    }
+  }
+  double nearest = reach * reach;
+  for (const Found& f : found)
+    if (!f.reached) nearest = std::min(nearest, f.squared_distance);
+  return std::sqrt(nearest);
+}
+
+double Flatness::radius_on_curve(Index curve, double parameter, double radius) const {
+  const Plc::Curve& c = plc_.curves[curve];
+  const double length = paths_.length(curve);
+  if (!c.straight) {
+    radius = std::min(radius, radius_per_length * length);
+    const auto from = [&](double s) { return c.closed ? s : std::clamp(s, 0.0, length); };
+    radius = shrunk(radius, [&](double r) {
+      return std::max(off_chord(curve, parameter, from(parameter + r)),
+                      off_chord(curve, parameter, from(parameter - r)));
+    });
+    radius = other_arcs(curve, parameter, pieces_per_radius * radius) / pieces_per_radius;
+  }
+  const Point centre = paths_.point(curve, parameter);
+  const std::array<Index, 2> ends = paths_.segment_ends(curve, paths_.segment(curve, parameter));
+  for (const Sheet& sheet : sheets_.at_segment(ends))
+    if (!plc_.patches[sheet.patch].planar)
+      radius = shrunk(radius, [&](double r) { return off_patch(sheet, centre, r); });
+  for (const Index patch : c.patches)
+    if (!plc_.patches[patch].planar)
+      radius = other_sheets(patch, centre, pieces_per_radius * radius, ends) / pieces_per_radius;
+  return radius;
+}
+
+double Flatness::radius_at_vertex(Index vertex, double radius) const {
+  for (const Index c : plc_.vertices[vertex].curves) {
+    const Plc::Curve& curve = plc_.curves[c];
+    if (curve.straight) continue;
+    const double length = paths_.length(c);
+    radius = std::min(radius, radius_per_length * length);
+    for (const bool at_start : {true, false}) {
+      if (curve.ends[at_start ? 0 : 1] != vertex) continue;
+      radius = shrunk(
+          radius, [&](double r) { return at_start ? off_chord(c, 0, r) : off_chord(c, length, length - r); });
+      // A loop comes back, and that is right.
+      if (curve.ends[0] != curve.ends[1])
+        radius = other_arcs(c, at_start ? 0 : length, pieces_per_radius * radius) / pieces_per_radius;
+    }
+  }
+  const Point centre = features_.nearest_point({0, vertex}, {});
+  for (const Sheet& sheet : sheets_.at_vertex(vertex))
+    radius = shrunk(radius, [&](double r) { return off_patch(sheet, centre, r); });
+  const Index point = plc_.vertices[vertex].point;
+  for (const Index patch : plc_.vertices[vertex].patches)
+    if (!plc_.patches[patch].planar)
+      radius = other_sheets(patch, centre, pieces_per_radius * radius, {point, point}) / pieces_per_radius;
+  return radius;
+}
+
+}  // namespace collarmesh

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "collar/crease_sheets.h"
+#include "collar/feature_hierarchy.h"
+#include "location/curve_paths.h"
+
+namespace collarmesh {
+
+/// How large a ball at a crease may be for what it holds of the curved features through its centre to
+/// be replaced by straight edges and flat triangles (DESIGN sections 9 and 13): inside it they leave
+/// their chords by no more than the distance tolerance, it meets its curve in one arc and each smooth
+/// patch in one piece, with a third of the distance to whatever else of them there is.
+class Flatness {
+ public:
+  /// All are kept by reference. `distance` is absolute.
+  Flatness(const Plc& plc, const FeatureHierarchy& features, const CurvePaths& paths,
+           const CreaseSheets& sheets, double distance);
+
+  /// Does anything curved pass through the curve?
+  bool matters_on(Index curve) const;
+  /// The largest radius up to `radius`.
+  double radius_on_curve(Index curve, double parameter, double radius) const;
+  double radius_at_vertex(Index vertex, double radius) const;
+
+ private:
+  template <class Deviation>
+  double shrunk(double radius, const Deviation& deviation) const;
+  double off_chord(Index curve, double from, double to) const;
+  double off_patch(const Sheet& sheet, const Point& centre, double radius) const;
+  double other_arcs(Index curve, double parameter, double reach) const;
+  double other_sheets(Index patch, const Point& centre, double reach,
+                      const std::array<Index, 2>& points) const;
+
+  const Plc& plc_;
+  const FeatureHierarchy& features_;
+  const CurvePaths& paths_;
+  const CreaseSheets& sheets_;
+  double distance_;
+};
+
+}  // namespace collarmesh

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "plc/angles.h"
+#include "plc/edges.h"
+
+namespace collarmesh::build {
+
+/// The triangles of one patch around a point, between segments.
+struct Fan {
+  Index patch = none;
+  bool closed = false;
+  std::vector<Index> rim;    ///< the other ends of their edges at the point, in order
+  std::vector<Vector> rays;  ///< unit, towards them
+
+  std::size_t sector_count() const { return closed ? rim.size() : rim.size() - 1; }
+  Sector sector(std::size_t i) const { return {rays[i], rays[(i + 1) % rays.size()]}; }
+};
+
+/// The triangles of patches by the points that they surround, cut along the segments.
+class PatchFans {
+ public:
+  /// The points and patches are kept by reference. Segments are pairs of points in any order.
+  PatchFans(std::span<const Point> points, const std::vector<Plc::Triangle>& triangles,
+            const std::vector<Plc::Patch>& patches, std::span<const std::array<Index, 2>> segments);
+
+  const std::vector<Corners>& triangles() const { return triangles_; }
+  const EdgeTable& edges() const { return edges_; }
+  Index patch_of(Index side) const { return patch_of_[side / 3]; }
+
+  /// The fans around a point, of smooth patches only or of all.
+  std::vector<Fan> at(Index point, bool smooth_only);
+  /// The side of the neighbour in the same patch, none at a segment.
+  Index across(Index side) const;
+
+  /// How sharply a smooth patch folds in a fan around the point (degrees, see fold_angle), 180 where
+  /// its edges are no longer than `noise` and point anywhere.
+  double fold(Index point, const Fan& fan, double noise) const;
+
+ private:
+  Fan make_fan(Index start);
+  Index next_corner(Index corner) const;
+  Index previous_corner(Index corner) const;
+
+  std::span<const Point> points_;
+  const std::vector<Plc::Patch>& patches_;
+  std::vector<Corners> triangles_;
+  std::vector<Index> patch_of_;  // by triangle
+  EdgeTable edges_;
+  std::vector<bool> is_segment_;               // by edge
+  std::vector<Index> first_corner_, corners_;  // corners (3 t + i) at each point
+  std::vector<bool> visited_;                  // corners that are in a fan already
+};
+
+}  // namespace collarmesh::build
