@@ -404,4 +404,64 @@ Shape cut_torus(double plane) {
   return {fmt::format("cut_torus({})", plane), {revolution(profile, 64, true)}, 2 * pi * major * segment, 30};
 }
 
+Shape long_lens(double rim_angle, double width) {
+  constexpr int around = 12, along = 10, rows = 8;
+  const double half = radians(rim_angle / 2), radius = 0.5 * width / std::sin(half);
+  struct Rib {
+    Point middle, rim;
+  };
+  std::vector<Rib> ribs;
+  for (const double side : {-1.0, 1.0}) {
+    for (int i = 0; i < along; ++i) {
+      const Point middle{side * (2.0 * i / along - 1), 0, 0};
+      ribs.push_back({middle, middle + Vector{0, side * -0.5 * width, 0}});
+    }
+    for (int i = 0; i < around; ++i)
+      ribs.push_back({{side, 0, 0}, Point{side, 0, 0} + side * on_circle(180.0 * i / around - 90, 0.5 * width)});
+  }
+  PolygonSoup soup;
+  const auto at = [&](std::size_t rib, int row, double side) {
+    const Rib& r = ribs[rib % ribs.size()];
+    if (row == rows) return r.rim;
+    const double t = half * row / rows, share = std::sin(t) / std::sin(half);
+    return r.middle + share * (r.rim - r.middle) + Vector{0, 0, side * radius * (std::cos(t) - std::cos(half))};
+  };
+  const auto add = [&](Point a, Point b, Point c, bool turned) {
+    if (a == b || b == c || c == a) return;
+    if (turned) std::swap(b, c);
+    add_facet(soup, {a, b, c}, 1);
+  };
+  for (const double side : {1.0, -1.0})
+    for (std::size_t i = 0; i < ribs.size(); ++i)
+      for (int row = 0; row < rows; ++row) {
+        add(at(i, row, side), at(i, row + 1, side), at(i + 1, row + 1, side), side < 0);
+        add(at(i, row, side), at(i + 1, row + 1, side), at(i + 1, row, side), side < 0);
+      }
+  return {fmt::format("long_lens({}, {})", rim_angle, width), {soup}, 0, 30};
+}
+
+Shape drop_bar(double angle) {
+  // Two tangents from the tip to a circle of radius 0.4.
+  const double half = radians(angle / 2), radius = 0.4, reach = radius / std::sin(half);
+  constexpr int n = 20;
+  std::vector<Point> outline{{0, 0, 0}};
+  for (int i = 0; i <= n; ++i) {
+    const double degrees = -90 - angle / 2 + (180 + angle) * i / n;
+    outline.push_back(Point{reach, 0, 0} + on_circle(degrees, radius));
+  }
+  PolygonSoup soup;
+  const Vector up{0, 0, 1};
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Point &a = outline[i], &b = outline[(i + 1) % outline.size()];
+    add_facet(soup, {a, b, b + up}, 1);
+    add_facet(soup, {a, b + up, a + up}, 1);
+  }
+  std::vector<Point> top;
+  for (const Point& p : outline) top.push_back(p + up);
+  add_facet(soup, top, 2);
+  std::reverse(outline.begin(), outline.end());
+  add_facet(soup, outline, 3);
+  return {fmt::format("drop_bar({})", angle), {soup}, 0, 30};
+}
+
 }  // namespace collarmesh::testing::acute

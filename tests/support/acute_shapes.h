@@ -96,5 +96,9 @@ Shape round_cone(double half_angle);
 Shape lens(double rim_angle);
 /// The upper part of a torus of radii 1 and 0.25, above a plane at this share of the minor radius.
 Shape cut_torus(double plane);
+/// A lens over a stadium of length 2 plus its width: the sharp rim comes back close to itself.
+Shape long_lens(double rim_angle, double width);
+/// A bar of length 1 over a drop: its only side is one smooth patch that meets itself at this angle.
+Shape drop_bar(double angle);
 
 }  // namespace collarmesh::testing::acute

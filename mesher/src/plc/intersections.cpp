@@ -48,7 +48,7 @@ class IntersectionFinder {
       for (const Index p : simplices_[i].corners()) boxes[i].add(draft_.points[p]);
     std::vector<std::pair<Index, Index>> found;
     BoxTree(std::move(boxes)).for_each_pair([&](Index i, Index j) {
-      if (illegal(ordered(i, j))) found.push_back(std::minmax(i, j));
+      if (!of_one_facet(i, j) && illegal(ordered(i, j))) found.push_back(std::minmax(i, j));
     });
     std::sort(found.begin(), found.end());
     for (const auto& [i, j] : found) report(i, j, faults);
@@ -56,6 +56,12 @@ class IntersectionFinder {
 
  private:
   const Point& at(Index p) const { return draft_.points[p]; }
+
+  // The triangles of a facet come from one triangulation.
+  bool of_one_facet(Index i, Index j) const {
+    return simplices_[i].size == 3 && simplices_[j].size == 3 && draft_.origins[i].soup == draft_.origins[j].soup &&
+           draft_.origins[i].facet == draft_.origins[j].facet;
+  }
 
   Pair ordered(Index i, Index j) const {
     Pair pair{simplices_[i], simplices_[j], 0};

@@ -17,7 +17,10 @@ constexpr unsigned most_rounds = 200;
 constexpr double arc_reach = 0.7;
 // ... unless a mesh vertex is this close to the arc's point already, in radii of the empty ball.
 constexpr double arc_clearance = 0.5;
+constexpr std::size_t triangles_between_stops = 64;
 constexpr double on_sphere = 1e-6;
+// The radius of a ball is at most a third of the gap size.
+constexpr double gap_per_radius = 3;
 
 double radians(double degrees) { return degrees * 3.14159265358979323846 / 180; }
 
@@ -98,10 +101,16 @@ bool Refinement::check_collars() {
   if (collars_.empty() || !message_.empty()) return false;
   take_in_flat_cells();
   std::vector<CollarTriangle> triangles = collar_triangles();
-  for (CollarTriangle& t : triangles) t.poor = poorly_represented(t) || bends(t);
+  std::size_t looked_at = 0;
+  const auto interrupted = [&] { return ++looked_at % triangles_between_stops == 0 && stopped(); };
+  for (CollarTriangle& t : triangles) {
+    if (interrupted()) return false;
+    t.poor = poorly_represented(t) || bends(t);
+  }
   judge_collar_edges(triangles);
   bool found = false;
   for (const CollarTriangle& t : triangles) {
+    if (interrupted()) return false;
     if (!t.poor || labels_[cell_of(t.face)].region == 0) continue;
     // An earlier repair may have changed this one: it is judged again in the next round.
     if (!mesh_.alive(cell_of(t.face)) || mesh_.opposite(t.face) == no_face) continue;
@@ -230,7 +239,7 @@ bool Refinement::poorly_represented(const CollarTriangle& t) {
     if (dot(along, normal) < std::cos(radians(options_.representation_angle)) * norm(along) * norm(normal))
       return true;
   }
-  return crosses_patch(v[0], v[1]) || crosses_patch(v[1], v[2]) || crosses_patch(v[2], v[0]);
+  return crosses_patch(ball, v[0], v[1]) || crosses_patch(ball, v[1], v[2]) || crosses_patch(ball, v[2], v[0]);
 }
 
 bool Refinement::far_from_patch(Index patch, const Point& p) const {
@@ -289,9 +298,23 @@ std::optional<Point> Refinement::arc_point(const CollarBall& ball, Index patch, 
   return std::nullopt;
 }
 
-bool Refinement::crosses_patch(Index a, Index b) {
+// Does an edge of a star cross a patch? Only those through the ball's centre come so near to it, the
+// others are three radii away.
+bool Refinement::crosses_patch(const CollarBall& ball, Index a, Index b) {
+  const Point &p = mesh_.point(a), &q = mesh_.point(b);
+  const double reach = gap_per_radius * ball.radius;
+  const bool near = squared_distance(p, ball.centre) < reach * reach && squared_distance(q, ball.centre) < reach * reach;
+  const auto on_one_side = [&](Index patch) {
+    if (on_patch(a, patch) || on_patch(b, patch)) return true;
+    const Plc::Patch& plane = plc_.patches[patch];
+    if (!plane.planar) return false;
+    const Point origin = frame_.inside(plane.origin);
+    return dot(plane.normal, p - origin) * dot(plane.normal, q - origin) > 0;
+  };
+  const auto patches = patches_through(ball);
+  if (near && std::all_of(patches.begin(), patches.end(), on_one_side)) return false;
   const Index root = hierarchy_.root();
-  hierarchy_.crossings(mesh_.point(a), mesh_.point(b), {&root, 1}, crossings_);
+  hierarchy_.crossings(p, q, {&root, 1}, crossings_);
   return std::any_of(crossings_.begin(), crossings_.end(), [&](const auto& crossing) {
     const Index patch = plc_.triangles[crossing.triangle].patch;
     return !on_patch(a, patch) && !on_patch(b, patch);

@@ -268,7 +268,7 @@ class Refinement {
   bool bends(CollarTriangle& t) const;
   bool far_from_patch(Index patch, const Point& p) const;
   std::optional<Point> arc_point(const CollarBall& ball, Index patch, const Point& near) const;
-  bool crosses_patch(Index a, Index b);
+  bool crosses_patch(const CollarBall& ball, Index a, Index b);
   bool spans_patch(std::span<const Index> corners) const;
   bool on_crease(Index vertex) const;
   bool repair(const CollarTriangle& t);
