@@ -156,7 +156,9 @@ void Refinement::label_created_cells(Index vertex) {
 // still cross the triangle that it alone crossed, from the one label to the other?
 bool Refinement::crosses_as_before(FaceId outer, FaceId face) {
   const RestrictedTriangle& t = restricted(outer);
-  if (t.several_sheets) return false;
+  // Of a dual edge in the plane of its triangle x may be any point: it is gone when the new vertex has
+  // come into the surface gap ball.
+  if (t.several_sheets || squared_distance(mesh_.point(last_vertex()), t.x) < t.squared_radius) return false;
   const int direction = hierarchy_.crossing(mesh_.circumcentre(cell_of(outer)),
                                             mesh_.circumcentre(cell_of(face)), t.triangle);
   if (direction == 0) return false;
