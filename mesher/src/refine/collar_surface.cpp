@@ -375,7 +375,6 @@ bool Refinement::repair(const CollarTriangle& t) {
   double nearest = arc_reach * ball.radius;
   for (const Index p : patches_through(ball)) {
     const bool bent = t.bent_on == p;
-    if (!bent && !plc_.patches[p].planar) continue;
     const auto found = arc_point(ball, p, bent ? t.bent_at : t.representation);
     if (!found) continue;
     const Point arc = frame_.rounded(*found);
