@@ -119,6 +119,8 @@ std::vector<acute::Shape> curved_shapes() {
     shapes.push_back(acute::round_cone(half_angle));
   for (const double angle : {60.0, 40.0, 20.0, 5.0}) shapes.push_back(acute::lens(angle));
   for (const double plane : {0.5, 0.6, 0.75, 0.9, 0.95}) shapes.push_back(acute::cut_torus(plane));
+  for (const double width : {0.5, 0.2, 0.05}) shapes.push_back(acute::long_lens(40, width));
+  for (const double angle : {40.0, 10.0}) shapes.push_back(acute::drop_bar(angle));
   return shapes;
 }
 

@@ -145,6 +145,11 @@ TEST(Collar, CutTori) {
     expect_right(acute::cut_torus(plane));
 }
 
+TEST(Collar, RimsAndSheetsThatComeBack) {
+  for (const double width : {0.5, 0.2, 0.1}) expect_right(acute::long_lens(40, width));
+  for (const double angle : {50.0, 20.0, 10.0}) expect_right(acute::drop_bar(angle));
+}
+
 // At other sizes, seeds and bounds.
 TEST(Collar, SizesAndSeeds) {
   const std::vector<acute::Shape> shapes{acute::wedge(20), acute::pyramid(4, 40), acute::star_prism(5, 0.4)};

@@ -417,14 +417,16 @@ Shape long_lens(double rim_angle, double width) {
       ribs.push_back({middle, middle + Vector{0, side * -0.5 * width, 0}});
     }
     for (int i = 0; i < around; ++i)
-      ribs.push_back({{side, 0, 0}, Point{side, 0, 0} + side * on_circle(180.0 * i / around - 90, 0.5 * width)});
+      ribs.push_back(
+          {{side, 0, 0}, Point{side, 0, 0} + side * on_circle(180.0 * i / around - 90, 0.5 * width)});
   }
   PolygonSoup soup;
   const auto at = [&](std::size_t rib, int row, double side) {
     const Rib& r = ribs[rib % ribs.size()];
     if (row == rows) return r.rim;
     const double t = half * row / rows, share = std::sin(t) / std::sin(half);
-    return r.middle + share * (r.rim - r.middle) + Vector{0, 0, side * radius * (std::cos(t) - std::cos(half))};
+    return r.middle + share * (r.rim - r.middle) +
+           Vector{0, 0, side * radius * (std::cos(t) - std::cos(half))};
   };
   const auto add = [&](Point a, Point b, Point c, bool turned) {
     if (a == b || b == c || c == a) return;

@@ -20,7 +20,6 @@ constexpr double sample_step = 0.5;  // in radii
 // Consecutive centres are so many radii apart at most: the circle of two balls is then seen from
 // both centres under less than 90 degrees, d^2 <= r1^2 + r2^2, shrunk as they may be.
 constexpr double step_per_radius = 1.1;
-constexpr std::size_t fewest_on_closed_curve = 6;
 
 // Which vertices get a ball: those of creases and the ends of crease curves.
 std::vector<Index> crease_vertices(const Plc& plc, std::span<const Crease> creases,
@@ -66,16 +65,18 @@ CollarPlacement::CollarPlacement(const Plc& plc, std::span<const Point> points,
     : plc_(plc),
       points_(points),
       options_(options),
-      system_((system.crease_curve_ = crease_curves(plc, creases), system)),
-      vertices_(crease_vertices(plc, creases, system.crease_curve_)),
+      system_(system),
+      is_crease_curve_(crease_curves(plc, creases)),
+      vertices_(crease_vertices(plc, creases, is_crease_curve_)),
       paths_(plc, points),
       features_(plc, points),
       gap_(plc, features_),
-      sheets_(plc, points, vertices_, system.crease_curve_),
+      sheets_(plc, points, vertices_, is_crease_curve_),
       flatness_(plc, features_, paths_, sheets_, options.distance),
       random_state_(options.seed ^ 0x5851f42d4c957f2dULL) {}
 
 bool CollarPlacement::place() {
+  system_.crease_curve_ = is_crease_curve_;
   system_.vertex_ball_.assign(plc_.vertices.size(), none);
   CollarCorners corners(plc_, features_, paths_, sheets_, system_.corners_);
   for (const Index vertex : vertices_) {
@@ -84,7 +85,7 @@ bool CollarPlacement::place() {
     corners.add_around(system_.balls_.back());
   }
   for (Index c = 0; c < plc_.curves.size() && !stopped_; ++c)
-    if (system_.crease_curve_[c]) place_on_curve(c);
+    if (is_crease_curve_[c]) place_on_curve(c);
   for (const CollarLink& link : system_.links_) {
     if (stopped()) return false;
     corners.add_on_circle(link, system_.balls_[link.balls[0]], system_.balls_[link.balls[1]]);

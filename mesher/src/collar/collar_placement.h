@@ -38,6 +38,7 @@ class CollarPlacement {
   std::span<const Point> points_;
   const CollarOptions& options_;
   CollarSystem& system_;
+  std::vector<bool> is_crease_curve_;
   std::vector<Index> vertices_;  // with a ball
   CurvePaths paths_;
   FeatureHierarchy features_;

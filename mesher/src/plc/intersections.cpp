@@ -59,7 +59,8 @@ class IntersectionFinder {
 
   // The triangles of a facet come from one triangulation.
   bool of_one_facet(Index i, Index j) const {
-    return simplices_[i].size == 3 && simplices_[j].size == 3 && draft_.origins[i].soup == draft_.origins[j].soup &&
+    return simplices_[i].size == 3 && simplices_[j].size == 3 &&
+           draft_.origins[i].soup == draft_.origins[j].soup &&
            draft_.origins[i].facet == draft_.origins[j].facet;
   }
 

@@ -36,8 +36,7 @@ void Refinement::prepare_collars() {
   if (collars_.empty()) return;
   for (MeshVertex& v : vertices_) v.near_collar = true;
   for (const CollarBall& ball : collars_.balls())
-    ball_points_.push_back(ball.dimension == 0 ? ball.feature
-                                               : add_unresolved(ball.centre, 1, ball.feature));
+    ball_points_.push_back(ball.dimension == 0 ? ball.feature : add_unresolved(ball.centre, 1, ball.feature));
   for (const CornerPoint& corner : collars_.corners()) {
     const bool planar = corner.dimension == 2 && plc_.patches[corner.feature].planar;
     add_unresolved(planar ? on_plane(corner.feature, corner.point) : corner.point, corner.dimension,
@@ -189,11 +188,11 @@ void Refinement::take_in_flat_cells() {
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
     if (!mesh_.alive(cell) || labels_[cell].in_collar || labels_[cell].region == 0) continue;
     const auto& v = mesh_.corners(cell);
-    if (std::any_of(v.begin(), v.end(), [&](Index i) {
-          return !vertices_[i].near_collar || vertices_[i].dimension == 3;
-        }))
+    if (std::any_of(v.begin(), v.end(),
+                    [&](Index i) { return !vertices_[i].near_collar || vertices_[i].dimension == 3; }))
       continue;
-    const Point &a = mesh_.point(v[0]), &b = mesh_.point(v[1]), &c = mesh_.point(v[2]), &d = mesh_.point(v[3]);
+    const Point &a = mesh_.point(v[0]), &b = mesh_.point(v[1]), &c = mesh_.point(v[2]),
+                &d = mesh_.point(v[3]);
     const double longest = std::max({squared_distance(a, b), squared_distance(a, c), squared_distance(a, d)});
     if (std::fabs(six_volume(a, b, c, d)) > 1e-7 * longest * std::sqrt(longest)) continue;
     for (unsigned corner = 0; corner < 4; ++corner) {
@@ -239,7 +238,8 @@ bool Refinement::poorly_represented(const CollarTriangle& t) {
     if (dot(along, normal) < std::cos(radians(options_.representation_angle)) * norm(along) * norm(normal))
       return true;
   }
-  return crosses_patch(ball, v[0], v[1]) || crosses_patch(ball, v[1], v[2]) || crosses_patch(ball, v[2], v[0]);
+  return crosses_patch(ball, v[0], v[1]) || crosses_patch(ball, v[1], v[2]) ||
+         crosses_patch(ball, v[2], v[0]);
 }
 
 bool Refinement::far_from_patch(Index patch, const Point& p) const {
@@ -280,9 +280,8 @@ std::optional<Point> Refinement::arc_point(const CollarBall& ball, Index patch, 
   };
   const auto nearest_on_patch = [&](const Point& p) {
     Index nearest = none;
-    hierarchy_.squared_distance_to(p, INFINITY, &nearest, [&](Index triangle) {
-      return plc_.triangles[triangle].patch == patch;
-    });
+    hierarchy_.squared_distance_to(p, INFINITY, &nearest,
+                                   [&](Index triangle) { return plc_.triangles[triangle].patch == patch; });
     const auto t = hierarchy_.corners(nearest);
     return nearest_point_on_triangle(p, t[0], t[1], t[2]);
   };
@@ -303,7 +302,8 @@ std::optional<Point> Refinement::arc_point(const CollarBall& ball, Index patch, 
 bool Refinement::crosses_patch(const CollarBall& ball, Index a, Index b) {
   const Point &p = mesh_.point(a), &q = mesh_.point(b);
   const double reach = gap_per_radius * ball.radius;
-  const bool near = squared_distance(p, ball.centre) < reach * reach && squared_distance(q, ball.centre) < reach * reach;
+  const bool near =
+      squared_distance(p, ball.centre) < reach * reach && squared_distance(q, ball.centre) < reach * reach;
   const auto on_one_side = [&](Index patch) {
     if (on_patch(a, patch) || on_patch(b, patch)) return true;
     const Plc::Patch& plane = plc_.patches[patch];
@@ -360,8 +360,7 @@ bool Refinement::poor_book(const CollarTriangle& t, const CollarTriangle& u,
     ++first;
   const Point &a = mesh_.point(v[first]), &b = mesh_.point(v[(first + 1) % 3]);
   const Point &p = collars_.balls()[t.ball].centre, &q = collars_.balls()[u.ball].centre;
-  return predicates::orientation(b, a, q, p) <= 0 ||
-         measure(b, a, q, p).max_dihedral > options_.collar_angle;
+  return predicates::orientation(b, a, q, p) <= 0 || measure(b, a, q, p).max_dihedral > options_.collar_angle;
 }
 
 // Insert the representation point, or the nearest point of an arc where a patch through the ball's

@@ -24,9 +24,7 @@ void Refinement::add_curve_chain(Index c) {
   const Plc::Curve& curve = plc_.curves[c];
   if (collars_.is_crease_curve(c)) return;  // covered by balls
   double from = 0, to = paths_.length(c);
-  const auto seed = [&](double parameter) {
-    return add_unresolved(paths_.point(c, parameter), 1, c);
-  };
+  const auto seed = [&](double parameter) { return add_unresolved(paths_.point(c, parameter), 1, c); };
   // Clipped where it leaves a vertex ball.
   std::array<Index, 2> ends = curve.ends;
   for (const bool at_start : {true, false}) {
@@ -88,20 +86,20 @@ void Refinement::point_resolved(Index point) {
 void Refinement::hurry_ends(const PendingSubsegment& pending) {
   for (const Index end : pending.points)
     if (unresolved_[end].object != none && unresolved_[end].vertex == none)
-      queue_.push(WorkQueue::ends_of_encroached_subsegments,
-                  objects_[pending.object].squared_radius, {end, 0});
+      queue_.push(WorkQueue::ends_of_encroached_subsegments, objects_[pending.object].squared_radius,
+                  {end, 0});
 }
 
 // Where the curve between two parameters meets the bisector plane of a and b: bisection on the sign
 // of |xa| - |xb| over the polyline's points, then linear on one segment.
 double Refinement::bisecting_parameter(Index c, const Point& a, const Point& b, double from,
                                        double to) const {
-  const auto nearer_to_a = [&](const Point& p) {
-    return squared_distance(p, b) - squared_distance(p, a);
-  };
+  const auto nearer_to_a = [&](const Point& p) { return squared_distance(p, b) - squared_distance(p, a); };
   const auto& lengths = paths_.lengths(c);
-  auto first = static_cast<std::size_t>(std::upper_bound(lengths.begin(), lengths.end(), from) - lengths.begin());
-  auto last = static_cast<std::size_t>(std::lower_bound(lengths.begin(), lengths.end(), to) - lengths.begin());
+  auto first =
+      static_cast<std::size_t>(std::upper_bound(lengths.begin(), lengths.end(), from) - lengths.begin());
+  auto last =
+      static_cast<std::size_t>(std::lower_bound(lengths.begin(), lengths.end(), to) - lengths.begin());
   double low = from, high = to;
   while (first < last) {
     const std::size_t middle = (first + last) / 2;
@@ -135,8 +133,8 @@ Index Refinement::nearest_vertex(const Point& p, Index from) {
   }
 }
 
-Index Refinement::add_subsegment(Index curve, std::array<Index, 2> ends,
-                                 std::array<double, 2> parameters, Index nearby) {
+Index Refinement::add_subsegment(Index curve, std::array<Index, 2> ends, std::array<double, 2> parameters,
+                                 Index nearby) {
   Index index;
   std::uint32_t stamp = 0;
   if (free_subsegments_.empty()) {
@@ -168,7 +166,8 @@ void Refinement::encroach(Index subsegment) {
 
 bool Refinement::too_coarse(const Subsegment& s) const {
   const Point a = mesh_.point(s.ends[0]), b = mesh_.point(s.ends[1]);
-  const double length = sizing_.subsegment_length(s.curve, s.centre, graded_size(s.ends, 0.5 * distance(a, b)));
+  const double length =
+      sizing_.subsegment_length(s.curve, s.centre, graded_size(s.ends, 0.5 * distance(a, b)));
   const double chord = squared_distance(a, b);
   if (chord > length * length) return true;
   if (plc_.curves[s.curve].straight) return false;

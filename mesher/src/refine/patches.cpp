@@ -100,8 +100,8 @@ std::span<const Index> Refinement::fewest_nodes(FaceId face) const {
 }
 
 void Refinement::find_crossings(FaceId face, std::span<const Index> nodes) {
-  hierarchy_.crossings(mesh_.circumcentre(cell_of(face)),
-                       mesh_.circumcentre(cell_of(mesh_.opposite(face))), nodes, crossings_);
+  hierarchy_.crossings(mesh_.circumcentre(cell_of(face)), mesh_.circumcentre(cell_of(mesh_.opposite(face))),
+                       nodes, crossings_);
 }
 
 // Label one of the new cells from across the zone's border, best where no patch can be in between;
@@ -159,8 +159,8 @@ bool Refinement::crosses_as_before(FaceId outer, FaceId face) {
   // Of a dual edge in the plane of its triangle x may be any point: it is gone when the new vertex has
   // come into the surface gap ball.
   if (t.several_sheets || squared_distance(mesh_.point(last_vertex()), t.x) < t.squared_radius) return false;
-  const int direction = hierarchy_.crossing(mesh_.circumcentre(cell_of(outer)),
-                                            mesh_.circumcentre(cell_of(face)), t.triangle);
+  const int direction =
+      hierarchy_.crossing(mesh_.circumcentre(cell_of(outer)), mesh_.circumcentre(cell_of(face)), t.triangle);
   if (direction == 0) return false;
   crossings_.assign(1, {t.triangle, direction});
   return region_beyond(labels_[cell_of(outer)].region) == labels_[cell_of(face)].region;
@@ -181,7 +181,7 @@ void Refinement::mark_border_faces() {
     if (was_marked && crosses_as_before(outer, face)) {
       labels_[created].marked |= static_cast<std::uint8_t>(1U << corner_of(face));
       marks_[created][corner_of(face)] = marks_[cell_of(outer)][corner_of(outer)];
-      restricted(face).judged = false;   // it may have been queued as the destroyed cell's face
+      restricted(face).judged = false;  // it may have been queued as the destroyed cell's face
       continue;
     }
     if (was_marked) unmark(outer);

@@ -93,8 +93,7 @@ void Refinement::start() {
   if (options_.gradation > 0) target_size_.resize(mesh_.vertex_count(), INFINITY);
   if (options_.vertex_ratio > 0) shortest_edge_.resize(mesh_.vertex_count(), INFINITY);
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) label_from_outside(cell);
-  for (Index i = 0; i < plc_.vertices.size(); ++i)
-    add_unresolved(points_[plc_.vertices[i].point], 0, i);
+  for (Index i = 0; i < plc_.vertices.size(); ++i) add_unresolved(points_[plc_.vertices[i].point], 0, i);
   prepare_collars();
   if (stop_ != MeshStatus::complete) return;
   prepare_curves();
@@ -105,11 +104,12 @@ void Refinement::start() {
 Index Refinement::add_unresolved(const Point& p, std::uint8_t dimension, Index feature) {
   const auto index = static_cast<Index>(unresolved_.size());
   Index nearest = 0;
-  if (mesh_.vertex_count() > 8) nearest = nearest_vertex(p, last_vertex());
-  else nearest = nearest_box_corner(p);
+  if (mesh_.vertex_count() > 8)
+    nearest = nearest_vertex(p, last_vertex());
+  else
+    nearest = nearest_box_corner(p);
   unresolved_.push_back({p, dimension, feature});
-  unresolved_[index].object =
-      objects_.add(LocationObjects::Kind::point, index, p, 0, nearest);
+  unresolved_[index].object = objects_.add(LocationObjects::Kind::point, index, p, 0, nearest);
   queue_point(index);
   return index;
 }
@@ -124,8 +124,8 @@ Index Refinement::nearest_box_corner(const Point& p) const {
 
 // The stamp of a queued point is the exponent of its ball, so that a stale entry is noticed.
 void Refinement::queue_point(Index point) {
-  const double r2 = squared_distance(
-      unresolved_[point].point, mesh_.point(objects_[unresolved_[point].object].vertex));
+  const double r2 =
+      squared_distance(unresolved_[point].point, mesh_.point(objects_[unresolved_[point].object].vertex));
   queue_.push(WorkQueue::unresolved_points, r2,
               {point, static_cast<std::uint32_t>(std::ilogb(std::max(r2, 1e-300)))});
 }
@@ -167,16 +167,12 @@ void Refinement::process(const WorkQueue::Item& item) {
     case WorkQueue::ends_of_encroached_subsegments:
       if (unresolved_[id].vertex == none) insert_point(id);
       break;
-    case WorkQueue::unresolved_points:
-      resolve_point(item);
-      break;
+    case WorkQueue::unresolved_points: resolve_point(item); break;
     case WorkQueue::unresolved_triangles:
     case WorkQueue::large_triangles:
-      if (mesh_.alive(cell_of(id)) && mesh_.generation(cell_of(id)) == stamp)
-        destroy_triangle(item);
+      if (mesh_.alive(cell_of(id)) && mesh_.generation(cell_of(id)) == stamp) destroy_triangle(item);
       break;
-    case WorkQueue::priority_count:
-      break;
+    case WorkQueue::priority_count: break;
   }
 }
 
@@ -243,8 +239,9 @@ bool Refinement::insert_point(Index index) {
 bool Refinement::destroy(Candidate candidate) {
   for (;;) {
     if (candidate.squared_radius < floor_ * floor_) {
-      give_up(candidate.point, "the refinement did not end before edges became shorter than 1e-10 "
-                               "of the diagonal");
+      give_up(candidate.point,
+              "the refinement did not end before edges became shorter than 1e-10 "
+              "of the diagonal");
       return false;
     }
     mesh_.find_conflict_zone(candidate.point, candidate.start, zone_);
@@ -283,8 +280,7 @@ Index Refinement::warp_target(const Candidate& candidate) const {
       if (object.kind != LocationObjects::Kind::point) continue;
       const UnresolvedPoint& p = unresolved_[object.owner];
       const double d = squared_distance(p.point, candidate.ball_centre);
-      if (p.dimension > dimension || (p.dimension == dimension && best == none) || d > reach)
-        continue;
+      if (p.dimension > dimension || (p.dimension == dimension && best == none) || d > reach) continue;
       if (p.dimension == dimension && best != none &&
           d >= squared_distance(unresolved_[best].point, candidate.ball_centre))
         continue;
@@ -303,8 +299,7 @@ Index Refinement::encroached_ball(const Candidate& candidate) const {
     for (Index o = objects_.first_at(v); o != none; o = objects_[o].next) {
       const auto& object = objects_[o];
       if (object.kind == LocationObjects::Kind::point) continue;
-      const double depth =
-          object.squared_radius - squared_distance(candidate.point, object.centre);
+      const double depth = object.squared_radius - squared_distance(candidate.point, object.centre);
       if (depth < 0 || (best != none && depth <= deepest)) continue;
       best = o;
       deepest = depth;
@@ -372,8 +367,10 @@ void Refinement::relocate_objects(Index vertex) {
       const double d = squared_distance(p, object.centre);
       const bool nearer = d < squared_distance(mesh_.point(neighbour), object.centre);
       if (d <= object.squared_radius) {
-        if (object.kind == LocationObjects::Kind::subsegment) encroach(object.owner);
-        else if (object.kind == LocationObjects::Kind::pending_subsegment) hurry_ends(pending_[object.owner]);
+        if (object.kind == LocationObjects::Kind::subsegment)
+          encroach(object.owner);
+        else if (object.kind == LocationObjects::Kind::pending_subsegment)
+          hurry_ends(pending_[object.owner]);
       }
       if (nearer) objects_.move(o, vertex);
     }
@@ -423,8 +420,7 @@ void Refinement::store_nodes(MeshVertex& vertex, const std::vector<Index>& nodes
 
 double Refinement::shortest_squared_edge(Index cell) const {
   const auto& v = mesh_.corners(cell);
-  const Point &a = mesh_.point(v[0]), &b = mesh_.point(v[1]), &c = mesh_.point(v[2]),
-              &d = mesh_.point(v[3]);
+  const Point &a = mesh_.point(v[0]), &b = mesh_.point(v[1]), &c = mesh_.point(v[2]), &d = mesh_.point(v[3]);
   return std::min({squared_distance(a, b), squared_distance(a, c), squared_distance(a, d),
                    squared_distance(b, c), squared_distance(b, d), squared_distance(c, d)});
 }
@@ -436,8 +432,7 @@ void Refinement::judge_cell(Index cell) {
   const Point& centre = mesh_.circumcentre(cell);
   const double bound = region == 0 ? options_.exterior_radius_edge : options_.radius_edge;
   if (r2 > bound * bound * shortest_squared_edge(cell) || (region != 0 && flat(cell))) {
-    if (inside_box(centre))
-      queue_.push(WorkQueue::skinny_cells, r2, {cell, mesh_.generation(cell)});
+    if (inside_box(centre)) queue_.push(WorkQueue::skinny_cells, r2, {cell, mesh_.generation(cell)});
     return;
   }
   if (region == 0) return;
@@ -510,9 +505,12 @@ std::optional<Refinement::Candidate> Refinement::triangle_candidate(FaceId face)
   p = frame_.rounded(p);
   const FaceId other = mesh_.opposite(face);
   Index start = none;
-  if (mesh_.in_conflict(cell_of(face), p)) start = cell_of(face);
-  else if (other != no_face && mesh_.in_conflict(cell_of(other), p)) start = cell_of(other);
-  else start = mesh_.conflicting_cell_around(mesh_.face_vertices(face)[0], p);
+  if (mesh_.in_conflict(cell_of(face), p))
+    start = cell_of(face);
+  else if (other != no_face && mesh_.in_conflict(cell_of(other), p))
+    start = cell_of(other);
+  else
+    start = mesh_.conflicting_cell_around(mesh_.face_vertices(face)[0], p);
   if (start == none) return std::nullopt;
   return Candidate{p, t.squared_radius, t.x, 2, patch, start};
 }
@@ -524,8 +522,8 @@ Point Refinement::on_plane(Index patch, const Point& p) const {
 }
 
 bool Refinement::inside_box(const Point& p) const {
-  return p.x > box_.min.x && p.x < box_.max.x && p.y > box_.min.y && p.y < box_.max.y &&
-         p.z > box_.min.z && p.z < box_.max.z;
+  return p.x > box_.min.x && p.x < box_.max.x && p.y > box_.min.y && p.y < box_.max.y && p.z > box_.min.z &&
+         p.z < box_.max.z;
 }
 
 // splitmix64 (Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014).
@@ -544,8 +542,7 @@ void Refinement::give_up(const Point& where, const std::string& what) {
   if (!message_.empty()) return;
   where_ = where;
   const Point p = frame_.outside(where);
-  message_ = fmt::format("{} near ({:.9g}, {:.9g}, {:.9g}); look at the input there", what, p.x,
-                         p.y, p.z);
+  message_ = fmt::format("{} near ({:.9g}, {:.9g}, {:.9g}); look at the input there", what, p.x, p.y, p.z);
 }
 
 double Refinement::elapsed() const {
@@ -553,16 +550,17 @@ double Refinement::elapsed() const {
 }
 
 std::size_t Refinement::bytes() const {
-  return mesh_.bytes() + hierarchy_.bytes() + objects_.bytes() + queue_.bytes() +
-         labels_.bytes() + marks_.bytes() + vertices_.capacity() * sizeof(MeshVertex) +
-         restricted_.capacity() * sizeof(RestrictedTriangle) +
-         node_pool_.capacity() * sizeof(Index) + unresolved_.capacity() * sizeof(UnresolvedPoint) +
-         subsegments_.capacity() * sizeof(Subsegment);
+  return mesh_.bytes() + hierarchy_.bytes() + objects_.bytes() + queue_.bytes() + labels_.bytes() +
+         marks_.bytes() + vertices_.capacity() * sizeof(MeshVertex) +
+         restricted_.capacity() * sizeof(RestrictedTriangle) + node_pool_.capacity() * sizeof(Index) +
+         unresolved_.capacity() * sizeof(UnresolvedPoint) + subsegments_.capacity() * sizeof(Subsegment);
 }
 
 bool Refinement::stopped() {
-  if (execution_.cancelled() || !report_progress()) stop_ = MeshStatus::cancelled;
-  else if (out_of_budget()) stop_ = MeshStatus::budget_hit;
+  if (execution_.cancelled() || !report_progress())
+    stop_ = MeshStatus::cancelled;
+  else if (out_of_budget())
+    stop_ = MeshStatus::budget_hit;
   return stop_ != MeshStatus::complete;
 }
 
@@ -574,14 +572,11 @@ bool Refinement::out_of_budget() {
     return true;
   };
   if (options_.max_vertices > 0 && mesh_.vertex_count() > options_.max_vertices)
-    return spent(fmt::format("the budget of {} vertices is spent; the last one is",
-                             options_.max_vertices));
+    return spent(fmt::format("the budget of {} vertices is spent; the last one is", options_.max_vertices));
   if (options_.max_memory > 0 && peak_bytes_ > options_.max_memory)
-    return spent(fmt::format("the budget of {} bytes is spent; the last vertex is",
-                             options_.max_memory));
+    return spent(fmt::format("the budget of {} bytes is spent; the last vertex is", options_.max_memory));
   if (options_.time_limit > 0 && elapsed() > options_.time_limit)
-    return spent(fmt::format("the time limit of {} s is reached; the last vertex is",
-                             options_.time_limit));
+    return spent(fmt::format("the time limit of {} s is reached; the last vertex is", options_.time_limit));
   return false;
 }
 

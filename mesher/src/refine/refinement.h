@@ -30,8 +30,8 @@ namespace collarmesh {
 /// into a TetMesh.
 /// Of some points, those that are far from each other: each next one is the farthest from all
 /// before. Cost: candidates times count.
-std::vector<Index> spread_points(const std::vector<Index>& candidates,
-                                 const std::vector<Point>& points, std::size_t count);
+std::vector<Index> spread_points(const std::vector<Index>& candidates, const std::vector<Point>& points,
+                                 std::size_t count);
 
 class Refinement {
  public:
@@ -49,10 +49,10 @@ class Refinement {
  private:
   /// What refinement knows of a mesh vertex besides its position.
   struct MeshVertex {
-    std::uint8_t dimension = 3;   // containment dimension: of the lowest feature it lies on
-    bool near_collar = false;     // B(v, R_v) meets a collar ball
-    std::uint16_t insertions = 0; // in its star since its nodes were filtered last
-    Index feature = none;         // index of that vertex, curve or patch of the complex
+    std::uint8_t dimension = 3;            // containment dimension: of the lowest feature it lies on
+    bool near_collar = false;              // B(v, R_v) meets a collar ball
+    std::uint16_t insertions = 0;          // in its star since its nodes were filtered last
+    Index feature = none;                  // index of that vertex, curve or patch of the complex
     Index first_node = 0, node_count = 0;  // in node_pool_: hierarchy nodes that meet B(v, R_v)
   };
   /// An input point, or a seed, that is not in the mesh yet.
@@ -60,16 +60,16 @@ class Refinement {
     Point point;
     std::uint8_t dimension;
     Index feature;
-    Index object = none;        // in objects_, none once it is a mesh vertex
-    Index vertex = none;        // the mesh vertex it became
+    Index object = none;              // in objects_, none once it is a mesh vertex
+    Index vertex = none;              // the mesh vertex it became
     std::vector<Index> pending = {};  // first subsegments that wait for it
   };
   /// A piece of a curve between two mesh vertices that are consecutive on it, with its protective
   /// ball (DESIGN section 7): centred where the curve meets the bisector plane of the ends.
   struct Subsegment {
     Index curve;
-    std::array<Index, 2> ends;        // mesh vertices
-    std::array<double, 2> parameters; // arc length along the curve
+    std::array<Index, 2> ends;         // mesh vertices
+    std::array<double, 2> parameters;  // arc length along the curve
     Point centre;
     double centre_parameter;
     double squared_radius;
@@ -80,7 +80,7 @@ class Refinement {
   /// A subsegment of a curve's first chain, waiting for its ends to be inserted.
   struct PendingSubsegment {
     Index curve;
-    std::array<Index, 2> points;       // unresolved points
+    std::array<Index, 2> points;  // unresolved points
     std::array<double, 2> parameters;
     Index object = none;
     unsigned missing = 2;
@@ -89,35 +89,35 @@ class Refinement {
   struct RestrictedTriangle {
     Point x;
     double squared_radius;
-    Index triangle;                    // of the complex, crossed at x
-    bool resolved_vertices;            // all three vertices lie on the patch
-    bool several_sheets;               // the dual edge crosses the surface more than once
-    bool given_up;                     // at the floor: no further insertion here
+    Index triangle;          // of the complex, crossed at x
+    bool resolved_vertices;  // all three vertices lie on the patch
+    bool several_sheets;     // the dual edge crosses the surface more than once
+    bool given_up;           // at the floor: no further insertion here
     bool judged;
-    bool in_collar;                    // x lies in a collar ball: none of refinement's business
-    bool known_near;                   // no sample of it is farther from its patch than the tolerance
+    bool in_collar;   // x lies in a collar ball: none of refinement's business
+    bool known_near;  // no sample of it is farther from its patch than the tolerance
   };
   /// A point of the complex on a smooth patch, with a triangle of the patch that it was near to.
   struct TessellationPoint {
     Index point;
     FaceId near;
-    std::uint32_t generation;          // of the face's cell
+    std::uint32_t generation;  // of the face's cell
   };
   struct CellLabel {
     std::uint16_t region = 0;
-    std::uint8_t marked = 0;           // bit i: the face opposite corner i is restricted
-    std::uint8_t judged = 0;           // bit i: that face has been intersected with the patches
-    bool in_collar = false;            // its circumcentre lies in a collar ball
-    std::uint8_t off_collars = 0;      // bit i: the dual edge of that face is known to meet no ball
+    std::uint8_t marked = 0;       // bit i: the face opposite corner i is restricted
+    std::uint8_t judged = 0;       // bit i: that face has been intersected with the patches
+    bool in_collar = false;        // its circumcentre lies in a collar ball
+    std::uint8_t off_collars = 0;  // bit i: the dual edge of that face is known to meet no ball
   };
   /// A point about to be inserted.
   struct Candidate {
     Point point;
-    double squared_radius;             // of the ball that is destroyed
+    double squared_radius;  // of the ball that is destroyed
     Point ball_centre;
     std::uint8_t dimension;
     Index feature;
-    Index start;                       // a cell in conflict with the point
+    Index start;  // a cell in conflict with the point
   };
 
   // refinement.cpp
@@ -202,9 +202,7 @@ class Refinement {
   const RestrictedTriangle& restricted(FaceId face) const {
     return restricted_[marks_[cell_of(face)][corner_of(face)]];
   }
-  RestrictedTriangle& restricted(FaceId face) {
-    return restricted_[marks_[cell_of(face)][corner_of(face)]];
-  }
+  RestrictedTriangle& restricted(FaceId face) { return restricted_[marks_[cell_of(face)][corner_of(face)]]; }
 
   // gradation.cpp
   void grade_vertex(Index vertex);
@@ -242,10 +240,10 @@ class Refinement {
   /// A face between a cell inside the collars and one outside, with the ball that its dual edge
   /// enters first and the point where it does (paper, Definition 9).
   struct CollarTriangle {
-    FaceId face;    // of the cell outside
+    FaceId face;  // of the cell outside
     Index ball;
     Point representation;
-    bool several;   // its dual edge meets the collar surface more than once
+    bool several;  // its dual edge meets the collar surface more than once
     bool poor;
     Index bent_on = none;  // a smooth patch that an edge of it leaves too far ...
     Point bent_at = {};    // ... at its middle
@@ -275,8 +273,7 @@ class Refinement {
   bool insert_on_collar(const Point& p, std::uint8_t dimension, Index feature, Index nearby);
   std::span<const Index> patches_through(const CollarBall& ball) const;
 
-  bool poor_book(const CollarTriangle& t, const CollarTriangle& u,
-                 const std::array<Index, 2>& edge) const;
+  bool poor_book(const CollarTriangle& t, const CollarTriangle& u, const std::array<Index, 2>& edge) const;
   Index ball_vertex(Index ball) const { return unresolved_[ball_points_[ball]].vertex; }
 
   // rip_and_stitch.cpp
@@ -314,7 +311,7 @@ class Refinement {
   const MeshOptions options_;
   const Execution& execution_;
   Frame frame_;
-  std::vector<Point> points_;   // of the complex, in the frame
+  std::vector<Point> points_;  // of the complex, in the frame
   Sizing sizing_;
   double diagonal_, distance_, floor_;
   Box box_;
@@ -325,7 +322,7 @@ class Refinement {
   TriangleHierarchy hierarchy_;
   LocationObjects objects_;
   CollarSystem collars_;
-  std::vector<Index> ball_points_;           // unresolved points at the balls' centres
+  std::vector<Index> ball_points_;  // unresolved points at the balls' centres
   std::vector<ClippedEnd> clipped_ends_;
   Stitched stitched_;
   std::unordered_map<Index, TakenIn> taken_in_;  // by their cell
@@ -336,12 +333,12 @@ class Refinement {
   GrowingArray<double> target_size_;    // of every vertex, with gradation only
   GrowingArray<double> shortest_edge_;  // at every vertex, with a vertex ratio only
   GrowingArray<CellLabel> labels_;
-  GrowingArray<std::array<Index, 4>> marks_;   // restricted triangles of marked faces
+  GrowingArray<std::array<Index, 4>> marks_;  // restricted triangles of marked faces
   std::vector<RestrictedTriangle> restricted_;
   std::vector<Index> free_restricted_;
   std::vector<Index> node_pool_;
-  std::vector<TessellationPoint> tessellation_;         // of all smooth patches, one after the other
-  std::vector<std::size_t> first_tessellation_point_;   // of each patch; empty before the first check
+  std::vector<TessellationPoint> tessellation_;        // of all smooth patches, one after the other
+  std::vector<std::size_t> first_tessellation_point_;  // of each patch; empty before the first check
 
   std::vector<UnresolvedPoint> unresolved_;
   std::vector<PendingSubsegment> pending_;
