@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -10,6 +11,7 @@
 #include <stdexcept>
 
 #include "collarmesh/io/tet_mesh_io.h"
+#include "surface_files.h"
 
 namespace collarmesh::cli {
 
@@ -19,6 +21,14 @@ template <class Number>
 bool parse_whole(std::string_view text, Number& number) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   return error == std::errc() && end == text.data() + text.size();
+}
+
+std::string list(const std::vector<std::string>& extensions) {
+  return fmt::format("{}", fmt::join(extensions, " "));
+}
+
+std::string known_formats() {
+  return list(surface_formats()) + " or " + list(io::written_tet_mesh_formats());
 }
 
 /// A finite number in an interval, so that "nan" and "inf" are refused as well.
@@ -45,6 +55,18 @@ const CLI::Validator memory = CLI::Validator(
     [](std::string& text) {
       return text.empty() || text[0] == '-' ? fmt::format("'{}' is not a size such as 4G", text)
                                             : CLI::AsSizeValue(false)(text);
+    },
+    "");
+
+/// "STL" to ".stl".
+const CLI::Validator format_name = CLI::Validator(
+    [](std::string& text) {
+      for (char& c : text)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
+      if (!text.starts_with('.')) text = '.' + text;
+      return is_surface_format("", text) || io::is_tet_mesh_format("", text)
+                 ? std::string()
+                 : fmt::format("'{}' is not known; use {}", text, known_formats());
     },
     "");
 
@@ -147,12 +169,7 @@ void add_budget_options(CLI::App& app, MeshOptions& m) {
   add(app, "--time-limit", m.time_limit, "Seconds", "none")->check(length)->group(group);
 }
 
-void add_mesh_options(CLI::App& app, MeshArguments& a) {
-  app.add_option("INPUT", a.inputs,
-                 "Surfaces and complexes (.off .obj .stl .ply .om .poly .smesh); several are one complex")
-      ->type_name("FILE");
-  app.add_option("-o,--output", a.output, "The mesh to write: .vtu, .msh (Gmsh 4.1) or .mesh (Medit)")
-      ->type_name("FILE");
+void add_run_options(CLI::App& app, MeshArguments& a) {
   add_size_options(app, a.mesh);
   add_quality_options(app, a.mesh);
   add_complex_options(app, a.complex);
@@ -169,9 +186,41 @@ void add_mesh_options(CLI::App& app, MeshArguments& a) {
   app.add_flag("-q,--quiet", a.quiet, "Say nothing unless something is wrong");
 }
 
+void add_mesh_options(CLI::App& app, MeshArguments& a) {
+  app.add_option("INPUT", a.inputs,
+                 "Surfaces and complexes (.off .obj .stl .ply .om .poly .smesh); several are one complex")
+      ->type_name("FILE");
+  app.add_option("-o,--output", a.output, "The mesh to write: " + list(io::written_tet_mesh_formats()))
+      ->type_name("FILE");
+  add_run_options(app, a);
+}
+
+CLI::App* add_convert_command(CLI::App& app, MeshArguments& a) {
+  CLI::App* convert = app.add_subcommand(
+      "convert",
+      "Convert surfaces, complexes and meshes into each other; a surface into a mesh by meshing it");
+  convert
+      ->add_option("IN", a.inputs, "Surfaces and complexes, which become one, or one mesh; -: standard input")
+      ->required()
+      ->type_name("FILE");
+  convert->add_option("-o,--output", a.output, "The file to write; -: standard output")
+      ->required()
+      ->type_name("FILE");
+  convert->add_option("--format", a.output_format, "Of the output, an extension such as stl; needed for -")
+      ->transform(format_name)
+      ->default_str("by extension");
+  convert->add_option("--input-format", a.input_format, "Of the inputs; needed for -")
+      ->transform(format_name)
+      ->default_str("by extension");
+  add_run_options(*convert, a);
+  return convert;
+}
+
 CLI::App* add_check_command(CLI::App& app, CheckArguments& a) {
   CLI::App* check = app.add_subcommand("check", "Certify a mesh against the input it was made from");
-  check->add_option("MESH", a.mesh, "A .vtu, .msh or .mesh file")->required()->type_name("FILE");
+  check->add_option("MESH", a.mesh, "The mesh: " + list(io::read_tet_mesh_formats()))
+      ->required()
+      ->type_name("FILE");
   check->add_option("--against", a.inputs, "The input: one or several files")->required()->type_name("FILE");
   add(*check, "--radius-edge", a.check.radius_edge, "Bound on circumradius / shortest edge of a tetrahedron")
       ->check(ratio);
@@ -189,9 +238,7 @@ CLI::App* add_check_command(CLI::App& app, CheckArguments& a) {
 
 CLI::App* add_info_command(CLI::App& app, InfoArguments& a) {
   CLI::App* info = app.add_subcommand("info", "Say what the input is: features, regions, creases, angles");
-  info->add_option("INPUT", a.inputs, "Files of one complex, or one mesh (.vtu, .msh, .mesh)")
-      ->required()
-      ->type_name("FILE");
+  info->add_option("INPUT", a.inputs, "Files of one complex, or one mesh")->required()->type_name("FILE");
   add_complex_options(*info, a.complex);
   info->add_flag("--json", a.json, "Print JSON");
   return info;
@@ -203,12 +250,7 @@ std::string extension_list(const std::string& path) {
 }
 
 /// What one option alone cannot tell.
-void check_mesh_arguments(const MeshArguments& a) {
-  if (a.inputs.empty()) throw CLI::RequiredError("INPUT: a file to mesh");
-  if (a.output.empty()) throw CLI::RequiredError("--output: where to write the mesh");
-  if (!io::is_tet_mesh_format(a.output))
-    throw CLI::ValidationError(
-        "--output", fmt::format("'{}' {}; use .vtu, .msh or .mesh", a.output, extension_list(a.output)));
+void check_run_arguments(const MeshArguments& a) {
   if (a.verbose && a.quiet) throw CLI::ValidationError("--quiet", "contradicts --verbose; use one of them");
   if (!a.report.empty() && std::filesystem::path(a.report) == std::filesystem::path(a.output))
     throw CLI::ValidationError("--report", "names the same file as --output; choose another");
@@ -219,6 +261,28 @@ void check_mesh_arguments(const MeshArguments& a) {
     throw CLI::ValidationError("--vertex-ratio", "must exceed 2 sqrt 2 = 2.83 (the proved bound)");
 }
 
+void check_mesh_arguments(const MeshArguments& a) {
+  if (a.inputs.empty()) throw CLI::RequiredError("INPUT: a file to mesh");
+  if (a.output.empty()) throw CLI::RequiredError("--output: where to write the mesh");
+  if (!io::is_tet_mesh_format(a.output))
+    throw CLI::ValidationError("--output", fmt::format("'{}' {}; use {}", a.output, extension_list(a.output),
+                                                       list(io::written_tet_mesh_formats())));
+  check_run_arguments(a);
+}
+
+void check_convert_arguments(const MeshArguments& a) {
+  if (a.output_format.empty() && !is_surface_format(a.output) && !io::is_tet_mesh_format(a.output))
+    throw CLI::ValidationError("--output", fmt::format("'{}' {}; use {}, or name one with --format", a.output,
+                                                       extension_list(a.output), known_formats()));
+  const auto dashes = std::count(a.inputs.begin(), a.inputs.end(), "-");
+  if (dashes > 1) throw CLI::ValidationError("IN", "standard input (-) can be read once only");
+  if (dashes > 0 && a.input_format.empty())
+    throw CLI::ValidationError("--input-format", "is needed for standard input (-)");
+  if (a.output == "-" && a.output_format == ".ele")
+    throw CLI::ValidationError("--format", "is of several files, which standard output cannot take");
+  check_run_arguments(a);
+}
+
 /// CLI11's help with our usage lines.
 class HelpText : public CLI::Formatter {
  public:
@@ -227,7 +291,8 @@ class HelpText : public CLI::Formatter {
     if (app->get_parent() == nullptr)
       return "Usage: collarmesh INPUT... -o OUT [options]\n"
              "       collarmesh check MESH --against INPUT... [options]\n"
-             "       collarmesh info INPUT... [options]\n";
+             "       collarmesh info INPUT... [options]\n"
+             "       collarmesh convert IN... -o OUT [options]\n";
     return CLI::Formatter::make_usage(app, name);
   }
 };
@@ -255,6 +320,7 @@ std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
   MeshArguments mesh;
   CheckArguments check;
   InfoArguments info;
+  ConvertArguments convert;
   CLI::App app("collarmesh: tetrahedral meshes of piecewise-linear complexes, certified", "collarmesh");
   app.set_version_flag("--version", "collarmesh " COLLARMESH_VERSION);
   app.formatter(std::make_shared<HelpText>());
@@ -263,18 +329,24 @@ std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
   add_mesh_options(app, mesh);
   const CLI::App* check_command = add_check_command(app, check);
   const CLI::App* info_command = add_info_command(app, info);
+  const CLI::App* convert_command = add_convert_command(app, convert.mesh);
   try {
     app.parse(argc, argv);
-    const bool subcommand = check_command->parsed() || info_command->parsed();
+    const bool subcommand = check_command->parsed() || info_command->parsed() || convert_command->parsed();
     if (!subcommand) check_mesh_arguments(mesh);
+    if (convert_command->parsed()) check_convert_arguments(convert.mesh);
     if (subcommand && (!mesh.inputs.empty() || !mesh.output.empty()))
       throw CLI::ExtrasError(
-          {"a subcommand comes first: collarmesh check MESH ..., collarmesh info INPUT ..."});
+          {"a subcommand comes first: collarmesh check MESH ..., info INPUT ..., convert IN ..."});
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? ExitCode::success : ExitCode::usage;
   }
   if (check_command->parsed()) return Arguments(check);
   if (info_command->parsed()) return Arguments(info);
+  if (convert_command->parsed()) {
+    convert.mesh.tell_losses = true;
+    return Arguments(convert);
+  }
   return Arguments(mesh);
 }
 

@@ -27,10 +27,12 @@ struct MeshArguments {
   std::string output;
   ComplexArguments complex;
   MeshOptions mesh;
-  std::string report;  ///< path, empty: none
+  std::string input_format, output_format;  ///< extensions with their dot; empty: those of the files
+  std::string report;                       ///< path, empty: none
   ProgressStyle progress = ProgressStyle::automatic;
   bool verbose = false;
   bool quiet = false;
+  bool tell_losses = false;  ///< say what the output's format has no place for
 };
 
 /// `collarmesh check MESH --against INPUT...`
@@ -49,7 +51,13 @@ struct InfoArguments {
   bool json = false;
 };
 
-using Arguments = std::variant<MeshArguments, CheckArguments, InfoArguments>;
+/// `collarmesh convert IN... -o OUT`: a surface becomes a mesh as in MeshArguments if OUT is one.
+/// "-" among the inputs is standard input, as output it is standard output.
+struct ConvertArguments {
+  MeshArguments mesh;
+};
+
+using Arguments = std::variant<MeshArguments, CheckArguments, InfoArguments, ConvertArguments>;
 
 /// Understand a command line. When there is nothing to run (help, version, a mistake) the text has
 /// been printed and the exit code is returned instead.

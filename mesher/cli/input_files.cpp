@@ -8,12 +8,9 @@
 #include <numeric>
 
 #include "collarmesh/error.h"
-#include "collarmesh/io/soup_io.h"
 #include "collarmesh/io/tet_mesh_io.h"
 #include "interrupt.h"
-#ifdef COLLARMESH_OPENMESH
-#include "collarmesh/openmesh_io.h"
-#endif
+#include "surface_files.h"
 
 namespace collarmesh::cli {
 
@@ -51,17 +48,8 @@ void require_file(const std::string& path) {
                                   : fmt::format("{}: no such file; did you mean {}?", path, similar));
 }
 
-PolygonSoup read_soup(const std::string& path) {
-  require_file(path);
-#ifdef COLLARMESH_OPENMESH
-  if (lower(fs::path(path).extension().string()) == ".om") return openmesh_io::read_om(path);
-#endif
-  if (!io::is_soup_format(path))
-    throw ReadError(fmt::format(
-        "{}: its format is not known by its extension '{}'; use .off .obj .stl .ply .om .poly or .smesh",
-        path, fs::path(path).extension().string()));
-  return io::read_soup(path);
-}
+/// The system's name of "-".
+std::string opened(const std::string& path) { return path == "-" ? "/dev/stdin" : path; }
 
 }  // namespace
 
@@ -82,21 +70,23 @@ std::string similar_file(const std::string& path) {
   return found;
 }
 
-std::vector<PolygonSoup> read_soups(const std::vector<std::string>& paths) {
+std::vector<PolygonSoup> read_soups(const std::vector<std::string>& paths, const std::string& format) {
   std::vector<PolygonSoup> soups;
   for (const std::string& path : paths) {
     stop_if_interrupted();
-    soups.push_back(read_soup(path));
+    require_file(opened(path));
+    soups.push_back(read_surface(opened(path), format));
   }
   return soups;
 }
 
-TetMesh read_mesh(const std::string& path) {
-  require_file(path);
-  if (!io::is_tet_mesh_format(path))
-    throw ReadError(fmt::format("{}: its format is not known by its extension '{}'; use .vtu, .msh or .mesh",
-                                path, fs::path(path).extension().string()));
-  return io::read_tet_mesh(path);
+TetMesh read_mesh(const std::string& path, const std::string& format) {
+  require_file(opened(path));
+  if (!io::is_tet_mesh_format(path, format))
+    throw ReadError(fmt::format("{}: its format is not known by its extension '{}'; use {}", path,
+                                fs::path(path).extension().string(),
+                                fmt::join(io::read_tet_mesh_formats(), " ")));
+  return io::read_tet_mesh(opened(path), format);
 }
 
 }  // namespace collarmesh::cli

@@ -9,6 +9,7 @@
 
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
+#include "conversion_report.h"
 #include "input_files.h"
 #include "interrupt.h"
 #include "progress_display.h"
@@ -66,7 +67,7 @@ void require_known_tags(const MeshOptions& options, const Plc& plc) {
 
 void build_complex(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   stages.begin("read", 0, 0.02);
-  const std::vector<PolygonSoup> soups = read_soups(arguments.inputs);
+  const std::vector<PolygonSoup> soups = read_soups(arguments.inputs, arguments.input_format);
   stages.begin("complex", 0.02, 0.08);
   run.plc = build_plc(soups, arguments.complex.plc);
   require_known_tags(arguments.mesh, run.plc);
@@ -106,7 +107,8 @@ void write_report(const std::string& path, const MeshArguments& arguments, const
 void write_files(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   stages.begin("write", 0.93, 1);
   StagedFile mesh(arguments.output);
-  mesh.write([&](const std::string& path) { io::write_tet_mesh(path, run.result.mesh); });
+  mesh.write(
+      [&](const std::string& path) { io::write_tet_mesh(path, run.result.mesh, arguments.output_format); });
   run.times.end();
   std::optional<StagedFile> report;
   if (!arguments.report.empty()) {
@@ -121,7 +123,11 @@ void tell(const MeshArguments& arguments, const MeshRun& run) {
     fmt::print(stderr, "collarmesh: a guarantee is missed: {}\n", run.result.message);
   constexpr std::size_t listed = 10;
   fmt::print(stderr, "{}", findings_text(run.check, arguments.verbose ? run.check.findings.size() : listed));
-  if (!arguments.quiet) fmt::print(stderr, "{}", run_text(arguments, run));
+  if (arguments.quiet) return;
+  fmt::print(stderr, "{}", run_text(arguments, run));
+  if (arguments.tell_losses)
+    fmt::print(stderr, "{}",
+               losses_text(lost_by(format_of(arguments.output, arguments.output_format), run.result.mesh)));
 }
 
 ExitCode mesh_and_write(const MeshArguments& arguments, MeshRun& run) {

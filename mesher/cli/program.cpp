@@ -11,6 +11,7 @@
 #include "arguments.h"
 #include "check_command.h"
 #include "collarmesh/error.h"
+#include "convert_command.h"
 #include "info_command.h"
 #include "interrupt.h"
 #include "mesh_command.h"
@@ -23,6 +24,7 @@ struct Execute {
   ExitCode operator()(const MeshArguments& arguments) const { return mesh_command(arguments); }
   ExitCode operator()(const CheckArguments& arguments) const { return check_command(arguments); }
   ExitCode operator()(const InfoArguments& arguments) const { return info_command(arguments); }
+  ExitCode operator()(const ConvertArguments& arguments) const { return convert_command(arguments); }
 };
 
 ExitCode fail(ExitCode code, const std::string& message) {

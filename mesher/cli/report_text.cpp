@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "conversion_report.h"
 #include "report.h"
 
 namespace collarmesh::cli {
@@ -106,9 +107,11 @@ std::string check_text(const CheckReport& r) {
 
 std::string run_text(const MeshArguments& arguments, const MeshRun& run) {
   std::string text = arguments.verbose ? complex_text(run.plc, run.summary) : "";
-  text += fmt::format("{}: ", arguments.output) + mesh_text(run.result.mesh, run.measures);
+  text += fmt::format("{}: ", arguments.output == "-" ? "standard output" : arguments.output) +
+          mesh_text(run.result.mesh, run.measures);
   fmt::format_to(Out(text), "  median edge {:.4g}, surface distance at most {:.3g}\n", run.check.median_edge,
                  run.check.max_surface_distance);
+  text += cleanup_text(run.plc.cleanup);
   const MeshStatistics& s = run.result.statistics;
   if (arguments.verbose)
     fmt::format_to(Out(text),

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <mutex>
 #include <vector>
 
@@ -17,6 +19,8 @@ namespace collarmesh::cli {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr const char* standard_output = "-";
 
 std::mutex staged_mutex;
 std::vector<fs::path> staged_folders;
@@ -33,7 +37,7 @@ fs::path folder_of(const fs::path& target) {
 }
 
 fs::path make_folder_beside(const fs::path& target) {
-  const fs::path parent = folder_of(target);
+  const fs::path parent = target == standard_output ? fs::temp_directory_path() : folder_of(target);
   std::error_code ignored;
   if (!fs::exists(parent, ignored))
     throw WriteError(
@@ -76,11 +80,34 @@ void StagedFile::write(const std::function<void(const std::string&)>& write) {
 }
 
 void StagedFile::move_to_place() const {
+  if (target_ == standard_output) {
+    copy_to_standard_output();
+    return;
+  }
   std::error_code error;
-  fs::rename(folder_ / target_.filename(), target_, error);
-  if (error)
-    throw WriteError(
-        fmt::format("{}: cannot be replaced ({}); choose another name", target_.string(), error.message()));
+  // The target last: who sees it sees the others too.
+  std::vector<fs::path> names;
+  for (const auto& entry : fs::directory_iterator(folder_))
+    if (entry.path().filename() != target_.filename()) names.push_back(entry.path().filename());
+  names.push_back(target_.filename());
+  for (const fs::path& name : names) {
+    const fs::path place = target_.parent_path() / name;
+    fs::rename(folder_ / name, place, error);
+    if (error)
+      throw WriteError(
+          fmt::format("{}: cannot be replaced ({}); choose another name", place.string(), error.message()));
+  }
+}
+
+void StagedFile::copy_to_standard_output() const {
+  std::ifstream file(folder_ / target_.filename(), std::ios::binary);
+  std::vector<char> block(1 << 16);
+  while (file.read(block.data(), static_cast<std::streamsize>(block.size())), file.gcount() > 0)
+    if (std::fwrite(block.data(), 1, static_cast<std::size_t>(file.gcount()), stdout) !=
+        static_cast<std::size_t>(file.gcount()))
+      throw WriteError(fmt::format("standard output: cannot be written ({})", std::strerror(errno)));
+  if (std::fflush(stdout) != 0)
+    throw WriteError(fmt::format("standard output: cannot be written ({})", std::strerror(errno)));
 }
 
 void StagedFile::commit(std::initializer_list<StagedFile*> files) {

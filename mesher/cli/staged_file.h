@@ -8,7 +8,8 @@
 namespace collarmesh::cli {
 
 /// A file that appears under its name when it is complete, or not at all: it is made in a temporary
-/// folder beside its place and moved there by `commit`.
+/// folder beside its place and moved there by `commit`, with those that its writer makes beside it.
+/// The target "-" is standard output, to which the file is copied.
 class StagedFile {
  public:
   /// Throws WriteError when the folder of `target` cannot be written to.
@@ -25,6 +26,7 @@ class StagedFile {
 
  private:
   void move_to_place() const;
+  void copy_to_standard_output() const;
 
   std::filesystem::path target_;
   std::filesystem::path folder_;

@@ -80,7 +80,7 @@ class Usage(ProgramTest):
         run = self.expect(0, "--help")
         for text in ("1/20 of the diagonal", "1e-3 of the diagonal", "--collar-angle", "--theta", "Exit codes", "check", "info"):
             self.assertIn(text, run.stdout)
-        for command in ("check", "info"):
+        for command in ("check", "info", "convert"):
             self.assertIn("--feature-angle", self.expect(0, command, "--help").stdout)
 
     def test_version(self):
@@ -381,6 +381,90 @@ class Reproducibility(ProgramTest):
                 meshes.append(mesh.read_bytes())
             self.assertEqual(meshes[0], meshes[1])
             self.assertNotEqual(meshes[0], meshes[2])
+
+
+class Convert(ProgramTest):
+    def convert(self, code, *arguments, says=(), data=None):
+        run = subprocess.run([PROGRAM, "convert", *map(str, arguments)], cwd=self.folder, timeout=120,
+                             capture_output=True, input=data)
+        self.assertEqual(run.returncode, code, run.stderr)
+        for text in says:
+            self.assertRegex(run.stderr.decode(), text)
+        self.assert_nothing_left()
+        return run.stdout
+
+    def volume(self, path):
+        run = self.run_program("info", path, "--json")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return sum(region["volume"] for region in json.loads(run.stdout)["complex"]["regions"])
+
+    def test_surfaces_both_ways(self):
+        formats = ["off", "obj", "stl", "ply", "om", "poly", "smesh"]
+        for first in formats:
+            self.convert(0, self.box, "-o", f"a.{first}")
+            for second in formats:
+                with self.subTest(first=first, second=second):
+                    self.convert(0, f"a.{first}", "-o", f"b.{second}")
+                    self.assertAlmostEqual(self.volume(f"b.{second}"), 1)
+
+    def test_cavities_and_regions_get_points(self):
+        inner = [(0.25 + p[0] / 2, 0.25 + p[1] / 2, 0.25 + p[2] / 2) for p in box_points()]
+        hollow = off_text(box_points() + inner, BOX_FACES + [tuple(8 + v for v in reversed(f)) for f in BOX_FACES])
+        self.write("hollow.off", hollow)
+        for name in ("hollow.poly", "hollow.smesh"):
+            self.convert(0, "hollow.off", "-o", name, says=["1 region points, 1 hole points"])
+            self.assertAlmostEqual(self.volume(name), 0.875)
+
+    def test_several_files_become_one_complex(self):
+        self.write("upper.off", off_text(box_points((0, 0, 1), (1, 1, 3)), BOX_FACES))
+        self.convert(0, self.box, "upper.off", "-o", "both.poly",
+                     says=["welded: 4 points", "dropped: 1 facets that repeat", "2 region points"])
+        self.assertAlmostEqual(self.volume("both.poly"), 3)
+        self.convert(0, self.box, "upper.off", "-o", "both.vtu", "--size", "0.5",
+                     says=["merged: 2 triangles", "every guarantee holds"])
+        self.assertEqual(self.run_program("check", "both.vtu", "--against", "both.poly").returncode, 0)
+
+    def test_says_what_is_welded_and_dropped(self):
+        points = box_points() + [(0, 0, 0), (9, 9, 9)]
+        faces = [(8, 3, 2, 1), *BOX_FACES[1:], BOX_FACES[1], (0, 8, 1)]
+        self.write("dirty.off", off_text(points, faces))
+        self.convert(0, "dirty.off", "-o", "clean.off",
+                     says=["clean.off: 8 points, 6 facets", "welded: 1 points",
+                           "1 points that nothing uses", "1 facets without three", "1 facets that repeat"])
+        self.assertAlmostEqual(self.volume("clean.off"), 1)
+        self.convert(0, MODELS / "two_boxes.poly", "-o", "a.stl",
+                     says=["cut into triangles: 11 facets", "no place for: 22 tags of facets, 2 region points"])
+
+    def test_meshes_of_every_format(self):
+        self.convert(0, MODELS / "two_boxes.poly", "-o", "a.vtu", "--size", "0.5")
+        for extension in ("vtk", "msh", "mesh", "unv", "ele", "vtu"):
+            with self.subTest(extension=extension):
+                self.convert(0, "a.vtu", "-o", f"b.{extension}", says=[rf"b\.{extension}: \d+ tets of order 1"])
+                check = self.run_program("check", f"b.{extension}", "--against", MODELS / "two_boxes.poly")
+                self.assertEqual(check.returncode, 0, check.stdout + check.stderr)
+        self.convert(0, "a.vtu", "-o", "b.inp", says=["no place for: .*edges on curves"])
+        self.assertEqual(self.run_program("info", "b.inp").returncode, 0)
+        self.convert(0, "b.inp", "-o", "skin.poly", says=["2 region points"])
+        self.assertAlmostEqual(self.volume("skin.poly"), self.volume(MODELS / "two_boxes.poly"))
+
+    def test_standard_input_and_output(self):
+        off = self.convert(0, self.box, "-o", "-", "--format", "off")
+        self.assertTrue(off.startswith(b"OFF"))
+        stl = self.convert(0, "-", "--input-format", "off", "-o", "-", "--format", "STL", data=off)
+        self.assertEqual(len(stl), 84 + 12 * 50)
+        msh = self.convert(0, "-", "--input-format", "stl", "-o", "-", "--format", "msh", "--size", "0.5", data=stl,
+                           says=["standard output: ", "every guarantee holds"])
+        self.assertTrue(msh.startswith(b"$MeshFormat"))
+        self.convert(3, "-", "--input-format", "off", "-o", "out.stl", data=b"OFF 3", says=["/dev/stdin: line 1"])
+
+    def test_mistakes(self):
+        self.convert(2, self.box, "-o", "out.xyz", says=["xyz", r"\.stl", r"\.vtu"])
+        self.convert(2, self.box, "-o", "-", says=["--format"])
+        self.convert(2, "-", "-o", "a.off", says=["--input-format"])
+        self.convert(2, self.box, "-o", "-", "--format", "ele", says=["several files"])
+        self.convert(2, self.box, "-o", "a.dat", "--format", "dat", says=["'.dat' is not known"])
+        self.convert(3, "missing.off", "-o", "a.stl", says=["no such file"])
+        self.convert(8, self.box, "-o", "missing/a.stl", says=["does not exist"])
 
 
 class Documentation(ProgramTest):

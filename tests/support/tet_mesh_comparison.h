@@ -20,6 +20,9 @@ inline void expect_same(const TetMesh& a, const TetMesh& b) {
   EXPECT_EQ(a.edges, b.edges);
   EXPECT_EQ(a.edge_curve, b.edge_curve);
   EXPECT_EQ(a.edge_tag, b.edge_tag);
+  EXPECT_EQ(a.tet_mid_nodes, b.tet_mid_nodes);
+  EXPECT_EQ(a.face_mid_nodes, b.face_mid_nodes);
+  EXPECT_EQ(a.edge_mid_nodes, b.edge_mid_nodes);
   ASSERT_EQ(a.features.size(), b.features.size());
   for (std::size_t i = 0; i < a.features.size(); ++i) {
     EXPECT_EQ(a.features[i].dimension, b.features[i].dimension) << "point " << i;

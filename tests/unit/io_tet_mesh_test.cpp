@@ -82,8 +82,8 @@ TEST(IoTetMesh, SameBytesWhateverTheLocale) {
 }
 
 TEST(IoTetMesh, KnowsItsFormats) {
-  for (const char* name : {"a.vtu", "b/A.MSH", "a.mesh"}) EXPECT_TRUE(io::is_tet_mesh_format(name));
-  for (const char* name : {"a.vtk", "a", "mesh"}) EXPECT_FALSE(io::is_tet_mesh_format(name));
+  for (const char* name : {"a.vtu", "b/A.MSH", "a.mesh", "a.INP", "a.ele"}) EXPECT_TRUE(io::is_tet_mesh_format(name));
+  for (const char* name : {"a.off", "a", "mesh", "a.node"}) EXPECT_FALSE(io::is_tet_mesh_format(name));
   expect_error<ReadError>([] { io::read_tet_mesh("a.xyz"); }, "a.xyz", "unknown kind of file");
   expect_error<WriteError>([] { io::write_tet_mesh("a.xyz", {}); }, "a.xyz", "unknown kind of file");
 }
@@ -180,7 +180,7 @@ TEST(IoMsh, RefusesBadFiles) {
   expect_refused("a.msh", "", "line 1: expected $MeshFormat");
   expect_refused("a.msh", "garbage", "line 1: expected a section");
   expect_refused("a.msh", "$Nodes\n$EndNodes\n", "line 2: expected $MeshFormat first");
-  expect_refused("a.msh", replaced(msh_41, "4.1 0 8", "4 0 8"), "line 2: version 4 is not supported");
+  expect_refused("a.msh", replaced(msh_41, "4.1 0 8", "3 0 8"), "line 2: version 3 is not supported");
   expect_refused("a.msh", replaced(msh_41, "4.1 0 8", "4.1 0 4"), "line 2: numbers of 4 bytes");
   expect_refused("a.msh", replaced(msh_41, "$Entities\n1 1 2 2", "$Entities\n1 1 2 2000000000"), "line 10: ");
   expect_refused("a.msh", replaced(msh_41, "2 5 3 70", "2 2000000000 3 70"),
@@ -195,7 +195,7 @@ TEST(IoMsh, RefusesBadFiles) {
   expect_refused("a.msh", replaced(msh_41, "6 6 1 100", "2000000000 6 1 100"), "line 34: ");
   expect_refused("a.msh", replaced(msh_41, "10 3 5 30 40", "10 3 5 30 41"),
                  "line 46: an element has the node 41");
-  expect_refused("a.msh", replaced(msh_41, "3 1 4 1\n", "3 1 11 1\n"), "line 45: elements of type 11");
+  expect_refused("a.msh", replaced(msh_41, "3 1 4 1\n", "3 1 5 1\n"), "line 45: elements of type 5");
   expect_refused("a.msh", msh_41.substr(0, msh_41.find("$EndElements")),
                  "line 33: the section '$Elements' has no $EndElements");
   expect_refused("a.msh", replaced(msh_22, "5 4 2 9 1 1 2 3 4", "5 4 2 9 1 1 2 3"), "line ");

@@ -38,6 +38,14 @@ struct TetMesh {
   std::vector<std::array<Index, 2>> edges;
   std::vector<Index> edge_curve;  ///< index of the curve in the complex, none when unknown
   std::vector<Tag> edge_tag;
+
+  /// Nodes amid the edges of cells of second order, which are points like the corners: of a tet abcd
+  /// amid ab, bc, ca, ad, bd, cd; of a face abc amid ab, bc, ca; of an edge. Empty: first order.
+  std::vector<std::array<Index, 6>> tet_mid_nodes;
+  std::vector<std::array<Index, 3>> face_mid_nodes;
+  std::vector<Index> edge_mid_nodes;
+
+  int order() const { return tet_mid_nodes.empty() ? 1 : 2; }
 };
 
 /// Shape measures of one tetrahedron.

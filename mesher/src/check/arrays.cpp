@@ -65,6 +65,10 @@ void check_lengths(const TetMesh& mesh, Findings& findings) {
   check_length(mesh.face_tag.size(), mesh.faces.size(), "tags", "faces", findings);
   check_length(mesh.edge_curve.size(), mesh.edges.size(), "curves", "edges", findings);
   check_length(mesh.edge_tag.size(), mesh.edges.size(), "tags", "edges", findings);
+  if (mesh.order() == 1) return;
+  check_length(mesh.tet_mid_nodes.size(), mesh.tets.size(), "lists of mid nodes", "tets", findings);
+  check_length(mesh.face_mid_nodes.size(), mesh.faces.size(), "lists of mid nodes", "faces", findings);
+  check_length(mesh.edge_mid_nodes.size(), mesh.edges.size(), "mid nodes", "edges", findings);
 }
 
 void check_features(const TetMesh& mesh, const Plc& plc, Findings& findings) {
@@ -108,6 +112,8 @@ void check_referenced(const TetMesh& mesh, Findings& findings) {
   std::vector<bool> referenced(mesh.points.size(), false);
   for (const auto& t : mesh.tets)
     for (const Index p : t) referenced[p] = true;
+  for (const auto& t : mesh.tet_mid_nodes)
+    for (const Index p : t) referenced[p] = true;
   for (Index i = 0; i < mesh.points.size(); ++i)
     if (!referenced[i])
       findings.add(guarantee::referenced_points, mesh.points[i], {i},
@@ -122,6 +128,8 @@ bool check_arrays(const TetMesh& mesh, const Plc& plc, Findings& findings) {
   check_corners(mesh.tets, mesh, "Tet", findings);
   check_corners(mesh.faces, mesh, "Face", findings);
   check_corners(mesh.edges, mesh, "Edge", findings);
+  check_corners(mesh.tet_mid_nodes, mesh, "Mid nodes of tet", findings);
+  check_corners(mesh.face_mid_nodes, mesh, "Mid nodes of face", findings);
   check_range(mesh.tet_region, 1, plc.regions.size(), false, "Tet", "region", findings);
   check_face_regions(mesh, plc, findings);
   check_range(mesh.face_patch, 0, plc.patches.size(), true, "Face", "patch", findings);

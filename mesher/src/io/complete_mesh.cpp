@@ -2,21 +2,77 @@
 
 #include <algorithm>
 #include <array>
+#include <unordered_map>
 #include <utility>
+
+#include "collarmesh/error.h"
+#include "io/face_finder.h"
 
 namespace collarmesh::io {
 
 namespace {
-
-using Triangle = std::array<Index, 3>;
 
 /// Seen from outside a positive tet, its faces run counterclockwise.
 constexpr std::array<std::array<std::size_t, 3>, 4> outward_faces{
     {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
 void orient_tets(TetMesh& mesh) {
-  for (auto& [a, b, c, d] : mesh.tets)
-    if (six_volume(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]) < 0) std::swap(c, d);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    auto& [a, b, c, d] = mesh.tets[t];
+    if (six_volume(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]) >= 0) continue;
+    std::swap(c, d);
+    if (mesh.order() == 1) continue;
+    auto& [ab, bc, ca, ad, bd, cd] = mesh.tet_mid_nodes[t];
+    std::swap(bc, bd);
+    std::swap(ca, ad);
+  }
+}
+
+void turn_face(TetMesh& mesh, std::size_t face) {
+  std::swap(mesh.faces[face][1], mesh.faces[face][2]);
+  if (mesh.order() == 2) std::swap(mesh.face_mid_nodes[face][0], mesh.face_mid_nodes[face][2]);
+}
+
+/// The mid nodes of the tets by the ends of their edge.
+class MidNodes {
+ public:
+  MidNodes(const std::string& path, const TetMesh& mesh) : path_(path) {
+    constexpr std::array<std::array<std::size_t, 2>, 6> ends{
+        {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+    for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+      for (std::size_t e = 0; e < ends.size(); ++e)
+        nodes_.emplace(key(mesh.tets[t][ends[e][0]], mesh.tets[t][ends[e][1]]), mesh.tet_mid_nodes[t][e]);
+  }
+  Index find(Index a, Index b) const {
+    const auto found = nodes_.find(key(a, b));
+    if (found == nodes_.end())
+      throw ReadError(path_ +
+                      ": a triangle or line of first order is no face or edge of a tetrahedron of second "
+                      "order; save all cells with one order");
+    return found->second;
+  }
+
+ private:
+  static std::uint64_t key(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
+
+  const std::string& path_;
+  std::unordered_map<std::uint64_t, Index> nodes_;
+};
+
+void complete_mid_nodes(const std::string& path, TetMesh& mesh) {
+  const bool faces = mesh.face_mid_nodes.size() == mesh.faces.size(),
+             edges = mesh.edge_mid_nodes.size() == mesh.edges.size();
+  if ((!mesh.tet_mid_nodes.empty() && mesh.tet_mid_nodes.size() != mesh.tets.size()) ||
+      (!mesh.face_mid_nodes.empty() && (!faces || mesh.order() == 1)) ||
+      (!mesh.edge_mid_nodes.empty() && (!edges || mesh.order() == 1)))
+    throw ReadError(path + ": cells of first and second order are mixed; save them with one order");
+  if (mesh.order() == 1 || (faces && edges)) return;
+  const MidNodes nodes(path, mesh);
+  if (!faces)
+    for (const auto& [a, b, c] : mesh.faces)
+      mesh.face_mid_nodes.push_back({nodes.find(a, b), nodes.find(b, c), nodes.find(c, a)});
+  if (!edges)
+    for (const auto& [a, b] : mesh.edges) mesh.edge_mid_nodes.push_back(nodes.find(a, b));
 }
 
 void number_regions(TetMesh& mesh) {
@@ -28,64 +84,28 @@ void number_regions(TetMesh& mesh) {
         static_cast<Index>(std::lower_bound(tags.begin(), tags.end(), tag) - tags.begin() + 1));
 }
 
-/// The smallest corner first, the cyclic order kept.
-Triangle rotated(Triangle t) {
-  std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-  return t;
-}
-Triangle reversed(const Triangle& t) { return {t[0], t[2], t[1]}; }
-
-/// Finds the faces of a mesh by their corners in either direction.
-class FaceFinder {
- public:
-  explicit FaceFinder(const std::vector<Triangle>& faces) : slots_(64, none) {
-    while (slots_.size() < 2 * faces.size()) slots_.resize(2 * slots_.size(), none);
-    for (const Triangle& face : faces) {
-      const Triangle turned = rotated(face);
-      keys_.push_back(turned[1] < turned[2] ? turned : reversed(turned));
-      slot(keys_.back()) = static_cast<Index>(keys_.size() - 1);
-    }
-  }
-  /// Precondition: `corners` is rotated.
-  Index find(const Triangle& corners) { return slot(corners[1] < corners[2] ? corners : reversed(corners)); }
-
- private:
-  Index& slot(const Triangle& key) {
-    const std::size_t mask = slots_.size() - 1;
-    std::uint64_t h = key[0];
-    h = (h * 0x9e3779b97f4a7c15ULL) ^ key[1];
-    h = (h * 0x9e3779b97f4a7c15ULL) ^ key[2];
-    h *= 0x9e3779b97f4a7c15ULL;
-    std::size_t i = (h ^ (h >> 31)) & mask;
-    while (slots_[i] != none && keys_[slots_[i]] != key) i = (i + 1) & mask;
-    return slots_[i];
-  }
-
-  std::vector<Triangle> keys_;
-  std::vector<Index> slots_;
-};
-
 void find_face_regions(TetMesh& mesh) {
   mesh.face_regions.assign(mesh.faces.size(), {0, 0});
   FaceFinder finder(mesh.faces);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     for (const auto& [i, j, k] : outward_faces) {
-      const Triangle outward = rotated({mesh.tets[t][i], mesh.tets[t][j], mesh.tets[t][k]});
+      const FaceFinder::Triangle outward{mesh.tets[t][i], mesh.tets[t][j], mesh.tets[t][k]};
       const Index face = finder.find(outward);
       if (face == none) continue;
-      const bool behind = rotated(mesh.faces[face]) == outward;
+      const bool behind = FaceFinder::alike(mesh.faces[face], outward);
       mesh.face_regions[face][behind ? 0 : 1] = mesh.tet_region[t];
     }
   for (std::size_t f = 0; f < mesh.faces.size(); ++f)
     if (mesh.face_regions[f][0] == 0) {
       std::swap(mesh.face_regions[f][0], mesh.face_regions[f][1]);
-      std::swap(mesh.faces[f][1], mesh.faces[f][2]);
+      turn_face(mesh, f);
     }
 }
 
 }  // namespace
 
-void complete_mesh(TetMesh& mesh) {
+void complete_mesh(const std::string& path, TetMesh& mesh) {
+  complete_mid_nodes(path, mesh);
   orient_tets(mesh);
   mesh.tet_tag.resize(mesh.tets.size(), 0);
   mesh.tet_collar.resize(mesh.tets.size(), 0);

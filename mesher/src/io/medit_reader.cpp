@@ -2,11 +2,11 @@
 // keywords that say nothing about those are skipped.
 #include <fmt/format.h>
 
-#include <array>
 #include <string_view>
 #include <vector>
 
 #include "collarmesh/error.h"
+#include "io/cell_nodes.h"
 #include "io/complete_mesh.h"
 #include "io/file_bytes.h"
 #include "io/medit_format.h"
@@ -34,23 +34,23 @@ void read_vertices(TextScanner& scan, TetMesh& mesh) {
   }
 }
 
-template <std::size_t corners>
-void read_cells(TextScanner& scan, std::string_view what, std::vector<std::array<Index, corners>>& cells,
-                std::vector<Tag>& references, std::size_t point_count) {
-  const Index n = scan.count(fmt::format("the number of {}", what), 2 * (corners + 1));
-  cells.reserve(cells.size() + n);
+/// Cells of so many nodes, which `add` puts into the mesh.
+template <class Add>
+void read_cells(TextScanner& scan, std::string_view what, std::size_t node_count, Add add,
+                std::vector<Tag>& references, TetMesh& mesh) {
+  const Index n = scan.count(fmt::format("the number of {}", what), 2 * (node_count + 1));
   references.reserve(references.size() + n);
   for (Index i = 0; i < n; ++i) {
-    std::array<Index, corners>& cell = cells.emplace_back();
-    for (Index& corner : cell) corner = scan.index("a corner", 1, point_count);
+    CellNodes nodes;
+    for (std::size_t k = 0; k < node_count; ++k) nodes.add(scan.index("a corner", 1, mesh.points.size()));
+    add(nodes, mesh);
     references.push_back(scan.integer("a reference"));
   }
 }
 
 void refuse_cells(TextScanner& scan, std::string_view keyword) {
   if (scan.count("the number of cells", 2) > 0)
-    scan.fail(fmt::format("{} are not supported, only first-order tetrahedra and their triangles and edges",
-                          keyword));
+    scan.fail(fmt::format("{} are not supported, only tetrahedra and their triangles and edges", keyword));
 }
 
 void require_three_dimensions(TextScanner& scan) {
@@ -59,8 +59,7 @@ void require_three_dimensions(TextScanner& scan) {
 }
 
 bool is_unsupported_cell(std::string_view keyword) {
-  for (const std::string_view kind : {"Hexahedra", "Hexaedra", "Prisms", "Pyramids", "Quadrilaterals",
-                                      "TetrahedraP2", "TrianglesP2", "EdgesP2"})
+  for (const std::string_view kind : {"Hexahedra", "Hexaedra", "Prisms", "Pyramids", "Quadrilaterals"})
     if (keyword == kind) return true;
   return false;
 }
@@ -76,12 +75,12 @@ bool read_section(TextScanner& scan, TetMesh& mesh) {
     require_three_dimensions(scan);
   else if (keyword == "Vertices")
     read_vertices(scan, mesh);
-  else if (keyword == "Tetrahedra")
-    read_cells(scan, "tetrahedra", mesh.tets, mesh.tet_tag, mesh.points.size());
-  else if (keyword == "Triangles")
-    read_cells(scan, "triangles", mesh.faces, mesh.face_tag, mesh.points.size());
-  else if (keyword == "Edges")
-    read_cells(scan, "edges", mesh.edges, mesh.edge_tag, mesh.points.size());
+  else if (keyword == "Tetrahedra" || keyword == "TetrahedraP2")
+    read_cells(scan, "tetrahedra", keyword == "Tetrahedra" ? 4 : 10, add_tet, mesh.tet_tag, mesh);
+  else if (keyword == "Triangles" || keyword == "TrianglesP2")
+    read_cells(scan, "triangles", keyword == "Triangles" ? 3 : 6, add_face, mesh.face_tag, mesh);
+  else if (keyword == "Edges" || keyword == "EdgesP2")
+    read_cells(scan, "edges", keyword == "Edges" ? 2 : 3, add_edge, mesh.edge_tag, mesh);
   else if (is_unsupported_cell(keyword))
     refuse_cells(scan, keyword);
   else
@@ -102,7 +101,7 @@ TetMesh read_medit(const std::string& path) {
   if (mesh.tets.empty()) scan.fail("expected tetrahedra, found none");
   // Ours refer to the region itself, of others only the order is known.
   if (text.starts_with(medit_signature)) mesh.tet_region.assign(mesh.tet_tag.begin(), mesh.tet_tag.end());
-  complete_mesh(mesh);
+  complete_mesh(path, mesh);
   return mesh;
 }
 

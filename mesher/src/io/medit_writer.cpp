@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/cell_nodes.h"
 #include "io/file_writer.h"
 #include "io/medit_format.h"
 #include "io/tet_mesh_formats.h"
@@ -13,13 +14,13 @@ namespace collarmesh::io {
 
 namespace {
 
-template <class Cell, class Reference>
-void write_cells(FileWriter& out, std::string_view keyword, const std::vector<Cell>& cells,
+template <class NodesOf, class Reference>
+void write_cells(FileWriter& out, const TetMesh& mesh, std::string_view keyword, NodesOf nodes_of,
                  const std::vector<Reference>& references) {
-  if (cells.empty()) return;
-  out << '\n' << keyword << '\n' << cells.size() << '\n';
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    for (const Index v : cells[i]) out << std::size_t{v} + 1 << ' ';
+  if (references.empty()) return;
+  out << '\n' << keyword << (mesh.order() == 2 ? "P2\n" : "\n") << references.size() << '\n';
+  for (std::size_t i = 0; i < references.size(); ++i) {
+    for (const Index v : nodes_of(mesh, i)) out << std::size_t{v} + 1 << ' ';
     out << references[i] << '\n';
   }
 }
@@ -48,9 +49,9 @@ void write_medit(const std::string& path, const TetMesh& mesh) {
   FileWriter out(path);
   out << medit_signature << "MeshVersionFormatted 2\n\nDimension 3\n";
   write_vertices(out, mesh);
-  write_cells(out, "Tetrahedra", mesh.tets, mesh.tet_region);
-  write_cells(out, "Triangles", mesh.faces, mesh.face_tag);
-  write_cells(out, "Edges", mesh.edges, mesh.edge_tag);
+  write_cells(out, mesh, "Tetrahedra", nodes_of_tet, mesh.tet_region);
+  write_cells(out, mesh, "Triangles", nodes_of_face, mesh.face_tag);
+  write_cells(out, mesh, "Edges", nodes_of_edge, mesh.edge_tag);
   write_corners(out, mesh);
   out << "\nEnd\n";
   out.commit();

@@ -85,8 +85,12 @@ void place_points(const TetMesh& mesh, Tables& tables, MshEntities& result) {
   if (mesh.tets.empty()) tables[3].find(1);
   result.of_point.resize(mesh.points.size());
   place_corners(mesh.tets, result.of_tet, 3, result);
+  place_corners(mesh.tet_mid_nodes, result.of_tet, 3, result);
   place_corners(mesh.faces, result.of_face, 2, result);
+  place_corners(mesh.face_mid_nodes, result.of_face, 2, result);
   place_corners(mesh.edges, result.of_edge, 1, result);
+  for (std::size_t i = 0; i < mesh.edge_mid_nodes.size(); ++i)
+    result.of_point[mesh.edge_mid_nodes[i]] = {1, result.of_edge[i]};
   for (std::size_t v = 0; v < mesh.features.size(); ++v) {
     const auto [dimension, feature] = mesh.features[v];
     if (dimension < 3 && feature != none)

@@ -1,5 +1,5 @@
-// Reads Gmsh's formats 4.1 (text and binary) and 2.2 (text): first-order tetrahedra, triangles and
-// lines. Tags are physical groups, or entities where there is none.
+// Reads Gmsh's formats 4.1 and 2 (text and binary) and 4.0 (text): tetrahedra, triangles and lines of
+// first and second order. Tags are physical groups, or entities where there is none.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,11 +9,12 @@
 #include <vector>
 
 #include "collarmesh/error.h"
+#include "io/cell_nodes.h"
 #include "io/complete_mesh.h"
 #include "io/file_bytes.h"
+#include "io/label_names.h"
 #include "io/msh_format.h"
 #include "io/msh_sections.h"
-#include "io/number_text.h"
 #include "io/tet_mesh_formats.h"
 
 namespace collarmesh::io {
@@ -29,7 +30,7 @@ struct Node {
 
 struct Cell {
   std::uint64_t number = 0;
-  std::array<Index, 4> corners{};  ///< positions in Contents::nodes
+  CellNodes nodes;  ///< positions in Contents::nodes
   int entity = 0;
   Tag tag = 0;
 };
@@ -84,11 +85,13 @@ Index read_corner(Values& values, const Contents& contents) {
   return static_cast<Index>(found - nodes.begin());
 }
 
-/// A tetrahedron has 4 corners, a point, of dimension -1 here, has 1.
 template <class Values>
-void read_corners(Values& values, const Contents& contents, int dimension, Cell& cell) {
-  const std::size_t n = dimension < 0 ? 1 : static_cast<std::size_t>(dimension) + 1;
-  for (std::size_t k = 0; k < n; ++k) cell.corners[k] = read_corner(values, contents);
+CellNodes read_cell_nodes(Values& values, const Contents& contents, const GmshType& type) {
+  std::array<Index, 10> nodes{};
+  for (std::size_t k = 0; k < type.nodes; ++k) nodes[type.order[k]] = read_corner(values, contents);
+  CellNodes result;
+  for (std::size_t k = 0; k < type.nodes; ++k) result.add(nodes[k]);
+  return result;
 }
 
 template <class Values>
@@ -98,20 +101,18 @@ std::size_t read_dimension(Values& values) {
   return static_cast<std::size_t>(dimension);
 }
 
-/// The dimension of the cells to be read; -1: points, which are skipped.
+/// Of dimension 0: points, which are skipped.
+constexpr GmshType point_type{gmsh_point, 0, 1, {0}};
+
 template <class Values>
-int dimension_of_type(Values& values, int type) {
-  switch (type) {
-    case gmsh_line: return 1;
-    case gmsh_triangle: return 2;
-    case gmsh_tet: return 3;
-    case gmsh_point: return -1;
-    default:
-      values.fail(
-          fmt::format("elements of type {} are not supported, only first-order tetrahedra (4), triangles (2) "
-                      "and lines (1)",
-                      type));
-  }
+const GmshType& find_type(Values& values, int number) {
+  if (number == gmsh_point) return point_type;
+  for (const GmshType& type : gmsh_types)
+    if (type.number == number) return type;
+  values.fail(
+      fmt::format("elements of type {} are not supported, only tetrahedra (4, 11), triangles (2, 9) "
+                  "and lines (1, 8)",
+                  number));
 }
 
 void read_physical_names(MshText values, Contents& contents) {
@@ -121,21 +122,20 @@ void read_physical_names(MshText values, Contents& contents) {
     const int physical = values.integer("the number of a physical group");
     std::string_view name = values.text().rest_of_line();
     if (name.size() >= 2) name = name.substr(1, name.size() - 2);  // the quotes
-    Tag tag = 0;
-    const std::string_view prefix = physical_name_prefix[dimension];
-    if (name.starts_with(prefix) && parse(name.substr(prefix.size()), tag))
-      contents.tag_of_physical[dimension][physical] = tag;
+    if (const auto tag = tag_of_group_name(dimension, name))
+      contents.tag_of_physical[dimension][physical] = *tag;
   }
 }
 
+/// `point_numbers`: a point has 3 coordinates, in 4.0 a box of 6.
 template <class Values>
-void read_entities(Values values, Contents& contents) {
+void read_entities(Values values, int point_numbers, Contents& contents) {
   std::array<Index, 4> counts;
   for (Index& count : counts) count = values.count("the number of entities", 4);
   for (std::size_t dimension = 0; dimension < 4; ++dimension)
     for (Index i = 0; i < counts[dimension]; ++i) {
       const int number = values.integer("the number of an entity");
-      for (int k = 0; k < (dimension == 0 ? 3 : 6); ++k) values.real("the box of an entity");
+      for (int k = 0; k < (dimension == 0 ? point_numbers : 6); ++k) values.real("the box of an entity");
       const Index physicals = values.count("the number of physical groups", 1);
       for (Index k = 0; k < physicals; ++k)
         contents.physical_of_entity[dimension].try_emplace(number,
@@ -172,6 +172,16 @@ void read_nodes(Values values, Contents& contents) {
 }
 
 template <class Values>
+void read_cells_of_block(Values& values, const GmshType& type, int entity, Tag tag, Index count,
+                         Contents& contents) {
+  for (Index i = 0; i < count; ++i) {
+    Cell cell{values.number("the number of an element"), {}, entity, tag};
+    cell.nodes = read_cell_nodes(values, contents, type);
+    if (type.dimension > 0) contents.cells[type.dimension].push_back(cell);
+  }
+}
+
+template <class Values>
 void read_elements(Values values, Contents& contents) {
   const Index blocks = values.count("the number of blocks", 4);
   const Index total = values.count("the number of elements", 2);
@@ -181,20 +191,53 @@ void read_elements(Values values, Contents& contents) {
   for (Index b = 0; b < blocks; ++b) {
     const std::size_t entity_dimension = read_dimension(values);
     const int entity = values.integer("the number of an entity");
-    const int dimension = dimension_of_type(values, values.integer("the type of elements"));
+    const GmshType& type = find_type(values, values.integer("the type of elements"));
     const Index n = values.count("the number of elements of a block", 2);
     found += n;
-    const Tag tag = tag_of_entity(contents, entity_dimension, entity);
-    for (Index i = 0; i < n; ++i) {
-      Cell cell{values.number("the number of an element"), {}, entity, tag};
-      read_corners(values, contents, dimension, cell);
-      if (dimension > 0) contents.cells[static_cast<std::size_t>(dimension)].push_back(cell);
-    }
+    read_cells_of_block(values, type, entity, tag_of_entity(contents, entity_dimension, entity), n, contents);
   }
   if (found != total) values.fail(fmt::format("expected {} elements, found {}", total, found));
 }
 
-void read_nodes_2(MshText values, Contents& contents) {
+// Version 4.0: entities before dimensions, numbers and coordinates of nodes together.
+
+void read_nodes_40(MshText values, Contents& contents) {
+  const Index blocks = values.count("the number of blocks", 4);
+  const Index total = values.count("the number of nodes", 4);
+  contents.nodes.reserve(total);
+  for (Index b = 0; b < blocks; ++b) {
+    const int entity = values.integer("the number of an entity");
+    const std::size_t dimension = read_dimension(values);
+    const int parametric = values.integer("the flag for parametric nodes");
+    const Index n = values.count("the number of nodes of a block", 4);
+    for (Index i = 0; i < n; ++i) {
+      Node node{values.number("the number of a node"), {}, static_cast<std::uint8_t>(dimension), entity};
+      node.point = values.point("a coordinate of a node");
+      for (std::size_t k = 0; parametric != 0 && k < dimension; ++k) values.real("a parameter of a node");
+      contents.nodes.push_back(node);
+    }
+  }
+  if (contents.nodes.size() != total)
+    values.fail(fmt::format("expected {} nodes, found {}", total, contents.nodes.size()));
+  sort_nodes(values, contents);
+}
+
+void read_elements_40(MshText values, Contents& contents) {
+  const Index blocks = values.count("the number of blocks", 4);
+  values.count("the number of elements", 2);
+  for (Index b = 0; b < blocks; ++b) {
+    const int entity = values.integer("the number of an entity");
+    const std::size_t entity_dimension = read_dimension(values);
+    const GmshType& type = find_type(values, values.integer("the type of elements"));
+    const Index n = values.count("the number of elements of a block", 2);
+    read_cells_of_block(values, type, entity, tag_of_entity(contents, entity_dimension, entity), n, contents);
+  }
+}
+
+// Version 2: counts are text in binary files too.
+
+template <class Values>
+void read_nodes_2(Values values, Contents& contents) {
   const Index n = values.count("the number of nodes", 4);
   contents.nodes.reserve(n);
   for (Index i = 0; i < n; ++i) {
@@ -206,24 +249,45 @@ void read_nodes_2(MshText values, Contents& contents) {
   sort_nodes(values, contents);
 }
 
+/// The tags of an element are its physical group, its entity and partitions.
+template <class Values>
+void read_element_2(Values& values, const GmshType& type, std::uint64_t number, int tags,
+                    Contents& contents) {
+  Cell cell;
+  cell.number = number;
+  int physical = 0;
+  for (int k = 0; k < tags; ++k) {
+    const int tag = values.integer("a tag of an element");
+    if (k == 0) physical = std::abs(tag);
+    if (k == 1) cell.entity = tag;
+  }
+  cell.nodes = read_cell_nodes(values, contents, type);
+  if (type.dimension == 0) return;
+  cell.tag = physical != 0 ? tag_of_physical(contents, type.dimension, physical) : cell.entity;
+  contents.cells[type.dimension].push_back(cell);
+}
+
 void read_elements_2(MshText values, Contents& contents) {
   const Index n = values.count("the number of elements", 4);
   for (Index i = 0; i < n; ++i) {
-    Cell cell;
-    cell.number = values.number("the number of an element");
-    const int dimension = dimension_of_type(values, values.integer("the type of an element"));
-    const Index tags = values.count("the number of tags", 1);
-    int physical = 0;
-    for (Index k = 0; k < tags; ++k) {
-      const int tag = values.integer("a tag of an element");
-      if (k == 0) physical = std::abs(tag);
-      if (k == 1) cell.entity = tag;
-    }
-    read_corners(values, contents, dimension, cell);
-    if (dimension < 0) continue;
-    const auto d = static_cast<std::size_t>(dimension);
-    cell.tag = physical != 0 ? tag_of_physical(contents, d, physical) : cell.entity;
-    contents.cells[d].push_back(cell);
+    const std::uint64_t number = values.number("the number of an element");
+    const GmshType& type = find_type(values, values.integer("the type of an element"));
+    const auto tags = static_cast<int>(values.count("the number of tags", 1));
+    read_element_2(values, type, number, tags, contents);
+  }
+}
+
+/// Elements come in blocks of one type.
+void read_elements_2(MshBinary2 values, Contents& contents) {
+  const Index n = values.count("the number of elements", 4);
+  for (Index i = 0; i < n;) {
+    const GmshType& type = find_type(values, values.integer("the type of elements"));
+    const int of_block = values.integer("the number of elements of a block"),
+              tags = values.integer("the number of tags");
+    if (of_block < 1 || static_cast<Index>(of_block) > n - i || tags < 0)
+      values.fail(fmt::format("a block has {} of the {} elements left and {} tags", of_block, n - i, tags));
+    for (int k = 0; k < of_block; ++k, ++i)
+      read_element_2(values, type, values.number("the number of an element"), tags, contents);
   }
 }
 
@@ -262,9 +326,10 @@ Format read_format(const std::string& path, const MshSection& section) {
   format.version = values.real("the version");
   format.binary = values.integer("0 for text or 1 for binary") != 0;
   const int size = values.integer("the size of numbers");
-  const bool old = format.version >= 2 && format.version < 3 && !format.binary;
-  if (format.version != 4.1 && !old)
-    values.fail(fmt::format("version {}{} is not supported, only 4.1 and 2 as text; let Gmsh convert it",
+  const bool known = format.version == 4.1 || (format.version >= 2 && format.version < 3) ||
+                     (format.version == 4.0 && !format.binary);
+  if (!known)
+    values.fail(fmt::format("version {}{} is not supported, only 4.1, 4 as text and 2; let Gmsh convert it",
                             format.version, format.binary ? " (binary)" : ""));
   if (size != 8) values.fail(fmt::format("numbers of {} bytes are not supported, only of 8", size));
   if (!format.binary) return format;
@@ -284,34 +349,47 @@ void with_values(const std::string& path, const MshSection& section, const Forma
     read(MshText(path, section));
 }
 
+/// The same of version 2.
+template <class Read>
+void with_old_values(const std::string& path, const MshSection& section, const Format& format, Read read) {
+  if (format.binary)
+    read(MshBinary2(path, section, format.order));
+  else
+    read(MshText(path, section));
+}
+
 void read_section(const std::string& path, const MshSection& section, const Format& format,
                   Contents& contents) {
-  const bool old = format.version < 4;
+  const auto with_any = [&](auto read) { with_values(path, section, format, read); };
   if (section.name == "PhysicalNames")
     read_physical_names(MshText(path, section), contents);
   else if (section.name == "Comments")
     contents.numbers_are_features = section.body.find(msh_numbers_are_features) != std::string_view::npos;
-  else if (section.name == "Entities" && !old)
-    with_values(path, section, format, [&](auto values) { read_entities(values, contents); });
-  else if (section.name == "Nodes" && old)
-    read_nodes_2(MshText(path, section), contents);
+  else if (section.name == "Entities" && format.version == 4.0)
+    read_entities(MshText(path, section), 6, contents);
+  else if (section.name == "Entities" && format.version > 4)
+    with_any([&](auto values) { read_entities(values, 3, contents); });
+  else if (section.name == "Nodes" && format.version < 4)
+    with_old_values(path, section, format, [&](auto values) { read_nodes_2(values, contents); });
+  else if (section.name == "Nodes" && format.version == 4.0)
+    read_nodes_40(MshText(path, section), contents);
   else if (section.name == "Nodes")
-    with_values(path, section, format, [&](auto values) { read_nodes(values, contents); });
-  else if (section.name == "Elements" && old)
-    read_elements_2(MshText(path, section), contents);
+    with_any([&](auto values) { read_nodes(values, contents); });
+  else if (section.name == "Elements" && format.version < 4)
+    with_old_values(path, section, format, [&](auto values) { read_elements_2(values, contents); });
+  else if (section.name == "Elements" && format.version == 4.0)
+    read_elements_40(MshText(path, section), contents);
   else if (section.name == "Elements")
-    with_values(path, section, format, [&](auto values) { read_elements(values, contents); });
+    with_any([&](auto values) { read_elements(values, contents); });
   else if (section.name == "ElementData" && !format.binary)
     read_collar(MshText(path, section), contents);
 }
 
-template <std::size_t corners>
-void add_cells(const std::vector<Cell>& cells, std::vector<std::array<Index, corners>>& to,
-               std::vector<Tag>& tags) {
-  to.reserve(cells.size());
+template <class Add>
+void add_cells(const std::vector<Cell>& cells, Add add, std::vector<Tag>& tags, TetMesh& mesh) {
   tags.reserve(cells.size());
   for (const Cell& cell : cells) {
-    std::copy_n(cell.corners.begin(), corners, to.emplace_back().begin());
+    add(cell.nodes, mesh);
     tags.push_back(cell.tag);
   }
 }
@@ -338,16 +416,16 @@ void add_collar(Contents& contents, TetMesh& mesh) {
 }
 
 /// Nodes and cells come in the order of their numbers.
-TetMesh make_mesh(Contents& contents) {
+TetMesh make_mesh(const std::string& path, Contents& contents) {
   TetMesh mesh;
   for (const Node& node : contents.nodes) mesh.points.push_back(node.point);
   for (std::vector<Cell>& cells : contents.cells) sort_by_number(cells);
-  add_cells(contents.cells[3], mesh.tets, mesh.tet_tag);
-  add_cells(contents.cells[2], mesh.faces, mesh.face_tag);
-  add_cells(contents.cells[1], mesh.edges, mesh.edge_tag);
+  add_cells(contents.cells[3], add_tet, mesh.tet_tag, mesh);
+  add_cells(contents.cells[2], add_face, mesh.face_tag, mesh);
+  add_cells(contents.cells[1], add_edge, mesh.edge_tag, mesh);
   if (contents.numbers_are_features) add_features(contents, mesh);
   add_collar(contents, mesh);
-  complete_mesh(mesh);
+  complete_mesh(path, mesh);
   return mesh;
 }
 
@@ -363,7 +441,7 @@ TetMesh read_msh(const std::string& path) {
   if (contents.cells[3].empty())
     throw ReadError(
         fmt::format("{}: line {}: expected tetrahedra, found none", path, sections.back().first_line));
-  return make_mesh(contents);
+  return make_mesh(path, contents);
 }
 
 }  // namespace collarmesh::io

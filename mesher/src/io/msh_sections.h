@@ -72,4 +72,26 @@ class MshBinary {
   ByteReader bytes_;
 };
 
+/// The values of a section of a binary file of version 2: a count as text on the first line, then
+/// numbers of 32 bits.
+class MshBinary2 {
+ public:
+  MshBinary2(const std::string& path, const MshSection& section, std::endian order);
+
+  int integer(std::string_view what) { return bytes_.get<std::int32_t>(what); }
+  std::uint64_t number(std::string_view what) {
+    const int value = integer(what);
+    if (value < 0) fail(fmt::format("{}, {}, is negative", what, value));
+    return static_cast<std::uint64_t>(value);
+  }
+  /// The count at the begin.
+  Index count(std::string_view what, std::size_t numbers);
+  Point point(std::string_view what);
+  [[noreturn]] void fail(const std::string& message) const { bytes_.fail(message); }
+
+ private:
+  std::int64_t count_;
+  ByteReader bytes_;
+};
+
 }  // namespace collarmesh::io

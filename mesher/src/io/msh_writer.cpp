@@ -7,7 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "io/cell_nodes.h"
 #include "io/file_writer.h"
+#include "io/label_names.h"
 #include "io/msh_entities.h"
 #include "io/msh_format.h"
 #include "io/tet_mesh_formats.h"
@@ -22,7 +24,7 @@ void write_physical_names(FileWriter& out, const MshEntities& entities) {
   out << "$PhysicalNames\n" << count << '\n';
   for (std::size_t dimension = 0; dimension < 4; ++dimension)
     for (const auto& [tag, number] : entities.physicals[dimension])
-      out << dimension << ' ' << number << " \"" << physical_name_prefix[dimension] << tag << "\"\n";
+      out << dimension << ' ' << number << " \"" << group_name(dimension, tag, "-") << "\"\n";
   out << "$EndPhysicalNames\n";
 }
 
@@ -110,16 +112,17 @@ void write_nodes(FileWriter& out, const TetMesh& mesh, const MshEntities& entiti
   out << "$EndNodes\n";
 }
 
-template <class Cell>
-void write_cells(FileWriter& out, const std::vector<Cell>& cells, const std::vector<MshEntity>& entities,
-                 const Groups& groups, int dimension, int type, std::size_t first_number) {
+template <class NodesOf>
+void write_cells(FileWriter& out, const TetMesh& mesh, const std::vector<MshEntity>& entities,
+                 const Groups& groups, const GmshType& type, std::size_t first_number, NodesOf nodes_of) {
   for (std::size_t e = 0; e < entities.size(); ++e) {
     const std::span<const Index> members = groups.of(e);
     if (members.empty()) continue;
-    out << dimension << ' ' << entities[e].number << ' ' << type << ' ' << members.size() << '\n';
+    out << type.dimension << ' ' << entities[e].number << ' ' << type.number << ' ' << members.size() << '\n';
     for (const Index i : members) {
       out << first_number + i;
-      for (const Index v : cells[i]) out << ' ' << std::size_t{v} + 1;
+      for (const Index v : nodes_of(mesh, i).in_order({type.order.data(), type.nodes}))
+        out << ' ' << std::size_t{v} + 1;
       out << '\n';
     }
   }
@@ -144,9 +147,11 @@ void write_elements(FileWriter& out, const TetMesh& mesh, const MshEntities& ent
   out << "$Elements\n"
       << groups.tets.filled() + groups.faces.filled() + groups.edges.filled() << ' ' << groups.count << ' '
       << (groups.count > 0 ? 1 : 0) << ' ' << groups.count << '\n';
-  write_cells(out, mesh.tets, entities.of_dimension[3], groups.tets, 3, gmsh_tet, 1);
-  write_cells(out, mesh.faces, entities.of_dimension[2], groups.faces, 2, gmsh_triangle, groups.first_face);
-  write_cells(out, mesh.edges, entities.of_dimension[1], groups.edges, 1, gmsh_line, groups.first_edge);
+  const std::size_t second = mesh.order() == 2 ? 1 : 0;
+  const auto& entity = entities.of_dimension;
+  write_cells(out, mesh, entity[3], groups.tets, gmsh_types[4 + second], 1, nodes_of_tet);
+  write_cells(out, mesh, entity[2], groups.faces, gmsh_types[2 + second], groups.first_face, nodes_of_face);
+  write_cells(out, mesh, entity[1], groups.edges, gmsh_types[second], groups.first_edge, nodes_of_edge);
   out << "$EndElements\n";
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <string_view>
+#include <vector>
 
 #include "collarmesh/error.h"
 #include "io/file_bytes.h"
@@ -16,34 +17,50 @@ namespace {
 struct SoupFormat {
   std::string_view extension;
   PolygonSoup (*read)(const std::string& path);
+  void (*write)(const std::string& path, const PolygonSoup& soup);
 };
 
-constexpr std::array<SoupFormat, 6> soup_formats{{{".off", read_off},
-                                                  {".obj", read_obj},
-                                                  {".stl", read_stl},
-                                                  {".ply", read_ply},
-                                                  {".poly", read_poly},
-                                                  {".smesh", read_smesh}}};
+constexpr std::array formats{
+    SoupFormat{".off", read_off, write_off},    SoupFormat{".obj", read_obj, write_obj},
+    SoupFormat{".stl", read_stl, write_stl},    SoupFormat{".ply", read_ply, write_ply},
+    SoupFormat{".poly", read_poly, write_poly}, SoupFormat{".smesh", read_smesh, write_smesh}};
 
-const SoupFormat* find_format(const std::string& path) {
-  const std::string extension = lower_extension(path);
-  for (const SoupFormat& format : soup_formats)
-    if (format.extension == extension) return &format;
+const SoupFormat* find_format(const std::string& path, std::string_view format) {
+  const std::string extension = format.empty() ? lower_extension(path) : std::string(format);
+  for (const SoupFormat& known : formats)
+    if (known.extension == extension) return &known;
   return nullptr;
+}
+
+std::string unknown(const std::string& path) {
+  return fmt::format("{}: unknown kind of file; surfaces are {}", path, fmt::join(soup_formats(), " "));
 }
 
 }  // namespace
 
-PolygonSoup read_soup(const std::string& path) {
-  const SoupFormat* format = find_format(path);
-  if (format == nullptr)
-    throw ReadError(
-        fmt::format("{}: unknown kind of file; surfaces are .off .obj .stl .ply .poly .smesh", path));
-  PolygonSoup soup = format->read(path);
+PolygonSoup read_soup(const std::string& path, std::string_view format) {
+  const SoupFormat* found = find_format(path, format);
+  if (found == nullptr) throw ReadError(unknown(path));
+  PolygonSoup soup = found->read(path);
   soup.name = path;
   return soup;
 }
 
-bool is_soup_format(const std::string& path) { return find_format(path) != nullptr; }
+void write_soup(const std::string& path, const PolygonSoup& soup, std::string_view format) {
+  const SoupFormat* found = find_format(path, format);
+  if (found == nullptr) throw WriteError(unknown(path));
+  found->write(path, soup);
+}
+
+bool is_soup_format(const std::string& path, std::string_view format) {
+  return find_format(path, format) != nullptr;
+}
+
+std::vector<std::string> soup_formats() {
+  std::vector<std::string> result;
+  result.reserve(formats.size());
+  for (const SoupFormat& format : formats) result.emplace_back(format.extension);
+  return result;
+}
 
 }  // namespace collarmesh::io

@@ -8,11 +8,19 @@
 namespace collarmesh::io {
 
 void write_vtu(const std::string& path, const TetMesh& mesh);
+void write_vtk(const std::string& path, const TetMesh& mesh);
 void write_msh(const std::string& path, const TetMesh& mesh);
 void write_medit(const std::string& path, const TetMesh& mesh);
+void write_abaqus(const std::string& path, const TetMesh& mesh);
+void write_unv(const std::string& path, const TetMesh& mesh);
+void write_tetgen(const std::string& path, const TetMesh& mesh);
 
 TetMesh read_vtu(const std::string& path);
+TetMesh read_vtk(const std::string& path);
 TetMesh read_msh(const std::string& path);
 TetMesh read_medit(const std::string& path);
+TetMesh read_abaqus(const std::string& path);
+TetMesh read_unv(const std::string& path);
+TetMesh read_tetgen(const std::string& path);
 
 }  // namespace collarmesh::io

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "collarmesh/error.h"
 #include "io/file_bytes.h"
@@ -16,35 +18,57 @@ namespace {
 struct TetMeshFormat {
   std::string_view extension;
   void (*write)(const std::string& path, const TetMesh& mesh);
-  TetMesh (*read)(const std::string& path);
+  TetMesh (*read)(const std::string& path);  ///< null: not read
 };
 
-constexpr std::array<TetMeshFormat, 3> tet_mesh_formats{
-    {{".vtu", write_vtu, read_vtu}, {".msh", write_msh, read_msh}, {".mesh", write_medit, read_medit}}};
+constexpr std::array tet_mesh_formats{
+    TetMeshFormat{".vtu", write_vtu, read_vtu},       TetMeshFormat{".vtk", write_vtk, read_vtk},
+    TetMeshFormat{".msh", write_msh, read_msh},       TetMeshFormat{".mesh", write_medit, read_medit},
+    TetMeshFormat{".inp", write_abaqus, read_abaqus}, TetMeshFormat{".unv", write_unv, read_unv},
+    TetMeshFormat{".ele", write_tetgen, read_tetgen}};
 
-constexpr std::string_view known = "tetrahedral meshes are .vtu, .msh (Gmsh) and .mesh (Medit)";
+std::string unknown(const std::string& path, const std::vector<std::string>& known) {
+  return fmt::format("{}: unknown kind of file; tetrahedral meshes are {}", path, fmt::join(known, " "));
+}
 
-const TetMeshFormat* find_format(const std::string& path) {
-  const std::string extension = lower_extension(path);
-  for (const TetMeshFormat& format : tet_mesh_formats)
-    if (format.extension == extension) return &format;
+const TetMeshFormat* find_format(const std::string& path, std::string_view format) {
+  const std::string extension = format.empty() ? lower_extension(path) : std::string(format);
+  for (const TetMeshFormat& known : tet_mesh_formats)
+    if (known.extension == extension) return &known;
   return nullptr;
+}
+
+std::vector<std::string> extensions(bool (*wanted)(const TetMeshFormat&)) {
+  std::vector<std::string> result;
+  for (const TetMeshFormat& format : tet_mesh_formats)
+    if (wanted(format)) result.emplace_back(format.extension);
+  return result;
 }
 
 }  // namespace
 
-void write_tet_mesh(const std::string& path, const TetMesh& mesh) {
-  const TetMeshFormat* format = find_format(path);
-  if (format == nullptr) throw WriteError(fmt::format("{}: unknown kind of file; {}", path, known));
-  format->write(path, mesh);
+void write_tet_mesh(const std::string& path, const TetMesh& mesh, std::string_view format) {
+  const TetMeshFormat* found = find_format(path, format);
+  if (found == nullptr) throw WriteError(unknown(path, written_tet_mesh_formats()));
+  found->write(path, mesh);
 }
 
-TetMesh read_tet_mesh(const std::string& path) {
-  const TetMeshFormat* format = find_format(path);
-  if (format == nullptr) throw ReadError(fmt::format("{}: unknown kind of file; {}", path, known));
-  return format->read(path);
+TetMesh read_tet_mesh(const std::string& path, std::string_view format) {
+  const TetMeshFormat* found = find_format(path, format);
+  if (found == nullptr || found->read == nullptr) throw ReadError(unknown(path, read_tet_mesh_formats()));
+  return found->read(path);
 }
 
-bool is_tet_mesh_format(const std::string& path) { return find_format(path) != nullptr; }
+std::vector<std::string> written_tet_mesh_formats() {
+  return extensions([](const TetMeshFormat&) { return true; });
+}
+
+std::vector<std::string> read_tet_mesh_formats() {
+  return extensions([](const TetMeshFormat& format) { return format.read != nullptr; });
+}
+
+bool is_tet_mesh_format(const std::string& path, std::string_view format) {
+  return find_format(path, format) != nullptr;
+}
 
 }  // namespace collarmesh::io

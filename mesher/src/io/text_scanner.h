@@ -50,6 +50,13 @@ class TextScanner {
   /// The rest of this line without blanks around it; goes to the next line.
   std::string_view rest_of_line();
 
+  /// So many bytes from here, whatever they are; nothing is taken if there are fewer.
+  std::string_view raw(std::size_t count) {
+    if (count > left()) return {};
+    at_ += count;
+    return {at_ - count, count};
+  }
+
   double number(std::string_view what);
   /// A finite number.
   double coordinate(std::string_view what);

@@ -8,19 +8,17 @@
 #include <cmath>
 #include <limits>
 #include <pugixml.hpp>
-#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "collarmesh/error.h"
-#include "io/complete_mesh.h"
 #include "io/file_bytes.h"
 #include "io/number_text.h"
 #include "io/tet_mesh_formats.h"
 #include "io/text_scanner.h"
 #include "io/vtk_array.h"
-#include "io/vtu_format.h"
+#include "io/vtk_grid.h"
 
 namespace collarmesh::io {
 
@@ -206,31 +204,32 @@ pugi::xml_node find_array(const pugi::xml_node& section, const char* name) {
   return section.find_child_by_attribute("DataArray", "Name", name);
 }
 
-/// The cells of one piece by kind, as positions in its arrays.
-struct CellKinds {
-  std::vector<std::size_t> tets, faces, edges;
-};
-
 class PieceReader {
  public:
-  PieceReader(const VtuFile& file, const pugi::xml_node& piece, TetMesh& mesh)
+  PieceReader(const VtuFile& file, const pugi::xml_node& piece)
       : file_(file),
         piece_(piece),
-        mesh_(mesh),
-        first_point_(static_cast<Index>(mesh.points.size())),
         point_count_(file.number(piece, "NumberOfPoints")),
         cell_count_(file.number(piece, "NumberOfCells")) {}
 
-  void read() {
-    if (point_count_ + first_point_ >= none) file_.fail(piece_, "more points than can be numbered");
-    read_points();
-    read_cells();
-    read_labels();
-    read_features();
+  void read(TetMesh& mesh) const {
+    VtkPiece piece;
+    read_points(piece);
+    const pugi::xml_node cells = piece_.child("Cells");
+    piece.types = file_.values<std::int64_t>(required(cells, "types"), cell_count_);
+    piece.ends = file_.values<std::int64_t>(required(cells, "offsets"), cell_count_);
+    piece.connectivity = file_.values<std::int64_t>(required(cells, "connectivity"));
+    read_arrays(piece_.child("PointData"), vtk_point_arrays, point_count_, piece.point_data);
+    read_arrays(piece_.child("CellData"), vtk_cell_arrays, cell_count_, piece.cell_data);
+    try {
+      add_vtk_piece(piece, mesh);
+    } catch (const VtkPieceError& error) {
+      file_.fail(place_of(error.array), error.message);
+    }
   }
 
  private:
-  void read_points() {
+  void read_points(VtkPiece& piece) const {
     const pugi::xml_node array = piece_.child("Points").child("DataArray");
     if (!array) file_.fail(piece_, "expected Points");
     if (point_count_ > 0 && array.attribute("NumberOfComponents").as_int(3) != 3)
@@ -240,7 +239,7 @@ class PieceReader {
       const Point p{values[3 * i], values[3 * i + 1], values[3 * i + 2]};
       if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
         file_.fail(array, fmt::format("point {}, ({}, {}, {}), is not finite", i, p.x, p.y, p.z));
-      mesh_.points.push_back(p);
+      piece.points.push_back(p);
     }
   }
 
@@ -250,141 +249,34 @@ class PieceReader {
     return array;
   }
 
-  void read_cells() {
-    const pugi::xml_node section = piece_.child("Cells");
-    const std::vector<std::int64_t> types =
-                                        file_.values<std::int64_t>(required(section, "types"), cell_count_),
-                                    ends =
-                                        file_.values<std::int64_t>(required(section, "offsets"), cell_count_);
-    const pugi::xml_node array = required(section, "connectivity");
-    const std::vector<std::int64_t> corners = file_.values<std::int64_t>(array);
-    std::int64_t begin = 0;
-    for (std::size_t i = 0; i < cell_count_; ++i) {
-      const std::size_t n = corners_of_type(section, i, types[i]);
-      if (ends[i] - begin != static_cast<std::int64_t>(n) ||
-          ends[i] > static_cast<std::int64_t>(corners.size()))
-        file_.fail(section, fmt::format("cell {} of type {} ends at {} of {} corners, but begins at {}", i,
-                                        types[i], ends[i], corners.size(), begin));
-      add_cell(array, i, {corners.data() + begin, n});
-      begin = ends[i];
-    }
-    if (begin != static_cast<std::int64_t>(corners.size()))
-      file_.fail(array, fmt::format("expected {} corners, found {}", begin, corners.size()));
+  template <std::size_t n>
+  void read_arrays(const pugi::xml_node& section, const std::array<std::string_view, n>& names,
+                   std::size_t count, VtkPiece::Arrays& arrays) const {
+    for (const std::string_view name : names)
+      if (const pugi::xml_node array = find_array(section, std::string(name).c_str()))
+        arrays.emplace(name, file_.values<std::int64_t>(array, count));
   }
 
-  std::size_t corners_of_type(const pugi::xml_node& section, std::size_t cell, std::int64_t type) const {
-    switch (type) {
-      case vtk_vertex: return 1;
-      case vtk_line: return 2;
-      case vtk_triangle: return 3;
-      case vtk_tet: return 4;
-      default:
-        file_.fail(section,
-                   fmt::format("cell {} has the type {}, which is not supported, only first-order tetrahedra "
-                               "(10), triangles (5) and lines (3)",
-                               cell, type));
-    }
-  }
-
-  void add_cell(const pugi::xml_node& array, std::size_t cell, std::span<const std::int64_t> corners) {
-    std::array<Index, 4> c{};
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-      if (corners[k] < 0 || corners[k] >= static_cast<std::int64_t>(point_count_))
-        file_.fail(array, fmt::format("cell {} has the corner {}, but there are {} points", cell, corners[k],
-                                      point_count_));
-      c[k] = first_point_ + static_cast<Index>(corners[k]);
-    }
-    if (corners.size() == 4) {
-      mesh_.tets.push_back(c);
-      kinds_.tets.push_back(cell);
-    } else if (corners.size() == 3) {
-      mesh_.faces.push_back({c[0], c[1], c[2]});
-      kinds_.faces.push_back(cell);
-    } else if (corners.size() == 2) {
-      mesh_.edges.push_back({c[0], c[1]});
-      kinds_.edges.push_back(cell);
-    }
-  }
-
-  /// A cell array by the first of these names that is there; empty if none is.
-  std::vector<std::int64_t> cell_values(std::initializer_list<const char*> names) const {
-    for (const char* name : names)
-      if (const pugi::xml_node array = find_array(piece_.child("CellData"), name))
-        return file_.values<std::int64_t>(array, cell_count_);
-    return {};
-  }
-
-  template <class T>
-  static void pick(const std::vector<std::int64_t>& values, const std::vector<std::size_t>& cells,
-                   std::vector<T>& to) {
-    if (!values.empty())
-      for (const std::size_t cell : cells) to.push_back(static_cast<T>(values[cell]));
-  }
-
-  /// Ours, or the names that meshio gives to the labels of other formats.
-  void read_labels() {
-    const auto tags = cell_values({"tag", "gmsh:physical", "medit:ref", "region"});
-    pick(tags, kinds_.tets, mesh_.tet_tag);
-    pick(tags, kinds_.faces, mesh_.face_tag);
-    pick(tags, kinds_.edges, mesh_.edge_tag);
-    const auto regions = cell_values({"region"});
-    if (std::all_of(regions.begin(), regions.end(), [](std::int64_t r) { return r >= 0 && r < none; }))
-      pick(regions, kinds_.tets, mesh_.tet_region);
-    pick(cell_values({"collar"}), kinds_.tets, mesh_.tet_collar);
-    const auto features = cell_values({"feature"});
-    pick(features, kinds_.faces, mesh_.face_patch);
-    pick(features, kinds_.edges, mesh_.edge_curve);
-    const auto back = cell_values({"region_back"}), front = cell_values({"region_front"});
-    if (!back.empty() && !front.empty())
-      for (const std::size_t cell : kinds_.faces)
-        mesh_.face_regions.push_back({static_cast<Index>(back[cell]), static_cast<Index>(front[cell])});
-  }
-
-  void read_features() {
-    const pugi::xml_node section = piece_.child("PointData");
-    const pugi::xml_node dimension = find_array(section, "feature_dimension"),
-                         feature = find_array(section, "feature");
-    if (!dimension || !feature) return;
-    const auto dimensions = file_.values<std::int64_t>(dimension, point_count_),
-               features = file_.values<std::int64_t>(feature, point_count_);
-    for (std::size_t i = 0; i < point_count_; ++i) {
-      if (dimensions[i] < 0 || dimensions[i] > 3)
-        file_.fail(dimension, fmt::format("point {} has the feature dimension {}", i, dimensions[i]));
-      mesh_.features.push_back({static_cast<std::uint8_t>(dimensions[i]), static_cast<Index>(features[i])});
-    }
+  pugi::xml_node place_of(std::string_view array) const {
+    if (array == "connectivity") return find_array(piece_.child("Cells"), "connectivity");
+    if (array == "types") return piece_.child("Cells");
+    if (array == "feature_dimension") return find_array(piece_.child("PointData"), "feature_dimension");
+    return piece_;
   }
 
   const VtuFile& file_;
   const pugi::xml_node piece_;
-  TetMesh& mesh_;
-  Index first_point_;
   std::size_t point_count_, cell_count_;
-  CellKinds kinds_;
 };
-
-/// Arrays that only some pieces have are of no use.
-template <class T>
-void drop_partial(std::vector<T>& values, std::size_t count) {
-  if (values.size() != count) values.clear();
-}
 
 }  // namespace
 
 TetMesh read_vtu(const std::string& path) {
   const VtuFile file(path);
   TetMesh mesh;
-  for (const pugi::xml_node& piece : file.grid().children("Piece")) PieceReader(file, piece, mesh).read();
+  for (const pugi::xml_node& piece : file.grid().children("Piece")) PieceReader(file, piece).read(mesh);
   if (mesh.tets.empty()) file.fail(file.grid(), "expected tetrahedra, found none");
-  drop_partial(mesh.features, mesh.points.size());
-  drop_partial(mesh.tet_tag, mesh.tets.size());
-  drop_partial(mesh.tet_region, mesh.tets.size());
-  drop_partial(mesh.tet_collar, mesh.tets.size());
-  drop_partial(mesh.face_tag, mesh.faces.size());
-  drop_partial(mesh.face_patch, mesh.faces.size());
-  drop_partial(mesh.face_regions, mesh.faces.size());
-  drop_partial(mesh.edge_tag, mesh.edges.size());
-  drop_partial(mesh.edge_curve, mesh.edges.size());
-  complete_mesh(mesh);
+  complete_vtk_mesh(path, mesh);
   return mesh;
 }
 

@@ -278,7 +278,10 @@ void triangulate_facets(std::span<const PolygonSoup> soups, const PointMap& map,
       if (last - first == 1 && soup.polygon(first).size() == 3) {
         const auto corners = soup.polygon(first);
         const Corners t{merged[corners[0]], merged[corners[1]], merged[corners[2]]};
-        if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) draft.add_triangle(t, {soup.facet_tag(f), s, f});
+        if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
+          draft.add_triangle(t, {soup.facet_tag(f), s, f});
+        else
+          ++draft.cleanup.degenerate_triangles;
         continue;
       }
       Facet facet{s, f, soup.facet_tag(f), {}, {}, {}, holes.take(f)};

@@ -1,17 +1,28 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "collarmesh/polygon_soup.h"
 
 namespace collarmesh::io {
 
-/// Read a surface or PLC file by its extension (any case): .off .obj .stl .ply .poly .smesh.
-/// Coordinates are doubles. Throws ReadError (path, line or byte) for a file that is missing,
-/// malformed, truncated or whose counts exceed what its size can hold.
-PolygonSoup read_soup(const std::string& path);
+/// Read a surface or PLC file by its extension (any case): .off .obj .stl .ply .poly .smesh, or as
+/// `format` (one of those, lower case) says. Coordinates are doubles. Throws ReadError (path, line or
+/// byte) for a file that is missing, malformed, truncated or whose counts exceed what its size can hold.
+PolygonSoup read_soup(const std::string& path, std::string_view format = {});
 
-/// Does `read_soup` know this extension?
-bool is_soup_format(const std::string& path);
+/// Write a surface or PLC by the extension or format. Only .poly holds facets of several polygons or with
+/// holes, only .poly and .smesh region and hole points; .stl holds triangles in 32-bit numbers.
+/// `merge_soups` cuts facets as a format needs it.
+/// Throws WriteError.
+void write_soup(const std::string& path, const PolygonSoup& soup, std::string_view format = {});
+
+/// Do `read_soup` and `write_soup` know this extension or format?
+bool is_soup_format(const std::string& path, std::string_view format = {});
+
+/// The extensions.
+std::vector<std::string> soup_formats();
 
 }  // namespace collarmesh::io

@@ -1,21 +1,30 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "collarmesh/tet_mesh.h"
 
 namespace collarmesh::io {
 
-/// Write a mesh by the extension of `path`: .vtu, .msh (Gmsh 4.1), .mesh (Medit). Written to a
-/// temporary file beside it, then renamed: a reader never sees half a file.
+/// Write a mesh by the extension of `path`, or as `format` (an extension with its dot, lower case) says.
+/// Each file is written under another name and renamed: a reader never sees half a file. Formats keep
+/// what they have a place for; what that is their sources say (src/io/*_writer.cpp).
 /// Throws WriteError.
-void write_tet_mesh(const std::string& path, const TetMesh& mesh);
+void write_tet_mesh(const std::string& path, const TetMesh& mesh, std::string_view format = {});
 
-/// Read what `write_tet_mesh` writes and, as far as they carry first-order tetrahedra, other programs' files of these formats.
+/// Read what `write_tet_mesh` writes and, as far as they carry tetrahedra, triangles and lines of first
+/// or second order, other programs' files of these formats.
 /// Throws ReadError (path, line or byte).
-TetMesh read_tet_mesh(const std::string& path);
+TetMesh read_tet_mesh(const std::string& path, std::string_view format = {});
 
-/// Do `write_tet_mesh` and `read_tet_mesh` know this extension?
-bool is_tet_mesh_format(const std::string& path);
+/// The extensions: .vtu (VTK), .vtk (its legacy format), .msh (Gmsh; 4.1 is written), .mesh (Medit), .inp
+/// (Abaqus, CalculiX), .unv (I-DEAS), .ele (TetGen, with .node, .face and .edge beside it).
+std::vector<std::string> written_tet_mesh_formats();
+std::vector<std::string> read_tet_mesh_formats();
+
+/// Does `write_tet_mesh` know this extension or format?
+bool is_tet_mesh_format(const std::string& path, std::string_view format = {});
 
 }  // namespace collarmesh::io

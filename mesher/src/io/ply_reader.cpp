@@ -174,8 +174,9 @@ class Body {
     if (element.name == "vertex") {
       read_vertices(element);
     } else if (element.name == "face") {
-      const std::size_t corners = column(element, "vertex_indices", "vertex_index");
-      for (std::uint64_t i = 0; i < element.count; ++i) read_face(element, corners);
+      const std::size_t corners = column(element, "vertex_indices", "vertex_index"),
+                        tag = tag_column(element);
+      for (std::uint64_t i = 0; i < element.count; ++i) read_face(element, corners, tag);
     } else if (element.name == "edge") {
       const std::size_t a = column(element, "vertex1"), b = column(element, "vertex2");
       for (std::uint64_t i = 0; i < element.count; ++i) read_edge(element, a, b);
@@ -206,6 +207,15 @@ class Body {
     return 0;
   }
 
+  /// Ours; past the last column if there is none.
+  static std::size_t tag_column(const Element& element) {
+    const auto found =
+        std::find_if(element.properties.begin(), element.properties.end(), [](const Property& p) {
+          return p.name == "tag" && p.type == Type::i32 && p.list_size == Type::none;
+        });
+    return static_cast<std::size_t>(found - element.properties.begin());
+  }
+
   void read_vertices(const Element& element) {
     const std::array<std::size_t, 3> columns{column(element, "x"), column(element, "y"),
                                              column(element, "z")};
@@ -232,10 +242,13 @@ class Body {
     return value;
   }
 
-  void read_face(const Element& element, std::size_t corners_column) {
+  void read_face(const Element& element, std::size_t corners_column, std::size_t tag_column) {
+    Tag tag = 0;
     for (std::size_t k = 0; k < element.properties.size(); ++k)
       if (k == corners_column)
         read_corners(element.properties[k]);
+      else if (k == tag_column)
+        tag = values_.integer(Type::i32, "a tag");
       else
         skip(element.properties[k]);
     if (corners_.size() < 2)
@@ -243,7 +256,7 @@ class Body {
     if (corners_.size() == 2)
       soup_.segments.push_back({corners_[0], corners_[1]});
     else
-      soup_.add_facet(corners_);
+      soup_.add_facet(corners_, tag);
   }
 
   void read_edge(const Element& element, std::size_t a, std::size_t b) {

@@ -1,4 +1,4 @@
-// The file formats .node, .poly and .smesh of TetGen 1.5 (its manual, section "File formats").
+// Reads the file formats .poly and .smesh of TetGen 1.5 (its manual, section "File formats").
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,13 +9,14 @@
 
 #include "io/file_bytes.h"
 #include "io/soup_formats.h"
+#include "io/tetgen_nodes.h"
 #include "io/text_scanner.h"
 
 namespace collarmesh::io {
 
 namespace {
 
-/// Do facet and node lines end with a marker? Missing flags are 0.
+/// Do facet lines end with a marker? Missing flags are 0.
 bool marker_flag(TextScanner& scan) {
   return !scan.at_line_end() && scan.integer("the flag for boundary markers") != 0;
 }
@@ -24,52 +25,12 @@ Tag marker(TextScanner& scan, bool given) {
   return given && !scan.at_line_end() ? scan.integer("a boundary marker") : 0;
 }
 
-struct NodeHeader {
-  Index count = 0;
-  std::int64_t attributes = 0;
-  bool markers = false;
-};
-
-NodeHeader read_node_header(TextScanner& scan) {
-  NodeHeader header;
-  header.count = scan.count("the number of points", 7);
-  if (!scan.at_line_end()) {
-    const std::int64_t dimension = scan.integer("the dimension");
-    if (dimension != 3) scan.fail(fmt::format("the dimension is {}, but has to be 3", dimension));
-  }
-  if (!scan.at_line_end()) header.attributes = scan.integer("the number of attributes of a point");
-  if (header.attributes < 0) scan.fail(fmt::format("the number of attributes is {}", header.attributes));
-  header.markers = marker_flag(scan);
-  scan.skip_line();
-  return header;
-}
-
-/// Returns the number of the first point, 0 or 1.
-std::int64_t read_nodes(TextScanner& scan, const NodeHeader& header, PolygonSoup& soup) {
-  std::int64_t first = 0;
-  soup.points.reserve(header.count);
-  for (Index i = 0; i < header.count; ++i) {
-    const std::int64_t number = scan.integer("the number of a point");
-    if (i == 0) first = number;
-    if (first != 0 && first != 1)
-      scan.fail(fmt::format("the first point has number {}, but has to have 0 or 1", first));
-    if (number != first + i) scan.fail(fmt::format("expected point number {}, found {}", first + i, number));
-    soup.points.push_back(scan.point("a coordinate of a point"));
-    for (std::int64_t k = 0; k < header.attributes && !scan.at_line_end(); ++k)
-      scan.number("an attribute of a point");
-    if (header.markers) soup.point_tags.push_back(marker(scan, true));
-    scan.skip_line();
-  }
-  return first;
-}
-
 /// The points of a .poly file that declares none are in the .node file beside it.
 std::int64_t read_node_file(const std::string& poly_path, PolygonSoup& soup) {
   const std::string path = std::filesystem::path(poly_path).replace_extension(".node").string();
   const std::string text = read_bytes(path);
   TextScanner scan(path, text);
-  const NodeHeader header = read_node_header(scan);
-  return read_nodes(scan, header, soup);
+  return read_tetgen_nodes(scan, read_tetgen_node_header(scan), soup.points, soup.point_tags);
 }
 
 /// What a facet is in the file, before it is known whether it spans anything.
@@ -188,8 +149,9 @@ PolygonSoup read(const std::string& path, FacetReader read_facet) {
   const std::string text = read_bytes(path);
   TextScanner scan(path, text);
   PolygonSoup soup;
-  const NodeHeader header = read_node_header(scan);
-  const std::int64_t first = header.count > 0 ? read_nodes(scan, header, soup) : read_node_file(path, soup);
+  const TetgenNodeHeader header = read_tetgen_node_header(scan);
+  const std::int64_t first = header.count > 0 ? read_tetgen_nodes(scan, header, soup.points, soup.point_tags)
+                                              : read_node_file(path, soup);
   read_facets(scan, first, read_facet, soup);
   read_holes_and_regions(scan, soup);
   return soup;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/file_bytes.h"
+#include "io/label_names.h"
 #include "io/number_text.h"
 #include "io/soup_formats.h"
 #include "io/text_scanner.h"
@@ -18,10 +19,12 @@ namespace {
 struct Element {
   std::size_t first_corner, line;
   bool is_face;
+  Tag tag;
 };
 
 struct Elements {
   std::vector<Element> list;
+  Tag tag = 0;                        ///< of the group at hand, if its name is one of ours
   std::vector<std::int64_t> corners;  ///< counted from 0; negative ones are already resolved
 };
 
@@ -55,7 +58,7 @@ void read_element(TextScanner& scan, bool is_face, std::size_t points_so_far, El
   if (n < least)
     scan.fail(
         fmt::format("expected {} of at least {} corners, found {}", is_face ? "a face" : "a line", least, n));
-  elements.list.push_back({first, line, is_face});
+  elements.list.push_back({first, line, is_face, elements.tag});
 }
 
 void require_in_range(const std::string& path, const Element& element, std::int64_t corner,
@@ -77,7 +80,7 @@ void add_elements(const std::string& path, const Elements& elements, PolygonSoup
       corners.push_back(static_cast<Index>(elements.corners[k]));
     }
     if (element.is_face)
-      soup.add_facet(corners);
+      soup.add_facet(corners, element.tag);
     else
       for (std::size_t k = 1; k < corners.size(); ++k) soup.segments.push_back({corners[k - 1], corners[k]});
   }
@@ -96,6 +99,8 @@ PolygonSoup read_obj(const std::string& path) {
       soup.points.push_back(scan.point("a coordinate of a vertex"));
     else if (keyword == "f" || keyword == "l")
       read_element(scan, keyword == "f", soup.points.size(), elements);
+    else if (keyword == "g" && !scan.at_line_end())
+      elements.tag = tag_of_group_name(2, scan.word("a group")).value_or(0);
     else if (!((keyword[0] >= 'a' && keyword[0] <= 'z') || (keyword[0] >= 'A' && keyword[0] <= 'Z')))
       scan.fail("a keyword such as v or f", keyword);
     while (!end_of_statement(scan)) scan.word("");

@@ -1,0 +1,131 @@
+#include "conversion_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string_view>
+
+namespace collarmesh::cli {
+
+namespace {
+
+/// What formats have a place for; corners of cells and points are kept by all.
+struct Kept {
+  std::string_view format;
+  bool facet_tags = false, segments = false, point_tags = false, regions = false;
+};
+constexpr std::array surfaces{
+    Kept{".off", false, true, false, false},  Kept{".obj", true, true, false, false},
+    Kept{".stl", false, false, false, false}, Kept{".ply", true, true, false, false},
+    Kept{".om", false, false, false, false},  Kept{".poly", true, true, true, true},
+    Kept{".smesh", true, true, true, true}};
+
+struct MeshKept {
+  std::string_view format;
+  bool collar = false, features = false, edges = true, region_tags = true, region_numbers = true;
+};
+constexpr std::array meshes{MeshKept{".vtu", true, true},
+                            MeshKept{".vtk", true, true},
+                            MeshKept{".msh", true, true},
+                            MeshKept{".mesh", false, false, true, false, true},
+                            MeshKept{".inp", false, false, false, true, true},
+                            MeshKept{".unv", false, false, true, true, true},
+                            MeshKept{".ele", false, false, true, true, false},
+                            MeshKept{".med", false, false, true, true, false},
+                            MeshKept{".xdmf", true, true}};
+
+void add(std::vector<std::string>& losses, bool kept, std::size_t count, const char* what) {
+  if (!kept && count > 0) losses.push_back(fmt::format("{} {}", count, what));
+}
+
+template <class Values>
+std::size_t count_tags(const Values& values) {
+  return static_cast<std::size_t>(std::count_if(values.begin(), values.end(), [](auto v) { return v != 0; }));
+}
+
+std::string shown(const std::string& path) { return path == "-" ? "standard output" : path; }
+
+std::string counts_text(std::string_view verb,
+                        std::initializer_list<std::pair<Index, std::string_view>> counts) {
+  std::string text;
+  for (const auto& [count, what] : counts)
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
+  return text.empty() ? text : fmt::format("  {}: {}\n", verb, text);
+}
+
+}  // namespace
+
+std::string format_of(const std::string& path, const std::string& format) {
+  std::string extension = format.empty() ? std::filesystem::path(path).extension().string() : format;
+  for (char& c : extension)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
+  return extension;
+}
+
+std::vector<std::string> lost_by(const std::string& format, const PolygonSoup& soup) {
+  const auto* kept =
+      std::find_if(surfaces.begin(), surfaces.end(), [&](const Kept& k) { return k.format == format; });
+  if (kept == surfaces.end()) return {};
+  std::vector<std::string> losses;
+  std::size_t facet_tags = 0;
+  for (Index f = 0; f < soup.facet_count(); ++f) facet_tags += soup.facet_tag(f) != 0 ? 1 : 0;
+  add(losses, kept->facet_tags, facet_tags, "tags of facets");
+  add(losses, kept->segments, soup.segments.size(), "segments");
+  add(losses, kept->point_tags, count_tags(soup.point_tags), "tags of points");
+  add(losses, kept->regions, soup.region_points.size(), "region points");
+  add(losses, kept->regions, soup.hole_points.size(), "hole points");
+  return losses;
+}
+
+std::vector<std::string> lost_by(const std::string& format, const TetMesh& mesh) {
+  const auto* kept =
+      std::find_if(meshes.begin(), meshes.end(), [&](const MeshKept& k) { return k.format == format; });
+  if (kept == meshes.end()) return {};
+  std::vector<std::string> losses;
+  add(losses, kept->collar, count_tags(mesh.tet_collar), "collar marks of tets");
+  add(losses, kept->features, mesh.features.size(), "features of points");
+  add(losses, kept->edges, mesh.edges.size(), "edges on curves (node sets are kept)");
+  std::size_t other = 0;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    other += mesh.tet_tag[t] != static_cast<Tag>(mesh.tet_region[t]) ? 1 : 0;
+  add(losses, kept->region_tags, other, "tags of tets (the number of their region is kept)");
+  add(losses, kept->region_numbers, other, "region numbers of tets (the tag of their region is kept)");
+  return losses;
+}
+
+std::string soup_text(const std::string& path, const PolygonSoup& soup) {
+  return fmt::format("{}: {} points, {} facets, {} segments, {} region points, {} hole points\n", shown(path),
+                     soup.points.size(), soup.facet_count(), soup.segments.size(), soup.region_points.size(),
+                     soup.hole_points.size());
+}
+
+std::string tet_mesh_text(const std::string& path, const TetMesh& mesh) {
+  return fmt::format(
+      "{}: {} tets of order {}, {} points, {} boundary and interface triangles, {} curve edges\n",
+      shown(path), mesh.tets.size(), mesh.order(), mesh.points.size(), mesh.faces.size(), mesh.edges.size());
+}
+
+std::string merge_text(const MergeReport& report) {
+  return counts_text("welded", {{report.welded_points, "points to others"}}) +
+         counts_text("cut into triangles", {{report.cut_facets, "facets"}}) +
+         counts_text("dropped", {{report.unused_points, "points that nothing uses"},
+                                 {report.degenerate_facets, "facets without three distinct corners"},
+                                 {report.repeated_facets, "facets that repeat another one"}});
+}
+
+std::string cleanup_text(const Plc::Cleanup& cleanup) {
+  return counts_text("welded", {{cleanup.welded_points, "points to others"}}) +
+         counts_text("merged", {{cleanup.shared_triangles, "triangles of two files into interfaces"}}) +
+         counts_text("dropped", {{cleanup.degenerate_triangles, "triangles without an area"},
+                                 {cleanup.repeated_triangles, "triangles that repeat another one"}});
+}
+
+std::string losses_text(const std::vector<std::string>& losses) {
+  return losses.empty()
+             ? std::string()
+             : fmt::format("  dropped, the format has no place for: {}\n", fmt::join(losses, ", "));
+}
+
+}  // namespace collarmesh::cli

@@ -1,0 +1,104 @@
+#include "convert_command.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <functional>
+
+#include "collarmesh/error.h"
+#include "collarmesh/io/tet_mesh_io.h"
+#include "collarmesh/merge_soups.h"
+#include "conversion_report.h"
+#include "input_files.h"
+#include "interrupt.h"
+#include "mesh_command.h"
+#include "staged_file.h"
+#include "surface_files.h"
+
+namespace collarmesh::cli {
+
+namespace {
+
+void tell(const MeshArguments& a, const std::string& text) {
+  if (!a.quiet) fmt::print(stderr, "{}", text);
+}
+
+void write(const MeshArguments& a, const std::function<void(const std::string&)>& write_file) {
+  stop_if_interrupted();
+  StagedFile file(a.output);
+  file.write(write_file);
+  StagedFile::commit({&file});
+}
+
+CutFacets cut_for(const std::string& format) {
+  if (format == ".poly") return CutFacets::nothing;
+  return format == ".stl" ? CutFacets::all : CutFacets::complex;
+}
+
+/// Region and hole points say which parts of space are solid; a surface says it by its orientation.
+void place_regions(const MeshArguments& a, const std::vector<PolygonSoup>& soups, PolygonSoup& merged) {
+  PlcOptions options = a.complex.plc;
+  options.require_solid = false;
+  try {
+    const Plc plc = build_plc(soups, options);
+    const Index missing = place_region_points(plc, merged);
+    if (missing > 0)
+      tell(a, fmt::format("{} regions or cavities are too thin for a point inside\n", missing));
+  } catch (const PlcError& error) {
+    tell(a, fmt::format("no regions are named, because this is no valid complex: {}\n", error.what()));
+  }
+}
+
+void write_soup(const MeshArguments& a, const std::vector<PolygonSoup>& soups) {
+  const std::string format = format_of(a.output, a.output_format);
+  MergeReport report;
+  PolygonSoup merged = merge_soups(soups, {a.complex.plc.weld, cut_for(format)}, report);
+  if (format == ".poly" || format == ".smesh") place_regions(a, soups, merged);
+  write(a, [&](const std::string& path) { write_surface(path, merged, a.output_format); });
+  tell(a, soup_text(a.output, merged));
+  tell(a, merge_text(report));
+  tell(a, losses_text(lost_by(format, merged)));
+}
+
+/// The boundary and interface triangles of a mesh with their tags.
+PolygonSoup surface_of(const TetMesh& mesh, const std::string& name) {
+  PolygonSoup soup;
+  soup.name = name;
+  soup.points = mesh.points;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) soup.add_facet(mesh.faces[f], mesh.face_tag[f]);
+  for (std::size_t e = 0; e < mesh.edges.size(); ++e)
+    soup.segments.push_back({mesh.edges[e][0], mesh.edges[e][1], mesh.edge_tag[e]});
+  if (mesh.faces.empty())
+    throw ReadError(fmt::format("{}: the mesh has no boundary triangles that could become a surface", name));
+  return soup;
+}
+
+void convert_mesh(const MeshArguments& a) {
+  if (a.inputs.size() > 1)
+    throw OptionError(fmt::format("{} is a mesh: one at a time is converted", a.inputs.front()));
+  const TetMesh mesh = read_mesh(a.inputs.front(), a.input_format);
+  if (is_surface_format(a.output, a.output_format)) {
+    write_soup(a, {surface_of(mesh, a.inputs.front())});
+    return;
+  }
+  write(a, [&](const std::string& path) { io::write_tet_mesh(path, mesh, a.output_format); });
+  tell(a, tet_mesh_text(a.output, mesh));
+  tell(a, losses_text(lost_by(format_of(a.output, a.output_format), mesh)));
+}
+
+}  // namespace
+
+ExitCode convert_command(const ConvertArguments& arguments) {
+  const MeshArguments& a = arguments.mesh;
+  require_writable(a.output);
+  const bool to_surface = is_surface_format(a.output, a.output_format);
+  if (io::is_tet_mesh_format(a.inputs.front(), a.input_format)) {
+    convert_mesh(a);
+    return ExitCode::success;
+  }
+  if (!to_surface) return mesh_command(a);
+  write_soup(a, read_soups(a.inputs, a.input_format));
+  return ExitCode::success;
+}
+
+}  // namespace collarmesh::cli

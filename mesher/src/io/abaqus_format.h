@@ -1,0 +1,18 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+/// What the writer and the reader of .inp files have to agree on; Abaqus Keywords Reference Manual.
+namespace collarmesh::io {
+
+/// The corners of the faces S1 to S4 of C3D4 and C3D10, and the mid nodes amid them.
+constexpr std::array<std::array<std::uint8_t, 3>, 4> abaqus_faces{
+    {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}};
+constexpr std::array<std::array<std::uint8_t, 3>, 4> abaqus_face_mid_nodes{
+    {{0, 1, 2}, {3, 4, 0}, {4, 5, 1}, {5, 3, 2}}};
+
+/// Our element sets by region of the complex: this and the number.
+constexpr const char* abaqus_volume_prefix = "VOLUME_";
+
+}  // namespace collarmesh::io

@@ -1,0 +1,476 @@
+// Reads the input format of Abaqus and CalculiX (.inp): tetrahedra of solids (C3D4, C3D10 and their
+// kin), triangles and lines of shells, membranes, beams and trusses, surfaces of element sides. Tags
+// come from element sets and surfaces: of our names what they say, else their order in the file.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "collarmesh/error.h"
+#include "io/abaqus_format.h"
+#include "io/cell_nodes.h"
+#include "io/complete_mesh.h"
+#include "io/file_bytes.h"
+#include "io/label_names.h"
+#include "io/number_table.h"
+#include "io/number_text.h"
+#include "io/tet_mesh_formats.h"
+#include "io/text_scanner.h"
+
+namespace collarmesh::io {
+
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r\f\v";
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+/// The fields of a line between commas; a comma at the end adds none.
+void split(std::string_view line, std::vector<std::string_view>& fields) {
+  fields.clear();
+  while (!line.empty()) {
+    const std::size_t comma = std::min(line.find(','), line.size());
+    fields.push_back(trimmed(line.substr(0, comma)));
+    line.remove_prefix(std::min(comma + 1, line.size()));
+  }
+}
+
+/// The lines of a file without comments and empty ones.
+class Lines {
+ public:
+  Lines(const std::string& path, std::string_view text) : path_(path), text_(text) {}
+
+  /// The next line, taken with `next`; false at the end.
+  bool peek(std::string_view& line) {
+    while (at_ < text_.size()) {
+      end_ = std::min(text_.find('\n', at_), text_.size());
+      line = trimmed(text_.substr(at_, end_ - at_));
+      if (!line.empty() && !line.starts_with("**")) return true;
+      next();
+    }
+    return false;
+  }
+  void next() {
+    at_ = std::min(end_ + 1, text_.size());
+    ++line_;
+  }
+
+  [[noreturn]] void fail(const std::string& message) const {
+    throw ReadError(fmt::format("{}: line {}: {}", path_, line_, message));
+  }
+
+ private:
+  const std::string& path_;
+  std::string_view text_;
+  std::size_t at_ = 0, end_ = 0, line_ = 1;
+};
+
+/// "*ELEMENT, TYPE=C3D4": in lower case, blanks inside names kept.
+struct Keyword {
+  std::string name;
+  std::map<std::string, std::string, std::less<>> parameters;
+
+  explicit Keyword(std::string_view line) {
+    std::vector<std::string_view> fields;
+    split(line.substr(1), fields);
+    for (std::size_t k = 0; k < fields.size(); ++k) {
+      const std::size_t equals = std::min(fields[k].find('='), fields[k].size());
+      const std::string key = lower_case(trimmed(fields[k].substr(0, equals)));
+      if (k == 0)
+        name = key;
+      else
+        parameters.emplace(key,
+                           lower_case(trimmed(fields[k].substr(std::min(equals + 1, fields[k].size())))));
+    }
+  }
+  std::string_view operator[](std::string_view key) const {
+    const auto found = parameters.find(key);
+    return found == parameters.end() ? std::string_view() : std::string_view(found->second);
+  }
+};
+
+/// The number of nodes of a type of elements that becomes a tet, face or edge.
+struct ElementType {
+  std::string_view prefix;
+  std::size_t dimension, nodes;
+};
+/// The longest prefix counts: c3d10m is a c3d10, c3d20 is not a c3d2.
+constexpr ElementType element_types[] = {
+    {"c3d4", 3, 4},   {"c3d10", 3, 10},  {"dc3d4", 3, 4}, {"dc3d10", 3, 10}, {"f3d4", 3, 4},
+    {"ac3d4", 3, 4},  {"ac3d10", 3, 10}, {"cps3", 2, 3},  {"cps6", 2, 6},    {"cpe3", 2, 3},
+    {"cpe6", 2, 6},   {"cax3", 2, 3},    {"cax6", 2, 6},  {"s3", 2, 3},      {"s6", 2, 6},
+    {"stri3", 2, 3},  {"stri65", 2, 6},  {"m3d3", 2, 3},  {"m3d6", 2, 6},    {"sfm3d3", 2, 3},
+    {"sfm3d6", 2, 6}, {"r3d3", 2, 3},    {"ds3", 2, 3},   {"ds6", 2, 6},     {"t3d2", 1, 2},
+    {"t3d3", 1, 3},   {"b31", 1, 2},     {"b32", 1, 3},   {"t2d2", 1, 2}};
+
+const ElementType* find_type(std::string_view name) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  const ElementType* best = nullptr;
+  for (const ElementType& type : element_types)
+    if (name.starts_with(type.prefix) &&
+        (name.size() == type.prefix.size() || !is_digit(name[type.prefix.size()])) &&
+        (best == nullptr || type.prefix.size() > best->prefix.size()))
+      best = &type;
+  return best;
+}
+
+/// An element set; `named_apart`: by an *ELSET, not just by its *ELEMENT.
+struct Set {
+  std::string name;
+  std::vector<std::int64_t> members;
+  bool named_apart = false;
+};
+
+/// Where an element went: which list of the mesh, and its index there.
+struct Place {
+  std::size_t dimension = 3;
+  Index index = 0;
+};
+
+class AbaqusReader {
+ public:
+  AbaqusReader(const std::string& path, std::string_view text) : path_(path), lines_(path, text) {}
+
+  TetMesh read() {
+    std::string_view line;
+    while (lines_.peek(line)) {
+      if (line[0] != '*')
+        lines_.fail(fmt::format("expected a keyword such as *NODE, found {}", quoted(line)));
+      const Keyword keyword(line);
+      lines_.next();
+      read_block(keyword);
+    }
+    sort_elements();
+    if (mesh_.tets.empty()) lines_.fail("expected tetrahedra (C3D4, C3D10), found none");
+    tag_cells();
+    add_surfaces();
+    complete_mesh(path_, mesh_);
+    return std::move(mesh_);
+  }
+
+ private:
+  using Fields = std::vector<std::string_view>;
+
+  void read_block(const Keyword& keyword) {
+    if (keyword.name == "node")
+      each_line([&](const Fields& fields) { read_node(fields); });
+    else if (keyword.name == "element")
+      read_elements(keyword);
+    else if (keyword.name == "elset")
+      read_set(keyword);
+    else if (keyword.name == "surface")
+      read_surface(keyword);
+    else if (keyword.name == "include")
+      lines_.fail("*INCLUDE is not supported; put the files into one");
+    else if (keyword.name == "instance")
+      read_instance(keyword);
+    else
+      each_line([](const Fields&) {});
+  }
+
+  template <class Read>
+  void each_line(Read read) {
+    std::string_view line;
+    Fields fields;
+    while (lines_.peek(line) && line[0] != '*') {
+      split(line, fields);
+      read(fields);
+      lines_.next();
+    }
+  }
+
+  std::int64_t integer(std::string_view field, std::string_view what) const {
+    std::int64_t value = 0;
+    if (!parse(field, value))
+      lines_.fail(fmt::format("expected {}, an integer, found {}", what, quoted(field)));
+    return value;
+  }
+
+  double coordinate(std::string_view field) const {
+    double value = 0;
+    std::string text(field);
+    std::replace(text.begin(), text.end(), 'd', 'e');
+    std::replace(text.begin(), text.end(), 'D', 'e');
+    if (!parse(text, value) || !std::isfinite(value))
+      lines_.fail(fmt::format("expected a coordinate of a node, a finite number, found {}", quoted(field)));
+    return value;
+  }
+
+  void read_node(const Fields& fields) {
+    if (fields.size() < 2) lines_.fail("expected the number of a node and its coordinates");
+    nodes_.add(integer(fields[0], "the number of a node"));
+    Point p;
+    for (std::size_t axis = 0; axis < 3 && axis + 1 < fields.size(); ++axis)
+      if (!fields[axis + 1].empty()) p[axis] = coordinate(fields[axis + 1]);
+    mesh_.points.push_back(p);
+    sorted_ = false;
+  }
+
+  void sort_nodes() {
+    if (sorted_) return;
+    sorted_ = true;
+    if (const auto twice = nodes_.sort())
+      lines_.fail(
+          fmt::format("two nodes have the number {}; several parts are not supported, "
+                      "export a flat input file",
+                      *twice));
+  }
+
+  void read_elements(const Keyword& keyword) {
+    sort_nodes();
+    const ElementType* type = find_type(keyword["type"]);
+    if (type == nullptr)
+      lines_.fail(
+          fmt::format("elements of type {} are not supported, only tetrahedra (C3D4, C3D10), "
+                      "triangles (S3, S6, CPS3, ...) and lines (T3D2, B31, ...)",
+                      quoted(keyword["type"])));
+    const std::string_view set = keyword["elset"];
+    const std::size_t set_index = set.empty() ? none : index_of_set(set);
+    // An element may go on over several lines.
+    std::vector<std::int64_t> numbers;
+    each_line([&](const Fields& fields) {
+      for (const std::string_view field : fields) {
+        if (field.empty()) continue;
+        numbers.push_back(integer(field, "the number of an element or node"));
+        if (numbers.size() < type->nodes + 1) continue;
+        add_element(*type, numbers, set_index);
+        numbers.clear();
+      }
+    });
+    if (!numbers.empty())
+      lines_.fail(fmt::format("expected an element of {} nodes, found {}", type->nodes, numbers.size() - 1));
+  }
+
+  void add_element(const ElementType& type, const std::vector<std::int64_t>& numbers, std::size_t set) {
+    CellNodes nodes;
+    for (std::size_t k = 1; k < numbers.size(); ++k) {
+      const Index node = nodes_.find(numbers[k]);
+      if (node == none)
+        lines_.fail(
+            fmt::format("element {} has the node {}, but no node has that number", numbers[0], numbers[k]));
+      nodes.add(node);
+    }
+    Place place{type.dimension, 0};
+    if (type.dimension == 3) {
+      place.index = static_cast<Index>(mesh_.tets.size());
+      add_tet(nodes, mesh_);
+    } else if (type.dimension == 2) {
+      place.index = static_cast<Index>(mesh_.faces.size());
+      add_face(nodes, mesh_);
+    } else {
+      place.index = static_cast<Index>(mesh_.edges.size());
+      // The mid node is the second of three.
+      add_edge(nodes.in_order(std::array<std::uint8_t, 3>{0, 2, 1}), mesh_);
+    }
+    elements_.add(numbers[0]);
+    places_.push_back(place);
+    if (set != none) sets_[set].members.push_back(numbers[0]);
+  }
+
+  void sort_elements() {
+    if (const auto twice = elements_.sort())
+      lines_.fail(fmt::format("two elements have the number {}", *twice));
+  }
+
+  std::size_t index_of_set(std::string_view name) {
+    const auto [found, added] = set_index_.try_emplace(std::string(name), sets_.size());
+    if (added) sets_.push_back({std::string(name), {}, false});
+    return found->second;
+  }
+
+  /// Members are numbers or the names of sets before; with GENERATE first, last and step.
+  void read_set(const Keyword& keyword) {
+    const std::size_t set = index_of_set(keyword["elset"]);
+    sets_[set].named_apart = true;
+    const bool generate = keyword.parameters.contains("generate");
+    each_line([&](const Fields& fields) {
+      if (generate)
+        add_range(fields, sets_[set].members);
+      else
+        for (const std::string_view field : fields) add_member(field, sets_[set].members);
+    });
+  }
+
+  void add_range(const Fields& fields, std::vector<std::int64_t>& members) const {
+    if (fields.size() < 2) lines_.fail("expected the first and last number of a range");
+    const std::int64_t first = integer(fields[0], "a first number"),
+                       last = integer(fields[1], "a last number"),
+                       step = fields.size() > 2 ? integer(fields[2], "a step") : 1;
+    if (step < 1 || first < 0 || last < first)
+      lines_.fail(fmt::format("the range {} to {} by {} is empty", first, last, step));
+    if (static_cast<std::size_t>((last - first) / step) > places_.size())
+      lines_.fail(fmt::format("the range {} to {} by {} is larger than the {} elements before it", first,
+                              last, step, places_.size()));
+    for (std::int64_t number = first; number <= last; number += step) members.push_back(number);
+  }
+
+  void add_member(std::string_view field, std::vector<std::int64_t>& members) {
+    if (field.empty()) return;
+    std::int64_t number = 0;
+    if (parse(field, number)) {
+      members.push_back(number);
+      return;
+    }
+    const auto found = set_index_.find(lower_case(field));
+    if (found == set_index_.end())
+      lines_.fail(fmt::format("no element set before has the name {}", quoted(field)));
+    const std::vector<std::int64_t> copy = sets_[found->second].members;
+    require_room(copy.size() + members.size());
+    members.insert(members.end(), copy.begin(), copy.end());
+  }
+
+  /// Sets that name each other again and again would grow without bound.
+  void require_room(std::size_t members) const {
+    constexpr std::size_t most_repeats = 16;
+    if (members > most_repeats * (places_.size() + 1))
+      lines_.fail(
+          fmt::format("the set has more than {} times as many members as there are elements", most_repeats));
+  }
+
+  void read_surface(const Keyword& keyword) {
+    const std::string_view type = keyword["type"];
+    const bool of_elements = type.empty() || type == "element";
+    if (of_elements) surfaces_.emplace_back(keyword["name"], std::vector<Side>());
+    each_line([&](const Fields& fields) {
+      if (!of_elements) return;
+      if (fields.size() < 2) lines_.fail("expected an element or element set and its side");
+      Side side;
+      const std::string name = lower_case(fields[1]);
+      if (name.size() != 2 || name[0] != 's' || name[1] < '1' || name[1] > '4') return;  // of a shell
+      side.side = static_cast<std::size_t>(name[1] - '1');
+      if (parse(fields[0], side.element))
+        surfaces_.back().second.push_back(side);
+      else
+        add_sides(lower_case(fields[0]), side);
+    });
+  }
+
+  struct Side {
+    std::int64_t element = 0;
+    std::size_t side = 0;
+  };
+
+  void add_sides(const std::string& set, Side side) {
+    const auto found = set_index_.find(set);
+    if (found == set_index_.end())
+      lines_.fail(fmt::format("no element set before has the name {}", quoted(set)));
+    std::vector<Side>& sides = surfaces_.back().second;
+    require_room(sides.size() / 4 + sets_[found->second].members.size());
+    for (const std::int64_t element : sets_[found->second].members) {
+      side.element = element;
+      sides.push_back(side);
+    }
+  }
+
+  /// A part that is moved when it is placed would have to be moved here too.
+  void read_instance(const Keyword&) {
+    each_line([&](const Fields& fields) {
+      for (const std::string_view field : fields)
+        if (!field.empty() && coordinate(field) != 0)
+          lines_.fail("an instance that is moved or turned is not supported; export a flat input file");
+    });
+  }
+
+  /// Of the sets that a cell is in, one with a name of ours counts, else the first one of an *ELSET,
+  /// else that of its *ELEMENT.
+  void tag_cells() {
+    mesh_.tet_tag.assign(mesh_.tets.size(), 0);
+    mesh_.face_tag.assign(mesh_.faces.size(), 0);
+    mesh_.edge_tag.assign(mesh_.edges.size(), 0);
+    std::array<std::vector<bool>, 4> tagged{{{},
+                                             std::vector<bool>(mesh_.edges.size()),
+                                             std::vector<bool>(mesh_.faces.size()),
+                                             std::vector<bool>(mesh_.tets.size())}};
+    for (const Set& set : sets_)
+      if (is_ours(set.name)) tag_members(set, tagged);
+    for (const bool named_apart : {true, false})
+      for (const Set& set : sets_)
+        if (set.named_apart == named_apart && !is_ours(set.name)) tag_members(set, tagged);
+    read_volumes();
+  }
+
+  static bool is_ours(const std::string& name) {
+    return tag_of_group_name(3, name) || tag_of_group_name(2, name) || tag_of_group_name(1, name);
+  }
+  void tag_members(const Set& set, std::array<std::vector<bool>, 4>& tagged) {
+    for (const std::int64_t number : set.members) {
+      const Index element = elements_.find(number);
+      if (element == none) continue;  // sets may name elements that are not there
+      const auto [dimension, index] = places_[element];
+      if (tagged[dimension][index]) continue;
+      tagged[dimension][index] = true;
+      const Tag tag = groups_.find(dimension, set.name);
+      (dimension == 3 ? mesh_.tet_tag : dimension == 2 ? mesh_.face_tag : mesh_.edge_tag)[index] = tag;
+    }
+  }
+
+  /// Our sets by region.
+  void read_volumes() {
+    const std::string prefix = lower_case(abaqus_volume_prefix);
+    std::vector<Index> regions(mesh_.tets.size(), none);
+    for (const Set& set : sets_) {
+      Index region = 0;
+      if (!set.name.starts_with(prefix) || !parse(std::string_view(set.name).substr(prefix.size()), region))
+        continue;
+      for (const std::int64_t number : set.members)
+        if (const Index element = elements_.find(number); element != none && places_[element].dimension == 3)
+          regions[places_[element].index] = region;
+    }
+    if (std::find(regions.begin(), regions.end(), none) == regions.end())
+      mesh_.tet_region = std::move(regions);
+  }
+
+  void add_surfaces() {
+    for (const auto& [name, sides] : surfaces_) {
+      if (sides.empty()) continue;
+      const Tag tag = groups_.find(2, name);
+      for (const Side& side : sides) add_side(side, tag);
+    }
+  }
+
+  /// Abaqus' faces look inwards.
+  void add_side(const Side& side, Tag tag) {
+    const Index element = elements_.find(side.element);
+    if (element == none || places_[element].dimension != 3) return;
+    const Index t = places_[element].index;
+    const auto& [i, j, k] = abaqus_faces[side.side];
+    const auto& tet = mesh_.tets[t];
+    const bool positive = six_volume(mesh_.points[tet[0]], mesh_.points[tet[1]], mesh_.points[tet[2]],
+                                     mesh_.points[tet[3]]) > 0;
+    mesh_.faces.push_back({tet[i], tet[positive ? k : j], tet[positive ? j : k]});
+    mesh_.face_tag.push_back(tag);
+    if (mesh_.order() == 1) return;
+    const auto& [ij, jk, ki] = abaqus_face_mid_nodes[side.side];
+    const auto& mid = mesh_.tet_mid_nodes[t];
+    mesh_.face_mid_nodes.push_back({mid[positive ? ki : ij], mid[jk], mid[positive ? ij : ki]});
+  }
+
+  const std::string& path_;
+  Lines lines_;
+  TetMesh mesh_;
+  NumberTable nodes_, elements_;
+  bool sorted_ = true;
+  std::vector<Place> places_;  ///< by element
+  std::map<std::string, std::size_t, std::less<>> set_index_;
+  std::vector<Set> sets_;
+  std::vector<std::pair<std::string, std::vector<Side>>> surfaces_;
+  GroupTags groups_;
+};
+
+}  // namespace
+
+TetMesh read_abaqus(const std::string& path) {
+  const std::string text = read_bytes(path);
+  return AbaqusReader(path, text).read();
+}
+
+}  // namespace collarmesh::io

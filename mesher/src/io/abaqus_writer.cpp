@@ -1,0 +1,136 @@
+// Abaqus' and CalculiX' input format (.inp): nodes, C3D4 or C3D10, an element set for each region of the
+// complex (VOLUME_1) and for each of their tags (REGION_7), a surface for each tag of patches (PATCH_7:
+// faces of the tets behind it), a node set for each tag of patches and curves (PATCH_7_NODES,
+// CURVE_7_NODES). EALL and NALL are everything. Numbers take 20 characters at most, as both programs ask.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "io/abaqus_format.h"
+#include "io/cell_nodes.h"
+#include "io/face_finder.h"
+#include "io/file_writer.h"
+#include "io/label_names.h"
+#include "io/tet_mesh_formats.h"
+
+namespace collarmesh::io {
+
+namespace {
+
+constexpr std::size_t numbers_a_line = 16, number_width = 20;
+
+/// The shortest text that reads back as the same double, or the most digits that fit.
+std::string fitted(double value) {
+  std::string text = fmt::format("{}", value);
+  for (int digits = 16; text.size() > number_width; --digits) text = fmt::format("{:.{}g}", value, digits);
+  return text;
+}
+
+/// Whatever belongs to a group, by the group's tag.
+using Groups = std::map<Tag, std::vector<Index>>;
+
+template <class Cells>
+Groups nodes_by_tag(const TetMesh& mesh, const Cells& nodes_of, const std::vector<Tag>& tags) {
+  Groups groups;
+  for (std::size_t i = 0; i < tags.size(); ++i)
+    for (const Index v : nodes_of(mesh, i)) groups[tags[i]].push_back(v + 1);
+  for (auto& [tag, nodes] : groups) {
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  }
+  return groups;
+}
+
+std::string name_of(std::size_t dimension, Tag tag) {
+  std::string name = group_name(dimension, tag);
+  for (char& c : name)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - ('a' - 'A'));
+  return name;
+}
+
+void write_numbers(FileWriter& out, const std::vector<Index>& numbers) {
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    out << numbers[i] << (i + 1 == numbers.size() || (i + 1) % numbers_a_line == 0 ? ",\n" : ", ");
+}
+
+void write_node_sets(FileWriter& out, std::size_t dimension, const Groups& groups) {
+  for (const auto& [tag, nodes] : groups) {
+    out << "*NSET, NSET=" << name_of(dimension, tag) << "_NODES\n";
+    write_numbers(out, nodes);
+  }
+}
+
+void write_nodes(FileWriter& out, const TetMesh& mesh) {
+  out << "*NODE, NSET=NALL\n";
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+    const Point& p = mesh.points[i];
+    out << i + 1 << ", " << fitted(p.x) << ", " << fitted(p.y) << ", " << fitted(p.z) << '\n';
+  }
+}
+
+void write_elements(FileWriter& out, const TetMesh& mesh) {
+  std::map<Index, std::vector<Index>> volumes;
+  std::map<Tag, std::vector<Index>> regions_of_tag;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    volumes[mesh.tet_region[t]].push_back(static_cast<Index>(t));
+  for (const auto& [region, tets] : volumes) {
+    regions_of_tag[mesh.tet_tag[tets.front()]].push_back(region);
+    out << "*ELEMENT, TYPE=" << (mesh.order() == 2 ? "C3D10" : "C3D4") << ", ELSET=" << abaqus_volume_prefix
+        << region << '\n';
+    for (const Index t : tets) {
+      out << t + 1;
+      for (const Index v : nodes_of_tet(mesh, t)) out << ", " << v + 1;
+      out << '\n';
+    }
+  }
+  out << "*ELSET, ELSET=EALL\n";
+  for (const auto& volume : volumes) out << abaqus_volume_prefix << volume.first << ",\n";
+  for (const auto& [tag, regions] : regions_of_tag) {
+    out << "*ELSET, ELSET=" << name_of(3, tag) << '\n';
+    for (const Index region : regions) out << abaqus_volume_prefix << region << ",\n";
+  }
+}
+
+/// The element and its side that lie behind each face.
+void write_surfaces(FileWriter& out, const TetMesh& mesh) {
+  struct Side {
+    std::size_t tet, side;
+  };
+  std::vector<Side> behind(mesh.faces.size(), {none, 0});
+  FaceFinder finder(mesh.faces);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    for (std::size_t s = 0; s < abaqus_faces.size(); ++s) {
+      // Abaqus' faces look inwards.
+      const auto& [i, j, k] = abaqus_faces[s];
+      const FaceFinder::Triangle outward{mesh.tets[t][i], mesh.tets[t][k], mesh.tets[t][j]};
+      const Index face = finder.find(outward);
+      if (face != none && (FaceFinder::alike(mesh.faces[face], outward) || behind[face].tet == none))
+        behind[face] = {t, s};
+    }
+  std::map<Tag, std::vector<Side>> surfaces;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+    if (behind[f].tet != none) surfaces[mesh.face_tag[f]].push_back(behind[f]);
+  for (const auto& [tag, sides] : surfaces) {
+    out << "*SURFACE, NAME=" << name_of(2, tag) << ", TYPE=ELEMENT\n";
+    for (const Side& side : sides) out << side.tet + 1 << ", S" << side.side + 1 << '\n';
+  }
+}
+
+}  // namespace
+
+void write_abaqus(const std::string& path, const TetMesh& mesh) {
+  FileWriter out(path);
+  out << "*HEADING\nWritten by collarmesh.\n";
+  write_nodes(out, mesh);
+  write_elements(out, mesh);
+  write_surfaces(out, mesh);
+  write_node_sets(out, 2, nodes_by_tag(mesh, nodes_of_face, mesh.face_tag));
+  write_node_sets(out, 1, nodes_by_tag(mesh, nodes_of_edge, mesh.edge_tag));
+  out.commit();
+}
+
+}  // namespace collarmesh::io

@@ -1,0 +1,46 @@
+#include "io/label_names.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "io/number_text.h"
+
+namespace collarmesh::io {
+
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  for (char& c : result)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
+  return result;
+}
+
+std::string group_name(std::size_t dimension, Tag tag, std::string_view minus) {
+  std::string digits = fmt::format("{}", tag);
+  if (tag < 0) digits = fmt::format("{}{}", minus, digits.substr(1));
+  return fmt::format("{}{}", group_name_prefix[dimension], digits);
+}
+
+std::optional<Tag> tag_of_group_name(std::size_t dimension, std::string_view name) {
+  const std::string lower = lower_case(name);
+  const std::string_view prefix = group_name_prefix[dimension];
+  if (!lower.starts_with(prefix)) return std::nullopt;
+  std::string digits = lower.substr(prefix.size());
+  constexpr std::string_view minus = "minus_";
+  if (digits.starts_with(minus)) digits.replace(0, minus.size(), "-");
+  Tag tag = 0;
+  if (!parse(digits, tag)) return std::nullopt;
+  return tag;
+}
+
+Tag GroupTags::find(std::size_t dimension, const std::string& name) {
+  const auto [known, added] = known_[dimension].try_emplace(name, 0);
+  if (added) {
+    Tag& next = next_[dimension];
+    known->second = tag_of_group_name(dimension, name).value_or(next);
+    if (known->second >= next && known->second < std::numeric_limits<Tag>::max()) next = known->second + 1;
+  }
+  return known->second;
+}
+
+}  // namespace collarmesh::io

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "collarmesh/geometry.h"
+
+/// Names of groups of cells, for formats whose groups have names. By dimension: this and the tag.
+namespace collarmesh::io {
+
+constexpr std::array<std::string_view, 4> group_name_prefix{"vertex_", "curve_", "patch_", "region_"};
+
+/// "patch_7"; "patch_minus_7" where a hyphen is not allowed in names.
+std::string group_name(std::size_t dimension, Tag tag, std::string_view minus = "minus_");
+
+/// The tag that a name of ours stands for, in any case.
+std::optional<Tag> tag_of_group_name(std::size_t dimension, std::string_view name);
+
+/// Gives the groups of another program's file tags: of our names what they stand for, others are
+/// numbered from 1 in the order of the file, past the tags that are taken.
+class GroupTags {
+ public:
+  Tag find(std::size_t dimension, const std::string& name);
+
+ private:
+  std::array<std::map<std::string, Tag>, 4> known_;
+  std::array<Tag, 4> next_{1, 1, 1, 1};
+};
+
+std::string lower_case(std::string_view text);
+
+}  // namespace collarmesh::io

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "collarmesh/geometry.h"
+
+namespace collarmesh::io {
+
+/// Finds the entity that a file numbered in its own way.
+/// Cost: constant if the numbers are consecutive, else logarithmic.
+class NumberTable {
+ public:
+  /// Numbers in the order of the entities.
+  void add(std::int64_t number) { numbers_.emplace_back(number, static_cast<Index>(numbers_.size())); }
+
+  /// After the last `add`. Returns a number that was given twice.
+  std::optional<std::int64_t> sort() {
+    if (!std::is_sorted(numbers_.begin(), numbers_.end())) std::sort(numbers_.begin(), numbers_.end());
+    const auto twice = std::adjacent_find(numbers_.begin(), numbers_.end(),
+                                          [](const auto& a, const auto& b) { return a.first == b.first; });
+    if (twice != numbers_.end()) return twice->first;
+    return std::nullopt;
+  }
+
+  /// none if there is no such number.
+  Index find(std::int64_t number) const {
+    if (numbers_.empty() || number < numbers_.front().first || number > numbers_.back().first) return none;
+    // Exact for consecutive numbers.
+    const auto guess =
+        static_cast<std::uint64_t>(number) - static_cast<std::uint64_t>(numbers_.front().first);
+    if (guess < numbers_.size() && numbers_[guess].first == number) return numbers_[guess].second;
+    const auto found = std::lower_bound(numbers_.begin(), numbers_.end(), std::pair(number, Index{0}));
+    return found != numbers_.end() && found->first == number ? found->second : none;
+  }
+
+  std::size_t size() const { return numbers_.size(); }
+
+ private:
+  std::vector<std::pair<std::int64_t, Index>> numbers_;
+};
+
+}  // namespace collarmesh::io

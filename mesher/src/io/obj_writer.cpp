@@ -1,0 +1,28 @@
+// Wavefront's format (.obj): vertices, faces, lines. A tag other than 0 is a group, named as in
+// label_names.h.
+#include <optional>
+
+#include "io/file_writer.h"
+#include "io/label_names.h"
+#include "io/one_polygon.h"
+#include "io/soup_formats.h"
+
+namespace collarmesh::io {
+
+void write_obj(const std::string& path, const PolygonSoup& soup) {
+  FileWriter out(path);
+  out << "# Written by collarmesh.\n";
+  for (const Point& p : soup.points) out << "v " << p.x << ' ' << p.y << ' ' << p.z << '\n';
+  Tag group = 0;
+  for (Index f = 0; f < soup.facet_count(); ++f) {
+    if (soup.facet_tag(f) != group) out << "g " << group_name(2, group = soup.facet_tag(f)) << '\n';
+    out << 'f';
+    for (const Index v : one_polygon(path, soup, f)) out << ' ' << std::size_t{v} + 1;
+    out << '\n';
+  }
+  for (const auto& segment : soup.segments)
+    out << "l " << std::size_t{segment.a} + 1 << ' ' << std::size_t{segment.b} + 1 << '\n';
+  out.commit();
+}
+
+}  // namespace collarmesh::io

@@ -1,0 +1,60 @@
+// Stanford's polygon format (.ply), binary, little endian, in 64-bit numbers. Segments are edges; the tag
+// of a face is a property, if there is any.
+#include <array>
+#include <bit>
+#include <string_view>
+
+#include "io/file_writer.h"
+#include "io/one_polygon.h"
+#include "io/soup_formats.h"
+
+namespace collarmesh::io {
+
+namespace {
+
+template <class T>
+void write_value(FileWriter& out, T value) {
+  static_assert(std::endian::native == std::endian::little);
+  const auto bytes = std::bit_cast<std::array<char, sizeof(T)>>(value);
+  out << std::string_view(bytes.data(), bytes.size());
+}
+
+/// The format has no integers of 64 bits.
+bool has_tags(const PolygonSoup& soup) {
+  bool any = false;
+  for (Index f = 0; f < soup.facet_count(); ++f) {
+    const Tag tag = soup.facet_tag(f);
+    if (tag != static_cast<std::int32_t>(tag)) return false;
+    any = any || tag != 0;
+  }
+  return any;
+}
+
+}  // namespace
+
+void write_ply(const std::string& path, const PolygonSoup& soup) {
+  FileWriter out(path);
+  out << "ply\nformat binary_little_endian 1.0\ncomment Written by collarmesh.\nelement vertex "
+      << soup.points.size() << "\nproperty double x\nproperty double y\nproperty double z\nelement face "
+      << soup.facet_count() << "\nproperty list uint uint vertex_indices\n";
+  const bool tags = has_tags(soup);
+  if (tags) out << "property int tag\n";
+  if (!soup.segments.empty())
+    out << "element edge " << soup.segments.size() << "\nproperty uint vertex1\nproperty uint vertex2\n";
+  out << "end_header\n";
+  for (const Point& p : soup.points)
+    for (const double c : {p.x, p.y, p.z}) write_value(out, c);
+  for (Index f = 0; f < soup.facet_count(); ++f) {
+    const auto corners = one_polygon(path, soup, f);
+    write_value(out, static_cast<std::uint32_t>(corners.size()));
+    for (const Index v : corners) write_value(out, v);
+    if (tags) write_value(out, static_cast<std::int32_t>(soup.facet_tag(f)));
+  }
+  for (const auto& segment : soup.segments) {
+    write_value(out, segment.a);
+    write_value(out, segment.b);
+  }
+  out.commit();
+}
+
+}  // namespace collarmesh::io

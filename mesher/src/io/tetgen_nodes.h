@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "collarmesh/geometry.h"
+#include "io/text_scanner.h"
+
+namespace collarmesh::io {
+
+/// The first line of a .node file, which .poly and .smesh begin with too.
+struct TetgenNodeHeader {
+  Index count = 0;
+  std::int64_t attributes = 0;
+  bool markers = false;
+};
+TetgenNodeHeader read_tetgen_node_header(TextScanner& scan);
+
+/// Returns the number of the first point, 0 or 1. Tags stay empty without markers.
+std::int64_t read_tetgen_nodes(TextScanner& scan, const TetgenNodeHeader& header, std::vector<Point>& points,
+                               std::vector<Tag>& tags);
+
+}  // namespace collarmesh::io

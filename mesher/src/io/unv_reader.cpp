@@ -1,0 +1,219 @@
+// Reads the universal file format of I-DEAS (.unv): nodes (2411, 781), elements (2412, 780) and groups
+// (2467 and its forerunners). Tags are groups: of our names what they say, else their order in the
+// file; without groups they are the materials.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include "collarmesh/error.h"
+#include "io/cell_nodes.h"
+#include "io/complete_mesh.h"
+#include "io/file_bytes.h"
+#include "io/label_names.h"
+#include "io/number_table.h"
+#include "io/number_text.h"
+#include "io/tet_mesh_formats.h"
+#include "io/text_scanner.h"
+#include "io/unv_format.h"
+
+namespace collarmesh::io {
+
+namespace {
+
+class UnvReader {
+ public:
+  UnvReader(const std::string& path, std::string_view text) : path_(path), scan_(path, text, 0) {}
+
+  TetMesh read() {
+    if (scan_.peek() != "-1") scan_.fail("-1, the begin of a dataset", scan_.peek());
+    while (!scan_.at_end()) {
+      if (const std::string_view mark = scan_.word("-1"); mark != "-1")
+        scan_.fail("-1, the begin of a dataset", mark);
+      read_dataset(scan_.integer("the number of a dataset"));
+      if (const std::string_view mark = scan_.word("-1"); mark != "-1")
+        scan_.fail("-1, the end of a dataset", mark);
+    }
+    if (mesh_.tets.empty()) scan_.fail("expected tetrahedra (111, 118), found none");
+    tag_cells();
+    complete_mesh(path_, mesh_);
+    return std::move(mesh_);
+  }
+
+ private:
+  void read_dataset(std::int64_t number) {
+    scan_.skip_line();
+    // Members of the older ones have no node and component.
+    constexpr std::array<std::int64_t, 4> old_groups{2417, 2429, 2430, 2432},
+        groups{2435, 2452, unv_groups, 2477};
+    const auto is_one_of = [number](const std::array<std::int64_t, 4>& numbers) {
+      return std::find(numbers.begin(), numbers.end(), number) != numbers.end();
+    };
+    if (number == unv_nodes || number == 781)
+      read_nodes();
+    else if (number == unv_elements || number == 780)
+      read_elements(number == 780);
+    else if (is_one_of(old_groups) || is_one_of(groups))
+      read_groups(is_one_of(groups));
+    else
+      skip_dataset();
+  }
+
+  bool at_mark() { return scan_.at_end() || scan_.peek() == "-1"; }
+
+  /// Texts in a dataset may hold anything; only a line of "-1" ends it.
+  void skip_dataset() {
+    while (!at_mark()) scan_.skip_line();
+  }
+
+  double real() {
+    std::string text(scan_.word("a coordinate of a node"));
+    for (char& c : text)
+      if (c == 'D' || c == 'd') c = 'E';
+    double value = 0;
+    if (!parse(text, value) || !std::isfinite(value))
+      scan_.fail("a coordinate of a node, a finite number", text);
+    return value;
+  }
+
+  void read_nodes() {
+    while (!at_mark()) {
+      node_numbers_.add(scan_.integer("the number of a node"));
+      scan_.skip_line();
+      const double x = real(), y = real(), z = real();
+      mesh_.points.push_back({x, y, z});
+    }
+    if (const auto twice = node_numbers_.sort())
+      scan_.fail(fmt::format("two nodes have the number {}", *twice));
+  }
+
+  void read_elements(bool old) {
+    while (!at_mark()) {
+      const std::int64_t number = scan_.integer("the number of an element"),
+                         type = scan_.integer("the type of an element");
+      // Property table (780: two numbers), material, colour, number of nodes.
+      scan_.integer("a property");
+      if (old) scan_.integer("a property");
+      const std::int64_t material = scan_.integer("a material");
+      if (old) scan_.integer("a material");
+      scan_.integer("a colour");
+      const Index nodes = scan_.count("the number of nodes", 2);
+      if (unv_is_beam(static_cast<int>(type))) scan_.skip_line();
+      if (unv_is_beam(static_cast<int>(type))) scan_.skip_line();
+      read_element(number, type, nodes, material);
+    }
+  }
+
+  void read_element(std::int64_t number, std::int64_t type, Index count, std::int64_t material) {
+    const auto* known =
+        std::find_if(unv_types.begin(), unv_types.end(), [&](const UnvType& t) { return t.number == type; });
+    if (known == unv_types.end() || known->nodes != count)
+      scan_.fail(
+          fmt::format("elements of type {} with {} nodes are not supported, only tetrahedra (111, 118), "
+                      "triangles (91, 92, 41, 42) and lines (21, 24, 11)",
+                      type, count));
+    std::array<Index, 10> nodes{};
+    for (std::size_t k = 0; k < count; ++k) nodes[known->order[k]] = read_node();
+    CellNodes cell;
+    for (std::size_t k = 0; k < count; ++k) cell.add(nodes[k]);
+    if (known->dimension == 3)
+      add_tet(cell, mesh_);
+    else if (known->dimension == 2)
+      add_face(cell, mesh_);
+    else
+      add_edge(cell, mesh_);
+    element_numbers_.add(number);
+    elements_.push_back({known->dimension, material, 0, false});
+  }
+
+  Index read_node() {
+    const std::int64_t number = scan_.integer("a node of an element");
+    const Index node = node_numbers_.find(number);
+    if (node == none)
+      scan_.fail(fmt::format("an element has the node {}, but no node before has that number", number));
+    return node;
+  }
+
+  /// `long_members`: type, number, node and component, else type and number.
+  void read_groups(bool long_members) {
+    while (!at_mark()) {
+      scan_.integer("the number of a group");
+      for (int k = 0; k < 6; ++k) scan_.integer("a number of a group");
+      const Index members = scan_.count("the number of members", 4);
+      scan_.skip_line();
+      const std::string name(scan_.rest_of_line());
+      for (Index i = 0; i < members; ++i) {
+        const std::int64_t type = scan_.integer("the type of a member"),
+                           number = scan_.integer("the number of a member");
+        if (long_members) {
+          scan_.integer("a node");
+          scan_.integer("a component");
+        }
+        if (type == unv_group_element) members_.push_back({name_index(name), number});
+      }
+    }
+  }
+
+  struct Member {
+    std::size_t group;
+    std::int64_t element;
+  };
+  struct Element {
+    std::size_t dimension;
+    std::int64_t material;
+    Tag tag;
+    bool tagged;
+  };
+
+  std::size_t name_index(const std::string& name) {
+    if (names_.empty() || names_.back() != name) names_.push_back(name);
+    return names_.size() - 1;
+  }
+
+  /// The first group that an element is in counts.
+  void tag_cells() {
+    if (const auto twice = element_numbers_.sort())
+      scan_.fail(fmt::format("two elements have the number {}", *twice));
+    GroupTags tags;
+    for (const auto& [group, number] : members_) {
+      const Index found = element_numbers_.find(number);
+      if (found == none || elements_[found].tagged) continue;
+      Element& element = elements_[found];
+      element.tagged = true;
+      element.tag = tags.find(element.dimension, names_[group]);
+    }
+    bool by_material = true;
+    for (const Element& element : elements_) {
+      const Tag tag = members_.empty() ? element.material : element.tag;
+      if (element.dimension == 3) {
+        mesh_.tet_tag.push_back(tag);
+        by_material = by_material && element.material > 0 && element.material < none;
+      } else {
+        (element.dimension == 2 ? mesh_.face_tag : mesh_.edge_tag).push_back(tag);
+      }
+    }
+    if (!by_material) return;
+    for (const Element& element : elements_)
+      if (element.dimension == 3) mesh_.tet_region.push_back(static_cast<Index>(element.material));
+  }
+
+  const std::string& path_;
+  TextScanner scan_;
+  TetMesh mesh_;
+  NumberTable node_numbers_, element_numbers_;
+  std::vector<Element> elements_;
+  std::vector<std::string> names_;
+  std::vector<Member> members_;
+};
+
+}  // namespace
+
+TetMesh read_unv(const std::string& path) {
+  const std::string text = read_bytes(path);
+  return UnvReader(path, text).read();
+}
+
+}  // namespace collarmesh::io

@@ -1,0 +1,284 @@
+#include "io/vtk_grid.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <span>
+
+#include "io/cell_nodes.h"
+#include "io/complete_mesh.h"
+
+namespace collarmesh::io {
+
+namespace {
+
+constexpr std::uint8_t vtk_vertex = 1, vtk_line = 3, vtk_triangle = 5, vtk_tet = 10, vtk_line_2 = 21,
+                       vtk_triangle_2 = 22, vtk_tet_2 = 24;
+
+std::size_t cell_count(const TetMesh& mesh) {
+  return mesh.tets.size() + mesh.faces.size() + mesh.edges.size();
+}
+
+/// One value per cell, from what each kind of cell has.
+template <class T, class OfTet, class OfFace, class OfEdge>
+std::vector<T> per_cell(const TetMesh& mesh, OfTet of_tet, OfFace of_face, OfEdge of_edge) {
+  std::vector<T> values;
+  values.reserve(cell_count(mesh));
+  for (std::size_t i = 0; i < mesh.tets.size(); ++i) values.push_back(static_cast<T>(of_tet(i)));
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) values.push_back(static_cast<T>(of_face(i)));
+  for (std::size_t i = 0; i < mesh.edges.size(); ++i) values.push_back(static_cast<T>(of_edge(i)));
+  return values;
+}
+
+constexpr auto zero = [](std::size_t) { return 0; };
+
+std::vector<double> coordinates(const TetMesh& mesh) {
+  std::vector<double> values;
+  values.reserve(3 * mesh.points.size());
+  for (const Point& p : mesh.points) values.insert(values.end(), {p.x, p.y, p.z});
+  return values;
+}
+
+std::vector<std::int32_t> connectivity(const TetMesh& mesh) {
+  std::vector<std::int32_t> values;
+  const auto add = [&](const CellNodes& nodes) { values.insert(values.end(), nodes.begin(), nodes.end()); };
+  values.reserve(4 * mesh.tets.size() + 3 * mesh.faces.size() + 2 * mesh.edges.size());
+  for (std::size_t i = 0; i < mesh.tets.size(); ++i) add(nodes_of_tet(mesh, i));
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) add(nodes_of_face(mesh, i));
+  for (std::size_t i = 0; i < mesh.edges.size(); ++i) add(nodes_of_edge(mesh, i));
+  return values;
+}
+
+std::vector<std::int64_t> offsets(const TetMesh& mesh) {
+  std::int64_t end = 0;
+  const bool second = mesh.order() == 2;
+  return per_cell<std::int64_t>(
+      mesh, [&](std::size_t) { return end += second ? 10 : 4; },
+      [&](std::size_t) { return end += second ? 6 : 3; }, [&](std::size_t) { return end += second ? 3 : 2; });
+}
+
+std::vector<std::uint8_t> cell_types(const TetMesh& mesh) {
+  const bool second = mesh.order() == 2;
+  return per_cell<std::uint8_t>(
+      mesh, [=](std::size_t) { return second ? vtk_tet_2 : vtk_tet; },
+      [=](std::size_t) { return second ? vtk_triangle_2 : vtk_triangle; },
+      [=](std::size_t) { return second ? vtk_line_2 : vtk_line; });
+}
+
+std::vector<VtkArray> point_data(const TetMesh& mesh) {
+  if (mesh.features.empty()) return {};
+  std::vector<std::uint8_t> dimension;
+  std::vector<std::int32_t> feature;
+  for (const TetMesh::VertexFeature& f : mesh.features) {
+    dimension.push_back(f.dimension);
+    feature.push_back(static_cast<std::int32_t>(f.feature));
+  }
+  return {{"feature_dimension", std::move(dimension)}, {"feature", std::move(feature)}};
+}
+
+void add_labels(const TetMesh& mesh, std::vector<VtkArray>& arrays) {
+  const auto tet_region = [&](std::size_t i) { return mesh.tet_region[i]; };
+  const auto back = [&](std::size_t i) { return mesh.face_regions[i][0]; };
+  const auto front = [&](std::size_t i) { return mesh.face_regions[i][1]; };
+  const auto either = [&](std::size_t i) { return back(i) != 0 ? back(i) : front(i); };
+  arrays.push_back({"region", per_cell<std::int32_t>(mesh, tet_region, either, zero)});
+  arrays.push_back({"region_back", per_cell<std::int32_t>(mesh, tet_region, back, zero)});
+  arrays.push_back({"region_front", per_cell<std::int32_t>(mesh, tet_region, front, zero)});
+  arrays.push_back({"tag", per_cell<std::int64_t>(
+                               mesh, [&](std::size_t i) { return mesh.tet_tag[i]; },
+                               [&](std::size_t i) { return mesh.face_tag[i]; },
+                               [&](std::size_t i) { return mesh.edge_tag[i]; })});
+  arrays.push_back(
+      {"feature", per_cell<std::int32_t>(
+                      mesh, [](std::size_t) { return -1; }, [&](std::size_t i) { return mesh.face_patch[i]; },
+                      [&](std::size_t i) { return mesh.edge_curve[i]; })});
+  arrays.push_back({"collar", per_cell<std::uint8_t>(
+                                  mesh, [&](std::size_t i) { return mesh.tet_collar[i]; }, zero, zero)});
+}
+
+/// Programs that read the file do not all take infinity.
+float finite(double value) {
+  return static_cast<float>(std::min(value, double{std::numeric_limits<float>::max()}));
+}
+
+void add_measures(const TetMesh& mesh, std::vector<VtkArray>& arrays) {
+  std::array<std::vector<float>, 3> values;
+  for (std::vector<float>& v : values) v.reserve(cell_count(mesh));
+  for (const auto& [a, b, c, d] : mesh.tets) {
+    const TetQuality quality = measure(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]);
+    values[0].push_back(finite(quality.radius_edge));
+    values[1].push_back(finite(quality.min_dihedral));
+    values[2].push_back(finite(quality.max_dihedral));
+  }
+  constexpr std::array<std::string_view, 3> names{"radius_edge", "min_dihedral", "max_dihedral"};
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    values[k].resize(cell_count(mesh), 0.0F);
+    arrays.push_back({names[k], std::move(values[k])});
+  }
+}
+
+// Reading
+
+/// The cells of one piece by kind, as positions in its arrays.
+struct CellKinds {
+  std::vector<std::size_t> tets, faces, edges;
+};
+
+std::size_t nodes_of_type(std::size_t cell, std::int64_t type) {
+  switch (type) {
+    case vtk_vertex: return 1;
+    case vtk_line: return 2;
+    case vtk_triangle:
+    case vtk_line_2: return 3;
+    case vtk_tet: return 4;
+    case vtk_triangle_2: return 6;
+    case vtk_tet_2: return 10;
+    default:
+      throw VtkPieceError{
+          "types", fmt::format("cell {} has the type {}, which is not supported, only tetrahedra (10, 24), "
+                               "triangles (5, 22) and lines (3, 21)",
+                               cell, type)};
+  }
+}
+
+CellNodes read_nodes(const VtkPiece& piece, std::size_t cell, std::span<const std::int64_t> corners,
+                     std::size_t first_point) {
+  CellNodes nodes;
+  for (const std::int64_t corner : corners) {
+    if (corner < 0 || corner >= static_cast<std::int64_t>(piece.points.size()))
+      throw VtkPieceError{"connectivity", fmt::format("cell {} has the corner {}, but there are {} points",
+                                                      cell, corner, piece.points.size())};
+    nodes.add(static_cast<Index>(first_point + static_cast<std::size_t>(corner)));
+  }
+  return nodes;
+}
+
+void add_cell(std::int64_t type, const CellNodes& nodes, std::size_t cell, TetMesh& mesh, CellKinds& kinds) {
+  if (type == vtk_tet || type == vtk_tet_2) {
+    add_tet(nodes, mesh);
+    kinds.tets.push_back(cell);
+  } else if (type == vtk_triangle || type == vtk_triangle_2) {
+    add_face(nodes, mesh);
+    kinds.faces.push_back(cell);
+  } else if (type == vtk_line || type == vtk_line_2) {
+    add_edge(nodes, mesh);
+    kinds.edges.push_back(cell);
+  }
+}
+
+CellKinds add_cells(const VtkPiece& piece, std::size_t first_point, TetMesh& mesh) {
+  CellKinds kinds;
+  const auto corner_count = static_cast<std::int64_t>(piece.connectivity.size());
+  std::int64_t begin = 0;
+  for (std::size_t i = 0; i < piece.types.size(); ++i) {
+    const std::size_t n = nodes_of_type(i, piece.types[i]);
+    if (piece.ends[i] < begin || piece.ends[i] > corner_count ||
+        piece.ends[i] - begin != static_cast<std::int64_t>(n))
+      throw VtkPieceError{"types",
+                          fmt::format("cell {} of type {} ends at {} of {} corners, but begins at {}", i,
+                                      piece.types[i], piece.ends[i], corner_count, begin)};
+    const auto* first = piece.connectivity.data() + begin;
+    add_cell(piece.types[i], read_nodes(piece, i, {first, n}, first_point), i, mesh, kinds);
+    begin = piece.ends[i];
+  }
+  if (begin != corner_count)
+    throw VtkPieceError{"connectivity", fmt::format("expected {} corners, found {}", begin, corner_count)};
+  return kinds;
+}
+
+template <class T>
+void pick(const std::vector<std::int64_t>& values, const std::vector<std::size_t>& cells,
+          std::vector<T>& to) {
+  if (!values.empty())
+    for (const std::size_t cell : cells) to.push_back(static_cast<T>(values[cell]));
+}
+
+/// The first of these arrays that is there; empty if none is.
+const std::vector<std::int64_t>& find_array(const VtkPiece::Arrays& arrays,
+                                            std::initializer_list<std::string_view> names) {
+  static const std::vector<std::int64_t> nothing;
+  for (const std::string_view name : names)
+    if (const auto found = arrays.find(name); found != arrays.end()) return found->second;
+  return nothing;
+}
+
+void add_read_labels(const VtkPiece& piece, const CellKinds& kinds, TetMesh& mesh) {
+  const auto find = [&](std::initializer_list<std::string_view> names) -> const auto& {
+    return find_array(piece.cell_data, names);
+  };
+  const auto& tags = find({"tag", "gmsh:physical", "medit:ref", "CellEntityIds", "region"});
+  pick(tags, kinds.tets, mesh.tet_tag);
+  pick(tags, kinds.faces, mesh.face_tag);
+  pick(tags, kinds.edges, mesh.edge_tag);
+  const auto& regions = find({"region"});
+  if (std::all_of(regions.begin(), regions.end(), [](std::int64_t r) { return r >= 0 && r < none; }))
+    pick(regions, kinds.tets, mesh.tet_region);
+  pick(find({"collar"}), kinds.tets, mesh.tet_collar);
+  const auto& features = find({"feature"});
+  pick(features, kinds.faces, mesh.face_patch);
+  pick(features, kinds.edges, mesh.edge_curve);
+  const auto &back = find({"region_back"}), &front = find({"region_front"});
+  if (!back.empty() && !front.empty())
+    for (const std::size_t cell : kinds.faces)
+      mesh.face_regions.push_back({static_cast<Index>(back[cell]), static_cast<Index>(front[cell])});
+}
+
+void add_read_features(const VtkPiece& piece, TetMesh& mesh) {
+  const auto &dimensions = find_array(piece.point_data, {"feature_dimension"}),
+             &features = find_array(piece.point_data, {"feature"});
+  if (dimensions.empty() || features.empty()) return;
+  for (std::size_t i = 0; i < piece.points.size(); ++i) {
+    if (dimensions[i] < 0 || dimensions[i] > 3)
+      throw VtkPieceError{"feature_dimension",
+                          fmt::format("point {} has the feature dimension {}", i, dimensions[i])};
+    mesh.features.push_back({static_cast<std::uint8_t>(dimensions[i]), static_cast<Index>(features[i])});
+  }
+}
+
+template <class T>
+void drop_partial(std::vector<T>& values, std::size_t count) {
+  if (values.size() != count) values.clear();
+}
+
+}  // namespace
+
+VtkGrid make_vtk_grid(const TetMesh& mesh) {
+  VtkGrid grid;
+  grid.point_count = mesh.points.size();
+  grid.cell_count = cell_count(mesh);
+  grid.points = {"Points", coordinates(mesh), 3};
+  grid.connectivity = {"connectivity", connectivity(mesh)};
+  grid.offsets = {"offsets", offsets(mesh)};
+  grid.types = {"types", cell_types(mesh)};
+  grid.point_data = point_data(mesh);
+  add_labels(mesh, grid.cell_data);
+  add_measures(mesh, grid.cell_data);
+  return grid;
+}
+
+void add_vtk_piece(const VtkPiece& piece, TetMesh& mesh) {
+  const std::size_t first_point = mesh.points.size();
+  if (first_point + piece.points.size() >= none)
+    throw VtkPieceError{"Points", "more points than can be numbered"};
+  mesh.points.insert(mesh.points.end(), piece.points.begin(), piece.points.end());
+  const CellKinds kinds = add_cells(piece, first_point, mesh);
+  add_read_labels(piece, kinds, mesh);
+  add_read_features(piece, mesh);
+}
+
+void complete_vtk_mesh(const std::string& path, TetMesh& mesh) {
+  drop_partial(mesh.features, mesh.points.size());
+  drop_partial(mesh.tet_tag, mesh.tets.size());
+  drop_partial(mesh.tet_region, mesh.tets.size());
+  drop_partial(mesh.tet_collar, mesh.tets.size());
+  drop_partial(mesh.face_tag, mesh.faces.size());
+  drop_partial(mesh.face_patch, mesh.faces.size());
+  drop_partial(mesh.face_regions, mesh.faces.size());
+  drop_partial(mesh.edge_tag, mesh.edges.size());
+  drop_partial(mesh.edge_curve, mesh.edges.size());
+  complete_mesh(path, mesh);
+}
+
+}  // namespace collarmesh::io

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "collarmesh/tet_mesh.h"
+
+/// A mesh as an unstructured grid of VTK, which several file formats store.
+namespace collarmesh::io {
+
+struct VtkArray {
+  std::string_view name;
+  std::variant<std::vector<std::uint8_t>, std::vector<std::int32_t>, std::vector<std::int64_t>,
+               std::vector<float>, std::vector<double>>
+      values;
+  int components = 1;
+};
+
+/// Cells: tets, then faces, then curve edges. Cell arrays, each defined for all of them:
+///   region                    of a tet; of a face the one behind it, or in front if none is behind
+///   region_back, region_front of a face: TetMesh::face_regions; of a tet both its region
+///   tag                       of the region, patch or curve
+///   feature                   index of the patch or curve in the complex; -1: unknown or a tet
+///   collar                    TetMesh::tet_collar; 0 for faces and edges
+///   radius_edge, min_dihedral, max_dihedral   of tets; 0 for faces and edges
+/// Point arrays, if features are known: feature_dimension, feature.
+struct VtkGrid {
+  VtkArray points, connectivity, offsets, types;  ///< offsets: where each cell ends
+  std::vector<VtkArray> point_data, cell_data;
+
+  std::size_t point_count = 0, cell_count = 0;
+};
+VtkGrid make_vtk_grid(const TetMesh& mesh);
+
+/// A part of a file that is being read.
+struct VtkPiece {
+  using Arrays = std::map<std::string, std::vector<std::int64_t>, std::less<>>;
+  std::vector<Point> points;
+  std::vector<std::int64_t> connectivity, ends, types;
+  Arrays point_data, cell_data;  ///< those of `vtk_point_arrays` and `vtk_cell_arrays` that are there
+};
+
+/// Arrays that say something about a mesh: ours, and the names that meshio and Gmsh give to labels.
+constexpr std::array<std::string_view, 2> vtk_point_arrays{"feature_dimension", "feature"};
+constexpr std::array<std::string_view, 9> vtk_cell_arrays{"tag",           "gmsh:physical", "medit:ref",
+                                                          "CellEntityIds", "region",        "region_back",
+                                                          "region_front",  "feature",       "collar"};
+
+/// What is wrong with a piece: for the caller to add the file and the place.
+struct VtkPieceError {
+  std::string_view array;
+  std::string message;
+};
+
+/// Add a piece to a mesh. Cells of a point are skipped. Throws VtkPieceError.
+/// Precondition: arrays have one value for each point or cell.
+void add_vtk_piece(const VtkPiece& piece, TetMesh& mesh);
+
+/// After the last piece: arrays that only some pieces have are dropped. Throws ReadError.
+void complete_vtk_mesh(const std::string& path, TetMesh& mesh);
+
+}  // namespace collarmesh::io

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+
+#include "collarmesh/tet_mesh.h"
+
+namespace collarmesh::testing {
+
+/// The mesh with a node at the middle of every edge; each lies on the features that its edge lies on.
+inline TetMesh second_order(TetMesh mesh) {
+  std::map<std::pair<Index, Index>, Index> nodes;
+  std::map<std::pair<Index, Index>, TetMesh::VertexFeature> features;
+  const auto key = [](Index a, Index b) { return std::pair(std::min(a, b), std::max(a, b)); };
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+    for (std::size_t k = 0; k < 3; ++k)
+      features[key(mesh.faces[f][k], mesh.faces[f][(k + 1) % 3])] = {2, mesh.face_patch[f]};
+  for (std::size_t e = 0; e < mesh.edges.size(); ++e)
+    features[key(mesh.edges[e][0], mesh.edges[e][1])] = {1, mesh.edge_curve[e]};
+  const auto middle = [&](Index a, Index b) {
+    const auto [found, added] = nodes.try_emplace(key(a, b), static_cast<Index>(mesh.points.size()));
+    if (added) {
+      if (!mesh.features.empty()) mesh.features.push_back(features[key(a, b)]);
+      mesh.points.push_back(0.5 * (mesh.points[a] + mesh.points[b]));
+    }
+    return found->second;
+  };
+  for (const auto& [a, b, c, d] : mesh.tets)
+    mesh.tet_mid_nodes.push_back(
+        {middle(a, b), middle(b, c), middle(c, a), middle(a, d), middle(b, d), middle(c, d)});
+  for (const auto& [a, b, c] : mesh.faces)
+    mesh.face_mid_nodes.push_back({middle(a, b), middle(b, c), middle(c, a)});
+  for (const auto& [a, b] : mesh.edges) mesh.edge_mid_nodes.push_back(middle(a, b));
+  return mesh;
+}
+
+}  // namespace collarmesh::testing
