@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from inputs import Surface, box, read_surface
-from meshers import Collarmesh, GmshHxt, MeshRun, TetGen, triangulation_seconds
+from meshers import Collarmesh, Gmsh, MeshRun, TetGen, triangulation_seconds
 from processes import ProgramFailed, pin_to_core
 from tables import exponent, machine, seconds, si, table, tets_text
 from tuning import SizeCache, size_for, tolerance
@@ -166,7 +166,7 @@ def main() -> int:
     about = machine(options.build)
     pin_to_core(options.core)
     meshers = [Collarmesh(options.build / "bin" / "collarmesh", options.time_limit),
-               TetGen(options.time_limit), GmshHxt(options.time_limit)]
+               TetGen(options.time_limit), Gmsh(options.time_limit)]
     surfaces = [] if options.no_box else [box()]
     if options.corpus:
         surfaces += [read_surface(Path(options.corpus) / part) for part in options.parts]

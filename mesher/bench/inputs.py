@@ -16,6 +16,12 @@ class Surface:
     name: str
     points: list[Corner]
     polygons: list[list[int]] = field(default_factory=list)
+    feature_angle = 30   # the default
+
+    @property
+    def files(self) -> list[str]:
+        """What write("input") makes."""
+        return [f"input{self.suffix}"]
 
     @property
     def diagonal(self) -> float:
@@ -63,6 +69,14 @@ class Surface:
                 out.write("endloop\nendfacet\n")
             out.write("endsolid surface\n")
 
+    def write_geo(self, path: Path) -> None:
+        """For Gmsh: the box as a solid, others as a classified surface."""
+        if self.name == "box":
+            path.write_text('SetFactory("OpenCASCADE");\nBox(1) = {0, 0, 0, 1, 1, 1};\n')
+            return
+        self.write_stl(path.with_suffix(".stl"))
+        path.write_text(classified(path.with_suffix(".stl").name))
+
     def write_poly(self, path: Path) -> None:
         with open(path, "w") as out:
             out.write(f"{len(self.points)} 3 0 0\n")
@@ -70,6 +84,12 @@ class Surface:
             out.write(f"{len(self.polygons)} 0\n")
             out.writelines(f"1\n{len(q)} {' '.join(map(str, q))}\n" for q in self.polygons)
             out.write("0\n0\n")
+
+
+def classified(stl: str) -> str:
+    """A Gmsh model: the solid in a triangulated surface whose patches end at angles above 30 degrees."""
+    return (f'Merge "{stl}";\nClassifySurfaces{{30*Pi/180, 1, 1, Pi}};\nCreateGeometry;\n'
+            "Surface Loop(1) = Surface{:};\nVolume(1) = {1};\n")
 
 
 def read_surface(path: Path) -> Surface:

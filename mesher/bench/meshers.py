@@ -28,6 +28,7 @@ class MeshRun:
     stages: dict | None = None
     guarantee_missed: bool = False
     cells: int = 0             # of the whole triangulation, outside the solid too; 0: says nothing
+    report: dict | None = None   # what collarmesh measured
 
 
 def _number(pattern: str, text: str) -> float:
@@ -39,6 +40,7 @@ def _number(pattern: str, text: str) -> float:
 
 class Collarmesh:
     name = "collarmesh"
+    mesh_file = "mesh.msh"
     guarantee_missed = 7   # exit code: there is a mesh, but it is not certified
 
     def __init__(self, program: Path, time_limit: float, arguments: list[str] | None = None):
@@ -57,8 +59,9 @@ class Collarmesh:
         surface.write(folder / "input")
 
     def mesh(self, surface: Surface, size: float, folder: Path) -> MeshRun:
-        command = [str(self.program), f"input{surface.suffix}", "-o", "mesh.msh", "--size", f"{size:.17g}",
-                   "--report", "report.json", "--progress", "none", "-q", *self.arguments]
+        command = [str(self.program), *surface.files, "-o", self.mesh_file, "--size", f"{size:.17g}",
+                   "--feature-angle", f"{surface.feature_angle:g}", "--report", "report.json",
+                   "--progress", "none", "-q", *self.arguments]
         measured = run(command, folder, self.time_limit, accepted=(0, self.guarantee_missed))
         report = json.loads((folder / "report.json").read_text())
         # The report has wall seconds; the share of the core we had turns them into CPU seconds.
@@ -66,7 +69,7 @@ class Collarmesh:
         stages = {stage: seconds * share for stage, seconds in report["seconds"].items()}
         return MeshRun(report["mesh"]["tets"], measured.cpu, stages["refine"], measured.peak_bytes,
                        report["statistics"]["peak_bytes"], stages,
-                       measured.exit_code == self.guarantee_missed, report["statistics"]["cells"])
+                       measured.exit_code == self.guarantee_missed, report["statistics"]["cells"], report)
 
 
     def describe(self, surface: Surface, folder: Path) -> dict:
@@ -77,9 +80,10 @@ class Collarmesh:
 
 class TetGen:
     name = "TetGen"
+    mesh_file = "input.1.mesh"   # with the switch g
 
-    def __init__(self, time_limit: float, program: str = "tetgen", quality: str = "1.414"):
-        self.program, self.time_limit, self.quality = program, time_limit, quality
+    def __init__(self, time_limit: float, program: str = "tetgen", quality: str = "1.414", switches: str = ""):
+        self.program, self.time_limit, self.quality, self.switches = program, time_limit, quality, switches
 
     def version(self) -> str:
         return _debian_version("tetgen")
@@ -91,17 +95,18 @@ class TetGen:
 
     def mesh(self, surface: Surface, size: float, folder: Path) -> MeshRun:
         limit = "" if math.isinf(size) else f"a{size ** 3 / (6 * math.sqrt(2)):.20f}"
-        measured = run([self.program, f"-pq{self.quality}{limit}", f"input{surface.suffix}"], folder,
-                       self.time_limit)
+        measured = run([self.program, f"-pq{self.quality}{limit}{self.switches}", f"input{surface.suffix}"],
+                       folder, self.time_limit)
         return MeshRun(int(_number(r"Mesh tetrahedra: +(\d+)", measured.output)), measured.cpu,
                        _number(r"Refinement seconds: +([\d.e+-]+)", measured.output), measured.peak_bytes)
 
 
-class GmshHxt:
-    name = "Gmsh HXT"
+class Gmsh:
+    mesh_file = "mesh.msh"
 
-    def __init__(self, time_limit: float, program: str = "gmsh"):
-        self.program, self.time_limit = program, time_limit
+    def __init__(self, time_limit: float, algorithm: str = "hxt", program: str = "gmsh"):
+        self.program, self.time_limit, self.algorithm = program, time_limit, algorithm
+        self.name = {"hxt": "Gmsh HXT", "del3d": "Gmsh Delaunay"}[algorithm]
 
     def version(self) -> str:
         return _debian_version("gmsh")
@@ -109,26 +114,24 @@ class GmshHxt:
     signature = version
 
     def prepare(self, surface: Surface, folder: Path) -> None:
-        if surface.name != "box":
-            surface.write_stl(folder / "input.stl")
+        surface.write_geo(folder / "model.geo")
 
     def mesh(self, surface: Surface, size: float, folder: Path) -> MeshRun:
-        (folder / "input.geo").write_text(self._model(surface) + f"Mesh.MeshSizeMin = {size:.17g};\n"
+        (folder / "input.geo").write_text('Include "model.geo";\n' f"Mesh.MeshSizeMin = {size:.17g};\n"
                                           f"Mesh.MeshSizeMax = {size:.17g};\n")
-        measured = run([self.program, "-3", "-algo", "hxt", "-nt", "1", "input.geo", "-bin", "-o",
-                        "mesh.msh"], folder, self.time_limit)
+        measured = run([self.program, "-3", "-algo", self.algorithm, "-nt", "1", "input.geo", "-bin", "-o",
+                        self.mesh_file], folder, self.time_limit)
         if "Error" in measured.output:
             raise ProgramFailed(re.search(r"Error +: (.*)", measured.output).group(1))
-        return MeshRun(int(_number(r"Final tet. mesh contains (\d+) tetrahedra", measured.output)),
+        return MeshRun(int(_number(self._count(measured.output), measured.output)),
                        measured.cpu, _number(r"Done meshing 3D \(.*CPU ([\d.e+-]+)s", measured.output),
                        measured.peak_bytes)
 
     @staticmethod
-    def _model(surface: Surface) -> str:
-        if surface.name == "box":
-            return 'SetFactory("OpenCASCADE");\nBox(1) = {0, 0, 0, 1, 1, 1};\n'
-        return ('Merge "input.stl";\nClassifySurfaces{30*Pi/180, 1, 1, Pi};\nCreateGeometry;\n'
-                "Surface Loop(1) = Surface{:};\nVolume(1) = {1};\n")
+    def _count(output: str) -> str:
+        """HXT alone says how many tets there are, the others how many elements of all dimensions."""
+        hxt = r"Final tet. mesh contains (\d+) tetrahedra"
+        return hxt if re.search(hxt, output) else r"\d+ nodes (\d+) elements"
 
 
 def _debian_version(package: str) -> str:

@@ -127,6 +127,15 @@ Shape wedge(double angle, double length) {
       fmt::format("wedge({}, {})", angle, length), {extrusion(triangle, length)}, length * area(triangle)};
 }
 
+Shape wedge_on_a_large_one(double angle, double small) {
+  const Shape large = wedge(angle);
+  PolygonSoup tiny = large.soups[0];
+  for (Point& p : tiny.points) p = Point{0.7, 0, 1 + small} + small * p;
+  return {fmt::format("wedge_on_a_large_one({}, {})", angle, small),
+          {large.soups[0], tiny},
+          large.volume * (1 + small * small * small)};
+}
+
 Shape fan(unsigned k, std::uint32_t seed) {
   PolygonSoup soup = room({-1, -1, -0.5}, {1, 1, 0.5});
   std::mt19937 random(seed);

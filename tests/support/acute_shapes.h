@@ -20,6 +20,9 @@ struct Shape {
 /// A prism over a triangle with this angle between two sides of length 1.
 Shape wedge(double angle, double length = 1);
 
+/// A unit wedge and a similar one of this size just above its top, the gap as wide as the small one is.
+Shape wedge_on_a_large_one(double angle, double small);
+
 /// A box with k rectangles inside that share one segment, at equal angles or (seed > 0) at random ones of
 /// at least a third of that.
 Shape fan(unsigned k, std::uint32_t seed = 0);

@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+"""Tets against the angle of the creases, when no size is asked for: wedges, fans, pyramids and needles,
+beside the figures of the feasibility study that the collars of this project go back to. Prints a Markdown
+table."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from pathlib import Path
+
+from acute_inputs import AcuteInput
+from meshers import Collarmesh
+from processes import pin_to_core
+from tables import machine, seconds, si, table
+from tuning import SizeCache
+
+size = 1.0   # the shapes are about 1
+
+# As high as it is wide, between opposite sides.
+square_pyramid = ("pyramid", 4, 2 * math.degrees(math.atan(math.sqrt(0.5))))
+
+# Outside collars, in stars, in books. The study, a throw-away program, was run on shapes like these.
+study = {("wedge", 60, 1): (379, 109, 21), ("wedge", 40, 1): (437, 127, 26), ("wedge", 20, 1): (180, 33, 5),
+         ("wedge", 5, 1): (2376, 132, 5), square_pyramid: (425, 148, 40), ("fan", 8, 0): (1755, 288, 56),
+         ("fan", 16, 0): (4754, 746, 112), ("fan", 36, 0): (39853, 3856, 252), ("fan", 72, 0): (293000, 15286, 504)}
+
+shapes: list[tuple] = (
+    [("wedge", angle, 1) for angle in (80, 60, 59, 40, 20, 10, 5, 2, 1)]
+    + [("fan", sheets, 0) for sheets in (3, 6, 8, 12, 16, 24, 36, 72)]
+    + [square_pyramid] + [("pyramid", 4, angle) for angle in (60, 40, 20, 10, 5, 2)]
+    + [("pyramid", 7, angle) for angle in (60, 10, 2)])
+
+header = ["shape", "angle", "outside collars", "in collars", "study's", "share of it", "dihedral angle in collars",
+          "refinement s"]
+
+
+def crease_angle(family: str, first: float, second: float) -> float:
+    """Degrees; of a pyramid that between opposite sides."""
+    return {"wedge": first, "fan": 360 / first, "pyramid": second}[family]
+
+
+def row(mesher: Collarmesh, program: Path, folder: Path, family: str, *parameters: float) -> list[str]:
+    shape = AcuteInput(program, family, parameters)
+    mesher.prepare(shape, folder)
+    run = mesher.mesh(shape, size, folder)
+    check = run.report["check"]
+    reference = sum(study.get((family, *parameters), ()))
+    collar = check["collar_tets"]
+    return [shape.name + (" (7)" if run.guarantee_missed else ""), f"{crease_angle(family, *parameters):.3g}",
+            si(run.tets - collar), si(collar), si(reference) if reference else "",
+            f"{run.tets / reference:.2f}" if reference else "",
+            f"{check['max_collar_dihedral']:.0f}" if collar else "", seconds(run.refinement_cpu)]
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    root = Path(__file__).resolve().parents[2]
+    parser.add_argument("--build", type=Path, default=root / "build" / "bench")
+    parser.add_argument("--time-limit", type=float, default=300)
+    parser.add_argument("--core", type=int)
+    options = parser.parse_args()
+    about = machine(options.build)
+    pin_to_core(options.core)
+    mesher = Collarmesh(options.build / "bin" / "collarmesh", options.time_limit)
+    folder = SizeCache().folder / "acute" / "angles"
+    folder.mkdir(parents=True, exist_ok=True)
+    rows = [row(mesher, options.build / "bin" / "acute_shape", folder, *shape) for shape in shapes]
+    print(f"{about}. collarmesh {mesher.version()}, target edge length {size:g}.\n")
+    print(table(header, rows))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

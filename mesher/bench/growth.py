@@ -1,0 +1,163 @@
+#!/usr/bin/env python3
+"""Time against the number of acute features and against their spread.
+
+creases: grids of wedges and of fans, and a comb, ever more of them.
+spread: a small wedge above a large one, ever smaller.
+Prints Markdown tables; with --plot FOLDER it draws them too (matplotlib)."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from acute_inputs import AcuteInput
+from meshers import Collarmesh, MeshRun
+from processes import ProgramFailed, pin_to_core
+from tables import exponent, machine, seconds, si, table
+from tuning import SizeCache
+
+size = 1.0   # the shapes are about 1
+
+
+@dataclass
+class Series:
+    """Inputs that differ in one number, and what came of them."""
+    title: str
+    inputs: dict[float, AcuteInput]
+    runs: dict[float, MeshRun]
+
+    def measure(self, mesher: Collarmesh, folder: Path, size: float) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        for at, shape in self.inputs.items():
+            try:
+                mesher.prepare(shape, folder)
+                self.runs[at] = mesher.mesh(shape, size, folder)
+                print(f"{self.title} {at:g}: {self.runs[at].cpu:.3g} s", file=sys.stderr)
+            except ProgramFailed as failure:
+                print(f"{self.title} {at:g}: {failure}", file=sys.stderr)
+
+
+def crease_series(program: Path, largest: int) -> list[Series]:
+    """By the number of crease segments: one in a wedge of 20 degrees, one in a fan of 8 sheets (both in
+    grids of turned copies), one at the tip of each tooth of a comb and none elsewhere. All teeth of a comb
+    are on two facets."""
+    counts = [n for k in range(1, 6) for n in (10 ** k, 3 * 10 ** k) if n <= min(largest, 100000)]
+    copies = [Series(title, {n: AcuteInput(program, family, parameters, n) for n in counts if n <= most}, {})
+              for title, family, parameters, most in (("wedges of 20 degrees", "wedge", (20, 1), 100000),
+                                                      ("fans of 8 sheets", "fan", (8, 0), 1000))]
+    teeth = [n for n in counts if n <= 300]
+    return [*copies, Series("comb, teeth of 30 degrees",
+                            {n: AcuteInput(program, "comb", (n, 30)) for n in teeth}, {})]
+
+
+def spread_series(program: Path) -> list[Series]:
+    ratios = [10 ** (-k / 2) for k in range(2, 13)]
+    return [Series(f"wedges of {angle} degrees",
+                   {1 / s: AcuteInput(program, "wedge_on_a_large_one", (angle, s)) for s in ratios}, {})
+            for angle in (90, 20)]
+
+
+def crease_table(series: list[Series]) -> str:
+    rows = []
+    for one in series:
+        before = None
+        for n, run in one.runs.items():
+            growth = "" if before is None else f"{exponent(before, one.runs[before].cpu, n, run.cpu):.2f}"
+            stages = run.stages
+            rows.append([one.title, si(n), si(run.tets) + (" (7)" if run.guarantee_missed else ""),
+                         *(seconds(stages[stage]) for stage in ("read", "complex", "refine", "check")),
+                         seconds(run.cpu), growth, f"{1e6 * stages['refine'] / run.tets:.2f}"])
+            before = n
+    return table(["shape", "crease segments", "tets", "read s", "complex s", "refine s", "check s", "CPU s",
+                  "exponent", "refine us/tet"], rows)
+
+
+def spread_table(series: list[Series]) -> str:
+    rows = []
+    for one in series:
+        before = None
+        for ratio, run in one.runs.items():
+            rows.append([one.title, si(ratio), si(run.tets) + (" (7)" if run.guarantee_missed else ""),
+                         si(run.cells), "" if before is None else f"{run.cells - before.cells:+d}", seconds(run.cpu)])
+            before = run
+    return table(["shape", "large / small", "tets", "cells, outside too", "more", "CPU s"], rows)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    root = Path(__file__).resolve().parents[2]
+    parser.add_argument("what", nargs="*", default=["creases", "spread"], help="creases, spread")
+    parser.add_argument("--build", type=Path, default=root / "build" / "bench")
+    parser.add_argument("--largest", type=int, default=100000, help="number of crease segments")
+    parser.add_argument("--time-limit", type=float, default=600)
+    parser.add_argument("--plot", type=Path, help="folder for creases.svg and spread.svg")
+    parser.add_argument("--core", type=int)
+    options = parser.parse_args()
+    about = machine(options.build)
+    pin_to_core(options.core)
+    mesher = Collarmesh(options.build / "bin" / "collarmesh", options.time_limit)
+    program = options.build / "bin" / "acute_shape"
+    folder = SizeCache().folder / "acute" / "growth"
+    print(f"{about}. collarmesh {mesher.version()}.\n")
+    if "creases" in options.what:
+        series = crease_series(program, options.largest)
+        for one in series:
+            one.measure(mesher, folder, size)
+        print(crease_table(series))
+        if options.plot:
+            plot_creases(series, options.plot / "creases.svg")
+    if "spread" in options.what:
+        series = spread_series(program)
+        for one in series:
+            one.measure(mesher, folder, 10 * size)
+        print(spread_table(series))
+        if options.plot:
+            plot_spread(series, options.plot / "spread.svg")
+    return 0
+
+
+def axes_of_a_plot(title: str, horizontal: str, vertical: str):
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plot
+    plot.rcParams.update({"svg.hashsalt": "collarmesh", "svg.fonttype": "path", "font.size": 10})
+    figure, axes = plot.subplots(figsize=(6, 4), layout="constrained")
+    axes.set(title=title, xlabel=horizontal, ylabel=vertical)
+    axes.grid(alpha=0.3)
+    axes.spines[["top", "right"]].set_visible(False)
+    return figure, axes
+
+
+def save(figure, path: Path) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, metadata={"Date": None})
+
+
+def plot_creases(series: list[Series], path: Path) -> None:
+    figure, axes = axes_of_a_plot("Growth with the number of creases", "crease segments", "CPU seconds")
+    axes.set(xscale="log", yscale="log")
+    for one in series:
+        axes.plot(list(one.runs), [run.cpu for run in one.runs.values()], marker="o", label=one.title)
+    counts = [n for n in series[0].runs]
+    last = series[0].runs[counts[-1]].cpu
+    axes.plot(counts, [last * n * math.log(n) / (counts[-1] * math.log(counts[-1])) for n in counts],
+              color="0.5", linestyle="--", linewidth=1, label="n log n")
+    axes.legend(frameon=False)
+    save(figure, path)
+
+
+def plot_spread(series: list[Series], path: Path) -> None:
+    figure, axes = axes_of_a_plot("A small wedge beside a large one", "large / small", "cells, outside too")
+    axes.set(xscale="log")
+    for one in series:
+        axes.plot(list(one.runs), [run.cells for run in one.runs.values()], marker="o", label=one.title)
+    axes.set_ylim(bottom=0)
+    axes.legend(frameon=False)
+    save(figure, path)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
