@@ -100,10 +100,10 @@ std::vector<PolygonSoup> copies_of(const acute::Shape& shape, unsigned count) {
   for (unsigned i = 0; i < count; ++i) {
     const acute::Shape turned = acute::turned(shape, i + 1);
     const Point centre = bounds(turned.soups).centre();
-    const Point cell = pitch * Point{static_cast<double>(i % side), static_cast<double>(i / side % side),
-                                     static_cast<double>(i / side / side)};
-    for (std::size_t k = 0; k < soups.size(); ++k)
-      append(soups[k], turned.soups[k], cell - centre);
+    const unsigned row = i / side, layer = row / side;
+    const Point cell = pitch * Point{static_cast<double>(i % side), static_cast<double>(row % side),
+                                     static_cast<double>(layer)};
+    for (std::size_t k = 0; k < soups.size(); ++k) append(soups[k], turned.soups[k], cell - centre);
   }
   return soups;
 }

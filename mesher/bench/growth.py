@@ -16,7 +16,7 @@ from pathlib import Path
 from acute_inputs import AcuteInput
 from meshers import Collarmesh, MeshRun
 from processes import ProgramFailed, pin_to_core
-from tables import exponent, machine, seconds, si, table
+from tables import exponent, machine, seconds, si, table, tets_text
 from tuning import SizeCache
 
 size = 1.0   # the shapes are about 1
@@ -54,9 +54,9 @@ def crease_series(program: Path, largest: int) -> list[Series]:
 
 
 def spread_series(program: Path) -> list[Series]:
-    ratios = [10 ** (-k / 2) for k in range(2, 13)]
+    ratios = [10 ** (k / 2) for k in range(2, 13)]
     return [Series(f"wedges of {angle} degrees",
-                   {1 / s: AcuteInput(program, "wedge_on_a_large_one", (angle, s)) for s in ratios}, {})
+                   {r: AcuteInput(program, "wedge_on_a_large_one", (angle, 1 / r)) for r in ratios}, {})
             for angle in (90, 20)]
 
 
@@ -67,7 +67,7 @@ def crease_table(series: list[Series]) -> str:
         for n, run in one.runs.items():
             growth = "" if before is None else f"{exponent(before, one.runs[before].cpu, n, run.cpu):.2f}"
             stages = run.stages
-            rows.append([one.title, si(n), si(run.tets) + (" (7)" if run.guarantee_missed else ""),
+            rows.append([one.title, si(n), tets_text(run),
                          *(seconds(stages[stage]) for stage in ("read", "complex", "refine", "check")),
                          seconds(run.cpu), growth, f"{1e6 * stages['refine'] / run.tets:.2f}"])
             before = n
@@ -80,7 +80,9 @@ def spread_table(series: list[Series]) -> str:
     for one in series:
         before = None
         for ratio, run in one.runs.items():
-            rows.append([one.title, si(ratio), si(run.tets) + (" (7)" if run.guarantee_missed else ""),
+            if not math.log10(ratio).is_integer():
+                continue
+            rows.append([one.title, si(ratio), tets_text(run),
                          si(run.cells), "" if before is None else f"{run.cells - before.cells:+d}", seconds(run.cpu)])
             before = run
     return table(["shape", "large / small", "tets", "cells, outside too", "more", "CPU s"], rows)
@@ -100,19 +102,19 @@ def main() -> int:
     pin_to_core(options.core)
     mesher = Collarmesh(options.build / "bin" / "collarmesh", options.time_limit)
     program = options.build / "bin" / "acute_shape"
-    folder = SizeCache().folder / "acute" / "growth"
+    folder = SizeCache().folder / "acute"
     print(f"{about}. collarmesh {mesher.version()}.\n")
     if "creases" in options.what:
         series = crease_series(program, options.largest)
         for one in series:
-            one.measure(mesher, folder, size)
+            one.measure(mesher, folder / "creases", size)
         print(crease_table(series))
         if options.plot:
             plot_creases(series, options.plot / "creases.svg")
     if "spread" in options.what:
         series = spread_series(program)
         for one in series:
-            one.measure(mesher, folder, 10 * size)
+            one.measure(mesher, folder / "spread", 10 * size)
         print(spread_table(series))
         if options.plot:
             plot_spread(series, options.plot / "spread.svg")

@@ -59,6 +59,11 @@ TEST(Collar, WedgeHasStarsAndBooks) {
   EXPECT_GT(kinds[0], kinds[1]);
 }
 
+TEST(Collar, SmallWedgesBesideLargeOnes) {
+  for (const double small : {1e-2, 1e-4, 1e-6})
+    for (const double angle : {70.0, 20.0}) expect_right(acute::wedge_on_a_large_one(angle, small));
+}
+
 TEST(Collar, Fans) {
   for (const unsigned k : {3U, 4U, 5U, 6U, 8U, 10U, 12U, 16U, 24U}) expect_right(acute::fan(k));
   for (const unsigned k : {4U, 5U, 9U, 14U}) expect_right(acute::fan(k, k));

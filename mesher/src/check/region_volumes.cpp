@@ -1,5 +1,6 @@
 // Region volumes of the mesh against those that the complex' triangles enclose.
 #include <cmath>
+#include <optional>
 
 #include "check/subject.h"
 
@@ -8,6 +9,7 @@ namespace collarmesh::checks {
 namespace {
 
 struct Enclosed {
+  std::optional<Point> origin;  ///< a corner of the region: from afar a tiny one's volume would cancel
   long double six_volume = 0;
   double allowed = 0;  ///< how much the volume may differ because the surface may
 };
@@ -15,14 +17,14 @@ struct Enclosed {
 std::vector<Enclosed> enclosed_by_patches(const Subject& subject) {
   const Plc& plc = subject.plc;
   std::vector<Enclosed> regions(plc.regions.size());
-  const Point origin = plc.bounds.centre();
   for (const Plc::Triangle& t : plc.triangles) {
     const Plc::Patch& patch = plc.patches[t.patch];
     if (patch.regions[0] == patch.regions[1]) continue;
     const Point &a = subject.plc_corner(t, 0), &b = subject.plc_corner(t, 1), &c = subject.plc_corner(t, 2);
-    const double cone = dot(cross(a - origin, b - origin), c - origin);
     for (unsigned side = 0; side < 2; ++side) {
       Enclosed& region = regions[patch.regions[side]];
+      if (!region.origin) region.origin = a;
+      const double cone = six_volume(*region.origin, a, b, c);
       region.six_volume += side == 0 ? cone : -cone;
       region.allowed += subject.patch_allowance[t.patch] * area(a, b, c);
     }
