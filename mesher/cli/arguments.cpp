@@ -278,7 +278,7 @@ void check_convert_arguments(const MeshArguments& a) {
   if (dashes > 1) throw CLI::ValidationError("IN", "standard input (-) can be read once only");
   if (dashes > 0 && a.input_format.empty())
     throw CLI::ValidationError("--input-format", "is needed for standard input (-)");
-  if (a.output == "-" && a.output_format == ".ele")
+  if (a.output == "-" && (a.output_format == ".ele" || a.output_format == ".xdmf"))
     throw CLI::ValidationError("--format", "is of several files, which standard output cannot take");
   check_run_arguments(a);
 }

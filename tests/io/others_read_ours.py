@@ -138,7 +138,7 @@ def main():
         return 77
     with tempfile.TemporaryDirectory() as folder:
         vtu, msh, mesh = (os.path.join(folder, "sample" + ext) for ext in (".vtu", ".msh", ".mesh"))
-        run = subprocess.run([sys.argv[1], str(N), vtu, msh, mesh], capture_output=True, text=True, check=True)
+        run = subprocess.run([sys.argv[1], str(N), "1", vtu, msh, mesh], capture_output=True, text=True, check=True)
         counts = tuple(map(int, run.stdout.split()))
         ours = check_vtu_with_meshio(vtu, counts)
         if vtk is None:

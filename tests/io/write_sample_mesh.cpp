@@ -1,20 +1,39 @@
 // Writes the sample mesh in the format of each name given, for programs of others to read:
-//   write_sample_mesh N OUT...
-// and prints what they have to find in it.
+//   write_sample_mesh N ORDER OUT...
+// and prints what they have to find in it. Surface formats get its boundary and interface.
 #include <cstdlib>
 #include <iostream>
 
+#include "collarmesh/io/soup_io.h"
 #include "collarmesh/io/tet_mesh_io.h"
 #include "support/sample_mesh.h"
+#include "support/second_order.h"
+
+using collarmesh::Index;
 
 int main(int argc, char** argv) {
-  if (argc < 3) {
-    std::cerr << "usage: write_sample_mesh N OUT...\n";
+  if (argc < 4) {
+    std::cerr << "usage: write_sample_mesh N ORDER OUT...\n";
     return 2;
   }
-  const collarmesh::TetMesh mesh =
-      collarmesh::testing::sample_mesh(static_cast<collarmesh::Index>(std::strtoul(argv[1], nullptr, 10)));
-  for (int i = 2; i < argc; ++i) collarmesh::io::write_tet_mesh(argv[i], mesh);
+  collarmesh::TetMesh mesh =
+      collarmesh::testing::sample_mesh(static_cast<Index>(std::strtoul(argv[1], nullptr, 10)));
+  if (argv[2][0] == '2') mesh = collarmesh::testing::second_order(mesh);
+  collarmesh::PolygonSoup surface;
+  surface.points = mesh.points;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) surface.add_facet(mesh.faces[f], mesh.face_tag[f]);
+  for (std::size_t t = mesh.tets.size(); t-- > 0;)
+    if (surface.region_points.empty() || surface.region_points[0].tag != mesh.tet_tag[t]) {
+      const auto& [a, b, c, d] = mesh.tets[t];
+      surface.region_points.push_back(
+          {0.25 * (mesh.points[a] + mesh.points[b] + mesh.points[c] + mesh.points[d]), mesh.tet_tag[t]});
+      if (surface.region_points.size() == 2) break;
+    }
+  for (int i = 3; i < argc; ++i)
+    if (collarmesh::io::is_soup_format(argv[i]))
+      collarmesh::io::write_soup(argv[i], surface);
+    else
+      collarmesh::io::write_tet_mesh(argv[i], mesh);
   std::cout << mesh.points.size() << ' ' << mesh.tets.size() << ' ' << mesh.faces.size() << ' '
             << mesh.edges.size() << '\n';
   return 0;

@@ -14,6 +14,9 @@ void write_medit(const std::string& path, const TetMesh& mesh);
 void write_abaqus(const std::string& path, const TetMesh& mesh);
 void write_unv(const std::string& path, const TetMesh& mesh);
 void write_tetgen(const std::string& path, const TetMesh& mesh);
+// Parts of the build that are left out where HDF5 or MED are not there:
+void write_xdmf(const std::string& path, const TetMesh& mesh);
+void write_med(const std::string& path, const TetMesh& mesh);
 
 TetMesh read_vtu(const std::string& path);
 TetMesh read_vtk(const std::string& path);

@@ -25,7 +25,14 @@ constexpr std::array tet_mesh_formats{
     TetMeshFormat{".vtu", write_vtu, read_vtu},       TetMeshFormat{".vtk", write_vtk, read_vtk},
     TetMeshFormat{".msh", write_msh, read_msh},       TetMeshFormat{".mesh", write_medit, read_medit},
     TetMeshFormat{".inp", write_abaqus, read_abaqus}, TetMeshFormat{".unv", write_unv, read_unv},
-    TetMeshFormat{".ele", write_tetgen, read_tetgen}};
+    TetMeshFormat{".ele", write_tetgen, read_tetgen},
+#ifdef COLLARMESH_XDMF
+    TetMeshFormat{".xdmf", write_xdmf, nullptr},
+#endif
+#ifdef COLLARMESH_MED
+    TetMeshFormat{".med", write_med, nullptr},
+#endif
+};
 
 std::string unknown(const std::string& path, const std::vector<std::string>& known) {
   return fmt::format("{}: unknown kind of file; tetrahedral meshes are {}", path, fmt::join(known, " "));

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view type_name(std::uint8_t) { return "unsigned_char"; }
 constexpr std::string_view type_name(std::int32_t) { return "int"; }
-constexpr std::string_view type_name(std::int64_t) { return "vtktypeint64"; }
+constexpr std::string_view type_name(std::int64_t) { return "long"; }  // meshio knows no other
 constexpr std::string_view type_name(float) { return "float"; }
 constexpr std::string_view type_name(double) { return "double"; }
 

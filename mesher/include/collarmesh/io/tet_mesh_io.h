@@ -20,7 +20,8 @@ void write_tet_mesh(const std::string& path, const TetMesh& mesh, std::string_vi
 TetMesh read_tet_mesh(const std::string& path, std::string_view format = {});
 
 /// The extensions: .vtu (VTK), .vtk (its legacy format), .msh (Gmsh; 4.1 is written), .mesh (Medit), .inp
-/// (Abaqus, CalculiX), .unv (I-DEAS), .ele (TetGen, with .node, .face and .edge beside it).
+/// (Abaqus, CalculiX), .unv (I-DEAS), .ele (TetGen, with .node, .face and .edge beside it); written where they are
+/// built in: .xdmf (XDMF 3, with .h5 beside it), .med (SALOME).
 std::vector<std::string> written_tet_mesh_formats();
 std::vector<std::string> read_tet_mesh_formats();
 

@@ -1,0 +1,133 @@
+// SALOME's format MED (.med) with its library: one unstructured mesh "mesh" of tetrahedra, triangles and
+// segments. A family for each tag, in a group named as in label_names.h.
+#include <fmt/format.h>
+#include <med.h>
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "collarmesh/error.h"
+#include "io/cell_nodes.h"
+#include "io/label_names.h"
+#include "io/tet_mesh_formats.h"
+
+namespace collarmesh::io {
+
+namespace {
+
+/// The node of TetMesh at each place. MED's tetrahedra are turned the other way.
+constexpr std::array<std::uint8_t, 4> med_tet_order{0, 2, 1, 3};
+constexpr std::array<std::uint8_t, 10> med_tet_order_2{0, 2, 1, 3, 6, 5, 4, 7, 9, 8};
+
+constexpr const char* mesh_name = "mesh";
+
+/// Texts of MED have a fixed size.
+std::string padded(std::string text, std::size_t size) {
+  text.resize(size, '\0');
+  return text;
+}
+
+class MedFile {
+ public:
+  explicit MedFile(std::string path) : path_(std::move(path)), temporary_(path_ + ".part") {
+    std::error_code ignored;
+    std::filesystem::remove(temporary_, ignored);
+    file_ = MEDfileOpen(temporary_.c_str(), MED_ACC_CREAT);
+    require(file_);
+  }
+  ~MedFile() {
+    if (file_ >= 0) MEDfileClose(file_);
+    std::error_code ignored;
+    std::filesystem::remove(temporary_, ignored);
+  }
+  MedFile(const MedFile&) = delete;
+  MedFile& operator=(const MedFile&) = delete;
+
+  void create_mesh() const {
+    const std::string axes =
+        padded("x", MED_SNAME_SIZE) + padded("y", MED_SNAME_SIZE) + padded("z", MED_SNAME_SIZE);
+    const std::string units(3 * MED_SNAME_SIZE, '\0');
+    require(MEDmeshCr(file_, mesh_name, 3, 3, MED_UNSTRUCTURED_MESH, "Written by collarmesh.", "",
+                      MED_SORT_DTIT, MED_CARTESIAN, axes.c_str(), units.c_str()));
+    require(MEDfamilyCr(file_, mesh_name, "FAMILLE_ZERO", 0, 0, ""));
+  }
+
+  void write_points(const std::vector<Point>& points) const {
+    std::vector<double> values;
+    values.reserve(3 * points.size());
+    for (const Point& p : points) values.insert(values.end(), {p.x, p.y, p.z});
+    require(MEDmeshNodeCoordinateWr(file_, mesh_name, MED_NO_DT, MED_NO_IT, MED_UNDEF_DT, MED_FULL_INTERLACE,
+                                    static_cast<med_int>(points.size()), values.data()));
+  }
+
+  template <class NodesOf>
+  void write_cells(const TetMesh& mesh, std::size_t dimension, med_geometry_type type,
+                   const std::vector<Tag>& tags, std::span<const std::uint8_t> order, NodesOf nodes_of) {
+    if (tags.empty()) return;
+    std::vector<med_int> nodes, families;
+    for (std::size_t i = 0; i < tags.size(); ++i) {
+      for (const Index v : nodes_of(mesh, i).in_order(order)) nodes.push_back(static_cast<med_int>(v) + 1);
+      families.push_back(family(dimension, tags[i]));
+    }
+    const auto count = static_cast<med_int>(tags.size());
+    require(MEDmeshElementConnectivityWr(file_, mesh_name, MED_NO_DT, MED_NO_IT, MED_UNDEF_DT, MED_CELL, type,
+                                         MED_NODAL, MED_FULL_INTERLACE, count, nodes.data()));
+    require(MEDmeshEntityFamilyNumberWr(file_, mesh_name, MED_NO_DT, MED_NO_IT, MED_CELL, type, count,
+                                        families.data()));
+  }
+
+  void commit() {
+    require(MEDfileClose(std::exchange(file_, -1)));
+    std::error_code error;
+    std::filesystem::rename(temporary_, path_, error);
+    require(error ? -1 : 0);
+  }
+
+ private:
+  /// Families of cells have negative numbers.
+  med_int family(std::size_t dimension, Tag tag) {
+    const auto [found, added] =
+        families_.try_emplace({dimension, tag}, -1 - static_cast<med_int>(families_.size()));
+    if (added) {
+      const std::string group = group_name(dimension, tag, "-");
+      require(MEDfamilyCr(file_, mesh_name, fmt::format("FAM_{}_{}", -found->second, group).c_str(),
+                          found->second, 1, padded(group, MED_LNAME_SIZE).c_str()));
+    }
+    return found->second;
+  }
+
+  void require(med_idt result) const {
+    if (result < 0)
+      throw WriteError(fmt::format("{}: cannot be written; check the folder and the disk's space", path_));
+  }
+
+  std::string path_, temporary_;
+  med_idt file_ = -1;
+  std::map<std::pair<std::size_t, Tag>, med_int> families_;
+};
+
+}  // namespace
+
+void write_med(const std::string& path, const TetMesh& mesh) {
+  MedFile file(path);
+  file.create_mesh();
+  file.write_points(mesh.points);
+  if (mesh.order() == 2) {
+    file.write_cells(mesh, 3, MED_TETRA10, mesh.tet_tag, med_tet_order_2, nodes_of_tet);
+    file.write_cells(mesh, 2, MED_TRIA6, mesh.face_tag, {}, nodes_of_face);
+    file.write_cells(mesh, 1, MED_SEG3, mesh.edge_tag, {}, nodes_of_edge);
+  } else {
+    file.write_cells(mesh, 3, MED_TETRA4, mesh.tet_tag, med_tet_order, nodes_of_tet);
+    file.write_cells(mesh, 2, MED_TRIA3, mesh.face_tag, {}, nodes_of_face);
+    file.write_cells(mesh, 1, MED_SEG2, mesh.edge_tag, {}, nodes_of_edge);
+  }
+  file.commit();
+}
+
+}  // namespace collarmesh::io
