@@ -1,0 +1,63 @@
+// Seconds per stage and peak memory of a surface file becoming a complex, on a sphere of 4 RINGS^2 triangles:
+//   surface_to_plc write RINGS FILE     write the sphere
+//   surface_to_plc read FILE            read it into a complex
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <span>
+#include <string_view>
+
+#include "collarmesh/io/soup_io.h"
+#include "collarmesh/plc_builder.h"
+#include "shapes.h"
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double peak_megabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+double processor_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+         1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+}
+
+void read(const char* path) {
+  auto start = Clock::now();
+  const collarmesh::PolygonSoup soup = collarmesh::io::read_soup(path);
+  const double read = seconds_since(start), read_processor = processor_seconds();
+  start = Clock::now();
+  const collarmesh::Plc plc = collarmesh::build_plc(std::span(&soup, 1));
+  std::printf("%u triangles, %zu regions: read %.2f s (CPU %.2f), complex %.2f s (CPU %.2f), peak %.0f MB\n",
+              soup.facet_count(), plc.regions.size() - 1, read, read_processor, seconds_since(start),
+              processor_seconds() - read_processor, peak_megabytes());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string_view command = argc > 1 ? argv[1] : "";
+  if (command == "write" && argc == 4) {
+    collarmesh::io::write_soup(
+        argv[3],
+        collarmesh::bench::sphere(static_cast<collarmesh::Index>(std::strtoul(argv[2], nullptr, 10))));
+  } else if (command == "read" && argc == 3) {
+    read(argv[2]);
+  } else {
+    std::fprintf(stderr, "usage: surface_to_plc write RINGS FILE | surface_to_plc read FILE\n");
+    return 2;
+  }
+  return 0;
+}

@@ -1,0 +1,274 @@
+// Files of .inp, .vtk, .unv, .ele and binary .msh that other programs write, and files that nobody should
+// write: an error with the line or byte, or the same mesh.
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include "collarmesh/error.h"
+#include "collarmesh/io/soup_io.h"
+#include "collarmesh/io/tet_mesh_io.h"
+#include "support/sample_mesh.h"
+#include "support/second_order.h"
+#include "support/temporary_file.h"
+#include "support/tet_mesh_comparison.h"
+
+namespace collarmesh {
+namespace {
+
+using testing::expect_error;
+using testing::expect_same;
+using testing::sample_mesh;
+using testing::second_order;
+using testing::TemporaryFolder;
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+TetMesh read(const std::string& name, const std::string& content) {
+  const TemporaryFolder folder;
+  return io::read_tet_mesh(folder.write(name, content));
+}
+
+void expect_refused(const std::string& name, const std::string& content, const std::string& part) {
+  SCOPED_TRACE(content.substr(0, 2000));
+  const TemporaryFolder folder;
+  const std::string path = folder.write(name, content);
+  expect_error<ReadError>([&] { io::read_tet_mesh(path); }, path, part);
+}
+
+// .inp
+
+const std::string inp =
+    "*HEADING\nanything, goes\n** comment\n*Node\n 10, 0, 0, 0\n20, 1., 0.\n30, 0, 1.D0, 0\n40, 0, 0, 1\n50, "
+    "1, 1, "
+    "1\n*ELEMENT, type=C3D4, ELSET=Part\n1, 10, 20, 30, 40\n2, 20, 30,\n40, 50\n*Element, TYPE=S3\n7, 10, "
+    "20, 30\n"
+    "*ELSET, ELSET=Upper\n2,\n*elset, elset=Both, generate\n1, 2, 1\n*SURFACE, NAME=Bottom, TYPE=ELEMENT\n1, "
+    "S1\nUpper, S3\n*SURFACE, TYPE=NODE, NAME=x\n10,\n*MATERIAL, NAME=STEEL\n*ELASTIC\n210000., "
+    ".3\n*STEP\n*END STEP\n";
+
+TEST(IoAbaqus, ReadsOthers) {
+  const TetMesh mesh = read("a.inp", inp);
+  EXPECT_EQ(mesh.points.size(), 5);
+  EXPECT_EQ(mesh.points[2], (Point{0, 1, 0}));
+  ASSERT_EQ(mesh.tets.size(), 2);
+  EXPECT_EQ(mesh.tet_tag, (std::vector<Tag>{2, 1})) << "Upper comes first, then Both";
+  EXPECT_EQ(mesh.faces.size(), 3) << "a shell and two sides of a surface";
+  EXPECT_EQ(mesh.face_tag[0], 0);
+  EXPECT_EQ(mesh.face_tag[1], mesh.face_tag[2]);
+}
+
+TEST(IoAbaqus, RefusesBadFiles) {
+  expect_refused("a.inp", "", "line 1: expected tetrahedra");
+  expect_refused("a.inp", "garbage", "line 1: expected a keyword such as *NODE");
+  expect_refused("a.inp", replaced(inp, "20, 1., 0.", "20, nan, 0."), "line 6: expected a coordinate");
+  expect_refused("a.inp", replaced(inp, "20, 1., 0.", "10, 1., 0."), "two nodes have the number 10");
+  expect_refused("a.inp", replaced(inp, "1, 10, 20, 30, 40", "1, 10, 20, 30, 41"),
+                 "line 11: element 1 has the node 41");
+  expect_refused("a.inp", replaced(inp, "40, 50\n", "40\n"),
+                 "line 14: expected an element of 4 nodes, found 3");
+  expect_refused("a.inp", replaced(inp, "C3D4", "C3D8"),
+                 "line 11: elements of type 'c3d8' are not supported");
+  expect_refused("a.inp", replaced(inp, "7, 10", "1, 10"), "two elements have the number 1");
+  expect_refused("a.inp", replaced(inp, "1, 2, 1", "1, 2000000000, 1"), "line 19: the range 1 to 2000000000");
+  expect_refused("a.inp", replaced(inp, "Upper, S3", "Lower, S3"),
+                 "line 22: no element set before has the name");
+  expect_refused("a.inp", replaced(inp, "*STEP", "*INCLUDE, INPUT=x"), "*INCLUDE is not supported");
+}
+
+// .vtk
+
+const std::string vtk =
+    "# vtk DataFile Version 2.0\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n0 0 0 1 0 0 0 1 "
+    "0\n0 0 1 1 "
+    "1 1\nCELLS 3 14\n4 0 1 2 3\n4 1 2 3 4\n3 0 1 2\n\nCELL_TYPES 3\n10\n10\n5\nCELL_DATA 3\nSCALARS "
+    "CellEntityIds int "
+    "1\nLOOKUP_TABLE default\n7\n8\n9\nVECTORS v double\n1 2 3 4 5 6 7 8 9\nPOINT_DATA 5\nSCALARS s "
+    "float\nLOOKUP_TABLE "
+    "default\n1 2 3 4 5\n";
+
+TEST(IoVtk, ReadsOthers) {
+  const TetMesh mesh = read("a.vtk", vtk);
+  EXPECT_EQ(mesh.points.size(), 5);
+  EXPECT_EQ(mesh.tet_tag, (std::vector<Tag>{7, 8}));
+  EXPECT_EQ(mesh.face_tag, (std::vector<Tag>{9}));
+  const std::string version_5 =
+      replaced(replaced(vtk, "Version 2.0", "Version 5.1"), "CELLS 3 14\n4 0 1 2 3\n4 1 2 3 4\n3 0 1 2\n",
+               "METADATA\nINFORMATION 0\n\nCELLS 4 11\nOFFSETS vtktypeint64\n0 4 8 11\nCONNECTIVITY "
+               "vtktypeint64\n0 1 2 3 1 "
+               "2 3 4 0 1 2\n");
+  expect_same(read("a.vtk", version_5), mesh);
+}
+
+TEST(IoVtk, RefusesBadFiles) {
+  expect_refused("a.vtk", "", "line 1: expected '# vtk DataFile Version'");
+  expect_refused("a.vtk", replaced(vtk, "ASCII", "BASE64"), "line 3: expected ASCII or BINARY");
+  expect_refused("a.vtk", replaced(vtk, "UNSTRUCTURED_GRID", "POLYDATA"),
+                 "line 4: the dataset is 'polydata'");
+  expect_refused("a.vtk", replaced(vtk, "POINTS 5", "POINTS 2000000000"),
+                 "line 5: the number of points is 2000000000");
+  expect_refused("a.vtk", replaced(vtk, "1 0 0 0 1 0", "1 0 nan 0 1 0"),
+                 "point 1, (1, 0, nan), is not finite");
+  expect_refused("a.vtk", replaced(vtk, "CELLS 3 14", "CELLS 3 2000000000"),
+                 "line 8: the size of the cells is 2000000000");
+  expect_refused("a.vtk", replaced(vtk, "4 1 2 3 4", "9 1 2 3 4"), "cell 1 of 3 does not fit");
+  expect_refused("a.vtk", replaced(vtk, "4 1 2 3 4", "4 1 2 3 5"), "cell 1 has the corner 5");
+  expect_refused("a.vtk", replaced(vtk, "10\n10\n5", "10\n12\n5"), "cell 1 has the type 12");
+  expect_refused("a.vtk", replaced(vtk, "CELL_TYPES 3\n10\n", "CELL_TYPES 2\n"),
+                 "expected the types of 3 cells");
+  expect_refused("a.vtk", replaced(vtk, "CELL_DATA 3", "CELL_DATA 4"),
+                 "data for 4 entities, but there are 3");
+  expect_refused("a.vtk", replaced(vtk, "VECTORS", "WRECKERS"), "expected a section");
+  expect_refused("a.vtk", vtk.substr(0, vtk.find("CELLS")), "expected tetrahedra, found none");
+  const TemporaryFolder folder;
+  io::write_tet_mesh(folder.file("b.vtk"), sample_mesh(1));
+  const std::string binary = folder.read("b.vtk");
+  expect_refused("a.vtk", binary.substr(0, 200), "byte ");
+  expect_refused("a.vtk", replaced(binary, "POINTS 12", "POINTS 2000000000"),
+                 "the number of points is 2000000000");
+}
+
+// .unv
+
+std::string sample_file(const std::string& name, const TetMesh& mesh) {
+  const TemporaryFolder folder;
+  io::write_tet_mesh(folder.file(name), mesh);
+  return folder.read(name);
+}
+
+TEST(IoUnv, RefusesBadFiles) {
+  const std::string unv = sample_file("a.unv", sample_mesh(1));
+  expect_refused("a.unv", "", "line 1: expected -1");
+  expect_refused("a.unv", "garbage", "line 1: expected -1");
+  expect_refused("a.unv", replaced(unv, "0.0000000000000000D+00", "                   nan"),
+                 "line 4: expected a coordinate");
+  expect_refused("a.unv", replaced(unv, "  2411", "  2400"), "an element has the node 1");
+  expect_refused("a.unv", replaced(unv, "       111", "       115"), "elements of type 115 with 4 nodes");
+  expect_refused("a.unv", unv.substr(0, unv.find("  2412")), "expected the number of a dataset");
+  expect_refused("a.unv", replaced(unv, "\n         2         1", "\n         1         1"),
+                 "two nodes have the number 1");
+  const std::size_t groups = unv.find("  2467\n") + 7;
+  expect_refused("a.unv", std::string(unv).replace(groups + 70, 10, " 200000000"),
+                 "the number of members is 200000000");
+}
+
+// .ele
+
+TEST(IoTetgenMesh, RefusesBadFiles) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.ele");
+  expect_error<ReadError>([&] { io::read_tet_mesh(path); }, folder.file("a.node"), "No such file");
+  folder.write("a.node", "5 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n4 1 1 1\n");
+  expect_error<ReadError>([&] { io::read_tet_mesh(path); }, path, "No such file");
+  const auto refused = [&](const std::string& content, const std::string& part) {
+    folder.write("a.ele", content);
+    expect_error<ReadError>([&] { io::read_tet_mesh(path); }, path, part);
+  };
+  refused("", "line 1: ");
+  refused("0 4 0\n", "expected tetrahedra, found none");
+  refused("2000000000 4 0\n0 0 1 2 3\n", "line 1: the number of cells is 2000000000");
+  refused("1 5 0\n0 0 1 2 3 4\n", "line 1: tetrahedra have 5 nodes");
+  refused("1 4 0\n0 0 1 2 5\n", "line 2: a corner is 5");
+  refused("1 4 1\n0 0 1 2 3 nan\n", "line 2: expected a marker or attribute");
+  folder.write("a.ele", "1 4 1\n0 0 1 2 3 17.0\n");
+  EXPECT_EQ(io::read_tet_mesh(path).tet_tag, (std::vector<Tag>{17}));
+  folder.write("a.face", "1 1\n0 0 1 9 5\n");
+  expect_error<ReadError>([&] { io::read_tet_mesh(path); }, folder.file("a.face"), "line 2: a corner is 9");
+}
+
+// All
+
+const std::vector<std::string> text_formats{".msh", ".mesh", ".inp", ".unv"};
+
+TEST(IoHostile, MixedLineEnds) {
+  for (const std::string& format : text_formats) {
+    SCOPED_TRACE(format);
+    const std::string text = sample_file("a" + format, sample_mesh(1));
+    std::string mixed;
+    bool carriage = false;
+    for (const char c : text) {
+      if (c == '\n' && (carriage = !carriage)) mixed += '\r';
+      mixed += c;
+    }
+    expect_same(read("a" + format, mixed), read("a" + format, text));
+  }
+}
+
+TEST(IoHostile, CommentsEverywhere) {
+  for (const auto& [format, comment] : {std::pair{".mesh", "\n# 1 2 3\n"}, {".inp", "\n** 1, 2, 3\n\n"}}) {
+    SCOPED_TRACE(format);
+    const std::string text = sample_file(std::string("a") + format, sample_mesh(1));
+    std::string commented;
+    for (const char c : text) commented += c == '\n' ? std::string(comment) : std::string(1, c);
+    TetMesh mesh = read(std::string("a") + format, commented);
+    const TetMesh wanted = read(std::string("a") + format, text);
+    EXPECT_EQ(mesh.tets, wanted.tets);
+    EXPECT_EQ(mesh.tet_tag, wanted.tet_tag);
+    EXPECT_EQ(mesh.face_tag, wanted.face_tag);
+  }
+}
+
+TEST(IoHostile, MixedOrdersAreRefused) {
+  const std::string second = sample_file("a.mesh", second_order(sample_mesh(1)));
+  expect_refused("a.mesh", replaced(second, "\nEnd", "\nTetrahedra\n1\n1 2 3 4 5\nEnd"),
+                 "cells of first and second order are mixed");
+}
+
+/// Any cut and any damage give a mesh whose indices are in range or a ReadError; the sanitizers watch.
+TEST(IoHostile, EveryReaderSurvivesDamage) {
+  std::mt19937 random(11);
+  for (const std::string& format : io::read_tet_mesh_formats())
+    for (const bool second : {false, true}) {
+      SCOPED_TRACE(format);
+      const TemporaryFolder folder;
+      const std::string name = "a" + format, path = folder.file(name);
+      io::write_tet_mesh(path, second ? second_order(sample_mesh(1)) : sample_mesh(1));
+      const std::string content = folder.read(name);
+      for (int round = 0; round < 150; ++round) {
+        std::string damaged = content.substr(0, round % 3 == 0 ? random() % content.size() : content.size());
+        for (unsigned k = 0; k < 1 + random() % 4 && !damaged.empty(); ++k)
+          damaged[random() % damaged.size()] = "0123456789-\n $,*.e\xff\0"[random() % 20];
+        try {
+          const TetMesh mesh = io::read_tet_mesh(folder.write(name, damaged));
+          for (const auto& tet : mesh.tets)
+            for (const Index v : tet) ASSERT_LT(v, mesh.points.size());
+          for (const auto& nodes : mesh.tet_mid_nodes)
+            for (const Index v : nodes) ASSERT_LT(v, mesh.points.size());
+          for (const auto& face : mesh.faces)
+            for (const Index v : face) ASSERT_LT(v, mesh.points.size());
+        } catch (const ReadError& error) {
+          EXPECT_TRUE(std::string(error.what()).starts_with(folder.path().string())) << error.what();
+        }
+      }
+    }
+}
+
+/// Not a mesh of any kind.
+TEST(IoHostile, GarbageIsRefusedByEveryReader) {
+  std::mt19937 random(12);
+  std::string noise(5000, '\0');
+  for (char& c : noise) c = static_cast<char>(random());
+  for (const auto& formats : {io::read_tet_mesh_formats(), io::soup_formats()})
+    for (const std::string& format : formats)
+      for (const std::string& content :
+           {std::string(), noise, std::string(100, '\0'), std::string(1000, '\n')}) {
+        const TemporaryFolder folder;
+        const std::string path = folder.write("a" + format, content);
+        folder.write("a.node", content);
+        const auto any = [&] {
+          if (io::is_soup_format(path))
+            io::read_soup(path);
+          else
+            io::read_tet_mesh(path);
+        };
+        EXPECT_THROW(any(), ReadError) << format << " of " << content.size() << " bytes";
+      }
+}
+
+}  // namespace
+}  // namespace collarmesh
