@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -147,6 +148,34 @@ TEST(PlcFaults, LoosePointOnAFacet) {
   soup.points.push_back({0.25, 0.5, 1});
   soup.add_facet(std::array<Index, 1>{8});
   expect_fault({soup}, Kind::intersection, "(0.25, 0.5, 1)");
+}
+
+// Two boxes, one standing on a corner or an edge, with a gap below the weld distance (1e-9 of the diagonal).
+TEST(PlcFaults, FeaturesThatNearlyTouch) {
+  constexpr double gap = 1e-10;
+  const PolygonSoup below = testing::box({0, 0, 0}, {1, 1, 1});
+  const PolygonSoup beside = testing::box({1 + gap, 0.3, 0.3}, {2, 0.7, 0.7});
+  expect_fault({below, beside}, Kind::intersection, "come within 1e-10");
+  PolygonSoup on_a_corner;
+  on_a_corner.points = {{0.5, 0.5, 1 + gap}, {0.7, 0.5, 1.5}, {0.4, 0.7, 1.5}, {0.4, 0.3, 1.5}};
+  for (const std::array<Index, 3>& side : {std::array<Index, 3>{1, 2, 3}, {0, 2, 1}, {0, 3, 2}, {0, 1, 3}})
+    on_a_corner.add_facet(side);
+  expect_fault({below, on_a_corner}, Kind::intersection, "come within 1e-10 of each other at (0.5, 0.5, 1");
+  // Its lowest edge, along y, passes over the other's edge along x.
+  PolygonSoup on_an_edge;
+  on_an_edge.points = {{0.5, 0.8, 1 + gap}, {0.5, 1.4, 1 + gap}, {0.3, 1.1, 1.5}, {0.7, 1.1, 1.5}};
+  for (const std::array<Index, 3>& side : {std::array<Index, 3>{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}})
+    on_an_edge.add_facet(side);
+  expect_fault({below, on_an_edge}, Kind::intersection, "do not meet");
+}
+
+TEST(PlcFaults, FeaturesThatAreNearButFartherThanTheWeldDistance) {
+  const PolygonSoup below = testing::box({0, 0, 0}, {1, 1, 1});
+  const std::vector<PolygonSoup> beside{below, testing::box({1 + 1e-7, 0.3, 0.3}, {2, 0.7, 0.7})};
+  EXPECT_FALSE(error_of(beside));
+  PlcOptions options;
+  options.weld = 1e-11;
+  EXPECT_FALSE(error_of({below, testing::box({1 + 1e-10, 0.3, 0.3}, {2, 0.7, 0.7})}, options));
 }
 
 TEST(PlcFaults, ManyFaultsAreCountedAndTheFirstListed) {

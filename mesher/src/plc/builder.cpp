@@ -13,6 +13,7 @@
 #include "plc/flat_clusters.h"
 #include "plc/interfaces.h"
 #include "plc/intersections.h"
+#include "plc/near_touching.h"
 #include "plc/orientation.h"
 #include "plc/regions.h"
 #include "plc/weld.h"
@@ -173,6 +174,8 @@ Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options) {
   plc.bounds = draft.bounds;
   plc.largest_deviation = draft.largest_deviation;
   plc.cleanup = draft.cleanup;
+  find_near_touching(plc, options.weld * plc.bounds.diagonal(), faults);
+  faults.raise();
   return plc;
 }
 

@@ -1,0 +1,186 @@
+#include "plc/near_touching.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "plc/box_tree.h"
+
+namespace collarmesh::build {
+
+namespace {
+
+// A piece of a feature: its point, a segment or a triangle.
+struct Element {
+  std::array<Index, 3> points;
+  unsigned size;
+  unsigned dimension;
+  Index feature;
+};
+
+struct Nearest {
+  double squared_distance = INFINITY;
+  Point where;
+};
+
+bool have_common(const std::vector<Index>& a, const std::vector<Index>& b) {
+  const auto &few = a.size() < b.size() ? a : b, &many = a.size() < b.size() ? b : a;
+  return std::any_of(few.begin(), few.end(),
+                     [&](Index i) { return std::binary_search(many.begin(), many.end(), i); });
+}
+
+class NearTouchingFinder {
+ public:
+  NearTouchingFinder(const Plc& plc, double limit) : plc_(plc), limit_(limit) {
+    for (Index v = 0; v < plc.vertices.size(); ++v) {
+      const Index p = plc.vertices[v].point;
+      elements_.push_back({{p, p, p}, 1, 0, v});
+    }
+    for (Index c = 0; c < plc.curves.size(); ++c) {
+      const auto& p = plc.curves[c].points;
+      for (std::size_t i = 0; i + 1 < p.size() + (plc.curves[c].closed ? 1 : 0); ++i)
+        elements_.push_back({{p[i], p[(i + 1) % p.size()], p[i]}, 2, 1, c});
+    }
+    for (const Plc::Triangle& t : plc.triangles) elements_.push_back({t.points, 3, 2, t.patch});
+  }
+
+  void run(Faults& faults) {
+    std::vector<Box> boxes(elements_.size());
+    const Vector reach = 0.5 * limit_ * Vector{1, 1, 1};
+    for (std::size_t e = 0; e < elements_.size(); ++e)
+      for (unsigned i = 0; i < elements_[e].size; ++i) {
+        boxes[e].add(at(elements_[e].points[i]) - reach);
+        boxes[e].add(at(elements_[e].points[i]) + reach);
+      }
+    BoxTree(std::move(boxes)).for_each_pair([&](Index i, Index j) {
+      const Element &a = elements_[std::min(i, j)], &b = elements_[std::max(i, j)];
+      if (have_common_point(a, b) || related(a, b)) return;
+      const Nearest nearest = nearest_of(a, b);
+      if (nearest.squared_distance > limit_ * limit_) return;
+      Nearest& known = found_[{a.dimension, a.feature, b.dimension, b.feature}];
+      if (nearest.squared_distance < known.squared_distance) known = nearest;
+    });
+    for (const auto& [pair, nearest] : found_) report(pair, nearest, faults);
+  }
+
+ private:
+  using Pair = std::array<Index, 4>;
+
+  const Point& at(Index p) const { return plc_.points[p]; }
+
+  static bool have_common_point(const Element& a, const Element& b) {
+    const auto end = b.points.begin() + b.size;
+    return std::any_of(a.points.begin(), a.points.begin() + a.size,
+                       [&](Index p) { return std::find(b.points.begin(), end, p) != end; });
+  }
+
+  // Is one feature part of the other, or do they meet in a common one? The first has the lower dimension.
+  bool related(const Element& a, const Element& b) const {
+    if (a.dimension == b.dimension && a.feature == b.feature) return true;
+    if (a.dimension == 0) {
+      if (b.dimension == 1) return plc_.vertex_on_curve(a.feature, b.feature);
+      return b.dimension == 2 && plc_.vertex_on_patch(a.feature, b.feature);
+    }
+    if (a.dimension == 1) {
+      const auto& ends = plc_.curves[a.feature].ends;
+      if (b.dimension == 1) {
+        const auto& others = plc_.curves[b.feature].ends;
+        return std::any_of(ends.begin(), ends.end(), [&](Index v) {
+          return v != none && std::find(others.begin(), others.end(), v) != others.end();
+        });
+      }
+      return plc_.curve_on_patch(a.feature, b.feature) || std::any_of(ends.begin(), ends.end(), [&](Index v) {
+               return v != none && plc_.vertex_on_patch(v, b.feature);
+             });
+    }
+    const Plc::Patch &p = plc_.patches[a.feature], &q = plc_.patches[b.feature];
+    return have_common(p.vertices, q.vertices) || have_common(p.curves, q.curves);
+  }
+
+  static void keep_nearer(Nearest& nearest, const Point& p, const Point& q) {
+    const double d = squared_distance(p, q);
+    if (d < nearest.squared_distance) nearest = {d, 0.5 * (p + q)};
+  }
+
+  // Between two segments (Ericson: Real-Time Collision Detection, section 5.1.9): the nearest points of
+  // their lines when they are within both; ends are looked at by others.
+  static void keep_nearer_of_lines(Nearest& nearest, const Point& p, const Point& q, const Point& r,
+                                   const Point& s) {
+    const Vector u = q - p, v = s - r, w = p - r;
+    const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), uw = dot(u, w), vw = dot(v, w);
+    const double determinant = uu * vv - uv * uv;
+    if (!(determinant > 0)) return;
+    const double a = (uv * vw - vv * uw) / determinant, b = (uu * vw - uv * uw) / determinant;
+    if (a >= 0 && a <= 1 && b >= 0 && b <= 1) keep_nearer(nearest, p + a * u, r + b * v);
+  }
+
+  Point nearest_point(const Point& p, const Element& e) const {
+    Point best = at(e.points[0]);
+    const auto consider = [&](const Point& q) {
+      if (squared_distance(p, q) < squared_distance(p, best)) best = q;
+    };
+    for (unsigned i = 0; i < e.size; ++i) {
+      const Point &a = at(e.points[i]), &b = at(e.points[(i + 1) % e.size]);
+      const Vector d = b - a;
+      const double length = squared_norm(d);
+      consider(a + (length > 0 ? std::clamp(dot(p - a, d) / length, 0.0, 1.0) : 0.0) * d);
+    }
+    if (e.size < 3) return best;
+    const Point &a = at(e.points[0]), &b = at(e.points[1]), &c = at(e.points[2]);
+    const Vector n = cross(b - a, c - a);
+    const double nn = squared_norm(n);
+    if (nn > 0 && dot(cross(b - a, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 &&
+        dot(cross(a - c, p - c), n) >= 0)
+      consider(p - (dot(p - a, n) / nn) * n);
+    return best;
+  }
+
+  Nearest nearest_of(const Element& a, const Element& b) const {
+    Nearest nearest;
+    for (unsigned i = 0; i < a.size; ++i)
+      keep_nearer(nearest, at(a.points[i]), nearest_point(at(a.points[i]), b));
+    for (unsigned i = 0; i < b.size; ++i)
+      keep_nearer(nearest, nearest_point(at(b.points[i]), a), at(b.points[i]));
+    for (unsigned i = 0; a.size > 1 && i < a.size; ++i)
+      for (unsigned j = 0; b.size > 1 && j < b.size; ++j)
+        keep_nearer_of_lines(nearest, at(a.points[i]), at(a.points[(i + 1) % a.size]), at(b.points[j]),
+                             at(b.points[(j + 1) % b.size]));
+    return nearest;
+  }
+
+  std::string name(Index dimension, Index feature) const {
+    if (dimension == 0) return fmt::format("vertex {}", text(at(plc_.vertices[feature].point)));
+    const Tag tag = dimension == 1 ? plc_.curves[feature].tag : plc_.patches[feature].tag;
+    return fmt::format("{} {}{}", dimension == 1 ? "curve" : "patch", feature,
+                       tag == 0 ? "" : fmt::format(" (tag {})", tag));
+  }
+
+  void report(const Pair& pair, const Nearest& nearest, Faults& faults) const {
+    faults.add(
+        PlcFault::Kind::intersection,
+        fmt::format("The {} and the {} come within {:.3g} of each other at {} and do not meet; that is "
+                    "less than the weld distance of {:.3g}. Move them apart, cut one where the other "
+                    "touches it, or lower the weld distance.",
+                    name(pair[0], pair[1]), name(pair[2], pair[3]), std::sqrt(nearest.squared_distance),
+                    text(nearest.where), limit_),
+        {}, nearest.where);
+  }
+
+  const Plc& plc_;
+  double limit_;
+  std::vector<Element> elements_;
+  std::map<Pair, Nearest> found_;
+};
+
+}  // namespace
+
+void find_near_touching(const Plc& plc, double limit, Faults& faults) {
+  if (limit > 0) NearTouchingFinder(plc, limit).run(faults);
+}
+
+}  // namespace collarmesh::build
