@@ -7,7 +7,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 
+#include "collarmesh/io/soup_io.h"
 #include "support/acute_shapes.h"
 
 namespace collarmesh {
@@ -172,6 +175,54 @@ void expect_gap_sizes(const acute::Shape& shape) {
       expect_equal(gap.on_curve(c, p), expected, "curve", c);
     }
 }
+// On every file of a corpus that is a complex: at every crease vertex, and in the middle of every segment of
+// crease curves.
+TEST(GapSize, EqualsBruteForceOnTheCorpus) {
+  const char* corpus = std::getenv("COLLARMESH_CORPUS");
+  if (corpus == nullptr) GTEST_SKIP() << "COLLARMESH_CORPUS names no folder";
+  std::size_t complexes = 0, places = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(corpus)) {
+    const std::string path = entry.path().string();
+    if (!io::is_soup_format(path)) continue;
+    SCOPED_TRACE(path);
+    Plc plc;
+    try {
+      const std::array<PolygonSoup, 1> soups{io::read_soup(path)};
+      plc = build_plc(soups);
+    } catch (const Error&) {
+      continue;
+    }
+    ++complexes;
+    const FeatureHierarchy features(plc, plc.points);
+    const GapSize gap(plc, features);
+    std::vector<bool> vertex(plc.vertices.size(), false), curve(plc.curves.size(), false);
+    for (const Crease& crease : find_creases(plc, crease_angle)) {
+      if (crease.vertex != none) vertex[crease.vertex] = true;
+      if (crease.curve == none) continue;
+      curve[crease.curve] = true;
+      for (const Index end : plc.curves[crease.curve].ends)
+        if (end != none) vertex[end] = true;
+    }
+    for (Index v = 0; v < plc.vertices.size(); ++v) {
+      if (!vertex[v]) continue;
+      ++places;
+      expect_equal(gap.at_vertex(v),
+                   brute_force_gap(plc, plc.points[plc.vertices[v].point], features_of_vertex(plc, v)),
+                   "vertex", v);
+    }
+    for (Index c = 0; c < plc.curves.size(); ++c) {
+      if (!curve[c]) continue;
+      for (const Point& p : points_along(plc, c, 1)) {
+        ++places;
+        expect_equal(gap.on_curve(c, p), brute_force_gap(plc, p, {none, {c}, plc.curves[c].patches}), "curve",
+                     c);
+      }
+    }
+  }
+  EXPECT_GT(complexes, 10U);
+  EXPECT_GT(places, 100U);
+}
+
 TEST(GapSize, EqualsBruteForceAtVerticesAndAlongCurves) {
   for (const acute::Shape& shape : shapes()) expect_gap_sizes(shape);
   for (const acute::Shape& shape : curved_shapes()) expect_gap_sizes(shape);

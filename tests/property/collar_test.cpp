@@ -3,6 +3,8 @@
 // rounding may be lost of the volume of planar ones.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 
@@ -153,6 +155,53 @@ TEST(Collar, CutTori) {
 TEST(Collar, RimsAndSheetsThatComeBack) {
   for (const double width : {0.5, 0.2, 0.1}) expect_right(acute::long_lens(40, width));
   for (const double angle : {50.0, 20.0, 10.0}) expect_right(acute::drop_bar(angle));
+}
+
+bool has_finding(const TetMesh& mesh, const Plc& plc, const std::string& guarantee) {
+  const CheckReport report = check(mesh, plc);
+  return std::any_of(report.findings.begin(), report.findings.end(),
+                     [&](const Finding& finding) { return finding.guarantee == guarantee; });
+}
+
+// The lemmas on the balls of the collars are part of the certificate.
+TEST(Collar, WrongBallsAreFound) {
+  const acute::Shape wedge = acute::wedge(30);
+  const Meshed meshed = testing::mesh_of(wedge.soups, testing::with_size(size), 0);
+  ASSERT_EQ(testing::faults(meshed), "");
+  ASSERT_FALSE(meshed.result.mesh.collar_balls.empty());
+  TetMesh mesh = meshed.result.mesh;
+  for (TetMesh::CollarBall& ball : mesh.collar_balls) ball.radius *= 1.2;
+  EXPECT_TRUE(has_finding(mesh, meshed.plc, "collar_gap"));
+  mesh = meshed.result.mesh;
+  for (TetMesh::CollarBall& ball : mesh.collar_balls) ball.radius *= 0.3;
+  EXPECT_TRUE(has_finding(mesh, meshed.plc, "collar_disjoint"));
+  mesh = meshed.result.mesh;
+  *std::find(mesh.tet_collar.begin(), mesh.tet_collar.end(), 2) = 1;
+  EXPECT_TRUE(has_finding(mesh, meshed.plc, "collar_cells"));
+  mesh = meshed.result.mesh;
+  mesh.collar_balls[0].radius = -1;
+  EXPECT_TRUE(has_finding(mesh, meshed.plc, "valid_arrays"));
+}
+
+// Cancelling and budgets of time end the placement of balls too.
+TEST(Collar, PlacementCanBeStopped) {
+  PlcOptions smooth;
+  smooth.feature_angle = 30;
+  const Plc plc = build_plc(acute::lens(20).soups, smooth);
+  std::atomic<bool> cancel = false;
+  std::size_t asked = 0;
+  MeshOptions options = testing::with_size(size);
+  options.size_field = [&](const Point&) {
+    cancel = true;
+    ++asked;
+    return size;
+  };
+  EXPECT_EQ(generate(plc, options, {.progress = {}, .cancel = &cancel}).status, MeshStatus::cancelled);
+  EXPECT_LT(asked, 10U);
+  options = testing::with_size(0.001);  // tens of thousands of balls
+  options.distance = 1e-7;
+  options.time_limit = 1e-3;
+  EXPECT_EQ(generate(plc, options).status, MeshStatus::budget_hit);
 }
 
 // At other sizes, seeds and bounds.

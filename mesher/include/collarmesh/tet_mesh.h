@@ -46,6 +46,13 @@ struct TetMesh {
   std::vector<Index> edge_mid_nodes;
 
   int order() const { return tet_mid_nodes.empty() ? 1 : 2; }
+
+  /// The ball of a collar: what lies in the union of the balls was replaced by stars and books.
+  struct CollarBall {
+    Index point = none;  ///< its centre, on a crease
+    double radius = 0;   ///< absolute
+  };
+  std::vector<CollarBall> collar_balls;  ///< empty when unknown (read from a file)
 };
 
 /// Shape measures of one tetrahedron.

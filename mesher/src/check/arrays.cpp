@@ -3,6 +3,8 @@
 #include <cmath>
 #include <tuple>
 
+#include <cmath>
+
 #include "check/subject.h"
 
 namespace collarmesh::checks {
@@ -120,6 +122,20 @@ void check_referenced(const TetMesh& mesh, Findings& findings) {
                    "Point {} at {} is a corner of no tet; leave it out of the mesh.", i, At{mesh.points[i]});
 }
 
+void check_collar_balls(const TetMesh& mesh, Findings& findings) {
+  for (Index b = 0; b < mesh.collar_balls.size(); ++b) {
+    const auto& [point, radius] = mesh.collar_balls[b];
+    const bool on_crease = point < mesh.points.size() && point < mesh.features.size() &&
+                           mesh.features[point].dimension < 2 && mesh.features[point].feature != none;
+    if (!on_crease || !(radius > 0 && std::isfinite(radius)))
+      findings.add(
+          guarantee::valid_arrays, {}, {b},
+          "Ball {} of a collar is centred at point {} with radius {:.6g}; it must be a point on a vertex "
+          "or curve, and the radius positive.",
+          b, point, radius);
+  }
+}
+
 }  // namespace
 
 bool check_arrays(const TetMesh& mesh, const Plc& plc, Findings& findings) {
@@ -135,6 +151,7 @@ bool check_arrays(const TetMesh& mesh, const Plc& plc, Findings& findings) {
   check_range(mesh.face_patch, 0, plc.patches.size(), true, "Face", "patch", findings);
   check_range(mesh.edge_curve, 0, plc.curves.size(), true, "Edge", "curve", findings);
   check_features(mesh, plc, findings);
+  check_collar_balls(mesh, findings);
   return findings.total() == before;
 }
 

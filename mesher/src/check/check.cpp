@@ -60,6 +60,7 @@ CheckReport check(const TetMesh& mesh, const Plc& plc, const CheckOptions& optio
   check_listed_edges(subject, findings);
   check_curves(subject, report, findings);
   check_patches(subject, report, findings);
+  check_collars(subject, findings);
   return report;
 }
 

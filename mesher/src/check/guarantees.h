@@ -18,6 +18,12 @@ inline constexpr char conforming[] = "conforming";    ///< a face has at most tw
 inline constexpr char radius_edge[] = "radius_edge";  ///< outside collars
 inline constexpr char collar_dihedral[] = "collar_dihedral";  ///< in collars
 
+// The balls of the collars, where the mesh tells them
+inline constexpr char collar_gap[] = "collar_gap";  ///< radius at most a third of the gap size
+inline constexpr char collar_disjoint[] =
+    "collar_disjoint";  ///< different creases' are apart, consecutive ones meet in a circle of their own
+inline constexpr char collar_cells[] = "collar_cells";  ///< stars and books have their balls' centres
+
 // The regions
 inline constexpr char listed_faces[] =
     "listed_faces";  ///< faces hold the boundary and the interfaces, once each

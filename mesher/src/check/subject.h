@@ -93,6 +93,10 @@ void check_listed_edges(const Subject& subject, Findings& findings);
 void check_curves(const Subject& subject, CheckReport& report, Findings& findings);
 void check_patches(const Subject& subject, CheckReport& report, Findings& findings);
 
+/// The balls of the collars against the features and against each other (paper, Definitions 6 and 7).
+/// Nothing when the mesh does not tell them.
+void check_collars(const Subject& subject, Findings& findings);
+
 /// The region of the complex that a point not on any patch lies in.
 Index region_at(const Plc& plc, const Point& p);
 

@@ -107,7 +107,7 @@ bool Refinement::check_collars() {
     t.poor = poorly_represented(t) || bends(t);
   }
   judge_collar_edges(triangles);
-  bool found = false;
+  bool found = surround_centres();
   for (const CollarTriangle& t : triangles) {
     if (interrupted()) return false;
     if (!t.poor || labels_[cell_of(t.face)].region == 0) continue;
@@ -120,6 +120,26 @@ bool Refinement::check_collars() {
   if (found && ++collar_rounds_ > most_rounds) {
     give_up(collars_.balls()[0].centre, "the collar surface did not settle; the first collar is");
     return false;
+  }
+  return found;
+}
+
+// A centre must not be a vertex of cells outside: their part of the sphere has no points yet. False when
+// none is.
+bool Refinement::surround_centres() {
+  bool found = false;
+  for (Index b = 0; b < collars_.balls().size(); ++b) {
+    const CollarBall& ball = collars_.balls()[b];
+    if (ball_vertex(b) == none) continue;
+    mesh_.incident_cells(ball_vertex(b), cells_scratch_);
+    const auto outside = std::find_if(cells_scratch_.begin(), cells_scratch_.end(), [&](Index cell) {
+      return labels_[cell].region != 0 && !labels_[cell].in_collar;
+    });
+    if (outside == cells_scratch_.end()) continue;
+    const auto& v = mesh_.corners(*outside);
+    const auto corner = static_cast<unsigned>(std::find(v.begin(), v.end(), ball_vertex(b)) - v.begin());
+    const Vector d = mesh_.circumcentre(*outside) - ball.centre;
+    found |= repair({face_id(*outside, corner), b, ball.centre + ball.radius / norm(d) * d, false, true});
   }
   return found;
 }

@@ -44,6 +44,9 @@ TetMesh Refinement::extract() const {
     mesh.edge_curve.push_back(edge.curve);
     mesh.edge_tag.push_back(plc_.curves[edge.curve].tag);
   }
+  for (Index ball = 0; ball < collars_.balls().size(); ++ball)
+    if (const Index v = ball_vertex(ball); v != none && number[v] != none)
+      mesh.collar_balls.push_back({number[v], collars_.balls()[ball].radius});
   for (const FaceId face : marked_faces()) extract_face(face, number, mesh);
   for (const Subsegment& s : subsegments_) {
     if (!s.alive || number[s.ends[0]] == none || number[s.ends[1]] == none) continue;

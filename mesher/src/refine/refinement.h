@@ -270,6 +270,7 @@ class Refinement {
   bool spans_patch(std::span<const Index> corners) const;
   bool on_crease(Index vertex) const;
   bool repair(const CollarTriangle& t);
+  bool surround_centres();
   bool insert_on_collar(const Point& p, std::uint8_t dimension, Index feature, Index nearby);
   std::span<const Index> patches_through(const CollarBall& ball) const;
 

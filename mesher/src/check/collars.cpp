@@ -1,0 +1,208 @@
+// The balls of the collars (paper, section 3.2): how large they are and how they lie to each other.
+#include <algorithm>
+#include <cmath>
+
+#include "check/subject.h"
+#include "plc/box_tree.h"
+
+namespace collarmesh::checks {
+
+namespace {
+
+constexpr double gap_per_radius = 3;  // Definition 6
+constexpr double slack = 1 - 1e-9;    // of distances, relative
+
+double to_segment(const Point& p, const Point& a, const Point& b) {
+  const Vector d = b - a;
+  const double length = squared_norm(d);
+  return distance(p, a + (length > 0 ? std::clamp(dot(p - a, d) / length, 0.0, 1.0) : 0.0) * d);
+}
+
+double to_triangle(const Point& p, const std::array<Point, 3>& t) {
+  const double border =
+      std::min({to_segment(p, t[0], t[1]), to_segment(p, t[1], t[2]), to_segment(p, t[2], t[0])});
+  const Vector n = cross(t[1] - t[0], t[2] - t[0]);
+  if (squared_norm(n) == 0) return border;
+  for (unsigned i = 0; i < 3; ++i)
+    if (dot(cross(t[(i + 1) % 3] - t[i], p - t[i]), n) < 0) return border;
+  return std::min(border, std::fabs(dot(p - t[0], n)) / norm(n));
+}
+
+class CollarCheck {
+ public:
+  CollarCheck(const Subject& subject, Findings& findings)
+      : subject_(subject),
+        plc_(subject.plc),
+        balls_(subject.mesh.collar_balls),
+        ball_at_(subject.mesh.points.size(), none),
+        overlapping_(balls_.size()),
+        findings_(findings) {
+    for (Index b = 0; b < balls_.size(); ++b) ball_at_[balls_[b].point] = b;
+  }
+
+  void run() {
+    collect_elements();
+    look_around();
+    check_circles();
+    check_cells();
+  }
+
+ private:
+  struct Element {
+    unsigned dimension;
+    Index feature;
+    std::array<Index, 3> points;
+  };
+
+  const Point& centre(Index ball) const { return subject_.point(balls_[ball].point); }
+  double radius(Index ball) const { return balls_[ball].radius; }
+  const TetMesh::VertexFeature& feature_of(Index ball) const {
+    return subject_.mesh.features[balls_[ball].point];
+  }
+
+  void collect_elements() {
+    for (Index v = 0; v < plc_.vertices.size(); ++v) {
+      const Index p = plc_.vertices[v].point;
+      elements_.push_back({0, v, {p, p, p}});
+    }
+    for (Index c = 0; c < plc_.curves.size(); ++c) {
+      const auto& p = plc_.curves[c].points;
+      for (std::size_t i = 0; i + 1 < p.size() + (plc_.curves[c].closed ? 1 : 0); ++i)
+        elements_.push_back({1, c, {p[i], p[(i + 1) % p.size()], p[i]}});
+    }
+    for (const Plc::Triangle& t : plc_.triangles) elements_.push_back({2, t.patch, t.points});
+  }
+
+  bool contains(const Element& element, const TetMesh::VertexFeature& v) const {
+    if (v.dimension == 0) {
+      if (element.dimension == 0) return element.feature == v.feature;
+      return element.dimension == 1 ? plc_.vertex_on_curve(v.feature, element.feature)
+                                    : plc_.vertex_on_patch(v.feature, element.feature);
+    }
+    if (element.dimension == 1) return element.feature == v.feature;
+    return element.dimension == 2 && plc_.curve_on_patch(v.feature, element.feature);
+  }
+
+  // Balls, with their gap balls, against features and against each other.
+  void look_around() {
+    std::vector<Box> boxes;
+    for (Index b = 0; b < balls_.size(); ++b) {
+      boxes.emplace_back();
+      const Vector reach = gap_per_radius * radius(b) * Vector{1, 1, 1};
+      boxes.back().add(centre(b) - reach);
+      boxes.back().add(centre(b) + reach);
+    }
+    for (const Element& e : elements_) {
+      boxes.emplace_back();
+      for (const Index p : e.points) boxes.back().add(plc_.points[p]);
+    }
+    build::BoxTree(std::move(boxes)).for_each_pair([&](Index i, Index j) {
+      const auto [first, second] = std::minmax(i, j);
+      if (first >= balls_.size()) return;
+      if (second >= balls_.size())
+        check_gap(first, elements_[second - balls_.size()]);
+      else
+        check_overlap(first, second);
+    });
+  }
+
+  void check_gap(Index ball, const Element& element) {
+    if (contains(element, feature_of(ball))) return;
+    const std::array<Point, 3> t{plc_.points[element.points[0]], plc_.points[element.points[1]],
+                                 plc_.points[element.points[2]]};
+    const double gap = to_triangle(centre(ball), t);
+    if (gap >= gap_per_radius * radius(ball) * slack - subject_.rounding) return;
+    static constexpr const char* kinds[] = {"vertex", "curve", "patch"};
+    findings_.add(
+        guarantee::collar_gap, centre(ball), {balls_[ball].point},
+        "The collar's ball at {} has radius {:.9g}, more than a third of the distance {:.9g} to {} {}; "
+        "report it with the input and the options.",
+        At{centre(ball)}, radius(ball), gap, kinds[element.dimension], element.feature);
+  }
+
+  // Of one crease are a vertex' ball and those on its curves, and those on one curve.
+  bool of_one_crease(Index a, Index b) const {
+    const auto &f = feature_of(a), &g = feature_of(b);
+    if (f.dimension == 1 && g.dimension == 1) return f.feature == g.feature;
+    if (f.dimension == g.dimension) return false;
+    return f.dimension == 0 ? plc_.vertex_on_curve(f.feature, g.feature)
+                            : plc_.vertex_on_curve(g.feature, f.feature);
+  }
+
+  void check_overlap(Index a, Index b) {
+    if (distance(centre(a), centre(b)) >= (radius(a) + radius(b)) * slack) return;
+    overlapping_[a].push_back(b);
+    overlapping_[b].push_back(a);
+    if (of_one_crease(a, b)) return;
+    findings_.add(
+        guarantee::collar_disjoint, centre(a), {balls_[a].point, balls_[b].point},
+        "The collars' balls at {} (radius {:.9g}) and {} (radius {:.9g}) belong to different creases and "
+        "overlap; report it with the input and the options.",
+        At{centre(a)}, radius(a), At{centre(b)}, radius(b));
+  }
+
+  // Consecutive balls: joined by an edge on their crease.
+  void check_circles() {
+    for (const auto& [p, q] : subject_.mesh.edges) {
+      const Index a = ball_at_[p], b = ball_at_[q];
+      if (a == none || b == none || !of_one_crease(a, b)) continue;
+      const double d = distance(centre(a), centre(b));
+      const Vector axis = (centre(b) - centre(a)) / d;
+      const double along = (d * d + radius(a) * radius(a) - radius(b) * radius(b)) / (2 * d);
+      const double squared = radius(a) * radius(a) - along * along;
+      const Point middle = centre(a) + along * axis;
+      if (squared <= 0) {
+        report_circle(a, b, "do not overlap");
+        continue;
+      }
+      for (const Index k : overlapping_[a]) {
+        if (k == b) continue;
+        const Vector to = centre(k) - middle;
+        const double height = dot(to, axis);
+        const double off = std::sqrt(std::max(0.0, squared_norm(to) - height * height));
+        if (std::hypot(height, off - std::sqrt(squared)) < radius(k) * slack)
+          report_circle(a, b, "meet in a circle that a third one reaches");
+      }
+    }
+  }
+
+  void report_circle(Index a, Index b, const char* what) {
+    findings_.add(
+        guarantee::collar_disjoint, centre(a), {balls_[a].point, balls_[b].point},
+        "Two consecutive balls of a collar at {} (radius {:.9g}) and {} (radius {:.9g}) {}; report it "
+        "with the input and the options.",
+        At{centre(a)}, radius(a), At{centre(b)}, radius(b), what);
+  }
+
+  // A star has its ball's centre, a book those of two consecutive ones.
+  void check_cells() {
+    const TetMesh& mesh = subject_.mesh;
+    for (Index t = 0; t < mesh.tets.size(); ++t) {
+      const auto centres = std::count_if(mesh.tets[t].begin(), mesh.tets[t].end(),
+                                         [&](Index p) { return ball_at_[p] != none; });
+      if (centres == mesh.tet_collar[t]) continue;
+      const Point where = 0.5 * (subject_.point(mesh.tets[t][0]) + subject_.point(mesh.tets[t][1]));
+      findings_.add(
+          guarantee::collar_cells, where, {t},
+          "Tet {} at {} has {} centres of collars' balls among its corners, its kind {} asks for {}; a "
+          "cell is missing or marked wrongly.",
+          t, At{where}, centres, mesh.tet_collar[t], mesh.tet_collar[t]);
+    }
+  }
+
+  const Subject& subject_;
+  const Plc& plc_;
+  const std::vector<TetMesh::CollarBall>& balls_;
+  std::vector<Index> ball_at_;                   // by mesh point
+  std::vector<std::vector<Index>> overlapping_;  // by ball
+  std::vector<Element> elements_;
+  Findings& findings_;
+};
+
+}  // namespace
+
+void check_collars(const Subject& subject, Findings& findings) {
+  if (!subject.mesh.collar_balls.empty()) CollarCheck(subject, findings).run();
+}
+
+}  // namespace collarmesh::checks
