@@ -3,8 +3,6 @@
 #include <cmath>
 #include <tuple>
 
-#include <cmath>
-
 #include "check/subject.h"
 
 namespace collarmesh::checks {
