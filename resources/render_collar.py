@@ -1,16 +1,16 @@
 #!/usr/bin/python3
-"""Picture of the collars in a mesh: their cells in full, coloured by kind, the creases in red, and of the
-other cells those behind a plane.
+"""Picture of the collars in a mesh: their cells coloured by kind, the creases in red, and of the other cells
+those behind a plane.
 
-    render_collar.py MESH.vtu [PICTURE.png] [--normal X Y Z] [--at FRACTION] [--view X Y Z] [--shrink S]
+    render_collar.py MESH.vtu [PICTURE.png] [options]
 
-The picture in the documentation:
+The picture in the documentation (acute_shape is built with the benchmarks):
 
-    acute_shape wedge wedge 40 1.6 && collarmesh wedge_1.poly -o wedge.vtu --size 0.3 --feature-angle 0
-    render_collar.py wedge.vtu images/collar.png
+    acute_shape sectors sectors 8
+    collarmesh sectors_?.poly -o sectors.vtu --size 0.17 --feature-angle 0
+    render_collar.py sectors.vtu collar.png --open 7 8
 
-(acute_shape is built with the benchmarks.) Draws off screen with python3-vtk9; where that needs a display,
-run it under xvfb-run.
+Draws off screen with python3-vtk9; where that needs a display, run it under xvfb-run.
 """
 
 import argparse
@@ -136,11 +136,8 @@ def render(tets, edges, arguments):
     camera.SetFocalPoint(0, 0, 0)
     camera.SetViewUp(0, 0, 1)
     renderer.ResetCamera()
-    if arguments.focus:
-        shift = np.array(arguments.focus) - camera.GetFocalPoint()
-        camera.SetPosition(*(np.array(camera.GetPosition()) + shift))
-        camera.SetFocalPoint(*arguments.focus)
     camera.Zoom(arguments.zoom)
+    camera.SetWindowCenter(0, -0.42)   # up, so that the legend has room
     for position, strength in (((-1, -2, 1.5), 0.55), ((2.5, -0.5, 1.5), 0.6)):
         light = vtk.vtkLight()
         light.SetLightTypeToSceneLight()
@@ -161,14 +158,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("mesh")
     parser.add_argument("picture", nargs="?")
-    parser.add_argument("--normal", nargs=3, type=float, default=(0, 0, 1), help="of the cutting plane")
-    parser.add_argument("--at", type=float, default=0.45, help="where it cuts, 0 to 1 along the normal")
-    parser.add_argument("--view", nargs=3, type=float, default=(-1.2, -2.0, 1.1), help="direction to the camera")
+    parser.add_argument("--normal", nargs=3, type=float, default=(0, -1, 0), help="of the cutting plane")
+    parser.add_argument("--at", type=float, default=0.5, help="where it cuts, 0 to 1 along the normal")
+    parser.add_argument("--view", nargs=3, type=float, default=(0.12, -1.6, 0.8), help="direction to the camera")
     parser.add_argument("--open", nargs="*", type=int, default=(), help="regions whose collar is removed")
-    parser.add_argument("--focus", nargs=3, type=float, help="centre of the picture")
-    parser.add_argument("--shrink", type=float, default=0.88, help="of the collar's cells, to tell them apart")
-    parser.add_argument("--zoom", type=float, default=1.2)
-    parser.add_argument("--size", nargs=2, type=int, default=(1200, 900))
+    parser.add_argument("--shrink", type=float, default=0.94, help="of the collar's cells, to tell them apart")
+    parser.add_argument("--zoom", type=float, default=2.1)
+    parser.add_argument("--size", nargs=2, type=int, default=(1200, 740))
     arguments = parser.parse_args()
     images = os.path.join(os.path.dirname(os.path.abspath(__file__)), "images")
     name = os.path.splitext(os.path.basename(arguments.mesh))[0] + ".png"
