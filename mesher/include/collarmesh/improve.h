@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+
+#include "collarmesh/plc.h"
+#include "collarmesh/progress.h"
+#include "collarmesh/tet_mesh.h"
+
+namespace collarmesh {
+
+/// What `improve` may do and how far it goes.
+struct ImproveOptions {
+  double min_dihedral = 20;  ///< degrees; tets with a smaller dihedral angle, or one as bad beyond 90 degrees, are worked on
+  double radius_edge = 2;    ///< bound on circumradius / shortest edge that no new tet breaks
+  unsigned passes = 3;       ///< over the tets that could not be helped the first time
+};
+
+struct ImproveReport {
+  std::size_t candidates = 0;  ///< tets below the bound before
+  std::size_t remaining = 0;   ///< and after
+  std::size_t edge_removals = 0, face_removals = 0, boundary_flips = 0, moved_vertices = 0;
+  double seconds = 0;
+  bool cancelled = false;      ///< the mesh is valid, as good as it had become
+};
+
+/// Remove slivers: hill climbing on the smallest sine of a tet's dihedral angles (obtuse ones count
+/// 0.7 times, so that 155 degrees is about as bad as 17), worst tet first, by removing edges and faces
+/// and by moving vertices within their features (Freitag and Ollivier-Gooch 1997; the edge removal is
+/// Klincsek's optimal triangulation of the ring, as in Klingner and Shewchuk 2007, section 2).
+/// No operation makes the worst tet of its cavity worse, breaks the radius-edge bound, touches a
+/// collar, changes a smooth patch or a curve, or leaves the plane of a planar patch.
+/// Preconditions: `mesh` comes from `generate` for `plc`, first order.
+/// Cost: linear in the tets, with a small factor for those below the bound.
+ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& options = {},
+                      const Execution& execution = {});
+
+}  // namespace collarmesh

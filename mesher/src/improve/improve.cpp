@@ -1,0 +1,136 @@
+#include "collarmesh/improve.h"
+
+#include <chrono>
+#include <numbers>
+#include <queue>
+
+#include "improve/operations.h"
+#include "improve/shape.h"
+#include "improve/tet_complex.h"
+
+namespace collarmesh {
+
+namespace improvement {
+namespace {
+
+constexpr std::size_t steps_between_reports = 1024;
+
+/// Works on the tets below a quality, worst first.
+class Improvement {
+ public:
+  Improvement(TetMesh& mesh, const Plc& plc, const ImproveOptions& options, const Execution& execution)
+      : complex_(mesh),
+        operations_(complex_, plc, options.radius_edge),
+        execution_(execution),
+        wanted_(std::sin(options.min_dihedral * std::numbers::pi / 180)),
+        passes_(options.passes) {}
+
+  ImproveReport run() {
+    const auto started = std::chrono::steady_clock::now();
+    for (Index t = 0; t < complex_.size(); ++t) queue(t);
+    report_.candidates = queue_.size();
+    for (unsigned pass = 0; pass < passes_ && !queue_.empty() && !report_.cancelled; ++pass) {
+      const std::size_t before = changes();
+      work_off();
+      if (changes() == before) break;
+      for (Index t = 0; t < complex_.size(); ++t) queue(t);
+    }
+    report_.remaining = count_remaining();
+    complex_.store();
+    report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    return report_;
+  }
+
+ private:
+  struct Item {
+    double quality;
+    Index tet;
+    std::uint32_t generation;
+
+    friend bool operator<(const Item& a, const Item& b) {  // the worst on top
+      return a.quality != b.quality ? a.quality > b.quality : a.tet > b.tet;
+    }
+  };
+
+  std::size_t changes() const {
+    return report_.edge_removals + report_.face_removals + report_.boundary_flips + report_.moved_vertices;
+  }
+
+  std::size_t count_remaining() const {
+    std::size_t count = 0;
+    for (Index t = 0; t < complex_.size(); ++t)
+      count += complex_[t].alive && !complex_[t].collar && operations_.quality(t) < wanted_;
+    return count;
+  }
+
+  void queue(Index tet) {
+    if (!complex_[tet].alive || complex_[tet].collar) return;
+    const double quality = operations_.quality(tet);
+    if (quality < wanted_) queue_.push({quality, tet, complex_[tet].generation});
+  }
+
+  void work_off() {
+    std::size_t steps = 0;
+    while (!queue_.empty()) {
+      const Item item = queue_.top();
+      queue_.pop();
+      if (++steps % steps_between_reports == 0 && stopped()) {
+        report_.cancelled = true;
+        return;
+      }
+      const auto& tet = complex_[item.tet];
+      if (!tet.alive || tet.generation != item.generation) continue;
+      if (operations_.quality(item.tet) != item.quality) continue;  // a vertex has moved since
+      help(item.tet);
+    }
+  }
+
+  bool stopped() const {
+    return execution_.cancelled() ||
+           (execution_.progress && !execution_.progress({"improve", 0, complex_.mesh().points.size(), complex_.size()}));
+  }
+
+  void help(Index tet) {
+    Change change;
+    for (unsigned i = 0; i < 4; ++i)
+      for (unsigned j = i + 1; j < 4; ++j) operations_.remove_edge(tet, i, j, change);
+    for (unsigned corner = 0; corner < 4; ++corner) operations_.remove_face(tet, corner, change);
+    if (change.kind != Change::Kind::none) {
+      apply(change);
+      return;
+    }
+    const auto corners = complex_[tet].corners;
+    for (const Index v : corners) {
+      if (!operations_.move_vertex(v)) continue;
+      ++report_.moved_vertices;
+      for (const Index t : operations_.star()) queue(t);
+    }
+  }
+
+  void apply(const Change& change) {
+    switch (change.kind) {
+      case Change::Kind::edge_removal: ++report_.edge_removals; break;
+      case Change::Kind::face_removal: ++report_.face_removals; break;
+      case Change::Kind::boundary_flip: ++report_.boundary_flips; break;
+      case Change::Kind::none: return;
+    }
+    for (const Index t : complex_.replace(change.old, change.created, change.kept)) queue(t);
+  }
+
+  TetComplex complex_;
+  Operations operations_;
+  const Execution& execution_;
+  double wanted_;
+  unsigned passes_;
+  std::priority_queue<Item> queue_;
+  ImproveReport report_;
+};
+
+}  // namespace
+}  // namespace improvement
+
+ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& options, const Execution& execution) {
+  return improvement::Improvement(mesh, plc, options, execution).run();
+}
+
+}  // namespace collarmesh

@@ -1,0 +1,242 @@
+#include "improve/operations.h"
+
+#include <algorithm>
+
+#include "improve/shape.h"
+
+namespace collarmesh::improvement {
+
+namespace {
+
+// Larger rings are hardly ever improved by removing their edge.
+constexpr std::size_t largest_ring = 9;
+// Four points are in one plane when their volume is below this share of their longest edge cubed.
+constexpr double flat_volume = 1e-13;
+// Vertices move by steps from this share of their shortest edge down, halved so often.
+constexpr double first_step = 0.4;
+constexpr unsigned halvings = 4;
+
+}  // namespace
+
+double Operations::quality(Index tet) const { return shape_quality(complex_.corners(tet)); }
+
+// Not above `above` means worthless, whatever the value.
+double Operations::new_quality(const std::array<Index, 4>& v, double above) const {
+  const auto& points = complex_.mesh().points;
+  const Corners p{points[v[0]], points[v[1]], points[v[2]], points[v[3]]};
+  const double quality = shape_quality(p);
+  if (quality <= above) return -1;
+  const Circumsphere sphere = circumsphere(p);
+  return sphere.squared_radius <= squared_radius_edge_ * sphere.shortest_squared_edge ? quality : -1;
+}
+
+// Triangulate the polygon around the edge ab so that the worst of the two tets on each triangle is as
+// good as possible (Klincsek 1980). Cost: the polygon's vertices cubed.
+double Operations::triangulate(Index a, Index b, const Polygon& polygon, double above) {
+  const std::size_t n = polygon.size();
+  best_.assign(n * n, INFINITY);
+  apex_.assign(n * n, 0);
+  for (std::size_t width = 2; width < n; ++width)
+    for (std::size_t i = 0; i + width < n; ++i) {
+      const std::size_t j = i + width;
+      double& best = best_[i * n + j];
+      best = -1;
+      for (std::size_t k = i + 1; k < j; ++k) {
+        double q = std::min(best_[i * n + k], best_[k * n + j]);
+        const double bar = std::max(above, best);
+        if (q <= bar) continue;
+        q = std::min(q, new_quality({a, polygon[i], polygon[k], polygon[j]}, bar));
+        if (q <= bar) continue;
+        q = std::min(q, new_quality({b, polygon[i], polygon[j], polygon[k]}, bar));
+        if (q <= bar) continue;
+        best = q;
+        apex_[i * n + j] = k;
+      }
+    }
+  return best_[n - 1];
+}
+
+void Operations::collect(Index a, Index b, const Polygon& polygon, std::size_t i, std::size_t j, Index like,
+                         Change& change) const {
+  if (j < i + 2) return;
+  const std::size_t k = apex_[i * polygon.size() + j];
+  change.created.push_back({{a, polygon[i], polygon[k], polygon[j]}, like});
+  change.created.push_back({{b, polygon[i], polygon[j], polygon[k]}, like});
+  collect(a, b, polygon, i, k, like, change);
+  collect(a, b, polygon, k, j, like, change);
+}
+
+bool Operations::flat(Index a, Index b, Index c, Index d) const {
+  const auto& p = complex_.mesh().points;
+  const double longest = std::max({squared_distance(p[a], p[b]), squared_distance(p[a], p[c]),
+                                   squared_distance(p[a], p[d]), squared_distance(p[c], p[d])});
+  return std::fabs(six_volume(p[a], p[b], p[c], p[d])) <= flat_volume * longest * std::sqrt(longest);
+}
+
+void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change) {
+  const Index a = complex_[tet].corners[i], b = complex_[tet].corners[j];
+  if (complex_.on_curve(a, b)) return;
+  complex_.ring(tet, a, b, ring_);
+  const std::size_t n = ring_.tets.size();
+  if (n > largest_ring || ring_.link.size() < 3) return;
+  // Where among the link vertices do faces that must stay leave the edge?
+  std::vector<std::pair<std::size_t, Index>> kept;
+  double worst = INFINITY;
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto& t = complex_[ring_.tets[k]];
+    if (t.collar) return;
+    worst = std::min(worst, quality(ring_.tets[k]));
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      const Index opposite = t.corners[corner];
+      if (opposite == a || opposite == b || t.faces[corner] == none) continue;
+      const bool ahead = opposite == ring_.link[k];   // the face to the next tet
+      const std::size_t at = ahead ? (k + 1) % ring_.link.size() : k;
+      if (kept.empty() || std::none_of(kept.begin(), kept.end(), [&](const auto& x) { return x.first == at; }))
+        kept.emplace_back(at, t.faces[corner]);
+    }
+  }
+  const double above = std::max(worst, change.quality);
+  std::vector<Polygon> polygons;
+  std::vector<Index> like;
+  if (kept.empty()) {
+    if (!ring_.closed) return;
+    polygons.push_back(ring_.link);
+    like.push_back(ring_.tets[0]);
+  } else {
+    if (kept.size() != 2) return;
+    std::sort(kept.begin(), kept.end());
+    const auto& mesh = complex_.mesh();
+    const Index patch = mesh.face_patch[kept[0].second];
+    if (patch == none || mesh.face_patch[kept[1].second] != patch || !plc_.patches[patch].planar) return;
+    const std::size_t from = kept[0].first, to = kept[1].first, m = ring_.link.size();
+    if (!flat(a, b, ring_.link[from], ring_.link[to])) return;
+    if (!ring_.closed && (from != 0 || to + 1 != m)) return;
+    for (const auto& [begin, end] : {std::pair{from, to}, std::pair{to, from + m}}) {
+      if (!ring_.closed && begin != 0) break;
+      Polygon& polygon = polygons.emplace_back();
+      for (std::size_t k = begin; k <= end; ++k) polygon.push_back(ring_.link[k % m]);
+      like.push_back(ring_.tets[begin % n]);
+      if (polygon.size() < 3) return;
+    }
+  }
+  Change made;
+  made.quality = INFINITY;
+  for (std::size_t k = 0; k < polygons.size(); ++k) {
+    made.quality = std::min(made.quality, triangulate(a, b, polygons[k], above));
+    if (made.quality <= above) return;
+    collect(a, b, polygons[k], 0, polygons[k].size() - 1, like[k], made);
+  }
+  made.kind = Change::Kind::edge_removal;
+  made.old = ring_.tets;
+  if (!kept.empty()) {
+    made.kind = Change::Kind::boundary_flip;
+    const Index c = ring_.link[kept[0].first], d = ring_.link[kept[1].first];
+    const auto& p = complex_.mesh().points;
+    for (const auto& [end, face] : {std::pair{a, kept[0].second}, std::pair{b, kept[1].second}}) {
+      const auto& before = complex_.mesh().faces[face];
+      const Vector up = cross(p[before[1]] - p[before[0]], p[before[2]] - p[before[0]]);
+      std::array<Index, 3> corners{end, c, d};
+      if (dot(cross(p[c] - p[end], p[d] - p[end]), up) < 0) std::swap(corners[1], corners[2]);
+      made.kept.push_back({corners, face});
+    }
+  }
+  change = std::move(made);
+}
+
+void Operations::remove_face(Index tet, unsigned corner, Change& change) {
+  const auto& t = complex_[tet];
+  const Index other = t.neighbours[corner];
+  if (other == none || t.faces[corner] != none || t.collar || complex_[other].collar) return;
+  const auto face = face_corners(t.corners, corner);
+  const Index a = t.corners[corner];
+  Index b = none;
+  for (const Index v : complex_[other].corners)
+    if (v != face[0] && v != face[1] && v != face[2]) b = v;
+  const double above = std::max({change.quality, std::min(quality(tet), quality(other))});
+  double worst = INFINITY;
+  std::array<std::array<Index, 4>, 3> made;
+  for (unsigned k = 0; k < 3; ++k) {
+    made[k] = {a, b, face[k], face[(k + 1) % 3]};
+    worst = std::min(worst, new_quality(made[k], above));
+    if (worst <= above) return;
+  }
+  change = {Change::Kind::face_removal, worst, {tet, other}, {}, {}};
+  for (const auto& corners : made) change.created.push_back({corners, tet});
+}
+
+// The directions a vertex may move in: all, those of its plane, or none.
+bool Operations::may_move_in(Index vertex, std::array<Vector, 3>& directions, unsigned& count) const {
+  const auto& feature = complex_.mesh().features[vertex];
+  if (feature.dimension < 2) return false;
+  directions = {Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}};
+  count = 3;
+  if (feature.dimension == 3) return true;
+  if (feature.feature == none || !plc_.patches[feature.feature].planar) return false;
+  const Vector n = plc_.patches[feature.feature].normal;
+  const Vector least = std::fabs(n.x) <= std::fabs(n.y) && std::fabs(n.x) <= std::fabs(n.z) ? directions[0]
+                       : std::fabs(n.y) <= std::fabs(n.z)                                    ? directions[1]
+                                                                                             : directions[2];
+  directions[0] = cross(n, least) / norm(cross(n, least));
+  directions[1] = cross(n, directions[0]);
+  count = 2;
+  return true;
+}
+
+double Operations::quality_around(Index vertex, const Point& at, double above) const {
+  double worst = INFINITY;
+  for (const Index t : star_) {
+    auto p = complex_.corners(t);
+    for (unsigned i = 0; i < 4; ++i)
+      if (complex_[t].corners[i] == vertex) p[i] = at;
+    worst = std::min(worst, shape_quality(p));
+    if (worst <= above) return -1;
+    const Circumsphere sphere = circumsphere(p);
+    if (sphere.squared_radius > squared_radius_edge_ * sphere.shortest_squared_edge) return -1;
+  }
+  return worst;
+}
+
+bool Operations::move_vertex(Index vertex) {
+  std::array<Vector, 3> directions;
+  unsigned count = 0;
+  if (!may_move_in(vertex, directions, count)) return false;
+  complex_.star(vertex, star_);
+  auto& points = complex_.mesh().points;
+  const Point start = points[vertex];
+  Point centre{0, 0, 0};
+  double shortest = INFINITY, best = INFINITY;
+  std::size_t corners = 0;
+  for (const Index t : star_) {
+    if (complex_[t].collar) return false;
+    best = std::min(best, quality(t));
+    for (const Index v : complex_[t].corners) {
+      if (v == vertex) continue;
+      shortest = std::min(shortest, squared_distance(points[v], start));
+      centre = centre + (points[v] - Point{0, 0, 0});
+      ++corners;
+    }
+  }
+  const double before = best;
+  const bool planar = count == 2;
+  const auto consider = [&](Point p) {
+    if (planar) {
+      const Plc::Patch& patch = plc_.patches[complex_.mesh().features[vertex].feature];
+      p = p - dot(p - patch.origin, patch.normal) * patch.normal;
+    }
+    const double q = quality_around(vertex, p, best);
+    if (q <= best) return false;
+    best = q;
+    points[vertex] = p;
+    return true;
+  };
+  const Vector to_centre = centre / static_cast<double>(corners) - start;
+  consider(start + to_centre);
+  consider(start + 0.5 * to_centre);
+  double step = first_step * std::sqrt(shortest);
+  for (unsigned h = 0; h < halvings; ++h, step *= 0.5)
+    for (unsigned d = 0; d < count; ++d)
+      if (!consider(points[vertex] + step * directions[d])) consider(points[vertex] - step * directions[d]);
+  return best > before * (1 + 1e-3) + 1e-12;
+}
+
+}  // namespace collarmesh::improvement

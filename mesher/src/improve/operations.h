@@ -1,0 +1,58 @@
+#pragma once
+
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "improve/tet_complex.h"
+
+namespace collarmesh::improvement {
+
+/// Tets that may take the place of others, all better than the worst of these.
+struct Change {
+  enum class Kind { none, edge_removal, face_removal, boundary_flip };
+  Kind kind = Kind::none;
+  double quality = 0;  ///< of the worst new tet
+  std::vector<Index> old;
+  std::vector<TetComplex::NewTet> created;
+  std::vector<TetComplex::Face> kept;
+};
+
+/// The local operations. Each proposes what it would do, or nothing when that would not raise the
+/// smallest quality in its cavity above `change.quality` or would break a guarantee.
+class Operations {
+ public:
+  Operations(TetComplex& complex, const Plc& plc, double radius_edge)
+      : complex_(complex), plc_(plc), squared_radius_edge_(radius_edge * radius_edge) {}
+
+  double quality(Index tet) const;
+  /// Remove the edge between two corners of a tet: its ring is triangulated anew, as well as possible.
+  /// An edge inside a planar patch is removed together with its two triangles there.
+  void remove_edge(Index tet, unsigned i, unsigned j, Change& change);
+  /// Replace the face opposite a corner of a tet by an edge between the two opposite corners.
+  void remove_face(Index tet, unsigned corner, Change& change);
+  /// Move a vertex within its feature to where the worst tet around it is better. False when it stays.
+  bool move_vertex(Index vertex);
+  /// The tets around the vertex that moved last.
+  const std::vector<Index>& star() const { return star_; }
+
+ private:
+  using Polygon = std::vector<Index>;
+
+  double new_quality(const std::array<Index, 4>& corners, double above) const;
+  bool may_move_in(Index vertex, std::array<Vector, 3>& directions, unsigned& count) const;
+  double quality_around(Index vertex, const Point& p, double above) const;
+  bool divided(Index a, Index b, std::vector<std::pair<std::size_t, std::size_t>>& parts);
+  double triangulate(Index a, Index b, const Polygon& polygon, double above);
+  void collect(Index a, Index b, const Polygon& polygon, std::size_t i, std::size_t j, Index like, Change& change) const;
+  bool flat(Index a, Index b, Index c, Index d) const;
+
+  TetComplex& complex_;
+  const Plc& plc_;
+  double squared_radius_edge_;
+  TetComplex::Ring ring_;
+  std::vector<Index> star_;
+  std::vector<double> best_;        // of the polygon's parts from vertex i to j
+  std::vector<std::size_t> apex_;   // the third vertex of the triangle on ij there
+};
+
+}  // namespace collarmesh::improvement

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "collarmesh/geometry.h"
+
+namespace collarmesh::improvement {
+
+using Corners = std::array<Point, 4>;
+
+/// An obtuse dihedral angle counts as if its sine were this much smaller.
+constexpr double obtuse_weight = 0.7;
+
+/// The smallest sine of a tet's dihedral angles, obtuse ones weighted: from 0 to about 0.94;
+/// not positive for a flat or an inverted tet.
+inline double shape_quality(const Corners& p) {
+  const Vector ab = p[1] - p[0], ac = p[2] - p[0], ad = p[3] - p[0], bc = p[2] - p[1], bd = p[3] - p[1],
+               cd = p[3] - p[2];
+  const std::array<Vector, 4> normals{cross(bc, bd), cross(ad, ac), cross(ab, ad), cross(ac, ab)};
+  const double six_volume = -dot(normals[3], ad);
+  if (six_volume <= 0) return six_volume < 0 ? -1 : 0;
+  // Beside the edge between corners i and j lie the faces opposite the other two, k and l; the sine
+  // there is 6V |ij| / (2A_k 2A_l).
+  double worst = INFINITY;
+  const auto see = [&](const Vector& edge, const Vector& k, const Vector& l) {
+    double squared_sine = squared_norm(edge) / (squared_norm(k) * squared_norm(l));
+    if (dot(k, l) > 0) squared_sine *= obtuse_weight * obtuse_weight;
+    worst = std::min(worst, squared_sine);
+  };
+  see(ab, normals[2], normals[3]);
+  see(ac, normals[1], normals[3]);
+  see(ad, normals[1], normals[2]);
+  see(bc, normals[0], normals[3]);
+  see(bd, normals[0], normals[2]);
+  see(cd, normals[0], normals[1]);
+  return six_volume * std::sqrt(worst);
+}
+
+struct Circumsphere {
+  double squared_radius;
+  double shortest_squared_edge;
+};
+
+inline Circumsphere circumsphere(const Corners& p) {
+  const Vector u = p[1] - p[0], v = p[2] - p[0], w = p[3] - p[0];
+  const double uu = squared_norm(u), vv = squared_norm(v), ww = squared_norm(w);
+  const Vector vw = cross(v, w);
+  const double det = dot(u, vw);
+  const Vector centre = (uu * vw + vv * cross(w, u) + ww * cross(u, v)) / (2 * det);
+  return {squared_norm(centre), std::min({uu, vv, ww, squared_distance(p[1], p[2]),
+                                          squared_distance(p[1], p[3]), squared_distance(p[2], p[3])})};
+}
+
+}  // namespace collarmesh::improvement

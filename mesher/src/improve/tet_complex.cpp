@@ -1,0 +1,219 @@
+#include "improve/tet_complex.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace collarmesh::improvement {
+
+namespace {
+
+std::array<Index, 3> sorted(std::array<Index, 3> face) {
+  if (face[0] > face[1]) std::swap(face[0], face[1]);
+  if (face[1] > face[2]) std::swap(face[1], face[2]);
+  if (face[0] > face[1]) std::swap(face[0], face[1]);
+  return face;
+}
+
+std::uint64_t edge_key(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
+
+}  // namespace
+
+TetComplex::TetComplex(TetMesh& mesh) : mesh_(mesh) {
+  tets_.reserve(mesh.tets.size());
+  vertex_tet_.assign(mesh.points.size(), none);
+  for (Index t = 0; t < mesh.tets.size(); ++t) {
+    tets_.push_back({mesh.tets[t], {none, none, none, none}, {none, none, none, none}, mesh.tet_region[t], 0, true,
+                     mesh.tet_collar[t] != 0});
+    origin_.push_back(t);
+    for (const Index v : mesh.tets[t]) vertex_tet_[v] = t;
+  }
+  stamps_.assign(tets_.size(), 0);
+  link_all();
+  for (const auto& edge : mesh.edges) curve_edges_.push_back(edge_key(edge[0], edge[1]));
+  std::sort(curve_edges_.begin(), curve_edges_.end());
+}
+
+// Faces are matched in the list of their first vertex.
+void TetComplex::link_all() {
+  std::vector<std::size_t> first(mesh_.points.size() + 1, 0);
+  const auto for_all_faces = [&](auto&& act) {
+    for (Index t = 0; t < tets_.size(); ++t)
+      for (unsigned corner = 0; corner < 4; ++corner)
+        act(OpenFace{sorted(face_corners(tets_[t].corners, corner)), t, corner, none});
+    for (Index f = 0; f < mesh_.faces.size(); ++f) act(OpenFace{sorted(mesh_.faces[f]), none, 0, f});
+  };
+  for_all_faces([&](const OpenFace& face) { ++first[face.key[0] + 1]; });
+  for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
+  std::vector<OpenFace> faces(first.back());
+  std::vector<std::size_t> next(first.begin(), first.end() - 1);
+  for_all_faces([&](const OpenFace& face) { faces[next[face.key[0]]++] = face; });
+  for (std::size_t v = 0; v + 1 < first.size(); ++v) {
+    const auto begin = faces.begin() + static_cast<std::ptrdiff_t>(first[v]),
+               end = faces.begin() + static_cast<std::ptrdiff_t>(first[v + 1]);
+    std::sort(begin, end, [](const OpenFace& a, const OpenFace& b) {
+      return std::pair(a.key[1], a.key[2]) < std::pair(b.key[1], b.key[2]);
+    });
+    for (auto at = begin; at != end;) {
+      auto last = at;
+      while (last != end && last->key == at->key) ++last;
+      Index face = none;
+      std::array<const OpenFace*, 2> sides{nullptr, nullptr};
+      for (auto i = at; i != last; ++i) {
+        if (i->tet == none) face = i->face;
+        else (sides[0] == nullptr ? sides[0] : sides[1]) = &*i;
+      }
+      for (unsigned s = 0; s < 2; ++s) {
+        if (sides[s] == nullptr) continue;
+        Tet& tet = tets_[sides[s]->tet];
+        tet.faces[sides[s]->corner] = face;
+        tet.neighbours[sides[s]->corner] = sides[1 - s] == nullptr ? none : sides[1 - s]->tet;
+      }
+      at = last;
+    }
+  }
+}
+
+std::array<Point, 4> TetComplex::corners(Index tet) const {
+  const auto& v = tets_[tet].corners;
+  return {mesh_.points[v[0]], mesh_.points[v[1]], mesh_.points[v[2]], mesh_.points[v[3]]};
+}
+
+bool TetComplex::on_curve(Index a, Index b) const {
+  return std::binary_search(curve_edges_.begin(), curve_edges_.end(), edge_key(a, b));
+}
+
+void TetComplex::star(Index vertex, std::vector<Index>& found) {
+  found.assign(1, vertex_tet_[vertex]);
+  stamps_[found[0]] = ++stamp_;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const Tet& tet = tets_[found[i]];
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      const Index next = tet.neighbours[corner];
+      if (tet.corners[corner] == vertex || next == none || stamps_[next] == stamp_) continue;
+      stamps_[next] = stamp_;
+      found.push_back(next);
+    }
+  }
+}
+
+void TetComplex::ring(Index tet, Index a, Index b, Ring& ring) const {
+  ring.tets.clear();
+  ring.link.clear();
+  // The two other corners of a tet, in the order that makes (a, b, c, d) positive.
+  const auto others = [&](Index t) {
+    const auto& v = tets_[t].corners;
+    unsigned ia = 0, ib = 0;
+    for (unsigned i = 0; i < 4; ++i) {
+      if (v[i] == a) ia = i;
+      if (v[i] == b) ib = i;
+    }
+    // Of the positive face opposite a, the corner after b comes first.
+    const auto face = face_corners(v, ia);
+    for (unsigned i = 0; i < 3; ++i)
+      if (face[i] == v[ib]) return std::array<Index, 2>{face[(i + 1) % 3], face[(i + 2) % 3]};
+    return std::array<Index, 2>{none, none};
+  };
+  const auto across = [&](Index t, Index opposite) {
+    const auto& v = tets_[t].corners;
+    return tets_[t].neighbours[static_cast<unsigned>(std::find(v.begin(), v.end(), opposite) - v.begin())];
+  };
+  // Back to the first tet at a boundary, if there is one.
+  Index start = tet;
+  for (Index t = across(tet, others(tet)[1]); t != none && t != tet; t = across(t, others(t)[1])) start = t;
+  if (across(start, others(start)[1]) != none) start = tet;
+  ring.closed = across(start, others(start)[1]) != none;
+  for (Index t = start; t != none;) {
+    const auto [c, d] = others(t);
+    ring.tets.push_back(t);
+    ring.link.push_back(c);
+    const Index next = across(t, c);
+    if (next == none) ring.link.push_back(d);
+    if (next == start) break;
+    t = next;
+  }
+}
+
+unsigned TetComplex::corner_across(Index tet, const std::array<Index, 3>& sorted_face) const {
+  const auto& v = tets_[tet].corners;
+  for (unsigned i = 0; i < 4; ++i)
+    if (v[i] != sorted_face[0] && v[i] != sorted_face[1] && v[i] != sorted_face[2]) return i;
+  return 0;
+}
+
+std::span<const Index> TetComplex::replace(std::span<const Index> old,
+                                           std::span<const NewTet> created,
+                                           std::span<const Face> kept) {
+  open_.clear();
+  ++stamp_;
+  for (const Index t : old) stamps_[t] = stamp_;
+  for (const Index t : old)
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      const Index outer = tets_[t].neighbours[corner];
+      if (outer != none && stamps_[outer] == stamp_) continue;
+      const auto key = sorted(face_corners(tets_[t].corners, corner));
+      open_.push_back({key, outer, outer == none ? 0 : corner_across(outer, key), tets_[t].faces[corner]});
+    }
+  tags_.clear();
+  for (const NewTet& tet : created) tags_.emplace_back(tets_[tet.like].region, origin_[tet.like]);
+  for (const Index t : old) {
+    tets_[t].alive = false;
+    ++tets_[t].generation;
+    free_.push_back(t);
+  }
+  created_.clear();
+  for (std::size_t i = 0; i < created.size(); ++i) {
+    const auto& corners = created[i].corners;
+    Index t = static_cast<Index>(tets_.size());
+    if (free_.empty()) {
+      tets_.push_back({});
+      origin_.push_back(none);
+      stamps_.push_back(0);
+    } else {
+      t = free_.back();
+      free_.pop_back();
+    }
+    Tet& tet = tets_[t];
+    tet = {corners, {none, none, none, none}, {none, none, none, none}, tags_[i].first, tet.generation, true, false};
+    origin_[t] = tags_[i].second;
+    created_.push_back(t);
+    for (const Index v : corners) vertex_tet_[v] = t;
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      const auto key = sorted(face_corners(corners, corner));
+      const auto open = std::find_if(open_.begin(), open_.end(), [&](const OpenFace& f) { return f.key == key; });
+      if (open == open_.end()) {
+        open_.push_back({key, t, corner, none});
+        continue;
+      }
+      tet.neighbours[corner] = open->tet;
+      tet.faces[corner] = open->face;
+      if (open->tet != none) tets_[open->tet].neighbours[open->corner] = t;
+      *open = open_.back();
+      open_.pop_back();
+    }
+  }
+  for (const Face& face : kept) {
+    mesh_.faces[face.face] = face.corners;
+    const auto key = sorted(face.corners);
+    for (const Index t : created_)
+      for (unsigned corner = 0; corner < 4; ++corner)
+        if (sorted(face_corners(tets_[t].corners, corner)) == key) tets_[t].faces[corner] = face.face;
+  }
+  return created_;
+}
+
+void TetComplex::store() {
+  TetMesh stored;
+  for (Index t = 0; t < tets_.size(); ++t) {
+    if (!tets_[t].alive) continue;
+    stored.tets.push_back(tets_[t].corners);
+    stored.tet_region.push_back(tets_[t].region);
+    stored.tet_tag.push_back(mesh_.tet_tag[origin_[t]]);
+    stored.tet_collar.push_back(mesh_.tet_collar[origin_[t]]);
+  }
+  mesh_.tets = std::move(stored.tets);
+  mesh_.tet_region = std::move(stored.tet_region);
+  mesh_.tet_tag = std::move(stored.tet_tag);
+  mesh_.tet_collar = std::move(stored.tet_collar);
+}
+
+}  // namespace collarmesh::improvement
