@@ -132,6 +132,17 @@ void add_size_options(CLI::App& app, MeshOptions& m) {
       ->group(group);
 }
 
+void add_improvement_options(CLI::App& app, MeshArguments& a) {
+  const std::string group = "Quality";
+  add(app, "--improve", a.improve, "Removal of slivers: 0 none, 1 quick, 2 good, 3 best")
+      ->check(number_in(0, 3, "0, 1, 2 or 3"))
+      ->group(group);
+  add(app, "--min-dihedral", a.min_dihedral, "Improve tetrahedra with smaller dihedral angles, degrees",
+      "15, 20, 30 by level")
+      ->check(number_in(0, 60, "an angle from 0 to 60 degrees"))
+      ->group(group);
+}
+
 void add_quality_options(CLI::App& app, MeshOptions& m) {
   const std::string group = "Quality";
   add(app, "--radius-edge", m.radius_edge, "Bound on circumradius / shortest edge of a tetrahedron")
@@ -172,6 +183,7 @@ void add_budget_options(CLI::App& app, MeshOptions& m) {
 void add_run_options(CLI::App& app, MeshArguments& a) {
   add_size_options(app, a.mesh);
   add_quality_options(app, a.mesh);
+  add_improvement_options(app, a);
   add_complex_options(app, a.complex);
   add_budget_options(app, a.mesh);
   app.add_option("--report", a.report, "Write what was measured as JSON")->type_name("FILE.json");

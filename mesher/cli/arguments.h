@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "collarmesh/check.h"
+#include "collarmesh/improve.h"
 #include "collarmesh/mesher.h"
 #include "collarmesh/plc_builder.h"
 #include "exit_code.h"
@@ -27,6 +28,8 @@ struct MeshArguments {
   std::string output;
   ComplexArguments complex;
   MeshOptions mesh;
+  unsigned improve = 2;     ///< level; 0: leave the elements as they are
+  double min_dihedral = 0;  ///< degrees, in place of the level's; 0: the level's
   std::string input_format, output_format;  ///< extensions with their dot; empty: those of the files
   std::string report;                       ///< path, empty: none
   ProgressStyle progress = ProgressStyle::automatic;

@@ -75,7 +75,7 @@ void build_complex(const MeshArguments& arguments, Stages& stages, MeshRun& run)
 }
 
 void refine(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
-  stages.begin("refine", 0.08, 0.8);
+  stages.begin("refine", 0.08, 0.7);
   Execution execution;
   execution.cancel = &interrupt_flag();
   execution.progress = [&stages](const ProgressReport& report) {
@@ -85,6 +85,18 @@ void refine(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   MeshOptions options = arguments.mesh;
   options.crease_angle = arguments.complex.crease_angle;
   run.result = generate(run.plc, options, execution);
+}
+
+void improve_elements(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
+  if (arguments.improve == 0) return;
+  stages.begin("improve", 0.7, 0.8);
+  Execution execution;
+  execution.cancel = &interrupt_flag();
+  ImproveOptions options = improve_options(arguments.improve);
+  options.radius_edge = arguments.mesh.radius_edge;
+  if (arguments.min_dihedral > 0) options.min_dihedral = arguments.min_dihedral;
+  run.improvement = improve(run.result.mesh, run.plc, options, execution);
+  stop_if_interrupted();
 }
 
 void certify(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
@@ -136,6 +148,7 @@ ExitCode mesh_and_write(const MeshArguments& arguments, MeshRun& run) {
   refine(arguments, stages, run);
   if (run.result.status == MeshStatus::cancelled) throw Cancelled();
   if (run.result.status == MeshStatus::budget_hit) return ExitCode::budget_hit;
+  improve_elements(arguments, stages, run);
   certify(arguments, stages, run);
   write_files(arguments, stages, run);
   return run.guarantees_hold() ? ExitCode::success : ExitCode::guarantee_missed;

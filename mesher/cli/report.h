@@ -17,6 +17,7 @@ struct MeshRun {
   Plc plc;
   PlcSummary summary;
   MeshResult result;
+  ImproveReport improvement;
   MeshMeasures measures;
   CheckReport check;
   StageTimes times;

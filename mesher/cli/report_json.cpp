@@ -60,6 +60,8 @@ Json options_json(const MeshArguments& a) {
           {"weld", a.complex.plc.weld},
           {"crease_angle", a.complex.crease_angle},
           {"collar_angle", m.collar_angle},
+          {"improve", a.improve},
+          {"min_dihedral", or_null(a.min_dihedral)},
           {"seed", m.seed},
           {"max_vertices", or_null(static_cast<double>(m.max_vertices))},
           {"max_memory", or_null(static_cast<double>(m.max_memory))},
@@ -74,6 +76,15 @@ Json statistics_json(const MeshStatistics& s) {
           {"yields", s.yields},
           {"peak_bytes", s.peak_bytes},
           {"seconds", s.seconds}};
+}
+
+Json improvement_json(const ImproveReport& r) {
+  return {{"candidates", r.candidates},
+          {"remaining", r.remaining},
+          {"edge_removals", r.edge_removals},
+          {"boundary_flips", r.boundary_flips},
+          {"moved_vertices", r.moved_vertices},
+          {"seconds", r.seconds}};
 }
 
 }  // namespace
@@ -168,6 +179,7 @@ Json run_json(const MeshArguments& arguments, const MeshRun& run) {
           {"mesh", measures_json(run.result.mesh, run.measures)},
           {"check", check_json(run.check)},
           {"statistics", statistics_json(run.result.statistics)},
+          {"improvement", improvement_json(run.improvement)},
           {"seconds", std::move(seconds)}};
 }
 

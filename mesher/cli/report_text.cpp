@@ -118,6 +118,12 @@ std::string run_text(const MeshArguments& arguments, const MeshRun& run) {
                    "  {} vertices inserted, {} cells, {} exact predicates, {} warps, {} yields, {:.1f} MB\n",
                    s.vertices_inserted, s.cells, s.exact_predicates, s.warps, s.yields,
                    static_cast<double>(s.peak_bytes) / 1e6);
+  const ImproveReport& i = run.improvement;
+  if (arguments.verbose && i.candidates > 0)
+    fmt::format_to(Out(text),
+                   "  {} of {} poor tets improved: {} edges removed, {} boundary flips, {} vertices moved\n",
+                   i.candidates - std::min(i.remaining, i.candidates), i.candidates, i.edge_removals,
+                   i.boundary_flips, i.moved_vertices);
   if (run.guarantees_hold()) text += "  every guarantee holds\n";
   fmt::format_to(Out(text), "  {:.2f} s ({})\n", run.times.total(), times_text(run.times));
   return text;

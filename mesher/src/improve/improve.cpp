@@ -4,6 +4,7 @@
 #include <numbers>
 #include <queue>
 
+#include "collarmesh/error.h"
 #include "improve/operations.h"
 #include "improve/shape.h"
 #include "improve/tet_complex.h"
@@ -22,6 +23,7 @@ class Improvement {
       : complex_(mesh),
         operations_(complex_, plc, options.radius_edge),
         execution_(execution),
+        move_vertices_(options.move_vertices),
         wanted_(std::sin(options.min_dihedral * std::numbers::pi / 180)),
         passes_(options.passes) {}
 
@@ -53,7 +55,7 @@ class Improvement {
   };
 
   std::size_t changes() const {
-    return report_.edge_removals + report_.face_removals + report_.boundary_flips + report_.moved_vertices;
+    return report_.edge_removals + report_.boundary_flips + report_.moved_vertices;
   }
 
   std::size_t count_remaining() const {
@@ -87,18 +89,19 @@ class Improvement {
 
   bool stopped() const {
     return execution_.cancelled() ||
-           (execution_.progress && !execution_.progress({"improve", 0, complex_.mesh().points.size(), complex_.size()}));
+           (execution_.progress &&
+            !execution_.progress({"improve", 0, complex_.mesh().points.size(), complex_.size()}));
   }
 
   void help(Index tet) {
     Change change;
     for (unsigned i = 0; i < 4; ++i)
       for (unsigned j = i + 1; j < 4; ++j) operations_.remove_edge(tet, i, j, change);
-    for (unsigned corner = 0; corner < 4; ++corner) operations_.remove_face(tet, corner, change);
     if (change.kind != Change::Kind::none) {
       apply(change);
       return;
     }
+    if (!move_vertices_) return;
     const auto corners = complex_[tet].corners;
     for (const Index v : corners) {
       if (!operations_.move_vertex(v)) continue;
@@ -110,7 +113,6 @@ class Improvement {
   void apply(const Change& change) {
     switch (change.kind) {
       case Change::Kind::edge_removal: ++report_.edge_removals; break;
-      case Change::Kind::face_removal: ++report_.face_removals; break;
       case Change::Kind::boundary_flip: ++report_.boundary_flips; break;
       case Change::Kind::none: return;
     }
@@ -120,6 +122,7 @@ class Improvement {
   TetComplex complex_;
   Operations operations_;
   const Execution& execution_;
+  bool move_vertices_;
   double wanted_;
   unsigned passes_;
   std::priority_queue<Item> queue_;
@@ -129,7 +132,19 @@ class Improvement {
 }  // namespace
 }  // namespace improvement
 
-ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& options, const Execution& execution) {
+ImproveOptions improve_options(unsigned level) {
+  ImproveOptions options;
+  switch (level) {
+    case 1: options.min_dihedral = 15, options.move_vertices = false, options.passes = 1; break;
+    case 2: break;
+    case 3: options.min_dihedral = 30, options.passes = 6; break;
+    default: throw OptionError("the level of improvement must be 1, 2 or 3");
+  }
+  return options;
+}
+
+ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& options,
+                      const Execution& execution) {
   return improvement::Improvement(mesh, plc, options, execution).run();
 }
 

@@ -89,9 +89,10 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change) 
     for (unsigned corner = 0; corner < 4; ++corner) {
       const Index opposite = t.corners[corner];
       if (opposite == a || opposite == b || t.faces[corner] == none) continue;
-      const bool ahead = opposite == ring_.link[k];   // the face to the next tet
+      const bool ahead = opposite == ring_.link[k];  // the face to the next tet
       const std::size_t at = ahead ? (k + 1) % ring_.link.size() : k;
-      if (kept.empty() || std::none_of(kept.begin(), kept.end(), [&](const auto& x) { return x.first == at; }))
+      if (kept.empty() ||
+          std::none_of(kept.begin(), kept.end(), [&](const auto& x) { return x.first == at; }))
         kept.emplace_back(at, t.faces[corner]);
     }
   }
@@ -143,27 +144,6 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change) 
   change = std::move(made);
 }
 
-void Operations::remove_face(Index tet, unsigned corner, Change& change) {
-  const auto& t = complex_[tet];
-  const Index other = t.neighbours[corner];
-  if (other == none || t.faces[corner] != none || t.collar || complex_[other].collar) return;
-  const auto face = face_corners(t.corners, corner);
-  const Index a = t.corners[corner];
-  Index b = none;
-  for (const Index v : complex_[other].corners)
-    if (v != face[0] && v != face[1] && v != face[2]) b = v;
-  const double above = std::max({change.quality, std::min(quality(tet), quality(other))});
-  double worst = INFINITY;
-  std::array<std::array<Index, 4>, 3> made;
-  for (unsigned k = 0; k < 3; ++k) {
-    made[k] = {a, b, face[k], face[(k + 1) % 3]};
-    worst = std::min(worst, new_quality(made[k], above));
-    if (worst <= above) return;
-  }
-  change = {Change::Kind::face_removal, worst, {tet, other}, {}, {}};
-  for (const auto& corners : made) change.created.push_back({corners, tet});
-}
-
 // The directions a vertex may move in: all, those of its plane, or none.
 bool Operations::may_move_in(Index vertex, std::array<Vector, 3>& directions, unsigned& count) const {
   const auto& feature = complex_.mesh().features[vertex];
@@ -174,8 +154,8 @@ bool Operations::may_move_in(Index vertex, std::array<Vector, 3>& directions, un
   if (feature.feature == none || !plc_.patches[feature.feature].planar) return false;
   const Vector n = plc_.patches[feature.feature].normal;
   const Vector least = std::fabs(n.x) <= std::fabs(n.y) && std::fabs(n.x) <= std::fabs(n.z) ? directions[0]
-                       : std::fabs(n.y) <= std::fabs(n.z)                                    ? directions[1]
-                                                                                             : directions[2];
+                       : std::fabs(n.y) <= std::fabs(n.z)                                   ? directions[1]
+                                                                                            : directions[2];
   directions[0] = cross(n, least) / norm(cross(n, least));
   directions[1] = cross(n, directions[0]);
   count = 2;

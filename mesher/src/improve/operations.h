@@ -9,7 +9,7 @@ namespace collarmesh::improvement {
 
 /// Tets that may take the place of others, all better than the worst of these.
 struct Change {
-  enum class Kind { none, edge_removal, face_removal, boundary_flip };
+  enum class Kind { none, edge_removal, boundary_flip };
   Kind kind = Kind::none;
   double quality = 0;  ///< of the worst new tet
   std::vector<Index> old;
@@ -28,8 +28,6 @@ class Operations {
   /// Remove the edge between two corners of a tet: its ring is triangulated anew, as well as possible.
   /// An edge inside a planar patch is removed together with its two triangles there.
   void remove_edge(Index tet, unsigned i, unsigned j, Change& change);
-  /// Replace the face opposite a corner of a tet by an edge between the two opposite corners.
-  void remove_face(Index tet, unsigned corner, Change& change);
   /// Move a vertex within its feature to where the worst tet around it is better. False when it stays.
   bool move_vertex(Index vertex);
   /// The tets around the vertex that moved last.
@@ -43,7 +41,8 @@ class Operations {
   double quality_around(Index vertex, const Point& p, double above) const;
   bool divided(Index a, Index b, std::vector<std::pair<std::size_t, std::size_t>>& parts);
   double triangulate(Index a, Index b, const Polygon& polygon, double above);
-  void collect(Index a, Index b, const Polygon& polygon, std::size_t i, std::size_t j, Index like, Change& change) const;
+  void collect(Index a, Index b, const Polygon& polygon, std::size_t i, std::size_t j, Index like,
+               Change& change) const;
   bool flat(Index a, Index b, Index c, Index d) const;
 
   TetComplex& complex_;
@@ -51,8 +50,8 @@ class Operations {
   double squared_radius_edge_;
   TetComplex::Ring ring_;
   std::vector<Index> star_;
-  std::vector<double> best_;        // of the polygon's parts from vertex i to j
-  std::vector<std::size_t> apex_;   // the third vertex of the triangle on ij there
+  std::vector<double> best_;       // of the polygon's parts from vertex i to j
+  std::vector<std::size_t> apex_;  // the third vertex of the triangle on ij there
 };
 
 }  // namespace collarmesh::improvement

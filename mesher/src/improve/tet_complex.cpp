@@ -22,7 +22,12 @@ TetComplex::TetComplex(TetMesh& mesh) : mesh_(mesh) {
   tets_.reserve(mesh.tets.size());
   vertex_tet_.assign(mesh.points.size(), none);
   for (Index t = 0; t < mesh.tets.size(); ++t) {
-    tets_.push_back({mesh.tets[t], {none, none, none, none}, {none, none, none, none}, mesh.tet_region[t], 0, true,
+    tets_.push_back({mesh.tets[t],
+                     {none, none, none, none},
+                     {none, none, none, none},
+                     mesh.tet_region[t],
+                     0,
+                     true,
                      mesh.tet_collar[t] != 0});
     origin_.push_back(t);
     for (const Index v : mesh.tets[t]) vertex_tet_[v] = t;
@@ -59,8 +64,10 @@ void TetComplex::link_all() {
       Index face = none;
       std::array<const OpenFace*, 2> sides{nullptr, nullptr};
       for (auto i = at; i != last; ++i) {
-        if (i->tet == none) face = i->face;
-        else (sides[0] == nullptr ? sides[0] : sides[1]) = &*i;
+        if (i->tet == none)
+          face = i->face;
+        else
+          (sides[0] == nullptr ? sides[0] : sides[1]) = &*i;
       }
       for (unsigned s = 0; s < 2; ++s) {
         if (sides[s] == nullptr) continue;
@@ -140,8 +147,7 @@ unsigned TetComplex::corner_across(Index tet, const std::array<Index, 3>& sorted
   return 0;
 }
 
-std::span<const Index> TetComplex::replace(std::span<const Index> old,
-                                           std::span<const NewTet> created,
+std::span<const Index> TetComplex::replace(std::span<const Index> old, std::span<const NewTet> created,
                                            std::span<const Face> kept) {
   open_.clear();
   ++stamp_;
@@ -173,13 +179,15 @@ std::span<const Index> TetComplex::replace(std::span<const Index> old,
       free_.pop_back();
     }
     Tet& tet = tets_[t];
-    tet = {corners, {none, none, none, none}, {none, none, none, none}, tags_[i].first, tet.generation, true, false};
+    tet = {corners, {none, none, none, none}, {none, none, none, none}, tags_[i].first, tet.generation, true,
+           false};
     origin_[t] = tags_[i].second;
     created_.push_back(t);
     for (const Index v : corners) vertex_tet_[v] = t;
     for (unsigned corner = 0; corner < 4; ++corner) {
       const auto key = sorted(face_corners(corners, corner));
-      const auto open = std::find_if(open_.begin(), open_.end(), [&](const OpenFace& f) { return f.key == key; });
+      const auto open =
+          std::find_if(open_.begin(), open_.end(), [&](const OpenFace& f) { return f.key == key; });
       if (open == open_.end()) {
         open_.push_back({key, t, corner, none});
         continue;

@@ -73,7 +73,7 @@ class TetComplex {
 
   TetMesh& mesh_;
   std::vector<Tet> tets_;
-  std::vector<Index> origin_;        // of every tet: one of the mesh it takes its tags from
+  std::vector<Index> origin_;  // of every tet: one of the mesh it takes its tags from
   std::vector<Index> vertex_tet_;
   std::vector<std::uint32_t> stamps_;
   std::uint32_t stamp_ = 0;
