@@ -84,6 +84,7 @@ Json improvement_json(const ImproveReport& r) {
           {"edge_removals", r.edge_removals},
           {"boundary_flips", r.boundary_flips},
           {"moved_vertices", r.moved_vertices},
+          {"inserted_vertices", r.inserted_vertices},
           {"seconds", r.seconds}};
 }
 

@@ -121,9 +121,9 @@ std::string run_text(const MeshArguments& arguments, const MeshRun& run) {
   const ImproveReport& i = run.improvement;
   if (arguments.verbose && i.candidates > 0)
     fmt::format_to(Out(text),
-                   "  {} of {} poor tets improved: {} edges removed, {} boundary flips, {} vertices moved\n",
+                   "  {} of {} poor tets improved: {} edges removed, {} boundary flips, {} vertices moved, {} inserted\n",
                    i.candidates - std::min(i.remaining, i.candidates), i.candidates, i.edge_removals,
-                   i.boundary_flips, i.moved_vertices);
+                   i.boundary_flips, i.moved_vertices, i.inserted_vertices);
   if (run.guarantees_hold()) text += "  every guarantee holds\n";
   fmt::format_to(Out(text), "  {:.2f} s ({})\n", run.times.total(), times_text(run.times));
   return text;

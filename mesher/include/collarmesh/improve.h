@@ -12,7 +12,7 @@ namespace collarmesh {
 struct ImproveOptions {
   double min_dihedral = 20;  ///< degrees; tets with a smaller dihedral angle, or one as bad beyond 90 degrees, are worked on
   double radius_edge = 2;    ///< bound on circumradius / shortest edge that no new tet breaks
-  bool move_vertices = true; ///< not only change how they are connected
+  bool move_vertices = true; ///< and insert some, not only change how they are connected
   unsigned passes = 3;       ///< at most, over what could not be helped before
 };
 
@@ -23,14 +23,14 @@ ImproveOptions improve_options(unsigned level);
 struct ImproveReport {
   std::size_t candidates = 0;  ///< tets below the bound before
   std::size_t remaining = 0;   ///< and after
-  std::size_t edge_removals = 0, boundary_flips = 0, moved_vertices = 0;
+  std::size_t edge_removals = 0, boundary_flips = 0, moved_vertices = 0, inserted_vertices = 0;
   double seconds = 0;
   bool cancelled = false;      ///< the mesh is valid, as good as it had become
 };
 
 /// Remove slivers: hill climbing on the smallest sine of a tet's dihedral angles (obtuse ones count
-/// 0.7 times, so that 155 degrees is about as bad as 17), worst tet first, by removing edges and
-/// by moving vertices within their features (Freitag and Ollivier-Gooch 1997; the edge removal is
+/// 0.7 times, so that 155 degrees is about as bad as 17), worst tet first, by removing edges,
+/// by moving vertices within their features and by inserting vertices amid edges inside regions (Freitag and Ollivier-Gooch 1997; the edge removal is
 /// Klincsek's optimal triangulation of the ring, as in Klingner and Shewchuk 2007, section 2).
 /// No operation makes the worst tet of its cavity worse, breaks the radius-edge bound, touches a
 /// collar, changes a smooth patch or a curve, or leaves the plane of a planar patch.

@@ -15,6 +15,8 @@ namespace improvement {
 namespace {
 
 constexpr std::size_t steps_between_reports = 1024;
+// An inserted vertex has to bring the tets around it to this share of the wanted quality.
+constexpr double enough = 0.7;
 
 /// Works on the tets below a quality, worst first.
 class Improvement {
@@ -55,7 +57,8 @@ class Improvement {
   };
 
   std::size_t changes() const {
-    return report_.edge_removals + report_.boundary_flips + report_.moved_vertices;
+    return report_.edge_removals + report_.boundary_flips + report_.moved_vertices +
+           report_.inserted_vertices;
   }
 
   std::size_t count_remaining() const {
@@ -103,11 +106,23 @@ class Improvement {
     }
     if (!move_vertices_) return;
     const auto corners = complex_[tet].corners;
+    bool moved = false;
     for (const Index v : corners) {
       if (!operations_.move_vertex(v)) continue;
+      moved = true;
       ++report_.moved_vertices;
       for (const Index t : operations_.star()) queue(t);
     }
+    for (unsigned i = 0; i < 4 && !moved; ++i)
+      for (unsigned j = i + 1; j < 4 && !moved; ++j) moved = insert_amid(corners[i], corners[j]);
+  }
+
+  bool insert_amid(Index a, Index b) {
+    if (report_.inserted_vertices >= report_.candidates) return false;
+    if (!operations_.split_edge(a, b, enough * wanted_)) return false;
+    ++report_.inserted_vertices;
+    for (const Index t : operations_.star()) queue(t);
+    return true;
   }
 
   void apply(const Change& change) {

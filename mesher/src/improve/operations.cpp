@@ -15,6 +15,8 @@ constexpr double flat_volume = 1e-13;
 // Vertices move by steps from this share of their shortest edge down, halved so often.
 constexpr double first_step = 0.4;
 constexpr unsigned halvings = 4;
+// A move that gains less than this share is not worth it.
+constexpr double least_gain = 1e-3;
 
 }  // namespace
 
@@ -144,30 +146,61 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change) 
   change = std::move(made);
 }
 
-// The directions a vertex may move in: all, those of its plane, or none.
-bool Operations::may_move_in(Index vertex, std::array<Vector, 3>& directions, unsigned& count) const {
-  const auto& feature = complex_.mesh().features[vertex];
-  if (feature.dimension < 2) return false;
-  directions = {Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}};
-  count = 3;
-  if (feature.dimension == 3) return true;
-  if (feature.feature == none || !plc_.patches[feature.feature].planar) return false;
-  const Vector n = plc_.patches[feature.feature].normal;
-  const Vector least = std::fabs(n.x) <= std::fabs(n.y) && std::fabs(n.x) <= std::fabs(n.z) ? directions[0]
-                       : std::fabs(n.y) <= std::fabs(n.z)                                   ? directions[1]
-                                                                                            : directions[2];
-  directions[0] = cross(n, least) / norm(cross(n, least));
-  directions[1] = cross(n, directions[0]);
-  count = 2;
+bool Operations::split_edge(Index a, Index b, double least) {
+  if (complex_.on_curve(a, b)) return false;
+  const Index tet = complex_.tet_at_edge(a, b);
+  if (tet == none) return false;
+  complex_.ring(tet, a, b, ring_);
+  const std::size_t n = ring_.tets.size();
+  if (!ring_.closed || n > largest_ring) return false;
+  double worst = INFINITY;
+  around_.clear();
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto& t = complex_[ring_.tets[k]];
+    if (t.collar) return false;
+    for (unsigned corner = 0; corner < 4; ++corner)
+      if (t.faces[corner] != none && t.corners[corner] != a && t.corners[corner] != b) return false;
+    worst = std::min(worst, quality(ring_.tets[k]));
+    const Index p = ring_.link[k], q = ring_.link[(k + 1) % n];
+    around_.push_back({a, q, p});
+    around_.push_back({b, p, q});
+  }
+  const auto& points = complex_.mesh().points;
+  const Point middle = 0.5 * (points[a] + points[b]);
+  const auto [place, quality] = best_place(middle, everywhere, -1);
+  if (quality <= std::max(worst, least)) return false;
+  const Index vertex = complex_.add_vertex(place);
+  std::vector<TetComplex::NewTet> made;
+  for (std::size_t k = 0; k < around_.size(); ++k)
+    made.push_back({{vertex, around_[k][0], around_[k][1], around_[k][2]}, ring_.tets[k / 2]});
+  const auto created = complex_.replace(ring_.tets, made, {});
+  star_.assign(created.begin(), created.end());
   return true;
 }
 
-double Operations::quality_around(Index vertex, const Point& at, double above) const {
+// Where a vertex may be moved to: anywhere, within its plane, or nowhere.
+std::optional<Operations::Freedom> Operations::freedom(Index vertex) const {
+  const auto& feature = complex_.mesh().features[vertex];
+  if (feature.dimension == 3) return everywhere;
+  if (feature.dimension < 2 || feature.feature == none) return std::nullopt;
+  const Plc::Patch& patch = plc_.patches[feature.feature];
+  if (!patch.planar) return std::nullopt;
+  const Vector n = patch.normal;
+  const double least = std::min({std::fabs(n.x), std::fabs(n.y), std::fabs(n.z)});
+  const Vector axis = std::fabs(n.x) == least   ? Vector{1, 0, 0}
+                      : std::fabs(n.y) == least ? Vector{0, 1, 0}
+                                                : Vector{0, 0, 1};
+  const Vector u = cross(n, axis) / norm(cross(n, axis));
+  return Freedom{{u, cross(n, u), {}}, 2, &patch};
+}
+
+// The worst tet of a vertex at `at` with the faces around it; -1 when that is not above `above` or one
+// breaks the radius-edge bound.
+double Operations::quality_around(const Point& at, double above) const {
+  const auto& points = complex_.mesh().points;
   double worst = INFINITY;
-  for (const Index t : star_) {
-    auto p = complex_.corners(t);
-    for (unsigned i = 0; i < 4; ++i)
-      if (complex_[t].corners[i] == vertex) p[i] = at;
+  for (const auto& face : around_) {
+    const Corners p{at, points[face[0]], points[face[1]], points[face[2]]};
     worst = std::min(worst, shape_quality(p));
     if (worst <= above) return -1;
     const Circumsphere sphere = circumsphere(p);
@@ -176,47 +209,54 @@ double Operations::quality_around(Index vertex, const Point& at, double above) c
   return worst;
 }
 
-bool Operations::move_vertex(Index vertex) {
-  std::array<Vector, 3> directions;
-  unsigned count = 0;
-  if (!may_move_in(vertex, directions, count)) return false;
-  complex_.star(vertex, star_);
-  auto& points = complex_.mesh().points;
-  const Point start = points[vertex];
-  Point centre{0, 0, 0};
-  double shortest = INFINITY, best = INFINITY;
-  std::size_t corners = 0;
-  for (const Index t : star_) {
-    if (complex_[t].collar) return false;
-    best = std::min(best, quality(t));
-    for (const Index v : complex_[t].corners) {
-      if (v == vertex) continue;
+// Pattern search from `start`, whose quality is `best`.
+std::pair<Point, double> Operations::best_place(const Point& start, const Freedom& freedom,
+                                                double best) const {
+  const auto& points = complex_.mesh().points;
+  Vector to_centre{0, 0, 0};
+  double shortest = INFINITY;
+  for (const auto& face : around_)
+    for (const Index v : face) {
       shortest = std::min(shortest, squared_distance(points[v], start));
-      centre = centre + (points[v] - Point{0, 0, 0});
-      ++corners;
+      to_centre = to_centre + (points[v] - start) / (3.0 * static_cast<double>(around_.size()));
     }
-  }
-  const double before = best;
-  const bool planar = count == 2;
+  Point place = start;
   const auto consider = [&](Point p) {
-    if (planar) {
-      const Plc::Patch& patch = plc_.patches[complex_.mesh().features[vertex].feature];
-      p = p - dot(p - patch.origin, patch.normal) * patch.normal;
-    }
-    const double q = quality_around(vertex, p, best);
-    if (q <= best) return false;
-    best = q;
-    points[vertex] = p;
+    if (freedom.plane != nullptr)
+      p = p - dot(p - freedom.plane->origin, freedom.plane->normal) * freedom.plane->normal;
+    const double quality = quality_around(p, best);
+    if (quality <= best) return false;
+    best = quality;
+    place = p;
     return true;
   };
-  const Vector to_centre = centre / static_cast<double>(corners) - start;
   consider(start + to_centre);
   consider(start + 0.5 * to_centre);
   double step = first_step * std::sqrt(shortest);
   for (unsigned h = 0; h < halvings; ++h, step *= 0.5)
-    for (unsigned d = 0; d < count; ++d)
-      if (!consider(points[vertex] + step * directions[d])) consider(points[vertex] - step * directions[d]);
-  return best > before * (1 + 1e-3) + 1e-12;
+    for (unsigned d = 0; d < freedom.count; ++d)
+      if (!consider(place + step * freedom.directions[d])) consider(place - step * freedom.directions[d]);
+  return {place, best};
+}
+
+bool Operations::move_vertex(Index vertex) {
+  const auto where = freedom(vertex);
+  if (!where) return false;
+  complex_.star(vertex, star_);
+  around_.clear();
+  double before = INFINITY;
+  for (const Index t : star_) {
+    if (complex_[t].collar) return false;
+    before = std::min(before, quality(t));
+    const auto& v = complex_[t].corners;
+    around_.push_back(
+        face_corners(v, static_cast<unsigned>(std::find(v.begin(), v.end(), vertex) - v.begin())));
+  }
+  auto& points = complex_.mesh().points;
+  const auto [place, after] = best_place(points[vertex], *where, before);
+  if (after <= before * (1 + least_gain) + 1e-12) return false;
+  points[vertex] = place;
+  return true;
 }
 
 }  // namespace collarmesh::improvement

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "collarmesh/plc.h"
@@ -30,16 +32,27 @@ class Operations {
   void remove_edge(Index tet, unsigned i, unsigned j, Change& change);
   /// Move a vertex within its feature to where the worst tet around it is better. False when it stays.
   bool move_vertex(Index vertex);
-  /// The tets around the vertex that moved last.
+  /// Insert a vertex amid an edge inside a region and move it to where it serves best. False, and
+  /// nothing has changed, when the worst tet around it would not be better than the worst one around the
+  /// edge and than `least`.
+  bool split_edge(Index a, Index b, double least);
+  /// The tets around the vertex that was moved or inserted last.
   const std::vector<Index>& star() const { return star_; }
 
  private:
   using Polygon = std::vector<Index>;
+  /// The directions a vertex may be moved in, and the plane it has to stay in, if any.
+  struct Freedom {
+    std::array<Vector, 3> directions;
+    unsigned count;
+    const Plc::Patch* plane;
+  };
+  static constexpr Freedom everywhere{{Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}}, 3, nullptr};
 
   double new_quality(const std::array<Index, 4>& corners, double above) const;
-  bool may_move_in(Index vertex, std::array<Vector, 3>& directions, unsigned& count) const;
-  double quality_around(Index vertex, const Point& p, double above) const;
-  bool divided(Index a, Index b, std::vector<std::pair<std::size_t, std::size_t>>& parts);
+  std::optional<Freedom> freedom(Index vertex) const;
+  double quality_around(const Point& at, double above) const;
+  std::pair<Point, double> best_place(const Point& start, const Freedom& freedom, double best) const;
   double triangulate(Index a, Index b, const Polygon& polygon, double above);
   void collect(Index a, Index b, const Polygon& polygon, std::size_t i, std::size_t j, Index like,
                Change& change) const;
@@ -50,8 +63,9 @@ class Operations {
   double squared_radius_edge_;
   TetComplex::Ring ring_;
   std::vector<Index> star_;
-  std::vector<double> best_;       // of the polygon's parts from vertex i to j
-  std::vector<std::size_t> apex_;  // the third vertex of the triangle on ij there
+  std::vector<std::array<Index, 3>> around_;  // faces that make positive tets with the vertex at hand
+  std::vector<double> best_;                  // of the polygon's parts from vertex i to j
+  std::vector<std::size_t> apex_;             // the third vertex of the triangle on ij there
 };
 
 }  // namespace collarmesh::improvement

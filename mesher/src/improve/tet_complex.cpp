@@ -147,6 +147,21 @@ unsigned TetComplex::corner_across(Index tet, const std::array<Index, 3>& sorted
   return 0;
 }
 
+Index TetComplex::add_vertex(const Point& p) {
+  mesh_.points.push_back(p);
+  mesh_.features.push_back({});
+  vertex_tet_.push_back(none);
+  return static_cast<Index>(mesh_.points.size() - 1);
+}
+
+Index TetComplex::tet_at_edge(Index a, Index b) {
+  star(a, star_);
+  for (const Index t : star_)
+    for (const Index v : tets_[t].corners)
+      if (v == b) return t;
+  return none;
+}
+
 std::span<const Index> TetComplex::replace(std::span<const Index> old, std::span<const NewTet> created,
                                            std::span<const Face> kept) {
   open_.clear();

@@ -49,9 +49,13 @@ class TetComplex {
 
   /// Replace `found` by the tets around a vertex.
   void star(Index vertex, std::vector<Index>& found);
+  /// A tet with these two corners; none when they are not joined.
+  Index tet_at_edge(Index a, Index b);
   /// Replace `ring` by the ring of the edge ab of a tet.
   void ring(Index tet, Index a, Index b, Ring& ring) const;
 
+  /// A vertex inside a region; in no tet yet.
+  Index add_vertex(const Point& p);
   /// Replace tets by others that fill the same cavity; `kept` are those of the mesh' faces inside the
   /// cavity or on its border that change. Returns the new tets' indices until the next call.
   std::span<const Index> replace(std::span<const Index> old, std::span<const NewTet> created,
@@ -82,6 +86,7 @@ class TetComplex {
   std::vector<Index> created_;
   std::vector<std::pair<Index, Index>> tags_;  // region and origin of the tets being made
   std::vector<OpenFace> open_;
+  std::vector<Index> star_;
 };
 
 /// The corners of a tet's face opposite a corner, seen counterclockwise from outside.
