@@ -1,0 +1,157 @@
+// Improvement of a mesh' elements: every guarantee stays, no sliver does.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <set>
+
+#include "collarmesh/error.h"
+#include "collarmesh/improve.h"
+#include "improve/shape.h"
+#include "support/acute_shapes.h"
+#include "support/meshing.h"
+#include "support/shapes.h"
+#include "support/tet_mesh_comparison.h"
+
+namespace collarmesh {
+namespace {
+
+using testing::mesh_of;
+using testing::Meshed;
+using testing::with_size;
+
+struct Shape {
+  std::string name;
+  std::vector<PolygonSoup> soups;
+  double size;
+  double feature_angle;
+};
+
+std::vector<Shape> shapes() {
+  using namespace testing;
+  return {{"box", {box()}, 0.15, 0},
+          {"L", {l_shape()}, 0.25, 0},
+          {"plate", {plate_with_hole(1, 16)}, 0.4, 0},
+          {"two boxes", {two_boxes()}, 0.2, 0},
+          {"dangling facet", {box_with_dangling_facet()}, 0.2, 0},
+          {"sphere", {icosphere(1, 8)}, 0.25, 30},
+          {"wedge", acute::wedge(20).soups, 0.1, 0},
+          {"fan", acute::fan(8).soups, 0.2, 0},
+          {"pyramid", acute::pyramid(5, 15).soups, 0.1, 0}};
+}
+
+double quality(const TetMesh& mesh, std::size_t tet) {
+  const auto& v = mesh.tets[tet];
+  return improvement::shape_quality(
+      {mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]]});
+}
+
+double worst_outside_collars(const TetMesh& mesh) {
+  double worst = INFINITY;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    if (mesh.tet_collar[t] == 0) worst = std::min(worst, quality(mesh, t));
+  return worst;
+}
+
+std::size_t count_below(const TetMesh& mesh, double degrees) {
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    count += mesh.tet_collar[t] == 0 && quality(mesh, t) < std::sin(degrees / 180 * 3.141592653589793);
+  return count;
+}
+
+std::set<std::vector<double>> collar_tets(const TetMesh& mesh) {
+  std::set<std::vector<double>> tets;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    if (mesh.tet_collar[t] == 0) continue;
+    std::vector<double> corners;
+    for (const Index v : mesh.tets[t])
+      for (std::size_t axis = 0; axis < 3; ++axis) corners.push_back(mesh.points[v][axis]);
+    tets.insert(corners);
+  }
+  return tets;
+}
+
+class Improve : public ::testing::TestWithParam<unsigned> {};
+
+TEST_P(Improve, KeepsEveryGuaranteeAndLeavesFewPoorTets) {
+  for (const Shape& shape : shapes()) {
+    SCOPED_TRACE(shape.name);
+    Meshed meshed = mesh_of(shape.soups, with_size(shape.size), shape.feature_angle);
+    ASSERT_EQ(testing::faults(meshed), "");
+    TetMesh& mesh = meshed.result.mesh;
+    const double worst = worst_outside_collars(mesh);
+    const auto collars = collar_tets(mesh);
+    const std::size_t poor = count_below(mesh, 15);
+
+    const ImproveReport report = improve(mesh, meshed.plc, improve_options(GetParam()));
+    meshed.report = check(mesh, meshed.plc);
+    EXPECT_EQ(testing::faults(meshed), "");
+    EXPECT_GE(worst_outside_collars(mesh), worst);
+    EXPECT_EQ(collar_tets(mesh), collars);
+    EXPECT_GT(poor, 0U);
+    EXPECT_LE(count_below(mesh, 15), poor / 5);
+    EXPECT_EQ(report.remaining, count_below(mesh, improve_options(GetParam()).min_dihedral));
+    EXPECT_FALSE(report.cancelled);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Level, Improve, ::testing::Values(1U, 2U, 3U));
+
+TEST(ImproveBox, LeavesNothingBelowTheBound) {
+  Meshed meshed = mesh_of(testing::box(), with_size(0.1), 0);
+  improve(meshed.result.mesh, meshed.plc);
+  EXPECT_EQ(count_below(meshed.result.mesh, 20), 0U);
+}
+
+TEST(ImproveBox, SameMeshSameResult) {
+  Meshed first = mesh_of(testing::box(), with_size(0.15), 0),
+         second = mesh_of(testing::box(), with_size(0.15), 0);
+  improve(first.result.mesh, first.plc);
+  improve(second.result.mesh, second.plc);
+  testing::expect_same(first.result.mesh, second.result.mesh);
+}
+
+TEST(ImproveBox, NothingToDo) {
+  Meshed meshed = mesh_of(testing::box(), with_size(0.2), 0);
+  const TetMesh before = meshed.result.mesh;
+  ImproveOptions options;
+  options.min_dihedral = 0;
+  EXPECT_EQ(improve(meshed.result.mesh, meshed.plc, options).candidates, 0U);
+  testing::expect_same(before, meshed.result.mesh);
+}
+
+TEST(ImproveBox, CancelledInTheMiddleIsStillRight) {
+  Meshed meshed = mesh_of(testing::box(), with_size(0.05), 0);
+  int reports = 0;
+  Execution execution;
+  execution.progress = [&](const ProgressReport&) { return ++reports < 2; };
+  ImproveOptions options;
+  options.min_dihedral = 40;
+  const ImproveReport report = improve(meshed.result.mesh, meshed.plc, options, execution);
+  EXPECT_TRUE(report.cancelled);
+  EXPECT_EQ(reports, 2);
+  meshed.report = check(meshed.result.mesh, meshed.plc);
+  EXPECT_EQ(testing::faults(meshed), "");
+}
+
+TEST(ImproveLevels, OthersAreRefused) {
+  EXPECT_THROW(improve_options(0), OptionError);
+  EXPECT_THROW(improve_options(4), OptionError);
+}
+
+TEST(ImproveShape, SmallestSine) {
+  using improvement::shape_quality;
+  const double regular = std::sqrt(8.0) / 3;  // the sine of arccos(1/3)
+  EXPECT_NEAR(shape_quality({Point{1, 1, 1}, Point{-1, 1, -1}, Point{1, -1, -1}, Point{-1, -1, 1}}), regular,
+              1e-12);
+  EXPECT_EQ(shape_quality({Point{1, 1, 1}, Point{1, -1, -1}, Point{-1, 1, -1}, Point{-1, -1, 1}}), -1);
+  EXPECT_EQ(shape_quality({Point{0, 0, 0}, Point{1, 0, 0}, Point{0, 1, 0}, Point{1, 1, 0}}), 0);
+  // The corner of a cube: three right angles, three of arccos(1 / sqrt 3).
+  EXPECT_NEAR(shape_quality({Point{0, 0, 0}, Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}}),
+              std::sqrt(2.0 / 3), 1e-12);
+}
+
+}  // namespace
+}  // namespace collarmesh
