@@ -1,5 +1,5 @@
 // Gap size against brute force, and the balls of the collar system against their definitions (paper,
-// Definitions 2 and 7; DESIGN section 9), on every acute family.
+// Definitions 2 and 7), on every acute family.
 #include "collar/collar_system.h"
 #include "collar/gap_size.h"
 

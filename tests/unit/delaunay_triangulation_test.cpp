@@ -1,4 +1,4 @@
-// The kernel against CGAL's triangulation and exact arithmetic (DESIGN section 6).
+// The kernel against CGAL's triangulation and exact arithmetic.
 #include "delaunay/triangulation.h"
 
 #include <CGAL/Delaunay_triangulation_3.h>

@@ -18,7 +18,7 @@ struct PlcOptions {
 
 /// Build the complex of one or several soups: weld, orient, merge coplanar and collinear
 /// neighbours, find curves, patches and regions, and validate.
-/// Regions are numbered from 1 in soup order (DESIGN: a nested inward-oriented shell is a cavity, an
+/// Regions are numbered from 1 in soup order (a nested inward-oriented shell is a cavity, an
 /// outward one a region of its own; region and hole points decide for their soup).
 /// Throws PlcError with every fault found.
 /// Cost: O(n log n) for n corners.

@@ -7,7 +7,7 @@
 
 namespace collarmesh {
 
-/// Finds the points that the mesh must have on the collar surface (DESIGN section 9).
+/// Finds the points that the mesh must have on the collar surface.
 class CollarCorners {
  public:
   /// All are kept by reference.

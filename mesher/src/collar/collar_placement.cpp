@@ -1,4 +1,4 @@
-// Where the balls go and how large they are (DESIGN section 9).
+// Where the balls go and how large they are.
 #include "collar/collar_placement.h"
 
 #include <algorithm>

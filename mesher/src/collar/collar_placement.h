@@ -8,7 +8,7 @@
 
 namespace collarmesh {
 
-/// Places the balls of a collar system up front (DESIGN section 9). Used by CollarSystem alone.
+/// Places the balls of a collar system up front. Used by CollarSystem alone.
 class CollarPlacement {
  public:
   CollarPlacement(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases,

@@ -7,7 +7,7 @@
 namespace collarmesh {
 
 /// How large a ball at a crease may be for what it holds of the curved features through its centre to
-/// be replaced by straight edges and flat triangles (DESIGN sections 9 and 13): inside it they leave
+/// be replaced by straight edges and flat triangles: inside it they leave
 /// their chords by no more than the distance tolerance, it meets its curve in one arc and each smooth
 /// patch in one piece, with a third of the distance to whatever else of them there is.
 class Flatness {

@@ -73,7 +73,7 @@ bool Triangulation::in_conflict_exact(Index cell, const Point& p) const {
   return predicates::in_sphere_exact(point(v[0]), point(v[1]), point(v[2]), point(v[3]), p);
 }
 
-// The bound of DESIGN section 6: with e = 2^-53, L the longest edge from the first corner and
+// The bound: with e = 2^-53, L the longest edge from the first corner and
 // k = 16 e L^3 / |det|, the centre and the radius are off by at most d = k (r + L) + 2 e |c| + 4 e r.
 // |p c|^2 is then right when it differs from r^2 by more than 2 d (r + |pc| + d) + 8 e (r^2 + |pc|^2),
 // which is at most margin * (r^2 + |pc|^2) with the margin below, because r + |pc| is at most

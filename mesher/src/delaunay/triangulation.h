@@ -31,7 +31,7 @@ struct ConflictZone {
   std::vector<FaceId> outer;      ///< after insert: the face beyond border[i], seen from outside; no_face on the hull
 };
 
-/// Delaunay triangulation of points inside a box, as flat arrays (DESIGN section 6).
+/// Delaunay triangulation of points inside a box, as flat arrays.
 ///
 /// The box' eight corners are vertices 0 to 7; everything stays inside, so there are no infinite
 /// cells. A cell is four vertices, positively oriented (`six_volume` > 0), and four neighbours, with

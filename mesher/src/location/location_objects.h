@@ -8,7 +8,7 @@ namespace collarmesh {
 
 /// What is not in the mesh yet but must be found from it: an unresolved point (radius 0) or the
 /// protective ball of a subsegment. Each is kept at the mesh vertex whose Voronoi cell contains its
-/// centre, that is, at its nearest vertex (DESIGN section 6).
+/// centre, that is, at its nearest vertex.
 class LocationObjects {
  public:
   enum class Kind : std::uint8_t {

@@ -9,7 +9,7 @@
 
 namespace collarmesh {
 
-/// Bounding-volume hierarchy over triangles (DESIGN section 6). A set of its nodes stands for the
+/// Bounding-volume hierarchy over triangles. A set of its nodes stands for the
 /// triangles below them: a mesh vertex carries the nodes that meet its Voronoi cell, coarse ones
 /// while the cell is large, so that neither memory nor queries grow with the input's resolution.
 class TriangleHierarchy {

@@ -1,4 +1,4 @@
-// The collar surface as a restricted Delaunay triangulation (paper, section 4; DESIGN section 9):
+// The collar surface as a restricted Delaunay triangulation (paper, section 4):
 // which cells lie inside the collars, whether the triangles between inside and outside represent
 // the surface well enough to be stitched to the balls' centres, and the insertion of points on the
 // surface, lower dimension first, where they do not.

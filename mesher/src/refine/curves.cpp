@@ -1,4 +1,4 @@
-// Curves: chains of subsegments with protective balls (DESIGN sections 7 and 13).
+// Curves: chains of subsegments with protective balls.
 #include <algorithm>
 
 #include "refine/refinement.h"

@@ -1,5 +1,5 @@
 // Gradation: target edge lengths grow by at most `gradation` per unit length from where they are
-// small (DESIGN section 14). A vertex takes the smallest size that its neighbours allow when it is
+// small. A vertex takes the smallest size that its neighbours allow when it is
 // inserted; sizes that became smaller later are spread when the queue has run empty.
 #include <algorithm>
 #include <queue>

@@ -1,5 +1,5 @@
 // Patches: the restricted Delaunay triangulation of the mesh to each patch, and the region labels of
-// the cells (DESIGN section 7).
+// the cells.
 #include <algorithm>
 #include <cassert>
 

@@ -1,5 +1,5 @@
 // Sparse Voronoi Refinement: the work loop, destroy and force_insert (paper, Procedures 1 to 3;
-// what differs from the paper and why is in DESIGN section 12 and doc/architecture.md).
+// what differs from the paper and why is in doc/architecture.md).
 #include "refine/refinement.h"
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@ namespace collarmesh {
 namespace {
 
 // The insertion of a centre is moved by a pseudo-random offset of this share of its ball's radius:
-// exact centres of cospherical input make flat cells whose refinement never ends (DESIGN, 11).
+// exact centres of cospherical input make flat cells whose refinement never ends.
 constexpr double cell_offset = 0.05;
 constexpr double triangle_offset = 0.1;
 // Hierarchy nodes of a vertex are filtered again after so many insertions in its star: rarely on the
@@ -269,7 +269,7 @@ bool Refinement::destroy(Candidate candidate) {
 }
 
 // The unresolved point of lowest containment dimension within theta r of the ball's centre. Those
-// near enough are in a list of the zone's vertices (DESIGN section 6).
+// near enough are in a list of the zone's vertices.
 Index Refinement::warp_target(const Candidate& candidate) const {
   Index best = none;
   double reach = options_.theta * options_.theta * candidate.squared_radius;

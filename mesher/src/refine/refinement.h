@@ -21,7 +21,7 @@
 
 namespace collarmesh {
 
-/// Sparse Voronoi Refinement of a complex (paper, Procedures 1 to 3; DESIGN sections 6 to 8): owns
+/// Sparse Voronoi Refinement of a complex (paper, Procedures 1 to 3): owns
 /// the only mutable Delaunay triangulation and everything that hangs on its vertices and cells.
 ///
 /// refinement.cpp holds the loop, destroy and force_insert; curves.cpp the subsegments;
@@ -65,7 +65,7 @@ class Refinement {
     std::vector<Index> pending = {};  // first subsegments that wait for it
   };
   /// A piece of a curve between two mesh vertices that are consecutive on it, with its protective
-  /// ball (DESIGN section 7): centred where the curve meets the bisector plane of the ends.
+  /// ball: centred where the curve meets the bisector plane of the ends.
   struct Subsegment {
     Index curve;
     std::array<Index, 2> ends;         // mesh vertices

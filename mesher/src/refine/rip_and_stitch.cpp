@@ -1,4 +1,4 @@
-// Rip and stitch (paper, Procedure 5; DESIGN section 10): the cells inside the collars are dropped;
+// Rip and stitch (paper, Procedure 5): the cells inside the collars are dropped;
 // each triangle of the collar surface makes a star tet with its ball's centre, each edge between
 // triangles of consecutive balls a book tet with the two centres.
 #include <algorithm>

@@ -7,7 +7,7 @@
 
 namespace collarmesh {
 
-/// Turns the requested target edge lengths into bounds on circumradii (DESIGN section 14).
+/// Turns the requested target edge lengths into bounds on circumradii.
 /// The factors are measured: with them the median edge of a unit box comes out at the target
 /// (doc/architecture.md).
 class Sizing {

@@ -1,6 +1,6 @@
 // What is looked at when the work queue has run empty: whether the restricted triangles of each
 // patch form a manifold that ends at the patch's curves, whether any part of a smooth patch was
-// missed, and flat cells (DESIGN sections 7 and 11). What is wrong goes back into the queue.
+// missed, and flat cells. What is wrong goes back into the queue.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -10,7 +10,7 @@
 
 namespace collarmesh {
 
-/// The paper's work queue (Procedure 1, DESIGN section 8): priorities, and inside a priority the
+/// The paper's work queue (Procedure 1): priorities, and inside a priority the
 /// largest ball first, in buckets of log2(r^2), last in first out inside a bucket, which keeps the
 /// working set in the cache. Entries are never removed early: whoever takes one compares its stamp.
 class WorkQueue {
