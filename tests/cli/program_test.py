@@ -79,7 +79,7 @@ class ProgramTest(unittest.TestCase):
 class Usage(ProgramTest):
     def test_help_tells_defaults_and_codes(self):
         run = self.expect(0, "--help")
-        for text in ("1/20 of the diagonal", "1e-3 of the diagonal", "--collar-angle", "--theta", "Exit codes", "check", "info"):
+        for text in ("1/20 of the diagonal", "1e-3 of the diagonal", "--collar-angle", "--theta", "--improve", "Exit codes", "check", "info"):
             self.assertIn(text, run.stdout)
         for command in ("check", "info", "convert"):
             self.assertIn("--feature-angle", self.expect(0, command, "--help").stdout)

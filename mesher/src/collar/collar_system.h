@@ -45,7 +45,8 @@ struct CollarOptions {
   std::function<bool()> stopped = {};
 };
 
-/// The union of balls that covers every crease, and its own features (paper, section 3.2). Balls of different creases are disjoint; consecutive ones overlap deeply.
+/// The union of balls that covers every crease, and its own features (paper, section 3.2).
+/// Balls of different creases are disjoint; consecutive ones overlap deeply.
 class CollarSystem {
  public:
   CollarSystem() = default;
