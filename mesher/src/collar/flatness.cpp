@@ -138,9 +138,9 @@ double Flatness::other_sheets(Index patch, const Point& centre, double reach,
 double Flatness::radius_on_curve(Index curve, double parameter, double radius) const {
   const Plc::Curve& c = plc_.curves[curve];
   const double length = paths_.length(curve);
+  const auto from = [&](double s) { return c.closed ? s : std::clamp(s, 0.0, length); };
   if (!c.straight) {
     radius = std::min(radius, radius_per_length * length);
-    const auto from = [&](double s) { return c.closed ? s : std::clamp(s, 0.0, length); };
     radius = shrunk(radius, [&](double r) {
       return std::max(off_chord(curve, parameter, from(parameter + r)),
                       off_chord(curve, parameter, from(parameter - r)));
@@ -149,9 +149,18 @@ double Flatness::radius_on_curve(Index curve, double parameter, double radius) c
   }
   const Point centre = paths_.point(curve, parameter);
   const std::array<Index, 2> ends = paths_.segment_ends(curve, paths_.segment(curve, parameter));
-  for (const Sheet& sheet : sheets_.at_segment(ends))
-    if (!plc_.patches[sheet.patch].planar)
-      radius = shrunk(radius, [&](double r) { return off_patch(sheet, centre, r); });
+  const Vector chord =
+      paths_.point(curve, from(parameter + radius)) - paths_.point(curve, from(parameter - radius));
+  const Vector along = chord / norm(chord);
+  for (const Sheet& sheet : sheets_.at_segment(ends)) {
+    if (plc_.patches[sheet.patch].planar) continue;
+    for (const double lean : {0.0, 1.0, -1.0}) {
+      const Vector direction = sheet.direction + lean * along;
+      radius = shrunk(radius, [&](double r) {
+        return off_patch({sheet.patch, direction / norm(direction)}, centre, r);
+      });
+    }
+  }
   for (const Index patch : c.patches)
     if (!plc_.patches[patch].planar)
       radius = other_sheets(patch, centre, pieces_per_radius * radius, ends) / pieces_per_radius;

@@ -279,6 +279,16 @@ bool Refinement::bends(CollarTriangle& t) const {
     if (plc_.patches[patch].planar) continue;
     for (unsigned k = 0; k < 3; ++k) {
       const Index i = v[k], j = v[(k + 1) % 3];
+      if (on_patch(i, patch)) {
+        // The edge to the centre, which is longer than the radius where i is not on the sphere.
+        const Vector spoke = mesh_.point(i) - ball.centre;
+        for (const double share : {0.4, 0.65}) {
+          if (!far_from_patch(patch, ball.centre + share * spoke)) continue;
+          t.bent_on = patch;
+          t.bent_at = ball.centre + share * spoke;
+          return true;
+        }
+      }
       if (!on_patch(i, patch) || !on_patch(j, patch)) continue;
       const Point &a = mesh_.point(i), &b = mesh_.point(j);
       const Point middle = 0.5 * (a + b);
