@@ -115,7 +115,7 @@ void add_complex_options(CLI::App& app, ComplexArguments& a) {
       ->check(fraction)
       ->group(group);
   add(app, "--crease-angle", a.crease_angle, "Features that meet below this angle form a crease, degrees")
-      ->check(angle)
+      ->check(number_in(0, 90, "an angle from 0 to 90 degrees"))
       ->group(group);
 }
 
@@ -261,11 +261,19 @@ std::string extension_list(const std::string& path) {
   return extension.empty() ? "has no extension" : fmt::format("ends in '{}'", extension);
 }
 
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  return std::filesystem::weakly_canonical(a, ignored) == std::filesystem::weakly_canonical(b, ignored);
+}
+
 /// What one option alone cannot tell.
 void check_run_arguments(const MeshArguments& a) {
   if (a.verbose && a.quiet) throw CLI::ValidationError("--quiet", "contradicts --verbose; use one of them");
-  if (!a.report.empty() && std::filesystem::path(a.report) == std::filesystem::path(a.output))
+  if (!a.report.empty() && same_file(a.report, a.output))
     throw CLI::ValidationError("--report", "names the same file as --output; choose another");
+  for (const std::string& input : a.inputs)
+    if (!a.report.empty() && same_file(a.report, input))
+      throw CLI::ValidationError("--report", fmt::format("names the input {}; choose another", input));
   if (a.mesh.size > 0 && a.mesh.size_min > a.mesh.size)
     throw CLI::ValidationError(
         "--size-min", fmt::format("{} exceeds --size {}; make it smaller", a.mesh.size_min, a.mesh.size));

@@ -47,6 +47,8 @@ fs::path make_folder_beside(const fs::path& target) {
         fmt::format("{}: {} is not a folder; choose another place", target.string(), parent.string()));
   if (fs::is_directory(target, ignored))
     throw WriteError(fmt::format("{}: is a folder; name a file in it", target.string()));
+  if (target != standard_output && fs::exists(target, ignored) && !fs::is_regular_file(target, ignored))
+    throw WriteError(fmt::format("{}: is no regular file; name one, or - with --format", target.string()));
   std::string name = (parent / ".collarmesh-XXXXXX").string();
   if (mkdtemp(name.data()) == nullptr)
     throw WriteError(
@@ -57,7 +59,11 @@ fs::path make_folder_beside(const fs::path& target) {
 
 }  // namespace
 
+// What a symbolic link names is replaced, not the link.
 StagedFile::StagedFile(fs::path target) : target_(std::move(target)) {
+  std::error_code error;
+  if (fs::is_symlink(target_, error))
+    if (fs::path named = fs::weakly_canonical(target_, error); !error) target_ = std::move(named);
   const std::lock_guard lock(staged_mutex);
   folder_ = make_folder_beside(target_);
   staged_folders.push_back(folder_);

@@ -385,6 +385,24 @@ class Reports(ProgramTest):
         self.assertGreater(report["seconds"]["total"], 0)
         self.assertEqual(report["complex"]["curves"], 12)
 
+    def test_report_in_place_of_another_file(self):
+        before = self.box.read_bytes()
+        link = self.folder / "link.json"
+        link.symlink_to(self.box)
+        for path in (self.box, self.folder / "." / self.box.name, link):
+            self.expect(2, self.box, "-o", self.out, "--report", path, says=["input"])
+        self.expect(2, self.box, "-o", self.out, "--report", self.folder / "." / self.out.name, says=["--output"])
+        self.assertEqual(self.box.read_bytes(), before)
+        self.expect(8, self.box, "-o", self.out, "--report", "/dev/null", says=["no regular file"])
+
+    def test_a_link_is_followed(self):
+        named, link = self.folder / "named.json", self.folder / "link.json"
+        named.write_text("old")
+        link.symlink_to(named)
+        self.expect(0, self.box, "-o", self.out, "--size", "0.5", "--report", link, writes=True)
+        self.assertTrue(link.is_symlink())
+        self.assertTrue(json.loads(named.read_text())["guarantees_hold"])
+
     def test_no_report_of_a_failure(self):
         path = self.folder / "report.json"
         self.expect(5, self.box, "-o", self.out, "--size", "0.02", "--max-vertices", "100", "--report", path)

@@ -36,7 +36,6 @@ struct PlcFault {
     not_orientable, ///< the facets of a component cannot be oriented
     open_boundary,  ///< a region was asked for and its boundary is open
     empty,          ///< nothing to mesh
-    crease,         ///< two features meet below the crease angle
     bad_point       ///< a coordinate is not finite or an index is out of range
   };
   Kind kind;
@@ -45,7 +44,7 @@ struct PlcFault {
   Point where;                ///< a place to look at, input units
 };
 
-/// A complex that is not a PLC, or that this version cannot mesh. Carries every fault found (the
+/// A complex that is not a PLC. Carries every fault found (the
 /// first ones if there are very many).
 struct PlcError : Error {
   PlcError(const std::string& message, std::vector<PlcFault> faults_found)

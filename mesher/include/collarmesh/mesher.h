@@ -23,7 +23,7 @@ struct MeshOptions {
   double gradation = 0;                  ///< growth of size per unit length away from a finer patch, curve or region; 0: unlimited
   std::function<double(const Point&)> size_field;  ///< target edge length at a point; may be empty
   double radius_edge = 2;                ///< bound on circumradius / shortest edge in the regions; at least 1
-  double exterior_radius_edge = 8;       ///< the same outside every region
+  double exterior_radius_edge = 8;       ///< the same outside every region, where that is larger
   double vertex_ratio = 0;               ///< bound on largest circumradius / shortest edge at a vertex in the regions (paper, section 1.2); 0: none, else > 2 sqrt 2
   double theta = 0.3;                    ///< warp distance relative to a gap ball's radius (paper, Procedure 2); 0: never warp
   double crease_angle = 60;              ///< degrees; features that meet below it get a collar
@@ -61,8 +61,9 @@ struct MeshResult {
 };
 
 /// Mesh a complex: Sparse Voronoi Refinement (paper, Procedure 1).
-/// Preconditions: `plc` comes from `build_plc` and has no crease (`find_creases` is empty).
-/// Guarantee (status complete): every tet in a region has circumradius / shortest edge <= radius_edge;
+/// Preconditions: `plc` comes from `build_plc` and may have creases.
+/// Guarantee (status complete): every tet in a region and outside collars has circumradius / shortest
+/// edge <= radius_edge, every one in a collar no dihedral angle above collar_angle;
 /// curves are unions of edges, patches unions of faces, planar ones exactly up to rounding and smooth
 /// ones within `distance`.
 /// Throws OptionError when options contradict each other.

@@ -21,9 +21,8 @@ int rank(PlcFault::Kind kind) {
     case Kind::not_orientable: return 5;
     case Kind::open_boundary: return 6;
     case Kind::empty: return 7;
-    case Kind::crease: return 8;
   }
-  return 9;
+  return 8;
 }
 
 }  // namespace

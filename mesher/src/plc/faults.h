@@ -23,7 +23,7 @@ class Faults {
 
  private:
   static constexpr std::size_t listed_per_kind = 50;
-  static constexpr std::size_t kinds = 9;
+  static constexpr std::size_t kinds = 8;
 
   std::vector<PlcFault> faults_;
   std::array<std::size_t, kinds> counts_{};

@@ -67,6 +67,26 @@ UsedPoints collect(std::span<const PolygonSoup> soups, PointMap& map, Faults& fa
   return all;
 }
 
+// Between these, products of lengths that decide anything stay within a double's range.
+constexpr double smallest_extent = 1e-30, largest_coordinate = 1e30;
+
+void require_range(const Box& box, Faults& faults) {
+  if (box.empty()) return;
+  double farthest = 0, extent = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    farthest = std::max({farthest, std::fabs(box.min[axis]), std::fabs(box.max[axis])});
+    extent = std::max(extent, box.max[axis] - box.min[axis]);
+  }
+  const bool large = farthest > largest_coordinate;
+  if (!large && (extent >= smallest_extent || extent == 0)) return;
+  faults.add(
+      PlcFault::Kind::bad_point,
+      fmt::format("The input is too {} to compute with: from {} to {}; scale it so that its coordinates lie "
+                  "between 1e-30 and 1e30.",
+                  large ? "large" : "small", text(box.min), text(box.max)),
+      {}, box.min);
+}
+
 // Sweep along a direction that no real part is square to, so that few points share a position.
 DisjointSets find_close(const std::vector<Point>& points, const Box& bounds, double distance_limit) {
   const Vector direction{0.6180339887, 0.5381966011, 0.5731523012};
@@ -115,6 +135,8 @@ PointMap weld_points(std::span<const PolygonSoup> soups, double distance_limit, 
   if (!faults.empty()) return map;
   Box bounds;
   for (const Point& p : all.points) bounds.add(p);
+  require_range(bounds, faults);
+  if (!faults.empty()) return map;
   DisjointSets sets = find_close(all.points, bounds, distance_limit * bounds.diagonal());
 
   std::vector<Index> merged(all.points.size());

@@ -17,8 +17,7 @@ void validate(const MeshOptions& o) {
           "sizes, distance and gradation must not be negative; 0 stands for the default");
   require(o.size == 0 || o.size_min <= o.size,
           fmt::format("size-min {} exceeds size {}; make it smaller", o.size_min, o.size));
-  require(o.radius_edge >= 1 && o.exterior_radius_edge >= o.radius_edge,
-          "radius-edge must be at least 1, and at most its bound outside");
+  require(o.radius_edge >= 1 && o.exterior_radius_edge >= 1, "radius-edge must be at least 1");
   require(o.vertex_ratio == 0 || o.vertex_ratio > 2.83,
           "vertex-ratio must exceed 2 sqrt 2 (the proved bound); 0 switches it off");
   require(o.crease_angle >= 0 && o.crease_angle <= 90, "crease-angle must be from 0 to 90 degrees");

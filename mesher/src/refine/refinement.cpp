@@ -430,7 +430,8 @@ void Refinement::judge_cell(Index cell) {
   const Index region = labels_[cell].region;
   const double r2 = mesh_.squared_radius(cell);
   const Point& centre = mesh_.circumcentre(cell);
-  const double bound = region == 0 ? options_.exterior_radius_edge : options_.radius_edge;
+  const double bound =
+      region == 0 ? std::max(options_.exterior_radius_edge, options_.radius_edge) : options_.radius_edge;
   if (r2 > bound * bound * shortest_squared_edge(cell) || (region != 0 && flat(cell))) {
     if (inside_box(centre)) queue_.push(WorkQueue::skinny_cells, r2, {cell, mesh_.generation(cell)});
     return;
