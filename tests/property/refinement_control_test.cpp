@@ -132,7 +132,7 @@ std::vector<BadOption> bad_options() {
           {"curve size", [](Options o) { o.curve_size[1] = nan; }},
           {"radius_edge", [](Options o) { o.radius_edge = 0.99; }},
           {"radius_edge not a number", [](Options o) { o.radius_edge = nan; }},
-          {"exterior below interior", [](Options o) { o.radius_edge = 3, o.exterior_radius_edge = 2.5; }},
+          {"exterior below 1", [](Options o) { o.exterior_radius_edge = 0.9; }},
           {"vertex_ratio", [](Options o) { o.vertex_ratio = 2.8; }},
           {"vertex_ratio below zero", [](Options o) { o.vertex_ratio = -4; }},
           {"theta", [](Options o) { o.theta = -0.1; }},

@@ -184,13 +184,7 @@ class RegionFinder {
       }
       for (const auto& point : soups[s].region_points) {
         const auto shell = enclosing_shell(point.point, "region", soups[s].name);
-        if (shell)
-          parameters_.push_back({point.tag, point.size, *shell});
-        else
-          faults_.add(PlcFault::Kind::bad_point,
-                      fmt::format("{}: the region point {} lies in no region; move it inside one.",
-                                  soups[s].name, text(point.point)),
-                      {}, point.point);
+        if (shell) parameters_.push_back({point.tag, point.size, *shell});
       }
     }
   }
