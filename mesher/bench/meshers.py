@@ -44,7 +44,9 @@ class Collarmesh:
     guarantee_missed = 7   # exit code: there is a mesh, but it is not certified
 
     def __init__(self, program: Path, time_limit: float, arguments: list[str] | None = None):
-        self.program, self.time_limit, self.arguments = program, time_limit, arguments or []
+        # The improvement of elements comes after what is compared here.
+        self.program, self.time_limit = program, time_limit
+        self.arguments = ["--improve", "0", *(arguments or [])]
 
     def version(self) -> str:
         printed = subprocess.run([self.program, "--version"], capture_output=True, text=True)
