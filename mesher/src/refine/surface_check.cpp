@@ -42,8 +42,10 @@ bool has_use(const std::vector<EdgeUse>& sorted, const EdgeUse& wanted) {
 bool Refinement::check_surface() {
   if (!message_.empty()) return false;
   const std::vector<FaceId> faces = marked_faces();
-  const bool found = check_patch_topology(faces) | refine_distant_triangles(faces) |
-                     resolve_distant_points(faces) | check_flat_cells();
+  bool found = check_patch_topology(faces);
+  found |= refine_distant_triangles(faces);
+  found |= resolve_distant_points(faces);
+  found |= check_flat_cells();
   if (found && ++surface_rounds_ > most_rounds) {
     give_up(points_[plc_.triangles[0].points[0]],
             fmt::format("the surface did not settle in {} rounds; the first point of the input is",
