@@ -111,8 +111,9 @@ class LayoutCheck {
     const bool topology = chunk.values == Values::topology, status = chunk.values == Values::status;
     const bool too_early = (topology && chunk.entity == Entity::vertex && !has_positions_) ||
                            (status && chunk.entity == Entity::face && !has_faces_);
-    const bool old_halfedges = topology && chunk.entity == Entity::halfedge && version_ < version_2;
-    if (too_early || old_halfedges) fail("the chunks are not in the order that OpenMesh writes");
+    // Old files have the corners of the faces alone, from which OpenMesh makes the halfedges.
+    const bool too_new = topology && chunk.entity != Entity::face && version_ < version_2;
+    if (too_early || too_new) fail("the chunks are not in the order that OpenMesh writes");
   }
 
   void read_positions(const Chunk& chunk, std::uint64_t count) {

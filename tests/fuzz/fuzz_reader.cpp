@@ -1,105 +1,176 @@
-// Any bytes give a mesh whose indices are in range, or a ReadError. Time and memory are limited by the
-// options that tests/fuzz/run gives to libFuzzer.
-#include <sys/mman.h>
+// Any bytes give a mesh whose indices are in range, or a ReadError, in memory proportional to their number.
+// A tetrahedral mesh that was read can be written and read again. FUZZED_FORMAT is the format; tests/fuzz/run
+// limits the time.
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
+#include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
 #include "collarmesh/error.h"
 #include "collarmesh/io/soup_io.h"
 #include "collarmesh/io/tet_mesh_io.h"
+#include "memory_limit.h"
 #ifdef COLLARMESH_FUZZ_OM
 #include "collarmesh/openmesh_io/read_om.h"
 #endif
 
 namespace {
 
+using collarmesh::Index;
+using collarmesh::PolygonSoup;
+using collarmesh::TetMesh;
+
 constexpr std::string_view format = FUZZED_FORMAT;
 
-void require(bool holds) {
-  if (!holds) std::abort();
+void require(bool holds, std::string_view what) {
+  if (holds) return;
+  std::cerr << "Not as promised: " << what << '\n';
+  std::abort();
 }
 
-void check_soup(const collarmesh::PolygonSoup& soup) {
-  for (collarmesh::Index q = 0; q < soup.polygon_count(); ++q)
-    for (const collarmesh::Index corner : soup.polygon(q)) require(corner < soup.points.size());
+/// What a reader may allocate for a file: two characters and a line end can be a value of 8 bytes that is
+/// held in some lists at a time.
+std::size_t allowed_memory(std::size_t file_bytes) {
+  constexpr std::size_t fixed = std::size_t{1} << 20, per_byte = 256;
+  return fixed + per_byte * file_bytes;
+}
+
+void check(const PolygonSoup& soup) {
+  const std::size_t points = soup.points.size();
+  for (Index q = 0; q < soup.polygon_count(); ++q)
+    for (const Index corner : soup.polygon(q)) require(corner < points, "corners of polygons");
   for (const auto& segment : soup.segments)
-    require(segment.a < soup.points.size() && segment.b < soup.points.size());
+    require(segment.a < points && segment.b < points, "ends of segments");
+  for (const auto& hole : soup.facet_holes) require(hole.facet < soup.facet_count(), "facets of holes");
+  require(soup.point_tags.empty() || soup.point_tags.size() == points, "tags of points");
 }
 
 template <class Cells>
-void check_cells(const Cells& cells, std::size_t points) {
+void check_nodes(const Cells& cells, std::size_t points, std::string_view what) {
   for (const auto& cell : cells)
-    for (const collarmesh::Index node : cell) require(node < points);
+    for (const Index node : cell) require(node < points, what);
 }
 
-void check_mesh(const collarmesh::TetMesh& mesh) {
-  check_cells(mesh.tets, mesh.points.size());
-  check_cells(mesh.faces, mesh.points.size());
-  check_cells(mesh.edges, mesh.points.size());
-  check_cells(mesh.tet_mid_nodes, mesh.points.size());
-  check_cells(mesh.face_mid_nodes, mesh.points.size());
-  for (const collarmesh::Index node : mesh.edge_mid_nodes) require(node < mesh.points.size());
-  require(mesh.tet_tag.size() == mesh.tets.size() && mesh.tet_region.size() == mesh.tets.size());
-  require(mesh.face_tag.size() == mesh.faces.size() && mesh.face_regions.size() == mesh.faces.size());
-  require(mesh.edge_tag.size() == mesh.edges.size());
+void check(const TetMesh& mesh) {
+  const std::size_t points = mesh.points.size(), tets = mesh.tets.size(), faces = mesh.faces.size(),
+                    edges = mesh.edges.size();
+  check_nodes(mesh.tets, points, "corners of tets");
+  check_nodes(mesh.faces, points, "corners of faces");
+  check_nodes(mesh.edges, points, "ends of edges");
+  check_nodes(mesh.tet_mid_nodes, points, "mid nodes of tets");
+  check_nodes(mesh.face_mid_nodes, points, "mid nodes of faces");
+  for (const Index node : mesh.edge_mid_nodes) require(node < points, "mid nodes of edges");
+  require(tets > 0, "any tets");
+  require(mesh.features.empty() || mesh.features.size() == points, "features of points");
+  require(mesh.tet_tag.size() == tets && mesh.tet_region.size() == tets && mesh.tet_collar.size() == tets,
+          "labels of tets");
+  require(
+      mesh.face_tag.size() == faces && mesh.face_regions.size() == faces && mesh.face_patch.size() == faces,
+      "labels of faces");
+  require(mesh.edge_tag.size() == edges && mesh.edge_curve.size() == edges, "labels of edges");
+  if (mesh.order() == 1)
+    require(mesh.face_mid_nodes.empty() && mesh.edge_mid_nodes.empty(), "one order");
+  else
+    require(mesh.tet_mid_nodes.size() == tets && mesh.face_mid_nodes.size() == faces &&
+                mesh.edge_mid_nodes.size() == edges,
+            "mid nodes of all cells");
 }
 
-void read(const std::string& path) {
+/// How many different faces are sides of tets.
+std::size_t sides_among_faces(const TetMesh& mesh) {
+  const auto sorted = [](std::array<Index, 3> corners) {
+    std::sort(corners.begin(), corners.end());
+    return corners;
+  };
+  std::set<std::array<Index, 3>> faces, sides;
+  for (const auto& face : mesh.faces) faces.insert(sorted(face));
+  for (const auto& [a, b, c, d] : mesh.tets)
+    for (const auto& side : {sorted({a, b, c}), sorted({a, b, d}), sorted({a, c, d}), sorted({b, c, d})})
+      if (faces.contains(side)) sides.insert(side);
+  return sides.size();
+}
+
+/// Errors are faults here. `.inp` has places for the sides of tets, not for other faces and edges.
+void check_round_trip(const TetMesh& mesh, const std::string& path) {
+  collarmesh::io::write_tet_mesh(path, mesh, format);
+  const TetMesh again = collarmesh::io::read_tet_mesh(path, format);
+  check(again);
+  const bool sides_only = format == ".inp";
+  require(again.order() == mesh.order(), "the order after writing and reading");
+  require(again.points.size() == mesh.points.size(), "the points after writing and reading");
+  require(again.tets.size() == mesh.tets.size(), "the tets after writing and reading");
+  require(again.faces.size() == (sides_only ? sides_among_faces(mesh) : mesh.faces.size()),
+          "the faces after writing and reading");
+  require(again.edges.size() == (sides_only ? 0 : mesh.edges.size()), "the edges after writing and reading");
+}
+
+/// Nothing if it throws the error that is documented.
+template <class Read>
+auto read_within(std::size_t file_bytes, Read read) -> std::optional<decltype(read())> {
+  const collarmesh::testing::MemoryLimit limit(allowed_memory(file_bytes));
   try {
-#ifdef COLLARMESH_FUZZ_OM
-    check_soup(collarmesh::openmesh_io::read_om(path));
-#else
-    if (collarmesh::io::is_soup_format("", format))
-      check_soup(collarmesh::io::read_soup(path, format));
-    else
-      check_mesh(collarmesh::io::read_tet_mesh(path, format));
-#endif
+    return read();
   } catch (const collarmesh::ReadError&) {
+    return std::nullopt;
   }
 }
 
-/// A file in memory.
-class MemoryFile {
- public:
-  explicit MemoryFile(std::string_view content) : file_(memfd_create("fuzzed", 0)) {
-    require(file_ >= 0 &&
-            write(file_, content.data(), content.size()) == static_cast<ssize_t>(content.size()));
+void read_and_check(const std::string& path, std::size_t size) {
+#ifdef COLLARMESH_FUZZ_OM
+  if (const auto soup = read_within(size, [&] { return collarmesh::openmesh_io::read_om(path); }))
+    check(*soup);
+#else
+  if (collarmesh::io::is_soup_format("", format)) {
+    const auto soup = read_within(size, [&] { return collarmesh::io::read_soup(path, format); });
+    if (soup) check(*soup);
+    return;
   }
-  ~MemoryFile() { close(file_); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-  std::string path() const { return "/proc/self/fd/" + std::to_string(file_); }
+  const auto mesh = read_within(size, [&] { return collarmesh::io::read_tet_mesh(path, format); });
+  if (!mesh) return;
+  check(*mesh);
+  check_round_trip(*mesh, path);
+#endif
+}
 
- private:
-  int file_;
-};
+void write_file(const std::string& path, std::string_view content) {
+  std::ofstream file(path, std::ios::binary);
+  require(static_cast<bool>(file.write(content.data(), static_cast<std::streamsize>(content.size())).flush()),
+          "a place for temporary files");
+}
 
-/// NAME.node, NAME.ele and so on, in one input one after the other between lines of "@".
-std::string write_siblings(std::string_view content) {
-  static const std::string name = "/dev/shm/collarmesh-fuzz-" + std::to_string(getpid());
-  for (const char* extension : {".node", ".ele", ".face", ".edge"}) {
-    const std::size_t end = std::min(content.find("\n@\n"), content.size());
+/// Without its extension.
+std::string temporary_name() {
+  return (std::filesystem::temp_directory_path() / ("collarmesh-fuzz-" + std::to_string(getpid()))).string();
+}
+
+/// TetGen's files, one after the other with lines of "@" between them; what is left out is not there.
+void write_tetgen_files(const std::string& name, std::string_view content) {
+  for (const char* extension : {".ele", ".node", ".face", ".edge"}) {
+    const std::size_t end = std::min(content.find("@\n"), content.size());
     std::filesystem::remove(name + extension);
-    if (!content.empty()) std::ofstream(name + extension, std::ios::binary) << content.substr(0, end) << '\n';
-    content.remove_prefix(std::min(end + 3, content.size()));
+    if (!content.empty()) write_file(name + extension, content.substr(0, end));
+    content.remove_prefix(std::min(end + 2, content.size()));
   }
-  return name + ".ele";
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const std::string name = temporary_name(), path = name + std::string(format);
   const std::string_view content(reinterpret_cast<const char*>(data), size);
   if (format == ".ele")
-    read(write_siblings(content));
+    write_tetgen_files(name, content);
   else
-    read(MemoryFile(content).path());
+    write_file(path, content);
+  read_and_check(path, size);
   return 0;
 }

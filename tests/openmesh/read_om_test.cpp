@@ -138,6 +138,25 @@ TEST(ReadOm, RefusesBadFiles) {
   expect_error<ReadError>([] { read_om("missing.om"); }, "missing.om", "No such file");
 }
 
+/// Before version 2 the halfedges are made from the corners of the faces: a vertex has none to name yet.
+TEST(ReadOm, RefusesHalfedgesOfVerticesInOldFiles) {
+  const auto chunk = [](unsigned bits) {
+    return std::string{static_cast<char>(bits & 255), static_cast<char>(bits >> 8)};
+  };
+  const std::string header("OMT\1\3\0\0\0\1\0\0\0\3\0\0\0", 16);
+  std::string positions = chunk(1U << 10 | 2U << 11);
+  for (const float c : {0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 0.F, 1.F, 0.F}) {
+    const auto raw = std::bit_cast<std::array<char, 4>>(c);
+    positions.append(raw.data(), raw.size());
+  }
+  const std::string faces_of_corners = chunk(2U << 2 | 7U << 5) + std::string("\0\1\2", 3),
+                    halfedges_of_vertices = chunk(7U << 5) + std::string("\5\5\5", 3);
+  const TemporaryFolder folder;
+  expect_faces(read_om(folder.write("a.om", header + positions + faces_of_corners)), {{0, 1, 2}});
+  expect_refused(header + positions + halfedges_of_vertices + faces_of_corners,
+                 "the chunks are not in the order that OpenMesh writes");
+}
+
 TEST(ReadOm, RefusesEveryTruncation) {
   const std::string good = saved_tetrahedron();
   constexpr std::size_t sentinel = 2;

@@ -253,6 +253,17 @@ TEST(IoVtu, RefusesBadAppendedValues) {
   expect_refused(replaced(base64, "eAAAAA", "e!AAAA"), "the values are no base64");
 }
 
+/// A run of base64 that is padded one character too early holds one byte too few.
+TEST(IoVtu, RefusesHeaderThatIsPaddedEarly) {
+  std::string text = ForeignFile({"binary", true, true}).text();
+  constexpr std::size_t header_bytes = 44;  // 8 blocks
+  const std::size_t begin = text.find_first_not_of(" \n", text.find(">", text.find("Name=\"Points\"")) + 1),
+                    padding = begin + io::base64_size(header_bytes) - 1;
+  ASSERT_EQ(text[padding], '=');
+  text[padding - 1] = '=';
+  expect_refused(text, "values of 'Points': expected 44 bytes of values, found 43");
+}
+
 TEST(IoVtu, SurvivesDamage) {
   const TemporaryFolder folder;
   io::write_tet_mesh(folder.file("ours.vtu"), sample_mesh(1));

@@ -52,16 +52,16 @@ class Stored {
   /// In base64 a run of bytes ends with its own padding.
   std::string take(std::uint64_t count) {
     std::string bytes = peek(count);
+    if (bytes.size() < count) fail(count, bytes.size());
     text_.remove_prefix(base64_ ? base64_size(count) : count);
     return bytes;
   }
 
+  /// Fewer bytes if the run is padded before.
   std::string peek(std::uint64_t count) const {
-    const std::uint64_t size = base64_ && count <= left() ? base64_size(count) : count;
-    if (count > left() + 2 || size > text_.size())
-      throw VtkArrayError{fmt::format("expected {} bytes of values, found {}", count, left())};
-    if (!base64_) return std::string(text_.substr(0, size));
-    std::optional<std::string> bytes = base64_decode(text_.substr(0, size));
+    if (count > left()) fail(count, left());
+    if (!base64_) return std::string(text_.substr(0, count));
+    std::optional<std::string> bytes = base64_decode(text_.substr(0, base64_size(count)));
     if (!bytes) throw VtkArrayError{"the values are no base64"};
     bytes->resize(std::min<std::size_t>(bytes->size(), count));
     return *std::move(bytes);
@@ -73,6 +73,10 @@ class Stored {
   }
 
  private:
+  [[noreturn]] static void fail(std::uint64_t expected, std::size_t found) {
+    throw VtkArrayError{fmt::format("expected {} bytes of values, found {}", expected, found)};
+  }
+
   std::string_view text_;
   bool base64_;
 };

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <sanitizer/allocator_interface.h>
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <string_view>
+
+namespace collarmesh::testing {
+
+/// Aborts, in the allocation that is too much, when more than `bytes` are allocated at a time while it
+/// lives. One at a time. Needs a sanitizer's allocator.
+class MemoryLimit {
+ public:
+  explicit MemoryLimit(std::size_t bytes) {
+    static const bool installed = __sanitizer_install_malloc_and_free_hooks(on_malloc, on_free) != 0;
+    if (!installed) std::abort();
+    live_ = 0;
+    limit_ = static_cast<std::int64_t>(bytes);
+  }
+  ~MemoryLimit() { limit_ = unlimited; }
+  MemoryLimit(const MemoryLimit&) = delete;
+  MemoryLimit& operator=(const MemoryLimit&) = delete;
+
+ private:
+  static constexpr std::int64_t unlimited = std::numeric_limits<std::int64_t>::max();
+
+  static void on_malloc(const volatile void*, std::size_t size) {
+    live_ += static_cast<std::int64_t>(size);
+    if (live_ <= limit_) return;
+    limit_ = unlimited;
+    constexpr std::string_view message = "More memory than the size of the input allows.\n";
+    if (write(STDERR_FILENO, message.data(), message.size()) >= 0) std::abort();
+  }
+  /// What was allocated before makes `live_` smaller: nothing that matters here.
+  static void on_free(const volatile void* memory) {
+    live_ -= static_cast<std::int64_t>(__sanitizer_get_allocated_size(const_cast<const void*>(memory)));
+  }
+
+  inline static std::int64_t live_ = 0, limit_ = unlimited;
+};
+
+}  // namespace collarmesh::testing
