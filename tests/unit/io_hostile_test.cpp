@@ -2,6 +2,9 @@
 // write: an error with the line or byte, or the same mesh.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <random>
 #include <string>
 #include <vector>
@@ -81,6 +84,26 @@ TEST(IoAbaqus, RefusesBadFiles) {
   expect_refused("a.inp", replaced(inp, "*STEP", "*INCLUDE, INPUT=x"), "*INCLUDE is not supported");
 }
 
+TEST(IoAbaqus, ReadsRangeUpToTheLargestNumber) {
+  const std::string largest = "9223372036854775807";
+  const TetMesh mesh = read("a.inp", replaced(inp, "1, 2, 1\n", largest + ", " + largest + ", 1\n"));
+  EXPECT_EQ(mesh.tet_tag, (std::vector<Tag>{2, 1})) << "the set has no element that is there";
+}
+
+/// Each range and name is short and stands for all elements.
+TEST(IoAbaqus, RefusesSetsThatGrowWithoutBound) {
+  std::string ranges, names, sides;
+  for (int i = 0; i < 200; ++i) {
+    ranges += "1, 2, 1\n";
+    names += "*ELSET, ELSET=set" + std::to_string(i) + "\nPart,\n";
+    sides += "*SURFACE, NAME=surface" + std::to_string(i) + "\nPart, S1\n";
+  }
+  const std::string part = "have more than 64 times as many members as there are elements";
+  expect_refused("a.inp", replaced(inp, "1, 2, 1\n", ranges), part);
+  expect_refused("a.inp", replaced(inp, "*STEP\n", names + "*STEP\n"), part);
+  expect_refused("a.inp", replaced(inp, "*STEP\n", sides + "*STEP\n"), part);
+}
+
 // .vtk
 
 const std::string vtk =
@@ -131,6 +154,73 @@ TEST(IoVtk, RefusesBadFiles) {
   expect_refused("a.vtk", binary.substr(0, 200), "byte ");
   expect_refused("a.vtk", replaced(binary, "POINTS 12", "POINTS 2000000000"),
                  "the number of points is 2000000000");
+}
+
+/// Cells that come after the data of others would have none.
+TEST(IoVtk, RefusesSectionsAfterTheirData) {
+  const std::string more_cells =
+      "CELLS 4 19\n4 0 1 2 3\n4 1 2 3 4\n4 0 1 2 3\n3 0 1 2\nCELL_TYPES 4\n10\n10\n10\n5\n";
+  expect_refused("a.vtk", vtk + more_cells, "CELLS come after their data");
+  const std::string features =
+                        "FIELD x 2\nfeature_dimension 1 5 int\n3 3 3 3 3\nfeature 1 5 int\n1 1 1 1 1\n",
+                    more_points = "POINTS 6 float\n0 0 0 1 0 0 0 1 0 0 0 1 1 1 1 2 2 2\n";
+  EXPECT_EQ(read("a.vtk", vtk + features).features.size(), 5);
+  expect_refused("a.vtk", vtk + features + more_points, "POINTS come after their data");
+}
+
+// .vtu
+
+/// Pieces of so many points and one tet that share their arrays.
+std::string vtu_of_shared_pieces(std::size_t pieces, std::size_t points) {
+  const std::string counts = "NumberOfPoints=\"" + std::to_string(points) + "\" NumberOfCells=\"1\"",
+                    piece =
+                        "<Piece " + counts +
+                        "><Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"appended\" "
+                        "offset=\"0\"/></Points><Cells><DataArray type=\"Int8\" Name=\"connectivity\">0 1 2 "
+                        "3</DataArray><DataArray type=\"Int8\" Name=\"offsets\">4</DataArray><DataArray "
+                        "type=\"Int8\" Name=\"types\">10</DataArray></Cells></Piece>";
+  std::string text = "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid>";
+  for (std::size_t i = 0; i < pieces; ++i) text += piece;
+  const auto size = std::bit_cast<std::array<char, 4>>(static_cast<std::uint32_t>(12 * points));
+  return text + "</UnstructuredGrid><AppendedData encoding=\"raw\">_" +
+         std::string(size.data(), size.size()) + std::string(12 * points, '\0') + "</AppendedData></VTKFile>";
+}
+
+TEST(IoVtu, RefusesPiecesThatShareTheirBytes) {
+  EXPECT_EQ(read("a.vtu", vtu_of_shared_pieces(1, 1000)).points.size(), 1000);
+  expect_refused("a.vtu", vtu_of_shared_pieces(20, 1000),
+                 "together the arrays hold more bytes than the file");
+}
+
+// .msh
+
+TEST(IoMsh, RefusesNodesAfterElements) {
+  const std::string nodes = "$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n",
+                    text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n" + nodes +
+                           "$Elements\n1\n1 4 2 -2147483648 1 1 2 3 4\n$EndElements\n";
+  EXPECT_EQ(read("a.msh", text).tet_tag, (std::vector<Tag>{2147483648}));
+  expect_refused("a.msh", text + "$Nodes\n1\n0 5 5 5\n$EndNodes\n", "the nodes come after elements");
+}
+
+/// Larger numbers than fit into an int, or are the largest one that does.
+TEST(IoHostile, HugeNumbersOfRegionsAndFeatures) {
+  for (const Index huge : {Index{2147483647}, Index{4294967294}})
+    for (const std::string& format : io::read_tet_mesh_formats()) {
+      SCOPED_TRACE(format);
+      TetMesh mesh = sample_mesh(1);
+      mesh.tet_region[0] = huge;
+      mesh.face_patch[0] = huge;
+      mesh.edge_curve[0] = huge;
+      const TemporaryFolder folder;
+      io::write_tet_mesh(folder.file("a.vtu"), mesh);
+      const TetMesh numbered = io::read_tet_mesh(folder.file("a.vtu"));
+      EXPECT_EQ(*std::max_element(numbered.tet_region.begin(), numbered.tet_region.end()), 2) << "by tag";
+      const std::string path = folder.file("b" + format);
+      io::write_tet_mesh(path, numbered);
+      const TetMesh again = io::read_tet_mesh(path);
+      EXPECT_EQ(again.tets.size(), mesh.tets.size());
+      EXPECT_EQ(again.points.size(), mesh.points.size());
+    }
 }
 
 // .unv

@@ -300,17 +300,19 @@ class AbaqusReader {
     });
   }
 
-  void add_range(const Fields& fields, std::vector<std::int64_t>& members) const {
+  void add_range(const Fields& fields, std::vector<std::int64_t>& members) {
     if (fields.size() < 2) lines_.fail("expected the first and last number of a range");
     const std::int64_t first = integer(fields[0], "a first number"),
                        last = integer(fields[1], "a last number"),
                        step = fields.size() > 2 ? integer(fields[2], "a step") : 1;
     if (step < 1 || first < 0 || last < first)
       lines_.fail(fmt::format("the range {} to {} by {} is empty", first, last, step));
-    if (static_cast<std::size_t>((last - first) / step) > places_.size())
+    const std::int64_t steps = (last - first) / step;
+    if (static_cast<std::size_t>(steps) > places_.size())
       lines_.fail(fmt::format("the range {} to {} by {} is larger than the {} elements before it", first,
                               last, step, places_.size()));
-    for (std::int64_t number = first; number <= last; number += step) members.push_back(number);
+    require_room(static_cast<std::size_t>(steps) + 1);
+    for (std::int64_t k = 0; k <= steps; ++k) members.push_back(first + k * step);
   }
 
   void add_member(std::string_view field, std::vector<std::int64_t>& members) {
@@ -324,16 +326,19 @@ class AbaqusReader {
     if (found == set_index_.end())
       lines_.fail(fmt::format("no element set before has the name {}", quoted(field)));
     const std::vector<std::int64_t> copy = sets_[found->second].members;
-    require_room(copy.size() + members.size());
+    require_room(copy.size());
     members.insert(members.end(), copy.begin(), copy.end());
   }
 
-  /// Sets that name each other again and again would grow without bound.
-  void require_room(std::size_t members) const {
-    constexpr std::size_t most_repeats = 16;
-    if (members > most_repeats * (places_.size() + 1))
-      lines_.fail(
-          fmt::format("the set has more than {} times as many members as there are elements", most_repeats));
+  /// Ranges and sets that name each other again and again would grow without bound.
+  void require_room(std::size_t members) {
+    constexpr std::size_t most_repeats = 64;
+    repeated_members_ += members;
+    if (repeated_members_ > most_repeats * (places_.size() + 1))
+      lines_.fail(fmt::format(
+          "sets and surfaces have more than {} times as many members as there are elements; leave out what "
+          "repeats others",
+          most_repeats));
   }
 
   void read_surface(const Keyword& keyword) {
@@ -364,7 +369,7 @@ class AbaqusReader {
     if (found == set_index_.end())
       lines_.fail(fmt::format("no element set before has the name {}", quoted(set)));
     std::vector<Side>& sides = surfaces_.back().second;
-    require_room(sides.size() / 4 + sets_[found->second].members.size());
+    require_room(sets_[found->second].members.size());
     for (const std::int64_t element : sets_[found->second].members) {
       side.element = element;
       sides.push_back(side);
@@ -462,6 +467,7 @@ class AbaqusReader {
   std::vector<Place> places_;  ///< by element
   std::map<std::string, std::size_t, std::less<>> set_index_;
   std::vector<Set> sets_;
+  std::size_t repeated_members_ = 0;  ///< of all sets and surfaces, by ranges and names of sets
   std::vector<std::pair<std::string, std::vector<Side>>> surfaces_;
   GroupTags groups_;
 };

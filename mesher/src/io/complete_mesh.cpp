@@ -76,12 +76,21 @@ void complete_mid_nodes(const std::string& path, TetMesh& mesh) {
 }
 
 void number_regions(TetMesh& mesh) {
+  mesh.tet_region.clear();
+  mesh.face_regions.clear();
   std::vector<Tag> tags(mesh.tet_tag);
   std::sort(tags.begin(), tags.end());
   tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
   for (const Tag tag : mesh.tet_tag)
     mesh.tet_region.push_back(
         static_cast<Index>(std::lower_bound(tags.begin(), tags.end(), tag) - tags.begin() + 1));
+}
+
+/// Regions are numbered from 1; every format has 9 digits for them.
+bool has_region_numbers(const TetMesh& mesh) {
+  constexpr Index largest = 999'999'999;
+  return !mesh.tet_region.empty() && std::all_of(mesh.tet_region.begin(), mesh.tet_region.end(),
+                                                 [](Index r) { return r >= 1 && r <= largest; });
 }
 
 void find_face_regions(TetMesh& mesh) {
@@ -109,7 +118,7 @@ void complete_mesh(const std::string& path, TetMesh& mesh) {
   orient_tets(mesh);
   mesh.tet_tag.resize(mesh.tets.size(), 0);
   mesh.tet_collar.resize(mesh.tets.size(), 0);
-  if (mesh.tet_region.empty()) number_regions(mesh);
+  if (!has_region_numbers(mesh)) number_regions(mesh);
   mesh.face_tag.resize(mesh.faces.size(), 0);
   mesh.face_patch.resize(mesh.faces.size(), none);
   mesh.edge_tag.resize(mesh.edges.size(), 0);

@@ -45,10 +45,13 @@ class EntityTable {
   }
 
  private:
+  /// Numbers that leave no room for larger ones are not taken.
   void add(Index number, Tag tag) {
+    constexpr Index limit = std::numeric_limits<int>::max() / 2;
     MshEntity entity;
     entity.tag = tag;
-    if (number != 0 && by_number_.try_emplace(number, static_cast<Index>(entities_.size())).second)
+    if (number != 0 && number < limit &&
+        by_number_.try_emplace(number, static_cast<Index>(entities_.size())).second)
       entity.number = static_cast<int>(number);
     entities_.push_back(entity);
   }

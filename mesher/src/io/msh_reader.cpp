@@ -39,13 +39,13 @@ struct Contents {
   std::vector<Node> nodes;                               ///< in the order of their numbers
   bool dense = false;                                    ///< are the numbers 1, 2, ...?
   std::array<std::vector<Cell>, 4> cells;                ///< by dimension
-  std::array<std::map<int, int>, 4> physical_of_entity;  ///< the first one
-  std::array<std::map<int, Tag>, 4> tag_of_physical;     ///< where its name says so
+  std::array<std::map<int, Tag>, 4> physical_of_entity;  ///< the first one
+  std::array<std::map<Tag, Tag>, 4> tag_of_physical;     ///< where its name says so
   std::vector<std::pair<std::uint64_t, double>> collar;  ///< cell number and value
   bool numbers_are_features = false;
 };
 
-Tag tag_of_physical(const Contents& contents, std::size_t dimension, int physical) {
+Tag tag_of_physical(const Contents& contents, std::size_t dimension, Tag physical) {
   const auto named = contents.tag_of_physical[dimension].find(physical);
   return named != contents.tag_of_physical[dimension].end() ? named->second : physical;
 }
@@ -66,6 +66,9 @@ void sort_by_number(std::vector<Item>& items) {
 template <class Values>
 void sort_nodes(Values& values, Contents& contents) {
   std::vector<Node>& nodes = contents.nodes;
+  // Cells know their nodes by position.
+  for (const std::vector<Cell>& cells : contents.cells)
+    if (!cells.empty()) values.fail("the nodes come after elements; save all nodes first");
   sort_by_number(nodes);
   const auto twice = std::adjacent_find(nodes.begin(), nodes.end(),
                                         [](const Node& a, const Node& b) { return a.number == b.number; });
@@ -139,7 +142,7 @@ void read_entities(Values values, int point_numbers, Contents& contents) {
       const Index physicals = values.count("the number of physical groups", 1);
       for (Index k = 0; k < physicals; ++k)
         contents.physical_of_entity[dimension].try_emplace(number,
-                                                           std::abs(values.integer("a physical group")));
+                                                           std::abs(Tag{values.integer("a physical group")}));
       const Index boundary = dimension == 0 ? 0 : values.count("the number of bounding entities", 1);
       for (Index k = 0; k < boundary; ++k) values.integer("a bounding entity");
     }
@@ -255,10 +258,10 @@ void read_element_2(Values& values, const GmshType& type, std::uint64_t number, 
                     Contents& contents) {
   Cell cell;
   cell.number = number;
-  int physical = 0;
+  Tag physical = 0;
   for (int k = 0; k < tags; ++k) {
     const int tag = values.integer("a tag of an element");
-    if (k == 0) physical = std::abs(tag);
+    if (k == 0) physical = std::abs(Tag{tag});
     if (k == 1) cell.entity = tag;
   }
   cell.nodes = read_cell_nodes(values, contents, type);
@@ -394,7 +397,7 @@ void add_cells(const std::vector<Cell>& cells, Add add, std::vector<Tag>& tags, 
   }
 }
 
-Index feature_of(int entity) { return static_cast<Index>(entity - 1); }
+Index feature_of(int entity) { return static_cast<Index>(entity) - 1; }
 
 void add_features(const Contents& contents, TetMesh& mesh) {
   for (const Cell& cell : contents.cells[3]) mesh.tet_region.push_back(static_cast<Index>(cell.entity));

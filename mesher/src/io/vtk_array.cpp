@@ -14,9 +14,6 @@ namespace collarmesh::io {
 
 namespace {
 
-/// zlib never packs better than 1 to 1032.
-constexpr std::uint64_t largest_ratio = 1032;
-
 struct TypeName {
   std::string_view name;
   VtkType type;
@@ -102,7 +99,7 @@ std::string decode_plain(Stored& stored, const VtkStorage& storage) {
 }
 
 void inflate_block(std::string_view packed, std::uint64_t size, std::string& bytes) {
-  if (size / largest_ratio > packed.size())
+  if (size / vtk_largest_ratio > packed.size())
     throw VtkArrayError{fmt::format("a block of {} compressed bytes cannot hold {}", packed.size(), size)};
   const std::size_t before = bytes.size();
   bytes.resize(before + size);

@@ -22,6 +22,9 @@ struct VtkStorage {
   bool compressed = false;
 };
 
+/// zlib never packs better than 1 to this.
+constexpr std::uint64_t vtk_largest_ratio = 1032;
+
 /// What is wrong with stored values: for the caller to add the file and the place.
 struct VtkArrayError {
   std::string message;

@@ -93,7 +93,13 @@ class LegacyReader {
       fail(fmt::format("the dataset is {}, but has to be UNSTRUCTURED_GRID", quoted(kind)));
   }
 
+  /// Data that was read belongs to what came before it.
+  void require_no_data(const VtkPiece::Arrays& arrays, std::string_view section) const {
+    if (!arrays.empty()) fail(fmt::format("{} come after their data", section));
+  }
+
   void read_points() {
+    require_no_data(piece_.point_data, "POINTS");
     const Index n = scan_.count("the number of points", 3);
     const std::vector<double> coordinates = values<double>(3 * std::size_t{n}, read_type());
     piece_.points.clear();
@@ -106,6 +112,7 @@ class LegacyReader {
   }
 
   void read_cells() {
+    require_no_data(piece_.cell_data, "CELLS");
     const Index n = scan_.count("the number of cells", 2), size = scan_.count("the size of the cells", 2);
     if (version_at_least_5_)
       read_offsets_and_connectivity(n, size);

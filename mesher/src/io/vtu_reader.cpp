@@ -73,8 +73,18 @@ class VtuFile {
   }
 
   [[noreturn]] void fail_at(std::size_t offset, const std::string& message) const {
-    const auto end = text_.begin() + static_cast<std::ptrdiff_t>(std::min(offset, text_.size()));
-    throw ReadError(fmt::format("{}: line {}: {}", path_, std::count(text_.begin(), end, '\n') + 1, message));
+    throw ReadError(fmt::format("{}: line {}: {}", path_, line_at(offset), message));
+  }
+
+  /// Cost: linear in the distance from the place asked for before.
+  std::size_t line_at(std::size_t offset) const {
+    const auto place = [&](std::size_t byte) { return text_.begin() + static_cast<std::ptrdiff_t>(byte); };
+    offset = std::min(offset, text_.size());
+    const auto [first, last] = std::minmax(offset, line_offset_);
+    const auto lines = static_cast<std::size_t>(std::count(place(first), place(last), '\n'));
+    line_ = offset < line_offset_ ? line_ - lines : line_ + lines;
+    line_offset_ = offset;
+    return line_;
   }
 
   /// Appended raw bytes would break the XML: only what is before them is parsed.
@@ -127,8 +137,7 @@ class VtuFile {
   template <class T>
   std::vector<T> text_values(const pugi::xml_node& array) const {
     const std::string_view text = array.text().get();
-    const auto begin = text_.begin(), at = begin + static_cast<std::ptrdiff_t>(text_offset(array));
-    TextScanner scan(path_, text, 0, static_cast<std::size_t>(std::count(begin, at, '\n')) + 1);
+    TextScanner scan(path_, text, 0, line_at(text_offset(array)));
     std::vector<T> result;
     while (!scan.at_end())
       if constexpr (std::is_integral_v<T>)
@@ -176,10 +185,19 @@ class VtuFile {
   std::string decode(const pugi::xml_node& array, std::string_view stored, bool base64,
                      std::size_t first_byte) const {
     try {
-      return decode_vtk_array(stored, base64, storage_);
+      std::string bytes = decode_vtk_array(stored, base64, storage_);
+      require_room(bytes.size());
+      return bytes;
     } catch (const VtkArrayError& error) {
       fail_byte(first_byte, array, error.message);
     }
+  }
+
+  /// Arrays of many pieces that share their bytes would fill the memory.
+  void require_room(std::size_t decoded) const {
+    decoded_ += decoded;
+    if (decoded_ > text_.size() * (storage_.compressed ? vtk_largest_ratio : 1))
+      throw VtkArrayError{"together the arrays hold more bytes than the file; several share their bytes"};
   }
 
   [[noreturn]] std::string unknown_format(const pugi::xml_node& array, std::string_view format) const {
@@ -198,6 +216,8 @@ class VtuFile {
   std::size_t appended_begin_ = 0;
   bool appended_is_base64_ = false;
   std::string_view appended_;
+  mutable std::size_t line_offset_ = 0, line_ = 1;  ///< what line_at was asked for last, and its answer
+  mutable std::size_t decoded_ = 0;                 ///< bytes of all arrays so far
 };
 
 pugi::xml_node find_array(const pugi::xml_node& section, const char* name) {
