@@ -24,13 +24,14 @@ constexpr std::array surfaces{
 
 struct MeshKept {
   std::string_view format;
-  bool collar = false, features = false, edges = true, region_tags = true, region_numbers = true;
+  bool collar = false, features = false, edges = true, region_tags = true, region_numbers = true,
+       loose_triangles = true;
 };
 constexpr std::array meshes{MeshKept{".vtu", true, true},
                             MeshKept{".vtk", true, true},
                             MeshKept{".msh", true, true},
                             MeshKept{".mesh", false, false, true, false, true},
-                            MeshKept{".inp", false, false, false, true, true},
+                            MeshKept{".inp", false, false, false, true, true, false},
                             MeshKept{".unv", false, false, true, true, true},
                             MeshKept{".ele", false, false, true, true, false},
                             MeshKept{".med", false, false, true, true, false},
@@ -87,6 +88,9 @@ std::vector<std::string> lost_by(const std::string& format, const TetMesh& mesh)
   add(losses, kept->collar, count_tags(mesh.tet_collar), "collar marks of tets");
   add(losses, kept->features, mesh.features.size(), "features of points");
   add(losses, kept->edges, mesh.edges.size(), "edges on curves (node sets are kept)");
+  const auto loose =
+      std::count(mesh.face_regions.begin(), mesh.face_regions.end(), std::array<Index, 2>{0, 0});
+  add(losses, kept->loose_triangles, static_cast<std::size_t>(loose), "triangles that are no side of a tet");
   std::size_t other = 0;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     other += mesh.tet_tag[t] != static_cast<Tag>(mesh.tet_region[t]) ? 1 : 0;

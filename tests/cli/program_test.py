@@ -500,6 +500,11 @@ class Convert(ProgramTest):
         self.convert(0, "b.inp", "-o", "skin.poly", says=["2 region points"])
         self.assertAlmostEqual(self.volume("skin.poly"), self.volume(MODELS / "two_boxes.poly"))
 
+    def test_says_which_triangles_are_lost(self):
+        self.write("loose.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices 5\n0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 1\n"
+                   "2 2 2 1\nTetrahedra 1\n1 2 3 4 1\nTriangles 2\n1 2 3 1\n1 2 5 1\nEnd\n")
+        self.convert(0, "loose.mesh", "-o", "a.inp", says=["no place for: 1 triangles that are no side of a tet"])
+
     def test_standard_input_and_output(self):
         off = self.convert(0, self.box, "-o", "-", "--format", "off")
         self.assertTrue(off.startswith(b"OFF"))

@@ -14,6 +14,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include "collarmesh/error.h"
 #include "collarmesh/io/soup_io.h"
@@ -141,36 +142,58 @@ void read_and_check(const std::string& path, std::size_t size) {
 #endif
 }
 
-void write_file(const std::string& path, std::string_view content) {
-  std::ofstream file(path, std::ios::binary);
-  require(static_cast<bool>(file.write(content.data(), static_cast<std::streamsize>(content.size())).flush()),
-          "a place for temporary files");
-}
+/// TetGen's mesh is several files; in an input they come one after the other with lines of "@" between them.
+constexpr std::array<std::string_view, 4> tetgen_extensions{".ele", ".node", ".face", ".edge"};
 
-/// Without its extension.
-std::string temporary_name() {
-  return (std::filesystem::temp_directory_path() / ("collarmesh-fuzz-" + std::to_string(getpid()))).string();
-}
-
-/// TetGen's files, one after the other with lines of "@" between them; what is left out is not there.
-void write_tetgen_files(const std::string& name, std::string_view content) {
-  for (const char* extension : {".ele", ".node", ".face", ".edge"}) {
-    const std::size_t end = std::min(content.find("@\n"), content.size());
-    std::filesystem::remove(name + extension);
-    if (!content.empty()) write_file(name + extension, content.substr(0, end));
-    content.remove_prefix(std::min(end + 2, content.size()));
+/// What the reader is given: files that are removed at the end.
+class InputFiles {
+ public:
+  InputFiles()
+      : name_((std::filesystem::temp_directory_path() / ("collarmesh-fuzz-" + std::to_string(getpid())))
+                  .string()) {}
+  ~InputFiles() {
+    remove(format);
+    if (format == ".ele")
+      for (const std::string_view extension : tetgen_extensions) remove(extension);
   }
-}
+  InputFiles(const InputFiles&) = delete;
+  InputFiles& operator=(const InputFiles&) = delete;
+
+  std::string path() const { return path(format); }
+
+  void write(std::string_view content) const {
+    if (format != ".ele") {
+      write(format, content);
+      return;
+    }
+    for (const std::string_view extension : tetgen_extensions) {
+      const std::size_t end = std::min(content.find("@\n"), content.size());
+      remove(extension);
+      if (!content.empty()) write(extension, content.substr(0, end));
+      content.remove_prefix(std::min(end + 2, content.size()));
+    }
+  }
+
+ private:
+  std::string path(std::string_view extension) const { return name_ + std::string(extension); }
+  void write(std::string_view extension, std::string_view content) const {
+    std::ofstream file(path(extension), std::ios::binary);
+    file.write(content.data(), static_cast<std::streamsize>(content.size()));
+    require(static_cast<bool>(file.flush()), "a place for temporary files");
+  }
+  void remove(std::string_view extension) const {
+    std::error_code ignored;
+    std::filesystem::remove(path(extension), ignored);
+  }
+
+  std::string name_;
+};
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const std::string name = temporary_name(), path = name + std::string(format);
-  const std::string_view content(reinterpret_cast<const char*>(data), size);
-  if (format == ".ele")
-    write_tetgen_files(name, content);
-  else
-    write_file(path, content);
-  read_and_check(path, size);
+  static const InputFiles files;
+  files.write({reinterpret_cast<const char*>(data), size});
+  read_and_check(files.path(), size);
   return 0;
 }

@@ -14,10 +14,6 @@ folder = sys.argv[1]
 ORDERS = ("first", "second")
 
 
-def ours(name, extension):
-    return os.path.join(folder, extension, f"{name}.{extension}")
-
-
 def seed(name, extension):
     return os.path.join(folder, extension, f"{name}.{extension}")
 
@@ -31,8 +27,8 @@ def by_gmsh():
     for order in ORDERS:
         for extension, kind, options in variants:
             out = seed("_".join(["gmsh", kind, order] + [o.strip("-") for o in options]), extension)
-            subprocess.run(["gmsh", ours(order, "msh"), "-0", "-v", "0", "-save_all", "-format", kind, *options, "-o", out],
-                           check=True, stdout=subprocess.DEVNULL)
+            command = ["gmsh", seed(order, "msh"), "-0", "-v", "0", "-save_all", "-format", kind, *options, "-o", out]
+            subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
 
 
 def by_meshio():
@@ -41,15 +37,16 @@ def by_meshio():
     except ImportError:
         return print("python3-meshio is not installed: no seeds of it")
     for order in ORDERS:
-        mesh = meshio.read(ours(order, "vtu"))
-        for name, arguments in (("text", {"binary": False}), ("plain", {"compression": None}), ("zlib", {"compression": "zlib"})):
+        mesh = meshio.read(seed(order, "vtu"))
+        variants = {"text": {"binary": False}, "plain": {"compression": None}, "zlib": {"compression": "zlib"}}
+        for name, arguments in variants.items():
             meshio.write(seed(f"meshio_{name}_{order}", "vtu"), mesh, "vtu", **arguments)
         mesh.cell_data, mesh.point_data = {}, {}
         meshio.write(seed(f"meshio_{order}", "inp"), mesh, "abaqus")
-    surface = meshio.read(ours("boundary", "off"))
+    surface = meshio.read(seed("boundary", "off"))
     for extension in ("stl", "ply"):
-        for binary in (False, True):
-            meshio.write(seed(f"meshio_{'binary' if binary else 'text'}", extension), surface, extension, binary=binary)
+        for name, binary in (("text", False), ("binary", True)):
+            meshio.write(seed(f"meshio_{name}", extension), surface, extension, binary=binary)
 
 
 def by_vtk():
@@ -59,7 +56,7 @@ def by_vtk():
         return print("python3-vtk9 is not installed: no seeds of it")
     for order in ORDERS:
         reader = vtk.vtkXMLUnstructuredGridReader()
-        reader.SetFileName(ours(order, "vtu"))
+        reader.SetFileName(seed(order, "vtu"))
         reader.Update()
         for version in (42, 51):
             for text in (True, False):
