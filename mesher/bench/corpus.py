@@ -39,13 +39,19 @@ class CorpusFile:
     def __post_init__(self) -> None:
         self.suffix = self.path.suffix.lower()
 
+    feature_angle = 30   # the default
+
     @property
     def name(self) -> str:
         return self.path.name
 
+    @property
+    def files(self) -> list[str]:
+        return [f"input{self.suffix}"]
+
     def write(self, path_without_suffix: Path) -> None:
         # TetGen reads no .obj, and textual .stl only.
-        textual = self.path.read_bytes()[:6] == b"solid "
+        textual = self.path.read_bytes()[:5] == b"solid"
         if self.suffix == ".obj" or self.suffix == ".stl" and not textual:
             self.suffix = ".off"
             read_surface(self.path).write_off(path_without_suffix.with_suffix(".off"))

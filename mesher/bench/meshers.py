@@ -73,7 +73,6 @@ class Collarmesh:
                        report["statistics"]["peak_bytes"], stages,
                        measured.exit_code == self.guarantee_missed, report["statistics"]["cells"], report)
 
-
     def describe(self, surface: Surface, folder: Path) -> dict:
         """What the program says the complex is: diagonal, regions with their volumes and so on."""
         command = [str(self.program), "info", f"input{surface.suffix}", "--json"]
