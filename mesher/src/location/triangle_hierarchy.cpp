@@ -144,34 +144,30 @@ Index TriangleHierarchy::build(std::span<Index> order, std::span<const Point> ce
   return node;
 }
 
-void TriangleHierarchy::nodes_in_ball(const Point& centre, double radius,
-                                      std::span<const Index> from, std::vector<Index>& found) {
+void TriangleHierarchy::nodes_meeting(const Box& box, double extent, std::span<const Index> from,
+                                      std::vector<Index>& found) {
   found.clear();
   ++stamp_;
   for (Index node : from) {
     if (nodes_[node].seed_stamp == stamp_) continue;
     nodes_[node].seed_stamp = stamp_;
-    while (nodes_[node].parent != none && nodes_[nodes_[node].parent].extent <= radius)
+    while (nodes_[node].parent != none && nodes_[nodes_[node].parent].extent <= extent)
       node = nodes_[node].parent;
-    descend(node, centre, radius, found);
+    descend(node, box, extent, found);
   }
 }
 
-void TriangleHierarchy::descend(Index index, const Point& centre, double radius,
+void TriangleHierarchy::descend(Index index, const Box& box, double extent,
                                 std::vector<Index>& found) {
   Node& node = nodes_[index];
   if (node.stamp == stamp_) return;
   node.stamp = stamp_;
-  const double reach = radius * radius * (1 + 1e-9);
-  if (squared_distance_to_box(centre, node.box) > reach) return;
-  if (node.extent <= radius) {
+  if (!overlap(box, node.box)) return;
+  if (node.extent <= extent || node.left == none) {
     found.push_back(index);
-  } else if (node.left == none) {
-    const auto t = corners(node.right);
-    if (squared_distance_to_triangle(centre, t[0], t[1], t[2]) <= reach) found.push_back(index);
   } else {
-    descend(node.left, centre, radius, found);
-    descend(node.right, centre, radius, found);
+    descend(node.left, box, extent, found);
+    descend(node.right, box, extent, found);
   }
 }
 

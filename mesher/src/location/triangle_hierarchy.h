@@ -31,11 +31,11 @@ class TriangleHierarchy {
     return {points_[t[0]], points_[t[1]], points_[t[2]]};
   }
 
-  /// Replace `found` by the nodes that meet the ball, each at the coarsest level whose extent does
-  /// not exceed the radius. Precondition: the nodes of `from` cover every triangle that meets it.
-  /// Conservative: a node found may hold no triangle that meets the ball.
+  /// Replace `found` by the nodes whose boxes meet the box, each at the coarsest level whose extent
+  /// does not exceed `extent`. Precondition: the nodes of `from` cover every triangle that meets it.
+  /// Conservative: a node found may hold no triangle that meets the box.
   /// Cost: linear in the nodes found plus the levels between them and `from`.
-  void nodes_in_ball(const Point& centre, double radius, std::span<const Index> from,
+  void nodes_meeting(const Box& box, double extent, std::span<const Index> from,
                      std::vector<Index>& found);
 
   /// Replace `found` by the triangles below `nodes` that the segment pq crosses. Exact; ties are
@@ -75,7 +75,7 @@ class TriangleHierarchy {
   };
 
   Index build(std::span<Index> order, std::span<const Point> centres, Index parent);
-  void descend(Index node, const Point& centre, double radius, std::vector<Index>& found);
+  void descend(Index node, const Box& box, double extent, std::vector<Index>& found);
 
   std::span<const Point> points_;
   std::vector<std::array<Index, 3>> triangles_;

@@ -386,9 +386,7 @@ void Refinement::inherit_nodes(Index vertex) {
     ++vertices_[neighbour].insertions;
   }
   if (seeds_scratch_.empty()) return;
-  double largest = 0;
-  for (const Index cell : zone_.created) largest = std::max(largest, mesh_.squared_radius(cell));
-  hierarchy_.nodes_in_ball(mesh_.point(vertex), std::sqrt(largest), seeds_scratch_, nodes_scratch_);
+  find_nodes(zone_.created);
   store_nodes(vertices_[vertex], nodes_scratch_);
   for (const Index neighbour : zone_.vertices)
     if (vertices_[neighbour].insertions >= (vertices_[neighbour].dimension == 3
@@ -397,13 +395,26 @@ void Refinement::inherit_nodes(Index vertex) {
       refresh_nodes(neighbour);
 }
 
+// The nodes that cover the triangles in the Voronoi cell of a vertex with these cells: the box of its
+// corners, widened by the rounding of circumcentres.
+void Refinement::find_nodes(const std::vector<Index>& cells) {
+  Box box;
+  double largest = 0;
+  for (const Index cell : cells) {
+    box.add(mesh_.circumcentre(cell));
+    largest = std::max(largest, mesh_.squared_radius(cell));
+  }
+  const double radius = std::sqrt(largest), slack = 1e-9 * radius;
+  box.min = box.min - Vector{slack, slack, slack};
+  box.max = box.max + Vector{slack, slack, slack};
+  hierarchy_.nodes_meeting(box, radius, seeds_scratch_, nodes_scratch_);
+}
+
 void Refinement::refresh_nodes(Index vertex) {
   mesh_.incident_cells(vertex, cells_scratch_);
-  double largest = 0;
-  for (const Index cell : cells_scratch_) largest = std::max(largest, mesh_.squared_radius(cell));
   const auto nodes = nodes_of(vertex);
   seeds_scratch_.assign(nodes.begin(), nodes.end());
-  hierarchy_.nodes_in_ball(mesh_.point(vertex), std::sqrt(largest), seeds_scratch_, nodes_scratch_);
+  find_nodes(cells_scratch_);
   store_nodes(vertices_[vertex], nodes_scratch_);
   vertices_[vertex].insertions = 0;
 }

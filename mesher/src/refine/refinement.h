@@ -53,7 +53,7 @@ class Refinement {
     bool near_collar = false;              // B(v, R_v) meets a collar ball
     std::uint16_t insertions = 0;          // in its star since its nodes were filtered last
     Index feature = none;                  // index of that vertex, curve or patch of the complex
-    Index first_node = 0, node_count = 0;  // in node_pool_: hierarchy nodes that meet B(v, R_v)
+    Index first_node = 0, node_count = 0;  // in node_pool_: hierarchy nodes that meet the box of its Voronoi cell
   };
   /// An input point, or a seed, that is not in the mesh yet.
   struct UnresolvedPoint {
@@ -140,6 +140,7 @@ class Refinement {
   Index force_insert(std::uint8_t dimension, Index feature);
   void relocate_objects(Index vertex);
   void inherit_nodes(Index vertex);
+  void find_nodes(const std::vector<Index>& cells);
   void refresh_nodes(Index vertex);
   void store_nodes(MeshVertex& vertex, const std::vector<Index>& nodes);
   std::span<const Index> nodes_of(Index vertex) const {
