@@ -22,9 +22,12 @@ Box box_around(const Point& p, const Point& q) {
   return box;
 }
 
+// Without branches: which comparison fails cannot be foreseen.
 bool overlap(const Box& a, const Box& b) {
-  return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y &&
-         a.min.z <= b.max.z && b.min.z <= a.max.z;
+  const double x = std::max(a.min.x - b.max.x, b.min.x - a.max.x);
+  const double y = std::max(a.min.y - b.max.y, b.min.y - a.max.y);
+  const double z = std::max(a.min.z - b.max.z, b.min.z - a.max.z);
+  return std::max(std::max(x, y), z) <= 0;
 }
 
 // A segment ready for many box tests: separating axes, widened by the rounding of their arithmetic
@@ -46,9 +49,10 @@ class SegmentAgainstBoxes {
                                            size2.x + size2.y + size2.z);
     const Vector e{0.5 * size2.x + slack, 0.5 * size2.y + slack, 0.5 * size2.z + slack};
     const Vector m = centre_ - 0.5 * d2;
-    return std::fabs(m.y * half_.z - m.z * half_.y) <= (e.y * reach_.z + e.z * reach_.y) * widen &&
-           std::fabs(m.z * half_.x - m.x * half_.z) <= (e.x * reach_.z + e.z * reach_.x) * widen &&
-           std::fabs(m.x * half_.y - m.y * half_.x) <= (e.x * reach_.y + e.y * reach_.x) * widen;
+    const double x = std::fabs(m.y * half_.z - m.z * half_.y) - (e.y * reach_.z + e.z * reach_.y) * widen;
+    const double y = std::fabs(m.z * half_.x - m.x * half_.z) - (e.x * reach_.z + e.z * reach_.x) * widen;
+    const double z = std::fabs(m.x * half_.y - m.y * half_.x) - (e.x * reach_.y + e.y * reach_.x) * widen;
+    return std::max(std::max(x, y), z) <= 0;
   }
 
  private:
