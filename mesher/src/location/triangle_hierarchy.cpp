@@ -15,54 +15,6 @@ Point nearest_point_on_segment(const Point& p, const Point& a, const Point& b) {
   return a + (length > 0 ? std::clamp(dot(p - a, u) / length, 0.0, 1.0) : 0.0) * u;
 }
 
-Box box_around(const Point& p, const Point& q) {
-  Box box;
-  box.add(p);
-  box.add(q);
-  return box;
-}
-
-// Without branches: which comparison fails cannot be foreseen.
-bool overlap(const Box& a, const Box& b) {
-  const double x = std::max(a.min.x - b.max.x, b.min.x - a.max.x);
-  const double y = std::max(a.min.y - b.max.y, b.min.y - a.max.y);
-  const double z = std::max(a.min.z - b.max.z, b.min.z - a.max.z);
-  return std::max(std::max(x, y), z) <= 0;
-}
-
-// A segment ready for many box tests: separating axes, widened by the rounding of their arithmetic
-// (Akenine-Moeller, Haines, Hoffman: Real-Time Rendering, segment against box).
-class SegmentAgainstBoxes {
- public:
-  SegmentAgainstBoxes(const Point& p, const Point& q)
-      : range_(box_around(p, q)),
-        centre_(0.5 * (p + q)),
-        half_(0.5 * (q - p)),
-        reach_{std::fabs(half_.x), std::fabs(half_.y), std::fabs(half_.z)},
-        slack_(1e-14 * (std::fabs(p.x) + std::fabs(p.y) + std::fabs(p.z) + std::fabs(q.x) +
-                        std::fabs(q.y) + std::fabs(q.z))) {}
-
-  bool may_meet(const Box& box) const {
-    if (!overlap(range_, box)) return false;
-    const Vector d2 = box.min + box.max, size2 = box.max - box.min;
-    const double slack = slack_ + 1e-14 * (std::fabs(d2.x) + std::fabs(d2.y) + std::fabs(d2.z) +
-                                           size2.x + size2.y + size2.z);
-    const Vector e{0.5 * size2.x + slack, 0.5 * size2.y + slack, 0.5 * size2.z + slack};
-    const Vector m = centre_ - 0.5 * d2;
-    const double x = std::fabs(m.y * half_.z - m.z * half_.y) - (e.y * reach_.z + e.z * reach_.y) * widen;
-    const double y = std::fabs(m.z * half_.x - m.x * half_.z) - (e.x * reach_.z + e.z * reach_.x) * widen;
-    const double z = std::fabs(m.x * half_.y - m.y * half_.x) - (e.x * reach_.y + e.y * reach_.x) * widen;
-    return std::max(std::max(x, y), z) <= 0;
-  }
-
- private:
-  static constexpr double widen = 1 + 1e-12;
-  Box range_;
-  Point centre_;
-  Vector half_, reach_;
-  double slack_;
-};
-
 int side(const Point& a, const Point& b, const Point& c, const Point& p) {
   const int sign = predicates::orientation(a, b, c, p);
   return sign != 0 ? sign : predicates::cross_product_sign_exact(a, b, a, c);
@@ -114,14 +66,14 @@ TriangleHierarchy::TriangleHierarchy(std::span<const Point> points,
   std::vector<Index> order(triangles_.size());
   std::iota(order.begin(), order.end(), Index{0});
   nodes_.reserve(2 * triangles_.size());
-  build(order, centres, none);
+  Box box;
+  build(order, centres, none, box);
 }
 
-Index TriangleHierarchy::build(std::span<Index> order, std::span<const Point> centres,
-                               Index parent) {
+Index TriangleHierarchy::build(std::span<Index> order, std::span<const Point> centres, Index parent,
+                               Box& box) {
   const auto node = static_cast<Index>(nodes_.size());
   nodes_.push_back({{}, 0, parent, none, none, 0, 0});
-  Box box;
   if (order.size() == 1) {
     for (const Index point : triangles_[order[0]]) box.add(points_[point]);
     nodes_[node].right = order[0];
@@ -135,14 +87,14 @@ Index TriangleHierarchy::build(std::span<Index> order, std::span<const Point> ce
       return centres[a][axis] != centres[b][axis] ? centres[a][axis] < centres[b][axis] : a < b;
     });
     const std::size_t half = order.size() / 2;
-    const Index left = build(order.subspan(0, half), centres, node);
-    const Index right = build(order.subspan(half), centres, node);
+    Box right_box;
+    const Index left = build(order.subspan(0, half), centres, node, box);
+    const Index right = build(order.subspan(half), centres, node, right_box);
     nodes_[node].left = left;
     nodes_[node].right = right;
-    box = nodes_[left].box;
-    box.add(nodes_[right].box);
+    box.add(right_box);
   }
-  nodes_[node].box = box;
+  nodes_[node].box = CentredBox(box);
   const Vector sides = box.max - box.min;
   nodes_[node].extent = std::max({sides.x, sides.y, sides.z});
   return node;
@@ -152,21 +104,22 @@ void TriangleHierarchy::nodes_meeting(const Box& box, double extent, std::span<c
                                       std::vector<Index>& found) {
   found.clear();
   ++stamp_;
+  const CentredBox range(box);
   for (Index node : from) {
     if (nodes_[node].seed_stamp == stamp_) continue;
     nodes_[node].seed_stamp = stamp_;
     while (nodes_[node].parent != none && nodes_[nodes_[node].parent].extent <= extent)
       node = nodes_[node].parent;
-    descend(node, box, extent, found);
+    descend(node, range, extent, found);
   }
 }
 
-void TriangleHierarchy::descend(Index index, const Box& box, double extent,
+void TriangleHierarchy::descend(Index index, const CentredBox& box, double extent,
                                 std::vector<Index>& found) {
   Node& node = nodes_[index];
   if (node.stamp == stamp_) return;
   node.stamp = stamp_;
-  if (!overlap(box, node.box)) return;
+  if (!box.meets(node.box)) return;
   if (node.extent <= extent || node.left == none) {
     found.push_back(index);
   } else {

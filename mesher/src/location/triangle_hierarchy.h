@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "collarmesh/geometry.h"
+#include "location/centred_box.h"
 
 namespace collarmesh {
 
@@ -67,15 +68,16 @@ class TriangleHierarchy {
 
  private:
   struct Node {
-    Box box;
+    CentredBox box;
     double extent;         // longest side of the box
     Index parent;
     Index left, right;     // a leaf has left == none and its triangle in right
     std::uint32_t stamp, seed_stamp;
   };
 
-  Index build(std::span<Index> order, std::span<const Point> centres, Index parent);
-  void descend(Index node, const Box& box, double extent, std::vector<Index>& found);
+  /// Add to the box what lies below the node that is returned.
+  Index build(std::span<Index> order, std::span<const Point> centres, Index parent, Box& box);
+  void descend(Index node, const CentredBox& box, double extent, std::vector<Index>& found);
 
   std::span<const Point> points_;
   std::vector<std::array<Index, 3>> triangles_;
@@ -107,7 +109,7 @@ double TriangleHierarchy::squared_distance_to(const Point& p, double bound, Inde
   stack[top++] = root();
   while (top > 0) {
     const Node& node = nodes_[stack[--top]];
-    if (squared_distance_to_box(p, node.box) >= bound) continue;
+    if (node.box.squared_distance(p) >= bound) continue;
     if (node.left == none) {
       if (!counts(node.right)) continue;
       const auto t = corners(node.right);
@@ -117,8 +119,8 @@ double TriangleHierarchy::squared_distance_to(const Point& p, double bound, Inde
       if (nearest != nullptr) *nearest = node.right;
       continue;
     }
-    const bool left_first = squared_distance_to_box(p, nodes_[node.left].box) <
-                            squared_distance_to_box(p, nodes_[node.right].box);
+    const bool left_first = nodes_[node.left].box.squared_distance(p) <
+                            nodes_[node.right].box.squared_distance(p);
     stack[top++] = left_first ? node.right : node.left;
     stack[top++] = left_first ? node.left : node.right;
   }
@@ -133,7 +135,7 @@ Index TriangleHierarchy::triangle_within(const Point& p, double bound, const Cou
   stack[top++] = root();
   while (top > 0) {
     const Node& node = nodes_[stack[--top]];
-    if (squared_distance_to_box(p, node.box) >= bound) continue;
+    if (node.box.squared_distance(p) >= bound) continue;
     if (node.left != none) {
       stack[top++] = node.left;
       stack[top++] = node.right;
