@@ -55,7 +55,12 @@ Soup box_surface(int n) {
   return soup;
 }
 
-TEST(TriangleHierarchy, NodesInABallCoverItsTriangles) {
+Box box_about(const Point& centre, double half) {
+  const Vector to_corner{half, half, half};
+  return {centre - to_corner, centre + to_corner};
+}
+
+TEST(TriangleHierarchy, NodesInABoxCoverItsTriangles) {
   const Soup soup = random_triangles(500, 0.05);
   TriangleHierarchy hierarchy(soup.points, soup.triangles);
   std::mt19937_64 random(1);
@@ -66,13 +71,12 @@ TEST(TriangleHierarchy, NodesInABallCoverItsTriangles) {
     const Point centre{unit(random), unit(random), unit(random)};
     const double radius = 0.3 * unit(random);
     const Index root = hierarchy.root();
-    hierarchy.nodes_in_ball(centre, 0.6, {&root, 1}, coarse);
-    hierarchy.nodes_in_ball(centre, radius, coarse, fine);
-    // Any segment inside the ball must find the same crossings from these nodes as from the root.
+    hierarchy.nodes_meeting(box_about(centre, 0.6), 0.6, {&root, 1}, coarse);
+    hierarchy.nodes_meeting(box_about(centre, radius), radius, coarse, fine);
+    // Any segment inside the box must find the same crossings from these nodes as from the root.
     for (int s = 0; s < 10; ++s) {
       const auto inside = [&] {
-        const Vector d{unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5};
-        return centre + radius * unit(random) / norm(d) * d;
+        return centre + 2 * radius * Vector{unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5};
       };
       const Point p = inside(), q = inside();
       hierarchy.crossings(p, q, fine, crossings);
@@ -92,12 +96,12 @@ TEST(TriangleHierarchy, NodesDoNotOverlap) {
   TriangleHierarchy hierarchy(soup.points, soup.triangles);
   const Index root = hierarchy.root();
   std::vector<Index> first, second, both;
-  hierarchy.nodes_in_ball({0.4, 0.5, 0.5}, 0.05, {&root, 1}, first);
-  hierarchy.nodes_in_ball({0.5, 0.5, 0.5}, 0.3, {&root, 1}, second);
+  hierarchy.nodes_meeting(box_about({0.4, 0.5, 0.5}, 0.05), 0.05, {&root, 1}, first);
+  hierarchy.nodes_meeting(box_about({0.5, 0.5, 0.5}, 0.3), 0.3, {&root, 1}, second);
   both = first;
   both.insert(both.end(), second.begin(), second.end());
   std::vector<Index> found;
-  hierarchy.nodes_in_ball({0.45, 0.5, 0.5}, 0.15, both, found);
+  hierarchy.nodes_meeting(box_about({0.45, 0.5, 0.5}, 0.15), 0.15, both, found);
   std::vector<TriangleHierarchy::Crossing> crossings;
   hierarchy.crossings({0.31, 0.5, 0.5}, {0.59, 0.5, 0.5}, found, crossings);
   std::vector<Index> triangles;

@@ -30,8 +30,7 @@ int crossing_direction(const Point& p, const Point& q, const std::array<Point, 3
   const int to = side(t[0], t[1], t[2], q);
   if (to == 0 || side(t[0], t[1], t[2], p) == to) return 0;
   const int first = passes(p, q, t[0], t[1]);
-  if (first == 0 || passes(p, q, t[1], t[2]) != first || passes(p, q, t[2], t[0]) != first)
-    return 0;
+  if (first == 0 || passes(p, q, t[1], t[2]) != first || passes(p, q, t[2], t[0]) != first) return 0;
   return to;
 }
 
@@ -43,8 +42,8 @@ Point nearest_point_on_triangle(const Point& p, const Point& a, const Point& b, 
     if (squared_distance(p, q) < squared_distance(p, best)) best = q;
   const Vector n = cross(b - a, c - a);
   const double nn = squared_norm(n);
-  const bool inside = nn > 0 && dot(cross(b - a, p - a), n) >= 0 &&
-                      dot(cross(c - b, p - b), n) >= 0 && dot(cross(a - c, p - c), n) >= 0;
+  const bool inside = nn > 0 && dot(cross(b - a, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 &&
+                      dot(cross(a - c, p - c), n) >= 0;
   if (!inside) return best;
   // The normal of a needle is noise: the border bounds the distance from above.
   const Point foot = p - (dot(p - a, n) / nn) * n;
@@ -61,8 +60,7 @@ TriangleHierarchy::TriangleHierarchy(std::span<const Point> points,
   if (triangles_.empty()) return;
   std::vector<Point> centres;
   centres.reserve(triangles_.size());
-  for (const auto& t : triangles_)
-    centres.push_back((points_[t[0]] + points_[t[1]] + points_[t[2]]) / 3);
+  for (const auto& t : triangles_) centres.push_back((points_[t[0]] + points_[t[1]] + points_[t[2]]) / 3);
   std::vector<Index> order(triangles_.size());
   std::iota(order.begin(), order.end(), Index{0});
   nodes_.reserve(2 * triangles_.size());
@@ -142,8 +140,7 @@ void TriangleHierarchy::crossings(const Point& p, const Point& q, std::span<cons
       if (node.left != none) {
         stack[top++] = node.left;
         stack[top++] = node.right;
-      } else if (const int direction = crossing_direction(p, q, corners(node.right));
-                 direction != 0) {
+      } else if (const int direction = crossing_direction(p, q, corners(node.right)); direction != 0) {
         found.push_back({node.right, direction});
       }
     }
