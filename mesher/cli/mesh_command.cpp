@@ -94,6 +94,7 @@ void improve_elements(const MeshArguments& arguments, Stages& stages, MeshRun& r
   execution.cancel = &interrupt_flag();
   ImproveOptions options = improve_options(arguments.improve);
   options.radius_edge = arguments.mesh.radius_edge;
+  options.distance = arguments.mesh.distance;
   if (arguments.min_dihedral > 0) options.min_dihedral = arguments.min_dihedral;
   run.improvement = improve(run.result.mesh, run.plc, options, execution);
   stop_if_interrupted();

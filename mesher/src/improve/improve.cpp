@@ -17,13 +17,15 @@ namespace {
 constexpr std::size_t steps_between_reports = 1024;
 // An inserted vertex has to bring the tets around it to this share of the wanted quality.
 constexpr double enough = 0.7;
+constexpr double default_distance = 1e-3;
 
 /// Works on the tets below a quality, worst first.
 class Improvement {
  public:
   Improvement(TetMesh& mesh, const Plc& plc, const ImproveOptions& options, const Execution& execution)
       : complex_(mesh),
-        operations_(complex_, plc, options.radius_edge),
+        operations_(complex_, plc, options.radius_edge,
+                    options.distance > 0 ? options.distance : default_distance * plc.bounds.diagonal()),
         execution_(execution),
         move_vertices_(options.move_vertices),
         wanted_(std::sin(options.min_dihedral * std::numbers::pi / 180)),
@@ -132,6 +134,7 @@ class Improvement {
       case Change::Kind::none: return;
     }
     for (const Index t : complex_.replace(change.old, change.created, change.kept)) queue(t);
+    operations_.made(change);
   }
 
   TetComplex complex_;

@@ -79,8 +79,8 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change) 
   const Index a = complex_[tet].corners[i], b = complex_[tet].corners[j];
   if (complex_.on_curve(a, b)) return;
   complex_.ring(tet, a, b, ring_);
-  const std::size_t n = ring_.tets.size();
-  if (n > largest_ring || ring_.link.size() < 3) return;
+  const std::size_t n = ring_.tets.size(), m = ring_.link.size();
+  if (n > largest_ring || (ring_.closed && m < 3)) return;
   // Where among the link vertices do faces that must stay leave the edge?
   std::vector<std::pair<std::size_t, Index>> kept;
   double worst = INFINITY;
@@ -92,13 +92,14 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change) 
       const Index opposite = t.corners[corner];
       if (opposite == a || opposite == b || t.faces[corner] == none) continue;
       const bool ahead = opposite == ring_.link[k];  // the face to the next tet
-      const std::size_t at = ahead ? (k + 1) % ring_.link.size() : k;
+      const std::size_t at = ahead ? (k + 1) % m : k;
       if (kept.empty() ||
           std::none_of(kept.begin(), kept.end(), [&](const auto& x) { return x.first == at; }))
         kept.emplace_back(at, t.faces[corner]);
     }
   }
   const double above = std::max(worst, change.quality);
+  Change made;
   std::vector<Polygon> polygons;
   std::vector<Index> like;
   if (kept.empty()) {
@@ -110,40 +111,71 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change) 
     std::sort(kept.begin(), kept.end());
     const auto& mesh = complex_.mesh();
     const Index patch = mesh.face_patch[kept[0].second];
-    if (patch == none || mesh.face_patch[kept[1].second] != patch || !plc_.patches[patch].planar) return;
-    const std::size_t from = kept[0].first, to = kept[1].first, m = ring_.link.size();
-    if (!flat(a, b, ring_.link[from], ring_.link[to])) return;
+    if (patch == none || mesh.face_patch[kept[1].second] != patch) return;
+    const std::size_t from = kept[0].first, to = kept[1].first;
     if (!ring_.closed && (from != 0 || to + 1 != m)) return;
+    const Index c = ring_.link[from], d = ring_.link[to];
+    const bool planar = plc_.patches[patch].planar;
+    if (planar && !flat(a, b, c, d)) return;
     for (const auto& [begin, end] : {std::pair{from, to}, std::pair{to, from + m}}) {
       if (!ring_.closed && begin != 0) break;
       Polygon& polygon = polygons.emplace_back();
       for (std::size_t k = begin; k <= end; ++k) polygon.push_back(ring_.link[k % m]);
       like.push_back(ring_.tets[begin % n]);
-      if (polygon.size() < 3) return;
+      if (polygon.size() < 3 && (planar || !may_lose(like.back(), a, b))) return;
+    }
+    for (const auto& [end, face] : {std::pair{b, kept[0].second}, std::pair{a, kept[1].second}}) {
+      auto corners = mesh.faces[face];
+      std::replace(corners.begin(), corners.end(), end, end == b ? d : c);
+      made.kept.push_back({corners, face});
     }
   }
-  Change made;
   made.quality = INFINITY;
   for (std::size_t k = 0; k < polygons.size(); ++k) {
     made.quality = std::min(made.quality, triangulate(a, b, polygons[k], above));
     if (made.quality <= above) return;
     collect(a, b, polygons[k], 0, polygons[k].size() - 1, like[k], made);
   }
-  made.kind = Change::Kind::edge_removal;
   made.old = ring_.tets;
-  if (!kept.empty()) {
-    made.kind = Change::Kind::boundary_flip;
-    const Index c = ring_.link[kept[0].first], d = ring_.link[kept[1].first];
-    const auto& p = complex_.mesh().points;
-    for (const auto& [end, face] : {std::pair{a, kept[0].second}, std::pair{b, kept[1].second}}) {
-      const auto& before = complex_.mesh().faces[face];
-      const Vector up = cross(p[before[1]] - p[before[0]], p[before[2]] - p[before[0]]);
-      std::array<Index, 3> corners{end, c, d};
-      if (dot(cross(p[c] - p[end], p[d] - p[end]), up) < 0) std::swap(corners[1], corners[2]);
-      made.kept.push_back({corners, face});
-    }
-  }
+  made.kind = kept.empty() ? Change::Kind::edge_removal : Change::Kind::boundary_flip;
+  if (!kept.empty() && !may_turn(made.kept)) return;
   change = std::move(made);
+}
+
+// May a sliver with two faces at the edge ab go to their other side, whose tets must be there?
+bool Operations::may_lose(Index tet, Index a, Index b) const {
+  const auto& t = complex_[tet];
+  for (unsigned corner = 0; corner < 4; ++corner) {
+    if (t.corners[corner] != a && t.corners[corner] != b) continue;
+    if (t.faces[corner] != none || t.neighbours[corner] == none || complex_[t.neighbours[corner]].collar)
+      return false;
+  }
+  return true;
+}
+
+// May two faces of a patch become these, which share the edge that neither had? On a planar patch the
+// tets' volumes have told.
+bool Operations::may_turn(const std::vector<TetComplex::Face>& turned) {
+  const auto& mesh = complex_.mesh();
+  if (plc_.patches[mesh.face_patch[turned[0].face]].planar) return true;
+  faces_.clear();
+  triangles_.clear();
+  std::array<Index, 2> shared{none, none};
+  for (const TetComplex::Face& face : turned) {
+    faces_.push_back(face.face);
+    triangles_.push_back({mesh.points[face.corners[0]], mesh.points[face.corners[1]], mesh.points[face.corners[2]]});
+  }
+  unsigned count = 0;
+  for (const Index v : turned[0].corners)
+    if (count < 2 && std::find(turned[1].corners.begin(), turned[1].corners.end(), v) != turned[1].corners.end())
+      shared[count++] = v;
+  return !complex_.on_faces(shared[0], shared[1]) && surfaces_.fit(faces_, triangles_);
+}
+
+void Operations::made(const Change& change) {
+  faces_.clear();
+  for (const TetComplex::Face& face : change.kept) faces_.push_back(face.face);
+  surfaces_.replaced(faces_);
 }
 
 bool Operations::split_edge(Index a, Index b, double least) {
@@ -167,7 +199,8 @@ bool Operations::split_edge(Index a, Index b, double least) {
   }
   const auto& points = complex_.mesh().points;
   const Point middle = 0.5 * (points[a] + points[b]);
-  const auto [place, quality] = best_place(middle, everywhere, -1);
+  faces_.clear();
+  const auto [place, quality] = best_place(middle, none, everywhere, -1);
   if (quality <= std::max(worst, least)) return false;
   const Index vertex = complex_.add_vertex(place);
   std::vector<TetComplex::NewTet> made;
@@ -178,20 +211,34 @@ bool Operations::split_edge(Index a, Index b, double least) {
   return true;
 }
 
-// Where a vertex may be moved to: anywhere, within its plane, or nowhere.
-std::optional<Operations::Freedom> Operations::freedom(Index vertex) const {
+// Where a vertex may be moved to: anywhere, on its patch, along its straight curve, or nowhere.
+std::optional<Operations::Freedom> Operations::freedom(Index vertex) {
   const auto& feature = complex_.mesh().features[vertex];
   if (feature.dimension == 3) return everywhere;
-  if (feature.dimension < 2 || feature.feature == none) return std::nullopt;
+  if (feature.dimension == 0 || feature.feature == none) return std::nullopt;
+  if (feature.dimension == 1) {
+    const Plc::Curve& curve = plc_.curves[feature.feature];
+    if (!curve.straight) return std::nullopt;
+    const Point &from = plc_.points[curve.points.front()], &to = plc_.points[curve.points.back()];
+    return Freedom{{(to - from) / distance(from, to)}, 1, none, from};
+  }
   const Plc::Patch& patch = plc_.patches[feature.feature];
-  if (!patch.planar) return std::nullopt;
-  const Vector n = patch.normal;
+  const Vector n = patch.planar ? patch.normal
+                                : surfaces_.nearest(feature.feature, complex_.mesh().points[vertex]).normal;
   const double least = std::min({std::fabs(n.x), std::fabs(n.y), std::fabs(n.z)});
   const Vector axis = std::fabs(n.x) == least   ? Vector{1, 0, 0}
                       : std::fabs(n.y) == least ? Vector{0, 1, 0}
                                                 : Vector{0, 0, 1};
   const Vector u = cross(n, axis) / norm(cross(n, axis));
-  return Freedom{{u, cross(n, u), {}}, 2, &patch};
+  return Freedom{{u, cross(n, u), {}}, 2, feature.feature, {}};
+}
+
+Point Operations::back_on_feature(const Point& p, const Freedom& freedom) {
+  if (freedom.count == 1) return freedom.origin + dot(p - freedom.origin, freedom.directions[0]) * freedom.directions[0];
+  if (freedom.patch == none) return p;
+  const Plc::Patch& patch = plc_.patches[freedom.patch];
+  if (!patch.planar) return surfaces_.nearest(freedom.patch, p).point;
+  return p - dot(p - patch.origin, patch.normal) * patch.normal;
 }
 
 // The worst tet of a vertex at `at` with the faces around it; -1 when that is not above `above` or one
@@ -210,8 +257,8 @@ double Operations::quality_around(const Point& at, double above) const {
 }
 
 // Pattern search from `start`, whose quality is `best`.
-std::pair<Point, double> Operations::best_place(const Point& start, const Freedom& freedom,
-                                                double best) const {
+std::pair<Point, double> Operations::best_place(const Point& start, Index vertex, const Freedom& freedom,
+                                                double best) {
   const auto& points = complex_.mesh().points;
   Vector to_centre{0, 0, 0};
   double shortest = INFINITY;
@@ -221,11 +268,10 @@ std::pair<Point, double> Operations::best_place(const Point& start, const Freedo
       to_centre = to_centre + (points[v] - start) / (3.0 * static_cast<double>(around_.size()));
     }
   Point place = start;
-  const auto consider = [&](Point p) {
-    if (freedom.plane != nullptr)
-      p = p - dot(p - freedom.plane->origin, freedom.plane->normal) * freedom.plane->normal;
+  const auto consider = [&](const Point& wish) {
+    const Point p = back_on_feature(wish, freedom);
     const double quality = quality_around(p, best);
-    if (quality <= best) return false;
+    if (quality <= best || !surfaces_allow(vertex, p)) return false;
     best = quality;
     place = p;
     return true;
@@ -239,23 +285,48 @@ std::pair<Point, double> Operations::best_place(const Point& start, const Freedo
   return {place, best};
 }
 
+// The faces of the star that a move of the vertex changes on smooth patches.
+void Operations::find_faces(Index vertex) {
+  faces_.clear();
+  if (complex_.mesh().features[vertex].dimension == 3) return;
+  for (const Index t : star_)
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      const Index face = complex_[t].faces[corner];
+      if (complex_[t].corners[corner] == vertex || face == none) continue;
+      if (std::find(faces_.begin(), faces_.end(), face) == faces_.end()) faces_.push_back(face);
+    }
+}
+
+bool Operations::surfaces_allow(Index vertex, const Point& at) {
+  if (faces_.empty()) return true;
+  const auto& mesh = complex_.mesh();
+  triangles_.clear();
+  for (const Index face : faces_) {
+    auto& t = triangles_.emplace_back();
+    for (unsigned i = 0; i < 3; ++i) t[i] = mesh.faces[face][i] == vertex ? at : mesh.points[mesh.faces[face][i]];
+  }
+  return surfaces_.fit(faces_, triangles_);
+}
+
 bool Operations::move_vertex(Index vertex) {
+  complex_.star(vertex, star_);
+  if (std::any_of(star_.begin(), star_.end(), [&](Index t) { return complex_[t].collar; })) return false;
   const auto where = freedom(vertex);
   if (!where) return false;
-  complex_.star(vertex, star_);
   around_.clear();
   double before = INFINITY;
   for (const Index t : star_) {
-    if (complex_[t].collar) return false;
     before = std::min(before, quality(t));
     const auto& v = complex_[t].corners;
     around_.push_back(
         face_corners(v, static_cast<unsigned>(std::find(v.begin(), v.end(), vertex) - v.begin())));
   }
+  find_faces(vertex);
   auto& points = complex_.mesh().points;
-  const auto [place, after] = best_place(points[vertex], *where, before);
+  const auto [place, after] = best_place(points[vertex], vertex, *where, before);
   if (after <= before * (1 + least_gain) + 1e-12) return false;
   points[vertex] = place;
+  surfaces_.replaced(faces_);
   return true;
 }
 

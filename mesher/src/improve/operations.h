@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "collarmesh/plc.h"
+#include "improve/smooth_surfaces.h"
 #include "improve/tet_complex.h"
 
 namespace collarmesh::improvement {
@@ -23,12 +24,16 @@ struct Change {
 /// smallest quality in its cavity above `change.quality` or would break a guarantee.
 class Operations {
  public:
-  Operations(TetComplex& complex, const Plc& plc, double radius_edge)
-      : complex_(complex), plc_(plc), squared_radius_edge_(radius_edge * radius_edge) {}
+  Operations(TetComplex& complex, const Plc& plc, double radius_edge, double distance)
+      : complex_(complex),
+        plc_(plc),
+        surfaces_(plc, complex.mesh(), distance),
+        squared_radius_edge_(radius_edge * radius_edge) {}
 
   double quality(Index tet) const;
   /// Remove the edge between two corners of a tet: its ring is triangulated anew, as well as possible.
-  /// An edge inside a planar patch is removed together with its two triangles there.
+  /// An edge inside a patch is removed together with its two triangles there, and a sliver that has both
+  /// of them goes to the other side.
   void remove_edge(Index tet, unsigned i, unsigned j, Change& change);
   /// Move a vertex within its feature to where the worst tet around it is better. False when it stays.
   bool move_vertex(Index vertex);
@@ -36,34 +41,46 @@ class Operations {
   /// nothing has changed, when the worst tet around it would not be better than the worst one around the
   /// edge and than `least`.
   bool split_edge(Index a, Index b, double least);
+  /// The change has been made.
+  void made(const Change& change);
   /// The tets around the vertex that was moved or inserted last.
   const std::vector<Index>& star() const { return star_; }
 
  private:
   using Polygon = std::vector<Index>;
-  /// The directions a vertex may be moved in, and the plane it has to stay in, if any.
+  /// The directions a vertex may be moved in, and the feature it has to stay on, if any.
   struct Freedom {
     std::array<Vector, 3> directions;
     unsigned count;
-    const Plc::Patch* plane;
+    Index patch;   ///< planar or smooth
+    Point origin;  ///< of a straight curve, along directions[0]
   };
-  static constexpr Freedom everywhere{{Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}}, 3, nullptr};
+  static constexpr Freedom everywhere{{Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}}, 3, none, {}};
 
   double new_quality(const std::array<Index, 4>& corners, double above) const;
-  std::optional<Freedom> freedom(Index vertex) const;
+  std::optional<Freedom> freedom(Index vertex);
   double quality_around(const Point& at, double above) const;
-  std::pair<Point, double> best_place(const Point& start, const Freedom& freedom, double best) const;
+  std::pair<Point, double> best_place(const Point& start, Index vertex, const Freedom& freedom,
+                                     double best);
+  Point back_on_feature(const Point& p, const Freedom& freedom);
+  void find_faces(Index vertex);
+  bool surfaces_allow(Index vertex, const Point& at);
   double triangulate(Index a, Index b, const Polygon& polygon, double above);
   void collect(Index a, Index b, const Polygon& polygon, std::size_t i, std::size_t j, Index like,
                Change& change) const;
   bool flat(Index a, Index b, Index c, Index d) const;
+  bool may_turn(const std::vector<TetComplex::Face>& turned);
+  bool may_lose(Index tet, Index a, Index b) const;
 
   TetComplex& complex_;
   const Plc& plc_;
+  SmoothSurfaces surfaces_;
   double squared_radius_edge_;
   TetComplex::Ring ring_;
   std::vector<Index> star_;
   std::vector<std::array<Index, 3>> around_;  // faces that make positive tets with the vertex at hand
+  std::vector<Index> faces_;                  // of smooth patches, at the vertex at hand
+  std::vector<SmoothSurfaces::Triangle> triangles_;
   std::vector<double> best_;                  // of the polygon's parts from vertex i to j
   std::vector<std::size_t> apex_;             // the third vertex of the triangle on ij there
 };

@@ -162,6 +162,18 @@ Index TetComplex::tet_at_edge(Index a, Index b) {
   return none;
 }
 
+bool TetComplex::on_faces(Index a, Index b) {
+  if (on_curve(a, b)) return true;
+  const Index at = tet_at_edge(a, b);
+  if (at == none) return false;
+  ring(at, a, b, ring_);
+  for (const Index t : ring_.tets)
+    for (unsigned corner = 0; corner < 4; ++corner)
+      if (tets_[t].faces[corner] != none && tets_[t].corners[corner] != a && tets_[t].corners[corner] != b)
+        return true;
+  return false;
+}
+
 std::span<const Index> TetComplex::replace(std::span<const Index> old, std::span<const NewTet> created,
                                            std::span<const Face> kept) {
   open_.clear();
@@ -214,12 +226,24 @@ std::span<const Index> TetComplex::replace(std::span<const Index> old, std::span
       open_.pop_back();
     }
   }
+  // What is left of the border has nothing on this side now.
+  for (const OpenFace& open : open_) {
+    if (open.tet == none) continue;
+    tets_[open.tet].neighbours[open.corner] = none;
+    for (const Index v : open.key) vertex_tet_[v] = open.tet;
+  }
   for (const Face& face : kept) {
     mesh_.faces[face.face] = face.corners;
     const auto key = sorted(face.corners);
+    for (const OpenFace& open : open_)
+      if (open.tet != none && open.key == key) tets_[open.tet].faces[open.corner] = face.face;
     for (const Index t : created_)
-      for (unsigned corner = 0; corner < 4; ++corner)
-        if (sorted(face_corners(tets_[t].corners, corner)) == key) tets_[t].faces[corner] = face.face;
+      for (unsigned corner = 0; corner < 4; ++corner) {
+        if (sorted(face_corners(tets_[t].corners, corner)) != key) continue;
+        tets_[t].faces[corner] = face.face;
+        const Index other = tets_[t].neighbours[corner];
+        if (other != none) tets_[other].faces[corner_across(other, key)] = face.face;
+      }
   }
   return created_;
 }

@@ -46,6 +46,8 @@ class TetComplex {
   const TetMesh& mesh() const { return mesh_; }
   std::array<Point, 4> corners(Index tet) const;
   bool on_curve(Index a, Index b) const;
+  /// Is the edge ab one of a mesh' face?
+  bool on_faces(Index a, Index b);
 
   /// Replace `found` by the tets around a vertex.
   void star(Index vertex, std::vector<Index>& found);
@@ -56,7 +58,7 @@ class TetComplex {
 
   /// A vertex inside a region; in no tet yet.
   Index add_vertex(const Point& p);
-  /// Replace tets by others that fill the same cavity; `kept` are those of the mesh' faces inside the
+  /// Replace tets by others that fill the same cavity, or less of it at a boundary; `kept` are those of the mesh' faces inside the
   /// cavity or on its border that change. Returns the new tets' indices until the next call.
   std::span<const Index> replace(std::span<const Index> old, std::span<const NewTet> created,
                                  std::span<const Face> kept);
@@ -87,6 +89,7 @@ class TetComplex {
   std::vector<std::pair<Index, Index>> tags_;  // region and origin of the tets being made
   std::vector<OpenFace> open_;
   std::vector<Index> star_;
+  Ring ring_;
 };
 
 /// The corners of a tet's face opposite a corner, seen counterclockwise from outside.

@@ -1,0 +1,157 @@
+#include "improve/smooth_surfaces.h"
+
+#include <algorithm>
+
+namespace collarmesh::improvement {
+
+namespace {
+
+// The cosine between a face and its patch that is good enough, however good it was before.
+constexpr double enough_agreement = 0.8;
+
+double squared_distance_to(const Point& p, const SmoothSurfaces::Triangle& t) {
+  return squared_distance_to_triangle(p, t[0], t[1], t[2]);
+}
+
+Vector normal(const SmoothSurfaces::Triangle& t) { return cross(t[1] - t[0], t[2] - t[0]); }
+
+Point centre(const SmoothSurfaces::Triangle& t) { return (t[0] + t[1] + t[2]) / 3; }
+
+}  // namespace
+
+bool SmoothSurfaces::smooth(Index face) const {
+  const Index patch = mesh_.face_patch[face];
+  return patch != none && !plc_.patches[patch].planar;
+}
+
+SmoothSurfaces::Triangle SmoothSurfaces::corners(Index face) const {
+  const auto& v = mesh_.faces[face];
+  return {mesh_.points[v[0]], mesh_.points[v[1]], mesh_.points[v[2]]};
+}
+
+const TriangleHierarchy& SmoothSurfaces::surface(Index patch) {
+  if (surfaces_[patch]) return *surfaces_[patch];
+  const Plc::Patch& p = plc_.patches[patch];
+  std::vector<std::array<Index, 3>> triangles;
+  triangles.reserve(p.triangle_count);
+  for (Index t = p.first_triangle; t < p.first_triangle + p.triangle_count; ++t)
+    triangles.push_back(plc_.triangles[t].points);
+  surfaces_[patch] = std::make_unique<TriangleHierarchy>(plc_.points, std::move(triangles));
+  share_out(patch);
+  return *surfaces_[patch];
+}
+
+// The corners and centres of the patch's triangles go to the faces that they are nearest to.
+void SmoothSurfaces::share_out(Index patch) {
+  first_sample_.resize(mesh_.faces.size(), none);
+  std::vector<Index> faces;
+  std::vector<std::array<Index, 3>> corners;
+  for (Index f = 0; f < mesh_.faces.size(); ++f)
+    if (mesh_.face_patch[f] == patch) {
+      faces.push_back(f);
+      corners.push_back(mesh_.faces[f]);
+    }
+  if (faces.empty()) return;
+  const TriangleHierarchy hierarchy(mesh_.points, std::move(corners));
+  const auto add = [&](const Point& p) {
+    Index nearest = none;
+    const double d = hierarchy.squared_distance_to(p, INFINITY, &nearest);
+    if (d > squared_distance_) return;  // nothing to keep
+    next_sample_.push_back(first_sample_[faces[nearest]]);
+    first_sample_[faces[nearest]] = static_cast<Index>(samples_.size());
+    samples_.push_back(p);
+  };
+  const Plc::Patch& p = plc_.patches[patch];
+  std::vector<Index> points;
+  for (Index t = p.first_triangle; t < p.first_triangle + p.triangle_count; ++t) {
+    const auto& v = plc_.triangles[t].points;
+    points.insert(points.end(), v.begin(), v.end());
+    add((plc_.points[v[0]] + plc_.points[v[1]] + plc_.points[v[2]]) / 3);
+  }
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  for (const Index point : points) add(plc_.points[point]);
+}
+
+SmoothSurfaces::Nearest SmoothSurfaces::nearest(Index patch, const Point& p) {
+  const TriangleHierarchy& triangles = surface(patch);
+  Index at = 0;
+  triangles.squared_distance_to(p, INFINITY, &at);
+  const auto t = triangles.corners(at);
+  return {nearest_point_on_triangle(p, t[0], t[1], t[2]), normal(t)};
+}
+
+// Where `check` samples a face: its corners, its centre, its edges' thirds; and the edges' middles.
+bool SmoothSurfaces::near_patch(Index patch, const Triangle& t) {
+  const TriangleHierarchy& triangles = surface(patch);
+  const auto near = [&](const Point& p) {
+    return triangles.triangle_within(p, squared_distance_, [](Index) { return true; }) != none;
+  };
+  if (!near(centre(t))) return false;
+  for (unsigned i = 0; i < 3; ++i) {
+    const Point &a = t[i], &b = t[(i + 1) % 3];
+    if (!near(a) || !near(0.5 * (a + b)) || !near((2 * a + b) / 3) || !near((a + 2 * b) / 3)) return false;
+  }
+  return true;
+}
+
+// The cosine of the angle between a face and the patch at its centre, whichever way they are turned.
+double SmoothSurfaces::agreement(Index patch, const Triangle& t) {
+  const TriangleHierarchy& triangles = surface(patch);
+  Index at = 0;
+  triangles.squared_distance_to(centre(t), INFINITY, &at);
+  const Vector n = normal(t), m = normal(triangles.corners(at));
+  const double lengths = norm(n) * norm(m);
+  return lengths > 0 ? std::fabs(dot(n, m)) / lengths : 0;
+}
+
+bool SmoothSurfaces::fit(std::span<const Index> faces, std::span<const Triangle> created) {
+  double worst = enough_agreement;
+  for (const Index face : faces)
+    if (smooth(face)) worst = std::min(worst, agreement(mesh_.face_patch[face], corners(face)));
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    if (!smooth(faces[i])) continue;
+    const Index patch = mesh_.face_patch[faces[i]];
+    if (agreement(patch, created[i]) < worst || !near_patch(patch, created[i])) return false;
+    for (Index s = first_sample_[faces[i]]; s != none; s = next_sample_[s]) {
+      bool near = false;
+      for (std::size_t k = 0; k < faces.size() && !near; ++k)
+        near = mesh_.face_patch[faces[k]] == patch &&
+               squared_distance_to(samples_[s], created[k]) < squared_distance_;
+      if (!near) return false;
+    }
+  }
+  return true;
+}
+
+void SmoothSurfaces::replaced(std::span<const Index> faces) {
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    if (!smooth(faces[i])) continue;
+    const Index patch = mesh_.face_patch[faces[i]];
+    bool done = false;
+    for (std::size_t k = 0; k < i && !done; ++k) done = mesh_.face_patch[faces[k]] == patch;
+    if (done) continue;
+    moving_.clear();
+    for (const Index face : faces) {
+      if (mesh_.face_patch[face] != patch) continue;
+      for (Index s = first_sample_[face]; s != none; s = next_sample_[s]) moving_.push_back(s);
+      first_sample_[face] = none;
+    }
+    for (const Index s : moving_) {
+      Index nearest = none;
+      double least = INFINITY;
+      for (const Index face : faces) {
+        if (mesh_.face_patch[face] != patch) continue;
+        const double d = squared_distance_to(samples_[s], corners(face));
+        if (d < least) {
+          least = d;
+          nearest = face;
+        }
+      }
+      next_sample_[s] = first_sample_[nearest];
+      first_sample_[nearest] = s;
+    }
+  }
+}
+
+}  // namespace collarmesh::improvement

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "collarmesh/tet_mesh.h"
+#include "location/triangle_hierarchy.h"
+
+namespace collarmesh::improvement {
+
+/// The smooth patches of a complex and the faces that stand for them: whether other faces would, too.
+/// A patch and its faces are within the distance tolerance of each other, in samples: points of the faces
+/// are near the patch; points of the patch belong to faces that they are near to.
+class SmoothSurfaces {
+ public:
+  using Triangle = std::array<Point, 3>;
+
+  /// All are kept by reference. `distance` is absolute.
+  SmoothSurfaces(const Plc& plc, const TetMesh& mesh, double distance)
+      : plc_(plc), mesh_(mesh), squared_distance_(distance * distance), surfaces_(plc.patches.size()) {}
+
+  struct Nearest {
+    Point point;
+    Vector normal;  ///< of the patch's triangle there; of any length
+  };
+  /// The point of a smooth patch that is nearest to p.
+  Nearest nearest(Index patch, const Point& p);
+  /// Could faces[i], for every i, have the corners created[i], turned like the patch as far as they are now?
+  /// Faces on planar patches count for nothing.
+  bool fit(std::span<const Index> faces, std::span<const Triangle> created);
+  /// They have these corners now.
+  void replaced(std::span<const Index> faces);
+
+ private:
+  const TriangleHierarchy& surface(Index patch);
+  void share_out(Index patch);
+  bool smooth(Index face) const;
+  bool near_patch(Index patch, const Triangle& t);
+  double agreement(Index patch, const Triangle& t);
+  Triangle corners(Index face) const;
+
+  const Plc& plc_;
+  const TetMesh& mesh_;
+  double squared_distance_;
+  std::vector<std::unique_ptr<TriangleHierarchy>> surfaces_;  // made when first asked for
+  std::vector<Point> samples_;      // of the patches looked at so far
+  std::vector<Index> next_sample_;  // of the same face
+  std::vector<Index> first_sample_; // of every face
+  std::vector<Index> moving_;
+};
+
+}  // namespace collarmesh::improvement
