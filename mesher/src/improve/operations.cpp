@@ -233,11 +233,11 @@ std::optional<Operations::Freedom> Operations::freedom(Index vertex) {
   return Freedom{{u, cross(n, u), {}}, 2, feature.feature, {}};
 }
 
-Point Operations::back_on_feature(const Point& p, const Freedom& freedom) {
+Point Operations::back_on_feature(const Point& p, const Point& from, const Freedom& freedom) {
   if (freedom.count == 1) return freedom.origin + dot(p - freedom.origin, freedom.directions[0]) * freedom.directions[0];
   if (freedom.patch == none) return p;
   const Plc::Patch& patch = plc_.patches[freedom.patch];
-  if (!patch.planar) return surfaces_.nearest(freedom.patch, p).point;
+  if (!patch.planar) return surfaces_.nearest(freedom.patch, p, 1.0001 * distance(p, from)).point;
   return p - dot(p - patch.origin, patch.normal) * patch.normal;
 }
 
@@ -269,7 +269,7 @@ std::pair<Point, double> Operations::best_place(const Point& start, Index vertex
     }
   Point place = start;
   const auto consider = [&](const Point& wish) {
-    const Point p = back_on_feature(wish, freedom);
+    const Point p = back_on_feature(wish, start, freedom);
     const double quality = quality_around(p, best);
     if (quality <= best || !surfaces_allow(vertex, p)) return false;
     best = quality;

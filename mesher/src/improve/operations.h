@@ -62,7 +62,7 @@ class Operations {
   double quality_around(const Point& at, double above) const;
   std::pair<Point, double> best_place(const Point& start, Index vertex, const Freedom& freedom,
                                      double best);
-  Point back_on_feature(const Point& p, const Freedom& freedom);
+  Point back_on_feature(const Point& p, const Point& from, const Freedom& freedom);
   void find_faces(Index vertex);
   bool surfaces_allow(Index vertex, const Point& at);
   double triangulate(Index a, Index b, const Polygon& polygon, double above);

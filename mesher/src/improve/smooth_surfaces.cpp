@@ -73,54 +73,81 @@ void SmoothSurfaces::share_out(Index patch) {
   for (const Index point : points) add(plc_.points[point]);
 }
 
-SmoothSurfaces::Nearest SmoothSurfaces::nearest(Index patch, const Point& p) {
+SmoothSurfaces::Nearest SmoothSurfaces::nearest(Index patch, const Point& p, double near) {
   const TriangleHierarchy& triangles = surface(patch);
-  Index at = 0;
-  triangles.squared_distance_to(p, INFINITY, &at);
+  Index at = none;
+  triangles.squared_distance_to(p, near * near, &at);
+  if (at == none) triangles.squared_distance_to(p, INFINITY, &at);
   const auto t = triangles.corners(at);
   return {nearest_point_on_triangle(p, t[0], t[1], t[2]), normal(t)};
 }
 
-// Where `check` samples a face: its corners, its centre, its edges' thirds; and the edges' middles.
-bool SmoothSurfaces::near_patch(Index patch, const Triangle& t) {
+// Some triangle of the patch that p is near to; the hint, when it is.
+Index SmoothSurfaces::triangle_near(Index patch, const Point& p, Index hint) {
   const TriangleHierarchy& triangles = surface(patch);
-  const auto near = [&](const Point& p) {
-    return triangles.triangle_within(p, squared_distance_, [](Index) { return true; }) != none;
-  };
-  if (!near(centre(t))) return false;
+  if (hint != none && squared_distance_to(p, triangles.corners(hint)) < squared_distance_) return hint;
+  return triangles.triangle_within(p, squared_distance_, [](Index) { return true; });
+}
+
+// At the corners, thirds and middles. The distance to one triangle is convex: when the corners are near
+// it, all are.
+bool SmoothSurfaces::edges_near(Index patch, const Triangle& t, Index hint) {
+  std::array<Index, 3> near;
   for (unsigned i = 0; i < 3; ++i) {
-    const Point &a = t[i], &b = t[(i + 1) % 3];
-    if (!near(a) || !near(0.5 * (a + b)) || !near((2 * a + b) / 3) || !near((a + 2 * b) / 3)) return false;
+    near[i] = triangle_near(patch, t[i], hint);
+    if (near[i] == none) return false;
+  }
+  if (near[0] == hint && near[1] == hint && near[2] == hint) return true;
+  for (unsigned i = 0; i < 3; ++i) {
+    const unsigned j = (i + 1) % 3;
+    if (near[i] == near[j]) continue;
+    const Point &a = t[i], &b = t[j];
+    if (triangle_near(patch, 0.5 * (a + b), hint) == none || triangle_near(patch, (2 * a + b) / 3, near[i]) == none ||
+        triangle_near(patch, (a + 2 * b) / 3, near[j]) == none)
+      return false;
   }
   return true;
 }
 
-// The cosine of the angle between a face and the patch at its centre, whichever way they are turned.
-double SmoothSurfaces::agreement(Index patch, const Triangle& t) {
-  const TriangleHierarchy& triangles = surface(patch);
-  Index at = 0;
-  triangles.squared_distance_to(centre(t), INFINITY, &at);
-  const Vector n = normal(t), m = normal(triangles.corners(at));
+// The cosine of the angle between a face and a triangle of the patch, whichever way they are turned.
+double SmoothSurfaces::agreement(Index patch, const Triangle& t, Index triangle) {
+  const Vector n = normal(t), m = normal(surface(patch).corners(triangle));
   const double lengths = norm(n) * norm(m);
   return lengths > 0 ? std::fabs(dot(n, m)) / lengths : 0;
 }
 
-bool SmoothSurfaces::fit(std::span<const Index> faces, std::span<const Triangle> created) {
+double SmoothSurfaces::worst_agreement(std::span<const Index> faces) {
   double worst = enough_agreement;
-  for (const Index face : faces)
-    if (smooth(face)) worst = std::min(worst, agreement(mesh_.face_patch[face], corners(face)));
+  for (const Index face : faces) {
+    if (!smooth(face)) continue;
+    const Triangle t = corners(face);
+    const Index near = triangle_near(mesh_.face_patch[face], centre(t));
+    if (near != none) worst = std::min(worst, agreement(mesh_.face_patch[face], t, near));
+  }
+  return worst;
+}
+
+bool SmoothSurfaces::fit(std::span<const Index> faces, std::span<const Triangle> created) {
+  double least = 1;
+  near_.assign(faces.size(), none);
   for (std::size_t i = 0; i < faces.size(); ++i) {
     if (!smooth(faces[i])) continue;
     const Index patch = mesh_.face_patch[faces[i]];
-    if (agreement(patch, created[i]) < worst || !near_patch(patch, created[i])) return false;
+    const bool same = i > 0 && mesh_.face_patch[faces[i - 1]] == patch;
+    near_[i] = triangle_near(patch, centre(created[i]), same ? near_[i - 1] : none);
+    if (near_[i] == none) return false;
+    least = std::min(least, agreement(patch, created[i], near_[i]));
+    if (least < enough_agreement && least < worst_agreement(faces)) return false;
     for (Index s = first_sample_[faces[i]]; s != none; s = next_sample_[s]) {
-      bool near = false;
-      for (std::size_t k = 0; k < faces.size() && !near; ++k)
-        near = mesh_.face_patch[faces[k]] == patch &&
-               squared_distance_to(samples_[s], created[k]) < squared_distance_;
-      if (!near) return false;
+      bool covered = false;
+      for (std::size_t k = 0; k < faces.size() && !covered; ++k)
+        covered = mesh_.face_patch[faces[k]] == patch &&
+                  squared_distance_to(samples_[s], created[k]) < squared_distance_;
+      if (!covered) return false;
     }
   }
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    if (smooth(faces[i]) && !edges_near(mesh_.face_patch[faces[i]], created[i], near_[i])) return false;
   return true;
 }
 

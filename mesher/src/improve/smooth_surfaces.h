@@ -26,8 +26,8 @@ class SmoothSurfaces {
     Point point;
     Vector normal;  ///< of the patch's triangle there; of any length
   };
-  /// The point of a smooth patch that is nearest to p.
-  Nearest nearest(Index patch, const Point& p);
+  /// The point of a smooth patch that is nearest to p. Faster when a point of it is known to be near.
+  Nearest nearest(Index patch, const Point& p, double near = INFINITY);
   /// Could faces[i], for every i, have the corners created[i], turned like the patch as far as they are now?
   /// Faces on planar patches count for nothing.
   bool fit(std::span<const Index> faces, std::span<const Triangle> created);
@@ -38,8 +38,10 @@ class SmoothSurfaces {
   const TriangleHierarchy& surface(Index patch);
   void share_out(Index patch);
   bool smooth(Index face) const;
-  bool near_patch(Index patch, const Triangle& t);
-  double agreement(Index patch, const Triangle& t);
+  Index triangle_near(Index patch, const Point& p, Index hint = none);
+  bool edges_near(Index patch, const Triangle& t, Index hint);
+  double agreement(Index patch, const Triangle& t, Index triangle);
+  double worst_agreement(std::span<const Index> faces);
   Triangle corners(Index face) const;
 
   const Plc& plc_;
@@ -50,6 +52,7 @@ class SmoothSurfaces {
   std::vector<Index> next_sample_;  // of the same face
   std::vector<Index> first_sample_; // of every face
   std::vector<Index> moving_;
+  std::vector<Index> near_;         // a triangle near the centre of each face that is created
 };
 
 }  // namespace collarmesh::improvement
