@@ -211,17 +211,11 @@ bool Operations::split_edge(Index a, Index b, double least) {
   return true;
 }
 
-// Where a vertex may be moved to: anywhere, on its patch, along its straight curve, or nowhere.
+// Where a vertex may be moved to: anywhere, on its patch, or nowhere.
 std::optional<Operations::Freedom> Operations::freedom(Index vertex) {
   const auto& feature = complex_.mesh().features[vertex];
   if (feature.dimension == 3) return everywhere;
-  if (feature.dimension == 0 || feature.feature == none) return std::nullopt;
-  if (feature.dimension == 1) {
-    const Plc::Curve& curve = plc_.curves[feature.feature];
-    if (!curve.straight) return std::nullopt;
-    const Point &from = plc_.points[curve.points.front()], &to = plc_.points[curve.points.back()];
-    return Freedom{{(to - from) / distance(from, to)}, 1, none, from};
-  }
+  if (feature.dimension < 2 || feature.feature == none) return std::nullopt;
   const Plc::Patch& patch = plc_.patches[feature.feature];
   const Vector n = patch.planar ? patch.normal
                                 : surfaces_.nearest(feature.feature, complex_.mesh().points[vertex]).normal;
@@ -230,11 +224,10 @@ std::optional<Operations::Freedom> Operations::freedom(Index vertex) {
                       : std::fabs(n.y) == least ? Vector{0, 1, 0}
                                                 : Vector{0, 0, 1};
   const Vector u = cross(n, axis) / norm(cross(n, axis));
-  return Freedom{{u, cross(n, u), {}}, 2, feature.feature, {}};
+  return Freedom{{u, cross(n, u), {}}, 2, feature.feature};
 }
 
 Point Operations::back_on_feature(const Point& p, const Point& from, const Freedom& freedom) {
-  if (freedom.count == 1) return freedom.origin + dot(p - freedom.origin, freedom.directions[0]) * freedom.directions[0];
   if (freedom.patch == none) return p;
   const Plc::Patch& patch = plc_.patches[freedom.patch];
   if (!patch.planar) return surfaces_.nearest(freedom.patch, p, 1.0001 * distance(p, from)).point;
@@ -285,6 +278,27 @@ std::pair<Point, double> Operations::best_place(const Point& start, Index vertex
   return {place, best};
 }
 
+// The same along the curve of a vertex: how far to slide it.
+std::pair<double, double> Operations::best_way(Index vertex, double best) {
+  const auto& points = complex_.mesh().points;
+  double shortest = INFINITY;
+  for (const auto& face : around_)
+    for (const Index v : face) shortest = std::min(shortest, squared_distance(points[v], points[vertex]));
+  double way = 0;
+  const auto consider = [&](double wish) {
+    const Point p = curves_.ahead(vertex, wish);
+    const double quality = quality_around(p, best);
+    if (quality <= best || !curves_.fits(vertex, wish) || !surfaces_allow(vertex, p)) return false;
+    best = quality;
+    way = wish;
+    return true;
+  };
+  double step = first_step * std::sqrt(shortest);
+  for (unsigned h = 0; h < halvings; ++h, step *= 0.5)
+    if (!consider(way + step)) consider(way - step);
+  return {way, best};
+}
+
 // The faces of the star that a move of the vertex changes on smooth patches.
 void Operations::find_faces(Index vertex) {
   faces_.clear();
@@ -311,7 +325,9 @@ bool Operations::surfaces_allow(Index vertex, const Point& at) {
 bool Operations::move_vertex(Index vertex) {
   complex_.star(vertex, star_);
   if (std::any_of(star_.begin(), star_.end(), [&](Index t) { return complex_[t].collar; })) return false;
-  const auto where = freedom(vertex);
+  const bool on_curve = complex_.mesh().features[vertex].dimension == 1;
+  if (on_curve && !curves_.movable(vertex)) return false;
+  const auto where = on_curve ? std::optional(everywhere) : freedom(vertex);
   if (!where) return false;
   around_.clear();
   double before = INFINITY;
@@ -322,10 +338,18 @@ bool Operations::move_vertex(Index vertex) {
         face_corners(v, static_cast<unsigned>(std::find(v.begin(), v.end(), vertex) - v.begin())));
   }
   find_faces(vertex);
-  auto& points = complex_.mesh().points;
-  const auto [place, after] = best_place(points[vertex], vertex, *where, before);
-  if (after <= before * (1 + least_gain) + 1e-12) return false;
-  points[vertex] = place;
+  Point& p = complex_.mesh().points[vertex];
+  const double wanted = before * (1 + least_gain) + 1e-12;
+  if (on_curve) {
+    const auto [way, after] = best_way(vertex, before);
+    if (after <= wanted) return false;
+    p = curves_.ahead(vertex, way);
+    curves_.moved(vertex, way);
+  } else {
+    const auto [place, after] = best_place(p, vertex, *where, before);
+    if (after <= wanted) return false;
+    p = place;
+  }
   surfaces_.replaced(faces_);
   return true;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "collarmesh/plc.h"
+#include "improve/curve_slides.h"
 #include "improve/smooth_surfaces.h"
 #include "improve/tet_complex.h"
 
@@ -28,6 +29,7 @@ class Operations {
       : complex_(complex),
         plc_(plc),
         surfaces_(plc, complex.mesh(), distance),
+        curves_(plc, complex.mesh(), distance),
         squared_radius_edge_(radius_edge * radius_edge) {}
 
   double quality(Index tet) const;
@@ -48,20 +50,20 @@ class Operations {
 
  private:
   using Polygon = std::vector<Index>;
-  /// The directions a vertex may be moved in, and the feature it has to stay on, if any.
+  /// The directions a vertex may be moved in, and the patch it has to stay on, if any.
   struct Freedom {
     std::array<Vector, 3> directions;
     unsigned count;
-    Index patch;   ///< planar or smooth
-    Point origin;  ///< of a straight curve, along directions[0]
+    Index patch;  ///< planar or smooth
   };
-  static constexpr Freedom everywhere{{Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}}, 3, none, {}};
+  static constexpr Freedom everywhere{{Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}}, 3, none};
 
   double new_quality(const std::array<Index, 4>& corners, double above) const;
   std::optional<Freedom> freedom(Index vertex);
   double quality_around(const Point& at, double above) const;
   std::pair<Point, double> best_place(const Point& start, Index vertex, const Freedom& freedom,
-                                     double best);
+                                      double best);
+  std::pair<double, double> best_way(Index vertex, double best);
   Point back_on_feature(const Point& p, const Point& from, const Freedom& freedom);
   void find_faces(Index vertex);
   bool surfaces_allow(Index vertex, const Point& at);
@@ -75,6 +77,7 @@ class Operations {
   TetComplex& complex_;
   const Plc& plc_;
   SmoothSurfaces surfaces_;
+  CurveSlides curves_;
   double squared_radius_edge_;
   TetComplex::Ring ring_;
   std::vector<Index> star_;

@@ -1,0 +1,133 @@
+#include "improve/curve_slides.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "location/triangle_hierarchy.h"
+
+namespace collarmesh::improvement {
+
+namespace {
+
+double squared_distance_to_segment(const Point& p, const Point& a, const Point& b) {
+  return squared_distance_to_triangle(p, a, b, b);
+}
+
+}  // namespace
+
+bool CurveSlides::movable(Index vertex) {
+  if (places_.empty()) prepare();
+  return vertex < places_.size() && places_[vertex].neighbours[0] != none &&
+         places_[vertex].neighbours[1] != none;
+}
+
+void CurveSlides::prepare() {
+  places_.resize(mesh_.points.size());
+  std::vector<Index> point_of(plc_.vertices.size(), none);
+  std::vector<std::vector<Index>> vertices(plc_.curves.size());
+  for (Index v = 0; v < mesh_.features.size(); ++v) {
+    const auto& feature = mesh_.features[v];
+    if (feature.feature == none) continue;
+    if (feature.dimension == 0) point_of[feature.feature] = v;
+    if (feature.dimension == 1) vertices[feature.feature].push_back(v);
+  }
+  for (Index c = 0; c < plc_.curves.size(); ++c) {
+    std::array<Index, 2> ends{none, none};
+    for (unsigned i = 0; i < 2; ++i)
+      if (plc_.curves[c].ends[i] != none) ends[i] = point_of[plc_.curves[c].ends[i]];
+    if (!vertices[c].empty()) find_places(c, vertices[c], ends);
+  }
+  // Only neighbours that are joined by an edge count.
+  std::vector<std::array<Index, 2>> edges;
+  for (const auto& e : mesh_.edges) edges.push_back({std::min(e[0], e[1]), std::max(e[0], e[1])});
+  std::sort(edges.begin(), edges.end());
+  for (Index v = 0; v < places_.size(); ++v)
+    for (Index& n : places_[v].neighbours)
+      if (n != none &&
+          !std::binary_search(edges.begin(), edges.end(), std::array<Index, 2>{std::min(v, n), std::max(v, n)}))
+        n = none;
+}
+
+void CurveSlides::find_places(Index curve, std::vector<Index>& vertices, const std::array<Index, 2>& ends) {
+  const auto& lengths = paths_.lengths(curve);
+  std::vector<std::array<Index, 3>> segments;
+  for (std::size_t i = 0; i + 1 < lengths.size(); ++i) {
+    const auto [a, b] = paths_.segment_ends(curve, i);
+    segments.push_back({a, b, b});
+  }
+  const TriangleHierarchy hierarchy(plc_.points, std::move(segments));
+  for (const Index v : vertices) {
+    Index at = 0;
+    hierarchy.squared_distance_to(mesh_.points[v], INFINITY, &at);
+    const double step = distance(mesh_.points[v], hierarchy.corners(at)[0]);
+    places_[v].parameter = std::min(lengths[at] + step, lengths[at + 1]);
+  }
+  std::sort(vertices.begin(), vertices.end(),
+            [&](Index a, Index b) { return places_[a].parameter < places_[b].parameter; });
+  const bool closed = plc_.curves[curve].closed;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    auto& neighbours = places_[vertices[i]].neighbours;
+    neighbours[0] = i > 0 ? vertices[i - 1] : closed ? vertices.back() : ends[0];
+    neighbours[1] = i + 1 < vertices.size() ? vertices[i + 1] : closed ? vertices.front() : ends[1];
+  }
+}
+
+// By arc length, positive.
+double CurveSlides::way_to_neighbour(Index vertex, unsigned side) const {
+  const Index neighbour = places_[vertex].neighbours[side];
+  const Index curve = mesh_.features[vertex].feature;
+  const double length = paths_.length(curve);
+  const bool end = mesh_.features[neighbour].dimension == 0;
+  const double other = end ? (side == 0 ? 0 : length) : places_[neighbour].parameter;
+  const double way = side == 0 ? places_[vertex].parameter - other : other - places_[vertex].parameter;
+  return plc_.curves[curve].closed ? way - length * std::floor(way / length) : way;
+}
+
+Point CurveSlides::ahead(Index vertex, double way) const {
+  return paths_.point(mesh_.features[vertex].feature, places_[vertex].parameter + way);
+}
+
+Vector CurveSlides::direction(Index vertex) const {
+  const Index curve = mesh_.features[vertex].feature;
+  const auto [a, b] = paths_.segment_ends(curve, paths_.segment(curve, places_[vertex].parameter));
+  const double length = distance(plc_.points[a], plc_.points[b]);
+  return length > 0 ? (plc_.points[b] - plc_.points[a]) / length : Vector{0, 0, 0};
+}
+
+bool CurveSlides::fits(Index vertex, double way) {
+  const Place& place = places_[vertex];
+  const Index curve = mesh_.features[vertex].feature;
+  const double behind = way_to_neighbour(vertex, 0), before = way_to_neighbour(vertex, 1);
+  if (way <= -behind || way >= before) return false;
+  const Point at = ahead(vertex, way);
+  return edge_fits(curve, place.parameter - behind, behind + way, mesh_.points[place.neighbours[0]], at) &&
+         edge_fits(curve, place.parameter + way, before - way, at, mesh_.points[place.neighbours[1]]);
+}
+
+// The edge ab and the part of a curve that starts at `from` and is `way` long.
+bool CurveSlides::edge_fits(Index curve, double from, double way, const Point& a, const Point& b) {
+  const auto& lengths = paths_.lengths(curve);
+  const double length = lengths.back();
+  const std::size_t count = lengths.size() - 1;
+  part_.assign(1, a);
+  std::size_t segment = paths_.segment(curve, from);
+  const double start = plc_.curves[curve].closed ? from - length * std::floor(from / length) : from;
+  for (double travelled = lengths[segment + 1] - start; travelled < way;) {
+    part_.push_back(plc_.points[paths_.segment_ends(curve, segment)[1]]);
+    segment = (segment + 1) % count;
+    travelled += lengths[segment + 1] - lengths[segment];
+  }
+  part_.push_back(b);
+  for (const Point& p : part_)
+    if (squared_distance_to_segment(p, a, b) > squared_distance_) return false;
+  for (const double t : {0.25, 0.5, 0.75}) {
+    const Point p = a + t * (b - a);
+    double least = INFINITY;
+    for (std::size_t i = 1; i < part_.size(); ++i)
+      least = std::min(least, squared_distance_to_segment(p, part_[i - 1], part_[i]));
+    if (least > squared_distance_) return false;
+  }
+  return true;
+}
+
+}  // namespace collarmesh::improvement

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "collarmesh/tet_mesh.h"
+#include "location/curve_paths.h"
+
+namespace collarmesh::improvement {
+
+/// The curves of a complex and the edges that stand for them: where else on its curve a vertex may be.
+/// A curve and its edges are within the distance tolerance of each other: the polyline's corners from
+/// their edges, points of the edges from their parts of the polyline.
+class CurveSlides {
+ public:
+  /// Both are kept by reference. `distance` is absolute.
+  CurveSlides(const Plc& plc, const TetMesh& mesh, double distance)
+      : plc_(plc), mesh_(mesh), squared_distance_(distance * distance), paths_(plc, plc.points) {}
+
+  /// Can this vertex, on a curve, be moved at all?
+  bool movable(Index vertex);
+  /// The unit direction of the curve there.
+  Vector direction(Index vertex) const;
+  /// The point of its curve that lies so far ahead of it, by arc length.
+  Point ahead(Index vertex, double way) const;
+  /// May it be moved there?
+  bool fits(Index vertex, double way);
+  /// It was.
+  void moved(Index vertex, double way) { places_[vertex].parameter += way; }
+
+ private:
+  struct Place {
+    double parameter = 0;
+    std::array<Index, 2> neighbours{none, none};  // mesh vertices before and after it
+  };
+
+  void prepare();
+  void find_places(Index curve, std::vector<Index>& vertices, const std::array<Index, 2>& ends);
+  double way_to_neighbour(Index vertex, unsigned side) const;
+  bool edge_fits(Index curve, double from, double way, const Point& a, const Point& b);
+
+  const Plc& plc_;
+  const TetMesh& mesh_;
+  double squared_distance_;
+  CurvePaths paths_;
+  std::vector<Place> places_;  // of every vertex; made when first asked for
+  std::vector<Point> part_;    // of a polyline
+};
+
+}  // namespace collarmesh::improvement
