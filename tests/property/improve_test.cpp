@@ -36,6 +36,11 @@ std::vector<Shape> shapes() {
           {"two boxes", {two_boxes()}, 0.2, 0},
           {"dangling facet", {box_with_dangling_facet()}, 0.2, 0},
           {"sphere", {icosphere(1, 8)}, 0.25, 30},
+          {"coarse sphere", {icosphere(1, 2)}, 0.2, 60},
+          {"sphere in a box", {box({-1, -1, -1}, {1, 1, 1}), icosphere(0.6, 8)}, 0.2, 30},
+          {"cylinder", {cylinder(0.5, 1, 40, 4)}, 0.15, 30},
+          {"torus", {torus(1, 0.4, 40, 20)}, 0.2, 30},
+          {"cylinder in a box", {box({-1, -1, -1}, {1, 1, 1}), cylinder(0.4, 0.8, 32, 3)}, 0.2, 30},
           {"wedge", acute::wedge(20).soups, 0.1, 0},
           {"fan", acute::fan(8).soups, 0.2, 0},
           {"pyramid", acute::pyramid(5, 15).soups, 0.1, 0}};
@@ -103,6 +108,34 @@ TEST(ImproveBox, LeavesNothingBelowTheBound) {
   Meshed meshed = mesh_of(testing::box(), with_size(0.1), 0);
   improve(meshed.result.mesh, meshed.plc);
   EXPECT_EQ(count_below(meshed.result.mesh, 20), 0U);
+}
+
+// What is on a smooth patch or curve changes there, and stays near it both ways.
+TEST(ImproveSmooth, LeavesNothingBelowTheBound) {
+  using namespace testing;
+  for (const PolygonSoup& soup : {icosphere(1, 8), cylinder(0.5, 1, 40, 4), torus(1, 0.4, 60, 30)}) {
+    Meshed meshed = mesh_of(soup, with_size(0.12), 30);
+    const ImproveReport report = improve(meshed.result.mesh, meshed.plc);
+    EXPECT_GT(report.boundary_flips, 0U);
+    EXPECT_EQ(count_below(meshed.result.mesh, 15), 0U);
+    meshed.report = check(meshed.result.mesh, meshed.plc);
+    EXPECT_EQ(faults(meshed), "");
+  }
+}
+
+// With hardly any tolerance hardly anything on the surface may change; nothing may leave it.
+TEST(ImproveSmooth, KeepsATightTolerance) {
+  MeshOptions options = with_size(0.3);
+  options.distance = 2e-3;
+  Meshed meshed = mesh_of(testing::torus(1, 0.4, 60, 30), options, 30);
+  ImproveOptions improvement;
+  improvement.distance = options.distance;
+  const ImproveReport report = improve(meshed.result.mesh, meshed.plc, improvement);
+  EXPECT_GT(report.edge_removals, 0U);
+  CheckOptions check_options;
+  check_options.distance = options.distance;
+  meshed.report = check(meshed.result.mesh, meshed.plc, check_options);
+  EXPECT_EQ(testing::faults(meshed), "");
 }
 
 TEST(ImproveBox, SameMeshSameResult) {

@@ -43,8 +43,8 @@ void CurveSlides::prepare() {
   std::sort(edges.begin(), edges.end());
   for (Index v = 0; v < places_.size(); ++v)
     for (Index& n : places_[v].neighbours)
-      if (n != none &&
-          !std::binary_search(edges.begin(), edges.end(), std::array<Index, 2>{std::min(v, n), std::max(v, n)}))
+      if (n != none && !std::binary_search(edges.begin(), edges.end(),
+                                           std::array<Index, 2>{std::min(v, n), std::max(v, n)}))
         n = none;
 }
 

@@ -163,11 +163,13 @@ bool Operations::may_turn(const std::vector<TetComplex::Face>& turned) {
   std::array<Index, 2> shared{none, none};
   for (const TetComplex::Face& face : turned) {
     faces_.push_back(face.face);
-    triangles_.push_back({mesh.points[face.corners[0]], mesh.points[face.corners[1]], mesh.points[face.corners[2]]});
+    triangles_.push_back(
+        {mesh.points[face.corners[0]], mesh.points[face.corners[1]], mesh.points[face.corners[2]]});
   }
   unsigned count = 0;
   for (const Index v : turned[0].corners)
-    if (count < 2 && std::find(turned[1].corners.begin(), turned[1].corners.end(), v) != turned[1].corners.end())
+    if (count < 2 &&
+        std::find(turned[1].corners.begin(), turned[1].corners.end(), v) != turned[1].corners.end())
       shared[count++] = v;
   return !complex_.on_faces(shared[0], shared[1]) && surfaces_.fit(faces_, triangles_);
 }
@@ -217,8 +219,8 @@ std::optional<Operations::Freedom> Operations::freedom(Index vertex) {
   if (feature.dimension == 3) return everywhere;
   if (feature.dimension < 2 || feature.feature == none) return std::nullopt;
   const Plc::Patch& patch = plc_.patches[feature.feature];
-  const Vector n = patch.planar ? patch.normal
-                                : surfaces_.nearest(feature.feature, complex_.mesh().points[vertex]).normal;
+  const Vector n =
+      patch.planar ? patch.normal : surfaces_.nearest(feature.feature, complex_.mesh().points[vertex]).normal;
   const double least = std::min({std::fabs(n.x), std::fabs(n.y), std::fabs(n.z)});
   const Vector axis = std::fabs(n.x) == least   ? Vector{1, 0, 0}
                       : std::fabs(n.y) == least ? Vector{0, 1, 0}
@@ -317,7 +319,8 @@ bool Operations::surfaces_allow(Index vertex, const Point& at) {
   triangles_.clear();
   for (const Index face : faces_) {
     auto& t = triangles_.emplace_back();
-    for (unsigned i = 0; i < 3; ++i) t[i] = mesh.faces[face][i] == vertex ? at : mesh.points[mesh.faces[face][i]];
+    for (unsigned i = 0; i < 3; ++i)
+      t[i] = mesh.faces[face][i] == vertex ? at : mesh.points[mesh.faces[face][i]];
   }
   return surfaces_.fit(faces_, triangles_);
 }

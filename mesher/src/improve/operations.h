@@ -61,8 +61,7 @@ class Operations {
   double new_quality(const std::array<Index, 4>& corners, double above) const;
   std::optional<Freedom> freedom(Index vertex);
   double quality_around(const Point& at, double above) const;
-  std::pair<Point, double> best_place(const Point& start, Index vertex, const Freedom& freedom,
-                                      double best);
+  std::pair<Point, double> best_place(const Point& start, Index vertex, const Freedom& freedom, double best);
   std::pair<double, double> best_way(Index vertex, double best);
   Point back_on_feature(const Point& p, const Point& from, const Freedom& freedom);
   void find_faces(Index vertex);
@@ -84,8 +83,8 @@ class Operations {
   std::vector<std::array<Index, 3>> around_;  // faces that make positive tets with the vertex at hand
   std::vector<Index> faces_;                  // of smooth patches, at the vertex at hand
   std::vector<SmoothSurfaces::Triangle> triangles_;
-  std::vector<double> best_;                  // of the polygon's parts from vertex i to j
-  std::vector<std::size_t> apex_;             // the third vertex of the triangle on ij there
+  std::vector<double> best_;       // of the polygon's parts from vertex i to j
+  std::vector<std::size_t> apex_;  // the third vertex of the triangle on ij there
 };
 
 }  // namespace collarmesh::improvement

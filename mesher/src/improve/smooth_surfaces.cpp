@@ -102,7 +102,8 @@ bool SmoothSurfaces::edges_near(Index patch, const Triangle& t, Index hint) {
     const unsigned j = (i + 1) % 3;
     if (near[i] == near[j]) continue;
     const Point &a = t[i], &b = t[j];
-    if (triangle_near(patch, 0.5 * (a + b), hint) == none || triangle_near(patch, (2 * a + b) / 3, near[i]) == none ||
+    if (triangle_near(patch, 0.5 * (a + b), hint) == none ||
+        triangle_near(patch, (2 * a + b) / 3, near[i]) == none ||
         triangle_near(patch, (a + 2 * b) / 3, near[j]) == none)
       return false;
   }

@@ -48,11 +48,11 @@ class SmoothSurfaces {
   const TetMesh& mesh_;
   double squared_distance_;
   std::vector<std::unique_ptr<TriangleHierarchy>> surfaces_;  // made when first asked for
-  std::vector<Point> samples_;      // of the patches looked at so far
-  std::vector<Index> next_sample_;  // of the same face
-  std::vector<Index> first_sample_; // of every face
+  std::vector<Point> samples_;                                // of the patches looked at so far
+  std::vector<Index> next_sample_;                            // of the same face
+  std::vector<Index> first_sample_;                           // of every face
   std::vector<Index> moving_;
-  std::vector<Index> near_;         // a triangle near the centre of each face that is created
+  std::vector<Index> near_;  // a triangle near the centre of each face that is created
 };
 
 }  // namespace collarmesh::improvement

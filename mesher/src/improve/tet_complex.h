@@ -58,8 +58,9 @@ class TetComplex {
 
   /// A vertex inside a region; in no tet yet.
   Index add_vertex(const Point& p);
-  /// Replace tets by others that fill the same cavity, or less of it at a boundary; `kept` are those of the mesh' faces inside the
-  /// cavity or on its border that change. Returns the new tets' indices until the next call.
+  /// Replace tets by others that fill the same cavity, or less of it at a boundary; `kept` are those of the
+  /// mesh' faces inside the cavity or on its border that change. Returns the new tets' indices until the next
+  /// call.
   std::span<const Index> replace(std::span<const Index> old, std::span<const NewTet> created,
                                  std::span<const Face> kept);
 
