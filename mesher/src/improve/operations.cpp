@@ -1,6 +1,8 @@
 #include "improve/operations.h"
 
 #include <algorithm>
+#include <tuple>
+#include <utility>
 
 #include "improve/shape.h"
 
@@ -349,7 +351,12 @@ bool Operations::move_vertex(Index vertex) {
     p = curves_.ahead(vertex, way);
     curves_.moved(vertex, way);
   } else {
-    const auto [place, after] = best_place(p, vertex, *where, before);
+    // Most often the best place is one that the surface allows.
+    std::vector<Index> faces = std::exchange(faces_, {});
+    auto [place, after] = best_place(p, vertex, *where, before);
+    faces_ = std::move(faces);
+    if (after <= wanted) return false;
+    if (!surfaces_allow(vertex, place)) std::tie(place, after) = best_place(p, vertex, *where, before);
     if (after <= wanted) return false;
     p = place;
   }
