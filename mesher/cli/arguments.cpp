@@ -119,7 +119,8 @@ void add_complex_options(CLI::App& app, ComplexArguments& a) {
       ->group(group);
 }
 
-void add_size_options(CLI::App& app, MeshOptions& m) {
+void add_size_options(CLI::App& app, MeshArguments& a) {
+  MeshOptions& m = a.mesh;
   const std::string group = "Size (target edge lengths, absolute, input units)";
   add(app, "--size", m.size, "Everywhere", "1/20 of the diagonal")->check(length)->group(group);
   add(app, "--size-min", m.size_min, "Never ask for less than this", "none")->check(length)->group(group);
@@ -127,6 +128,19 @@ void add_size_options(CLI::App& app, MeshOptions& m) {
       ->group(group);
   add_tag_values(app, "--patch-size", m.patch_size, "On the patches with this tag; repeatable")->group(group);
   add_tag_values(app, "--curve-size", m.curve_size, "On the curves with this tag; repeatable")->group(group);
+  app.add_option("--size-field", a.size_field,
+                 "Sizes by place: .json (balls, boxes, distances from features), or .vtu or .msh with a "
+                 "scalar on its points")
+      ->type_name("FILE")
+      ->group(group);
+  add(app, "--elements-per-circle", m.elements_per_circle,
+      "Finer where smooth surfaces and edges curve: so many elements on a full circle", "none")
+      ->check(length)
+      ->group(group);
+  add(app, "--elements-across-gap", m.elements_across_gap,
+      "Finer where surfaces face each other across a thin part: so many elements between them", "none")
+      ->check(length)
+      ->group(group);
   add(app, "--gradation", m.gradation, "Growth of size per unit length away from finer features", "unlimited")
       ->check(length)
       ->group(group);
@@ -181,7 +195,7 @@ void add_budget_options(CLI::App& app, MeshOptions& m) {
 }
 
 void add_run_options(CLI::App& app, MeshArguments& a) {
-  add_size_options(app, a.mesh);
+  add_size_options(app, a);
   add_quality_options(app, a.mesh);
   add_improvement_options(app, a);
   add_complex_options(app, a.complex);

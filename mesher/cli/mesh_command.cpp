@@ -84,6 +84,7 @@ void refine(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   };
   MeshOptions options = arguments.mesh;
   options.crease_angle = arguments.complex.crease_angle;
+  if (!arguments.size_field.empty()) options.size_field = read_size_field(arguments.size_field, run.plc);
   run.result = generate(run.plc, options, execution);
 }
 

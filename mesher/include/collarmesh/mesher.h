@@ -8,6 +8,7 @@
 
 #include "collarmesh/plc.h"
 #include "collarmesh/progress.h"
+#include "collarmesh/size_field.h"
 #include "collarmesh/tet_mesh.h"
 
 namespace collarmesh {
@@ -21,7 +22,9 @@ struct MeshOptions {
   std::map<Tag, double> patch_size;      ///< by patch tag
   std::map<Tag, double> curve_size;      ///< by curve tag
   double gradation = 0;                  ///< growth of size per unit length away from a finer patch, curve or region; 0: unlimited
-  std::function<double(const Point&)> size_field;  ///< target edge length at a point; may be empty
+  SizeField size_field;  ///< target edge length at a point; may be empty
+  double elements_per_circle = 0;        ///< target edge lengths on smooth patches and curves put so many on a full circle of their curvature; 0: none
+  double elements_across_gap = 0;        ///< target edge lengths on patches put so many between them and what they face across a region; 0: none
   double radius_edge = 2;                ///< bound on circumradius / shortest edge in the regions; at least 1
   double exterior_radius_edge = 8;       ///< the same outside every region, where that is larger
   double vertex_ratio = 0;               ///< bound on largest circumradius / shortest edge at a vertex in the regions (paper, section 1.2); 0: none, else > 2 sqrt 2

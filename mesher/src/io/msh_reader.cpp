@@ -294,23 +294,39 @@ void read_elements_2(MshBinary2 values, Contents& contents) {
   }
 }
 
-/// $ElementData in the text part of its head; its values follow as text too.
-void read_collar(MshText values, Contents& contents) {
+/// What precedes the values of $NodeData and $ElementData, a text also in binary files.
+struct DataHead {
+  std::string name;
+  int components = 1, count = 0;
+  std::size_t lines = 3;  ///< it takes
+};
+
+DataHead read_data_head(MshText& values) {
+  DataHead head;
   const Index strings = values.count("the number of texts", 1);
-  if (strings == 0) return;
-  values.text().skip_line();
-  if (values.text().rest_of_line() != "\"collar\"") return;
-  for (Index i = 1; i < strings; ++i) values.text().rest_of_line();
+  if (strings > 0) values.text().skip_line();
+  for (Index i = 0; i < strings; ++i) {
+    const std::string text(values.text().rest_of_line());
+    if (i == 0) head.name = text.size() > 1 && text.front() == '"' ? text.substr(1, text.size() - 2) : text;
+  }
   const Index reals = values.count("the number of reals", 1);
   for (Index i = 0; i < reals; ++i) values.real("a real");
   const Index integers = values.count("the number of integers", 1);
-  std::array<int, 3> head{0, 1, 0};
   for (Index i = 0; i < integers; ++i) {
     const int value = values.integer("an integer");
-    if (i < head.size()) head[i] = value;
+    if (i == 1) head.components = value;
+    if (i == 2) head.count = value;
   }
-  if (head[1] != 1) values.fail(fmt::format("collar has {} components, but has to have 1", head[1]));
-  for (int i = 0; i < head[2]; ++i) {
+  head.lines += std::size_t{strings} + reals + integers;
+  return head;
+}
+
+void read_collar(MshText values, Contents& contents) {
+  const DataHead head = read_data_head(values);
+  if (head.name != "collar") return;
+  if (head.components != 1)
+    values.fail(fmt::format("collar has {} components, but has to have 1", head.components));
+  for (int i = 0; i < head.count; ++i) {
     const std::uint64_t number = values.number("the number of an element");
     contents.collar.emplace_back(number, values.real("a value of collar"));
   }
@@ -434,17 +450,87 @@ TetMesh make_mesh(const std::string& path, Contents& contents) {
 
 }  // namespace
 
+namespace {
+
+using NodeValues = std::vector<std::pair<std::uint64_t, double>>;
+
+NodeValues read_node_values(const std::string& path, const MshSection& section, const Format& format) {
+  MshText text(path, section);
+  const DataHead head = read_data_head(text);
+  NodeValues values;
+  if (!format.binary) {
+    for (int i = 0; i < head.count; ++i) {
+      const std::uint64_t number = text.number("the number of a node");
+      values.emplace_back(number, text.real("a value"));
+    }
+    return values;
+  }
+  std::size_t at = 0;
+  for (std::size_t line = 0; line < head.lines; ++line)
+    at = std::min(section.body.find('\n', at), section.body.size() - 1) + 1;
+  ByteReader bytes(path, section.body.substr(at), format.order, section.first_byte + at);
+  for (int i = 0; i < head.count; ++i) {
+    const auto number = bytes.get<std::int32_t>("the number of a node");
+    values.emplace_back(static_cast<std::uint64_t>(number), bytes.get<double>("a value"));
+  }
+  return values;
+}
+
+struct MshFile {
+  std::string text;
+  std::vector<MshSection> sections;
+  Format format;
+
+  explicit MshFile(const std::string& path) : text(read_bytes(path)), sections(split_msh(path, text)) {
+    if (sections.empty()) TextScanner(path, text).fail("expected $MeshFormat, found the end of the file");
+    format = read_format(path, sections.front());
+  }
+
+  Contents contents(const std::string& path) const {
+    Contents contents;
+    for (const MshSection& section : sections) read_section(path, section, format, contents);
+    if (contents.cells[3].empty())
+      throw ReadError(
+          fmt::format("{}: line {}: expected tetrahedra, found none", path, sections.back().first_line));
+    return contents;
+  }
+};
+
+}  // namespace
+
 TetMesh read_msh(const std::string& path) {
-  const std::string text = read_bytes(path);
-  const std::vector<MshSection> sections = split_msh(path, text);
-  if (sections.empty()) TextScanner(path, text).fail("expected $MeshFormat, found the end of the file");
-  const Format format = read_format(path, sections.front());
-  Contents contents;
-  for (const MshSection& section : sections) read_section(path, section, format, contents);
-  if (contents.cells[3].empty())
-    throw ReadError(
-        fmt::format("{}: line {}: expected tetrahedra, found none", path, sections.back().first_line));
+  const MshFile file(path);
+  Contents contents = file.contents(path);
   return make_mesh(path, contents);
+}
+
+PointField read_msh_field(const std::string& path, const std::string& name) {
+  const MshFile file(path);
+  std::vector<std::string> names;
+  std::vector<const MshSection*> fields;
+  for (const MshSection& section : file.sections) {
+    if (section.name != "NodeData") continue;
+    MshText text(path, section);
+    const DataHead head = read_data_head(text);
+    if (head.components != 1) continue;
+    names.push_back(head.name);
+    fields.push_back(&section);
+  }
+  const std::size_t chosen = choose_field(path, names, name);
+  Contents contents = file.contents(path);
+  PointField field{{}, names[chosen], std::vector<double>(contents.nodes.size(), NAN)};
+  for (const auto& [number, value] : read_node_values(path, *fields[chosen], file.format)) {
+    const auto node = std::lower_bound(contents.nodes.begin(), contents.nodes.end(), number,
+                                       [](const Node& n, std::uint64_t wanted) { return n.number < wanted; });
+    if (node != contents.nodes.end() && node->number == number)
+      field.values[static_cast<std::size_t>(node - contents.nodes.begin())] = value;
+  }
+  for (std::size_t i = 0; i < field.values.size(); ++i)
+    if (std::isnan(field.values[i]))
+      throw ReadError(
+          fmt::format("{}: '{}' has no value at node {}", path, field.name, contents.nodes[i].number));
+  field.mesh = make_mesh(path, contents);
+  return field;
 }
 
 }  // namespace collarmesh::io

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "collarmesh/io/point_field_io.h"
 #include "collarmesh/tet_mesh.h"
 
 /// One writer and one reader per format of tetrahedral meshes.
@@ -25,5 +27,11 @@ TetMesh read_medit(const std::string& path);
 TetMesh read_abaqus(const std::string& path);
 TetMesh read_unv(const std::string& path);
 TetMesh read_tetgen(const std::string& path);
+
+PointField read_vtu_field(const std::string& path, const std::string& name);
+PointField read_msh_field(const std::string& path, const std::string& name);
+/// Which of these to read; the only one when none is wanted by name. Throws ReadError.
+std::size_t choose_field(const std::string& path, const std::vector<std::string>& names,
+                         const std::string& wanted);
 
 }  // namespace collarmesh::io

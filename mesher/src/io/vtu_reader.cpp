@@ -300,4 +300,30 @@ TetMesh read_vtu(const std::string& path) {
   return mesh;
 }
 
+// Our own labels of points are no fields.
+PointField read_vtu_field(const std::string& path, const std::string& name) {
+  const VtuFile file(path);
+  const auto pieces = file.grid().children("Piece");
+  std::vector<std::string> names;
+  if (!pieces.empty())
+    for (const pugi::xml_node& array : pieces.begin()->child("PointData").children("DataArray")) {
+      const std::string each = array.attribute("Name").value();
+      const bool label =
+          std::find(vtk_point_arrays.begin(), vtk_point_arrays.end(), each) != vtk_point_arrays.end();
+      if (!label && array.attribute("NumberOfComponents").as_int(1) == 1) names.push_back(each);
+    }
+  PointField field;
+  field.name = names.at(choose_field(path, names, name));
+  for (const pugi::xml_node& piece : pieces) {
+    PieceReader(file, piece).read(field.mesh);
+    const pugi::xml_node array = find_array(piece.child("PointData"), field.name.c_str());
+    if (!array) file.fail(piece, fmt::format("expected an array '{}' as in the first piece", field.name));
+    const auto values = file.values<double>(array, file.number(piece, "NumberOfPoints"));
+    field.values.insert(field.values.end(), values.begin(), values.end());
+  }
+  if (field.mesh.tets.empty()) file.fail(file.grid(), "expected tetrahedra, found none");
+  complete_vtk_mesh(path, field.mesh);
+  return field;
+}
+
 }  // namespace collarmesh::io

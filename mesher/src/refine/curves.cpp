@@ -166,8 +166,9 @@ void Refinement::encroach(Index subsegment) {
 
 bool Refinement::too_coarse(const Subsegment& s) const {
   const Point a = mesh_.point(s.ends[0]), b = mesh_.point(s.ends[1]);
-  const double length =
-      sizing_.subsegment_length(s.curve, s.centre, graded_size(s.ends, 0.5 * distance(a, b)));
+  const double size = sizing_.curve_size(s.curve, paths_.segment(s.curve, s.parameters[0]),
+                                         paths_.segment(s.curve, s.parameters[1]), s.centre);
+  const double length = Sizing::subsegment_length(std::min(size, graded_size(s.ends, 0.5 * distance(a, b))));
   const double chord = squared_distance(a, b);
   if (chord > length * length) return true;
   if (plc_.curves[s.curve].straight) return false;

@@ -15,6 +15,8 @@ void require(bool holds, const std::string& message) {
 void validate(const MeshOptions& o) {
   require(o.size >= 0 && o.size_min >= 0 && o.distance >= 0 && o.gradation >= 0,
           "sizes, distance and gradation must not be negative; 0 stands for the default");
+  require(o.elements_per_circle >= 0 && o.elements_across_gap >= 0,
+          "elements per circle and across gaps must not be negative; 0 switches them off");
   require(o.size == 0 || o.size_min <= o.size,
           fmt::format("size-min {} exceeds size {}; make it smaller", o.size_min, o.size));
   require(o.radius_edge >= 1 && o.exterior_radius_edge >= 1, "radius-edge must be at least 1");

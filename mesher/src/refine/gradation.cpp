@@ -15,7 +15,7 @@ constexpr unsigned most_rounds = 20;
 }  // namespace
 
 void Refinement::grade_vertex(Index vertex) {
-  if (options_.gradation == 0) return;
+  if (gradation_ == 0) return;
   const Point& p = mesh_.point(vertex);
   double size = INFINITY;
   for (const Index cell : zone_.created)
@@ -25,12 +25,12 @@ void Refinement::grade_vertex(Index vertex) {
     size = std::min(size, sizing_.feature_size(v.dimension, v.feature, p));
   for (const Index neighbour : zone_.vertices)
     size = std::min(size, target_size_[neighbour] +
-                              options_.gradation * distance(p, mesh_.point(neighbour)));
+                              gradation_ * distance(p, mesh_.point(neighbour)));
   target_size_.push_back(std::max(size, options_.size_min));
 }
 
 bool Refinement::check_gradation() {
-  if (options_.gradation == 0 || !message_.empty() || ++gradation_rounds_ > most_rounds) return false;
+  if (gradation_ == 0 || !message_.empty() || ++gradation_rounds_ > most_rounds) return false;
   using Entry = std::pair<double, Index>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
   for (Index v = 0; v < mesh_.vertex_count(); ++v) front.push({target_size_[v], v});
@@ -42,7 +42,7 @@ bool Refinement::check_gradation() {
     mesh_.adjacent_vertices(vertex, adjacent);
     for (const Index other : adjacent) {
       const double graded =
-          size + options_.gradation * distance(mesh_.point(vertex), mesh_.point(other));
+          size + gradation_ * distance(mesh_.point(vertex), mesh_.point(other));
       if (graded >= target_size_[other] * (1 - 1e-6)) continue;
       target_size_[other] = graded;
       front.push({graded, other});

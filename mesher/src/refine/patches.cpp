@@ -11,6 +11,21 @@ namespace {
 
 constexpr std::uint16_t unlabelled = 0xffff;
 constexpr std::size_t seeds_per_closed_patch = 4;
+// The cosine between a surface's normal and that of what it faces across a gap; of parts of the surface
+// that meet elsewhere only what is almost parallel counts, else the gap would close in a wedge.
+constexpr double least_facing = 0.5, least_facing_of_neighbours = 0.966;
+
+bool share(const std::vector<Index>& a, const std::vector<Index>& b) {  // sorted
+  for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
+    if (*i == *j) return true;
+    *i < *j ? ++i : ++j;
+  }
+  return false;
+}
+
+bool meet(const Plc::Patch& a, const Plc::Patch& b) {
+  return share(a.curves, b.curves) || share(a.vertices, b.vertices);
+}
 
 }  // namespace
 
@@ -286,10 +301,45 @@ void Refinement::judge_triangle(FaceId face) {
     queue_.push(WorkQueue::large_triangles, t.squared_radius, entry);
 }
 
-bool Refinement::too_large(FaceId face, const RestrictedTriangle& t) const {
-  const double graded = graded_size(mesh_.face_vertices(face), std::sqrt(t.squared_radius));
-  const double size = sizing_.triangle_radius(patch_of(t), t.x, graded);
-  return t.squared_radius > size * size;
+bool Refinement::too_large(FaceId face, const RestrictedTriangle& t) {
+  const auto corners = mesh_.face_vertices(face);
+  double size = sizing_.triangle_size(patch_of(t), t.triangle, t.x);
+  if (const double widest = sizing_.widest_gap(size); widest > 0)
+    size = std::min(size, sizing_.gap_size(gap_at(t, widest)));
+  const double reach = std::sqrt(t.squared_radius);
+  if (gradation_ > 0)
+    for (const Index v : corners) target_size_[v] = std::min(target_size_[v], size + gradation_ * reach);
+  size = std::min(size, graded_size(corners, reach));
+  const double radius = Sizing::triangle_radius(size);
+  return t.squared_radius > radius * radius;
+}
+
+// How far is the surface that faces this one across a region, if not farther than `widest`?
+double Refinement::gap_at(const RestrictedTriangle& t, double widest) {
+  const auto corners = hierarchy_.corners(t.triangle);
+  Vector normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  normal = normal / norm(normal);
+  const Plc::Patch& patch = plc_.patches[patch_of(t)];
+  double gap = widest;
+  for (unsigned side = 0; side < 2; ++side) {
+    if (patch.regions[side] == 0) continue;
+    const Vector way = side == 0 ? -1 * normal : normal;
+    const Index root = hierarchy_.root();
+    // Not from the plane of its own triangle: that would be one tie after the other.
+    hierarchy_.crossings(t.x + 1e-6 * widest * way, t.x + widest * way, {&root, 1}, crossings_);
+    for (const auto& [triangle, direction] : crossings_) {
+      const Index other = plc_.triangles[triangle].patch;
+      const auto c = hierarchy_.corners(triangle);
+      const Vector n = cross(c[1] - c[0], c[2] - c[0]);
+      const double towards = dot(n, way);
+      const bool same = other == patch_of(t);
+      if (same && dot(n, normal) > 0) continue;
+      const bool neighbours = same || meet(patch, plc_.patches[other]);
+      if (std::fabs(towards) < (neighbours ? least_facing_of_neighbours : least_facing) * norm(n)) continue;
+      gap = std::min(gap, dot(c[0] - t.x, n) / towards);
+    }
+  }
+  return gap;
 }
 
 // On a smooth patch: is the triangle's circumcentre farther from the surface than the tolerance?

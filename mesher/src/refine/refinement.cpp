@@ -17,6 +17,8 @@ constexpr double cell_offset = 0.05;
 constexpr double triangle_offset = 0.1;
 // Hierarchy nodes of a vertex are filtered again after so many insertions in its star: rarely on the
 // surface, where they never run out.
+// What lies between two surfaces is as fine as they are: sizes spread from them when gaps were asked for.
+constexpr double gradation_in_gaps = 0.25;
 constexpr std::uint16_t insertions_between_refreshes = 16;
 constexpr std::uint16_t insertions_between_surface_refreshes = 48;
 // No ball smaller than this share of the diagonal is destroyed: it ends what would never end.
@@ -69,6 +71,8 @@ Refinement::Refinement(const Plc& plc, const MeshOptions& options, const Executi
       frame_(plc.bounds),
       points_(framed(plc.points, frame_)),
       sizing_(plc, options, frame_),
+      gradation_(options.gradation == 0 && options.elements_across_gap > 0 ? gradation_in_gaps
+                                                                           : options.gradation),
       diagonal_(plc.bounds.diagonal()),
       distance_(distance_reserve * (options.distance > 0 ? options.distance : 1e-3 * diagonal_)),
       floor_(floor_per_diagonal * diagonal_),
@@ -90,7 +94,7 @@ void Refinement::start() {
   }
   labels_.resize(mesh_.cell_capacity());
   marks_.resize(mesh_.cell_capacity());
-  if (options_.gradation > 0) target_size_.resize(mesh_.vertex_count(), INFINITY);
+  if (gradation_ > 0) target_size_.resize(mesh_.vertex_count(), INFINITY);
   if (options_.vertex_ratio > 0) shortest_edge_.resize(mesh_.vertex_count(), INFINITY);
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) label_from_outside(cell);
   for (Index i = 0; i < plc_.vertices.size(); ++i) add_unresolved(points_[plc_.vertices[i].point], 0, i);

@@ -197,7 +197,8 @@ class Refinement {
   Point crossing_point(FaceId face, Index triangle) const;
   Point triangle_circumcentre(FaceId face) const;
   void judge_triangle(FaceId face);
-  bool too_large(FaceId face, const RestrictedTriangle& t) const;
+  bool too_large(FaceId face, const RestrictedTriangle& t);
+  double gap_at(const RestrictedTriangle& t, double widest);
   bool too_far(FaceId face, const RestrictedTriangle& t) const;
   Index patch_of(const RestrictedTriangle& t) const { return plc_.triangles[t.triangle].patch; }
   const RestrictedTriangle& restricted(FaceId face) const {
@@ -214,7 +215,7 @@ class Refinement {
     if (target_size_.size() == 0) return INFINITY;
     double size = INFINITY;
     for (const Index v : corners) size = std::min(size, target_size_[v]);
-    return size + options_.gradation * reach;
+    return size + gradation_ * reach;
   }
 
   // surface_check.cpp
@@ -315,6 +316,7 @@ class Refinement {
   Frame frame_;
   std::vector<Point> points_;  // of the complex, in the frame
   Sizing sizing_;
+  double gradation_;
   double diagonal_, distance_, floor_;
   Box box_;
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "collarmesh/mesher.h"
+#include "refine/curvature.h"
 #include "refine/frame.h"
 
 namespace collarmesh {
@@ -20,14 +21,24 @@ class Sizing {
     return region == 0 ? INFINITY
                        : cell_radius_per_edge * std::min(graded, limited(region_size_[region], p));
   }
-  /// Largest allowed radius of a surface gap ball of this patch at this point.
-  double triangle_radius(Index patch, const Point& p, double graded) const {
-    return triangle_radius_per_edge * std::min(graded, limited(patch_size_[patch], p));
+  /// The target edge length on a patch at a point of a triangle of the complex.
+  double triangle_size(Index patch, Index triangle, const Point& p) const {
+    const double size = limited(patch_size_[patch], p);
+    return curved_.triangle.empty() ? size : std::min(size, at_least_minimum(curved_.triangle[triangle]));
   }
-  /// Largest allowed length of a subsegment of this curve at this point.
-  double subsegment_length(Index curve, const Point& p, double graded) const {
-    return subsegment_length_per_edge * std::min(graded, limited(curve_size_[curve], p));
+  /// Largest allowed radius of a surface gap ball where the target edge length is this.
+  static double triangle_radius(double size) { return triangle_radius_per_edge * size; }
+  /// The target edge length on a curve, between two segments of its polyline, at a point.
+  double curve_size(Index curve, std::size_t first, std::size_t last, const Point& p) const;
+  /// Largest allowed length of a subsegment where the target edge length is this.
+  static double subsegment_length(double size) { return subsegment_length_per_edge * size; }
+  /// The target edge length where two facing parts of the surface are so far apart; infinite unless
+  /// gaps were asked for.
+  double gap_size(double gap) const {
+    return elements_across_gap_ > 0 ? at_least_minimum(gap / elements_across_gap_) : INFINITY;
   }
+  /// Only gaps below this make something finer than `size`; 0: none does.
+  double widest_gap(double size) const { return elements_across_gap_ * size; }
   /// The target edge length at a mesh vertex on this feature (`dimension` 1: curve, 2: patch).
   double feature_size(unsigned dimension, Index feature, const Point& p) const {
     return limited(dimension == 1 ? curve_size_[feature] : patch_size_[feature], p);
@@ -50,6 +61,10 @@ class Sizing {
     return field_ ? std::min(size, std::max(field_(frame_.outside(p)), size_min_)) : size;
   }
 
+  double at_least_minimum(double size) const { return std::max(size, size_min_); }
+
+  CurvatureSizes curved_;  // empty unless asked for
+  double elements_across_gap_;
   std::vector<double> region_size_, patch_size_, curve_size_;  // target edge lengths by index
   std::function<double(const Point&)> field_;
   Frame frame_;

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "collarmesh/plc.h"
+#include "collarmesh/tet_mesh.h"
+
+namespace collarmesh {
+
+/// A target edge length at every point, absolute, in input units; for `MeshOptions::size_field`.
+using SizeField = std::function<double(const Point&)>;
+
+/// Read a size field: .json (a description, see `size_field_from_json`), or .vtu or .msh (a mesh with a scalar
+/// field of target edge lengths on its points). Throws ReadError or OptionError.
+SizeField read_size_field(const std::string& path, const Plc& plc);
+
+/// The smallest of what some sources ask for: `size` at the source and inside it, growing by `growth` (0.3
+/// unless given) per unit length away from it.
+///
+///     {"size": 2, "sources": [
+///       {"ball": {"centre": [0, 0, 0], "radius": 1}, "size": 0.1, "growth": 0.2},
+///       {"box": {"min": [0, 0, 0], "max": [1, 1, 1]}, "size": 0.1},
+///       {"curves": [3, 4], "size": 0.05},
+///       {"patches": [2], "size": 0.05}]}
+///
+/// `size` outside the list holds everywhere; without it sources are all there is. Curves and patches are
+/// named by their tags. Throws OptionError, with the place in the text.
+SizeField size_field_from_json(const std::string& text, const Plc& plc);
+
+/// Linear in the tets of a background mesh; outside of it the value of its nearest point.
+/// Throws OptionError unless there is one positive value per point.
+SizeField size_field_on_mesh(const TetMesh& mesh, const std::vector<double>& values);
+
+}  // namespace collarmesh

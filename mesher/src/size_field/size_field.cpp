@@ -1,0 +1,166 @@
+// A size field from a file or from a description.
+#include "collarmesh/size_field.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "collarmesh/error.h"
+#include "collarmesh/io/point_field_io.h"
+#include "io/file_bytes.h"
+#include "location/triangle_hierarchy.h"
+
+namespace collarmesh {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double default_growth = 0.3;
+
+[[noreturn]] void fail(const std::string& place, const std::string& message) {
+  throw OptionError(fmt::format("size field: {}: {}", place, message));
+}
+
+void allow_only(const Json& object, const std::string& place, const std::vector<std::string>& keys) {
+  if (!object.is_object()) fail(place, fmt::format("expected an object with {}", fmt::join(keys, ", ")));
+  for (const auto& [key, value] : object.items())
+    if (std::find(keys.begin(), keys.end(), key) == keys.end())
+      fail(place, fmt::format("'{}' is not known; use {}", key, fmt::join(keys, ", ")));
+}
+
+double number(const Json& object, const std::string& place, const std::string& key, double least) {
+  if (!object.contains(key)) fail(place, fmt::format("'{}' is missing", key));
+  const Json& value = object.at(key);
+  if (!value.is_number()) fail(place, fmt::format("'{}' must be a number", key));
+  const auto result = value.get<double>();
+  if (!(result >= least) || !std::isfinite(result))
+    fail(place, fmt::format("'{}' is {}, but must be at least {}", key, result, least));
+  return result;
+}
+
+double positive(const Json& object, const std::string& place, const std::string& key) {
+  const double result = number(object, place, key, 0);
+  if (result == 0) fail(place, fmt::format("'{}' must be positive", key));
+  return result;
+}
+
+Point point(const Json& object, const std::string& place, const std::string& key) {
+  const bool fits =
+      object.contains(key) && object.at(key).is_array() && object.at(key).size() == 3 &&
+      std::all_of(object.at(key).begin(), object.at(key).end(), [](const Json& x) { return x.is_number(); });
+  if (!fits) fail(place, fmt::format("expected '{}': [x, y, z]", key));
+  const Json& value = object.at(key);
+  return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
+}
+
+using Distance = std::function<double(const Point&)>;
+
+Distance distance_from_ball(const Json& ball, const std::string& place) {
+  allow_only(ball, place, {"centre", "radius"});
+  const Point centre = point(ball, place, "centre");
+  const double radius = number(ball, place, "radius", 0);
+  return [=](const Point& p) { return std::max(distance(p, centre) - radius, 0.0); };
+}
+
+Distance distance_from_box(const Json& box, const std::string& place) {
+  allow_only(box, place, {"min", "max"});
+  const Box b{point(box, place, "min"), point(box, place, "max")};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (b.min[axis] > b.max[axis]) fail(place, "'min' exceeds 'max'");
+  return [=](const Point& p) { return std::sqrt(squared_distance_to_box(p, b)); };
+}
+
+// Of the features with these tags; a curve's segments are triangles without an area.
+template <class Features, class Add>
+Distance distance_from_features(const Json& tags, const std::string& place, const std::string& kind,
+                                const Plc& plc, const Features& features, const Add& add) {
+  if (!tags.is_array() || tags.empty()) fail(place, fmt::format("expected a list of tags of {}", kind));
+  std::vector<std::array<Index, 3>> triangles;
+  for (const Json& tag : tags) {
+    if (!tag.is_number_integer())
+      fail(place, fmt::format("{} is no tag; tags are whole numbers", tag.dump()));
+    const std::size_t before = triangles.size();
+    for (const auto& feature : features)
+      if (feature.tag == tag.get<Tag>()) add(feature, triangles);
+    if (triangles.size() == before) fail(place, fmt::format("no {} have the tag {}", kind, tag.dump()));
+  }
+  struct Surface {
+    std::vector<Point> points;
+    TriangleHierarchy triangles;
+    Surface(const std::vector<Point>& p, std::vector<std::array<Index, 3>> t)
+        : points(p), triangles(points, std::move(t)) {}
+  };
+  const auto surface = std::make_shared<const Surface>(plc.points, std::move(triangles));
+  return [surface](const Point& p) { return std::sqrt(surface->triangles.squared_distance_to(p)); };
+}
+
+Distance distance_of(const Json& source, const std::string& place, const Plc& plc) {
+  if (source.contains("ball")) return distance_from_ball(source.at("ball"), place + ".ball");
+  if (source.contains("box")) return distance_from_box(source.at("box"), place + ".box");
+  if (source.contains("curves"))
+    return distance_from_features(source.at("curves"), place + ".curves", "curves", plc, plc.curves,
+                                  [](const Plc::Curve& curve, auto& triangles) {
+                                    const auto& v = curve.points;
+                                    for (std::size_t i = 1; i < v.size() + (curve.closed ? 1 : 0); ++i)
+                                      triangles.push_back({v[i - 1], v[i % v.size()], v[i % v.size()]});
+                                  });
+  if (source.contains("patches"))
+    return distance_from_features(source.at("patches"), place + ".patches", "patches", plc, plc.patches,
+                                  [&plc](const Plc::Patch& patch, auto& triangles) {
+                                    for (Index i = 0; i < patch.triangle_count; ++i)
+                                      triangles.push_back(plc.triangles[patch.first_triangle + i].points);
+                                  });
+  fail(place, "expected one of ball, box, curves, patches");
+}
+
+struct Source {
+  Distance distance;
+  double size, growth;
+};
+
+}  // namespace
+
+SizeField size_field_from_json(const std::string& text, const Plc& plc) {
+  Json json;
+  try {
+    json = Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    throw OptionError(fmt::format("size field: byte {}: this is no JSON", error.byte));
+  }
+  allow_only(json, "the top", {"size", "sources"});
+  const double everywhere = json.contains("size") ? positive(json, "the top", "size") : INFINITY;
+  std::vector<Source> sources;
+  const Json list = json.value("sources", Json::array());
+  if (!list.is_array()) fail("sources", "expected a list");
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string place = fmt::format("sources[{}]", i);
+    allow_only(list[i], place, {"ball", "box", "curves", "patches", "size", "growth"});
+    const double growth = list[i].contains("growth") ? number(list[i], place, "growth", 0) : default_growth;
+    sources.push_back({distance_of(list[i], place, plc), positive(list[i], place, "size"), growth});
+  }
+  if (sources.empty() && everywhere == INFINITY)
+    fail("the top", "it asks for no size; give 'size' or 'sources'");
+  return [=](const Point& p) {
+    double size = everywhere;
+    for (const Source& source : sources)
+      size = std::min(size, source.size + source.growth * source.distance(p));
+    return size;
+  };
+}
+
+SizeField read_size_field(const std::string& path, const Plc& plc) {
+  try {
+    if (path.ends_with(".json")) return size_field_from_json(io::read_bytes(path), plc);
+    const io::PointField field = io::read_point_field(path);
+    return size_field_on_mesh(field.mesh, field.values);
+  } catch (const OptionError& error) {
+    throw OptionError(fmt::format("{}: {}", path, error.what()));
+  }
+}
+
+}  // namespace collarmesh

@@ -1,0 +1,151 @@
+// Size fields from descriptions and background meshes.
+#include "collarmesh/size_field.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "collarmesh/error.h"
+#include "collarmesh/io/point_field_io.h"
+#include "collarmesh/io/tet_mesh_io.h"
+#include "collarmesh/plc_builder.h"
+#include "support/meshing.h"
+#include "support/shapes.h"
+#include "support/temporary_file.h"
+
+namespace collarmesh {
+namespace {
+
+Plc cylinder() {
+  const PolygonSoup soup = testing::cylinder(1, 2, 32);
+  return build_plc(std::span(&soup, 1), {.feature_angle = 30});
+}
+
+TEST(SizeFieldJson, TakesTheSmallestOfItsSources) {
+  const SizeField field = size_field_from_json(
+      R"({"size": 2, "sources": [
+            {"ball": {"centre": [0, 0, 0], "radius": 1}, "size": 0.1, "growth": 0.5},
+            {"box": {"min": [5, 5, 5], "max": [6, 7, 8]}, "size": 0.2}]})",
+      cylinder());
+  EXPECT_DOUBLE_EQ(field({0, 0, 0.5}), 0.1);
+  EXPECT_DOUBLE_EQ(field({0, 0, 3}), 0.1 + 0.5 * 2);
+  EXPECT_DOUBLE_EQ(field({0, 0, 50}), 2);
+  EXPECT_DOUBLE_EQ(field({5.5, 6, 6}), 0.2);
+  EXPECT_DOUBLE_EQ(field({5.5, 6, 9}), 0.2 + 0.3 * 1);
+}
+
+TEST(SizeFieldJson, GrowsAwayFromFeatures) {
+  Plc plc = cylinder();
+  Tag tag = 10;
+  for (Plc::Curve& curve : plc.curves) curve.tag = tag++;
+  for (Plc::Patch& patch : plc.patches) patch.tag = patch.planar ? 7 : 8;
+  const SizeField from_curve =
+      size_field_from_json(R"({"sources": [{"curves": [10], "size": 0.1, "growth": 1}]})", plc);
+  const Point& on_it = plc.points[plc.curves[0].points[0]];
+  EXPECT_DOUBLE_EQ(from_curve(on_it), 0.1);
+  EXPECT_NEAR(from_curve({0, 0, on_it.z}), 0.1 + std::cos(std::numbers::pi / 32),
+              1e-9);  // the polygon's inner radius
+  const SizeField from_patches =
+      size_field_from_json(R"({"sources": [{"patches": [7], "size": 0.1, "growth": 1}]})", plc);
+  EXPECT_NEAR(from_patches({0, 0, plc.bounds.min.z + 0.4}), 0.5, 1e-12);
+}
+
+TEST(SizeFieldJson, SaysWhatIsWrongAndWhere) {
+  const Plc plc = cylinder();
+  const auto message = [&](const std::string& text) -> std::string {
+    try {
+      size_field_from_json(text, plc);
+    } catch (const OptionError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"", "byte"},
+      {"[]", "object"},
+      {"{}", "asks for no size"},
+      {R"({"sise": 1})", "'sise' is not known"},
+      {R"({"size": 0})", "'size' must be positive"},
+      {R"({"size": "1"})", "must be a number"},
+      {R"({"sources": 1})", "expected a list"},
+      {R"({"sources": [{"size": 1}]})", "sources[0]: expected one of ball"},
+      {R"({"sources": [{"ball": {"centre": [0, 0], "radius": 1}, "size": 1}]})",
+       "sources[0].ball: expected 'centre'"},
+      {R"({"sources": [{"ball": {"centre": [0, 0, 0], "radius": -1}, "size": 1}]})", "'radius' is -1"},
+      {R"({"sources": [{"ball": {"centre": [0, 0, 0]}, "size": 1}]})", "'radius' is missing"},
+      {R"({"sources": [{"box": {"min": [1, 0, 0], "max": [0, 1, 1]}, "size": 1}]})", "'min' exceeds 'max'"},
+      {R"({"sources": [{"curves": [99], "size": 1}]})", "no curves have the tag 99"},
+      {R"({"sources": [{"patches": ["a"], "size": 1}]})", "is no tag"},
+      {R"({"sources": [{"curves": [], "size": 1}]})", "expected a list of tags"}};
+  for (const auto& [text, expected] : cases)
+    EXPECT_NE(message(text).find(expected), std::string::npos) << text << ": " << message(text);
+}
+
+double linear(const Point& p) { return 1 + 0.3 * p.x - 0.2 * p.y + 0.1 * p.z; }
+
+TEST(SizeFieldOnAMesh, IsLinearInsideAndConstantBeyond) {
+  const TetMesh mesh = testing::mesh_of(testing::box(), testing::with_size(0.3), 0).result.mesh;
+  std::vector<double> values;
+  for (const Point& p : mesh.points) values.push_back(linear(p));
+  const SizeField field = size_field_on_mesh(mesh, values);
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < 500; ++i) {
+    const Point p{unit(random), unit(random), unit(random)};
+    EXPECT_NEAR(field(p), linear(p), 1e-9);
+  }
+  EXPECT_DOUBLE_EQ(field({-3, -3, -3}), linear({0, 0, 0}));
+  EXPECT_THROW(size_field_on_mesh(mesh, {1, 2}), OptionError);
+  values[5] = 0;
+  EXPECT_THROW(size_field_on_mesh(mesh, values), OptionError);
+}
+
+std::string msh_text(const TetMesh& mesh, const std::string& version, const std::string& views) {
+  std::string text =
+      fmt::format("$MeshFormat\n{} 0 8\n$EndMeshFormat\n$Nodes\n{}\n", version, mesh.points.size());
+  // Numbers with gaps, backwards.
+  const auto number = [&](std::size_t i) { return 3 * (mesh.points.size() - i); };
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+    const Point& p = mesh.points[i];
+    text += fmt::format("{} {} {} {}\n", number(i), p.x, p.y, p.z);
+  }
+  text += fmt::format("$EndNodes\n$Elements\n{}\n", mesh.tets.size());
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const auto& v = mesh.tets[t];
+    text += fmt::format("{} 4 2 1 1 {} {} {} {}\n", t + 1, number(v[0]), number(v[1]), number(v[2]),
+                        number(v[3]));
+  }
+  text += "$EndElements\n";
+  for (const char view : views) {
+    text += fmt::format("$NodeData\n1\n\"{}\"\n1\n0\n3\n0\n1\n{}\n", view, mesh.points.size());
+    for (std::size_t i = 0; i < mesh.points.size(); ++i)
+      text += fmt::format("{} {}\n", number(i), (view == 'a' ? 1 : 2) * linear(mesh.points[i]));
+    text += "$EndNodeData\n";
+  }
+  return text;
+}
+
+TEST(PointField, OfGmsh) {
+  const TetMesh mesh = testing::mesh_of(testing::box(), testing::with_size(0.5), 0).result.mesh;
+  const testing::TemporaryFolder folder;
+  const auto expect_field = [&](const std::string& path, const std::string& name, double factor) {
+    const io::PointField field = io::read_point_field(path, name);
+    ASSERT_EQ(field.values.size(), field.mesh.points.size());
+    EXPECT_EQ(field.mesh.tets.size(), mesh.tets.size());
+    for (std::size_t i = 0; i < field.values.size(); ++i)
+      EXPECT_NEAR(field.values[i], factor * linear(field.mesh.points[i]), 1e-12);
+  };
+  expect_field(folder.write("one.msh", msh_text(mesh, "2.2", "a")), "", 1);
+  const std::string two = folder.write("two.msh", msh_text(mesh, "2.2", "ab"));
+  expect_field(two, "b", 2);
+  EXPECT_THROW(io::read_point_field(two), ReadError);
+  EXPECT_THROW(io::read_point_field(two, "c"), ReadError);
+  EXPECT_THROW(io::read_point_field(folder.write("none.msh", msh_text(mesh, "2.2", ""))), ReadError);
+  EXPECT_THROW(io::read_point_field(folder.write("x.mesh", "")), ReadError);
+}
+
+}  // namespace
+}  // namespace collarmesh
