@@ -43,10 +43,10 @@ class Collarmesh:
     mesh_file = "mesh.msh"
     guarantee_missed = 7   # exit code: there is a mesh, but it is not certified
 
-    def __init__(self, program: Path, time_limit: float, arguments: list[str] | None = None):
-        # The improvement of elements comes after what is compared here.
+    def __init__(self, program: Path, time_limit: float, arguments: list[str] | None = None, improve: int = 0):
+        # Most benchmarks compare the refinement: the improvement of elements comes after it.
         self.program, self.time_limit = program, time_limit
-        self.arguments = ["--improve", "0", *(arguments or [])]
+        self.arguments = ["--improve", str(improve), *(arguments or [])]
 
     def version(self) -> str:
         printed = subprocess.run([self.program, "--version"], capture_output=True, text=True)
@@ -105,8 +105,8 @@ class TetGen:
 class Gmsh:
     mesh_file = "mesh.msh"
 
-    def __init__(self, time_limit: float, algorithm: str = "hxt", program: str = "gmsh"):
-        self.program, self.time_limit, self.algorithm = program, time_limit, algorithm
+    def __init__(self, time_limit: float, algorithm: str = "hxt", program: str = "gmsh", switches: tuple[str, ...] = ()):
+        self.program, self.time_limit, self.algorithm, self.switches = program, time_limit, algorithm, switches
         self.name = {"hxt": "Gmsh HXT", "del3d": "Gmsh Delaunay"}[algorithm]
 
     def version(self) -> str:
@@ -120,8 +120,8 @@ class Gmsh:
     def mesh(self, surface: Surface, size: float, folder: Path) -> MeshRun:
         (folder / "input.geo").write_text('Include "model.geo";\n' f"Mesh.MeshSizeMin = {size:.17g};\n"
                                           f"Mesh.MeshSizeMax = {size:.17g};\n")
-        measured = run([self.program, "-3", "-algo", self.algorithm, "-nt", "1", "input.geo", "-bin", "-o",
-                        self.mesh_file], folder, self.time_limit)
+        measured = run([self.program, "-3", "-algo", self.algorithm, "-nt", "1", *self.switches, "input.geo", "-bin",
+                        "-o", self.mesh_file], folder, self.time_limit)
         if "Error" in measured.output:
             raise ProgramFailed(re.search(r"Error +: (.*)", measured.output).group(1))
         return MeshRun(int(_number(self._count(measured.output), measured.output)),
@@ -133,6 +133,30 @@ class Gmsh:
         """HXT alone says how many tets there are, the others how many elements of all dimensions."""
         hxt = r"Final tet. mesh contains (\d+) tetrahedra"
         return hxt if re.search(hxt, output) else r"\d+ nodes (\d+) elements"
+
+
+class CgalMesh3:
+    """CGAL's Mesh_3 by the program cgal_mesh, with perturbation and exudation."""
+    name = "CGAL Mesh_3"
+    mesh_file = "mesh.mesh"
+
+    def __init__(self, program: Path, time_limit: float):
+        self.program, self.time_limit = program, time_limit
+
+    def version(self) -> str:
+        return _debian_version("libcgal-dev")
+
+    signature = version
+
+    def prepare(self, surface: Surface, folder: Path) -> None:
+        triangles = [list(triangle) for triangle in surface.triangles()]
+        Surface(surface.name, surface.points, triangles).write_off(folder / "input.off")
+
+    def mesh(self, surface: Surface, size: float, folder: Path) -> MeshRun:
+        distance = 1e-3 * surface.diagonal   # our default
+        measured = run([str(self.program), "input.off", f"{size:.17g}", f"{distance:.17g}", self.mesh_file], folder,
+                       self.time_limit)
+        return MeshRun(int(_number(r"(\d+) tets", measured.output)), measured.cpu, measured.cpu, measured.peak_bytes)
 
 
 def _debian_version(package: str) -> str:

@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+"""Dihedral angles after improvement, beside TetGen -O, Gmsh with its own and with Netgen's optimizer and CGAL's
+Mesh_3 with perturbation and exudation, on the same surfaces at the same number of tetrahedra.
+
+Prints a Markdown table: smallest and largest dihedral angle, the first percentile and the mean of the tets'
+smallest angles, the share of tets below 20 degrees, CPU seconds of the whole program. Angles are computed
+here, from the mesh files."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+import meshio
+import numpy as np
+
+from inputs import Surface, box, read_surface
+from meshers import CgalMesh3, Collarmesh, Gmsh, TetGen
+from processes import ProgramFailed, pin_to_core
+from tables import machine, seconds, si, table
+from tuning import SizeCache, size_for
+
+default_parts = ["cross.off", "itemb.off", "joint.off", "spool.off", "handle.off", "fertility.off"]
+header = ["input", "mesher", "tets", "smallest", "1st percentile", "mean", "largest", "below 20", "CPU s"]
+
+
+def dihedral_angles(points: np.ndarray, tets: np.ndarray) -> np.ndarray:
+    """Degrees; one row of six per tet."""
+    corners = points[tets]
+    normals = []   # of the face opposite each corner, outwards or inwards alike
+    for opposite in range(4):
+        a, b, c = (corners[:, k] for k in range(4) if k != opposite)
+        n = np.cross(b - a, c - a)
+        outwards = np.sign(np.einsum("ij,ij->i", n, a - corners[:, opposite]))
+        normals.append(n * outwards[:, None] / np.linalg.norm(n, axis=1)[:, None])
+    angles = [180 - np.degrees(np.arccos(np.clip(np.einsum("ij,ij->i", normals[i], normals[j]), -1, 1)))
+              for i in range(4) for j in range(i + 1, 4)]
+    return np.stack(angles, axis=1)
+
+
+def measures(mesh_file: Path) -> list[str]:
+    mesh = meshio.read(mesh_file)
+    tets = np.concatenate([cells.data for cells in mesh.cells if cells.type == "tetra"])
+    angles = dihedral_angles(mesh.points, tets)
+    smallest = angles.min(axis=1)
+    return [f"{smallest.min():.3g}", f"{np.percentile(smallest, 1):.1f}", f"{smallest.mean():.1f}",
+            f"{angles.max():.1f}", f"{100 * (smallest < 20).mean():.2f}%"]
+
+
+def rows(surface: Surface, meshers, target: int, cache: SizeCache) -> list[list[str]]:
+    found = []
+    for label, mesher in meshers:
+        folder = cache.folder / f"{surface.name}_improved_{label.replace(' ', '_').replace('/', '_')}"
+        folder.mkdir(exist_ok=True)
+        try:
+            mesher.prepare(surface, folder)
+            mesher.name = label   # sizes are remembered by name
+            run = mesher.mesh(surface, size_for(mesher, surface, target, folder, cache), folder)
+        except ProgramFailed as failure:
+            found.append([surface.name, label, str(failure).splitlines()[0], *[""] * 6])
+            continue
+        far = "" if abs(run.tets / target - 1) < 0.15 else " *"
+        found.append([surface.name, label, si(run.tets) + far, *measures(folder / mesher.mesh_file), seconds(run.cpu)])
+        print(*found[-1], file=sys.stderr, flush=True)
+    return found
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    root = Path(__file__).resolve().parents[2]
+    parser.add_argument("--build", type=Path, default=root / "build" / "bench")
+    parser.add_argument("--corpus", type=Path, default=os.environ.get("COLLARMESH_CORPUS"))
+    parser.add_argument("--parts", nargs="*", default=default_parts, help="files of the corpus; the box comes first")
+    parser.add_argument("--tets", type=int, default=40000)
+    parser.add_argument("--time-limit", type=float, default=300, help="seconds for one run of one program")
+    parser.add_argument("--core", type=int, help="the core to run on (default: the last one)")
+    options = parser.parse_args()
+    if options.corpus is None and options.parts:
+        parser.error("name a corpus with --corpus or $COLLARMESH_CORPUS")
+    about = machine(options.build)
+    pin_to_core(options.core)
+    programs = options.build.resolve() / "bin"
+    limit = options.time_limit
+    ours = {level: Collarmesh(programs / "collarmesh", limit, improve=level) for level in (0, 2, 3)}
+    cgal, tetgen = CgalMesh3(programs / "cgal_mesh", limit), TetGen(limit, switches="g")
+    gmsh = Gmsh(limit, "hxt")
+    meshers = [*((f"collarmesh --improve {level}", mesher) for level, mesher in ours.items()),
+               ("TetGen", tetgen), ("TetGen -O7/7", TetGen(limit, switches="O7/7g")), ("Gmsh HXT", gmsh),
+               ("Gmsh HXT -optimize", Gmsh(limit, "hxt", switches=("-optimize",))),
+               ("Gmsh HXT -optimize_netgen", Gmsh(limit, "hxt", switches=("-optimize_netgen",))), ("CGAL Mesh_3", cgal)]
+    versions = (f"collarmesh {ours[2].version()}, TetGen {tetgen.version()}, Gmsh {gmsh.version()}, "
+                f"CGAL {cgal.version()}")
+    cache = SizeCache()
+    lines = []
+    for surface in [box(), *(read_surface(Path(options.corpus) / part) for part in options.parts)]:
+        lines += rows(surface, meshers, options.tets, cache)
+    print(f"{about}. {versions}. * is further than 15% from {si(options.tets)} tets.\n")
+    print(table(header, lines))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
