@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <condition_variable>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <future>
+#include <mutex>
+#include <stop_token>
 #include <thread>
 
 #include "staged_file.h"
@@ -40,19 +42,23 @@ void stop_if_interrupted() {
 
 ExitCode run_interruptible(const std::function<ExitCode()>& command) {
   using namespace std::chrono_literals;
-  std::packaged_task<ExitCode()> task(command);
-  std::future<ExitCode> result = task.get_future();
-  std::thread worker(std::move(task));
-  while (result.wait_for(50ms) != std::future_status::ready) {
-    if (!interrupted.load(std::memory_order_relaxed)) continue;
-    if (result.wait_for(700ms) == std::future_status::ready) break;
-    if (!abandon_staged_files()) break;
-    fmt::print(stderr, "\ncollarmesh: {}\n", Cancelled().what());
-    std::fflush(nullptr);
-    std::_Exit(static_cast<int>(ExitCode::cancelled));
-  }
-  worker.join();
-  return result.get();
+  std::mutex mutex;
+  std::condition_variable_any ended;
+  // Ends with the command, or ends the program in its place.
+  const std::jthread watcher([&](const std::stop_token& end) {
+    std::unique_lock lock(mutex);
+    const auto command_ends_within = [&](std::chrono::milliseconds time) {
+      return ended.wait_for(lock, end, time, [&end] { return end.stop_requested(); });
+    };
+    while (!command_ends_within(50ms)) {
+      if (!interrupted.load(std::memory_order_relaxed)) continue;
+      if (command_ends_within(700ms) || !abandon_staged_files()) return;
+      fmt::print(stderr, "\ncollarmesh: {}\n", Cancelled().what());
+      std::fflush(nullptr);
+      std::_Exit(static_cast<int>(ExitCode::cancelled));
+    }
+  });
+  return command();
 }
 
 }  // namespace collarmesh::cli

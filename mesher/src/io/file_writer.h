@@ -39,7 +39,7 @@ class FileWriter {
   void commit();
 
  private:
-  static constexpr std::size_t buffer_bytes = 1 << 20, longest_number = 32;
+  static constexpr std::size_t buffer_bytes = 1 << 16, longest_number = 32;
 
   char* room(std::size_t bytes) {
     if (buffer_.size() - used_ < bytes) flush();

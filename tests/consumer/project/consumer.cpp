@@ -5,8 +5,9 @@
 #include <collarmesh/plc_builder.h>
 
 #include <cstdio>
+#include <string>
 
-// consumer SURFACE MESH: mesh a file and certify the result.
+// consumer SURFACE MESH: mesh a file, certify the result and write it in every format.
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
   const collarmesh::PolygonSoup soups[] = {collarmesh::io::read_soup(argv[1])};
@@ -14,6 +15,8 @@ int main(int argc, char** argv) {
   const collarmesh::MeshResult result = collarmesh::generate(plc);
   const collarmesh::CheckReport report = collarmesh::check(result.mesh, plc);
   collarmesh::io::write_tet_mesh(argv[2], result.mesh);
+  for (const std::string& format : collarmesh::io::written_tet_mesh_formats())
+    collarmesh::io::write_tet_mesh(argv[2] + format, result.mesh);
   std::printf("%zu tets, %zu findings\n", result.mesh.tets.size(), report.findings_total);
   return result.status == collarmesh::MeshStatus::complete && report.passed() ? 0 : 1;
 }

@@ -1,0 +1,19 @@
+// What the module offers to hdf5_formats.cpp, by name.
+#include "io/tet_mesh_formats.h"
+
+extern "C" {
+
+#ifdef COLLARMESH_XDMF
+__attribute__((visibility("default"))) void collarmesh_write_xdmf(const std::string& path,
+                                                                  const collarmesh::TetMesh& mesh) {
+  collarmesh::io::write_xdmf(path, mesh);
+}
+#endif
+
+#ifdef COLLARMESH_MED
+__attribute__((visibility("default"))) void collarmesh_write_med(const std::string& path,
+                                                                 const collarmesh::TetMesh& mesh) {
+  collarmesh::io::write_med(path, mesh);
+}
+#endif
+}
