@@ -70,6 +70,12 @@ struct Plc {
     Index shared_triangles = 0;      ///< of several soups with the same corners, which became an interface
   };
 
+  /// Something in the input that has no effect or contradicts something else.
+  struct Warning {
+    std::string message;  ///< full sentence: entity, coordinates, what to do next
+    Point where;
+  };
+
   std::vector<Point> points;
   std::vector<Vertex> vertices;
   std::vector<Curve> curves;
@@ -81,6 +87,7 @@ struct Plc {
   double planar_tolerance = 0;   ///< absolute, input units: used to build this complex
   double largest_deviation = 0;  ///< absolute: how far merging (weld, planar, collinear) moved the input at most
   Cleanup cleanup;
+  std::vector<Warning> warnings;
 
   /// Is the patch among those that contain this vertex / curve? Cost: logarithmic in the list.
   bool vertex_on_patch(Index vertex, Index patch) const;

@@ -155,7 +155,7 @@ Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options) {
   find_intersections(draft, edges, faults);
   faults.raise();
 
-  const Regions regions = find_regions(draft, edges, soups, faults);
+  Regions regions = find_regions(draft, edges, soups, faults);
   faults.raise();
   if (options.require_solid) require_region(draft, edges, regions, faults);
   faults.raise();
@@ -170,7 +170,8 @@ Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options) {
               options.feature_angle, plc);
   link_patches(draft, plc);
   plc.points = std::move(draft.points);
-  plc.regions = regions.list;
+  plc.regions = std::move(regions.list);
+  plc.warnings = std::move(regions.warnings);
   plc.bounds = draft.bounds;
   plc.largest_deviation = draft.largest_deviation;
   plc.cleanup = draft.cleanup;

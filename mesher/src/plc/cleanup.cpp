@@ -168,9 +168,10 @@ void merge_twins_across_soups(Draft& draft) {
     }
     const Index kept = order[first].triangle, dropped = order[i].triangle;
     removed[dropped] = true;
-    if (!draft.origins[dropped].oriented) continue;
+    const Origin& origin = draft.origins[dropped];
+    if (!origin.oriented && !draft.soup_is_complex[origin.soup]) continue;
     const bool alike = same_orientation(draft.triangles[kept], draft.triangles[dropped]);
-    draft.claims.push_back({alike ? back_side(kept) : front_side(kept), draft.origins[dropped].soup});
+    draft.claims.push_back({alike ? back_side(kept) : front_side(kept), origin.soup});
   }
   draft.cleanup.shared_triangles += compact(draft, removed);
 }

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "plc/shells.h"
 
@@ -37,7 +39,8 @@ struct Chamber {
   bool behind_claimed = false;    // a facet that has its front towards it has its back towards a claimed one
   Index claiming_surface = none;  // a soup that is a surface
   Index hole_soup = none;
-  std::array<Index, 2> rank{none, none};  // first soup and triangle
+  Index owner = none;           // the soup that most of its inner shell comes from
+  Index first_triangle = none;  // of the owner, on that shell
   Index region = none;
 };
 
@@ -70,10 +73,16 @@ class RegionFinder {
   }
 
  private:
-  struct Parameters {
-    Tag tag = 0;
-    double size = 0;
-    Index shell = none;  // inner shell of the chamber
+  // What a soup has of a chamber's inner shell.
+  struct Share {
+    double area = 0;
+    Index first_triangle = none;
+  };
+  // A region or hole point inside a chamber.
+  struct PlacedPoint {
+    Index soup = 0;
+    PolygonSoup::RegionPoint point;
+    Index chamber = none;
   };
 
   double reach() const { return 2 * draft_.bounds.diagonal(); }
@@ -136,33 +145,33 @@ class RegionFinder {
         chamber_of_shell_[shell] = static_cast<Index>(list_.size());
         list_.emplace_back().inner_shell = shell;
       }
-      claim(list_[chamber_of_shell_[shell]], side, draft_.origins[side / 2]);
+      const Origin& origin = draft_.origins[side / 2];
+      if (draft_.soup_is_complex[origin.soup] || (origin.oriented && side % 2 == 0)) claim(side, origin.soup);
     }
-    for (const Claim& c : draft_.claims)
-      if (const Index at = chamber_at(c.side); at != none) add_claim(list_[at], c.soup, c.side / 2);
+    for (const Claim& c : draft_.claims) {
+      claim(c.side, c.soup);
+      if (draft_.soup_is_complex[c.soup]) claim(c.side ^ 1U, c.soup);
+    }
     for (Index side = 1; side < 2 * count_; side += 2) {
       if (!draft_.origins[side / 2].oriented) continue;
       const Index front = chamber_at(side), back = chamber_at(side - 1);
       if (front != none && back != none && list_[back].claimed) list_[front].behind_claimed = true;
     }
-    for (Chamber& chamber : list_)
-      if (chamber.rank[0] == none) chamber.rank = rank_unclaimed(chamber);
+    find_owners();
   }
 
   // The bounded chamber whose inner shell this side is on.
   Index chamber_at(Index side) { return chamber_of_shell_[shells_.find(side)]; }
 
-  void claim(Chamber& chamber, Index side, const Origin& origin) {
-    if (draft_.soup_is_complex[origin.soup]) {
-      chamber.complex = true;
-      chamber.rank = std::min(chamber.rank, {origin.soup, side / 2});
-    } else if (origin.oriented && side % 2 == 0) {
-      add_claim(chamber, origin.soup, side / 2);
-    }
-  }
-
-  void add_claim(Chamber& chamber, Index soup, Index triangle) {
-    chamber.rank = std::min(chamber.rank, {soup, triangle});
+  // A complex takes both sides of its facets for its own, a surface those behind them for solid.
+  void claim(Index side, Index soup) {
+    const Index at = chamber_at(side);
+    if (at == none) return;
+    Share& share = shares_[{at, soup}];
+    share.area += norm(cross(draft_.corner(side / 2, 1) - draft_.corner(side / 2, 0),
+                             draft_.corner(side / 2, 2) - draft_.corner(side / 2, 0)));
+    share.first_triangle = std::min(share.first_triangle, side / 2);
+    Chamber& chamber = list_[at];
     if (draft_.soup_is_complex[soup]) {
       chamber.complex = true;
       return;
@@ -171,44 +180,65 @@ class RegionFinder {
     chamber.claiming_surface = std::min(chamber.claiming_surface, soup);
   }
 
-  std::array<Index, 2> rank_unclaimed(const Chamber& chamber) const {
-    const Index triangle = chamber.inner_shell / 2;
-    return {draft_.origins[triangle].soup, triangle};
+  // Neighbours that share facets of a chamber have less of its shell than the file that encloses it.
+  // Of several that have as much the first one.
+  void find_owners() {
+    constexpr double clearly_more = 1 + 1e-9;
+    double area = 0;
+    for (const auto& [key, share] : shares_) {
+      Chamber& chamber = list_[key[0]];
+      if (chamber.owner != none && share.area <= clearly_more * area) continue;
+      chamber.owner = key[1];
+      chamber.first_triangle = share.first_triangle;
+      area = share.area;
+    }
+    for (Chamber& chamber : list_) {
+      if (chamber.owner != none) continue;
+      chamber.first_triangle = chamber.inner_shell / 2;
+      chamber.owner = draft_.origins[chamber.first_triangle].soup;
+    }
   }
 
   void place_points(std::span<const PolygonSoup> soups) {
     for (Index s = 0; s < soups.size(); ++s) {
-      for (const Point& hole : soups[s].hole_points) {
-        const auto shell = enclosing_shell(hole, "hole", soups[s].name);
-        if (shell) list_[chamber_of_shell_[*shell]].hole_soup = s;
-      }
-      for (const auto& point : soups[s].region_points) {
-        const auto shell = enclosing_shell(point.point, "region", soups[s].name);
-        if (shell) parameters_.push_back({point.tag, point.size, *shell});
-      }
+      for (const Point& hole : soups[s].hole_points)
+        if (const Index at = enclosing_chamber(hole, "hole", s); at != none) {
+          list_[at].hole_soup = s;
+          holes_.push_back({s, {hole}, at});
+        }
+      for (const auto& point : soups[s].region_points)
+        if (const Index at = enclosing_chamber(point.point, "region", s); at != none)
+          region_points_.push_back({s, point, at});
     }
   }
 
-  // The inner shell of the bounded chamber that a point lies in; nothing outside of all.
-  std::optional<Index> enclosing_shell(const Point& point, const char* what, const std::string& soup) {
+  // The bounded chamber that a point lies in; none outside of all.
+  Index enclosing_chamber(const Point& point, const char* what, Index soup) {
     for (std::size_t attempt = 0; attempt < largest_attempt; ++attempt) {
       const auto crossings = caster_.cast(point, point + reach_to(point) * generic_direction(attempt));
       if (!crossings) continue;
-      if (crossings->empty()) return std::nullopt;
-      return inner_shell_of(chambers_.find(crossings->front().entry_side()));
+      const Index at = crossings->empty() ? none : bounded_chamber(crossings->front().entry_side());
+      if (at == none)
+        warn(point, fmt::format("{}: the {} point {} lies outside of every region and has no effect; move it "
+                                "inside one or remove it.",
+                                draft_.soup_names[soup], what, text(point)));
+      return at;
     }
     faults_.add(PlcFault::Kind::bad_point,
-                fmt::format("{}: the {} point {} lies on a facet; move it inside.", soup, what, text(point)),
+                fmt::format("{}: the {} point {} lies on a facet; move it inside.", draft_.soup_names[soup],
+                            what, text(point)),
                 {}, point);
-    return std::nullopt;
+    return none;
   }
+
+  void warn(const Point& where, std::string message) { warnings_.push_back({std::move(message), where}); }
 
   double reach_to(const Point& point) const { return reach() + 2 * distance(point, draft_.bounds.centre()); }
 
-  std::optional<Index> inner_shell_of(Index chamber) {
-    for (const Chamber& c : list_)
-      if (chambers_.same(c.inner_shell, chamber)) return c.inner_shell;
-    return std::nullopt;
+  Index bounded_chamber(Index side) {
+    for (Index at = 0; at < list_.size(); ++at)
+      if (chambers_.same(list_[at].inner_shell, side)) return at;
+    return none;
   }
 
   // From the outside inwards: what encloses a chamber is decided before it.
@@ -248,7 +278,10 @@ class RegionFinder {
     std::vector<Index> order;
     for (Index i = 0; i < list_.size(); ++i)
       if (list_[i].region != 0) order.push_back(i);
-    std::sort(order.begin(), order.end(), [&](Index a, Index b) { return list_[a].rank < list_[b].rank; });
+    std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+      const auto rank = [](const Chamber& c) { return std::pair(c.owner, c.first_triangle); };
+      return rank(list_[a]) < rank(list_[b]);
+    });
     for (Index n = 0; n < order.size(); ++n) {
       list_[order[n]].region = n + 1;
       region_of_chamber_[chambers_.find(list_[order[n]].inner_shell)] = n + 1;
@@ -267,18 +300,56 @@ class RegionFinder {
       by_region[c.region] = &c;
     }
     for (Index r = 1; r < by_region.size(); ++r) {
-      const Index soup = by_region[r]->rank[0];
+      const Index soup = by_region[r]->owner;
       const std::string& name = draft_.soup_names[soup];
       result.list.push_back({soups[soup].region_tag.value_or(static_cast<Tag>(r)), 0, 0,
                              name.empty() ? fmt::format("region {}", r) : name});
     }
-    for (const Parameters& p : parameters_) {
-      const Index r = list_[chamber_of_shell_[p.shell]].region;
-      if (r == 0) continue;
-      result.list[r].tag = p.tag;
-      result.list[r].size = p.size;
-    }
+    set_parameters(result);
     add_volumes(result);
+    result.warnings = std::move(warnings_);
+  }
+
+  // What region points say of their regions; the last one counts.
+  void set_parameters(Regions& result) {
+    std::map<Index, const PlacedPoint*> last;
+    for (const PlacedPoint& p : region_points_) {
+      const Index r = list_[p.chamber].region;
+      if (r == 0) {
+        warn_of_hole(p);
+        continue;
+      }
+      const PlacedPoint*& before = last[r];
+      if (before != nullptr && (before->point.tag != p.point.tag || before->point.size != p.point.size))
+        warn(p.point.point,
+             fmt::format(
+                 "{} lies in the same region as {}; that one has no effect: remove one of them, or close "
+                 "the facets that should part them.",
+                 description(p), description(*before)));
+      before = &p;
+      result.list[r].tag = p.point.tag;
+      result.list[r].size = p.point.size;
+    }
+  }
+
+  void warn_of_hole(const PlacedPoint& p) {
+    const auto hole = std::find_if(holes_.begin(), holes_.end(),
+                                   [&](const PlacedPoint& h) { return h.chamber == p.chamber; });
+    if (hole == holes_.end())
+      warn(p.point.point,
+           fmt::format("{} lies in a cavity and has no effect; move it inside a region, turn the "
+                       "cavity's facets around, or remove it.",
+                       description(p)));
+    else
+      warn(p.point.point,
+           fmt::format("{} lies in the hole of the hole point {} of {} and has no effect; remove "
+                       "one of them, or close the facets that should part them.",
+                       description(p), text(hole->point.point), draft_.soup_names[hole->soup]));
+  }
+
+  std::string description(const PlacedPoint& p) const {
+    return fmt::format("{}: the region point {} (tag {}{})", draft_.soup_names[p.soup], text(p.point.point),
+                       p.point.tag, p.point.size > 0 ? fmt::format(", size {:.6g}", p.point.size) : "");
   }
 
   void add_volumes(Regions& result) const {
@@ -302,9 +373,11 @@ class RegionFinder {
   LineCaster caster_;
   std::vector<Index> outer_shell_;  // by component
   std::vector<Chamber> list_;
-  std::vector<Index> chamber_of_shell_;   // index in list_
-  std::vector<Index> region_of_chamber_;  // by representative
-  std::vector<Parameters> parameters_;
+  std::vector<Index> chamber_of_shell_;           // index in list_
+  std::vector<Index> region_of_chamber_;          // by representative
+  std::map<std::array<Index, 2>, Share> shares_;  // by chamber and soup
+  std::vector<PlacedPoint> holes_, region_points_;
+  std::vector<Plc::Warning> warnings_;
 };
 
 }  // namespace

@@ -13,13 +13,15 @@ namespace collarmesh::build {
 struct Regions {
   std::vector<Plc::Region> list;  ///< [0] is the outside
   std::vector<Index> of_side;     ///< by triangle side (Claim::side)
+  std::vector<Plc::Warning> warnings;
 };
 
 /// Which volume each triangle side looks at. Chambers are the components of space without the
 /// triangles; a chamber of a complex is a region unless a hole point lies in it. A chamber of a
 /// surface is a region if a facet has its back towards it, or if no region encloses it.
 /// Precondition: triangles meet in common edges and corners only.
-/// Faults: region and hole points on a facet.
+/// A region is named after the soup that most of its boundary comes from.
+/// Faults: region and hole points on a facet. Warnings: those without effect.
 Regions find_regions(const Draft& draft, const EdgeTable& edges, std::span<const PolygonSoup> soups,
                      Faults& faults);
 
