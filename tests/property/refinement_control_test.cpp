@@ -22,6 +22,8 @@ Plc box_complex() {
 
 void expect_no_mesh(const MeshResult& result, MeshStatus status) {
   EXPECT_EQ(result.status, status);
+  for (const char* told : {"vertices and ", " cells, ", " MB, after ", "the last vertex is near (", "); "})
+    EXPECT_NE(result.message.find(told), std::string::npos) << result.message;
   EXPECT_TRUE(result.mesh.points.empty());
   EXPECT_TRUE(result.mesh.tets.empty());
 }
@@ -33,6 +35,7 @@ TEST(RefinementBudget, Vertices) {
   const MeshResult result = generate(box_complex(), options);
   expect_no_mesh(result, MeshStatus::budget_hit);
   EXPECT_NE(result.message.find("2000 vertices"), std::string::npos) << result.message;
+  EXPECT_NE(result.message.find("raise max-vertices"), std::string::npos) << result.message;
   EXPECT_LT(result.statistics.vertices_inserted, 4000U);
 }
 
@@ -42,12 +45,14 @@ TEST(RefinementBudget, Memory) {
   const MeshResult result = generate(box_complex(), options);
   expect_no_mesh(result, MeshStatus::budget_hit);
   EXPECT_NE(result.message.find("bytes"), std::string::npos) << result.message;
+  EXPECT_NE(result.message.find("raise max-memory"), std::string::npos) << result.message;
 }
 
 TEST(RefinementBudget, Time) {
   const MeshResult result = generate(box_complex(), with_size(0.005, 0.1));
   expect_no_mesh(result, MeshStatus::budget_hit);
   EXPECT_NE(result.message.find("time limit"), std::string::npos) << result.message;
+  EXPECT_NE(result.message.find("raise time-limit"), std::string::npos) << result.message;
   EXPECT_LT(result.statistics.seconds, 30);
 }
 

@@ -118,7 +118,8 @@ bool Refinement::check_collars() {
     found |= repair(t);
   }
   if (found && ++collar_rounds_ > most_rounds) {
-    give_up(collars_.balls()[0].centre, "the collar surface did not settle; the first collar is");
+    give_up(mesh_.point(last_vertex()), "the collar surface did not settle; the last vertex is",
+            "raise collar-angle, or try a smaller size or another seed");
     return false;
   }
   return found;

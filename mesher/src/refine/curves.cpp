@@ -188,7 +188,8 @@ bool Refinement::too_coarse(const Subsegment& s) const {
 bool Refinement::destroy_subsegment(Index index) {
   const Subsegment s = subsegments_[index];
   if (s.squared_radius < floor_ * floor_) {
-    give_up(s.centre, "a curve could not be resolved with edges longer than 1e-10 of the diagonal");
+    give_up(s.centre, "a curve could not be resolved with edges longer than 1e-10 of the diagonal",
+            advice_at_floor);
     return false;
   }
   const Index nearest = objects_[s.object].vertex;

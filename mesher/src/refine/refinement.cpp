@@ -244,8 +244,8 @@ bool Refinement::destroy(Candidate candidate) {
   for (;;) {
     if (candidate.squared_radius < floor_ * floor_) {
       give_up(candidate.point,
-              "the refinement did not end before edges became shorter than 1e-10 "
-              "of the diagonal");
+              "the refinement did not end before edges became shorter than 1e-10 of the diagonal",
+              advice_at_floor);
       return false;
     }
     mesh_.find_conflict_zone(candidate.point, candidate.start, zone_);
@@ -554,11 +554,22 @@ Vector Refinement::random_in_cube() {
   return {x, y, next()};
 }
 
-void Refinement::give_up(const Point& where, const std::string& what) {
+void Refinement::give_up(const Point& where, const std::string& what, const std::string& next) {
   if (!message_.empty()) return;
   where_ = where;
   const Point p = frame_.outside(where);
-  message_ = fmt::format("{} near ({:.9g}, {:.9g}, {:.9g}); look at the input there", what, p.x, p.y, p.z);
+  message_ = fmt::format("{} near ({:.9g}, {:.9g}, {:.9g}); {}", what, p.x, p.y, p.z, next);
+}
+
+// The place is the vertex inserted last: a refinement that does not end stays where it is.
+void Refinement::stop_here(MeshStatus status, const std::string& what, const std::string& next) {
+  stop_ = status;
+  message_.clear();
+  give_up(mesh_.point(last_vertex()),
+          fmt::format("{} at {} vertices and {} cells, {:.1f} MB, after {:.2f} s; the last vertex is", what,
+                      mesh_.vertex_count(), mesh_.cell_count(), static_cast<double>(peak_bytes_) / 1e6,
+                      elapsed()),
+          next);
 }
 
 double Refinement::elapsed() const {
@@ -573,27 +584,23 @@ std::size_t Refinement::bytes() const {
 }
 
 bool Refinement::stopped() {
-  if (execution_.cancelled() || !report_progress())
-    stop_ = MeshStatus::cancelled;
-  else if (out_of_budget())
-    stop_ = MeshStatus::budget_hit;
-  return stop_ != MeshStatus::complete;
-}
-
-bool Refinement::out_of_budget() {
+  constexpr const char* more =
+      "raise {} or size, or look at the input there if this is far more than expected";
   peak_bytes_ = std::max(peak_bytes_, bytes());
-  const auto spent = [&](const std::string& what) {
-    message_.clear();
-    give_up(mesh_.point(last_vertex()), what);
-    return true;
-  };
-  if (options_.max_vertices > 0 && mesh_.vertex_count() > options_.max_vertices)
-    return spent(fmt::format("the budget of {} vertices is spent; the last one is", options_.max_vertices));
-  if (options_.max_memory > 0 && peak_bytes_ > options_.max_memory)
-    return spent(fmt::format("the budget of {} bytes is spent; the last vertex is", options_.max_memory));
-  if (options_.time_limit > 0 && elapsed() > options_.time_limit)
-    return spent(fmt::format("the time limit of {} s is reached; the last vertex is", options_.time_limit));
-  return false;
+  if (execution_.cancelled() || !report_progress())
+    stop_here(MeshStatus::cancelled, "the refinement was stopped", "start it again");
+  else if (options_.max_vertices > 0 && mesh_.vertex_count() > options_.max_vertices)
+    stop_here(MeshStatus::budget_hit,
+              fmt::format("the budget of {} vertices is spent", options_.max_vertices),
+              fmt::format(more, "max-vertices"));
+  else if (options_.max_memory > 0 && peak_bytes_ > options_.max_memory)
+    stop_here(MeshStatus::budget_hit,
+              fmt::format("the memory budget of {} bytes is spent", options_.max_memory),
+              fmt::format(more, "max-memory"));
+  else if (options_.time_limit > 0 && elapsed() > options_.time_limit)
+    stop_here(MeshStatus::budget_hit, fmt::format("the time limit of {} s is reached", options_.time_limit),
+              fmt::format(more, "time-limit"));
+  return stop_ != MeshStatus::complete;
 }
 
 bool Refinement::report_progress() {

@@ -47,6 +47,10 @@ class Refinement {
   MeshStatistics statistics() const;
 
  private:
+  static constexpr const char* advice_at_floor =
+      "look for features there that nearly touch or meet at a small angle; a larger crease-angle gives such a "
+      "meeting a collar";
+
   /// What refinement knows of a mesh vertex besides its position.
   struct MeshVertex {
     std::uint8_t dimension = 3;            // containment dimension: of the lowest feature it lies on
@@ -157,11 +161,12 @@ class Refinement {
   Point on_plane(Index patch, const Point& p) const;
   bool inside_box(const Point& p) const;
   Vector random_in_cube();
-  void give_up(const Point& where, const std::string& what);
+  /// Of several messages the first one is kept. `next`: what the user can do.
+  void give_up(const Point& where, const std::string& what, const std::string& next);
+  void stop_here(MeshStatus status, const std::string& what, const std::string& next);
   double elapsed() const;
   std::size_t bytes() const;
   bool stopped();
-  bool out_of_budget();
   bool report_progress();
 
   // curves.cpp

@@ -83,7 +83,8 @@ void Refinement::stitch_faces(const std::vector<CollarTriangle>& triangles) {
     const Index patch = patch_between(uses[i].key, uses[i].region, beyond);
     if (patch == none) {
       if (uses[i].region != beyond || j - i > 2)
-        give_up(mesh_.point(uses[i].key[0]), "a collar could not be stitched to its surroundings");
+        give_up(mesh_.point(uses[i].key[0]), "a collar could not be stitched to its surroundings",
+                "try a smaller size or another seed");
       continue;
     }
     auto face = uses[i].face;

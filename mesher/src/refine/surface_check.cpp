@@ -47,9 +47,9 @@ bool Refinement::check_surface() {
   found |= resolve_distant_points(faces);
   found |= check_flat_cells();
   if (found && ++surface_rounds_ > most_rounds) {
-    give_up(points_[plc_.triangles[0].points[0]],
-            fmt::format("the surface did not settle in {} rounds; the first point of the input is",
-                        most_rounds));
+    give_up(mesh_.point(last_vertex()),
+            fmt::format("the surface did not settle in {} rounds of repairs; the last vertex is", most_rounds),
+            "raise distance, or try a smaller size or another seed");
     return false;
   }
   return found;
