@@ -4,83 +4,53 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
 
 #include "collarmesh/io/tet_mesh_io.h"
+#include "machine.h"
+#include "option_values.h"
 #include "surface_files.h"
+#include "usage_error.h"
 
 namespace collarmesh::cli {
 
 namespace {
 
-template <class Number>
-bool parse_whole(std::string_view text, Number& number) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size();
-}
-
-std::string list(const std::vector<std::string>& extensions) {
-  return fmt::format("{}", fmt::join(extensions, " "));
-}
-
 std::string known_formats() {
   return list(surface_formats()) + " or " + list(io::written_tet_mesh_formats());
 }
 
-/// A finite number in an interval, so that "nan" and "inf" are refused as well.
-CLI::Validator number_in(double low, double high, const std::string& name) {
-  return CLI::Validator(
-      [=](std::string& text) {
-        double number = 0;
-        if (parse_whole(text, number) && number >= low && number <= high) return std::string();
-        return fmt::format("'{}' is not {}", text, name);
-      },
-      "");
+std::vector<std::string> all_formats() {
+  std::vector<std::string> formats = surface_formats();
+  for (auto& more : {io::written_tet_mesh_formats(), io::read_tet_mesh_formats()})
+    for (const std::string& format : more)
+      if (std::find(formats.begin(), formats.end(), format) == formats.end()) formats.push_back(format);
+  return formats;
 }
-
-/// CLI11 reads "-5" into an unsigned number without complaint.
-const CLI::Validator count = CLI::Validator(
-    [](std::string& text) {
-      std::uint64_t number = 0;
-      return parse_whole(text, number) ? std::string() : fmt::format("'{}' is not a whole number >= 0", text);
-    },
-    "");
-
-/// "4G" to bytes.
-const CLI::Validator memory = CLI::Validator(
-    [](std::string& text) {
-      return text.empty() || text[0] == '-' ? fmt::format("'{}' is not a size such as 4G", text)
-                                            : CLI::AsSizeValue(false)(text);
-    },
-    "");
-
-/// "STL" to ".stl".
-const CLI::Validator format_name = CLI::Validator(
-    [](std::string& text) {
-      for (char& c : text)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
-      if (!text.starts_with('.')) text = '.' + text;
-      return is_surface_format("", text) || io::is_tet_mesh_format("", text)
-                 ? std::string()
-                 : fmt::format("'{}' is not known; use {}", text, known_formats());
-    },
-    "");
 
 const CLI::Validator length = number_in(0, 1e300, "a length (a number >= 0 in input units)");
 const CLI::Validator fraction = number_in(0, 0.1, "a number from 0 to 0.1 (relative to the diagonal)");
+const CLI::Validator small_fraction =
+    number_in(0, 0.01, "a number from 0 to 0.01 (relative to the diagonal)");
 const CLI::Validator angle = number_in(0, 180, "an angle from 0 to 180 degrees");
 const CLI::Validator collar_angle = number_in(100, 175, "an angle from 100 to 175 degrees");
 const CLI::Validator ratio = number_in(1, 1e300, "a ratio of at least 1");
+const CLI::Validator number = number_in(0, 1e300, "a number >= 0");
+const CLI::Validator seconds = number_in(0, 1e300, "a number of seconds >= 0");
+const CLI::Validator count = whole_number();
 
-/// An option whose value 0 stands for a default that depends on the input.
+/// An option by its name and what its value is called, "--size LENGTH". Its value 0 may stand for a
+/// default that depends on the input.
 template <class T>
-CLI::Option* add(CLI::App& app, const std::string& name, T& value, const std::string& text,
+CLI::Option* add(CLI::App& app, const std::string& name_and_type, T& value, const std::string& text,
                  const std::string& default_text = {}) {
-  CLI::Option* option = app.add_option(name, value, text);
+  const std::size_t space = name_and_type.find(' ');
+  CLI::Option* option = app.add_option(name_and_type.substr(0, space), value, text);
+  option->type_name(name_and_type.substr(space + 1));
   if (default_text.empty()) return option->capture_default_str();
   return option->default_str(default_text);
 }
@@ -97,24 +67,25 @@ CLI::Option* add_tag_values(CLI::App& app, const std::string& name, std::map<Tag
     }
   };
   return app.add_option_function<std::vector<std::string>>(name, store, text)
-      ->type_name("TAG=VALUE")
+      ->type_name("TAG=LENGTH")
       ->allow_extra_args(false);
 }
 
 void add_complex_options(CLI::App& app, ComplexArguments& a) {
   const std::string group = "The complex";
-  add(app, "--feature-angle", a.plc.feature_angle,
+  add(app, "--feature-angle DEGREES", a.plc.feature_angle,
       "Edges that deviate more than this from flat are segments, degrees; 0: every edge that is not flat")
       ->check(angle)
       ->group(group);
-  add(app, "--planar-tolerance", a.plc.planar_tolerance,
+  add(app, "--planar-tolerance T", a.plc.planar_tolerance,
       "Facets within this of one plane are one, relative to the diagonal; 0: exactly coplanar ones only")
+      ->check(small_fraction)
+      ->group(group);
+  add(app, "--weld T", a.plc.weld, "Points closer than this are one, relative to the diagonal")
       ->check(fraction)
       ->group(group);
-  add(app, "--weld", a.plc.weld, "Points closer than this are one, relative to the diagonal")
-      ->check(fraction)
-      ->group(group);
-  add(app, "--crease-angle", a.crease_angle, "Features that meet below this angle form a crease, degrees")
+  add(app, "--crease-angle DEGREES", a.crease_angle,
+      "Features that meet below this angle form a crease, degrees")
       ->check(number_in(0, 90, "an angle from 0 to 90 degrees"))
       ->group(group);
 }
@@ -122,8 +93,10 @@ void add_complex_options(CLI::App& app, ComplexArguments& a) {
 void add_size_options(CLI::App& app, MeshArguments& a) {
   MeshOptions& m = a.mesh;
   const std::string group = "Size (target edge lengths, absolute, input units)";
-  add(app, "--size", m.size, "Everywhere", "1/20 of the diagonal")->check(length)->group(group);
-  add(app, "--size-min", m.size_min, "Never ask for less than this", "none")->check(length)->group(group);
+  add(app, "--size LENGTH", m.size, "Everywhere", "1/20 of the diagonal")->check(length)->group(group);
+  add(app, "--size-min LENGTH", m.size_min, "Never ask for less than this", "none")
+      ->check(length)
+      ->group(group);
   add_tag_values(app, "--region-size", m.region_size, "In the regions with this tag; repeatable")
       ->group(group);
   add_tag_values(app, "--patch-size", m.patch_size, "On the patches with this tag; repeatable")->group(group);
@@ -133,65 +106,78 @@ void add_size_options(CLI::App& app, MeshArguments& a) {
                  "scalar on its points")
       ->type_name("FILE")
       ->group(group);
-  add(app, "--elements-per-circle", m.elements_per_circle,
+  add(app, "--elements-per-circle N", m.elements_per_circle,
       "Finer where smooth surfaces and edges curve: so many elements on a full circle", "none")
-      ->check(length)
+      ->check(number)
       ->group(group);
-  add(app, "--elements-across-gap", m.elements_across_gap,
+  add(app, "--elements-across-gap N", m.elements_across_gap,
       "Finer where surfaces face each other across a thin part: so many elements between them", "none")
-      ->check(length)
+      ->check(number)
       ->group(group);
-  add(app, "--gradation", m.gradation, "Growth of size per unit length away from finer features", "unlimited")
-      ->check(length)
+  add(app, "--gradation G", m.gradation, "Growth of size per unit length away from finer features",
+      "unlimited")
+      ->check(number)
       ->group(group);
 }
 
 void add_improvement_options(CLI::App& app, MeshArguments& a) {
   const std::string group = "Quality";
-  add(app, "--improve", a.improve, "Removal of slivers: 0 none, 1 quick, 2 good, 3 best")
-      ->check(number_in(0, 3, "0, 1, 2 or 3"))
+  add(app, "--improve LEVEL", a.improve, "Removal of slivers: 0 none, 1 quick, 2 good, 3 best")
+      ->check(one_of({"0", "1", "2", "3"}))
       ->group(group);
-  add(app, "--min-dihedral", a.min_dihedral, "Improve tetrahedra with smaller dihedral angles, degrees",
-      "15, 20, 30 by level")
+  add(app, "--min-dihedral DEGREES", a.min_dihedral,
+      "Improve tetrahedra with smaller dihedral angles, degrees", "15, 20, 30 by level")
       ->check(number_in(0, 60, "an angle from 0 to 60 degrees"))
       ->group(group);
 }
 
 void add_quality_options(CLI::App& app, MeshOptions& m) {
   const std::string group = "Quality";
-  add(app, "--radius-edge", m.radius_edge, "Bound on circumradius / shortest edge of a tetrahedron")
+  add(app, "--radius-edge RHO", m.radius_edge, "Bound on circumradius / shortest edge of a tetrahedron")
       ->check(ratio)
       ->group(group);
-  add(app, "--vertex-ratio", m.vertex_ratio,
+  add(app, "--vertex-ratio TAU", m.vertex_ratio,
       "Bound on largest circumradius / shortest edge at a vertex, more than 2 sqrt 2", "none")
       ->check(length)
       ->group(group);
-  add(app, "--collar-angle", m.collar_angle,
+  add(app, "--collar-angle DEGREES", m.collar_angle,
       "Bound on dihedral angles in the collars around creases, degrees")
       ->check(collar_angle)
       ->group(group);
-  add(app, "--theta", m.theta, "Warp to input within this times a gap ball's radius; 0: never")
+  add(app, "--theta THETA", m.theta, "Warp to input within this times a gap ball's radius; 0: never")
       ->check(number_in(0, 0.449, "a number from 0 to below 0.45"))
       ->group(group);
-  add(app, "--distance", m.distance,
+  add(app, "--distance LENGTH", m.distance,
       "Largest distance from smooth surfaces and curves, absolute, input units", "1e-3 of the diagonal")
       ->check(length)
       ->group(group);
-  add(app, "--seed", m.seed, "Of the pseudo-random offsets: same input, options and seed, same mesh")
+  add(app, "--seed N", m.seed, "Of the pseudo-random offsets: same input, options and seed, same mesh")
       ->check(count)
       ->group(group);
 }
 
 void add_budget_options(CLI::App& app, MeshOptions& m) {
   const std::string group = "Budgets (hitting one is exit code 5)";
-  add(app, "--max-vertices", m.max_vertices, "Vertices of the triangulation, outside included", "none")
+  add(app, "--max-vertices N", m.max_vertices, "Vertices of the triangulation, outside included", "none")
       ->check(count)
       ->group(group);
-  add(app, "--max-memory", m.max_memory, "Bytes of the mesh structures; K, M and G are understood", "none")
-      ->transform(memory)
+  m.max_memory = memory_of_the_machine() / 2;
+  const auto set_memory = [&m](const std::string& text) {
+    try {
+      m.max_memory = parse_memory(text);
+    } catch (const std::invalid_argument& error) {
+      throw CLI::ValidationError("--max-memory", error.what());
+    }
+  };
+  app.add_option_function<std::string>(
+         "--max-memory", set_memory,
+         "Bytes of the mesh structures, as 500M or 1.5G; 0: none. A whole run takes about 1.2 times as much")
+      ->default_str("half of the machine's")
       ->group(group)
       ->type_name("BYTES");
-  add(app, "--time-limit", m.time_limit, "Seconds", "none")->check(length)->group(group);
+  add(app, "--time-limit SECONDS", m.time_limit, "For all stages together", "none")
+      ->check(seconds)
+      ->group(group);
 }
 
 void add_run_options(CLI::App& app, MeshArguments& a) {
@@ -201,13 +187,16 @@ void add_run_options(CLI::App& app, MeshArguments& a) {
   add_complex_options(app, a.complex);
   add_budget_options(app, a.mesh);
   app.add_option("--report", a.report, "Write what was measured as JSON")->type_name("FILE.json");
-  const std::map<std::string, ProgressStyle> styles{
-      {"auto", ProgressStyle::automatic}, {"json", ProgressStyle::json}, {"none", ProgressStyle::none}};
-  app.add_option("--progress", a.progress, "auto (a bar on a terminal), json (one object a line) or none")
-      ->transform(CLI::CheckedTransformer(styles))
+  const auto set_progress = [&a](const std::string& word) {
+    a.progress = word == "json"   ? ProgressStyle::json
+                 : word == "none" ? ProgressStyle::none
+                                  : ProgressStyle::automatic;
+  };
+  app.add_option_function<std::string>("--progress", set_progress,
+                                       "auto (a bar on a terminal), json (one object a line) or none")
+      ->check(one_of({"auto", "json", "none"}))
       ->default_str("auto")
-      ->type_name("STYLE")
-      ->option_text("{auto,json,none}=auto");
+      ->type_name("STYLE");
   app.add_flag("-v,--verbose", a.verbose, "Say more: time per stage, statistics");
   app.add_flag("-q,--quiet", a.quiet, "Say nothing unless something is wrong");
 }
@@ -233,10 +222,12 @@ CLI::App* add_convert_command(CLI::App& app, MeshArguments& a) {
       ->required()
       ->type_name("FILE");
   convert->add_option("--format", a.output_format, "Of the output, an extension such as stl; needed for -")
-      ->transform(format_name)
+      ->transform(format_name(all_formats()))
+      ->type_name("FORMAT")
       ->default_str("by extension");
   convert->add_option("--input-format", a.input_format, "Of the inputs; needed for -")
-      ->transform(format_name)
+      ->transform(format_name(all_formats()))
+      ->type_name("FORMAT")
       ->default_str("by extension");
   add_run_options(*convert, a);
   return convert;
@@ -248,14 +239,15 @@ CLI::App* add_check_command(CLI::App& app, CheckArguments& a) {
       ->required()
       ->type_name("FILE");
   check->add_option("--against", a.inputs, "The input: one or several files")->required()->type_name("FILE");
-  add(*check, "--radius-edge", a.check.radius_edge, "Bound on circumradius / shortest edge of a tetrahedron")
+  add(*check, "--radius-edge RHO", a.check.radius_edge,
+      "Bound on circumradius / shortest edge of a tetrahedron")
       ->check(ratio);
-  add(*check, "--collar-angle", a.check.collar_angle, "Bound on dihedral angles in collars, degrees")
+  add(*check, "--collar-angle DEGREES", a.check.collar_angle, "Bound on dihedral angles in collars, degrees")
       ->check(collar_angle);
-  add(*check, "--distance", a.check.distance,
+  add(*check, "--distance LENGTH", a.check.distance,
       "Largest distance from smooth surfaces and curves, absolute, input units", "1e-3 of the diagonal")
       ->check(length);
-  add(*check, "--findings", a.check.findings_per_guarantee, "List at most this many per guarantee")
+  add(*check, "--findings N", a.check.findings_per_guarantee, "List at most this many per guarantee")
       ->check(count);
   add_complex_options(*check, a.complex);
   check->add_flag("--json", a.json, "Print JSON");
@@ -296,8 +288,8 @@ void check_run_arguments(const MeshArguments& a) {
 }
 
 void check_mesh_arguments(const MeshArguments& a) {
-  if (a.inputs.empty()) throw CLI::RequiredError("INPUT: a file to mesh");
-  if (a.output.empty()) throw CLI::RequiredError("--output: where to write the mesh");
+  if (a.inputs.empty()) throw CLI::RequiredError("INPUT, a file to mesh,");
+  if (a.output.empty()) throw CLI::RequiredError("--output, the mesh to write,");
   if (!io::is_tet_mesh_format(a.output))
     throw CLI::ValidationError("--output", fmt::format("'{}' {}; use {}", a.output, extension_list(a.output),
                                                        list(io::written_tet_mesh_formats())));
@@ -322,12 +314,11 @@ class HelpText : public CLI::Formatter {
  public:
   HelpText() { column_width(34); }
   std::string make_usage(const CLI::App* app, std::string name) const override {
-    if (app->get_parent() == nullptr)
-      return "Usage: collarmesh INPUT... -o OUT [options]\n"
-             "       collarmesh check MESH --against INPUT... [options]\n"
-             "       collarmesh info INPUT... [options]\n"
-             "       collarmesh convert IN... -o OUT [options]\n";
-    return CLI::Formatter::make_usage(app, name);
+    if (app->get_parent() != nullptr) return CLI::Formatter::make_usage(app, name);
+    std::string text = "Usage:";
+    for (const char* command : {"", "check", "info", "convert"})
+      text += fmt::format("{} {} [options]\n", text.size() > 6 ? "      " : "", usage_of(command));
+    return text;
   }
 };
 
@@ -338,17 +329,6 @@ constexpr const char* footer =
     "Lengths are in input units (millimetres for CAD files); 'diagonal' is the bounding box's.";
 
 }  // namespace
-
-std::pair<Tag, double> parse_tag_value(std::string_view text) {
-  const std::size_t equals = text.find('=');
-  std::pair<Tag, double> result;
-  if (equals == std::string_view::npos || !parse_whole(text.substr(0, equals), result.first) ||
-      !parse_whole(text.substr(equals + 1), result.second) || !std::isfinite(result.second) ||
-      result.second <= 0)
-    throw std::invalid_argument(
-        fmt::format("'{}' is not TAG=VALUE with a whole number and a positive length, as in 7=0.25", text));
-  return result;
-}
 
 std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
   MeshArguments mesh;
@@ -361,19 +341,24 @@ std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
   app.footer(footer);
   app.require_subcommand(0, 1);
   add_mesh_options(app, mesh);
-  const CLI::App* check_command = add_check_command(app, check);
-  const CLI::App* info_command = add_info_command(app, info);
-  const CLI::App* convert_command = add_convert_command(app, convert.mesh);
+  CLI::App* const check_command = add_check_command(app, check);
+  CLI::App* const info_command = add_info_command(app, info);
+  CLI::App* const convert_command = add_convert_command(app, convert.mesh);
   try {
     app.parse(argc, argv);
     const bool subcommand = check_command->parsed() || info_command->parsed() || convert_command->parsed();
     if (!subcommand) check_mesh_arguments(mesh);
     if (convert_command->parsed()) check_convert_arguments(convert.mesh);
-    if (subcommand && (!mesh.inputs.empty() || !mesh.output.empty()))
-      throw CLI::ExtrasError(
-          {"a subcommand comes first: collarmesh check MESH ..., info INPUT ..., convert IN ..."});
+    if (subcommand && (!mesh.inputs.empty() || !mesh.output.empty())) throw CLI::HorribleError("");
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? ExitCode::success : ExitCode::usage;
+    if (error.get_exit_code() == 0) return app.exit(error), ExitCode::success;  // --help, --version
+    const bool subcommand_last =
+        !app.get_subcommands().empty() && (!mesh.inputs.empty() || !mesh.output.empty());
+    fmt::print(stderr, "collarmesh: {}\nRun with --help for more information.\n",
+               subcommand_last
+                   ? "a subcommand comes first: collarmesh check MESH ..., info INPUT ..., convert IN ..."
+                   : usage_message(app, error));
+    return ExitCode::usage;
   }
   if (check_command->parsed()) return Arguments(check);
   if (info_command->parsed()) return Arguments(info);

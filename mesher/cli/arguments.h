@@ -1,8 +1,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -28,9 +26,9 @@ struct MeshArguments {
   std::string output;
   ComplexArguments complex;
   MeshOptions mesh;
-  std::string size_field;   ///< path, empty: none
-  unsigned improve = 2;     ///< level; 0: leave the elements as they are
-  double min_dihedral = 0;  ///< degrees, in place of the level's; 0: the level's
+  std::string size_field;                   ///< path, empty: none
+  unsigned improve = 2;                     ///< level; 0: leave the elements as they are
+  double min_dihedral = 0;                  ///< degrees, in place of the level's; 0: the level's
   std::string input_format, output_format;  ///< extensions with their dot; empty: those of the files
   std::string report;                       ///< path, empty: none
   ProgressStyle progress = ProgressStyle::automatic;
@@ -66,8 +64,5 @@ using Arguments = std::variant<MeshArguments, CheckArguments, InfoArguments, Con
 /// Understand a command line. When there is nothing to run (help, version, a mistake) the text has
 /// been printed and the exit code is returned instead.
 std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv);
-
-/// "7=0.25" is {7, 0.25}. Throws std::invalid_argument saying what is expected.
-std::pair<Tag, double> parse_tag_value(std::string_view text);
 
 }  // namespace collarmesh::cli

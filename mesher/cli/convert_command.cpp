@@ -12,6 +12,7 @@
 #include "input_files.h"
 #include "interrupt.h"
 #include "mesh_command.h"
+#include "report.h"
 #include "staged_file.h"
 #include "surface_files.h"
 
@@ -41,6 +42,7 @@ void place_regions(const MeshArguments& a, const std::vector<PolygonSoup>& soups
   options.require_solid = false;
   try {
     const Plc plc = build_plc(soups, options);
+    fmt::print(stderr, "{}", warnings_text(plc));
     const Index missing = place_region_points(plc, merged);
     if (missing > 0)
       tell(a, fmt::format("{} regions or cavities are too thin for a point inside\n", missing));
@@ -90,6 +92,7 @@ void convert_mesh(const MeshArguments& a) {
 
 ExitCode convert_command(const ConvertArguments& arguments) {
   const MeshArguments& a = arguments.mesh;
+  set_time_limit(a.mesh.time_limit);
   require_writable(a.output);
   const bool to_surface = is_surface_format(a.output, a.output_format);
   if (io::is_tet_mesh_format(a.inputs.front(), a.input_format)) {

@@ -35,7 +35,7 @@ void print_complex(const InfoArguments& arguments) {
   if (arguments.json)
     fmt::print("{}\n", nlohmann::ordered_json{{"complex", complex_json(plc, summary)}}.dump(1));
   else
-    fmt::print("{}", complex_text(plc, summary));
+    fmt::print("{}{}", complex_text(plc, summary), warnings_text(plc));
 }
 
 }  // namespace

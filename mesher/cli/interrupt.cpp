@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <mutex>
 #include <stop_token>
+#include <string>
 #include <thread>
 
 #include "staged_file.h"
@@ -17,10 +18,36 @@ namespace collarmesh::cli {
 
 namespace {
 
-std::atomic<bool> interrupted{false};
+using Clock = std::chrono::steady_clock;
+
+std::atomic<bool> interrupted{false}, by_user{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "signal handlers need it");
 
-extern "C" void on_interrupt(int) { interrupted.store(true, std::memory_order_relaxed); }
+std::mutex deadline_mutex;  // guards the three below
+double time_limit = 0;
+Clock::time_point deadline = Clock::time_point::max();
+std::string stage_now = "stage: start";
+
+extern "C" void on_interrupt(int) {
+  by_user.store(true, std::memory_order_relaxed);
+  interrupted.store(true, std::memory_order_relaxed);
+}
+
+bool asked_to_stop() {
+  const std::lock_guard lock(deadline_mutex);
+  if (Clock::now() > deadline) interrupted.store(true, std::memory_order_relaxed);
+  return interrupted.load(std::memory_order_relaxed);
+}
+
+Stopped reason_to_stop() {
+  if (by_user.load(std::memory_order_relaxed)) return Cancelled();
+  const std::lock_guard lock(deadline_mutex);
+  return {ExitCode::budget_hit,
+          fmt::format(
+              "the time limit of {} s is reached ({}); nothing was written; raise --time-limit, or --size "
+              "for a coarser mesh",
+              time_limit, stage_now)};
+}
 
 }  // namespace
 
@@ -36,8 +63,23 @@ void install_interrupt_handlers() {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grew too large is a write error like others
 }
 
+void set_time_limit(double seconds) {
+  constexpr double a_year = 3e7;  // more than the clock's type may not hold
+  const std::lock_guard lock(deadline_mutex);
+  time_limit = seconds;
+  deadline =
+      seconds > 0 && seconds < a_year
+          ? Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds))
+          : Clock::time_point::max();
+}
+
+void note_stage(const std::string& stage) {
+  const std::lock_guard lock(deadline_mutex);
+  stage_now = stage;
+}
+
 void stop_if_interrupted() {
-  if (interrupted.load(std::memory_order_relaxed)) throw Cancelled();
+  if (asked_to_stop()) throw reason_to_stop();
 }
 
 ExitCode run_interruptible(const std::function<ExitCode()>& command) {
@@ -51,11 +93,12 @@ ExitCode run_interruptible(const std::function<ExitCode()>& command) {
       return ended.wait_for(lock, end, time, [&end] { return end.stop_requested(); });
     };
     while (!command_ends_within(50ms)) {
-      if (!interrupted.load(std::memory_order_relaxed)) continue;
+      if (!asked_to_stop()) continue;
       if (command_ends_within(700ms) || !abandon_staged_files()) return;
-      fmt::print(stderr, "\ncollarmesh: {}\n", Cancelled().what());
+      const Stopped reason = reason_to_stop();
+      fmt::print(stderr, "\ncollarmesh: {}\n", reason.what());
       std::fflush(nullptr);
-      std::_Exit(static_cast<int>(ExitCode::cancelled));
+      std::_Exit(static_cast<int>(reason.code));
     }
   });
   return command();

@@ -3,23 +3,36 @@
 #include <atomic>
 #include <functional>
 #include <stdexcept>
+#include <string>
 
 #include "exit_code.h"
 
 namespace collarmesh::cli {
 
-/// Thrown between stages once the user asked to stop.
-struct Cancelled : std::runtime_error {
-  Cancelled() : std::runtime_error("cancelled; nothing was written") {}
+/// Thrown when a command ends before it is done. Nothing was written.
+struct Stopped : std::runtime_error {
+  Stopped(ExitCode exit_code, const std::string& message) : std::runtime_error(message), code(exit_code) {}
+  ExitCode code;
 };
 
-/// Set by the first Ctrl-C (SIGINT) or SIGTERM; the second one kills.
+/// The user asked to stop.
+struct Cancelled : Stopped {
+  Cancelled() : Stopped(ExitCode::cancelled, "cancelled; nothing was written") {}
+};
+
+/// Set by the first Ctrl-C (SIGINT) or SIGTERM, the second one kills; and when the time is up.
 const std::atomic<bool>& interrupt_flag();
 
 /// Catch the signals from now on.
 void install_interrupt_handlers();
 
-/// Throws Cancelled when the user asked to stop.
+/// The command has so many seconds from now on for everything it does; 0: any time.
+void set_time_limit(double seconds);
+
+/// What the command is doing, for the message when its time is up.
+void note_stage(const std::string& stage);
+
+/// Throws Stopped when the user asked to stop or the time is up.
 void stop_if_interrupted();
 
 /// Run a command so that an interrupt ends the program within a second whatever it is doing: stages

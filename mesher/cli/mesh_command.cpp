@@ -12,6 +12,7 @@
 #include "conversion_report.h"
 #include "input_files.h"
 #include "interrupt.h"
+#include "option_warnings.h"
 #include "progress_display.h"
 #include "report.h"
 #include "staged_file.h"
@@ -25,12 +26,17 @@ class Stages {
  public:
   Stages(ProgressStyle style, StageTimes& times) : display_(style), times_(times) {}
 
-  void begin(const std::string& phase, double begin, double end) {
+  void begin(const std::string& phase, double begin, double end, std::size_t tets = 0) {
     stop_if_interrupted();
+    note_stage(tets > 0 ? fmt::format("stage: {}, {} tets", phase, tets) : fmt::format("stage: {}", phase));
     times_.begin(phase);
     display_.begin_stage(phase, begin, end);
   }
-  void update(const ProgressReport& report) { display_.update(report); }
+  void update(const ProgressReport& report) {
+    note_stage(fmt::format("stage: {}, {} vertices, {} tets", report.phase, report.vertices, report.tets));
+    display_.update(report);
+  }
+  void print(const std::string& text) { display_.print(text); }
 
  private:
   ProgressDisplay display_;
@@ -72,6 +78,10 @@ void build_complex(const MeshArguments& arguments, Stages& stages, MeshRun& run)
   run.plc = build_plc(soups, arguments.complex.plc);
   require_known_tags(arguments.mesh, run.plc);
   run.summary = summarize(run.plc, arguments.complex.crease_angle);
+  run.warnings = option_warnings(arguments, run.plc);
+  std::string text = warnings_text(run.plc);
+  for (const std::string& warning : run.warnings) text += fmt::format("warning: {}\n", warning);
+  stages.print(text);
 }
 
 void refine(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
@@ -85,12 +95,24 @@ void refine(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   MeshOptions options = arguments.mesh;
   options.crease_angle = arguments.complex.crease_angle;
   if (!arguments.size_field.empty()) options.size_field = read_size_field(arguments.size_field, run.plc);
+  options.time_limit = 0;  // one limit for all stages: the interrupt flag
   run.result = generate(run.plc, options, execution);
+  if (run.result.status == MeshStatus::cancelled) {
+    const MeshStatistics& reached = run.result.statistics;
+    const Point& p = run.result.where;
+    note_stage(fmt::format(
+        "stage: refine, {} vertices, {} cells, {:.1f} MB; the last vertex is ({:.9g}, {:.9g}, {:.9g})",
+        reached.vertices_inserted, reached.cells, static_cast<double>(reached.peak_bytes) / 1e6, p.x, p.y,
+        p.z));
+    stop_if_interrupted();
+  }
+  if (run.result.status == MeshStatus::budget_hit)
+    throw Stopped(ExitCode::budget_hit, run.result.message + "; nothing was written");
 }
 
 void improve_elements(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   if (arguments.improve == 0) return;
-  stages.begin("improve", 0.7, 0.8);
+  stages.begin("improve", 0.7, 0.8, run.result.mesh.tets.size());
   Execution execution;
   execution.cancel = &interrupt_flag();
   ImproveOptions options = improve_options(arguments.improve);
@@ -102,7 +124,7 @@ void improve_elements(const MeshArguments& arguments, Stages& stages, MeshRun& r
 }
 
 void certify(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
-  stages.begin("check", 0.8, 0.93);
+  stages.begin("check", 0.8, 0.93, run.result.mesh.tets.size());
   CheckOptions options;
   options.radius_edge = arguments.mesh.radius_edge;
   options.distance = arguments.mesh.distance;
@@ -119,7 +141,7 @@ void write_report(const std::string& path, const MeshArguments& arguments, const
 }
 
 void write_files(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
-  stages.begin("write", 0.93, 1);
+  stages.begin("write", 0.93, 1, run.result.mesh.tets.size());
   StagedFile mesh(arguments.output);
   mesh.write(
       [&](const std::string& path) { io::write_tet_mesh(path, run.result.mesh, arguments.output_format); });
@@ -144,30 +166,23 @@ void tell(const MeshArguments& arguments, const MeshRun& run) {
                losses_text(lost_by(format_of(arguments.output, arguments.output_format), run.result.mesh)));
 }
 
-ExitCode mesh_and_write(const MeshArguments& arguments, MeshRun& run) {
-  Stages stages(arguments.quiet ? ProgressStyle::none : arguments.progress, run.times);
-  build_complex(arguments, stages, run);
-  refine(arguments, stages, run);
-  if (run.result.status == MeshStatus::cancelled) throw Cancelled();
-  if (run.result.status == MeshStatus::budget_hit) return ExitCode::budget_hit;
-  improve_elements(arguments, stages, run);
-  certify(arguments, stages, run);
-  write_files(arguments, stages, run);
-  return run.guarantees_hold() ? ExitCode::success : ExitCode::guarantee_missed;
-}
-
 }  // namespace
 
 ExitCode mesh_command(const MeshArguments& arguments) {
+  set_time_limit(arguments.mesh.time_limit);
   require_writable(arguments.output);
   if (!arguments.report.empty()) require_writable(arguments.report);
   MeshRun run;
-  const ExitCode code = mesh_and_write(arguments, run);
-  if (code == ExitCode::budget_hit)
-    fmt::print(stderr, "collarmesh: {}\n", run.result.message);
-  else
-    tell(arguments, run);
-  return code;
+  {
+    Stages stages(arguments.quiet ? ProgressStyle::none : arguments.progress, run.times);
+    build_complex(arguments, stages, run);
+    refine(arguments, stages, run);
+    improve_elements(arguments, stages, run);
+    certify(arguments, stages, run);
+    write_files(arguments, stages, run);
+  }
+  tell(arguments, run);
+  return run.guarantees_hold() ? ExitCode::success : ExitCode::guarantee_missed;
 }
 
 }  // namespace collarmesh::cli

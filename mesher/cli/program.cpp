@@ -43,9 +43,11 @@ ExitCode fail(const PlcError& error) {
   return ExitCode::invalid_complex;
 }
 
-ExitCode execute(const Arguments& arguments) {
+}  // namespace
+
+ExitCode guarded(const std::function<ExitCode()>& command) {
   try {
-    return std::visit(Execute(), arguments);
+    return command();
   } catch (const OptionError& error) {
     return fail(ExitCode::usage, error.what());
   } catch (const ReadError& error) {
@@ -54,24 +56,25 @@ ExitCode execute(const Arguments& arguments) {
     return fail(error);
   } catch (const WriteError& error) {
     return fail(ExitCode::cannot_write, error.what());
-  } catch (const Cancelled& cancelled) {
-    return fail(ExitCode::cancelled, cancelled.what());
+  } catch (const Stopped& stopped) {
+    return fail(stopped.code, stopped.what());
   } catch (const std::bad_alloc&) {
-    return fail(ExitCode::budget_hit,
-                "the memory is used up; raise --size, or set --max-memory to stop earlier");
+    return fail(
+        ExitCode::budget_hit,
+        "the memory is used up; raise --size for a coarser mesh, or set --max-memory to stop earlier");
   } catch (const std::exception& error) {
-    return fail(ExitCode::internal_error,
-                fmt::format("internal error, please report it with the input: {}", error.what()));
+    return fail(
+        ExitCode::internal_error,
+        fmt::format("internal error: {}; please report it with the input and the options", error.what()));
   }
 }
-
-}  // namespace
 
 int run(int argc, const char* const* argv) {
   const std::variant<Arguments, ExitCode> parsed = parse(argc, argv);
   if (const ExitCode* code = std::get_if<ExitCode>(&parsed)) return static_cast<int>(*code);
   install_interrupt_handlers();
-  return static_cast<int>(run_interruptible([&parsed] { return execute(std::get<Arguments>(parsed)); }));
+  return static_cast<int>(run_interruptible(
+      [&] { return guarded([&] { return std::visit(Execute(), std::get<Arguments>(parsed)); }); }));
 }
 
 }  // namespace collarmesh::cli

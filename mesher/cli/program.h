@@ -1,8 +1,15 @@
 #pragma once
 
+#include <functional>
+
+#include "exit_code.h"
+
 namespace collarmesh::cli {
 
 /// The whole program; returns its exit code (exit_code.h).
 int run(int argc, const char* const* argv);
+
+/// Run a command; what it throws becomes a message on standard error and an exit code.
+ExitCode guarded(const std::function<ExitCode()>& command);
 
 }  // namespace collarmesh::cli

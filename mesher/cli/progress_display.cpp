@@ -70,6 +70,12 @@ void ProgressDisplay::begin_stage(std::string phase, double begin, double end) {
   print_json();
 }
 
+void ProgressDisplay::print(const std::string& text) {
+  if (text.empty()) return;
+  const std::lock_guard lock(mutex_);
+  fmt::print(stderr, "{}{}", form_ == Form::bar ? "\r\033[K" : "", text);
+}
+
 void ProgressDisplay::update(const ProgressReport& report) {
   const std::lock_guard lock(mutex_);
   const bool new_phase = phase_ != report.phase;

@@ -23,6 +23,9 @@ class ProgressDisplay {
   /// A stage begins that takes the part [begin, end] of the whole.
   void begin_stage(std::string phase, double begin, double end);
 
+  /// Lines that stay, above the bar.
+  void print(const std::string& text);
+
   /// News within the stage.
   void update(const ProgressReport& report);
 

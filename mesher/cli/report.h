@@ -16,6 +16,7 @@ namespace collarmesh::cli {
 struct MeshRun {
   Plc plc;
   PlcSummary summary;
+  std::vector<std::string> warnings;  ///< of options; those of the input are in the complex
   MeshResult result;
   ImproveReport improvement;
   MeshMeasures measures;
@@ -32,6 +33,8 @@ nlohmann::ordered_json check_json(const CheckReport& report);
 nlohmann::ordered_json run_json(const MeshArguments& arguments, const MeshRun& run);
 
 // For people, lines of text:
+/// "warning: ..." lines of the input, the first ones if there are very many.
+std::string warnings_text(const Plc& plc);
 std::string complex_text(const Plc& plc, const PlcSummary& summary);
 std::string mesh_text(const TetMesh& mesh, const MeshMeasures& measures);
 std::string findings_text(const CheckReport& report, std::size_t listed);

@@ -41,7 +41,10 @@ const char* status_name(MeshStatus status) {
 }
 
 /// 0 stands for a default or for "none" in the options; null does so here.
-Json or_null(double value) { return value == 0 ? Json(nullptr) : Json(value); }
+template <class Number>
+Json or_null(Number value) {
+  return value == 0 ? Json(nullptr) : Json(value);
+}
 
 Json options_json(const MeshArguments& a) {
   const MeshOptions& m = a.mesh;
@@ -66,8 +69,8 @@ Json options_json(const MeshArguments& a) {
           {"improve", a.improve},
           {"min_dihedral", or_null(a.min_dihedral)},
           {"seed", m.seed},
-          {"max_vertices", or_null(static_cast<double>(m.max_vertices))},
-          {"max_memory", or_null(static_cast<double>(m.max_memory))},
+          {"max_vertices", or_null(m.max_vertices)},
+          {"max_memory", or_null(m.max_memory)},
           {"time_limit", or_null(m.time_limit)}};
 }
 
@@ -106,6 +109,9 @@ Json complex_json(const Plc& plc, const PlcSummary& s) {
                        {"angle", crease.angle},
                        {"where", point_json(crease.where)},
                        {"message", describe(plc, crease)}});
+  Json warnings = Json::array();
+  for (const Plc::Warning& warning : plc.warnings)
+    warnings.push_back({{"message", warning.message}, {"where", point_json(warning.where)}});
   return {{"points", s.points},
           {"triangles", s.triangles},
           {"vertices", s.vertices},
@@ -121,7 +127,8 @@ Json complex_json(const Plc& plc, const PlcSummary& s) {
           {"planar_tolerance", plc.planar_tolerance},
           {"largest_deviation", s.largest_deviation},
           {"regions", std::move(regions)},
-          {"creases", std::move(creases)}};
+          {"creases", std::move(creases)},
+          {"warnings", std::move(warnings)}};
 }
 
 Json measures_json(const TetMesh& mesh, const MeshMeasures& m) {
@@ -176,6 +183,7 @@ Json run_json(const MeshArguments& arguments, const MeshRun& run) {
           {"inputs", arguments.inputs},
           {"output", arguments.output},
           {"options", options_json(arguments)},
+          {"warnings", run.warnings},
           {"status", status_name(run.result.status)},
           {"message", run.result.message},
           {"guarantees_hold", run.guarantees_hold()},

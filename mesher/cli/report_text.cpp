@@ -49,6 +49,15 @@ std::string times_text(const StageTimes& times) {
 
 }  // namespace
 
+std::string warnings_text(const Plc& plc) {
+  std::string text;
+  for (std::size_t k = 0; k < std::min(plc.warnings.size(), listed); ++k)
+    fmt::format_to(Out(text), "warning: {}\n", plc.warnings[k].message);
+  if (plc.warnings.size() > listed)
+    fmt::format_to(Out(text), "... and {} more warnings\n", plc.warnings.size() - listed);
+  return text;
+}
+
 std::string complex_text(const Plc& plc, const PlcSummary& s) {
   std::string text;
   fmt::format_to(Out(text),
@@ -121,7 +130,8 @@ std::string run_text(const MeshArguments& arguments, const MeshRun& run) {
   const ImproveReport& i = run.improvement;
   if (arguments.verbose && i.candidates > 0)
     fmt::format_to(Out(text),
-                   "  {} of {} poor tets improved: {} edges removed, {} boundary flips, {} vertices moved, {} inserted\n",
+                   "  {} of {} poor tets improved: {} edges removed, {} boundary flips, {} vertices moved, "
+                   "{} inserted\n",
                    i.candidates - std::min(i.remaining, i.candidates), i.candidates, i.edge_removals,
                    i.boundary_flips, i.moved_vertices, i.inserted_vertices);
   if (run.guarantees_hold()) text += "  every guarantee holds\n";

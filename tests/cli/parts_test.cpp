@@ -8,6 +8,8 @@
 #include "collarmesh/error.h"
 #include "input_files.h"
 #include "mesh_measures.h"
+#include "option_values.h"
+#include "program.h"
 #include "progress_display.h"
 #include "staged_file.h"
 

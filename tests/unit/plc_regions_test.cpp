@@ -1,7 +1,10 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <numbers>
+#include <string>
 
 #include "collarmesh/plc_builder.h"
 #include "support/plc_shapes.h"
@@ -228,6 +231,105 @@ TEST(PlcRegions, NamesComeFromTheirSoups) {
   EXPECT_EQ(plc.regions[1].name, "first.off");
   EXPECT_EQ(plc.regions[2].name, "second.off");
   EXPECT_EQ(plc.patches.back().file, 1U);
+}
+
+// Boxes side by side as complexes, whose facets tell no inside.
+PolygonSoup named_box(const Point& low, const Point& high, const std::string& name) {
+  PolygonSoup soup = box(low, high);
+  soup.name = name;
+  soup.region_points.push_back({0.5 * (low + high), static_cast<Tag>(name.size()), 0});
+  return soup;
+}
+
+// The square from (1, 1) to (2, 2) becomes part of the facet at z = 0.
+PolygonSoup with_square_in_floor(const PolygonSoup& soup) {
+  PolygonSoup facets;
+  facets.points = soup.points;
+  facets.name = soup.name;
+  facets.region_points = soup.region_points;
+  for (const auto& [x, y] : {std::pair{1, 1}, {2, 1}, {2, 2}, {1, 2}})
+    facets.points.push_back({static_cast<double>(x), static_cast<double>(y), 0});
+  const auto first = static_cast<Index>(soup.points.size());
+  for (Index f = 0; f < soup.facet_count(); ++f) {
+    const auto corners = soup.polygon(soup.facet_polygons(f)[0]);
+    facets.add_facet(corners);
+    if (std::all_of(corners.begin(), corners.end(), [&](Index p) { return soup.points[p].z == 0; }))
+      facets.add_polygon(std::array<Index, 4>{first, first + 1, first + 2, first + 3});
+  }
+  return facets;
+}
+
+std::vector<std::string> names(const Plc& plc) {
+  std::vector<std::string> result;
+  for (std::size_t r = 1; r < plc.regions.size(); ++r)
+    result.push_back(fmt::format("{} {}", plc.regions[r].name, plc.regions[r].tag));
+  return result;
+}
+
+TEST(PlcRegions, ARegionBearsTheNameOfTheFileThatEnclosesIt) {
+  const std::vector<PolygonSoup> row{named_box({0, 0, 0}, {1, 1, 1}, "a"),
+                                     named_box({1, 0, 0}, {2, 1, 1}, "bb"),
+                                     named_box({2, 0, 0}, {3, 1, 1}, "ccc")};
+  const std::vector<std::string> of_row{"a 1", "bb 2", "ccc 3"};
+  std::vector<std::string> expected(3);
+  std::array<std::size_t, 3> order{0, 1, 2};
+  do {
+    std::transform(order.begin(), order.end(), expected.begin(), [&](std::size_t k) { return of_row[k]; });
+    EXPECT_EQ(names(build({row[order[0]], row[order[1]], row[order[2]]})), expected);
+  } while (std::next_permutation(order.begin(), order.end()));
+  // One inside of the other, with a side in common.
+  for (const bool swapped : {false, true}) {
+    std::vector<PolygonSoup> nested{named_box({0, 0, 0}, {4, 4, 4}, "a"),
+                                    named_box({1, 1, 0}, {2, 2, 1}, "bb")};
+    nested[0].region_points[0].point = {3, 3, 3};
+    nested[0] = with_square_in_floor(nested[0]);
+    if (swapped) std::swap(nested[0], nested[1]);
+    expected = swapped ? std::vector<std::string>{"bb 2", "a 1"} : std::vector<std::string>{"a 1", "bb 2"};
+    EXPECT_EQ(names(build(nested)), expected);
+  }
+}
+
+void expect_warning(const PolygonSoup& soup, const Point& where, const std::vector<std::string>& told) {
+  const Plc plc = build({soup});
+  ASSERT_EQ(plc.warnings.size(), 1U);
+  EXPECT_EQ(plc.warnings[0].where, where);
+  for (const std::string& text : told)
+    EXPECT_NE(plc.warnings[0].message.find(text), std::string::npos) << plc.warnings[0].message;
+}
+
+TEST(PlcRegions, PointsWithoutEffectAreTold) {
+  PolygonSoup soup = named_box({0, 0, 0}, {1, 1, 1}, "a");
+  EXPECT_TRUE(build({soup}).warnings.empty());
+  soup.hole_points.push_back({5, 0.5, 0.5});
+  expect_warning(soup, {5, 0.5, 0.5}, {"a: the hole point (5, 0.5, 0.5)", "outside", "move it"});
+  soup.hole_points.clear();
+  soup.region_points.push_back({{0.5, 0.5, -2}, 7, 0});
+  expect_warning(soup, {0.5, 0.5, -2}, {"a: the region point (0.5, 0.5, -2)", "outside"});
+  // The same once more does not contradict.
+  soup.region_points[1] = {{0.25, 0.5, 0.5}, 1, 0};
+  EXPECT_TRUE(build({soup}).warnings.empty());
+}
+
+TEST(PlcRegions, PointsThatContradictEachOtherAreTold) {
+  PolygonSoup soup = named_box({0, 0, 0}, {1, 1, 1}, "a");
+  soup.region_points.push_back({{0.25, 0.5, 0.5}, 7, 0.125});
+  expect_warning(soup, {0.25, 0.5, 0.5}, {"(tag 7, size 0.125)", "(0.5, 0.5, 0.5) (tag 1)", "remove one"});
+  EXPECT_EQ(names(build({soup})), std::vector<std::string>{"a 7"});
+  soup.region_points.pop_back();
+  soup.hole_points.push_back({0.25, 0.5, 0.5});
+  PlcOptions options;
+  options.require_solid = false;
+  const Plc plc = build({soup}, options);
+  EXPECT_EQ(plc.regions.size(), 1U);
+  ASSERT_EQ(plc.warnings.size(), 1U);
+  for (const char* told : {"region point (0.5, 0.5, 0.5)", "hole point (0.25, 0.5, 0.5)", "remove one"})
+    EXPECT_NE(plc.warnings[0].message.find(told), std::string::npos) << plc.warnings[0].message;
+  try {
+    build({soup});
+    FAIL();
+  } catch (const PlcError& error) {
+    EXPECT_NE(std::string(error.what()).find("hole points empty"), std::string::npos) << error.what();
+  }
 }
 
 }  // namespace

@@ -49,7 +49,30 @@ void require_content(const Draft& draft, Faults& faults) {
                {});
 }
 
-void require_region(const Draft& draft, const EdgeTable& edges, const Regions& regions, Faults& faults) {
+// Why closed facets, or none at all, enclose no region.
+void report_nothing_solid(const Draft& draft, std::span<const PolygonSoup> soups, Faults& faults) {
+  for (Index s = 0; s < soups.size(); ++s)
+    if (!soups[s].hole_points.empty()) {
+      const Point& hole = soups[s].hole_points.front();
+      faults.add(
+          PlcFault::Kind::empty,
+          fmt::format("The facets enclose no region, as hole points empty what they enclose, the first one "
+                      "{} of {}; remove it to mesh what is around it.",
+                      text(hole), draft.soup_names[s]),
+          {}, hole);
+      return;
+    }
+  const Point at = draft.points.empty() ? Point{} : draft.points.front();
+  faults.add(
+      PlcFault::Kind::empty,
+      fmt::format("The {} triangles of the input, of which the first point is {}, enclose no region; add the "
+                  "facets that close it.",
+                  draft.triangles.size(), text(at)),
+      {}, at);
+}
+
+void require_region(const Draft& draft, const EdgeTable& edges, const Regions& regions,
+                    std::span<const PolygonSoup> soups, Faults& faults) {
   if (regions.list.size() > 1) return;
   std::size_t count = 0;
   Index first = none;
@@ -58,7 +81,7 @@ void require_region(const Draft& draft, const EdgeTable& edges, const Regions& r
     if (count++ == 0) first = e;
   }
   if (count == 0) {
-    faults.add(PlcFault::Kind::empty, "The facets enclose no region; there is nothing to mesh.", {}, {});
+    report_nothing_solid(draft, soups, faults);
     return;
   }
   const auto [a, b] = edges.ends(first);
@@ -157,7 +180,7 @@ Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options) {
 
   Regions regions = find_regions(draft, edges, soups, faults);
   faults.raise();
-  if (options.require_solid) require_region(draft, edges, regions, faults);
+  if (options.require_solid) require_region(draft, edges, regions, soups, faults);
   faults.raise();
 
   const auto segments = find_segments(draft, edges, find_flat_clusters(draft, edges), options.feature_angle);

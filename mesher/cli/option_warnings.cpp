@@ -1,0 +1,55 @@
+#include "option_warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+
+namespace collarmesh::cli {
+
+namespace {
+
+// On nine shapes every refinement ended at 1.1, with two to four times the tets of 1.4, and none at 1.
+constexpr double proved_radius_edge = std::numbers::sqrt2;
+// The lowest bound that all of twelve shapes reached (doc/architecture.md).
+constexpr double reached_collar_angle = 130;
+// Relative to the diagonal.
+constexpr double small_distance = 1e-5, large_planar_tolerance = 1e-3;
+
+bool is_smooth_anywhere(const Plc& plc) {
+  return std::any_of(plc.patches.begin(), plc.patches.end(),
+                     [](const auto& patch) { return !patch.planar; }) ||
+         std::any_of(plc.curves.begin(), plc.curves.end(), [](const auto& curve) { return !curve.straight; });
+}
+
+}  // namespace
+
+std::vector<std::string> option_warnings(const MeshArguments& a, const Plc& plc) {
+  std::vector<std::string> warnings;
+  const double diagonal = plc.bounds.diagonal();
+  if (a.mesh.radius_edge < proved_radius_edge)
+    warnings.push_back(
+        fmt::format("--radius-edge {}: refinement need not end below sqrt 2 = 1.414; it ends when a "
+                    "budget is spent, set one with --max-vertices or --time-limit.",
+                    a.mesh.radius_edge));
+  if (a.mesh.collar_angle < reached_collar_angle && !find_creases(plc, a.complex.crease_angle).empty())
+    warnings.push_back(
+        fmt::format("--collar-angle {}: collars need not reach bounds below 130 degrees; refinement "
+                    "then ends when a budget is spent, set one with --max-vertices or --time-limit.",
+                    a.mesh.collar_angle));
+  if (a.mesh.distance > 0 && a.mesh.distance < small_distance * diagonal && is_smooth_anywhere(plc))
+    warnings.push_back(
+        fmt::format("--distance {:.6g} is {:.2g} of the diagonal: on smooth faces and curves the "
+                    "number of elements grows with its inverse; a larger distance, or --feature-angle "
+                    "0 for the facets as they are, costs less.",
+                    a.mesh.distance, a.mesh.distance / diagonal));
+  if (a.complex.plc.planar_tolerance > large_planar_tolerance)
+    warnings.push_back(
+        fmt::format("--planar-tolerance {}: facets that are not flat were merged into flat ones, up to "
+                    "{:.6g} from where they were, and the mesh follows the merged ones; a curved face "
+                    "stays one without it.",
+                    a.complex.plc.planar_tolerance, plc.largest_deviation));
+  return warnings;
+}
+
+}  // namespace collarmesh::cli

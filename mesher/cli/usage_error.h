@@ -1,0 +1,15 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace collarmesh::cli {
+
+/// What a mistake on the command line is and what to write instead; one line without its end.
+/// CLI11's own messages tell of its types and its patterns.
+std::string usage_message(const CLI::App& app, const CLI::Error& error);
+
+/// How a command is called; the one that meshes has an empty name.
+std::string usage_of(const std::string& command);
+
+}  // namespace collarmesh::cli
