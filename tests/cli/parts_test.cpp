@@ -1,12 +1,17 @@
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <new>
 #include <stdexcept>
+#include <string>
+#include <thread>
 
 #include "arguments.h"
 #include "collarmesh/error.h"
 #include "input_files.h"
+#include "interrupt.h"
 #include "mesh_measures.h"
 #include "option_values.h"
 #include "program.h"
@@ -115,6 +120,63 @@ TEST(MeshMeasures, OfOneTet) {
   EXPECT_EQ(m.min_dihedrals[5], 1U);
   EXPECT_EQ(m.radius_edges[3], 1U);
   EXPECT_NEAR(median_edge(mesh), std::sqrt(2), 1e-12);
+}
+
+TEST(Memory, Parsed) {
+  for (const auto& [text, bytes] : {std::pair{"0", 0.0},
+                                    {"2000", 2e3},
+                                    {"3K", 3072.0},
+                                    {"500m", 524288000.0},
+                                    {"1.5G", 1610612736.0},
+                                    {"2GiB", 2147483648.0},
+                                    {"1tb", 1099511627776.0}})
+    EXPECT_EQ(static_cast<double>(parse_memory(text)), bytes) << text;
+  for (const char* text : {"", "G", "-1", "1X", "much", "nan", "inf", "1e30", "4 G", "4GG"})
+    EXPECT_THROW(parse_memory(text), std::invalid_argument) << text;
+}
+
+template <class Thrown>
+void expect_code(ExitCode code, const Thrown& thrown, const std::string& told) {
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(guarded([&]() -> ExitCode { throw thrown; }), code);
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find(told), std::string::npos) << said;
+}
+
+TEST(Guarded, EveryErrorHasItsCode) {
+  EXPECT_EQ(guarded([] { return ExitCode::guarantee_missed; }), ExitCode::guarantee_missed);
+  expect_code(ExitCode::internal_error, std::logic_error("a bug"), "internal error: a bug; please report it");
+  expect_code(ExitCode::usage, OptionError("bad option"), "collarmesh: bad option");
+  expect_code(ExitCode::unreadable, ReadError("a.off: line 3"), "a.off: line 3");
+  expect_code(ExitCode::invalid_complex, PlcError("open", {}), "open");
+  expect_code(ExitCode::cannot_write, WriteError("disk full"), "disk full");
+  expect_code(ExitCode::budget_hit, std::bad_alloc(), "raise --size");
+  expect_code(ExitCode::cancelled, Cancelled(), "cancelled");
+}
+
+// Also a stage that never looks at the clock.
+TEST(TimeLimitDeathTest, EndsAnyStage) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  EXPECT_EXIT(run_interruptible([] {
+                set_time_limit(0.05);
+                note_stage("stage: check, 7 tets");
+                std::this_thread::sleep_for(std::chrono::minutes(10));
+                return ExitCode::success;
+              }),
+              testing::ExitedWithCode(5),
+              "time limit of 0.05 s is reached .stage: check, 7 tets.*--time-limit");
+}
+
+TEST(TimeLimitDeathTest, IsWatched) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  const auto wait = [] {
+    set_time_limit(0.05);
+    while (!interrupt_flag()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    stop_if_interrupted();
+    return ExitCode::success;
+  };
+  EXPECT_EXIT(std::exit(static_cast<int>(guarded([&] { return run_interruptible(wait); }))),
+              testing::ExitedWithCode(5), "time limit of 0.05 s");
 }
 
 }  // namespace

@@ -98,6 +98,29 @@ class Usage(ProgramTest):
             with self.subTest(arguments=arguments):
                 self.assertNotEqual(self.expect(2, *arguments).stderr, "")
 
+    def test_mistakes_are_told_in_words(self):
+        for arguments, says in (
+                ("--progress loud", "--progress: 'loud' is not one of auto, json, none"),
+                ("--max-memory 5X", "--max-memory: '5X' is not a size such as 500M, 1.5G"),
+                ("--size", "--size: its LENGTH is missing; write --size LENGTH"),
+                ("--sise 1", "--sise: there is no such option; did you mean --size"),
+                ("--wrong 1", "--wrong: there is no such option or argument; see --help"),
+                ("--size 1 --size 2", "--size: is given more than once; give it once"),
+                ("--quiet=maybe", "--quiet: takes no value; write --quiet alone"),
+                ("--improve 1.5", "--improve: '1.5' is not one of 0, 1, 2, 3"),
+                ("--time-limit 5s", "--time-limit: '5s' is not a number of seconds"),
+                ("--planar-tolerance 0.1", "--planar-tolerance: '0.1' is not a number from 0 to 0.01")):
+            with self.subTest(arguments=arguments):
+                run = self.expect(2, self.box, "-o", self.out, *arguments.split())
+                self.assertTrue(run.stderr.startswith(f"collarmesh: {says}"), run.stderr)
+        for arguments, says in (
+                ((), "INPUT, a file to mesh, is required; write collarmesh INPUT... -o OUT"),
+                (("check", self.out), "--against is required; write collarmesh check MESH --against INPUT..."),
+                (("info", "--jsn", self.box), "--jsn: there is no such option; did you mean --json"),
+                ((self.box, "info"), "a subcommand comes first")):
+            with self.subTest(arguments=arguments):
+                self.assertTrue(self.expect(2, *arguments).stderr.startswith(f"collarmesh: {says}"))
+
     def test_contradictions(self):
         self.expect(2, self.box, "-o", self.out, "--size", "0.1", "--size-min", "0.2", says=["size-min"])
         self.expect(2, self.box, "-o", self.out, "--vertex-ratio", "2", says=["vertex-ratio"])
@@ -111,7 +134,7 @@ class Usage(ProgramTest):
 
     def test_sizes_are_repeatable_and_leave_the_inputs_alone(self):
         self.expect(0, "--size", "0.5", "--region-size", "1=0.4", "--region-size", "2=0.3", MODELS / "two_boxes.poly",
-                    "-o", self.out, "--max-memory", "1G", writes=True)
+                    "-o", self.out, "--max-memory", "1.5g", writes=True)
 
 
 class Unreadable(ProgramTest):
@@ -207,15 +230,44 @@ class Creases(ProgramTest):
 
 class Budgets(ProgramTest):
     def test_vertices(self):
-        self.expect(5, self.box, "-o", self.out, "--size", "0.02", "--max-vertices", "200", says=["200", COORDINATES])
+        self.expect(5, self.box, "-o", self.out, "--size", "0.02", "--max-vertices", "200",
+                    says=["the budget of 200 vertices is spent at \\d+ vertices", r"cells, .* MB, after", COORDINATES, "raise max-vertices"])
 
     def test_memory(self):
-        self.expect(5, self.box, "-o", self.out, "--size", "0.01", "--max-memory", "200K", says=[COORDINATES])
+        self.expect(5, self.box, "-o", self.out, "--size", "0.01", "--max-memory", "200K",
+                    says=["the memory budget of 204800 bytes is spent", COORDINATES, "raise max-memory"])
+
+    def test_memory_has_a_default(self):
+        report = self.folder / "report.json"
+        self.expect(0, self.box, "-o", self.out, "--report", report, writes=True)
+        memory = json.loads(report.read_text())["options"]["max_memory"]
+        machine = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+        self.assertGreater(memory, 0)
+        self.assertLessEqual(memory, machine // 2)
+        self.expect(0, self.box, "-o", self.out, "--max-memory", "0", "--report", report, writes=True)
+        self.assertIsNone(json.loads(report.read_text())["options"]["max_memory"])
+
+    def test_options_without_an_end(self):
+        """They end at a budget, after a warning."""
+        sphere, bracket = MODELS / "sphere.off", MODELS / "bracket.off"
+        for option, value in (("--radius-edge", "1"), ("--distance", "1e-9")):
+            with self.subTest(option=option):
+                self.expect(5, sphere, "-o", self.out, option, value, "--max-memory", "20M",
+                            says=[f"warning: {option} ", COORDINATES, "raise max-memory"])
+        self.expect(0, bracket, "-o", self.out, "--planar-tolerance", "0.01", says=["warning: --planar-tolerance"],
+                    writes=True)
 
     def test_time(self):
         begin = time.monotonic()
-        self.expect(5, self.box, "-o", self.out, "--size", "0.002", "--time-limit", "0.5", says=[COORDINATES])
+        self.expect(5, self.box, "-o", self.out, "--size", "0.002", "--time-limit", "0.5",
+                    says=["time limit of 0.5 s .*stage: refine, .* vertices", COORDINATES, "raise --time-limit"])
         self.assertLess(time.monotonic() - begin, 10)
+
+    def test_time_limits_every_stage(self):
+        endless = self.folder / "endless.off"
+        os.mkfifo(endless)  # reading it never ends
+        self.expect(5, endless, "-o", self.out, "--time-limit", "0.1", says=["time limit of 0.1 s .*stage: read"])
+        self.expect(5, self.box, "-o", self.out, "--time-limit", "1e-6", says=["stage: start"])
 
 
 class Cancelling(ProgramTest):
@@ -280,6 +332,22 @@ class Guarantees(ProgramTest):
         self.assertFalse(report["passed"])
         self.assertGreater(len(report["findings"]), 0)
         self.assertTrue(all(f["message"] and len(f["where"]) == 3 for f in report["findings"]))
+
+    def test_a_mesh_that_misses_a_guarantee_is_written(self):
+        """A segment that leaves a corner at a small angle, without a collar: edges there become ever shorter."""
+        points = box_points() + [(0.5, 0.05, 0.05)]
+        lines = [f"{len(points)} 3 0 0", *(f"{k} {p[0]} {p[1]} {p[2]}" for k, p in enumerate(points)),
+                 f"{len(BOX_FACES) + 1} 0"]
+        lines += [f"1\n{len(f)} " + " ".join(map(str, f)) for f in (*BOX_FACES, (0, 8))]
+        model = self.write("segment.poly", "\n".join([*lines, "0", "0"]) + "\n")
+        report = self.folder / "report.json"
+        run = self.expect(7, model, "-o", self.out, "--crease-angle", "0", "--report", report, writes=True)
+        self.assertRegex(run.stderr, "collarmesh: a guarantee is missed: .*near " + COORDINATES.pattern + ".*crease-angle")
+        found = json.loads(report.read_text())
+        self.assertEqual((found["status"], found["guarantees_hold"]), ("guarantee_missed", False))
+        self.assertEqual(self.run_program("info", self.out).returncode, 0)
+        self.out.unlink()
+        self.expect(0, model, "-o", self.out, writes=True)
 
     def test_region_volumes_are_exact(self):
         report = self.folder / "report.json"
@@ -394,6 +462,22 @@ class Reports(ProgramTest):
         self.expect(2, self.box, "-o", self.out, "--report", self.folder / "." / self.out.name, says=["--output"])
         self.assertEqual(self.box.read_bytes(), before)
         self.expect(8, self.box, "-o", self.out, "--report", "/dev/null", says=["no regular file"])
+
+    def test_warnings_of_the_input(self):
+        model = self.write("two.poly", (MODELS / "two_boxes.poly").read_text())
+        text = model.read_text()
+        path = self.folder / "report.json"
+        self.expect(0, model, "-o", self.out, "--report", path, writes=True)
+        self.assertEqual(json.loads(path.read_text())["complex"]["warnings"], [])
+        lines = text.rstrip().splitlines()
+        at = max(k for k, line in enumerate(lines) if line.split() == ["2"] or line.split()[:1] == ["2"] and len(line.split()) == 1)
+        lines[at] = "3"
+        outside = self.write("outside.poly", "\n".join([*lines, "3 70 0 0 5"]) + "\n")
+        run = self.expect(0, outside, "-o", self.out, "-q", "--report", path, writes=True)
+        self.assertRegex(run.stderr, r"^warning: .*outside\.poly: the region point \(70, 0, 0\) lies outside")
+        warnings = json.loads(path.read_text())["complex"]["warnings"]
+        self.assertEqual([w["where"] for w in warnings], [[70, 0, 0]])
+        self.assertIn("warning: ", self.expect(0, "info", outside, writes=True).stdout)
 
     def test_a_link_is_followed(self):
         named, link = self.folder / "named.json", self.folder / "link.json"
