@@ -60,7 +60,7 @@ std::string usage_of(const std::string& command) {
 }
 
 std::string usage_message(const CLI::App& app, const CLI::Error& error) {
-  const std::string said = error.what();
+  std::string said = error.what();
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) return unexpected(app);
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) return mismatch(app, said);
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr)
