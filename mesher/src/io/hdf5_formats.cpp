@@ -16,9 +16,10 @@ void write_by_module(const char* writer, const std::string& path, const TetMesh&
   void* const loaded = dlopen(module, RTLD_NOW | RTLD_LOCAL);
   void* const found = loaded == nullptr ? nullptr : dlsym(loaded, writer);
   if (found == nullptr)
-    throw WriteError(fmt::format("{}: cannot be written, because {} cannot be loaded ({}); install it with the "
-                                 "program or name its folder in LD_LIBRARY_PATH, or write .vtu",
-                                 path, module, dlerror()));
+    throw WriteError(
+        fmt::format("{}: cannot be written, because {} cannot be loaded ({}); install it with the "
+                    "program or name its folder in LD_LIBRARY_PATH, or write .vtu",
+                    path, module, dlerror()));
   reinterpret_cast<void (*)(const std::string&, const TetMesh&)>(found)(path, mesh);
 }
 

@@ -1,5 +1,5 @@
-// Reads the file formats .poly and .smesh of TetGen 1.5 (its manual, section "File formats"). The largest volume
-// of a region becomes a target size: the edge length of the regular tetrahedron of that volume.
+// Reads the file formats .poly and .smesh of TetGen 1.5 (its manual, section "File formats"). The largest
+// volume of a region becomes a target size: the edge length of the regular tetrahedron of that volume.
 #include <fmt/format.h>
 
 #include <cmath>

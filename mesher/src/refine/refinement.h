@@ -48,8 +48,8 @@ class Refinement {
 
  private:
   static constexpr const char* advice_at_floor =
-      "look for features there that nearly touch or meet at a small angle; a larger crease-angle gives such a "
-      "meeting a collar";
+      "look for features there that nearly touch or meet at a small angle; a larger crease-angle gives "
+      "such a meeting a collar";
 
   /// What refinement knows of a mesh vertex besides its position.
   struct MeshVertex {
