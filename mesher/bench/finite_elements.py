@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+"""A Poisson problem with a known solution on our meshes and on TetGen's and Gmsh's of the same size: errors and
+condition number of the stiffness matrix, by one solver (`poisson`). Prints a Markdown table."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import sys
+from pathlib import Path
+
+from inputs import box, read_surface
+from meshers import Collarmesh, Gmsh, TetGen
+from processes import ProgramFailed, pin_to_core, run
+from tables import machine, si, table
+from tuning import SizeCache, size_for
+
+default_parts = ["cross.off", "joint.off", "spool.off"]
+header = ["input", "mesher", "tets", "error in L2", "of the gradient", "condition number"]
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    root = Path(__file__).resolve().parents[2]
+    parser.add_argument("--build", type=Path, default=root / "build" / "bench")
+    parser.add_argument("--corpus", type=Path, default=os.environ.get("COLLARMESH_CORPUS"))
+    parser.add_argument("--parts", nargs="*", default=default_parts, help="files of the corpus; the box comes first")
+    parser.add_argument("--tets", type=int, default=40000)
+    parser.add_argument("--time-limit", type=float, default=300, help="seconds for one run of one program")
+    parser.add_argument("--core", type=int, help="the core to run on (default: the last one)")
+    options = parser.parse_args()
+    if options.corpus is None and options.parts:
+        parser.error("name a corpus with --corpus or $COLLARMESH_CORPUS")
+    about = machine(options.build)
+    pin_to_core(options.core)
+    programs = options.build.resolve() / "bin"
+    limit = options.time_limit
+    meshers = [Collarmesh(programs / "collarmesh", limit, improve=0), Collarmesh(programs / "collarmesh", limit, improve=2),
+               TetGen(limit, switches="g"), Gmsh(limit)]
+    labels = ["collarmesh --improve 0", "collarmesh --improve 2", "TetGen", "Gmsh HXT"]
+    cache = SizeCache()
+    lines = []
+    for surface in [box(), *(read_surface(Path(options.corpus) / part) for part in options.parts)]:
+        for mesher, label in zip(meshers, labels):
+            mesher.name = label   # sizes are remembered by name
+            folder = cache.folder / f"{surface.name}_solved_{label.replace(' ', '_')}"
+            folder.mkdir(exist_ok=True)
+            try:
+                mesher.prepare(surface, folder)
+                mesh = mesher.mesh(surface, size_for(mesher, surface, options.tets, folder, cache), folder)
+                solved = run([str(programs / "poisson"), mesher.mesh_file], folder, limit).output
+            except ProgramFailed as failure:
+                lines.append([surface.name, label, str(failure).splitlines()[0], "", "", ""])
+                continue
+            found = re.search(r"L2 (\S+) H1 (\S+) condition (\S+)", solved)
+            lines.append([surface.name, label, si(mesh.tets), *(f"{float(x):.3g}" for x in found.groups())])
+            print(*lines[-1], file=sys.stderr, flush=True)
+    print(f"{about}. collarmesh {meshers[0].version()}, TetGen {meshers[2].version()}, Gmsh {meshers[3].version()}.\n")
+    print(table(header, lines))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,98 @@
+// Finite elements as the judge: a Poisson problem with a known solution converges on our meshes as theory
+// says.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "collarmesh/improve.h"
+#include "support/acute_shapes.h"
+#include "support/meshing.h"
+#include "support/poisson.h"
+#include "support/shapes.h"
+
+namespace collarmesh {
+namespace {
+
+using testing::PoissonErrors;
+
+TetMesh improved_mesh(const std::vector<PolygonSoup>& soups, double size, double feature_angle,
+                      double distance = 0) {
+  MeshOptions options = testing::with_size(size, 60);
+  options.distance = distance;
+  testing::Meshed meshed = testing::mesh_of(soups, options, feature_angle);
+  EXPECT_EQ(testing::faults(meshed), "");
+  ImproveOptions improvement;
+  improvement.distance = distance;
+  improve(meshed.result.mesh, meshed.plc, improvement);
+  return meshed.result.mesh;
+}
+
+// A polynomial of the elements' degree is found but for rounding, whatever the mesh.
+TEST(FiniteElements, FindPolynomialsExactly) {
+  const testing::Solution linear{[](const Point& p) { return 1 + 2 * p.x - p.y + 3 * p.z; },
+                                 [](const Point&) {
+                                   return Vector{2, -1, 3};
+                                 },
+                                 [](const Point&) { return 0.0; }};
+  const testing::Solution quadratic{[](const Point& p) { return p.x * p.x + p.x * p.y - 2 * p.z * p.z; },
+                                    [](const Point& p) {
+                                      return Vector{2 * p.x + p.y, p.x, -4 * p.z};
+                                    },
+                                    [](const Point&) { return 2.0; }};
+  TetMesh mesh = improved_mesh(testing::acute::wedge(20).soups, 0.2, 0);
+  EXPECT_LT(testing::solve_poisson(mesh, linear).h1, 1e-9);
+  EXPECT_GT(testing::solve_poisson(mesh, quadratic).h1, 1e-3);
+  testing::add_straight_mid_nodes(mesh);
+  EXPECT_LT(testing::solve_poisson(mesh, quadratic).h1, 1e-9);
+}
+
+// The flat tets of collars do not spoil the matrix: with them it is a few times that of a box with as many
+// tets.
+TEST(FiniteElements, StayWellConditionedInCollars) {
+  const TetMesh mesh = improved_mesh(testing::acute::fan(8).soups, 0.2, 0);
+  ASSERT_GT(std::count_if(mesh.tet_collar.begin(), mesh.tet_collar.end(), [](auto c) { return c != 0; }),
+            100);
+  const TetMesh box = improved_mesh({testing::box({-1, -1, 0}, {1, 1, 1})}, 0.1, 0);
+  const double acute = testing::solve_poisson(mesh, testing::smooth_solution(), true).condition_number;
+  const double plain = testing::solve_poisson(box, testing::smooth_solution(), true).condition_number;
+  EXPECT_LT(acute, 5 * plain);
+}
+
+struct Domain {
+  std::string name;
+  std::vector<PolygonSoup> soups;
+  double feature_angle;
+  double coarse, fine;  // sizes
+  double distance;      // such that the surface is as coarse as the inside
+};
+
+class Convergence : public ::testing::TestWithParam<int> {};
+
+// Error ~ size^order: order k + 1 in L2 and k in H1 for elements of order k.
+TEST_P(Convergence, IsThatOfTheory) {
+  const int order = GetParam();
+  const std::vector<Domain> domains{
+      {"ball", {testing::icosphere(0.5, 24)}, 30, 0.15, 0.08, 0.02},
+      {"wedge", testing::acute::wedge(20).soups, 0, 0.12, 0.06, 0},
+      {"fan of sheets", testing::acute::fan(8).soups, 0, 0.24, 0.14, 0},
+  };
+  for (const Domain& domain : domains) {
+    SCOPED_TRACE(domain.name);
+    std::array<PoissonErrors, 2> errors;
+    for (unsigned i = 0; i < 2; ++i) {
+      TetMesh mesh = improved_mesh(domain.soups, i == 0 ? domain.coarse : domain.fine, domain.feature_angle,
+                                   domain.distance);
+      if (order == 2) testing::add_straight_mid_nodes(mesh);
+      errors[i] = testing::solve_poisson(mesh, testing::smooth_solution());
+    }
+    const double refined = std::log(domain.coarse / domain.fine);
+    EXPECT_NEAR(std::log(errors[0].l2 / errors[1].l2) / refined, order + 1, 0.1 * (order + 1));
+    EXPECT_NEAR(std::log(errors[0].h1 / errors[1].h1) / refined, order, 0.1 * order);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Order, Convergence, ::testing::Values(1, 2));
+
+}  // namespace
+}  // namespace collarmesh
