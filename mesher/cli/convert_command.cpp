@@ -77,7 +77,8 @@ PolygonSoup surface_of(const TetMesh& mesh, const std::string& name) {
 
 void convert_mesh(const MeshArguments& a) {
   if (a.inputs.size() > 1)
-    throw OptionError(fmt::format("{} is a mesh: one at a time is converted", a.inputs.front()));
+    throw OptionError(
+        fmt::format("{} is a mesh, of which one at a time is converted; name it alone", a.inputs.front()));
   const TetMesh mesh = read_mesh(a.inputs.front(), a.input_format);
   if (is_surface_format(a.output, a.output_format)) {
     write_soup(a, {surface_of(mesh, a.inputs.front())});

@@ -47,7 +47,8 @@ ExitCode info_command(const InfoArguments& arguments) {
   else if (arguments.inputs.size() == 1)
     print_mesh(first, arguments.json);
   else
-    throw OptionError(fmt::format("{} is a mesh: info tells about one at a time", first));
+    throw OptionError(
+        fmt::format("{} is a mesh, of which info tells about one at a time; name it alone", first));
   return ExitCode::success;
 }
 

@@ -111,9 +111,11 @@ void StagedFile::copy_to_standard_output() const {
   while (file.read(block.data(), static_cast<std::streamsize>(block.size())), file.gcount() > 0)
     if (std::fwrite(block.data(), 1, static_cast<std::size_t>(file.gcount()), stdout) !=
         static_cast<std::size_t>(file.gcount()))
-      throw WriteError(fmt::format("standard output: cannot be written ({})", std::strerror(errno)));
+      throw WriteError(fmt::format("standard output: cannot be written ({}); name a file with --output",
+                                   std::strerror(errno)));
   if (std::fflush(stdout) != 0)
-    throw WriteError(fmt::format("standard output: cannot be written ({})", std::strerror(errno)));
+    throw WriteError(fmt::format("standard output: cannot be written ({}); name a file with --output",
+                                 std::strerror(errno)));
 }
 
 void StagedFile::commit(std::initializer_list<StagedFile*> files) {

@@ -12,6 +12,7 @@
 #include "collarmesh/error.h"
 #include "collarmesh/io/soup_io.h"
 #include "collarmesh/io/tet_mesh_io.h"
+#include "support/replaced.h"
 #include "support/sample_mesh.h"
 #include "support/second_order.h"
 #include "support/temporary_file.h"
@@ -22,15 +23,10 @@ namespace {
 
 using testing::expect_error;
 using testing::expect_same;
+using testing::replaced;
 using testing::sample_mesh;
 using testing::second_order;
 using testing::TemporaryFolder;
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return at == std::string::npos ? text : text.replace(at, from.size(), to);
-}
 
 TetMesh read(const std::string& name, const std::string& content) {
   const TemporaryFolder folder;

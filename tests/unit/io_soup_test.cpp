@@ -17,6 +17,7 @@
 
 #include "collarmesh/io/soup_io.h"
 #include "support/comma_locale.h"
+#include "support/replaced.h"
 #include "support/temporary_file.h"
 
 namespace collarmesh {
@@ -24,16 +25,12 @@ namespace {
 
 using testing::CommaLocale;
 using testing::expect_error;
+using testing::replaced;
 using testing::TemporaryFolder;
 
 const std::string points = "0.1 0 0\n1 0 0\n0 1 0\n0 0 1e-3\n";
 const std::string faces = "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return at == std::string::npos ? text : text.replace(at, from.size(), to);
-}
 std::string all_replaced(std::string text, const std::string& from, const std::string& to) {
   for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
     text.replace(at, from.size(), to);

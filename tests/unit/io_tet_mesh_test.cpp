@@ -11,6 +11,7 @@
 
 #include "collarmesh/io/tet_mesh_io.h"
 #include "support/comma_locale.h"
+#include "support/replaced.h"
 #include "support/sample_mesh.h"
 #include "support/temporary_file.h"
 #include "support/tet_mesh_comparison.h"
@@ -21,14 +22,9 @@ namespace {
 using testing::CommaLocale;
 using testing::expect_error;
 using testing::expect_same;
+using testing::replaced;
 using testing::sample_mesh;
 using testing::TemporaryFolder;
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return at == std::string::npos ? text : text.replace(at, from.size(), to);
-}
 
 TetMesh round_trip(const TetMesh& mesh, const std::string& name) {
   const TemporaryFolder folder;
@@ -82,7 +78,8 @@ TEST(IoTetMesh, SameBytesWhateverTheLocale) {
 }
 
 TEST(IoTetMesh, KnowsItsFormats) {
-  for (const char* name : {"a.vtu", "b/A.MSH", "a.mesh", "a.INP", "a.ele"}) EXPECT_TRUE(io::is_tet_mesh_format(name));
+  for (const char* name : {"a.vtu", "b/A.MSH", "a.mesh", "a.INP", "a.ele"})
+    EXPECT_TRUE(io::is_tet_mesh_format(name));
   for (const char* name : {"a.off", "a", "mesh", "a.node"}) EXPECT_FALSE(io::is_tet_mesh_format(name));
   expect_error<ReadError>([] { io::read_tet_mesh("a.xyz"); }, "a.xyz", "unknown kind of file");
   expect_error<WriteError>([] { io::write_tet_mesh("a.xyz", {}); }, "a.xyz", "unknown kind of file");

@@ -8,12 +8,14 @@
 #include <vector>
 
 #include "collarmesh/io/soup_io.h"
+#include "support/replaced.h"
 #include "support/temporary_file.h"
 
 namespace collarmesh {
 namespace {
 
 using testing::expect_error;
+using testing::replaced;
 using testing::TemporaryFolder;
 
 const std::string nodes =
@@ -133,12 +135,6 @@ void expect_refused(const std::string& content, const std::string& part) {
   const TemporaryFolder folder;
   const std::string path = folder.write("a.poly", content);
   expect_error<ReadError>([&] { io::read_soup(path); }, path, part);
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
 TEST(IoTetgen, RefusesBadFiles) {

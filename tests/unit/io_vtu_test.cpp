@@ -13,6 +13,7 @@
 #include "collarmesh/io/tet_mesh_io.h"
 #include "io/base64.h"
 #include "support/comma_locale.h"
+#include "support/replaced.h"
 #include "support/sample_mesh.h"
 #include "support/temporary_file.h"
 #include "support/tet_mesh_comparison.h"
@@ -23,6 +24,7 @@ namespace {
 using testing::CommaLocale;
 using testing::expect_error;
 using testing::expect_same;
+using testing::replaced;
 using testing::sample_mesh;
 using testing::TemporaryFolder;
 
@@ -36,12 +38,6 @@ void expect_refused(const std::string& content, const std::string& part) {
   const TemporaryFolder folder;
   const std::string path = folder.write("a.vtu", content);
   expect_error<ReadError>([&] { io::read_tet_mesh(path); }, path, part);
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
 TEST(IoVtu, RoundTrip) {

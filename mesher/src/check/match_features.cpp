@@ -9,30 +9,11 @@
 
 #include "check/distance_tree.h"
 #include "check/subject.h"
+#include "common/disjoint_sets.h"
 
 namespace collarmesh::checks {
 
 namespace {
-
-class DisjointPieces {
- public:
-  explicit DisjointPieces(std::size_t n) : parents_(n) {
-    std::iota(parents_.begin(), parents_.end(), Index{0});
-  }
-
-  Index find(Index i) {
-    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
-    return i;
-  }
-  void join(Index a, Index b) {
-    a = find(a);
-    b = find(b);
-    parents_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<Index> parents_;
-};
 
 // The features of one kind with one tag, as something to measure distances to.
 struct TaggedFeatures {
@@ -144,7 +125,7 @@ class Ballot {
 };
 
 // Edges of one tag that meet in a point where nothing else happens.
-DisjointPieces edge_pieces(const TetMesh& mesh, const std::vector<Index>& vertex_point) {
+DisjointSets edge_pieces(const TetMesh& mesh, const std::vector<Index>& vertex_point) {
   std::vector<std::array<Index, 2>> ends;  // point, edge
   for (Index e = 0; e < mesh.edges.size(); ++e)
     for (const Index p : mesh.edges[e]) ends.push_back({p, e});
@@ -152,17 +133,17 @@ DisjointPieces edge_pieces(const TetMesh& mesh, const std::vector<Index>& vertex
   std::vector<bool> is_vertex(mesh.points.size(), false);
   for (const Index p : vertex_point)
     if (p != none) is_vertex[p] = true;
-  DisjointPieces pieces(mesh.edges.size());
+  DisjointSets pieces(mesh.edges.size());
   for (std::size_t i = 0, j = 0; i < ends.size(); i = j) {
     for (j = i; j < ends.size() && ends[j][0] == ends[i][0];) ++j;
     if (j - i == 2 && !is_vertex[ends[i][0]] && mesh.edge_tag[ends[i][1]] == mesh.edge_tag[ends[i + 1][1]])
-      pieces.join(ends[i][1], ends[i + 1][1]);
+      pieces.unite(ends[i][1], ends[i + 1][1]);
   }
   return pieces;
 }
 
 // Faces of one tag and between the same regions that share an edge which is on no curve.
-DisjointPieces face_pieces(const TetMesh& mesh) {
+DisjointSets face_pieces(const TetMesh& mesh) {
   struct Side {
     std::array<Index, 2> ends;
     Index face;  // none: an edge on a curve
@@ -176,7 +157,7 @@ DisjointPieces face_pieces(const TetMesh& mesh) {
     for (unsigned i = 0; i < 3; ++i)
       sides.push_back({sorted(mesh.faces[f][i], mesh.faces[f][(i + 1) % 3]), f});
   std::sort(sides.begin(), sides.end());
-  DisjointPieces pieces(mesh.faces.size());
+  DisjointSets pieces(mesh.faces.size());
   const auto alike = [&](Index f, Index g) {
     const auto &r = mesh.face_regions[f], &s = mesh.face_regions[g];
     return mesh.face_tag[f] == mesh.face_tag[g] && sorted(r[0], r[1]) == sorted(s[0], s[1]);
@@ -184,7 +165,7 @@ DisjointPieces face_pieces(const TetMesh& mesh) {
   for (std::size_t i = 0, j = 0; i < sides.size(); i = j) {
     for (j = i; j < sides.size() && sides[j].ends == sides[i].ends;) ++j;
     if (j - i == 2 && sides[j - 1].face != none && alike(sides[i].face, sides[i + 1].face))
-      pieces.join(sides[i].face, sides[i + 1].face);
+      pieces.unite(sides[i].face, sides[i + 1].face);
   }
   return pieces;
 }
@@ -200,7 +181,7 @@ std::vector<Index> match_edges(const TetMesh& mesh, const Plc& plc, const std::v
       nearest.add(plc.curves[c].tag, c, {a, b, b});
     }
   }
-  DisjointPieces pieces = edge_pieces(mesh, vertex_point);
+  DisjointSets pieces = edge_pieces(mesh, vertex_point);
   Ballot ballot;
   for (Index e = 0; e < mesh.edges.size(); ++e) {
     const Point &a = mesh.points[mesh.edges[e][0]], &b = mesh.points[mesh.edges[e][1]];
@@ -220,7 +201,7 @@ std::vector<Index> match_faces(const TetMesh& mesh, const Plc& plc) {
   for (const Plc::Triangle& t : plc.triangles)
     nearest.add(plc.patches[t.patch].tag, t.patch,
                 {plc.points[t.points[0]], plc.points[t.points[1]], plc.points[t.points[2]]});
-  DisjointPieces pieces = face_pieces(mesh);
+  DisjointSets pieces = face_pieces(mesh);
   Ballot ballot;
   for (Index f = 0; f < mesh.faces.size(); ++f) {
     const auto& [i, j, k] = mesh.faces[f];

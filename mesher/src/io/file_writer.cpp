@@ -1,36 +1,19 @@
 #include "io/file_writer.h"
 
-#include <fmt/format.h>
-
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
-#include <system_error>
 #include <utility>
-
-#include "collarmesh/error.h"
 
 namespace collarmesh::io {
 
-namespace {
-
-constexpr int names_to_try = 100;
-
-}  // namespace
-
-FileWriter::FileWriter(std::string path) : path_(std::move(path)), buffer_(buffer_bytes) {
-  errno = EEXIST;
-  for (int i = 0; i < names_to_try && file_ == nullptr && errno == EEXIST; ++i) {
-    temporary_ = fmt::format("{}.part{}", path_, i);
-    file_ = std::fopen(temporary_.c_str(), "wbx");
-  }
-  if (file_ == nullptr) fail(errno);
+FileWriter::FileWriter(std::string path)
+    : target_(std::move(path)), file_(std::fopen(target_.temporary().c_str(), "wb")), buffer_(buffer_bytes) {
+  if (file_ == nullptr) target_.fail(errno);
   std::setvbuf(file_, nullptr, _IONBF, 0);
 }
 
 FileWriter::~FileWriter() {
   if (file_ != nullptr) std::fclose(file_);
-  if (!temporary_.empty()) std::remove(temporary_.c_str());
 }
 
 FileWriter& FileWriter::operator<<(std::string_view text) {
@@ -46,11 +29,8 @@ FileWriter& FileWriter::operator<<(std::string_view text) {
 
 void FileWriter::commit() {
   flush();
-  if (std::fclose(std::exchange(file_, nullptr)) != 0) fail(errno);
-  std::error_code error;
-  std::filesystem::rename(temporary_, path_, error);
-  if (error) fail(error.value());
-  temporary_.clear();
+  if (std::fclose(std::exchange(file_, nullptr)) != 0) target_.fail(errno);
+  target_.commit();
 }
 
 void FileWriter::flush() {
@@ -60,11 +40,7 @@ void FileWriter::flush() {
 
 void FileWriter::write(std::string_view bytes) {
   errno = 0;
-  if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail(errno);
-}
-
-void FileWriter::fail(int reason) const {
-  throw WriteError(fmt::format("{}: cannot be written: {}", path_, std::strerror(reason)));
+  if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) target_.fail(errno);
 }
 
 }  // namespace collarmesh::io

@@ -7,16 +7,16 @@
 #include <string_view>
 #include <vector>
 
+#include "io/unfinished_file.h"
+
 namespace collarmesh::io {
 
-/// Writes a file that appears under its name when it is complete, or not at all: it is a temporary
-/// file beside its place until `commit` renames it. Numbers are written whatever the locale,
-/// doubles in the shortest form that reads back as the same double.
-/// Throws WriteError with the path and the system's reason.
+/// Writes a file that appears under its name when it is complete, or not at all. Numbers are written whatever
+/// the locale, doubles in the shortest form that reads back as the same double. Throws WriteError with the
+/// path and the system's reason.
 class FileWriter {
  public:
   explicit FileWriter(std::string path);
-  /// Removes the temporary file unless it was committed.
   ~FileWriter();
   FileWriter(const FileWriter&) = delete;
   FileWriter& operator=(const FileWriter&) = delete;
@@ -47,9 +47,8 @@ class FileWriter {
   }
   void flush();
   void write(std::string_view bytes);
-  [[noreturn]] void fail(int reason) const;
 
-  std::string path_, temporary_;
+  UnfinishedFile target_;
   std::FILE* file_ = nullptr;
   std::vector<char> buffer_;
   std::size_t used_ = 0;

@@ -45,8 +45,8 @@ void add_unused_points(const PointMap& map, Draft& draft) {
 
 void require_content(const Draft& draft, Faults& faults) {
   if (draft.triangles.empty() && draft.segments.empty() && draft.loose_points.empty())
-    faults.add(PlcFault::Kind::empty, "The input holds no facet with an area; there is nothing to mesh.", {},
-               {});
+    faults.add(PlcFault::Kind::empty,
+               "The input holds no facet with an area; check that these are the right files.", {}, {});
 }
 
 // Why closed facets, or none at all, enclose no region.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "plc/disjoint_sets.h"
+#include "common/disjoint_sets.h"
 #include "plc/exact.h"
 
 namespace collarmesh::build {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "plc/disjoint_sets.h"
+#include "common/disjoint_sets.h"
 
 namespace collarmesh::build {
 

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
+#include "common/disjoint_sets.h"
 #include "plc/box_tree.h"
-#include "plc/disjoint_sets.h"
 #include "plc/draft.h"
 #include "plc/edges.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "plc/disjoint_sets.h"
+#include "common/disjoint_sets.h"
 
 namespace collarmesh::build {
 

@@ -4,18 +4,16 @@
 #include <med.h>
 
 #include <array>
-#include <filesystem>
 #include <map>
 #include <span>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
-#include "collarmesh/error.h"
 #include "io/cell_nodes.h"
 #include "io/label_names.h"
 #include "io/tet_mesh_formats.h"
+#include "io/unfinished_file.h"
 
 namespace collarmesh::io {
 
@@ -35,16 +33,12 @@ std::string padded(std::string text, std::size_t size) {
 
 class MedFile {
  public:
-  explicit MedFile(std::string path) : path_(std::move(path)), temporary_(path_ + ".part") {
-    std::error_code ignored;
-    std::filesystem::remove(temporary_, ignored);
-    file_ = MEDfileOpen(temporary_.c_str(), MED_ACC_CREAT);
+  explicit MedFile(std::string path)
+      : target_(std::move(path)), file_(MEDfileOpen(target_.temporary().c_str(), MED_ACC_CREAT)) {
     require(file_);
   }
   ~MedFile() {
     if (file_ >= 0) MEDfileClose(file_);
-    std::error_code ignored;
-    std::filesystem::remove(temporary_, ignored);
   }
   MedFile(const MedFile&) = delete;
   MedFile& operator=(const MedFile&) = delete;
@@ -84,9 +78,7 @@ class MedFile {
 
   void commit() {
     require(MEDfileClose(std::exchange(file_, -1)));
-    std::error_code error;
-    std::filesystem::rename(temporary_, path_, error);
-    require(error ? -1 : 0);
+    target_.commit();
   }
 
  private:
@@ -103,12 +95,11 @@ class MedFile {
   }
 
   void require(med_idt result) const {
-    if (result < 0)
-      throw WriteError(fmt::format("{}: cannot be written; check the folder and the disk's space", path_));
+    if (result < 0) target_.fail(0);
   }
 
-  std::string path_, temporary_;
-  med_idt file_ = -1;
+  UnfinishedFile target_;
+  med_idt file_;
   std::map<std::pair<std::size_t, Tag>, med_int> families_;
 };
 

@@ -6,15 +6,14 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <variant>
 #include <vector>
 
-#include "collarmesh/error.h"
 #include "io/cell_nodes.h"
 #include "io/file_writer.h"
 #include "io/tet_mesh_formats.h"
+#include "io/unfinished_file.h"
 #include "io/vtk_grid.h"
 
 namespace collarmesh::io {
@@ -39,15 +38,13 @@ NumberType number_type(double) { return {"Float", 8, H5T_NATIVE_DOUBLE}; }
 /// An HDF5 file that appears under its name when it is complete.
 class ValueFile {
  public:
-  explicit ValueFile(std::string path) : path_(std::move(path)), temporary_(path_ + ".part") {
+  explicit ValueFile(std::string path) : target_(std::move(path)) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are ours to tell
-    file_ = H5Fcreate(temporary_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    file_ = H5Fcreate(target_.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
     require(file_ >= 0);
   }
   ~ValueFile() {
     if (file_ >= 0) H5Fclose(file_);
-    std::error_code ignored;
-    std::filesystem::remove(temporary_, ignored);
   }
   ValueFile(const ValueFile&) = delete;
   ValueFile& operator=(const ValueFile&) = delete;
@@ -66,18 +63,15 @@ class ValueFile {
 
   void commit() {
     require(H5Fclose(std::exchange(file_, -1)) >= 0);
-    std::error_code error;
-    std::filesystem::rename(temporary_, path_, error);
-    require(!error);
+    target_.commit();
   }
 
  private:
   void require(bool done) const {
-    if (!done)
-      throw WriteError(fmt::format("{}: cannot be written; check the folder and the disk's space", path_));
+    if (!done) target_.fail(0);
   }
 
-  std::string path_, temporary_;
+  UnfinishedFile target_;
   hid_t file_ = -1;
 };
 

@@ -6,7 +6,7 @@
 
 #include "collarmesh/geometry.h"
 
-namespace collarmesh::build {
+namespace collarmesh {
 
 /// Union-find over 0 .. n-1. The representative of a set is its smallest element.
 class DisjointSets {
@@ -31,4 +31,4 @@ class DisjointSets {
   std::vector<Index> parents_;
 };
 
-}  // namespace collarmesh::build
+}  // namespace collarmesh
