@@ -355,9 +355,14 @@ TEST(CollarSystem, QueriesEqualBruteForce) {
       const auto inside = [&](const CollarBall& b) { return distance(p, b.centre) < b.radius; };
       const auto met = [&](const CollarBall& b) { return distance(p, b.centre) <= b.radius + r; };
       EXPECT_EQ(placed.system.ball_containing(p) != none, std::any_of(balls.begin(), balls.end(), inside));
-      EXPECT_EQ(placed.system.meets(p, r), std::any_of(balls.begin(), balls.end(), met));
-      const Point q = balls[i % balls.size()].centre;
       std::vector<Index> found, expected;
+      const auto all_met = static_cast<std::size_t>(std::count_if(balls.begin(), balls.end(), met));
+      for (const std::size_t most : {std::size_t{1}, std::size_t{3}, balls.size()}) {
+        placed.system.balls_meeting(p, r, most, found);
+        EXPECT_EQ(found.size(), std::min(most, all_met));
+        for (const Index b : found) EXPECT_TRUE(met(balls[b]));
+      }
+      const Point q = balls[i % balls.size()].centre;
       placed.system.balls_on_segment(p, q, found);
       for (Index b = 0; b < balls.size(); ++b)
         if (to_segment(balls[b].centre, p, q) < balls[b].radius) expected.push_back(b);

@@ -41,7 +41,7 @@ class CollarPlacement {
   std::vector<bool> is_crease_curve_;
   std::vector<Index> vertices_;  // with a ball
   CurvePaths paths_;
-  FeatureHierarchy features_;
+  const FeatureHierarchy& features_;
   GapSize gap_;
   CreaseSheets sheets_;
   Flatness flatness_;

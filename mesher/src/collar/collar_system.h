@@ -2,12 +2,14 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "collar/feature_hierarchy.h"
 #include "collarmesh/plc.h"
 #include "collarmesh/plc_builder.h"
+#include "location/centred_box.h"
 
 namespace collarmesh {
 
@@ -53,11 +55,14 @@ class CollarSystem {
   /// Place balls on all creases: radius a third of the gap size, never more than the size allows,
   /// shrunk by up to 8% (seeded) so that spheres are generic; on smooth curves and patches small
   /// enough that what replaces them inside a ball stays within the distance.
-  /// Cost: O((n + b) log n) for n elements of the complex and b balls.
+  /// Cost: O((n + b) log n) for n elements of the complex and b balls. The complex and its points are
+  /// kept by reference.
   CollarSystem(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases,
                const CollarOptions& options);
 
   bool empty() const { return balls_.empty(); }
+  /// The complex that the balls were placed in. Precondition: not empty.
+  const FeatureHierarchy& features() const { return *features_; }
   const std::vector<CollarBall>& balls() const { return balls_; }
   const std::vector<CollarLink>& links() const { return links_; }
   const std::vector<CornerPoint>& corners() const { return corners_; }
@@ -68,20 +73,25 @@ class CollarSystem {
 
   /// A ball that contains p in its interior, none if there is none.
   Index ball_containing(const Point& p) const;
-  /// Does any ball meet the ball B(p, radius)?
-  bool meets(const Point& p, double radius) const;
+  bool contains(Index ball, const Point& p) const {
+    return squared_distance(p, balls_[ball].centre) < balls_[ball].radius * balls_[ball].radius;
+  }
+  /// Replace `found` by balls that meet the ball B(p, radius): all, or `most` of them.
+  void balls_meeting(const Point& p, double radius, std::size_t most, std::vector<Index>& found) const;
   /// Replace `found` by the balls that meet the segment pq.
   void balls_on_segment(const Point& p, const Point& q, std::vector<Index>& found) const;
 
  private:
   struct Node {
-    Box box;
+    CentredBox box;
     Index left, right;  // a leaf has left == none and its ball in right
   };
-  Index build(std::span<Index> order);
+  /// Add to the box what lies below the node that is returned.
+  Index build(std::span<Index> order, Box& box);
   template <class Meets, class Visit>
   void visit(const Meets& meets_box, const Visit& visit_ball) const;
 
+  std::unique_ptr<const FeatureHierarchy> features_;
   std::vector<CollarBall> balls_;
   std::vector<CollarLink> links_;
   std::vector<CornerPoint> corners_;

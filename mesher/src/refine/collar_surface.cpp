@@ -1,7 +1,7 @@
 // The collar surface as a restricted Delaunay triangulation (paper, section 4):
 // which cells lie inside the collars, whether the triangles between inside and outside represent
 // the surface well enough to be stitched to the balls' centres, and the insertion of points on the
-// surface, lower dimension first, where they do not.
+// surface, lower dimension first, where they do not. When that is asked is in collar_review.cpp.
 #include <algorithm>
 
 #include "delaunay/predicates.h"
@@ -11,16 +11,16 @@ namespace collarmesh {
 
 namespace {
 
-constexpr unsigned most_rounds = 200;
 // A representation point this close to an arc, in radii of its ball, is moved onto the arc: lower
 // dimension first is what keeps collars small.
 constexpr double arc_reach = 0.7;
 // ... unless a mesh vertex is this close to the arc's point already, in radii of the empty ball.
 constexpr double arc_clearance = 0.5;
-constexpr std::size_t triangles_between_stops = 64;
-constexpr double on_sphere = 1e-6;
 // The radius of a ball is at most a third of the gap size.
 constexpr double gap_per_radius = 3;
+
+// So many balls near a vertex are tested one by one, more are looked up in their hierarchy.
+constexpr std::size_t most_nearby_balls = 24;
 
 double radians(double degrees) { return degrees * 3.14159265358979323846 / 180; }
 
@@ -55,20 +55,33 @@ double Refinement::collar_size(const Feature& feature, const Point& p) const {
   return size;
 }
 
-bool Refinement::meets_collar(Index vertex) const {
-  if (collars_.empty()) return false;
-  if (std::none_of(zone_.vertices.begin(), zone_.vertices.end(),
-                   [&](Index v) { return vertices_[v].near_collar; }))
-    return false;
+bool Refinement::zone_is_near_collar() const {
+  return !collars_.empty() && std::any_of(zone_.vertices.begin(), zone_.vertices.end(),
+                                          [&](Index v) { return vertices_[v].near_collar; });
+}
+
+// Replaces nearby_balls_ by the balls that meet B(v, R_v), which holds the centres of all cells around v.
+bool Refinement::meets_collar(Index vertex) {
+  if (!zone_is_near_collar()) return false;
   double largest = 0;
   for (const Index cell : zone_.created) largest = std::max(largest, mesh_.squared_radius(cell));
-  return collars_.meets(mesh_.point(vertex), std::sqrt(largest));
+  collars_.balls_meeting(mesh_.point(vertex), std::sqrt(largest), most_nearby_balls, nearby_balls_);
+  return !nearby_balls_.empty();
 }
 
 void Refinement::find_collar_cells(Index vertex) {
-  if (!vertices_[vertex].near_collar) return;
-  for (const Index cell : zone_.created)
-    labels_[cell].in_collar = collars_.ball_containing(mesh_.circumcentre(cell)) != none;
+  if (vertices_[vertex].near_collar) {
+    const bool all_known = nearby_balls_.size() < most_nearby_balls;
+    for (const Index cell : zone_.created) {
+      const Point& centre = mesh_.circumcentre(cell);
+      const auto holds_centre = [&](Index ball) { return collars_.contains(ball, centre); };
+      labels_[cell].in_collar =
+          all_known ? std::any_of(nearby_balls_.begin(), nearby_balls_.end(), holds_centre)
+                    : collars_.ball_containing(centre) != none;
+    }
+  }
+  if (collar_review_.started && zone_is_near_collar())
+    for (const Index cell : zone_.created) touch(cell);
 }
 
 std::span<const Index> Refinement::patches_through(const CollarBall& ball) const {
@@ -95,56 +108,6 @@ bool Refinement::spans_patch(std::span<const Index> corners) const {
   return std::any_of(patches.begin(), patches.end(), contains_all);
 }
 
-// Look at the collar surface when everything else is done. False when nothing was found.
-bool Refinement::check_collars() {
-  if (collars_.empty() || !message_.empty()) return false;
-  take_in_flat_cells();
-  std::vector<CollarTriangle> triangles = collar_triangles();
-  std::size_t looked_at = 0;
-  const auto interrupted = [&] { return ++looked_at % triangles_between_stops == 0 && stopped(); };
-  for (CollarTriangle& t : triangles) {
-    if (interrupted()) return false;
-    t.poor = poorly_represented(t) || bends(t);
-  }
-  judge_collar_edges(triangles);
-  bool found = surround_centres();
-  for (const CollarTriangle& t : triangles) {
-    if (interrupted()) return false;
-    if (!t.poor || labels_[cell_of(t.face)].region == 0) continue;
-    // An earlier repair may have changed this one: it is judged again in the next round.
-    if (!mesh_.alive(cell_of(t.face)) || mesh_.opposite(t.face) == no_face) continue;
-    const auto now = collar_triangle(t.face);
-    if (!now || !(now->representation == t.representation)) continue;
-    found |= repair(t);
-  }
-  if (found && ++collar_rounds_ > most_rounds) {
-    give_up(mesh_.point(last_vertex()), "the collar surface did not settle; the last vertex is",
-            "raise collar-angle, or try a smaller size or another seed");
-    return false;
-  }
-  return found;
-}
-
-// A centre must not be a vertex of cells outside: their part of the sphere has no points yet. False when
-// none is.
-bool Refinement::surround_centres() {
-  bool found = false;
-  for (Index b = 0; b < collars_.balls().size(); ++b) {
-    const CollarBall& ball = collars_.balls()[b];
-    if (ball_vertex(b) == none) continue;
-    mesh_.incident_cells(ball_vertex(b), cells_scratch_);
-    const auto outside = std::find_if(cells_scratch_.begin(), cells_scratch_.end(), [&](Index cell) {
-      return labels_[cell].region != 0 && !labels_[cell].in_collar;
-    });
-    if (outside == cells_scratch_.end()) continue;
-    const auto& v = mesh_.corners(*outside);
-    const auto corner = static_cast<unsigned>(std::find(v.begin(), v.end(), ball_vertex(b)) - v.begin());
-    const Vector d = mesh_.circumcentre(*outside) - ball.centre;
-    found |= repair({face_id(*outside, corner), b, ball.centre + ball.radius / norm(d) * d, false, true});
-  }
-  return found;
-}
-
 std::vector<Refinement::CollarTriangle> Refinement::collar_triangles() {
   std::vector<CollarTriangle> triangles;
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
@@ -163,14 +126,19 @@ std::optional<Refinement::CollarTriangle> Refinement::collar_triangle(FaceId out
   if (inner == no_face || labels_[cell_of(outer)].in_collar) return std::nullopt;
   const bool inside = labels_[cell_of(inner)].in_collar;
   if (!inside && cell_of(inner) < cell_of(outer)) return std::nullopt;
-  if (const auto taken = taken_in_.find(cell_of(inner)); taken != taken_in_.end()) {
-    const CollarBall& ball = collars_.balls()[taken->second.ball];
+  const std::uint32_t generation = mesh_.generation(cell_of(outer));
+  if (const Index taker = taken_in_by(cell_of(inner)); taker != none) {
+    const CollarBall& ball = collars_.balls()[taker];
     const Vector d = triangle_circumcentre(outer) - ball.centre;
-    return CollarTriangle{outer, taken->second.ball, ball.centre + ball.radius / norm(d) * d, false, false};
+    return CollarTriangle{outer, generation, taker, ball.centre + ball.radius / norm(d) * d, false};
   }
-  const Point p = mesh_.circumcentre(cell_of(outer)), q = mesh_.circumcentre(cell_of(inner));
   if (labels_[cell_of(outer)].off_collars >> corner_of(outer) & 1U) return std::nullopt;
-  collars_.balls_on_segment(p, q, nodes_scratch_);
+  // A dual edge lies in the Voronoi cells of the triangle's vertices.
+  const auto v = mesh_.face_vertices(outer);
+  const Point p = mesh_.circumcentre(cell_of(outer)), q = mesh_.circumcentre(cell_of(inner));
+  nodes_scratch_.clear();
+  if (std::all_of(v.begin(), v.end(), [&](Index i) { return vertices_[i].near_collar; }))
+    collars_.balls_on_segment(p, q, nodes_scratch_);
   if (nodes_scratch_.empty()) {
     labels_[cell_of(outer)].off_collars |= static_cast<std::uint8_t>(1U << corner_of(outer));
     return std::nullopt;
@@ -197,40 +165,7 @@ std::optional<Refinement::CollarTriangle> Refinement::collar_triangle(FaceId out
     if (part.from > covered) several = true;
     covered = std::max(covered, part.to);
   }
-  return CollarTriangle{outer, parts[0].ball, p + parts[0].from * d, several, false};
-}
-
-// Corner points of neighbouring circles on neighbouring sheets are cocircular: a flat cell of them
-// just outside the collar is given to it.
-void Refinement::take_in_flat_cells() {
-  std::erase_if(taken_in_, [&](const auto& t) {
-    return !mesh_.alive(t.first) || mesh_.generation(t.first) != t.second.generation;
-  });
-  for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
-    if (!mesh_.alive(cell) || labels_[cell].in_collar || labels_[cell].region == 0) continue;
-    const auto& v = mesh_.corners(cell);
-    if (std::any_of(v.begin(), v.end(),
-                    [&](Index i) { return !vertices_[i].near_collar || vertices_[i].dimension == 3; }))
-      continue;
-    const Point &a = mesh_.point(v[0]), &b = mesh_.point(v[1]), &c = mesh_.point(v[2]),
-                &d = mesh_.point(v[3]);
-    const double longest = std::max({squared_distance(a, b), squared_distance(a, c), squared_distance(a, d)});
-    if (std::fabs(six_volume(a, b, c, d)) > 1e-7 * longest * std::sqrt(longest)) continue;
-    for (unsigned corner = 0; corner < 4; ++corner) {
-      const FaceId other = mesh_.opposite(face_id(cell, corner));
-      if (other == no_face || !labels_[cell_of(other)].in_collar) continue;
-      const auto t = collar_triangle(face_id(cell, corner));
-      if (!t) continue;
-      const CollarBall& ball = collars_.balls()[t->ball];
-      const bool on_its_sphere = std::all_of(v.begin(), v.end(), [&](Index i) {
-        return std::fabs(distance(mesh_.point(i), ball.centre) - ball.radius) < on_sphere * ball.radius;
-      });
-      if (!on_its_sphere) continue;
-      labels_[cell].in_collar = true;
-      taken_in_[cell] = {t->ball, mesh_.generation(cell)};
-      break;
-    }
-  }
+  return CollarTriangle{outer, generation, parts[0].ball, p + parts[0].from * d, several};
 }
 
 // The triangle alone: everything but what its neighbours decide.
@@ -252,8 +187,7 @@ bool Refinement::poorly_represented(const CollarTriangle& t) {
   if (predicates::orientation(a, b, c, ball.centre) <= 0) return true;
   const TetQuality quality = measure(a, b, c, ball.centre);
   if (quality.max_dihedral > options_.collar_angle) return true;
-  const bool taken = taken_in_.contains(cell_of(inner));
-  if (!taken) {
+  if (taken_in_by(cell_of(inner)) == none) {
     const Vector along = mesh_.circumcentre(cell_of(inner)) - mesh_.circumcentre(outer);
     const Vector normal = ball.centre - t.representation;
     if (dot(along, normal) < std::cos(radians(options_.representation_angle)) * norm(along) * norm(normal))
@@ -264,10 +198,9 @@ bool Refinement::poorly_represented(const CollarTriangle& t) {
 }
 
 bool Refinement::far_from_patch(Index patch, const Point& p) const {
-  const double tolerance = distance_ * distance_;
-  return hierarchy_.squared_distance_to(p, tolerance, nullptr, [&](Index triangle) {
-    return plc_.triangles[triangle].patch == patch;
-  }) >= tolerance;
+  Index nearest = none;
+  collars_.features().distance_within({2, patch}, p, distance_, nearest, [](Index) { return true; });
+  return nearest == none;
 }
 
 // An edge on a smooth patch makes a face with the ball's centre there: does it leave the patch by
@@ -309,18 +242,11 @@ std::optional<Point> Refinement::arc_point(const CollarBall& ball, Index patch, 
     const Vector d = p - ball.centre;
     return ball.centre + ball.radius / norm(d) * d;
   };
-  const auto nearest_on_patch = [&](const Point& p) {
-    Index nearest = none;
-    hierarchy_.squared_distance_to(p, INFINITY, &nearest,
-                                   [&](Index triangle) { return plc_.triangles[triangle].patch == patch; });
-    const auto t = hierarchy_.corners(nearest);
-    return nearest_point_on_triangle(p, t[0], t[1], t[2]);
-  };
   constexpr int most_projections = 40;
   constexpr double close = 1e-9;
   Point p = near;
   for (int k = 0; k < most_projections; ++k) {
-    const Point q = nearest_on_patch(p);
+    const Point q = collars_.features().nearest_point({2, patch}, p);
     if (squared_distance(q, ball.centre) < 1e-6 * ball.radius * ball.radius) return std::nullopt;
     p = on_sphere_towards(q);
     if (distance(p, q) < close * ball.radius) return plc_.patches[patch].planar ? on_plane(patch, p) : p;
@@ -350,34 +276,6 @@ bool Refinement::crosses_patch(const CollarBall& ball, Index a, Index b) {
     const Index patch = plc_.triangles[crossing.triangle].patch;
     return !on_patch(a, patch) && !on_patch(b, patch);
   });
-}
-
-// What neighbours decide: every edge has two triangles, of one ball or of consecutive ones, and then
-// the book tet between their centres is not inverted and keeps the angle bound.
-void Refinement::judge_collar_edges(std::vector<CollarTriangle>& triangles) const {
-  struct Use {
-    std::array<Index, 2> edge;
-    std::size_t triangle;
-  };
-  std::vector<Use> uses;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const auto v = mesh_.face_vertices(triangles[i].face);
-    for (unsigned k = 0; k < 3; ++k)
-      uses.push_back({{std::min(v[k], v[(k + 1) % 3]), std::max(v[k], v[(k + 1) % 3])}, i});
-  }
-  std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) {
-    return a.edge != b.edge ? a.edge < b.edge : a.triangle < b.triangle;
-  });
-  for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
-    for (j = i; j < uses.size() && uses[j].edge == uses[i].edge;) ++j;
-    bool poor = j - i != 2;
-    if (!poor) {
-      const CollarTriangle &t = triangles[uses[i].triangle], &u = triangles[uses[i + 1].triangle];
-      poor = t.ball != u.ball && (!collars_.consecutive(t.ball, u.ball) || poor_book(t, u, uses[i].edge));
-    }
-    if (poor)
-      for (std::size_t k = i; k < j; ++k) triangles[uses[k].triangle].poor = true;
-  }
 }
 
 bool Refinement::poor_book(const CollarTriangle& t, const CollarTriangle& u,

@@ -226,6 +226,10 @@ bool Refinement::insert_point(Index index) {
     if (p.dimension < v.dimension) {
       v.dimension = p.dimension;
       v.feature = p.feature;
+      if (collar_review_.started && v.near_collar) {
+        mesh_.incident_cells(nearest, cells_scratch_);
+        for (const Index around : cells_scratch_) touch(around);
+      }
     }
     p.vertex = nearest;
     objects_.remove(p.object);

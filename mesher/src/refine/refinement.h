@@ -26,7 +26,8 @@ namespace collarmesh {
 ///
 /// refinement.cpp holds the loop, destroy and force_insert; curves.cpp the subsegments;
 /// patches.cpp labels and restricted triangles; gradation.cpp target sizes at vertices;
-/// surface_check.cpp what is looked at when the queue has run empty; extract.cpp turns the result
+/// surface_check.cpp what is looked at when the queue has run empty; collar_surface.cpp and
+/// collar_review.cpp the collars, rip_and_stitch.cpp their tets; extract.cpp turns the result
 /// into a TetMesh.
 /// Of some points, those that are far from each other: each next one is the farthest from all
 /// before. Cost: candidates times count.
@@ -111,7 +112,8 @@ class Refinement {
     std::uint16_t region = 0;
     std::uint8_t marked = 0;       // bit i: the face opposite corner i is restricted
     std::uint8_t judged = 0;       // bit i: that face has been intersected with the patches
-    bool in_collar = false;        // its circumcentre lies in a collar ball
+    bool in_collar : 1 = false;    // its circumcentre lies in a collar ball
+    bool touched : 1 = false;      // created near collars since their surface was looked at
     std::uint8_t off_collars = 0;  // bit i: the dual edge of that face is known to meet no ball
   };
   /// A point about to be inserted.
@@ -248,12 +250,23 @@ class Refinement {
   /// enters first and the point where it does (paper, Definition 9).
   struct CollarTriangle {
     FaceId face;  // of the cell outside
+    std::uint32_t generation;  // of that cell
     Index ball;
     Point representation;
-    bool several;  // its dual edge meets the collar surface more than once
-    bool poor;
+    bool several;             // its dual edge meets the collar surface more than once
+    bool poor_alone = false;  // whatever its neighbours are
+    bool poor = false;
     Index bent_on = none;  // a smooth patch that an edge of it leaves too far ...
     Point bent_at = {};    // ... at its middle
+  };
+  /// What is known of the collar surface since it was last looked at: only what has changed is judged again.
+  struct CollarReview {
+    bool started = false;
+    std::vector<Index> touched;  // cells created near collars since
+    std::unordered_map<FaceId, CollarTriangle> triangles;
+    std::vector<FaceId> poor;                        // those inside regions
+    std::unordered_map<Index, Index> ball_at;        // by the mesh vertex at its centre
+    std::vector<Index> exposed;                      // balls whose centre may have cells outside around it
   };
   /// A flat cell outside the balls that is given to the collar of one.
   struct TakenIn {
@@ -262,13 +275,11 @@ class Refinement {
   };
   void prepare_collars();
   double collar_size(const Feature& feature, const Point& p) const;
-  bool meets_collar(Index vertex) const;
+  bool zone_is_near_collar() const;
+  bool meets_collar(Index vertex);
   void find_collar_cells(Index vertex);
-  bool check_collars();
   std::vector<CollarTriangle> collar_triangles();
   std::optional<CollarTriangle> collar_triangle(FaceId outer);
-  void take_in_flat_cells();
-  void judge_collar_edges(std::vector<CollarTriangle>& triangles) const;
   bool poorly_represented(const CollarTriangle& t);
   bool bends(CollarTriangle& t) const;
   bool far_from_patch(Index patch, const Point& p) const;
@@ -277,12 +288,27 @@ class Refinement {
   bool spans_patch(std::span<const Index> corners) const;
   bool on_crease(Index vertex) const;
   bool repair(const CollarTriangle& t);
-  bool surround_centres();
   bool insert_on_collar(const Point& p, std::uint8_t dimension, Index feature, Index nearby);
   std::span<const Index> patches_through(const CollarBall& ball) const;
 
   bool poor_book(const CollarTriangle& t, const CollarTriangle& u, const std::array<Index, 2>& edge) const;
   Index ball_vertex(Index ball) const { return unresolved_[ball_points_[ball]].vertex; }
+
+  // collar_review.cpp
+  /// Look at the collar surface when everything else is done; mend what is poor. False when nothing was.
+  bool check_collars();
+  void start_review();
+  void touch(Index cell);
+  std::vector<Index> touched_cells();
+  void take_in_flat_cells(std::vector<Index>& cells);
+  Index ball_to_take_in(Index cell);
+  Index taken_in_by(Index cell) const;
+  bool judge_changed_triangles(const std::vector<Index>& cells);
+  const CollarTriangle* known_triangle(FaceId face) const;
+  bool poor_edge(const CollarTriangle& t, Index a, Index b) const;
+  void find_exposed_centres(const std::vector<Index>& cells);
+  bool surround_centres();
+  bool mend_poor_triangles();
 
   // rip_and_stitch.cpp
   /// What takes the place of the cells inside the collars, in mesh vertices.
@@ -335,6 +361,7 @@ class Refinement {
   std::vector<ClippedEnd> clipped_ends_;
   Stitched stitched_;
   std::unordered_map<Index, TakenIn> taken_in_;  // by their cell
+  CollarReview collar_review_;
   WorkQueue queue_;
   ConflictZone zone_;
 
@@ -355,7 +382,7 @@ class Refinement {
   std::vector<Index> free_subsegments_;
 
   std::vector<TriangleHierarchy::Crossing> crossings_;
-  std::vector<Index> nodes_scratch_, cells_scratch_, seeds_scratch_;
+  std::vector<Index> nodes_scratch_, cells_scratch_, seeds_scratch_, nearby_balls_;
 
   MeshStatus stop_ = MeshStatus::complete;
   std::uint64_t random_state_;

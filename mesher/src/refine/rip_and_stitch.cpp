@@ -120,9 +120,7 @@ Index Refinement::patch_between(const std::array<Index, 3>& corners, Index a, In
   if (possible.empty() || (possible.size() == 1 && a != b)) return possible.empty() ? none : possible[0];
   const Point middle = (mesh_.point(corners[0]) + mesh_.point(corners[1]) + mesh_.point(corners[2])) / 3;
   const auto distance_to = [&](Index patch) {
-    return hierarchy_.squared_distance_to(middle, INFINITY, nullptr, [&](Index triangle) {
-      return plc_.triangles[triangle].patch == patch;
-    });
+    return squared_distance(middle, collars_.features().nearest_point({2, patch}, middle));
   };
   const Index nearest = *std::min_element(possible.begin(), possible.end(), [&](Index x, Index y) {
     return distance_to(x) < distance_to(y);
