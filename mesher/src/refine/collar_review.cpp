@@ -59,9 +59,17 @@ bool Refinement::check_collars() {
   return found;
 }
 
-// Everything is new.
+// Everything is new. Voronoi cells have become smaller: fewer vertices are near collars than when they came.
 void Refinement::start_review() {
   collar_review_.started = true;
+  for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+    if (!vertices_[v].near_collar) continue;
+    mesh_.incident_cells(v, cells_scratch_);
+    double largest = 0;
+    for (const Index cell : cells_scratch_) largest = std::max(largest, mesh_.squared_radius(cell));
+    collars_.balls_meeting(mesh_.point(v), std::sqrt(largest), 1, nearby_balls_);
+    vertices_[v].near_collar = !nearby_balls_.empty();
+  }
   for (Index ball = 0; ball < collars_.balls().size(); ++ball)
     if (ball_vertex(ball) != none) collar_review_.ball_at.emplace(ball_vertex(ball), ball);
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
@@ -137,39 +145,41 @@ Index Refinement::ball_to_take_in(Index cell) {
 Index Refinement::taken_in_by(Index cell) const {
   const auto taken = taken_in_.find(cell);
   return taken != taken_in_.end() && taken->second.generation == mesh_.generation(cell) ? taken->second.ball
-                                                                                         : none;
+                                                                                        : none;
 }
 
 // Judge the triangles of these cells, and those that share an edge with what these cells have replaced.
 // False when stopped.
 bool Refinement::judge_changed_triangles(const std::vector<Index>& cells) {
   auto& triangles = collar_review_.triangles;
-  const bool all_are_new = triangles.empty();
+  for (const Index cell : cells) labels_[cell].touched = true;
   std::size_t looked_at = 0;
-  std::vector<FaceId> changed;
+  std::vector<FaceId> changed, border;
   for (const Index cell : cells)
-    for (unsigned corner = 0; corner < 4; ++corner)
-      for (const FaceId outer : {face_id(cell, corner), mesh_.opposite(face_id(cell, corner))}) {
-        if (outer == no_face) continue;
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      const FaceId face = face_id(cell, corner), other = mesh_.opposite(face);
+      if (other == no_face) continue;
+      if (!labels_[cell_of(other)].touched)
+        border.push_back(face);
+      else if (cell_of(other) < cell)
+        continue;
+      for (const FaceId outer : {face, other}) {
         auto t = collar_triangle(outer);
-        if (!t) {
-          triangles.erase(outer);
-          continue;
-        }
+        if (!t) continue;  // what was known of this face is not asked for any more
         if (++looked_at % triangles_between_stops == 0 && stopped()) return false;
         t->poor_alone = poorly_represented(*t) || bends(*t);
         triangles.insert_or_assign(outer, *t);
         changed.push_back(outer);
       }
-  if (!all_are_new)
-    for (const Index cell : cells) {
-      const auto& v = mesh_.corners(cell);
-      for (unsigned i = 0; i < 4; ++i)
-        for (unsigned j = i + 1; j < 4; ++j)
-          visit_faces_around(mesh_, cell, v[i], v[j], [&](FaceId face) {
-            if (const CollarTriangle* t = known_triangle(face)) changed.push_back(t->face);
-          });
     }
+  for (const FaceId face : border) {
+    const auto v = mesh_.face_vertices(face);
+    for (unsigned k = 0; k < 3; ++k)
+      visit_faces_around(mesh_, cell_of(face), v[k], v[(k + 1) % 3], [&](FaceId around) {
+        if (const CollarTriangle* t = known_triangle(around)) changed.push_back(t->face);
+      });
+  }
+  for (const Index cell : cells) labels_[cell].touched = false;
   sort_and_make_unique(changed);
   for (const FaceId face : changed) {
     CollarTriangle& t = triangles.at(face);
