@@ -41,13 +41,13 @@ class Series:
 
 
 def crease_series(program: Path, largest: int) -> list[Series]:
-    """By the number of crease segments: one in a wedge of 20 degrees, one in a fan of 8 sheets (both in
+    """By the number of crease segments: one in a wedge of 40 degrees, one in a fan of 8 sheets (both in
     grids of turned copies), one at the tip of each tooth of a comb and none elsewhere. All teeth of a comb
     are on two facets."""
     counts = [n for k in range(1, 6) for n in (10 ** k, 3 * 10 ** k) if n <= min(largest, 100000)]
     copies = [Series(title, {n: AcuteInput(program, family, parameters, n) for n in counts if n <= most}, {})
-              for title, family, parameters, most in (("wedges of 20 degrees", "wedge", (20, 1), 100000),
-                                                      ("fans of 8 sheets", "fan", (8, 0), 1000))]
+              for title, family, parameters, most in (("wedges of 40 degrees", "wedge", (40, 1), 100000),
+                                                      ("fans of 8 sheets", "fan", (8, 0), 3000))]
     teeth = [n for n in counts if n <= 300]
     return [*copies, Series("comb, teeth of 30 degrees",
                             {n: AcuteInput(program, "comb", (n, 30)) for n in teeth}, {})]
@@ -94,7 +94,7 @@ def main() -> int:
     parser.add_argument("what", nargs="*", default=["creases", "spread"], help="creases, spread")
     parser.add_argument("--build", type=Path, default=root / "build" / "bench")
     parser.add_argument("--largest", type=int, default=100000, help="number of crease segments")
-    parser.add_argument("--time-limit", type=float, default=600)
+    parser.add_argument("--time-limit", type=float, default=3600)
     parser.add_argument("--plot", type=Path, help="folder for creases.svg and spread.svg")
     parser.add_argument("--core", type=int)
     options = parser.parse_args()

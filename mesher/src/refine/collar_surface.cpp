@@ -75,9 +75,9 @@ void Refinement::find_collar_cells(Index vertex) {
     for (const Index cell : zone_.created) {
       const Point& centre = mesh_.circumcentre(cell);
       const auto holds_centre = [&](Index ball) { return collars_.contains(ball, centre); };
-      labels_[cell].in_collar =
-          all_known ? std::any_of(nearby_balls_.begin(), nearby_balls_.end(), holds_centre)
-                    : collars_.ball_containing(centre) != none;
+      labels_[cell].in_collar = all_known
+                                    ? std::any_of(nearby_balls_.begin(), nearby_balls_.end(), holds_centre)
+                                    : collars_.ball_containing(centre) != none;
     }
   }
   if (collar_review_.started && zone_is_near_collar())

@@ -76,7 +76,8 @@ void Refinement::stitch_faces(const std::vector<CollarTriangle>& triangles) {
     const Index region = labels_[cell_of(t.face)].region;
     if (region != 0 && !t.several) uses.push_back(face_use(mesh_.face_vertices(t.face), region));
   }
-  std::stable_sort(uses.begin(), uses.end(), [](const FaceUse& a, const FaceUse& b) { return a.key < b.key; });
+  std::stable_sort(uses.begin(), uses.end(),
+                   [](const FaceUse& a, const FaceUse& b) { return a.key < b.key; });
   for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
     for (j = i; j < uses.size() && uses[j].key == uses[i].key;) ++j;
     const Index beyond = j - i > 1 ? uses[i + 1].region : 0;
@@ -89,9 +90,11 @@ void Refinement::stitch_faces(const std::vector<CollarTriangle>& triangles) {
     }
     auto face = uses[i].face;
     std::array<Index, 2> regions{uses[i].region, beyond};
-    const Vector n = cross(mesh_.point(face[1]) - mesh_.point(face[0]), mesh_.point(face[2]) - mesh_.point(face[0]));
-    const bool reversed = regions[0] == regions[1] ? dot(n, plc_.patches[patch].normal) < 0
-                                                   : beyond != 0 && regions[0] != plc_.patches[patch].regions[0];
+    const Vector n =
+        cross(mesh_.point(face[1]) - mesh_.point(face[0]), mesh_.point(face[2]) - mesh_.point(face[0]));
+    const bool reversed = regions[0] == regions[1]
+                              ? dot(n, plc_.patches[patch].normal) < 0
+                              : beyond != 0 && regions[0] != plc_.patches[patch].regions[0];
     if (reversed) {
       std::swap(face[1], face[2]);
       std::swap(regions[0], regions[1]);
@@ -122,12 +125,11 @@ Index Refinement::patch_between(const std::array<Index, 3>& corners, Index a, In
   const auto distance_to = [&](Index patch) {
     return squared_distance(middle, collars_.features().nearest_point({2, patch}, middle));
   };
-  const Index nearest = *std::min_element(possible.begin(), possible.end(), [&](Index x, Index y) {
-    return distance_to(x) < distance_to(y);
-  });
+  const Index nearest = *std::min_element(possible.begin(), possible.end(),
+                                          [&](Index x, Index y) { return distance_to(x) < distance_to(y); });
   // Inside one region a face between vertices of a patch may lie beside it.
-  const double near = plc_.patches[nearest].planar ? std::max(plc_.planar_tolerance, 1e-9 * diagonal_)
-                                                   : distance_;
+  const double near =
+      plc_.patches[nearest].planar ? std::max(plc_.planar_tolerance, 1e-9 * diagonal_) : distance_;
   return a != b || distance_to(nearest) <= near * near ? nearest : none;
 }
 
