@@ -11,7 +11,7 @@ namespace {
 
 constexpr double radius_per_gap = 1.0 / 3;
 // Radii are shrunk by a random share of up to this, so that spheres are in general position.
-constexpr double largest_shrinkage = 0.08;
+constexpr double largest_shrinkage = 0.02;
 // Along a curve radii change by at most this share of the way, as a third of a distance does; where
 // flatness limits them by far less, so that they are even along rims of one curvature.
 constexpr double radius_slope = 1.0 / 3;
@@ -19,7 +19,7 @@ constexpr double flat_radius_slope = 0.05;
 constexpr double sample_step = 0.5;  // in radii
 // Consecutive centres are so many radii apart at most: the circle of two balls is then seen from
 // both centres under less than 90 degrees, d^2 <= r1^2 + r2^2, shrunk as they may be.
-constexpr double step_per_radius = 1.1;
+constexpr double step_per_radius = 1.2;
 
 // Which vertices get a ball: those of creases and the ends of crease curves.
 std::vector<Index> crease_vertices(const Plc& plc, std::span<const Crease> creases,

@@ -37,7 +37,6 @@ void validate(const MeshOptions& o) {
 
 MeshResult generate(const Plc& plc, const MeshOptions& options, const Execution& execution) {
   validate(options);
-  require(plc.regions.size() < 0xffff, "more than 65534 regions are not supported");
   Refinement refinement(plc, options, execution);
   MeshResult result;
   result.status = refinement.run();

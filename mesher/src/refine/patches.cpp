@@ -9,7 +9,7 @@ namespace collarmesh {
 
 namespace {
 
-constexpr std::uint16_t unlabelled = 0xffff;
+constexpr Index unlabelled = none;
 constexpr std::size_t seeds_per_closed_patch = 4;
 // The cosine between a surface's normal and that of what it faces across a gap; of parts of the surface
 // that meet elsewhere only what is almost parallel counts, else the gap would close in a wedge.
@@ -71,7 +71,7 @@ void Refinement::label_from_outside(Index cell) {
   crossings_.clear();
   if (!hierarchy_.empty())
     hierarchy_.crossings(mesh_.point(0), mesh_.circumcentre(cell), {&root, 1}, crossings_);
-  labels_[cell] = {.region = static_cast<std::uint16_t>(region_beyond(0))};
+  labels_[cell] = {.region = region_beyond(0)};
 }
 
 bool Refinement::on_patch(Index vertex, Index patch) const {
@@ -131,8 +131,7 @@ std::size_t Refinement::first_label() {
   if (seed < zone_.created.size()) {
     const FaceId outer = zone_.outer[seed];
     find_crossings(outer, fewest_nodes(outer));
-    labels_[zone_.created[seed]].region =
-        static_cast<std::uint16_t>(region_beyond(labels_[cell_of(outer)].region));
+    labels_[zone_.created[seed]].region = region_beyond(labels_[cell_of(outer)].region);
     return seed;
   }
   label_from_outside(zone_.created[0]);
@@ -143,7 +142,7 @@ std::size_t Refinement::first_label() {
 void Refinement::label_created_cells(Index vertex) {
   for (const Index cell : zone_.created) labels_[cell] = {.region = unlabelled};
   const std::size_t seed = first_label();
-  const std::uint16_t region = labels_[zone_.created[seed]].region;
+  const Index region = labels_[zone_.created[seed]].region;
   if (vertices_[vertex].node_count == 0) {
     for (const Index cell : zone_.created) labels_[cell].region = region;
     return;
@@ -161,7 +160,7 @@ void Refinement::label_created_cells(Index vertex) {
       find_crossings(face, nodes);
       if (!crossings_.empty()) restrict_face(face);
       if (labels_[cell_of(other)].region != unlabelled) continue;
-      labels_[cell_of(other)].region = static_cast<std::uint16_t>(region_beyond(labels_[cell].region));
+      labels_[cell_of(other)].region = region_beyond(labels_[cell].region);
       cells_scratch_.push_back(cell_of(other));
     }
   }

@@ -109,7 +109,7 @@ class Refinement {
     std::uint32_t generation;  // of the face's cell
   };
   struct CellLabel {
-    std::uint16_t region = 0;
+    Index region = 0;
     std::uint8_t marked = 0;       // bit i: the face opposite corner i is restricted
     std::uint8_t judged = 0;       // bit i: that face has been intersected with the patches
     bool in_collar : 1 = false;    // its circumcentre lies in a collar ball
