@@ -15,6 +15,8 @@ namespace {
 // exact centres of cospherical input make flat cells whose refinement never ends.
 constexpr double cell_offset = 0.05;
 constexpr double triangle_offset = 0.1;
+// So many offsets are tried where they lead into a collar.
+constexpr int most_offsets = 16, offsets_of_full_length = 8;
 // Hierarchy nodes of a vertex are filtered again after so many insertions in its star: rarely on the
 // surface, where they never run out.
 // What lies between two surfaces is as fine as they are: sizes spread from them when gaps were asked for.
@@ -503,8 +505,7 @@ void Refinement::note_edges(Index vertex) {
 std::optional<Refinement::Candidate> Refinement::cell_candidate(Index cell) {
   const double r2 = mesh_.squared_radius(cell);
   const Point& centre = mesh_.circumcentre(cell);
-  Point p = frame_.rounded(centre + cell_offset * std::sqrt(r2 / 3) * random_in_cube());
-  if (collars_.ball_containing(p) != none) p = frame_.rounded(centre);
+  const Point p = frame_.rounded(centre + offset_outside_collars(centre, cell_offset * std::sqrt(r2 / 3), {}));
   if (!inside_box(p) || !mesh_.in_conflict(cell, p)) return std::nullopt;
   return Candidate{p, r2, centre, 3, none, cell};
 }
@@ -516,10 +517,8 @@ std::optional<Refinement::Candidate> Refinement::triangle_candidate(FaceId face)
   if (plc_.patches[patch].planar && t.resolved_vertices) {
     const auto v = mesh_.face_vertices(face);
     const Vector n = cross(mesh_.point(v[1]) - mesh_.point(v[0]), mesh_.point(v[2]) - mesh_.point(v[0]));
-    const Vector offset = triangle_offset * std::sqrt(t.squared_radius / 3) * random_in_cube();
-    const double nn = squared_norm(n);
-    if (nn > 0) p = p + offset - (dot(offset, n) / nn) * n;
-    if (collars_.ball_containing(p) != none) p = t.x;
+    if (squared_norm(n) > 0)
+      p = p + offset_outside_collars(p, triangle_offset * std::sqrt(t.squared_radius / 3), n);
   }
   if (plc_.patches[patch].planar) p = on_plane(patch, p);
   p = frame_.rounded(p);
@@ -533,6 +532,18 @@ std::optional<Refinement::Candidate> Refinement::triangle_candidate(FaceId face)
     start = mesh_.conflicting_cell_around(mesh_.face_vertices(face)[0], p);
   if (start == none) return std::nullopt;
   return Candidate{p, t.squared_radius, t.x, 2, patch, start};
+}
+
+// A random vector of this length at most, orthogonal to the normal if there is one, that does not lead into a
+// collar. Between two sheets exact centres often lie on a third one.
+Vector Refinement::offset_outside_collars(const Point& from, double length, const Vector& normal) {
+  const double nn = squared_norm(normal);
+  for (int k = 0; k < most_offsets; ++k) {
+    const Vector any = (k < offsets_of_full_length ? length : length *= 0.5) * random_in_cube();
+    const Vector offset = nn > 0 ? any - (dot(any, normal) / nn) * normal : any;
+    if (collars_.ball_containing(from + offset) == none) return offset;
+  }
+  return {};
 }
 
 // Needle triangles of a facet that is planar within a tolerance only have normals of their own.

@@ -159,6 +159,7 @@ class Refinement {
   void note_edges(Index vertex);
   std::optional<Candidate> cell_candidate(Index cell);
   std::optional<Candidate> triangle_candidate(FaceId face);
+  Vector offset_outside_collars(const Point& from, double length, const Vector& normal);
   Index last_vertex() const { return mesh_.vertex_count() - 1; }
   Point on_plane(Index patch, const Point& p) const;
   bool inside_box(const Point& p) const;
