@@ -442,7 +442,7 @@ TEST(IoSoup, SurvivesDamage) {
 
 TEST(IoSoup, ReadsTheCorpus) {
   const char* corpus = std::getenv("COLLARMESH_CORPUS");
-  if (corpus == nullptr) GTEST_SKIP() << "COLLARMESH_CORPUS names no folder";
+  if (corpus == nullptr || *corpus == '\0') GTEST_SKIP() << "COLLARMESH_CORPUS names no folder";
   for (const auto& entry : std::filesystem::directory_iterator(corpus)) {
     const std::string path = entry.path().string();
     if (!io::is_soup_format(path)) continue;
