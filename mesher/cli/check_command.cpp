@@ -12,7 +12,9 @@ ExitCode check_command(const CheckArguments& arguments) {
   const TetMesh mesh = read_mesh(arguments.mesh);
   const Plc plc = build_plc(read_soups(arguments.inputs), arguments.complex.plc);
   stop_if_interrupted();
-  const CheckReport report = check(mesh, plc, arguments.check);
+  CheckOptions options = arguments.check;
+  options.crease_angle = arguments.complex.crease_angle;
+  const CheckReport report = check(mesh, plc, options);
   if (arguments.json)
     fmt::print("{}\n", check_json(report).dump(1));
   else

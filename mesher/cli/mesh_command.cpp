@@ -129,6 +129,7 @@ void certify(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   options.radius_edge = arguments.mesh.radius_edge;
   options.distance = arguments.mesh.distance;
   options.collar_angle = arguments.mesh.collar_angle;
+  options.crease_angle = arguments.complex.crease_angle;
   run.check = check(run.result.mesh, run.plc, options);
   run.measures = measure_mesh(run.result.mesh);
 }

@@ -13,7 +13,8 @@ struct MeshMeasures {
   static constexpr std::size_t bins = 18;
 
   double min_dihedral = 180, max_dihedral = 0;  ///< degrees
-  double max_radius_edge = 0;
+  double max_radius_edge = 0;         ///< outside collars, where it is bounded
+  double max_collar_radius_edge = 0;  ///< in collars; 0: there are none
   std::array<std::size_t, bins> min_dihedrals{};  ///< tets by their smallest dihedral angle, 10 degrees a bin
   std::array<std::size_t, bins> max_dihedrals{};  ///< tets by their largest one
   std::array<std::size_t, bins>
@@ -22,8 +23,5 @@ struct MeshMeasures {
 };
 
 MeshMeasures measure_mesh(const TetMesh& mesh);
-
-/// Over distinct edges. Cost: O(n log n), 48 bytes per tet for a while.
-double median_edge(const TetMesh& mesh);
 
 }  // namespace collarmesh::cli

@@ -80,7 +80,9 @@ std::string mesh_text(const TetMesh& mesh, const MeshMeasures& m) {
   std::string text;
   fmt::format_to(Out(text), "{} tets, {} points, {} boundary and interface triangles, {} curve edges\n",
                  mesh.tets.size(), mesh.points.size(), mesh.faces.size(), mesh.edges.size());
-  fmt::format_to(Out(text), "  {}\n", shape_text(m.min_dihedral, m.max_dihedral, m.max_radius_edge));
+  fmt::format_to(
+      Out(text), "  {}{}\n", shape_text(m.min_dihedral, m.max_dihedral, m.max_radius_edge),
+      m.max_collar_radius_edge > 0 ? fmt::format(" (in collars {:.4g})", m.max_collar_radius_edge) : "");
   std::size_t line = 0;
   for (const auto& [region, volume] : m.region_volumes) {
     if (++line > listed) break;
@@ -101,6 +103,7 @@ std::string findings_text(const CheckReport& r, std::size_t most) {
 
 std::string check_text(const CheckReport& r) {
   std::string text = findings_text(r, r.findings.size());
+  for (const std::string& note : r.notes) fmt::format_to(Out(text), "note: {}\n", note);
   fmt::format_to(Out(text), "{} tets, {} points, {} faces, {} edges; {}\n", r.tets, r.points, r.faces,
                  r.edges, shape_text(r.min_dihedral, r.max_dihedral, r.max_radius_edge));
   if (r.collar_tets > 0)

@@ -312,6 +312,50 @@ class Cancelling(ProgramTest):
             self.assert_nothing_left()
 
 
+class MeshesOfOtherPrograms(ProgramTest):
+    """They pass, or fail for their elements, not for their labels."""
+
+    def other_program(self, *command):
+        if shutil.which(command[0]) is None:
+            self.skipTest(f"{command[0]} is not installed")
+        run = subprocess.run(list(map(str, command)), cwd=self.folder, capture_output=True, text=True, timeout=60)
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+
+    def check_judgement(self, mesh, surface):
+        lenient = self.run_program("check", mesh, "--against", surface, "--radius-edge", "1000", "--json")
+        report = json.loads(lenient.stdout)
+        self.assertTrue(report["passed"], lenient.stdout)
+        self.assertAlmostEqual(report["region_volumes"]["1"], 1, places=9)
+        self.assertGreater(report["edges"], 0)
+        bound = report["max_radius_edge"]
+        strict = self.run_program("check", mesh, "--against", surface, "--radius-edge", str(0.95 * bound), "--json")
+        self.assertEqual(strict.returncode, 7)
+        self.assertEqual({f["guarantee"] for f in json.loads(strict.stdout)["findings"]}, {"radius_edge"})
+
+    def test_gmsh_from_stl(self):
+        self.expect(0, "convert", self.box, "-o", "box.stl", writes=True)
+        self.write("box.geo", 'Merge "box.stl";\nSurface Loop(1) = {1};\nVolume(1) = {1};\nMesh.MeshSizeMax = 0.4;\n')
+        for extension, format_name in (("msh", "msh41"), ("msh", "msh22"), ("mesh", "mesh"), ("unv", "unv"), ("vtk", "vtk"), ("inp", "inp")):
+            with self.subTest(format=format_name):
+                mesh = self.folder / f"{format_name}.{extension}"
+                self.other_program("gmsh", "-3", "-v", "0", "-format", format_name, "-o", mesh, "box.geo")
+                self.check_judgement(mesh, self.box)
+
+    def test_gmsh_from_geo(self):
+        self.write("box.geo", 'SetFactory("OpenCASCADE");\nBox(1) = {0, 0, 0, 1, 1, 1};\nMesh.MeshSizeMax = 0.3;\n'
+                   "Physical Volume(77) = {1};\nPhysical Surface(88) = {1:6};\n")
+        for extension, format_name in (("msh", "msh41"), ("msh", "msh22"), ("mesh", "mesh"), ("inp", "inp")):
+            with self.subTest(format=format_name):
+                mesh = self.folder / f"{format_name}.{extension}"
+                self.other_program("gmsh", "-3", "-v", "0", "-format", format_name, "-o", mesh, "box.geo")
+                self.check_judgement(mesh, self.box)
+
+    def test_tetgen(self):
+        self.expect(0, "convert", self.box, "-o", "box.poly", writes=True)
+        self.other_program("tetgen", "-pq1.4a0.01Q", "box.poly")
+        self.check_judgement(self.folder / "box.1.ele", self.box)
+
+
 class Guarantees(ProgramTest):
     def test_mesh_and_check_in_every_format(self):
         for extension in ("vtu", "msh", "mesh"):
@@ -574,7 +618,7 @@ class Convert(ProgramTest):
 
     def test_meshes_of_every_format(self):
         self.convert(0, MODELS / "two_boxes.poly", "-o", "a.vtu", "--size", "0.5")
-        for extension in ("vtk", "msh", "mesh", "unv", "ele", "vtu"):
+        for extension in ("vtk", "msh", "mesh", "unv", "ele", "vtu", "inp"):
             with self.subTest(extension=extension):
                 self.convert(0, "a.vtu", "-o", f"b.{extension}", says=[rf"b\.{extension}: \d+ tets of order 1"])
                 check = self.run_program("check", f"b.{extension}", "--against", MODELS / "two_boxes.poly")
@@ -583,6 +627,19 @@ class Convert(ProgramTest):
         self.assertEqual(self.run_program("info", "b.inp").returncode, 0)
         self.convert(0, "b.inp", "-o", "skin.poly", says=["2 region points"])
         self.assertAlmostEqual(self.volume("skin.poly"), self.volume(MODELS / "two_boxes.poly"))
+
+    def test_collars_in_every_format(self):
+        wedge = self.write("wedge.off", wedge_text(20))
+        self.convert(0, wedge, "-o", "a.vtu", "--size", "0.3")
+        for extension in ("vtk", "msh", "mesh", "unv", "ele", "vtu", "inp"):
+            with self.subTest(extension=extension):
+                self.convert(0, "a.vtu", "-o", f"b.{extension}")
+                check = self.run_program("check", f"b.{extension}", "--against", wedge, "--json")
+                report = json.loads(check.stdout)
+                self.assertTrue(report["passed"], check.stdout)
+                self.assertGreater(report["collar_tets"], 0)
+                blunt = self.run_program("check", f"b.{extension}", "--against", wedge, "--crease-angle", "5", "--json")
+                self.assertEqual(json.loads(blunt.stdout)["collar_tets"], 0)
 
     def test_says_which_triangles_are_lost(self):
         self.write("loose.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices 5\n0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 1\n"

@@ -195,6 +195,32 @@ TEST(Collar, WrongBallsAreFound) {
   EXPECT_TRUE(has_finding(mesh, meshed.plc, "valid_arrays"));
 }
 
+// A file may have no place for the marks of the cells, or for any label: the complex has the creases.
+TEST(Collar, FilesAreJudgedByTheCreasesOfTheComplex) {
+  const acute::Shape wedge = acute::wedge(20);
+  const Meshed meshed = testing::mesh_of(wedge.soups, testing::with_size(size), 0);
+  ASSERT_EQ(testing::faults(meshed), "");
+  TetMesh mesh = meshed.result.mesh;
+  mesh.features.clear();
+  mesh.collar_balls.clear();
+  EXPECT_TRUE(check(mesh, meshed.plc).passed());
+  EXPECT_EQ(check(mesh, meshed.plc).collar_tets, meshed.report.collar_tets);
+  mesh.tet_collar.assign(mesh.tets.size(), 0);
+  EXPECT_TRUE(check(mesh, meshed.plc).passed());
+  EXPECT_EQ(check(mesh, meshed.plc).collar_tets, meshed.report.collar_tets);
+  mesh.edges.clear();
+  mesh.edge_curve.clear();
+  mesh.edge_tag.clear();
+  EXPECT_EQ(check(mesh, meshed.plc).collar_tets, meshed.report.collar_tets);
+  EXPECT_TRUE(check(mesh, meshed.plc).passed());
+  mesh = meshed.result.mesh;
+  CheckOptions no_creases;
+  no_creases.crease_angle = 10;
+  const CheckReport report = check(mesh, meshed.plc, no_creases);
+  EXPECT_GE(report.findings_total, meshed.report.collar_tets);
+  EXPECT_EQ(report.findings.front().guarantee, "collar_cells");
+}
+
 // Cancelling and budgets of time end the placement of balls too.
 TEST(Collar, PlacementCanBeStopped) {
   PlcOptions smooth;

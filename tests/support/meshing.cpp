@@ -29,6 +29,7 @@ Meshed mesh_of(const Plc& plc, const MeshOptions& options) {
   bounds.radius_edge = options.radius_edge;
   bounds.distance = options.distance;
   bounds.collar_angle = options.collar_angle;
+  bounds.crease_angle = options.crease_angle;
   bounds.findings_per_guarantee = 2;
   meshed.report = check(meshed.result.mesh, plc, bounds);
   return meshed;

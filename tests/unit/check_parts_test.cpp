@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -19,6 +20,19 @@ namespace {
 using namespace collarmesh::checks;
 
 const double regular_dihedral = std::acos(1.0 / 3) * 180 / 3.14159265358979323846;
+
+TEST(Measure, EveryScale) {
+  const std::array<Point, 4> t{{{0, 0, 0}, {1.5, 0.25, 0}, {0.25, 1, 0.125}, {0.5, 0.5, 2}}};
+  const TetQuality q = measure(t[0], t[1], t[2], t[3]);
+  for (const int exponent : {-300, -100, -40, 40, 100, 300}) {
+    const double s = std::ldexp(1, exponent);
+    const TetQuality scaled = measure(s * t[0], s * t[1], s * t[2], s * t[3]);
+    EXPECT_EQ(scaled.volume, std::ldexp(q.volume, 3 * exponent));
+    EXPECT_EQ(scaled.radius_edge, q.radius_edge);
+    EXPECT_EQ(scaled.min_dihedral, q.min_dihedral);
+    EXPECT_EQ(scaled.max_dihedral, q.max_dihedral);
+  }
+}
 
 TEST(Measure, RegularTet) {
   const TetQuality q = measure({1, 1, 1}, {-1, 1, -1}, {1, -1, -1}, {-1, -1, 1});
@@ -145,12 +159,13 @@ TEST(DistanceTree, DistanceToOneTriangle) {
   EXPECT_DOUBLE_EQ(tree.nearest({1, -1, 0}).distance, 1);
 }
 
-TEST(RegionAt, InsideCavityAndOutside) {
+TEST(RegionLocator, InsideCavityAndOutside) {
   const auto soup = testing::box_with_cavity(0.2);
   const Plc plc = build_plc({&soup, 1});
-  EXPECT_EQ(region_at(plc, {0.1, 0.2, 0.3}), 1U);
-  EXPECT_EQ(region_at(plc, {0.52, 0.47, 0.55}), 0U);
-  EXPECT_EQ(region_at(plc, {1.5, 0.5, 0.5}), 0U);
+  const RegionLocator locator(plc);
+  EXPECT_EQ(locator.region_at({0.1, 0.2, 0.3}), 1U);
+  EXPECT_EQ(locator.region_at({0.52, 0.47, 0.55}), 0U);
+  EXPECT_EQ(locator.region_at({1.5, 0.5, 0.5}), 0U);
 }
 
 }  // namespace

@@ -54,6 +54,8 @@ TEST(CheckRightMeshes, Moved) {
   expect_pass_when_moved(1, far);
   expect_pass_when_moved(1e-6, 0);
   expect_pass_when_moved(1e6, 0);
+  expect_pass_when_moved(1e30, 0);
+  expect_pass_when_moved(1e-30, 0);
   expect_pass_when_moved(1e-6, 1e-6 * far);
 }
 

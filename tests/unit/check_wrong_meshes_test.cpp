@@ -205,15 +205,6 @@ TEST(CheckWrongMeshes, RadiusEdgeAboveTheBound) {
   EXPECT_EQ(broken(m), Names{radius_edge});
 }
 
-TEST(CheckWrongMeshes, DihedralInCollarAboveTheBound) {
-  MeshedComplex m = meshed_box(2);
-  m.mesh.tet_collar[4] = 2;
-  EXPECT_EQ(broken(m, {.collar_angle = 89}), Names{collar_dihedral});
-  EXPECT_EQ(broken(m, {.collar_angle = 90}), Names{});
-  m.mesh.tet_collar.assign(m.mesh.tets.size(), 1);
-  EXPECT_EQ(broken(m, {.radius_edge = 0.1}), Names{}) << "in collars radius-edge does not count";
-}
-
 // The regions
 
 TEST(CheckWrongMeshes, MissingTet) {

@@ -12,6 +12,7 @@ struct CheckOptions {
   double radius_edge = 2;      ///< bound outside collars
   double distance = 0;         ///< surface distance tolerance on smooth patches and curves, absolute; 0: 1e-3 of the diagonal
   double collar_angle = 150;   ///< largest dihedral angle in collars, degrees
+  double crease_angle = 60;    ///< degrees; features that meet below it are the creases that excuse a collar's cells
   std::size_t findings_per_guarantee = 20;  ///< more are counted, not listed
 };
 
@@ -26,6 +27,7 @@ struct Finding {
 struct CheckReport {
   std::vector<Finding> findings;
   std::size_t findings_total = 0;  ///< with those not listed
+  std::vector<std::string> notes;  ///< sentences: labels that were not the complex', so that positions decided
   // What was measured:
   std::size_t tets = 0, points = 0, faces = 0, edges = 0, collar_tets = 0;
   double max_radius_edge = 0;          ///< outside collars
@@ -41,7 +43,9 @@ struct CheckReport {
 /// Recompute every guarantee from the mesh alone, independently of how it was made: positive
 /// volumes, conformity, watertight regions, region volumes, curves as unions of edges, facets as
 /// unions of faces with equal area, radius-edge ratio, surface distance.
-/// A mesh read from a file (no feature indices) is matched to the complex by tags and position.
+/// A mesh read from a file (no feature indices) is matched to the complex by tags and position; where its
+/// tags are not the complex', or it has no boundary triangles or curve edges, by position alone.
+/// Tets count as a collar's cells only at creases of the complex.
 CheckReport check(const TetMesh& mesh, const Plc& plc, const CheckOptions& options = {});
 
 }  // namespace collarmesh

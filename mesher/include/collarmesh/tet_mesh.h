@@ -62,6 +62,11 @@ struct TetQuality {
   double min_dihedral;  ///< degrees
   double max_dihedral;  ///< degrees
 };
+/// At any scale: squares and products of lengths may be out of a double's range.
 TetQuality measure(const Point& a, const Point& b, const Point& c, const Point& d);
+
+/// The median length of the edges of the tets, each edge counted once; 0 without tets.
+/// Cost: expected linear, 36 bytes per tet for a while.
+double median_edge(const TetMesh& mesh);
 
 }  // namespace collarmesh

@@ -136,7 +136,7 @@ void check_collar_balls(const TetMesh& mesh, Findings& findings) {
 
 }  // namespace
 
-bool check_arrays(const TetMesh& mesh, const Plc& plc, Findings& findings) {
+bool check_arrays(const TetMesh& mesh, Findings& findings) {
   const std::size_t before = findings.total();
   check_lengths(mesh, findings);
   check_corners(mesh.tets, mesh, "Tet", findings);
@@ -144,6 +144,11 @@ bool check_arrays(const TetMesh& mesh, const Plc& plc, Findings& findings) {
   check_corners(mesh.edges, mesh, "Edge", findings);
   check_corners(mesh.tet_mid_nodes, mesh, "Mid nodes of tet", findings);
   check_corners(mesh.face_mid_nodes, mesh, "Mid nodes of face", findings);
+  return findings.total() == before;
+}
+
+bool check_labels(const TetMesh& mesh, const Plc& plc, Findings& findings) {
+  const std::size_t before = findings.total();
   check_range(mesh.tet_region, 1, plc.regions.size(), false, "Tet", "region", findings);
   check_face_regions(mesh, plc, findings);
   check_range(mesh.face_patch, 0, plc.patches.size(), true, "Face", "patch", findings);

@@ -47,8 +47,7 @@ class CurveCheck {
 
   void run() {
     if (edges_.empty()) {
-      if (!curve_is_outside(subject_.plc, id_))
-        report_gap(subject_.plc.points[curve_.points[0]], "has no edges");
+      if (!curve_is_outside(subject_, id_)) report_gap(subject_.plc.points[curve_.points[0]], "has no edges");
       return;
     }
     if (!curve_.closed && (end_point(0) == none || end_point(1) == none)) return;  // a vertex is missing

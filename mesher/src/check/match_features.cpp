@@ -75,21 +75,6 @@ class PointSearch {
   std::vector<Index> order_;
 };
 
-std::vector<Index> match_vertices(const TetMesh& mesh, const Plc& plc, double rounding) {
-  std::vector<Index> points(plc.vertices.size(), none);
-  for (Index p = 0; p < mesh.features.size(); ++p) {
-    const auto [dimension, feature] = mesh.features[p];
-    if (dimension == 0 && feature != none &&
-        distance(mesh.points[p], plc.points[plc.vertices[feature].point]) <= rounding)
-      points[feature] = p;
-  }
-  if (std::find(points.begin(), points.end(), none) == points.end()) return points;
-  const PointSearch search(mesh.points);
-  for (Index v = 0; v < plc.vertices.size(); ++v)
-    if (points[v] == none) points[v] = search.find(plc.points[plc.vertices[v].point], rounding);
-  return points;
-}
-
 // Of each piece its entities vote for the feature nearest to their middle, by their size.
 class Ballot {
  public:
@@ -142,8 +127,8 @@ DisjointSets edge_pieces(const TetMesh& mesh, const std::vector<Index>& vertex_p
   return pieces;
 }
 
-// Faces of one tag and between the same regions that share an edge which is on no curve.
-DisjointSets face_pieces(const TetMesh& mesh) {
+// Faces of one tag (if they count) and between the same regions that share an edge which is on no curve.
+DisjointSets face_pieces(const TetMesh& mesh, bool by_tag) {
   struct Side {
     std::array<Index, 2> ends;
     Index face;  // none: an edge on a curve
@@ -160,7 +145,7 @@ DisjointSets face_pieces(const TetMesh& mesh) {
   DisjointSets pieces(mesh.faces.size());
   const auto alike = [&](Index f, Index g) {
     const auto &r = mesh.face_regions[f], &s = mesh.face_regions[g];
-    return mesh.face_tag[f] == mesh.face_tag[g] && sorted(r[0], r[1]) == sorted(s[0], s[1]);
+    return (!by_tag || mesh.face_tag[f] == mesh.face_tag[g]) && sorted(r[0], r[1]) == sorted(s[0], s[1]);
   };
   for (std::size_t i = 0, j = 0; i < sides.size(); i = j) {
     for (j = i; j < sides.size() && sides[j].ends == sides[i].ends;) ++j;
@@ -194,20 +179,38 @@ std::vector<Index> match_edges(const TetMesh& mesh, const Plc& plc, const std::v
   return curves;
 }
 
-std::vector<Index> match_faces(const TetMesh& mesh, const Plc& plc) {
+}  // namespace
+
+std::vector<Index> match_vertices(const TetMesh& mesh, const Plc& plc, double rounding) {
+  std::vector<Index> points(plc.vertices.size(), none);
+  for (Index p = 0; p < mesh.features.size(); ++p) {
+    const auto [dimension, feature] = mesh.features[p];
+    if (dimension == 0 && feature != none &&
+        distance(mesh.points[p], plc.points[plc.vertices[feature].point]) <= rounding)
+      points[feature] = p;
+  }
+  if (std::find(points.begin(), points.end(), none) == points.end()) return points;
+  const PointSearch search(mesh.points);
+  for (Index v = 0; v < plc.vertices.size(); ++v)
+    if (points[v] == none) points[v] = search.find(plc.points[plc.vertices[v].point], rounding);
+  return points;
+}
+
+std::vector<Index> match_faces(const TetMesh& mesh, const Plc& plc, bool by_tag) {
   std::vector<Index> patches = mesh.face_patch;
   if (std::find(patches.begin(), patches.end(), none) == patches.end()) return patches;
   NearestFeature nearest;
   for (const Plc::Triangle& t : plc.triangles)
-    nearest.add(plc.patches[t.patch].tag, t.patch,
+    nearest.add(by_tag ? plc.patches[t.patch].tag : 0, t.patch,
                 {plc.points[t.points[0]], plc.points[t.points[1]], plc.points[t.points[2]]});
-  DisjointSets pieces = face_pieces(mesh);
+  DisjointSets pieces = face_pieces(mesh, by_tag);
   Ballot ballot;
   for (Index f = 0; f < mesh.faces.size(); ++f) {
     const auto& [i, j, k] = mesh.faces[f];
     const Point &a = mesh.points[i], &b = mesh.points[j], &c = mesh.points[k];
     if (patches[f] == none)
-      ballot.vote(pieces.find(f), nearest.find(mesh.face_tag[f], (a + b + c) / 3), area(a, b, c));
+      ballot.vote(pieces.find(f), nearest.find(by_tag ? mesh.face_tag[f] : 0, (a + b + c) / 3),
+                  area(a, b, c));
   }
   const auto elected = ballot.count(mesh.faces.size());
   for (Index f = 0; f < mesh.faces.size(); ++f)
@@ -215,13 +218,11 @@ std::vector<Index> match_faces(const TetMesh& mesh, const Plc& plc) {
   return patches;
 }
 
-}  // namespace
-
 FeatureMatch match_features(const TetMesh& mesh, const Plc& plc, double rounding) {
   FeatureMatch match;
   match.vertex_point = match_vertices(mesh, plc, rounding);
   match.edge_curve = match_edges(mesh, plc, match.vertex_point);
-  match.face_patch = match_faces(mesh, plc);
+  match.face_patch = match_faces(mesh, plc, true);
   return match;
 }
 

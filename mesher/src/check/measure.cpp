@@ -1,8 +1,10 @@
-// Shape measures of a tetrahedron.
+// Measures of tetrahedra.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "collarmesh/tet_mesh.h"
 
@@ -43,10 +45,21 @@ struct Measures {
   Real conditioning;  ///< |determinant| / longest edge cubed: rounding is amplified by its inverse
 };
 
+// Of the power of two that the tet is divided by, so that eighth powers of lengths are in range.
+int exponent_of_size(const Point& a, const Point& b, const Point& c, const Point& d) {
+  double largest = 0;
+  for (const Point& p : {b, c, d})
+    for (std::size_t axis = 0; axis < 3; ++axis) largest = std::fmax(largest, std::fabs(p[axis] - a[axis]));
+  return largest > 0 ? std::clamp(std::ilogb(largest), -1000, 1000) : 0;
+}
+
 template <class Real>
 Measures<Real> measure_as(const Point& a, const Point& b, const Point& c, const Point& d) {
   using V = Vector3<Real>;
-  const V ab(a, b), ac(a, c), ad(a, d), bc(b, c), bd(b, d), cd(c, d);
+  const int exponent = exponent_of_size(a, b, c, d);
+  const Real unit = std::scalbn(Real(1), -exponent);
+  const V ab = unit * V(a, b), ac = unit * V(a, c), ad = unit * V(a, d), bc = unit * V(b, c),
+          bd = unit * V(b, d), cd = unit * V(c, d);
   const Real l_ab = dot(ab, ab), l_ac = dot(ac, ac), l_ad = dot(ad, ad), l_bc = dot(bc, bc),
              l_bd = dot(bd, bd), l_cd = dot(cd, cd);
   const auto [shortest, longest] = std::minmax({l_ab, l_ac, l_ad, l_bc, l_bd, l_cd});
@@ -56,7 +69,7 @@ Measures<Real> measure_as(const Point& a, const Point& b, const Point& c, const 
   const Real determinant = -dot(n_d, ad);
   const Real size = std::abs(determinant);
   TetQuality quality;
-  quality.volume = static_cast<double>(determinant / 6);
+  quality.volume = static_cast<double>(std::scalbn(determinant / 6, 3 * exponent));
 
   // |ad|^2 (ab x ac) + |ac|^2 (ad x ab) + |ab|^2 (ac x ad) = 2 det (circumcentre - a)
   const V numerator = Real(-1) * (l_ad * n_d + l_ac * n_c + l_ab * n_b);
@@ -89,6 +102,34 @@ TetQuality measure(const Point& a, const Point& b, const Point& c, const Point& 
   const Measures<double> measures = measure_as<double>(a, b, c, d);
   if (measures.conditioning > 1e-4) return measures.quality;
   return measure_as<long double>(a, b, c, d).quality;
+}
+
+double median_edge(const TetMesh& mesh) {
+  constexpr std::array<std::array<unsigned, 2>, 6> pairs{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+  const auto for_each_edge = [&](const auto& visit) {
+    for (const auto& tet : mesh.tets)
+      for (const auto& [i, j] : pairs) visit(std::min(tet[i], tet[j]), std::max(tet[i], tet[j]));
+  };
+  // The larger ends of all edges, in groups by the smaller one.
+  std::vector<std::size_t> next(mesh.points.size() + 1, 0);
+  for_each_edge([&](Index smaller, Index) { ++next[smaller + 1]; });
+  for (std::size_t i = 1; i < next.size(); ++i) next[i] += next[i - 1];
+  std::vector<Index> ends(6 * mesh.tets.size());
+  for_each_edge([&](Index smaller, Index larger) { ends[next[smaller]++] = larger; });
+  std::vector<double> lengths;
+  auto first = ends.begin();
+  for (std::size_t i = 0; i + 1 < next.size(); ++i) {  // next[i] is the end of the group now
+    const auto last = ends.begin() + static_cast<std::ptrdiff_t>(next[i]);
+    std::sort(first, last);
+    const auto distinct = std::unique(first, last);
+    std::transform(first, distinct, std::back_inserter(lengths),
+                   [&](Index end) { return distance(mesh.points[i], mesh.points[end]); });
+    first = last;
+  }
+  if (lengths.empty()) return 0;
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return *middle;
 }
 
 }  // namespace collarmesh

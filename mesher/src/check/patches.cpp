@@ -25,7 +25,7 @@ class PatchCheck {
 
   void run(const CurveUses& uses) {
     if (faces_.empty()) {
-      if (!patch_is_outside(subject_.plc, id_)) report_missing();
+      if (!patch_is_outside(subject_, id_)) report_missing();
       return;
     }
     check_patch_topology(subject_, id_, faces_, uses, findings_);

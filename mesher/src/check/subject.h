@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "check/findings.h"
 #include "check/guarantees.h"
+#include "check/region_locator.h"
 #include "collarmesh/check.h"
 
 /// The certificate: one file per group of guarantees, each a function that adds findings. Nothing
@@ -27,7 +31,9 @@ struct Subject {
   CheckOptions options;  ///< with the distance filled in
   double rounding = 0;   ///< absolute: how far rounding may move a point off a straight line or a plane
   std::vector<double> curve_allowance, patch_allowance;  ///< absolute: how far the mesh may be from each
+  std::shared_ptr<const RegionLocator> regions;
   FeatureMatch match;
+  std::vector<std::uint8_t> collar;  ///< by tet, as TetMesh::tet_collar: what the complex excuses
 
   const Point& point(Index i) const { return mesh.points[i]; }
   Point centroid(const std::array<Index, 3>& f) const {
@@ -62,13 +68,25 @@ inline std::array<Index, 2> sorted(Index a, Index b) { return {std::min(a, b), s
 
 inline double area(const Point& a, const Point& b, const Point& c) { return 0.5 * norm(cross(b - a, c - a)); }
 
-/// Equal lengths and indices in range. If false, nothing else can be looked at.
-bool check_arrays(const TetMesh& mesh, const Plc& plc, Findings& findings);
+/// Equal lengths and corners in range. If false, nothing else can be looked at.
+bool check_arrays(const TetMesh& mesh, Findings& findings);
 
 /// Finite, distinct, used by tets. False if one is not finite.
 bool check_points(const Subject& subject, Findings& findings);
 
-/// Volumes, shapes, edge lengths and region volumes of all tets.
+/// Of a mesh from a file: what its labels do not tell is found by position. Of tets whose region and tag are
+/// not the complex' the regions, each connected part (up to listed faces and planar patches) by its largest
+/// tet; when most tags of faces or edges are none of the complex', or there are none, those anew from the
+/// tets and the complex. The result has the complex' labels; what was found like that becomes a note. None
+/// when there is nothing to find, or tets lie outside, which is a finding. Precondition: check_arrays and
+/// check_points hold. Cost: O(n log n).
+std::optional<TetMesh> place_by_position(const Subject& subject, CheckReport& report, Findings& findings);
+
+/// The labels are indices of the complex. If false, nothing else can be looked at.
+bool check_labels(const TetMesh& mesh, const Plc& plc, Findings& findings);
+
+/// Volumes, shapes and region volumes of all tets.
+/// Precondition: subject.collar is filled in.
 void check_tets(const Subject& subject, CheckReport& report, Findings& findings);
 
 /// Tets against each other and against the listed faces.
@@ -88,21 +106,29 @@ std::vector<double> patch_allowances(const Subject& subject);
 /// Find the features by the indices in the mesh; where it has none, by tags and position.
 FeatureMatch match_features(const TetMesh& mesh, const Plc& plc, double rounding);
 
+/// The vertices of the complex in the mesh, by index or position.
+std::vector<Index> match_vertices(const TetMesh& mesh, const Plc& plc, double rounding);
+
+/// The patches of the faces that name none: by position, and by tag if the tags are the complex'.
+std::vector<Index> match_faces(const TetMesh& mesh, const Plc& plc, bool by_tag);
+
 void check_vertices(const Subject& subject, Findings& findings);
 void check_listed_edges(const Subject& subject, Findings& findings);
 void check_curves(const Subject& subject, CheckReport& report, Findings& findings);
 void check_patches(const Subject& subject, CheckReport& report, Findings& findings);
 
+/// Which tets are cells of collars: stars have one corner on a crease of the complex, books two that an edge
+/// on it joins. Where the mesh marks cells, only the marked ones; a mark without that is a finding.
+/// Precondition: subject.match is filled in.
+std::vector<std::uint8_t> collar_cells(const Subject& subject, Findings& findings);
+
 /// The balls of the collars against the features and against each other (paper, Definitions 6 and 7).
 /// Nothing when the mesh does not tell them.
 void check_collars(const Subject& subject, Findings& findings);
 
-/// The region of the complex that a point not on any patch lies in.
-Index region_at(const Plc& plc, const Point& p);
-
 /// Does a feature lie outside all regions, so that the mesh does not have it?
-bool curve_is_outside(const Plc& plc, Index curve);
-bool vertex_is_outside(const Plc& plc, Index vertex);
-bool patch_is_outside(const Plc& plc, Index patch);
+bool curve_is_outside(const Subject& subject, Index curve);
+bool vertex_is_outside(const Subject& subject, Index vertex);
+bool patch_is_outside(const Subject& subject, Index patch);
 
 }  // namespace collarmesh::checks

@@ -29,7 +29,7 @@ void check_orientation(Index tet, const Corners& p, const TetQuality& quality, F
 void check_shape(Index tet, const Corners& p, const TetQuality& quality, const Subject& subject,
                  CheckReport& report, Findings& findings) {
   const CheckOptions& options = subject.options;
-  if (subject.mesh.tet_collar[tet] != 0) {
+  if (subject.collar[tet] != 0) {
     ++report.collar_tets;
     report.max_collar_dihedral = std::max(report.max_collar_dihedral, quality.max_dihedral);
     if (quality.max_dihedral > options.collar_angle * slack)
@@ -51,13 +51,6 @@ void check_shape(Index tet, const Corners& p, const TetQuality& quality, const S
         tet, At{p.centre()}, quality.radius_edge, options.radius_edge);
 }
 
-void add_edge_lengths(const Corners& p, std::vector<float>& lengths) {
-  for (const double squared :
-       {squared_distance(p.a, p.b), squared_distance(p.a, p.c), squared_distance(p.a, p.d),
-        squared_distance(p.b, p.c), squared_distance(p.b, p.d), squared_distance(p.c, p.d)})
-    lengths.push_back(static_cast<float>(std::sqrt(squared)));
-}
-
 void check_region_tag(Index tet, const Corners& p, const Subject& subject, Findings& findings) {
   const Index region = subject.mesh.tet_region[tet];
   const Tag tag = subject.mesh.tet_tag[tet], expected = subject.plc.regions[region].tag;
@@ -73,8 +66,6 @@ void check_region_tag(Index tet, const Corners& p, const Subject& subject, Findi
 
 void check_tets(const Subject& subject, CheckReport& report, Findings& findings) {
   const TetMesh& mesh = subject.mesh;
-  std::vector<float> lengths;
-  lengths.reserve(6 * mesh.tets.size());
   std::vector<long double> volumes(subject.plc.regions.size(), 0);
   for (Index tet = 0; tet < mesh.tets.size(); ++tet) {
     const auto& t = mesh.tets[tet];
@@ -84,13 +75,9 @@ void check_tets(const Subject& subject, CheckReport& report, Findings& findings)
     check_shape(tet, p, quality, subject, report, findings);
     check_region_tag(tet, p, subject, findings);
     volumes[mesh.tet_region[tet]] += quality.volume;
-    add_edge_lengths(p, lengths);
   }
   report.region_volumes.assign(volumes.begin(), volumes.end());
-  if (lengths.empty()) return;
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  report.median_edge = *middle;
+  report.median_edge = median_edge(mesh);
 }
 
 }  // namespace collarmesh::checks

@@ -9,7 +9,7 @@ void check_presence(const Subject& subject, Findings& findings) {
   const Plc& plc = subject.plc;
   for (Index v = 0; v < plc.vertices.size(); ++v) {
     const Point& where = plc.points[plc.vertices[v].point];
-    if (subject.match.vertex_point[v] != none || vertex_is_outside(plc, v)) continue;
+    if (subject.match.vertex_point[v] != none || vertex_is_outside(subject, v)) continue;
     findings.add(guarantee::vertex_present, where, {v},
                  "Vertex {} of the complex at {} is not a point of the mesh; a feature was lost there.", v,
                  At{where});

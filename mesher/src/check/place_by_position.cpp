@@ -1,0 +1,371 @@
+// Labels for a mesh from a file whose own are not the complex', or that has none: from positions.
+#include <algorithm>
+#include <cmath>
+
+#include "check/distance_tree.h"
+#include "check/subject.h"
+#include "common/disjoint_sets.h"
+
+namespace collarmesh::checks {
+
+namespace {
+
+using Triangle = std::array<Index, 3>;
+
+// The corners of the face opposite corner i, with the normal away from the tet.
+constexpr std::array<std::array<unsigned, 3>, 4> outward{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+
+// Do most of the entities have a tag that the complex knows?
+template <class Features>
+bool are_known(const std::vector<Tag>& tags, const Features& features) {
+  std::vector<Tag> known;
+  for (const auto& feature : features) known.push_back(feature.tag);
+  std::sort(known.begin(), known.end());
+  const auto count = std::count_if(
+      tags.begin(), tags.end(), [&](Tag tag) { return std::binary_search(known.begin(), known.end(), tag); });
+  return 2 * static_cast<std::size_t>(count) >= tags.size();
+}
+
+// Three points that sides of tets and listed faces join.
+struct Side {
+  Triangle corners;  // sorted
+  Index tet;         // none: a listed face
+  Index place;       // the corner opposite, or the face
+
+  friend bool operator<(const Side& a, const Side& b) {
+    return a.corners != b.corners ? a.corners < b.corners : a.tet < b.tet;
+  }
+};
+
+// The patches that have a region on both sides.
+class InnerPatches {
+ public:
+  explicit InnerPatches(const Subject& subject)
+      : subject_(subject),
+        triangles_(triangles_of(subject.plc, numbers_)),
+        near_(subject.mesh.points.size(), -1) {}
+
+  enum class Kind { planar, any };
+  /// Does the triangle lie on one of the kind?
+  bool hold(const Triangle& corners, Kind kind) {
+    if (numbers_.empty()) return false;
+    if (!std::all_of(corners.begin(), corners.end(), [&](Index p) { return is_near(p); })) return false;
+    const auto [distance, number] = triangles_.nearest(subject_.centroid(corners));
+    const Index patch = subject_.plc.triangles[numbers_[number]].patch;
+    return distance <= subject_.patch_allowance[patch] &&
+           (kind == Kind::any || subject_.plc.patches[patch].planar);
+  }
+  /// The normal there, of any length.
+  Vector normal(const Triangle& corners) const {
+    const Plc::Triangle& t =
+        subject_.plc.triangles[numbers_[triangles_.nearest(subject_.centroid(corners)).triangle]];
+    const Point& a = subject_.plc_corner(t, 0);
+    return cross(subject_.plc_corner(t, 1) - a, subject_.plc_corner(t, 2) - a);
+  }
+
+ private:
+  static DistanceTree triangles_of(const Plc& plc, std::vector<Index>& numbers) {
+    std::vector<DistanceTree::Triangle> triangles;
+    for (Index i = 0; i < plc.triangles.size(); ++i) {
+      const auto& [corners, patch] = plc.triangles[i];
+      const auto& regions = plc.patches[patch].regions;
+      if (regions[0] == 0 || regions[1] == 0) continue;
+      numbers.push_back(i);
+      triangles.push_back({plc.points[corners[0]], plc.points[corners[1]], plc.points[corners[2]]});
+    }
+    return DistanceTree(std::move(triangles));
+  }
+
+  bool is_near(Index point) {
+    if (near_[point] < 0) {
+      const auto [distance, number] = triangles_.nearest(subject_.point(point), subject_.rounding);
+      near_[point] =
+          distance <= subject_.patch_allowance[subject_.plc.triangles[numbers_[number]].patch] ? 1 : 0;
+    }
+    return near_[point] != 0;
+  }
+
+  const Subject& subject_;
+  std::vector<Index> numbers_;  // of the complex' triangles
+  DistanceTree triangles_;
+  std::vector<std::int8_t> near_;  // by mesh point: is it on one of them? -1: not asked yet
+};
+
+class Placement {
+ public:
+  Placement(const Subject& subject, CheckReport& report, Findings& findings)
+      : subject_(subject), plc_(subject.plc), report_(report), findings_(findings), inner_(subject) {
+    const TetMesh& mesh = subject.mesh;
+    tets_known_ = are_known(mesh.tet_tag, plc_.regions);
+    for (Index t = 0; t < mesh.tets.size(); ++t) lost_tets_ = lost_tets_ || !has_region(t);
+    new_faces_ = mesh.faces.empty() || !are_known(mesh.face_tag, plc_.patches);
+    new_edges_ = !plc_.curves.empty() && (mesh.edges.empty() || !are_known(mesh.edge_tag, plc_.curves));
+  }
+
+  std::optional<TetMesh> run() {
+    if (!lost_tets_ && !new_faces_ && !new_edges_) return std::nullopt;
+    mesh_ = subject_.mesh;
+    if (lost_tets_ || new_faces_) {
+      collect_sides();
+      if (lost_tets_) place_tets();
+      if (new_faces_)
+        make_faces();
+      else
+        renew_face_regions();
+    }
+    if (new_edges_) make_edges();
+    if (new_faces_) place_faces();
+    return std::move(mesh_);
+  }
+
+ private:
+  // Formats with room for one number have the region in place of its tag.
+  bool has_region(Index tet) const {
+    const Index region = subject_.mesh.tet_region[tet];
+    const Tag tag = subject_.mesh.tet_tag[tet];
+    return region >= 1 && region < plc_.regions.size() &&
+           (tag == plc_.regions[region].tag || tag == static_cast<Tag>(region));
+  }
+
+  void collect_sides() {
+    const TetMesh& mesh = subject_.mesh;
+    sides_.reserve(4 * mesh.tets.size() + mesh.faces.size());
+    for (Index t = 0; t < mesh.tets.size(); ++t)
+      for (Index i = 0; i < 4; ++i) sides_.push_back({outward_face(t, i), t, i});
+    for (Index f = 0; f < mesh.faces.size(); ++f) sides_.push_back({mesh.faces[f], none, f});
+    for (Side& side : sides_) std::sort(side.corners.begin(), side.corners.end());
+    std::sort(sides_.begin(), sides_.end());
+  }
+
+  /// Calls visit(sides of tets, how many, listed face or none) for each triangle of points.
+  template <class Visit>
+  void for_each_triangle(const Visit& visit) const {
+    for (std::size_t i = 0, j = 0; i < sides_.size(); i = j) {
+      for (j = i; j < sides_.size() && sides_[j].corners == sides_[i].corners;) ++j;
+      std::size_t tets = 0;
+      while (i + tets < j && sides_[i + tets].tet != none) ++tets;
+      visit(&sides_[i], tets, i + tets < j ? sides_[i + tets].place : none);
+    }
+  }
+
+  Triangle outward_face(Index tet, Index opposite) const {
+    const auto& t = subject_.mesh.tets[tet];
+    const auto& [i, j, k] = outward[opposite];
+    return {t[i], t[j], t[k]};
+  }
+
+  // Of each connected part the largest tet tells where all are.
+  void place_tets() {
+    const TetMesh& mesh = subject_.mesh;
+    DisjointSets parts(mesh.tets.size());
+    for_each_triangle([&](const Side* side, std::size_t count, Index face) {
+      if (count != 2 || face != none) return;
+      const Index t = side[0].tet, u = side[1].tet;
+      if (mesh.tet_tag[t] != mesh.tet_tag[u] || mesh.tet_region[t] != mesh.tet_region[u]) return;
+      if (!inner_.hold(side->corners, InnerPatches::Kind::planar)) parts.unite(t, u);
+    });
+    std::vector<Index> largest(mesh.tets.size(), none);
+    for (Index t = 0; t < mesh.tets.size(); ++t) {
+      Index& best = largest[parts.find(t)];
+      if (best == none || volume(t) > volume(best)) best = t;
+    }
+    std::vector<Index> region(mesh.tets.size(), none);
+    for (Index t = 0; t < mesh.tets.size(); ++t) {
+      if (has_region(t)) continue;
+      const Index part = parts.find(t);
+      if (region[part] == none) region[part] = region_of(largest[part]);
+      mesh_.tet_region[t] = region[part];
+      if (!tets_known_) mesh_.tet_tag[t] = plc_.regions[region[part]].tag;
+    }
+    if (!tets_known_)
+      report_.notes.emplace_back(
+          "The tags of the tets are none of the input's: their regions were found by position.");
+  }
+
+  double volume(Index t) const {
+    const auto& [a, b, c, d] = subject_.mesh.tets[t];
+    return six_volume(subject_.point(a), subject_.point(b), subject_.point(c), subject_.point(d));
+  }
+
+  Index region_of(Index t) {
+    const auto& [a, b, c, d] = subject_.mesh.tets[t];
+    const Point centre =
+        0.25 * ((subject_.point(a) + subject_.point(b)) + (subject_.point(c) + subject_.point(d)));
+    const Index region = subject_.regions->region_at(centre);
+    if (region == 0)
+      findings_.add(guarantee::region_volume, centre, {t},
+                    "Tet {} at {} and those it is connected with lie outside all regions of the input; check "
+                    "the mesh against the input that it was made from, in the same units.",
+                    t, At{centre});
+    return region;
+  }
+
+  void renew_face_regions() {
+    mesh_.face_regions.assign(mesh_.faces.size(), {0, 0});
+    for_each_triangle([&](const Side* side, std::size_t count, Index face) {
+      if (face == none) return;
+      for (std::size_t i = 0; i < count; ++i) {
+        const Triangle own = outward_face(side[i].tet, side[i].place);
+        mesh_.face_regions[face][alike(mesh_.faces[face], own) ? 0 : 1] = mesh_.tet_region[side[i].tet];
+      }
+    });
+  }
+
+  // Are two triangles of the same corners turned alike?
+  static bool alike(const Triangle& a, const Triangle& b) {
+    const auto at = static_cast<std::size_t>(std::find(b.begin(), b.end(), a[0]) - b.begin());
+    return b[(at + 1) % 3] == a[1];
+  }
+
+  // Where the mesh ends, between regions, and on facets inside of regions.
+  void make_faces() {
+    report_.notes.emplace_back(
+        mesh_.faces.empty()
+            ? "The mesh lists no triangles: those on the boundary and the facets were found by position."
+            : "The tags of the triangles are none of the input's: those on the boundary and the facets "
+              "were found by position.");
+    mesh_.faces.clear();
+    mesh_.face_regions.clear();
+    mesh_.face_mid_nodes.clear();
+    for_each_triangle([&](const Side* side, std::size_t count, Index face) {
+      if (count != 1 && count != 2) return;
+      const Index region = mesh_.tet_region[side[0].tet],
+                  other = count == 2 ? mesh_.tet_region[side[1].tet] : 0;
+      Triangle corners = outward_face(side[0].tet, side[0].place);
+      if (region == other) {
+        const auto kind = face == none ? InnerPatches::Kind::planar : InnerPatches::Kind::any;
+        if (!inner_.hold(corners, kind)) return;
+        const Point& a = subject_.point(corners[0]);
+        const Vector normal = cross(subject_.point(corners[1]) - a, subject_.point(corners[2]) - a);
+        if (dot(normal, inner_.normal(corners)) < 0) std::swap(corners[1], corners[2]);
+      }
+      mesh_.faces.push_back(corners);
+      mesh_.face_regions.push_back({region, other});
+    });
+    mesh_.face_patch.assign(mesh_.faces.size(), none);
+    mesh_.face_tag.assign(mesh_.faces.size(), 0);
+  }
+
+  void place_faces() {
+    mesh_.face_patch = match_faces(mesh_, plc_, false);
+    for (Index f = 0; f < mesh_.faces.size(); ++f)
+      if (mesh_.face_patch[f] != none) mesh_.face_tag[f] = plc_.patches[mesh_.face_patch[f]].tag;
+  }
+
+  struct PlaceOnCurve {
+    double arc;
+    Index point;
+    friend bool operator<(const PlaceOnCurve& a, const PlaceOnCurve& b) { return a.arc < b.arc; }
+  };
+
+  // Consecutive points on a curve, where an edge of a tet joins them.
+  void make_edges() {
+    report_.notes.emplace_back(
+        mesh_.edges.empty() ? "The mesh lists no edges: those on curves were found by position."
+                            : "The tags of the edges are none of the input's: those on curves were found by "
+                              "position.");
+    mesh_.edges.clear();
+    mesh_.edge_mid_nodes.clear();
+    mesh_.edge_curve.clear();
+    mesh_.edge_tag.clear();
+    auto chains = points_on_curves();
+    const auto edges = edges_between(chains);
+    for (Index c = 0; c < chains.size(); ++c) {
+      auto& chain = chains[c];
+      std::sort(chain.begin(), chain.end());
+      if (plc_.curves[c].closed && chain.size() > 2) chain.push_back(chain.front());
+      for (std::size_t i = 1; i < chain.size(); ++i) {
+        const Index a = chain[i - 1].point, b = chain[i].point;
+        if (!std::binary_search(edges.begin(), edges.end(), sorted(a, b))) continue;
+        mesh_.edges.push_back({a, b});
+        mesh_.edge_curve.push_back(c);
+        mesh_.edge_tag.push_back(plc_.curves[c].tag);
+      }
+    }
+  }
+
+  std::vector<std::vector<PlaceOnCurve>> points_on_curves() const {
+    std::vector<DistanceTree::Triangle> segments;
+    std::vector<Index> curve;
+    std::vector<double> arc, lengths(plc_.curves.size(), 0);
+    for (Index c = 0; c < plc_.curves.size(); ++c) {
+      const auto& points = plc_.curves[c].points;
+      for (std::size_t i = 0; i + 1 < points.size() + (plc_.curves[c].closed ? 1 : 0); ++i) {
+        const Point &a = plc_.points[points[i]], &b = plc_.points[points[(i + 1) % points.size()]];
+        segments.push_back({a, b, b});
+        curve.push_back(c);
+        arc.push_back(lengths[c]);
+        lengths[c] += distance(a, b);
+      }
+    }
+    const auto starts = segments;
+    const DistanceTree tree(std::move(segments));
+    std::vector<std::vector<PlaceOnCurve>> chains(plc_.curves.size());
+    const auto vertex_point = match_vertices(mesh_, plc_, subject_.rounding);
+    std::vector<bool> is_vertex(mesh_.points.size(), false);
+    for (const Index p : vertex_point)
+      if (p != none) is_vertex[p] = true;
+    for (const Index p : candidates()) {
+      if (is_vertex[p]) continue;
+      const auto [distance_to, number] = tree.nearest(subject_.point(p));
+      const Index c = curve[number];
+      const double allowed = plc_.curves[c].straight ? subject_.curve_allowance[c] : subject_.rounding;
+      if (distance_to <= allowed)
+        chains[c].push_back({arc[number] + distance(starts[number][0], subject_.point(p)), p});
+    }
+    for (Index c = 0; c < chains.size(); ++c) {
+      const auto& ends = plc_.curves[c].ends;
+      for (const unsigned end : {0U, 1U})
+        if (ends[end] != none && vertex_point[ends[end]] != none)
+          chains[c].push_back({end == 0 ? -1 : 2 * lengths[c] + 1, vertex_point[ends[end]]});
+    }
+    return chains;
+  }
+
+  // The points that may be on curves: of faces, or all if a curve is on no patch.
+  std::vector<Index> candidates() const {
+    std::vector<bool> is_candidate(
+        mesh_.points.size(),
+        std::any_of(plc_.curves.begin(), plc_.curves.end(), [](const auto& c) { return c.patches.empty(); }));
+    for (const Triangle& face : mesh_.faces)
+      for (const Index p : face) is_candidate[p] = true;
+    std::vector<Index> points;
+    for (Index p = 0; p < mesh_.points.size(); ++p)
+      if (is_candidate[p]) points.push_back(p);
+    return points;
+  }
+
+  // Of tets, between points on curves; sorted.
+  std::vector<std::array<Index, 2>> edges_between(
+      const std::vector<std::vector<PlaceOnCurve>>& chains) const {
+    std::vector<bool> on_curve(mesh_.points.size(), false);
+    for (const auto& chain : chains)
+      for (const PlaceOnCurve& place : chain) on_curve[place.point] = true;
+    std::vector<std::array<Index, 2>> edges;
+    for (const auto& tet : mesh_.tets)
+      for (unsigned i = 0; i < 4; ++i)
+        for (unsigned j = 0; j < i; ++j)
+          if (on_curve[tet[i]] && on_curve[tet[j]]) edges.push_back(sorted(tet[i], tet[j]));
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    return edges;
+  }
+
+  const Subject& subject_;
+  const Plc& plc_;
+  CheckReport& report_;
+  Findings& findings_;
+  InnerPatches inner_;
+  bool tets_known_, lost_tets_ = false, new_faces_, new_edges_;
+  std::vector<Side> sides_;
+  TetMesh mesh_;
+};
+
+}  // namespace
+
+std::optional<TetMesh> place_by_position(const Subject& subject, CheckReport& report, Findings& findings) {
+  if (!subject.mesh.features.empty()) return std::nullopt;
+  return Placement(subject, report, findings).run();
+}
+
+}  // namespace collarmesh::checks

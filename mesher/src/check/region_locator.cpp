@@ -1,0 +1,100 @@
+#include "check/region_locator.h"
+
+#include <array>
+#include <cmath>
+
+#include "check/orientation.h"
+
+namespace collarmesh::checks {
+
+namespace {
+
+using Corners = std::array<Point, 3>;
+
+Corners corners_of(const Plc& plc, const Plc::Triangle& t) {
+  return {plc.points[t.points[0]], plc.points[t.points[1]], plc.points[t.points[2]]};
+}
+
+std::vector<Corners> all_corners(const Plc& plc) {
+  std::vector<Corners> corners;
+  for (const Plc::Triangle& t : plc.triangles) corners.push_back(corners_of(plc, t));
+  return corners;
+}
+
+std::vector<Box> all_boxes(const Plc& plc) {
+  std::vector<Box> boxes(plc.triangles.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    for (const Index p : plc.triangles[i].points) boxes[i].add(plc.points[p]);
+  return boxes;
+}
+
+enum class Crossing { none, inside, at_border };
+
+struct Meeting {
+  Crossing crossing;
+  bool in_front;  // the way begins on the side that the normal points to
+};
+
+// How the segment from p, which is not on the triangle, to q meets it.
+Meeting meet(const Point& p, const Point& q, const Corners& t) {
+  const int from = exact_orientation(t[0], t[1], t[2], p), to = exact_orientation(t[0], t[1], t[2], q);
+  if (from == 0 && to == 0) return {Crossing::at_border, false};  // within its plane
+  if (from == to || from == 0) return {Crossing::none, false};
+  bool on_border = to == 0, left = false, right = false;
+  for (unsigned i = 0; i < 3; ++i) {
+    const int side = exact_orientation(p, q, t[i], t[(i + 1) % 3]);
+    on_border = on_border || side == 0;
+    left = left || side > 0;
+    right = right || side < 0;
+  }
+  if (left && right) return {Crossing::none, false};
+  return {on_border ? Crossing::at_border : Crossing::inside, from > 0};
+}
+
+// Where along pq, from 0 to 1, the plane of the triangle is.
+double place_of_plane(const Point& p, const Point& q, const Corners& t) {
+  const double from = std::fabs(six_volume(t[0], t[1], t[2], p)),
+               to = std::fabs(six_volume(t[0], t[1], t[2], q));
+  return from + to > 0 ? from / (from + to) : 0;
+}
+
+}  // namespace
+
+const RegionLocator::Trees& RegionLocator::trees() const {
+  if (!trees_) trees_.emplace(Trees{DistanceTree(all_corners(plc_)), build::BoxTree(all_boxes(plc_))});
+  return *trees_;
+}
+
+Index RegionLocator::region_at(const Point& p) const {
+  constexpr std::array<Vector, 6> places{{{0.3713, 0.3241, 0.3046},
+                                          {0.5377, 0.2839, 0.1784},
+                                          {0.1588, 0.6622, 0.1790},
+                                          {0.2426, 0.1784, 0.5790},
+                                          {0.7254, 0.1631, 0.1115},
+                                          {0.0912, 0.1377, 0.7711}}};
+  const Index nearest = trees().triangles.nearest(p).triangle;
+  if (nearest == none) return 0;
+  const auto [a, b, c] = corners_of(plc_, plc_.triangles[nearest]);
+  Index region = 0;
+  for (const Vector& weights : places) {
+    const Point target = weights.x * a + weights.y * b + weights.z * c;
+    const Point beyond = target + (target - p);
+    double first = INFINITY;
+    bool doubtful = false;
+    trees().boxes.for_each_near_segment(p, beyond, [&](Index i) {
+      const Plc::Triangle& triangle = plc_.triangles[i];
+      const Corners corners = corners_of(plc_, triangle);
+      const Meeting meeting = meet(p, beyond, corners);
+      if (meeting.crossing == Crossing::none) return;
+      doubtful = doubtful || meeting.crossing == Crossing::at_border;
+      const double place = place_of_plane(p, beyond, corners);
+      if (place >= first) return;
+      first = place;
+      region = plc_.patches[triangle.patch].regions[meeting.in_front ? 1 : 0];
+    });
+    if (first < INFINITY && !doubtful) break;
+  }
+  return region;
+}
+
+}  // namespace collarmesh::checks

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+
+#include "check/distance_tree.h"
+#include "collarmesh/plc.h"
+#include "plc/box_tree.h"
+
+namespace collarmesh::checks {
+
+/// Tells which region of a complex a point lies in.
+class RegionLocator {
+ public:
+  /// Kept by reference.
+  explicit RegionLocator(const Plc& plc) : plc_(plc) {}
+
+  /// 0 outside of all. Precondition: the point is not on a patch. Looks from the point to places on the
+  /// nearest triangle, and at the side from which the first triangle on the way is seen: by exact
+  /// arithmetic, and again towards another place when a way meets the border of a triangle. Cost: the first
+  /// time O(n log n) for n triangles, then like that of the nearest triangle, logarithmic for most points.
+  Index region_at(const Point& p) const;
+
+ private:
+  struct Trees {
+    DistanceTree triangles;
+    build::BoxTree boxes;
+  };
+  const Trees& trees() const;
+
+  const Plc& plc_;
+  mutable std::optional<Trees> trees_;
+};
+
+}  // namespace collarmesh::checks

@@ -1,0 +1,159 @@
+// A mesh of another program, without the complex' labels, is judged by positions.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "check/guarantees.h"
+#include "check/region_locator.h"
+#include "collarmesh/check.h"
+#include "support/meshes.h"
+
+namespace collarmesh {
+namespace {
+
+using namespace collarmesh::testing;
+using Names = std::set<std::string>;
+
+Names broken(const TetMesh& mesh, const Plc& plc, const CheckOptions& options = {.distance = 0.05}) {
+  Names names;
+  for (const Finding& f : check(mesh, plc, options).findings) names.insert(f.guarantee);
+  return names;
+}
+
+std::vector<MeshedComplex> samples() {
+  return {meshed_box(3), meshed_two_boxes(2), meshed_box_with_facet(4), meshed_ball(4, 4),
+          meshed_cylinder(12, 4)};
+}
+
+TetMesh with_strange_tags(const MeshedComplex& m) {
+  TetMesh mesh = without_features(m.mesh);
+  for (Tag& tag : mesh.tet_tag) tag += 700;
+  for (Index& region : mesh.tet_region) region += 3;
+  for (auto& regions : mesh.face_regions)
+    for (Index& region : regions) region += region == 0 ? 0 : 3;
+  for (Tag& tag : mesh.face_tag) tag = 900 - tag;
+  for (Tag& tag : mesh.edge_tag) tag = 1234;
+  return mesh;
+}
+
+TetMesh without_faces(TetMesh mesh) {
+  mesh.faces.clear();
+  mesh.face_regions.clear();
+  mesh.face_patch.clear();
+  mesh.face_tag.clear();
+  return mesh;
+}
+
+TetMesh without_edges(TetMesh mesh) {
+  mesh.edges.clear();
+  mesh.edge_curve.clear();
+  mesh.edge_tag.clear();
+  return mesh;
+}
+
+TEST(CheckPlacing, StrangeTags) {
+  for (const MeshedComplex& m : samples()) {
+    const CheckReport report = check(with_strange_tags(m), m.plc, {.distance = 0.05});
+    EXPECT_TRUE(report.passed()) << report.findings.front().message;
+    EXPECT_EQ(report.faces, m.mesh.faces.size());
+    EXPECT_EQ(report.edges, m.mesh.edges.size());
+    EXPECT_FALSE(report.notes.empty());
+  }
+}
+
+TEST(CheckPlacing, NoFacesOrNoEdges) {
+  for (const MeshedComplex& m : samples()) {
+    const TetMesh mesh = without_features(m.mesh);
+    EXPECT_EQ(broken(without_faces(mesh), m.plc), Names{});
+    EXPECT_EQ(broken(without_edges(mesh), m.plc), Names{});
+    EXPECT_EQ(broken(without_faces(without_edges(mesh)), m.plc), Names{});
+    EXPECT_EQ(broken(without_faces(without_edges(with_strange_tags(m))), m.plc), Names{});
+  }
+}
+
+TEST(CheckPlacing, OneTagForTwoRegions) {
+  const MeshedComplex m = meshed_two_boxes(3);
+  TetMesh mesh = without_faces(without_edges(without_features(m.mesh)));
+  mesh.tet_region.assign(mesh.tets.size(), 1);
+  mesh.tet_tag.assign(mesh.tets.size(), 42);
+  const CheckReport report = check(mesh, m.plc);
+  EXPECT_TRUE(report.passed()) << report.findings.front().message;
+  EXPECT_NEAR(report.region_volumes[1], report.region_volumes[2], 1e-12);
+}
+
+TEST(CheckPlacing, LabelsInMemoryCount) {
+  const MeshedComplex m = meshed_box(2);
+  EXPECT_NE(broken(without_edges(m.mesh), m.plc), Names{}) << "the mesher lists edges and faces";
+  EXPECT_NE(broken(without_faces(m.mesh), m.plc), Names{});
+}
+
+TEST(CheckPlacing, FaultsAreStillFound) {
+  const MeshedComplex m = meshed_two_boxes(4);
+  const TetMesh strange = without_faces(without_edges(with_strange_tags(m)));
+  EXPECT_EQ(broken(strange, m.plc, {.radius_edge = 0.8}), Names{guarantee::radius_edge});
+  TetMesh mesh = strange;
+  mesh.tets.pop_back();
+  mesh.tet_region.pop_back();
+  mesh.tet_tag.pop_back();
+  mesh.tet_collar.pop_back();
+  EXPECT_EQ(broken(mesh, m.plc).count(guarantee::region_volume), 1U);
+  mesh = strange;
+  for (Point& p : mesh.points) p = p + Point{0.01, 0, 0};
+  EXPECT_EQ(broken(mesh, m.plc).count(guarantee::vertex_present), 1U);
+  for (Point& p : mesh.points) p = 1000 * p + Point{100, 100, 100};
+  EXPECT_EQ(broken(mesh, m.plc), Names{guarantee::region_volume}) << "all tets are outside";
+}
+
+TEST(CheckPlacing, CreasesExcuseWhatTouchesThem) {
+  const MeshedComplex m = meshed_box(4);  // all twelve edges are creases for angles below 91 degrees
+  const TetMesh mesh = without_features(m.mesh);
+  const CheckOptions creases{.radius_edge = 0.1, .crease_angle = 91};
+  const CheckReport report = check(mesh, m.plc, creases);
+  EXPECT_GT(report.collar_tets, 0U);
+  EXPECT_EQ(report.findings_total, report.tets - report.collar_tets);
+  EXPECT_EQ(broken(mesh, m.plc, {.collar_angle = 89, .crease_angle = 91}), Names{guarantee::collar_dihedral});
+  EXPECT_EQ(broken(mesh, m.plc, {.collar_angle = 89}), Names{}) << "without creases there are no collars";
+}
+
+TEST(CheckPlacing, MarksAloneExcuseNothing) {
+  MeshedComplex m = meshed_box(4);
+  m.mesh.tet_collar.assign(m.mesh.tets.size(), 1);
+  const CheckOptions strict{.radius_edge = 0.1};
+  EXPECT_EQ(broken(m.mesh, m.plc, strict), (Names{guarantee::collar_cells, guarantee::radius_edge}));
+  const CheckReport report = check(without_features(m.mesh), m.plc, strict);
+  EXPECT_EQ(report.collar_tets, 0U);
+  EXPECT_EQ(report.findings_total, 2 * report.tets);
+}
+
+TEST(RegionLocator, Sphere) {
+  const MeshedComplex m = meshed_ball(3, 8);
+  const checks::RegionLocator locator(m.plc);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> coordinate(-1.5, 1.5);
+  for (int i = 0; i < 2000; ++i) {
+    const Point p{coordinate(random), coordinate(random), coordinate(random)};
+    if (norm(p) < 0.99) EXPECT_EQ(locator.region_at(p), 1U);
+    if (norm(p) > 1) EXPECT_EQ(locator.region_at(p), 0U);
+  }
+  EXPECT_EQ(locator.region_at({}), 1U);
+}
+
+TEST(RegionLocator, PlacesInThePlanesOfTheFacets) {
+  const MeshedComplex m = meshed_two_boxes(1);
+  const checks::RegionLocator locator(m.plc);
+  const Box& box = m.plc.bounds;
+  for (double s = -0.9; s < 2; s += 0.1) {
+    const Point beyond{box.min.x - 1 - s * s, box.min.y, box.min.z + s};
+    EXPECT_EQ(locator.region_at(beyond), 0U);
+  }
+  for (Index t = 0; t < m.mesh.tets.size(); ++t) {
+    Point centre;
+    for (const Index p : m.mesh.tets[t]) centre = centre + 0.25 * m.mesh.points[p];
+    EXPECT_EQ(locator.region_at(centre), m.mesh.tet_region[t]);
+  }
+}
+
+}  // namespace
+}  // namespace collarmesh
