@@ -333,7 +333,7 @@ class MeshesOfOtherPrograms(ProgramTest):
         self.assertEqual({f["guarantee"] for f in json.loads(strict.stdout)["findings"]}, {"radius_edge"})
 
     def test_gmsh_from_stl(self):
-        self.expect(0, "convert", self.box, "-o", "box.stl", writes=True)
+        self.expect(0, "convert", self.box, "-o", "box.stl")
         self.write("box.geo", 'Merge "box.stl";\nSurface Loop(1) = {1};\nVolume(1) = {1};\nMesh.MeshSizeMax = 0.4;\n')
         for extension, format_name in (("msh", "msh41"), ("msh", "msh22"), ("mesh", "mesh"), ("unv", "unv"), ("vtk", "vtk"), ("inp", "inp")):
             with self.subTest(format=format_name):
@@ -351,7 +351,7 @@ class MeshesOfOtherPrograms(ProgramTest):
                 self.check_judgement(mesh, self.box)
 
     def test_tetgen(self):
-        self.expect(0, "convert", self.box, "-o", "box.poly", writes=True)
+        self.expect(0, "convert", self.box, "-o", "box.poly")
         self.other_program("tetgen", "-pq1.4a0.01Q", "box.poly")
         self.check_judgement(self.folder / "box.1.ele", self.box)
 

@@ -1,6 +1,7 @@
 // Labels for a mesh from a file whose own are not the complex', or that has none: from positions.
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "check/distance_tree.h"
 #include "check/subject.h"
@@ -96,8 +97,12 @@ class Placement {
   Placement(const Subject& subject, CheckReport& report, Findings& findings)
       : subject_(subject), plc_(subject.plc), report_(report), findings_(findings), inner_(subject) {
     const TetMesh& mesh = subject.mesh;
-    tets_known_ = are_known(mesh.tet_tag, plc_.regions);
-    for (Index t = 0; t < mesh.tets.size(); ++t) lost_tets_ = lost_tets_ || !has_region(t);
+    std::size_t in_regions = 0;
+    for (Index t = 0; t < mesh.tets.size(); ++t) in_regions += has_region(t) ? 1 : 0;
+    lost_tets_ = in_regions < mesh.tets.size();
+    const std::span regions(plc_.regions);
+    tets_known_ = 2 * in_regions >= mesh.tets.size() ||
+                  are_known(mesh.tet_tag, regions.subspan(std::min<std::size_t>(1, regions.size())));
     new_faces_ = mesh.faces.empty() || !are_known(mesh.face_tag, plc_.patches);
     new_edges_ = !plc_.curves.empty() && (mesh.edges.empty() || !are_known(mesh.edge_tag, plc_.curves));
   }
@@ -356,7 +361,7 @@ class Placement {
   CheckReport& report_;
   Findings& findings_;
   InnerPatches inner_;
-  bool tets_known_, lost_tets_ = false, new_faces_, new_edges_;
+  bool tets_known_, lost_tets_, new_faces_, new_edges_;
   std::vector<Side> sides_;
   TetMesh mesh_;
 };
