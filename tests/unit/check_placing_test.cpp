@@ -143,7 +143,8 @@ TEST(RegionLocator, Sphere) {
 TEST(RegionLocator, PlacesInThePlanesOfTheFacets) {
   const MeshedComplex m = meshed_two_boxes(1);
   const checks::RegionLocator locator(m.plc);
-  const Box& box = m.plc.bounds;
+  Box box;
+  for (const Point& p : m.plc.points) box.add(p);
   for (double s = -0.9; s < 2; s += 0.1) {
     const Point beyond{box.min.x - 1 - s * s, box.min.y, box.min.z + s};
     EXPECT_EQ(locator.region_at(beyond), 0U);
