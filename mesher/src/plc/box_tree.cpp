@@ -2,34 +2,73 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <span>
+#include <utility>
 
 namespace collarmesh::build {
 
-BoxTree::BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)), items_(boxes_.size()) {
-  std::iota(items_.begin(), items_.end(), Index{0});
-  nodes_.reserve(items_.size());
-  if (!items_.empty()) build(0, static_cast<Index>(items_.size()));
+namespace {
+
+/// Where an item is: twice its box' centre. Kept beside the item, so that ranges of items are read in order.
+struct Place {
+  Point centre;
+  Index item;
+};
+
+std::size_t longest_axis(std::span<const Place> places) {
+  Box box;
+  for (const Place& place : places) box.add(place.centre);
+  const Vector extent = box.max - box.min;
+  if (extent.x >= extent.y && extent.x >= extent.z) return 0;
+  return extent.y >= extent.z ? 1 : 2;
 }
 
-Index BoxTree::build(Index first, Index last) {
-  const auto node = static_cast<Index>(nodes_.size());
-  nodes_.push_back({boxes_[items_[first]], first, last - first});
-  if (last - first <= leaf_size) {
-    for (Index i = first + 1; i < last; ++i) extend(nodes_[node].box, boxes_[items_[i]]);
+}  // namespace
+
+class BoxTree::Builder {
+ public:
+  explicit Builder(BoxTree& tree) : tree_(tree) {
+    places_.reserve(tree.boxes_.size());
+    for (Index i = 0; i < tree.boxes_.size(); ++i)
+      places_.push_back({tree.boxes_[i].min + tree.boxes_[i].max, i});
+  }
+
+  void run() {
+    tree_.nodes_.reserve(places_.size());
+    if (!places_.empty()) build(0, static_cast<Index>(places_.size()));
+    for (const Place& place : places_) tree_.items_.push_back(place.item);
+  }
+
+ private:
+  Index build(Index first, Index last) {
+    const auto node = static_cast<Index>(tree_.nodes_.size());
+    tree_.nodes_.push_back({box(first), first, last - first});
+    if (last - first <= leaf_size) {
+      for (Index i = first + 1; i < last; ++i) extend(tree_.nodes_[node].box, box(i));
+      return node;
+    }
+    const std::size_t axis = longest_axis(std::span(places_).subspan(first, last - first));
+    const Index middle = first + (last - first) / 2;
+    std::nth_element(places_.begin() + first, places_.begin() + middle, places_.begin() + last,
+                     [axis](const Place& a, const Place& b) {
+                       const double ca = a.centre[axis], cb = b.centre[axis];
+                       return ca != cb ? ca < cb : a.item < b.item;
+                     });
+    const Index left = build(first, middle), right = build(middle, last);
+    tree_.nodes_[node] = {tree_.nodes_[left].box, right, 0};
+    extend(tree_.nodes_[node].box, tree_.nodes_[right].box);
     return node;
   }
-  const std::size_t axis = longest_axis(first, last);
-  const Index middle = first + (last - first) / 2;
-  std::nth_element(items_.begin() + first, items_.begin() + middle, items_.begin() + last,
-                   [&](Index a, Index b) {
-                     const double ca = position(a, axis), cb = position(b, axis);
-                     return ca != cb ? ca < cb : a < b;
-                   });
-  const Index left = build(first, middle), right = build(middle, last);
-  nodes_[node] = {nodes_[left].box, right, 0};
-  extend(nodes_[node].box, nodes_[right].box);
-  return node;
+
+  const Box& box(Index place) const { return tree_.boxes_[places_[place].item]; }
+
+  BoxTree& tree_;
+  std::vector<Place> places_;
+};
+
+BoxTree::BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)) {
+  items_.reserve(boxes_.size());
+  Builder(*this).run();
 }
 
 void BoxTree::extend(Box& box, const Box& other) {
@@ -37,22 +76,6 @@ void BoxTree::extend(Box& box, const Box& other) {
     box.min[axis] = std::min(box.min[axis], other.min[axis]);
     box.max[axis] = std::max(box.max[axis], other.max[axis]);
   }
-}
-
-std::size_t BoxTree::longest_axis(Index first, Index last) const {
-  std::size_t longest = 0;
-  double longest_extent = -1;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    double low = position(items_[first], axis), high = low;
-    for (Index i = first + 1; i < last; ++i) {
-      low = std::min(low, position(items_[i], axis));
-      high = std::max(high, position(items_[i], axis));
-    }
-    if (high - low <= longest_extent) continue;
-    longest = axis;
-    longest_extent = high - low;
-  }
-  return longest;
 }
 
 bool BoxTree::may_meet(const Box& box, const Point& p, const Point& q) {

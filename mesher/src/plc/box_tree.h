@@ -39,13 +39,8 @@ class BoxTree {
   // Conservative: never false when the box and the segment meet.
   static bool may_meet(const Box& box, const Point& p, const Point& q);
 
-  Index build(Index first, Index last);
+  class Builder;
   static void extend(Box& box, const Box& other);
-  std::size_t longest_axis(Index first, Index last) const;
-  // Twice the centre's coordinate.
-  double position(Index item, std::size_t axis) const {
-    return boxes_[item].min[axis] + boxes_[item].max[axis];
-  }
 
   template <class Test, class Visit>
   void descend(Index node, const Test& test, const Visit& visit) const {
