@@ -65,6 +65,27 @@ const RegionLocator::Trees& RegionLocator::trees() const {
   return *trees_;
 }
 
+// The region that the first triangle on the way from p to twice as far as `target` shows to p; none when the
+// way meets a border.
+Index RegionLocator::region_on_the_way(const Point& p, const Point& target) const {
+  const Point beyond = target + (target - p);
+  double first = INFINITY;
+  Index region = none;
+  bool doubtful = false;
+  trees().boxes.for_each_near_segment(p, beyond, [&](Index i) {
+    const Plc::Triangle& triangle = plc_.triangles[i];
+    const Corners corners = corners_of(plc_, triangle);
+    const Meeting meeting = meet(p, beyond, corners);
+    if (meeting.crossing == Crossing::none) return;
+    doubtful = doubtful || meeting.crossing == Crossing::at_border;
+    const double place = place_of_plane(p, beyond, corners);
+    if (place >= first) return;
+    first = place;
+    region = plc_.patches[triangle.patch].regions[meeting.in_front ? 1 : 0];
+  });
+  return doubtful ? none : region;
+}
+
 Index RegionLocator::region_at(const Point& p) const {
   constexpr std::array<Vector, 6> places{{{0.3713, 0.3241, 0.3046},
                                           {0.5377, 0.2839, 0.1784},
@@ -72,29 +93,20 @@ Index RegionLocator::region_at(const Point& p) const {
                                           {0.2426, 0.1784, 0.5790},
                                           {0.7254, 0.1631, 0.1115},
                                           {0.0912, 0.1377, 0.7711}}};
+  const auto towards = [&](Index t) {
+    const Corners c = corners_of(plc_, plc_.triangles[t]);
+    if (exact_orientation(c[0], c[1], c[2], p) == 0) return none;
+    for (const Vector& weights : places)
+      if (const Index region = region_on_the_way(p, weights.x * c[0] + weights.y * c[1] + weights.z * c[2]);
+          region != none)
+        return region;
+    return none;
+  };
   const Index nearest = trees().triangles.nearest(p).triangle;
   if (nearest == none) return 0;
-  const auto [a, b, c] = corners_of(plc_, plc_.triangles[nearest]);
-  Index region = 0;
-  for (const Vector& weights : places) {
-    const Point target = weights.x * a + weights.y * b + weights.z * c;
-    const Point beyond = target + (target - p);
-    double first = INFINITY;
-    bool doubtful = false;
-    trees().boxes.for_each_near_segment(p, beyond, [&](Index i) {
-      const Plc::Triangle& triangle = plc_.triangles[i];
-      const Corners corners = corners_of(plc_, triangle);
-      const Meeting meeting = meet(p, beyond, corners);
-      if (meeting.crossing == Crossing::none) return;
-      doubtful = doubtful || meeting.crossing == Crossing::at_border;
-      const double place = place_of_plane(p, beyond, corners);
-      if (place >= first) return;
-      first = place;
-      region = plc_.patches[triangle.patch].regions[meeting.in_front ? 1 : 0];
-    });
-    if (first < INFINITY && !doubtful) break;
-  }
-  return region;
+  Index region = towards(nearest);
+  for (Index t = 0; t < plc_.triangles.size() && region == none; ++t) region = towards(t);
+  return region == none ? 0 : region;
 }
 
 }  // namespace collarmesh::checks

@@ -16,7 +16,8 @@ class RegionLocator {
 
   /// 0 outside of all. Precondition: the point is not on a patch. Looks from the point to places on the
   /// nearest triangle, and at the side from which the first triangle on the way is seen: by exact
-  /// arithmetic, and again towards another place when a way meets the border of a triangle. Cost: the first
+  /// arithmetic, and again towards another place, then another triangle, when a way meets the border of a
+  /// triangle or lies in a plane of one. Cost: the first
   /// time O(n log n) for n triangles, then like that of the nearest triangle, logarithmic for most points.
   Index region_at(const Point& p) const;
 
@@ -26,6 +27,7 @@ class RegionLocator {
     build::BoxTree boxes;
   };
   const Trees& trees() const;
+  Index region_on_the_way(const Point& p, const Point& target) const;
 
   const Plc& plc_;
   mutable std::optional<Trees> trees_;

@@ -57,8 +57,14 @@ std::vector<Sheet> CreaseSheets::at_vertex(Index vertex) const {
   for (auto it = std::lower_bound(vertices_.begin(), vertices_.end(), std::pair{point, Index{0}});
        it != vertices_.end() && it->first == point; ++it) {
     const Plc::Triangle& t = plc_.triangles[it->second];
-    const Point middle = (points_[t.points[0]] + points_[t.points[1]] + points_[t.points[2]]) / 3;
-    sheets.push_back({t.patch, (middle - points_[point]) / distance(middle, points_[point])});
+    const auto corner =
+        static_cast<std::size_t>(std::find(t.points.begin(), t.points.end(), point) - t.points.begin());
+    const Point &apex = points_[point], &left = points_[t.points[(corner + 1) % 3]],
+                &right = points_[t.points[(corner + 2) % 3]];
+    for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+      const Vector direction = left + share * (right - left) - apex;
+      sheets.push_back({t.patch, direction / norm(direction)});
+    }
   }
   return sheets;
 }

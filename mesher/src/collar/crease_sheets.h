@@ -23,7 +23,7 @@ class CreaseSheets {
 
   /// At a segment of a crease curve, by its two points: orthogonal to it.
   std::vector<Sheet> at_segment(const std::array<Index, 2>& ends) const;
-  /// At a crease vertex: through the middle of each triangle of smooth patches there.
+  /// At a crease vertex: towards places of the opposite side of each triangle of smooth patches there.
   std::vector<Sheet> at_vertex(Index vertex) const;
 
  private:

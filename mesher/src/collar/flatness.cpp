@@ -1,6 +1,7 @@
 #include "collar/flatness.h"
 
 #include <algorithm>
+#include <array>
 
 namespace collarmesh {
 
@@ -17,6 +18,8 @@ constexpr double radius_per_length = 1.0 / 8;
 // than through space.
 constexpr double pieces_per_radius = 3;
 constexpr double detour = 1.5;
+// Where chords are compared with what they stand for.
+constexpr std::array<double, 3> chord_shares{0.25, 0.5, 0.75};
 constexpr double rounding = 1e-6;  // of lengths, relative to the ball
 constexpr int most_steps = 60;
 
@@ -48,7 +51,7 @@ double Flatness::shrunk(double radius, const Deviation& deviation) const {
 double Flatness::off_chord(Index curve, double from, double to) const {
   const Point a = paths_.point(curve, from), b = paths_.point(curve, to);
   double largest = 0;
-  for (const double share : {0.25, 0.5, 0.75})
+  for (const double share : chord_shares)
     largest = std::fmax(
         largest, squared_distance_to_triangle(paths_.point(curve, from + share * (to - from)), a, b, b));
   return std::sqrt(largest);
@@ -57,8 +60,12 @@ double Flatness::off_chord(Index curve, double from, double to) const {
 // How far a patch leaves the chord from the centre to its point in the direction of a sheet.
 double Flatness::off_patch(const Sheet& sheet, const Point& centre, double radius) const {
   const Point end = features_.nearest_point({2, sheet.patch}, centre + radius * sheet.direction);
-  const Point middle = 0.5 * (centre + end);
-  return distance(middle, features_.nearest_point({2, sheet.patch}, middle));
+  double largest = 0;
+  for (const double share : chord_shares) {
+    const Point p = centre + share * (end - centre);
+    largest = std::fmax(largest, distance(p, features_.nearest_point({2, sheet.patch}, p)));
+  }
+  return largest;
 }
 
 // The distance to pieces of the curve other than the one through the point, up to `reach`.
