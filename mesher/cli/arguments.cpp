@@ -10,6 +10,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "cad_files.h"
 #include "collarmesh/io/tet_mesh_io.h"
 #include "machine.h"
 #include "option_values.h"
@@ -29,7 +30,14 @@ std::vector<std::string> all_formats() {
   for (auto& more : {io::written_tet_mesh_formats(), io::read_tet_mesh_formats()})
     for (const std::string& format : more)
       if (std::find(formats.begin(), formats.end(), format) == formats.end()) formats.push_back(format);
+  for (const std::string& format : CadFiles::formats()) formats.push_back(format);
   return formats;
+}
+
+std::string known_inputs() {
+  std::vector<std::string> formats = surface_formats();
+  for (const std::string& format : CadFiles::formats()) formats.push_back(format);
+  return list(formats);
 }
 
 const CLI::Validator length = number_in(0, 1e300, "a length (a number >= 0 in input units)");
@@ -203,7 +211,7 @@ void add_run_options(CLI::App& app, MeshArguments& a) {
 
 void add_mesh_options(CLI::App& app, MeshArguments& a) {
   app.add_option("INPUT", a.inputs,
-                 "Surfaces and complexes (.off .obj .stl .ply .om .poly .smesh); several are one complex")
+                 "Surfaces, complexes and CAD shapes (" + known_inputs() + "); several are one complex")
       ->type_name("FILE");
   app.add_option("-o,--output", a.output, "The mesh to write: " + list(io::written_tet_mesh_formats()))
       ->type_name("FILE");

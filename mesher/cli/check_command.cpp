@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "complex_input.h"
 #include "input_files.h"
 #include "interrupt.h"
 #include "report.h"
@@ -10,7 +11,8 @@ namespace collarmesh::cli {
 
 ExitCode check_command(const CheckArguments& arguments) {
   const TetMesh mesh = read_mesh(arguments.mesh);
-  const Plc plc = build_plc(read_soups(arguments.inputs), arguments.complex.plc);
+  ComplexInput input(arguments.inputs, {}, arguments.check.distance);
+  const Plc plc = input.build(arguments.complex.plc);
   stop_if_interrupted();
   CheckOptions options = arguments.check;
   options.crease_angle = arguments.complex.crease_angle;

@@ -8,6 +8,7 @@
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
 #include "collarmesh/merge_soups.h"
+#include "complex_input.h"
 #include "conversion_report.h"
 #include "input_files.h"
 #include "interrupt.h"
@@ -101,7 +102,7 @@ ExitCode convert_command(const ConvertArguments& arguments) {
     return ExitCode::success;
   }
   if (!to_surface) return mesh_command(a);
-  write_soup(a, read_soups(a.inputs, a.input_format));
+  write_soup(a, ComplexInput(a.inputs, a.input_format).soups());
   return ExitCode::success;
 }
 

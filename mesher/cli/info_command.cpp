@@ -4,6 +4,7 @@
 
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
+#include "complex_input.h"
 #include "input_files.h"
 #include "interrupt.h"
 #include "report.h"
@@ -29,7 +30,8 @@ void print_mesh(const std::string& path, bool as_json) {
 void print_complex(const InfoArguments& arguments) {
   PlcOptions options = arguments.complex.plc;
   options.require_solid = false;
-  const Plc plc = build_plc(read_soups(arguments.inputs), options);
+  ComplexInput input(arguments.inputs);
+  const Plc plc = input.build(options);
   stop_if_interrupted();
   const PlcSummary summary = summarize(plc, arguments.complex.crease_angle);
   if (arguments.json)

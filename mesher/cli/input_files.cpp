@@ -9,8 +9,6 @@
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
 #include "edit_distance.h"
-#include "interrupt.h"
-#include "surface_files.h"
 
 namespace collarmesh::cli {
 
@@ -55,23 +53,18 @@ std::string similar_file(const std::string& path) {
   return found;
 }
 
-std::vector<PolygonSoup> read_soups(const std::vector<std::string>& paths, const std::string& format) {
-  std::vector<PolygonSoup> soups;
-  for (const std::string& path : paths) {
-    stop_if_interrupted();
-    require_file(opened(path));
-    soups.push_back(read_surface(opened(path), format));
-  }
-  return soups;
+std::string existing_file(const std::string& path) {
+  require_file(opened(path));
+  return opened(path);
 }
 
 TetMesh read_mesh(const std::string& path, const std::string& format) {
-  require_file(opened(path));
+  const std::string file = existing_file(path);
   if (!io::is_tet_mesh_format(path, format))
     throw ReadError(fmt::format("{}: its format is not known by its extension '{}'; use {}", path,
                                 fs::path(path).extension().string(),
                                 fmt::join(io::read_tet_mesh_formats(), " ")));
-  return io::read_tet_mesh(opened(path), format);
+  return io::read_tet_mesh(file, format);
 }
 
 }  // namespace collarmesh::cli

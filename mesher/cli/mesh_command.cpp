@@ -9,8 +9,8 @@
 
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
+#include "complex_input.h"
 #include "conversion_report.h"
-#include "input_files.h"
 #include "interrupt.h"
 #include "option_warnings.h"
 #include "progress_display.h"
@@ -71,20 +71,22 @@ void require_known_tags(const MeshOptions& options, const Plc& plc) {
   require_tags(options.curve_size, plc.curves, "--curve-size", "curve");
 }
 
-void build_complex(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
+ComplexInput build_complex(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   stages.begin("read", 0, 0.02);
-  const std::vector<PolygonSoup> soups = read_soups(arguments.inputs, arguments.input_format);
+  ComplexInput input(arguments.inputs, arguments.input_format, arguments.mesh.distance);
   stages.begin("complex", 0.02, 0.08);
-  run.plc = build_plc(soups, arguments.complex.plc);
+  run.plc = input.build(arguments.complex.plc);
+  run.notes = input.notes();
   require_known_tags(arguments.mesh, run.plc);
   run.summary = summarize(run.plc, arguments.complex.crease_angle);
   run.warnings = option_warnings(arguments, run.plc);
   std::string text = warnings_text(run.plc);
   for (const std::string& warning : run.warnings) text += fmt::format("warning: {}\n", warning);
   stages.print(text);
+  return input;
 }
 
-void refine(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
+void refine(const MeshArguments& arguments, const ComplexInput& input, Stages& stages, MeshRun& run) {
   stages.begin("refine", 0.08, 0.7);
   Execution execution;
   execution.cancel = &interrupt_flag();
@@ -96,7 +98,8 @@ void refine(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   options.crease_angle = arguments.complex.crease_angle;
   if (!arguments.size_field.empty()) options.size_field = read_size_field(arguments.size_field, run.plc);
   options.time_limit = 0;  // one limit for all stages: the interrupt flag
-  run.result = generate(run.plc, options, execution);
+  run.result = generate(run.plc, input.tightened(options, run.plc), execution);
+  if (input.has_cad()) run.result.mesh.group_names = GroupNames::cad;
   if (run.result.status == MeshStatus::cancelled) {
     const MeshStatistics& reached = run.result.statistics;
     const Point& p = run.result.where;
@@ -110,16 +113,33 @@ void refine(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
     throw Stopped(ExitCode::budget_hit, run.result.message + "; nothing was written");
 }
 
-void improve_elements(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
+void improve_elements(const MeshArguments& arguments, const ComplexInput& input, Stages& stages,
+                      MeshRun& run) {
   if (arguments.improve == 0) return;
-  stages.begin("improve", 0.7, 0.8, run.result.mesh.tets.size());
+  stages.begin("improve", 0.7, 0.79, run.result.mesh.tets.size());
   Execution execution;
   execution.cancel = &interrupt_flag();
   ImproveOptions options = improve_options(arguments.improve);
-  options.radius_edge = arguments.mesh.radius_edge;
-  options.distance = arguments.mesh.distance;
+  const MeshOptions bounds = input.tightened(arguments.mesh, run.plc);
+  options.radius_edge = bounds.radius_edge;
+  options.distance = bounds.distance;
   if (arguments.min_dihedral > 0) options.min_dihedral = arguments.min_dihedral;
   run.improvement = improve(run.result.mesh, run.plc, options, execution);
+  stop_if_interrupted();
+}
+
+void project_onto_cad(const MeshArguments& arguments, const ComplexInput& input, Stages& stages,
+                      MeshRun& run) {
+  if (!input.has_cad()) return;
+  stages.begin("project", 0.79, 0.8, run.result.mesh.tets.size());
+  Execution execution;
+  execution.cancel = &interrupt_flag();
+  ProjectOptions options;
+  options.radius_edge = arguments.mesh.radius_edge;
+  options.collar_angle = arguments.mesh.collar_angle;
+  options.reach = arguments.mesh.distance;
+  run.projection =
+      project_boundary(run.result.mesh, run.plc, input.exact_geometry(run.plc), options, execution);
   stop_if_interrupted();
 }
 
@@ -176,9 +196,10 @@ ExitCode mesh_command(const MeshArguments& arguments) {
   MeshRun run;
   {
     Stages stages(arguments.quiet ? ProgressStyle::none : arguments.progress, run.times);
-    build_complex(arguments, stages, run);
-    refine(arguments, stages, run);
-    improve_elements(arguments, stages, run);
+    const ComplexInput input = build_complex(arguments, stages, run);
+    refine(arguments, input, stages, run);
+    improve_elements(arguments, input, stages, run);
+    project_onto_cad(arguments, input, stages, run);
     certify(arguments, stages, run);
     write_files(arguments, stages, run);
   }

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "arguments.h"
 #include "collarmesh/check.h"
 #include "collarmesh/plc_builder.h"
+#include "collarmesh/project_boundary.h"
 #include "mesh_measures.h"
 #include "stage_times.h"
 
@@ -18,6 +20,8 @@ struct MeshRun {
   PlcSummary summary;
   std::vector<std::string> warnings;  ///< of options; those of the input are in the complex
   MeshResult result;
+  std::vector<std::string> notes;           ///< on CAD shapes, a line each
+  std::optional<ProjectReport> projection;  ///< when there are CAD shapes
   ImproveReport improvement;
   MeshMeasures measures;
   CheckReport check;

@@ -84,6 +84,20 @@ Json statistics_json(const MeshStatistics& s) {
           {"seconds", s.seconds}};
 }
 
+Json projection_json(const Plc& plc, const ProjectReport& r) {
+  Json exceptions = Json::array();
+  for (const ProjectReport::Exception& e : r.exceptions)
+    exceptions.push_back({{"point", e.point},
+                          {e.dimension == 1 ? "edge" : "face",
+                           e.dimension == 1 ? plc.curves[e.feature].tag : plc.patches[e.feature].tag},
+                          {"where", point_json(e.where)},
+                          {"distance", number_json(e.distance)}});
+  return {{"vertices", r.vertices},
+          {"largest_move", r.largest_move},
+          {"largest_distance", number_json(r.largest_distance)},
+          {"exceptions", std::move(exceptions)}};
+}
+
 Json improvement_json(const ImproveReport& r) {
   return {{"candidates", r.candidates},
           {"remaining", r.remaining},
@@ -193,6 +207,8 @@ Json run_json(const MeshArguments& arguments, const MeshRun& run) {
           {"mesh", measures_json(run.result.mesh, run.measures)},
           {"check", check_json(run.check)},
           {"statistics", statistics_json(run.result.statistics)},
+          {"notes", run.notes},
+          {"projection", run.projection ? projection_json(run.plc, *run.projection) : Json(nullptr)},
           {"improvement", improvement_json(run.improvement)},
           {"seconds", std::move(seconds)}};
 }

@@ -117,6 +117,23 @@ std::string check_text(const CheckReport& r) {
   return text;
 }
 
+std::string projection_text(const Plc& plc, const ProjectReport& r) {
+  std::string text;
+  fmt::format_to(Out(text), "  {} boundary vertices moved onto the exact shape, by at most {:.3g}",
+                 r.vertices, r.largest_move);
+  if (r.exceptions.empty()) return text + "\n";
+  fmt::format_to(Out(text), "; {} stay off it, by at most {:.3g}:\n", r.exceptions.size(), r.largest_distance);
+  for (std::size_t k = 0; k < std::min(listed, r.exceptions.size()); ++k) {
+    const ProjectReport::Exception& e = r.exceptions[k];
+    fmt::format_to(Out(text), "    {}{} at ({:.6g}, {:.6g}, {:.6g}) by {:.3g}\n",
+                   e.dimension == 1 ? "Edge" : "Face",
+                   e.dimension == 1 ? plc.curves[e.feature].tag : plc.patches[e.feature].tag, e.where.x,
+                   e.where.y, e.where.z, e.distance);
+  }
+  if (r.exceptions.size() > listed) text += "    ...\n";
+  return text;
+}
+
 std::string run_text(const MeshArguments& arguments, const MeshRun& run) {
   std::string text = arguments.verbose ? complex_text(run.plc, run.summary) : "";
   text += fmt::format("{}: ", arguments.output == "-" ? "standard output" : arguments.output) +
@@ -130,6 +147,8 @@ std::string run_text(const MeshArguments& arguments, const MeshRun& run) {
                    "  {} vertices inserted, {} cells, {} exact predicates, {} warps, {} yields, {:.1f} MB\n",
                    s.vertices_inserted, s.cells, s.exact_predicates, s.warps, s.yields,
                    static_cast<double>(s.peak_bytes) / 1e6);
+  for (const std::string& note : run.notes) fmt::format_to(Out(text), "  {}\n", note);
+  if (run.projection) text += projection_text(run.plc, *run.projection);
   const ImproveReport& i = run.improvement;
   if (arguments.verbose && i.candidates > 0)
     fmt::format_to(Out(text),

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "cad_files.h"
 #include "collarmesh/error.h"
 #include "collarmesh/io/soup_io.h"
 #ifdef COLLARMESH_OPENMESH
@@ -44,9 +45,10 @@ PolygonSoup read_surface(const std::string& path, std::string_view format) {
   if (is_om(path, format)) return openmesh_io::read_om(path);
 #endif
   if (!io::is_soup_format(path, format))
-    throw ReadError(fmt::format("{}: its format is not known by its extension '{}'; use {}", path,
+    throw ReadError(fmt::format("{}: its format is not known by its extension '{}'; use {}{}{}", path,
                                 std::filesystem::path(path).extension().string(),
-                                fmt::join(surface_formats(), " ")));
+                                fmt::join(surface_formats(), " "), CadFiles::formats().empty() ? "" : " ",
+                                fmt::join(CadFiles::formats(), " ")));
   return io::read_soup(path, format);
 }
 

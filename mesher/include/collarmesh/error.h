@@ -32,11 +32,11 @@ struct PlcFault {
     duplicate_points,
     degenerate_facet,
     non_planar_polygon,
-    intersection,   ///< two features meet outside a common feature
-    not_orientable, ///< the facets of a component cannot be oriented
-    open_boundary,  ///< a region was asked for and its boundary is open
-    empty,          ///< nothing to mesh
-    bad_point       ///< a coordinate is not finite or an index is out of range
+    intersection,    ///< two features meet outside a common feature
+    not_orientable,  ///< the facets of a component cannot be oriented
+    open_boundary,   ///< a region was asked for and its boundary is open
+    empty,           ///< nothing to mesh
+    bad_point        ///< a coordinate is not finite or an index is out of range
   };
   Kind kind;
   std::string message;        ///< full sentence: entities, coordinates, what to do next

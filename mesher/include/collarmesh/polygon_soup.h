@@ -42,6 +42,8 @@ class PolygonSoup {
   std::vector<Point> points;
   std::vector<Tag> point_tags;  ///< one per point, or empty
   std::vector<Segment> segments;
+  std::vector<Index> vertices;  ///< points that are features by themselves
+  bool given_features = false;  ///< its features are its vertices, its segments and the borders of its tags; angles make none
   std::vector<RegionPoint> region_points;  ///< .poly: with hole_points they decide for their file
   std::vector<Point> hole_points;          ///< the region around each is empty
   std::vector<FacetHole> facet_holes;

@@ -8,6 +8,12 @@
 
 namespace collarmesh {
 
+/// How groups are called in formats that name them.
+enum class GroupNames {
+  complex,  ///< region_1, patch_7, curve_3: kind and tag
+  cad       ///< Solid1, Face7, Edge3: the sub-shapes of a CAD shape
+};
+
 /// A conforming tetrahedral mesh with everything a solver's set-up needs to find its way back to
 /// the input: regions, tagged boundary and interface triangles, tagged curve edges.
 /// Every array of a group (tets, faces, edges, points) has the same length.
@@ -23,9 +29,9 @@ struct TetMesh {
 
   /// Corners a, b, c, d with six_volume(a, b, c, d) > 0.
   std::vector<std::array<Index, 4>> tets;
-  std::vector<Index> tet_region;           ///< index of the region in the complex, from 1
-  std::vector<Tag> tet_tag;                ///< tag of that region
-  std::vector<std::uint8_t> tet_collar;    ///< 0 outside collars, 1 star, 2 book
+  std::vector<Index> tet_region;         ///< index of the region in the complex, from 1
+  std::vector<Tag> tet_tag;              ///< tag of that region
+  std::vector<std::uint8_t> tet_collar;  ///< 0 outside collars, 1 star, 2 book
 
   /// Boundary, interface and internal-facet triangles; the normal (b-a) x (c-a) points from
   /// face_regions[0] to face_regions[1]. A boundary triangle has its solid in [0] and 0 in [1].
@@ -44,6 +50,8 @@ struct TetMesh {
   std::vector<std::array<Index, 6>> tet_mid_nodes;
   std::vector<std::array<Index, 3>> face_mid_nodes;
   std::vector<Index> edge_mid_nodes;
+
+  GroupNames group_names = GroupNames::complex;
 
   int order() const { return tet_mid_nodes.empty() ? 1 : 2; }
 

@@ -15,15 +15,17 @@ std::string lower_case(std::string_view text) {
   return result;
 }
 
-std::string group_name(std::size_t dimension, Tag tag, std::string_view minus) {
+std::string group_name(GroupNames names, std::size_t dimension, Tag tag, std::string_view minus) {
   std::string digits = fmt::format("{}", tag);
   if (tag < 0) digits = fmt::format("{}{}", minus, digits.substr(1));
-  return fmt::format("{}{}", group_name_prefix[dimension], digits);
+  const auto& prefixes = names == GroupNames::cad ? cad_name_prefix : group_name_prefix;
+  return fmt::format("{}{}", prefixes[dimension], digits);
 }
 
 std::optional<Tag> tag_of_group_name(std::size_t dimension, std::string_view name) {
   const std::string lower = lower_case(name);
-  const std::string_view prefix = group_name_prefix[dimension];
+  std::string prefix(group_name_prefix[dimension]);
+  if (!lower.starts_with(prefix)) prefix = lower_case(cad_name_prefix[dimension]);
   if (!lower.starts_with(prefix)) return std::nullopt;
   std::string digits = lower.substr(prefix.size());
   constexpr std::string_view minus = "minus_";

@@ -7,14 +7,16 @@
 #include <string_view>
 
 #include "collarmesh/geometry.h"
+#include "collarmesh/tet_mesh.h"
 
 /// Names of groups of cells, for formats whose groups have names. By dimension: this and the tag.
 namespace collarmesh::io {
 
 constexpr std::array<std::string_view, 4> group_name_prefix{"vertex_", "curve_", "patch_", "region_"};
+constexpr std::array<std::string_view, 4> cad_name_prefix{"Vertex", "Edge", "Face", "Solid"};
 
-/// "patch_7"; "patch_minus_7" where a hyphen is not allowed in names.
-std::string group_name(std::size_t dimension, Tag tag, std::string_view minus = "minus_");
+/// "patch_7" or "Face7"; "patch_minus_7" where a hyphen is not allowed in names.
+std::string group_name(GroupNames names, std::size_t dimension, Tag tag, std::string_view minus = "minus_");
 
 /// The tag that a name of ours stands for, in any case.
 std::optional<Tag> tag_of_group_name(std::size_t dimension, std::string_view name);

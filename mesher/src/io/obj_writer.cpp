@@ -15,7 +15,7 @@ void write_obj(const std::string& path, const PolygonSoup& soup) {
   for (const Point& p : soup.points) out << "v " << p.x << ' ' << p.y << ' ' << p.z << '\n';
   Tag group = 0;
   for (Index f = 0; f < soup.facet_count(); ++f) {
-    if (soup.facet_tag(f) != group) out << "g " << group_name(2, group = soup.facet_tag(f)) << '\n';
+    if (soup.facet_tag(f) != group) out << "g " << group_name(GroupNames::complex, 2, group = soup.facet_tag(f)) << '\n';
     out << 'f';
     for (const Index v : one_polygon(path, soup, f)) out << ' ' << std::size_t{v} + 1;
     out << '\n';

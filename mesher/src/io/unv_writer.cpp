@@ -47,7 +47,7 @@ const UnvType& type_of(std::size_t dimension, std::size_t nodes) {
 
 class ElementWriter {
  public:
-  explicit ElementWriter(FileWriter& out) : out_(out) {}
+  ElementWriter(FileWriter& out, GroupNames names) : out_(out), names_(names) {}
 
   template <class NodesOf>
   void write(const TetMesh& mesh, std::size_t dimension, const std::vector<Tag>& tags,
@@ -76,7 +76,7 @@ class ElementWriter {
     std::size_t number = 0;
     for (const auto& [key, members] : groups_) {
       out_ << fmt::format("{:10}{:10}{:10}{:10}{:10}{:10}{:10}{:10}\n{}\n", ++number, 0, 0, 0, 0, 0, 0,
-                          members.size(), group_name(key.first, key.second, "-"));
+                          members.size(), group_name(names_, key.first, key.second, "-"));
       for (std::size_t i = 0; i < members.size(); ++i)
         out_ << fmt::format("{:10}{:10}{:10}{:10}{}", unv_group_element, members[i], 0, 0,
                             i % 2 == 1 || i + 1 == members.size() ? "\n" : "");
@@ -86,6 +86,7 @@ class ElementWriter {
 
  private:
   FileWriter& out_;
+  GroupNames names_;
   std::string line_;
   std::size_t count_ = 0;
   std::map<std::pair<std::size_t, Tag>, std::vector<std::size_t>> groups_;
@@ -97,7 +98,7 @@ void write_unv(const std::string& path, const TetMesh& mesh) {
   FileWriter out(path);
   write_nodes(out, mesh);
   begin_dataset(out, unv_elements);
-  ElementWriter elements(out);
+  ElementWriter elements(out, mesh.group_names);
   elements.write(mesh, 3, mesh.tet_tag, &mesh.tet_region, nodes_of_tet);
   elements.write(mesh, 2, mesh.face_tag, nullptr, nodes_of_face);
   elements.write(mesh, 1, mesh.edge_tag, nullptr, nodes_of_edge);

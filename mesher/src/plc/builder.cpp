@@ -28,6 +28,7 @@ void name_soups(std::span<const PolygonSoup> soups, Draft& draft) {
   for (Index s = 0; s < soups.size(); ++s) {
     draft.soup_names.push_back(soups[s].name.empty() ? fmt::format("input {}", s + 1) : soups[s].name);
     draft.soup_is_complex.push_back(is_complex(soups[s]));
+    draft.soup_gives_features.push_back(soups[s].given_features);
   }
 }
 
@@ -41,6 +42,11 @@ void add_unused_points(const PointMap& map, Draft& draft) {
     if (draft.soup_is_complex[s])
       for (const Index p : map.merged[s])
         if (!used[p]) draft.loose_points.push_back(p);
+}
+
+void add_named_vertices(std::span<const PolygonSoup> soups, const PointMap& map, Draft& draft) {
+  for (Index s = 0; s < soups.size(); ++s)
+    for (const Index v : soups[s].vertices) draft.loose_points.push_back(map.merged[s][v]);
 }
 
 void require_content(const Draft& draft, Faults& faults) {
@@ -166,6 +172,7 @@ Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options) {
 
   triangulate_facets(soups, map, draft, faults);
   add_unused_points(map, draft);
+  add_named_vertices(soups, map, draft);
   remove_collinear_triangles(draft);
   remove_twins_within_soups(draft);
   require_content(draft, faults);

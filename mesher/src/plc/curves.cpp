@@ -29,9 +29,13 @@ class CurveFinder {
         exact_(feature_angle <= 0),
         largest_turn_(feature_angle * std::numbers::pi / 180),
         is_vertex_(draft.points.size(), false),
+        is_fold_(draft.points.size(), false),
         used_(segments.size(), false) {
-    for (const Index p : draft.loose_points) is_vertex_[p] = true;
-    for (const Index p : folds) is_vertex_[p] = true;
+    for (const Index p : folds) is_vertex_[p] = is_fold_[p] = true;
+    for (const Index p : draft.loose_points) {
+      is_vertex_[p] = true;
+      is_fold_[p] = false;
+    }
     index_ends();
     collect_patches(patch_of);
   }
@@ -120,6 +124,7 @@ class CurveFinder {
     const auto p = patches_of(at[0]), q = patches_of(at[1]);
     if (!std::equal(p.begin(), p.end(), q.begin(), q.end())) return false;
     if (segments_[at[0]].tag != segments_[at[1]].tag) return false;
+    if (segments_[at[0]].given && segments_[at[1]].given) return true;
     const Point &here = draft_.points[point], &before = draft_.points[other_end(at[0], point)],
                 &after = draft_.points[other_end(at[1], point)];
     const Vector u = here - before, v = after - here;
@@ -153,6 +158,10 @@ class CurveFinder {
   void cut_bent_chains() {
     std::vector<Chain> pieces;
     for (const Chain& chain : chains_) {
+      if (segments_[chain.segment].given) {
+        pieces.push_back(chain);
+        continue;
+      }
       std::vector<std::array<std::size_t, 2>> stack{{0, chain.points.size() - 1}};
       while (!stack.empty()) {
         const auto [first, last] = stack.back();
@@ -213,7 +222,9 @@ class CurveFinder {
       for (const Index p : chain.points)
         largest = std::fmax(largest,
                             distance_to_chord(draft_.points[p], draft_.points[first], draft_.points[last]));
-      curve.straight = chain.points.size() == 2 || largest <= draft_.planar_tolerance;
+      // Two points that a fold cut off a given curve do not say whether it is straight.
+      const bool cut_off = segments_[chain.segment].given && (is_fold_[first] || is_fold_[last]);
+      curve.straight = chain.points.size() == 2 ? !cut_off : largest <= draft_.planar_tolerance;
       if (curve.straight) draft_.largest_deviation = std::max(draft_.largest_deviation, largest);
     }
     plc_.curves.push_back(std::move(curve));
@@ -233,7 +244,7 @@ class CurveFinder {
   double largest_turn_;
   std::vector<Index> first_, at_;             // segments at each point
   std::vector<Index> first_patch_, patches_;  // patches of each segment
-  std::vector<bool> is_vertex_;
+  std::vector<bool> is_vertex_, is_fold_;     // folds: not named as vertices
   std::vector<bool> used_;
   std::vector<Chain> chains_;
   std::vector<Index> vertex_at_;

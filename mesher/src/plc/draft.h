@@ -50,6 +50,7 @@ struct Draft {
 
   std::vector<std::string> soup_names;
   std::vector<bool> soup_is_complex;  ///< PolygonSoup::Kind::complex, by soup
+  std::vector<bool> soup_gives_features;  ///< PolygonSoup::given_features, by soup
 
   Box bounds;
   double planar_tolerance = 0;   ///< absolute

@@ -23,6 +23,7 @@ class SegmentTest {
     const Index s = sides[0] / 3, t = sides[1] / 3;
     if (draft_.origins[s].soup != draft_.origins[t].soup || draft_.origins[s].tag != draft_.origins[t].tag)
       return true;
+    if (draft_.soup_gives_features[draft_.origins[s].soup]) return false;
     if (clusters_.seed[s] == clusters_.seed[t]) return false;
     return every_fold_ || dot(clusters_.normal[s], clusters_.normal[t]) < smallest_cosine_;
   }
@@ -63,7 +64,8 @@ std::vector<FeatureSegment> find_segments(const Draft& draft, const EdgeTable& e
                                           const FlatClusters& clusters, double feature_angle) {
   std::vector<FeatureSegment> named;
   for (const Segment& s : draft.segments)
-    named.push_back({std::min(s.a, s.b), std::max(s.a, s.b), edges.find(s.a, s.b), s.tag});
+    named.push_back({std::min(s.a, s.b), std::max(s.a, s.b), edges.find(s.a, s.b), s.tag,
+                     draft.soup_gives_features[s.soup]});
   std::stable_sort(named.begin(), named.end(), [](const FeatureSegment& s, const FeatureSegment& t) {
     return std::array{s.edge, s.a, s.b} < std::array{t.edge, t.a, t.b};
   });

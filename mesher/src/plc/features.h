@@ -14,10 +14,12 @@ struct FeatureSegment {
   Index a = 0, b = 0;
   Index edge = none;  ///< in the edge table, none if no triangle has it
   Tag tag = 0;
+  bool given = false;  ///< of a soup that gives its features: no angle ends its curve
 };
 
 /// The segments: edges that the input names, that are not shared by exactly two triangles, between
-/// different tags or soups, or where the surface turns by more than the feature angle (degrees).
+/// different tags or soups, or where a surface that does not give its features turns by more than the
+/// feature angle (degrees).
 std::vector<FeatureSegment> find_segments(const Draft& draft, const EdgeTable& edges,
                                           const FlatClusters& clusters, double feature_angle);
 

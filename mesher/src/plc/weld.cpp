@@ -45,6 +45,7 @@ std::vector<Index> find_used(const PolygonSoup& soup, Faults& faults) {
   for (Index s = 0; s < soup.segments.size(); ++s)
     for (const Index end : {soup.segments[s].a, soup.segments[s].b})
       use(soup, end, "segment", s, used, faults);
+  for (Index v = 0; v < soup.vertices.size(); ++v) use(soup, soup.vertices[v], "vertex", v, used, faults);
   return used;
 }
 

@@ -33,8 +33,10 @@ std::string padded(std::string text, std::size_t size) {
 
 class MedFile {
  public:
-  explicit MedFile(std::string path)
-      : target_(std::move(path)), file_(MEDfileOpen(target_.temporary().c_str(), MED_ACC_CREAT)) {
+  MedFile(std::string path, GroupNames names)
+      : target_(std::move(path)),
+        names_(names),
+        file_(MEDfileOpen(target_.temporary().c_str(), MED_ACC_CREAT)) {
     require(file_);
   }
   ~MedFile() {
@@ -87,7 +89,7 @@ class MedFile {
     const auto [found, added] =
         families_.try_emplace({dimension, tag}, -1 - static_cast<med_int>(families_.size()));
     if (added) {
-      const std::string group = group_name(dimension, tag, "-");
+      const std::string group = group_name(names_, dimension, tag, "-");
       require(MEDfamilyCr(file_, mesh_name, fmt::format("FAM_{}_{}", -found->second, group).c_str(),
                           found->second, 1, padded(group, MED_LNAME_SIZE).c_str()));
     }
@@ -99,6 +101,7 @@ class MedFile {
   }
 
   UnfinishedFile target_;
+  GroupNames names_;
   med_idt file_;
   std::map<std::pair<std::size_t, Tag>, med_int> families_;
 };
@@ -106,7 +109,7 @@ class MedFile {
 }  // namespace
 
 void write_med(const std::string& path, const TetMesh& mesh) {
-  MedFile file(path);
+  MedFile file(path, mesh.group_names);
   file.create_mesh();
   file.write_points(mesh.points);
   if (mesh.order() == 2) {

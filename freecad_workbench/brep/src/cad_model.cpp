@@ -1,0 +1,127 @@
+#include "collarmesh/brep/cad_model.h"
+
+#include <fmt/format.h>
+#include <BRepBndLib.hxx>
+#include <BRepBuilderAPI_Copy.hxx>
+#include <BRepCheck_Analyzer.hxx>
+#include <Bnd_Box.hxx>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "parts.h"
+
+namespace collarmesh::brep {
+
+namespace {
+
+/// Run OpenCASCADE on a shape; its own exceptions become errors of the shape.
+template <class Work>
+auto on_shape(const std::string& name, const char* doing, const Work& work) {
+  try {
+    return work();
+  } catch (const Standard_Failure& failure) {
+    fail(PlcFault::Kind::intersection,
+         fmt::format("{}: OpenCASCADE failed in {} ({}); the shape is probably invalid, check and repair it.",
+                     name, doing, text(failure)));
+  }
+}
+
+double diagonal_of(const TopoDS_Shape& shape) {
+  Bnd_Box box;
+  box.SetGap(0);
+  BRepBndLib::AddOptimal(shape, box, false, false);
+  return box.IsVoid() ? 0 : std::sqrt(box.SquareExtent());
+}
+
+/// The numbers of the faces, those first whose points are nearest.
+std::vector<std::pair<double, int>> faces_by_distance(const Tessellation& tessellation, const Point& where) {
+  std::vector<std::pair<double, int>> faces;
+  for (const auto& [number, pieces] : tessellation.faces) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Samples& piece : pieces)
+      for (const Point& p : piece.points) least = std::min(least, distance(p, where));
+    faces.emplace_back(least, number);
+  }
+  std::sort(faces.begin(), faces.end());
+  return faces;
+}
+
+}  // namespace
+
+CadModel::CadModel(const TopoDS_Shape& shape, std::string name) : parts_(std::make_unique<Parts>()) {
+  parts_->name = std::move(name);
+  on_shape(parts_->name, "finding solids", [&] {
+    // A copy: the triangles that the caller's shape has stay as they are.
+    const TopoDS_Shape copy =
+        shape.IsNull() ? shape : BRepBuilderAPI_Copy(shape, /*copyGeom=*/false, /*copyMesh=*/false).Shape();
+    parts_->topology = find_topology(copy, parts_->name);
+    parts_->diagonal = diagonal_of(parts_->topology.all);
+  });
+}
+
+CadModel::~CadModel() = default;
+CadModel::CadModel(CadModel&&) noexcept = default;
+CadModel& CadModel::operator=(CadModel&&) noexcept = default;
+
+const std::string& CadModel::name() const { return parts_->name; }
+double CadModel::diagonal() const { return parts_->diagonal; }
+const std::vector<std::string>& CadModel::notes() const { return parts_->topology.notes; }
+
+std::vector<PolygonSoup> CadModel::tessellate(const TessellationOptions& options) {
+  constexpr double relative_deflection = 1e-4;
+  const double deflection =
+      options.deflection > 0 ? options.deflection : relative_deflection * parts_->diagonal;
+  return on_shape(parts_->name, "cutting faces into triangles", [&] {
+    parts_->tessellation = brep::tessellate(parts_->topology, parts_->name, deflection, options.angle);
+    parts_->exact = std::make_unique<NearestOnShape>(parts_->tessellation);
+    return parts_->tessellation.soups;
+  });
+}
+
+std::optional<Point> CadModel::nearest(unsigned dimension, Tag number, const Point& p) const {
+  try {
+    if (dimension == 1) return parts_->exact->on_edge(static_cast<int>(number), p);
+    if (dimension == 2) return parts_->exact->on_face(static_cast<int>(number), p);
+  } catch (const Standard_Failure&) {
+    return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+std::string CadModel::faces_near(const Point& where) const {
+  const auto nearest = faces_by_distance(parts_->tessellation, where);
+  if (nearest.empty()) return "no face";
+  std::string names = fmt::format("Face{}", nearest[0].second);
+  if (nearest.size() > 1) names += fmt::format(" and Face{}", nearest[1].second);
+  return names;
+}
+
+double CadModel::distance_to(const Point& where) const {
+  const auto nearest = faces_by_distance(parts_->tessellation, where);
+  return nearest.empty() ? std::numeric_limits<double>::infinity() : nearest[0].first;
+}
+
+std::string CadModel::invalid_parts() const {
+  const TopoDS_Shape& shape = parts_->topology.all;
+  std::vector<std::string> invalid;
+  try {
+    const BRepCheck_Analyzer analyzer(shape);
+    for (const TopAbs_ShapeEnum kind :
+         {TopAbs_VERTEX, TopAbs_EDGE, TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID}) {
+      for (const TopoDS_Shape& part : subshapes(shape, kind))
+        if (!analyzer.IsValid(part))
+          invalid.push_back(fmt::format("{} at {}", parts_->topology.name(part), text(place_of(part))));
+      if (!invalid.empty()) break;  // what contains them is invalid too
+    }
+  } catch (const Standard_Failure&) {
+    return {};
+  }
+  constexpr std::size_t listed = 5;
+  const std::size_t count = invalid.size();
+  invalid.resize(std::min(listed, count));
+  return fmt::format("{}{}", fmt::join(invalid, ", "), count > listed ? ", ..." : "");
+}
+
+}  // namespace collarmesh::brep

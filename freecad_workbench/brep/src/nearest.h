@@ -1,0 +1,28 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "tessellation.h"
+
+namespace collarmesh::brep {
+
+class FaceSurface;
+
+/// Finds nearest points on the exact edges and surfaces, from the tessellation.
+class NearestOnShape {
+ public:
+  explicit NearestOnShape(const Tessellation& tessellation);
+  ~NearestOnShape();
+
+  std::optional<Point> on_edge(int number, const Point& p) const;
+  std::optional<Point> on_face(int number, const Point& p) const;
+
+ private:
+  const Tessellation& tessellation_;
+  mutable std::map<int, std::vector<std::unique_ptr<FaceSurface>>> surfaces_;  // made when asked for
+};
+
+}  // namespace collarmesh::brep

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "collarmesh/brep/cad_model.h"
+#include "nearest.h"
+#include "tessellation.h"
+#include "topology.h"
+
+namespace collarmesh::brep {
+
+struct CadModel::Parts {
+  std::string name;
+  double diagonal = 0;
+  Topology topology;
+  Tessellation tessellation;
+  std::unique_ptr<NearestOnShape> exact;  ///< of this tessellation
+};
+
+}  // namespace collarmesh::brep

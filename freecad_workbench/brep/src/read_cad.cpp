@@ -1,0 +1,86 @@
+// CAD files to shapes.
+#include <fmt/format.h>
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <IGESControl_Reader.hxx>
+#include <Interface_Static.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <Message_Printer.hxx>
+#include <STEPControl_Reader.hxx>
+#include <TopoDS_Shape.hxx>
+
+#include <array>
+#include <filesystem>
+
+#include "collarmesh/brep/cad_model.h"
+#include "topology.h"
+
+namespace collarmesh::brep {
+
+namespace {
+
+enum class Format { brep, step, iges, other };
+
+Format format_of(const std::string& path, std::string_view format) {
+  std::string extension =
+      format.empty() ? std::filesystem::path(path).extension().string() : std::string(format);
+  for (char& c : extension)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
+  if (extension == ".brep" || extension == ".brp") return Format::brep;
+  if (extension == ".step" || extension == ".stp") return Format::step;
+  if (extension == ".iges" || extension == ".igs") return Format::iges;
+  return Format::other;
+}
+
+TopoDS_Shape read_brep(const std::string& path) {
+  TopoDS_Shape shape;
+  if (!BRepTools::Read(shape, path.c_str(), BRep_Builder()) || shape.IsNull())
+    throw ReadError(
+        fmt::format("{}: this is no BREP file in text form; write it with FreeCAD or "
+                    "OpenCASCADE",
+                    path));
+  return shape;
+}
+
+template <class Reader>
+TopoDS_Shape read_exchange(const std::string& path, const char* format) {
+  Interface_Static::SetCVal("xstep.cascade.unit", "MM");
+  Reader reader;
+  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
+    throw ReadError(fmt::format("{}: this is no {} file, or it ends early", path, format));
+  reader.TransferRoots();
+  const TopoDS_Shape shape = reader.OneShape();
+  if (shape.IsNull())
+    throw ReadError(fmt::format("{}: the {} file holds no shape that can be read", path, format));
+  return shape;
+}
+
+TopoDS_Shape read_shape(const std::string& path, Format format) {
+  Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
+  try {
+    switch (format) {
+      case Format::brep: return read_brep(path);
+      case Format::step: return read_exchange<STEPControl_Reader>(path, "STEP");
+      case Format::iges: return read_exchange<IGESControl_Reader>(path, "IGES");
+      case Format::other: break;
+    }
+  } catch (const Standard_Failure& failure) {
+    throw ReadError(fmt::format("{}: OpenCASCADE cannot read it ({})", path, text(failure)));
+  }
+  throw ReadError(fmt::format("{}: not known as a CAD file; use {}", path, fmt::join(cad_formats(), " ")));
+}
+
+}  // namespace
+
+CadModel read_cad(const std::string& path, std::string_view format) {
+  return {read_shape(path, format_of(path, format)), path};
+}
+
+bool is_cad_format(const std::string& path, std::string_view format) {
+  return format_of(path, format) != Format::other;
+}
+
+std::vector<std::string> cad_formats() { return {".brep", ".brp", ".step", ".stp", ".iges", ".igs"}; }
+
+}  // namespace collarmesh::brep

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include "collarmesh/brep/cad_model.h"
+#include "collarmesh/polygon_soup.h"
+#include "topology.h"
+
+namespace collarmesh::brep {
+
+/// Points of an edge with the parameters of its curve, or of a face with those of its surface.
+struct Samples {
+  TopoDS_Shape shape;
+  std::vector<Point> points;
+  std::vector<std::array<double, 2>> parameters;  ///< of an edge the first one only
+};
+
+struct Tessellation {
+  std::vector<PolygonSoup> soups;  ///< one per solid, one for the internal faces where there are any
+  std::map<int, std::vector<Samples>> edges, faces;  ///< by number
+};
+
+/// Triangulate all faces; neighbours share the points of their edges.
+/// Throws PlcError for a face without a triangulation.
+Tessellation tessellate(const Topology& topology, const std::string& file, double deflection, double angle);
+
+}  // namespace collarmesh::brep

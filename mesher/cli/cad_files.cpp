@@ -1,0 +1,79 @@
+#include "cad_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "collarmesh/brep/cad_model.h"
+
+namespace collarmesh::cli {
+
+struct CadFiles::File {
+  brep::CadModel model;
+  double deflection;
+  Index first_soup, soup_count;
+};
+
+CadFiles::CadFiles() = default;
+CadFiles::~CadFiles() = default;
+CadFiles::CadFiles(CadFiles&&) noexcept = default;
+CadFiles& CadFiles::operator=(CadFiles&&) noexcept = default;
+
+std::vector<std::string> CadFiles::formats() { return brep::cad_formats(); }
+bool CadFiles::knows(const std::string& path, std::string_view format) {
+  return brep::is_cad_format(path, format);
+}
+bool CadFiles::empty() const { return files_.empty(); }
+
+void CadFiles::read(const std::string& path, std::string_view format, double deflection,
+                    std::vector<PolygonSoup>& soups) {
+  brep::CadModel model = brep::read_cad(path, format);
+  constexpr double relative_deflection = 1e-4;
+  if (!(deflection > 0)) deflection = relative_deflection * model.diagonal();
+  std::vector<PolygonSoup> own = model.tessellate({.deflection = deflection});
+  files_.push_back(
+      {std::move(model), deflection, static_cast<Index>(soups.size()), static_cast<Index>(own.size())});
+  std::move(own.begin(), own.end(), std::back_inserter(soups));
+}
+
+void CadFiles::tessellate(double finer, std::vector<PolygonSoup>& soups) {
+  for (File& file : files_) {
+    std::vector<PolygonSoup> own = file.model.tessellate(
+        {.deflection = file.deflection / finer, .angle = brep::TessellationOptions().angle / finer});
+    std::move(own.begin(), own.end(), soups.begin() + file.first_soup);
+  }
+}
+
+std::optional<Point> CadFiles::nearest(Index soup, unsigned dimension, Tag number, const Point& p) const {
+  for (const File& file : files_)
+    if (soup >= file.first_soup && soup - file.first_soup < file.soup_count)
+      return file.model.nearest(dimension, number, p);
+  return std::nullopt;
+}
+
+std::string CadFiles::faces_near(const Point& where) const {
+  const auto nearest = std::min_element(files_.begin(), files_.end(), [&](const File& a, const File& b) {
+    return a.model.distance_to(where) < b.model.distance_to(where);
+  });
+  return nearest == files_.end()
+             ? std::string()
+             : fmt::format("{} of {}", nearest->model.faces_near(where), nearest->model.name());
+}
+
+std::string CadFiles::invalid_parts() const {
+  std::string parts;
+  for (const File& file : files_) {
+    const std::string own = file.model.invalid_parts();
+    if (!own.empty()) parts += fmt::format("{}{}: {}", parts.empty() ? "" : "; ", file.model.name(), own);
+  }
+  return parts;
+}
+
+std::vector<std::string> CadFiles::notes() const {
+  std::vector<std::string> notes;
+  for (const File& file : files_)
+    notes.insert(notes.end(), file.model.notes().begin(), file.model.notes().end());
+  return notes;
+}
+
+}  // namespace collarmesh::cli

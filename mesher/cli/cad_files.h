@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "collarmesh/geometry.h"
+#include "collarmesh/polygon_soup.h"
+
+namespace collarmesh::cli {
+
+/// The CAD files among the inputs; without OpenCASCADE (no_cad_files.cpp) no file is one.
+class CadFiles {
+ public:
+  CadFiles();
+  ~CadFiles();
+  CadFiles(CadFiles&&) noexcept;
+  CadFiles& operator=(CadFiles&&) noexcept;
+
+  static std::vector<std::string> formats();
+  /// Is it a CAD file by its extension, or as `format` says?
+  static bool knows(const std::string& path, std::string_view format);
+
+  /// Read a file and append its soups. `deflection` is absolute, 0: 1e-4 of the diagonal.
+  /// Throws ReadError and PlcError.
+  void read(const std::string& path, std::string_view format, double deflection,
+            std::vector<PolygonSoup>& soups);
+  bool empty() const;
+
+  /// Make triangles that are finer than the first ones by a factor, in the places of the former soups.
+  void tessellate(double finer, std::vector<PolygonSoup>& soups);
+
+  /// The nearest point of EdgeN (dimension 1) or FaceN (2) of the file that soup came from; nothing for
+  /// soups of other files.
+  std::optional<Point> nearest(Index soup, unsigned dimension, Tag number, const Point& p) const;
+
+  /// "Face3 and Face7 of part.step", of the file whose faces are nearest.
+  std::string faces_near(const Point& where) const;
+  /// The sub-shapes that OpenCASCADE finds invalid, or empty.
+  std::string invalid_parts() const;
+  std::vector<std::string> notes() const;
+
+ private:
+  struct File;
+  std::vector<File> files_;
+};
+
+}  // namespace collarmesh::cli

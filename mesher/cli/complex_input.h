@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cad_files.h"
+#include "collarmesh/mesher.h"
+#include "collarmesh/plc_builder.h"
+#include "collarmesh/project_boundary.h"
+
+namespace collarmesh::cli {
+
+/// The files of one complex: surfaces, complexes and CAD shapes, which are cut into triangles here.
+class ComplexInput {
+ public:
+  /// Read them; "-" is standard input. `format` overrides the extensions. `distance` is the surface distance
+  /// tolerance, absolute (0: 1e-3 of the diagonal); the triangles of CAD shapes keep a tenth of it.
+  /// Throws ReadError, for a file that does not exist with the most similar name, and PlcError.
+  explicit ComplexInput(const std::vector<std::string>& paths, const std::string& format = {},
+                        double distance = 0);
+
+  const std::vector<PolygonSoup>& soups() const { return soups_; }
+  bool has_cad() const { return !cad_.empty(); }
+  /// What was done to CAD shapes, a line each.
+  std::vector<std::string> notes() const { return cad_.notes(); }
+
+  /// The complex. Where triangles of CAD faces meet that should not, finer ones are tried.
+  /// Throws PlcError; with CAD faces the messages name them.
+  Plc build(const PlcOptions& options);
+
+  /// The exact edges and faces behind the complex built last. Both must outlive the result.
+  ExactGeometry exact_geometry(const Plc& plc) const;
+
+  /// The options for `generate`, tighter with CAD files: the bounds have to hold still when the vertices have
+  /// moved onto the shape.
+  MeshOptions tightened(const MeshOptions& options, const Plc& plc) const;
+
+ private:
+  std::vector<PolygonSoup> soups_;
+  CadFiles cad_;
+};
+
+}  // namespace collarmesh::cli

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "collarmesh/progress.h"
+#include "collarmesh/tet_mesh.h"
+
+namespace collarmesh {
+
+/// The geometry that the curves (dimension 1) and patches (2) of a complex approximate: the point of a
+/// feature nearest to a mesh vertex on it, or nothing where the complex itself is what is meant.
+using ExactGeometry =
+    std::function<std::optional<Point>(unsigned dimension, Index feature, const Point& vertex)>;
+
+struct ProjectOptions {
+  double radius_edge = 2;     ///< bound on circumradius / shortest edge that no tet outside collars breaks
+  double collar_angle = 150;  ///< bound on dihedral angles in collars, degrees
+  double tolerance = 1e-9;    ///< absolute: a vertex that stays and is nearer to its feature is no exception
+  double reach =
+      0;  ///< absolute: vertices farther than this from their feature stay; 0: 1e-3 of the diagonal
+};
+
+struct ProjectReport {
+  /// A vertex that stayed off its feature.
+  struct Exception {
+    Index point = none;
+    unsigned dimension = 2;  ///< of the feature it belongs to
+    Index feature = none;
+    Point where;
+    double distance = 0;  ///< absolute
+  };
+
+  std::size_t vertices = 0;     ///< on features with exact geometry
+  double largest_move = 0;      ///< absolute
+  double largest_distance = 0;  ///< from the features afterwards, exceptions included
+  std::vector<Exception> exceptions;
+};
+
+/// Move the vertices on curves and patches onto the exact geometry. No tet is inverted by it, breaks the
+/// radius-edge bound or, in a collar, the bound on its dihedral angles: where one would,
+/// its vertices stay where they are, unless they can go one by one; these are the exceptions.
+/// Preconditions: `mesh` comes from `generate` for `plc`, first order.
+/// Cost: linear in the tets at the boundary, a few times.
+ProjectReport project_boundary(TetMesh& mesh, const Plc& plc, const ExactGeometry& exact,
+                               const ProjectOptions& options = {}, const Execution& execution = {});
+
+}  // namespace collarmesh

@@ -1,0 +1,95 @@
+#include "cad_meshing.h"
+
+#include <BRepBuilderAPI_MakeVertex.hxx>
+#include <BRepExtrema_DistShapeShape.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <STEPControl_Reader.hxx>
+#include <TopExp.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
+#include <TopoDS_Vertex.hxx>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "collarmesh/improve.h"
+#include "complex_input.h"
+#include "support/temporary_file.h"
+
+namespace collarmesh::testing {
+
+namespace {
+
+bool ends_with_brep(const std::string& path) { return path.ends_with(".brep"); }
+
+}  // namespace
+
+CadMeshed mesh_of_cad_file(const std::string& path, double relative_size) {
+  cli::ComplexInput input({path});
+  CadMeshed meshed;
+  meshed.plc = input.build({});
+  MeshOptions options;
+  options.size = relative_size * meshed.plc.bounds.diagonal();
+  options.time_limit = 60;
+  meshed.result = generate(meshed.plc, input.tightened(options, meshed.plc));
+  if (meshed.result.status != MeshStatus::complete) return meshed;
+  TetMesh& mesh = meshed.result.mesh;
+  const MeshOptions bounds = input.tightened({}, meshed.plc);
+  improve(mesh, meshed.plc, {.radius_edge = bounds.radius_edge, .distance = bounds.distance});
+  meshed.projection = project_boundary(mesh, meshed.plc, input.exact_geometry(meshed.plc));
+  meshed.report = check(meshed.result.mesh, meshed.plc);
+  return meshed;
+}
+
+CadMeshed mesh_of_shape(const TopoDS_Shape& shape, double relative_size) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("shape.brep");
+  BRepTools::Write(shape, path.c_str());
+  return mesh_of_cad_file(path, relative_size);
+}
+
+TopoDS_Shape shape_in(const std::string& path) {
+  if (ends_with_brep(path)) {
+    TopoDS_Shape shape;
+    BRepTools::Read(shape, path.c_str(), BRep_Builder());
+    return shape;
+  }
+  STEPControl_Reader reader;
+  reader.ReadFile(path.c_str());
+  reader.TransferRoots();
+  return reader.OneShape();
+}
+
+double farthest_from_faces(const CadMeshed& meshed, const TopoDS_Shape& shape, std::size_t samples) {
+  const TetMesh& mesh = meshed.result.mesh;
+  TopTools_IndexedMapOfShape faces;
+  TopExp::MapShapes(shape, TopAbs_FACE, faces);
+  std::set<Index> left_out;
+  for (const auto& exception : meshed.projection.exceptions) left_out.insert(exception.point);
+  std::map<Index, Tag> face_of;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+    for (const Index p : mesh.faces[f]) face_of.emplace(p, mesh.face_tag[f]);
+  const std::size_t step = std::max<std::size_t>(1, face_of.size() / samples);
+  double farthest = 0;
+  std::size_t i = 0;
+  for (const auto& [p, face] : face_of) {
+    if (i++ % step != 0 || left_out.count(p) > 0) continue;
+    if (face < 1 || face > faces.Extent()) return INFINITY;
+    const Point& at = mesh.points[p];
+    const TopoDS_Vertex vertex = BRepBuilderAPI_MakeVertex(gp_Pnt(at.x, at.y, at.z));
+    const BRepExtrema_DistShapeShape extrema(vertex, faces(static_cast<int>(face)));
+    farthest = std::max(farthest, extrema.IsDone() ? extrema.Value() : INFINITY);
+  }
+  return farthest;
+}
+
+std::string faults(const CadMeshed& meshed) {
+  if (meshed.result.status != MeshStatus::complete) return "not complete: " + meshed.result.message;
+  std::string text;
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, meshed.report.findings.size()); ++i)
+    text += meshed.report.findings[i].guarantee + ": " + meshed.report.findings[i].message + "\n";
+  return text;
+}
+
+}  // namespace collarmesh::testing

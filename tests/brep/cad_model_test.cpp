@@ -1,0 +1,168 @@
+// Reading CAD files, and what is wrong with shapes.
+#include "collarmesh/brep/cad_model.h"
+
+#include <gtest/gtest.h>
+#include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakeSphere.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <IGESControl_Writer.hxx>
+#include <Interface_Static.hxx>
+#include <STEPControl_Writer.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <gp_Lin.hxx>
+
+#include <cmath>
+
+#include "collarmesh/error.h"
+#include "collarmesh/plc_builder.h"
+#include "support/temporary_file.h"
+
+namespace collarmesh::testing {
+namespace {
+
+using brep::CadModel;
+
+TopoDS_Shape box() { return BRepPrimAPI_MakeBox(10, 20, 30).Shape(); }
+
+std::string fault_of(const TopoDS_Shape& shape, PlcFault::Kind kind) {
+  try {
+    const CadModel model(shape, "part");
+  } catch (const PlcError& error) {
+    EXPECT_EQ(error.faults.at(0).kind, kind);
+    return error.what();
+  }
+  return "no fault";
+}
+
+void expect_mentions(const std::string& text, std::initializer_list<const char*> words) {
+  for (const char* word : words) EXPECT_NE(text.find(word), std::string::npos) << word << " in: " << text;
+}
+
+double volume_in(CadModel model) {
+  const auto soups = model.tessellate({});
+  const Plc plc = build_plc(soups);
+  double volume = 0;
+  for (std::size_t r = 1; r < plc.regions.size(); ++r) volume += plc.regions[r].volume;
+  return volume;
+}
+
+// The writer keeps the numbers and says that they are inches.
+TEST(CadFiles, StepInInchesBecomesMillimetres) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("box.step");
+  STEPControl_Writer writer;
+  Interface_Static::SetCVal("write.step.unit", "INCH");
+  writer.Transfer(box(), STEPControl_AsIs);
+  ASSERT_EQ(writer.Write(path.c_str()), IFSelect_RetDone);
+  Interface_Static::SetCVal("write.step.unit", "MM");
+  EXPECT_NE(folder.read("box.step").find("INCH"), std::string::npos);
+  EXPECT_NEAR(volume_in(brep::read_cad(path)), 6000 * 25.4 * 25.4 * 25.4, 1);
+}
+
+TEST(CadFiles, IgesHoldsFacesThatAreSewn) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("box.igs");
+  IGESControl_Writer writer("MM", 0);
+  writer.AddShape(box());
+  writer.ComputeModel();
+  ASSERT_TRUE(writer.Write(path.c_str()));
+  CadModel model = brep::read_cad(path);
+  EXPECT_EQ(model.notes().size(), 1U);
+  EXPECT_NEAR(volume_in(std::move(model)), 6000, 1e-6);
+}
+
+TEST(CadFiles, ThatAreNoneAreReadErrors) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.step", "a.igs", "a.brep"})
+    for (const char* content : {"", "nonsense\n", "ISO-10303-21;\nHEADER;\n"})
+      EXPECT_THROW(brep::read_cad(folder.write(name, content)), Error) << name << ": " << content;
+  EXPECT_THROW(brep::read_cad(folder.file("missing.step")), ReadError);
+  EXPECT_FALSE(brep::is_cad_format("part.stl"));
+  EXPECT_TRUE(brep::is_cad_format("PART.STP"));
+  EXPECT_TRUE(brep::is_cad_format("-", ".brep"));
+}
+
+TEST(CadFaults, NullAndEmptyShapes) {
+  expect_mentions(fault_of(TopoDS_Shape(), PlcFault::Kind::empty), {"part", "null"});
+  expect_mentions(
+      fault_of(BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(1, 0, 0)).Shape(), PlcFault::Kind::empty),
+      {"part", "no solid"});
+}
+
+// A box without its last face, as a solid and as loose faces.
+TEST(CadFaults, OpenShellsNameEdgesFacesAndPlaces) {
+  BRep_Builder builder;
+  TopoDS_Shell shell;
+  TopoDS_Solid solid;
+  builder.MakeShell(shell);
+  builder.MakeSolid(solid);
+  int faces = 0;
+  for (TopExp_Explorer face(box(), TopAbs_FACE); face.More(); face.Next())
+    if (++faces < 6) builder.Add(shell, face.Current());
+  builder.Add(solid, shell);
+  const std::string open_solid = fault_of(solid, PlcFault::Kind::open_boundary);
+  expect_mentions(open_solid, {"Solid1 is open", "4 edges", "Edge", " of Face", "30)"});
+  expect_mentions(fault_of(shell, PlcFault::Kind::open_boundary),
+                  {"part", "no solid", "4 edges", "Edge", "Face"});
+}
+
+TEST(CadFaults, SolidsThatOverlap) {
+  BRep_Builder builder;
+  TopoDS_Compound two;
+  builder.MakeCompound(two);
+  builder.Add(two, box());
+  builder.Add(two, BRepPrimAPI_MakeBox(gp_Pnt(5, 5, 5), 10, 20, 30).Shape());
+  expect_mentions(fault_of(two, PlcFault::Kind::intersection),
+                  {"Solid1 and Solid2 overlap", "(7.5, 12.5, 17.5)"});
+}
+
+TEST(CadTessellation, KeepsTheDeflection) {
+  const double radius = 10;
+  CadModel model(BRepPrimAPI_MakeSphere(radius).Shape(), "ball");
+  for (const double deflection : {0.1, 0.01}) {
+    for (const PolygonSoup& soup : model.tessellate({.deflection = deflection})) {
+      ASSERT_GT(soup.facet_count(), 0U);
+      for (Index f = 0; f < soup.facet_count(); ++f) {
+        Point centroid;
+        for (const Index p : soup.polygon(f)) {
+          centroid = centroid + soup.points[p] / 3;
+          EXPECT_NEAR(norm(soup.points[p]), radius, 1e-12);
+        }
+        EXPECT_GT(norm(centroid), radius - 2 * deflection);
+      }
+    }
+  }
+}
+
+TEST(CadTessellation, SeamsAreNoFeatures) {
+  CadModel model(BRepPrimAPI_MakeCylinder(5, 20).Shape(), "rod");
+  const Plc plc = build_plc(model.tessellate({}));
+  EXPECT_EQ(plc.patches.size(), 3U);
+  EXPECT_EQ(plc.curves.size(), 2U);
+  EXPECT_EQ(plc.vertices.size(), 2U);  // where the circles begin
+}
+
+TEST(CadNearest, LiesOnTheShape) {
+  const gp_Ax2 axes(gp_Pnt(1, 2, 3), gp_Dir(1, 1, 1), gp_Dir(1, -1, 0));
+  CadModel model(BRepPrimAPI_MakeCylinder(axes, 5, 20).Shape(), "rod");
+  model.tessellate({});
+  int found = 0;
+  const gp_Lin axis(gp_Pnt(1, 2, 3), gp_Dir(1, 1, 1));
+  for (Tag face = 1; face <= 3; ++face) {
+    const auto nearest = model.nearest(2, face, {7, 3, 9});
+    ASSERT_TRUE(nearest.has_value());
+    const double off = axis.Distance(gp_Pnt(nearest->x, nearest->y, nearest->z));
+    if (std::fabs(off - 5) < 1e-12) ++found;
+  }
+  EXPECT_EQ(found, 1);  // the other two are planes
+  EXPECT_FALSE(model.nearest(2, 4, {0, 0, 0}).has_value());
+  EXPECT_FALSE(model.nearest(3, 1, {0, 0, 0}).has_value());
+}
+
+}  // namespace
+}  // namespace collarmesh::testing
