@@ -1,0 +1,24 @@
+"""Where FreeCAD's versions differ."""
+
+import FreeCAD
+
+
+def add_mesh_object(document, name):
+    """An empty mesh object with a Python proxy. FreeCAD 1.0 has a base that knows the meshed shape."""
+    try:
+        return document.addObject("Fem::FemMeshShapeBaseObjectPython", name)
+    except (RuntimeError, TypeError):
+        return document.addObject("Fem::FemMeshObjectPython", name)
+
+
+def shape_property(mesh_object):
+    """The property that links the meshed object: `Shape` from FreeCAD 1.0 on, `Part` before."""
+    return "Shape" if "Shape" in mesh_object.PropertiesList else "Part"
+
+
+def meshed_object(mesh_object):
+    return getattr(mesh_object, shape_property(mesh_object))
+
+
+def has_gui():
+    return bool(FreeCAD.GuiUp)

@@ -1,0 +1,186 @@
+"""The mesh object in the document: its properties, and how its mesh is made. Works without the GUI."""
+
+import re
+
+import Fem
+import FreeCAD
+
+from . import compatibility
+from .program import GUARANTEE_MISSED, Job, MesherError, Settings
+
+# Names that macros for FreeCAD's Gmsh object use as well come first.
+GROUP = "collarmesh"
+PROPERTIES = (
+    ("App::PropertyLength", "CharacteristicLengthMax", "size", "Target edge length; 0: 1/20 of the diagonal"),
+    ("App::PropertyLength", "CharacteristicLengthMin", "size_min", "Never ask for less than this; 0: none"),
+    ("App::PropertyFloat", "Gradation", "gradation", "Growth of size per unit length away from finer ones; 0: any"),
+    ("App::PropertyFloat", "RadiusEdgeRatio", "radius_edge", "Bound on circumradius / shortest edge"),
+    ("App::PropertyAngle", "CreaseAngle", "crease_angle", "Edges and faces that meet below it get a collar"),
+    ("App::PropertyAngle", "CollarAngle", "collar_angle", "Bound on dihedral angles in collars"),
+    ("App::PropertyLength", "SurfaceDistance", "distance", "Largest distance from the shape; 0: 1/1000 of the diagonal"),
+    ("App::PropertyInteger", "ImproveLevel", "improve", "Removal of slivers: 0 none, 1 quick, 2 good, 3 best"),
+)
+ORDERS = ["1st", "2nd"]
+REFINEMENTS = {"Solid": "solid_sizes", "Face": "face_sizes", "Edge": "edge_sizes"}
+
+
+class MeshProxy:
+    """The Python side of the object. `Type` is what FEM's tools ask for."""
+
+    Type = "Fem::FemMeshCollarmesh"
+
+    def __init__(self, obj):
+        obj.Proxy = self
+        add_properties(obj)
+
+    def onDocumentRestored(self, obj):
+        add_properties(obj)
+
+    # FreeCAD 0.20 calls the first two, later versions the others.
+    def __getstate__(self):
+        return None
+
+    def __setstate__(self, _state):
+        return None
+
+    def dumps(self):
+        return None
+
+    def loads(self, _state):
+        return None
+
+
+def add_properties(obj):
+    """Add the properties that the object does not have yet, with their defaults."""
+    defaults = Settings()
+    have = obj.PropertiesList
+    if "Shape" not in have and "Part" not in have:
+        obj.addProperty("App::PropertyLink", "Part", "FEM Mesh", "The object whose shape is meshed")
+    for kind, name, field, text in PROPERTIES:
+        if name not in have:
+            obj.addProperty(kind, name, GROUP, text)
+            setattr(obj, name, getattr(defaults, field))
+    if "ElementOrder" not in have:
+        obj.addProperty("App::PropertyEnumeration", "ElementOrder", GROUP, "Order of the elements")
+        obj.ElementOrder = ORDERS
+        obj.ElementOrder = ORDERS[0]
+    for name, text in (("MeshRegionList", "Finer parts of the mesh"), ("MeshGroupList", "Groups of the mesh")):
+        if name not in have:
+            obj.addProperty("App::PropertyLinkList", name, "Base", text)
+
+
+def make(document, part=None, name="FEMMeshCollarmesh"):
+    """A new mesh object, empty, for the shape of `part`."""
+    obj = compatibility.add_mesh_object(document, name)
+    MeshProxy(obj)
+    if part is not None:
+        setattr(obj, compatibility.shape_property(obj), part)
+    if compatibility.has_gui():
+        from .view_provider import MeshViewProvider
+
+        MeshViewProvider(obj.ViewObject)
+    return obj
+
+
+def settings_of(obj):
+    """The Settings that the object's properties ask for. Raises MesherError."""
+    values = {}
+    for _kind, name, field, _text in PROPERTIES:
+        value = getattr(obj, name)
+        values[field] = getattr(value, "Value", value)
+    settings = Settings(order=ORDERS.index(obj.ElementOrder) + 1, **values)
+    for region in obj.MeshRegionList:
+        add_refinement(region, compatibility.meshed_object(obj), settings)
+    return settings
+
+
+def apply_settings(obj, settings):
+    """The other way round; sizes by sub-shape have no property."""
+    for _kind, name, field, _text in PROPERTIES:
+        setattr(obj, name, getattr(settings, field))
+    obj.ElementOrder = ORDERS[settings.order - 1]
+
+
+def add_refinement(region, part, settings):
+    """The sizes of a mesh region object; the smallest counts where several have one."""
+    size = getattr(region.CharacteristicLength, "Value", region.CharacteristicLength)
+    if not size:
+        return
+    for linked, names in region.References:
+        if part is not None and linked is not part:
+            raise MesherError(
+                f"{region.Label} refers to {linked.Label}, but {part.Label} is meshed; choose its sub-shapes."
+            )
+        for name in (names,) if isinstance(names, str) else names:
+            kind, number = re.fullmatch(r"([A-Za-z]*)(\d*)", name).groups()
+            if kind not in REFINEMENTS or not number:
+                raise MesherError(f"{region.Label}: {name or 'the whole object'} cannot have a size of its own.")
+            sizes = getattr(settings, REFINEMENTS[kind])
+            sizes[int(number)] = min(size, sizes.get(int(number), size))
+
+
+def shape_to_mesh(obj):
+    """The shape of the object's part. Raises MesherError."""
+    part = compatibility.meshed_object(obj)
+    if part is None:
+        raise MesherError(f"{obj.Label}: no object is chosen to be meshed.")
+    shape = part.Shape
+    if shape.isNull():
+        raise MesherError(f"{part.Label} has no shape; recompute it.")
+    return shape
+
+
+def start(obj, program=""):
+    """A Job with the shape written, to be run. Raises MesherError."""
+    shape = shape_to_mesh(obj)
+    job = Job(settings_of(obj), program or preferred_program())
+    shape.exportBrep(job.shape)
+    return job
+
+
+def preferred_program():
+    return FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Mod/collarmesh").GetString("Program", "")
+
+
+def finish(obj, job, exit_code=0):
+    """Put the mesh of a job that ended into the object. Raises MesherError; the object keeps its mesh then."""
+    job.require_success(exit_code)
+    fem_mesh = Fem.read(job.mesh)
+    if fem_mesh.VolumeCount == 0:
+        raise MesherError("The mesher wrote a mesh without elements; please report it with the shape.")
+    obj.FemMesh = fem_mesh
+    if exit_code == GUARANTEE_MISSED:
+        FreeCAD.Console.PrintWarning("collarmesh: " + "\n".join(job.messages) + "\n")
+    return job.report()
+
+
+def remesh(obj, progress=None):
+    """Make the object's mesh anew and wait; returns the program's report. Raises MesherError."""
+    with start(obj) as job:
+        exit_code = job.run(progress)
+        return finish(obj, job, exit_code)
+
+
+def mesh(shape_or_object, document, analysis, name, settings):
+    """See `collarmesh_workbench.mesh`."""
+    part = shape_or_object if hasattr(shape_or_object, "Document") else None
+    document = document or (part.Document if part else FreeCAD.ActiveDocument) or FreeCAD.newDocument()
+    added = []
+    try:
+        if part is None:
+            part = document.addObject("Part::Feature", "Shape")
+            added.append(part)
+            part.Shape = shape_or_object
+        obj = make(document, part, name)
+        added.append(obj)
+        apply_settings(obj, settings)
+        with Job(settings, preferred_program()) as job:
+            shape_to_mesh(obj).exportBrep(job.shape)
+            finish(obj, job, job.run())
+    except Exception:
+        for each in reversed(added):
+            document.removeObject(each.Name)
+        raise
+    if analysis is not None:
+        analysis.addObject(obj)
+    return obj

@@ -1,0 +1,143 @@
+"""The collarmesh program as a process. This module knows nothing of FreeCAD."""
+
+import dataclasses
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+
+GUARANTEE_MISSED = 7  # the exit code with which a mesh is written all the same
+
+
+class MesherError(RuntimeError):
+    """What is wrong with the input or the program, where, and what to do next."""
+
+
+class Cancelled(MesherError):
+    """The caller did not want to go on."""
+
+
+@dataclasses.dataclass
+class Settings:
+    """What the program is asked for. Lengths are millimetres and are target edge lengths; 0 leaves a value to
+    the program. Sizes by sub-shape have FreeCAD's numbers as keys: {7: 0.5} in `face_sizes` is Face7."""
+
+    size: float = 0
+    size_min: float = 0
+    gradation: float = 0
+    radius_edge: float = 2
+    crease_angle: float = 60
+    collar_angle: float = 150
+    distance: float = 0
+    improve: int = 2
+    order: int = 1
+    solid_sizes: dict = dataclasses.field(default_factory=dict)
+    face_sizes: dict = dataclasses.field(default_factory=dict)
+    edge_sizes: dict = dataclasses.field(default_factory=dict)
+
+    def arguments(self):
+        """Arguments of the command line. Raises MesherError for what the program cannot do."""
+        if self.order != 1:
+            raise MesherError("Elements of second order are not made yet; set the element order to 1st.")
+        arguments = []
+        for option in ("size", "size_min", "gradation", "radius_edge", "crease_angle", "collar_angle", "distance"):
+            value = getattr(self, option)
+            if value:
+                arguments += ["--" + option.replace("_", "-"), repr(float(value))]
+        arguments += ["--improve", str(int(self.improve))]
+        for option, sizes in (("region", self.solid_sizes), ("patch", self.face_sizes), ("curve", self.edge_sizes)):
+            for number, size in sorted(sizes.items()):
+                arguments += [f"--{option}-size", f"{number}={float(size)!r}"]
+        return arguments
+
+
+def find_program(preferred=""):
+    """Path of the program: `preferred`, the environment variable COLLARMESH_PROGRAM, the PATH, or the folder that
+    the add-on lies in. Raises MesherError when it is nowhere."""
+    sources = pathlib.Path(__file__).resolve().parents[3]
+    for candidate in (preferred, os.environ.get("COLLARMESH_PROGRAM", "")):
+        if candidate:
+            if shutil.which(candidate):
+                return shutil.which(candidate)
+            raise MesherError(f"The mesher {candidate} is no program; correct its path in the preferences.")
+    beside = (sources / "build" / "release" / "bin" / "collarmesh", pathlib.Path(__file__).parent / "bin" / "collarmesh")
+    for candidate in ("collarmesh", *map(str, beside)):
+        if shutil.which(candidate):
+            return shutil.which(candidate)
+    raise MesherError(
+        "The program collarmesh is not found: install it so that it is on the PATH, or name its path in the "
+        "preferences."
+    )
+
+
+@dataclasses.dataclass
+class Progress:
+    phase: str
+    fraction: float  # of everything, 0 to 1
+    tets: int
+
+
+def parse_line(line):
+    """A line of the program's standard error: a Progress, or the line if it is a message."""
+    if line.startswith("{"):
+        try:
+            values = json.loads(line)
+            return Progress(values["phase"], values["fraction"], values["tets"])
+        except (ValueError, KeyError):
+            pass
+    return line.rstrip("\n")
+
+
+class Job:
+    """One run: a folder with the shape, the mesh and the report, which is removed at the end."""
+
+    def __init__(self, settings, program=""):
+        self.folder = tempfile.TemporaryDirectory(prefix="collarmesh-")
+        self.shape = os.path.join(self.folder.name, "shape.brep")
+        self.mesh = os.path.join(self.folder.name, "mesh.unv")
+        self._report = os.path.join(self.folder.name, "report.json")
+        self.command = [find_program(program), self.shape, "-o", self.mesh, "--report", self._report,
+                        "--progress", "json", *settings.arguments()]  # fmt: skip
+        self.messages = []
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.folder.cleanup()
+
+    def heard(self, line):
+        """Take a line of standard error; returns the Progress if it is one."""
+        said = parse_line(line)
+        if isinstance(said, Progress):
+            return said
+        if said.strip():
+            self.messages.append(said)
+        return None
+
+    def require_success(self, exit_code):
+        """Raises MesherError unless there is a mesh."""
+        if exit_code in (0, GUARANTEE_MISSED) and os.path.exists(self.mesh):
+            return
+        said = "\n".join(self.messages).removeprefix("collarmesh: ").replace(self.shape, "the shape")
+        raise MesherError(said or f"The mesher ended with exit code {exit_code} and without a word.")
+
+    def report(self):
+        """What the program measured (README.md, --report)."""
+        with open(self._report, encoding="utf-8") as file:
+            return json.load(file)
+
+    def run(self, progress=None):
+        """Run and wait; returns the exit code. `progress(Progress)` may return False to cancel.
+        Raises MesherError."""
+        with subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.PIPE, text=True, errors="replace") as process:  # fmt: skip
+            for line in process.stderr:
+                step = self.heard(line)
+                if step and progress and progress(step) is False:
+                    process.kill()
+                    raise Cancelled("The mesher was cancelled.")
+        self.require_success(process.returncode)
+        return process.returncode

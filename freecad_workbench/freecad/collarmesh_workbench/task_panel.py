@@ -1,0 +1,177 @@
+"""The panel in which a mesh is made: sizes, progress, cancel, messages and a summary."""
+
+import FreeCAD
+import FreeCADGui
+from PySide import QtCore, QtGui
+
+from . import mesh_object
+from .program import MesherError
+
+FIELDS = (
+    ("CharacteristicLengthMax", "Target edge length (0: 1/20 of the diagonal)"),
+    ("CharacteristicLengthMin", "Smallest edge length (0: none)"),
+    ("SurfaceDistance", "Distance from the shape (0: 1/1000 of the diagonal)"),
+    ("RadiusEdgeRatio", "Radius-edge ratio"),
+    ("CreaseAngle", "Crease angle"),
+    ("CollarAngle", "Collar angle"),
+    ("ImproveLevel", "Improvement (0 to 3)"),
+)
+
+
+class MeshTaskPanel:
+    """Runs the mesher as a process of its own, so that FreeCAD stays alive and a run can be cancelled. The
+    object's mesh is replaced when a run has ended well, and only then."""
+
+    def __init__(self, obj):
+        self.object = obj
+        self.job = None
+        self.process = None
+        self.form = QtGui.QWidget()
+        self.form.setObjectName("collarmesh_panel")
+        self.form.setWindowTitle("Mesh by collarmesh")
+        self.form.setWindowIcon(QtGui.QIcon(obj.ViewObject.Proxy.getIcon()))
+        rows = QtGui.QFormLayout()
+        self.fields = {name: self._field(rows, name, text) for name, text in FIELDS}
+        self.run_button = QtGui.QPushButton("Mesh")
+        self.run_button.setObjectName("collarmesh_run")
+        self.run_button.clicked.connect(self.start)
+        self.cancel_button = QtGui.QPushButton("Cancel")
+        self.cancel_button.setObjectName("collarmesh_cancel")
+        self.cancel_button.setEnabled(False)
+        self.cancel_button.clicked.connect(self.cancel)
+        self.bar = QtGui.QProgressBar()
+        self.bar.setObjectName("collarmesh_progress")
+        self.bar.setRange(0, 1000)
+        self.log = QtGui.QPlainTextEdit()
+        self.log.setObjectName("collarmesh_log")
+        self.log.setReadOnly(True)
+        buttons = QtGui.QHBoxLayout()
+        buttons.addWidget(self.run_button)
+        buttons.addWidget(self.cancel_button)
+        layout = QtGui.QVBoxLayout(self.form)
+        layout.addLayout(rows)
+        layout.addLayout(buttons)
+        layout.addWidget(self.bar)
+        layout.addWidget(self.log)
+
+    def _field(self, rows, name, text):
+        value = getattr(self.object, name)
+        field = QtGui.QLineEdit(getattr(value, "UserString", str(value)))
+        field.setObjectName("collarmesh_" + name)
+        rows.addRow(text, field)
+        return field
+
+    def _store(self):
+        """The fields into the properties. Raises MesherError."""
+        for name, field in self.fields.items():
+            current = getattr(self.object, name)
+            try:
+                if hasattr(current, "Value"):
+                    setattr(self.object, name, FreeCAD.Units.Quantity(field.text()))
+                else:
+                    setattr(self.object, name, type(current)(field.text()))
+            except (ValueError, OSError, TypeError) as error:
+                raise MesherError(f"{name}: '{field.text()}' is no value for it ({error}).") from error
+
+    def start(self):
+        if self.process is not None:
+            return
+        self.log.clear()
+        self.bar.setValue(0)
+        try:
+            self._store()
+            self.job = mesh_object.start(self.object)
+        except MesherError as error:
+            self.say(str(error))
+            return
+        self.process = QtCore.QProcess()
+        self.process.setReadChannel(QtCore.QProcess.StandardError)
+        self.process.readyReadStandardError.connect(self._read)
+        self.process.finished.connect(self._finished)
+        self.process.setStandardInputFile(QtCore.QProcess.nullDevice())
+        self.run_button.setEnabled(False)
+        self.cancel_button.setEnabled(True)
+        self.cancelled = False
+        self.process.start(self.job.command[0], self.job.command[1:])
+        if not self.process.waitForStarted():
+            self.say(f"{self.job.command[0]} cannot be started: {self.process.errorString()}")
+            self._end()
+
+    def cancel(self):
+        if self.process is not None:
+            self.cancelled = True
+            self.process.kill()
+
+    def _read(self):
+        while self.process is not None and self.process.canReadLine():
+            line = bytes(self.process.readLine()).decode(errors="replace")
+            step = self.job.heard(line)
+            if step:
+                self.bar.setValue(int(1000 * step.fraction))
+                self.bar.setFormat(f"{step.phase} %p%")
+            elif line.strip():
+                self.say(line.rstrip())
+
+    def _finished(self, exit_code, _status=None):
+        self._read()
+        try:
+            if self.cancelled:
+                self.say("Cancelled; the mesh is the one from before.")
+            else:
+                report = mesh_object.finish(self.object, self.job, exit_code)
+                self.bar.setValue(1000)
+                self.bar.setFormat("done")
+                self.say(summary(report))
+                self.object.Document.recompute()
+        except MesherError as error:
+            self.log.clear()
+            self.say(str(error))
+            self.bar.setFormat("failed")
+        finally:
+            self._end()
+
+    def _end(self):
+        self.job.__exit__()
+        self.job = None
+        process, self.process = self.process, None
+        process.deleteLater()
+        self.run_button.setEnabled(True)
+        self.cancel_button.setEnabled(False)
+
+    def say(self, text):
+        self.log.appendPlainText(text)
+
+    def getStandardButtons(self):
+        return int(QtGui.QDialogButtonBox.Close)
+
+    def reject(self):
+        self.cancel()
+        FreeCADGui.ActiveDocument.resetEdit()
+        return True
+
+
+def summary(report):
+    """A few lines on a mesh."""
+    mesh = report["mesh"]
+    lines = [
+        f"{mesh['tets']} tetrahedra, {mesh['points']} nodes",
+        f"dihedral angles {mesh['min_dihedral']:.1f} to {mesh['max_dihedral']:.1f} degrees",
+        histogram(mesh["histograms"]["min_dihedral"]),
+    ]
+    off = report["projection"]["exceptions"]
+    if off:
+        where = sorted({f"Face{e['face']}" if "face" in e else f"Edge{e['edge']}" for e in off})
+        lines.append(f"{len(off)} boundary nodes stay off the exact shape, at {', '.join(where)}")
+    lines.append("every guarantee holds" if report["guarantees_hold"] else "a guarantee is missed, see above")
+    return "\n".join(lines)
+
+
+def histogram(counts):
+    """Smallest dihedral angles, a line of text for each bin that is not empty."""
+    total = max(1, sum(counts["tets"]))
+    width = counts["bin_width"]
+    return "\n".join(
+        f"  {i * width:3d} to {(i + 1) * width:3d}: {100 * n / total:5.1f}% " + "#" * round(40 * n / total)
+        for i, n in enumerate(counts["tets"])
+        if n
+    )

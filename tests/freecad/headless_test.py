@@ -1,0 +1,164 @@
+"""The add-on without the GUI: meshes that FEM's own look-up agrees with, refinement, errors. Run by run.py."""
+
+import os
+import sys
+import tempfile
+import traceback
+import unittest
+
+import FreeCAD
+import ObjectsFem
+import Part
+from freecad import collarmesh_workbench
+from freecad.collarmesh_workbench import mesh_object, program
+
+
+def plate_with_hole():
+    return Part.makeBox(40, 30, 5).cut(Part.makeCylinder(6, 7, FreeCAD.Vector(20, 15, -1)))
+
+
+def filleted():
+    box = Part.makeBox(20, 15, 10)
+    return box.makeFillet(2, box.Edges)
+
+
+def two_solids():
+    return Part.Compound([Part.makeBox(20, 20, 10), Part.makeBox(8, 8, 8, FreeCAD.Vector(5, 5, 10))])
+
+
+def group(fem_mesh, name):
+    for number in fem_mesh.Groups:
+        if fem_mesh.getGroupName(number) == name:
+            return fem_mesh.getGroupElements(number)
+    return ()
+
+
+def nodes_of(fem_mesh, elements):
+    return {node for element in elements for node in fem_mesh.getElementNodes(element)}
+
+
+class Headless(unittest.TestCase):
+    def setUp(self):
+        self.document = FreeCAD.newDocument("test")
+
+    def tearDown(self):
+        FreeCAD.closeDocument(self.document.Name)
+
+    def add(self, shape, name="Part"):
+        part = self.document.addObject("Part::Feature", name)
+        part.Shape = shape
+        return part
+
+    def test_lookup_finds_the_nodes_of_the_groups(self):
+        for make in (plate_with_hole, filleted):
+            part = self.add(make())
+            fem_mesh = collarmesh_workbench.mesh(part, size=3).FemMesh
+            self.assertGreater(fem_mesh.VolumeCount, 1000)
+            for number, face in enumerate(part.Shape.Faces, 1):
+                elements = group(fem_mesh, f"Face{number}")
+                with self.subTest(make.__name__, face=number):
+                    self.assertGreater(len(elements), 0)
+                    self.assertEqual(set(fem_mesh.getNodesByFace(face)), nodes_of(fem_mesh, elements))
+                    self.assertEqual(len(fem_mesh.getFacesByFace(face)), len(elements))
+            for number, edge in enumerate(part.Shape.Edges, 1):
+                elements = group(fem_mesh, f"Edge{number}")
+                if elements:
+                    found = set(fem_mesh.getNodesByEdge(edge))
+                    self.assertEqual(found, nodes_of(fem_mesh, elements), f"{make.__name__}: Edge{number}")
+            self.assertEqual(len(group(fem_mesh, "Solid1")), fem_mesh.VolumeCount)
+
+    def test_volumes_are_those_of_the_solids(self):
+        shape = two_solids()
+        obj = collarmesh_workbench.mesh(self.add(shape), size=3)
+        fem_mesh = obj.FemMesh
+        for number, solid in enumerate(shape.Solids, 1):
+            volume = 0
+            for element in group(fem_mesh, f"Solid{number}"):
+                a, b, c, d = (fem_mesh.getNodeById(n) for n in fem_mesh.getElementNodes(element))
+                volume -= (b - a).cross(c - a).dot(d - a) / 6  # FreeCAD's order of nodes
+            self.assertAlmostEqual(volume, solid.Volume, places=6)
+
+    def test_shapes_without_objects_and_names(self):
+        obj = collarmesh_workbench.mesh(Part.makeBox(1, 2, 3), document=self.document, size=0.5, name="Cube")
+        self.assertEqual(obj.Name, "Cube")
+        self.assertTrue(obj.isDerivedFrom("Fem::FemMeshObject"))
+        self.assertEqual(obj.CharacteristicLengthMax.Value, 0.5)
+
+    def test_regions_refine(self):
+        part = self.add(plate_with_hole())
+        obj = mesh_object.make(self.document, part)
+        obj.CharacteristicLengthMax = 6
+        mesh_object.remesh(obj)
+        coarse = len(group(obj.FemMesh, "Face1"))
+        region = ObjectsFem.makeMeshRegion(self.document, obj, 1.0)
+        region.References = [(part, "Face1")]
+        mesh_object.remesh(obj)
+        self.assertGreater(len(group(obj.FemMesh, "Face1")), 4 * coarse)
+
+    def test_progress_rises_and_cancels(self):
+        obj = mesh_object.make(self.document, self.add(plate_with_hole()))
+        obj.CharacteristicLengthMax = 1
+        seen = []
+        mesh_object.remesh(obj, seen.append)
+        self.assertEqual([step.fraction for step in seen], sorted(step.fraction for step in seen))
+        self.assertIn("refine", {step.phase for step in seen})
+        count = obj.FemMesh.VolumeCount
+        with self.assertRaises(program.Cancelled):
+            mesh_object.remesh(obj, lambda step: step.phase != "refine")
+        self.assertEqual(obj.FemMesh.VolumeCount, count)
+
+    def test_failures_keep_the_mesh_and_say_why(self):
+        part = self.add(Part.makeBox(10, 10, 10))
+        obj = collarmesh_workbench.mesh(part, size=4)
+        count = obj.FemMesh.VolumeCount
+        shell = Part.Shell(Part.makeBox(10, 10, 10).Faces[:5])
+        for shape, words in (
+            (shell, ("no solid", "Edge", "Face")),
+            (Part.Compound([Part.makeBox(2, 2, 2), Part.makeBox(2, 2, 2, FreeCAD.Vector(1, 1, 1))]), ("overlap", "Solid1")),
+            (Part.makeLine((0, 0, 0), (1, 0, 0)), ("no solid",)),
+            (Part.Shape(), ("no shape",)),
+        ):
+            part.Shape = shape
+            with self.assertRaises(program.MesherError) as raised:
+                mesh_object.remesh(obj)
+            for word in words:
+                self.assertIn(word, str(raised.exception))
+            self.assertEqual(obj.FemMesh.VolumeCount, count)
+            objects = len(self.document.Objects)
+            with self.assertRaises(program.MesherError):
+                collarmesh_workbench.mesh(part)
+            self.assertEqual(len(self.document.Objects), objects)
+
+    def test_missing_programs_and_second_order(self):
+        with self.assertRaisesRegex(program.MesherError, "/no/such is no program"):
+            program.find_program("/no/such")
+        obj = mesh_object.make(self.document, self.add(Part.makeBox(1, 1, 1)))
+        obj.ElementOrder = "2nd"
+        with self.assertRaisesRegex(program.MesherError, "second order"):
+            mesh_object.remesh(obj)
+
+    def test_save_and_reopen(self):
+        obj = collarmesh_workbench.mesh(self.add(plate_with_hole()), size=4)
+        obj.RadiusEdgeRatio = 1.9
+        count, name = obj.FemMesh.VolumeCount, obj.Name
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "plate.FCStd")
+            self.document.saveAs(path)
+            FreeCAD.closeDocument(self.document.Name)
+            self.document = FreeCAD.openDocument(path)
+        obj = self.document.getObject(name)
+        self.assertEqual(obj.FemMesh.VolumeCount, count)
+        self.assertEqual(obj.RadiusEdgeRatio, 1.9)
+        self.assertEqual(obj.Proxy.Type, "Fem::FemMeshCollarmesh")
+        mesh_object.remesh(obj)
+
+
+# FreeCAD imports the script, runs it again after an exception, and ends with 0 whatever happens.
+try:
+    loaded = unittest.defaultTestLoader.loadTestsFromTestCase(Headless)
+    passed = unittest.TextTestRunner(stream=sys.stdout, verbosity=2).run(loaded).wasSuccessful()
+except Exception:
+    traceback.print_exc()
+    passed = False
+sys.stdout.flush()
+os._exit(0 if passed else 1)
