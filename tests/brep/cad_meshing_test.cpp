@@ -204,7 +204,7 @@ TEST(CadFaces, AloneAreSewn) {
 // Every CAD file of the corpus; what stays off its face is counted, and little.
 TEST(CadCorpus, VerticesLieOnTheirFaces) {
   const char* corpus = std::getenv("COLLARMESH_CORPUS");
-  if (corpus == nullptr) GTEST_SKIP() << "COLLARMESH_CORPUS is not set";
+  if (corpus == nullptr || *corpus == '\0') GTEST_SKIP() << "COLLARMESH_CORPUS is not set";
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(corpus)) {
     const std::string path = entry.path().string();

@@ -29,6 +29,7 @@ RELATIVE_DISTANCE = 1e-3
 # Facets that are triangles of flat faces, each with a tag of its own: their acute corners in the plane
 # are creases (curves 58 and 59 meet at 0.59 degrees in (19.5, 0, 0)), which the judge does not look for.
 NOT_JUDGED = ("gmsh_compound2.poly",)
+CAD_EXCEPTIONS = 0.1  # of the boundary vertices: those kept off by a bound, mostly in collars where edges meet at a tangent
 EXACT = ("cross", "star", "itemb")  # exactly coplanar ones; every .poly file is, too
 # The manifest calls them open or soups, as their facets have points of their own. Once points in the same place are
 # one, every edge of theirs has two facets (counted apart from the mesher) and they bound solids.
@@ -81,6 +82,17 @@ def judge(path, expect, mesh, diagonal):
     return ", judged" if against else ", judged by itself"
 
 
+def projected(report):
+    """The vertices on a CAD shape's edges and faces, and those that stayed off them by more than 1e-9: ", ..."."""
+    projection = report.get("projection")
+    if not projection:
+        return ""
+    off = len(projection["exceptions"])
+    if off > CAD_EXCEPTIONS * projection["vertices"]:
+        raise Failed(f"{off} of {projection['vertices']} boundary vertices stay off their faces")
+    return f", {off} of {projection['vertices']} off"
+
+
 def mesh_one(program, path, expect, folder):
     """What happened, as a line for the table. Throws Failed."""
     diagonal = diagonal_of(program, path)
@@ -95,7 +107,7 @@ def mesh_one(program, path, expect, folder):
     if result.returncode == 0:
         found = json.loads(report.read_text())
         judged = judge(path, expect, mesh, diagonal)
-        return f"{found['mesh']['tets']} tets in {found['seconds']['refine']:.2f} s{judged}"
+        return f"{found['mesh']['tets']} tets in {found['seconds']['refine']:.2f} s{judged}{projected(found)}"
     if mesh.exists():
         raise Failed(f"a mesh was written in spite of exit code {result.returncode}")
     if not COORDINATES.search(result.stderr):
