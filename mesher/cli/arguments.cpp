@@ -139,6 +139,14 @@ void add_improvement_options(CLI::App& app, MeshArguments& a) {
       ->group(group);
 }
 
+void add_order_option(CLI::App& app, MeshArguments& a) {
+  add(app, "--order ORDER", a.order,
+      "Of the cells: 1 straight with nodes at the corners, 2 with a node amid every edge, curved on smooth "
+      "surfaces")
+      ->check(one_of({"1", "2"}))
+      ->group("Elements");
+}
+
 void add_quality_options(CLI::App& app, MeshOptions& m) {
   const std::string group = "Quality";
   add(app, "--radius-edge RHO", m.radius_edge, "Bound on circumradius / shortest edge of a tetrahedron")
@@ -192,6 +200,7 @@ void add_run_options(CLI::App& app, MeshArguments& a) {
   add_size_options(app, a);
   add_quality_options(app, a.mesh);
   add_improvement_options(app, a);
+  add_order_option(app, a);
   add_complex_options(app, a.complex);
   add_budget_options(app, a.mesh);
   app.add_option("--report", a.report, "Write what was measured as JSON")->type_name("FILE.json");

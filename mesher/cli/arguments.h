@@ -28,6 +28,7 @@ struct MeshArguments {
   MeshOptions mesh;
   std::string size_field;                   ///< path, empty: none
   unsigned improve = 2;                     ///< level; 0: leave the elements as they are
+  unsigned order = 1;                       ///< of the cells, 1 or 2
   double min_dihedral = 0;                  ///< degrees, in place of the level's; 0: the level's
   std::string input_format, output_format;  ///< extensions with their dot; empty: those of the files
   std::string report;                       ///< path, empty: none

@@ -143,8 +143,19 @@ void project_onto_cad(const MeshArguments& arguments, const ComplexInput& input,
   stop_if_interrupted();
 }
 
+void raise_order(const MeshArguments& arguments, const ComplexInput& input, Stages& stages, MeshRun& run) {
+  if (arguments.order == 1) return;
+  stages.begin("second order", 0.8, 0.83, run.result.mesh.tets.size());
+  Execution execution;
+  execution.cancel = &interrupt_flag();
+  SecondOrderOptions options;
+  if (input.has_cad()) options.exact = input.exact_geometry(run.plc);
+  run.second_order = make_second_order(run.result.mesh, run.plc, options, execution);
+  stop_if_interrupted();
+}
+
 void certify(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
-  stages.begin("check", 0.8, 0.93, run.result.mesh.tets.size());
+  stages.begin("check", 0.83, 0.93, run.result.mesh.tets.size());
   CheckOptions options;
   options.radius_edge = arguments.mesh.radius_edge;
   options.distance = arguments.mesh.distance;
@@ -180,6 +191,9 @@ void tell(const MeshArguments& arguments, const MeshRun& run) {
     fmt::print(stderr, "collarmesh: a guarantee is missed: {}\n", run.result.message);
   constexpr std::size_t listed = 10;
   fmt::print(stderr, "{}", findings_text(run.check, arguments.verbose ? run.check.findings.size() : listed));
+  fmt::print(
+      stderr, "{}",
+      straightened_text(run.second_order, arguments.verbose ? run.second_order.straightened.size() : listed));
   if (arguments.quiet) return;
   fmt::print(stderr, "{}", run_text(arguments, run));
   if (arguments.tell_losses)
@@ -200,6 +214,7 @@ ExitCode mesh_command(const MeshArguments& arguments) {
     refine(arguments, input, stages, run);
     improve_elements(arguments, input, stages, run);
     project_onto_cad(arguments, input, stages, run);
+    raise_order(arguments, input, stages, run);
     certify(arguments, stages, run);
     write_files(arguments, stages, run);
   }

@@ -9,6 +9,7 @@
 #include "collarmesh/check.h"
 #include "collarmesh/plc_builder.h"
 #include "collarmesh/project_boundary.h"
+#include "collarmesh/second_order.h"
 #include "mesh_measures.h"
 #include "stage_times.h"
 
@@ -23,6 +24,7 @@ struct MeshRun {
   std::vector<std::string> notes;           ///< on CAD shapes, a line each
   std::optional<ProjectReport> projection;  ///< when there are CAD shapes
   ImproveReport improvement;
+  SecondOrderReport second_order;
   MeshMeasures measures;
   CheckReport check;
   StageTimes times;
@@ -43,6 +45,8 @@ std::string complex_text(const Plc& plc, const PlcSummary& summary);
 std::string mesh_text(const TetMesh& mesh, const MeshMeasures& measures);
 std::string findings_text(const CheckReport& report, std::size_t listed);
 std::string check_text(const CheckReport& report);
+/// "straightened: ..." lines of the nodes that did not stay on their smooth feature, the first ones.
+std::string straightened_text(const SecondOrderReport& report, std::size_t listed);
 std::string run_text(const MeshArguments& arguments, const MeshRun& run);
 
 }  // namespace collarmesh::cli

@@ -68,6 +68,7 @@ Json options_json(const MeshArguments& a) {
           {"collar_angle", m.collar_angle},
           {"improve", a.improve},
           {"min_dihedral", or_null(a.min_dihedral)},
+          {"order", a.order},
           {"seed", m.seed},
           {"max_vertices", or_null(m.max_vertices)},
           {"max_memory", or_null(m.max_memory)},
@@ -105,6 +106,21 @@ Json improvement_json(const ImproveReport& r) {
           {"boundary_flips", r.boundary_flips},
           {"moved_vertices", r.moved_vertices},
           {"inserted_vertices", r.inserted_vertices},
+          {"seconds", r.seconds}};
+}
+
+Json second_order_json(const SecondOrderReport& r) {
+  Json straightened = Json::array();
+  for (const auto& s : r.straightened)
+    straightened.push_back({{"point", s.point},
+                            {"edge", s.edge},
+                            {"dimension", s.feature.dimension},
+                            {"tag", s.tag},
+                            {"where", point_json(s.where)},
+                            {"distance", s.distance}});
+  return {{"nodes", r.nodes},
+          {"curved", r.curved},
+          {"straightened", std::move(straightened)},
           {"seconds", r.seconds}};
 }
 
@@ -210,6 +226,7 @@ Json run_json(const MeshArguments& arguments, const MeshRun& run) {
           {"notes", run.notes},
           {"projection", run.projection ? projection_json(run.plc, *run.projection) : Json(nullptr)},
           {"improvement", improvement_json(run.improvement)},
+          {"second_order", arguments.order == 2 ? second_order_json(run.second_order) : Json(nullptr)},
           {"seconds", std::move(seconds)}};
 }
 

@@ -134,6 +134,24 @@ std::string projection_text(const Plc& plc, const ProjectReport& r) {
   return text;
 }
 
+std::string straightened_text(const SecondOrderReport& r, std::size_t most) {
+  std::string text;
+  const std::size_t count = std::min(most, r.straightened.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto& s = r.straightened[k];
+    fmt::format_to(
+        Out(text),
+        "straightened: node {} amid points {} and {} at ({:.9g}, {:.9g}, {:.9g}), on the smooth {} with "
+        "tag {}, is {:.3g} off it: a tet there would be inverted or nearly so; a smaller size there "
+        "or --elements-per-circle avoids that\n",
+        s.point, s.edge[0], s.edge[1], s.where.x, s.where.y, s.where.z,
+        s.feature.dimension == 1 ? "curve" : "patch", s.tag, s.distance);
+  }
+  if (r.straightened.size() > count)
+    fmt::format_to(Out(text), "... and {} more straightened nodes\n", r.straightened.size() - count);
+  return text;
+}
+
 std::string run_text(const MeshArguments& arguments, const MeshRun& run) {
   std::string text = arguments.verbose ? complex_text(run.plc, run.summary) : "";
   text += fmt::format("{}: ", arguments.output == "-" ? "standard output" : arguments.output) +
@@ -156,6 +174,10 @@ std::string run_text(const MeshArguments& arguments, const MeshRun& run) {
                    "{} inserted\n",
                    i.candidates - std::min(i.remaining, i.candidates), i.candidates, i.edge_removals,
                    i.boundary_flips, i.moved_vertices, i.inserted_vertices);
+  if (arguments.order == 2)
+    fmt::format_to(Out(text),
+                   "  second order: {} nodes amid edges, {} of them on smooth features, {} straightened\n",
+                   run.second_order.nodes, run.second_order.curved, run.second_order.straightened.size());
   if (run.guarantees_hold()) text += "  every guarantee holds\n";
   fmt::format_to(Out(text), "  {:.2f} s ({})\n", run.times.total(), times_text(run.times));
   return text;

@@ -1,19 +1,13 @@
 #pragma once
 
-#include <functional>
-#include <optional>
 #include <vector>
 
+#include "collarmesh/exact_geometry.h"
 #include "collarmesh/plc.h"
 #include "collarmesh/progress.h"
 #include "collarmesh/tet_mesh.h"
 
 namespace collarmesh {
-
-/// The geometry that the curves (dimension 1) and patches (2) of a complex approximate: the point of a
-/// feature nearest to a mesh vertex on it, or nothing where the complex itself is what is meant.
-using ExactGeometry =
-    std::function<std::optional<Point>(unsigned dimension, Index feature, const Point& vertex)>;
 
 struct ProjectOptions {
   double radius_edge = 2;     ///< bound on circumradius / shortest edge that no tet outside collars breaks

@@ -117,7 +117,7 @@ void check_referenced(const TetMesh& mesh, Findings& findings) {
   for (Index i = 0; i < mesh.points.size(); ++i)
     if (!referenced[i])
       findings.add(guarantee::referenced_points, mesh.points[i], {i},
-                   "Point {} at {} is a corner of no tet; leave it out of the mesh.", i, At{mesh.points[i]});
+                   "Point {} at {} is a node of no tet; leave it out of the mesh.", i, At{mesh.points[i]});
 }
 
 void check_collar_balls(const TetMesh& mesh, Findings& findings) {
@@ -152,6 +152,7 @@ bool check_labels(const TetMesh& mesh, const Plc& plc, Findings& findings) {
   check_range(mesh.tet_region, 1, plc.regions.size(), false, "Tet", "region", findings);
   check_face_regions(mesh, plc, findings);
   check_range(mesh.face_patch, 0, plc.patches.size(), true, "Face", "patch", findings);
+  check_range(mesh.edge_mid_nodes, 0, mesh.points.size(), false, "Edge", "mid node", findings);
   check_range(mesh.edge_curve, 0, plc.curves.size(), true, "Edge", "curve", findings);
   check_features(mesh, plc, findings);
   check_collar_balls(mesh, findings);

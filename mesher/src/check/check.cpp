@@ -59,6 +59,7 @@ void judge(Subject subject, CheckReport& report, Findings& findings) {
   check_curves(subject, report, findings);
   check_patches(subject, report, findings);
   check_collars(subject, findings);
+  check_second_order(subject, report, findings);
 }
 
 }  // namespace

@@ -48,4 +48,9 @@ inline constexpr char patch_plane[] = "patch_plane";        ///< planar: its fac
 inline constexpr char patch_area[] = "patch_area";          ///< planar: its faces have its area
 inline constexpr char patch_distance[] = "patch_distance";  ///< smooth: two-sided
 
+// Cells of second order
+inline constexpr char mid_nodes[] = "mid_nodes";  ///< one to an edge, in all cells at it, and to no other
+inline constexpr char positive_jacobian[] = "positive_jacobian";  ///< everywhere in a tet, by bounds
+inline constexpr char mid_node_distance[] = "mid_node_distance";  ///< from the node's curve or patch
+
 }  // namespace collarmesh::guarantee

@@ -126,6 +126,9 @@ std::vector<std::uint8_t> collar_cells(const Subject& subject, Findings& finding
 /// Nothing when the mesh does not tell them.
 void check_collars(const Subject& subject, Findings& findings);
 
+/// Mid-side nodes and the sign of the Jacobian. Nothing for a mesh of first order.
+void check_second_order(const Subject& subject, CheckReport& report, Findings& findings);
+
 /// Does a feature lie outside all regions, so that the mesh does not have it?
 bool curve_is_outside(const Subject& subject, Index curve);
 bool vertex_is_outside(const Subject& subject, Index vertex);

@@ -43,12 +43,17 @@ void check_vertices(const Subject& subject, Findings& findings) {
   const FeatureMatch& match = subject.match;
   for (Index v = 0; v < match.vertex_point.size(); ++v)
     if (match.vertex_point[v] != none) vertices.add(match.vertex_point[v], v);
-  for (Index e = 0; e < mesh.edges.size(); ++e)
-    if (match.edge_curve[e] != none)
-      for (const Index p : mesh.edges[e]) curves.add(p, match.edge_curve[e]);
-  for (Index f = 0; f < mesh.faces.size(); ++f)
-    if (match.face_patch[f] != none)
-      for (const Index p : mesh.faces[f]) patches.add(p, match.face_patch[f]);
+  for (Index e = 0; e < mesh.edges.size(); ++e) {
+    if (match.edge_curve[e] == none) continue;
+    for (const Index p : mesh.edges[e]) curves.add(p, match.edge_curve[e]);
+    if (mesh.order() == 2) curves.add(mesh.edge_mid_nodes[e], match.edge_curve[e]);
+  }
+  for (Index f = 0; f < mesh.faces.size(); ++f) {
+    if (match.face_patch[f] == none) continue;
+    for (const Index p : mesh.faces[f]) patches.add(p, match.face_patch[f]);
+    if (mesh.order() == 2)
+      for (const Index p : mesh.face_mid_nodes[f]) patches.add(p, match.face_patch[f]);
+  }
   for (Index p = 0; p < mesh.points.size(); ++p) {
     const auto [dimension, feature] = mesh.features[p];
     if (dimension < 3 && feature == none) continue;  // unknown

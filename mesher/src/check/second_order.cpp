@@ -1,0 +1,171 @@
+// Cells of second order: their mid-side nodes and their Jacobian.
+#include <memory>
+
+#include "check/distance_tree.h"
+#include "check/polyline.h"
+#include "check/subject.h"
+#include "collarmesh/curved_tet.h"
+
+namespace collarmesh::checks {
+
+namespace {
+
+/// A mid-side node as a cell of dimension `dimension` gives it.
+struct MidNode {
+  std::array<Index, 2> edge;
+  Index node;
+  Index cell;
+  int dimension;
+};
+
+std::vector<MidNode> mid_nodes(const TetMesh& mesh) {
+  std::vector<MidNode> nodes;
+  nodes.reserve(6 * mesh.tets.size() + 3 * mesh.faces.size() + mesh.edges.size());
+  constexpr std::array<std::array<std::size_t, 2>, 6> ends{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+  for (Index t = 0; t < mesh.tets.size(); ++t)
+    for (std::size_t k = 0; k < 6; ++k)
+      nodes.push_back(
+          {sorted(mesh.tets[t][ends[k][0]], mesh.tets[t][ends[k][1]]), mesh.tet_mid_nodes[t][k], t, 3});
+  for (Index f = 0; f < mesh.faces.size(); ++f)
+    for (std::size_t k = 0; k < 3; ++k)
+      nodes.push_back(
+          {sorted(mesh.faces[f][ends[k][0]], mesh.faces[f][ends[k][1]]), mesh.face_mid_nodes[f][k], f, 2});
+  for (Index e = 0; e < mesh.edges.size(); ++e)
+    nodes.push_back({sorted(mesh.edges[e][0], mesh.edges[e][1]), mesh.edge_mid_nodes[e], e, 1});
+  return nodes;
+}
+
+const char* name_of_cell(int dimension) { return dimension == 3 ? "tet" : dimension == 2 ? "face" : "edge"; }
+
+void check_not_corners(const Subject& subject, Findings& findings) {
+  const TetMesh& mesh = subject.mesh;
+  std::vector<bool> is_corner(mesh.points.size(), false);
+  for (const auto& tet : mesh.tets)
+    for (const Index corner : tet) is_corner[corner] = true;
+  for (Index t = 0; t < mesh.tets.size(); ++t)
+    for (const Index node : mesh.tet_mid_nodes[t])
+      if (is_corner[node])
+        findings.add(
+            guarantee::mid_nodes, subject.point(node), {t, node},
+            "Point {} at {} is a mid-side node of tet {} and a corner of a tet; give the edge a node "
+            "of its own.",
+            node, At{subject.point(node)}, t);
+}
+
+// One node to an edge, one edge to a node.
+void check_shared(const Subject& subject, Findings& findings) {
+  std::vector<MidNode> nodes = mid_nodes(subject.mesh);
+  const auto report = [&](const MidNode& first, const MidNode& second, const char* what) {
+    findings.add(
+        guarantee::mid_nodes, subject.midpoint(second.edge), {first.node, second.node},
+        "{} {} has the node {} amid the edge of points {} and {} at {}, {} {} has the node {} amid that of "
+        "{} and {}: {}.",
+        name_of_cell(first.dimension), first.cell, first.node, first.edge[0], first.edge[1],
+        At{subject.midpoint(first.edge)}, name_of_cell(second.dimension), second.cell, second.node,
+        second.edge[0], second.edge[1], what);
+  };
+  // Tets first, so that what is unlike them is named.
+  const auto before = [](const MidNode& a, const MidNode& b) {
+    return a.dimension != b.dimension ? a.dimension > b.dimension : a.cell < b.cell;
+  };
+  std::sort(nodes.begin(), nodes.end(), [&](const MidNode& a, const MidNode& b) {
+    return a.edge != b.edge ? a.edge < b.edge : before(a, b);
+  });
+  for (std::size_t i = 1, first = 0; i < nodes.size(); ++i) {
+    if (nodes[i].edge != nodes[first].edge)
+      first = i;
+    else if (nodes[i].node != nodes[first].node)
+      report(nodes[first], nodes[i], "cells that share an edge must share its node");
+  }
+  std::sort(nodes.begin(), nodes.end(), [&](const MidNode& a, const MidNode& b) {
+    return a.node != b.node ? a.node < b.node : before(a, b);
+  });
+  for (std::size_t i = 1, first = 0; i < nodes.size(); ++i) {
+    if (nodes[i].node != nodes[first].node)
+      first = i;
+    else if (nodes[i].edge != nodes[first].edge)
+      report(nodes[first], nodes[i], "every edge must have a node of its own");
+  }
+}
+
+void check_jacobians(const Subject& subject, Findings& findings) {
+  const TetMesh& mesh = subject.mesh;
+  for (Index t = 0; t < mesh.tets.size(); ++t) {
+    const CurvedTet nodes = curved_tet(mesh, t);
+    if (jacobian_exceeds(nodes)) continue;
+    const Point centre = 0.25 * ((nodes[0] + nodes[1]) + (nodes[2] + nodes[3]));
+    findings.add(
+        guarantee::positive_jacobian, centre, {t},
+        "Tet {} of tag {} at {} is of second order and its Jacobian determinant is not positive everywhere "
+        "in it; a solver cannot use it: put its mid-side nodes nearer to the middles of its edges.",
+        t, mesh.tet_tag[t], At{centre});
+  }
+}
+
+void check_off_feature(const Subject& subject, Index node, double distance, double allowed, const char* kind,
+                       Index feature, Tag tag, CheckReport& report, bool smooth, Findings& findings) {
+  if (smooth) report.max_surface_distance = std::max(report.max_surface_distance, distance);
+  if (distance <= allowed) return;
+  findings.add(
+      guarantee::mid_node_distance, subject.point(node), {node, feature},
+      "The mid-side node {} at {} is {:.6g} away from its {} {} (tag {}), allowed is {:.6g}; move it "
+      "onto it.",
+      node, At{subject.point(node)}, distance, kind, feature, tag, allowed);
+}
+
+void check_on_curves(const Subject& subject, CheckReport& report, Findings& findings) {
+  const Plc& plc = subject.plc;
+  const Grouping by_curve(subject.match.edge_curve, plc.curves.size());
+  for (Index c = 0; c < plc.curves.size(); ++c) {
+    if (by_curve.size(c) == 0) continue;
+    const Plc::Curve& curve = plc.curves[c];
+    std::vector<DistanceTree::Triangle> segments;
+    const auto add = [&](Index a, Index b) {
+      segments.push_back({plc.points[a], plc.points[b], plc.points[b]});
+    };
+    for (std::size_t i = 1; i < curve.points.size(); ++i) add(curve.points[i - 1], curve.points[i]);
+    if (curve.closed) add(curve.points.back(), curve.points.front());
+    const DistanceTree tree(std::move(segments));
+    for (const Index* e = by_curve.begin(c); e != by_curve.end(c); ++e) {
+      const Index node = subject.mesh.edge_mid_nodes[*e];
+      check_off_feature(subject, node, tree.nearest(subject.point(node)).distance, subject.curve_allowance[c],
+                        "curve", c, curve.tag, report, !curve.straight, findings);
+    }
+  }
+}
+
+void check_on_patches(const Subject& subject, CheckReport& report, Findings& findings) {
+  const Plc& plc = subject.plc;
+  const Grouping by_patch(subject.match.face_patch, plc.patches.size());
+  for (Index p = 0; p < plc.patches.size(); ++p) {
+    if (by_patch.size(p) == 0) continue;
+    const Plc::Patch& patch = plc.patches[p];
+    std::vector<DistanceTree::Triangle> triangles;
+    for (Index t = patch.first_triangle; !patch.planar && t < patch.first_triangle + patch.triangle_count;
+         ++t)
+      triangles.push_back({subject.plc_corner(plc.triangles[t], 0), subject.plc_corner(plc.triangles[t], 1),
+                           subject.plc_corner(plc.triangles[t], 2)});
+    const DistanceTree tree(std::move(triangles));
+    for (const Index* f = by_patch.begin(p); f != by_patch.end(p); ++f)
+      for (const Index node : subject.mesh.face_mid_nodes[*f]) {
+        const Point& at = subject.point(node);
+        const double distance =
+            patch.planar ? std::fabs(dot(at - patch.origin, patch.normal)) : tree.nearest(at).distance;
+        check_off_feature(subject, node, distance, subject.patch_allowance[p], "patch", p, patch.tag, report,
+                          !patch.planar, findings);
+      }
+  }
+}
+
+}  // namespace
+
+void check_second_order(const Subject& subject, CheckReport& report, Findings& findings) {
+  if (subject.mesh.order() == 1) return;
+  check_not_corners(subject, findings);
+  check_shared(subject, findings);
+  check_jacobians(subject, findings);
+  check_on_curves(subject, report, findings);
+  check_on_patches(subject, report, findings);
+}
+
+}  // namespace collarmesh::checks
