@@ -164,6 +164,21 @@ TEST(SecondOrder, WhatWouldInvertIsStraightenedAndReported) {
       }
 }
 
+// As other programs give it: without features, with tags of its own, without triangles and edges.
+TEST(SecondOrder, IsJudgedByPosition) {
+  const Meshed meshed = improved(cylinder(1, 1, 60, 3), 0.4, 0.05);
+  TetMesh mesh = meshed.result.mesh;
+  make_second_order(mesh, meshed.plc);
+  mesh.features.clear();
+  for (Tag& tag : mesh.face_tag) tag += 500;
+  for (Tag& tag : mesh.edge_tag) tag += 500;
+  EXPECT_EQ(second_order_faults(meshed, mesh, 0.05), "");
+  mesh.faces.clear(), mesh.face_mid_nodes.clear(), mesh.face_regions.clear();
+  mesh.face_patch.clear(), mesh.face_tag.clear();
+  mesh.edges.clear(), mesh.edge_mid_nodes.clear(), mesh.edge_curve.clear(), mesh.edge_tag.clear();
+  EXPECT_EQ(second_order_faults(meshed, mesh, 0.05), "");
+}
+
 TEST(SecondOrder, SameBytesAgain) {
   const Meshed meshed = improved(cylinder(1, 1, 60, 3), 0.4, 0.05);
   TetMesh first = meshed.result.mesh, second = meshed.result.mesh;
@@ -175,8 +190,8 @@ TEST(SecondOrder, SameBytesAgain) {
 
 TEST(SecondOrder, RefusesAnImpossibleBound) {
   TetMesh mesh;
-  EXPECT_THROW(make_second_order(mesh, {}, {.least_jacobian = 1}), OptionError);
-  EXPECT_THROW(make_second_order(mesh, {}, {.least_jacobian = -0.1}), OptionError);
+  for (const double impossible : {1.0, -0.1, std::nan("")})
+    EXPECT_THROW(make_second_order(mesh, {}, {.project = {}, .least_jacobian = impossible}), OptionError);
 }
 
 class WrongSecondOrder : public ::testing::Test {

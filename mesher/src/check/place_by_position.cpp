@@ -120,6 +120,7 @@ class Placement {
     }
     if (new_edges_) make_edges();
     if (new_faces_) place_faces();
+    if (mesh_.order() == 2) take_mid_nodes_of_tets(mesh_);
     return std::move(mesh_);
   }
 
@@ -335,6 +336,8 @@ class Placement {
     for (const Triangle& face : mesh_.faces)
       for (const Index p : face) is_candidate[p] = true;
     std::vector<Index> points;
+    for (const auto& nodes : mesh_.tet_mid_nodes)
+      for (const Index p : nodes) is_candidate[p] = false;
     for (Index p = 0; p < mesh_.points.size(); ++p)
       if (is_candidate[p]) points.push_back(p);
     return points;

@@ -1,8 +1,7 @@
 // Cells of second order: their mid-side nodes and their Jacobian.
-#include <memory>
+#include <algorithm>
 
 #include "check/distance_tree.h"
-#include "check/polyline.h"
 #include "check/subject.h"
 #include "collarmesh/curved_tet.h"
 
@@ -18,14 +17,21 @@ struct MidNode {
   int dimension;
 };
 
-std::vector<MidNode> mid_nodes(const TetMesh& mesh) {
+// Of the edges of a tet; the first three are those of its face and of a triangle.
+constexpr std::array<std::array<std::size_t, 2>, 6> ends{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+
+std::vector<MidNode> mid_nodes_of_tets(const TetMesh& mesh) {
   std::vector<MidNode> nodes;
   nodes.reserve(6 * mesh.tets.size() + 3 * mesh.faces.size() + mesh.edges.size());
-  constexpr std::array<std::array<std::size_t, 2>, 6> ends{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
   for (Index t = 0; t < mesh.tets.size(); ++t)
     for (std::size_t k = 0; k < 6; ++k)
       nodes.push_back(
           {sorted(mesh.tets[t][ends[k][0]], mesh.tets[t][ends[k][1]]), mesh.tet_mid_nodes[t][k], t, 3});
+  return nodes;
+}
+
+std::vector<MidNode> mid_nodes(const TetMesh& mesh) {
+  std::vector<MidNode> nodes = mid_nodes_of_tets(mesh);
   for (Index f = 0; f < mesh.faces.size(); ++f)
     for (std::size_t k = 0; k < 3; ++k)
       nodes.push_back(
@@ -158,6 +164,21 @@ void check_on_patches(const Subject& subject, CheckReport& report, Findings& fin
 }
 
 }  // namespace
+
+void take_mid_nodes_of_tets(TetMesh& mesh) {
+  std::vector<MidNode> nodes = mid_nodes_of_tets(mesh);
+  const auto before = [](const MidNode& n, const std::array<Index, 2>& edge) { return n.edge < edge; };
+  std::sort(nodes.begin(), nodes.end(), [](const MidNode& a, const MidNode& b) { return a.edge < b.edge; });
+  const auto amid = [&](Index a, Index b) {
+    const auto found = std::lower_bound(nodes.begin(), nodes.end(), sorted(a, b), before);
+    return found != nodes.end() && found->edge == sorted(a, b) ? found->node : none;
+  };
+  mesh.face_mid_nodes.clear();
+  for (const auto& [a, b, c] : mesh.faces)
+    mesh.face_mid_nodes.push_back({amid(a, b), amid(b, c), amid(c, a)});
+  mesh.edge_mid_nodes.clear();
+  for (const auto& [a, b] : mesh.edges) mesh.edge_mid_nodes.push_back(amid(a, b));
+}
 
 void check_second_order(const Subject& subject, CheckReport& report, Findings& findings) {
   if (subject.mesh.order() == 1) return;

@@ -126,6 +126,9 @@ std::vector<std::uint8_t> collar_cells(const Subject& subject, Findings& finding
 /// Nothing when the mesh does not tell them.
 void check_collars(const Subject& subject, Findings& findings);
 
+/// Give the faces and edges of a mesh of second order the mid-side nodes that tets have there.
+void take_mid_nodes_of_tets(TetMesh& mesh);
+
 /// Mid-side nodes and the sign of the Jacobian. Nothing for a mesh of first order.
 void check_second_order(const Subject& subject, CheckReport& report, Findings& findings);
 
