@@ -6,9 +6,11 @@
 #include <cmath>
 
 #include "collarmesh/improve.h"
+#include "collarmesh/second_order.h"
 #include "support/acute_shapes.h"
 #include "support/meshing.h"
 #include "support/poisson.h"
+#include "support/second_order.h"
 #include "support/shapes.h"
 
 namespace collarmesh {
@@ -16,8 +18,8 @@ namespace {
 
 using testing::PoissonErrors;
 
-TetMesh improved_mesh(const std::vector<PolygonSoup>& soups, double size, double feature_angle,
-                      double distance = 0) {
+testing::Meshed improved(const std::vector<PolygonSoup>& soups, double size, double feature_angle,
+                         double distance = 0) {
   MeshOptions options = testing::with_size(size, 60);
   options.distance = distance;
   testing::Meshed meshed = testing::mesh_of(soups, options, feature_angle);
@@ -25,7 +27,11 @@ TetMesh improved_mesh(const std::vector<PolygonSoup>& soups, double size, double
   ImproveOptions improvement;
   improvement.distance = distance;
   improve(meshed.result.mesh, meshed.plc, improvement);
-  return meshed.result.mesh;
+  return meshed;
+}
+TetMesh improved_mesh(const std::vector<PolygonSoup>& soups, double size, double feature_angle,
+                      double distance = 0) {
+  return improved(soups, size, feature_angle, distance).result.mesh;
 }
 
 // A polynomial of the elements' degree is found but for rounding, whatever the mesh.
@@ -43,7 +49,7 @@ TEST(FiniteElements, FindPolynomialsExactly) {
   TetMesh mesh = improved_mesh(testing::acute::wedge(20).soups, 0.2, 0);
   EXPECT_LT(testing::solve_poisson(mesh, linear).h1, 1e-9);
   EXPECT_GT(testing::solve_poisson(mesh, quadratic).h1, 1e-3);
-  testing::add_straight_mid_nodes(mesh);
+  mesh = testing::second_order(mesh);
   EXPECT_LT(testing::solve_poisson(mesh, quadratic).h1, 1e-9);
 }
 
@@ -83,13 +89,41 @@ TEST_P(Convergence, IsThatOfTheory) {
     for (unsigned i = 0; i < 2; ++i) {
       TetMesh mesh = improved_mesh(domain.soups, i == 0 ? domain.coarse : domain.fine, domain.feature_angle,
                                    domain.distance);
-      if (order == 2) testing::add_straight_mid_nodes(mesh);
+      if (order == 2) mesh = testing::second_order(mesh);
       errors[i] = testing::solve_poisson(mesh, testing::smooth_solution());
     }
     const double refined = std::log(domain.coarse / domain.fine);
     EXPECT_NEAR(std::log(errors[0].l2 / errors[1].l2) / refined, order + 1, 0.1 * (order + 1));
     EXPECT_NEAR(std::log(errors[0].h1 / errors[1].h1) / refined, order, 0.1 * order);
   }
+}
+
+// Zero on the unit sphere, whose shape the elements have to follow.
+testing::Solution zero_on_the_sphere() {
+  return {[](const Point& p) { return (1 - dot(p, p)) * std::exp(p.x); },
+          [](const Point& p) {
+            const double e = std::exp(p.x);
+            return -2 * e * p + Vector{(1 - dot(p, p)) * e, 0, 0};
+          },
+          [](const Point& p) { return std::exp(p.x) * (5 + 4 * p.x + dot(p, p)); }};
+}
+
+// Curved elements keep the order on a curved domain.
+TEST(FiniteElements, CurvedElementsKeepTheOrderOnTheBall) {
+  const std::array<double, 2> sizes{0.36, 0.18};
+  std::array<PoissonErrors, 2> errors;
+  for (unsigned i = 0; i < 2; ++i) {
+    testing::Meshed meshed = improved({testing::icosphere(1, 40)}, sizes[i], 30, 0.1);
+    TetMesh& mesh = meshed.result.mesh;
+    for (std::size_t p = 0; p < mesh.points.size(); ++p)
+      if (mesh.features[p].dimension == 2) mesh.points[p] = mesh.points[p] / norm(mesh.points[p]);
+    const SecondOrderReport report = make_second_order(
+        mesh, meshed.plc, {.project = [](const auto&, const Point& p) { return p / norm(p); }});
+    EXPECT_TRUE(report.straightened.empty());
+    errors[i] = testing::solve_poisson(mesh, zero_on_the_sphere());
+  }
+  EXPECT_NEAR(std::log2(errors[0].l2 / errors[1].l2), 3, 0.3);
+  EXPECT_NEAR(std::log2(errors[0].h1 / errors[1].h1), 2, 0.2);
 }
 
 INSTANTIATE_TEST_SUITE_P(Order, Convergence, ::testing::Values(1, 2));

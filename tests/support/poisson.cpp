@@ -236,24 +236,4 @@ Solution smooth_solution() {
           }};
 }
 
-void add_straight_mid_nodes(TetMesh& mesh) {
-  std::map<std::array<Index, 2>, Index> middle;
-  const auto node = [&](Index a, Index b) {
-    const auto [entry, fresh] =
-        middle.try_emplace({std::min(a, b), std::max(a, b)}, static_cast<Index>(mesh.points.size()));
-    if (fresh) {
-      mesh.points.push_back(0.5 * (mesh.points[a] + mesh.points[b]));
-      if (!mesh.features.empty()) mesh.features.push_back({});
-    }
-    return entry->second;
-  };
-  for (const auto& t : mesh.tets) {
-    auto& mids = mesh.tet_mid_nodes.emplace_back();
-    for (unsigned e = 0; e < 6; ++e) mids[e] = node(t[sides[e][0]], t[sides[e][1]]);
-  }
-  for (const auto& [a, b, c] : mesh.faces)
-    mesh.face_mid_nodes.push_back({node(a, b), node(b, c), node(c, a)});
-  for (const auto& [a, b] : mesh.edges) mesh.edge_mid_nodes.push_back(node(a, b));
-}
-
 }  // namespace collarmesh::testing

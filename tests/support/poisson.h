@@ -30,7 +30,4 @@ PoissonErrors solve_poisson(const TetMesh& mesh, const Solution& exact, bool wit
 /// Smooth, not a polynomial, with all derivatives of the size of one.
 Solution smooth_solution();
 
-/// Second order by nodes in the middle of straight edges.
-void add_straight_mid_nodes(TetMesh& mesh);
-
 }  // namespace collarmesh::testing
