@@ -191,7 +191,7 @@ TEST(SecondOrder, SameBytesAgain) {
 TEST(SecondOrder, RefusesAnImpossibleBound) {
   TetMesh mesh;
   for (const double impossible : {1.0, -0.1, std::nan("")})
-    EXPECT_THROW(make_second_order(mesh, {}, {.project = {}, .least_jacobian = impossible}), OptionError);
+    EXPECT_THROW(make_second_order(mesh, {}, {.exact = {}, .least_jacobian = impossible}), OptionError);
 }
 
 class WrongSecondOrder : public ::testing::Test {

@@ -64,9 +64,13 @@ TEST(CurvedTet, AMidNodeBeyondTheQuarterOfItsEdgeInverts) {
 // The determinant is negative in the middle of an edge alone: corners do not tell.
 TEST(CurvedTet, FindsAnInversionBetweenTheCorners) {
   CurvedTet nodes = unit_tet();
-  nodes[6] = {0, 0.5, -0.35};  // amid ca, and so on: the face opposite d bulges towards d between its corners
-  nodes[4] = {0.5, 0, -0.35};
-  nodes[5] = {0.5, 0.5, 0.45};
+  nodes[5] = {0.5, 0, 0.05};  // along ab the directions to c and d turn round once, together
+  nodes[8] = {0.5, 0.05, 0};
+  for (std::size_t i = 0; i < 4; ++i) {
+    std::array<double, 4> corner{};
+    corner[i] = 1;
+    ASSERT_GT(jacobian_at(nodes, corner), 0.5);
+  }
   ASSERT_LT(least_sample(nodes, 24), 0);
   EXPECT_FALSE(jacobian_exceeds(nodes));
 }
