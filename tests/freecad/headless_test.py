@@ -3,7 +3,6 @@
 import os
 import sys
 import tempfile
-import traceback
 import unittest
 
 import FreeCAD
@@ -11,6 +10,9 @@ import ObjectsFem
 import Part
 from freecad import collarmesh_workbench
 from freecad.collarmesh_workbench import mesh_object, program
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import run_in_freecad  # noqa: E402
 
 
 def plate_with_hole():
@@ -129,13 +131,29 @@ class Headless(unittest.TestCase):
                 collarmesh_workbench.mesh(part)
             self.assertEqual(len(self.document.Objects), objects)
 
-    def test_missing_programs_and_second_order(self):
+    def test_missing_programs(self):
         with self.assertRaisesRegex(program.MesherError, "/no/such is no program"):
             program.find_program("/no/such")
-        obj = mesh_object.make(self.document, self.add(Part.makeBox(1, 1, 1)))
-        obj.ElementOrder = "2nd"
-        with self.assertRaisesRegex(program.MesherError, "second order"):
-            mesh_object.remesh(obj)
+
+    def test_second_order_lies_on_curved_faces(self):
+        part = self.add(filleted())
+        fem_mesh = collarmesh_workbench.mesh(part, size=3, order=2).FemMesh
+        self.assertEqual(len(fem_mesh.getElementNodes(fem_mesh.Volumes[0])), 10)
+        for number, face in enumerate(part.Shape.Faces, 1):
+            elements = group(fem_mesh, f"Face{number}")
+            self.assertEqual(set(fem_mesh.getNodesByFace(face)), nodes_of(fem_mesh, elements), f"Face{number}")
+
+    def test_groups_of_materials_follow_them(self):
+        part = self.add(two_solids())
+        analysis = ObjectsFem.makeAnalysis(self.document, "Analysis")
+        materials = [ObjectsFem.makeMaterialSolid(self.document, f"Material{i}") for i in (1, 2)]
+        analysis.addObjects(materials)
+        materials[0].References = [(part, "Solid1")]
+        obj = collarmesh_workbench.mesh(part, size=4, analysis=analysis)
+        solids = [set(group(obj.FemMesh, f"Solid{i}")) for i in (1, 2)]
+        self.assertEqual([set(group(obj.FemMesh, f"Material{i}_Volumes")) for i in (1, 2)], solids)
+        materials[0].References = [(part, "Solid2")]
+        self.assertEqual([set(group(obj.FemMesh, f"Material{i}_Volumes")) for i in (1, 2)], solids[::-1])
 
     def test_save_and_reopen(self):
         obj = collarmesh_workbench.mesh(self.add(plate_with_hole()), size=4)
@@ -153,12 +171,4 @@ class Headless(unittest.TestCase):
         mesh_object.remesh(obj)
 
 
-# FreeCAD imports the script, runs it again after an exception, and ends with 0 whatever happens.
-try:
-    loaded = unittest.defaultTestLoader.loadTestsFromTestCase(Headless)
-    passed = unittest.TextTestRunner(stream=sys.stdout, verbosity=2).run(loaded).wasSuccessful()
-except Exception:
-    traceback.print_exc()
-    passed = False
-sys.stdout.flush()
-os._exit(0 if passed else 1)
+run_in_freecad.run(Headless)

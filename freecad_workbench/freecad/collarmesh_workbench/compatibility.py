@@ -1,6 +1,7 @@
 """Where FreeCAD's versions differ."""
 
 import FreeCAD
+import ObjectsFem
 
 
 def add_mesh_object(document, name):
@@ -18,6 +19,16 @@ def shape_property(mesh_object):
 
 def meshed_object(mesh_object):
     return getattr(mesh_object, shape_property(mesh_object))
+
+
+def make_refinement(document, mesh_object):
+    """FreeCAD's object for a size on sub-shapes; later versions call it a refinement."""
+    make = getattr(ObjectsFem, "makeMeshRegion", None) or ObjectsFem.makeMeshRefinement
+    return make(document, mesh_object)
+
+
+def make_group(document, mesh_object):
+    return ObjectsFem.makeMeshGroup(document, mesh_object)
 
 
 def has_gui():

@@ -1,48 +1,61 @@
-"""The command's place in FEM's toolbar and menu, beside FreeCAD's Gmsh button."""
+"""The commands' places in FEM's toolbars and menus, beside FreeCAD's buttons for Gmsh."""
 
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from .commands import MESH_COMMAND
-from .view_provider import ICON
+from .commands import COMMANDS, GROUP_COMMAND, MESH_COMMAND, REFINEMENT_COMMAND
 
-BESIDE = "FEM_MeshGmshFromShape"
+BESIDE = {
+    MESH_COMMAND: "FEM_MeshGmshFromShape",
+    REFINEMENT_COMMAND: "FEM_MeshRegion",
+    GROUP_COMMAND: "FEM_MeshGroup",
+}
 
 
 class Manipulator:
     """FreeCAD 1.0 and later ask it when a workbench builds its bars."""
 
     def modifyToolBars(self):
-        return [{"insert": MESH_COMMAND, "toolItem": BESIDE}]
+        return [{"insert": command, "toolItem": place} for command, place in BESIDE.items()]
 
     def modifyMenuBar(self):
-        return [{"insert": MESH_COMMAND, "menuItem": BESIDE, "after": ""}]
+        return [{"insert": command, "menuItem": place, "after": ""} for command, place in BESIDE.items()]
 
 
 class Inserter(QtCore.QObject):
-    """Earlier ones: each time a workbench has become active, look for the action and put ours after it."""
+    """Earlier ones: each time a workbench has become active, look for the actions and put ours after them."""
 
     def __init__(self, window):
         super().__init__(window)
         self.window = window
-        self.action = QtGui.QAction(QtGui.QIcon(ICON), "FEM mesh from shape by collarmesh", self)
-        self.action.setObjectName(MESH_COMMAND)
-        self.action.triggered.connect(lambda: FreeCADGui.runCommand(MESH_COMMAND))
+        self.actions = [self._action(name, command) for name, command in COMMANDS.items()]
         window.workbenchActivated.connect(self.later)
         self.later()
+
+    def _action(self, name, command):
+        action = QtGui.QAction(QtGui.QIcon(command.icon), command.menu_text, self)
+        action.setObjectName(name)
+        action.setToolTip(command.tool_tip)
+        action.triggered.connect(lambda: FreeCADGui.runCommand(name))
+        return action
 
     def later(self, _name=""):
         QtCore.QTimer.singleShot(0, self.insert)
 
     def insert(self):
-        bars = self.window.findChildren(QtGui.QToolBar) + self.window.findChildren(QtGui.QMenu)
-        for bar in bars:
-            actions = bar.actions()
-            names = [action.objectName() for action in actions]
-            if BESIDE not in names or MESH_COMMAND in names:
-                continue
-            after = names.index(BESIDE) + 1
-            bar.insertAction(actions[after] if after < len(actions) else None, self.action)
+        for bar in self.window.findChildren(QtGui.QToolBar) + self.window.findChildren(QtGui.QMenu):
+            for action in self.actions:
+                self._insert_into(bar, action)
+
+    @staticmethod
+    def _insert_into(bar, action):
+        present = bar.actions()
+        names = [each.objectName() for each in present]
+        place = BESIDE[action.objectName()]
+        if place not in names or action.objectName() in names:
+            return
+        after = names.index(place) + 1
+        bar.insertAction(present[after] if after < len(present) else None, action)
 
 
 def install():

@@ -1,6 +1,9 @@
 """Loaded by FreeCAD when its GUI starts."""
 
-from . import commands, fem_buttons
+import FreeCADGui
+
+from . import commands, fem_buttons, preferences
 
 commands.register()
 fem_buttons.install()
+FreeCADGui.addPreferencePage(preferences.Page, "FEM")

@@ -5,7 +5,7 @@ import re
 import Fem
 import FreeCAD
 
-from . import compatibility
+from . import compatibility, groups, preferences
 from .program import GUARANTEE_MISSED, Job, MesherError, Settings
 
 # Names that macros for FreeCAD's Gmsh object use as well come first.
@@ -13,6 +13,8 @@ GROUP = "collarmesh"
 PROPERTIES = (
     ("App::PropertyLength", "CharacteristicLengthMax", "size", "Target edge length; 0: 1/20 of the diagonal"),
     ("App::PropertyLength", "CharacteristicLengthMin", "size_min", "Never ask for less than this; 0: none"),
+    ("App::PropertyInteger", "MeshSizeFromCurvature", "elements_per_circle", "Elements on a full circle; 0: any"),
+    ("App::PropertyInteger", "ElementsAcrossGap", "elements_across_gap", "Elements across thin parts; 0: any"),
     ("App::PropertyFloat", "Gradation", "gradation", "Growth of size per unit length away from finer ones; 0: any"),
     ("App::PropertyFloat", "RadiusEdgeRatio", "radius_edge", "Bound on circumradius / shortest edge"),
     ("App::PropertyAngle", "CreaseAngle", "crease_angle", "Edges and faces that meet below it get a collar"),
@@ -21,6 +23,7 @@ PROPERTIES = (
     ("App::PropertyInteger", "ImproveLevel", "improve", "Removal of slivers: 0 none, 1 quick, 2 good, 3 best"),
 )
 ORDERS = ["1st", "2nd"]
+TINY = 0.01  # of the target edge length: edges that hardly anybody means
 REFINEMENTS = {"Solid": "solid_sizes", "Face": "face_sizes", "Edge": "edge_sizes"}
 
 
@@ -50,9 +53,13 @@ class MeshProxy:
         return None
 
 
+def is_ours(obj):
+    return getattr(getattr(obj, "Proxy", None), "Type", "") == MeshProxy.Type
+
+
 def add_properties(obj):
     """Add the properties that the object does not have yet, with their defaults."""
-    defaults = Settings()
+    defaults = Settings(improve=preferences.improve_level())
     have = obj.PropertiesList
     if "Shape" not in have and "Part" not in have:
         obj.addProperty("App::PropertyLink", "Part", "FEM Mesh", "The object whose shape is meshed")
@@ -63,7 +70,7 @@ def add_properties(obj):
     if "ElementOrder" not in have:
         obj.addProperty("App::PropertyEnumeration", "ElementOrder", GROUP, "Order of the elements")
         obj.ElementOrder = ORDERS
-        obj.ElementOrder = ORDERS[0]
+        obj.ElementOrder = ORDERS[preferences.second_order()]
     for name, text in (("MeshRegionList", "Finer parts of the mesh"), ("MeshGroupList", "Groups of the mesh")):
         if name not in have:
             obj.addProperty("App::PropertyLinkList", name, "Base", text)
@@ -133,13 +140,23 @@ def shape_to_mesh(obj):
 def start(obj, program=""):
     """A Job with the shape written, to be run. Raises MesherError."""
     shape = shape_to_mesh(obj)
-    job = Job(settings_of(obj), program or preferred_program())
+    settings = settings_of(obj)
+    job = Job(settings, program or preferences.program())
+    job.messages += tiny_edges(shape, settings.size)
     shape.exportBrep(job.shape)
     return job
 
 
-def preferred_program():
-    return FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Mod/collarmesh").GetString("Program", "")
+def tiny_edges(shape, size):
+    """Warnings, one for each edge much shorter than the target edge length (mm; 0: the default)."""
+    size = size or shape.BoundBox.DiagonalLength / 20
+    return [
+        f"warning: Edge{number} at ({place.x:.6g}, {place.y:.6g}, {place.z:.6g}) is only {edge.Length:.3g} mm long, the "
+        "mesh becomes very fine there: remove the edge if it is not meant (Part: Defeaturing)"
+        for number, edge in enumerate(shape.Edges, 1)
+        if not edge.Degenerated and edge.Length < TINY * size
+        for place in [edge.CenterOfMass]
+    ]
 
 
 def finish(obj, job, exit_code=0):
@@ -148,6 +165,7 @@ def finish(obj, job, exit_code=0):
     fem_mesh = Fem.read(job.mesh)
     if fem_mesh.VolumeCount == 0:
         raise MesherError("The mesher wrote a mesh without elements; please report it with the shape.")
+    groups.add_groups(obj, fem_mesh)
     obj.FemMesh = fem_mesh
     if exit_code == GUARANTEE_MISSED:
         FreeCAD.Console.PrintWarning("collarmesh: " + "\n".join(job.messages) + "\n")
@@ -174,7 +192,7 @@ def mesh(shape_or_object, document, analysis, name, settings):
         obj = make(document, part, name)
         added.append(obj)
         apply_settings(obj, settings)
-        with Job(settings, preferred_program()) as job:
+        with Job(settings, preferences.program()) as job:
             shape_to_mesh(obj).exportBrep(job.shape)
             finish(obj, job, job.run())
     except Exception:
@@ -184,3 +202,6 @@ def mesh(shape_or_object, document, analysis, name, settings):
     if analysis is not None:
         analysis.addObject(obj)
     return obj
+
+
+groups.observe()

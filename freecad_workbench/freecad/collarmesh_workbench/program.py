@@ -26,6 +26,8 @@ class Settings:
 
     size: float = 0
     size_min: float = 0
+    elements_per_circle: int = 0
+    elements_across_gap: int = 0
     gradation: float = 0
     radius_edge: float = 2
     crease_angle: float = 60
@@ -38,15 +40,15 @@ class Settings:
     edge_sizes: dict = dataclasses.field(default_factory=dict)
 
     def arguments(self):
-        """Arguments of the command line. Raises MesherError for what the program cannot do."""
-        if self.order != 1:
-            raise MesherError("Elements of second order are not made yet; set the element order to 1st.")
+        """Arguments of the command line."""
         arguments = []
-        for option in ("size", "size_min", "gradation", "radius_edge", "crease_angle", "collar_angle", "distance"):
-            value = getattr(self, option)
+        for field in dataclasses.fields(self)[: list(self.__dataclass_fields__).index("improve")]:
+            value = getattr(self, field.name)
             if value:
-                arguments += ["--" + option.replace("_", "-"), repr(float(value))]
+                arguments += ["--" + field.name.replace("_", "-"), repr(field.type(value))]
         arguments += ["--improve", str(int(self.improve))]
+        if self.order != 1:
+            arguments += ["--order", str(self.order)]
         for option, sizes in (("region", self.solid_sizes), ("patch", self.face_sizes), ("curve", self.edge_sizes)):
             for number, size in sorted(sizes.items()):
                 arguments += [f"--{option}-size", f"{number}={float(size)!r}"]

@@ -4,17 +4,19 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import mesh_object
+from . import mesh_object, worst_elements
 from .program import MesherError
 
 FIELDS = (
-    ("CharacteristicLengthMax", "Target edge length (0: 1/20 of the diagonal)"),
-    ("CharacteristicLengthMin", "Smallest edge length (0: none)"),
-    ("SurfaceDistance", "Distance from the shape (0: 1/1000 of the diagonal)"),
-    ("RadiusEdgeRatio", "Radius-edge ratio"),
+    ("CharacteristicLengthMax", "Size"),
+    ("CharacteristicLengthMin", "Least size"),
+    ("MeshSizeFromCurvature", "Per circle"),
+    ("ElementsAcrossGap", "Across gaps"),
+    ("SurfaceDistance", "Distance"),
+    ("RadiusEdgeRatio", "Radius-edge"),
     ("CreaseAngle", "Crease angle"),
     ("CollarAngle", "Collar angle"),
-    ("ImproveLevel", "Improvement (0 to 3)"),
+    ("ImproveLevel", "Improvement"),
 )
 
 
@@ -26,12 +28,18 @@ class MeshTaskPanel:
         self.object = obj
         self.job = None
         self.process = None
+        self.highlight = None
         self.form = QtGui.QWidget()
         self.form.setObjectName("collarmesh_panel")
         self.form.setWindowTitle("Mesh by collarmesh")
         self.form.setWindowIcon(QtGui.QIcon(obj.ViewObject.Proxy.getIcon()))
         rows = QtGui.QFormLayout()
         self.fields = {name: self._field(rows, name, text) for name, text in FIELDS}
+        self.order = QtGui.QComboBox()
+        self.order.setObjectName("collarmesh_ElementOrder")
+        self.order.addItems(mesh_object.ORDERS)
+        self.order.setCurrentIndex(mesh_object.ORDERS.index(obj.ElementOrder))
+        rows.addRow("Order", self.order)
         self.run_button = QtGui.QPushButton("Mesh")
         self.run_button.setObjectName("collarmesh_run")
         self.run_button.clicked.connect(self.start)
@@ -45,6 +53,9 @@ class MeshTaskPanel:
         self.log = QtGui.QPlainTextEdit()
         self.log.setObjectName("collarmesh_log")
         self.log.setReadOnly(True)
+        self.worst_box = QtGui.QCheckBox("Show the worst elements")
+        self.worst_box.setObjectName("collarmesh_worst")
+        self.worst_box.toggled.connect(self.show_worst)
         buttons = QtGui.QHBoxLayout()
         buttons.addWidget(self.run_button)
         buttons.addWidget(self.cancel_button)
@@ -53,16 +64,20 @@ class MeshTaskPanel:
         layout.addLayout(buttons)
         layout.addWidget(self.bar)
         layout.addWidget(self.log)
+        layout.addWidget(self.worst_box)
 
     def _field(self, rows, name, text):
         value = getattr(self.object, name)
         field = QtGui.QLineEdit(getattr(value, "UserString", str(value)))
         field.setObjectName("collarmesh_" + name)
+        field.setToolTip(self.object.getDocumentationOfProperty(name))
+        field.setMinimumWidth(60)
         rows.addRow(text, field)
         return field
 
     def _store(self):
         """The fields into the properties. Raises MesherError."""
+        self.object.ElementOrder = self.order.currentText()
         for name, field in self.fields.items():
             current = getattr(self.object, name)
             try:
@@ -77,6 +92,7 @@ class MeshTaskPanel:
         if self.process is not None:
             return
         self.log.clear()
+        self.worst_box.setChecked(False)
         self.bar.setValue(0)
         try:
             self._store()
@@ -84,6 +100,8 @@ class MeshTaskPanel:
         except MesherError as error:
             self.say(str(error))
             return
+        for warning in self.job.messages:
+            self.say(warning)
         self.process = QtCore.QProcess()
         self.process.setReadChannel(QtCore.QProcess.StandardError)
         self.process.readyReadStandardError.connect(self._read)
@@ -138,6 +156,19 @@ class MeshTaskPanel:
         self.run_button.setEnabled(True)
         self.cancel_button.setEnabled(False)
 
+    def show_worst(self, shown):
+        """Mark the tetrahedra with the smallest dihedral angles in the view, and say where they are."""
+        if self.highlight is not None:
+            self.highlight.remove()
+            self.highlight = None
+        if not shown or self.object.FemMesh.VolumeCount == 0:
+            return
+        numbers, angles, corners = worst_elements.worst(self.object.FemMesh)
+        self.highlight = worst_elements.Highlight(self.object.ViewObject, corners)
+        x, y, z = corners[0].mean(axis=0)
+        self.say(f"The {len(numbers)} worst elements are red: dihedral angles from {angles[0]:.1f} (element {numbers[0]} "
+                 f"at ({x:.3g}, {y:.3g}, {z:.3g})) to {angles[-1]:.1f} degrees")  # fmt: skip
+
     def say(self, text):
         self.log.appendPlainText(text)
 
@@ -146,6 +177,7 @@ class MeshTaskPanel:
 
     def reject(self):
         self.cancel()
+        self.worst_box.setChecked(False)
         FreeCADGui.ActiveDocument.resetEdit()
         return True
 
@@ -159,6 +191,7 @@ def summary(report):
         histogram(mesh["histograms"]["min_dihedral"]),
     ]
     off = report["projection"]["exceptions"]
+    lines += [f"warning: {each['message']}" for each in report["complex"]["warnings"]]
     if off:
         where = sorted({f"Face{e['face']}" if "face" in e else f"Edge{e['edge']}" for e in off})
         lines.append(f"{len(off)} boundary nodes stay off the exact shape, at {', '.join(where)}")
@@ -171,7 +204,7 @@ def histogram(counts):
     total = max(1, sum(counts["tets"]))
     width = counts["bin_width"]
     return "\n".join(
-        f"  {i * width:3d} to {(i + 1) * width:3d}: {100 * n / total:5.1f}% " + "#" * round(40 * n / total)
+        f"  {i * width:3d} to {(i + 1) * width:3d}: {100 * n / total:5.1f}% " + "#" * round(20 * n / total)
         for i, n in enumerate(counts["tets"])
         if n
     )

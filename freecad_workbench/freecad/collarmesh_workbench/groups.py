@@ -1,0 +1,110 @@
+"""Groups of elements by the names of FEM's objects, made from those of faces, edges and solids.
+
+FreeCAD finds the elements of a material by the places of their nodes, which loses some of them where solids touch.
+It believes a volume group called `<material>_...` instead. Those are kept right here: a document observer makes them
+anew when a material's references, or what belongs to the analysis, change. Constraints need no groups: the nodes lie
+on the exact faces."""
+
+import FreeCAD
+from femmesh import meshtools
+
+from . import compatibility
+
+KINDS = {"Solid": "Volume", "Face": "Face", "Edge": "Edge"}
+
+
+def named(fem_mesh):
+    """The numbers of the groups by name."""
+    return {fem_mesh.getGroupName(number): number for number in fem_mesh.Groups}
+
+
+def analysis_of(mesh_object):
+    """The analysis that the mesh belongs to, None without one."""
+    return next((each for each in mesh_object.InList if each.isDerivedFrom("Fem::FemAnalysis")), None)
+
+
+def materials_of(analysis):
+    return [each for each in analysis.Group if each.Name and getattr(getattr(each, "Proxy", None), "Type", "") ==
+            "Fem::MaterialCommon"] if analysis else []  # fmt: skip
+
+
+def elements_of(fem_mesh, part, subshapes):
+    """The kind of group and the elements for names like Face7. Faces and edges of parts with several solids are
+    looked up by place, as two faces that coincide have one group."""
+    groups, kind, elements = named(fem_mesh), "", set()
+    for name in subshapes:
+        kind = next((value for key, value in KINDS.items() if name.startswith(key)), "")
+        if kind == "Volume" or (kind and len(part.Shape.Solids) == 1 and name in groups):
+            elements.update(fem_mesh.getGroupElements(groups[name]) if name in groups else ())
+        elif kind == "Face":
+            elements.update(fem_mesh.getFacesByFace(part.Shape.getElement(name)))
+        elif kind == "Edge":
+            elements.update(fem_mesh.getEdgesByEdge(part.Shape.getElement(name)))
+    return kind, sorted(elements)
+
+
+def wanted(mesh_object, fem_mesh):
+    """What groups the mesh must have besides those of sub-shapes: [(name, kind, elements)]."""
+    part = compatibility.meshed_object(mesh_object)
+    references = {}
+    for group in mesh_object.MeshGroupList:
+        references.update(meshtools.get_mesh_group_elements(group, part))
+    analysis = analysis_of(mesh_object)
+    materials = materials_of(analysis)
+    if len(part.Shape.Solids) > 1 and materials:
+        of_analysis = meshtools.get_analysis_group_elements(analysis, part)
+        references.update({each.Name: of_analysis.get(each.Name, ()) for each in materials})
+    groups = []
+    for name, subshapes in references.items():
+        kind, elements = elements_of(fem_mesh, part, subshapes)
+        if elements:
+            groups.append((f"{name}_{kind}s", kind, elements))
+    return groups
+
+
+def add_groups(mesh_object, fem_mesh):
+    """Bring the groups of `fem_mesh` up to date; True if it had to be changed."""
+    made = {f"{name}_{kind}s" for name in names_of_owners(mesh_object) for kind in KINDS.values()}
+    groups = wanted(mesh_object, fem_mesh)
+    have = named(fem_mesh)
+    stale = {name: number for name, number in have.items() if name in made}
+    if {name: elements for name, _, elements in groups} == {
+        name: sorted(fem_mesh.getGroupElements(number)) for name, number in stale.items()
+    }:
+        return False
+    for number in stale.values():
+        fem_mesh.removeGroup(number)
+    for name, kind, elements in groups:
+        fem_mesh.addGroupElements(fem_mesh.addGroup(name, kind), elements)
+    return True
+
+
+def names_of_owners(mesh_object):
+    """Names of all objects that groups are made for, those that are no members any more included."""
+    document = mesh_object.Document
+    return {name for each in document.Objects for name in (each.Name, each.Label) if hasattr(each, "References")}
+
+
+class Observer:
+    """Follows what the groups are made from."""
+
+    def slotChangedObject(self, changed, name):
+        if name not in ("References", "Group"):
+            return
+        analyses = [changed] if name == "Group" else changed.InList
+        for analysis in analyses:
+            if analysis.isDerivedFrom("Fem::FemAnalysis") and not changed.Document.Restoring:
+                self.refresh(analysis)
+
+    def refresh(self, analysis):
+        from .mesh_object import is_ours
+
+        for each in analysis.Group:
+            if is_ours(each) and each.FemMesh.VolumeCount > 0 and compatibility.meshed_object(each) is not None:
+                fem_mesh = each.FemMesh.copy()
+                if add_groups(each, fem_mesh):
+                    each.FemMesh = fem_mesh
+
+
+def observe():
+    FreeCAD.addDocumentObserver(Observer())

@@ -1,0 +1,67 @@
+"""What the user sets once: the program's place and the defaults of new meshes."""
+
+import FreeCAD
+
+IMPROVE_LEVELS = ("none", "quick", "good", "best")
+
+
+def _stored():
+    return FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Mod/collarmesh")
+
+
+def program():
+    """Path of the program; empty: look for it."""
+    return _stored().GetString("Program", "")
+
+
+def improve_level():
+    return _stored().GetInt("ImproveLevel", 2)
+
+
+def second_order():
+    return _stored().GetBool("SecondOrder", False)
+
+
+class Page:
+    """The page in FreeCAD's preferences, group FEM."""
+
+    def __init__(self, _parent=None):
+        from PySide import QtGui
+
+        self.form = QtGui.QWidget()
+        self.form.setObjectName("collarmesh_preferences")
+        self.form.setWindowTitle("collarmesh")
+        self.program = QtGui.QLineEdit()
+        self.program.setObjectName("collarmesh_preferences_program")
+        self.program.setPlaceholderText("found by itself")
+        browse = QtGui.QPushButton("...")
+        browse.clicked.connect(self._browse)
+        path = QtGui.QHBoxLayout()
+        path.addWidget(self.program)
+        path.addWidget(browse)
+        self.improve = QtGui.QComboBox()
+        self.improve.setObjectName("collarmesh_preferences_improve")
+        self.improve.addItems(IMPROVE_LEVELS)
+        self.second_order = QtGui.QCheckBox("second order")
+        self.second_order.setObjectName("collarmesh_preferences_second_order")
+        rows = QtGui.QFormLayout(self.form)
+        rows.addRow("Program collarmesh", path)
+        rows.addRow("Improvement of new meshes", self.improve)
+        rows.addRow("Elements of new meshes", self.second_order)
+
+    def _browse(self):
+        from PySide import QtGui
+
+        chosen = QtGui.QFileDialog.getOpenFileName(self.form, "The program collarmesh", self.program.text())[0]
+        if chosen:
+            self.program.setText(chosen)
+
+    def loadSettings(self):
+        self.program.setText(program())
+        self.improve.setCurrentIndex(improve_level())
+        self.second_order.setChecked(second_order())
+
+    def saveSettings(self):
+        _stored().SetString("Program", self.program.text().strip())
+        _stored().SetInt("ImproveLevel", self.improve.currentIndex())
+        _stored().SetBool("SecondOrder", self.second_order.isChecked())

@@ -1,0 +1,147 @@
+"""An analysis by CalculiX in FreeCAD: for the tests and the benchmark."""
+
+import os
+import re
+import tempfile
+
+import FreeCAD
+import ObjectsFem
+import Part
+from femmesh import gmshtools
+from femtools import ccxtools
+from freecad import collarmesh_workbench
+
+
+class Analysis:
+    """A static analysis of one part: add constraints, `mesh`, then `solve`."""
+
+    def __init__(self, shape, youngs_moduli=(210000,), poisson_ratio=0.3):
+        """One Young's modulus (MPa) for each solid, or one for all of them."""
+        self.document = FreeCAD.newDocument("analysis")
+        self.part = self.document.addObject("Part::Feature", "Part")
+        self.part.Shape = shape
+        self.held = {}  # axes by constraint
+        self.analysis = ObjectsFem.makeAnalysis(self.document, "Analysis")
+        self.solver = self._add(ObjectsFem.makeSolverCalculixCcxTools(self.document, "Solver"))
+        self.solver.AnalysisType = "static"
+        self.solver.MatrixSolverType = "default"
+        for number, modulus in enumerate(youngs_moduli, 1):
+            material = self._add(ObjectsFem.makeMaterialSolid(self.document, f"Material{number}"))
+            material.Material = {"Name": "Test", "YoungsModulus": f"{modulus} MPa", "PoissonRatio": f"{poisson_ratio}"}
+            if len(youngs_moduli) > 1:
+                material.References = [(self.part, f"Solid{number}")]
+
+    def _add(self, obj):
+        self.analysis.addObject(obj)
+        return obj
+
+    def close(self):
+        FreeCAD.closeDocument(self.document.Name)
+
+    def faces(self, *places):
+        """The faces that hold these points, as FreeCAD's references have them."""
+        names = []
+        for place in places:
+            vertex = Part.Vertex(*place)
+            distances = [face.distToShape(vertex)[0] for face in self.part.Shape.Faces]
+            names.append(f"Face{distances.index(min(distances)) + 1}")
+        return [(self.part, names)]
+
+    def hold(self, axes, *places):
+        """No displacement along these axes ("x", "xyz") of the faces at these places."""
+        if axes == "xyz":
+            held = self._add(ObjectsFem.makeConstraintFixed(self.document, "Fixed"))
+        else:
+            held = self._add(ObjectsFem.makeConstraintDisplacement(self.document, "Held"))
+            for axis in axes:
+                setattr(held, axis + "Free", False)
+                setattr(held, axis + "Fix", True)
+        held.References = self.faces(*places)
+        self.held[held.Name.upper()] = axes
+
+    def pull(self, place, force, direction):
+        """A force (N) on the face at a place, along an axis that some straight edge of the part has."""
+        load = self._add(ObjectsFem.makeConstraintForce(self.document, "Force"))
+        load.References = self.faces(place)
+        load.Force = force
+        number = next(
+            i
+            for i, edge in enumerate(self.part.Shape.Edges, 1)
+            if isinstance(edge.Curve, Part.Line)
+            for tangent in [edge.tangentAt(edge.FirstParameter)]
+            if abs(abs(tangent.dot(FreeCAD.Vector(*direction))) - 1) < 1e-9
+        )
+        load.Direction = (self.part, [f"Edge{number}"])
+        self.document.recompute()
+        load.Reversed = load.DirectionVector.dot(FreeCAD.Vector(*direction)) < 0
+
+    def press(self, place, pressure):
+        """A pressure (MPa) on the face at a place."""
+        load = self._add(ObjectsFem.makeConstraintPressure(self.document, "Pressure"))
+        load.References = self.faces(place)
+        load.Pressure = pressure
+
+    def mesh(self, order, size, fine_size=0, place=None):
+        """By collarmesh, finer on the face at a place."""
+        finer = {int(name[4:]): fine_size for _, names in self.faces(place) for name in names} if place else {}
+        self.mesh_object = collarmesh_workbench.mesh(
+            self.part, analysis=self.analysis, size=size, order=order, face_sizes=finer
+        )
+
+    def mesh_by_gmsh(self, order, size, fine_size=0, place=None):
+        """The same by Gmsh."""
+        self.mesh_object = self._add(ObjectsFem.makeMeshGmsh(self.document, "Gmsh"))
+        self.mesh_object.Part = self.part
+        self.mesh_object.CharacteristicLengthMax = size
+        self.mesh_object.ElementOrder = ("1st", "2nd")[order - 1]
+        self.mesh_object.SecondOrderLinear = False
+        region = ObjectsFem.makeMeshRegion(self.document, self.mesh_object, fine_size) if place else None
+        if region:
+            region.References = self.faces(place)
+        error = gmshtools.GmshTools(self.mesh_object).create_mesh()
+        if region:
+            self.document.removeObject(region.Name)
+        if self.mesh_object.FemMesh.VolumeCount == 0:
+            raise RuntimeError(f"Gmsh made no mesh: {error}")
+
+    def remove_mesh(self):
+        self.document.removeObject(self.mesh_object.Name)
+
+    def solve(self):
+        """Run CalculiX: the largest displacement (mm), the largest von Mises stress (MPa), the sum of the reactions
+        (N, by axis) over all that is held, and how many nodes and elements the solver got."""
+        self.document.recompute()
+        with tempfile.TemporaryDirectory() as folder:
+            tools = ccxtools.FemToolsCcx(self.analysis, self.solver, test_mode=False)
+            tools.update_objects()
+            tools.setup_working_dir(folder)
+            tools.setup_ccx()
+            missing = tools.check_prerequisites()
+            if missing:
+                raise RuntimeError(missing)
+            tools.purge_results()
+            tools.write_inp_file()
+            if tools.ccx_run() != 0:
+                raise RuntimeError("CalculiX failed")
+            reactions = self.reactions_in(os.path.splitext(tools.inp_file_name)[0] + ".dat")
+            tools.load_results()
+        result = next(each for each in self.analysis.Group if each.isDerivedFrom("Fem::FemResultObject"))
+        return {
+            "displacement": max(result.DisplacementLengths),
+            "stress": max(result.vonMises),
+            "reactions": reactions,
+            "tets": self.mesh_object.FemMesh.VolumeCount,
+            "nodes": self.mesh_object.FemMesh.NodeCount,
+        }
+
+    def reactions_in(self, path):
+        """The sum of the reactions that CalculiX wrote; by each set only along the axes that it holds, as sets
+        share nodes."""
+        with open(path, encoding="utf-8") as file:
+            text = file.read()
+        number = r"\s+([-+.\dEe]+)"
+        totals = re.findall(r"total force \(fx,fy,fz\) for set (\S+) and time .*\s+" + number * 3, text)
+        if len(totals) != len(self.held):
+            raise RuntimeError(f"CalculiX wrote reactions for {len(totals)} of {len(self.held)} constraints")
+        return [sum(float(total[1 + i]) for total in totals if axis in self.held[total[0]])
+                for i, axis in enumerate("xyz")]  # fmt: skip

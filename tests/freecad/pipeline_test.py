@@ -1,0 +1,151 @@
+"""From shape to stresses, without the GUI: FEM's constraints find the nodes, CalculiX's reactions balance the loads,
+and displacement and stress are those of the same analysis on Gmsh's mesh. Run by run.py."""
+
+import dataclasses
+import math
+import os
+import sys
+import unittest
+
+import Part
+from BOPTools import SplitAPI
+from FreeCAD import Vector
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import run_in_freecad  # noqa: E402
+from analysis import Analysis  # noqa: E402
+
+DISPLACEMENT_TOLERANCE = 0.02
+STRESS_TOLERANCE = 0.02
+REACTION_TOLERANCE = 0.005  # triangles stand for curved faces
+ORDERS = [int(order) for order in os.environ.get("COLLARMESH_TEST_ORDERS", "1,2").split(",")]
+
+
+@dataclasses.dataclass
+class Case:
+    """An analysis without mesh; what its reactions must be (N, by axis; None: free of choice)."""
+
+    analysis: Analysis
+    reactions: tuple
+    size: float  # for elements of first order, twice as large for second
+    fine_size: float  # on the face with the largest stress
+    critical: tuple  # a place on that
+
+
+def plate_with_hole():
+    """A quarter of a plate with a hole: pulled, with pressure in the hole."""
+    radius, thickness, pressure, force = 5, 3, 20, 4500
+    plate = Part.makeBox(20, 15, thickness).cut(Part.makeCylinder(radius, thickness))
+    analysis = Analysis(plate)
+    analysis.hold("x", (0, 10, 1.5))
+    analysis.hold("y", (12, 0, 1.5))
+    analysis.hold("z", (12, 8, 0))
+    analysis.pull((20, 7, 1.5), force, (1, 0, 0))
+    analysis.press((radius * math.sqrt(0.5), radius * math.sqrt(0.5), 1.5), pressure)
+    in_hole = pressure * radius * thickness
+    return Case(analysis, (-force - in_hole, -in_hole, 0), 0.8, 0.15, (3, 4, 1.5))
+
+
+def filleted_bracket():
+    """An L with a fillet in its corner: held where the curved fillet's leg ends, bent, with pressure on the fillet."""
+    corners = [Vector(*p) for p in ((0, 0, 0), (30, 0, 0), (30, 8, 0), (8, 8, 0), (8, 30, 0), (0, 30, 0), (0, 0, 0))]
+    bracket = Part.Face(Part.makePolygon(corners)).extrude(Vector(0, 0, 6))
+    inner = [e for e in bracket.Edges if all(abs(v.X - 8) + abs(v.Y - 8) < 1e-9 for v in e.Vertexes)]
+    radius, pressure, force = 5, 4, 300
+    analysis = Analysis(bracket.makeFillet(radius, inner), poisson_ratio=0)  # a held face has no singular edges then
+    analysis.hold("xyz", (30, 4, 3))
+    analysis.pull((4, 30, 3), force, (1, 0, 0))
+    centre, off = 8 + radius, radius * math.sqrt(0.5)
+    analysis.press((centre - off, centre - off, 3), pressure)
+    on_fillet = pressure * radius * 6
+    return Case(analysis, (-force + on_fillet, on_fillet, 0), 0.8, 0.24, (centre - off, centre - off, 3))
+
+
+def acute_wedge():
+    """A wedge of 40 degrees with a hole: pulled along its edge, with pressure in the hole."""
+    length, width, pressure, force = 20, 6, 60, 6000
+    height = length * math.tan(math.radians(40))
+    corners = [Vector(0, 0, 0), Vector(length, 0, 0), Vector(length, height, 0), Vector(0, 0, 0)]
+    wedge = Part.Face(Part.makePolygon(corners)).extrude(Vector(0, 0, width))
+    hole, radius = Vector(13, 5, 0), 3
+    analysis = Analysis(wedge.cut(Part.makeCylinder(radius, width, hole)))
+    analysis.hold("x", (length, height / 2, 3))
+    analysis.hold("y", (length / 2, 0, 3))
+    analysis.hold("z", (18, 2, 0))
+    analysis.pull((18, 2, width), force, (0, 0, 1))
+    analysis.press((hole.x + radius, hole.y, 3), pressure)
+    return Case(analysis, (0, 0, -force), 0.9, 0.25, (hole.x + radius, hole.y, 3))
+
+
+def two_solids():
+    """A plate and a stiffer disc in it, in plane strain: pulled."""
+    thickness, force = 2, 3000
+    hole = Part.makeCylinder(5, thickness)
+    box = Part.makeBox(20, 15, thickness)
+    parts = SplitAPI.booleanFragments([box.cut(hole), box.common(hole)], "CompSolid")
+    analysis = Analysis(parts, youngs_moduli=(70000, 210000))
+    analysis.hold("x", (0, 10, 1), (0, 3, 1))
+    analysis.hold("y", (12, 0, 1), (3, 0, 1))
+    analysis.hold("z", (12, 8, 0), (2, 2, 0), (12, 8, thickness), (2, 2, thickness))
+    analysis.pull((20, 7, 1), force, (1, 0, 0))
+    return Case(analysis, (-force, 0, None), 0.8, 0.24, (3, 4, 1))
+
+
+class Pipeline(unittest.TestCase):
+    def compare(self, make):
+        case = make()
+        analysis = case.analysis
+        load = sum(abs(reaction or 0) for reaction in case.reactions)
+        try:
+            for order in ORDERS:
+                sizes = case.size * order, case.fine_size * order, case.critical
+                analysis.mesh(order, *sizes)
+                ours = analysis.solve()
+                self.look_up(analysis)
+                analysis.remove_mesh()
+                analysis.mesh_by_gmsh(order, *sizes)
+                gmsh = analysis.solve()
+                analysis.remove_mesh()
+                print(f"{make.__name__}, order {order}: {ours}, by Gmsh: {gmsh}", flush=True)
+                with self.subTest(order=order):
+                    for found, expected in zip(ours["reactions"], case.reactions):
+                        if expected is not None:
+                            self.assertLess(abs(found - expected), REACTION_TOLERANCE * load)
+                    off = {quantity: abs(ours[quantity] / gmsh[quantity] - 1) for quantity in ("displacement", "stress")}
+                    self.assertLess(off["displacement"], DISPLACEMENT_TOLERANCE)
+                    self.assertLess(off["stress"], STRESS_TOLERANCE)
+        finally:
+            analysis.close()
+
+    def look_up(self, analysis):
+        """FEM's look-up finds just what the groups of the faces hold."""
+        fem_mesh = analysis.mesh_object.FemMesh
+        shape = analysis.part.Shape
+        groups = {fem_mesh.getGroupName(number): fem_mesh.getGroupElements(number) for number in fem_mesh.Groups}
+        for number, face in enumerate(shape.Faces, 1):
+            elements = groups.get(f"Face{number}")
+            if elements is None:  # it coincides with one of another solid, whose number it has
+                self.assertGreater(len(shape.Solids), 1)
+                continue
+            nodes = {node for element in elements for node in fem_mesh.getElementNodes(element)}
+            self.assertEqual(set(fem_mesh.getNodesByFace(face)), nodes, f"Face{number}")
+            self.assertEqual(set(fem_mesh.getFacesByFace(face)), set(elements), f"Face{number}")
+        if len(shape.Solids) > 1:
+            of_materials = [elements for name, elements in groups.items() if name.startswith("Material")]
+            self.assertEqual(len(of_materials), len(shape.Solids))
+            self.assertEqual(sum(map(len, of_materials)), fem_mesh.VolumeCount)
+
+    def test_plate_with_hole(self):
+        self.compare(plate_with_hole)
+
+    def test_filleted_bracket(self):
+        self.compare(filleted_bracket)
+
+    def test_acute_wedge(self):
+        self.compare(acute_wedge)
+
+    def test_two_solids(self):
+        self.compare(two_solids)
+
+
+run_in_freecad.run(Pipeline)
