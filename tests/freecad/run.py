@@ -1,8 +1,8 @@
 """Run a script in FreeCAD with the add-on installed in a home of its own.
 
-    run.py PROGRAM SCRIPT [--gui] [-- ARGUMENT]
+    run.py PROGRAM SCRIPT [--gui] [--addon FOLDER] [-- ARGUMENT]
 
-PROGRAM is the mesher; with --gui the script runs in FreeCAD's window on a virtual screen. ARGUMENT reaches the
+PROGRAM is the mesher, "" where the add-on is to find it; FOLDER is the add-on, by default that of the sources; with --gui the script runs in FreeCAD's window on a virtual screen. ARGUMENT reaches the
 script as COLLARMESH_TEST_ARGUMENT. Exit code: the script's; 77 (skipped) where FreeCAD is not installed.
 """
 
@@ -15,7 +15,10 @@ import tempfile
 
 
 def main():
-    program, script = (str(pathlib.Path(path).resolve()) for path in sys.argv[1:3])
+    program, script = (path and str(pathlib.Path(path).resolve()) for path in sys.argv[1:3])
+    addon = pathlib.Path(__file__).resolve().parents[2] / "freecad_workbench"
+    if "--addon" in sys.argv:
+        addon = pathlib.Path(sys.argv[sys.argv.index("--addon") + 1]).resolve()
     gui = "--gui" in sys.argv
     names = ("freecad", "FreeCAD") if gui else ("freecadcmd", "FreeCADCmd")
     freecad = next(filter(None, map(shutil.which, names)), None)
@@ -26,7 +29,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="collarmesh-freecad-") as home:
         mods = pathlib.Path(home) / "Mod"
         mods.mkdir()
-        (mods / "collarmesh").symlink_to(pathlib.Path(__file__).resolve().parents[2] / "freecad_workbench")
+        (mods / "collarmesh").symlink_to(addon)
         environment = dict(os.environ, FREECAD_USER_HOME=home, FREECAD_USER_DATA=home, COLLARMESH_PROGRAM=program)
         environment["QTWEBENGINE_DISABLE_SANDBOX"] = "1"  # else the start page ends FreeCAD when run by root
         environment["COLLARMESH_TEST_ARGUMENT"] = sys.argv[-1] if "--" in sys.argv else ""

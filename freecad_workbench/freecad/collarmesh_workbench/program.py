@@ -56,15 +56,17 @@ class Settings:
 
 
 def find_program(preferred=""):
-    """Path of the program: `preferred`, the environment variable COLLARMESH_PROGRAM, the PATH, or the folder that
-    the add-on lies in. Raises MesherError when it is nowhere."""
-    sources = pathlib.Path(__file__).resolve().parents[3]
+    """Path of the program: `preferred`, the environment variable COLLARMESH_PROGRAM, the PATH, the folder that the
+    add-on is installed in, or its sources. Raises MesherError when it is nowhere."""
     for candidate in (preferred, os.environ.get("COLLARMESH_PROGRAM", "")):
         if candidate:
             if shutil.which(candidate):
                 return shutil.which(candidate)
             raise MesherError(f"The mesher {candidate} is no program; correct its path in the preferences.")
-    beside = (sources / "build" / "release" / "bin" / "collarmesh", pathlib.Path(__file__).parent / "bin" / "collarmesh")
+    addon = pathlib.Path(__file__).resolve().parents[2]
+    beside = [addon.parent / "build" / "release" / "bin" / "collarmesh"]
+    if len(addon.parents) > 3:  # installed: WHERE/share/freecad/Mod/collarmesh and WHERE/bin
+        beside.append(addon.parents[3] / "bin" / "collarmesh")
     for candidate in ("collarmesh", *map(str, beside)):
         if shutil.which(candidate):
             return shutil.which(candidate)
