@@ -32,6 +32,8 @@ def main():
         usr = folder / "root" / "usr"
         if not (usr / "bin" / "collarmesh").exists():
             raise SystemExit("the package has no program")
+        if list(pathlib.Path(build).glob("python/collarmesh*.so")) and not list(usr.glob("lib/python3/*/collarmesh*.so")):
+            raise SystemExit("the package has no Python module")
         addon = usr / "share" / "freecad" / "Mod" / "collarmesh"
         return subprocess.run(
             [sys.executable, HERE / "run.py", "", HERE / "installed_test.py", "--addon", addon, "--", usr]
