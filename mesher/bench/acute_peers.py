@@ -74,7 +74,7 @@ def main() -> int:
     about = machine(options.build)
     pin_to_core(options.core)
     programs = options.build / "bin"
-    ours = Collarmesh(programs / "collarmesh", options.time_limit)
+    ours = Collarmesh(programs / "collarmesh", options.time_limit, improve=2)
     tetgen = [TetGen(options.time_limit, quality=quality, switches="g") for quality in ("2.0", "1.414")]
     gmsh = Gmsh(options.time_limit, "del3d")
     meshers = {"collarmesh": ours, "TetGen -q2.0": tetgen[0], "TetGen -q1.414": tetgen[1], gmsh.name: gmsh}

@@ -120,6 +120,7 @@ Json second_order_json(const SecondOrderReport& r) {
                             {"distance", s.distance}});
   return {{"nodes", r.nodes},
           {"curved", r.curved},
+          {"moved_inside", r.moved_inside},
           {"straightened", std::move(straightened)},
           {"seconds", r.seconds}};
 }

@@ -122,7 +122,8 @@ std::string projection_text(const Plc& plc, const ProjectReport& r) {
   fmt::format_to(Out(text), "  {} boundary vertices moved onto the exact shape, by at most {:.3g}",
                  r.vertices, r.largest_move);
   if (r.exceptions.empty()) return text + "\n";
-  fmt::format_to(Out(text), "; {} stay off it, by at most {:.3g}:\n", r.exceptions.size(), r.largest_distance);
+  fmt::format_to(Out(text), "; {} stay off it, by at most {:.3g}:\n", r.exceptions.size(),
+                 r.largest_distance);
   for (std::size_t k = 0; k < std::min(listed, r.exceptions.size()); ++k) {
     const ProjectReport::Exception& e = r.exceptions[k];
     fmt::format_to(Out(text), "    {}{} at ({:.6g}, {:.6g}, {:.6g}) by {:.3g}\n",
@@ -176,8 +177,10 @@ std::string run_text(const MeshArguments& arguments, const MeshRun& run) {
                    i.boundary_flips, i.moved_vertices, i.inserted_vertices);
   if (arguments.order == 2)
     fmt::format_to(Out(text),
-                   "  second order: {} nodes amid edges, {} of them on smooth features, {} straightened\n",
-                   run.second_order.nodes, run.second_order.curved, run.second_order.straightened.size());
+                   "  second order: {} nodes amid edges, {} of them on smooth features, {} inside moved, {} "
+                   "straightened\n",
+                   run.second_order.nodes, run.second_order.curved, run.second_order.moved_inside,
+                   run.second_order.straightened.size());
   if (run.guarantees_hold()) text += "  every guarantee holds\n";
   fmt::format_to(Out(text), "  {:.2f} s ({})\n", run.times.total(), times_text(run.times));
   return text;

@@ -72,7 +72,8 @@ void check(const TetMesh& mesh) {
   for (const Index node : mesh.edge_mid_nodes) require(node < points, "mid nodes of edges");
   require(tets > 0, "any tets");
   require(mesh.features.empty() || mesh.features.size() == points, "features of points");
-  require(mesh.tet_tag.size() == tets && mesh.tet_region.size() == tets && mesh.tet_collar.size() == tets,
+  require(mesh.tet_tag.size() == tets && mesh.tet_region.size() == tets && mesh.tet_collar.size() == tets &&
+              mesh.tet_crease.size() == tets,
           "labels of tets");
   require(
       mesh.face_tag.size() == faces && mesh.face_regions.size() == faces && mesh.face_patch.size() == faces,

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include "support/acute_shapes.h"
 #include "support/meshing.h"
@@ -59,6 +60,33 @@ TEST(Collar, WedgeHasStarsAndBooks) {
   EXPECT_GT(kinds[1], 0U);
   EXPECT_GT(kinds[2], 0U);
   EXPECT_GT(kinds[0], kinds[1]);
+}
+
+TEST(Collar, CellsBearTheTagOfTheirCrease) {
+  PlcOptions options;
+  options.feature_angle = 0;
+  Plc plc = build_plc(acute::fan(5).soups, options);
+  for (Index v = 0; v < plc.vertices.size(); ++v) plc.vertices[v].tag = 1000 + v;
+  for (Index c = 0; c < plc.curves.size(); ++c) plc.curves[c].tag = 1 + c;
+  const TetMesh mesh = testing::mesh_of(plc, testing::with_size(size)).result.mesh;
+  std::vector<Tag> tag_at(mesh.points.size(), 0);  // of the crease that a ball's centre is on
+  for (const TetMesh::CollarBall& ball : mesh.collar_balls) {
+    const auto [dimension, feature] = mesh.features[ball.point];
+    tag_at[ball.point] = dimension == 0 ? plc.vertices[feature].tag : plc.curves[feature].tag;
+  }
+  for (Index t = 0; t < mesh.tets.size(); ++t) {
+    std::set<Tag> tags;
+    for (const Index p : mesh.tets[t])
+      if (tag_at[p] != 0) tags.insert(tag_at[p]);
+    if (mesh.tet_collar[t] == 0) {
+      EXPECT_EQ(mesh.tet_crease[t], 0);
+    } else if (mesh.tet_collar[t] == 1) {
+      EXPECT_EQ(tags, std::set<Tag>{mesh.tet_crease[t]});
+    } else {
+      EXPECT_LT(mesh.tet_crease[t], 1000);  // an edge, not a corner
+      EXPECT_EQ(tags.count(mesh.tet_crease[t]), 1U);
+    }
+  }
 }
 
 TEST(Collar, SmallWedgesBesideLargeOnes) {

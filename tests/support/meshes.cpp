@@ -45,6 +45,7 @@ class FeatureMaker {
     for (Index i = 0; i < mesh_.points.size(); ++i) mesh_.features.push_back(feature_of(i));
     for (const Index region : mesh_.tet_region) mesh_.tet_tag.push_back(plc_.regions[region].tag);
     mesh_.tet_collar.assign(mesh_.tets.size(), 0);
+    mesh_.tet_crease.assign(mesh_.tets.size(), 0);
   }
 
  private:

@@ -98,6 +98,7 @@ TEST(CheckPlacing, FaultsAreStillFound) {
   mesh.tet_region.pop_back();
   mesh.tet_tag.pop_back();
   mesh.tet_collar.pop_back();
+  mesh.tet_crease.pop_back();
   EXPECT_EQ(broken(mesh, m.plc).count(guarantee::region_volume), 1U);
   mesh = strange;
   for (Point& p : mesh.points) p = p + Point{0.01, 0, 0};

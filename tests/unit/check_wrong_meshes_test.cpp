@@ -61,6 +61,7 @@ void erase_tet(TetMesh& mesh, Index t) {
   erase(mesh.tet_region, t);
   erase(mesh.tet_tag, t);
   erase(mesh.tet_collar, t);
+  erase(mesh.tet_crease, t);
 }
 
 void erase_face(TetMesh& mesh, Index f) {
@@ -179,6 +180,7 @@ TEST(CheckWrongMeshes, TetTwice) {
   mesh.tet_region.push_back(mesh.tet_region[t]);
   mesh.tet_tag.push_back(mesh.tet_tag[t]);
   mesh.tet_collar.push_back(0);
+  mesh.tet_crease.push_back(0);
   EXPECT_EQ(broken(m), (Names{distinct_tets, region_volume}));
 }
 
@@ -193,6 +195,7 @@ TEST(CheckWrongMeshes, ThreeTetsAtAFace) {
   mesh.tet_region.push_back(mesh.tet_region[t]);
   mesh.tet_tag.push_back(mesh.tet_tag[t]);
   mesh.tet_collar.push_back(0);
+  mesh.tet_crease.push_back(0);
   EXPECT_EQ(broken(m), (Names{conforming, listed_faces, region_volume}));
 }
 

@@ -35,6 +35,7 @@ TetMesh one_tet() {
   mesh.tet_region = {1};
   mesh.tet_tag = {5};
   mesh.tet_collar = {0};
+  mesh.tet_crease = {0};
   return mesh;
 }
 
@@ -95,7 +96,10 @@ TetMesh as_kept(TetMesh mesh, const Format& format) {
   // In .msh a region is an entity; which one is known only with the features.
   if (!format.regions || (format.extension == std::string(".msh") && mesh.features.empty()))
     number_regions_by_tag(mesh);
-  if (!format.collar) std::fill(mesh.tet_collar.begin(), mesh.tet_collar.end(), 0);
+  if (!format.collar) {
+    std::fill(mesh.tet_collar.begin(), mesh.tet_collar.end(), 0);
+    std::fill(mesh.tet_crease.begin(), mesh.tet_crease.end(), 0);
+  }
   if (!format.features) mesh = without_features(std::move(mesh));
   if (!format.edges) {
     mesh.edges.clear();
@@ -136,6 +140,7 @@ TetMesh canonical(TetMesh mesh) {
   permute(mesh.tet_region, tets);
   permute(mesh.tet_tag, tets);
   permute(mesh.tet_collar, tets);
+  permute(mesh.tet_crease, tets);
   permute(mesh.tet_mid_nodes, tets);
   permute(mesh.tets, tets);
   permute(mesh.face_regions, faces);

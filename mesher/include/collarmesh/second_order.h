@@ -11,22 +11,26 @@
 namespace collarmesh {
 
 struct SecondOrderOptions {
-  ExactGeometry exact;          ///< where it is empty or gives nothing: the complex' own polyline or triangles
-  double least_jacobian = 0.1;  ///< everywhere in a curved tet, relative to the straight one; 0: positive is enough
+  ExactGeometry exact;  ///< where it is empty or gives nothing: the complex' own polyline or triangles
+  double least_jacobian =
+      0.1;  ///< everywhere in a curved tet, relative to the straight one; 0: positive is enough
 };
 
 struct SecondOrderReport {
   std::size_t nodes = 0;   ///< mid-side nodes
   std::size_t curved = 0;  ///< of them, those that lie off the middle of their edge, on a smooth feature
 
-  /// A mid-side node that did not stay on its feature, since a tet at it would have been inverted or nearly so.
+  std::size_t moved_inside = 0;  ///< times that a node inside a region went along, so that a tet is valid
+
+  /// A mid-side node that did not stay on its feature, since a tet at it would have been inverted or nearly
+  /// so.
   struct Straightened {
     Index point = none;
     std::array<Index, 2> edge{none, none};  ///< its corners
     TetMesh::VertexFeature feature;
-    Tag tag = 0;         ///< of the feature
+    Tag tag = 0;  ///< of the feature
     Point where;
-    double distance = 0; ///< from where it belongs, absolute
+    double distance = 0;  ///< from where it belongs, absolute
   };
   std::vector<Straightened> straightened;  ///< by index of the point
   double seconds = 0;
@@ -36,11 +40,10 @@ struct SecondOrderReport {
 /// Make a mesh one of second order: a node amid every edge, shared by all tets, faces and edges there.
 /// Edges inside regions, on planar patches and on straight curves stay straight; the nodes on smooth
 /// patches and curves lie on these. Where a tet's Jacobian would then fall to `least_jacobian` or below, by
-/// `jacobian_exceeds`, its nodes are drawn back to the middles of their edges, halving the way two times.
-/// Straight tets are valid, so every tet is.
-/// Preconditions: `mesh` comes from `generate` for `plc`, first order.
-/// Throws OptionError unless 0 <= least_jacobian < 1.
-/// Cost: n log n in the tets.
+/// `jacobian_exceeds`, a node inside moves along with the curved edge beside it if that helps; else the nodes
+/// at fault are drawn back to the middles of their edges, halving the way two times. Straight tets are valid,
+/// so every tet is. Preconditions: `mesh` comes from `generate` for `plc`, first order. Throws OptionError
+/// unless 0 <= least_jacobian < 1. Cost: n log n in the tets.
 SecondOrderReport make_second_order(TetMesh& mesh, const Plc& plc, const SecondOrderOptions& options = {},
                                     const Execution& execution = {});
 

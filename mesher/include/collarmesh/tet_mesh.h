@@ -32,6 +32,7 @@ struct TetMesh {
   std::vector<Index> tet_region;         ///< index of the region in the complex, from 1
   std::vector<Tag> tet_tag;              ///< tag of that region
   std::vector<std::uint8_t> tet_collar;  ///< 0 outside collars, 1 star, 2 book
+  std::vector<Tag> tet_crease;           ///< in collars the tag of the crease, a curve or vertex; 0 outside
 
   /// Boundary, interface and internal-facet triangles; the normal (b-a) x (c-a) points from
   /// face_regions[0] to face_regions[1]. A boundary triangle has its solid in [0] and 0 in [1].

@@ -256,11 +256,13 @@ void TetComplex::store() {
     stored.tet_region.push_back(tets_[t].region);
     stored.tet_tag.push_back(mesh_.tet_tag[origin_[t]]);
     stored.tet_collar.push_back(mesh_.tet_collar[origin_[t]]);
+    stored.tet_crease.push_back(mesh_.tet_crease[origin_[t]]);
   }
   mesh_.tets = std::move(stored.tets);
   mesh_.tet_region = std::move(stored.tet_region);
   mesh_.tet_tag = std::move(stored.tet_tag);
   mesh_.tet_collar = std::move(stored.tet_collar);
+  mesh_.tet_crease = std::move(stored.tet_crease);
 }
 
 }  // namespace collarmesh::improvement

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 #include <string_view>
 #include <vector>
@@ -36,12 +37,12 @@ struct Cell {
 };
 
 struct Contents {
-  std::vector<Node> nodes;                               ///< in the order of their numbers
-  bool dense = false;                                    ///< are the numbers 1, 2, ...?
-  std::array<std::vector<Cell>, 4> cells;                ///< by dimension
-  std::array<std::map<int, Tag>, 4> physical_of_entity;  ///< the first one
-  std::array<std::map<Tag, Tag>, 4> tag_of_physical;     ///< where its name says so
-  std::vector<std::pair<std::uint64_t, double>> collar;  ///< cell number and value
+  std::vector<Node> nodes;                                       ///< in the order of their numbers
+  bool dense = false;                                            ///< are the numbers 1, 2, ...?
+  std::array<std::vector<Cell>, 4> cells;                        ///< by dimension
+  std::array<std::map<int, Tag>, 4> physical_of_entity;          ///< the first one
+  std::array<std::map<Tag, Tag>, 4> tag_of_physical;             ///< where its name says so
+  std::vector<std::pair<std::uint64_t, double>> collar, crease;  ///< cell number and value
   bool numbers_are_features = false;
 };
 
@@ -321,14 +322,15 @@ DataHead read_data_head(MshText& values) {
   return head;
 }
 
-void read_collar(MshText values, Contents& contents) {
+void read_data(MshText values, Contents& contents) {
   const DataHead head = read_data_head(values);
-  if (head.name != "collar") return;
+  if (head.name != "collar" && head.name != "crease") return;
   if (head.components != 1)
-    values.fail(fmt::format("collar has {} components, but has to have 1", head.components));
+    values.fail(fmt::format("{} has {} components, but has to have 1", head.name, head.components));
+  auto& data = head.name == "collar" ? contents.collar : contents.crease;
   for (int i = 0; i < head.count; ++i) {
     const std::uint64_t number = values.number("the number of an element");
-    contents.collar.emplace_back(number, values.real("a value of collar"));
+    data.emplace_back(number, values.real("a value for an element"));
   }
 }
 
@@ -401,7 +403,7 @@ void read_section(const std::string& path, const MshSection& section, const Form
   else if (section.name == "Elements")
     with_any([&](auto values) { read_elements(values, contents); });
   else if (section.name == "ElementData" && !format.binary)
-    read_collar(MshText(path, section), contents);
+    read_data(MshText(path, section), contents);
 }
 
 template <class Add>
@@ -423,14 +425,17 @@ void add_features(const Contents& contents, TetMesh& mesh) {
     mesh.features.push_back({node.dimension, node.dimension == 3 ? none : feature_of(node.entity)});
 }
 
-void add_collar(Contents& contents, TetMesh& mesh) {
-  auto& values = contents.collar;
+/// One value for each tet, 0 where the file gives none, within these bounds.
+template <class T>
+void add_data(std::vector<std::pair<std::uint64_t, double>>& values, double least, double most,
+              const std::vector<Cell>& tets, std::vector<T>& data) {
   if (values.empty()) return;
   if (!std::is_sorted(values.begin(), values.end())) std::sort(values.begin(), values.end());
-  for (const Cell& cell : contents.cells[3]) {
-    const auto found = std::lower_bound(values.begin(), values.end(), std::pair(cell.number, -1.0));
+  for (const Cell& cell : tets) {
+    const auto found = std::lower_bound(values.begin(), values.end(),
+                                        std::pair(cell.number, -std::numeric_limits<double>::infinity()));
     const bool given = found != values.end() && found->first == cell.number;
-    mesh.tet_collar.push_back(given ? static_cast<std::uint8_t>(std::clamp(found->second, 0.0, 2.0)) : 0);
+    data.push_back(given ? static_cast<T>(std::clamp(found->second, least, most)) : 0);
   }
 }
 
@@ -443,7 +448,9 @@ TetMesh make_mesh(const std::string& path, Contents& contents) {
   add_cells(contents.cells[2], add_face, mesh.face_tag, mesh);
   add_cells(contents.cells[1], add_edge, mesh.edge_tag, mesh);
   if (contents.numbers_are_features) add_features(contents, mesh);
-  add_collar(contents, mesh);
+  add_data(contents.collar, 0, 2, contents.cells[3], mesh.tet_collar);
+  constexpr double most = 0x1p52;  // that doubles hold
+  add_data(contents.crease, -most, most, contents.cells[3], mesh.tet_crease);
   complete_mesh(path, mesh);
   return mesh;
 }

@@ -1,7 +1,7 @@
 // Gmsh's format 4.1 as text (Gmsh's reference manual, "MSH file format"). Entities are the features:
 // a volume per region, a surface per patch, a curve per curve, a point per vertex. A physical group
-// holds what has one tag. Cells are numbered in the order tets, faces, edges; $ElementData "collar"
-// is given for all of them in the order of the file, as meshio needs it.
+// holds what has one tag. Cells are numbered in the order tets, faces, edges; $ElementData "collar" and
+// "crease" is given for all of them in the order of the file, as meshio needs it.
 #include <array>
 #include <span>
 #include <string_view>
@@ -155,9 +155,12 @@ void write_elements(FileWriter& out, const TetMesh& mesh, const MshEntities& ent
   out << "$EndElements\n";
 }
 
-void write_collar(FileWriter& out, const TetMesh& mesh, const CellGroups& groups) {
-  out << "$ElementData\n1\n\"collar\"\n1\n0\n3\n0\n1\n" << groups.count << '\n';
-  for (const Index i : groups.tets.members) out << std::size_t{i} + 1 << ' ' << mesh.tet_collar[i] << '\n';
+// Of tets; 0 for other cells.
+template <class T>
+void write_data(FileWriter& out, std::string_view name, const std::vector<T>& values,
+                const CellGroups& groups) {
+  out << "$ElementData\n1\n\"" << name << "\"\n1\n0\n3\n0\n1\n" << groups.count << '\n';
+  for (const Index i : groups.tets.members) out << std::size_t{i} + 1 << ' ' << values[i] << '\n';
   for (const Index i : groups.faces.members) out << groups.first_face + i << " 0\n";
   for (const Index i : groups.edges.members) out << groups.first_edge + i << " 0\n";
   out << "$EndElementData\n";
@@ -176,7 +179,8 @@ void write_msh(const std::string& path, const TetMesh& mesh) {
   write_entities(out, entities);
   write_nodes(out, mesh, entities);
   write_elements(out, mesh, entities, groups);
-  write_collar(out, mesh, groups);
+  write_data(out, "collar", mesh.tet_collar, groups);
+  write_data(out, "crease", mesh.tet_crease, groups);
   out.commit();
 }
 

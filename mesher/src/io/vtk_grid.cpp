@@ -96,6 +96,8 @@ void add_labels(const TetMesh& mesh, std::vector<VtkArray>& arrays) {
                       [&](std::size_t i) { return mesh.edge_curve[i]; })});
   arrays.push_back({"collar", per_cell<std::uint8_t>(
                                   mesh, [&](std::size_t i) { return mesh.tet_collar[i]; }, zero, zero)});
+  arrays.push_back({"crease", per_cell<std::int64_t>(
+                                  mesh, [&](std::size_t i) { return mesh.tet_crease[i]; }, zero, zero)});
 }
 
 /// Programs that read the file do not all take infinity.
@@ -216,6 +218,7 @@ void add_read_labels(const VtkPiece& piece, const CellKinds& kinds, TetMesh& mes
   if (std::all_of(regions.begin(), regions.end(), [](std::int64_t r) { return r >= 0 && r < none; }))
     pick(regions, kinds.tets, mesh.tet_region);
   pick(find({"collar"}), kinds.tets, mesh.tet_collar);
+  pick(find({"crease"}), kinds.tets, mesh.tet_crease);
   const auto& features = find({"feature"});
   pick(features, kinds.faces, mesh.face_patch);
   pick(features, kinds.edges, mesh.edge_curve);
@@ -273,6 +276,7 @@ void complete_vtk_mesh(const std::string& path, TetMesh& mesh) {
   drop_partial(mesh.tet_tag, mesh.tets.size());
   drop_partial(mesh.tet_region, mesh.tets.size());
   drop_partial(mesh.tet_collar, mesh.tets.size());
+  drop_partial(mesh.tet_crease, mesh.tets.size());
   drop_partial(mesh.face_tag, mesh.faces.size());
   drop_partial(mesh.face_patch, mesh.faces.size());
   drop_partial(mesh.face_regions, mesh.faces.size());

@@ -23,6 +23,7 @@ TetMesh Refinement::extract() const {
     mesh.tet_region.push_back(labels_[cell].region);
     mesh.tet_tag.push_back(plc_.regions[labels_[cell].region].tag);
     mesh.tet_collar.push_back(0);
+    mesh.tet_crease.push_back(0);
   }
   for (const auto& tet : stitched_.tets) {
     const auto& v = tet.corners;
@@ -30,6 +31,7 @@ TetMesh Refinement::extract() const {
     mesh.tet_region.push_back(tet.region);
     mesh.tet_tag.push_back(plc_.regions[tet.region].tag);
     mesh.tet_collar.push_back(tet.collar);
+    mesh.tet_crease.push_back(tet.crease);
   }
   for (const auto& face : stitched_.faces) {
     const auto& v = face.corners;

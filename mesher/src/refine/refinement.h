@@ -318,6 +318,7 @@ class Refinement {
       std::array<Index, 4> corners;
       Index region;
       std::uint8_t collar;  // 1 star, 2 book
+      Tag crease;           // of the curve or vertex
     };
     struct Face {
       std::array<Index, 3> corners;
@@ -338,6 +339,7 @@ class Refinement {
     Index point;  // unresolved
   };
   void rip_and_stitch();
+  Tag crease_tag(Index ball) const;
   void stitch_books(const std::vector<CollarTriangle>& triangles);
   void stitch_faces(const std::vector<CollarTriangle>& triangles);
   Index patch_between(const std::array<Index, 3>& corners, Index a, Index b) const;

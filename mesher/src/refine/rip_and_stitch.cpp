@@ -31,7 +31,7 @@ void Refinement::rip_and_stitch() {
     const Index region = labels_[cell_of(t.face)].region;
     if (region == 0 || t.several) continue;
     const auto v = mesh_.face_vertices(t.face);
-    stitched_.tets.push_back({{v[0], v[1], v[2], ball_vertex(t.ball)}, region, 1});
+    stitched_.tets.push_back({{v[0], v[1], v[2], ball_vertex(t.ball)}, region, 1, crease_tag(t.ball)});
   }
   stitch_books(triangles);
   stitch_faces(triangles);
@@ -41,7 +41,22 @@ void Refinement::rip_and_stitch() {
     stitched_.edges.push_back({{ball_vertex(end.ball), unresolved_[end.point].vertex}, end.curve});
 }
 
+Tag Refinement::crease_tag(Index ball) const {
+  const CollarBall& b = collars_.balls()[ball];
+  return b.dimension == 0 ? plc_.vertices[b.feature].tag : plc_.curves[b.feature].tag;
+}
+
 void Refinement::stitch_books(const std::vector<CollarTriangle>& triangles) {
+  std::vector<std::pair<std::array<Index, 2>, Index>> curve_between;  // sorted balls, curve; sorted
+  for (const auto& [balls, curve, parameters] : collars_.links())
+    curve_between.push_back({{std::min(balls[0], balls[1]), std::max(balls[0], balls[1])}, curve});
+  std::sort(curve_between.begin(), curve_between.end());
+  const auto tag_between = [&](Index a, Index b) {
+    const std::array<Index, 2> balls{std::min(a, b), std::max(a, b)};
+    const auto found =
+        std::lower_bound(curve_between.begin(), curve_between.end(), std::pair{balls, Index{0}});
+    return plc_.curves[found->second].tag;
+  };
   struct Side {
     std::array<Index, 2> key;   // sorted edge
     std::array<Index, 2> edge;  // as it runs around its triangle
@@ -61,8 +76,10 @@ void Refinement::stitch_books(const std::vector<CollarTriangle>& triangles) {
   for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
     const Side &s = sides[i], &other = sides[i + 1];
     if (s.key != other.key || s.ball == other.ball) continue;
-    stitched_.tets.push_back(
-        {{s.edge[1], s.edge[0], ball_vertex(other.ball), ball_vertex(s.ball)}, s.region, 2});
+    stitched_.tets.push_back({{s.edge[1], s.edge[0], ball_vertex(other.ball), ball_vertex(s.ball)},
+                              s.region,
+                              2,
+                              tag_between(s.ball, other.ball)});
   }
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <unordered_set>
 
 #include "collarmesh/curved_tet.h"
 #include "collarmesh/error.h"
@@ -18,6 +19,9 @@ namespace {
 // A node that is farther from the middle of its edge than this, relative to the edge, does not belong to it:
 // the nearest point lies on another part of the feature. A half circle has 0.5.
 constexpr double farthest = 0.5;
+
+// How far a node inside goes along with a curved edge beside it.
+constexpr std::array<double, 3> parts_of_the_way{0.5, 0.25, 1};
 
 class Curving {
  public:
@@ -36,6 +40,7 @@ class Curving {
     for (const Move& move : moves_) place(move);
     draw_back();
     report.nodes = edges_.size();
+    report.moved_inside = made_room_;
     for (const Move& move : moves_) {
       if (move.share > 0) ++report.curved;
       if (move.share < 1) report.straightened.push_back(straightened(move));
@@ -96,15 +101,16 @@ class Curving {
     return found;
   }
 
-  // Any order ends in valid tets: each step draws a node nearer to the middle of its edge.
+  // Any order ends in valid tets: curved nodes are only drawn nearer to the middle of their edge, and a node
+  // inside that was put back there stays.
   void draw_back() {
-    std::vector<std::vector<Index>> tets_at(moves_.size());
+    std::vector<std::vector<Index>> tets_at_move(moves_.size());
     std::vector<Index> work;
     for (Index tet = 0; tet < mesh_.tets.size(); ++tet) {
       bool curved = false;
       for (const Index move : moves_of(tet)) {
         if (move == none) continue;
-        tets_at[move].push_back(tet);
+        tets_at_move[move].push_back(tet);
         curved = true;
       }
       if (curved) work.push_back(tet);
@@ -113,17 +119,102 @@ class Curving {
       const Index tet = work.back();
       work.pop_back();
       while (!is_valid(curved_tet(mesh_, tet))) {
+        if (make_room(tet)) {
+          ++made_room_;
+          continue;
+        }
         const Index move = move_at_fault(tet);
-        if (move == none) break;
+        if (move == none) {
+          put_back_inside(tet, work);
+          break;
+        }
         step_back(moves_[move]);
         place(moves_[move]);
-        for (const Index other : tets_at[move])
+        for (const Index other : tets_at_move[move])
           if (other != tet) work.push_back(other);
       }
     }
   }
 
   bool is_valid(const CurvedTet& nodes) const { return jacobian_exceeds(nodes, options_.least_jacobian); }
+
+  // A node inside a region goes along with a curved edge beside it, when that makes the tet valid and leaves
+  // the others at it so.
+  bool make_room(Index tet) {
+    const std::array<Index, 6> moves = moves_of(tet);
+    for (std::size_t k = 0; k < 6; ++k) {
+      const Index node = mesh_.tet_mid_nodes[tet][k];
+      const Index edge = node - edges_.first_node();
+      if (edges_.feature(edge).dimension != 3 || stays(edge)) continue;
+      for (const Index m : moves) {
+        if (m == none || moves_[m].share == 0 || !touch(edge, moves_[m].edge)) continue;
+        for (const double part : parts_of_the_way) {
+          const Point before = mesh_.points[node];
+          mesh_.points[node] = before + part * moves_[m].share * moves_[m].way;
+          if (is_valid(curved_tet(mesh_, tet)) && harms_none(edge, tet, before)) return true;
+          mesh_.points[node] = before;
+        }
+      }
+    }
+    return false;
+  }
+
+  bool touch(Index edge, Index other) const {
+    const auto [a, b] = edges_.ends(edge);
+    const auto [c, d] = edges_.ends(other);
+    return a == c || a == d || b == c || b == d;
+  }
+
+  // Is every tet at the edge but this one as valid as with the node where it was?
+  bool harms_none(Index edge, Index tet, const Point& before) {
+    const Index node = edges_.first_node() + edge;
+    const std::vector<Index> around = tets_at(edge);
+    return std::all_of(around.begin(), around.end(), [&](Index other) {
+      CurvedTet nodes = curved_tet(mesh_, other);
+      if (other == tet || is_valid(nodes)) return true;
+      const auto& mids = mesh_.tet_mid_nodes[other];
+      nodes[4 + static_cast<std::size_t>(std::find(mids.begin(), mids.end(), node) - mids.begin())] = before;
+      return !is_valid(nodes);
+    });
+  }
+
+  // A tet whose curved edges are straight again: its nodes inside go back, too, and stay there.
+  void put_back_inside(Index tet, std::vector<Index>& work) {
+    for (const Index node : mesh_.tet_mid_nodes[tet]) {
+      const Index edge = node - edges_.first_node();
+      const auto [a, b] = edges_.ends(edge);
+      const Point middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
+      if (edges_.feature(edge).dimension != 3 || mesh_.points[node] == middle) continue;
+      mesh_.points[node] = middle;
+      stay_.insert(edge);
+      for (const Index other : tets_at(edge))
+        if (other != tet) work.push_back(other);
+    }
+  }
+  bool stays(Index edge) const { return stay_.count(edge) > 0; }
+
+  std::vector<Index> tets_at(Index edge) {
+    if (first_.empty()) find_tets_at_vertices();
+    const auto [a, end] = edges_.ends(edge);
+    std::vector<Index> found;
+    for (std::size_t i = first_[a]; i < first_[a + 1]; ++i) {
+      const auto& corners = mesh_.tets[tets_at_vertex_[i]];
+      if (std::find(corners.begin(), corners.end(), end) != corners.end())
+        found.push_back(tets_at_vertex_[i]);
+    }
+    return found;
+  }
+
+  void find_tets_at_vertices() {
+    first_.assign(edges_.first_node() + 1, 0);
+    for (const auto& tet : mesh_.tets)
+      for (const Index v : tet) ++first_[v + 1];
+    for (std::size_t v = 1; v < first_.size(); ++v) first_[v] += first_[v - 1];
+    tets_at_vertex_.resize(first_.back());
+    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+    for (Index t = 0; t < mesh_.tets.size(); ++t)
+      for (const Index v : mesh_.tets[t]) tets_at_vertex_[next[v]++] = t;
+  }
 
   static void step_back(Move& move) { move.share = move.share > 0.25 ? 0.5 * move.share : 0; }
 
@@ -171,7 +262,11 @@ class Curving {
   const Execution& execution_;
   MeshEdges edges_;
   NearestOnFeatures nearest_;
-  std::vector<Move> moves_;  // sorted by edge
+  std::vector<Move> moves_;         // sorted by edge
+  std::vector<std::size_t> first_;  // in tets_at_vertex_, by vertex; empty until it is needed
+  std::vector<Index> tets_at_vertex_;
+  std::unordered_set<Index> stay_;  // edges inside whose node has been put back
+  std::size_t made_room_ = 0;
 };
 
 }  // namespace
