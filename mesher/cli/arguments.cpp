@@ -45,6 +45,10 @@ const CLI::Validator fraction = number_in(0, 0.1, "a number from 0 to 0.1 (relat
 const CLI::Validator small_fraction =
     number_in(0, 0.01, "a number from 0 to 0.01 (relative to the diagonal)");
 const CLI::Validator angle = number_in(0, 180, "an angle from 0 to 180 degrees");
+const std::string size_group = "Size (target edge lengths, absolute, input units)";
+const std::string quality_group = "Quality";
+const std::string elements_group = "Elements";
+
 const CLI::Validator collar_angle = number_in(100, 175, "an angle from 100 to 175 degrees");
 const CLI::Validator ratio = number_in(1, 1e300, "a ratio of at least 1");
 const CLI::Validator number = number_in(0, 1e300, "a number >= 0");
@@ -100,7 +104,7 @@ void add_complex_options(CLI::App& app, ComplexArguments& a) {
 
 void add_size_options(CLI::App& app, MeshArguments& a) {
   MeshOptions& m = a.mesh;
-  const std::string group = "Size (target edge lengths, absolute, input units)";
+  const std::string& group = size_group;
   add(app, "--size LENGTH", m.size, "Everywhere", "1/20 of the diagonal")->check(length)->group(group);
   add(app, "--size-min LENGTH", m.size_min, "Never ask for less than this", "none")
       ->check(length)
@@ -129,7 +133,7 @@ void add_size_options(CLI::App& app, MeshArguments& a) {
 }
 
 void add_improvement_options(CLI::App& app, MeshArguments& a) {
-  const std::string group = "Quality";
+  const std::string& group = quality_group;
   add(app, "--improve LEVEL", a.improve, "Removal of slivers: 0 none, 1 quick, 2 good, 3 best")
       ->check(one_of({"0", "1", "2", "3"}))
       ->group(group);
@@ -144,11 +148,11 @@ void add_order_option(CLI::App& app, MeshArguments& a) {
       "Of the cells: 1 straight with nodes at the corners, 2 with a node amid every edge, curved on smooth "
       "surfaces")
       ->check(one_of({"1", "2"}))
-      ->group("Elements");
+      ->group(elements_group);
 }
 
 void add_quality_options(CLI::App& app, MeshOptions& m) {
-  const std::string group = "Quality";
+  const std::string& group = quality_group;
   add(app, "--radius-edge RHO", m.radius_edge, "Bound on circumradius / shortest edge of a tetrahedron")
       ->check(ratio)
       ->group(group);
@@ -194,6 +198,10 @@ void add_budget_options(CLI::App& app, MeshOptions& m) {
   add(app, "--time-limit SECONDS", m.time_limit, "For all stages together", "none")
       ->check(seconds)
       ->group(group);
+}
+
+bool is_meshing_group(const std::string& group) {
+  return group == size_group || group == quality_group || group == elements_group;
 }
 
 void add_run_options(CLI::App& app, MeshArguments& a) {
@@ -365,7 +373,12 @@ std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
     app.parse(argc, argv);
     const bool subcommand = check_command->parsed() || info_command->parsed() || convert_command->parsed();
     if (!subcommand) check_mesh_arguments(mesh);
-    if (convert_command->parsed()) check_convert_arguments(convert.mesh);
+    if (convert_command->parsed()) {
+      check_convert_arguments(convert.mesh);
+      for (const CLI::Option* option : convert_command->get_options())
+        if (option->count() > 0 && is_meshing_group(option->get_group()))
+          convert.meshing_options.push_back(option->get_name());
+    }
     if (subcommand && (!mesh.inputs.empty() || !mesh.output.empty())) throw CLI::HorribleError("");
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error), ExitCode::success;  // --help, --version

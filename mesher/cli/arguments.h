@@ -58,6 +58,7 @@ struct InfoArguments {
 /// "-" among the inputs is standard input, as output it is standard output.
 struct ConvertArguments {
   MeshArguments mesh;
+  std::vector<std::string> meshing_options;  ///< those given that only meshing has a use for
 };
 
 using Arguments = std::variant<MeshArguments, CheckArguments, InfoArguments, ConvertArguments>;

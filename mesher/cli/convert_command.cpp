@@ -97,7 +97,11 @@ ExitCode convert_command(const ConvertArguments& arguments) {
   set_time_limit(a.mesh.time_limit);
   require_writable(a.output);
   const bool to_surface = is_surface_format(a.output, a.output_format);
-  if (io::is_tet_mesh_format(a.inputs.front(), a.input_format)) {
+  const bool from_mesh = io::is_tet_mesh_format(a.inputs.front(), a.input_format);
+  if ((to_surface || from_mesh) && !arguments.meshing_options.empty())
+    fmt::print(stderr, "warning: {}: no effect, since nothing is meshed here.\n",
+               fmt::join(arguments.meshing_options, " "));
+  if (from_mesh) {
     convert_mesh(a);
     return ExitCode::success;
   }

@@ -32,6 +32,9 @@ std::vector<std::string> option_warnings(const MeshArguments& a, const Plc& plc)
         fmt::format("--radius-edge {}: refinement need not end below sqrt 2 = 1.414; it ends when a "
                     "budget is spent, set one with --max-vertices or --time-limit.",
                     a.mesh.radius_edge));
+  if (a.improve == 0 && a.min_dihedral > 0)
+    warnings.push_back(fmt::format("--min-dihedral {}: nothing is improved at --improve 0; leave that out.",
+                                   a.min_dihedral));
   if (a.mesh.collar_angle < reached_collar_angle && !find_creases(plc, a.complex.crease_angle).empty())
     warnings.push_back(
         fmt::format("--collar-angle {}: collars need not reach bounds below 130 degrees; refinement "

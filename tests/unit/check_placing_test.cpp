@@ -141,6 +141,30 @@ TEST(RegionLocator, Sphere) {
   EXPECT_EQ(locator.region_at({}), 1U);
 }
 
+// Gmsh lists the edges along which it cuts faces; without tags nothing tells them from those on curves.
+TEST(CheckPlacing, EdgesOnNoCurve) {
+  MeshedComplex m = meshed_box(3);
+  for (Plc::Curve& curve : m.plc.curves) curve.tag = 0;
+  TetMesh mesh = without_features(m.mesh);
+  for (Tag& tag : mesh.edge_tag) tag = 0;
+  const auto on_curve = mesh.edges;
+  const auto listed = [&](Index a, Index b) {
+    return std::any_of(on_curve.begin(), on_curve.end(),
+                       [&](const auto& e) { return (e[0] == a && e[1] == b) || (e[0] == b && e[1] == a); });
+  };
+  for (unsigned i = 0; i < 3; ++i) {
+    const auto& face = mesh.faces[4];
+    if (listed(face[i], face[(i + 1) % 3])) continue;
+    mesh.edges.push_back({face[i], face[(i + 1) % 3]});
+    mesh.edge_curve.push_back(none);
+    mesh.edge_tag.push_back(0);
+  }
+  ASSERT_GT(mesh.edges.size(), on_curve.size());
+  const CheckReport report = check(mesh, m.plc, {.distance = 0.05});
+  EXPECT_TRUE(report.passed()) << report.findings.front().message;
+  EXPECT_EQ(report.edges, on_curve.size());
+}
+
 TEST(RegionLocator, PlacesInThePlanesOfTheFacets) {
   const MeshedComplex m = meshed_two_boxes(1);
   const checks::RegionLocator locator(m.plc);

@@ -195,7 +195,7 @@ TEST(IoMsh, RefusesBadFiles) {
                  "line 46: an element has the node 41");
   expect_refused("a.msh", replaced(msh_41, "3 1 4 1\n", "3 1 5 1\n"), "line 45: elements of type 5");
   expect_refused("a.msh", msh_41.substr(0, msh_41.find("$EndElements")),
-                 "line 33: the section '$Elements' has no $EndElements");
+                 "line 33: the section '$Elements' has no '$EndElements'");
   expect_refused("a.msh", replaced(msh_22, "5 4 2 9 1 1 2 3 4", "5 4 2 9 1 1 2 3"), "line ");
   expect_refused("a.msh", replaced(msh_22, "4 0 0 1", "4 0 0 x"), "line 9: ");
   expect_refused("a.msh", msh_22.substr(0, msh_22.find("$Elements")), "expected tetrahedra, found none");

@@ -1,4 +1,6 @@
 // Labels for a mesh from a file whose own are not the complex', or that has none: from positions.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -25,6 +27,13 @@ bool are_known(const std::vector<Tag>& tags, const Features& features) {
   const auto count = std::count_if(
       tags.begin(), tags.end(), [&](Tag tag) { return std::binary_search(known.begin(), known.end(), tag); });
   return 2 * static_cast<std::size_t>(count) >= tags.size();
+}
+
+// Do the tags say more than that the entity lies on some feature?
+template <class Features>
+bool tell_apart(const Features& features) {
+  return std::any_of(features.begin(), features.end(),
+                     [&](const auto& feature) { return feature.tag != features.front().tag; });
 }
 
 // Three points that sides of tets and listed faces join.
@@ -92,6 +101,27 @@ class InnerPatches {
   std::vector<std::int8_t> near_;  // by mesh point: is it on one of them? -1: not asked yet
 };
 
+// The pieces of all curves, segments as flat triangles, and where on them they begin.
+struct CurveSegments {
+  explicit CurveSegments(const Plc& plc) : lengths(plc.curves.size(), 0) {
+    for (Index c = 0; c < plc.curves.size(); ++c) {
+      const auto& points = plc.curves[c].points;
+      for (std::size_t i = 0; i + 1 < points.size() + (plc.curves[c].closed ? 1 : 0); ++i) {
+        const Point &a = plc.points[points[i]], &b = plc.points[points[(i + 1) % points.size()]];
+        segments.push_back({a, b, b});
+        curve.push_back(c);
+        arc.push_back(lengths[c]);
+        lengths[c] += distance(a, b);
+      }
+    }
+  }
+
+  std::vector<DistanceTree::Triangle> segments;
+  std::vector<Index> curve;     // by segment
+  std::vector<double> arc;      // by segment: length of the curve up to it
+  std::vector<double> lengths;  // by curve
+};
+
 class Placement {
  public:
   Placement(const Subject& subject, CheckReport& report, Findings& findings)
@@ -108,8 +138,10 @@ class Placement {
   }
 
   std::optional<TetMesh> run() {
-    if (!lost_tets_ && !new_faces_ && !new_edges_) return std::nullopt;
+    const std::vector<bool> stray = new_edges_ ? std::vector<bool>{} : stray_edges();
+    if (!lost_tets_ && !new_faces_ && !new_edges_ && stray.empty()) return std::nullopt;
     mesh_ = subject_.mesh;
+    if (!stray.empty()) drop_edges(stray);
     if (lost_tets_ || new_faces_) {
       collect_sides();
       if (lost_tets_) place_tets();
@@ -125,6 +157,56 @@ class Placement {
   }
 
  private:
+  // Edges of tets that lie on no curve, where no tag says that they should: other programs list those along
+  // which they cut faces. Empty when there are none.
+  std::vector<bool> stray_edges() const {
+    const TetMesh& mesh = subject_.mesh;
+    if (mesh.edges.empty() || plc_.curves.empty() || tell_apart(plc_.curves)) return {};
+    const CurveSegments curves(plc_);
+    const DistanceTree tree(curves.segments);
+    std::vector<std::array<Index, 2>> off;
+    std::vector<bool> is_end(mesh.points.size(), false);
+    for (const auto& [a, b] : mesh.edges) {
+      const auto [distance, number] = tree.nearest(subject_.midpoint({a, b}));
+      if (distance <= subject_.curve_allowance[curves.curve[number]]) continue;
+      off.push_back(sorted(a, b));
+      is_end[a] = is_end[b] = true;
+    }
+    if (off.empty()) return {};
+    std::vector<std::array<Index, 2>> of_tets;
+    for (const auto& tet : mesh.tets)
+      for (unsigned i = 0; i < 4; ++i)
+        for (unsigned j = 0; j < i; ++j)
+          if (is_end[tet[i]] && is_end[tet[j]]) of_tets.push_back(sorted(tet[i], tet[j]));
+    std::sort(of_tets.begin(), of_tets.end());
+    std::sort(off.begin(), off.end());
+    std::vector<bool> stray(mesh.edges.size(), false);
+    bool any = false;
+    for (Index e = 0; e < mesh.edges.size(); ++e) {
+      const auto edge = sorted(mesh.edges[e][0], mesh.edges[e][1]);
+      stray[e] = std::binary_search(off.begin(), off.end(), edge) &&
+                 std::binary_search(of_tets.begin(), of_tets.end(), edge);
+      any = any || stray[e];
+    }
+    return any ? stray : std::vector<bool>{};
+  }
+
+  void drop_edges(const std::vector<bool>& dropped) {
+    report_.notes.push_back(fmt::format("{} listed edges lie on no edge of the input and were left out.",
+                                        std::count(dropped.begin(), dropped.end(), true)));
+    const auto keep = [&](auto& values) {
+      if (values.empty()) return;
+      std::size_t kept = 0;
+      for (std::size_t e = 0; e < dropped.size(); ++e)
+        if (!dropped[e]) values[kept++] = values[e];
+      values.resize(kept);
+    };
+    keep(mesh_.edges);
+    keep(mesh_.edge_curve);
+    keep(mesh_.edge_tag);
+    keep(mesh_.edge_mid_nodes);
+  }
+
   // Formats with room for one number have the region in place of its tag.
   bool has_region(Index tet) const {
     const Index region = subject_.mesh.tet_region[tet];
@@ -268,8 +350,8 @@ class Placement {
   void make_edges() {
     report_.notes.emplace_back(
         mesh_.edges.empty() ? "The mesh lists no edges: those on curves were found by position."
-                            : "The tags of the edges are none of the input's: those on curves were found by "
-                              "position.");
+                            : "The tags of the edges do not tell the input's curves: those on curves were "
+                              "found by position.");
     mesh_.edges.clear();
     mesh_.edge_mid_nodes.clear();
     mesh_.edge_curve.clear();
@@ -291,21 +373,8 @@ class Placement {
   }
 
   std::vector<std::vector<PlaceOnCurve>> points_on_curves() const {
-    std::vector<DistanceTree::Triangle> segments;
-    std::vector<Index> curve;
-    std::vector<double> arc, lengths(plc_.curves.size(), 0);
-    for (Index c = 0; c < plc_.curves.size(); ++c) {
-      const auto& points = plc_.curves[c].points;
-      for (std::size_t i = 0; i + 1 < points.size() + (plc_.curves[c].closed ? 1 : 0); ++i) {
-        const Point &a = plc_.points[points[i]], &b = plc_.points[points[(i + 1) % points.size()]];
-        segments.push_back({a, b, b});
-        curve.push_back(c);
-        arc.push_back(lengths[c]);
-        lengths[c] += distance(a, b);
-      }
-    }
-    const auto starts = segments;
-    const DistanceTree tree(std::move(segments));
+    const CurveSegments curves(plc_);
+    const DistanceTree tree(curves.segments);
     std::vector<std::vector<PlaceOnCurve>> chains(plc_.curves.size());
     const auto vertex_point = match_vertices(mesh_, plc_, subject_.rounding);
     std::vector<bool> is_vertex(mesh_.points.size(), false);
@@ -314,16 +383,17 @@ class Placement {
     for (const Index p : candidates()) {
       if (is_vertex[p]) continue;
       const auto [distance_to, number] = tree.nearest(subject_.point(p));
-      const Index c = curve[number];
+      const Index c = curves.curve[number];
       const double allowed = plc_.curves[c].straight ? subject_.curve_allowance[c] : subject_.rounding;
       if (distance_to <= allowed)
-        chains[c].push_back({arc[number] + distance(starts[number][0], subject_.point(p)), p});
+        chains[c].push_back(
+            {curves.arc[number] + distance(curves.segments[number][0], subject_.point(p)), p});
     }
     for (Index c = 0; c < chains.size(); ++c) {
       const auto& ends = plc_.curves[c].ends;
       for (const unsigned end : {0U, 1U})
         if (ends[end] != none && vertex_point[ends[end]] != none)
-          chains[c].push_back({end == 0 ? -1 : 2 * lengths[c] + 1, vertex_point[ends[end]]});
+          chains[c].push_back({end == 0 ? -1 : 2 * curves.lengths[c] + 1, vertex_point[ends[end]]});
     }
     return chains;
   }

@@ -34,7 +34,7 @@ std::vector<MshSection> split_msh(const std::string& path, std::string_view text
     const std::string end = fmt::format("$End{}", head.substr(1));
     const std::size_t stop = text.find(end, body);
     if (stop == std::string_view::npos)
-      fail(fmt::format("the section {} has no {}; the file is cut off", quoted(head), end));
+      fail(fmt::format("the section {} has no {}; the file is cut off", quoted(head), quoted(end)));
     sections.push_back({head.substr(1), text.substr(body, stop - body), line + 1, body});
     at = stop + end.size();
     line += count_lines(text.substr(start, at - start));

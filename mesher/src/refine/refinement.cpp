@@ -143,6 +143,7 @@ MeshStatus Refinement::run() {
   bool mending_collars = false;
   while (stop_ == MeshStatus::complete) {
     while (queue_.pop(item)) {
+      if (observer_ && item.priority > WorkQueue::skinny_cells) observer_();
       process(item);
       if (++steps_ % steps_between_reports == 0 && stopped()) return stop_;
     }

@@ -3,6 +3,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -42,6 +43,11 @@ class Refinement {
   MeshStatus run();
   /// After run() returned complete or guarantee_missed.
   TetMesh extract() const;
+
+  /// For tests: called whenever no skinny cell is left to destroy, before anything else goes in.
+  void observe_quality_phases(std::function<void()> observer) { observer_ = std::move(observer); }
+  const Triangulation& triangulation() const { return mesh_; }
+  bool in_collar(Index cell) const { return labels_[cell].in_collar; }
 
   const std::string& message() const { return message_; }
   Point where() const { return frame_.outside(where_); }
@@ -390,6 +396,7 @@ class Refinement {
   MeshStatus stop_ = MeshStatus::complete;
   std::uint64_t random_state_;
   std::size_t warps_ = 0, yields_ = 0;
+  std::function<void()> observer_;
   std::size_t steps_ = 0, peak_bytes_ = 0;
   std::chrono::steady_clock::time_point started_;
   double seconds_ = 0, reported_ = -1, fraction_ = 0;

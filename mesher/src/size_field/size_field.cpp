@@ -131,6 +131,9 @@ SizeField size_field_from_json(const std::string& text, const Plc& plc) {
     json = Json::parse(text);
   } catch (const Json::parse_error& error) {
     throw OptionError(fmt::format("size field: byte {}: this is no JSON", error.byte));
+  } catch (const Json::out_of_range&) {
+    throw OptionError(
+        "size field: a number is larger than any double; leave it out where no size is asked for");
   }
   allow_only(json, "the top", {"size", "sources"});
   const double everywhere = json.contains("size") ? positive(json, "the top", "size") : INFINITY;
@@ -139,6 +142,9 @@ SizeField size_field_from_json(const std::string& text, const Plc& plc) {
   if (!list.is_array()) fail("sources", "expected a list");
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string place = fmt::format("sources[{}]", i);
+    const auto shapes = {"ball", "box", "curves", "patches"};
+    if (std::count_if(shapes.begin(), shapes.end(), [&](const char* s) { return list[i].contains(s); }) > 1)
+      fail(place, "expected one of ball, box, curves, patches; make several sources of it");
     allow_only(list[i], place, {"ball", "box", "curves", "patches", "size", "growth"});
     const double growth = list[i].contains("growth") ? number(list[i], place, "growth", 0) : default_growth;
     sources.push_back({distance_of(list[i], place, plc), positive(list[i], place, "size"), growth});
