@@ -97,25 +97,34 @@ class Pipeline(unittest.TestCase):
         analysis = case.analysis
         load = sum(abs(reaction or 0) for reaction in case.reactions)
         try:
-            for order in ORDERS:
-                sizes = case.size * order, case.fine_size * order, case.critical
-                analysis.mesh(order, *sizes)
-                ours = analysis.solve()
-                self.look_up(analysis)
-                analysis.remove_mesh()
-                analysis.mesh_by_gmsh(order, *sizes)
-                gmsh = analysis.solve()
-                analysis.remove_mesh()
-                print(f"{make.__name__}, order {order}: {ours}, by Gmsh: {gmsh}", flush=True)
-                with self.subTest(order=order):
-                    for found, expected in zip(ours["reactions"], case.reactions):
-                        if expected is not None:
-                            self.assertLess(abs(found - expected), REACTION_TOLERANCE * load)
-                    off = {quantity: abs(ours[quantity] / gmsh[quantity] - 1) for quantity in ("displacement", "stress")}
-                    self.assertLess(off["displacement"], DISPLACEMENT_TOLERANCE)
-                    self.assertLess(off["stress"], STRESS_TOLERANCE)
+            results = {order: self.solve_both(case, order, load) for order in ORDERS}
+            print(f"{make.__name__}: {results}", flush=True)
+            best = results[max(ORDERS)][1]
+            for order, (ours, gmsh) in results.items():
+                for quantity, tolerance in (("displacement", DISPLACEMENT_TOLERANCE), ("stress", STRESS_TOLERANCE)):
+                    with self.subTest(order=order, quantity=quantity):
+                        # Where Gmsh's own result is farther from its best one, ours may differ from it by more.
+                        nearer = abs(ours[quantity] - best[quantity]) < abs(gmsh[quantity] - best[quantity])
+                        if order == max(ORDERS) or not nearer:
+                            self.assertLess(abs(ours[quantity] / gmsh[quantity] - 1), tolerance)
         finally:
             analysis.close()
+
+    def solve_both(self, case, order, load):
+        """With our mesh and with Gmsh's."""
+        analysis = case.analysis
+        sizes = case.size * order, case.fine_size * order, case.critical
+        analysis.mesh(order, *sizes)
+        ours = analysis.solve()
+        self.look_up(analysis)
+        analysis.remove_mesh()
+        for found, expected in zip(ours["reactions"], case.reactions):
+            if expected is not None:
+                self.assertLess(abs(found - expected), REACTION_TOLERANCE * load)
+        analysis.mesh_by_gmsh(order, *sizes)
+        gmsh = analysis.solve()
+        analysis.remove_mesh()
+        return ours, gmsh
 
     def look_up(self, analysis):
         """FEM's look-up finds just what the groups of the faces hold."""
