@@ -155,7 +155,7 @@ class TopologyCheck {
       findings_.add(
           guarantee::patch_manifold, subject_.point(point), {id_, point},
           "The faces of patch {} (tag {}) touch in point {} at {} without sharing an edge; the surface is "
-          "pinched there, use a smaller size.",
+          "pinched there, use a smaller distance or size.",
           id_, patch_.tag, point, At{subject_.point(point)});
     }
   }

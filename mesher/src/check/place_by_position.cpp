@@ -22,6 +22,7 @@ constexpr std::array<std::array<unsigned, 3>, 4> outward{{{1, 2, 3}, {0, 3, 2}, 
 template <class Features>
 bool are_known(const std::vector<Tag>& tags, const Features& features) {
   std::vector<Tag> known;
+  known.reserve(features.size());
   for (const auto& feature : features) known.push_back(feature.tag);
   std::sort(known.begin(), known.end());
   const auto count = std::count_if(
