@@ -194,7 +194,7 @@ TEST(Collar, CutTori) {
 
 TEST(Collar, RimsAndSheetsThatComeBack) {
   for (const double width : {0.5, 0.2, 0.1}) expect_right(acute::long_lens(40, width));
-  for (const double angle : {50.0, 20.0, 10.0}) expect_right(acute::drop_bar(angle));
+  for (const double angle : {50.0, 20.0, 10.0, 5.0, 3.0, 2.0}) expect_right(acute::drop_bar(angle));
 }
 
 bool has_finding(const TetMesh& mesh, const Plc& plc, const std::string& guarantee) {

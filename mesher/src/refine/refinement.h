@@ -237,6 +237,7 @@ class Refinement {
   bool check_surface();
   std::vector<bool> vertices_at_collars() const;
   bool check_patch_topology(const std::vector<FaceId>& faces);
+  bool open_pinches(const std::vector<FaceId>& faces);
   bool refine_distant_triangles(const std::vector<FaceId>& faces);
   void seed_missed_patch(Index patch);
   void prepare_tessellation();

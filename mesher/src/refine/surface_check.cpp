@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
+#include "common/disjoint_sets.h"
 #include "refine/refinement.h"
 
 namespace collarmesh {
@@ -16,9 +18,9 @@ constexpr std::size_t seeds_per_missed_patch = 8;
 
 // An edge of a patch's triangle, or of a curve that bounds the patch.
 struct EdgeUse {
-  std::uint64_t edge;   // its two mesh vertices
+  std::uint64_t edge;  // its two mesh vertices
   Index patch;
-  FaceId face;          // or the subsegment
+  FaceId face;  // or the subsegment
 
   friend bool operator<(const EdgeUse& a, const EdgeUse& b) {
     if (a.edge != b.edge) return a.edge < b.edge;
@@ -28,9 +30,7 @@ struct EdgeUse {
   bool same_place(const EdgeUse& other) const { return edge == other.edge && patch == other.patch; }
 };
 
-std::uint64_t edge_between(Index a, Index b) {
-  return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
-}
+std::uint64_t edge_between(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
 
 bool has_use(const std::vector<EdgeUse>& sorted, const EdgeUse& wanted) {
   const auto first = std::lower_bound(sorted.begin(), sorted.end(), EdgeUse{wanted.edge, wanted.patch, 0});
@@ -46,10 +46,12 @@ bool Refinement::check_surface() {
   found |= refine_distant_triangles(faces);
   found |= resolve_distant_points(faces);
   found |= check_flat_cells();
+  if (!found) found = open_pinches(faces);
   if (found && ++surface_rounds_ > most_rounds) {
-    give_up(mesh_.point(last_vertex()),
-            fmt::format("the surface did not settle in {} rounds of repairs; the last vertex is", most_rounds),
-            "raise distance, or try a smaller size or another seed");
+    give_up(
+        mesh_.point(last_vertex()),
+        fmt::format("the surface did not settle in {} rounds of repairs; the last vertex is", most_rounds),
+        "raise distance, or try a smaller size or another seed");
     return false;
   }
   return found;
@@ -70,8 +72,7 @@ std::vector<FaceId> Refinement::marked_faces() const {
 void Refinement::refine_triangle(FaceId face) {
   RestrictedTriangle& t = restricted(face);
   if (t.given_up) return;
-  queue_.push(WorkQueue::unresolved_triangles, t.squared_radius,
-              {face, mesh_.generation(cell_of(face))});
+  queue_.push(WorkQueue::unresolved_triangles, t.squared_radius, {face, mesh_.generation(cell_of(face))});
 }
 
 // Which mesh vertices belong to a cell inside the collars.
@@ -123,6 +124,56 @@ bool Refinement::check_patch_topology(const std::vector<FaceId>& faces) {
   return found;
 }
 
+// Two sheets of a smooth patch closer than the tolerance may share a vertex: the triangles there hang
+// together by more than one chain of edges. Precondition: every edge lies in at most two of a patch's
+// triangles.
+bool Refinement::open_pinches(const std::vector<FaceId>& faces) {
+  struct Side {
+    EdgeUse use;
+    Index low, high;  // the triangle's corners at the edge's ends, 3 * place in `smooth` + i
+    bool operator<(const Side& other) const { return use < other.use; }
+  };
+  std::vector<FaceId> smooth;
+  std::copy_if(faces.begin(), faces.end(), std::back_inserter(smooth),
+               [&](FaceId face) { return !plc_.patches[patch_of(restricted(face))].planar; });
+  std::vector<Side> sides;
+  sides.reserve(3 * smooth.size());
+  for (Index f = 0; f < smooth.size(); ++f) {
+    const auto v = mesh_.face_vertices(smooth[f]);
+    const Index patch = patch_of(restricted(smooth[f]));
+    for (unsigned i = 0; i < 3; ++i) {
+      unsigned a = i, b = (i + 1) % 3;
+      if (v[a] > v[b]) std::swap(a, b);
+      sides.push_back({{edge_between(v[a], v[b]), patch, smooth[f]}, 3 * f + a, 3 * f + b});
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  DisjointSets fans(3 * smooth.size());
+  for (std::size_t i = 1; i < sides.size(); ++i) {
+    if (!sides[i].use.same_place(sides[i - 1].use)) continue;
+    fans.unite(sides[i].low, sides[i - 1].low);
+    fans.unite(sides[i].high, sides[i - 1].high);
+  }
+  const std::vector<bool> at_collars = vertices_at_collars();
+  std::vector<Index> fan_at(mesh_.vertex_count(), none);
+  std::vector<bool> pinched(mesh_.vertex_count(), false);
+  for (Index corner = 0; corner < 3 * smooth.size(); ++corner) {
+    const Index v = mesh_.face_vertices(smooth[corner / 3])[corner % 3];
+    if (vertices_[v].dimension != 2 || at_collars[v]) continue;
+    const Index fan = fans.find(corner);
+    if (fan_at[v] == none) fan_at[v] = fan;
+    if (fan_at[v] != fan) pinched[v] = true;
+  }
+  bool found = false;
+  for (const FaceId face : smooth) {
+    const auto v = mesh_.face_vertices(face);
+    if (restricted(face).given_up || !(pinched[v[0]] || pinched[v[1]] || pinched[v[2]])) continue;
+    refine_triangle(face);
+    found = true;
+  }
+  return found;
+}
+
 // Triangles on smooth patches whose edges or middle leave the patch by more than the tolerance.
 bool Refinement::refine_distant_triangles(const std::vector<FaceId>& faces) {
   const double tolerance = distance_ * distance_;
@@ -133,10 +184,10 @@ bool Refinement::refine_distant_triangles(const std::vector<FaceId>& faces) {
     if (plc_.patches[patch].planar || t.in_collar || t.given_up || t.known_near) continue;
     const auto v = mesh_.face_vertices(face);
     const Point &a = mesh_.point(v[0]), &b = mesh_.point(v[1]), &c = mesh_.point(v[2]);
-    const std::array<Point, 10> samples{
-        (a + b + c) / 3, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a), (2 * a + b) / 3, (a + 2 * b) / 3,
-        (2 * b + c) / 3, (b + 2 * c) / 3, (2 * c + a) / 3, (c + 2 * a) / 3};
-    Index near = t.triangle;   // the next sample is often near the same triangle
+    const std::array<Point, 10> samples{(a + b + c) / 3, 0.5 * (a + b),   0.5 * (b + c),   0.5 * (c + a),
+                                        (2 * a + b) / 3, (a + 2 * b) / 3, (2 * b + c) / 3, (b + 2 * c) / 3,
+                                        (2 * c + a) / 3, (c + 2 * a) / 3};
+    Index near = t.triangle;  // the next sample is often near the same triangle
     t.known_near = std::all_of(samples.begin(), samples.end(), [&](const Point& p) {
       const auto corners = hierarchy_.corners(near);
       if (squared_distance_to_triangle(p, corners[0], corners[1], corners[2]) < tolerance) return true;
@@ -243,8 +294,8 @@ bool Refinement::flat_on_patch(Index cell) const {
 bool Refinement::check_flat_cells() {
   bool found = false;
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
-    if (!mesh_.alive(cell) || labels_[cell].region == 0 || labels_[cell].marked == 0 || labels_[cell].in_collar ||
-        !flat_on_patch(cell))
+    if (!mesh_.alive(cell) || labels_[cell].region == 0 || labels_[cell].marked == 0 ||
+        labels_[cell].in_collar || !flat_on_patch(cell))
       continue;
     for (unsigned corner = 0; corner < 4; ++corner) {
       if (!(labels_[cell].marked >> corner & 1U)) continue;
@@ -263,8 +314,8 @@ bool Refinement::check_flat_cells() {
 // Four cocircular vertices of a boundary facet can make a flat cell just inside: it belongs outside.
 void Refinement::relabel_flat_cells() {
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
-    if (!mesh_.alive(cell) || labels_[cell].region == 0 || labels_[cell].marked == 0 || labels_[cell].in_collar ||
-        !flat_on_patch(cell))
+    if (!mesh_.alive(cell) || labels_[cell].region == 0 || labels_[cell].marked == 0 ||
+        labels_[cell].in_collar || !flat_on_patch(cell))
       continue;
     RestrictedTriangle record;
     bool boundary = false;
