@@ -2,8 +2,9 @@
 
     run.py PROGRAM SCRIPT [--gui] [--addon FOLDER] [-- ARGUMENT]
 
-PROGRAM is the mesher, "" where the add-on is to find it; FOLDER is the add-on, by default that of the sources; with --gui the script runs in FreeCAD's window on a virtual screen. ARGUMENT reaches the
-script as COLLARMESH_TEST_ARGUMENT. Exit code: the script's; 77 (skipped) where FreeCAD is not installed.
+PROGRAM is the mesher, "" where the add-on is to find it; FOLDER is the add-on, by default that of the sources;
+with --gui the script runs in FreeCAD's window on a virtual screen. ARGUMENT reaches the script as
+COLLARMESH_TEST_ARGUMENT. Exit code: the script's; 77 (skipped) where FreeCAD is not installed.
 """
 
 import os

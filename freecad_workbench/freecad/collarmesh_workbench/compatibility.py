@@ -4,6 +4,22 @@ import FreeCAD
 import ObjectsFem
 
 
+class Stateless:
+    """A proxy of which nothing is saved. FreeCAD 0.20 calls the first two methods, later versions the others."""
+
+    def __getstate__(self):
+        return None
+
+    def __setstate__(self, _state):
+        return None
+
+    def dumps(self):
+        return None
+
+    def loads(self, _state):
+        return None
+
+
 def add_mesh_object(document, name):
     """An empty mesh object with a Python proxy. FreeCAD 1.0 has a base that knows the meshed shape."""
     try:

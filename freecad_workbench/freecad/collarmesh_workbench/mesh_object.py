@@ -27,7 +27,7 @@ TINY = 0.01  # of the target edge length: edges that hardly anybody means
 REFINEMENTS = {"Solid": "solid_sizes", "Face": "face_sizes", "Edge": "edge_sizes"}
 
 
-class MeshProxy:
+class MeshProxy(compatibility.Stateless):
     """The Python side of the object. `Type` is what FEM's tools ask for."""
 
     Type = "Fem::FemMeshCollarmesh"
@@ -38,19 +38,6 @@ class MeshProxy:
 
     def onDocumentRestored(self, obj):
         add_properties(obj)
-
-    # FreeCAD 0.20 calls the first two, later versions the others.
-    def __getstate__(self):
-        return None
-
-    def __setstate__(self, _state):
-        return None
-
-    def dumps(self):
-        return None
-
-    def loads(self, _state):
-        return None
 
 
 def is_ours(obj):

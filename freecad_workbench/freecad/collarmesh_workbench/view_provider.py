@@ -4,10 +4,12 @@ import os
 
 import FreeCADGui
 
+from . import compatibility
+
 ICON = os.path.join(os.path.dirname(__file__), "icons", "collarmesh.svg")
 
 
-class MeshViewProvider:
+class MeshViewProvider(compatibility.Stateless):
     def __init__(self, view):
         view.Proxy = self
 
@@ -39,16 +41,3 @@ class MeshViewProvider:
         if not document.getInEdit():
             document.setEdit(view.Object.Name)
         return True
-
-    # FreeCAD 0.20 calls the first two, later versions the others.
-    def __getstate__(self):
-        return None
-
-    def __setstate__(self, _state):
-        return None
-
-    def dumps(self):
-        return None
-
-    def loads(self, _state):
-        return None

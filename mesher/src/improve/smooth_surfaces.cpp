@@ -31,12 +31,7 @@ SmoothSurfaces::Triangle SmoothSurfaces::corners(Index face) const {
 
 const TriangleHierarchy& SmoothSurfaces::surface(Index patch) {
   if (surfaces_[patch]) return *surfaces_[patch];
-  const Plc::Patch& p = plc_.patches[patch];
-  std::vector<std::array<Index, 3>> triangles;
-  triangles.reserve(p.triangle_count);
-  for (Index t = p.first_triangle; t < p.first_triangle + p.triangle_count; ++t)
-    triangles.push_back(plc_.triangles[t].points);
-  surfaces_[patch] = std::make_unique<TriangleHierarchy>(plc_.points, std::move(triangles));
+  surfaces_[patch] = hierarchy_of_patch(plc_, patch);
   share_out(patch);
   return *surfaces_[patch];
 }

@@ -95,9 +95,10 @@ PolygonSoup read_obj(const std::string& path) {
   Elements elements;
   while (!scan.at_end()) {
     const std::string_view keyword = scan.word("a keyword");
-    if (keyword == "v")
+    if (keyword == "v") {
       soup.points.push_back(scan.point("a coordinate of a vertex"));
-    else if (keyword == "f" || keyword == "l")
+      while (!end_of_statement(scan)) scan.number("a weight or colour of a vertex");
+    } else if (keyword == "f" || keyword == "l")
       read_element(scan, keyword == "f", soup.points.size(), elements);
     else if (keyword == "g" && !scan.at_line_end())
       elements.tag = tag_of_group_name(2, scan.word("a group")).value_or(0);

@@ -155,4 +155,13 @@ std::size_t TriangleHierarchy::bytes() const {
   return nodes_.capacity() * sizeof(Node) + triangles_.capacity() * sizeof(triangles_[0]);
 }
 
+std::unique_ptr<TriangleHierarchy> hierarchy_of_patch(const Plc& plc, Index patch) {
+  const Plc::Patch& p = plc.patches[patch];
+  std::vector<std::array<Index, 3>> triangles;
+  triangles.reserve(p.triangle_count);
+  for (Index t = p.first_triangle; t < p.first_triangle + p.triangle_count; ++t)
+    triangles.push_back(plc.triangles[t].points);
+  return std::make_unique<TriangleHierarchy>(plc.points, std::move(triangles));
+}
+
 }  // namespace collarmesh

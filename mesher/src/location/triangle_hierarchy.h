@@ -2,10 +2,12 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "collarmesh/geometry.h"
+#include "collarmesh/plc.h"
 #include "location/centred_box.h"
 
 namespace collarmesh {
@@ -36,8 +38,7 @@ class TriangleHierarchy {
   /// does not exceed `extent`. Precondition: the nodes of `from` cover every triangle that meets it.
   /// Conservative: a node found may hold no triangle that meets the box.
   /// Cost: linear in the nodes found plus the levels between them and `from`.
-  void nodes_meeting(const Box& box, double extent, std::span<const Index> from,
-                     std::vector<Index>& found);
+  void nodes_meeting(const Box& box, double extent, std::span<const Index> from, std::vector<Index>& found);
 
   /// Replace `found` by the triangles below `nodes` that the segment pq crosses. Exact; ties are
   /// broken by moving the segment by (e, e^2, e^3) for an infinitesimal e, so that a closed surface
@@ -50,14 +51,12 @@ class TriangleHierarchy {
 
   /// Squared distance from p to the nearest triangle, if below `bound` (else `bound`, and `nearest`
   /// is left alone).
-  double squared_distance_to(const Point& p, double bound = INFINITY,
-                             Index* nearest = nullptr) const {
+  double squared_distance_to(const Point& p, double bound = INFINITY, Index* nearest = nullptr) const {
     return squared_distance_to(p, bound, nearest, [](Index) { return true; });
   }
   /// The same among the triangles that `counts` accepts.
   template <class Counts>
-  double squared_distance_to(const Point& p, double bound, Index* nearest,
-                             const Counts& counts) const;
+  double squared_distance_to(const Point& p, double bound, Index* nearest, const Counts& counts) const;
 
   /// Some triangle that `counts` accepts and whose squared distance from p is below `bound`; none if
   /// there is no such triangle.
@@ -69,9 +68,9 @@ class TriangleHierarchy {
  private:
   struct Node {
     CentredBox box;
-    double extent;         // longest side of the box
+    double extent;  // longest side of the box
     Index parent;
-    Index left, right;     // a leaf has left == none and its triangle in right
+    Index left, right;  // a leaf has left == none and its triangle in right
     std::uint32_t stamp, seed_stamp;
   };
 
@@ -84,6 +83,9 @@ class TriangleHierarchy {
   std::vector<Node> nodes_;
   std::uint32_t stamp_ = 0;
 };
+
+/// Over the triangles of one patch. The complex' points are kept by reference.
+std::unique_ptr<TriangleHierarchy> hierarchy_of_patch(const Plc& plc, Index patch);
 
 /// Squared distance from p to the triangle abc, which may be degenerate.
 double squared_distance_to_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
@@ -119,8 +121,8 @@ double TriangleHierarchy::squared_distance_to(const Point& p, double bound, Inde
       if (nearest != nullptr) *nearest = node.right;
       continue;
     }
-    const bool left_first = nodes_[node.left].box.squared_distance(p) <
-                            nodes_[node.right].box.squared_distance(p);
+    const bool left_first =
+        nodes_[node.left].box.squared_distance(p) < nodes_[node.right].box.squared_distance(p);
     stack[top++] = left_first ? node.right : node.left;
     stack[top++] = left_first ? node.left : node.right;
   }
@@ -142,8 +144,7 @@ Index TriangleHierarchy::triangle_within(const Point& p, double bound, const Cou
       continue;
     }
     const auto t = corners(node.right);
-    if (counts(node.right) && squared_distance_to_triangle(p, t[0], t[1], t[2]) < bound)
-      return node.right;
+    if (counts(node.right) && squared_distance_to_triangle(p, t[0], t[1], t[2]) < bound) return node.right;
   }
   return none;
 }

@@ -23,13 +23,7 @@ const TriangleHierarchy& NearestOnFeatures::curve(Index id) {
 }
 
 const TriangleHierarchy& NearestOnFeatures::patch(Index id) {
-  if (patches_[id]) return *patches_[id];
-  const Plc::Patch& patch = plc_.patches[id];
-  std::vector<std::array<Index, 3>> triangles;
-  triangles.reserve(patch.triangle_count);
-  for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t)
-    triangles.push_back(plc_.triangles[t].points);
-  patches_[id] = std::make_unique<TriangleHierarchy>(plc_.points, std::move(triangles));
+  if (!patches_[id]) patches_[id] = hierarchy_of_patch(plc_, id);
   return *patches_[id];
 }
 
