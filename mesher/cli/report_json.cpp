@@ -105,6 +105,7 @@ Json improvement_json(const ImproveReport& r) {
           {"edge_removals", r.edge_removals},
           {"boundary_flips", r.boundary_flips},
           {"moved_vertices", r.moved_vertices},
+          {"contracted_edges", r.contracted_edges},
           {"inserted_vertices", r.inserted_vertices},
           {"seconds", r.seconds}};
 }

@@ -24,7 +24,8 @@ ImproveOptions improve_options(unsigned level);
 struct ImproveReport {
   std::size_t candidates = 0;  ///< tets below the bound before
   std::size_t remaining = 0;   ///< and after
-  std::size_t edge_removals = 0, boundary_flips = 0, moved_vertices = 0, inserted_vertices = 0;
+  std::size_t edge_removals = 0, boundary_flips = 0, moved_vertices = 0, contracted_edges = 0,
+              inserted_vertices = 0;
   double seconds = 0;
   bool cancelled = false;      ///< the mesh is valid, as good as it had become
 };

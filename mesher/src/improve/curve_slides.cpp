@@ -104,6 +104,20 @@ bool CurveSlides::fits(Index vertex, double way) {
          edge_fits(curve, place.parameter + way, before - way, at, mesh_.points[place.neighbours[1]]);
 }
 
+bool CurveSlides::may_skip(Index vertex) {
+  const auto [before, after] = places_[vertex].neighbours;
+  if (before == after) return false;
+  const double behind = way_to_neighbour(vertex, 0), ahead = way_to_neighbour(vertex, 1);
+  return edge_fits(mesh_.features[vertex].feature, places_[vertex].parameter - behind, behind + ahead,
+                   mesh_.points[before], mesh_.points[after]);
+}
+
+void CurveSlides::skipped(Index vertex) {
+  const auto [before, after] = places_[vertex].neighbours;
+  if (mesh_.features[before].dimension == 1) places_[before].neighbours[1] = after;
+  if (mesh_.features[after].dimension == 1) places_[after].neighbours[0] = before;
+}
+
 // The edge ab and the part of a curve that starts at `from` and is `way` long.
 bool CurveSlides::edge_fits(Index curve, double from, double way, const Point& a, const Point& b) {
   const auto& lengths = paths_.lengths(curve);

@@ -28,6 +28,12 @@ class CurveSlides {
   bool fits(Index vertex, double way);
   /// It was.
   void moved(Index vertex, double way) { places_[vertex].parameter += way; }
+  /// The mesh vertices before and after it. Precondition: it is movable.
+  const std::array<Index, 2>& neighbours(Index vertex) const { return places_[vertex].neighbours; }
+  /// Could one edge join its neighbours?
+  bool may_skip(Index vertex);
+  /// One does.
+  void skipped(Index vertex);
 
  private:
   struct Place {

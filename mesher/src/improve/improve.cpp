@@ -60,7 +60,7 @@ class Improvement {
 
   std::size_t changes() const {
     return report_.edge_removals + report_.boundary_flips + report_.moved_vertices +
-           report_.inserted_vertices;
+           report_.inserted_vertices + report_.contracted_edges;
   }
 
   std::size_t count_remaining() const {
@@ -98,43 +98,42 @@ class Improvement {
             !execution_.progress({"improve", 0, complex_.mesh().points.size(), complex_.size()}));
   }
 
+  // The first of: an edge removed, corners moved, an edge contracted, a vertex inserted.
   void help(Index tet) {
     Change change;
     for (unsigned i = 0; i < 4; ++i)
       for (unsigned j = i + 1; j < 4; ++j) operations_.remove_edge(tet, i, j, change);
-    if (change.kind != Change::Kind::none) {
-      apply(change);
-      return;
-    }
-    if (!move_vertices_) return;
+    if (apply(change) || !move_vertices_) return;
     const auto corners = complex_[tet].corners;
     bool moved = false;
     for (const Index v : corners) {
-      if (!operations_.move_vertex(v)) continue;
-      moved = true;
-      ++report_.moved_vertices;
-      for (const Index t : operations_.star()) queue(t);
+      change = {};
+      operations_.move_vertex(v, change);
+      moved |= apply(change);
     }
-    for (unsigned i = 0; i < 4 && !moved; ++i)
-      for (unsigned j = i + 1; j < 4 && !moved; ++j) moved = insert_amid(corners[i], corners[j]);
+    if (moved) return;
+    for (const Index v : corners)
+      for (const Index w : corners)
+        if (v != w) operations_.contract_edge(v, w, change);
+    if (apply(change) || report_.inserted_vertices >= report_.candidates) return;
+    for (unsigned i = 0; i < 4; ++i)
+      for (unsigned j = i + 1; j < 4; ++j) {
+        operations_.split_edge(corners[i], corners[j], enough * wanted_, change);
+        if (apply(change)) return;
+      }
   }
 
-  bool insert_amid(Index a, Index b) {
-    if (report_.inserted_vertices >= report_.candidates) return false;
-    if (!operations_.split_edge(a, b, enough * wanted_)) return false;
-    ++report_.inserted_vertices;
-    for (const Index t : operations_.star()) queue(t);
-    return true;
-  }
-
-  void apply(const Change& change) {
+  bool apply(const Change& change) {
     switch (change.kind) {
+      case Change::Kind::none: return false;
       case Change::Kind::edge_removal: ++report_.edge_removals; break;
       case Change::Kind::boundary_flip: ++report_.boundary_flips; break;
-      case Change::Kind::none: return;
+      case Change::Kind::move: ++report_.moved_vertices; break;
+      case Change::Kind::insertion: ++report_.inserted_vertices; break;
+      case Change::Kind::contraction: ++report_.contracted_edges; break;
     }
-    for (const Index t : complex_.replace(change.old, change.created, change.kept)) queue(t);
-    operations_.made(change);
+    for (const Index t : operations_.apply(change)) queue(t);
+    return true;
   }
 
   TetComplex complex_;

@@ -55,6 +55,7 @@ void SmoothSurfaces::share_out(Index patch) {
     next_sample_.push_back(first_sample_[faces[nearest]]);
     first_sample_[faces[nearest]] = static_cast<Index>(samples_.size());
     samples_.push_back(p);
+    sample_patch_.push_back(patch);
   };
   const Plc::Patch& p = plc_.patches[patch];
   std::vector<Index> points;
@@ -123,57 +124,56 @@ double SmoothSurfaces::worst_agreement(std::span<const Index> faces) {
   return worst;
 }
 
-bool SmoothSurfaces::fit(std::span<const Index> faces, std::span<const Triangle> created) {
+bool SmoothSurfaces::fit(std::span<const Index> old, std::span<const Face> created) {
   double least = 1;
-  near_.assign(faces.size(), none);
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    if (!smooth(faces[i])) continue;
-    const Index patch = mesh_.face_patch[faces[i]];
-    const bool same = i > 0 && mesh_.face_patch[faces[i - 1]] == patch;
-    near_[i] = triangle_near(patch, centre(created[i]), same ? near_[i - 1] : none);
+  near_.assign(created.size(), none);
+  const auto is_planar = [&](const Face& face) {
+    return face.patch == none || plc_.patches[face.patch].planar;
+  };
+  for (std::size_t i = 0; i < created.size(); ++i) {
+    const auto& [corners, patch] = created[i];
+    if (is_planar(created[i])) continue;
+    const bool same = i > 0 && created[i - 1].patch == patch;
+    near_[i] = triangle_near(patch, centre(corners), same ? near_[i - 1] : none);
     if (near_[i] == none) return false;
-    least = std::min(least, agreement(patch, created[i], near_[i]));
-    if (least < enough_agreement && least < worst_agreement(faces)) return false;
-    for (Index s = first_sample_[faces[i]]; s != none; s = next_sample_[s]) {
-      bool covered = false;
-      for (std::size_t k = 0; k < faces.size() && !covered; ++k)
-        covered = mesh_.face_patch[faces[k]] == patch &&
-                  squared_distance_to(samples_[s], created[k]) < squared_distance_;
-      if (!covered) return false;
-    }
+    least = std::min(least, agreement(patch, corners, near_[i]));
+    if (least < enough_agreement && least < worst_agreement(old)) return false;
   }
-  for (std::size_t i = 0; i < faces.size(); ++i)
-    if (smooth(faces[i]) && !edges_near(mesh_.face_patch[faces[i]], created[i], near_[i])) return false;
+  for (const Index face : old) {
+    if (!smooth(face)) continue;
+    for (Index s = first_sample(face); s != none; s = next_sample_[s])
+      if (std::none_of(created.begin(), created.end(), [&](const Face& t) {
+            return t.patch == mesh_.face_patch[face] &&
+                   squared_distance_to(samples_[s], t.corners) < squared_distance_;
+          }))
+        return false;
+  }
+  for (std::size_t i = 0; i < created.size(); ++i)
+    if (!is_planar(created[i]) && !edges_near(created[i].patch, created[i].corners, near_[i])) return false;
   return true;
 }
 
-void SmoothSurfaces::replaced(std::span<const Index> faces) {
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    if (!smooth(faces[i])) continue;
-    const Index patch = mesh_.face_patch[faces[i]];
-    bool done = false;
-    for (std::size_t k = 0; k < i && !done; ++k) done = mesh_.face_patch[faces[k]] == patch;
-    if (done) continue;
-    moving_.clear();
-    for (const Index face : faces) {
-      if (mesh_.face_patch[face] != patch) continue;
-      for (Index s = first_sample_[face]; s != none; s = next_sample_[s]) moving_.push_back(s);
-      first_sample_[face] = none;
-    }
-    for (const Index s : moving_) {
-      Index nearest = none;
-      double least = INFINITY;
-      for (const Index face : faces) {
-        if (mesh_.face_patch[face] != patch) continue;
-        const double d = squared_distance_to(samples_[s], corners(face));
-        if (d < least) {
-          least = d;
-          nearest = face;
-        }
+void SmoothSurfaces::replaced(std::span<const Index> old, std::span<const Index> created) {
+  moving_.clear();
+  for (const Index face : old) {
+    if (face >= first_sample_.size()) continue;
+    for (Index s = first_sample_[face]; s != none; s = next_sample_[s]) moving_.push_back(s);
+    first_sample_[face] = none;
+  }
+  if (!moving_.empty()) first_sample_.resize(mesh_.faces.size(), none);
+  for (const Index s : moving_) {
+    Index nearest = none;
+    double least = INFINITY;
+    for (const Index face : created) {
+      if (mesh_.face_patch[face] != sample_patch_[s]) continue;
+      const double d = squared_distance_to(samples_[s], corners(face));
+      if (d < least) {
+        least = d;
+        nearest = face;
       }
-      next_sample_[s] = first_sample_[nearest];
-      first_sample_[nearest] = s;
     }
+    next_sample_[s] = first_sample_[nearest];
+    first_sample_[nearest] = s;
   }
 }
 

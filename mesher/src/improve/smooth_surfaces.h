@@ -28,11 +28,15 @@ class SmoothSurfaces {
   };
   /// The point of a smooth patch that is nearest to p. Faster when a point of it is known to be near.
   Nearest nearest(Index patch, const Point& p, double near = INFINITY);
-  /// Could faces[i], for every i, have the corners created[i], turned like the patch as far as they are now?
+  struct Face {
+    Triangle corners;
+    Index patch;
+  };
+  /// Could these take the place of the mesh' faces `old`, turned like the patch as far as they are now?
   /// Faces on planar patches count for nothing.
-  bool fit(std::span<const Index> faces, std::span<const Triangle> created);
-  /// They have these corners now.
-  void replaced(std::span<const Index> faces);
+  bool fit(std::span<const Index> old, std::span<const Face> created);
+  /// These of the mesh' faces were replaced by those; some may be the same, with other corners.
+  void replaced(std::span<const Index> old, std::span<const Index> created);
 
  private:
   const TriangleHierarchy& surface(Index patch);
@@ -43,14 +47,16 @@ class SmoothSurfaces {
   double agreement(Index patch, const Triangle& t, Index triangle);
   double worst_agreement(std::span<const Index> faces);
   Triangle corners(Index face) const;
+  Index first_sample(Index face) const { return face < first_sample_.size() ? first_sample_[face] : none; }
 
   const Plc& plc_;
   const TetMesh& mesh_;
   double squared_distance_;
   std::vector<std::unique_ptr<TriangleHierarchy>> surfaces_;  // made when first asked for
   std::vector<Point> samples_;                                // of the patches looked at so far
-  std::vector<Index> next_sample_;                            // of the same face
-  std::vector<Index> first_sample_;                           // of every face
+  std::vector<Index> sample_patch_;
+  std::vector<Index> next_sample_;   // of the same face
+  std::vector<Index> first_sample_;  // of every face
   std::vector<Index> moving_;
   std::vector<Index> near_;  // a triangle near the centre of each face that is created
 };

@@ -14,7 +14,9 @@ std::array<Index, 3> sorted(std::array<Index, 3> face) {
   return face;
 }
 
-std::uint64_t edge_key(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
+// What is gone, until `store`.
+constexpr std::array<Index, 3> lost_face{none, none, none};
+constexpr std::array<Index, 2> lost_edge{none, none};
 
 }  // namespace
 
@@ -34,8 +36,8 @@ TetComplex::TetComplex(TetMesh& mesh) : mesh_(mesh) {
   }
   stamps_.assign(tets_.size(), 0);
   link_all();
-  for (const auto& edge : mesh.edges) curve_edges_.push_back(edge_key(edge[0], edge[1]));
-  std::sort(curve_edges_.begin(), curve_edges_.end());
+  for (Index e = 0; e < mesh.edges.size(); ++e)
+    curve_edges_.emplace(edge_key(mesh.edges[e][0], mesh.edges[e][1]), e);
 }
 
 // Faces are matched in the list of their first vertex.
@@ -83,10 +85,6 @@ void TetComplex::link_all() {
 std::array<Point, 4> TetComplex::corners(Index tet) const {
   const auto& v = tets_[tet].corners;
   return {mesh_.points[v[0]], mesh_.points[v[1]], mesh_.points[v[2]], mesh_.points[v[3]]};
-}
-
-bool TetComplex::on_curve(Index a, Index b) const {
-  return std::binary_search(curve_edges_.begin(), curve_edges_.end(), edge_key(a, b));
 }
 
 void TetComplex::star(Index vertex, std::vector<Index>& found) {
@@ -147,9 +145,9 @@ unsigned TetComplex::corner_across(Index tet, const std::array<Index, 3>& sorted
   return 0;
 }
 
-Index TetComplex::add_vertex(const Point& p) {
+Index TetComplex::add_vertex(const Point& p, const TetMesh::VertexFeature& feature) {
   mesh_.points.push_back(p);
-  mesh_.features.push_back({});
+  mesh_.features.push_back(feature);
   vertex_tet_.push_back(none);
   return static_cast<Index>(mesh_.points.size() - 1);
 }
@@ -174,8 +172,8 @@ bool TetComplex::on_faces(Index a, Index b) {
   return false;
 }
 
-std::span<const Index> TetComplex::replace(std::span<const Index> old, std::span<const NewTet> created,
-                                           std::span<const Face> kept) {
+std::span<const Index> TetComplex::replace(const Replacement& replacement) {
+  const auto& [old, created, old_faces, created_faces] = replacement;
   open_.clear();
   ++stamp_;
   for (const Index t : old) stamps_[t] = stamp_;
@@ -188,7 +186,13 @@ std::span<const Index> TetComplex::replace(std::span<const Index> old, std::span
     }
   tags_.clear();
   for (const NewTet& tet : created) tags_.emplace_back(tets_[tet.like].region, origin_[tet.like]);
+  cavity_vertices_.clear();
   for (const Index t : old) {
+    for (const Index v : tets_[t].corners) {
+      if (vertex_tet_[v] == none) continue;
+      vertex_tet_[v] = none;
+      cavity_vertices_.push_back(v);
+    }
     tets_[t].alive = false;
     ++tets_[t].generation;
     free_.push_back(t);
@@ -232,20 +236,68 @@ std::span<const Index> TetComplex::replace(std::span<const Index> old, std::span
     tets_[open.tet].neighbours[open.corner] = none;
     for (const Index v : open.key) vertex_tet_[v] = open.tet;
   }
-  for (const Face& face : kept) {
-    mesh_.faces[face.face] = face.corners;
-    const auto key = sorted(face.corners);
-    for (const OpenFace& open : open_)
-      if (open.tet != none && open.key == key) tets_[open.tet].faces[open.corner] = face.face;
-    for (const Index t : created_)
-      for (unsigned corner = 0; corner < 4; ++corner) {
-        if (sorted(face_corners(tets_[t].corners, corner)) != key) continue;
-        tets_[t].faces[corner] = face.face;
-        const Index other = tets_[t].neighbours[corner];
-        if (other != none) tets_[other].faces[corner_across(other, key)] = face.face;
-      }
-  }
+  for (const Index v : cavity_vertices_)
+    if (vertex_tet_[v] == none) lost_vertices_.push_back(v);
+  make_faces(replacement);
   return created_;
+}
+
+void TetComplex::make_faces(const Replacement& replacement) {
+  created_faces_.clear();
+  face_tags_.clear();
+  for (const NewFace& face : replacement.created_faces)
+    face_tags_.push_back(
+        {mesh_.face_patch[face.like], mesh_.face_tag[face.like], mesh_.face_regions[face.like]});
+  for (const Index face : replacement.old_faces) {
+    mesh_.faces[face] = lost_face;
+    mesh_.face_patch[face] = none;
+    free_faces_.push_back(face);
+  }
+  for (std::size_t i = 0; i < replacement.created_faces.size(); ++i) {
+    Index face = static_cast<Index>(mesh_.faces.size());
+    if (free_faces_.empty()) {
+      mesh_.faces.push_back({});
+      mesh_.face_patch.push_back(none);
+      mesh_.face_tag.push_back(0);
+      mesh_.face_regions.push_back({});
+    } else {
+      face = free_faces_.back();
+      free_faces_.pop_back();
+    }
+    mesh_.faces[face] = replacement.created_faces[i].corners;
+    mesh_.face_patch[face] = face_tags_[i].patch;
+    mesh_.face_tag[face] = face_tags_[i].tag;
+    mesh_.face_regions[face] = face_tags_[i].regions;
+    set_face(mesh_.faces[face], face);
+    created_faces_.push_back(face);
+  }
+}
+
+// Tell the tets at a face of the last cavity what it is among the mesh' faces.
+void TetComplex::set_face(const std::array<Index, 3>& corners, Index face) {
+  const auto key = sorted(corners);
+  for (const OpenFace& open : open_)
+    if (open.tet != none && open.key == key) tets_[open.tet].faces[open.corner] = face;
+  for (const Index t : created_)
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      if (sorted(face_corners(tets_[t].corners, corner)) != key) continue;
+      tets_[t].faces[corner] = face;
+      const Index other = tets_[t].neighbours[corner];
+      if (other != none) tets_[other].faces[corner_across(other, key)] = face;
+    }
+}
+
+void TetComplex::join_curve_edges(Index before, Index vertex, Index after) {
+  const auto first = curve_edges_.find(edge_key(before, vertex)),
+             second = curve_edges_.find(edge_key(vertex, after));
+  const Index kept = first->second, gone = second->second;
+  // The edge keeps its direction.
+  for (Index& end : mesh_.edges[kept])
+    if (end == vertex) end = after;
+  mesh_.edges[gone] = lost_edge;
+  curve_edges_.erase(edge_key(before, vertex));
+  curve_edges_.erase(edge_key(vertex, after));
+  curve_edges_.emplace(edge_key(before, after), kept);
 }
 
 void TetComplex::store() {
@@ -263,6 +315,61 @@ void TetComplex::store() {
   mesh_.tet_tag = std::move(stored.tet_tag);
   mesh_.tet_collar = std::move(stored.tet_collar);
   mesh_.tet_crease = std::move(stored.tet_crease);
+  drop_lost_faces_and_edges();
+  drop_lost_vertices();
+}
+
+void TetComplex::drop_lost_faces_and_edges() {
+  Index kept = 0;
+  for (Index f = 0; f < mesh_.faces.size(); ++f) {
+    if (mesh_.faces[f] == lost_face) continue;
+    mesh_.faces[kept] = mesh_.faces[f];
+    mesh_.face_patch[kept] = mesh_.face_patch[f];
+    mesh_.face_tag[kept] = mesh_.face_tag[f];
+    mesh_.face_regions[kept++] = mesh_.face_regions[f];
+  }
+  mesh_.faces.resize(kept);
+  mesh_.face_patch.resize(kept);
+  mesh_.face_tag.resize(kept);
+  mesh_.face_regions.resize(kept);
+  kept = 0;
+  for (Index e = 0; e < mesh_.edges.size(); ++e) {
+    if (mesh_.edges[e] == lost_edge) continue;
+    mesh_.edges[kept] = mesh_.edges[e];
+    mesh_.edge_curve[kept] = mesh_.edge_curve[e];
+    mesh_.edge_tag[kept++] = mesh_.edge_tag[e];
+  }
+  mesh_.edges.resize(kept);
+  mesh_.edge_curve.resize(kept);
+  mesh_.edge_tag.resize(kept);
+}
+
+void TetComplex::drop_lost_vertices() {
+  if (lost_vertices_.empty()) return;
+  std::sort(lost_vertices_.begin(), lost_vertices_.end());
+  std::vector<Index> number(mesh_.points.size());
+  Index kept = 0;
+  auto lost = lost_vertices_.begin();
+  for (Index v = 0; v < mesh_.points.size(); ++v) {
+    if (lost != lost_vertices_.end() && *lost == v) {
+      ++lost;
+      continue;
+    }
+    mesh_.points[kept] = mesh_.points[v];
+    mesh_.features[kept] = mesh_.features[v];
+    number[v] = kept++;
+  }
+  mesh_.points.resize(kept);
+  mesh_.features.resize(kept);
+  const auto renumber = [&](auto& cells) {
+    for (auto& cell : cells)
+      for (Index& v : cell) v = number[v];
+  };
+  renumber(mesh_.tets);
+  renumber(mesh_.faces);
+  renumber(mesh_.edges);
+  for (TetMesh::CollarBall& ball : mesh_.collar_balls) ball.point = number[ball.point];
+  lost_vertices_.clear();
 }
 
 }  // namespace collarmesh::improvement

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -22,14 +24,21 @@ class TetComplex {
     std::uint32_t generation;
     bool alive, collar;
   };
-  /// A face and what it is among the mesh' faces.
-  struct Face {
-    std::array<Index, 3> corners;
-    Index face;
-  };
   struct NewTet {
     std::array<Index, 4> corners;
     Index like;  ///< a tet of the cavity whose region and tags it takes
+  };
+  struct NewFace {
+    std::array<Index, 3> corners;
+    Index like;  ///< one of the mesh' faces whose patch, regions and tag it takes
+  };
+  /// Tets that take the place of others and fill the same cavity, or less of it at a boundary, with the
+  /// mesh' faces inside the cavity or on its border that change.
+  struct Replacement {
+    std::vector<Index> old;
+    std::vector<NewTet> created;
+    std::vector<Index> old_faces;
+    std::vector<NewFace> created_faces;
   };
   /// The tets around an edge ab in order: tet i has the corners a, b, link[i], link[i + 1] and positive
   /// volume. Closed: the last link vertex is followed by the first; open: at a boundary.
@@ -38,6 +47,7 @@ class TetComplex {
     bool closed;
   };
 
+  /// Keeps the mesh, whose tets are out of date until `store`.
   explicit TetComplex(TetMesh& mesh);
 
   Index size() const { return static_cast<Index>(tets_.size()); }
@@ -45,7 +55,7 @@ class TetComplex {
   TetMesh& mesh() { return mesh_; }
   const TetMesh& mesh() const { return mesh_; }
   std::array<Point, 4> corners(Index tet) const;
-  bool on_curve(Index a, Index b) const;
+  bool on_curve(Index a, Index b) const { return curve_edges_.contains(edge_key(a, b)); }
   /// Is the edge ab one of a mesh' face?
   bool on_faces(Index a, Index b);
 
@@ -56,15 +66,16 @@ class TetComplex {
   /// Replace `ring` by the ring of the edge ab of a tet.
   void ring(Index tet, Index a, Index b, Ring& ring) const;
 
-  /// A vertex inside a region; in no tet yet.
-  Index add_vertex(const Point& p);
-  /// Replace tets by others that fill the same cavity, or less of it at a boundary; `kept` are those of the
-  /// mesh' faces inside the cavity or on its border that change. Returns the new tets' indices until the next
-  /// call.
-  std::span<const Index> replace(std::span<const Index> old, std::span<const NewTet> created,
-                                 std::span<const Face> kept);
+  /// A vertex on a feature; in no tet yet.
+  Index add_vertex(const Point& p, const TetMesh::VertexFeature& feature);
+  /// Returns the new tets' indices until the next call.
+  std::span<const Index> replace(const Replacement& replacement);
+  /// The mesh' faces that the last replacement made.
+  std::span<const Index> created_faces() const { return created_faces_; }
+  /// A vertex on a curve between two others there is gone: its edges become the one that joins these.
+  void join_curve_edges(Index before, Index vertex, Index after);
 
-  /// Write the tets back to the mesh.
+  /// Write the tets back to the mesh, without vertices and faces that are gone.
   void store();
 
  private:
@@ -75,7 +86,14 @@ class TetComplex {
     Index face;
   };
 
+  static std::uint64_t edge_key(Index a, Index b) {
+    return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+  }
   void link_all();
+  void make_faces(const Replacement& replacement);
+  void set_face(const std::array<Index, 3>& corners, Index face);
+  void drop_lost_faces_and_edges();
+  void drop_lost_vertices();
   unsigned corner_across(Index tet, const std::array<Index, 3>& sorted_face) const;
 
   TetMesh& mesh_;
@@ -84,10 +102,18 @@ class TetComplex {
   std::vector<Index> vertex_tet_;
   std::vector<std::uint32_t> stamps_;
   std::uint32_t stamp_ = 0;
-  std::vector<std::uint64_t> curve_edges_;  // sorted
-  std::vector<Index> free_;
-  std::vector<Index> created_;
+  std::unordered_map<std::uint64_t, Index> curve_edges_;  // among the mesh' edges, by their ends
+  std::vector<Index> free_, free_faces_;
+  std::vector<Index> created_, created_faces_;
   std::vector<std::pair<Index, Index>> tags_;  // region and origin of the tets being made
+  struct FaceTags {
+    Index patch;
+    Tag tag;
+    std::array<Index, 2> regions;
+  };
+  std::vector<FaceTags> face_tags_;  // of the faces being made
+  std::vector<Index> cavity_vertices_;
+  std::vector<Index> lost_vertices_;
   std::vector<OpenFace> open_;
   std::vector<Index> star_;
   Ring ring_;

@@ -1,0 +1,339 @@
+// Operations on cones of tets: their apex is moved, inserted, or moved onto another vertex.
+#include <algorithm>
+#include <tuple>
+
+#include "improve/operations.h"
+#include "improve/shape.h"
+
+namespace collarmesh::improvement {
+
+namespace {
+
+// Larger rings are hardly ever improved by a vertex amid their edge.
+constexpr std::size_t largest_ring = 9;
+// Vertices move by steps from this share of their shortest edge down, halved so often.
+constexpr double first_step = 0.4;
+constexpr unsigned halvings = 4;
+// A move that gains less than this share is not worth it.
+constexpr double least_gain = 1e-3;
+
+bool contains(const auto& range, Index v) { return std::find(range.begin(), range.end(), v) != range.end(); }
+
+}  // namespace
+
+// The tets and the mesh' faces at a vertex; false at a collar.
+bool Operations::find_cone_of_vertex(Index vertex) {
+  cone_ = {};
+  complex_.star(vertex, cone_.tets);
+  const bool on_feature = complex_.mesh().features[vertex].dimension < 3;
+  for (const Index t : cone_.tets) {
+    const auto& tet = complex_[t];
+    if (tet.collar) return false;
+    cone_.worst = std::min(cone_.worst, quality(t));
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      if (tet.corners[corner] == vertex) {
+        cone_.hull.push_back(face_corners(tet.corners, corner));
+        cone_.hull_tet.push_back(t);
+      } else if (on_feature && tet.faces[corner] != none && !contains(cone_.faces, tet.faces[corner])) {
+        add_to_rim(tet.faces[corner], vertex);
+      }
+    }
+  }
+  return true;
+}
+
+// The tets at an edge inside a region or a patch, and the two faces there; false where no vertex may go in.
+bool Operations::find_cone_of_edge(Index a, Index b) {
+  if (complex_.on_curve(a, b)) return false;
+  const Index at = complex_.tet_at_edge(a, b);
+  if (at == none) return false;
+  complex_.ring(at, a, b, ring_);
+  const std::size_t n = ring_.tets.size(), m = ring_.link.size();
+  if (n > largest_ring) return false;
+  cone_ = {};
+  cone_.tets = ring_.tets;
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto& tet = complex_[ring_.tets[k]];
+    if (tet.collar) return false;
+    cone_.worst = std::min(cone_.worst, quality(ring_.tets[k]));
+    const Index p = ring_.link[k], q = ring_.link[(k + 1) % m];
+    cone_.hull.push_back({a, q, p});
+    cone_.hull.push_back({b, p, q});
+    cone_.hull_tet.insert(cone_.hull_tet.end(), 2, ring_.tets[k]);
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      const Index face = tet.faces[corner];
+      if (face == none || tet.corners[corner] == a || tet.corners[corner] == b) continue;
+      if (contains(cone_.faces, face)) continue;
+      add_to_rim(face, a);
+      add_to_rim(face, b);
+      cone_.faces.pop_back();
+    }
+  }
+  if (cone_.faces.empty()) return ring_.closed;
+  const auto& patches = complex_.mesh().face_patch;
+  return cone_.faces.size() == 2 && patches[cone_.faces[0]] != none &&
+         patches[cone_.faces[0]] == patches[cone_.faces[1]];
+}
+
+// The edge of a face opposite a corner, turned like it.
+void Operations::add_to_rim(Index face, Index opposite) {
+  const auto& v = complex_.mesh().faces[face];
+  const auto i = static_cast<unsigned>(std::find(v.begin(), v.end(), opposite) - v.begin());
+  cone_.faces.push_back(face);
+  cone_.rim.push_back({v[(i + 1) % 3], v[(i + 2) % 3]});
+  cone_.rim_face.push_back(face);
+}
+
+// The worst tet of the cone with an apex; -1 when that is not above `above` or one breaks the radius-edge
+// bound.
+double Operations::quality_around(const Point& apex, double above) const {
+  const auto& points = complex_.mesh().points;
+  double worst = INFINITY;
+  for (const auto& face : cone_.hull) {
+    const Corners p{apex, points[face[0]], points[face[1]], points[face[2]]};
+    worst = std::min(worst, shape_quality(p));
+    if (worst <= above) return -1;
+    const Circumsphere sphere = circumsphere(p);
+    if (sphere.squared_radius > squared_radius_edge_ * sphere.shortest_squared_edge) return -1;
+  }
+  return worst;
+}
+
+bool Operations::surfaces_allow(const Point& apex) {
+  if (cone_.faces.empty()) return true;
+  const auto& mesh = complex_.mesh();
+  faces_.clear();
+  for (std::size_t i = 0; i < cone_.rim.size(); ++i)
+    faces_.push_back({{apex, mesh.points[cone_.rim[i][0]], mesh.points[cone_.rim[i][1]]},
+                      mesh.face_patch[cone_.rim_face[i]]});
+  return surfaces_.fit(cone_.faces, faces_);
+}
+
+// Cones over hull and rim take the place of the tets and faces.
+void Operations::fill(const Cone& cone, Index apex, Change& change) const {
+  auto& [old, created, old_faces, created_faces] = change.replacement;
+  old = cone.tets;
+  old_faces = cone.faces;
+  created.clear();
+  created_faces.clear();
+  for (std::size_t i = 0; i < cone.hull.size(); ++i)
+    created.push_back({{apex, cone.hull[i][0], cone.hull[i][1], cone.hull[i][2]}, cone.hull_tet[i]});
+  for (std::size_t i = 0; i < cone.rim.size(); ++i)
+    created_faces.push_back({{apex, cone.rim[i][0], cone.rim[i][1]}, cone.rim_face[i]});
+}
+
+Operations::Freedom Operations::on_patch(Index patch, const Point& p) {
+  const Plc::Patch& of = plc_.patches[patch];
+  const Vector n = of.planar ? of.normal : surfaces_.nearest(patch, p).normal;
+  const double least = std::min({std::fabs(n.x), std::fabs(n.y), std::fabs(n.z)});
+  const Vector axis = std::fabs(n.x) == least   ? Vector{1, 0, 0}
+                      : std::fabs(n.y) == least ? Vector{0, 1, 0}
+                                                : Vector{0, 0, 1};
+  const Vector u = cross(n, axis) / norm(cross(n, axis));
+  return {{u, cross(n, u), {}}, 2, patch};
+}
+
+// Where a vertex may be moved to: anywhere, on its patch, or nowhere.
+std::optional<Operations::Freedom> Operations::freedom(Index vertex) {
+  const auto& feature = complex_.mesh().features[vertex];
+  if (feature.dimension == 3) return everywhere;
+  if (feature.dimension < 2 || feature.feature == none) return std::nullopt;
+  return on_patch(feature.feature, complex_.mesh().points[vertex]);
+}
+
+Point Operations::back_on_feature(const Point& p, const Point& from, const Freedom& freedom) {
+  if (freedom.patch == none) return p;
+  const Plc::Patch& patch = plc_.patches[freedom.patch];
+  if (!patch.planar) return surfaces_.nearest(freedom.patch, p, 1.0001 * distance(p, from)).point;
+  return p - dot(p - patch.origin, patch.normal) * patch.normal;
+}
+
+// Pattern search from `start`, whose quality is `best`.
+std::pair<Point, double> Operations::best_place(const Point& start, const Freedom& freedom, double best) {
+  const auto& points = complex_.mesh().points;
+  Vector to_centre{0, 0, 0};
+  double shortest = INFINITY;
+  for (const auto& face : cone_.hull)
+    for (const Index v : face) {
+      shortest = std::min(shortest, squared_distance(points[v], start));
+      to_centre = to_centre + (points[v] - start) / (3.0 * static_cast<double>(cone_.hull.size()));
+    }
+  Point place = start;
+  const auto consider = [&](const Point& wish) {
+    const Point p = back_on_feature(wish, start, freedom);
+    const double quality = quality_around(p, best);
+    if (quality <= best || (ask_surfaces_ && !surfaces_allow(p))) return false;
+    best = quality;
+    place = p;
+    return true;
+  };
+  consider(start + to_centre);
+  consider(start + 0.5 * to_centre);
+  double step = first_step * std::sqrt(shortest);
+  for (unsigned h = 0; h < halvings; ++h, step *= 0.5)
+    for (unsigned d = 0; d < freedom.count; ++d)
+      if (!consider(place + step * freedom.directions[d])) consider(place - step * freedom.directions[d]);
+  return {place, best};
+}
+
+// The same along the curve of a vertex: how far to slide it.
+std::pair<double, double> Operations::best_way(Index vertex, double best) {
+  const auto& points = complex_.mesh().points;
+  double shortest = INFINITY;
+  for (const auto& face : cone_.hull)
+    for (const Index v : face) shortest = std::min(shortest, squared_distance(points[v], points[vertex]));
+  double way = 0;
+  const auto consider = [&](double wish) {
+    const Point p = curves_.ahead(vertex, wish);
+    const double quality = quality_around(p, best);
+    if (quality <= best || !curves_.fits(vertex, wish) || !surfaces_allow(p)) return false;
+    best = quality;
+    way = wish;
+    return true;
+  };
+  double step = first_step * std::sqrt(shortest);
+  for (unsigned h = 0; h < halvings; ++h, step *= 0.5)
+    if (!consider(way + step)) consider(way - step);
+  return {way, best};
+}
+
+void Operations::move_vertex(Index vertex, Change& change) {
+  const bool on_curve = complex_.mesh().features[vertex].dimension == 1;
+  if (on_curve && !curves_.movable(vertex)) return;
+  const auto where = on_curve ? std::optional(everywhere) : freedom(vertex);
+  if (!where || !find_cone_of_vertex(vertex)) return;
+  const Point& p = complex_.mesh().points[vertex];
+  const double wanted = std::max(cone_.worst * (1 + least_gain) + 1e-12, change.quality);
+  Point place = p;
+  double way = 0, after = 0;
+  if (on_curve) {
+    std::tie(way, after) = best_way(vertex, cone_.worst);
+    place = curves_.ahead(vertex, way);
+  } else {
+    // Most often the best place is one that the surface allows.
+    ask_surfaces_ = false;
+    std::tie(place, after) = best_place(p, *where, cone_.worst);
+    ask_surfaces_ = true;
+    if (after > wanted && !surfaces_allow(place)) std::tie(place, after) = best_place(p, *where, cone_.worst);
+  }
+  if (after <= wanted) return;
+  change = {};
+  change.kind = Change::Kind::move;
+  change.quality = after;
+  change.vertex = vertex;
+  change.place = place;
+  change.way = way;
+  change.replacement.old_faces = cone_.faces;
+}
+
+void Operations::split_edge(Index a, Index b, double least, Change& change) {
+  if (!find_cone_of_edge(a, b)) return;
+  const auto& mesh = complex_.mesh();
+  const Index patch = cone_.faces.empty() ? none : mesh.face_patch[cone_.faces[0]];
+  const Point middle = 0.5 * (mesh.points[a] + mesh.points[b]);
+  const Freedom where = patch == none ? everywhere : on_patch(patch, middle);
+  const auto [place, quality] = best_place(back_on_feature(middle, mesh.points[a], where), where, -1);
+  if (quality <= std::max({cone_.worst, least, change.quality})) return;
+  change = {};
+  change.kind = Change::Kind::insertion;
+  change.quality = quality;
+  change.place = place;
+  if (patch != none) change.feature = {2, patch};
+  fill(cone_, static_cast<Index>(mesh.points.size()), change);
+}
+
+void Operations::contract_edge(Index vertex, Index onto, Change& change) {
+  const auto& mesh = complex_.mesh();
+  if (mesh.features[vertex].dimension == 0) return;
+  if (!find_cone_of_vertex(vertex) || !may_contract(vertex, onto)) return;
+  if (!keeps_lengths(vertex, onto) || !keeps_topology(vertex, onto)) return;
+  Cone& cone = cone_;
+  const auto drop = [&](auto& of, auto& origins) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < of.size(); ++i) {
+      if (contains(of[i], onto)) continue;
+      of[kept] = of[i];
+      origins[kept++] = origins[i];
+    }
+    of.resize(kept);
+    origins.resize(kept);
+  };
+  drop(cone.hull, cone.hull_tet);
+  drop(cone.rim, cone.rim_face);
+  const Point& place = mesh.points[onto];
+  const double quality = quality_around(place, std::max(cone.worst, change.quality));
+  if (quality < 0 || !surfaces_allow(place)) return;
+  change = {};
+  change.kind = Change::Kind::contraction;
+  change.quality = quality;
+  change.vertex = vertex;
+  change.onto = onto;
+  fill(cone, onto, change);
+}
+
+// Does the edge to `onto` lie in the vertex' feature?
+bool Operations::may_contract(Index vertex, Index onto) {
+  const auto& mesh = complex_.mesh();
+  const auto& feature = mesh.features[vertex];
+  if (feature.dimension == 3) return true;
+  if (feature.feature == none) return false;
+  if (feature.dimension == 1) {
+    if (!curves_.movable(vertex)) return false;
+    const auto [before, after] = curves_.neighbours(vertex);
+    return (onto == before || onto == after) && !complex_.on_curve(before, after) && curves_.may_skip(vertex);
+  }
+  unsigned shared = 0;
+  for (std::size_t i = 0; i < cone_.faces.size(); ++i) {
+    if (mesh.face_patch[cone_.faces[i]] != feature.feature) return false;
+    shared += contains(cone_.rim[i], onto) ? 1 : 0;
+  }
+  return shared == 2;
+}
+
+// Of no vertex but those around the edge may both ends be neighbours, in the mesh and on its faces: else
+// cells would coincide (link condition). For a vertex inside a region positive volumes tell.
+bool Operations::keeps_topology(Index vertex, Index onto) {
+  const auto& mesh = complex_.mesh();
+  if (mesh.features[vertex].dimension == 3) return true;
+  complex_.star(onto, star_);
+  const auto is_at_edge = [](const auto& cells, Index w, Index edge_end) {
+    return std::any_of(cells.begin(), cells.end(),
+                       [&](const auto& cell) { return contains(cell, w) && contains(cell, edge_end); });
+  };
+  for (const Index t : star_) {
+    const auto& tet = complex_[t];
+    if (contains(tet.corners, vertex)) continue;
+    for (const Index w : tet.corners) {
+      if (w == onto) continue;
+      const bool joined = std::any_of(cone_.hull.begin(), cone_.hull.end(),
+                                      [&](const auto& face) { return contains(face, w); });
+      if (joined && !is_at_edge(cone_.hull, w, onto)) return false;
+    }
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      if (tet.faces[corner] == none || tet.corners[corner] == onto) continue;
+      for (const Index w : face_corners(tet.corners, corner)) {
+        if (w == onto) continue;
+        const bool joined = std::any_of(cone_.rim.begin(), cone_.rim.end(),
+                                        [&](const auto& edge) { return contains(edge, w); });
+        if (joined && !is_at_edge(cone_.rim, w, onto)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool Operations::keeps_lengths(Index vertex, Index onto) const {
+  const auto& points = complex_.mesh().points;
+  double longest = 0, created = 0;
+  for (const auto& face : cone_.hull) {
+    for (unsigned i = 0; i < 3; ++i) {
+      const Point& p = points[face[i]];
+      longest = std::max(
+          {longest, squared_distance(p, points[vertex]), squared_distance(p, points[face[(i + 1) % 3]])});
+      if (!contains(face, onto)) created = std::max(created, squared_distance(p, points[onto]));
+    }
+  }
+  return created <= longest;
+}
+
+}  // namespace collarmesh::improvement

@@ -1,0 +1,207 @@
+// Every local operation of the improvement, one by one: each keeps the certificate and does what it says.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <random>
+#include <string>
+
+#include "improve/operations.h"
+#include "improve/tet_complex.h"
+#include "support/acute_shapes.h"
+#include "support/meshing.h"
+#include "support/shapes.h"
+
+namespace collarmesh {
+namespace {
+
+using improvement::Change;
+using improvement::Operations;
+using improvement::TetComplex;
+using testing::mesh_of;
+using testing::Meshed;
+using testing::with_size;
+
+struct Shape {
+  std::string name;
+  std::vector<PolygonSoup> soups;
+  double size;
+  double feature_angle;
+};
+
+std::vector<Shape> shapes() {
+  using namespace testing;
+  return {{"box", {box()}, 0.25, 0},
+          {"two boxes", {two_boxes()}, 0.35, 0},
+          {"dangling facet", {box_with_dangling_facet()}, 0.3, 0},
+          {"plate", {plate_with_hole(1, 16)}, 0.6, 0},
+          {"sphere in a box", {box({-1, -1, -1}, {1, 1, 1}), icosphere(0.6, 8)}, 0.35, 30},
+          {"cylinder", {cylinder(0.5, 1, 40, 4)}, 0.2, 30},
+          {"torus", {torus(1, 0.4, 40, 20)}, 0.3, 30},
+          {"wedge", acute::wedge(40).soups, 0.25, 0}};
+}
+
+constexpr double radius_edge = 2;
+constexpr std::size_t attempts = 400;  // on each mesh
+constexpr std::size_t single_steps = 8;
+
+/// A complex and its operations on a mesh of its own.
+struct Workbench {
+  Workbench(const Meshed& meshed, const TetMesh& of)
+      : mesh(of),
+        complex(mesh),
+        operations(complex, meshed.plc, radius_edge, 1e-3 * meshed.plc.bounds.diagonal()) {}
+
+  double worst(std::span<const Index> tets) const {
+    double quality = INFINITY;
+    for (const Index t : tets) quality = std::min(quality, operations.quality(t));
+    return quality;
+  }
+
+  TetMesh mesh;
+  TetComplex complex;
+  Operations operations;
+};
+
+/// Asks for an operation at a tet and two of its corners.
+using Ask = std::function<void(Workbench&, Index tet, unsigned i, unsigned j, Change&)>;
+
+struct Operation {
+  std::string name;
+  Ask ask;
+  Change::Kind kind;
+  std::vector<unsigned> dimensions;  ///< of the features that it has to be seen on
+};
+
+std::vector<Operation> all_operations() {
+  const auto corner = [](Workbench& on, Index tet, unsigned i) { return on.complex[tet].corners[i]; };
+  const Ask remove = [](Workbench& on, Index tet, unsigned i, unsigned j, Change& change) {
+    on.operations.remove_edge(tet, i, j, change);
+  };
+  return {{"edge removal", remove, Change::Kind::edge_removal, {3}},
+          {"boundary flip", remove, Change::Kind::boundary_flip, {2}},
+          {"move",
+           [=](Workbench& on, Index tet, unsigned i, unsigned, Change& change) {
+             on.operations.move_vertex(corner(on, tet, i), change);
+           },
+           Change::Kind::move,
+           {1, 2, 3}},
+          {"insertion",
+           [=](Workbench& on, Index tet, unsigned i, unsigned j, Change& change) {
+             on.operations.split_edge(corner(on, tet, i), corner(on, tet, j), 0, change);
+           },
+           Change::Kind::insertion,
+           {2, 3}},
+          {"contraction",
+           [=](Workbench& on, Index tet, unsigned i, unsigned j, Change& change) {
+             on.operations.contract_edge(corner(on, tet, i), corner(on, tet, j), change);
+           },
+           Change::Kind::contraction,
+           {1, 2, 3}}};
+}
+
+unsigned dimension_of(const Workbench& on, const Change& change) {
+  switch (change.kind) {
+    case Change::Kind::move:
+    case Change::Kind::contraction: return on.mesh.features[change.vertex].dimension;
+    case Change::Kind::insertion: return change.feature.dimension;
+    case Change::Kind::boundary_flip: return 2;
+    default: return 3;
+  }
+}
+
+/// Do it, and see that the worst tet of the cavity has become better, to what was promised.
+void apply(Workbench& on, const Change& change) {
+  std::vector<Index> before = change.replacement.old;
+  if (change.kind == Change::Kind::move) on.complex.star(change.vertex, before);
+  const double worst = on.worst(before);
+  const auto& changed = on.operations.apply(change);
+  EXPECT_GT(on.worst(changed), worst);
+  if (changed.empty()) return;  // a sliver has gone to the other side
+  EXPECT_NEAR(on.worst(changed), change.quality, 1e-12);
+}
+
+std::string faults_of(const Meshed& meshed, TetMesh mesh) {
+  Meshed changed{meshed.plc, {}, {}};
+  changed.result.mesh = std::move(mesh);
+  changed.report = check(changed.result.mesh, changed.plc);
+  return testing::faults(changed);
+}
+
+/// A place where the operation is possible; `Change::Kind::none` when none was found.
+Change find(Workbench& on, const Operation& operation, std::mt19937& random) {
+  for (std::size_t attempt = 0; attempt < attempts; ++attempt) {
+    const Index tet = static_cast<Index>(random() % on.complex.size());
+    const unsigned i = random() % 4, j = (i + 1 + random() % 3) % 4;
+    if (!on.complex[tet].alive || on.complex[tet].collar) continue;
+    Change change;
+    operation.ask(on, tet, i, j, change);
+    if (change.kind == operation.kind) return change;
+  }
+  return {};
+}
+
+class ImproveOperations : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    for (const Shape& shape : shapes()) {
+      meshes().emplace_back(shape.name, mesh_of(shape.soups, with_size(shape.size), shape.feature_angle));
+      ASSERT_EQ(testing::faults(meshes().back().second), "") << shape.name;
+    }
+  }
+  static void TearDownTestSuite() { meshes().clear(); }
+  static std::vector<std::pair<std::string, Meshed>>& meshes() {
+    static std::vector<std::pair<std::string, Meshed>> all;
+    return all;
+  }
+};
+
+// After each single one the mesh passes.
+TEST_F(ImproveOperations, EachKeepsTheCertificate) {
+  for (const Operation& operation : all_operations()) {
+    std::map<unsigned, std::size_t> seen;  // by dimension of the feature
+    for (const auto& [name, meshed] : meshes()) {
+      SCOPED_TRACE(operation.name + ", " + name);
+      std::mt19937 random(7);
+      for (std::size_t step = 0; step < single_steps; ++step) {
+        Workbench on(meshed, meshed.result.mesh);
+        const Change change = find(on, operation, random);
+        if (change.kind == Change::Kind::none) break;
+        ++seen[dimension_of(on, change)];
+        apply(on, change);
+        on.complex.store();
+        ASSERT_EQ(faults_of(meshed, on.mesh), "");
+      }
+    }
+    for (const unsigned dimension : operation.dimensions)
+      EXPECT_GT(seen[dimension], 0U) << operation.name << " on features of dimension " << dimension;
+  }
+}
+
+// So does it after many of all kinds, each on what the ones before it left.
+TEST_F(ImproveOperations, ManyKeepTheCertificate) {
+  const std::vector<Operation> operations = all_operations();
+  for (const auto& [name, meshed] : meshes()) {
+    SCOPED_TRACE(name);
+    std::mt19937 random(11);
+    TetMesh mesh = meshed.result.mesh;
+    std::size_t done = 0;
+    for (unsigned round = 0; round < 4; ++round) {
+      Workbench on(meshed, mesh);
+      for (std::size_t step = 0; step < on.complex.size() / 10; ++step) {
+        const Change change = find(on, operations[random() % operations.size()], random);
+        if (change.kind == Change::Kind::none) continue;
+        apply(on, change);
+        ++done;
+      }
+      on.complex.store();
+      mesh = on.mesh;
+      ASSERT_EQ(faults_of(meshed, mesh), "");
+    }
+    EXPECT_GT(done, mesh.tets.size() / 20);
+  }
+}
+
+}  // namespace
+}  // namespace collarmesh
