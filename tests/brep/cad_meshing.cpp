@@ -1,12 +1,19 @@
 #include "cad_meshing.h"
 
 #include <BRepBuilderAPI_MakeVertex.hxx>
+#include <BRepClass_FaceClassifier.hxx>
 #include <BRepExtrema_DistShapeShape.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
+#include <GeomAPI_ProjectPointOnSurf.hxx>
+#include <Geom_Surface.hxx>
 #include <STEPControl_Reader.hxx>
+#include <ShapeAnalysis_Surface.hxx>
 #include <TopExp.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Face.hxx>
 #include <TopoDS_Vertex.hxx>
 
 #include <algorithm>
@@ -22,6 +29,24 @@ namespace collarmesh::testing {
 namespace {
 
 bool ends_with_brep(const std::string& path) { return path.ends_with(".brep"); }
+
+// OpenCASCADE's distance to a face sometimes misses the nearest point of a spline surface and tells one on
+// the face's border; so a point on the surface that lies within the border counts, too.
+double distance_to_face(const gp_Pnt& p, const TopoDS_Face& face) {
+  const BRepExtrema_DistShapeShape extrema(TopoDS_Vertex(BRepBuilderAPI_MakeVertex(p)), face);
+  const double found = extrema.IsDone() ? extrema.Value() : INFINITY;
+  if (found == 0) return 0;
+  const Handle(Geom_Surface) surface = BRep_Tool::Surface(face);
+  const gp_Pnt2d near = ShapeAnalysis_Surface(surface).ValueOfUV(p, Precision::Confusion());
+  constexpr double window = 1e-3;
+  const GeomAPI_ProjectPointOnSurf projection(p, surface, near.X() - window, near.X() + window,
+                                              near.Y() - window, near.Y() + window, 1e-12);
+  if (projection.NbPoints() == 0) return found;
+  double u = 0, v = 0;
+  projection.LowerDistanceParameters(u, v);
+  const BRepClass_FaceClassifier place(face, gp_Pnt2d(u, v), Precision::PConfusion());
+  return place.State() == TopAbs_OUT ? found : std::min(found, projection.LowerDistance());
+}
 
 }  // namespace
 
@@ -77,9 +102,8 @@ double farthest_from_faces(const CadMeshed& meshed, const TopoDS_Shape& shape, s
     if (i++ % step != 0 || left_out.count(p) > 0) continue;
     if (face < 1 || face > faces.Extent()) return INFINITY;
     const Point& at = mesh.points[p];
-    const TopoDS_Vertex vertex = BRepBuilderAPI_MakeVertex(gp_Pnt(at.x, at.y, at.z));
-    const BRepExtrema_DistShapeShape extrema(vertex, faces(static_cast<int>(face)));
-    farthest = std::max(farthest, extrema.IsDone() ? extrema.Value() : INFINITY);
+    farthest = std::max(
+        farthest, distance_to_face(gp_Pnt(at.x, at.y, at.z), TopoDS::Face(faces(static_cast<int>(face)))));
   }
   return farthest;
 }
