@@ -1,15 +1,39 @@
 #include "cad_files.h"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "collarmesh/brep/cad_model.h"
+#include "collarmesh/error.h"
 
 namespace collarmesh::cli {
 
+namespace {
+
+// OpenCASCADE's libraries take longer to load than a small mesh to make.
+std::unique_ptr<brep::CadModel> read_by_module(const std::string& path, std::string_view format) {
+  constexpr const char* module = "collarmesh_cad.so";
+  // Looked for along the run path of the program; stays loaded as long as its models may live.
+  void* const loaded = dlopen(module, RTLD_NOW | RTLD_LOCAL);
+  void* const found = loaded == nullptr ? nullptr : dlsym(loaded, "collarmesh_read_cad");
+  if (found == nullptr)
+    throw ReadError(
+        fmt::format("{}: cannot be read, because {} cannot be loaded ({}); build collarmesh with OpenCASCADE "
+                    "(package libocct-data-exchange-dev), or name the module's folder in LD_LIBRARY_PATH, or "
+                    "export the shape as .stl",
+                    path, module, dlerror()));
+  std::unique_ptr<brep::CadModel> model;
+  reinterpret_cast<void (*)(const std::string&, std::string_view, std::unique_ptr<brep::CadModel>&)>(found)(
+      path, format, model);
+  return model;
+}
+
+}  // namespace
+
 struct CadFiles::File {
-  brep::CadModel model;
+  std::unique_ptr<brep::CadModel> model;
   double deflection;
   Index first_soup, soup_count;
 };
@@ -27,10 +51,10 @@ bool CadFiles::empty() const { return files_.empty(); }
 
 void CadFiles::read(const std::string& path, std::string_view format, double deflection,
                     std::vector<PolygonSoup>& soups) {
-  brep::CadModel model = brep::read_cad(path, format);
+  std::unique_ptr<brep::CadModel> model = read_by_module(path, format);
   constexpr double relative_deflection = 1e-4;
-  if (!(deflection > 0)) deflection = relative_deflection * model.diagonal();
-  std::vector<PolygonSoup> own = model.tessellate({.deflection = deflection});
+  if (!(deflection > 0)) deflection = relative_deflection * model->diagonal();
+  std::vector<PolygonSoup> own = model->tessellate({.deflection = deflection});
   files_.push_back(
       {std::move(model), deflection, static_cast<Index>(soups.size()), static_cast<Index>(own.size())});
   std::move(own.begin(), own.end(), std::back_inserter(soups));
@@ -38,7 +62,7 @@ void CadFiles::read(const std::string& path, std::string_view format, double def
 
 void CadFiles::tessellate(double finer, std::vector<PolygonSoup>& soups) {
   for (File& file : files_) {
-    std::vector<PolygonSoup> own = file.model.tessellate(
+    std::vector<PolygonSoup> own = file.model->tessellate(
         {.deflection = file.deflection / finer, .angle = brep::TessellationOptions().angle / finer});
     std::move(own.begin(), own.end(), soups.begin() + file.first_soup);
   }
@@ -47,24 +71,24 @@ void CadFiles::tessellate(double finer, std::vector<PolygonSoup>& soups) {
 std::optional<Point> CadFiles::nearest(Index soup, unsigned dimension, Tag number, const Point& p) const {
   for (const File& file : files_)
     if (soup >= file.first_soup && soup - file.first_soup < file.soup_count)
-      return file.model.nearest(dimension, number, p);
+      return file.model->nearest(dimension, number, p);
   return std::nullopt;
 }
 
 std::string CadFiles::faces_near(const Point& where) const {
   const auto nearest = std::min_element(files_.begin(), files_.end(), [&](const File& a, const File& b) {
-    return a.model.distance_to(where) < b.model.distance_to(where);
+    return a.model->distance_to(where) < b.model->distance_to(where);
   });
   return nearest == files_.end()
              ? std::string()
-             : fmt::format("{} of {}", nearest->model.faces_near(where), nearest->model.name());
+             : fmt::format("{} of {}", nearest->model->faces_near(where), nearest->model->name());
 }
 
 std::string CadFiles::invalid_parts() const {
   std::string parts;
   for (const File& file : files_) {
-    const std::string own = file.model.invalid_parts();
-    if (!own.empty()) parts += fmt::format("{}{}: {}", parts.empty() ? "" : "; ", file.model.name(), own);
+    const std::string own = file.model->invalid_parts();
+    if (!own.empty()) parts += fmt::format("{}{}: {}", parts.empty() ? "" : "; ", file.model->name(), own);
   }
   return parts;
 }
@@ -72,7 +96,7 @@ std::string CadFiles::invalid_parts() const {
 std::vector<std::string> CadFiles::notes() const {
   std::vector<std::string> notes;
   for (const File& file : files_)
-    notes.insert(notes.end(), file.model.notes().begin(), file.model.notes().end());
+    notes.insert(notes.end(), file.model->notes().begin(), file.model->notes().end());
   return notes;
 }
 

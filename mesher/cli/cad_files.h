@@ -11,7 +11,7 @@
 
 namespace collarmesh::cli {
 
-/// The CAD files among the inputs; without OpenCASCADE (no_cad_files.cpp) no file is one.
+/// The CAD files among the inputs. The first one loads the module with OpenCASCADE.
 class CadFiles {
  public:
   CadFiles();

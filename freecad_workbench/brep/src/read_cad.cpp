@@ -11,7 +11,6 @@
 #include <TopoDS_Shape.hxx>
 
 #include <array>
-#include <filesystem>
 
 #include "collarmesh/brep/cad_model.h"
 #include "topology.h"
@@ -19,19 +18,6 @@
 namespace collarmesh::brep {
 
 namespace {
-
-enum class Format { brep, step, iges, other };
-
-Format format_of(const std::string& path, std::string_view format) {
-  std::string extension =
-      format.empty() ? std::filesystem::path(path).extension().string() : std::string(format);
-  for (char& c : extension)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
-  if (extension == ".brep" || extension == ".brp") return Format::brep;
-  if (extension == ".step" || extension == ".stp") return Format::step;
-  if (extension == ".iges" || extension == ".igs") return Format::iges;
-  return Format::other;
-}
 
 TopoDS_Shape read_brep(const std::string& path) {
   TopoDS_Shape shape;
@@ -56,14 +42,14 @@ TopoDS_Shape read_exchange(const std::string& path, const char* format) {
   return shape;
 }
 
-TopoDS_Shape read_shape(const std::string& path, Format format) {
+TopoDS_Shape read_shape(const std::string& path, CadFormat format) {
   Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
   try {
     switch (format) {
-      case Format::brep: return read_brep(path);
-      case Format::step: return read_exchange<STEPControl_Reader>(path, "STEP");
-      case Format::iges: return read_exchange<IGESControl_Reader>(path, "IGES");
-      case Format::other: break;
+      case CadFormat::brep: return read_brep(path);
+      case CadFormat::step: return read_exchange<STEPControl_Reader>(path, "STEP");
+      case CadFormat::iges: return read_exchange<IGESControl_Reader>(path, "IGES");
+      case CadFormat::other: break;
     }
   } catch (const Standard_Failure& failure) {
     throw ReadError(fmt::format("{}: OpenCASCADE cannot read it ({})", path, text(failure)));
@@ -74,13 +60,7 @@ TopoDS_Shape read_shape(const std::string& path, Format format) {
 }  // namespace
 
 CadModel read_cad(const std::string& path, std::string_view format) {
-  return {read_shape(path, format_of(path, format)), path};
+  return {read_shape(path, cad_format_of(path, format)), path};
 }
-
-bool is_cad_format(const std::string& path, std::string_view format) {
-  return format_of(path, format) != Format::other;
-}
-
-std::vector<std::string> cad_formats() { return {".brep", ".brp", ".step", ".stp", ".iges", ".igs"}; }
 
 }  // namespace collarmesh::brep

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "collarmesh/brep/cad_formats.h"
 #include "collarmesh/geometry.h"
 #include "collarmesh/polygon_soup.h"
 
@@ -26,41 +27,44 @@ struct TessellationOptions {
 /// Solids that touch are made to share the faces there; faces and edges that are cut in this keep the
 /// number of what they were part of, edges that arise get the next free ones. A shape of faces alone is sewn
 /// and becomes a solid where it is closed.
+///
+/// What it can do is virtual, so that a program can use one that a module has made (`load_cad`) without
+/// OpenCASCADE.
 class CadModel {
  public:
   /// Throws PlcError for a shape without solids or faces, for an open solid and for solids that overlap;
   /// the messages name sub-shapes and places.
   CadModel(const TopoDS_Shape& shape, std::string name);
-  ~CadModel();
+  virtual ~CadModel();
   CadModel(CadModel&&) noexcept;
   CadModel& operator=(CadModel&&) noexcept;
 
-  const std::string& name() const;
-  double diagonal() const;  ///< of the box around it
+  virtual const std::string& name() const;
+  virtual double diagonal() const;  ///< of the box around it
 
   /// Triangles of all faces: one soup for each solid and a last one for the faces that belong to none.
   /// Neighbouring faces share the points of their edges. Vertices, edges and faces of the shape are
   /// features with their numbers as tags; seams and degenerate edges are none.
   /// Throws PlcError for a face that cannot be tessellated.
-  std::vector<PolygonSoup> tessellate(const TessellationOptions& options);
+  virtual std::vector<PolygonSoup> tessellate(const TessellationOptions& options);
 
   /// What was done to the shape (faces sewn, ...), for people.
-  const std::vector<std::string>& notes() const;
+  virtual const std::vector<std::string>& notes() const;
 
   /// The nearest point of EdgeN (dimension 1), or of the surface of FaceN (dimension 2), to a point that is
   /// about as near to it as the tessellation; nothing where there is no such sub-shape or OpenCASCADE finds
   /// no point. Precondition: tessellated.
   /// Cost: constant for simple surfaces, logarithmic in the face's triangles for others.
-  std::optional<Point> nearest(unsigned dimension, Tag number, const Point& p) const;
+  virtual std::optional<Point> nearest(unsigned dimension, Tag number, const Point& p) const;
 
   /// The faces nearest to a place, as "Face3 and Face7". Precondition: tessellated.
-  std::string faces_near(const Point& where) const;
+  virtual std::string faces_near(const Point& where) const;
 
   /// From a place to the nearest point of the triangles. Precondition: tessellated.
-  double distance_to(const Point& where) const;
+  virtual double distance_to(const Point& where) const;
 
   /// The sub-shapes that OpenCASCADE's own check finds invalid, with places; empty: none.
-  std::string invalid_parts() const;
+  virtual std::string invalid_parts() const;
 
   struct Parts;
   const Parts& parts() const { return *parts_; }
@@ -73,11 +77,5 @@ class CadModel {
 /// .iges .igs; the units of STEP and IGES become millimetres.
 /// Throws ReadError, and PlcError as the constructor does.
 CadModel read_cad(const std::string& path, std::string_view format = {});
-
-/// Does `read_cad` know this extension or format?
-bool is_cad_format(const std::string& path, std::string_view format = {});
-
-/// The extensions.
-std::vector<std::string> cad_formats();
 
 }  // namespace collarmesh::brep
