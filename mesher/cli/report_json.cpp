@@ -95,6 +95,7 @@ Json projection_json(const Plc& plc, const ProjectReport& r) {
                           {"distance", number_json(e.distance)}});
   return {{"vertices", r.vertices},
           {"largest_move", r.largest_move},
+          {"moved_inside", r.moved_inside},
           {"largest_distance", number_json(r.largest_distance)},
           {"exceptions", std::move(exceptions)}};
 }

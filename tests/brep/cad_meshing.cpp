@@ -30,8 +30,9 @@ namespace {
 
 bool ends_with_brep(const std::string& path) { return path.ends_with(".brep"); }
 
-// OpenCASCADE's distance to a face sometimes misses the nearest point of a spline surface and tells one on
-// the face's border; so a point on the surface that lies within the border counts, too.
+// OpenCASCADE's distance to a face sometimes misses the nearest point of a spline surface, or of a cylinder
+// that the face goes around more than once, and tells one on the face's border; so a point on the surface
+// that lies within the border counts, too.
 double distance_to_face(const gp_Pnt& p, const TopoDS_Face& face) {
   const BRepExtrema_DistShapeShape extrema(TopoDS_Vertex(BRepBuilderAPI_MakeVertex(p)), face);
   const double found = extrema.IsDone() ? extrema.Value() : INFINITY;
@@ -44,13 +45,17 @@ double distance_to_face(const gp_Pnt& p, const TopoDS_Face& face) {
   if (projection.NbPoints() == 0) return found;
   double u = 0, v = 0;
   projection.LowerDistanceParameters(u, v);
-  const BRepClass_FaceClassifier place(face, gp_Pnt2d(u, v), Precision::PConfusion());
-  return place.State() == TopAbs_OUT ? found : std::min(found, projection.LowerDistance());
+  const double period = surface->IsUPeriodic() ? surface->UPeriod() : 0;
+  for (const double turned : {u, u + period, u - period}) {
+    const BRepClass_FaceClassifier place(face, gp_Pnt2d(turned, v), Precision::PConfusion());
+    if (place.State() != TopAbs_OUT) return std::min(found, projection.LowerDistance());
+  }
+  return found;
 }
 
 }  // namespace
 
-CadMeshed mesh_of_cad_file(const std::string& path, double relative_size) {
+CadMeshed mesh_of_cad_file(const std::string& path, double relative_size, int order) {
   cli::ComplexInput input({path});
   CadMeshed meshed;
   meshed.plc = input.build({});
@@ -63,15 +68,17 @@ CadMeshed mesh_of_cad_file(const std::string& path, double relative_size) {
   const MeshOptions bounds = input.tightened({}, meshed.plc);
   improve(mesh, meshed.plc, {.radius_edge = bounds.radius_edge, .distance = bounds.distance});
   meshed.projection = project_boundary(mesh, meshed.plc, input.exact_geometry(meshed.plc));
+  if (order == 2)
+    meshed.second_order = make_second_order(mesh, meshed.plc, {.exact = input.exact_geometry(meshed.plc)});
   meshed.report = check(meshed.result.mesh, meshed.plc);
   return meshed;
 }
 
-CadMeshed mesh_of_shape(const TopoDS_Shape& shape, double relative_size) {
+CadMeshed mesh_of_shape(const TopoDS_Shape& shape, double relative_size, int order) {
   const TemporaryFolder folder;
   const std::string path = folder.file("shape.brep");
   BRepTools::Write(shape, path.c_str());
-  return mesh_of_cad_file(path, relative_size);
+  return mesh_of_cad_file(path, relative_size, order);
 }
 
 TopoDS_Shape shape_in(const std::string& path) {
@@ -92,9 +99,14 @@ double farthest_from_faces(const CadMeshed& meshed, const TopoDS_Shape& shape, s
   TopExp::MapShapes(shape, TopAbs_FACE, faces);
   std::set<Index> left_out;
   for (const auto& exception : meshed.projection.exceptions) left_out.insert(exception.point);
+  for (const auto& node : meshed.second_order.straightened) left_out.insert(node.point);
   std::map<Index, Tag> face_of;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     for (const Index p : mesh.faces[f]) face_of.emplace(p, mesh.face_tag[f]);
+    for (std::size_t k = 0; mesh.order() == 2 && k < 3; ++k)
+      if (left_out.count(mesh.faces[f][k]) == 0 && left_out.count(mesh.faces[f][(k + 1) % 3]) == 0)
+        face_of.emplace(mesh.face_mid_nodes[f][k], mesh.face_tag[f]);
+  }
   const std::size_t step = std::max<std::size_t>(1, face_of.size() / samples);
   double farthest = 0;
   std::size_t i = 0;

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "collarmesh/geometry.h"
+#include "collarmesh/improve.h"
 #include "support/meshing.h"
 #include "support/plc_shapes.h"
 #include "support/shapes.h"
@@ -32,56 +34,82 @@ void expect_guarantees(const TetMesh& before, const TetMesh& after, const MeshOp
 TEST(ProjectBoundary, PutsASpheresVerticesOnTheSphere) {
   Meshed meshed = mesh_of(icosphere(1, 12), with_size(0.3));
   ASSERT_EQ(faults(meshed), "");
-  const TetMesh before = meshed.result.mesh;
   TetMesh& mesh = meshed.result.mesh;
+  improve(mesh, meshed.plc);  // no sliver has its four corners on the sphere, which would be its circumsphere
+  const TetMesh before = mesh;
   const ProjectReport report = project_boundary(mesh, meshed.plc, on_unit_sphere, {.reach = 0.1});
   expect_guarantees(before, mesh, {});
-  std::size_t boundary = 0, off = 0;
+  std::size_t boundary = 0, inside = 0;
   for (std::size_t p = 0; p < mesh.points.size(); ++p) {
-    if (mesh.features[p].dimension != 2) {
-      EXPECT_EQ(mesh.points[p], before.points[p]);
-      continue;
+    if (mesh.features[p].dimension == 2) {
+      ++boundary;
+      EXPECT_NEAR(norm(mesh.points[p]), 1, 1e-12);
+    } else if (mesh.points[p] != before.points[p]) {
+      EXPECT_EQ(mesh.features[p].dimension, 3);
+      ++inside;
     }
-    ++boundary;
-    off += std::fabs(norm(mesh.points[p]) - 1) > 1e-12 ? 1 : 0;
   }
   EXPECT_EQ(report.vertices, boundary);
-  EXPECT_EQ(report.exceptions.size(), off);
-  EXPECT_LT(off, boundary / 20);
+  EXPECT_EQ(report.moved_inside, inside);
+  EXPECT_EQ(report.exceptions.size(), 0U);
   EXPECT_GT(report.largest_move, 0);
 }
 
-// Targets at random: most cannot be reached, and every one that is not is told.
-TEST(ProjectBoundary, LeavesVerticesThatWouldSpoilTets) {
-  for (const auto* name : {"cube", "wedge"}) {
-    Meshed meshed = std::string(name) == "cube" ? mesh_of(subdivided_box({0, 0, 0}, {1, 1, 1}, 1), with_size(0.2))
-                                                : mesh_of(wedge(20, 1), with_size(0.3));
-    ASSERT_EQ(faults(meshed), "");
-    const TetMesh before = meshed.result.mesh;
-    std::uint32_t state = 1;
-    const auto number = [&state] {
-      state = state * 1664525U + 1013904223U;
-      return static_cast<double>(state) / 4294967296.0 - 0.5;
+/// Patches and straight curves with waves on them, as high as is asked for: what has its nearest point on the
+/// flat one at q belongs above q.
+ExactGeometry with_waves(const Plc& plc, double height) {
+  return [&plc, height](unsigned dimension, Index feature, const Point& p) -> std::optional<Point> {
+    const auto wave = [height](const Point& q) {
+      return height * std::sin(17 * q.x + 1) * std::sin(19 * q.y + 2) * std::sin(23 * q.z + 3);
     };
-    std::vector<Point> targets;
-    const ExactGeometry anywhere = [&](unsigned, Index, const Point& p) -> std::optional<Point> {
-      targets.push_back(p + 0.2 * Point{number(), number(), number()});
-      return targets.back();
-    };
-    const ProjectReport report = project_boundary(meshed.result.mesh, meshed.plc, anywhere, {.reach = 1});
-    expect_guarantees(before, meshed.result.mesh, {});
-    EXPECT_GT(report.exceptions.size(), 0U) << name;
-    std::size_t there = 0, next = 0;
-    for (std::size_t p = 0; p < before.points.size(); ++p) {
-      const auto dimension = before.features[p].dimension;
-      if (dimension != 1 && dimension != 2) continue;
-      const Point& target = targets.at(next++);
-      const Point& now = meshed.result.mesh.points[p];
-      EXPECT_TRUE(now == target || now == before.points[p]);
-      there += now == target ? 1 : 0;
+    if (dimension == 2) {
+      const Plc::Patch& patch = plc.patches[feature];
+      const Point q = p - dot(p - patch.origin, patch.normal) * patch.normal;
+      return q + wave(q) * patch.normal;
     }
-    EXPECT_EQ(there + report.exceptions.size(), report.vertices);
-  }
+    const Point &a = plc.points[plc.curves[feature].points.front()],
+                &b = plc.points[plc.curves[feature].points.back()];
+    const Vector along = (b - a) / distance(a, b);
+    const Vector across = cross(along, std::fabs(along.x) < 0.8 ? Vector{1, 0, 0} : Vector{0, 1, 0});
+    const Point q = a + dot(p - a, along) * along;
+    return q + wave(q) / norm(across) * across;
+  };
+}
+
+// Low waves can be reached by all, high ones cannot, and every vertex that does not reach them is told.
+TEST(ProjectBoundary, MakesRoomAndLeavesVerticesThatFindNone) {
+  for (const auto* name : {"cube", "wedge"})
+    for (const double height : {0.02, 1.0}) {
+      Meshed meshed = std::string(name) == "cube"
+                          ? mesh_of(subdivided_box({0, 0, 0}, {1, 1, 1}, 1), with_size(0.2))
+                          : mesh_of(wedge(20, 1), with_size(0.3));
+      ASSERT_EQ(faults(meshed), "");
+      const TetMesh before = meshed.result.mesh;
+      const ExactGeometry waves = with_waves(meshed.plc, height);
+      const ProjectReport report = project_boundary(meshed.result.mesh, meshed.plc, waves, {.reach = 2});
+      expect_guarantees(before, meshed.result.mesh, {});
+      std::set<Index> left;
+      for (const auto& exception : report.exceptions) left.insert(exception.point);
+      std::size_t vertices = 0;
+      for (Index p = 0; p < before.points.size(); ++p) {
+        const auto [dimension, feature] = before.features[p];
+        const Point& now = meshed.result.mesh.points[p];
+        if (dimension != 1 && dimension != 2) {
+          EXPECT_TRUE(dimension == 3 || now == before.points[p]);
+          continue;
+        }
+        ++vertices;
+        EXPECT_LT(left.count(p) > 0 ? distance(now, before.points[p])
+                                    : distance(now, *waves(dimension, feature, now)),
+                  1e-9);
+      }
+      EXPECT_EQ(report.vertices, vertices);
+      if (height < 0.1) {
+        EXPECT_LE(left.size(), vertices / 50) << name;
+      } else {
+        EXPECT_GT(left.size(), 0U) << name;
+      }
+    }
 }
 
 TEST(ProjectBoundary, LeavesWhatIsOutOfReach) {

@@ -24,7 +24,8 @@ namespace {
 
 namespace bg = boost::geometry;
 using TreePoint = bg::model::point<double, 3, bg::cs::cartesian>;
-using Tree = bg::index::rtree<std::pair<TreePoint, std::size_t>, bg::index::quadratic<16>>;
+using TreeBox = bg::model::box<TreePoint>;
+using Tree = bg::index::rtree<std::pair<TreeBox, std::size_t>, bg::index::quadratic<16>>;
 
 gp_Pnt to_gp(const Point& p) { return {p.x, p.y, p.z}; }
 Point to_point(const gp_Pnt& p) { return {p.X(), p.Y(), p.Z()}; }
@@ -45,6 +46,30 @@ std::optional<Point> nearest_on_curve(const TopoDS_Shape& edge, const Point& p) 
   return best;
 }
 
+/// Weights of a triangle's corners that make the point of it nearest to p.
+std::array<double, 3> nearest_weights(const Point& p, const std::array<Point, 3>& corners) {
+  const Vector normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  std::array<double, 3> weights{-1, -1, -1};
+  for (std::size_t i = 0; i < 3 && squared_norm(normal) > 0; ++i)
+    weights[i] = dot(cross(corners[(i + 2) % 3] - corners[(i + 1) % 3], p - corners[(i + 1) % 3]), normal) /
+                 squared_norm(normal);
+  if (std::min({weights[0], weights[1], weights[2]}) >= 0) return weights;
+  double least = INFINITY;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    const Vector side = corners[j] - corners[i];
+    const double length = squared_norm(side);
+    const double t = length > 0 ? std::clamp(dot(p - corners[i], side) / length, 0., 1.) : 0;
+    const double off = squared_distance(p, corners[i] + t * side);
+    if (off >= least) continue;
+    least = off;
+    weights = {0, 0, 0};
+    weights[i] = 1 - t;
+    weights[j] = t;
+  }
+  return weights;
+}
+
 }  // namespace
 
 class FaceSurface {
@@ -52,16 +77,17 @@ class FaceSurface {
   explicit FaceSurface(const Samples& samples)
       : surface_(TopoDS::Face(samples.shape), /*R=*/true), samples_(samples) {
     if (is_elementary()) return;
-    std::vector<std::pair<TreePoint, std::size_t>> entries;
-    for (std::size_t i = 0; i < samples.points.size(); ++i) {
-      const Point& q = samples.points[i];
-      entries.emplace_back(TreePoint(q.x, q.y, q.z), i);
+    std::vector<std::pair<TreeBox, std::size_t>> entries;
+    for (std::size_t t = 0; t < samples.triangles.size(); ++t) {
+      Box box;
+      for (const Point& corner : corners(t)) box.add(corner);
+      entries.emplace_back(TreeBox({box.min.x, box.min.y, box.min.z}, {box.max.x, box.max.y, box.max.z}), t);
     }
     tree_ = Tree(entries);
   }
 
   std::optional<Point> nearest(const Point& p) const {
-    return is_elementary() ? on_elementary(to_gp(p)) : from_sample(p);
+    return is_elementary() ? on_elementary(to_gp(p)) : from_triangle(p);
   }
 
  private:
@@ -79,22 +105,50 @@ class FaceSurface {
     return to_point(surface_.Value(u, v));
   }
 
-  /// Gauss-Newton from the nearest point of the tessellation; where that does not end, a global search.
-  std::optional<Point> from_sample(const Point& p) const {
-    std::vector<std::pair<TreePoint, std::size_t>> found;
-    tree_.query(bg::index::nearest(TreePoint(p.x, p.y, p.z), 1), std::back_inserter(found));
-    if (found.empty()) return std::nullopt;
-    std::optional<Point> best = descend(samples_.parameters[found.front().second], to_gp(p));
+  std::array<Point, 3> corners(std::size_t triangle) const {
+    const auto& [a, b, c] = samples_.triangles[triangle];
+    return {samples_.points[a], samples_.points[b], samples_.points[c]};
+  }
+
+  /// Where the nearest point of the tessellation has its parameters, and that point.
+  struct Start {
+    std::array<double, 2> uv;
+    Point point;
+  };
+  std::optional<Start> start_near(const Point& p) const {
+    std::optional<Start> start;
+    double least = INFINITY;
+    const TreePoint place(p.x, p.y, p.z);
+    for (auto entry = tree_.qbegin(bg::index::nearest(place, static_cast<unsigned>(tree_.size())));
+         entry != tree_.qend() && bg::comparable_distance(place, entry->first) < least; ++entry) {
+      const std::array<Point, 3> at = corners(entry->second);
+      const std::array<double, 3> weights = nearest_weights(p, at);
+      const Point q = weights[0] * at[0] + weights[1] * at[1] + weights[2] * at[2];
+      if (squared_distance(p, q) >= least) continue;
+      least = squared_distance(p, q);
+      start = Start{{0, 0}, q};
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < 2; ++k)
+          start->uv[k] += weights[i] * samples_.parameters[samples_.triangles[entry->second][i]][k];
+    }
+    return start;
+  }
+
+  /// By steps from the nearest point of the tessellation; where that does not end, a global search.
+  std::optional<Point> from_triangle(const Point& p) const {
+    const std::optional<Start> start = start_near(p);
+    if (!start) return std::nullopt;
+    std::optional<Point> best = descend(start->uv, to_gp(p));
     if (best) return best;
     constexpr double tolerance = 1e-12;  // of the parameters
     const Extrema_ExtPS global(to_gp(p), surface_, tolerance, tolerance);
     if (global.IsDone())
       for (int i = 1; i <= global.NbExt(); ++i) keep_nearer(best, to_point(global.Point(i).Value()), p);
-    keep_nearer(best, samples_.points[found.front().second], p);
+    keep_nearer(best, to_point(surface_.Value(start->uv[0], start->uv[1])), p);
     return best;
   }
 
-  /// Each step solves for the nearest point of the tangent plane and is halved until it comes nearer. Ends
+  /// Each step solves for the nearest point of the tangent plane and is halved until it comes as near. Ends
   /// where the next step is within rounding; nothing when it does not get there.
   std::optional<Point> descend(std::array<double, 2> uv, const gp_Pnt& p) const {
     constexpr int steps = 50, halvings = 20;
@@ -111,7 +165,7 @@ class FaceSurface {
       int k = 0;
       for (; k < halvings; ++k, part *= 0.5) {
         const std::array<double, 2> trial{uv[0] + part * (next[0] - uv[0]), uv[1] + part * (next[1] - uv[1])};
-        if (surface_.Value(trial[0], trial[1]).Distance(p) > at.Distance(p)) continue;
+        if (surface_.Value(trial[0], trial[1]).Distance(p) > at.Distance(p) + rounding * scale) continue;
         uv = trial;
         break;
       }

@@ -144,6 +144,12 @@ class Tessellator {
     const BRepAdaptor_Surface surface(face, false);
     Samples& samples = result_.faces[topology_.number(face)].emplace_back();
     samples.shape = face;
+    for (int t = 1; t <= triangulation.NbTriangles() && triangulation.HasUVNodes(); ++t) {
+      std::array<int, 3> n{};
+      triangulation.Triangle(t).Get(n[0], n[1], n[2]);
+      samples.triangles.push_back(
+          {static_cast<Index>(slot(n[0])), static_cast<Index>(slot(n[1])), static_cast<Index>(slot(n[2]))});
+    }
     for (int i = 1; i <= triangulation.NbNodes(); ++i) {
       Point p = to_point(triangulation.Node(i).Transformed(location.Transformation()));
       if (triangulation.HasUVNodes()) {

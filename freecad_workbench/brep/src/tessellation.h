@@ -15,6 +15,7 @@ struct Samples {
   TopoDS_Shape shape;
   std::vector<Point> points;
   std::vector<std::array<double, 2>> parameters;  ///< of an edge the first one only
+  std::vector<std::array<Index, 3>> triangles;    ///< of a face, corners among the points; two at a seam
 };
 
 struct Tessellation {

@@ -27,17 +27,20 @@ struct ProjectReport {
     double distance = 0;  ///< absolute
   };
 
-  std::size_t vertices = 0;     ///< on features with exact geometry
-  double largest_move = 0;      ///< absolute
-  double largest_distance = 0;  ///< from the features afterwards, exceptions included
+  std::size_t vertices = 0;      ///< on features with exact geometry
+  double largest_move = 0;       ///< of those, absolute; with the way along their features
+  std::size_t moved_inside = 0;  ///< vertices inside regions that made room
+  double largest_distance = 0;   ///< from the features afterwards, exceptions included
   std::vector<Exception> exceptions;
 };
 
 /// Move the vertices on curves and patches onto the exact geometry. No tet is inverted by it, breaks the
-/// radius-edge bound or, in a collar, the bound on its dihedral angles: where one would,
-/// its vertices stay where they are, unless they can go one by one; these are the exceptions.
-/// Preconditions: `mesh` comes from `generate` for `plc`, first order.
-/// Cost: linear in the tets at the boundary, a few times.
+/// radius-edge bound or, in a collar, the bound on its dihedral angles: where one would, its corners make
+/// room by moving inside their region or along their exact features, as little as keeps faces and edges
+/// within half of the reach of the exact geometry. A vertex for which that does not suffice stays where it
+/// is; these are the exceptions. Preconditions: `mesh` comes from `generate` for `plc`, first order; `exact`
+/// gives a point that is its own nearest one. Cost: linear in the tets, with a large factor for those that
+/// are spoilt.
 ProjectReport project_boundary(TetMesh& mesh, const Plc& plc, const ExactGeometry& exact,
                                const ProjectOptions& options = {}, const Execution& execution = {});
 

@@ -1,10 +1,11 @@
-// Boundary vertices onto exact geometry: all at once, then back where that spoils a tet.
+// Boundary vertices onto exact geometry: all at once; then room is made where that spoils tets, and who finds
+// none goes back.
 #include "collarmesh/project_boundary.h"
 
 #include <algorithm>
-#include <cmath>
+#include <unordered_set>
 
-#include "delaunay/predicates.h"
+#include "project/relaxation.h"
 
 namespace collarmesh {
 
@@ -19,15 +20,20 @@ class BoundaryProjection {
         options_(options),
         execution_(execution),
         reach_(options.reach > 0 ? options.reach : default_reach * plc.bounds.diagonal()),
-        slot_of_(mesh.points.size(), none) {}
+        room_(mesh, exact, {options.radius_edge, options.collar_angle, largest_sag * reach_}) {}
 
   ProjectReport run() {
     find_targets();
     if (execution_.cancelled()) return report_;
-    find_tets();
-    for (Move& move : moves_) put(move, true);
-    while (undo_spoilt_tets()) {
+    std::vector<Index> tets;
+    for (Index slot = 0; slot < moves_.size(); ++slot) {
+      set_done(slot, true);
+      room_.put(moves_[slot].point, moves_[slot].to);
     }
+    for (Index t = 0; t < mesh_.tets.size(); ++t)
+      if (!room_.good(t)) tets.push_back(t);
+    for (tets = room_.relax(std::move(tets)); !tets.empty();) tets = give_way(tets);
+    room_.commit();
     for (int pass = 0; pass < retries && retry(); ++pass) {
     }
     shrink_balls();
@@ -37,15 +43,17 @@ class BoundaryProjection {
 
  private:
   static constexpr double default_reach = 1e-3;
-  static constexpr int retries = 3;
+  static constexpr double largest_sag = 0.5;  // relative to the reach
+  static constexpr int retries = 2;
 
   struct Move {
     Index point;
-    Point from, to;
+    Point to;
     bool done = false;
   };
 
   void find_targets() {
+    slot_of_.assign(mesh_.points.size(), none);
     for (Index p = 0; p < mesh_.features.size(); ++p) {
       const auto [dimension, feature] = mesh_.features[p];
       if ((dimension != 1 && dimension != 2) || feature == none) continue;
@@ -56,104 +64,79 @@ class BoundaryProjection {
       const double off = distance(*target, mesh_.points[p]);
       if (!(off <= reach_)) {
         add_exception(p, off);
-      } else if (off > 0) {
-        slot_of_[p] = static_cast<Index>(moves_.size());
-        moves_.push_back({p, mesh_.points[p], *target});
+        continue;
+      }
+      slot_of_[p] = static_cast<Index>(moves_.size());
+      moves_.push_back({p, *target});
+    }
+    for (const TetMesh::CollarBall& ball : mesh_.collar_balls) is_centre_.insert(ball.point);
+  }
+
+  double way_of(Index slot) const { return distance(room_.origin(moves_[slot].point), moves_[slot].to); }
+
+  // On its feature a vertex may slide along it, unless it is the centre of a ball.
+  void set_done(Index slot, bool done) {
+    moves_[slot].done = done;
+    room_.set_free(moves_[slot].point, done && is_centre_.count(moves_[slot].point) == 0);
+  }
+
+  // In each spoilt tet the vertex with the longest way goes back, or else all that moved do. Returns what is
+  // spoilt then.
+  std::vector<Index> give_way(const std::vector<Index>& spoilt) {
+    std::vector<Index> around;
+    const auto go_back = [&](Index p) {
+      room_.set_free(p, false);
+      room_.put(p, room_.origin(p));
+      const auto tets = room_.tets_at()[p];
+      around.insert(around.end(), tets.begin(), tets.end());
+    };
+    for (const Index t : spoilt) {
+      Index farthest = none;
+      for (const Index p : mesh_.tets[t]) {
+        const Index slot = slot_of_[p];
+        if (slot == none || !moves_[slot].done) continue;
+        if (farthest == none || way_of(slot) > way_of(farthest)) farthest = slot;
+      }
+      around.push_back(t);
+      if (room_.good(t)) continue;
+      if (farthest != none) {
+        set_done(farthest, false);
+        go_back(moves_[farthest].point);
+      } else {
+        for (const Index p : mesh_.tets[t]) go_back(p);
       }
     }
+    return room_.relax(std::move(around));
   }
 
-  // The tets at each vertex that moves.
-  void find_tets() {
-    first_.assign(moves_.size() + 1, 0);
-    for_each_use([&](Index slot, Index) { ++first_[slot + 1]; });
-    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-    tets_.resize(first_.back());
-    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-    for_each_use([&](Index slot, Index tet) { tets_[next[slot]++] = tet; });
-    for (Index t = 0; t < mesh_.tets.size(); ++t)
-      if (moves_at(t)) pending_.push_back(t);
-  }
-
-  template <class Visit>
-  void for_each_use(const Visit& visit) const {
-    for (Index t = 0; t < mesh_.tets.size(); ++t)
-      for (const Index p : mesh_.tets[t])
-        if (slot_of_[p] != none) visit(slot_of_[p], t);
-  }
-
-  bool moves_at(Index tet) const {
-    const auto& t = mesh_.tets[tet];
-    return std::any_of(t.begin(), t.end(), [&](Index p) { return slot_of_[p] != none; });
-  }
-
-  void put(Move& move, bool done) {
-    move.done = done;
-    mesh_.points[move.point] = done ? move.to : move.from;
-  }
-
-  TetQuality quality(Index tet, bool before) const {
-    std::array<Point, 4> corners;
-    for (unsigned i = 0; i < 4; ++i) {
-      const Index p = mesh_.tets[tet][i];
-      corners[i] = before && slot_of_[p] != none ? moves_[slot_of_[p]].from : mesh_.points[p];
-    }
-    return measure(corners[0], corners[1], corners[2], corners[3]);
-  }
-
-  // A tet that missed its bound before may do so, but not by more.
-  bool good(Index tet) const {
-    const auto& [a, b, c, d] = mesh_.tets[tet];
-    const auto& points = mesh_.points;
-    if (predicates::orientation(points[a], points[b], points[c], points[d]) <= 0) return false;
-    const TetQuality now = quality(tet, false);
-    if (mesh_.tet_collar[tet] != 0)
-      return now.max_dihedral <= options_.collar_angle || now.max_dihedral <= quality(tet, true).max_dihedral;
-    return now.radius_edge <= options_.radius_edge || now.radius_edge <= quality(tet, true).radius_edge;
-  }
-
-  // Judges the pending tets; those around what went back are pending then. False: nothing went back.
-  bool undo_spoilt_tets() {
-    std::vector<Index> spoilt;
-    for (const Index t : pending_)
-      if (!good(t)) spoilt.push_back(t);
-    pending_.clear();
-    for (const Index t : spoilt)
-      for (const Index p : mesh_.tets[t])
-        if (slot_of_[p] != none && moves_[slot_of_[p]].done) undo(slot_of_[p]);
-    std::sort(pending_.begin(), pending_.end());
-    pending_.erase(std::unique(pending_.begin(), pending_.end()), pending_.end());
-    return !pending_.empty();
-  }
-
-  void undo(Index slot) {
-    put(moves_[slot], false);
-    pending_.insert(pending_.end(), tets_.begin() + static_cast<std::ptrdiff_t>(first_[slot]),
-                    tets_.begin() + static_cast<std::ptrdiff_t>(first_[slot + 1]));
-  }
-
-  // One by one, what went back may go now. True: something did.
+  // One by one, what went back may go now, if there is room. True: something did.
   bool retry() {
     bool any = false;
-    for (Index slot = 0; slot < moves_.size(); ++slot) {
-      if (moves_[slot].done) continue;
-      put(moves_[slot], true);
-      const bool fits = std::all_of(tets_.begin() + static_cast<std::ptrdiff_t>(first_[slot]),
-                                    tets_.begin() + static_cast<std::ptrdiff_t>(first_[slot + 1]),
-                                    [&](Index t) { return good(t); });
-      if (fits)
+    for (Index slot = 0; slot < moves_.size() && !execution_.cancelled(); ++slot) {
+      const Move& move = moves_[slot];
+      if (move.done) continue;
+      room_.put(move.point, move.to);
+      const auto tets = room_.tets_at()[move.point];
+      if (room_.relax({tets.begin(), tets.end()}).empty()) {
+        set_done(slot, true);
         any = true;
-      else
-        put(moves_[slot], false);
+        room_.commit();
+      } else {
+        room_.roll_back();
+      }
     }
     return any;
   }
 
   void finish() {
-    for (const Move& move : moves_) {
-      const double off = distance(move.from, move.to);
+    for (Index p = 0; p < mesh_.features.size(); ++p)
+      if (mesh_.features[p].dimension == 3 && mesh_.points[p] != room_.origin(p)) ++report_.moved_inside;
+    for (Index slot = 0; slot < moves_.size(); ++slot) {
+      const Move& move = moves_[slot];
+      const double off = way_of(slot);
       if (move.done)
-        report_.largest_move = std::max(report_.largest_move, off);
+        report_.largest_move =
+            std::max(report_.largest_move, distance(room_.origin(move.point), mesh_.points[move.point]));
       else if (off > options_.tolerance)
         add_exception(move.point, off);
       else
@@ -163,10 +146,8 @@ class BoundaryProjection {
 
   // Balls whose centres moved: the part that surely lies in the former one keeps its distances.
   void shrink_balls() {
-    for (TetMesh::CollarBall& ball : mesh_.collar_balls) {
-      const Index slot = slot_of_[ball.point];
-      if (slot != none && moves_[slot].done) ball.radius -= distance(moves_[slot].from, moves_[slot].to);
-    }
+    for (TetMesh::CollarBall& ball : mesh_.collar_balls)
+      ball.radius -= distance(room_.origin(ball.point), mesh_.points[ball.point]);
   }
 
   void add_exception(Index p, double off) {
@@ -180,11 +161,10 @@ class BoundaryProjection {
   const ProjectOptions& options_;
   const Execution& execution_;
   double reach_;
-  std::vector<Index> slot_of_;  // in moves_, by point
+  projection::Relaxation room_;
   std::vector<Move> moves_;
-  std::vector<std::size_t> first_;  // in tets_, by slot
-  std::vector<Index> tets_;
-  std::vector<Index> pending_;
+  std::vector<Index> slot_of_;           // in moves_, by point
+  std::unordered_set<Index> is_centre_;  // of a collar's ball
   ProjectReport report_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "collarmesh/curved_tet.h"
 #include "collarmesh/error.h"
+#include "common/cells_at_vertices.h"
 #include "second_order/mid_nodes.h"
 #include "second_order/nearest_on_features.h"
 
@@ -19,6 +20,10 @@ namespace {
 // A node that is farther from the middle of its edge than this, relative to the edge, does not belong to it:
 // the nearest point lies on another part of the feature. A half circle has 0.5.
 constexpr double farthest = 0.5;
+
+// A node on a planar patch or straight curve goes to the exact geometry if that is farther away, relative to
+// the edge.
+constexpr double rounding = 1e-12;
 
 // How far a node inside goes along with a curved edge beside it.
 constexpr std::array<double, 3> parts_of_the_way{0.5, 0.25, 1};
@@ -57,21 +62,24 @@ class Curving {
     double share = 1;  ///< of the way that it goes
   };
 
+  static bool on_feature(const TetMesh::VertexFeature& feature) {
+    return feature.feature != none && (feature.dimension == 1 || feature.dimension == 2);
+  }
   bool is_smooth(const TetMesh::VertexFeature& feature) const {
-    if (feature.feature == none) return false;
-    if (feature.dimension == 1) return !plc_.curves[feature.feature].straight;
-    return feature.dimension == 2 && !plc_.patches[feature.feature].planar;
+    if (!on_feature(feature)) return false;
+    return feature.dimension == 1 ? !plc_.curves[feature.feature].straight
+                                  : !plc_.patches[feature.feature].planar;
   }
 
   void find_moves() {
     for (Index e = 0; e < edges_.size() && !execution_.cancelled(); ++e) {
       const TetMesh::VertexFeature& feature = edges_.feature(e);
-      if (!is_smooth(feature)) continue;
+      if (!is_smooth(feature) && !(options_.exact && on_feature(feature))) continue;
       const auto [a, b] = edges_.ends(e);
       const Point middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
       const Vector way = place_on(feature, middle) - middle;
       const double length = norm(way), edge_length = distance(mesh_.points[a], mesh_.points[b]);
-      if (length == 0) continue;
+      if (length <= (is_smooth(feature) ? 0 : rounding * edge_length)) continue;
       const bool belongs = length <= farthest * edge_length;  // also false for what is not a number
       moves_.push_back({e, way, belongs ? 1.0 : 0.0});
     }
@@ -80,7 +88,7 @@ class Curving {
   Point place_on(const TetMesh::VertexFeature& feature, const Point& middle) {
     if (options_.exact)
       if (const auto place = options_.exact(feature.dimension, feature.feature, middle)) return *place;
-    return nearest_.nearest(feature, middle);
+    return is_smooth(feature) ? nearest_.nearest(feature, middle) : middle;
   }
 
   Point place_of(const Move& move) const {
@@ -194,26 +202,13 @@ class Curving {
   bool stays(Index edge) const { return stay_.count(edge) > 0; }
 
   std::vector<Index> tets_at(Index edge) {
-    if (first_.empty()) find_tets_at_vertices();
+    if (tets_at_vertex_.empty()) tets_at_vertex_ = {mesh_.tets, edges_.first_node()};
     const auto [a, end] = edges_.ends(edge);
     std::vector<Index> found;
-    for (std::size_t i = first_[a]; i < first_[a + 1]; ++i) {
-      const auto& corners = mesh_.tets[tets_at_vertex_[i]];
-      if (std::find(corners.begin(), corners.end(), end) != corners.end())
-        found.push_back(tets_at_vertex_[i]);
-    }
+    for (const Index t : tets_at_vertex_[a])
+      if (std::find(mesh_.tets[t].begin(), mesh_.tets[t].end(), end) != mesh_.tets[t].end())
+        found.push_back(t);
     return found;
-  }
-
-  void find_tets_at_vertices() {
-    first_.assign(edges_.first_node() + 1, 0);
-    for (const auto& tet : mesh_.tets)
-      for (const Index v : tet) ++first_[v + 1];
-    for (std::size_t v = 1; v < first_.size(); ++v) first_[v] += first_[v - 1];
-    tets_at_vertex_.resize(first_.back());
-    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-    for (Index t = 0; t < mesh_.tets.size(); ++t)
-      for (const Index v : mesh_.tets[t]) tets_at_vertex_[next[v]++] = t;
   }
 
   static void step_back(Move& move) { move.share = move.share > 0.25 ? 0.5 * move.share : 0; }
@@ -263,8 +258,7 @@ class Curving {
   MeshEdges edges_;
   NearestOnFeatures nearest_;
   std::vector<Move> moves_;         // sorted by edge
-  std::vector<std::size_t> first_;  // in tets_at_vertex_, by vertex; empty until it is needed
-  std::vector<Index> tets_at_vertex_;
+  CellsAtVertices tets_at_vertex_;  // empty until it is needed
   std::unordered_set<Index> stay_;  // edges inside whose node has been put back
   std::size_t made_room_ = 0;
 };

@@ -1,0 +1,222 @@
+#include "project/relaxation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "delaunay/predicates.h"
+#include "improve/shape.h"
+
+namespace collarmesh::projection {
+
+namespace {
+
+// Sweeps go on while they help: what tets lack becomes so much less within so many sweeps.
+constexpr unsigned sweeps = 50, idle_sweeps = 3;
+constexpr double worthwhile = 0.9;
+// Vertices move by steps from this share of their shortest edge down, halved so often.
+constexpr double first_step = 0.3;
+constexpr unsigned halvings = 5;
+// A move that gains less is not worth it.
+constexpr double least_gain = 1e-3;
+// Room is made until tets are as good as they were, or as this: the smallest sine of their dihedral angles.
+constexpr double good_shape = 0.2;
+// The bounds are kept with room for rounding.
+constexpr double margin = 1e-6;
+
+}  // namespace
+
+Relaxation::Relaxation(TetMesh& mesh, const ExactGeometry& exact, const Bounds& bounds)
+    : mesh_(mesh),
+      exact_(exact),
+      bounds_(bounds),
+      tets_at_(mesh.tets, mesh.points.size()),
+      origins_(mesh.points),
+      free_(mesh.points.size()) {
+  for (std::size_t v = 0; v < free_.size(); ++v) free_[v] = mesh.features[v].dimension == 3;
+}
+
+Relaxation::Corners Relaxation::corners(Index tet, const std::vector<Point>& points) const {
+  const auto& [a, b, c, d] = mesh_.tets[tet];
+  return {points[a], points[b], points[c], points[d]};
+}
+
+bool Relaxation::good(Index tet) const {
+  const Corners now = corners(tet, mesh_.points), then = corners(tet, origins_);
+  if (predicates::orientation(now[0], now[1], now[2], now[3]) <= 0) return false;
+  const TetQuality quality = measure(now[0], now[1], now[2], now[3]);
+  const auto before = [&] { return measure(then[0], then[1], then[2], then[3]); };
+  if (mesh_.tet_collar[tet] != 0)
+    return quality.max_dihedral <= bounds_.collar_angle || quality.max_dihedral <= before().max_dihedral;
+  return quality.radius_edge <= bounds_.radius_edge || quality.radius_edge <= before().radius_edge;
+}
+
+void Relaxation::put(Index vertex, const Point& place) {
+  log_.emplace_back(vertex, mesh_.points[vertex]);
+  mesh_.points[vertex] = place;
+}
+
+void Relaxation::roll_back() {
+  for (; !log_.empty(); log_.pop_back()) mesh_.points[log_.back().first] = log_.back().second;
+}
+
+// 1 for a tet that keeps its bound and its shape, positive for one with positive volume.
+double Relaxation::score(Index tet, const Corners& p) const {
+  const double six = six_volume(p[0], p[1], p[2], p[3]);
+  if (six <= 0) {
+    double longest = 0;
+    for (unsigned i = 0; i < 4; ++i)
+      for (unsigned j = i + 1; j < 4; ++j) longest = std::max(longest, squared_distance(p[i], p[j]));
+    return longest > 0 ? six / (longest * std::sqrt(longest)) : -1;
+  }
+  const Corners before = corners(tet, origins_);
+  const double shape = improvement::shape_quality(p);
+  const double wanted = std::min(good_shape, improvement::shape_quality(before));
+  double score = std::min(1., shape / wanted);
+  if (mesh_.tet_collar[tet] != 0) {
+    const double angle = measure(p[0], p[1], p[2], p[3]).max_dihedral;
+    if (angle <= bounds_.collar_angle) return score;
+    const double most =
+        std::max(bounds_.collar_angle, measure(before[0], before[1], before[2], before[3]).max_dihedral);
+    return std::min(score, (180 - angle) / (180 - most * (1 - margin)));
+  }
+  const auto radius_edge = [](const Corners& q) {
+    const improvement::Circumsphere sphere = improvement::circumsphere(q);
+    return std::sqrt(sphere.squared_radius / sphere.shortest_squared_edge);
+  };
+  const double ratio = radius_edge(p), most = bounds_.radius_edge * (1 - margin);
+  return ratio <= most ? score : std::min(score, std::max(most, radius_edge(before) * (1 - margin)) / ratio);
+}
+
+// What the tets around the vertex lack, in sum; anything not below `below` when it is not below that.
+double Relaxation::lack_around(Index vertex, const Point& place, double below) const {
+  double lack = 0;
+  for (const Index t : tets_at_[vertex]) {
+    Corners p = corners(t, mesh_.points);
+    for (unsigned i = 0; i < 4; ++i)
+      if (mesh_.tets[t][i] == vertex) p[i] = place;
+    lack += lack_of(t, p);
+    if (lack >= below) break;
+  }
+  return lack;
+}
+
+double Relaxation::lack_of(Index tet, const Corners& p) const {
+  const double missing = 1 - score(tet, p);
+  return missing * missing;
+}
+
+std::optional<Point> Relaxation::on_feature(Index vertex, const Point& wish) const {
+  const auto& [dimension, feature] = mesh_.features[vertex];
+  return dimension == 3 ? wish : exact_(dimension, feature, wish);
+}
+
+// Pattern search for the place where the tets around the vertex lack least.
+bool Relaxation::improve(Index vertex) {
+  const Point start = mesh_.points[vertex];
+  const double at_start = lack_around(vertex, start, INFINITY);
+  if (at_start <= 0) return false;
+  double least = at_start;
+  Vector to_centre{0, 0, 0};
+  double shortest = INFINITY, count = 0;
+  for (const Index t : tets_at_[vertex])
+    for (const Index v : mesh_.tets[t]) {
+      if (v == vertex) continue;
+      shortest = std::min(shortest, squared_distance(mesh_.points[v], start));
+      to_centre = to_centre + (mesh_.points[v] - start);
+      ++count;
+    }
+  Point place = start;
+  const auto consider = [&](const Point& wish) {
+    const std::optional<Point> p = on_feature(vertex, wish);
+    if (!p || least <= 0) return false;
+    const double lack = lack_around(vertex, *p, least);
+    if (lack >= least || !keeps_sag(vertex, *p)) return false;
+    least = lack;
+    place = *p;
+    return true;
+  };
+  consider(start + to_centre / count);
+  consider(start + 0.5 * to_centre / count);
+  double step = first_step * std::sqrt(shortest);
+  for (unsigned h = 0; h < halvings; ++h, step *= 0.5)
+    for (const Vector& direction : {Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}})
+      if (!consider(place + step * direction)) consider(place - step * direction);
+  if (least >= (1 - least_gain) * at_start) return false;
+  put(vertex, place);
+  return true;
+}
+
+std::vector<Index> Relaxation::relax(std::vector<Index> tets) {
+  const auto sort_out = [](std::vector<Index>& list) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  };
+  double missing = INFINITY;  // in all tets together
+  unsigned idle = 0;          // sweeps since that has become much less
+  for (unsigned sweep = 0; sweep < sweeps && idle < idle_sweeps; ++sweep) {
+    std::vector<Index> vertices;
+    double missing_now = 0;
+    for (const Index t : tets) {
+      const double lack = lack_of(t, corners(t, mesh_.points));
+      if (lack <= 0) continue;
+      missing_now += lack;
+      for (const Index v : mesh_.tets[t])
+        if (free_[v]) vertices.push_back(v);
+    }
+    if (missing_now <= worthwhile * missing) {
+      missing = missing_now;
+      idle = 0;
+    } else {
+      ++idle;
+    }
+    sort_out(vertices);
+    bool moved = false;
+    for (const Index v : vertices) {
+      if (!improve(v)) continue;
+      moved = true;
+      tets.insert(tets.end(), tets_at_[v].begin(), tets_at_[v].end());
+    }
+    sort_out(tets);
+    if (!moved) break;
+  }
+  tets.erase(std::remove_if(tets.begin(), tets.end(), [&](Index t) { return good(t); }), tets.end());
+  return tets;
+}
+
+// Faces and edges on smooth features follow the vertices that slide along them.
+bool Relaxation::keeps_sag(Index vertex, const Point& place) {
+  if (mesh_.features[vertex].dimension == 3) return true;
+  if (faces_at_.empty()) {
+    faces_at_ = {mesh_.faces, mesh_.points.size()};
+    edges_at_ = {mesh_.edges, mesh_.points.size()};
+  }
+  const Point now = mesh_.points[vertex];
+  mesh_.points[vertex] = place;
+  const double after = sag_around(vertex);
+  mesh_.points[vertex] = now;
+  return after <= bounds_.sag || after <= sag_around(vertex);
+}
+
+// The largest distance of a face's or edge's middle from the exact geometry.
+double Relaxation::sag_around(Index vertex) const {
+  double most = 0;
+  const auto see = [&](unsigned dimension, Index feature, const Point& middle) {
+    if (feature == none) return;
+    if (const auto nearest = exact_(dimension, feature, middle))
+      most = std::max(most, distance(*nearest, middle));
+  };
+  const auto& points = mesh_.points;
+  for (const Index f : faces_at_[vertex]) {
+    const auto& [a, b, c] = mesh_.faces[f];
+    see(2, mesh_.face_patch[f], (points[a] + points[b] + points[c]) / 3);
+    const Index next = vertex == a ? b : vertex == b ? c : a;  // its other side is another face's
+    see(2, mesh_.face_patch[f], 0.5 * (points[vertex] + points[next]));
+  }
+  for (const Index e : edges_at_[vertex]) {
+    const auto& [a, b] = mesh_.edges[e];
+    see(1, mesh_.edge_curve[e], 0.5 * (points[a] + points[b]));
+  }
+  return most;
+}
+
+}  // namespace collarmesh::projection

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "collarmesh/exact_geometry.h"
+#include "collarmesh/tet_mesh.h"
+#include "common/cells_at_vertices.h"
+
+namespace collarmesh::projection {
+
+struct Bounds {
+  double radius_edge = 2;     ///< outside collars
+  double collar_angle = 150;  ///< largest dihedral angle in collars, degrees
+  double sag = 0;             ///< absolute: largest distance of faces and edges from the exact geometry
+};
+
+/// Makes room for vertices that were put somewhere: the corners of the tets that this spoilt move, inside
+/// their regions or along their exact features, until the tets keep their bounds again. What was done since
+/// the last `commit` can be taken back.
+class Relaxation {
+ public:
+  /// The mesh is kept by reference. What misses a bound now may go on missing it, but not by more.
+  Relaxation(TetMesh& mesh, const ExactGeometry& exact, const Bounds& bounds);
+
+  const CellsAtVertices& tets_at() const { return tets_at_; }
+  /// Where the vertex was at the beginning.
+  const Point& origin(Index vertex) const { return origins_[vertex]; }
+  /// Is the tet positive and within its bound?
+  bool good(Index tet) const;
+
+  void put(Index vertex, const Point& place);
+  /// Say whether `relax` may move a vertex; at first it may move those inside regions only.
+  void set_free(Index vertex, bool is_free) { free_[vertex] = is_free; }
+
+  /// Move vertices of spoilt tets, each to where the worst tet around it is better, sweep by sweep. Returns
+  /// those that are not good in the end, of `tets` and of all tets around what moved.
+  std::vector<Index> relax(std::vector<Index> tets);
+
+  void commit() { log_.clear(); }
+  void roll_back();
+
+ private:
+  using Corners = std::array<Point, 4>;
+
+  Corners corners(Index tet, const std::vector<Point>& points) const;
+  double score(Index tet, const Corners& p) const;
+  double lack_of(Index tet, const Corners& p) const;
+  double lack_around(Index vertex, const Point& place, double below) const;
+  bool improve(Index vertex);
+  std::optional<Point> on_feature(Index vertex, const Point& wish) const;
+  bool keeps_sag(Index vertex, const Point& place);
+  double sag_around(Index vertex) const;
+
+  TetMesh& mesh_;
+  const ExactGeometry& exact_;
+  Bounds bounds_;
+  CellsAtVertices tets_at_, faces_at_, edges_at_;
+  std::vector<Point> origins_;
+  std::vector<bool> free_;
+  std::vector<std::pair<Index, Point>> log_;  // vertices and where they were, in order
+};
+
+}  // namespace collarmesh::projection
