@@ -200,6 +200,12 @@ void add_budget_options(CLI::App& app, MeshOptions& m) {
       ->group(group);
 }
 
+void add_threads_option(CLI::App& app, unsigned& threads, const std::string& what) {
+  add(app, "--threads N", threads, what + "; 0: as many as there are cores. They change no result")
+      ->check(number_in(0, 1024, "a number of threads from 0 to 1024"))
+      ->check(count);
+}
+
 bool is_meshing_group(const std::string& group) {
   return group == size_group || group == quality_group || group == elements_group;
 }
@@ -211,6 +217,7 @@ void add_run_options(CLI::App& app, MeshArguments& a) {
   add_order_option(app, a);
   add_complex_options(app, a.complex);
   add_budget_options(app, a.mesh);
+  add_threads_option(app, a.threads, "Of improvement and certificate, at most");
   app.add_option("--report", a.report, "Write what was measured as JSON")->type_name("FILE.json");
   const auto set_progress = [&a](const std::string& word) {
     a.progress = word == "json"   ? ProgressStyle::json
@@ -274,6 +281,7 @@ CLI::App* add_check_command(CLI::App& app, CheckArguments& a) {
       ->check(length);
   add(*check, "--findings N", a.check.findings_per_guarantee, "List at most this many per guarantee")
       ->check(count);
+  add_threads_option(*check, a.check.threads, "At most");
   add_complex_options(*check, a.complex);
   check->add_flag("--json", a.json, "Print JSON");
   return check;

@@ -31,6 +31,7 @@ struct MeshArguments {
   unsigned order = 1;                       ///< of the cells, 1 or 2
   double min_dihedral = 0;                  ///< degrees, in place of the level's; 0: the level's
   std::string input_format, output_format;  ///< extensions with their dot; empty: those of the files
+  unsigned threads = 0;                     ///< at most; 0: as many as there are cores
   std::string report;                       ///< path, empty: none
   ProgressStyle progress = ProgressStyle::automatic;
   bool verbose = false;

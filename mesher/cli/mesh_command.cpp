@@ -123,6 +123,7 @@ void improve_elements(const MeshArguments& arguments, const ComplexInput& input,
   const MeshOptions bounds = input.tightened(arguments.mesh, run.plc);
   options.radius_edge = bounds.radius_edge;
   options.distance = bounds.distance;
+  options.threads = arguments.threads;
   if (arguments.min_dihedral > 0) options.min_dihedral = arguments.min_dihedral;
   run.improvement = improve(run.result.mesh, run.plc, options, execution);
   stop_if_interrupted();
@@ -161,6 +162,7 @@ void certify(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   options.distance = arguments.mesh.distance;
   options.collar_angle = arguments.mesh.collar_angle;
   options.crease_angle = arguments.complex.crease_angle;
+  options.threads = arguments.threads;
   run.check = check(run.result.mesh, run.plc, options);
   run.measures = measure_mesh(run.result.mesh);
 }

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "improve/operations.h"
-#include "improve/tet_complex.h"
 #include "support/acute_shapes.h"
 #include "support/meshing.h"
 #include "support/shapes.h"
@@ -19,6 +18,7 @@ namespace {
 using improvement::Change;
 using improvement::Operations;
 using improvement::TetComplex;
+using improvement::Workpiece;
 using testing::mesh_of;
 using testing::Meshed;
 using testing::with_size;
@@ -50,17 +50,18 @@ constexpr std::size_t single_steps = 8;
 struct Workbench {
   Workbench(const Meshed& meshed, const TetMesh& of)
       : mesh(of),
-        complex(mesh),
-        operations(complex, meshed.plc, radius_edge, 1e-3 * meshed.plc.bounds.diagonal()) {}
+        workpiece(mesh, meshed.plc, 1e-3 * meshed.plc.bounds.diagonal()),
+        operations(workpiece, radius_edge) {}
 
   double worst(std::span<const Index> tets) const {
     double quality = INFINITY;
-    for (const Index t : tets) quality = std::min(quality, operations.quality(t));
+    for (const Index t : tets) quality = std::min(quality, workpiece.quality(t));
     return quality;
   }
 
   TetMesh mesh;
-  TetComplex complex;
+  Workpiece workpiece;
+  const TetComplex& complex = workpiece.complex;
   Operations operations;
 };
 
@@ -116,7 +117,7 @@ void apply(Workbench& on, const Change& change) {
   std::vector<Index> before = change.replacement.old;
   if (change.kind == Change::Kind::move) on.complex.star(change.vertex, before);
   const double worst = on.worst(before);
-  const auto& changed = on.operations.apply(change);
+  const auto& changed = on.workpiece.apply(change);
   EXPECT_GT(on.worst(changed), worst);
   if (changed.empty()) return;  // a sliver has gone to the other side
   EXPECT_NEAR(on.worst(changed), change.quality, 1e-12);
@@ -170,7 +171,7 @@ TEST_F(ImproveOperations, EachKeepsTheCertificate) {
         if (change.kind == Change::Kind::none) break;
         ++seen[dimension_of(on, change)];
         apply(on, change);
-        on.complex.store();
+        on.workpiece.complex.store();
         ASSERT_EQ(faults_of(meshed, on.mesh), "");
       }
     }
@@ -195,7 +196,7 @@ TEST_F(ImproveOperations, ManyKeepTheCertificate) {
         apply(on, change);
         ++done;
       }
-      on.complex.store();
+      on.workpiece.complex.store();
       mesh = on.mesh;
       ASSERT_EQ(faults_of(meshed, mesh), "");
     }

@@ -14,6 +14,7 @@ struct CheckOptions {
   double collar_angle = 150;   ///< largest dihedral angle in collars, degrees
   double crease_angle = 60;    ///< degrees; features that meet below it are the creases that excuse a collar's cells
   std::size_t findings_per_guarantee = 20;  ///< more are counted, not listed
+  unsigned threads = 0;        ///< at most; 0: as many as there are cores
 };
 
 /// A guarantee that does not hold, and where.

@@ -15,6 +15,7 @@ struct ImproveOptions {
   double distance = 0;       ///< surface distance tolerance on smooth patches; 0: 1e-3 of the diagonal
   bool move_vertices = true; ///< and insert some, not only change how they are connected
   unsigned passes = 3;       ///< at most, over what could not be helped before
+  unsigned threads = 0;      ///< at most; 0: as many as there are cores. The result does not depend on it
 };
 
 /// How much time to spend: 1 changes connections of tets below 15 degrees, 2 is the default, 3 goes on
@@ -31,9 +32,9 @@ struct ImproveReport {
 };
 
 /// Remove slivers: hill climbing on the smallest sine of a tet's dihedral angles (obtuse ones count
-/// 0.7 times, so that 155 degrees is about as bad as 17), worst tet first, by removing edges, inside
-/// regions and on patches, by moving vertices within their features and by inserting vertices amid edges
-/// inside regions (Freitag and Ollivier-Gooch 1997; the edge removal is Klincsek's optimal triangulation
+/// 0.7 times, so that 155 degrees is about as bad as 17), worst tets first, by removing edges, inside
+/// regions and on patches, by moving vertices within their features, by contracting edges where none
+/// becomes longer than those before, and by inserting vertices amid edges (Freitag and Ollivier-Gooch 1997; the edge removal is Klincsek's optimal triangulation
 /// of the ring, as in Klingner and Shewchuk 2007, section 2). A sliver with two faces on a smooth patch
 /// is taken off the region.
 /// No operation makes the worst tet of its cavity worse, breaks the radius-edge bound, touches a

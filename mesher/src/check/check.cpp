@@ -1,11 +1,15 @@
 // The certificate: each guarantee recomputed from the mesh and the complex alone.
 #include "collarmesh/check.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "check/subject.h"
+#include "thread_limit.h"
 
 namespace collarmesh {
 
@@ -45,21 +49,52 @@ Subject make_subject(const TetMesh& mesh, const Plc& plc, const CheckOptions& op
   return subject;
 }
 
+void take_measures(CheckReport& report, CheckReport&& part) {
+  report.collar_tets += part.collar_tets;
+  report.max_radius_edge = std::max(report.max_radius_edge, part.max_radius_edge);
+  report.min_dihedral = std::min(report.min_dihedral, part.min_dihedral);
+  report.max_dihedral = std::max(report.max_dihedral, part.max_dihedral);
+  report.max_collar_dihedral = std::max(report.max_collar_dihedral, part.max_collar_dihedral);
+  report.max_surface_distance = std::max(report.max_surface_distance, part.max_surface_distance);
+  report.median_edge = std::max(report.median_edge, part.median_edge);
+  if (!part.region_volumes.empty()) report.region_volumes = std::move(part.region_volumes);
+}
+
+// Groups of guarantees that have nothing to do with each other are looked at at once, each with a report of
+// its own.
 void judge(Subject subject, CheckReport& report, Findings& findings) {
   report.faces = subject.mesh.faces.size();
   report.edges = subject.mesh.edges.size();
   subject.match = match_features(subject.mesh, subject.plc, subject.rounding);
   subject.collar = collar_cells(subject, findings);
-  check_tets(subject, report, findings);
-  check_conformity(subject, findings);
-  check_watertight(subject, findings);
-  check_region_volumes(subject, report, findings);
-  check_vertices(subject, findings);
-  check_listed_edges(subject, findings);
-  check_curves(subject, report, findings);
-  check_patches(subject, report, findings);
-  check_collars(subject, findings);
-  check_second_order(subject, report, findings);
+  using Group = void (*)(const Subject&, CheckReport&, Findings&);
+  const std::array<Group, 8> groups{
+      [](const Subject& s, CheckReport& r, Findings& f) {
+        check_tets(s, r, f);
+        check_region_volumes(s, r, f);
+      },
+      [](const Subject& s, CheckReport& r, Findings&) { r.median_edge = median_edge(s.mesh); },
+      [](const Subject& s, CheckReport&, Findings& f) { check_conformity(s, f); },
+      [](const Subject& s, CheckReport&, Findings& f) {
+        check_watertight(s, f);
+        check_vertices(s, f);
+        check_listed_edges(s, f);
+      },
+      check_curves,
+      check_patches,
+      [](const Subject& s, CheckReport&, Findings& f) { check_collars(s, f); },
+      check_second_order};
+  std::array<CheckReport, groups.size()> parts;
+  ThreadLimit(subject.options.threads).run([&] {
+    tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t i) {
+      Findings own(parts[i], subject.options.findings_per_guarantee);
+      groups[i](subject, parts[i], own);
+    });
+  });
+  for (CheckReport& part : parts) {
+    findings.take(part);
+    take_measures(report, std::move(part));
+  }
 }
 
 }  // namespace

@@ -32,6 +32,9 @@ class Findings {
         {std::string(guarantee), fmt::format(message, std::forward<Arguments>(arguments)...), ids, where});
   }
 
+  /// Those of a part that was judged on its own.
+  void take(CheckReport& part);
+
   /// How many were found so far, with those not listed.
   std::size_t total() const { return report_.findings_total; }
 

@@ -61,7 +61,9 @@ double place_of_plane(const Point& p, const Point& q, const Corners& t) {
 }  // namespace
 
 const RegionLocator::Trees& RegionLocator::trees() const {
-  if (!trees_) trees_.emplace(Trees{DistanceTree(all_corners(plc_)), build::BoxTree(all_boxes(plc_))});
+  std::call_once(once_, [&] {
+    trees_.emplace(Trees{DistanceTree(all_corners(plc_)), build::BoxTree(all_boxes(plc_))});
+  });
   return *trees_;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <mutex>
 #include <optional>
 
 #include "check/distance_tree.h"
@@ -8,7 +9,7 @@
 
 namespace collarmesh::checks {
 
-/// Tells which region of a complex a point lies in.
+/// Tells which region of a complex a point lies in. Several threads may ask at once.
 class RegionLocator {
  public:
   /// Kept by reference.
@@ -30,6 +31,7 @@ class RegionLocator {
   Index region_on_the_way(const Point& p, const Point& target) const;
 
   const Plc& plc_;
+  mutable std::once_flag once_;
   mutable std::optional<Trees> trees_;
 };
 

@@ -77,7 +77,6 @@ void check_tets(const Subject& subject, CheckReport& report, Findings& findings)
     volumes[mesh.tet_region[tet]] += quality.volume;
   }
   report.region_volumes.assign(volumes.begin(), volumes.end());
-  report.median_edge = median_edge(mesh);
 }
 
 }  // namespace collarmesh::checks

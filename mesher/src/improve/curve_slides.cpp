@@ -15,13 +15,13 @@ double squared_distance_to_segment(const Point& p, const Point& a, const Point& 
 
 }  // namespace
 
-bool CurveSlides::movable(Index vertex) {
-  if (places_.empty()) prepare();
+bool CurveSlides::movable(Index vertex) const {
+  std::call_once(prepared_, [&] { prepare(); });
   return vertex < places_.size() && places_[vertex].neighbours[0] != none &&
          places_[vertex].neighbours[1] != none;
 }
 
-void CurveSlides::prepare() {
+void CurveSlides::prepare() const {
   places_.resize(mesh_.points.size());
   std::vector<Index> point_of(plc_.vertices.size(), none);
   std::vector<std::vector<Index>> vertices(plc_.curves.size());
@@ -48,7 +48,8 @@ void CurveSlides::prepare() {
         n = none;
 }
 
-void CurveSlides::find_places(Index curve, std::vector<Index>& vertices, const std::array<Index, 2>& ends) {
+void CurveSlides::find_places(Index curve, std::vector<Index>& vertices,
+                              const std::array<Index, 2>& ends) const {
   const auto& lengths = paths_.lengths(curve);
   std::vector<std::array<Index, 3>> segments;
   for (std::size_t i = 0; i + 1 < lengths.size(); ++i) {
@@ -94,7 +95,7 @@ Vector CurveSlides::direction(Index vertex) const {
   return length > 0 ? (plc_.points[b] - plc_.points[a]) / length : Vector{0, 0, 0};
 }
 
-bool CurveSlides::fits(Index vertex, double way) {
+bool CurveSlides::fits(Index vertex, double way) const {
   const Place& place = places_[vertex];
   const Index curve = mesh_.features[vertex].feature;
   const double behind = way_to_neighbour(vertex, 0), before = way_to_neighbour(vertex, 1);
@@ -104,7 +105,7 @@ bool CurveSlides::fits(Index vertex, double way) {
          edge_fits(curve, place.parameter + way, before - way, at, mesh_.points[place.neighbours[1]]);
 }
 
-bool CurveSlides::may_skip(Index vertex) {
+bool CurveSlides::may_skip(Index vertex) const {
   const auto [before, after] = places_[vertex].neighbours;
   if (before == after) return false;
   const double behind = way_to_neighbour(vertex, 0), ahead = way_to_neighbour(vertex, 1);
@@ -119,26 +120,26 @@ void CurveSlides::skipped(Index vertex) {
 }
 
 // The edge ab and the part of a curve that starts at `from` and is `way` long.
-bool CurveSlides::edge_fits(Index curve, double from, double way, const Point& a, const Point& b) {
+bool CurveSlides::edge_fits(Index curve, double from, double way, const Point& a, const Point& b) const {
   const auto& lengths = paths_.lengths(curve);
   const double length = lengths.back();
   const std::size_t count = lengths.size() - 1;
-  part_.assign(1, a);
+  std::vector<Point> part{a};
   std::size_t segment = paths_.segment(curve, from);
   const double start = plc_.curves[curve].closed ? from - length * std::floor(from / length) : from;
   for (double travelled = lengths[segment + 1] - start; travelled < way;) {
-    part_.push_back(plc_.points[paths_.segment_ends(curve, segment)[1]]);
+    part.push_back(plc_.points[paths_.segment_ends(curve, segment)[1]]);
     segment = (segment + 1) % count;
     travelled += lengths[segment + 1] - lengths[segment];
   }
-  part_.push_back(b);
-  for (const Point& p : part_)
+  part.push_back(b);
+  for (const Point& p : part)
     if (squared_distance_to_segment(p, a, b) > squared_distance_) return false;
   for (const double t : {0.25, 0.5, 0.75}) {
     const Point p = a + t * (b - a);
     double least = INFINITY;
-    for (std::size_t i = 1; i < part_.size(); ++i)
-      least = std::min(least, squared_distance_to_segment(p, part_[i - 1], part_[i]));
+    for (std::size_t i = 1; i < part.size(); ++i)
+      least = std::min(least, squared_distance_to_segment(p, part[i - 1], part[i]));
     if (least > squared_distance_) return false;
   }
   return true;

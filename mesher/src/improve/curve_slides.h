@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <mutex>
 #include <vector>
 
 #include "collarmesh/plc.h"
@@ -14,24 +15,24 @@ namespace collarmesh::improvement {
 /// their edges, points of the edges from their parts of the polyline.
 class CurveSlides {
  public:
-  /// Both are kept by reference. `distance` is absolute.
+  /// Both are kept by reference. `distance` is absolute. Several threads may ask at once.
   CurveSlides(const Plc& plc, const TetMesh& mesh, double distance)
       : plc_(plc), mesh_(mesh), squared_distance_(distance * distance), paths_(plc, plc.points) {}
 
   /// Can this vertex, on a curve, be moved at all?
-  bool movable(Index vertex);
+  bool movable(Index vertex) const;
   /// The unit direction of the curve there.
   Vector direction(Index vertex) const;
   /// The point of its curve that lies so far ahead of it, by arc length.
   Point ahead(Index vertex, double way) const;
   /// May it be moved there?
-  bool fits(Index vertex, double way);
+  bool fits(Index vertex, double way) const;
   /// It was.
   void moved(Index vertex, double way) { places_[vertex].parameter += way; }
   /// The mesh vertices before and after it. Precondition: it is movable.
   const std::array<Index, 2>& neighbours(Index vertex) const { return places_[vertex].neighbours; }
   /// Could one edge join its neighbours?
-  bool may_skip(Index vertex);
+  bool may_skip(Index vertex) const;
   /// One does.
   void skipped(Index vertex);
 
@@ -41,17 +42,17 @@ class CurveSlides {
     std::array<Index, 2> neighbours{none, none};  // mesh vertices before and after it
   };
 
-  void prepare();
-  void find_places(Index curve, std::vector<Index>& vertices, const std::array<Index, 2>& ends);
+  void prepare() const;
+  void find_places(Index curve, std::vector<Index>& vertices, const std::array<Index, 2>& ends) const;
   double way_to_neighbour(Index vertex, unsigned side) const;
-  bool edge_fits(Index curve, double from, double way, const Point& a, const Point& b);
+  bool edge_fits(Index curve, double from, double way, const Point& a, const Point& b) const;
 
   const Plc& plc_;
   const TetMesh& mesh_;
   double squared_distance_;
   CurvePaths paths_;
-  std::vector<Place> places_;  // of every vertex; made when first asked for
-  std::vector<Point> part_;    // of a polyline
+  mutable std::once_flag prepared_;
+  mutable std::vector<Place> places_;  // of every vertex there was then; made when first asked for
 };
 
 }  // namespace collarmesh::improvement

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "improve/operations.h"
+#include "improve/shape.h"
 
 namespace collarmesh::improvement {
 
@@ -13,6 +14,16 @@ constexpr std::size_t largest_ring = 9;
 constexpr double flat_volume = 1e-13;
 
 }  // namespace
+
+// Not above `above` means worthless, whatever the value.
+double Operations::new_quality(const std::array<Index, 4>& v, double above) const {
+  const auto& points = mesh_.points;
+  const Corners p{points[v[0]], points[v[1]], points[v[2]], points[v[3]]};
+  const double quality = shape_quality(p);
+  if (quality <= above) return -1;
+  const Circumsphere sphere = circumsphere(p);
+  return sphere.squared_radius <= squared_radius_edge_ * sphere.shortest_squared_edge ? quality : -1;
+}
 
 // Triangulate the polygon around the edge ab so that the worst of the two tets on each triangle is as
 // good as possible (Klincsek 1980). Cost: the polygon's vertices cubed.
@@ -52,7 +63,7 @@ void Operations::collect(Index a, Index b, const Polygon& polygon, std::size_t i
 }
 
 bool Operations::flat(Index a, Index b, Index c, Index d) const {
-  const auto& p = complex_.mesh().points;
+  const auto& p = mesh_.points;
   const double longest = std::max({squared_distance(p[a], p[b]), squared_distance(p[a], p[c]),
                                    squared_distance(p[a], p[d]), squared_distance(p[c], p[d])});
   return std::fabs(six_volume(p[a], p[b], p[c], p[d])) <= flat_volume * longest * std::sqrt(longest);
@@ -92,9 +103,8 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change) 
   } else {
     if (kept.size() != 2) return;
     std::sort(kept.begin(), kept.end());
-    const auto& mesh = complex_.mesh();
-    const Index patch = mesh.face_patch[kept[0].second];
-    if (patch == none || mesh.face_patch[kept[1].second] != patch) return;
+    const Index patch = mesh_.face_patch[kept[0].second];
+    if (patch == none || mesh_.face_patch[kept[1].second] != patch) return;
     const std::size_t from = kept[0].first, to = kept[1].first;
     if (!ring_.closed && (from != 0 || to + 1 != m)) return;
     const Index c = ring_.link[from], d = ring_.link[to];
@@ -108,7 +118,7 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change) 
       if (polygon.size() < 3 && (planar || !may_lose(like.back(), a, b))) return;
     }
     for (const auto& [end, face] : {std::pair{b, kept[0].second}, std::pair{a, kept[1].second}}) {
-      auto corners = mesh.faces[face];
+      auto corners = mesh_.faces[face];
       std::replace(corners.begin(), corners.end(), end, end == b ? d : c);
       made.replacement.old_faces.push_back(face);
       made.replacement.created_faces.push_back({corners, face});
@@ -139,21 +149,22 @@ bool Operations::may_lose(Index tet, Index a, Index b) const {
 
 // May two faces of a patch become these, which share the edge that neither had? On a planar patch the
 // tets' volumes have told.
-bool Operations::may_turn(const Change& change) {
-  const auto& mesh = complex_.mesh();
+bool Operations::may_turn(Change& change) {
   const auto& turned = change.replacement.created_faces;
-  const Index patch = mesh.face_patch[turned[0].like];
+  const Index patch = mesh_.face_patch[turned[0].like];
   if (plc_.patches[patch].planar) return true;
   faces_.clear();
   std::array<Index, 2> shared{none, none};
   for (const TetComplex::NewFace& face : turned)
     faces_.push_back(
-        {{mesh.points[face.corners[0]], mesh.points[face.corners[1]], mesh.points[face.corners[2]]}, patch});
+        {{mesh_.points[face.corners[0]], mesh_.points[face.corners[1]], mesh_.points[face.corners[2]]},
+         patch});
   unsigned count = 0;
   for (const Index v : turned[0].corners)
     if (count < 2 &&
         std::find(turned[1].corners.begin(), turned[1].corners.end(), v) != turned[1].corners.end())
       shared[count++] = v;
+  complex_.star(shared[0], change.read);
   return !complex_.on_faces(shared[0], shared[1]) && surfaces_.fit(change.replacement.old_faces, faces_);
 }
 

@@ -1,48 +1,56 @@
 #include "collarmesh/improve.h"
 
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
 #include <chrono>
 #include <numbers>
 #include <queue>
 
 #include "collarmesh/error.h"
 #include "improve/operations.h"
-#include "improve/shape.h"
-#include "improve/tet_complex.h"
+#include "thread_limit.h"
 
 namespace collarmesh {
 
 namespace improvement {
 namespace {
 
-constexpr std::size_t steps_between_reports = 1024;
 // An inserted vertex has to bring the tets around it to this share of the wanted quality.
 constexpr double enough = 0.7;
 constexpr double default_distance = 1e-3;
+// Changes are proposed for so many tets at once: few of all, so that they hardly meet.
+constexpr std::size_t tets_per_proposal = 2000;
+constexpr std::size_t most_proposals = 1024;
+constexpr std::size_t steps_between_reports = 1024;
 
-/// Works on the tets below a quality, worst first.
+/// Works on the tets below a quality, worst first. Changes are proposed for the worst few of them at once, by
+/// several threads, and made one after the other; what met an earlier one is proposed again. So the result
+/// does not depend on the number of threads.
 class Improvement {
  public:
   Improvement(TetMesh& mesh, const Plc& plc, const ImproveOptions& options, const Execution& execution)
-      : complex_(mesh),
-        operations_(complex_, plc, options.radius_edge,
-                    options.distance > 0 ? options.distance : default_distance * plc.bounds.diagonal()),
+      : workpiece_(mesh, plc,
+                   options.distance > 0 ? options.distance : default_distance * plc.bounds.diagonal()),
+        operations_([this, &options] { return Operations(workpiece_, options.radius_edge); }),
         execution_(execution),
+        threads_(options.threads),
         move_vertices_(options.move_vertices),
         wanted_(std::sin(options.min_dihedral * std::numbers::pi / 180)),
         passes_(options.passes) {}
 
   ImproveReport run() {
     const auto started = std::chrono::steady_clock::now();
-    for (Index t = 0; t < complex_.size(); ++t) queue(t);
+    for (Index t = 0; t < complex().size(); ++t) queue(t);
     report_.candidates = queue_.size();
     for (unsigned pass = 0; pass < passes_ && !queue_.empty() && !report_.cancelled; ++pass) {
       const std::size_t before = changes();
-      work_off();
+      threads_.run([this] { work_off(); });
       if (changes() == before) break;
-      for (Index t = 0; t < complex_.size(); ++t) queue(t);
+      for (Index t = 0; t < complex().size(); ++t) queue(t);
     }
     report_.remaining = count_remaining();
-    complex_.store();
+    workpiece_.complex.store();
     report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return report_;
   }
@@ -58,6 +66,8 @@ class Improvement {
     }
   };
 
+  const TetComplex& complex() const { return workpiece_.complex; }
+
   std::size_t changes() const {
     return report_.edge_removals + report_.boundary_flips + report_.moved_vertices +
            report_.inserted_vertices + report_.contracted_edges;
@@ -65,84 +75,115 @@ class Improvement {
 
   std::size_t count_remaining() const {
     std::size_t count = 0;
-    for (Index t = 0; t < complex_.size(); ++t)
-      count += complex_[t].alive && !complex_[t].collar && operations_.quality(t) < wanted_;
+    for (Index t = 0; t < complex().size(); ++t)
+      count += complex()[t].alive && !complex()[t].collar && workpiece_.quality(t) < wanted_;
     return count;
   }
 
   void queue(Index tet) {
-    if (!complex_[tet].alive || complex_[tet].collar) return;
-    const double quality = operations_.quality(tet);
-    if (quality < wanted_) queue_.push({quality, tet, complex_[tet].generation});
+    if (!complex()[tet].alive || complex()[tet].collar) return;
+    const double quality = workpiece_.quality(tet);
+    if (quality < wanted_) queue_.push({quality, tet, complex()[tet].generation});
+  }
+
+  bool is_up_to_date(const Item& item) const {
+    const auto& tet = complex()[item.tet];
+    return tet.alive && tet.generation == item.generation &&
+           workpiece_.quality(item.tet) == item.quality;  // else a vertex has moved since
   }
 
   void work_off() {
+    const std::size_t size = std::clamp<std::size_t>(complex().size() / tets_per_proposal, 1, most_proposals);
     std::size_t steps = 0;
     while (!queue_.empty()) {
-      const Item item = queue_.top();
-      queue_.pop();
-      if (++steps % steps_between_reports == 0 && stopped()) {
+      batch_.clear();
+      while (!queue_.empty() && batch_.size() < size) {
+        if (is_up_to_date(queue_.top())) batch_.push_back(queue_.top());
+        queue_.pop();
+      }
+      const std::size_t reports = steps / steps_between_reports;
+      steps += batch_.size();
+      if (steps / steps_between_reports > reports && stopped()) {
         report_.cancelled = true;
         return;
       }
-      const auto& tet = complex_[item.tet];
-      if (!tet.alive || tet.generation != item.generation) continue;
-      if (operations_.quality(item.tet) != item.quality) continue;  // a vertex has moved since
-      help(item.tet);
+      proposals_.assign(batch_.size(), {});
+      tbb::parallel_for(std::size_t{0}, batch_.size(),
+                        [&](std::size_t i) { proposals_[i] = propose(operations_.local(), batch_[i].tet); });
+      ++batch_number_;
+      changed_in_.resize(complex().size(), 0);
+      for (std::size_t i = 0; i < batch_.size(); ++i) {
+        if (is_untouched(proposals_[i]))
+          apply(std::move(proposals_[i]));
+        else if (is_up_to_date(batch_[i]))
+          queue_.push(batch_[i]);
+      }
     }
   }
 
   bool stopped() const {
     return execution_.cancelled() ||
            (execution_.progress &&
-            !execution_.progress({"improve", 0, complex_.mesh().points.size(), complex_.size()}));
+            !execution_.progress({"improve", 0, complex().mesh().points.size(), complex().size()}));
   }
 
-  // The first of: an edge removed, corners moved, an edge contracted, a vertex inserted.
-  void help(Index tet) {
+  // The first that helps of: an edge removed, a corner moved, an edge contracted, a vertex inserted.
+  Change propose(Operations& operations, Index tet) const {
     Change change;
     for (unsigned i = 0; i < 4; ++i)
-      for (unsigned j = i + 1; j < 4; ++j) operations_.remove_edge(tet, i, j, change);
-    if (apply(change) || !move_vertices_) return;
-    const auto corners = complex_[tet].corners;
-    bool moved = false;
-    for (const Index v : corners) {
-      change = {};
-      operations_.move_vertex(v, change);
-      moved |= apply(change);
-    }
-    if (moved) return;
+      for (unsigned j = i + 1; j < 4; ++j) operations.remove_edge(tet, i, j, change);
+    const auto& corners = complex()[tet].corners;
+    const auto found = [&] { return change.kind != Change::Kind::none; };
+    if (found() || !move_vertices_) return change;
+    for (const Index v : corners) operations.move_vertex(v, change);
+    if (found()) return change;
     for (const Index v : corners)
       for (const Index w : corners)
-        if (v != w) operations_.contract_edge(v, w, change);
-    if (apply(change) || report_.inserted_vertices >= report_.candidates) return;
-    for (unsigned i = 0; i < 4; ++i)
-      for (unsigned j = i + 1; j < 4; ++j) {
-        operations_.split_edge(corners[i], corners[j], enough * wanted_, change);
-        if (apply(change)) return;
-      }
+        if (v != w) operations.contract_edge(v, w, change);
+    for (unsigned i = 0; i < 4 && !found(); ++i)
+      for (unsigned j = i + 1; j < 4 && !found(); ++j)
+        operations.split_edge(corners[i], corners[j], enough * wanted_, change);
+    return change;
   }
 
-  bool apply(const Change& change) {
+  // Is all that the change depends on as it was when the batch was begun?
+  bool is_untouched(const Change& change) const {
+    const auto untouched = [&](Index t) { return complex()[t].alive && changed_in_[t] != batch_number_; };
+    return std::all_of(change.replacement.old.begin(), change.replacement.old.end(), untouched) &&
+           std::all_of(change.read.begin(), change.read.end(), untouched);
+  }
+
+  void apply(Change change) {
     switch (change.kind) {
-      case Change::Kind::none: return false;
+      case Change::Kind::none: return;
       case Change::Kind::edge_removal: ++report_.edge_removals; break;
       case Change::Kind::boundary_flip: ++report_.boundary_flips; break;
       case Change::Kind::move: ++report_.moved_vertices; break;
-      case Change::Kind::insertion: ++report_.inserted_vertices; break;
       case Change::Kind::contraction: ++report_.contracted_edges; break;
+      case Change::Kind::insertion:
+        if (report_.inserted_vertices >= report_.candidates) return;
+        ++report_.inserted_vertices;
+        break;
     }
-    for (const Index t : operations_.apply(change)) queue(t);
-    return true;
+    for (const Index t : workpiece_.apply(std::move(change))) {
+      if (t >= changed_in_.size()) changed_in_.resize(complex().size(), 0);
+      changed_in_[t] = batch_number_;
+      queue(t);
+    }
   }
 
-  TetComplex complex_;
-  Operations operations_;
+  Workpiece workpiece_;
+  tbb::enumerable_thread_specific<Operations> operations_;
   const Execution& execution_;
+  ThreadLimit threads_;
   bool move_vertices_;
   double wanted_;
   unsigned passes_;
   std::priority_queue<Item> queue_;
+  std::vector<Item> batch_;
+  std::vector<Change> proposals_;
+  std::uint32_t batch_number_ = 0;
+  std::vector<std::uint32_t> changed_in_;  // the batch that changed a tet last
   ImproveReport report_;
 };
 

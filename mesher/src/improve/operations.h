@@ -4,38 +4,25 @@
 #include <utility>
 #include <vector>
 
-#include "collarmesh/plc.h"
-#include "improve/curve_slides.h"
-#include "improve/smooth_surfaces.h"
-#include "improve/tet_complex.h"
+#include "improve/workpiece.h"
 
 namespace collarmesh::improvement {
 
-/// What an operation would do. All new tets are better than the worst of those they replace.
-struct Change {
-  enum class Kind { none, edge_removal, boundary_flip, move, insertion, contraction };
-  Kind kind = Kind::none;
-  double quality = 0;  ///< of the worst new tet
-  TetComplex::Replacement replacement;
-  Index vertex = none;  ///< that is moved, or that the edge from it to `onto` takes along
-  Index onto = none;
-  Point place{};                   ///< of the moved or inserted vertex
-  double way = 0;                  ///< that a vertex on a curve slides
-  TetMesh::VertexFeature feature;  ///< of the inserted vertex
-};
-
 /// The local operations. Each proposes what it would do when that raises the smallest quality in its
 /// cavity and that of `change` and keeps every guarantee; else `change` stays as it is.
+/// Each thread has its own.
 class Operations {
  public:
-  Operations(TetComplex& complex, const Plc& plc, double radius_edge, double distance)
-      : complex_(complex),
-        plc_(plc),
-        surfaces_(plc, complex.mesh(), distance),
-        curves_(plc, complex.mesh(), distance),
+  /// Kept by reference.
+  Operations(const Workpiece& workpiece, double radius_edge)
+      : complex_(workpiece.complex),
+        mesh_(workpiece.complex.mesh()),
+        plc_(workpiece.plc),
+        surfaces_(workpiece.surfaces),
+        curves_(workpiece.curves),
+        workpiece_(workpiece),
         squared_radius_edge_(radius_edge * radius_edge) {}
 
-  double quality(Index tet) const;
   /// Remove the edge between two corners of a tet: its ring is triangulated anew, as well as possible.
   /// An edge inside a patch is removed together with its two triangles there, and a sliver that has both
   /// of them goes to the other side.
@@ -48,9 +35,6 @@ class Operations {
   /// Move a vertex along an edge within its feature onto the other end, so that the tets at the edge vanish.
   /// No edge becomes longer than the longest one of the cavity.
   void contract_edge(Index vertex, Index onto, Change& change);
-
-  /// Do it. Returns the tets that are new or have changed, until the next call.
-  const std::vector<Index>& apply(const Change& change);
 
  private:
   using Polygon = std::vector<Index>;
@@ -80,7 +64,7 @@ class Operations {
   void collect(Index a, Index b, const Polygon& polygon, std::size_t i, std::size_t j, Index like,
                Change& change) const;
   bool flat(Index a, Index b, Index c, Index d) const;
-  bool may_turn(const Change& change);
+  bool may_turn(Change& change);
   bool may_lose(Index tet, Index a, Index b) const;
 
   // Cones.
@@ -99,19 +83,22 @@ class Operations {
   bool keeps_lengths(Index vertex, Index onto) const;
   void fill(const Cone& cone, Index apex, Change& change) const;
 
-  TetComplex& complex_;
+  double quality(Index tet) const { return workpiece_.quality(tet); }
+
+  const TetComplex& complex_;
+  const TetMesh& mesh_;
   const Plc& plc_;
-  SmoothSurfaces surfaces_;
-  CurveSlides curves_;
+  const SmoothSurfaces& surfaces_;
+  const CurveSlides& curves_;
+  const Workpiece& workpiece_;
   double squared_radius_edge_;
   TetComplex::Ring ring_;
   Cone cone_;
   bool ask_surfaces_ = true;
-  std::vector<Index> star_, joined_;
+  std::vector<Index> star_;
   std::vector<SmoothSurfaces::Face> faces_;  // that would be created
-  std::vector<Index> changed_;
-  std::vector<double> best_;       // of the polygon's parts from vertex i to j
-  std::vector<std::size_t> apex_;  // the third vertex of the triangle on ij there
+  std::vector<double> best_;                 // of the polygon's parts from vertex i to j
+  std::vector<std::size_t> apex_;            // the third vertex of the triangle on ij there
 };
 
 }  // namespace collarmesh::improvement

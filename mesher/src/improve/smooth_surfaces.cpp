@@ -29,16 +29,17 @@ SmoothSurfaces::Triangle SmoothSurfaces::corners(Index face) const {
   return {mesh_.points[v[0]], mesh_.points[v[1]], mesh_.points[v[2]]};
 }
 
-const TriangleHierarchy& SmoothSurfaces::surface(Index patch) {
-  if (surfaces_[patch]) return *surfaces_[patch];
-  surfaces_[patch] = hierarchy_of_patch(plc_, patch);
-  share_out(patch);
-  return *surfaces_[patch];
+SmoothSurfaces::Surface& SmoothSurfaces::surface(Index patch) const {
+  Surface& surface = surfaces_[patch];
+  std::call_once(surface.once, [&] {
+    surface.triangles = hierarchy_of_patch(plc_, patch);
+    share_out(patch, surface);
+  });
+  return surface;
 }
 
 // The corners and centres of the patch's triangles go to the faces that they are nearest to.
-void SmoothSurfaces::share_out(Index patch) {
-  first_sample_.resize(mesh_.faces.size(), none);
+void SmoothSurfaces::share_out(Index patch, Surface& surface) const {
   std::vector<Index> faces;
   std::vector<std::array<Index, 3>> corners;
   for (Index f = 0; f < mesh_.faces.size(); ++f)
@@ -52,10 +53,9 @@ void SmoothSurfaces::share_out(Index patch) {
     Index nearest = none;
     const double d = hierarchy.squared_distance_to(p, INFINITY, &nearest);
     if (d > squared_distance_) return;  // nothing to keep
-    next_sample_.push_back(first_sample_[faces[nearest]]);
-    first_sample_[faces[nearest]] = static_cast<Index>(samples_.size());
-    samples_.push_back(p);
-    sample_patch_.push_back(patch);
+    surface.next_sample.push_back(first_sample_[faces[nearest]]);
+    first_sample_[faces[nearest]] = static_cast<Index>(surface.samples.size());
+    surface.samples.push_back(p);
   };
   const Plc::Patch& p = plc_.patches[patch];
   std::vector<Index> points;
@@ -69,8 +69,8 @@ void SmoothSurfaces::share_out(Index patch) {
   for (const Index point : points) add(plc_.points[point]);
 }
 
-SmoothSurfaces::Nearest SmoothSurfaces::nearest(Index patch, const Point& p, double near) {
-  const TriangleHierarchy& triangles = surface(patch);
+SmoothSurfaces::Nearest SmoothSurfaces::nearest(Index patch, const Point& p, double near) const {
+  const TriangleHierarchy& triangles = this->triangles(patch);
   Index at = none;
   triangles.squared_distance_to(p, near * near, &at);
   if (at == none) triangles.squared_distance_to(p, INFINITY, &at);
@@ -79,15 +79,15 @@ SmoothSurfaces::Nearest SmoothSurfaces::nearest(Index patch, const Point& p, dou
 }
 
 // Some triangle of the patch that p is near to; the hint, when it is.
-Index SmoothSurfaces::triangle_near(Index patch, const Point& p, Index hint) {
-  const TriangleHierarchy& triangles = surface(patch);
+Index SmoothSurfaces::triangle_near(Index patch, const Point& p, Index hint) const {
+  const TriangleHierarchy& triangles = this->triangles(patch);
   if (hint != none && squared_distance_to(p, triangles.corners(hint)) < squared_distance_) return hint;
   return triangles.triangle_within(p, squared_distance_, [](Index) { return true; });
 }
 
 // At the corners, thirds and middles. The distance to one triangle is convex: when the corners are near
 // it, all are.
-bool SmoothSurfaces::edges_near(Index patch, const Triangle& t, Index hint) {
+bool SmoothSurfaces::edges_near(Index patch, const Triangle& t, Index hint) const {
   std::array<Index, 3> near;
   for (unsigned i = 0; i < 3; ++i) {
     near[i] = triangle_near(patch, t[i], hint);
@@ -107,13 +107,13 @@ bool SmoothSurfaces::edges_near(Index patch, const Triangle& t, Index hint) {
 }
 
 // The cosine of the angle between a face and a triangle of the patch, whichever way they are turned.
-double SmoothSurfaces::agreement(Index patch, const Triangle& t, Index triangle) {
-  const Vector n = normal(t), m = normal(surface(patch).corners(triangle));
+double SmoothSurfaces::agreement(Index patch, const Triangle& t, Index triangle) const {
+  const Vector n = normal(t), m = normal(triangles(patch).corners(triangle));
   const double lengths = norm(n) * norm(m);
   return lengths > 0 ? std::fabs(dot(n, m)) / lengths : 0;
 }
 
-double SmoothSurfaces::worst_agreement(std::span<const Index> faces) {
+double SmoothSurfaces::worst_agreement(std::span<const Index> faces) const {
   double worst = enough_agreement;
   for (const Index face : faces) {
     if (!smooth(face)) continue;
@@ -124,9 +124,9 @@ double SmoothSurfaces::worst_agreement(std::span<const Index> faces) {
   return worst;
 }
 
-bool SmoothSurfaces::fit(std::span<const Index> old, std::span<const Face> created) {
+bool SmoothSurfaces::fit(std::span<const Index> old, std::span<const Face> created) const {
   double least = 1;
-  near_.assign(created.size(), none);
+  std::vector<Index> near(created.size(), none);  // a triangle near the centre of each
   const auto is_planar = [&](const Face& face) {
     return face.patch == none || plc_.patches[face.patch].planar;
   };
@@ -134,45 +134,52 @@ bool SmoothSurfaces::fit(std::span<const Index> old, std::span<const Face> creat
     const auto& [corners, patch] = created[i];
     if (is_planar(created[i])) continue;
     const bool same = i > 0 && created[i - 1].patch == patch;
-    near_[i] = triangle_near(patch, centre(corners), same ? near_[i - 1] : none);
-    if (near_[i] == none) return false;
-    least = std::min(least, agreement(patch, corners, near_[i]));
+    near[i] = triangle_near(patch, centre(corners), same ? near[i - 1] : none);
+    if (near[i] == none) return false;
+    least = std::min(least, agreement(patch, corners, near[i]));
     if (least < enough_agreement && least < worst_agreement(old)) return false;
   }
   for (const Index face : old) {
     if (!smooth(face)) continue;
-    for (Index s = first_sample(face); s != none; s = next_sample_[s])
+    const Index patch = mesh_.face_patch[face];
+    const Surface& of = surface(patch);
+    for (Index s = first_sample_[face]; s != none; s = of.next_sample[s])
       if (std::none_of(created.begin(), created.end(), [&](const Face& t) {
-            return t.patch == mesh_.face_patch[face] &&
-                   squared_distance_to(samples_[s], t.corners) < squared_distance_;
+            return t.patch == patch && squared_distance_to(of.samples[s], t.corners) < squared_distance_;
           }))
         return false;
   }
   for (std::size_t i = 0; i < created.size(); ++i)
-    if (!is_planar(created[i]) && !edges_near(created[i].patch, created[i].corners, near_[i])) return false;
+    if (!is_planar(created[i]) && !edges_near(created[i].patch, created[i].corners, near[i])) return false;
   return true;
 }
 
-void SmoothSurfaces::replaced(std::span<const Index> old, std::span<const Index> created) {
+void SmoothSurfaces::take_samples(std::span<const Index> faces) {
   moving_.clear();
-  for (const Index face : old) {
-    if (face >= first_sample_.size()) continue;
-    for (Index s = first_sample_[face]; s != none; s = next_sample_[s]) moving_.push_back(s);
+  for (const Index face : faces) {
+    if (!smooth(face)) continue;
+    const Index patch = mesh_.face_patch[face];
+    for (Index s = first_sample_[face]; s != none; s = surfaces_[patch].next_sample[s])
+      moving_.push_back({patch, s});
     first_sample_[face] = none;
   }
-  if (!moving_.empty()) first_sample_.resize(mesh_.faces.size(), none);
-  for (const Index s : moving_) {
+}
+
+void SmoothSurfaces::give_samples(std::span<const Index> faces) {
+  first_sample_.resize(mesh_.faces.size(), none);
+  for (const auto& [patch, s] : moving_) {
+    Surface& of = surfaces_[patch];
     Index nearest = none;
     double least = INFINITY;
-    for (const Index face : created) {
-      if (mesh_.face_patch[face] != sample_patch_[s]) continue;
-      const double d = squared_distance_to(samples_[s], corners(face));
+    for (const Index face : faces) {
+      if (mesh_.face_patch[face] != patch) continue;
+      const double d = squared_distance_to(of.samples[s], corners(face));
       if (d < least) {
         least = d;
         nearest = face;
       }
     }
-    next_sample_[s] = first_sample_[nearest];
+    of.next_sample[s] = first_sample_[nearest];
     first_sample_[nearest] = s;
   }
 }

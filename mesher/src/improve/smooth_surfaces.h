@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -14,51 +15,62 @@ namespace collarmesh::improvement {
 /// The smooth patches of a complex and the faces that stand for them: whether other faces would, too.
 /// A patch and its faces are within the distance tolerance of each other, in samples: points of the faces
 /// are near the patch; points of the patch belong to faces that they are near to.
+/// Several threads may ask at once.
 class SmoothSurfaces {
  public:
   using Triangle = std::array<Point, 3>;
 
   /// All are kept by reference. `distance` is absolute.
   SmoothSurfaces(const Plc& plc, const TetMesh& mesh, double distance)
-      : plc_(plc), mesh_(mesh), squared_distance_(distance * distance), surfaces_(plc.patches.size()) {}
+      : plc_(plc),
+        mesh_(mesh),
+        squared_distance_(distance * distance),
+        surfaces_(plc.patches.size()),
+        first_sample_(mesh.faces.size(), none) {}
 
   struct Nearest {
     Point point;
     Vector normal;  ///< of the patch's triangle there; of any length
   };
   /// The point of a smooth patch that is nearest to p. Faster when a point of it is known to be near.
-  Nearest nearest(Index patch, const Point& p, double near = INFINITY);
+  Nearest nearest(Index patch, const Point& p, double near = INFINITY) const;
   struct Face {
     Triangle corners;
     Index patch;
   };
   /// Could these take the place of the mesh' faces `old`, turned like the patch as far as they are now?
   /// Faces on planar patches count for nothing.
-  bool fit(std::span<const Index> old, std::span<const Face> created);
-  /// These of the mesh' faces were replaced by those; some may be the same, with other corners.
-  void replaced(std::span<const Index> old, std::span<const Index> created);
+  bool fit(std::span<const Index> old, std::span<const Face> created) const;
+  /// Before the mesh' faces are replaced or moved: take the points of the patches from these,
+  void take_samples(std::span<const Index> faces);
+  /// and after it, give them to those that `fit`.
+  void give_samples(std::span<const Index> faces);
 
  private:
-  const TriangleHierarchy& surface(Index patch);
-  void share_out(Index patch);
+  /// Made when first asked for, by any thread.
+  struct Surface {
+    std::once_flag once;
+    std::unique_ptr<TriangleHierarchy> triangles;
+    std::vector<Point> samples;
+    std::vector<Index> next_sample;  // of the same face
+  };
+
+  const TriangleHierarchy& triangles(Index patch) const { return *surface(patch).triangles; }
+  Surface& surface(Index patch) const;
+  void share_out(Index patch, Surface& surface) const;
   bool smooth(Index face) const;
-  Index triangle_near(Index patch, const Point& p, Index hint = none);
-  bool edges_near(Index patch, const Triangle& t, Index hint);
-  double agreement(Index patch, const Triangle& t, Index triangle);
-  double worst_agreement(std::span<const Index> faces);
+  Index triangle_near(Index patch, const Point& p, Index hint = none) const;
+  bool edges_near(Index patch, const Triangle& t, Index hint) const;
+  double agreement(Index patch, const Triangle& t, Index triangle) const;
+  double worst_agreement(std::span<const Index> faces) const;
   Triangle corners(Index face) const;
-  Index first_sample(Index face) const { return face < first_sample_.size() ? first_sample_[face] : none; }
 
   const Plc& plc_;
   const TetMesh& mesh_;
   double squared_distance_;
-  std::vector<std::unique_ptr<TriangleHierarchy>> surfaces_;  // made when first asked for
-  std::vector<Point> samples_;                                // of the patches looked at so far
-  std::vector<Index> sample_patch_;
-  std::vector<Index> next_sample_;   // of the same face
-  std::vector<Index> first_sample_;  // of every face
-  std::vector<Index> moving_;
-  std::vector<Index> near_;  // a triangle near the centre of each face that is created
+  mutable std::vector<Surface> surfaces_;
+  mutable std::vector<Index> first_sample_;   // of every face, among those of its patch
+  std::vector<std::array<Index, 2>> moving_;  // patch and sample
 };
 
 }  // namespace collarmesh::improvement

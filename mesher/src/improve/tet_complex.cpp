@@ -87,16 +87,15 @@ std::array<Point, 4> TetComplex::corners(Index tet) const {
   return {mesh_.points[v[0]], mesh_.points[v[1]], mesh_.points[v[2]], mesh_.points[v[3]]};
 }
 
-void TetComplex::star(Index vertex, std::vector<Index>& found) {
+// Stars are small: it is faster to look among the tets found than to mark them.
+void TetComplex::star(Index vertex, std::vector<Index>& found) const {
   found.assign(1, vertex_tet_[vertex]);
-  stamps_[found[0]] = ++stamp_;
   for (std::size_t i = 0; i < found.size(); ++i) {
     const Tet& tet = tets_[found[i]];
     for (unsigned corner = 0; corner < 4; ++corner) {
       const Index next = tet.neighbours[corner];
-      if (tet.corners[corner] == vertex || next == none || stamps_[next] == stamp_) continue;
-      stamps_[next] = stamp_;
-      found.push_back(next);
+      if (tet.corners[corner] == vertex || next == none) continue;
+      if (std::find(found.begin(), found.end(), next) == found.end()) found.push_back(next);
     }
   }
 }
@@ -152,20 +151,22 @@ Index TetComplex::add_vertex(const Point& p, const TetMesh::VertexFeature& featu
   return static_cast<Index>(mesh_.points.size() - 1);
 }
 
-Index TetComplex::tet_at_edge(Index a, Index b) {
-  star(a, star_);
-  for (const Index t : star_)
+Index TetComplex::tet_at_edge(Index a, Index b) const {
+  std::vector<Index> around;
+  star(a, around);
+  for (const Index t : around)
     for (const Index v : tets_[t].corners)
       if (v == b) return t;
   return none;
 }
 
-bool TetComplex::on_faces(Index a, Index b) {
+bool TetComplex::on_faces(Index a, Index b) const {
   if (on_curve(a, b)) return true;
   const Index at = tet_at_edge(a, b);
   if (at == none) return false;
-  ring(at, a, b, ring_);
-  for (const Index t : ring_.tets)
+  Ring around;
+  ring(at, a, b, around);
+  for (const Index t : around.tets)
     for (unsigned corner = 0; corner < 4; ++corner)
       if (tets_[t].faces[corner] != none && tets_[t].corners[corner] != a && tets_[t].corners[corner] != b)
         return true;

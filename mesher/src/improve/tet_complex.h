@@ -57,12 +57,12 @@ class TetComplex {
   std::array<Point, 4> corners(Index tet) const;
   bool on_curve(Index a, Index b) const { return curve_edges_.contains(edge_key(a, b)); }
   /// Is the edge ab one of a mesh' face?
-  bool on_faces(Index a, Index b);
+  bool on_faces(Index a, Index b) const;
 
   /// Replace `found` by the tets around a vertex.
-  void star(Index vertex, std::vector<Index>& found);
+  void star(Index vertex, std::vector<Index>& found) const;
   /// A tet with these two corners; none when they are not joined.
-  Index tet_at_edge(Index a, Index b);
+  Index tet_at_edge(Index a, Index b) const;
   /// Replace `ring` by the ring of the edge ab of a tet.
   void ring(Index tet, Index a, Index b, Ring& ring) const;
 
@@ -115,8 +115,6 @@ class TetComplex {
   std::vector<Index> cavity_vertices_;
   std::vector<Index> lost_vertices_;
   std::vector<OpenFace> open_;
-  std::vector<Index> star_;
-  Ring ring_;
 };
 
 /// The corners of a tet's face opposite a corner, seen counterclockwise from outside.

@@ -25,7 +25,7 @@ bool contains(const auto& range, Index v) { return std::find(range.begin(), rang
 bool Operations::find_cone_of_vertex(Index vertex) {
   cone_ = {};
   complex_.star(vertex, cone_.tets);
-  const bool on_feature = complex_.mesh().features[vertex].dimension < 3;
+  const bool on_feature = mesh_.features[vertex].dimension < 3;
   for (const Index t : cone_.tets) {
     const auto& tet = complex_[t];
     if (tet.collar) return false;
@@ -70,14 +70,14 @@ bool Operations::find_cone_of_edge(Index a, Index b) {
     }
   }
   if (cone_.faces.empty()) return ring_.closed;
-  const auto& patches = complex_.mesh().face_patch;
+  const auto& patches = mesh_.face_patch;
   return cone_.faces.size() == 2 && patches[cone_.faces[0]] != none &&
          patches[cone_.faces[0]] == patches[cone_.faces[1]];
 }
 
 // The edge of a face opposite a corner, turned like it.
 void Operations::add_to_rim(Index face, Index opposite) {
-  const auto& v = complex_.mesh().faces[face];
+  const auto& v = mesh_.faces[face];
   const auto i = static_cast<unsigned>(std::find(v.begin(), v.end(), opposite) - v.begin());
   cone_.faces.push_back(face);
   cone_.rim.push_back({v[(i + 1) % 3], v[(i + 2) % 3]});
@@ -87,7 +87,7 @@ void Operations::add_to_rim(Index face, Index opposite) {
 // The worst tet of the cone with an apex; -1 when that is not above `above` or one breaks the radius-edge
 // bound.
 double Operations::quality_around(const Point& apex, double above) const {
-  const auto& points = complex_.mesh().points;
+  const auto& points = mesh_.points;
   double worst = INFINITY;
   for (const auto& face : cone_.hull) {
     const Corners p{apex, points[face[0]], points[face[1]], points[face[2]]};
@@ -101,11 +101,10 @@ double Operations::quality_around(const Point& apex, double above) const {
 
 bool Operations::surfaces_allow(const Point& apex) {
   if (cone_.faces.empty()) return true;
-  const auto& mesh = complex_.mesh();
   faces_.clear();
   for (std::size_t i = 0; i < cone_.rim.size(); ++i)
-    faces_.push_back({{apex, mesh.points[cone_.rim[i][0]], mesh.points[cone_.rim[i][1]]},
-                      mesh.face_patch[cone_.rim_face[i]]});
+    faces_.push_back({{apex, mesh_.points[cone_.rim[i][0]], mesh_.points[cone_.rim[i][1]]},
+                      mesh_.face_patch[cone_.rim_face[i]]});
   return surfaces_.fit(cone_.faces, faces_);
 }
 
@@ -135,10 +134,10 @@ Operations::Freedom Operations::on_patch(Index patch, const Point& p) {
 
 // Where a vertex may be moved to: anywhere, on its patch, or nowhere.
 std::optional<Operations::Freedom> Operations::freedom(Index vertex) {
-  const auto& feature = complex_.mesh().features[vertex];
+  const auto& feature = mesh_.features[vertex];
   if (feature.dimension == 3) return everywhere;
   if (feature.dimension < 2 || feature.feature == none) return std::nullopt;
-  return on_patch(feature.feature, complex_.mesh().points[vertex]);
+  return on_patch(feature.feature, mesh_.points[vertex]);
 }
 
 Point Operations::back_on_feature(const Point& p, const Point& from, const Freedom& freedom) {
@@ -150,7 +149,7 @@ Point Operations::back_on_feature(const Point& p, const Point& from, const Freed
 
 // Pattern search from `start`, whose quality is `best`.
 std::pair<Point, double> Operations::best_place(const Point& start, const Freedom& freedom, double best) {
-  const auto& points = complex_.mesh().points;
+  const auto& points = mesh_.points;
   Vector to_centre{0, 0, 0};
   double shortest = INFINITY;
   for (const auto& face : cone_.hull)
@@ -178,7 +177,7 @@ std::pair<Point, double> Operations::best_place(const Point& start, const Freedo
 
 // The same along the curve of a vertex: how far to slide it.
 std::pair<double, double> Operations::best_way(Index vertex, double best) {
-  const auto& points = complex_.mesh().points;
+  const auto& points = mesh_.points;
   double shortest = INFINITY;
   for (const auto& face : cone_.hull)
     for (const Index v : face) shortest = std::min(shortest, squared_distance(points[v], points[vertex]));
@@ -198,11 +197,11 @@ std::pair<double, double> Operations::best_way(Index vertex, double best) {
 }
 
 void Operations::move_vertex(Index vertex, Change& change) {
-  const bool on_curve = complex_.mesh().features[vertex].dimension == 1;
+  const bool on_curve = mesh_.features[vertex].dimension == 1;
   if (on_curve && !curves_.movable(vertex)) return;
   const auto where = on_curve ? std::optional(everywhere) : freedom(vertex);
   if (!where || !find_cone_of_vertex(vertex)) return;
-  const Point& p = complex_.mesh().points[vertex];
+  const Point& p = mesh_.points[vertex];
   const double wanted = std::max(cone_.worst * (1 + least_gain) + 1e-12, change.quality);
   Point place = p;
   double way = 0, after = 0;
@@ -224,27 +223,26 @@ void Operations::move_vertex(Index vertex, Change& change) {
   change.place = place;
   change.way = way;
   change.replacement.old_faces = cone_.faces;
+  change.read = cone_.tets;
 }
 
 void Operations::split_edge(Index a, Index b, double least, Change& change) {
   if (!find_cone_of_edge(a, b)) return;
-  const auto& mesh = complex_.mesh();
-  const Index patch = cone_.faces.empty() ? none : mesh.face_patch[cone_.faces[0]];
-  const Point middle = 0.5 * (mesh.points[a] + mesh.points[b]);
+  const Index patch = cone_.faces.empty() ? none : mesh_.face_patch[cone_.faces[0]];
+  const Point middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
   const Freedom where = patch == none ? everywhere : on_patch(patch, middle);
-  const auto [place, quality] = best_place(back_on_feature(middle, mesh.points[a], where), where, -1);
+  const auto [place, quality] = best_place(back_on_feature(middle, mesh_.points[a], where), where, -1);
   if (quality <= std::max({cone_.worst, least, change.quality})) return;
   change = {};
   change.kind = Change::Kind::insertion;
   change.quality = quality;
   change.place = place;
   if (patch != none) change.feature = {2, patch};
-  fill(cone_, static_cast<Index>(mesh.points.size()), change);
+  fill(cone_, Change::inserted, change);
 }
 
 void Operations::contract_edge(Index vertex, Index onto, Change& change) {
-  const auto& mesh = complex_.mesh();
-  if (mesh.features[vertex].dimension == 0) return;
+  if (mesh_.features[vertex].dimension == 0) return;
   if (!find_cone_of_vertex(vertex) || !may_contract(vertex, onto)) return;
   if (!keeps_lengths(vertex, onto) || !keeps_topology(vertex, onto)) return;
   Cone& cone = cone_;
@@ -260,21 +258,20 @@ void Operations::contract_edge(Index vertex, Index onto, Change& change) {
   };
   drop(cone.hull, cone.hull_tet);
   drop(cone.rim, cone.rim_face);
-  const Point& place = mesh.points[onto];
+  const Point& place = mesh_.points[onto];
   const double quality = quality_around(place, std::max(cone.worst, change.quality));
   if (quality < 0 || !surfaces_allow(place)) return;
   change = {};
   change.kind = Change::Kind::contraction;
   change.quality = quality;
   change.vertex = vertex;
-  change.onto = onto;
+  if (mesh_.features[vertex].dimension < 3) change.read = star_;  // of the other end
   fill(cone, onto, change);
 }
 
 // Does the edge to `onto` lie in the vertex' feature?
 bool Operations::may_contract(Index vertex, Index onto) {
-  const auto& mesh = complex_.mesh();
-  const auto& feature = mesh.features[vertex];
+  const auto& feature = mesh_.features[vertex];
   if (feature.dimension == 3) return true;
   if (feature.feature == none) return false;
   if (feature.dimension == 1) {
@@ -284,7 +281,7 @@ bool Operations::may_contract(Index vertex, Index onto) {
   }
   unsigned shared = 0;
   for (std::size_t i = 0; i < cone_.faces.size(); ++i) {
-    if (mesh.face_patch[cone_.faces[i]] != feature.feature) return false;
+    if (mesh_.face_patch[cone_.faces[i]] != feature.feature) return false;
     shared += contains(cone_.rim[i], onto) ? 1 : 0;
   }
   return shared == 2;
@@ -293,8 +290,7 @@ bool Operations::may_contract(Index vertex, Index onto) {
 // Of no vertex but those around the edge may both ends be neighbours, in the mesh and on its faces: else
 // cells would coincide (link condition). For a vertex inside a region positive volumes tell.
 bool Operations::keeps_topology(Index vertex, Index onto) {
-  const auto& mesh = complex_.mesh();
-  if (mesh.features[vertex].dimension == 3) return true;
+  if (mesh_.features[vertex].dimension == 3) return true;
   complex_.star(onto, star_);
   const auto is_at_edge = [](const auto& cells, Index w, Index edge_end) {
     return std::any_of(cells.begin(), cells.end(),
@@ -323,7 +319,7 @@ bool Operations::keeps_topology(Index vertex, Index onto) {
 }
 
 bool Operations::keeps_lengths(Index vertex, Index onto) const {
-  const auto& points = complex_.mesh().points;
+  const auto& points = mesh_.points;
   double longest = 0, created = 0;
   for (const auto& face : cone_.hull) {
     for (unsigned i = 0; i < 3; ++i) {

@@ -1,0 +1,38 @@
+#include "improve/workpiece.h"
+
+#include <algorithm>
+
+#include "improve/shape.h"
+
+namespace collarmesh::improvement {
+
+double Workpiece::quality(Index tet) const { return shape_quality(complex.corners(tet)); }
+
+const std::vector<Index>& Workpiece::apply(Change change) {
+  auto& [old, created, old_faces, created_faces] = change.replacement;
+  surfaces.take_samples(old_faces);
+  if (change.kind == Change::Kind::move) {
+    complex.star(change.vertex, changed_);
+    complex.mesh().points[change.vertex] = change.place;
+    if (complex.mesh().features[change.vertex].dimension == 1) curves.moved(change.vertex, change.way);
+    surfaces.give_samples(old_faces);
+    return changed_;
+  }
+  if (change.kind == Change::Kind::insertion) {
+    const Index vertex = complex.add_vertex(change.place, change.feature);
+    for (auto& tet : created) std::replace(tet.corners.begin(), tet.corners.end(), Change::inserted, vertex);
+    for (auto& face : created_faces)
+      std::replace(face.corners.begin(), face.corners.end(), Change::inserted, vertex);
+  }
+  if (change.kind == Change::Kind::contraction && complex.mesh().features[change.vertex].dimension == 1) {
+    const auto [before, after] = curves.neighbours(change.vertex);
+    complex.join_curve_edges(before, change.vertex, after);
+    curves.skipped(change.vertex);
+  }
+  const auto tets = complex.replace(change.replacement);
+  changed_.assign(tets.begin(), tets.end());
+  surfaces.give_samples(complex.created_faces());
+  return changed_;
+}
+
+}  // namespace collarmesh::improvement

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "improve/curve_slides.h"
+#include "improve/smooth_surfaces.h"
+#include "improve/tet_complex.h"
+
+namespace collarmesh::improvement {
+
+/// What an operation would do. All new tets are better than the worst of those they replace.
+struct Change {
+  enum class Kind { none, edge_removal, boundary_flip, move, insertion, contraction };
+  /// Stands for the vertex that an insertion makes.
+  static constexpr Index inserted = none;
+
+  Kind kind = Kind::none;
+  double quality = 0;                   ///< of the worst new tet
+  TetComplex::Replacement replacement;  ///< of a move the faces only
+  std::vector<Index> read;              ///< tets that it depends on besides the replaced ones
+  Index vertex = none;                  ///< that is moved, or that goes
+  Point place{};                        ///< of the moved or inserted vertex
+  double way = 0;                       ///< that a vertex on a curve slides
+  TetMesh::VertexFeature feature;       ///< of the inserted vertex
+};
+
+/// A mesh while it is improved, with the smooth surfaces and curves that its faces and edges stand for.
+/// While nothing is applied several threads may read it.
+class Workpiece {
+ public:
+  /// Both are kept by reference. `distance` is absolute.
+  Workpiece(TetMesh& mesh, const Plc& meant, double distance)
+      : complex(mesh), surfaces(meant, mesh, distance), curves(meant, mesh, distance), plc(meant) {}
+
+  double quality(Index tet) const;
+
+  /// Returns the tets that are new or have changed, until the next call.
+  /// Precondition: nothing that the change depends on has changed since it was proposed.
+  const std::vector<Index>& apply(Change change);
+
+  TetComplex complex;
+  SmoothSurfaces surfaces;
+  CurveSlides curves;
+  const Plc& plc;
+
+ private:
+  std::vector<Index> changed_;
+};
+
+}  // namespace collarmesh::improvement
