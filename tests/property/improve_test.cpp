@@ -146,6 +146,24 @@ TEST(ImproveBox, SameMeshSameResult) {
   testing::expect_same(first.result.mesh, second.result.mesh);
 }
 
+// Planar and smooth, with curves.
+TEST(ImproveThreads, ChangeNothing) {
+  using namespace testing;
+  for (const PolygonSoup& soup : {box(), cylinder(0.5, 1, 40, 4)}) {
+    const Meshed meshed = mesh_of(soup, with_size(0.06), 30);
+    ImproveOptions options;
+    options.threads = 1;
+    TetMesh alone = meshed.result.mesh;
+    improve(alone, meshed.plc, options);
+    for (const unsigned threads : {2U, 5U}) {
+      options.threads = threads;
+      TetMesh together = meshed.result.mesh;
+      improve(together, meshed.plc, options);
+      expect_same(alone, together);
+    }
+  }
+}
+
 TEST(ImproveBox, NothingToDo) {
   Meshed meshed = mesh_of(testing::box(), with_size(0.2), 0);
   const TetMesh before = meshed.result.mesh;

@@ -18,8 +18,17 @@ using namespace collarmesh::testing;
 using namespace collarmesh::guarantee;
 using Names = std::set<std::string>;
 
-Names broken(const TetMesh& mesh, const Plc& plc, const CheckOptions& options = {}) {
+// The findings are those of one thread, in the same order.
+void expect_same_findings(const CheckReport& a, const CheckReport& b) {
+  EXPECT_EQ(a.findings_total, b.findings_total);
+  ASSERT_EQ(a.findings.size(), b.findings.size());
+  for (std::size_t i = 0; i < a.findings.size(); ++i) EXPECT_EQ(a.findings[i].message, b.findings[i].message);
+}
+
+Names broken(const TetMesh& mesh, const Plc& plc, CheckOptions options = {}) {
   const CheckReport report = check(mesh, plc, options);
+  options.threads = 1;
+  expect_same_findings(report, check(mesh, plc, options));
   Names names;
   for (const Finding& f : report.findings) {
     names.insert(f.guarantee);

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <initializer_list>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -43,7 +44,7 @@ class Findings {
 
   CheckReport& report_;
   std::size_t listed_per_guarantee_;
-  std::vector<std::pair<std::string_view, std::size_t>> counts_;
+  std::vector<std::pair<std::string, std::size_t>> counts_;
 };
 
 }  // namespace collarmesh::checks
