@@ -17,6 +17,7 @@ from analysis import Analysis  # noqa: E402
 
 DISPLACEMENT_TOLERANCE = 0.02
 STRESS_TOLERANCE = 0.02
+PEAK_RADIUS = 0.3  # mm, a tenth of the smallest hole's radius
 REACTION_TOLERANCE = 0.005  # triangles stand for curved faces
 ORDERS = [int(order) for order in os.environ.get("COLLARMESH_TEST_ORDERS", "1,2").split(",")]
 
@@ -48,17 +49,17 @@ def plate_with_hole():
 
 def filleted_bracket():
     """An L with a fillet in its corner: held where the curved fillet's leg ends, bent, with pressure on the fillet."""
+    radius, thickness, pressure, force = 5, 3, 4, 150
     corners = [Vector(*p) for p in ((0, 0, 0), (30, 0, 0), (30, 8, 0), (8, 8, 0), (8, 30, 0), (0, 30, 0), (0, 0, 0))]
-    bracket = Part.Face(Part.makePolygon(corners)).extrude(Vector(0, 0, 6))
+    bracket = Part.Face(Part.makePolygon(corners)).extrude(Vector(0, 0, thickness))
     inner = [e for e in bracket.Edges if all(abs(v.X - 8) + abs(v.Y - 8) < 1e-9 for v in e.Vertexes)]
-    radius, pressure, force = 5, 4, 300
     analysis = Analysis(bracket.makeFillet(radius, inner), poisson_ratio=0)  # a held face has no singular edges then
-    analysis.hold("xyz", (30, 4, 3))
-    analysis.pull((4, 30, 3), force, (1, 0, 0))
+    analysis.hold("xyz", (30, 4, thickness / 2))
+    analysis.pull((4, 30, thickness / 2), force, (1, 0, 0))
     centre, off = 8 + radius, radius * math.sqrt(0.5)
-    analysis.press((centre - off, centre - off, 3), pressure)
-    on_fillet = pressure * radius * 6
-    return Case(analysis, (-force + on_fillet, on_fillet, 0), 0.8, 0.24, (centre - off, centre - off, 3))
+    analysis.press((centre - off, centre - off, thickness / 2), pressure)
+    on_fillet = pressure * radius * thickness
+    return Case(analysis, (-force + on_fillet, on_fillet, 0), 0.8, 0.2, (centre - off, centre - off, thickness / 2))
 
 
 def acute_wedge():
@@ -74,7 +75,7 @@ def acute_wedge():
     analysis.hold("z", (18, 2, 0))
     analysis.pull((18, 2, width), force, (0, 0, 1))
     analysis.press((hole.x + radius, hole.y, 3), pressure)
-    return Case(analysis, (0, 0, -force), 0.9, 0.25, (hole.x + radius, hole.y, 3))
+    return Case(analysis, (0, 0, -force), 0.8, 0.2, (hole.x + radius, hole.y, 3))
 
 
 def two_solids():
@@ -99,14 +100,10 @@ class Pipeline(unittest.TestCase):
         try:
             results = {order: self.solve_both(case, order, load) for order in ORDERS}
             print(f"{make.__name__}: {results}", flush=True)
-            best = results[max(ORDERS)][1]
             for order, (ours, gmsh) in results.items():
                 for quantity, tolerance in (("displacement", DISPLACEMENT_TOLERANCE), ("stress", STRESS_TOLERANCE)):
                     with self.subTest(order=order, quantity=quantity):
-                        # Where Gmsh's own result is farther from its best one, ours may differ from it by more.
-                        nearer = abs(ours[quantity] - best[quantity]) < abs(gmsh[quantity] - best[quantity])
-                        if order == max(ORDERS) or not nearer:
-                            self.assertLess(abs(ours[quantity] / gmsh[quantity] - 1), tolerance)
+                        self.assertLess(abs(ours[quantity] / gmsh[quantity] - 1), tolerance)
         finally:
             analysis.close()
 
@@ -115,14 +112,14 @@ class Pipeline(unittest.TestCase):
         analysis = case.analysis
         sizes = case.size * order, case.fine_size * order, case.critical
         analysis.mesh(order, *sizes)
-        ours = analysis.solve()
+        ours = analysis.solve(PEAK_RADIUS)
         self.look_up(analysis)
         analysis.remove_mesh()
         for found, expected in zip(ours["reactions"], case.reactions):
             if expected is not None:
                 self.assertLess(abs(found - expected), REACTION_TOLERANCE * load)
         analysis.mesh_by_gmsh(order, *sizes)
-        gmsh = analysis.solve()
+        gmsh = analysis.solve(PEAK_RADIUS)
         analysis.remove_mesh()
         return ours, gmsh
 
