@@ -82,6 +82,13 @@ TEST(CadFiles, ThatAreNoneAreReadErrors) {
     for (const char* content : {"", "nonsense\n", "ISO-10303-21;\nHEADER;\n"})
       EXPECT_THROW(brep::read_cad(folder.write(name, content)), Error) << name << ": " << content;
   EXPECT_THROW(brep::read_cad(folder.file("missing.step")), ReadError);
+  // OpenCASCADE's own words on a file that is cut off are in the message and nowhere else.
+  BRepTools::Write(box(), folder.file("whole.brep").c_str());
+  const std::string whole = folder.read("whole.brep");
+  ::testing::internal::CaptureStdout();
+  for (const std::size_t length : {whole.size() / 4, whole.size() / 2, whole.size() - 40})
+    EXPECT_THROW(brep::read_cad(folder.write("cut.brep", whole.substr(0, length))), ReadError) << length;
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
   EXPECT_FALSE(brep::is_cad_format("part.stl"));
   EXPECT_TRUE(brep::is_cad_format("PART.STP"));
   EXPECT_TRUE(brep::is_cad_format("-", ".brep"));

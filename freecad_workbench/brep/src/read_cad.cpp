@@ -19,13 +19,35 @@ namespace collarmesh::brep {
 
 namespace {
 
+/// Keeps what is printed to standard output: OpenCASCADE says there what is wrong with a BREP file.
+class CapturedOutput {
+ public:
+  CapturedOutput() : before_(std::cout.rdbuf(text_.rdbuf())) {}
+  ~CapturedOutput() { std::cout.rdbuf(before_); }
+  CapturedOutput(const CapturedOutput&) = delete;
+  CapturedOutput& operator=(const CapturedOutput&) = delete;
+
+  /// On one line.
+  std::string text() const {
+    std::string text = text_.str();
+    while (!text.empty() && text.back() == '\n') text.pop_back();
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
+  }
+
+ private:
+  std::ostringstream text_;
+  std::streambuf* before_;
+};
+
 TopoDS_Shape read_brep(const std::string& path) {
   TopoDS_Shape shape;
+  const CapturedOutput said;
   if (!BRepTools::Read(shape, path.c_str(), BRep_Builder()) || shape.IsNull())
     throw ReadError(
-        fmt::format("{}: this is no BREP file in text form; write it with FreeCAD or "
-                    "OpenCASCADE",
-                    path));
+        fmt::format("{}: this is no BREP file in text form, or it ends early; write it with FreeCAD or "
+                    "OpenCASCADE{}",
+                    path, said.text().empty() ? "" : fmt::format(" (OpenCASCADE: {})", said.text())));
   return shape;
 }
 
