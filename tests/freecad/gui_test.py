@@ -9,7 +9,7 @@ import FreeCADGui
 import Part
 from PySide import QtCore, QtGui
 
-from freecad.collarmesh_workbench import preferences
+from freecad.collarmesh_workbench import mesh_object, preferences, task_panel
 from freecad.collarmesh_workbench.commands import GROUP_COMMAND, MESH_COMMAND, REFINEMENT_COMMAND
 from freecad.collarmesh_workbench.fem_buttons import BESIDE
 
@@ -171,6 +171,21 @@ def bad_shapes_are_told(obj, part):
     require("0.005 mm" in said and "Edge" in said and "(10, 0.0075, " in said, said)
 
 
+def nodes_off_their_faces_are_told(document):
+    """With the face: the panel's summary has what the program reports."""
+    ring = document.addObject("Part::Feature", "Ring")
+    ring.Shape = Part.makeTorus(10, 3)
+    obj = mesh_object.make(document, ring)
+    obj.CharacteristicLengthMax, obj.ElementOrder = 2.7, "2nd"
+    report = mesh_object.remesh(obj)
+    off = report["second_order"]["straightened"]
+    require(("nodes amid edges stay off" in task_panel.summary(report)) == bool(off), task_panel.summary(report))
+    report["second_order"]["straightened"] = [{"dimension": 2, "tag": 1}]
+    require("1 nodes amid edges stay off the exact shape, at Face1" in task_panel.summary(report), "the face is named")
+    document.removeObject(obj.Name)
+    document.removeObject(ring.Name)
+
+
 def refinements_and_groups(document, obj, part):
     """Their buttons, and what they do to the mesh."""
     part.Shape = plate()
@@ -241,6 +256,7 @@ def test():
     cancel_keeps_the_mesh(obj)
     bad_shapes_are_told(obj, part)
     FreeCADGui.ActiveDocument.resetEdit()
+    nodes_off_their_faces_are_told(document)
     refinements_and_groups(document, obj, part)
     preferences_page_keeps_values()
     reopening_keeps_everything(document, obj)

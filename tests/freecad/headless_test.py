@@ -154,10 +154,44 @@ class Headless(unittest.TestCase):
         self.assertEqual([set(group(obj.FemMesh, f"Material{i}_Volumes")) for i in (1, 2)], solids)
         materials[0].References = [(part, "Solid2")]
         self.assertEqual([set(group(obj.FemMesh, f"Material{i}_Volumes")) for i in (1, 2)], solids[::-1])
+        self.document.removeObject("Material1")  # the other one is everywhere then, which needs no group
+        for i in (1, 2):
+            self.assertEqual(group(obj.FemMesh, f"Material{i}_Volumes"), ())
+
+    def test_groups_of_deleted_objects_vanish(self):
+        part = self.add(Part.makeBox(10, 10, 10))
+        obj = collarmesh_workbench.mesh(part, size=4)
+        owner = ObjectsFem.makeMeshGroup(self.document, obj, name="Clamped")
+        owner.References = [(part, "Face1")]
+        mesh_object.remesh(obj)
+        self.assertEqual(set(group(obj.FemMesh, "Clamped_Faces")), set(group(obj.FemMesh, "Face1")))
+        self.document.removeObject(owner.Name)
+        self.assertEqual(group(obj.FemMesh, "Clamped_Faces"), ())
+        self.assertGreater(len(group(obj.FemMesh, "Face1")), 0)
+
+    def test_every_property_reaches_the_program(self):
+        part = self.add(Part.makeBox(10, 10, 10))
+        obj = mesh_object.make(self.document, part)
+        values = {
+            "CharacteristicLengthMax": 4, "CharacteristicLengthMin": 0.5, "MeshSizeFromCurvature": 12,
+            "ElementsAcrossGap": 2, "Gradation": 0.5, "SurfaceDistance": 0.02, "CreaseAngle": 55, "CollarAngle": 155,
+            "PlanarTolerance": 2e-6, "WeldTolerance": 2e-9, "RadiusEdgeRatio": 1.9, "ImproveLevel": 3,
+            "MinDihedralAngle": 25, "Seed": 7, "TimeLimit": 60,
+        }  # fmt: skip
+        self.assertEqual(set(values), {name for _, name, *_ in mesh_object.PROPERTIES})
+        for name, value in values.items():
+            setattr(obj, name, value)
+            self.assertNotEqual(obj.getDocumentationOfProperty(name), "")
+            self.assertNotEqual(obj.getGroupOfProperty(name), "")
+        options = mesh_object.remesh(obj)["options"]
+        self.assertEqual(obj.FemMesh.VolumeCount > 0, True)
+        for _, name, field, *_ in mesh_object.PROPERTIES:
+            self.assertEqual(options[field], values[name], name)
 
     def test_save_and_reopen(self):
         obj = collarmesh_workbench.mesh(self.add(plate_with_hole()), size=4)
         obj.RadiusEdgeRatio = 1.9
+        obj.WeldTolerance = 2e-9
         count, name = obj.FemMesh.VolumeCount, obj.Name
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "plate.FCStd")
@@ -167,6 +201,7 @@ class Headless(unittest.TestCase):
         obj = self.document.getObject(name)
         self.assertEqual(obj.FemMesh.VolumeCount, count)
         self.assertEqual(obj.RadiusEdgeRatio, 1.9)
+        self.assertEqual(obj.WeldTolerance, 2e-9)
         self.assertEqual(obj.Proxy.Type, "Fem::FemMeshCollarmesh")
         mesh_object.remesh(obj)
 

@@ -20,7 +20,8 @@ def selected(condition):
 
 
 def selected_part():
-    return selected(lambda each: hasattr(each, "Shape"))
+    # From FreeCAD 1.0 on mesh objects have a `Shape`, too: a link.
+    return selected(lambda each: hasattr(getattr(each, "Shape", None), "exportBrep"))
 
 
 class Command:

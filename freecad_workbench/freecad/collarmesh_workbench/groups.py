@@ -96,14 +96,31 @@ class Observer:
             if analysis.isDerivedFrom("Fem::FemAnalysis") and not changed.Document.Restoring:
                 self.refresh(analysis)
 
-    def refresh(self, analysis):
-        from .mesh_object import is_ours
-
-        for each in analysis.Group:
-            if is_ours(each) and each.FemMesh.VolumeCount > 0 and compatibility.meshed_object(each) is not None:
+    def slotDeletedObject(self, deleted):
+        if not hasattr(deleted, "References") or deleted.Document.Restoring:
+            return
+        names = {f"{name}_{kind}s" for name in (deleted.Name, deleted.Label) for kind in KINDS.values()}
+        for each in meshes_among(deleted.Document.Objects):
+            if names & named(each.FemMesh).keys():
                 fem_mesh = each.FemMesh.copy()
-                if add_groups(each, fem_mesh):
-                    each.FemMesh = fem_mesh
+                for name, number in named(fem_mesh).items():
+                    if name in names:
+                        fem_mesh.removeGroup(number)
+                each.FemMesh = fem_mesh
+
+    def refresh(self, analysis):
+        for each in meshes_among(analysis.Group):
+            fem_mesh = each.FemMesh.copy()
+            if add_groups(each, fem_mesh):
+                each.FemMesh = fem_mesh
+
+
+def meshes_among(objects):
+    """Our mesh objects that have a mesh and a part."""
+    from .mesh_object import is_ours
+
+    return [each for each in objects if is_ours(each) and each.FemMesh.VolumeCount > 0
+            and compatibility.meshed_object(each) is not None]  # fmt: skip
 
 
 def observe():

@@ -8,20 +8,30 @@ import FreeCAD
 from . import compatibility, groups, preferences
 from .program import GUARANTEE_MISSED, Job, MesherError, Settings
 
-# Names that macros for FreeCAD's Gmsh object use as well come first.
-GROUP = "collarmesh"
+# Names that macros for FreeCAD's Gmsh object use as well come first. Lines: type, name, field of Settings, group in
+# the property editor, text.
+SIZES, FEATURES, QUALITY, RUN = "Sizes", "Features", "Quality", "Run"
 PROPERTIES = (
-    ("App::PropertyLength", "CharacteristicLengthMax", "size", "Target edge length; 0: 1/20 of the diagonal"),
-    ("App::PropertyLength", "CharacteristicLengthMin", "size_min", "Never ask for less than this; 0: none"),
-    ("App::PropertyInteger", "MeshSizeFromCurvature", "elements_per_circle", "Elements on a full circle; 0: any"),
-    ("App::PropertyInteger", "ElementsAcrossGap", "elements_across_gap", "Elements across thin parts; 0: any"),
-    ("App::PropertyFloat", "Gradation", "gradation", "Growth of size per unit length away from finer ones; 0: any"),
-    ("App::PropertyFloat", "RadiusEdgeRatio", "radius_edge", "Bound on circumradius / shortest edge"),
-    ("App::PropertyAngle", "CreaseAngle", "crease_angle", "Edges and faces that meet below it get a collar"),
-    ("App::PropertyAngle", "CollarAngle", "collar_angle", "Bound on dihedral angles in collars"),
-    ("App::PropertyLength", "SurfaceDistance", "distance", "Largest distance from the shape; 0: 1/1000 of the diagonal"),
-    ("App::PropertyInteger", "ImproveLevel", "improve", "Removal of slivers: 0 none, 1 quick, 2 good, 3 best"),
-)
+    ("App::PropertyLength", "CharacteristicLengthMax", "size", SIZES, "Target edge length; 0: 1/20 of the diagonal"),
+    ("App::PropertyLength", "CharacteristicLengthMin", "size_min", SIZES, "Never ask for less than this; 0: none"),
+    ("App::PropertyInteger", "MeshSizeFromCurvature", "elements_per_circle", SIZES, "Elements on a full circle; 0: any"),
+    ("App::PropertyInteger", "ElementsAcrossGap", "elements_across_gap", SIZES, "Elements across thin parts; 0: any"),
+    ("App::PropertyFloat", "Gradation", "gradation", SIZES, "Growth of size per unit length away from finer ones; 0: any"),
+    ("App::PropertyLength", "SurfaceDistance", "distance", FEATURES,
+     "Largest distance of faces and edges of the mesh from the shape; 0: 1/1000 of the diagonal"),
+    ("App::PropertyAngle", "CreaseAngle", "crease_angle", FEATURES, "Edges and faces that meet below it get a collar"),
+    ("App::PropertyAngle", "CollarAngle", "collar_angle", FEATURES, "Bound on dihedral angles in collars"),
+    ("App::PropertyFloat", "PlanarTolerance", "planar_tolerance", FEATURES,
+     "Faces this near to a plane are planar, relative to the diagonal; 0: 1e-6"),
+    ("App::PropertyFloat", "WeldTolerance", "weld", FEATURES,
+     "Points closer than this are one, relative to the diagonal; 0: 1e-9"),
+    ("App::PropertyFloat", "RadiusEdgeRatio", "radius_edge", QUALITY, "Bound on circumradius / shortest edge"),
+    ("App::PropertyInteger", "ImproveLevel", "improve", QUALITY, "Removal of slivers: 0 none, 1 quick, 2 good, 3 best"),
+    ("App::PropertyAngle", "MinDihedralAngle", "min_dihedral", QUALITY,
+     "Improve elements with smaller dihedral angles; 0: 15, 20 or 30 degrees by the level of improvement"),
+    ("App::PropertyInteger", "Seed", "seed", RUN, "Another number gives another mesh of the same quality"),
+    ("App::PropertyFloat", "TimeLimit", "time_limit", RUN, "Give up after so many seconds; 0: never"),
+)  # fmt: skip
 ORDERS = ["1st", "2nd"]
 TINY = 0.01  # of the target edge length: edges that hardly anybody means
 REFINEMENTS = {"Solid": "solid_sizes", "Face": "face_sizes", "Edge": "edge_sizes"}
@@ -50,12 +60,12 @@ def add_properties(obj):
     have = obj.PropertiesList
     if "Shape" not in have and "Part" not in have:
         obj.addProperty("App::PropertyLink", "Part", "FEM Mesh", "The object whose shape is meshed")
-    for kind, name, field, text in PROPERTIES:
+    for kind, name, field, group, text in PROPERTIES:
         if name not in have:
-            obj.addProperty(kind, name, GROUP, text)
+            obj.addProperty(kind, name, group, text)
             setattr(obj, name, getattr(defaults, field))
     if "ElementOrder" not in have:
-        obj.addProperty("App::PropertyEnumeration", "ElementOrder", GROUP, "Order of the elements")
+        obj.addProperty("App::PropertyEnumeration", "ElementOrder", QUALITY, "Order of the elements")
         obj.ElementOrder = ORDERS
         obj.ElementOrder = ORDERS[preferences.second_order()]
     for name, text in (("MeshRegionList", "Finer parts of the mesh"), ("MeshGroupList", "Groups of the mesh")):
@@ -79,7 +89,7 @@ def make(document, part=None, name="FEMMeshCollarmesh"):
 def settings_of(obj):
     """The Settings that the object's properties ask for. Raises MesherError."""
     values = {}
-    for _kind, name, field, _text in PROPERTIES:
+    for _kind, name, field, _group, _text in PROPERTIES:
         value = getattr(obj, name)
         values[field] = getattr(value, "Value", value)
     settings = Settings(order=ORDERS.index(obj.ElementOrder) + 1, **values)
@@ -90,7 +100,7 @@ def settings_of(obj):
 
 def apply_settings(obj, settings):
     """The other way round; sizes by sub-shape have no property."""
-    for _kind, name, field, _text in PROPERTIES:
+    for _kind, name, field, _group, _text in PROPERTIES:
         setattr(obj, name, getattr(settings, field))
     obj.ElementOrder = ORDERS[settings.order - 1]
 

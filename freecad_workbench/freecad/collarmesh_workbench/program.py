@@ -33,6 +33,11 @@ class Settings:
     crease_angle: float = 60
     collar_angle: float = 150
     distance: float = 0
+    planar_tolerance: float = 0
+    weld: float = 0
+    min_dihedral: float = 0
+    seed: int = 0
+    time_limit: float = 0
     improve: int = 2
     order: int = 1
     solid_sizes: dict = dataclasses.field(default_factory=dict)

@@ -195,6 +195,10 @@ def summary(report):
     if off:
         where = sorted({f"Face{e['face']}" if "face" in e else f"Edge{e['edge']}" for e in off})
         lines.append(f"{len(off)} boundary nodes stay off the exact shape, at {', '.join(where)}")
+    straightened = (report["second_order"] or {}).get("straightened", ())
+    if straightened:
+        where = sorted({f"{('Edge', 'Face')[node['dimension'] - 1]}{node['tag']}" for node in straightened})
+        lines.append(f"{len(straightened)} nodes amid edges stay off the exact shape, at {', '.join(where)}")
     lines.append("every guarantee holds" if report["guarantees_hold"] else "a guarantee is missed, see above")
     return "\n".join(lines)
 
