@@ -70,6 +70,7 @@ Json options_json(const MeshArguments& a) {
           {"min_dihedral", or_null(a.min_dihedral)},
           {"order", a.order},
           {"seed", m.seed},
+          {"threads", a.threads},
           {"max_vertices", or_null(m.max_vertices)},
           {"max_memory", or_null(m.max_memory)},
           {"time_limit", or_null(m.time_limit)}};

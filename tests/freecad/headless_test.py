@@ -131,6 +131,16 @@ class Headless(unittest.TestCase):
                 collarmesh_workbench.mesh(part)
             self.assertEqual(len(self.document.Objects), objects)
 
+    def test_threads_of_the_preferences_reach_the_program(self):
+        obj = mesh_object.make(self.document, self.add(Part.makeBox(10, 10, 10)))
+        parameters = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Mod/collarmesh")
+        self.assertEqual(mesh_object.remesh(obj)["options"]["threads"], 0)
+        parameters.SetInt("Threads", 2)
+        try:
+            self.assertEqual(mesh_object.remesh(obj)["options"]["threads"], 2)
+        finally:
+            parameters.RemInt("Threads")
+
     def test_missing_programs(self):
         with self.assertRaisesRegex(program.MesherError, "/no/such is no program"):
             program.find_program("/no/such")

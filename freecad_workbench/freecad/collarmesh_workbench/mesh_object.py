@@ -138,7 +138,7 @@ def start(obj, program=""):
     """A Job with the shape written, to be run. Raises MesherError."""
     shape = shape_to_mesh(obj)
     settings = settings_of(obj)
-    job = Job(settings, program or preferences.program())
+    job = Job(settings, program or preferences.program(), preferences.threads())
     job.messages += tiny_edges(shape, settings.size)
     shape.exportBrep(job.shape)
     return job
@@ -189,7 +189,7 @@ def mesh(shape_or_object, document, analysis, name, settings):
         obj = make(document, part, name)
         added.append(obj)
         apply_settings(obj, settings)
-        with Job(settings, preferences.program()) as job:
+        with Job(settings, preferences.program(), preferences.threads()) as job:
             shape_to_mesh(obj).exportBrep(job.shape)
             finish(obj, job, job.run())
     except Exception:

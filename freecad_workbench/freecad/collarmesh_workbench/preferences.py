@@ -1,4 +1,4 @@
-"""What the user sets once: the program's place and the defaults of new meshes."""
+"""What the user sets once: the program's place, its threads and the defaults of new meshes."""
 
 import FreeCAD
 
@@ -12,6 +12,11 @@ def _stored():
 def program():
     """Path of the program; empty: look for it."""
     return _stored().GetString("Program", "")
+
+
+def threads():
+    """How many the program may use; 0: as many as there are cores."""
+    return max(0, _stored().GetInt("Threads", 0))
 
 
 def improve_level():
@@ -39,6 +44,11 @@ class Page:
         path = QtGui.QHBoxLayout()
         path.addWidget(self.program)
         path.addWidget(browse)
+        self.threads = QtGui.QSpinBox()
+        self.threads.setObjectName("collarmesh_preferences_threads")
+        self.threads.setRange(0, 1024)
+        self.threads.setSpecialValueText("as many as cores")
+        self.threads.setToolTip("How many threads the program may use; they change no result")
         self.improve = QtGui.QComboBox()
         self.improve.setObjectName("collarmesh_preferences_improve")
         self.improve.addItems(IMPROVE_LEVELS)
@@ -46,6 +56,7 @@ class Page:
         self.second_order.setObjectName("collarmesh_preferences_second_order")
         rows = QtGui.QFormLayout(self.form)
         rows.addRow("Program collarmesh", path)
+        rows.addRow("Threads", self.threads)
         rows.addRow("Improvement of new meshes", self.improve)
         rows.addRow("Elements of new meshes", self.second_order)
 
@@ -58,10 +69,12 @@ class Page:
 
     def loadSettings(self):
         self.program.setText(program())
+        self.threads.setValue(threads())
         self.improve.setCurrentIndex(improve_level())
         self.second_order.setChecked(second_order())
 
     def saveSettings(self):
         _stored().SetString("Program", self.program.text().strip())
+        _stored().SetInt("Threads", self.threads.value())
         _stored().SetInt("ImproveLevel", self.improve.currentIndex())
         _stored().SetBool("SecondOrder", self.second_order.isChecked())

@@ -102,13 +102,14 @@ def parse_line(line):
 class Job:
     """One run: a folder with the shape, the mesh and the report, which is removed at the end."""
 
-    def __init__(self, settings, program=""):
+    def __init__(self, settings, program="", threads=0):
+        """`threads`: how many the program may use, 0: as many as there are cores."""
         self.folder = tempfile.TemporaryDirectory(prefix="collarmesh-")
         self.shape = os.path.join(self.folder.name, "shape.brep")
         self.mesh = os.path.join(self.folder.name, "mesh.unv")
         self._report = os.path.join(self.folder.name, "report.json")
         self.command = [find_program(program), self.shape, "-o", self.mesh, "--report", self._report,
-                        "--progress", "json", *settings.arguments()]  # fmt: skip
+                        "--progress", "json", "--threads", str(threads), *settings.arguments()]  # fmt: skip
         self.messages = []
 
     def __enter__(self):
