@@ -4,13 +4,10 @@ condition number of the stiffness matrix, by one solver (`poisson`). Prints a Ma
 
 from __future__ import annotations
 
-import argparse
-import os
 import re
 import sys
-from pathlib import Path
 
-from inputs import box, read_surface
+from comparison import comparison_options, surfaces
 from meshers import Collarmesh, Gmsh, TetGen
 from processes import ProgramFailed, pin_to_core, run
 from tables import machine, si, table
@@ -21,17 +18,7 @@ header = ["input", "mesher", "tets", "error in L2", "of the gradient", "conditio
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    root = Path(__file__).resolve().parents[2]
-    parser.add_argument("--build", type=Path, default=root / "build" / "bench")
-    parser.add_argument("--corpus", type=Path, default=os.environ.get("COLLARMESH_CORPUS"))
-    parser.add_argument("--parts", nargs="*", default=default_parts, help="files of the corpus; the box comes first")
-    parser.add_argument("--tets", type=int, default=40000)
-    parser.add_argument("--time-limit", type=float, default=300, help="seconds for one run of one program")
-    parser.add_argument("--core", type=int, help="the core to run on (default: the last one)")
-    options = parser.parse_args()
-    if options.corpus is None and options.parts:
-        parser.error("name a corpus with --corpus or $COLLARMESH_CORPUS")
+    options = comparison_options(__doc__, default_parts)
     about = machine(options.build)
     pin_to_core(options.core)
     programs = options.build.resolve() / "bin"
@@ -41,7 +28,7 @@ def main() -> int:
     labels = ["collarmesh --improve 0", "collarmesh --improve 2", "TetGen", "Gmsh HXT"]
     cache = SizeCache()
     lines = []
-    for surface in [box(), *(read_surface(Path(options.corpus) / part) for part in options.parts)]:
+    for surface in surfaces(options):
         for mesher, label in zip(meshers, labels):
             mesher.name = label   # sizes are remembered by name
             folder = cache.folder / f"{surface.name}_solved_{label.replace(' ', '_')}"

@@ -8,15 +8,14 @@ here, from the mesh files."""
 
 from __future__ import annotations
 
-import argparse
-import os
 import sys
 from pathlib import Path
 
 import meshio
 import numpy as np
 
-from inputs import Surface, box, read_surface
+from comparison import comparison_options, surfaces
+from inputs import Surface
 from meshers import CgalMesh3, Collarmesh, Gmsh, TetGen
 from processes import ProgramFailed, pin_to_core
 from tables import machine, seconds, si, table
@@ -68,17 +67,7 @@ def rows(surface: Surface, meshers, target: int, cache: SizeCache) -> list[list[
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    root = Path(__file__).resolve().parents[2]
-    parser.add_argument("--build", type=Path, default=root / "build" / "bench")
-    parser.add_argument("--corpus", type=Path, default=os.environ.get("COLLARMESH_CORPUS"))
-    parser.add_argument("--parts", nargs="*", default=default_parts, help="files of the corpus; the box comes first")
-    parser.add_argument("--tets", type=int, default=40000)
-    parser.add_argument("--time-limit", type=float, default=300, help="seconds for one run of one program")
-    parser.add_argument("--core", type=int, help="the core to run on (default: the last one)")
-    options = parser.parse_args()
-    if options.corpus is None and options.parts:
-        parser.error("name a corpus with --corpus or $COLLARMESH_CORPUS")
+    options = comparison_options(__doc__, default_parts)
     about = machine(options.build)
     pin_to_core(options.core)
     programs = options.build.resolve() / "bin"
@@ -94,7 +83,7 @@ def main() -> int:
                 f"CGAL {cgal.version()}")
     cache = SizeCache()
     lines = []
-    for surface in [box(), *(read_surface(Path(options.corpus) / part) for part in options.parts)]:
+    for surface in surfaces(options):
         lines += rows(surface, meshers, options.tets, cache)
     print(f"{about}. {versions}. * is further than 15% from {si(options.tets)} tets.\n")
     print(table(header, lines))

@@ -30,7 +30,7 @@ def pin_to_core(core: int | None) -> None:
 
 
 def run(command: list[str], folder: Path, time_limit: float, accepted: tuple[int, ...] = (0,)) -> Measured:
-    """Raises ProgramFailed with the last lines of output unless the exit code is an accepted one."""
+    """Raises ProgramFailed with the first line of output that tells an error, or the last one, unless the exit code is an accepted one."""
     log = folder / "output.txt"
     begin = time.perf_counter()
     with open(log, "wb") as out:
@@ -48,5 +48,6 @@ def run(command: list[str], folder: Path, time_limit: float, accepted: tuple[int
         return Measured(cpu, wall, usage.ru_maxrss * 1024, output, process.returncode)
     if wall >= time_limit:
         raise ProgramFailed(f"not done in {time_limit:g} s")
-    tail = " / ".join(output.strip().splitlines()[-3:])
-    raise ProgramFailed(f"exit code {process.returncode}: {tail}")
+    lines = output.strip().splitlines()
+    told = next((line for line in lines if "error" in line.lower()), lines[-1] if lines else "no output")
+    raise ProgramFailed(f"exit code {process.returncode}: {' '.join(told.split())[:100]}")
