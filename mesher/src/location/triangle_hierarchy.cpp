@@ -9,6 +9,9 @@ namespace collarmesh {
 
 namespace {
 
+// Height over longest side below which a triangle is a needle, squared.
+constexpr double squared_needle = 1e-12;
+
 Point nearest_point_on_segment(const Point& p, const Point& a, const Point& b) {
   const Vector u = b - a;
   const double length = squared_norm(u);
@@ -37,17 +40,17 @@ int crossing_direction(const Point& p, const Point& q, const std::array<Point, 3
 }  // namespace
 
 Point nearest_point_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
+  const Vector u = b - a, w = c - a, n = cross(u, w);
+  const double nn = squared_norm(n), longest = std::max(squared_norm(u), squared_norm(w));
+  const bool inside = nn > 0 && dot(cross(u, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 &&
+                      dot(cross(a - c, p - c), n) >= 0;
+  const Point foot = inside ? p - (dot(p - a, n) / nn) * n : p;
+  if (inside && nn > squared_needle * longest * longest) return foot;
   Point best = nearest_point_on_segment(p, a, b);
   for (const Point& q : {nearest_point_on_segment(p, b, c), nearest_point_on_segment(p, c, a)})
     if (squared_distance(p, q) < squared_distance(p, best)) best = q;
-  const Vector n = cross(b - a, c - a);
-  const double nn = squared_norm(n);
-  const bool inside = nn > 0 && dot(cross(b - a, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 &&
-                      dot(cross(a - c, p - c), n) >= 0;
-  if (!inside) return best;
   // The normal of a needle is noise: the border bounds the distance from above.
-  const Point foot = p - (dot(p - a, n) / nn) * n;
-  return squared_distance(p, foot) < squared_distance(p, best) ? foot : best;
+  return inside && squared_distance(p, foot) < squared_distance(p, best) ? foot : best;
 }
 
 double squared_distance_to_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {

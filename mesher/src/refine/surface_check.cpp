@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 
 #include "common/disjoint_sets.h"
 #include "refine/refinement.h"
@@ -35,6 +36,22 @@ std::uint64_t edge_between(Index a, Index b) { return std::uint64_t{std::min(a, 
 bool has_use(const std::vector<EdgeUse>& sorted, const EdgeUse& wanted) {
   const auto first = std::lower_bound(sorted.begin(), sorted.end(), EdgeUse{wanted.edge, wanted.patch, 0});
   return first != sorted.end() && first->same_place(wanted);
+}
+
+// By counting the lower ends, then within each.
+void sort_by_edge(std::vector<EdgeUse>& uses, std::size_t vertex_count) {
+  std::vector<std::size_t> next(vertex_count + 1, 0);
+  for (const EdgeUse& use : uses) ++next[(use.edge >> 32) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<EdgeUse> sorted(uses.size());
+  for (const EdgeUse& use : uses) sorted[next[use.edge >> 32]++] = use;
+  auto first = sorted.begin();
+  for (std::size_t v = 0; v < vertex_count; ++v) {
+    const auto last = sorted.begin() + static_cast<std::ptrdiff_t>(next[v]);
+    std::sort(first, last);
+    first = last;
+  }
+  uses.swap(sorted);
 }
 
 }  // namespace
@@ -95,7 +112,7 @@ bool Refinement::check_patch_topology(const std::vector<FaceId>& faces) {
     const Index patch = patch_of(restricted(face));
     for (unsigned i = 0; i < 3; ++i) uses.push_back({edge_between(v[i], v[(i + 1) % 3]), patch, face});
   }
-  std::sort(uses.begin(), uses.end());
+  sort_by_edge(uses, mesh_.vertex_count());
   bool found = false;
   for (Index s = 0; s < subsegments_.size(); ++s) {
     const Subsegment& subsegment = subsegments_[s];
