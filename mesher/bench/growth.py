@@ -41,12 +41,14 @@ class Series:
 
 
 def crease_series(program: Path, largest: int) -> list[Series]:
-    """By the number of crease segments: one in a wedge of 40 degrees, one in a fan of 8 sheets (both in
-    grids of turned copies), one at the tip of each tooth of a comb and none elsewhere. All teeth of a comb
-    are on two facets."""
+    """By the number of crease segments: one in a wedge of 40 degrees, one in a fan of 4 sheets (the sides of
+    two such wedges, 40 degrees between them), one in a fan of 8 sheets (all in grids of turned copies), one at
+    the tip of each tooth of a comb and none elsewhere. All teeth of a comb are on two facets."""
     counts = [n for k in range(1, 6) for n in (10 ** k, 3 * 10 ** k) if n <= min(largest, 100000)]
     copies = [Series(title, {n: AcuteInput(program, family, parameters, n) for n in counts if n <= most}, {})
               for title, family, parameters, most in (("wedges of 40 degrees", "wedge", (40, 1), 100000),
+                                                      ("fans of 4 sheets", "wedges_touching_in_an_edge",
+                                                       (40, 40), 100000),
                                                       ("fans of 8 sheets", "fan", (8, 0), 3000))]
     teeth = [n for n in counts if n <= 300]
     return [*copies, Series("comb, teeth of 30 degrees",

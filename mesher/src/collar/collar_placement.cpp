@@ -3,13 +3,13 @@
 
 #include <algorithm>
 
-#include "collar/collar_corners.h"
-
 namespace collarmesh {
 
 namespace {
 
 constexpr double radius_per_gap = 1.0 / 3;
+// So many sizes away nothing matters to the gap size.
+constexpr double gap_per_size = 4;
 // Radii are shrunk by a random share of up to this, so that spheres are in general position.
 constexpr double largest_shrinkage = 0.02;
 // Along a curve radii change by at most this share of the way, as a third of a distance does; where
@@ -20,27 +20,6 @@ constexpr double sample_step = 0.5;  // in radii
 // Consecutive centres are so many radii apart at most: the circle of two balls is then seen from
 // both centres under less than 90 degrees, d^2 <= r1^2 + r2^2, shrunk as they may be.
 constexpr double step_per_radius = 1.2;
-
-// Which vertices get a ball: those of creases and the ends of crease curves.
-std::vector<Index> crease_vertices(const Plc& plc, std::span<const Crease> creases,
-                                   const std::vector<bool>& is_crease_curve) {
-  std::vector<Index> vertices;
-  for (const Crease& crease : creases)
-    if (crease.vertex != none) vertices.push_back(crease.vertex);
-  for (Index c = 0; c < plc.curves.size(); ++c)
-    if (is_crease_curve[c] && !plc.curves[c].closed)
-      vertices.insert(vertices.end(), plc.curves[c].ends.begin(), plc.curves[c].ends.end());
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  return vertices;
-}
-
-std::vector<bool> crease_curves(const Plc& plc, std::span<const Crease> creases) {
-  std::vector<bool> is_crease_curve(plc.curves.size(), false);
-  for (const Crease& crease : creases)
-    if (crease.curve != none) is_crease_curve[crease.curve] = true;
-  return is_crease_curve;
-}
 
 // Lower what rises by more than the slope from a neighbour, to both sides; around twice when closed.
 void limit_slope(const std::vector<double>& parameters, double slope, bool closed,
@@ -59,38 +38,39 @@ void limit_slope(const std::vector<double>& parameters, double slope, bool close
 
 }  // namespace
 
-CollarPlacement::CollarPlacement(const Plc& plc, std::span<const Point> points,
-                                 std::span<const Crease> creases, const CollarOptions& options,
-                                 CollarSystem& system)
+CollarPlacement::CollarPlacement(const Plc& plc, std::span<const Point> points, GapSize& gap,
+                                 const CollarOptions& options, CollarSystem& system)
     : plc_(plc),
       points_(points),
       options_(options),
       system_(system),
-      is_crease_curve_(crease_curves(plc, creases)),
-      vertices_(crease_vertices(plc, creases, is_crease_curve_)),
       paths_(plc, points),
       features_(*system.features_),
-      gap_(plc, features_),
-      sheets_(plc, points, vertices_, is_crease_curve_),
+      gap_(gap),
+      sheets_(plc, points, system.crease_vertices_, system.crease_curve_),
       flatness_(plc, features_, paths_, sheets_, options.distance),
+      corners_(plc, features_, paths_, sheets_, system.corners_),
       random_state_(options.seed ^ 0x5851f42d4c957f2dULL) {}
 
-bool CollarPlacement::place() {
-  system_.crease_curve_ = is_crease_curve_;
-  system_.vertex_ball_.assign(plc_.vertices.size(), none);
-  CollarCorners corners(plc_, features_, paths_, sheets_, system_.corners_);
-  for (const Index vertex : vertices_) {
+bool CollarPlacement::place_all() {
+  for (const Index vertex : system_.crease_vertices_) {
     if (stopped()) return false;
-    system_.vertex_ball_[vertex] = place_at_vertex(vertex);
-    corners.add_around(system_.balls_.back());
+    add_at_vertex(vertex);
   }
   for (Index c = 0; c < plc_.curves.size() && !stopped_; ++c)
-    if (is_crease_curve_[c]) place_on_curve(c);
-  for (const CollarLink& link : system_.links_) {
-    if (stopped()) return false;
-    corners.add_on_circle(link, system_.balls_[link.balls[0]], system_.balls_[link.balls[1]]);
-  }
+    if (system_.crease_curve_[c]) add_on_curve(c);
+  system_.index_balls();
   return !stopped_;
+}
+
+void CollarPlacement::place_at_vertex(Index vertex) {
+  add_at_vertex(vertex);
+  system_.index_balls();
+}
+
+void CollarPlacement::place_on_curve(Index curve) {
+  add_on_curve(curve);
+  system_.index_balls();
 }
 
 bool CollarPlacement::stopped() { return stopped_ = stopped_ || (options_.stopped && options_.stopped()); }
@@ -102,20 +82,23 @@ double CollarPlacement::shrink() {
   return 1 - largest_shrinkage * (static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53);
 }
 
-Index CollarPlacement::place_at_vertex(Index vertex) {
+void CollarPlacement::add_at_vertex(Index vertex) {
   const Point& centre = points_[plc_.vertices[vertex].point];
-  const double radius = flatness_.radius_at_vertex(
-      vertex, std::min(radius_per_gap * gap_.at_vertex(vertex), options_.size({0, vertex}, centre)));
+  const double size = options_.size({0, vertex}, centre);
+  const double gap = gap_.at_vertex(vertex, gap_per_size * size);
+  const double radius = flatness_.radius_at_vertex(vertex, std::min(radius_per_gap * gap, size));
+  system_.vertex_ball_[vertex] = static_cast<Index>(system_.balls_.size());
   system_.balls_.push_back({centre, radius * shrink(), 0, vertex});
-  return static_cast<Index>(system_.balls_.size() - 1);
+  corners_.add_around(system_.balls_.back());
 }
 
-double CollarPlacement::radius_for_gap(Index curve, double parameter) const {
+double CollarPlacement::radius_for_gap(Index curve, double parameter) {
   const Point p = paths_.point(curve, parameter);
-  return std::min(radius_per_gap * gap_.on_curve(curve, p), options_.size({1, curve}, p));
+  const double size = options_.size({1, curve}, p);
+  return std::min(radius_per_gap * gap_.on_curve(curve, p, gap_per_size * size), size);
 }
 
-CollarPlacement::Profile CollarPlacement::make_profile(Index curve, double from, double to) const {
+CollarPlacement::Profile CollarPlacement::make_profile(Index curve, double from, double to) {
   const bool closed = plc_.curves[curve].closed;
   const bool curved = flatness_.matters_on(curve);
   Profile profile;
@@ -174,7 +157,7 @@ Index CollarPlacement::add_ball(Index curve, double parameter, double radius) {
 }
 
 // Between two vertices the first centres lie on the spheres of their balls.
-void CollarPlacement::place_on_curve(Index curve) {
+void CollarPlacement::add_on_curve(Index curve) {
   const bool closed = plc_.curves[curve].closed;
   const double length = paths_.length(curve);
   std::array<Index, 2> ends{none, none};
@@ -194,11 +177,17 @@ void CollarPlacement::place_on_curve(Index curve) {
   double before = 0;
   for (const double parameter : parameters) {
     const Index ball = add_ball(curve, parameter, profile.radius(parameter));
-    if (previous != none) system_.links_.push_back({{previous, ball}, curve, {before, parameter}});
+    if (previous != none) link(previous, ball, curve, before, parameter);
     previous = ball;
     before = parameter;
   }
-  system_.links_.push_back({{previous, closed ? first : ends[1]}, curve, {before, length}});
+  link(previous, closed ? first : ends[1], curve, before, length);
+}
+
+void CollarPlacement::link(Index a, Index b, Index curve, double from, double to) {
+  system_.links_.push_back({{a, b}, curve, {from, to}});
+  system_.consecutive_.insert(CollarSystem::pair_of(a, b));
+  corners_.add_on_circle(system_.links_.back(), system_.balls_[a], system_.balls_[b]);
 }
 
 }  // namespace collarmesh

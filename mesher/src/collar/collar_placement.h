@@ -1,5 +1,6 @@
 #pragma once
 
+#include "collar/collar_corners.h"
 #include "collar/collar_system.h"
 #include "collar/crease_sheets.h"
 #include "collar/flatness.h"
@@ -8,13 +9,18 @@
 
 namespace collarmesh {
 
-/// Places the balls of a collar system up front. Used by CollarSystem alone.
+/// Places the balls of a collar system, their circles' corner points with them.
 class CollarPlacement {
  public:
-  CollarPlacement(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases,
-                  const CollarOptions& options, CollarSystem& system);
-  /// False when it was stopped.
-  bool place();
+  /// All are kept by reference. `system` knows its creases, `gap` how large balls may be there.
+  CollarPlacement(const Plc& plc, std::span<const Point> points, GapSize& gap, const CollarOptions& options,
+                  CollarSystem& system);
+  /// On all creases. False when it was stopped.
+  bool place_all();
+  /// Precondition: the vertex is a crease's and has no ball yet.
+  void place_at_vertex(Index vertex);
+  /// Precondition: the curve is a crease, has no balls yet, and its ends have theirs.
+  void place_on_curve(Index curve);
 
  private:
   /// The radii that balls along a curve may have: at samples, from one parameter to another.
@@ -25,10 +31,11 @@ class CollarPlacement {
     double parameter(double step) const;
   };
 
-  Index place_at_vertex(Index vertex);
-  void place_on_curve(Index curve);
-  Profile make_profile(Index curve, double from, double to) const;
-  double radius_for_gap(Index curve, double parameter) const;
+  void add_at_vertex(Index vertex);
+  void add_on_curve(Index curve);
+  void link(Index a, Index b, Index curve, double from, double to);
+  Profile make_profile(Index curve, double from, double to);
+  double radius_for_gap(Index curve, double parameter);
   std::vector<double> centres(const Profile& profile) const;
   Index add_ball(Index curve, double parameter, double radius);
   double shrink();
@@ -36,15 +43,14 @@ class CollarPlacement {
 
   const Plc& plc_;
   std::span<const Point> points_;
-  const CollarOptions& options_;
+  const CollarOptions options_;
   CollarSystem& system_;
-  std::vector<bool> is_crease_curve_;
-  std::vector<Index> vertices_;  // with a ball
   CurvePaths paths_;
   const FeatureHierarchy& features_;
-  GapSize gap_;
+  GapSize& gap_;
   CreaseSheets sheets_;
   Flatness flatness_;
+  CollarCorners corners_;
   std::uint64_t random_state_;
   bool stopped_ = false;
 };

@@ -7,25 +7,45 @@
 
 namespace collarmesh {
 
-CollarSystem::CollarSystem(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases,
-                           const CollarOptions& options) {
+CollarSystem::CollarSystem(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases) {
   if (creases.empty()) return;
   features_ = std::make_unique<const FeatureHierarchy>(plc, points);
-  if (!CollarPlacement(plc, points, creases, options, *this).place()) balls_.clear();
-  if (balls_.empty()) return;
-  for (const CollarLink& link : links_)
-    consecutive_.push_back({std::min(link.balls[0], link.balls[1]), std::max(link.balls[0], link.balls[1])});
-  std::sort(consecutive_.begin(), consecutive_.end());
-  std::vector<Index> order(balls_.size());
-  std::iota(order.begin(), order.end(), Index{0});
-  nodes_.reserve(2 * balls_.size());
-  Box box;
-  build(order, box);
+  vertex_ball_.assign(plc.vertices.size(), none);
+  crease_curve_.assign(plc.curves.size(), false);
+  for (const Crease& crease : creases) {
+    if (crease.vertex != none) crease_vertices_.push_back(crease.vertex);
+    if (crease.curve != none) crease_curve_[crease.curve] = true;
+  }
+  for (Index c = 0; c < plc.curves.size(); ++c)
+    if (crease_curve_[c] && !plc.curves[c].closed)
+      crease_vertices_.insert(crease_vertices_.end(), plc.curves[c].ends.begin(), plc.curves[c].ends.end());
+  std::sort(crease_vertices_.begin(), crease_vertices_.end());
+  crease_vertices_.erase(std::unique(crease_vertices_.begin(), crease_vertices_.end()),
+                         crease_vertices_.end());
 }
 
-bool CollarSystem::consecutive(Index a, Index b) const {
-  return std::binary_search(consecutive_.begin(), consecutive_.end(),
-                            std::array<Index, 2>{std::min(a, b), std::max(a, b)});
+CollarSystem::CollarSystem(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases,
+                           const CollarOptions& options)
+    : CollarSystem(plc, points, creases) {
+  if (creases.empty()) return;
+  GapInHierarchy gap(plc, *features_);
+  if (!CollarPlacement(plc, points, gap, options, *this).place_all()) balls_.clear();
+}
+
+void CollarSystem::index_balls() {
+  const auto count = static_cast<Index>(balls_.size());
+  Index first = indexed_;
+  while (!trees_.empty() && first - trees_.back().first_ball <= count - first) {
+    first = trees_.back().first_ball;
+    nodes_.resize(trees_.back().root);
+    trees_.pop_back();
+  }
+  indexed_ = count;
+  if (first == count) return;
+  std::vector<Index> order(count - first);
+  std::iota(order.begin(), order.end(), first);
+  Box box;
+  trees_.push_back({first, build(order, box)});
 }
 
 Index CollarSystem::build(std::span<Index> order, Box& box) {
@@ -61,10 +81,9 @@ Index CollarSystem::build(std::span<Index> order, Box& box) {
 // Visit the balls below nodes whose box qualifies, until visit_ball returns true.
 template <class Meets, class Visit>
 void CollarSystem::visit(const Meets& meets_box, const Visit& visit_ball) const {
-  if (nodes_.empty()) return;
   std::array<Index, 128> stack;
   std::size_t top = 0;
-  stack[top++] = 0;
+  for (const Tree& tree : trees_) stack[top++] = tree.root;
   while (top > 0) {
     const Node& node = nodes_[stack[--top]];
     if (!meets_box(node.box)) continue;

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <memory>
 #include <span>
+#include <unordered_set>
 #include <vector>
 
 #include "collar/feature_hierarchy.h"
@@ -52,24 +54,31 @@ struct CollarOptions {
 class CollarSystem {
  public:
   CollarSystem() = default;
-  /// Place balls on all creases: radius a third of the gap size, never more than the size allows,
-  /// shrunk by up to 8% (seeded) so that spheres are generic; on smooth curves and patches small
-  /// enough that what replaces them inside a ball stays within the distance.
-  /// Cost: O((n + b) log n) for n elements of the complex and b balls. The complex and its points are
+  /// Without balls yet: these creases are to be covered (CollarPlacement). The complex and its points are
   /// kept by reference.
+  CollarSystem(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases);
+  /// Place balls on all creases: radius a third of the gap size, never more than the size allows,
+  /// shrunk by up to 2% (seeded) so that spheres are generic; on smooth curves and patches small
+  /// enough that what replaces them inside a ball stays within the distance.
+  /// Cost: O((n + b) log n) for n elements of the complex and b balls.
   CollarSystem(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases,
                const CollarOptions& options);
 
   bool empty() const { return balls_.empty(); }
-  /// The complex that the balls were placed in. Precondition: not empty.
+  /// The complex that the balls are placed in. Precondition: it has creases.
   const FeatureHierarchy& features() const { return *features_; }
   const std::vector<CollarBall>& balls() const { return balls_; }
   const std::vector<CollarLink>& links() const { return links_; }
   const std::vector<CornerPoint>& corners() const { return corners_; }
-  bool is_crease_curve(Index curve) const { return !empty() && crease_curve_[curve]; }
-  /// The ball at a crease vertex, none at other vertices.
-  Index ball_at_vertex(Index vertex) const { return empty() ? none : vertex_ball_[vertex]; }
-  bool consecutive(Index a, Index b) const;
+  /// The vertices that get a ball: those of creases and the ends of crease curves.
+  const std::vector<Index>& crease_vertices() const { return crease_vertices_; }
+  bool is_crease_vertex(Index vertex) const {
+    return std::binary_search(crease_vertices_.begin(), crease_vertices_.end(), vertex);
+  }
+  bool is_crease_curve(Index curve) const { return !crease_curve_.empty() && crease_curve_[curve]; }
+  /// The ball at a crease vertex; none when it has none yet, and at other vertices.
+  Index ball_at_vertex(Index vertex) const { return vertex_ball_.empty() ? none : vertex_ball_[vertex]; }
+  bool consecutive(Index a, Index b) const { return consecutive_.count(pair_of(a, b)) > 0; }
 
   /// A ball that contains p in its interior, none if there is none.
   Index ball_containing(const Point& p) const;
@@ -86,6 +95,12 @@ class CollarSystem {
     CentredBox box;
     Index left, right;  // a leaf has left == none and its ball in right
   };
+  static std::uint64_t pair_of(Index a, Index b) {
+    return std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
+  }
+  /// Let queries find the balls added since: trees of ever fewer balls, those that are no larger than what
+  /// comes after them are built anew, so that each ball is in O(log b) trees in its time.
+  void index_balls();
   /// Add to the box what lies below the node that is returned.
   Index build(std::span<Index> order, Box& box);
   template <class Meets, class Visit>
@@ -97,7 +112,13 @@ class CollarSystem {
   std::vector<CornerPoint> corners_;
   std::vector<bool> crease_curve_;
   std::vector<Index> vertex_ball_;
-  std::vector<std::array<Index, 2>> consecutive_;  // sorted pairs
+  std::vector<Index> crease_vertices_;             // sorted
+  std::unordered_set<std::uint64_t> consecutive_;  // pairs
+  struct Tree {
+    Index first_ball, root;  // to the next one's
+  };
+  std::vector<Tree> trees_;
+  Index indexed_ = 0;  // balls
   std::vector<Node> nodes_;
 
   friend class CollarPlacement;

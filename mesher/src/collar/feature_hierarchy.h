@@ -35,9 +35,9 @@ class FeatureHierarchy {
   }
   const Element& element(Index index) const { return elements_[index]; }
 
-  /// Distance from p to the nearest feature that `counts` accepts; infinite when there is none.
+  /// Distance from p to the nearest feature that `counts` accepts, if below `bound` (else `bound`).
   template <class Counts>
-  double distance_to_features(const Point& p, const Counts& counts) const;
+  double distance_to_features(const Point& p, double bound, const Counts& counts) const;
 
   /// Distance from p to the nearest element of the feature that `counts` accepts, if below `bound`
   /// (else `bound`, and `nearest` is none).
@@ -96,14 +96,14 @@ void FeatureHierarchy::descend(Index root, const Point& p, double& squared_bound
 }
 
 template <class Counts>
-double FeatureHierarchy::distance_to_features(const Point& p, const Counts& counts) const {
-  double bound = INFINITY;
-  descend(root_, p, bound, [&](Index feature) {
+double FeatureHierarchy::distance_to_features(const Point& p, double bound, const Counts& counts) const {
+  double squared = bound * bound;
+  descend(root_, p, squared, [&](Index feature) {
     if (!counts(features_[feature])) return;
-    descend(roots_[feature], p, bound,
-            [&](Index element) { bound = std::fmin(bound, squared_distance_to(p, element)); });
+    descend(roots_[feature], p, squared,
+            [&](Index element) { squared = std::fmin(squared, squared_distance_to(p, element)); });
   });
-  return std::sqrt(bound);
+  return std::sqrt(squared);
 }
 
 template <class Counts>

@@ -24,11 +24,13 @@ class TriangleHierarchy {
     int direction;
   };
 
-  /// The points are kept by reference.
+  /// The points are kept by reference. A segment or point is a triangle with equal corners; nothing crosses
+  /// it.
   TriangleHierarchy(std::span<const Point> points, std::vector<std::array<Index, 3>> triangles);
 
   bool empty() const { return nodes_.empty(); }
   Index root() const { return 0; }
+  const std::array<Index, 3>& points(Index triangle) const { return triangles_[triangle]; }
   std::array<Point, 3> corners(Index triangle) const {
     const auto& t = triangles_[triangle];
     return {points_[t[0]], points_[t[1]], points_[t[2]]};
@@ -62,6 +64,12 @@ class TriangleHierarchy {
   /// there is no such triangle.
   template <class Counts>
   Index triangle_within(const Point& p, double bound, const Counts& counts) const;
+
+  /// Visit triangles below `nodes` as long as their boxes are nearer to p than the bound, which the visitor
+  /// may lower: near ones first.
+  template <class Visit>
+  void visit_near(std::span<const Index> nodes, const Point& p, const double& squared_bound,
+                  const Visit& visit) const;
 
   std::size_t bytes() const;
 
@@ -106,27 +114,38 @@ template <class Counts>
 double TriangleHierarchy::squared_distance_to(const Point& p, double bound, Index* nearest,
                                               const Counts& counts) const {
   if (nodes_.empty()) return bound;
-  std::array<Index, 128> stack;
-  std::size_t top = 0;
-  stack[top++] = root();
-  while (top > 0) {
-    const Node& node = nodes_[stack[--top]];
-    if (node.box.squared_distance(p) >= bound) continue;
-    if (node.left == none) {
-      if (!counts(node.right)) continue;
-      const auto t = corners(node.right);
-      const double d = squared_distance_to_triangle(p, t[0], t[1], t[2]);
-      if (d >= bound) continue;
-      bound = d;
-      if (nearest != nullptr) *nearest = node.right;
-      continue;
-    }
-    const bool left_first =
-        nodes_[node.left].box.squared_distance(p) < nodes_[node.right].box.squared_distance(p);
-    stack[top++] = left_first ? node.right : node.left;
-    stack[top++] = left_first ? node.left : node.right;
-  }
+  const Index top = root();
+  visit_near({&top, 1}, p, bound, [&](Index triangle) {
+    if (!counts(triangle)) return;
+    const auto t = corners(triangle);
+    const double d = squared_distance_to_triangle(p, t[0], t[1], t[2]);
+    if (d >= bound) return;
+    bound = d;
+    if (nearest != nullptr) *nearest = triangle;
+  });
   return bound;
+}
+
+template <class Visit>
+void TriangleHierarchy::visit_near(std::span<const Index> nodes, const Point& p, const double& squared_bound,
+                                   const Visit& visit) const {
+  std::array<Index, 128> stack;
+  for (const Index start : nodes) {
+    std::size_t top = 0;
+    stack[top++] = start;
+    while (top > 0) {
+      const Node& node = nodes_[stack[--top]];
+      if (node.box.squared_distance(p) >= squared_bound) continue;
+      if (node.left == none) {
+        visit(node.right);
+        continue;
+      }
+      const bool left_first =
+          nodes_[node.left].box.squared_distance(p) < nodes_[node.right].box.squared_distance(p);
+      stack[top++] = left_first ? node.right : node.left;
+      stack[top++] = left_first ? node.left : node.right;
+    }
+  }
 }
 
 template <class Counts>

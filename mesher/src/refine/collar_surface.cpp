@@ -310,7 +310,7 @@ bool Refinement::repair(const CollarTriangle& t) {
     if (off >= nearest) continue;
     const Index other = collars_.ball_containing(ball.centre + (1 + 1e-9) * (arc - ball.centre));
     if (other != none) continue;
-    const double gap = distance(arc, mesh_.point(nearest_vertex(arc, v[0])));
+    const double gap = distance(arc, mesh_.point(walk_.nearest(arc, v[0])));
     if (gap < (bent ? 0.1 * distance_ : clearance)) continue;
     nearest = off;
     best = arc;
@@ -322,7 +322,7 @@ bool Refinement::repair(const CollarTriangle& t) {
 
 bool Refinement::insert_on_collar(const Point& p, std::uint8_t dimension, Index feature, Index nearby) {
   const Point rounded = frame_.rounded(p);
-  const Index nearest = nearest_vertex(rounded, nearby);
+  const Index nearest = walk_.nearest(rounded, nearby);
   const Index cell = mesh_.conflicting_cell_around(nearest, rounded);
   const double gap = distance(rounded, mesh_.point(nearest));
   if (cell == none || gap < floor_) return false;  // what stays poor is for the certificate to tell

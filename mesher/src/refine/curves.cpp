@@ -117,22 +117,6 @@ double Refinement::bisecting_parameter(Index c, const Point& a, const Point& b, 
                           : 0.5 * (low + high);
 }
 
-Index Refinement::nearest_vertex(const Point& p, Index from) {
-  double best = squared_distance(p, mesh_.point(from));
-  for (;;) {
-    mesh_.adjacent_vertices(from, cells_scratch_);
-    Index next = from;
-    for (const Index v : cells_scratch_) {
-      const double d = squared_distance(p, mesh_.point(v));
-      if (d >= best) continue;
-      best = d;
-      next = v;
-    }
-    if (next == from) return from;
-    from = next;
-  }
-}
-
 Index Refinement::add_subsegment(Index curve, std::array<Index, 2> ends, std::array<double, 2> parameters,
                                  Index nearby) {
   Index index;
@@ -151,7 +135,7 @@ Index Refinement::add_subsegment(Index curve, std::array<Index, 2> ends, std::ar
   s.centre_parameter = bisecting_parameter(curve, a, b, parameters[0], parameters[1]);
   s.centre = frame_.rounded(paths_.point(curve, s.centre_parameter));
   s.squared_radius = std::max(squared_distance(s.centre, a), squared_distance(s.centre, b));
-  const Index nearest = nearest_vertex(s.centre, nearby);
+  const Index nearest = walk_.nearest(s.centre, nearby);
   s.object = objects_.add(LocationObjects::Kind::subsegment, index, s.centre, s.squared_radius, nearest);
   const bool empty = nearest == ends[0] || nearest == ends[1] ||
                      squared_distance(s.centre, mesh_.point(nearest)) > s.squared_radius;
@@ -197,7 +181,7 @@ bool Refinement::destroy_subsegment(Index index) {
   const double parameter =
       s.centre_parameter + subsegment_offset * std::sqrt(s.squared_radius) * random_in_cube().x;
   const Point p = frame_.rounded(paths_.point(s.curve, parameter));
-  const Index around = nearest_vertex(p, nearest);
+  const Index around = walk_.nearest(p, nearest);
   const Index cell = mesh_.conflicting_cell_around(around, p);
   Index vertex = around;
   if (cell == none) {

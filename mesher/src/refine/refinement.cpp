@@ -57,13 +57,6 @@ std::vector<Point> framed(const std::vector<Point>& points, const Frame& frame) 
   return moved;
 }
 
-std::vector<std::array<Index, 3>> corner_lists(const Plc& plc) {
-  std::vector<std::array<Index, 3>> lists;
-  lists.reserve(plc.triangles.size());
-  for (const Plc::Triangle& t : plc.triangles) lists.push_back(t.points);
-  return lists;
-}
-
 }  // namespace
 
 Refinement::Refinement(const Plc& plc, const MeshOptions& options, const Execution& execution)
@@ -81,7 +74,8 @@ Refinement::Refinement(const Plc& plc, const MeshOptions& options, const Executi
       box_(surrounding_box(framed(plc.bounds, frame_))),
       paths_(plc, points_),
       mesh_(box_),
-      hierarchy_(points_, corner_lists(plc)),
+      walk_(mesh_),
+      hierarchy_(points_, elements_of(plc)),
       queue_(squared_distance(box_.min, box_.max)),
       random_state_(options.seed),
       started_(std::chrono::steady_clock::now()) {
@@ -111,7 +105,7 @@ Index Refinement::add_unresolved(const Point& p, std::uint8_t dimension, Index f
   const auto index = static_cast<Index>(unresolved_.size());
   Index nearest = 0;
   if (mesh_.vertex_count() > 8)
-    nearest = nearest_vertex(p, last_vertex());
+    nearest = walk_.nearest(p, last_vertex());
   else
     nearest = nearest_box_corner(p);
   unresolved_.push_back({p, dimension, feature});
@@ -506,7 +500,8 @@ void Refinement::note_edges(Index vertex) {
 std::optional<Refinement::Candidate> Refinement::cell_candidate(Index cell) {
   const double r2 = mesh_.squared_radius(cell);
   const Point& centre = mesh_.circumcentre(cell);
-  const Point p = frame_.rounded(centre + offset_outside_collars(centre, cell_offset * std::sqrt(r2 / 3), {}));
+  const Point p =
+      frame_.rounded(centre + offset_outside_collars(centre, cell_offset * std::sqrt(r2 / 3), {}));
   if (!inside_box(p) || !mesh_.in_conflict(cell, p)) return std::nullopt;
   return Candidate{p, r2, centre, 3, none, cell};
 }
@@ -627,6 +622,13 @@ bool Refinement::report_progress() {
   const double share = mesh_.cell_count() / sizing_.expected_cells();
   fraction_ = std::max(fraction_, std::min(0.98, share));
   return execution_.progress({"refine", fraction_, mesh_.vertex_count(), mesh_.cell_count()});
+}
+
+GapExplorer& Refinement::gap_size() {
+  if (!gap_)
+    gap_ = std::make_unique<GapExplorer>(plc_, points_, mesh_, hierarchy_,
+                                         [this](Index vertex) { return nodes_of(vertex); });
+  return *gap_;
 }
 
 MeshStatistics Refinement::statistics() const {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -16,7 +17,9 @@
 #include "location/curve_paths.h"
 #include "location/location_objects.h"
 #include "location/triangle_hierarchy.h"
+#include "location/voronoi_walk.h"
 #include "refine/frame.h"
+#include "refine/gap_explorer.h"
 #include "refine/sizing.h"
 #include "refine/work_queue.h"
 
@@ -48,6 +51,8 @@ class Refinement {
   void observe_quality_phases(std::function<void()> observer) { observer_ = std::move(observer); }
   const Triangulation& triangulation() const { return mesh_; }
   bool in_collar(Index cell) const { return labels_[cell].in_collar; }
+  /// The gap size as the mesh is now.
+  GapExplorer& gap_size();
 
   const std::string& message() const { return message_; }
   Point where() const { return frame_.outside(where_); }
@@ -60,11 +65,12 @@ class Refinement {
 
   /// What refinement knows of a mesh vertex besides its position.
   struct MeshVertex {
-    std::uint8_t dimension = 3;            // containment dimension: of the lowest feature it lies on
-    bool near_collar = false;              // B(v, R_v) meets a collar ball
-    std::uint16_t insertions = 0;          // in its star since its nodes were filtered last
-    Index feature = none;                  // index of that vertex, curve or patch of the complex
-    Index first_node = 0, node_count = 0;  // in node_pool_: hierarchy nodes that meet the box of its Voronoi cell
+    std::uint8_t dimension = 3;    // containment dimension: of the lowest feature it lies on
+    bool near_collar = false;      // B(v, R_v) meets a collar ball
+    std::uint16_t insertions = 0;  // in its star since its nodes were filtered last
+    Index feature = none;          // index of that vertex, curve or patch of the complex
+    Index first_node = 0,
+          node_count = 0;  // in node_pool_: hierarchy nodes that meet the box of its Voronoi cell
   };
   /// An input point, or a seed, that is not in the mesh yet.
   struct UnresolvedPoint {
@@ -185,7 +191,6 @@ class Refinement {
   void hurry_ends(const PendingSubsegment& pending);
   double leaving_parameter(Index curve, const CollarBall& ball, bool at_start) const;
   double bisecting_parameter(Index curve, const Point& a, const Point& b, double from, double to) const;
-  Index nearest_vertex(const Point& p, Index from);
   Index add_subsegment(Index curve, std::array<Index, 2> ends, std::array<double, 2> parameters,
                        Index nearby);
   void encroach(Index subsegment);
@@ -257,7 +262,7 @@ class Refinement {
   /// A face between a cell inside the collars and one outside, with the ball that its dual edge
   /// enters first and the point where it does (paper, Definition 9).
   struct CollarTriangle {
-    FaceId face;  // of the cell outside
+    FaceId face;               // of the cell outside
     std::uint32_t generation;  // of that cell
     Index ball;
     Point representation;
@@ -272,9 +277,9 @@ class Refinement {
     bool started = false;
     std::vector<Index> touched;  // cells created near collars since
     std::unordered_map<FaceId, CollarTriangle> triangles;
-    std::vector<FaceId> poor;                        // those inside regions
-    std::unordered_map<Index, Index> ball_at;        // by the mesh vertex at its centre
-    std::vector<Index> exposed;                      // balls whose centre may have cells outside around it
+    std::vector<FaceId> poor;                  // those inside regions
+    std::unordered_map<Index, Index> ball_at;  // by the mesh vertex at its centre
+    std::vector<Index> exposed;                // balls whose centre may have cells outside around it
   };
   /// A flat cell outside the balls that is given to the collar of one.
   struct TakenIn {
@@ -364,8 +369,10 @@ class Refinement {
   CurvePaths paths_;
 
   Triangulation mesh_;
+  VoronoiWalk walk_;
   TriangleHierarchy hierarchy_;
   LocationObjects objects_;
+  std::unique_ptr<GapExplorer> gap_;  // made when first asked for
   CollarSystem collars_;
   std::vector<Index> ball_points_;  // unresolved points at the balls' centres
   std::vector<ClippedEnd> clipped_ends_;

@@ -208,8 +208,9 @@ bool Refinement::refine_distant_triangles(const std::vector<FaceId>& faces) {
     t.known_near = std::all_of(samples.begin(), samples.end(), [&](const Point& p) {
       const auto corners = hierarchy_.corners(near);
       if (squared_distance_to_triangle(p, corners[0], corners[1], corners[2]) < tolerance) return true;
-      const Index other = hierarchy_.triangle_within(
-          p, tolerance, [&](Index triangle) { return plc_.triangles[triangle].patch == patch; });
+      const Index other = hierarchy_.triangle_within(p, tolerance, [&](Index triangle) {
+        return triangle < plc_.triangles.size() && plc_.triangles[triangle].patch == patch;
+      });
       if (other != none) near = other;
       return other != none;
     });

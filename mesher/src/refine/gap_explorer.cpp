@@ -1,0 +1,92 @@
+#include "refine/gap_explorer.h"
+
+#include <algorithm>
+
+namespace collarmesh {
+
+namespace {
+
+std::uint64_t segment_key(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32U | std::max(a, b); }
+
+template <class Visit>
+void visit_segments(const Plc::Curve& curve, const Visit& visit) {
+  for (std::size_t i = 0; i + 1 < curve.points.size(); ++i) visit(curve.points[i], curve.points[i + 1]);
+  if (curve.closed) visit(curve.points.back(), curve.points[0]);
+}
+
+}  // namespace
+
+std::vector<std::array<Index, 3>> elements_of(const Plc& plc) {
+  std::vector<std::array<Index, 3>> elements;
+  elements.reserve(plc.triangles.size());
+  for (const Plc::Triangle& t : plc.triangles) elements.push_back(t.points);
+  for (const Plc::Curve& curve : plc.curves)
+    if (curve.patches.empty())
+      visit_segments(curve, [&](Index a, Index b) { elements.push_back({a, b, b}); });
+  for (const Plc::Vertex& vertex : plc.vertices)
+    if (vertex.patches.empty() && vertex.curves.empty())
+      elements.push_back({vertex.point, vertex.point, vertex.point});
+  return elements;
+}
+
+GapExplorer::GapExplorer(const Plc& plc, std::span<const Point> points, Triangulation& mesh,
+                         const TriangleHierarchy& elements,
+                         std::function<std::span<const Index>(Index)> nodes_at)
+    : plc_(plc),
+      points_(points),
+      mesh_(mesh),
+      elements_(elements),
+      nodes_at_(std::move(nodes_at)),
+      walk_(mesh),
+      vertex_at_(points.size(), none) {
+  for (Index v = 0; v < plc.vertices.size(); ++v) vertex_at_[plc.vertices[v].point] = v;
+  for (Index c = 0; c < plc.curves.size(); ++c)
+    visit_segments(plc.curves[c], [&](Index a, Index b) { curve_of_[segment_key(a, b)] = c; });
+}
+
+double GapExplorer::at_vertex(Index vertex, double bound) {
+  return explore({0, vertex}, points_[plc_.vertices[vertex].point], bound);
+}
+
+double GapExplorer::on_curve(Index curve, const Point& p, double bound) {
+  return explore({1, curve}, p, bound);
+}
+
+double GapExplorer::explore(const Feature& at, const Point& x, double bound) {
+  near_ = walk_.nearest(x, near_);
+  double squared = bound * bound;
+  walk_.visit_ball(x, near_, squared, [&](Index vertex) {
+    ++explored_;
+    interview(nodes_at_(vertex), at, x, squared);
+  });
+  return std::sqrt(squared);
+}
+
+bool GapExplorer::isolated(const Feature& vertex_or_curve, Index at, double squared_radius) {
+  double squared = squared_radius;
+  interview(nodes_at_(at), vertex_or_curve, mesh_.point(at), squared);
+  return squared >= squared_radius;
+}
+
+void GapExplorer::interview(std::span<const Index> nodes, const Feature& at, const Point& x,
+                            double& squared) {
+  const auto witness = [&](const Feature& feature, const Point& a, const Point& b, const Point& c) {
+    if (contains(plc_, feature, at)) return false;
+    squared = std::min(squared, squared_distance_to_triangle(x, a, b, c));
+    return true;
+  };
+  elements_.visit_near(nodes, x, squared, [&](Index element) {
+    const auto& e = elements_.points(element);
+    const Point &a = points_[e[0]], &b = points_[e[1]], &c = points_[e[2]];
+    // What bounds a patch is no nearer than the patch.
+    if (element < plc_.triangles.size() && witness({2, plc_.triangles[element].patch}, a, b, c)) return;
+    for (unsigned k = 0; k < 3; ++k) {
+      const Index i = e[k], j = e[(k + 1) % 3];
+      if (const auto curve = curve_of_.find(segment_key(i, j)); curve != curve_of_.end())
+        witness({1, curve->second}, points_[i], points_[j], points_[j]);
+      if (vertex_at_[i] != none) witness({0, vertex_at_[i]}, points_[i], points_[i], points_[i]);
+    }
+  });
+}
+
+}  // namespace collarmesh

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "collar/gap_size.h"
+#include "location/triangle_hierarchy.h"
+#include "location/voronoi_walk.h"
+
+namespace collarmesh {
+
+/// The corners of the elements of a complex: its triangles, then what no patch has as degenerate ones, the
+/// segments of curves and single vertices.
+std::vector<std::array<Index, 3>> elements_of(const Plc& plc);
+
+/// The gap size by exploring the mesh (paper, Procedure 4): from the Voronoi cell that contains the point
+/// breadth first, interviewing what meets the cells, until the ball of the nearest witness is explored.
+class GapExplorer final : public GapSize {
+ public:
+  /// All are kept by reference. `nodes_at` gives the nodes of a hierarchy over elements_of(plc) that cover
+  /// what meets the Voronoi cell of a mesh vertex.
+  GapExplorer(const Plc& plc, std::span<const Point> points, Triangulation& mesh,
+              const TriangleHierarchy& elements, std::function<std::span<const Index>(Index)> nodes_at);
+
+  /// The next query is near this mesh vertex: where its cell is looked for. Each query is near the next.
+  void start_near(Index vertex) { near_ = vertex; }
+
+  double at_vertex(Index vertex, double bound = INFINITY) override;
+  double on_curve(Index curve, const Point& p, double bound = INFINITY) override;
+
+  /// Is a vertex or curve of the complex isolated in the Voronoi cell of a mesh vertex (paper, Definition 6):
+  /// does every feature that meets the ball around the cell contain it?
+  bool isolated(const Feature& vertex_or_curve, Index at, double squared_radius);
+
+  /// Vertices whose cells were explored, of all queries.
+  std::size_t explored() const { return explored_; }
+
+ private:
+  double explore(const Feature& at, const Point& x, double bound);
+  /// Lowers the squared distance to that of the nearest feature below the nodes that does not contain `at`.
+  void interview(std::span<const Index> nodes, const Feature& at, const Point& x, double& squared);
+
+  const Plc& plc_;
+  std::span<const Point> points_;
+  Triangulation& mesh_;
+  const TriangleHierarchy& elements_;
+  std::function<std::span<const Index>(Index)> nodes_at_;
+  VoronoiWalk walk_;
+  std::vector<Index> vertex_at_;                       // by point
+  std::unordered_map<std::uint64_t, Index> curve_of_;  // by the two points of a segment
+  Index near_ = 0;
+  std::size_t explored_ = 0;
+};
+
+}  // namespace collarmesh
