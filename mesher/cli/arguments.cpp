@@ -164,6 +164,15 @@ void add_quality_options(CLI::App& app, MeshOptions& m) {
       "Bound on dihedral angles in the collars around creases, degrees")
       ->check(collar_angle)
       ->group(group);
+  const std::map<std::string, CollarCreation> creations{{"up-front", CollarCreation::up_front},
+                                                        {"in-pass", CollarCreation::in_pass}};
+  app.add_option(
+         "--collar-creation", m.collar_creation,
+         "Place the balls around creases before the refinement, or each in the pass (the paper's way)")
+      ->transform(CLI::CheckedTransformer(creations).description(""))
+      ->default_str("up-front")
+      ->type_name("up-front|in-pass")
+      ->group(group);
   add(app, "--theta THETA", m.theta, "Warp to input within this times a gap ball's radius; 0: never")
       ->check(number_in(0, 0.449, "a number from 0 to below 0.45"))
       ->group(group);

@@ -66,6 +66,7 @@ Json options_json(const MeshArguments& a) {
           {"weld", a.complex.plc.weld},
           {"crease_angle", a.complex.crease_angle},
           {"collar_angle", m.collar_angle},
+          {"collar_creation", m.collar_creation == CollarCreation::in_pass ? "in-pass" : "up-front"},
           {"improve", a.improve},
           {"min_dihedral", or_null(a.min_dihedral)},
           {"order", a.order},

@@ -13,37 +13,48 @@
 
 namespace collarmesh {
 
+/// When the balls of collars are placed: before the first vertex is inserted, or in the pass, each when the
+/// mesh has become fine enough around its crease (paper, section 3.2). The guarantees are the same.
+enum class CollarCreation { up_front, in_pass };
+
 /// What `generate` aims at. Lengths are absolute, in input units, and are target edge lengths:
 /// the median edge of a large mesh comes out near them.
 struct MeshOptions {
-  double size = 0;                       ///< target edge length everywhere; 0: 1/20 of the diagonal
-  double size_min = 0;                   ///< never ask for less than this because of gradation or fields; 0: none
-  std::map<Tag, double> region_size;     ///< target edge length by region tag
-  std::map<Tag, double> patch_size;      ///< by patch tag
-  std::map<Tag, double> curve_size;      ///< by curve tag
-  double gradation = 0;                  ///< growth of size per unit length away from a finer patch, curve or region; 0: unlimited
-  SizeField size_field;  ///< target edge length at a point; may be empty
-  double elements_per_circle = 0;        ///< target edge lengths on smooth patches and curves put so many on a full circle of their curvature; 0: none
-  double elements_across_gap = 0;        ///< target edge lengths on patches put so many between them and what they face across a region; 0: none
-  double radius_edge = 2;                ///< bound on circumradius / shortest edge in the regions; at least 1
-  double exterior_radius_edge = 8;       ///< the same outside every region, where that is larger
-  double vertex_ratio = 0;               ///< bound on largest circumradius / shortest edge at a vertex in the regions (paper, section 1.2); 0: none, else > 2 sqrt 2
-  double theta = 0.3;                    ///< warp distance relative to a gap ball's radius (paper, Procedure 2); 0: never warp
-  double crease_angle = 60;              ///< degrees; features that meet below it get a collar
-  double collar_angle = 150;             ///< bound on dihedral angles in collars, degrees; 100 to 175
-  double representation_angle = 50;      ///< bound on the tilt of collar triangles (paper, Definition 12), degrees
-  double distance = 0;                   ///< surface distance tolerance on smooth patches and curves; 0: 1e-3 of the diagonal
-  std::uint64_t seed = 0;                ///< of the offsets; same input, options and seed: same mesh
-  std::size_t max_vertices = 0;          ///< budget; 0: none
-  std::size_t max_memory = 0;            ///< budget in bytes for the mesh structures (a whole run takes about 1.2 times as much); 0: none
-  double time_limit = 0;                 ///< budget in seconds; 0: none
+  double size = 0;      ///< target edge length everywhere; 0: 1/20 of the diagonal
+  double size_min = 0;  ///< never ask for less than this because of gradation or fields; 0: none
+  std::map<Tag, double> region_size;  ///< target edge length by region tag
+  std::map<Tag, double> patch_size;   ///< by patch tag
+  std::map<Tag, double> curve_size;   ///< by curve tag
+  double gradation =
+      0;  ///< growth of size per unit length away from a finer patch, curve or region; 0: unlimited
+  SizeField size_field;            ///< target edge length at a point; may be empty
+  double elements_per_circle = 0;  ///< target edge lengths on smooth patches and curves put so many on a full
+                                   ///< circle of their curvature; 0: none
+  double elements_across_gap = 0;  ///< target edge lengths on patches put so many between them and what they
+                                   ///< face across a region; 0: none
+  double radius_edge = 2;          ///< bound on circumradius / shortest edge in the regions; at least 1
+  double exterior_radius_edge = 8;  ///< the same outside every region, where that is larger
+  double vertex_ratio = 0;  ///< bound on largest circumradius / shortest edge at a vertex in the regions
+                            ///< (paper, section 1.2); 0: none, else > 2 sqrt 2
+  double theta = 0.3;  ///< warp distance relative to a gap ball's radius (paper, Procedure 2); 0: never warp
+  double crease_angle = 60;   ///< degrees; features that meet below it get a collar
+  double collar_angle = 150;  ///< bound on dihedral angles in collars, degrees; 100 to 175
+  CollarCreation collar_creation = CollarCreation::up_front;
+  double representation_angle =
+      50;               ///< bound on the tilt of collar triangles (paper, Definition 12), degrees
+  double distance = 0;  ///< surface distance tolerance on smooth patches and curves; 0: 1e-3 of the diagonal
+  std::uint64_t seed = 0;        ///< of the offsets; same input, options and seed: same mesh
+  std::size_t max_vertices = 0;  ///< budget; 0: none
+  std::size_t max_memory =
+      0;  ///< budget in bytes for the mesh structures (a whole run takes about 1.2 times as much); 0: none
+  double time_limit = 0;  ///< budget in seconds; 0: none
 };
 
 enum class MeshStatus {
-  complete,        ///< the refinement ended; `check` certifies the mesh
-  guarantee_missed,///< the refinement ended but could not meet a bound; `message` says which and where
-  budget_hit,      ///< vertices, memory or time; no mesh
-  cancelled        ///< no mesh
+  complete,          ///< the refinement ended; `check` certifies the mesh
+  guarantee_missed,  ///< the refinement ended but could not meet a bound; `message` says which and where
+  budget_hit,        ///< vertices, memory or time; no mesh
+  cancelled          ///< no mesh
 };
 
 struct MeshStatistics {

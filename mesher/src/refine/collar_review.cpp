@@ -72,6 +72,10 @@ void Refinement::start_review() {
   }
   for (Index ball = 0; ball < collars_.balls().size(); ++ball)
     if (ball_vertex(ball) != none) collar_review_.ball_at.emplace(ball_vertex(ball), ball);
+  for (Index v = 0; v < mesh_.vertex_count(); ++v)
+    if (on_crease(v))
+      if (const Index ball = collars_.ball_containing(mesh_.point(v)); ball != none)
+        collar_review_.ball_at.emplace(v, ball);
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
     if (!mesh_.alive(cell)) continue;
     const auto& v = mesh_.corners(cell);
@@ -222,14 +226,15 @@ bool Refinement::poor_edge(const CollarTriangle& t, Index a, Index b) const {
          poor_book(t, *neighbour, {std::min(a, b), std::max(a, b)});
 }
 
-// A centre must not be a vertex of cells outside: their part of the sphere has no points yet.
+// A centre, or another point of a crease, must not be a vertex of cells outside: their part of the sphere has
+// no points yet.
 void Refinement::find_exposed_centres(const std::vector<Index>& cells) {
   for (const Index cell : cells) {
     if (labels_[cell].region == 0 || labels_[cell].in_collar) continue;
     for (const Index v : mesh_.corners(cell)) {
       if (!on_crease(v)) continue;
       const auto ball = collar_review_.ball_at.find(v);
-      if (ball != collar_review_.ball_at.end()) collar_review_.exposed.push_back(ball->second);
+      if (ball != collar_review_.ball_at.end()) collar_review_.exposed.push_back(v);
     }
   }
   sort_and_make_unique(collar_review_.exposed);
@@ -238,15 +243,16 @@ void Refinement::find_exposed_centres(const std::vector<Index>& cells) {
 // False when nothing was inserted.
 bool Refinement::surround_centres() {
   bool found = false;
-  std::erase_if(collar_review_.exposed, [&](Index b) {
+  std::erase_if(collar_review_.exposed, [&](Index vertex) {
+    const Index b = collar_review_.ball_at.at(vertex);
     const CollarBall& ball = collars_.balls()[b];
-    mesh_.incident_cells(ball_vertex(b), cells_scratch_);
+    mesh_.incident_cells(vertex, cells_scratch_);
     const auto outside = std::find_if(cells_scratch_.begin(), cells_scratch_.end(), [&](Index cell) {
       return labels_[cell].region != 0 && !labels_[cell].in_collar;
     });
     if (outside == cells_scratch_.end()) return true;
     const auto& v = mesh_.corners(*outside);
-    const auto corner = static_cast<unsigned>(std::find(v.begin(), v.end(), ball_vertex(b)) - v.begin());
+    const auto corner = static_cast<unsigned>(std::find(v.begin(), v.end(), vertex) - v.begin());
     const Vector d = mesh_.circumcentre(*outside) - ball.centre;
     found |= repair({face_id(*outside, corner), mesh_.generation(*outside), b,
                      ball.centre + ball.radius / norm(d) * d, false});

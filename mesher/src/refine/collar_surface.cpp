@@ -32,16 +32,17 @@ void Refinement::prepare_collars() {
   options.distance = distance_;
   options.seed = options_.seed;
   options.stopped = [this] { return stopped(); };
-  collars_ = CollarSystem(plc_, points_, find_creases(plc_, options_.crease_angle), options);
+  const std::vector<Crease> creases = find_creases(plc_, options_.crease_angle);
+  if (creases.empty()) return;
+  if (options_.collar_creation == CollarCreation::in_pass) {
+    collars_ = CollarSystem(plc_, points_, creases);
+    placement_ = std::make_unique<CollarPlacement>(plc_, points_, gap_size(), options, collars_);
+    return;
+  }
+  collars_ = CollarSystem(plc_, points_, creases, options);
   if (collars_.empty()) return;
   for (MeshVertex& v : vertices_) v.near_collar = true;
-  for (const CollarBall& ball : collars_.balls())
-    ball_points_.push_back(ball.dimension == 0 ? ball.feature : add_unresolved(ball.centre, 1, ball.feature));
-  for (const CornerPoint& corner : collars_.corners()) {
-    const bool planar = corner.dimension == 2 && plc_.patches[corner.feature].planar;
-    add_unresolved(planar ? on_plane(corner.feature, corner.point) : corner.point, corner.dimension,
-                   corner.feature);
-  }
+  take_up_balls(none, {none, none});
 }
 
 // The smallest target edge length of what is at this place of a vertex or curve.

@@ -22,7 +22,10 @@ void Refinement::prepare_curves() {
 
 void Refinement::add_curve_chain(Index c) {
   const Plc::Curve& curve = plc_.curves[c];
-  if (collars_.is_crease_curve(c)) return;  // covered by balls
+  if (collars_.is_crease_curve(c)) {
+    if (!placement_) return;  // covered by balls
+    open_creases_[c] = {};
+  }
   double from = 0, to = paths_.length(c);
   const auto seed = [&](double parameter) { return add_unresolved(paths_.point(c, parameter), 1, c); };
   // Clipped where it leaves a vertex ball.
@@ -51,11 +54,18 @@ void Refinement::add_curve_chain(Index c) {
     pending_.push_back({c, {chain[i].first, chain[i + 1].first}, {chain[i].second, chain[i + 1].second}});
     PendingSubsegment& p = pending_.back();
     for (const Index point : p.points) unresolved_[point].pending.push_back(index);
-    const Point a = unresolved_[p.points[0]].point, b = unresolved_[p.points[1]].point;
-    const Point centre = paths_.point(c, bisecting_parameter(c, a, b, p.parameters[0], p.parameters[1]));
-    p.object = objects_.add(LocationObjects::Kind::pending_subsegment, index, centre,
-                            squared_distance(centre, a), nearest_box_corner(centre));
+    guard(index, none);
+    if (const auto crease = open_creases_.find(c); crease != open_creases_.end()) ++crease->second.pending;
   }
+}
+
+void Refinement::guard(Index index, Index near) {
+  PendingSubsegment& p = pending_[index];
+  const Point a = unresolved_[p.points[0]].point, b = unresolved_[p.points[1]].point;
+  const Point centre =
+      paths_.point(p.curve, bisecting_parameter(p.curve, a, b, p.parameters[0], p.parameters[1]));
+  p.object = objects_.add(LocationObjects::Kind::pending_subsegment, index, centre,
+                          squared_distance(centre, a), nearest_vertex(centre, near));
 }
 
 // Where a curve leaves the ball at one of its ends: bisection, the ball meets it in one arc.
@@ -77,6 +87,8 @@ void Refinement::point_resolved(Index point) {
     PendingSubsegment& p = pending_[index];
     if (--p.missing > 0) continue;
     objects_.remove(p.object);
+    if (const auto crease = open_creases_.find(p.curve); crease != open_creases_.end())
+      --crease->second.pending;
     const std::array<Index, 2> ends{unresolved_[p.points[0]].vertex, unresolved_[p.points[1]].vertex};
     add_subsegment(p.curve, ends, p.parameters, ends[0]);
   }
@@ -137,6 +149,10 @@ Index Refinement::add_subsegment(Index curve, std::array<Index, 2> ends, std::ar
   s.squared_radius = std::max(squared_distance(s.centre, a), squared_distance(s.centre, b));
   const Index nearest = walk_.nearest(s.centre, nearby);
   s.object = objects_.add(LocationObjects::Kind::subsegment, index, s.centre, s.squared_radius, nearest);
+  if (const auto crease = open_creases_.find(curve); crease != open_creases_.end()) {
+    crease->second.subsegments.push_back({index, stamp});
+    touch_crease(curve);
+  }
   const bool empty = nearest == ends[0] || nearest == ends[1] ||
                      squared_distance(s.centre, mesh_.point(nearest)) > s.squared_radius;
   if (!empty || too_coarse(s)) encroach(index);
@@ -149,6 +165,7 @@ void Refinement::encroach(Index subsegment) {
 }
 
 bool Refinement::too_coarse(const Subsegment& s) const {
+  if (collars_.is_crease_curve(s.curve)) return false;  // it only waits for its balls
   const Point a = mesh_.point(s.ends[0]), b = mesh_.point(s.ends[1]);
   const double size = sizing_.curve_size(s.curve, paths_.segment(s.curve, s.parameters[0]),
                                          paths_.segment(s.curve, s.parameters[1]), s.centre);

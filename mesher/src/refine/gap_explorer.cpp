@@ -57,34 +57,58 @@ double GapExplorer::explore(const Feature& at, const Point& x, double bound) {
   double squared = bound * bound;
   walk_.visit_ball(x, near_, squared, [&](Index vertex) {
     ++explored_;
-    interview(nodes_at_(vertex), at, x, squared);
+    interview(nodes_at_(vertex), at, x, squared, [&](const Point& a, const Point& b, const Point& c) {
+      squared = std::min(squared, squared_distance_to_triangle(x, a, b, c));
+    });
   });
   return std::sqrt(squared);
 }
 
-bool GapExplorer::isolated(const Feature& vertex_or_curve, Index at, double squared_radius) {
-  double squared = squared_radius;
-  interview(nodes_at_(at), vertex_or_curve, mesh_.point(at), squared);
-  return squared >= squared_radius;
+bool GapExplorer::isolated(const Feature& vertex_or_curve, Index cell) {
+  mesh_.adjacent_vertices(cell, adjacent_);
+  double squared_bound = INFINITY;  // 0 when a witness has been found
+  interview(nodes_at_(cell), vertex_or_curve, mesh_.point(cell), squared_bound,
+            [&](const Point& a, const Point& b, const Point& c) {
+              if (squared_bound > 0 && meets_cell(cell, a, b, c)) squared_bound = 0;
+            });
+  return squared_bound > 0;
 }
 
+// The triangle is cut by the planes between the vertex and its neighbours, as long as anything is left.
+bool GapExplorer::meets_cell(Index vertex, const Point& a, const Point& b, const Point& c) {
+  const Point& u = mesh_.point(vertex);
+  polygon_ = {a, b, c};
+  for (const Index neighbour : adjacent_) {
+    const Vector n = mesh_.point(neighbour) - u;
+    const double half = 0.5 * squared_norm(n);
+    clipped_.clear();
+    for (std::size_t i = 0; i < polygon_.size(); ++i) {
+      const Point &p = polygon_[i], &q = polygon_[(i + 1) % polygon_.size()];
+      const double beyond_p = dot(p - u, n) - half, beyond_q = dot(q - u, n) - half;
+      if (beyond_p < 0) clipped_.push_back(p);
+      if ((beyond_p < 0) != (beyond_q < 0))
+        clipped_.push_back(p + beyond_p / (beyond_p - beyond_q) * (q - p));
+    }
+    polygon_.swap(clipped_);
+    if (polygon_.empty()) return false;
+  }
+  return true;
+}
+
+template <class Witness>
 void GapExplorer::interview(std::span<const Index> nodes, const Feature& at, const Point& x,
-                            double& squared) {
-  const auto witness = [&](const Feature& feature, const Point& a, const Point& b, const Point& c) {
-    if (contains(plc_, feature, at)) return false;
-    squared = std::min(squared, squared_distance_to_triangle(x, a, b, c));
-    return true;
-  };
-  elements_.visit_near(nodes, x, squared, [&](Index element) {
+                            const double& squared_bound, const Witness& witness) {
+  const auto counts = [&](const Feature& feature) { return !contains(plc_, feature, at); };
+  elements_.visit_near(nodes, x, squared_bound, [&](Index element) {
     const auto& e = elements_.points(element);
-    const Point &a = points_[e[0]], &b = points_[e[1]], &c = points_[e[2]];
     // What bounds a patch is no nearer than the patch.
-    if (element < plc_.triangles.size() && witness({2, plc_.triangles[element].patch}, a, b, c)) return;
+    if (element < plc_.triangles.size() && counts({2, plc_.triangles[element].patch}))
+      return witness(points_[e[0]], points_[e[1]], points_[e[2]]);
     for (unsigned k = 0; k < 3; ++k) {
       const Index i = e[k], j = e[(k + 1) % 3];
-      if (const auto curve = curve_of_.find(segment_key(i, j)); curve != curve_of_.end())
-        witness({1, curve->second}, points_[i], points_[j], points_[j]);
-      if (vertex_at_[i] != none) witness({0, vertex_at_[i]}, points_[i], points_[i], points_[i]);
+      const auto curve = curve_of_.find(segment_key(i, j));
+      if (curve != curve_of_.end() && counts({1, curve->second})) witness(points_[i], points_[j], points_[j]);
+      if (vertex_at_[i] != none && counts({0, vertex_at_[i]})) witness(points_[i], points_[i], points_[i]);
     }
   });
 }

@@ -31,16 +31,21 @@ class GapExplorer final : public GapSize {
   double on_curve(Index curve, const Point& p, double bound = INFINITY) override;
 
   /// Is a vertex or curve of the complex isolated in the Voronoi cell of a mesh vertex (paper, Definition 6):
-  /// does every feature that meets the ball around the cell contain it?
-  bool isolated(const Feature& vertex_or_curve, Index at, double squared_radius);
+  /// does every feature that meets the cell contain it?
+  bool isolated(const Feature& vertex_or_curve, Index cell);
 
   /// Vertices whose cells were explored, of all queries.
   std::size_t explored() const { return explored_; }
 
  private:
   double explore(const Feature& at, const Point& x, double bound);
-  /// Lowers the squared distance to that of the nearest feature below the nodes that does not contain `at`.
-  void interview(std::span<const Index> nodes, const Feature& at, const Point& x, double& squared);
+  /// Calls witness(a, b, c) with what the features that do not contain `at` consist of: below the nodes,
+  /// nearer to x than the bound, which may be lowered.
+  template <class Witness>
+  void interview(std::span<const Index> nodes, const Feature& at, const Point& x, const double& squared_bound,
+                 const Witness& witness);
+  /// Does a triangle meet the cell of this vertex, whose neighbours are adjacent_?
+  bool meets_cell(Index vertex, const Point& a, const Point& b, const Point& c);
 
   const Plc& plc_;
   std::span<const Point> points_;
@@ -50,6 +55,8 @@ class GapExplorer final : public GapSize {
   VoronoiWalk walk_;
   std::vector<Index> vertex_at_;                       // by point
   std::unordered_map<std::uint64_t, Index> curve_of_;  // by the two points of a segment
+  std::vector<Index> adjacent_;
+  std::vector<Point> polygon_, clipped_;
   Index near_ = 0;
   std::size_t explored_ = 0;
 };

@@ -101,20 +101,17 @@ void Refinement::start() {
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) judge_cell(cell);
 }
 
-Index Refinement::add_unresolved(const Point& p, std::uint8_t dimension, Index feature) {
+Index Refinement::add_unresolved(const Point& p, std::uint8_t dimension, Index feature, Index near) {
   const auto index = static_cast<Index>(unresolved_.size());
-  Index nearest = 0;
-  if (mesh_.vertex_count() > 8)
-    nearest = walk_.nearest(p, last_vertex());
-  else
-    nearest = nearest_box_corner(p);
   unresolved_.push_back({p, dimension, feature});
-  unresolved_[index].object = objects_.add(LocationObjects::Kind::point, index, p, 0, nearest);
+  unresolved_[index].object =
+      objects_.add(LocationObjects::Kind::point, index, p, 0, nearest_vertex(p, near));
   queue_point(index);
   return index;
 }
 
-Index Refinement::nearest_box_corner(const Point& p) const {
+Index Refinement::nearest_vertex(const Point& p, Index near) {
+  if (mesh_.vertex_count() > 8) return walk_.nearest(p, near == none ? last_vertex() : near);
   Index nearest = 0;
   for (Index corner = 1; corner < 8; ++corner)
     if (squared_distance(p, mesh_.point(corner)) < squared_distance(p, mesh_.point(nearest)))
@@ -138,10 +135,13 @@ MeshStatus Refinement::run() {
   while (stop_ == MeshStatus::complete) {
     while (queue_.pop(item)) {
       if (observer_ && item.priority > WorkQueue::skinny_cells) observer_();
+      if (!touched_creases_.empty() && item.priority > WorkQueue::encroached_subsegments)
+        create_collars_on_touched_creases();
       process(item);
       if (++steps_ % steps_between_reports == 0 && stopped()) return stop_;
     }
     if (stopped()) return stop_;
+    if (create_remaining_collars()) continue;
     if (mending_collars && check_collars()) continue;
     const bool collars_settled = std::exchange(mending_collars, false);
     if (check_surface() || check_gradation()) continue;
@@ -179,6 +179,7 @@ void Refinement::process(const WorkQueue::Item& item) {
 
 void Refinement::destroy_cell(const WorkQueue::Item& item) {
   const Index cell = item.entry.id;
+  if (labels_[cell].in_collar) return;
   const double r2 = mesh_.squared_radius(cell);
   const auto candidate = cell_candidate(cell);
   if (!candidate || !destroy(*candidate)) return;
@@ -191,7 +192,7 @@ void Refinement::destroy_triangle(const WorkQueue::Item& item) {
   const FaceId face = item.entry.id;
   if (!(labels_[cell_of(face)].marked >> corner_of(face) & 1U)) return;
   const RestrictedTriangle t = restricted(face);
-  if (t.given_up) return;
+  if (t.given_up || (t.in_collar && !t.surface_needs_it)) return;
   const auto candidate = triangle_candidate(face);
   if (!candidate || !destroy(*candidate)) {
     restricted(face).given_up = true;
@@ -230,13 +231,15 @@ bool Refinement::insert_point(Index index) {
     }
     p.vertex = nearest;
     objects_.remove(p.object);
+    if (waits_for_ball(index)) create_collar_at_vertex(index, nearest);
     point_resolved(index);
     return true;
   }
   objects_.remove(p.object);
   mesh_.find_conflict_zone(p.point, cell, zone_);
   p.vertex = mesh_.vertex_count();
-  force_insert(p.dimension, p.feature);
+  const Index vertex = force_insert(p.dimension, p.feature);
+  if (waits_for_ball(index)) create_collar_at_vertex(index, vertex);
   point_resolved(index);
   return true;
 }
@@ -360,6 +363,7 @@ Index Refinement::force_insert(std::uint8_t dimension, Index feature) {
   mark_border_faces();
   relocate_objects(vertex);
   for (const Index cell : zone_.created) judge_cell(cell);
+  if (placement_) look_for_isolated_creases(vertex);
   return vertex;
 }
 

@@ -11,6 +11,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "collar/collar_placement.h"
 #include "collar/collar_system.h"
 #include "collarmesh/mesher.h"
 #include "delaunay/triangulation.h"
@@ -49,6 +50,12 @@ class Refinement {
 
   /// For tests: called whenever no skinny cell is left to destroy, before anything else goes in.
   void observe_quality_phases(std::function<void()> observer) { observer_ = std::move(observer); }
+  /// For tests: called for every ball that is created in the pass, with the mesh as it is then.
+  void observe_collars(std::function<void(const CollarBall&)> observer) {
+    collar_observer_ = std::move(observer);
+  }
+  /// The feature that a mesh vertex lies on; dimension 3: none.
+  Feature feature_of(Index vertex) const { return {vertices_[vertex].dimension, vertices_[vertex].feature}; }
   const Triangulation& triangulation() const { return mesh_; }
   bool in_collar(Index cell) const { return labels_[cell].in_collar; }
   /// The gap size as the mesh is now.
@@ -111,8 +118,9 @@ class Refinement {
     bool several_sheets;     // the dual edge crosses the surface more than once
     bool given_up;           // at the floor: no further insertion here
     bool judged;
-    bool in_collar;   // x lies in a collar ball: none of refinement's business
-    bool known_near;  // no sample of it is farther from its patch than the tolerance
+    bool in_collar;         // x lies in a collar ball: none of refinement's business
+    bool surface_needs_it;  // it is split although x may lie in a collar ball
+    bool known_near;        // no sample of it is farther from its patch than the tolerance
   };
   /// A point of the complex on a smooth patch, with a triangle of the patch that it was near to.
   struct TessellationPoint {
@@ -140,8 +148,9 @@ class Refinement {
 
   // refinement.cpp
   void start();
-  Index add_unresolved(const Point& p, std::uint8_t dimension, Index feature);
-  Index nearest_box_corner(const Point& p) const;
+  /// `near`: a mesh vertex not far away, if one is known.
+  Index add_unresolved(const Point& p, std::uint8_t dimension, Index feature, Index near = none);
+  Index nearest_vertex(const Point& p, Index near);
   void queue_point(Index point);
   void process(const WorkQueue::Item& item);
   void destroy_cell(const WorkQueue::Item& item);
@@ -187,6 +196,7 @@ class Refinement {
   // curves.cpp
   void prepare_curves();
   void add_curve_chain(Index curve);
+  void guard(Index pending, Index near);
   void point_resolved(Index point);
   void hurry_ends(const PendingSubsegment& pending);
   double leaving_parameter(Index curve, const CollarBall& ball, bool at_start) const;
@@ -278,13 +288,21 @@ class Refinement {
     std::vector<Index> touched;  // cells created near collars since
     std::unordered_map<FaceId, CollarTriangle> triangles;
     std::vector<FaceId> poor;                  // those inside regions
-    std::unordered_map<Index, Index> ball_at;  // by the mesh vertex at its centre
-    std::vector<Index> exposed;                // balls whose centre may have cells outside around it
+    std::unordered_map<Index, Index> ball_at;  // by the mesh vertices on creases
+    std::vector<Index> exposed;                // of these vertices, which may have cells outside around them
   };
   /// A flat cell outside the balls that is given to the collar of one.
   struct TakenIn {
     Index ball;
     std::uint32_t generation;  // of the cell
+  };
+  /// A crease curve that has no balls yet.
+  struct OpenCrease {
+    std::vector<std::pair<Index, std::uint32_t>> subsegments;  // all there have been, with their stamps
+    std::size_t isolated = 0;               // the first so many of them are, or are there no more
+    std::size_t pending = 0;                // first subsegments that still wait
+    std::array<Index, 2> ends{none, none};  // unresolved points where it leaves the balls at its ends
+    bool touched = false;                   // it is in touched_creases_
   };
   void prepare_collars();
   double collar_size(const Feature& feature, const Point& p) const;
@@ -306,6 +324,20 @@ class Refinement {
 
   bool poor_book(const CollarTriangle& t, const CollarTriangle& u, const std::array<Index, 2>& edge) const;
   Index ball_vertex(Index ball) const { return unresolved_[ball_points_[ball]].vertex; }
+
+  // create_collars.cpp
+  void look_for_isolated_creases(Index vertex);
+  void touch_crease(Index curve);
+  void create_collar_if_isolated(Index at);
+  bool waits_for_ball(Index vertex) const;
+  /// Paper, Procedure 4. `near`: the mesh vertex whose cell contains the vertex.
+  void create_collar_at_vertex(Index vertex, Index near);
+  void clip_curve(Index curve, bool at_start, Index near);
+  void create_collars_on_touched_creases();
+  bool create_remaining_collars();
+  void create_collar_on_curve(Index curve);
+  void take_up_balls(Index near, const std::array<Index, 2>& ends);
+  void find_inside(const CollarBall& ball, Index near);
 
   // collar_review.cpp
   /// Look at the collar surface when everything else is done; mend what is poor. False when nothing was.
@@ -374,6 +406,10 @@ class Refinement {
   LocationObjects objects_;
   std::unique_ptr<GapExplorer> gap_;  // made when first asked for
   CollarSystem collars_;
+  std::unique_ptr<CollarPlacement> placement_;          // while collars are created in the pass
+  std::unordered_map<Index, OpenCrease> open_creases_;  // by their curve
+  std::vector<Index> touched_creases_;
+  std::size_t corners_taken_up_ = 0;
   std::vector<Index> ball_points_;  // unresolved points at the balls' centres
   std::vector<ClippedEnd> clipped_ends_;
   Stitched stitched_;
@@ -405,6 +441,7 @@ class Refinement {
   std::uint64_t random_state_;
   std::size_t warps_ = 0, yields_ = 0;
   std::function<void()> observer_;
+  std::function<void(const CollarBall&)> collar_observer_;
   std::size_t steps_ = 0, peak_bytes_ = 0;
   std::chrono::steady_clock::time_point started_;
   double seconds_ = 0, reported_ = -1, fraction_ = 0;

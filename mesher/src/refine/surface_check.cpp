@@ -89,6 +89,7 @@ std::vector<FaceId> Refinement::marked_faces() const {
 void Refinement::refine_triangle(FaceId face) {
   RestrictedTriangle& t = restricted(face);
   if (t.given_up) return;
+  t.surface_needs_it = true;
   queue_.push(WorkQueue::unresolved_triangles, t.squared_radius, {face, mesh_.generation(cell_of(face))});
 }
 
