@@ -102,7 +102,8 @@ def main() -> int:
     options = parser.parse_args()
     about = machine(options.build)
     pin_to_core(options.core)
-    mesher = Collarmesh(options.build / "bin" / "collarmesh", options.time_limit)
+    # The most creases take more than half of the machine's memory.
+    mesher = Collarmesh(options.build / "bin" / "collarmesh", options.time_limit, ["--max-memory", "0"])
     program = options.build / "bin" / "acute_shape"
     folder = SizeCache().folder / "acute"
     print(f"{about}. collarmesh {mesher.version()}.\n")

@@ -32,6 +32,14 @@ CollarSystem::CollarSystem(const Plc& plc, std::span<const Point> points, std::s
   if (!CollarPlacement(plc, points, gap, options, *this).place_all()) balls_.clear();
 }
 
+void CollarSystem::complete() {
+  if (trees_.size() <= 1) return;
+  trees_.clear();
+  nodes_.clear();
+  indexed_ = 0;
+  index_balls();
+}
+
 void CollarSystem::index_balls() {
   const auto count = static_cast<Index>(balls_.size());
   Index first = indexed_;

@@ -78,6 +78,8 @@ class CollarSystem {
   bool is_crease_curve(Index curve) const { return !crease_curve_.empty() && crease_curve_[curve]; }
   /// The ball at a crease vertex; none when it has none yet, and at other vertices.
   Index ball_at_vertex(Index vertex) const { return vertex_ball_.empty() ? none : vertex_ball_[vertex]; }
+  /// No more balls will come: one tree finds all of them.
+  void complete();
   bool consecutive(Index a, Index b) const { return consecutive_.count(pair_of(a, b)) > 0; }
 
   /// A ball that contains p in its interior, none if there is none.

@@ -62,6 +62,7 @@ bool Refinement::check_collars() {
 // Everything is new. Voronoi cells have become smaller: fewer vertices are near collars than when they came.
 void Refinement::start_review() {
   collar_review_.started = true;
+  collars_.complete();
   for (Index v = 0; v < mesh_.vertex_count(); ++v) {
     if (!vertices_[v].near_collar) continue;
     mesh_.incident_cells(v, cells_scratch_);

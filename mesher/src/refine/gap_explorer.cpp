@@ -55,9 +55,13 @@ double GapExplorer::on_curve(Index curve, const Point& p, double bound) {
 double GapExplorer::explore(const Feature& at, const Point& x, double bound) {
   near_ = walk_.nearest(x, near_);
   double squared = bound * bound;
+  interviewed_.clear();
   walk_.visit_ball(x, near_, squared, [&](Index vertex) {
     ++explored_;
-    interview(nodes_at_(vertex), at, x, squared, [&](const Point& a, const Point& b, const Point& c) {
+    fresh_nodes_.clear();
+    for (const Index node : nodes_at_(vertex))
+      if (interviewed_.insert(node).second) fresh_nodes_.push_back(node);
+    interview(fresh_nodes_, at, x, squared, [&](const Point& a, const Point& b, const Point& c) {
       squared = std::min(squared, squared_distance_to_triangle(x, a, b, c));
     });
   });

@@ -3,6 +3,7 @@
 #include <functional>
 #include <span>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "collar/gap_size.h"
@@ -55,7 +56,8 @@ class GapExplorer final : public GapSize {
   VoronoiWalk walk_;
   std::vector<Index> vertex_at_;                       // by point
   std::unordered_map<std::uint64_t, Index> curve_of_;  // by the two points of a segment
-  std::vector<Index> adjacent_;
+  std::unordered_set<Index> interviewed_;              // nodes, in this exploration: large cells share them
+  std::vector<Index> fresh_nodes_, adjacent_;
   std::vector<Point> polygon_, clipped_;
   Index near_ = 0;
   std::size_t explored_ = 0;
