@@ -71,7 +71,7 @@ def main() -> int:
     options = parser.parse_args()
     about = machine(options.build)
     pin_to_core(options.core)
-    program, generator = (options.build / "bin" / name for name in ("collarmesh", "acute_shape"))
+    program, generator = (options.build.resolve() / "bin" / name for name in ("collarmesh", "acute_shape"))
     folder = SizeCache().folder / "acute" / "creation"
     folder.mkdir(parents=True, exist_ok=True)
     rows, all_of_them = [], [Sums() for _ in modes]
