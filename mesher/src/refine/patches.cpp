@@ -86,6 +86,16 @@ bool Refinement::on_patch(Index vertex, Index patch) const {
 // more than left is where the segment ends, whatever the order of the crossings.
 Index Refinement::region_beyond(Index region) const {
   if (crossings_.empty()) return region;
+  // The regions that a crossing leaves and enters.
+  const auto regions_at = [&](const TriangleHierarchy::Crossing& crossing) {
+    auto regions = plc_.patches[plc_.triangles[crossing.triangle].patch].regions;
+    if (crossing.direction < 0) std::swap(regions[0], regions[1]);
+    return regions;
+  };
+  if (crossings_.size() == 1) {
+    const auto [left, entered] = regions_at(crossings_[0]);
+    return left == region ? entered : region;
+  }
   std::vector<std::pair<Index, int>> balance{{region, 1}};
   const auto add = [&](Index r, int change) {
     for (auto& [other, count] : balance)
@@ -96,10 +106,9 @@ Index Refinement::region_beyond(Index region) const {
     balance.push_back({r, change});
   };
   for (const auto& crossing : crossings_) {
-    const auto& regions = plc_.patches[plc_.triangles[crossing.triangle].patch].regions;
-    const bool forward = crossing.direction > 0;
-    add(regions[forward ? 1 : 0], 1);
-    add(regions[forward ? 0 : 1], -1);
+    const auto [left, entered] = regions_at(crossing);
+    add(entered, 1);
+    add(left, -1);
   }
   for (const auto& [r, count] : balance)
     if (count > 0) return r;
