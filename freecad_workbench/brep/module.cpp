@@ -1,9 +1,10 @@
-// What the module offers to programs that load it when they need it, by name.
+// What the module offers to programs that load it when they need it, by name. The name has the version, as
+// model and program must be of one.
 #include <memory>
 
 #include "collarmesh/brep/cad_model.h"
 
-extern "C" __attribute__((visibility("default"))) void collarmesh_read_cad(
+extern "C" __attribute__((visibility("default"))) void COLLARMESH_READ_CAD(
     const std::string& path, std::string_view format, std::unique_ptr<collarmesh::brep::CadModel>& model) {
   model = std::make_unique<collarmesh::brep::CadModel>(collarmesh::brep::read_cad(path, format));
 }

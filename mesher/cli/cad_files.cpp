@@ -17,7 +17,7 @@ std::unique_ptr<brep::CadModel> read_by_module(const std::string& path, std::str
   constexpr const char* module = "collarmesh_cad.so";
   // Looked for along the run path of the program; stays loaded as long as its models may live.
   void* const loaded = dlopen(module, RTLD_NOW | RTLD_LOCAL);
-  void* const found = loaded == nullptr ? nullptr : dlsym(loaded, "collarmesh_read_cad");
+  void* const found = loaded == nullptr ? nullptr : dlsym(loaded, COLLARMESH_READ_CAD);
   if (found == nullptr)
     throw ReadError(
         fmt::format("{}: cannot be read, because {} cannot be loaded ({}); build collarmesh with OpenCASCADE "

@@ -1,14 +1,18 @@
 #pragma once
 
+#include <tbb/info.h>
 #include <tbb/task_arena.h>
+
+#include <algorithm>
 
 namespace collarmesh {
 
-/// Runs work whose parallel parts use so many threads at most; 0: as many as there are cores.
+/// Runs work whose parallel parts use so many threads at most, and never more than there are cores; 0: as
+/// many as there are.
 class ThreadLimit {
  public:
   explicit ThreadLimit(unsigned threads)
-      : arena_(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads)) {}
+      : arena_(threads == 0 ? cores() : std::min(cores(), static_cast<int>(threads))) {}
 
   template <class Work>
   void run(const Work& work) {
@@ -16,6 +20,8 @@ class ThreadLimit {
   }
 
  private:
+  static int cores() { return tbb::info::default_concurrency(); }
+
   tbb::task_arena arena_;
 };
 

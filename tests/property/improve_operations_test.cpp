@@ -39,6 +39,8 @@ std::vector<Shape> shapes() {
           {"sphere in a box", {box({-1, -1, -1}, {1, 1, 1}), icosphere(0.6, 8)}, 0.35, 30},
           {"cylinder", {cylinder(0.5, 1, 40, 4)}, 0.2, 30},
           {"torus", {torus(1, 0.4, 40, 20)}, 0.3, 30},
+          {"touching boxes", boxes_touching_in_an_edge(), 0.6, 30},
+          {"touching rings", rings_touching_in_a_circle(), 0.5, 30},
           {"wedge", acute::wedge(40).soups, 0.25, 0}};
 }
 

@@ -41,6 +41,8 @@ std::vector<Shape> shapes() {
           {"cylinder", {cylinder(0.5, 1, 40, 4)}, 0.15, 30},
           {"torus", {torus(1, 0.4, 40, 20)}, 0.2, 30},
           {"cylinder in a box", {box({-1, -1, -1}, {1, 1, 1}), cylinder(0.4, 0.8, 32, 3)}, 0.2, 30},
+          {"touching boxes", boxes_touching_in_an_edge(), 0.6, 30},
+          {"touching rings", rings_touching_in_a_circle(), 0.3, 30},
           {"wedge", acute::wedge(20).soups, 0.1, 0},
           {"fan", acute::fan(8).soups, 0.2, 0},
           {"pyramid", acute::pyramid(5, 15).soups, 0.1, 0}};
@@ -136,6 +138,37 @@ TEST(ImproveSmooth, KeepsATightTolerance) {
   check_options.distance = options.distance;
   meshed.report = check(meshed.result.mesh, meshed.plc, check_options);
   EXPECT_EQ(testing::faults(meshed), "");
+}
+
+std::string faults_improved_to(double min_dihedral, const std::vector<PolygonSoup>& soups, double size,
+                               double distance) {
+  MeshOptions options = with_size(size);
+  options.distance = distance;
+  Meshed meshed = mesh_of(soups, options, 30);
+  ImproveOptions improvement = improve_options(3);
+  improvement.min_dihedral = min_dihedral;
+  improvement.distance = distance;
+  improve(meshed.result.mesh, meshed.plc, improvement);
+  CheckOptions check_options;
+  check_options.distance = distance;
+  meshed.report = check(meshed.result.mesh, meshed.plc, check_options);
+  return testing::faults(meshed);
+}
+
+// A vertex where bodies touch has tets that do not hang together there: what is around it stays.
+TEST(ImprovePinched, EveryGuaranteeStaysWhereBodiesTouch) {
+  using namespace testing;
+  for (const double size : {0.3, 0.6, 1.1}) {
+    EXPECT_EQ(faults_improved_to(40, boxes_touching_in_an_edge(), size, 0.005), "") << size;
+    EXPECT_EQ(faults_improved_to(40, rings_touching_in_a_circle(), size, 0.005), "") << size;
+  }
+}
+
+// Contraction would collapse it: its triangles have neighbours in common that are joined, too.
+TEST(ImproveInclusion, ATinyOneStays) {
+  using namespace testing;
+  for (const double bound : {35.0, 40.0})
+    EXPECT_EQ(faults_improved_to(bound, {box({-1, -1, -1}, {1, 1, 1}), icosphere(0.02, 3)}, 0.8, 0.05), "");
 }
 
 TEST(ImproveBox, SameMeshSameResult) {

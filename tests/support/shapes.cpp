@@ -277,6 +277,16 @@ PolygonSoup box_with_small_facet(double size) {
   return maker.soup_;
 }
 
+std::vector<PolygonSoup> boxes_touching_in_an_edge() {
+  return {box({0, 0, 0}, {1, 1, 3}), box({1, 1, 0}, {2.3, 1.7, 3})};
+}
+
+std::vector<PolygonSoup> rings_touching_in_a_circle() {
+  const std::array<Point, 4> lower{{{1, 0, 0}, {1.6, 0, 0}, {1.6, 0, 0.6}, {1, 0, 0.6}}},
+      upper{{{1.6, 0, 0.6}, {2.2, 0, 0.6}, {2.2, 0, 1.2}, {1.6, 0, 1.2}}};
+  return {revolution(lower, 24, true), revolution(upper, 24, true)};
+}
+
 PolygonSoup two_boxes() {
   SoupMaker maker;
   const Point low{0, 0, 0}, high{1, 1, 1}, up{0, 0, 1};

@@ -13,7 +13,7 @@ struct ImproveOptions {
   double min_dihedral = 20;  ///< degrees; tets with a smaller dihedral angle, or one as bad beyond 90 degrees, are worked on
   double radius_edge = 2;    ///< bound on circumradius / shortest edge that no new tet breaks
   double distance = 0;       ///< surface distance tolerance on smooth patches; 0: 1e-3 of the diagonal
-  bool move_vertices = true; ///< and insert some, not only change how they are connected
+  bool move_vertices = true; ///< and take some out or in, not only change how they are connected
   unsigned passes = 3;       ///< at most, over what could not be helped before
   unsigned threads = 0;      ///< at most; 0: as many as there are cores. The result does not depend on it
 };

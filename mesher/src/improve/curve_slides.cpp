@@ -88,13 +88,6 @@ Point CurveSlides::ahead(Index vertex, double way) const {
   return paths_.point(mesh_.features[vertex].feature, places_[vertex].parameter + way);
 }
 
-Vector CurveSlides::direction(Index vertex) const {
-  const Index curve = mesh_.features[vertex].feature;
-  const auto [a, b] = paths_.segment_ends(curve, paths_.segment(curve, places_[vertex].parameter));
-  const double length = distance(plc_.points[a], plc_.points[b]);
-  return length > 0 ? (plc_.points[b] - plc_.points[a]) / length : Vector{0, 0, 0};
-}
-
 bool CurveSlides::fits(Index vertex, double way) const {
   const Place& place = places_[vertex];
   const Index curve = mesh_.features[vertex].feature;

@@ -21,8 +21,6 @@ class CurveSlides {
 
   /// Can this vertex, on a curve, be moved at all?
   bool movable(Index vertex) const;
-  /// The unit direction of the curve there.
-  Vector direction(Index vertex) const;
   /// The point of its curve that lies so far ahead of it, by arc length.
   Point ahead(Index vertex, double way) const;
   /// May it be moved there?

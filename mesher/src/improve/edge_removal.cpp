@@ -8,8 +8,6 @@ namespace collarmesh::improvement {
 
 namespace {
 
-// Larger rings are hardly ever improved by removing their edge.
-constexpr std::size_t largest_ring = 9;
 // Four points are in one plane when their volume is below this share of their longest edge cubed.
 constexpr double flat_volume = 1e-13;
 
@@ -139,6 +137,8 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change) 
 // May a sliver with two faces at the edge ab go to their other side, whose tets must be there?
 bool Operations::may_lose(Index tet, Index a, Index b) const {
   const auto& t = complex_[tet];
+  for (const Index v : t.corners)
+    if (complex_.pinched(v)) return false;
   for (unsigned corner = 0; corner < 4; ++corner) {
     if (t.corners[corner] != a && t.corners[corner] != b) continue;
     if (t.faces[corner] != none || t.neighbours[corner] == none || complex_[t.neighbours[corner]].collar)

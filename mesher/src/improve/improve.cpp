@@ -146,7 +146,9 @@ class Improvement {
     return change;
   }
 
-  // Is all that the change depends on as it was when the batch was begun?
+  // Is all that the change depends on as it was when the batch was begun? That is in the tets that it
+  // replaces or has read, with their corners' places and the mesh' faces, samples and curve edges there,
+  // since stars are complete: nothing is proposed where they are not.
   bool is_untouched(const Change& change) const {
     const auto untouched = [&](Index t) { return complex()[t].alive && changed_in_[t] != batch_number_; };
     return std::all_of(change.replacement.old.begin(), change.replacement.old.end(), untouched) &&

@@ -37,6 +37,9 @@ class Operations {
   void contract_edge(Index vertex, Index onto, Change& change);
 
  private:
+  /// Larger rings are hardly ever improved by an operation at their edge.
+  static constexpr std::size_t largest_ring = 9;
+
   using Polygon = std::vector<Index>;
   /// The directions a vertex may be moved in, and the patch it has to stay on, if any.
   struct Freedom {

@@ -36,6 +36,7 @@ TetComplex::TetComplex(TetMesh& mesh) : mesh_(mesh) {
   }
   stamps_.assign(tets_.size(), 0);
   link_all();
+  find_pinched_vertices();
   for (Index e = 0; e < mesh.edges.size(); ++e)
     curve_edges_.emplace(edge_key(mesh.edges[e][0], mesh.edges[e][1]), e);
 }
@@ -79,6 +80,19 @@ void TetComplex::link_all() {
       }
       at = last;
     }
+  }
+}
+
+// Bodies touch in vertices and curves of the complex only.
+void TetComplex::find_pinched_vertices() {
+  std::vector<Index> count(mesh_.points.size(), 0);
+  for (const Tet& tet : tets_)
+    for (const Index v : tet.corners) ++count[v];
+  std::vector<Index> around;
+  for (Index v = 0; v < mesh_.points.size(); ++v) {
+    if (mesh_.features[v].dimension > 1 || vertex_tet_[v] == none) continue;
+    star(v, around);
+    if (around.size() != count[v]) pinched_.insert(v);
   }
 }
 
@@ -161,7 +175,7 @@ Index TetComplex::tet_at_edge(Index a, Index b) const {
 }
 
 bool TetComplex::on_faces(Index a, Index b) const {
-  if (on_curve(a, b)) return true;
+  if (on_curve(a, b) || pinched(a)) return true;
   const Index at = tet_at_edge(a, b);
   if (at == none) return false;
   Ring around;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -56,10 +57,13 @@ class TetComplex {
   const TetMesh& mesh() const { return mesh_; }
   std::array<Point, 4> corners(Index tet) const;
   bool on_curve(Index a, Index b) const { return curve_edges_.contains(edge_key(a, b)); }
-  /// Is the edge ab one of a mesh' face?
+  /// Is the edge ab one of a mesh' face? At a pinched vertex a: always.
   bool on_faces(Index a, Index b) const;
 
-  /// Replace `found` by the tets around a vertex.
+  /// Do tets at the vertex hang together only in the vertex or in edges, as where bodies touch? Then its star
+  /// is not complete.
+  bool pinched(Index vertex) const { return pinched_.contains(vertex); }
+  /// Replace `found` by the tets around a vertex that hang together by faces.
   void star(Index vertex, std::vector<Index>& found) const;
   /// A tet with these two corners; none when they are not joined.
   Index tet_at_edge(Index a, Index b) const;
@@ -90,6 +94,7 @@ class TetComplex {
     return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
   }
   void link_all();
+  void find_pinched_vertices();
   void make_faces(const Replacement& replacement);
   void set_face(const std::array<Index, 3>& corners, Index face);
   void drop_lost_faces_and_edges();
@@ -100,6 +105,7 @@ class TetComplex {
   std::vector<Tet> tets_;
   std::vector<Index> origin_;  // of every tet: one of the mesh it takes its tags from
   std::vector<Index> vertex_tet_;
+  std::unordered_set<Index> pinched_;
   std::vector<std::uint32_t> stamps_;
   std::uint32_t stamp_ = 0;
   std::unordered_map<std::uint64_t, Index> curve_edges_;  // among the mesh' edges, by their ends

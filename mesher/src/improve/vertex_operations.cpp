@@ -1,5 +1,6 @@
 // Operations on cones of tets: their apex is moved, inserted, or moved onto another vertex.
 #include <algorithm>
+#include <initializer_list>
 #include <tuple>
 
 #include "improve/operations.h"
@@ -9,8 +10,6 @@ namespace collarmesh::improvement {
 
 namespace {
 
-// Larger rings are hardly ever improved by a vertex amid their edge.
-constexpr std::size_t largest_ring = 9;
 // Vertices move by steps from this share of their shortest edge down, halved so often.
 constexpr double first_step = 0.4;
 constexpr unsigned halvings = 4;
@@ -21,9 +20,10 @@ bool contains(const auto& range, Index v) { return std::find(range.begin(), rang
 
 }  // namespace
 
-// The tets and the mesh' faces at a vertex; false at a collar.
+// The tets and the mesh' faces at a vertex; false at a collar and where they do not hang together.
 bool Operations::find_cone_of_vertex(Index vertex) {
   cone_ = {};
+  if (complex_.pinched(vertex)) return false;
   complex_.star(vertex, cone_.tets);
   const bool on_feature = mesh_.features[vertex].dimension < 3;
   for (const Index t : cone_.tets) {
@@ -287,32 +287,36 @@ bool Operations::may_contract(Index vertex, Index onto) {
   return shared == 2;
 }
 
-// Of no vertex but those around the edge may both ends be neighbours, in the mesh and on its faces: else
-// cells would coincide (link condition). For a vertex inside a region positive volumes tell.
+// What both ends of the edge are joined to, vertices and edges, must be joined to the edge, in the mesh and
+// on its faces: else cells would coincide (link condition). For a vertex inside a region positive volumes
+// tell.
 bool Operations::keeps_topology(Index vertex, Index onto) {
   if (mesh_.features[vertex].dimension == 3) return true;
+  if (complex_.pinched(onto)) return false;
   complex_.star(onto, star_);
-  const auto is_at_edge = [](const auto& cells, Index w, Index edge_end) {
-    return std::any_of(cells.begin(), cells.end(),
-                       [&](const auto& cell) { return contains(cell, w) && contains(cell, edge_end); });
+  const auto have = [](const auto& cells, std::initializer_list<Index> vertices) {
+    return std::any_of(cells.begin(), cells.end(), [&](const auto& cell) {
+      return std::all_of(vertices.begin(), vertices.end(), [&](Index v) { return contains(cell, v); });
+    });
   };
   for (const Index t : star_) {
     const auto& tet = complex_[t];
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      if (tet.faces[corner] == none || tet.corners[corner] == onto) continue;
+      const auto face = face_corners(tet.corners, corner);
+      if (contains(face, vertex)) continue;
+      const auto i = static_cast<unsigned>(std::find(face.begin(), face.end(), onto) - face.begin());
+      const Index w = face[(i + 1) % 3], x = face[(i + 2) % 3];
+      if (have(cone_.rim, {w, x})) return false;
+      for (const Index v : {w, x})
+        if (have(cone_.rim, {v}) && !have(cone_.rim, {v, onto})) return false;
+    }
     if (contains(tet.corners, vertex)) continue;
     for (const Index w : tet.corners) {
       if (w == onto) continue;
-      const bool joined = std::any_of(cone_.hull.begin(), cone_.hull.end(),
-                                      [&](const auto& face) { return contains(face, w); });
-      if (joined && !is_at_edge(cone_.hull, w, onto)) return false;
-    }
-    for (unsigned corner = 0; corner < 4; ++corner) {
-      if (tet.faces[corner] == none || tet.corners[corner] == onto) continue;
-      for (const Index w : face_corners(tet.corners, corner)) {
-        if (w == onto) continue;
-        const bool joined = std::any_of(cone_.rim.begin(), cone_.rim.end(),
-                                        [&](const auto& edge) { return contains(edge, w); });
-        if (joined && !is_at_edge(cone_.rim, w, onto)) return false;
-      }
+      if (have(cone_.hull, {w}) && !have(cone_.hull, {w, onto})) return false;
+      for (const Index x : tet.corners)
+        if (x != onto && x != w && have(cone_.hull, {w, x}) && !have(cone_.hull, {w, x, onto})) return false;
     }
   }
   return true;
