@@ -29,11 +29,17 @@ class AcuteInput:
     copies: int = 0
     feature_angle: float = 0
     suffix = ".poly"
+    volume = diagonal = 1.0   # about: for a first guess of the size that makes so many tets
     parts: list[Part] = field(default_factory=list)
 
     @property
     def name(self) -> str:
         return f"{self.family} {' '.join(f'{p:g}' for p in self.parameters)}".strip()
+
+    @property
+    def polygons(self) -> list[list[Loop]]:
+        """After write()."""
+        return [facet for part in self.parts for facet in part.facets]
 
     @property
     def files(self) -> list[str]:

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """A Poisson problem with a known solution on our meshes and on TetGen's and Gmsh's of the same size: errors and
-condition number of the stiffness matrix, by one solver (`poisson`). Prints a Markdown table."""
+condition number of the stiffness matrix, by one solver (`poisson`), on the box, on parts of a corpus and on two
+domains with acute angles. Prints a Markdown table."""
 
 from __future__ import annotations
 
 import re
 import sys
 
+from acute_inputs import AcuteInput
 from comparison import comparison_options, surfaces
 from meshers import Collarmesh, Gmsh, TetGen
 from processes import ProgramFailed, pin_to_core, run
@@ -14,6 +16,7 @@ from tables import machine, si, table
 from tuning import SizeCache, size_for
 
 default_parts = ["cross.off", "joint.off", "spool.off"]
+acute = [("wedge", (20, 1)), ("fan", (8, 0))]   # families of the tests, with their angle or number of sheets
 header = ["input", "mesher", "tets", "error in L2", "of the gradient", "condition number"]
 
 
@@ -28,7 +31,8 @@ def main() -> int:
     labels = ["collarmesh --improve 0", "collarmesh --improve 2", "TetGen", "Gmsh HXT"]
     cache = SizeCache()
     lines = []
-    for surface in surfaces(options):
+    domains = surfaces(options) + [AcuteInput(programs / "acute_shape", *shape) for shape in acute]
+    for surface in domains:
         for mesher, label in zip(meshers, labels):
             mesher.name = label   # sizes are remembered by name
             folder = cache.folder / f"{surface.name}_solved_{label.replace(' ', '_')}"
