@@ -34,14 +34,14 @@ struct ImproveReport {
 /// Remove slivers: hill climbing on the smallest sine of a tet's dihedral angles (obtuse ones count
 /// 0.7 times, so that 155 degrees is about as bad as 17), worst tets first, by removing edges, inside
 /// regions and on patches, by moving vertices within their features, by contracting edges where none
-/// becomes longer than those before, and by inserting vertices amid edges (Freitag and Ollivier-Gooch 1997; the edge removal is Klincsek's optimal triangulation
-/// of the ring, as in Klingner and Shewchuk 2007, section 2). A sliver with two faces on a smooth patch
-/// is taken off the region.
+/// becomes longer than those before, and by inserting vertices amid edges (Freitag and Ollivier-Gooch
+/// 1997; the edge removal is Klincsek's optimal triangulation of the ring, as in Klingner and Shewchuk
+/// 2007, section 2). A sliver with two faces on a smooth patch is taken off the region.
 /// No operation makes the worst tet of its cavity worse, breaks the radius-edge bound, touches a
 /// collar, leaves the plane of a planar patch, or takes a smooth patch or curve and its faces or edges
 /// farther apart than `distance`.
 /// Preconditions: `mesh` comes from `generate` for `plc`, first order, with the same `distance`.
-/// Cost: linear in the tets, with a small factor for those below the bound.
+/// Cost: linear in the tets, with a small factor for those below a bound that they can reach.
 ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& options = {},
                       const Execution& execution = {});
 

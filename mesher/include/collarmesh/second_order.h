@@ -39,9 +39,10 @@ struct SecondOrderReport {
 
 /// Make a mesh one of second order: a node amid every edge, shared by all tets, faces and edges there.
 /// Edges inside regions, on planar patches and on straight curves stay straight; the nodes on smooth
-/// patches and curves lie on these; with exact geometry, all nodes on features lie on that. Where a tet's Jacobian would then fall to `least_jacobian` or below, by
-/// `jacobian_exceeds`, a node inside moves along with the curved edge beside it if that helps; else the nodes
-/// at fault are drawn back to the middles of their edges, halving the way two times. Straight tets are valid,
+/// patches and curves lie on these; with exact geometry, all nodes on features lie on that. Where a
+/// tet's Jacobian would then fall to `least_jacobian` or below, by `jacobian_exceeds`, a node inside moves
+/// along with the curved edge beside it if that helps; else the nodes at fault are drawn back to the
+/// middles of their edges, halving the way two times. Straight tets are valid,
 /// so every tet is. Preconditions: `mesh` comes from `generate` for `plc`, first order. Throws OptionError
 /// unless 0 <= least_jacobian < 1. Cost: n log n in the tets.
 SecondOrderReport make_second_order(TetMesh& mesh, const Plc& plc, const SecondOrderOptions& options = {},
