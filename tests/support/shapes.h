@@ -53,12 +53,12 @@ PolygonSoup box_with_small_facet(double size);
 /// The unit box on a second one, as one complex: the facet (tag 7) between them is there once, and
 /// region points give them the tags 10 (below) and 20.
 PolygonSoup two_boxes();
+/// The same as two closed surfaces that touch.
+std::vector<PolygonSoup> touching_boxes();
 
 /// Two bodies that meet in a straight edge only, and two rings that meet in a circle only.
 std::vector<PolygonSoup> boxes_touching_in_an_edge();
 std::vector<PolygonSoup> rings_touching_in_a_circle();
-/// The same as two closed surfaces that touch.
-std::vector<PolygonSoup> touching_boxes();
 
 /// The unit box with a free square facet (tag 7) of the given edge length inside.
 PolygonSoup box_with_dangling_facet(double size = 0.4);

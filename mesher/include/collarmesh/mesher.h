@@ -25,8 +25,8 @@ struct MeshOptions {
   std::map<Tag, double> region_size;  ///< target edge length by region tag
   std::map<Tag, double> patch_size;   ///< by patch tag
   std::map<Tag, double> curve_size;   ///< by curve tag
-  double gradation =
-      0;  ///< growth of size per unit length away from a finer patch, curve or region; 0: unlimited
+  /// Growth of size per unit length away from a finer patch, curve or region; 0: unlimited.
+  double gradation = 0;
   SizeField size_field;            ///< target edge length at a point; may be empty
   double elements_per_circle = 0;  ///< target edge lengths on smooth patches and curves put so many on a full
                                    ///< circle of their curvature; 0: none
@@ -40,13 +40,12 @@ struct MeshOptions {
   double crease_angle = 60;   ///< degrees; features that meet below it get a collar
   double collar_angle = 150;  ///< bound on dihedral angles in collars, degrees; 100 to 175
   CollarCreation collar_creation = CollarCreation::up_front;  ///< when collars are created
-  double representation_angle =
-      50;               ///< bound on the tilt of collar triangles (paper, Definition 12), degrees
+  double representation_angle = 50;  ///< bound on the tilt of collar triangles (Definition 12), degrees
   double distance = 0;  ///< surface distance tolerance on smooth patches and curves; 0: 1e-3 of the diagonal
   std::uint64_t seed = 0;        ///< of the offsets; same input, options and seed: same mesh
   std::size_t max_vertices = 0;  ///< budget; 0: none
-  std::size_t max_memory =
-      0;  ///< budget in bytes for the mesh structures (a whole run takes about 1.2 times as much); 0: none
+  /// Budget in bytes for the mesh structures (a whole run takes about 1.2 times as much); 0: none.
+  std::size_t max_memory = 0;
   double time_limit = 0;  ///< budget in seconds; 0: none
 };
 

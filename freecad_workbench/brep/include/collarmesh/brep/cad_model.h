@@ -28,8 +28,8 @@ struct TessellationOptions {
 /// number of what they were part of, edges that arise get the next free ones. A shape of faces alone is sewn
 /// and becomes a solid where it is closed.
 ///
-/// What it can do is virtual, so that a program can use one that a module has made (`load_cad`) without
-/// OpenCASCADE.
+/// What it can do is virtual, so that a program without OpenCASCADE can use one that the module has made
+/// (module.cpp).
 class CadModel {
  public:
   /// Throws PlcError for a shape without solids or faces, for an open solid and for solids that overlap;
