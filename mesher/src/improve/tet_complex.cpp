@@ -18,6 +18,19 @@ std::array<Index, 3> sorted(std::array<Index, 3> face) {
 constexpr std::array<Index, 3> lost_face{none, none, none};
 constexpr std::array<Index, 2> lost_edge{none, none};
 
+// Drop the cells that are `lost`, and what belongs to them in arrays of the same length.
+template <class Cell, class... Of>
+void drop(const Cell& lost, std::vector<Cell>& cells, std::vector<Of>&... of_cells) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (cells[i] == lost) continue;
+    ((of_cells[kept] = of_cells[i]), ...);
+    cells[kept++] = cells[i];
+  }
+  cells.resize(kept);
+  (of_cells.resize(kept), ...);
+}
+
 }  // namespace
 
 TetComplex::TetComplex(TetMesh& mesh) : mesh_(mesh) {
@@ -335,28 +348,8 @@ void TetComplex::store() {
 }
 
 void TetComplex::drop_lost_faces_and_edges() {
-  Index kept = 0;
-  for (Index f = 0; f < mesh_.faces.size(); ++f) {
-    if (mesh_.faces[f] == lost_face) continue;
-    mesh_.faces[kept] = mesh_.faces[f];
-    mesh_.face_patch[kept] = mesh_.face_patch[f];
-    mesh_.face_tag[kept] = mesh_.face_tag[f];
-    mesh_.face_regions[kept++] = mesh_.face_regions[f];
-  }
-  mesh_.faces.resize(kept);
-  mesh_.face_patch.resize(kept);
-  mesh_.face_tag.resize(kept);
-  mesh_.face_regions.resize(kept);
-  kept = 0;
-  for (Index e = 0; e < mesh_.edges.size(); ++e) {
-    if (mesh_.edges[e] == lost_edge) continue;
-    mesh_.edges[kept] = mesh_.edges[e];
-    mesh_.edge_curve[kept] = mesh_.edge_curve[e];
-    mesh_.edge_tag[kept++] = mesh_.edge_tag[e];
-  }
-  mesh_.edges.resize(kept);
-  mesh_.edge_curve.resize(kept);
-  mesh_.edge_tag.resize(kept);
+  drop(lost_face, mesh_.faces, mesh_.face_patch, mesh_.face_tag, mesh_.face_regions);
+  drop(lost_edge, mesh_.edges, mesh_.edge_curve, mesh_.edge_tag);
 }
 
 void TetComplex::drop_lost_vertices() {
