@@ -4,7 +4,7 @@ those behind a plane.
 
     render_collar.py MESH.vtu [PICTURE.png] [options]
 
-The picture in the documentation (acute_shape is built with the benchmarks):
+The picture in the documentation (acute_shape is built with the tests):
 
     acute_shape sectors sectors 8
     collarmesh sectors_?.poly -o sectors.vtu --size 0.17 --feature-angle 0

@@ -3,8 +3,7 @@
     corpus_test.py PROGRAM [-k WORD] [--keep FOLDER]
 
 COLLARMESH_CORPUS names the folder; its MANIFEST.tsv says what to expect of each file. Files are
-meshed at 1/25 of their bounding box' diagonal. COLLARMESH_JUDGE may name an independent checker:
-    JUDGE MESH --surface FILE [--exact | --distance D]; exit code 0 when everything holds.
+meshed at 1/25 of their bounding box' diagonal; COLLARMESH_JUDGE may name a checker (judging.py).
 Exit code 77 (skipped) without a corpus.
 """
 
@@ -16,14 +15,13 @@ import json
 import os
 import pathlib
 import re
-import subprocess
 import sys
 import tempfile
 import time
 
+from judging import JUDGE, TIME_LIMIT, Failed, run, verdict
+
 CORPUS = os.environ.get("COLLARMESH_CORPUS", "")
-JUDGE = os.environ.get("COLLARMESH_JUDGE", "")
-TIME_LIMIT = 120  # seconds per file
 RELATIVE_SIZE = 1 / 25
 RELATIVE_DISTANCE = 1e-3
 # Facets that are triangles of flat faces, each with a tag of its own: their acute corners in the plane
@@ -35,17 +33,6 @@ EXACT = ("cross", "star", "itemb")  # exactly coplanar ones; every .poly file is
 # one, every edge of theirs has two facets (counted apart from the mesher) and they bound solids.
 CLOSED_WHEN_WELDED = ("boeing.off", "octagonal_pocket.stl", "busted.STL", "joined_tetrahedra.obj")
 COORDINATES = re.compile(r"-?\d[\d.e+-]*, ?-?\d[\d.e+-]*, ?-?\d")
-
-
-class Failed(Exception):
-    pass
-
-
-def run(*arguments, limit=TIME_LIMIT):
-    try:
-        return subprocess.run(list(map(str, arguments)), capture_output=True, text=True, timeout=limit)
-    except subprocess.TimeoutExpired:
-        raise Failed(f"still running after {limit} s")
 
 
 def expected_code(name, expect):
@@ -76,9 +63,7 @@ def judge(path, expect, mesh, diagonal):
     if expect.startswith("mesh:"):
         tolerance = ["--exact"] if is_exact(path) else ["--distance", RELATIVE_DISTANCE * diagonal]
         against = ["--surface", path, *tolerance]
-    result = run(sys.executable, JUDGE, mesh, *against)
-    if result.returncode != 0:
-        raise Failed("judge: " + (result.stdout + result.stderr).strip().splitlines()[-1])
+    verdict(mesh, *against)
     return ", judged" if against else ", judged by itself"
 
 

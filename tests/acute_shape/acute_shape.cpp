@@ -1,5 +1,7 @@
-// Writes a member of the acute families of the tests as .poly files, one for each solid:
-// PREFIX_1.poly, PREFIX_2.poly, ... With --copies N it is N turned copies in a cubic grid.
+// Writes a member of the acute families of the tests as .poly files, one for each solid: PREFIX_1.poly,
+// PREFIX_2.poly, ... With --copies N it is N turned copies in a cubic grid. With --triangulated it is also
+// written as one complex of conforming triangles: PREFIX.off when these bound solids and nothing else, else
+// PREFIX.poly.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -13,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "conforming_triangles.h"
 #include "support/acute_shapes.h"
 
 namespace {
@@ -22,6 +25,7 @@ using collarmesh::Index;
 using collarmesh::Point;
 using collarmesh::PolygonSoup;
 using collarmesh::Vector;
+using collarmesh::testing::TriangleComplex;
 namespace acute = collarmesh::testing::acute;
 
 using Family = std::function<acute::Shape(std::span<const double>)>;
@@ -40,19 +44,33 @@ Family family(acute::Shape (*make)(Parameters...)) {
   return family_of(make, std::index_sequence_for<Parameters...>());
 }
 
+acute::Shape random_member(std::uint32_t seed, std::size_t number) {
+  const std::vector<acute::Shape> members = acute::random_members(seed);
+  if (number >= members.size())
+    throw std::invalid_argument(fmt::format("random members are numbered from 0 to {}", members.size() - 1));
+  return members[number];
+}
+
 const std::map<std::string, Family>& families() {
   static const std::map<std::string, Family> all{
       {"comb", family(acute::comb)},
+      {"cubes_touching_in_a_corner", family(acute::cubes_touching_in_a_corner)},
       {"cubes_touching_in_an_edge", family(acute::cubes_touching_in_an_edge)},
       {"cut_torus", family(acute::cut_torus)},
+      {"drop_bar", family(acute::drop_bar)},
       {"facet_ending_inside", family(acute::facet_ending_inside)},
       {"facet_near_a_crease", family(acute::facet_near_a_crease)},
       {"fan", family(acute::fan)},
       {"knife", family(acute::knife)},
       {"lens", family(acute::lens)},
+      {"long_lens", family(acute::long_lens)},
       {"pyramid", family(acute::pyramid)},
       {"pyramid_on_a_box", family(acute::pyramid_on_a_box)},
       {"pyramids_tip_to_tip", family(acute::pyramids_tip_to_tip)},
+      {"random_member", family(random_member)},
+      {"random_pyramid", family(acute::random_pyramid)},
+      {"random_star_prism", family(acute::random_star_prism)},
+      {"random_tetrahedron", family(acute::random_tetrahedron)},
       {"round_cone", family(acute::round_cone)},
       {"sectors", family(acute::sectors)},
       {"segment_meeting_a_facet", family(acute::segment_meeting_a_facet)},
@@ -134,21 +152,74 @@ void write_poly(const PolygonSoup& soup, const std::string& path) {
   std::fclose(out);
 }
 
-int write_shape(std::span<const std::string> arguments, unsigned copies) {
-  const auto found = families().find(arguments[1]);
+void write_off(const TriangleComplex& complex, const std::string& path) {
+  std::FILE* out = std::fopen(path.c_str(), "w");
+  if (out == nullptr) throw std::runtime_error("cannot write " + path);
+  fmt::print(out, "OFF\n{} {} 0\n", complex.points.size(), complex.triangles.size());
+  for (const Point& p : complex.points) fmt::print(out, "{} {} {}\n", p.x, p.y, p.z);
+  for (const auto& triangle : complex.triangles) fmt::print(out, "3 {}\n", fmt::join(triangle, " "));
+  std::fclose(out);
+}
+
+void write_triangles(const TriangleComplex& complex, const std::string& prefix) {
+  if (is_closed(complex)) return write_off(complex, prefix + ".off");
+  PolygonSoup soup;
+  soup.points = complex.points;
+  for (const auto& triangle : complex.triangles) soup.add_facet(triangle);
+  write_poly(soup, prefix + ".poly");
+}
+
+struct Request {
+  std::vector<std::string> words;  // prefix, family and parameters
+  unsigned copies = 0;
+  bool triangulated = false;
+};
+
+Request request_of(std::span<char* const> arguments) {
+  Request request;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string argument = arguments[i];
+    if (argument == "--triangulated")
+      request.triangulated = true;
+    else if (argument == "--copies" && i + 1 < arguments.size())
+      request.copies = static_cast<unsigned>(std::stoul(arguments[++i]));
+    else
+      request.words.push_back(argument);
+  }
+  return request;
+}
+
+int write_shape(const Request& request) {
+  const std::string &prefix = request.words[0], &family = request.words[1];
+  const auto found = families().find(family);
   if (found == families().end()) throw std::invalid_argument("no such family");
   std::vector<double> values;
-  for (const std::string& text : arguments.subspan(2)) values.push_back(std::stod(text));
+  for (std::size_t i = 2; i < request.words.size(); ++i) values.push_back(std::stod(request.words[i]));
   const acute::Shape shape = found->second(values);
-  const auto soups = copies == 0 ? shape.soups : copies_of(shape, copies);
+  const auto soups = request.copies == 0 ? shape.soups : copies_of(shape, request.copies);
   for (std::size_t k = 0; k < soups.size(); ++k)
-    write_poly(soups[k], fmt::format("{}_{}.poly", arguments[0], k + 1));
+    write_poly(soups[k], fmt::format("{}_{}.poly", prefix, k + 1));
+  if (request.triangulated) write_triangles(collarmesh::testing::conforming_triangles(soups), prefix);
+  return 0;
+}
+
+int list_families() {
+  for (const auto& [name, make] : families())
+    if (name != "random_member") fmt::print("{}\n", name);
+  return 0;
+}
+
+int list_random_members(const std::string& seed) {
+  for (const acute::Shape& shape : acute::random_members(static_cast<std::uint32_t>(std::stoul(seed))))
+    fmt::print("{}\n", shape.name);
   return 0;
 }
 
 int usage() {
-  fmt::print(stderr, "usage: acute_shape PREFIX FAMILY PARAMETERS... [--copies N]\n");
-  for (const auto& [name, make] : families()) fmt::print(stderr, "  {}\n", name);
+  fmt::print(stderr,
+             "usage: acute_shape PREFIX FAMILY PARAMETERS... [--copies N] [--triangulated]\n"
+             "       acute_shape --families\n"
+             "       acute_shape --random-members SEED\n");
   return 2;
 }
 
@@ -156,13 +227,11 @@ int usage() {
 
 int main(int argc, char** argv) {
   try {
-    std::vector<std::string> arguments(argv + 1, argv + argc);
-    unsigned copies = 0;
-    if (arguments.size() > 2 && arguments[arguments.size() - 2] == "--copies") {
-      copies = static_cast<unsigned>(std::stoul(arguments.back()));
-      arguments.resize(arguments.size() - 2);
-    }
-    return arguments.size() < 2 ? usage() : write_shape(arguments, copies);
+    const Request request = request_of({argv + 1, static_cast<std::size_t>(argc - 1)});
+    const std::vector<std::string>& words = request.words;
+    if (words.size() == 1 && words[0] == "--families") return list_families();
+    if (words.size() == 2 && words[0] == "--random-members") return list_random_members(words[1]);
+    return words.size() < 2 ? usage() : write_shape(request);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "acute_shape: %s\n", error.what());
     return 2;

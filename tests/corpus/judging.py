@@ -1,0 +1,32 @@
+"""Programs that the tests run, and the independent checker that judges meshes.
+
+COLLARMESH_JUDGE may name one:
+    JUDGE MESH --surface FILE [--exact | --distance D]; exit code 0 when everything holds.
+"""
+
+import os
+import subprocess
+import sys
+
+JUDGE = os.environ.get("COLLARMESH_JUDGE", "")
+TIME_LIMIT = 120  # seconds
+
+
+class Failed(Exception):
+    pass
+
+
+def run(*arguments, limit=TIME_LIMIT):
+    try:
+        return subprocess.run(list(map(str, arguments)), capture_output=True, text=True, timeout=limit)
+    except subprocess.TimeoutExpired:
+        raise Failed(f"still running after {limit} s")
+
+
+def verdict(mesh, *against):
+    """What the judge says last of a mesh that it finds nothing wrong with. Throws Failed."""
+    result = run(sys.executable, JUDGE, mesh, *against)
+    last = (result.stdout + result.stderr).strip().splitlines()[-1]
+    if result.returncode != 0:
+        raise Failed(f"judge: {last}")
+    return last
