@@ -11,6 +11,7 @@
 #include "collar/feature_hierarchy.h"
 #include "collarmesh/plc.h"
 #include "collarmesh/plc_builder.h"
+#include "common/large_pages.h"
 #include "location/centred_box.h"
 
 namespace collarmesh {
@@ -121,7 +122,7 @@ class CollarSystem {
   };
   std::vector<Tree> trees_;
   Index indexed_ = 0;  // balls
-  std::vector<Node> nodes_;
+  LargeVector<Node> nodes_;
 
   friend class CollarPlacement;
 };

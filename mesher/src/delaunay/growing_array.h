@@ -7,6 +7,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "common/large_pages.h"
+
 namespace collarmesh {
 
 /// A vector of plain data that grows with realloc: large blocks are remapped by the system instead
@@ -48,6 +50,7 @@ class GrowingArray {
   void reserve(std::size_t n) {
     void* grown = std::realloc(static_cast<void*>(data_), n * sizeof(T));
     if (grown == nullptr) throw std::bad_alloc();
+    prefer_large_pages(grown, n * sizeof(T));
     data_ = static_cast<T*>(grown);
     capacity_ = n;
   }

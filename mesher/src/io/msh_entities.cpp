@@ -1,8 +1,9 @@
 #include "io/msh_entities.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
-#include <set>
+#include <unordered_map>
 #include <utility>
 
 namespace collarmesh::io {
@@ -57,9 +58,16 @@ class EntityTable {
   }
 
   std::vector<MshEntity>& entities_;
-  std::map<std::pair<Index, Tag>, Index> by_key_;
-  std::map<Index, Index> by_number_;
-  std::pair<Index, Tag> last_key_;
+  using Key = std::pair<Index, Tag>;
+  struct KeyHash {
+    std::size_t operator()(const Key& key) const {
+      return std::hash<Tag>()(key.second) ^ std::size_t{key.first} * 0x9e3779b97f4a7c15;
+    }
+  };
+
+  std::unordered_map<Key, Index, KeyHash> by_key_;
+  std::unordered_map<Index, Index> by_number_;
+  Key last_key_;
   Index last_ = none;
 };
 
@@ -116,15 +124,22 @@ void find_boxes(const TetMesh& mesh, MshEntities& result) {
 }
 
 void find_boundaries(const TetMesh& mesh, MshEntities& result) {
-  std::set<std::pair<Index, int>> pairs;  // region and signed surface
+  std::vector<std::pair<Index, int>> pairs;  // region and signed surface
+  const auto add = [&](Index region, int surface) {
+    if (region != 0 && (pairs.empty() || pairs.back() != std::pair(region, surface)))
+      pairs.emplace_back(region, surface);
+  };
   for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
     const int surface = result.of_dimension[2][result.of_face[i]].number;
-    if (mesh.face_regions[i][0] != 0) pairs.emplace(mesh.face_regions[i][0], surface);
-    if (mesh.face_regions[i][1] != 0) pairs.emplace(mesh.face_regions[i][1], -surface);
+    add(mesh.face_regions[i][0], surface);
+    add(mesh.face_regions[i][1], -surface);
   }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   for (MshEntity& volume : result.of_dimension[3]) {
     const auto region = static_cast<Index>(volume.number);
-    for (auto at = pairs.lower_bound({region, std::numeric_limits<int>::min()});
+    for (auto at =
+             std::lower_bound(pairs.begin(), pairs.end(), std::pair(region, std::numeric_limits<int>::min()));
          at != pairs.end() && at->first == region; ++at)
       volume.boundary.push_back(at->second);
   }

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "collarmesh/geometry.h"
+#include "common/large_pages.h"
 
 namespace collarmesh {
 
@@ -75,9 +76,9 @@ class LocationObjects {
     if (o.next != none) objects_[o.next].previous = o.previous;
   }
 
-  std::vector<Object> objects_;
+  LargeVector<Object> objects_;
   std::vector<Index> free_;
-  std::vector<Index> first_;
+  LargeVector<Index> first_;
 };
 
 }  // namespace collarmesh

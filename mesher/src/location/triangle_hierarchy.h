@@ -8,6 +8,7 @@
 
 #include "collarmesh/geometry.h"
 #include "collarmesh/plc.h"
+#include "common/large_pages.h"
 #include "location/centred_box.h"
 
 namespace collarmesh {
@@ -88,7 +89,7 @@ class TriangleHierarchy {
 
   std::span<const Point> points_;
   std::vector<std::array<Index, 3>> triangles_;
-  std::vector<Node> nodes_;
+  LargeVector<Node> nodes_;
   std::uint32_t stamp_ = 0;
 };
 

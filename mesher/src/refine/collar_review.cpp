@@ -173,7 +173,7 @@ bool Refinement::judge_changed_triangles(const std::vector<Index>& cells) {
         if (!t) continue;  // what was known of this face is not asked for any more
         if (++looked_at % triangles_between_stops == 0 && stopped()) return false;
         t->poor_alone = poorly_represented(*t) || bends(*t);
-        triangles.insert_or_assign(outer, *t);
+        triangles.insert_or_assign(*t);
         changed.push_back(outer);
       }
     }
@@ -187,7 +187,7 @@ bool Refinement::judge_changed_triangles(const std::vector<Index>& cells) {
   for (const Index cell : cells) labels_[cell].touched = false;
   sort_and_make_unique(changed);
   for (const FaceId face : changed) {
-    CollarTriangle& t = triangles.at(face);
+    CollarTriangle& t = *triangles.find(face, mesh_.generation(cell_of(face)));
     const auto v = mesh_.face_vertices(face);
     t.poor = t.poor_alone || poor_edge(t, v[0], v[1]) || poor_edge(t, v[1], v[2]) || poor_edge(t, v[2], v[0]);
     if (t.poor && labels_[cell_of(face)].region != 0) collar_review_.poor.push_back(face);
@@ -196,18 +196,14 @@ bool Refinement::judge_changed_triangles(const std::vector<Index>& cells) {
 }
 
 // The collar triangle of a face seen from either side, if it is one.
-const Refinement::CollarTriangle* Refinement::known_triangle(FaceId face) const {
+const CollarTriangle* Refinement::known_triangle(FaceId face) const {
   const FaceId other = mesh_.opposite(face);
   if (other == no_face) return nullptr;
   const bool inside = labels_[cell_of(face)].in_collar, beyond = labels_[cell_of(other)].in_collar;
   if (inside && beyond) return nullptr;
   const FaceId outer = inside || (!beyond && cell_of(other) < cell_of(face)) ? other : face;
   if (labels_[cell_of(outer)].off_collars >> corner_of(outer) & 1U) return nullptr;
-  const auto found = collar_review_.triangles.find(outer);
-  return found != collar_review_.triangles.end() &&
-                 found->second.generation == mesh_.generation(cell_of(outer))
-             ? &found->second
-             : nullptr;
+  return collar_review_.triangles.find(outer, mesh_.generation(cell_of(outer)));
 }
 
 // What neighbours decide: every edge has two triangles, of one ball or of consecutive ones, and then

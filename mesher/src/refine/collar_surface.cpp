@@ -109,7 +109,7 @@ bool Refinement::spans_patch(std::span<const Index> corners) const {
   return std::any_of(patches.begin(), patches.end(), contains_all);
 }
 
-std::vector<Refinement::CollarTriangle> Refinement::collar_triangles() {
+std::vector<CollarTriangle> Refinement::collar_triangles() {
   std::vector<CollarTriangle> triangles;
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
     if (!mesh_.alive(cell) || labels_[cell].in_collar) continue;
@@ -122,7 +122,7 @@ std::vector<Refinement::CollarTriangle> Refinement::collar_triangles() {
 }
 
 // The face seen from a cell outside, if its dual edge meets the collar surface.
-std::optional<Refinement::CollarTriangle> Refinement::collar_triangle(FaceId outer) {
+std::optional<CollarTriangle> Refinement::collar_triangle(FaceId outer) {
   const FaceId inner = mesh_.opposite(outer);
   if (inner == no_face || labels_[cell_of(outer)].in_collar) return std::nullopt;
   const bool inside = labels_[cell_of(inner)].in_collar;

@@ -595,7 +595,8 @@ std::size_t Refinement::bytes() const {
   return mesh_.bytes() + hierarchy_.bytes() + objects_.bytes() + queue_.bytes() + labels_.bytes() +
          marks_.bytes() + vertices_.capacity() * sizeof(MeshVertex) +
          restricted_.capacity() * sizeof(RestrictedTriangle) + node_pool_.capacity() * sizeof(Index) +
-         unresolved_.capacity() * sizeof(UnresolvedPoint) + subsegments_.capacity() * sizeof(Subsegment);
+         unresolved_.capacity() * sizeof(UnresolvedPoint) + subsegments_.capacity() * sizeof(Subsegment) +
+         collar_review_.triangles.bytes();
 }
 
 bool Refinement::stopped() {

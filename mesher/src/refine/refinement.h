@@ -14,17 +14,24 @@
 #include "collar/collar_placement.h"
 #include "collar/collar_system.h"
 #include "collarmesh/mesher.h"
+#include "common/large_pages.h"
 #include "delaunay/triangulation.h"
 #include "location/curve_paths.h"
 #include "location/location_objects.h"
 #include "location/triangle_hierarchy.h"
 #include "location/voronoi_walk.h"
+#include "refine/collar_triangles.h"
 #include "refine/frame.h"
 #include "refine/gap_explorer.h"
 #include "refine/sizing.h"
 #include "refine/work_queue.h"
 
 namespace collarmesh {
+
+/// Of some points, those that are far from each other: each next one is the farthest from all
+/// before. Cost: candidates times count.
+std::vector<Index> spread_points(const std::vector<Index>& candidates, const std::vector<Point>& points,
+                                 std::size_t count);
 
 /// Sparse Voronoi Refinement of a complex (paper, Procedures 1 to 3): owns
 /// the only mutable Delaunay triangulation and everything that hangs on its vertices and cells.
@@ -34,11 +41,6 @@ namespace collarmesh {
 /// surface_check.cpp what is looked at when the queue has run empty; collar_surface.cpp and
 /// collar_review.cpp the collars, rip_and_stitch.cpp their tets; extract.cpp turns the result
 /// into a TetMesh.
-/// Of some points, those that are far from each other: each next one is the farthest from all
-/// before. Cost: candidates times count.
-std::vector<Index> spread_points(const std::vector<Index>& candidates, const std::vector<Point>& points,
-                                 std::size_t count);
-
 class Refinement {
  public:
   Refinement(const Plc& plc, const MeshOptions& options, const Execution& execution);
@@ -269,24 +271,11 @@ class Refinement {
   void extract_face(FaceId face, const std::vector<Index>& number, TetMesh& mesh) const;
 
   // collar_surface.cpp
-  /// A face between a cell inside the collars and one outside, with the ball that its dual edge
-  /// enters first and the point where it does (paper, Definition 9).
-  struct CollarTriangle {
-    FaceId face;               // of the cell outside
-    std::uint32_t generation;  // of that cell
-    Index ball;
-    Point representation;
-    bool several;             // its dual edge meets the collar surface more than once
-    bool poor_alone = false;  // whatever its neighbours are
-    bool poor = false;
-    Index bent_on = none;  // a smooth patch that an edge of it leaves too far ...
-    Point bent_at = {};    // ... at its middle
-  };
   /// What is known of the collar surface since it was last looked at: only what has changed is judged again.
   struct CollarReview {
     bool started = false;
     std::vector<Index> touched;  // cells created near collars since
-    std::unordered_map<FaceId, CollarTriangle> triangles;
+    CollarTriangles triangles;
     std::vector<FaceId> poor;                  // those inside regions
     std::unordered_map<Index, Index> ball_at;  // by the mesh vertices on creases
     std::vector<Index> exposed;                // of these vertices, which may have cells outside around them
@@ -418,20 +407,20 @@ class Refinement {
   WorkQueue queue_;
   ConflictZone zone_;
 
-  std::vector<MeshVertex> vertices_;
+  LargeVector<MeshVertex> vertices_;
   GrowingArray<double> target_size_;    // of every vertex, with gradation only
   GrowingArray<double> shortest_edge_;  // at every vertex, with a vertex ratio only
   GrowingArray<CellLabel> labels_;
   GrowingArray<std::array<Index, 4>> marks_;  // restricted triangles of marked faces
-  std::vector<RestrictedTriangle> restricted_;
+  LargeVector<RestrictedTriangle> restricted_;
   std::vector<Index> free_restricted_;
-  std::vector<Index> node_pool_;
+  LargeVector<Index> node_pool_;
   std::vector<TessellationPoint> tessellation_;        // of all smooth patches, one after the other
   std::vector<std::size_t> first_tessellation_point_;  // of each patch; empty before the first check
 
-  std::vector<UnresolvedPoint> unresolved_;
+  LargeVector<UnresolvedPoint> unresolved_;
   std::vector<PendingSubsegment> pending_;
-  std::vector<Subsegment> subsegments_;
+  LargeVector<Subsegment> subsegments_;
   std::vector<Index> free_subsegments_;
 
   std::vector<TriangleHierarchy::Crossing> crossings_;

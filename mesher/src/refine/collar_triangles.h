@@ -1,0 +1,62 @@
+#pragma once
+
+#include "common/large_pages.h"
+#include "delaunay/growing_array.h"
+#include "delaunay/triangulation.h"
+
+namespace collarmesh {
+
+/// A face between a cell inside the collars and one outside, with the ball that its dual edge
+/// enters first and the point where it does (paper, Definition 9).
+struct CollarTriangle {
+  FaceId face;               ///< of the cell outside
+  std::uint32_t generation;  ///< of that cell
+  Index ball;
+  Point representation;
+  bool several;             ///< its dual edge meets the collar surface more than once
+  bool poor_alone = false;  ///< whatever its neighbours are
+  bool poor = false;
+  Index bent_on = none;  ///< a smooth patch that an edge of it leaves too far ...
+  Point bent_at = {};    ///< ... at its middle
+};
+
+/// Collar triangles by their faces. What is kept for a cell that is gone gives its place to the next one
+/// there.
+class CollarTriangles {
+ public:
+  /// None when it is not known since its cell was created.
+  CollarTriangle* find(FaceId face, std::uint32_t generation) {
+    for (Index at = first(cell_of(face)); at != none; at = triangles_[at].next)
+      if (triangles_[at].face == face && triangles_[at].generation == generation) return &triangles_[at];
+    return nullptr;
+  }
+  const CollarTriangle* find(FaceId face, std::uint32_t generation) const {
+    return const_cast<CollarTriangles*>(this)->find(face, generation);
+  }
+
+  void insert_or_assign(const CollarTriangle& triangle) {
+    const Index cell = cell_of(triangle.face);
+    if (cell >= first_.size()) first_.resize(cell + 1, none);
+    for (Index at = first_[cell]; at != none; at = triangles_[at].next) {
+      Linked& known = triangles_[at];
+      if (known.face != triangle.face && known.generation == triangle.generation) continue;
+      static_cast<CollarTriangle&>(known) = triangle;
+      return;
+    }
+    triangles_.push_back({triangle, first_[cell]});
+    first_[cell] = static_cast<Index>(triangles_.size() - 1);
+  }
+
+  std::size_t bytes() const { return first_.bytes() + triangles_.capacity() * sizeof(Linked); }
+
+ private:
+  struct Linked : CollarTriangle {
+    Index next;  // of the same cell
+  };
+  Index first(Index cell) const { return cell < first_.size() ? first_[cell] : none; }
+
+  GrowingArray<Index> first_;  // by cell
+  LargeVector<Linked> triangles_;
+};
+
+}  // namespace collarmesh
