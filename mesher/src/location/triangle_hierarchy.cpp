@@ -1,6 +1,7 @@
 #include "location/triangle_hierarchy.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 #include "delaunay/predicates.h"
@@ -148,6 +149,38 @@ void TriangleHierarchy::crossings(const Point& p, const Point& q, std::span<cons
       }
     }
   }
+}
+
+void TriangleHierarchy::crossings(const SegmentBundle& bundle, std::span<const Index> nodes,
+                                  std::vector<BundleCrossing>& found) const {
+  found.clear();
+  std::array<std::pair<Index, SegmentBundle::Mask>, 128> stack;
+  for (std::size_t part = 0; part < bundle.part_count(); ++part)
+    for (const Index start : nodes) {
+      std::size_t top = 0;
+      stack[top++] = {start, bundle.all(part)};
+      while (top > 0) {
+        const auto [index, candidates] = stack[--top];
+        const Node& node = nodes_[index];
+        SegmentBundle::Mask meeting = bundle.may_meet(node.box, part, candidates);
+        if (meeting == 0) continue;
+        if (node.left != none) {
+          stack[top++] = {node.left, meeting};
+          stack[top++] = {node.right, meeting};
+          continue;
+        }
+        const auto triangle = corners(node.right);
+        for (; meeting != 0; meeting &= meeting - 1) {
+          const auto segment =
+              static_cast<Index>(part * SegmentBundle::part_size + std::countr_zero(meeting));
+          const auto& [p, q] = bundle[segment];
+          if (const int direction = crossing_direction(p, q, triangle); direction != 0)
+            found.push_back({segment, {node.right, direction}});
+        }
+      }
+    }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const BundleCrossing& a, const BundleCrossing& b) { return a.segment < b.segment; });
 }
 
 int TriangleHierarchy::crossing(const Point& p, const Point& q, Index triangle) const {

@@ -10,6 +10,7 @@
 #include "collarmesh/plc.h"
 #include "common/large_pages.h"
 #include "location/centred_box.h"
+#include "location/segment_bundle.h"
 
 namespace collarmesh {
 
@@ -48,6 +49,15 @@ class TriangleHierarchy {
   /// is crossed an even number of times by every segment with both ends on one side.
   void crossings(const Point& p, const Point& q, std::span<const Index> nodes,
                  std::vector<Crossing>& found) const;
+
+  /// One of the segments in a bundle crosses a triangle.
+  struct BundleCrossing {
+    Index segment;
+    Crossing crossing;
+  };
+  /// The same for all segments of a bundle, in their order.
+  void crossings(const SegmentBundle& bundle, std::span<const Index> nodes,
+                 std::vector<BundleCrossing>& found) const;
 
   /// The direction in which the segment pq crosses one triangle; 0 when it does not.
   int crossing(const Point& p, const Point& q, Index triangle) const;

@@ -147,6 +147,45 @@ std::size_t Refinement::first_label() {
   return 0;
 }
 
+// Restricted triangles among the faces between the new cells: their dual edges are those of the new vertex'
+// Voronoi cell. Fills dual_edges_ and crossed_faces_.
+void Refinement::restrict_created_faces(Index vertex) {
+  double largest = 0;
+  for (const Index cell : zone_.created) largest = std::max(largest, mesh_.squared_radius(cell));
+  dual_edges_.start(mesh_.point(vertex), std::sqrt(largest));
+  faces_scratch_.clear();
+  for (const Index cell : zone_.created)
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      const FaceId face = face_id(cell, corner), other = mesh_.opposite(face);
+      if (mesh_.corners(cell)[corner] == vertex || other == no_face || other < face) continue;
+      dual_edges_.add(mesh_.circumcentre(cell), mesh_.circumcentre(cell_of(other)));
+      faces_scratch_.push_back(face);
+    }
+  hierarchy_.crossings(dual_edges_, nodes_of(vertex), dual_crossings_);
+  crossed_faces_.clear();
+  for (std::size_t from = 0, to = 0; from < dual_crossings_.size(); from = to) {
+    crossings_.clear();
+    const Index edge = dual_crossings_[from].segment;
+    for (; to < dual_crossings_.size() && dual_crossings_[to].segment == edge; ++to)
+      crossings_.push_back(dual_crossings_[to].crossing);
+    restrict_face(faces_scratch_[edge]);
+    crossed_faces_.push_back({faces_scratch_[edge], from, to});
+  }
+}
+
+// What the dual edge of a face between new cells crosses on the way out of the face's cell, in crossings_.
+void Refinement::recall_crossings(FaceId face) {
+  crossings_.clear();
+  if (!(labels_[cell_of(face)].marked >> corner_of(face) & 1U)) return;
+  const FaceId other = mesh_.opposite(face);
+  const auto crossed = std::find_if(crossed_faces_.begin(), crossed_faces_.end(),
+                                    [&](const CrossedFace& f) { return f.face == face || f.face == other; });
+  for (std::size_t i = crossed->first; i < crossed->end; ++i) {
+    auto [triangle, direction] = dual_crossings_[i].crossing;
+    crossings_.push_back({triangle, crossed->face == face ? direction : -direction});
+  }
+}
+
 // Labels of the new cells, and restricted triangles among the faces between them.
 void Refinement::label_created_cells(Index vertex) {
   for (const Index cell : zone_.created) labels_[cell] = {.region = unlabelled};
@@ -156,19 +195,17 @@ void Refinement::label_created_cells(Index vertex) {
     for (const Index cell : zone_.created) labels_[cell].region = region;
     return;
   }
-  const auto nodes = nodes_of(vertex);
+  restrict_created_faces(vertex);
   cells_scratch_.assign(1, zone_.created[seed]);
   while (!cells_scratch_.empty()) {
     const Index cell = cells_scratch_.back();
     cells_scratch_.pop_back();
     for (unsigned corner = 0; corner < 4; ++corner) {
-      if (mesh_.corners(cell)[corner] == vertex || (labels_[cell].judged >> corner & 1U)) continue;
       const FaceId face = face_id(cell, corner), other = mesh_.opposite(face);
-      if (other == no_face) continue;
-      labels_[cell_of(other)].judged |= static_cast<std::uint8_t>(1U << corner_of(other));
-      find_crossings(face, nodes);
-      if (!crossings_.empty()) restrict_face(face);
-      if (labels_[cell_of(other)].region != unlabelled) continue;
+      if (mesh_.corners(cell)[corner] == vertex || other == no_face ||
+          labels_[cell_of(other)].region != unlabelled)
+        continue;
+      recall_crossings(face);
       labels_[cell_of(other)].region = region_beyond(labels_[cell].region);
       cells_scratch_.push_back(cell_of(other));
     }
@@ -189,6 +226,14 @@ bool Refinement::crosses_as_before(FaceId outer, FaceId face) {
   return region_beyond(labels_[cell_of(outer)].region) == labels_[cell_of(face)].region;
 }
 
+// What it alone crossed is beyond the end that is gone: the labels say so.
+bool Refinement::crosses_no_more(FaceId outer, FaceId face) const {
+  const RestrictedTriangle& t = restricted(outer);
+  const auto& regions = plc_.patches[patch_of(t)].regions;
+  return !t.several_sheets && regions[0] != regions[1] &&
+         labels_[cell_of(outer)].region == labels_[cell_of(face)].region;
+}
+
 // The dual edges of the zone's border faces have become shorter, their ends are rounded anew: look
 // again at those that were marked and those whose labels say that they should be.
 void Refinement::mark_border_faces() {
@@ -207,7 +252,9 @@ void Refinement::mark_border_faces() {
       restricted(face).judged = false;  // it may have been queued as the destroyed cell's face
       continue;
     }
+    const bool known = was_marked && crosses_no_more(outer, face);
     if (was_marked) unmark(outer);
+    if (known) continue;
     find_crossings(face, fewest_nodes(face));
     if (!crossings_.empty()) restrict_face(face);
   }

@@ -130,10 +130,14 @@ class Refinement {
     FaceId near;
     std::uint32_t generation;  // of the face's cell
   };
+  /// A face between new cells whose dual edge crosses patches: dual_crossings_[first, end).
+  struct CrossedFace {
+    FaceId face;
+    std::size_t first, end;
+  };
   struct CellLabel {
     Index region = 0;
     std::uint8_t marked = 0;       // bit i: the face opposite corner i is restricted
-    std::uint8_t judged = 0;       // bit i: that face has been intersected with the patches
     bool in_collar : 1 = false;    // its circumcentre lies in a collar ball
     bool touched : 1 = false;      // created near collars since their surface was looked at
     std::uint8_t off_collars = 0;  // bit i: the dual edge of that face is known to meet no ball
@@ -219,8 +223,11 @@ class Refinement {
   Index region_beyond(Index region) const;
   std::span<const Index> fewest_nodes(FaceId face) const;
   void find_crossings(FaceId face, std::span<const Index> nodes);
+  void restrict_created_faces(Index vertex);
+  void recall_crossings(FaceId face);
   void label_created_cells(Index vertex);
   bool crosses_as_before(FaceId outer, FaceId face);
+  bool crosses_no_more(FaceId outer, FaceId face) const;
   void mark_border_faces();
   void forget_inner_mark(FaceId face);
   void unmark(FaceId face);
@@ -424,6 +431,10 @@ class Refinement {
   std::vector<Index> free_subsegments_;
 
   std::vector<TriangleHierarchy::Crossing> crossings_;
+  SegmentBundle dual_edges_;
+  std::vector<TriangleHierarchy::BundleCrossing> dual_crossings_;
+  std::vector<CrossedFace> crossed_faces_;
+  std::vector<FaceId> faces_scratch_;
   std::vector<Index> nodes_scratch_, cells_scratch_, seeds_scratch_, nearby_balls_;
 
   MeshStatus stop_ = MeshStatus::complete;
