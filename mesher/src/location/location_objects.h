@@ -13,9 +13,9 @@ namespace collarmesh {
 class LocationObjects {
  public:
   enum class Kind : std::uint8_t {
-    point,               ///< an unresolved point
-    subsegment,          ///< a subsegment with both ends in the mesh
-    pending_subsegment   ///< a curve's first subsegment, an end of which is still unresolved
+    point,              ///< an unresolved point
+    subsegment,         ///< a subsegment with both ends in the mesh
+    pending_subsegment  ///< a curve's first subsegment, an end of which is still unresolved
   };
   struct Object {
     Point centre;
@@ -71,8 +71,10 @@ class LocationObjects {
 
   void detach(Index object) {
     const Object& o = objects_[object];
-    if (o.previous != none) objects_[o.previous].next = o.next;
-    else first_[o.vertex] = o.next;
+    if (o.previous != none)
+      objects_[o.previous].next = o.next;
+    else
+      first_[o.vertex] = o.next;
     if (o.next != none) objects_[o.next].previous = o.previous;
   }
 

@@ -173,9 +173,8 @@ void TriangleHierarchy::crossings(const SegmentBundle& bundle, std::span<const I
         for (; meeting != 0; meeting &= meeting - 1) {
           const auto segment =
               static_cast<Index>(part * SegmentBundle::part_size + std::countr_zero(meeting));
-          const auto& [p, q] = bundle[segment];
-          if (const int direction = crossing_direction(p, q, triangle); direction != 0)
-            found.push_back({segment, {node.right, direction}});
+          const int direction = crossing_direction(bundle.from(segment), bundle.to(segment), triangle);
+          if (direction != 0) found.push_back({segment, {node.right, direction}});
         }
       }
     }

@@ -154,13 +154,20 @@ void Refinement::restrict_created_faces(Index vertex) {
   for (const Index cell : zone_.created) largest = std::max(largest, mesh_.squared_radius(cell));
   dual_edges_.start(mesh_.point(vertex), std::sqrt(largest));
   faces_scratch_.clear();
-  for (const Index cell : zone_.created)
+  for (Index i = 0; i < zone_.created.size(); ++i) {
+    const Index cell = zone_.created[i];
+    dual_edges_.add_point(mesh_.circumcentre(cell));
+    labels_[cell].region = i;  // until it is known
     for (unsigned corner = 0; corner < 4; ++corner) {
       const FaceId face = face_id(cell, corner), other = mesh_.opposite(face);
-      if (mesh_.corners(cell)[corner] == vertex || other == no_face || other < face) continue;
-      dual_edges_.add(mesh_.circumcentre(cell), mesh_.circumcentre(cell_of(other)));
+      if (mesh_.corners(cell)[corner] == vertex || other == no_face) continue;
+      const Index j = labels_[cell_of(other)].region;
+      if (j >= i) continue;  // its turn comes
+      dual_edges_.add_segment(i, j);
       faces_scratch_.push_back(face);
     }
+  }
+  for (const Index cell : zone_.created) labels_[cell].region = unlabelled;
   hierarchy_.crossings(dual_edges_, nodes_of(vertex), dual_crossings_);
   crossed_faces_.clear();
   for (std::size_t from = 0, to = 0; from < dual_crossings_.size(); from = to) {
@@ -189,13 +196,13 @@ void Refinement::recall_crossings(FaceId face) {
 // Labels of the new cells, and restricted triangles among the faces between them.
 void Refinement::label_created_cells(Index vertex) {
   for (const Index cell : zone_.created) labels_[cell] = {.region = unlabelled};
+  if (vertices_[vertex].node_count > 0) restrict_created_faces(vertex);
   const std::size_t seed = first_label();
   const Index region = labels_[zone_.created[seed]].region;
   if (vertices_[vertex].node_count == 0) {
     for (const Index cell : zone_.created) labels_[cell].region = region;
     return;
   }
-  restrict_created_faces(vertex);
   cells_scratch_.assign(1, zone_.created[seed]);
   while (!cells_scratch_.empty()) {
     const Index cell = cells_scratch_.back();
