@@ -1,5 +1,6 @@
 // Every patch as a union of faces: tags, regions, planes, areas and distances.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "check/distance_tree.h"
@@ -10,6 +11,25 @@
 namespace collarmesh::checks {
 
 namespace {
+
+// Which sides and corners (sides with equal ends) of some faces were seen. Forgets those whose place others
+// take.
+class SeenSides {
+ public:
+  explicit SeenSides(std::size_t faces) : places_(std::bit_ceil(2 * faces + 1), {none, none}) {}
+
+  /// False when it was seen. Sorted ends.
+  bool add(const std::array<Index, 2>& side) {
+    const std::uint64_t key = std::uint64_t{side[0]} << 32U | side[1];
+    auto& place = places_[(key * 0x9e3779b97f4a7c15 >> 32U) & (places_.size() - 1)];
+    if (place == side) return false;
+    place = side;
+    return true;
+  }
+
+ private:
+  std::vector<std::array<Index, 2>> places_;
+};
 
 class PatchCheck {
  public:
@@ -132,7 +152,7 @@ class PatchCheck {
     return sum;
   }
 
-  // Corners, centre, and two points on each side and six inside.
+  // Corners, centres, and two points on each side, each of them once.
   void check_faces_against_patch() {
     std::vector<DistanceTree::Triangle> triangles;
     for (Index i = 0; i < patch_.triangle_count; ++i)
@@ -140,17 +160,23 @@ class PatchCheck {
                            subject_.plc_corner(triangle(i), 2)});
     const DistanceTree patch(std::move(triangles));
     Index hint = none;
-    constexpr int steps = 3;
+    const auto look_at = [&](Index face, const Point& sample) {
+      const auto nearest = patch.nearest(sample, enough(), hint);
+      hint = nearest.triangle;
+      measure(nearest.distance, face, sample,
+              "Face {} of patch {} (tag {}) is {:.6g} away from the patch at {}");
+    };
+    SeenSides seen(faces_.size());
     for (const Index face : faces_) {
-      const auto [a, b, c] = corners(face);
-      for (int i = 0; i <= steps; ++i)
-        for (int j = 0; i + j <= steps; ++j) {
-          const Point sample = (i * a + j * b + (steps - i - j) * c) / steps;
-          const auto nearest = patch.nearest(sample, enough(), hint);
-          hint = nearest.triangle;
-          measure(nearest.distance, face, sample,
-                  "Face {} of patch {} (tag {}) is {:.6g} away from the patch at {}");
-        }
+      const auto& f = subject_.mesh.faces[face];
+      look_at(face, subject_.centroid(f));
+      for (unsigned k = 0; k < 3; ++k) {
+        const Point &a = subject_.point(f[k]), &b = subject_.point(f[(k + 1) % 3]);
+        if (seen.add({f[k], f[k]})) look_at(face, a);
+        if (!seen.add(sorted(f[k], f[(k + 1) % 3]))) continue;
+        look_at(face, (2 * a + b) / 3);
+        look_at(face, (a + 2 * b) / 3);
+      }
     }
   }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <iterator>
 #include <numeric>
 
@@ -195,18 +196,20 @@ bool Refinement::open_pinches(const std::vector<FaceId>& faces) {
 // Triangles on smooth patches whose edges or middle leave the patch by more than the tolerance.
 bool Refinement::refine_distant_triangles(const std::vector<FaceId>& faces) {
   const double tolerance = distance_ * distance_;
+  // Edges found near a patch, of which two triangles share most. What takes a place here is only looked at
+  // again.
+  struct NearEdge {
+    std::uint64_t edge;
+    Index patch;
+  };
+  std::vector<NearEdge> near_edges(std::bit_ceil(faces.size() + 1), {0, none});
   bool found = false;
   for (const FaceId face : faces) {
     RestrictedTriangle& t = restricted(face);
     const Index patch = patch_of(t);
     if (plc_.patches[patch].planar || t.in_collar || t.given_up || t.known_near) continue;
-    const auto v = mesh_.face_vertices(face);
-    const Point &a = mesh_.point(v[0]), &b = mesh_.point(v[1]), &c = mesh_.point(v[2]);
-    const std::array<Point, 10> samples{(a + b + c) / 3, 0.5 * (a + b),   0.5 * (b + c),   0.5 * (c + a),
-                                        (2 * a + b) / 3, (a + 2 * b) / 3, (2 * b + c) / 3, (b + 2 * c) / 3,
-                                        (2 * c + a) / 3, (c + 2 * a) / 3};
     Index near = t.triangle;  // the next sample is often near the same triangle
-    t.known_near = std::all_of(samples.begin(), samples.end(), [&](const Point& p) {
+    const auto is_near = [&](const Point& p) {
       const auto corners = hierarchy_.corners(near);
       if (squared_distance_to_triangle(p, corners[0], corners[1], corners[2]) < tolerance) return true;
       const Index other = hierarchy_.triangle_within(p, tolerance, [&](Index triangle) {
@@ -214,7 +217,17 @@ bool Refinement::refine_distant_triangles(const std::vector<FaceId>& faces) {
       });
       if (other != none) near = other;
       return other != none;
-    });
+    };
+    const auto v = mesh_.face_vertices(face);
+    t.known_near = is_near((mesh_.point(v[0]) + mesh_.point(v[1]) + mesh_.point(v[2])) / 3);
+    for (unsigned k = 0; k < 3 && t.known_near; ++k) {
+      const std::uint64_t edge = edge_between(v[k], v[(k + 1) % 3]);
+      NearEdge& known = near_edges[edge * 0x9e3779b97f4a7c15 >> 32 & (near_edges.size() - 1)];
+      if (known.edge == edge && known.patch == patch) continue;
+      const Point &a = mesh_.point(v[k]), &b = mesh_.point(v[(k + 1) % 3]);
+      t.known_near = is_near((2 * a + b) / 3) && is_near(0.5 * (a + b)) && is_near((a + 2 * b) / 3);
+      if (t.known_near) known = {edge, patch};
+    }
     if (t.known_near) continue;
     refine_triangle(face);
     found = true;
