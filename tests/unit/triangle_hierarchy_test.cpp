@@ -49,8 +49,10 @@ Soup box_surface(int n) {
         for (int j = 0; j < n; ++j) {
           const Index a = corner(axis, side, i, j), b = corner(axis, side, i + 1, j),
                       c = corner(axis, side, i + 1, j + 1), d = corner(axis, side, i, j + 1);
-          if (side == 1) soup.triangles.insert(soup.triangles.end(), {{a, b, c}, {a, c, d}});
-          else soup.triangles.insert(soup.triangles.end(), {{a, c, b}, {a, d, c}});
+          if (side == 1)
+            soup.triangles.insert(soup.triangles.end(), {{a, b, c}, {a, c, d}});
+          else
+            soup.triangles.insert(soup.triangles.end(), {{a, c, b}, {a, d, c}});
         }
   return soup;
 }
@@ -131,9 +133,64 @@ TEST(TriangleHierarchy, AClosedSurfaceIsCrossedConsistentlyWhateverTheTies) {
     hierarchy.crossings(p, q, {&root, 1}, crossings);
     int depth = inside(p) ? 1 : 0;
     for (const auto& crossing : crossings) depth -= crossing.direction;
-    ASSERT_EQ(depth, inside(q) ? 1 : 0) << p.x << ' ' << p.y << ' ' << p.z << " to " << q.x << ' '
-                                        << q.y << ' ' << q.z;
+    ASSERT_EQ(depth, inside(q) ? 1 : 0)
+        << p.x << ' ' << p.y << ' ' << p.z << " to " << q.x << ' ' << q.y << ' ' << q.z;
   }
+}
+
+// Neighbourhoods from far larger than the triangles to far smaller, with segments as long as the
+// neighbourhood and far shorter; on the boxes' surface every test is a tie.
+void expect_the_crossings_of_each_segment(const Soup& soup, bool on_a_grid) {
+  const TriangleHierarchy hierarchy(soup.points, soup.triangles);
+  Box bounds;
+  for (const Point& p : soup.points) bounds.add(p);
+  const double extent = distance(bounds.min, bounds.max);
+  const Index root = hierarchy.root();
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto direction = [&] { return Vector{unit(random), unit(random), unit(random)}; };
+  SegmentBundle bundle;
+  std::vector<TriangleHierarchy::BundleCrossing> found;
+  std::vector<TriangleHierarchy::Crossing> expected;
+  std::size_t crossed = 0;
+  for (int k = 0; k < 300; ++k) {
+    const double radius = extent * std::pow(10, -(k % 12));
+    Point centre = soup.points[random() % soup.points.size()] + 0.3 * radius * direction();
+    if (on_a_grid) centre = soup.points[random() % soup.points.size()];
+    bundle.start(centre, radius);
+    std::vector<Point> points;
+    const auto count = static_cast<Index>(2 + random() % 150);
+    for (Index i = 0; i < count; ++i) {
+      Point p = centre + 0.5 * radius * direction();
+      if (on_a_grid && k % 12 < 2) p = {std::round(p.x), std::round(p.y), std::round(p.z)};
+      if (i > 0 && random() % 3 == 0) p = points[i - 1] + 1e-7 * radius * direction();
+      points.push_back(p);
+      bundle.add_point(p);
+      if (i > 0) bundle.add_segment(i - 1, i);
+    }
+    hierarchy.crossings(bundle, {&root, 1}, found);
+    std::size_t next = 0;
+    for (Index i = 0; i + 1 < count; ++i) {
+      hierarchy.crossings(points[i], points[i + 1], {&root, 1}, expected);
+      for (const auto& [triangle, way] : expected) {
+        const auto same = std::find_if(found.begin() + static_cast<std::ptrdiff_t>(next), found.end(),
+                                       [&](const TriangleHierarchy::BundleCrossing& c) {
+                                         return c.segment == i && c.crossing.triangle == triangle;
+                                       });
+        ASSERT_NE(same, found.end()) << "radius " << radius << ", segment " << i;
+        EXPECT_EQ(same->crossing.direction, way);
+      }
+      next += expected.size();
+    }
+    EXPECT_EQ(found.size(), next);
+    crossed += next;
+  }
+  EXPECT_GT(crossed, 500U);
+}
+
+TEST(TriangleHierarchy, ABundleFindsTheCrossingsOfEachSegment) {
+  expect_the_crossings_of_each_segment(random_triangles(500, 0.05), false);
+  expect_the_crossings_of_each_segment(box_surface(5), true);
 }
 
 TEST(TriangleHierarchy, DistanceEqualsBruteForce) {
@@ -145,8 +202,8 @@ TEST(TriangleHierarchy, DistanceEqualsBruteForce) {
     const Point p{unit(random), unit(random), unit(random)};
     double expected = INFINITY;
     for (const auto& t : soup.triangles)
-      expected = std::min(expected, squared_distance_to_triangle(p, soup.points[t[0]], soup.points[t[1]],
-                                                                 soup.points[t[2]]));
+      expected = std::min(
+          expected, squared_distance_to_triangle(p, soup.points[t[0]], soup.points[t[1]], soup.points[t[2]]));
     Index nearest = none;
     ASSERT_EQ(hierarchy.squared_distance_to(p, INFINITY, &nearest), expected);
     ASSERT_LT(nearest, soup.triangles.size());

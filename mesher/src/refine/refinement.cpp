@@ -504,8 +504,8 @@ void Refinement::note_edges(Index vertex) {
 std::optional<Refinement::Candidate> Refinement::cell_candidate(Index cell) {
   const double r2 = mesh_.squared_radius(cell);
   const Point& centre = mesh_.circumcentre(cell);
-  const Point p =
-      frame_.rounded(centre + offset_outside_collars(centre, cell_offset * std::sqrt(r2 / 3), {}));
+  Point p = frame_.rounded(centre + offset_outside_collars(centre, cell_offset * std::sqrt(r2 / 3), {}));
+  if (!inside_box(p)) p = frame_.rounded(centre);
   if (!inside_box(p) || !mesh_.in_conflict(cell, p)) return std::nullopt;
   return Candidate{p, r2, centre, 3, none, cell};
 }
