@@ -99,11 +99,17 @@ void Refinement::create_collars_on_touched_creases() {
     OpenCrease& crease = found->second;
     crease.touched = false;
     if (crease.pending > 0) continue;
+    std::vector<CollarBall> at_ends;
+    for (const Index end : plc_.curves[curve].ends)
+      if (end != none) at_ends.push_back(collars_.balls()[collars_.ball_at_vertex(end)]);
     for (; crease.isolated < crease.subsegments.size(); ++crease.isolated) {
       const auto [index, stamp] = crease.subsegments[crease.isolated];
       const Subsegment& s = subsegments_[index];
       if (!s.alive || s.stamp != stamp) continue;
-      if (!gap_size().isolated({1, curve}, s.ends[0]) || !gap_size().isolated({1, curve}, s.ends[1])) break;
+      if (std::any_of(s.ends.begin(), s.ends.end(), [&](Index end) {
+            return !gap_size().isolated({1, curve}, end, at_ends);
+          }))
+        break;
     }
     if (crease.isolated == crease.subsegments.size()) create_collar_on_curve(curve);
   }

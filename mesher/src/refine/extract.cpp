@@ -67,8 +67,7 @@ void Refinement::extract_face(FaceId face, const std::vector<Index>& number, Tet
   const Plc::Patch& patch = plc_.patches[patch_of(t)];
   // face_vertices is counterclockwise from outside its cell: the normal leaves that cell.
   auto v = mesh_.face_vertices(face);
-  std::array<Index, 2> regions{labels_[cell_of(face)].region,
-                               labels_[cell_of(mesh_.opposite(face))].region};
+  std::array<Index, 2> regions{labels_[cell_of(face)].region, labels_[cell_of(mesh_.opposite(face))].region};
   if (regions[0] == 0 && regions[1] == 0) return;
   bool reversed = regions[0] == 0;
   if (regions[0] == regions[1]) {

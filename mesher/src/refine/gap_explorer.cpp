@@ -68,18 +68,26 @@ double GapExplorer::explore(const Feature& at, const Point& x, double bound) {
   return std::sqrt(squared);
 }
 
-bool GapExplorer::isolated(const Feature& vertex_or_curve, Index cell) {
+bool GapExplorer::isolated(const Feature& vertex_or_curve, Index cell, std::span<const CollarBall> except) {
   mesh_.adjacent_vertices(cell, adjacent_);
+  const auto holds_polygon = [&](const CollarBall& ball) {
+    return std::all_of(polygon_.begin(), polygon_.end(), [&](const Point& p) {
+      return squared_distance(p, ball.centre) < ball.radius * ball.radius;
+    });
+  };
   double squared_bound = INFINITY;  // 0 when a witness has been found
   interview(nodes_at_(cell), vertex_or_curve, mesh_.point(cell), squared_bound,
             [&](const Point& a, const Point& b, const Point& c) {
-              if (squared_bound > 0 && meets_cell(cell, a, b, c)) squared_bound = 0;
+              if (squared_bound == 0) return;
+              cut_to_cell(cell, a, b, c);
+              if (!polygon_.empty() && std::none_of(except.begin(), except.end(), holds_polygon))
+                squared_bound = 0;
             });
   return squared_bound > 0;
 }
 
-// The triangle is cut by the planes between the vertex and its neighbours, as long as anything is left.
-bool GapExplorer::meets_cell(Index vertex, const Point& a, const Point& b, const Point& c) {
+// By the planes between the vertex and its neighbours, as long as anything is left.
+void GapExplorer::cut_to_cell(Index vertex, const Point& a, const Point& b, const Point& c) {
   const Point& u = mesh_.point(vertex);
   polygon_ = {a, b, c};
   for (const Index neighbour : adjacent_) {
@@ -94,9 +102,8 @@ bool GapExplorer::meets_cell(Index vertex, const Point& a, const Point& b, const
         clipped_.push_back(p + beyond_p / (beyond_p - beyond_q) * (q - p));
     }
     polygon_.swap(clipped_);
-    if (polygon_.empty()) return false;
+    if (polygon_.empty()) return;
   }
-  return true;
 }
 
 template <class Witness>

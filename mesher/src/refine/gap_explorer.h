@@ -6,6 +6,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "collar/collar_system.h"
 #include "collar/gap_size.h"
 #include "location/triangle_hierarchy.h"
 #include "location/voronoi_walk.h"
@@ -32,8 +33,10 @@ class GapExplorer final : public GapSize {
   double on_curve(Index curve, const Point& p, double bound = INFINITY) override;
 
   /// Is a vertex or curve of the complex isolated in the Voronoi cell of a mesh vertex (paper, Definition 6):
-  /// does every feature that meets the cell contain it?
-  bool isolated(const Feature& vertex_or_curve, Index cell);
+  /// does every feature that meets the cell contain it? What a feature has in the cell does not count where
+  /// it lies in one of these balls as a whole: the cell of a point on the sphere of a vertex ball reaches
+  /// into the ball, where features come as close as they like.
+  bool isolated(const Feature& vertex_or_curve, Index cell, std::span<const CollarBall> except = {});
 
   /// Vertices whose cells were explored, of all queries.
   std::size_t explored() const { return explored_; }
@@ -45,8 +48,8 @@ class GapExplorer final : public GapSize {
   template <class Witness>
   void interview(std::span<const Index> nodes, const Feature& at, const Point& x, const double& squared_bound,
                  const Witness& witness);
-  /// Does a triangle meet the cell of this vertex, whose neighbours are adjacent_?
-  bool meets_cell(Index vertex, const Point& a, const Point& b, const Point& c);
+  /// Put what a triangle has in the cell of this vertex, whose neighbours are adjacent_, into polygon_.
+  void cut_to_cell(Index vertex, const Point& a, const Point& b, const Point& c);
 
   const Plc& plc_;
   std::span<const Point> points_;

@@ -18,14 +18,12 @@ void Refinement::grade_vertex(Index vertex) {
   if (gradation_ == 0) return;
   const Point& p = mesh_.point(vertex);
   double size = INFINITY;
-  for (const Index cell : zone_.created)
-    size = std::min(size, sizing_.region_size(labels_[cell].region, p));
+  for (const Index cell : zone_.created) size = std::min(size, sizing_.region_size(labels_[cell].region, p));
   const MeshVertex& v = vertices_[vertex];
   if (v.dimension == 1 || v.dimension == 2)
     size = std::min(size, sizing_.feature_size(v.dimension, v.feature, p));
   for (const Index neighbour : zone_.vertices)
-    size = std::min(size, target_size_[neighbour] +
-                              gradation_ * distance(p, mesh_.point(neighbour)));
+    size = std::min(size, target_size_[neighbour] + gradation_ * distance(p, mesh_.point(neighbour)));
   target_size_.push_back(std::max(size, options_.size_min));
 }
 
@@ -41,8 +39,7 @@ bool Refinement::check_gradation() {
     if (size > target_size_[vertex]) continue;
     mesh_.adjacent_vertices(vertex, adjacent);
     for (const Index other : adjacent) {
-      const double graded =
-          size + gradation_ * distance(mesh_.point(vertex), mesh_.point(other));
+      const double graded = size + gradation_ * distance(mesh_.point(vertex), mesh_.point(other));
       if (graded >= target_size_[other] * (1 - 1e-6)) continue;
       target_size_[other] = graded;
       front.push({graded, other});
