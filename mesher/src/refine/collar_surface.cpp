@@ -109,6 +109,16 @@ bool Refinement::spans_patch(std::span<const Index> corners) const {
   return std::any_of(patches.begin(), patches.end(), contains_all);
 }
 
+// A smooth patch may fold at a curve inside it: a tet between its two sides is not flat.
+bool Refinement::at_fold(std::span<const Index> corners) const {
+  return std::any_of(corners.begin(), corners.end(), [&](Index v) {
+    if (vertices_[v].dimension != 1) return false;
+    const auto& patches = plc_.curves[vertices_[v].feature].patches;
+    return patches.size() == 1 && !plc_.patches[patches[0]].planar &&
+           plc_.patches[patches[0]].regions[0] != plc_.patches[patches[0]].regions[1];
+  });
+}
+
 std::vector<CollarTriangle> Refinement::collar_triangles() {
   std::vector<CollarTriangle> triangles;
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
@@ -183,7 +193,7 @@ bool Refinement::poorly_represented(const CollarTriangle& t) {
   const CollarBall& ball = collars_.balls()[t.ball];
   const Index centre_vertex = unresolved_[ball_points_[t.ball]].vertex;
   if (centre_vertex == none) return true;
-  if (spans_patch(std::array{v[0], v[1], v[2], centre_vertex})) return true;
+  if (spans_patch(std::array{v[0], v[1], v[2], centre_vertex}) && !at_fold(v)) return true;
   const Point &a = mesh_.point(v[0]), &b = mesh_.point(v[1]), &c = mesh_.point(v[2]);
   if (predicates::orientation(a, b, c, ball.centre) <= 0) return true;
   const TetQuality quality = measure(a, b, c, ball.centre);

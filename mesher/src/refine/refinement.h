@@ -313,6 +313,7 @@ class Refinement {
   std::optional<Point> arc_point(const CollarBall& ball, Index patch, const Point& near) const;
   bool crosses_patch(const CollarBall& ball, Index a, Index b);
   bool spans_patch(std::span<const Index> corners) const;
+  bool at_fold(std::span<const Index> corners) const;
   bool on_crease(Index vertex) const;
   bool repair(const CollarTriangle& t);
   bool insert_on_collar(const Point& p, std::uint8_t dimension, Index feature, Index nearby);
