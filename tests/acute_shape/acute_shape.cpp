@@ -58,6 +58,7 @@ const std::map<std::string, Family>& families() {
       {"cubes_touching_in_an_edge", family(acute::cubes_touching_in_an_edge)},
       {"cut_torus", family(acute::cut_torus)},
       {"drop_bar", family(acute::drop_bar)},
+      {"drop_cone", family(acute::drop_cone)},
       {"facet_ending_inside", family(acute::facet_ending_inside)},
       {"facet_near_a_crease", family(acute::facet_near_a_crease)},
       {"fan", family(acute::fan)},

@@ -48,7 +48,7 @@ PLANAR = """
     comb 3 10
 """
 CURVED = """
-    round_cone 15; lens 40; cut_torus 0.5; long_lens 40 0.2; drop_bar 20
+    round_cone 15; lens 40; cut_torus 0.5; long_lens 40 0.2; drop_bar 20; drop_cone 100 30
 """
 
 

@@ -34,11 +34,22 @@ double area_of(const Plc& plc) {
   return area;
 }
 
-// Of planar shapes the volume is exact; smooth surfaces move by the distance tolerance at most.
+double shortest_edge(const TetMesh& mesh) {
+  double shortest = INFINITY;
+  for (const auto& tet : mesh.tets)
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        shortest = std::min(shortest, distance(mesh.points[tet[i]], mesh.points[tet[j]]));
+  return shortest;
+}
+
+// Of planar shapes the volume is exact; smooth surfaces move by the distance tolerance at most. Repairs of
+// the collar surface must not end at the floor of the refinement, 1e-10 of the diagonal.
 void expect_right(const acute::Shape& shape) {
   SCOPED_TRACE(shape.name);
   const Meshed meshed = testing::mesh_of(shape.soups, testing::with_size(size), shape.feature_angle);
   EXPECT_EQ(testing::faults(meshed), "");
+  EXPECT_GT(shortest_edge(meshed.result.mesh), 1e-8 * meshed.plc.bounds.diagonal());
   const auto& volumes = meshed.report.region_volumes;
   const double volume = std::accumulate(volumes.begin(), volumes.end(), 0.0);
   if (shape.feature_angle == 0) {
@@ -195,6 +206,8 @@ TEST(Collar, CutTori) {
 TEST(Collar, RimsAndSheetsThatComeBack) {
   for (const double width : {0.5, 0.2, 0.1}) expect_right(acute::long_lens(40, width));
   for (const double angle : {50.0, 20.0, 10.0, 5.0, 3.0, 2.0}) expect_right(acute::drop_bar(angle));
+  for (const double angle : {75.0, 100.0, 130.0})
+    for (const double apex_angle : {45.0, 30.0, 15.0}) expect_right(acute::drop_cone(angle, apex_angle));
 }
 
 bool has_finding(const TetMesh& mesh, const Plc& plc, const std::string& guarantee) {

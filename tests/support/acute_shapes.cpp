@@ -451,15 +451,20 @@ Shape long_lens(double rim_angle, double width) {
   return {fmt::format("long_lens({}, {})", rim_angle, width), {soup}, 0, 30};
 }
 
-Shape drop_bar(double angle) {
-  // Two tangents from the tip to a circle of radius 0.4.
-  const double half = radians(angle / 2), radius = 0.4, reach = radius / std::sin(half);
+namespace {
+
+// Two tangents from a tip, where they meet at this angle, to a circle around the origin. The tip is first.
+std::vector<Point> drop(double angle, double radius) {
   constexpr int n = 20;
-  std::vector<Point> outline{{0, 0, 0}};
-  for (int i = 0; i <= n; ++i) {
-    const double degrees = -90 - angle / 2 + (180 + angle) * i / n;
-    outline.push_back(Point{reach, 0, 0} + on_circle(degrees, radius));
-  }
+  std::vector<Point> outline{{-radius / std::sin(radians(angle / 2)), 0, 0}};
+  for (int i = 0; i <= n; ++i) outline.push_back(on_circle(-90 - angle / 2 + (180 + angle) * i / n, radius));
+  return outline;
+}
+
+}  // namespace
+
+Shape drop_bar(double angle) {
+  std::vector<Point> outline = drop(angle, 0.4);
   PolygonSoup soup;
   const Vector up{0, 0, 1};
   for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -473,6 +478,16 @@ Shape drop_bar(double angle) {
   std::reverse(outline.begin(), outline.end());
   add_facet(soup, outline, 3);
   return {fmt::format("drop_bar({})", angle), {soup}, 0, 30};
+}
+
+Shape drop_cone(double angle, double apex_angle) {
+  std::vector<Point> outline = drop(angle, std::tan(radians(apex_angle / 2)));
+  PolygonSoup soup;
+  for (std::size_t i = 0; i < outline.size(); ++i)
+    add_facet(soup, {outline[i], outline[(i + 1) % outline.size()], {0, 0, 1}}, 1);
+  std::reverse(outline.begin(), outline.end());
+  add_facet(soup, outline, 2);
+  return {fmt::format("drop_cone({}, {})", angle, apex_angle), {soup}, 0, 30};
 }
 
 }  // namespace collarmesh::testing::acute

@@ -103,5 +103,8 @@ Shape cut_torus(double plane);
 Shape long_lens(double rim_angle, double width);
 /// A bar of length 1 over a drop: its only side is one smooth patch that meets itself at this angle.
 Shape drop_bar(double angle);
+/// A cone of height 1 over a drop: its only side is one smooth patch, folded along a curve that is no crease and
+/// ends at the acute apex.
+Shape drop_cone(double angle, double apex_angle);
 
 }  // namespace collarmesh::testing::acute
