@@ -53,7 +53,8 @@ std::vector<acute::Shape> shapes() {
           lens(40),
           cut_torus(0.5),
           long_lens(40, 0.2),
-          drop_bar(20)};
+          drop_bar(20),
+          drop_cone(75, 45)};
 }
 
 TEST(CollarCreation, KeepsAllGuarantees) {

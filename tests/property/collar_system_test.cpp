@@ -63,6 +63,7 @@ std::vector<acute::Shape> curved_shapes() {
   for (const double plane : {0.5, 0.6, 0.75, 0.9, 0.95}) shapes.push_back(acute::cut_torus(plane));
   for (const double width : {0.5, 0.2, 0.05}) shapes.push_back(acute::long_lens(40, width));
   for (const double angle : {40.0, 10.0}) shapes.push_back(acute::drop_bar(angle));
+  for (const double angle : {45.0, 15.0}) shapes.push_back(acute::drop_cone(100, angle));
   return shapes;
 }
 

@@ -97,7 +97,7 @@ TEST(GapExplorer, EqualsBruteForceBesideLoneSegments) {
 
 TEST(GapExplorer, EqualsBruteForceOnCurvedShapes) {
   using namespace acute;
-  for (const Shape& shape : {round_cone(30), lens(40), cut_torus(0.5), drop_bar(20)})
+  for (const Shape& shape : {round_cone(30), lens(40), cut_torus(0.5), drop_bar(20), drop_cone(75, 45)})
     expect_brute_force_gaps(shape);
 }
 
