@@ -13,10 +13,12 @@ Json point_json(const Point& p) { return Json::array({p.x, p.y, p.z}); }
 /// JSON has no infinity.
 Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json sizes_json(const std::map<Tag, double>& sizes) {
-  Json json = Json::object();
-  for (const auto& [tag, size] : sizes) json[std::to_string(tag)] = size;
-  return json;
+/// Keys that are all different: added by name, each would be compared with all before it.
+template <class Number>
+Json by_number(const std::map<Number, double>& values) {
+  Json::object_t object;
+  for (const auto& [number, value] : values) object.emplace_back(std::to_string(number), value);
+  return object;
 }
 
 const char* kind_name(Crease::Kind kind) {
@@ -50,9 +52,9 @@ Json options_json(const MeshArguments& a) {
   const MeshOptions& m = a.mesh;
   return {{"size", or_null(m.size)},
           {"size_min", or_null(m.size_min)},
-          {"region_size", sizes_json(m.region_size)},
-          {"patch_size", sizes_json(m.patch_size)},
-          {"curve_size", sizes_json(m.curve_size)},
+          {"region_size", by_number(m.region_size)},
+          {"patch_size", by_number(m.patch_size)},
+          {"curve_size", by_number(m.curve_size)},
           {"size_field", a.size_field.empty() ? Json() : Json(a.size_field)},
           {"elements_per_circle", or_null(m.elements_per_circle)},
           {"elements_across_gap", or_null(m.elements_across_gap)},
@@ -167,8 +169,6 @@ Json complex_json(const Plc& plc, const PlcSummary& s) {
 }
 
 Json measures_json(const TetMesh& mesh, const MeshMeasures& m) {
-  Json volumes = Json::object();
-  for (const auto& [region, volume] : m.region_volumes) volumes[std::to_string(region)] = volume;
   return {{"points", mesh.points.size()},
           {"tets", mesh.tets.size()},
           {"faces", mesh.faces.size()},
@@ -177,7 +177,7 @@ Json measures_json(const TetMesh& mesh, const MeshMeasures& m) {
           {"max_dihedral", m.max_dihedral},
           {"max_radius_edge", number_json(m.max_radius_edge)},
           {"max_collar_radius_edge", number_json(m.max_collar_radius_edge)},
-          {"region_volumes", std::move(volumes)},
+          {"region_volumes", by_number(m.region_volumes)},
           {"histograms",
            {{"min_dihedral", {{"bin_width", 10}, {"tets", m.min_dihedrals}}},
             {"max_dihedral", {{"bin_width", 10}, {"tets", m.max_dihedrals}}},
@@ -191,8 +191,9 @@ Json check_json(const CheckReport& r) {
                         {"message", finding.message},
                         {"ids", finding.ids},
                         {"where", point_json(finding.where)}});
-  Json volumes = Json::object();
-  for (std::size_t k = 1; k < r.region_volumes.size(); ++k) volumes[std::to_string(k)] = r.region_volumes[k];
+  std::map<std::size_t, double> volumes;
+  for (std::size_t k = 1; k < r.region_volumes.size(); ++k)
+    volumes.emplace_hint(volumes.end(), k, r.region_volumes[k]);
   return {{"passed", r.passed()},
           {"findings_total", r.findings_total},
           {"findings", std::move(findings)},
@@ -208,7 +209,7 @@ Json check_json(const CheckReport& r) {
           {"max_collar_dihedral", r.max_collar_dihedral},
           {"max_surface_distance", number_json(r.max_surface_distance)},
           {"median_edge", r.median_edge},
-          {"region_volumes", std::move(volumes)}};
+          {"region_volumes", by_number(volumes)}};
 }
 
 Json run_json(const MeshArguments& arguments, const MeshRun& run) {
