@@ -49,6 +49,7 @@ PLANAR = """
 """
 CURVED = """
     round_cone 15; lens 40; cut_torus 0.5; long_lens 40 0.2; drop_bar 20; drop_cone 100 30
+    drop_cone_in_a_room 75 30; curved_facet_ending_inside 20
 """
 
 

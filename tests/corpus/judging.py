@@ -26,7 +26,7 @@ def run(*arguments, limit=TIME_LIMIT):
 def verdict(mesh, *against):
     """What the judge says last of a mesh that it finds nothing wrong with. Throws Failed."""
     result = run(sys.executable, JUDGE, mesh, *against)
-    last = (result.stdout + result.stderr).strip().splitlines()[-1]
+    last = (result.stdout + result.stderr or "it says nothing").strip().splitlines()[-1]
     if result.returncode != 0:
         raise Failed(f"judge: {last}")
     return last

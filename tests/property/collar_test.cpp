@@ -210,6 +210,11 @@ TEST(Collar, RimsAndSheetsThatComeBack) {
     for (const double apex_angle : {45.0, 30.0, 15.0}) expect_right(acute::drop_cone(angle, apex_angle));
 }
 
+TEST(Collar, CurvedSheetsInsideARegion) {
+  for (const double angle : {55.0, 30.0, 15.0, 5.0}) expect_right(acute::curved_facet_ending_inside(angle));
+  for (const double angle : {20.0, 75.0, 100.0}) expect_right(acute::drop_cone_in_a_room(angle, 30));
+}
+
 bool has_finding(const TetMesh& mesh, const Plc& plc, const std::string& guarantee) {
   const CheckReport report = check(mesh, plc);
   return std::any_of(report.findings.begin(), report.findings.end(),

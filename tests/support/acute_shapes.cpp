@@ -461,6 +461,12 @@ std::vector<Point> drop(double angle, double radius) {
   return outline;
 }
 
+// The side of a cone of height 1.
+void add_cone(PolygonSoup& soup, const std::vector<Point>& outline, Tag tag) {
+  for (std::size_t i = 0; i < outline.size(); ++i)
+    add_facet(soup, {outline[i], outline[(i + 1) % outline.size()], {0, 0, 1}}, tag);
+}
+
 }  // namespace
 
 Shape drop_bar(double angle) {
@@ -483,11 +489,30 @@ Shape drop_bar(double angle) {
 Shape drop_cone(double angle, double apex_angle) {
   std::vector<Point> outline = drop(angle, std::tan(radians(apex_angle / 2)));
   PolygonSoup soup;
-  for (std::size_t i = 0; i < outline.size(); ++i)
-    add_facet(soup, {outline[i], outline[(i + 1) % outline.size()], {0, 0, 1}}, 1);
+  add_cone(soup, outline, 1);
   std::reverse(outline.begin(), outline.end());
   add_facet(soup, outline, 2);
   return {fmt::format("drop_cone({}, {})", angle, apex_angle), {soup}, 0, 30};
+}
+
+Shape drop_cone_in_a_room(double angle, double apex_angle) {
+  PolygonSoup soup = room({-3, -3, -3}, {3, 3, 3});
+  add_cone(soup, drop(angle, std::tan(radians(apex_angle / 2))), 7);
+  return {fmt::format("drop_cone_in_a_room({}, {})", angle, apex_angle), {soup}, 0, 30};
+}
+
+Shape curved_facet_ending_inside(double angle) {
+  const Point a{0.5, 0.3, 0}, b{0.5, 0.7, 0};
+  PolygonSoup soup = room_with_mark({0, 0, 0}, {2, 1, 1}, {a, b});
+  constexpr int n = 12;
+  Vector risen;
+  for (int i = 0; i < n; ++i) {
+    const double direction = radians(angle + 60.0 * i / n);
+    const Vector higher = risen + 0.8 / n * Vector{std::cos(direction), 0, std::sin(direction)};
+    add_facet(soup, {a + risen, b + risen, b + higher, a + higher}, 7);
+    risen = higher;
+  }
+  return {fmt::format("curved_facet_ending_inside({})", angle), {soup}, 0, 30};
 }
 
 }  // namespace collarmesh::testing::acute

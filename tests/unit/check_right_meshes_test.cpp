@@ -1,9 +1,11 @@
 // Meshes that keep every guarantee pass, with and without feature indices, and are measured right.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "collarmesh/check.h"
+#include "location/triangle_hierarchy.h"
 #include "support/meshes.h"
 
 namespace collarmesh {
@@ -36,6 +38,48 @@ TEST(CheckRightMeshes, SmoothClosedPatch) { expect_pass(meshed_ball(4, 4), {.dis
 
 TEST(CheckRightMeshes, SmoothCurvesAndPlanarPatches) {
   expect_pass(meshed_cylinder(12, 4), {.distance = 0.05});
+}
+
+// Of the smooth patches: of their faces' corners, centres and two points on each side.
+double largest_distance(const MeshedComplex& m, bool centres_only) {
+  double largest = 0;
+  for (std::size_t f = 0; f < m.mesh.faces.size(); ++f) {
+    const Plc::Patch& patch = m.plc.patches[m.mesh.face_patch[f]];
+    if (patch.planar) continue;
+    const auto& [i, j, k] = m.mesh.faces[f];
+    const Point &a = m.mesh.points[i], &b = m.mesh.points[j], &c = m.mesh.points[k];
+    std::vector<Point> samples{(a + b + c) / 3};
+    if (!centres_only)
+      samples.insert(samples.end(), {a, b, c, (2 * a + b) / 3, (a + 2 * b) / 3, (2 * b + c) / 3,
+                                     (b + 2 * c) / 3, (2 * c + a) / 3, (c + 2 * a) / 3});
+    for (const Point& p : samples) {
+      double nearest = INFINITY;
+      for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
+        const auto& corners = m.plc.triangles[t].points;
+        nearest = std::min(nearest,
+                           squared_distance_to_triangle(p, m.plc.points[corners[0]], m.plc.points[corners[1]],
+                                                        m.plc.points[corners[2]]));
+      }
+      largest = std::max(largest, std::sqrt(nearest));
+    }
+  }
+  return largest;
+}
+
+TEST(CheckRightMeshes, SurfaceDistanceIsThatOfAllSamples) {
+  for (MeshedComplex m : {meshed_ball(4, 4), meshed_cylinder(12, 4)}) {
+    // A corner, then a whole side is off: by more than anything else, the centres by less.
+    for (const std::size_t moved : {1U, 2U}) {
+      const auto smooth = std::find_if(m.mesh.face_patch.begin(), m.mesh.face_patch.end(),
+                                       [&](Index patch) { return !m.plc.patches[patch].planar; });
+      const auto& face = m.mesh.faces[static_cast<std::size_t>(smooth - m.mesh.face_patch.begin())];
+      const Vector off = m.plc.bounds.centre() - m.mesh.points[face[moved]];
+      m.mesh.points[face[moved]] = m.mesh.points[face[moved]] - 0.15 * off;
+      const double expected = largest_distance(m, false);
+      ASSERT_GT(expected, 1.2 * largest_distance(m, true));
+      EXPECT_NEAR(check(m.mesh, m.plc, {.distance = 0.5}).max_surface_distance, expected, 1e-12);
+    }
+  }
 }
 
 void expect_pass_when_moved(double scale, double shift) {

@@ -84,10 +84,8 @@ class SegmentBundle {
  private:
   static constexpr std::size_t lane_count = 4;
   static constexpr Mask lanes_of_a_group = 15;
-  // A single precision number is off by 6e-8 of itself. So are the points, which are at most 1 from the
-  // centre: added to the segments' extent; and what is computed from them, up to the extent of the boxes that
-  // they meet: added to these boxes.
-  static constexpr float rounding = 5e-7F;
+  // A single precision number is off by 6e-8 of itself: the points, which are at most 1 from the centre, by
+  // as much, and the tests by a few times that, up to the extent of the boxes that the segments meet.
   static constexpr double slack = 4e-6;
   using Lanes [[gnu::vector_size(lane_count * sizeof(float))]] = float;
   using Truths [[gnu::vector_size(lane_count * sizeof(float))]] = std::int32_t;
@@ -111,8 +109,7 @@ class SegmentBundle {
   static unsigned meeting(const Group& group, const std::array<Lanes, 3>& c, const std::array<Lanes, 3>& e) {
     const auto& h = group.half;
     const std::array<Lanes, 3> m{c[0] - group.middle[0], c[1] - group.middle[1], c[2] - group.middle[2]};
-    const Lanes more = all_lanes(rounding);
-    const std::array<Lanes, 3> r{magnitude(h[0]) + more, magnitude(h[1]) + more, magnitude(h[2]) + more};
+    const std::array<Lanes, 3> r{magnitude(h[0]), magnitude(h[1]), magnitude(h[2])};
     const Truths overlap = (magnitude(m[0]) <= e[0] + r[0]) & (magnitude(m[1]) <= e[1] + r[1]) &
                            (magnitude(m[2]) <= e[2] + r[2]);
     const unsigned near = bits(overlap);

@@ -114,8 +114,7 @@ bool Refinement::at_fold(std::span<const Index> corners) const {
   return std::any_of(corners.begin(), corners.end(), [&](Index v) {
     if (vertices_[v].dimension != 1) return false;
     const auto& patches = plc_.curves[vertices_[v].feature].patches;
-    return patches.size() == 1 && !plc_.patches[patches[0]].planar &&
-           plc_.patches[patches[0]].regions[0] != plc_.patches[patches[0]].regions[1];
+    return patches.size() == 1 && !plc_.patches[patches[0]].planar;
   });
 }
 

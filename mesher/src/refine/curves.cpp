@@ -9,9 +9,9 @@ namespace {
 
 // A curve that is this much longer than its chord gets inner seeds: its first ball would miss it.
 constexpr double seeded_length_per_chord = 1.2;
-// An arc may leave its chord by this share of the chord: about 60 degrees of turning.
 // Subsegments are split at most this share of their radius off the centre.
 constexpr double subsegment_offset = 0.1;
+// An arc may leave its chord by this share of the chord: about 60 degrees of turning.
 constexpr double largest_sagitta_per_chord = 0.15;
 
 }  // namespace

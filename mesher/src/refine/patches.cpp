@@ -71,7 +71,7 @@ void Refinement::label_from_outside(Index cell) {
   crossings_.clear();
   if (!hierarchy_.empty())
     hierarchy_.crossings(mesh_.point(0), mesh_.circumcentre(cell), {&root, 1}, crossings_);
-  labels_[cell] = {.region = region_beyond(0)};
+  labels_[cell].region = region_beyond(0);
 }
 
 bool Refinement::on_patch(Index vertex, Index patch) const {
@@ -148,7 +148,7 @@ std::size_t Refinement::first_label() {
 }
 
 // Restricted triangles among the faces between the new cells: their dual edges are those of the new vertex'
-// Voronoi cell. Fills dual_edges_ and crossed_faces_.
+// Voronoi cell. What they cross is kept in crossed_faces_ and dual_crossings_.
 void Refinement::restrict_created_faces(Index vertex) {
   double largest = 0;
   for (const Index cell : zone_.created) largest = std::max(largest, mesh_.squared_radius(cell));
@@ -233,7 +233,8 @@ bool Refinement::crosses_as_before(FaceId outer, FaceId face) {
   return region_beyond(labels_[cell_of(outer)].region) == labels_[cell_of(face)].region;
 }
 
-// What it alone crossed is beyond the end that is gone: the labels say so.
+// What it alone crossed is beyond the end that is gone: the labels say so, unless the regions on both sides
+// of the patch are the same.
 bool Refinement::crosses_no_more(FaceId outer, FaceId face) const {
   const RestrictedTriangle& t = restricted(outer);
   const auto& regions = plc_.patches[patch_of(t)].regions;

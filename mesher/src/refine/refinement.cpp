@@ -17,10 +17,10 @@ constexpr double cell_offset = 0.05;
 constexpr double triangle_offset = 0.1;
 // So many offsets are tried where they lead into a collar.
 constexpr int most_offsets = 16, offsets_of_full_length = 8;
-// Hierarchy nodes of a vertex are filtered again after so many insertions in its star: rarely on the
-// surface, where they never run out.
 // What lies between two surfaces is as fine as they are: sizes spread from them when gaps were asked for.
 constexpr double gradation_in_gaps = 0.25;
+// Hierarchy nodes of a vertex are filtered again after so many insertions in its star: rarely on the
+// surface, where they never run out.
 constexpr std::uint16_t insertions_between_refreshes = 16;
 constexpr std::uint16_t insertions_between_surface_refreshes = 48;
 // No ball smaller than this share of the diagonal is destroyed: it ends what would never end.

@@ -384,6 +384,9 @@ class Refinement {
   void stitch_books(const std::vector<CollarTriangle>& triangles);
   void stitch_faces(const std::vector<CollarTriangle>& triangles);
   Index patch_between(const std::array<Index, 3>& corners, Index a, Index b) const;
+  bool lies_on(const std::array<Index, 3>& face, Index patch) const;
+  bool against_patch(const std::array<Index, 3>& face, Index patch) const;
+  Point centroid(const std::array<Index, 3>& face) const;
 
   const Plc& plc_;
   const MeshOptions options_;

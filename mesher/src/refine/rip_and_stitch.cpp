@@ -10,6 +10,10 @@ namespace collarmesh {
 
 namespace {
 
+// The middle of an edge between points of a smooth patch is off the patch by at most this share of the edge:
+// a turn of 30 degrees makes 0.13. What spans a fold is farther off.
+constexpr double largest_sagitta = 0.15;
+
 struct FaceUse {
   std::array<Index, 3> key;   // sorted mesh vertices
   std::array<Index, 3> face;  // counterclockwise from outside its tet
@@ -107,10 +111,8 @@ void Refinement::stitch_faces(const std::vector<CollarTriangle>& triangles) {
     }
     auto face = uses[i].face;
     std::array<Index, 2> regions{uses[i].region, beyond};
-    const Vector n =
-        cross(mesh_.point(face[1]) - mesh_.point(face[0]), mesh_.point(face[2]) - mesh_.point(face[0]));
     const bool reversed = regions[0] == regions[1]
-                              ? dot(n, plc_.patches[patch].normal) < 0
+                              ? against_patch(face, patch)
                               : beyond != 0 && regions[0] != plc_.patches[patch].regions[0];
     if (reversed) {
       std::swap(face[1], face[2]);
@@ -118,6 +120,21 @@ void Refinement::stitch_faces(const std::vector<CollarTriangle>& triangles) {
     }
     stitched_.faces.push_back({face, regions, patch});
   }
+}
+
+Point Refinement::centroid(const std::array<Index, 3>& face) const {
+  return (mesh_.point(face[0]) + mesh_.point(face[1]) + mesh_.point(face[2])) / 3;
+}
+
+// Does the face's normal point to the patch' back?
+bool Refinement::against_patch(const std::array<Index, 3>& face, Index patch) const {
+  Index nearest = none;
+  hierarchy_.squared_distance_to(centroid(face), INFINITY, &nearest, [&](Index triangle) {
+    return triangle < plc_.triangles.size() && plc_.triangles[triangle].patch == patch;
+  });
+  const auto t = hierarchy_.corners(nearest);
+  const Point& a = mesh_.point(face[0]);
+  return dot(cross(mesh_.point(face[1]) - a, mesh_.point(face[2]) - a), cross(t[1] - t[0], t[2] - t[0])) < 0;
 }
 
 // The patch that all three vertices lie on and that separates these regions, none if there is none.
@@ -128,26 +145,44 @@ Index Refinement::patch_between(const std::array<Index, 3>& corners, Index a, In
     return ((r[0] == a && r[1] == b) || (r[0] == b && r[1] == a)) &&
            std::all_of(corners.begin(), corners.end(), [&](Index v) { return on_patch(v, patch); });
   };
+  std::vector<Index> possible;
   for (const Index corner : corners) {
     const MeshVertex& v = vertices_[corner];
     if (v.dimension == 3) return none;
-    if (v.dimension == 2) return separates(v.feature) ? v.feature : none;
+    if (v.dimension < 2) continue;
+    if (!separates(v.feature)) return none;
+    if (a != b || plc_.patches[v.feature].planar) return v.feature;
+    possible = {v.feature};
   }
-  const MeshVertex& v = vertices_[corners[0]];
-  const auto& patches = v.dimension == 0 ? plc_.vertices[v.feature].patches : plc_.curves[v.feature].patches;
-  std::vector<Index> possible;
-  std::copy_if(patches.begin(), patches.end(), std::back_inserter(possible), separates);
+  if (possible.empty()) {
+    const MeshVertex& v = vertices_[corners[0]];
+    const auto& patches =
+        v.dimension == 0 ? plc_.vertices[v.feature].patches : plc_.curves[v.feature].patches;
+    std::copy_if(patches.begin(), patches.end(), std::back_inserter(possible), separates);
+  }
   if (possible.empty() || (possible.size() == 1 && a != b)) return possible.empty() ? none : possible[0];
-  const Point middle = (mesh_.point(corners[0]) + mesh_.point(corners[1]) + mesh_.point(corners[2])) / 3;
+  const Point middle = centroid(corners);
   const auto distance_to = [&](Index patch) {
     return squared_distance(middle, collars_.features().nearest_point({2, patch}, middle));
   };
   const Index nearest = *std::min_element(possible.begin(), possible.end(),
                                           [&](Index x, Index y) { return distance_to(x) < distance_to(y); });
-  // Inside one region a face between vertices of a patch may lie beside it.
-  const double near =
-      plc_.patches[nearest].planar ? std::max(plc_.planar_tolerance, 1e-9 * diagonal_) : distance_;
-  return a != b || distance_to(nearest) <= near * near ? nearest : none;
+  return a != b || lies_on(corners, nearest) ? nearest : none;
+}
+
+// Inside one region a face between vertices of a patch may lie beside it, or across a fold of it.
+bool Refinement::lies_on(const std::array<Index, 3>& face, Index patch) const {
+  const auto is_near = [&](const Point& p, double most) {
+    return squared_distance(p, collars_.features().nearest_point({2, patch}, p)) <= most * most;
+  };
+  if (plc_.patches[patch].planar)
+    return is_near(centroid(face), std::max(plc_.planar_tolerance, 1e-9 * diagonal_));
+  if (!is_near(centroid(face), distance_)) return false;
+  for (unsigned k = 0; k < 3; ++k) {
+    const Point &a = mesh_.point(face[k]), &b = mesh_.point(face[(k + 1) % 3]);
+    if (!is_near(0.5 * (a + b), largest_sagitta * distance(a, b))) return false;
+  }
+  return true;
 }
 
 }  // namespace collarmesh
