@@ -36,7 +36,7 @@ force.References = [(plate, face_at(80))]
 force.Force = FORCE
 analysis.addObjects([solver, material, fixed, force])
 
-mesh_object = collarmesh_workbench.mesh(plate, analysis=analysis, size=3, face_sizes={face_of_hole(): 0.6})
+mesh_object = collarmesh_workbench.mesh(plate, analysis=analysis, size=3, face_sizes={face_of_hole(): 0.6}, order=2)
 document.recompute()
 
 tools = ccxtools.FemToolsCcx(analysis, solver)
