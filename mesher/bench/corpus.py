@@ -24,7 +24,7 @@ from tables import machine, seconds, si, table
 from tuning import SizeCache, size_for
 
 header = ["input", "triangles or facets", "tets", "CPU s", "refinement s", "TetGen: tets", "CPU s", "refinement s",
-          "ratio", "without the certificate", "of refinement"]
+          "ratio", "without the certificate", "of refinement", "of the runs"]
 
 
 @dataclass
@@ -85,7 +85,7 @@ def row(file: CorpusFile, ours: Collarmesh, tetgen: TetGen, options, cache: Size
             peers.append(tetgen.mesh(file, peer_size, folders[1]))
     except ProgramFailed as failure:
         return [*line, si(runs[0].tets), seconds(runs[0].cpu), seconds(runs[0].refinement_cpu), str(failure),
-                *[""] * 5]
+                *[""] * 6]
 
     def median(of, member):
         return statistics.median(getattr(run, member) for run in of)
@@ -96,7 +96,8 @@ def row(file: CorpusFile, ours: Collarmesh, tetgen: TetGen, options, cache: Size
 
     return [*line, si(runs[0].tets), seconds(median(runs[1:], "cpu")), seconds(median(runs[1:], "refinement_cpu")),
             si(peers[0].tets), seconds(median(peers, "cpu")), seconds(median(peers, "refinement_cpu")),
-            ratio("cpu"), ratio("meshing_cpu"), ratio("refinement_cpu")]
+            ratio("cpu"), ratio("meshing_cpu"), ratio("refinement_cpu"),
+            f"{median(peers, 'cpu') / median(runs[1:], 'meshing_cpu'):.2f}"]
 
 
 def main() -> int:
