@@ -110,13 +110,14 @@ def main() -> int:
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--time-limit", type=float, default=120, help="seconds for one run of one program")
     parser.add_argument("--core", type=int, help="the core to run on (default: the last one)")
+    parser.add_argument("--quality", default="1.414", help="TetGen's bound on radius-edge ratios; ours is 2")
     options = parser.parse_args()
     if options.corpus is None:
         parser.error("name a corpus with --corpus or $COLLARMESH_CORPUS")
     about = machine(options.build)
     pin_to_core(options.core)
     ours = Collarmesh(options.build.resolve() / "bin" / "collarmesh", options.time_limit)
-    tetgen = TetGen(options.time_limit)
+    tetgen = TetGen(options.time_limit, quality=options.quality)
     cache = SizeCache()
     rows = []
     for file in corpus_files(Path(options.corpus), options.files):

@@ -94,7 +94,8 @@ class TetGen:
     def version(self) -> str:
         return _debian_version("tetgen")
 
-    signature = version
+    def signature(self) -> str:
+        return f"{self.version()} q{self.quality}{self.switches}"
 
     def prepare(self, surface: Surface, folder: Path) -> None:
         surface.write(folder / "input")
