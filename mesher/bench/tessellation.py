@@ -40,13 +40,15 @@ def main() -> int:
                         help="spheres of 20 f^2 triangles")
     parser.add_argument("--sizes", nargs="*", type=float, default=[0.2, 0.05],
                         help="target edge lengths")
+    parser.add_argument("--improve", type=int, default=0, help="level of improvement")
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--time-limit", type=float, default=600)
     parser.add_argument("--core", type=int)
     options = parser.parse_args()
     about = machine(options.build)
     pin_to_core(options.core)
-    mesher = Collarmesh(options.build / "bin" / "collarmesh", options.time_limit)
+    mesher = Collarmesh(options.build.resolve() / "bin" / "collarmesh", options.time_limit,
+                        improve=options.improve)
     folder = SizeCache().folder / "tessellation"
     folder.mkdir(exist_ok=True)
     print(about + f". Medians of {options.rounds}.")

@@ -164,7 +164,6 @@ void certify(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   options.crease_angle = arguments.complex.crease_angle;
   options.threads = arguments.threads;
   run.check = check(run.result.mesh, run.plc, options);
-  run.measures = measure_mesh(run.result.mesh);
 }
 
 void write_report(const std::string& path, const MeshArguments& arguments, const MeshRun& run) {

@@ -10,7 +10,6 @@
 #include "collarmesh/plc_builder.h"
 #include "collarmesh/project_boundary.h"
 #include "collarmesh/second_order.h"
-#include "mesh_measures.h"
 #include "stage_times.h"
 
 namespace collarmesh::cli {
@@ -25,7 +24,6 @@ struct MeshRun {
   std::optional<ProjectReport> projection;  ///< when there are CAD shapes
   ImproveReport improvement;
   SecondOrderReport second_order;
-  MeshMeasures measures;
   CheckReport check;
   StageTimes times;
 

@@ -226,7 +226,7 @@ Json run_json(const MeshArguments& arguments, const MeshRun& run) {
           {"message", run.result.message},
           {"guarantees_hold", run.guarantees_hold()},
           {"complex", complex_json(run.plc, run.summary)},
-          {"mesh", measures_json(run.result.mesh, run.measures)},
+          {"mesh", measures_json(run.result.mesh, run.check.measures)},
           {"check", check_json(run.check)},
           {"statistics", statistics_json(run.result.statistics)},
           {"notes", run.notes},

@@ -156,7 +156,7 @@ std::string straightened_text(const SecondOrderReport& r, std::size_t most) {
 std::string run_text(const MeshArguments& arguments, const MeshRun& run) {
   std::string text = arguments.verbose ? complex_text(run.plc, run.summary) : "";
   text += fmt::format("{}: ", arguments.output == "-" ? "standard output" : arguments.output) +
-          mesh_text(run.result.mesh, run.measures);
+          mesh_text(run.result.mesh, run.check.measures);
   fmt::format_to(Out(text), "  median edge {:.4g}, surface distance at most {:.3g}\n", run.check.median_edge,
                  run.check.max_surface_distance);
   text += cleanup_text(run.plc.cleanup);

@@ -10,9 +10,9 @@
 
 #include "arguments.h"
 #include "collarmesh/error.h"
+#include "collarmesh/mesh_measures.h"
 #include "input_files.h"
 #include "interrupt.h"
-#include "mesh_measures.h"
 #include "option_values.h"
 #include "program.h"
 #include "progress_display.h"

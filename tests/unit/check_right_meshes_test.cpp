@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "collarmesh/check.h"
 #include "location/triangle_hierarchy.h"
@@ -118,6 +119,18 @@ TEST(CheckRightMeshes, MeasuresOfTheBox) {
   ASSERT_EQ(report.region_volumes.size(), 2U);
   EXPECT_NEAR(report.region_volumes[1], 1, 1e-14);
   EXPECT_EQ(report.max_surface_distance, 0);
+}
+
+TEST(CheckRightMeshes, MeasuresAreThoseOfAllTets) {
+  const MeshedComplex m = meshed_two_boxes(3);
+  const MeshMeasures found = check(m.mesh, m.plc).measures, expected = measure_mesh(m.mesh);
+  EXPECT_EQ(std::accumulate(found.radius_edges.begin(), found.radius_edges.end(), std::size_t{0}),
+            m.mesh.tets.size());
+  EXPECT_EQ(found.radius_edges, expected.radius_edges);
+  EXPECT_EQ(found.min_dihedrals, expected.min_dihedrals);
+  EXPECT_EQ(found.max_dihedrals, expected.max_dihedrals);
+  EXPECT_EQ(found.region_volumes, expected.region_volumes);
+  EXPECT_EQ(found.max_radius_edge, expected.max_radius_edge);
 }
 
 TEST(CheckRightMeshes, MeasuresOfTheBall) {

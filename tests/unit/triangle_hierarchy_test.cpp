@@ -226,5 +226,38 @@ TEST(TriangleHierarchy, DistanceToATriangleIsThatOfSampledPoints) {
   }
 }
 
+TEST(TriangleHierarchy, FindsATriangleWithinADistanceWithAndWithoutAHint) {
+  const Soup soup = random_triangles(400, 0.05);
+  const TriangleHierarchy hierarchy(soup.points, soup.triangles);
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const auto distance_to = [&](const Point& p, Index t) {
+    const auto c = hierarchy.corners(t);
+    return squared_distance_to_triangle(p, c[0], c[1], c[2]);
+  };
+  std::size_t none_near = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Point p{unit(random), unit(random), unit(random)};
+    const double bound = 0.003 * unit(random);
+    bool any = false, any_even = false;
+    for (Index t = 0; t < soup.triangles.size(); ++t) {
+      any = any || distance_to(p, t) < bound;
+      any_even = any_even || (t % 2 == 0 && distance_to(p, t) < bound);
+    }
+    none_near += any ? 0 : 1;
+    const auto hint = static_cast<Index>(2 * (random() % (soup.triangles.size() / 2)));
+    const Index found = hierarchy.triangle_within(p, bound),
+                hinted = hierarchy.triangle_within(p, bound, hint),
+                even = hierarchy.triangle_within(p, bound, hint, [](Index t) { return t % 2 == 0; });
+    EXPECT_EQ(found != none, any);
+    EXPECT_EQ(hinted != none, any);
+    EXPECT_EQ(even != none, any_even);
+    for (const Index t : {found, hinted, even}) EXPECT_TRUE(t == none || distance_to(p, t) < bound);
+    EXPECT_TRUE(distance_to(p, hint) >= bound || hinted == hint);
+  }
+  EXPECT_GT(none_near, 50U);
+  EXPECT_LT(none_near, 450U);
+}
+
 }  // namespace
 }  // namespace collarmesh

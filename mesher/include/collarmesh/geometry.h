@@ -60,8 +60,8 @@ struct Box {
     max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
   }
   void add(const Box& b) {
-    add(b.min);
-    add(b.max);
+    min = {std::min(min.x, b.min.x), std::min(min.y, b.min.y), std::min(min.z, b.min.z)};
+    max = {std::max(max.x, b.max.x), std::max(max.y, b.max.y), std::max(max.z, b.max.z)};
   }
   bool empty() const { return min.x > max.x; }
   double diagonal() const { return empty() ? 0 : distance(min, max); }

@@ -57,7 +57,9 @@ void take_measures(CheckReport& report, CheckReport&& part) {
   report.max_collar_dihedral = std::max(report.max_collar_dihedral, part.max_collar_dihedral);
   report.max_surface_distance = std::max(report.max_surface_distance, part.max_surface_distance);
   report.median_edge = std::max(report.median_edge, part.median_edge);
-  if (!part.region_volumes.empty()) report.region_volumes = std::move(part.region_volumes);
+  if (part.region_volumes.empty()) return;
+  report.region_volumes = std::move(part.region_volumes);
+  report.measures = std::move(part.measures);
 }
 
 // Groups of guarantees that have nothing to do with each other are looked at at once, each with a report of

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "check/subject.h"
-#include "plc/box_tree.h"
+#include "common/box_tree.h"
 
 namespace collarmesh::checks {
 
@@ -96,7 +96,7 @@ class CollarCheck {
       boxes.emplace_back();
       for (const Index p : e.points) boxes.back().add(plc_.points[p]);
     }
-    build::BoxTree(std::move(boxes)).for_each_pair([&](Index i, Index j) {
+    BoxTree(boxes).for_each_pair([&](Index i, Index j) {
       const auto [first, second] = std::minmax(i, j);
       if (first >= balls_.size()) return;
       if (second >= balls_.size())

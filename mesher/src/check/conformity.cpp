@@ -211,7 +211,7 @@ struct BoundaryEdge {
 
   bool same_edge(const BoundaryEdge& other) const { return region == other.region && ends == other.ends; }
   friend bool operator<(const BoundaryEdge& a, const BoundaryEdge& b) {
-    return a.region != b.region ? a.region < b.region : a.ends < b.ends;
+    return a.region != b.region ? a.region < b.region : number_of(a.ends) < number_of(b.ends);
   }
 };
 

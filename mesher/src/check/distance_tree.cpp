@@ -1,7 +1,7 @@
 #include "check/distance_tree.h"
 
 #include <algorithm>
-#include <numeric>
+#include <utility>
 
 namespace collarmesh::checks {
 
@@ -40,41 +40,55 @@ double squared_distance_to_box(const Point& p, const Box& box) {
   return squared_norm(d);
 }
 
-Point middle(const DistanceTree::Triangle& t) { return t[0] + t[1] + t[2]; }
-
 }  // namespace
 
-DistanceTree::DistanceTree(std::vector<Triangle> triangles)
-    : triangles_(std::move(triangles)), number_(triangles_.size()), place_(triangles_.size()) {
-  std::iota(number_.begin(), number_.end(), Index{0});
-  if (!triangles_.empty()) build(0, static_cast<Index>(triangles_.size()));
-  std::vector<Triangle> ordered(triangles_.size());
-  for (Index i = 0; i < number_.size(); ++i) {
-    ordered[i] = triangles_[number_[i]];
-    place_[number_[i]] = i;
+DistanceTree::DistanceTree(std::vector<Triangle> triangles) : triangles_(std::move(triangles)) {
+  if (triangles_.empty()) return;
+  std::vector<Point> centres;
+  centres.reserve(triangles_.size());
+  for (const auto& [a, b, c] : triangles_) centres.push_back((a + b + c) / 3);
+  const std::vector<SpatialKey> keys = spatial_order(centres);
+  place_.resize(keys.size());
+  number_.reserve(keys.size());
+  for (const SpatialKey& key : keys) {
+    place_[key.item] = static_cast<Index>(number_.size());
+    number_.push_back(key.item);
   }
-  triangles_ = std::move(ordered);
+  put_in_order();
+  nodes_.reserve(keys.size());
+  build(keys, 0);
 }
 
-void DistanceTree::build(Index first, Index last) {
-  const auto node = static_cast<Index>(nodes_.size());
-  Box box, middles;
-  for (Index i = first; i < last; ++i) {
-    for (const Point& p : triangles_[number_[i]]) box.add(p);
-    middles.add(middle(triangles_[number_[i]]));
+// In place, along the cycles of the permutation.
+void DistanceTree::put_in_order() {
+  std::vector<bool> in_place(number_.size(), false);
+  for (Index start = 0; start < number_.size(); ++start) {
+    if (in_place[start]) continue;
+    const Triangle first = triangles_[start];
+    Index at = start;
+    for (in_place[at] = true; number_[at] != start; in_place[at] = true) {
+      triangles_[at] = triangles_[number_[at]];
+      at = number_[at];
+    }
+    triangles_[at] = first;
   }
-  nodes_.push_back({box, first, last - first});
-  if (last - first <= leaf_size) return;
-  const Vector extent = middles.max - middles.min;
-  const std::size_t axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-  const Index half = first + (last - first) / 2;
-  std::nth_element(
-      number_.begin() + first, number_.begin() + half, number_.begin() + last,
-      [&](Index i, Index j) { return middle(triangles_[i])[axis] < middle(triangles_[j])[axis]; });
-  build(first, half);
-  nodes_[node].first = static_cast<Index>(nodes_.size());
-  nodes_[node].count = 0;
-  build(half, last);
+}
+
+Index DistanceTree::build(std::span<const SpatialKey> keys, Index first) {
+  const auto node = static_cast<Index>(nodes_.size());
+  nodes_.push_back({{}, first, static_cast<Index>(keys.size())});
+  if (keys.size() <= leaf_size) {
+    for (Index i = first; i < first + keys.size(); ++i)
+      for (const Point& p : triangles_[i]) nodes_[node].box.add(p);
+    return node;
+  }
+  const std::size_t half = spatial_split(keys);
+  const Index left = build(keys.first(half), first),
+              right = build(keys.subspan(half), first + static_cast<Index>(half));
+  Box box = nodes_[left].box;
+  box.add(nodes_[right].box);
+  nodes_[node] = {box, right, 0};
+  return node;
 }
 
 double DistanceTree::squared_distance_to(Index node, const Point& p) const {
@@ -89,7 +103,7 @@ DistanceTree::Nearest DistanceTree::nearest(const Point& p, double enough, Index
     Index node;
     double squared;
   };
-  std::array<Waiting, 64> stack;  // depth is at most log2 of the number of triangles
+  std::array<Waiting, most_spatial_levels + 1> stack;  // one of two children waits on every level
   std::size_t size = 0;
   stack[size++] = {0, squared_distance_to(0, p)};
   const double squared_enough = enough * enough;

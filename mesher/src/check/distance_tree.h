@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "collarmesh/geometry.h"
+#include "common/spatial_order.h"
 
 namespace collarmesh::checks {
 
@@ -13,7 +15,7 @@ class DistanceTree {
  public:
   using Triangle = std::array<Point, 3>;
 
-  /// Cost: O(n log n).
+  /// Cost: O(n).
   explicit DistanceTree(std::vector<Triangle> triangles);
 
   struct Nearest {
@@ -27,12 +29,13 @@ class DistanceTree {
  private:
   struct Node {
     Box box;
-    Index first,
-        count;  // a leaf's triangles; count 0: `first` is the right child, the left one follows the node
+    // A leaf's triangles; count 0: `first` is the right child, the left one follows the node.
+    Index first, count;
   };
-  static constexpr Index leaf_size = 4;
+  static constexpr Index leaf_size = 2;
 
-  void build(Index first, Index last);
+  void put_in_order();
+  Index build(std::span<const SpatialKey> keys, Index first);
   double squared_distance_to(Index node, const Point& p) const;
 
   std::vector<Triangle> triangles_;  // in the order of the leaves

@@ -45,19 +45,22 @@ struct Measures {
   Real conditioning;  ///< |determinant| / longest edge cubed: rounding is amplified by its inverse
 };
 
-// Of the power of two that the tet is divided by, so that eighth powers of lengths are in range.
+// Of the power of two that the tet is divided by, so that eighth powers of lengths are in range: 0 where they
+// are anyway, as of almost all.
 int exponent_of_size(const Point& a, const Point& b, const Point& c, const Point& d) {
   double largest = 0;
   for (const Point& p : {b, c, d})
     for (std::size_t axis = 0; axis < 3; ++axis) largest = std::fmax(largest, std::fabs(p[axis] - a[axis]));
-  return largest > 0 ? std::clamp(std::ilogb(largest), -1000, 1000) : 0;
+  const bool in_range = largest > 0x1p-64 && largest < 0x1p64;
+  return largest > 0 && !in_range ? std::clamp(std::ilogb(largest), -1000, 1000) : 0;
 }
 
 template <class Real>
 Measures<Real> measure_as(const Point& a, const Point& b, const Point& c, const Point& d) {
   using V = Vector3<Real>;
   const int exponent = exponent_of_size(a, b, c, d);
-  const Real unit = std::scalbn(Real(1), -exponent);
+  const auto scaled = [](Real value, int by) { return by == 0 ? value : std::scalbn(value, by); };
+  const Real unit = scaled(1, -exponent);
   const V ab = unit * V(a, b), ac = unit * V(a, c), ad = unit * V(a, d), bc = unit * V(b, c),
           bd = unit * V(b, d), cd = unit * V(c, d);
   const Real l_ab = dot(ab, ab), l_ac = dot(ac, ac), l_ad = dot(ad, ad), l_bc = dot(bc, bc),
@@ -69,7 +72,7 @@ Measures<Real> measure_as(const Point& a, const Point& b, const Point& c, const 
   const Real determinant = -dot(n_d, ad);
   const Real size = std::abs(determinant);
   TetQuality quality;
-  quality.volume = static_cast<double>(std::scalbn(determinant / 6, 3 * exponent));
+  quality.volume = static_cast<double>(scaled(determinant / 6, 3 * exponent));
 
   // |ad|^2 (ab x ac) + |ac|^2 (ad x ab) + |ab|^2 (ac x ad) = 2 det (circumcentre - a)
   const V numerator = Real(-1) * (l_ad * n_d + l_ac * n_c + l_ab * n_b);

@@ -7,10 +7,13 @@ namespace collarmesh::checks {
 
 CurveUses::CurveUses(const Subject& subject)
     : plc_(subject.plc), edges_by_curve_(subject.match.edge_curve, subject.plc.curves.size()) {
+  std::vector<bool> at_beginning(plc_.points.size(), false);
+  for (const Plc::Curve& curve : plc_.curves)
+    at_beginning[curve.points[0]] = at_beginning[curve.points[1]] = true;
   for (const Plc::Triangle& t : plc_.triangles)
     for (unsigned i = 0; i < 3; ++i) {
       const auto [a, b] = sorted(t.points[i], t.points[(i + 1) % 3]);
-      complex_edges_.push_back({a, b, t.patch});
+      if (at_beginning[a] && at_beginning[b]) complex_edges_.push_back({a, b, t.patch});
     }
   std::sort(complex_edges_.begin(), complex_edges_.end());
   for (Index e = 0; e < subject.mesh.edges.size(); ++e)

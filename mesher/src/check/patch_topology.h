@@ -14,7 +14,8 @@ struct PatchEdge {
   bool ascending;  ///< runs from the smaller to the larger point, with the face turned as its patch
 
   friend bool operator<(const PatchEdge& a, const PatchEdge& b) {
-    return a.ends != b.ends ? a.ends < b.ends : a.face < b.face;
+    const auto i = number_of(a.ends), j = number_of(b.ends);
+    return i != j ? i < j : a.face < b.face;
   }
 };
 
@@ -37,7 +38,8 @@ class CurveUses {
     friend bool operator<(const CurveEdge& a, const CurveEdge& b) { return a.ends < b.ends; }
   };
   const Plc& plc_;
-  std::vector<std::array<Index, 3>> complex_edges_;  // sorted points, patch: one for each triangle side
+  // Sorted points, patch: one for each triangle side where a curve may begin.
+  std::vector<std::array<Index, 3>> complex_edges_;
   std::vector<CurveEdge> mesh_edges_;
   Grouping edges_by_curve_;
 };

@@ -7,6 +7,7 @@
 #include "check/patch_topology.h"
 #include "check/polyline.h"
 #include "check/subject.h"
+#include "common/patch_points.h"
 
 namespace collarmesh::checks {
 
@@ -20,8 +21,7 @@ class SeenSides {
 
   /// False when it was seen. Sorted ends.
   bool add(const std::array<Index, 2>& side) {
-    const std::uint64_t key = std::uint64_t{side[0]} << 32U | side[1];
-    auto& place = places_[(key * 0x9e3779b97f4a7c15 >> 32U) & (places_.size() - 1)];
+    auto& place = places_[(number_of(side) * 0x9e3779b97f4a7c15 >> 32U) & (places_.size() - 1)];
     if (place == side) return false;
     place = side;
     return true;
@@ -43,7 +43,7 @@ class PatchCheck {
         report_(report),
         findings_(findings) {}
 
-  void run(const CurveUses& uses) {
+  void run(const CurveUses& uses, std::span<const Index> patch_points) {
     if (faces_.empty()) {
       if (!patch_is_outside(subject_, id_)) report_missing();
       return;
@@ -54,7 +54,7 @@ class PatchCheck {
       check_area();
     } else {
       check_faces_against_patch();
-      check_patch_against_faces();
+      check_patch_against_faces(patch_points);
     }
   }
 
@@ -155,6 +155,7 @@ class PatchCheck {
   // Corners, centres, and two points on each side, each of them once.
   void check_faces_against_patch() {
     std::vector<DistanceTree::Triangle> triangles;
+    triangles.reserve(patch_.triangle_count);
     for (Index i = 0; i < patch_.triangle_count; ++i)
       triangles.push_back({subject_.plc_corner(triangle(i), 0), subject_.plc_corner(triangle(i), 1),
                            subject_.plc_corner(triangle(i), 2)});
@@ -180,20 +181,23 @@ class PatchCheck {
     }
   }
 
-  void check_patch_against_faces() {
+  // Corners and centres.
+  void check_patch_against_faces(std::span<const Index> patch_points) {
     std::vector<DistanceTree::Triangle> triangles;
+    triangles.reserve(faces_.size());
     for (const Index face : faces_) triangles.push_back(corners(face));
     const DistanceTree faces(std::move(triangles));
     Index hint = none;
+    const auto look_at = [&](const Point& sample) {
+      const auto nearest = faces.nearest(sample, enough(), hint);
+      hint = nearest.triangle;
+      measure(nearest.distance, faces_[nearest.triangle], sample,
+              "Face {}, the nearest of patch {} (tag {}), is {:.6g} away from the patch' point at {}");
+    };
+    for (const Index point : patch_points) look_at(subject_.plc.points[point]);
     for (Index i = 0; i < patch_.triangle_count; ++i) {
-      const Point &a = subject_.plc_corner(triangle(i), 0), &b = subject_.plc_corner(triangle(i), 1),
-                  &c = subject_.plc_corner(triangle(i), 2);
-      for (const Point& sample : {a, b, c, (a + b + c) / 3}) {
-        const auto nearest = faces.nearest(sample, enough(), hint);
-        hint = nearest.triangle;
-        measure(nearest.distance, faces_[nearest.triangle], sample,
-                "Face {}, the nearest of patch {} (tag {}), is {:.6g} away from the patch' point at {}");
-      }
+      const Plc::Triangle& t = triangle(i);
+      look_at((subject_.plc_corner(t, 0) + subject_.plc_corner(t, 1) + subject_.plc_corner(t, 2)) / 3);
     }
   }
 
@@ -248,9 +252,10 @@ void check_labels(const Subject& subject, Index face, Findings& findings) {
 void check_patches(const Subject& subject, CheckReport& report, Findings& findings) {
   for (Index f = 0; f < subject.mesh.faces.size(); ++f) check_labels(subject, f, findings);
   const CurveUses uses(subject);
+  const PatchPoints patch_points(subject.plc);
   const Grouping by_patch(subject.match.face_patch, subject.plc.patches.size());
   for (Index p = 0; p < subject.plc.patches.size(); ++p)
-    PatchCheck(subject, p, by_patch.begin(p), by_patch.end(p), report, findings).run(uses);
+    PatchCheck(subject, p, by_patch.begin(p), by_patch.end(p), report, findings).run(uses, patch_points[p]);
 }
 
 }  // namespace collarmesh::checks

@@ -62,7 +62,7 @@ double place_of_plane(const Point& p, const Point& q, const Corners& t) {
 
 const RegionLocator::Trees& RegionLocator::trees() const {
   std::call_once(once_, [&] {
-    trees_.emplace(Trees{DistanceTree(all_corners(plc_)), build::BoxTree(all_boxes(plc_))});
+    trees_.emplace(Trees{DistanceTree(all_corners(plc_)), BoxTree(all_boxes(plc_))});
   });
   return *trees_;
 }

@@ -5,7 +5,7 @@
 
 #include "check/distance_tree.h"
 #include "collarmesh/plc.h"
-#include "plc/box_tree.h"
+#include "common/box_tree.h"
 
 namespace collarmesh::checks {
 
@@ -25,7 +25,7 @@ class RegionLocator {
  private:
   struct Trees {
     DistanceTree triangles;
-    build::BoxTree boxes;
+    BoxTree boxes;
   };
   const Trees& trees() const;
   Index region_on_the_way(const Point& p, const Point& target) const;

@@ -65,6 +65,10 @@ class Grouping {
 };
 
 inline std::array<Index, 2> sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
+/// Both ends in one number, which is compared at once.
+inline std::uint64_t number_of(const std::array<Index, 2>& ends) {
+  return std::uint64_t{ends[0]} << 32U | ends[1];
+}
 
 inline double area(const Point& a, const Point& b, const Point& c) { return 0.5 * norm(cross(b - a, c - a)); }
 

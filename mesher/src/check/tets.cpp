@@ -71,6 +71,7 @@ void check_tets(const Subject& subject, CheckReport& report, Findings& findings)
     const auto& t = mesh.tets[tet];
     const Corners p{mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]};
     const TetQuality quality = measure(p.a, p.b, p.c, p.d);
+    report.measures.add(quality, mesh.tet_region[tet], subject.collar[tet] != 0);
     check_orientation(tet, p, quality, findings);
     check_shape(tet, p, quality, subject, report, findings);
     check_region_tag(tet, p, subject, findings);

@@ -1,6 +1,7 @@
 #include "improve/smooth_surfaces.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace collarmesh::improvement {
 
@@ -14,6 +15,15 @@ double squared_distance_to(const Point& p, const SmoothSurfaces::Triangle& t) {
 }
 
 Vector normal(const SmoothSurfaces::Triangle& t) { return cross(t[1] - t[0], t[2] - t[0]); }
+
+// Does the triangle have p straight above or below it?
+bool has_foot(const Point& p, const SmoothSurfaces::Triangle& t) {
+  const Vector n = normal(t);
+  if (!(squared_norm(n) > 0)) return false;
+  for (unsigned i = 0; i < 3; ++i)
+    if (dot(cross(t[(i + 1) % 3] - t[i], p - t[i]), n) < 0) return false;
+  return true;
+}
 
 Point centre(const SmoothSurfaces::Triangle& t) { return (t[0] + t[1] + t[2]) / 3; }
 
@@ -38,7 +48,8 @@ SmoothSurfaces::Surface& SmoothSurfaces::surface(Index patch) const {
   return surface;
 }
 
-// The corners and centres of the patch's triangles go to the faces that they are nearest to.
+// The corners and centres of the patch's triangles go to faces that they are near to: mostly the nearest
+// ones, but one that they lie straight above or below serves, too.
 void SmoothSurfaces::share_out(Index patch, Surface& surface) const {
   std::vector<Index> faces;
   std::vector<std::array<Index, 3>> corners;
@@ -49,24 +60,26 @@ void SmoothSurfaces::share_out(Index patch, Surface& surface) const {
     }
   if (faces.empty()) return;
   const TriangleHierarchy hierarchy(mesh_.points, std::move(corners));
+  Index nearest = none;  // the next point is often near the same face
   const auto add = [&](const Point& p) {
-    Index nearest = none;
-    const double d = hierarchy.squared_distance_to(p, INFINITY, &nearest);
-    if (d > squared_distance_) return;  // nothing to keep
+    const Index hint = std::exchange(nearest, hierarchy.triangle_within(p, squared_distance_, nearest));
+    if (nearest == none) return;  // nothing to keep
+    const Triangle found = hierarchy.corners(nearest);
+    if (nearest != hint || !has_foot(p, found))
+      hierarchy.squared_distance_to(p, squared_distance_to(p, found), &nearest);
     surface.next_sample.push_back(first_sample_[faces[nearest]]);
     first_sample_[faces[nearest]] = static_cast<Index>(surface.samples.size());
     surface.samples.push_back(p);
   };
   const Plc::Patch& p = plc_.patches[patch];
-  std::vector<Index> points;
+  const std::size_t most = patch_points_[patch].size() + p.triangle_count;
+  surface.samples.reserve(most);
+  surface.next_sample.reserve(most);
   for (Index t = p.first_triangle; t < p.first_triangle + p.triangle_count; ++t) {
     const auto& v = plc_.triangles[t].points;
-    points.insert(points.end(), v.begin(), v.end());
     add((plc_.points[v[0]] + plc_.points[v[1]] + plc_.points[v[2]]) / 3);
   }
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  for (const Index point : points) add(plc_.points[point]);
+  for (const Index point : patch_points_[patch]) add(plc_.points[point]);
 }
 
 SmoothSurfaces::Nearest SmoothSurfaces::nearest(Index patch, const Point& p, double near) const {
@@ -80,9 +93,7 @@ SmoothSurfaces::Nearest SmoothSurfaces::nearest(Index patch, const Point& p, dou
 
 // Some triangle of the patch that p is near to; the hint, when it is.
 Index SmoothSurfaces::triangle_near(Index patch, const Point& p, Index hint) const {
-  const TriangleHierarchy& triangles = this->triangles(patch);
-  if (hint != none && squared_distance_to(p, triangles.corners(hint)) < squared_distance_) return hint;
-  return triangles.triangle_within(p, squared_distance_, [](Index) { return true; });
+  return triangles(patch).triangle_within(p, squared_distance_, hint);
 }
 
 // At the corners, thirds and middles. The distance to one triangle is convex: when the corners are near

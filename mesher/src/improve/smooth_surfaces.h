@@ -8,6 +8,7 @@
 
 #include "collarmesh/plc.h"
 #include "collarmesh/tet_mesh.h"
+#include "common/patch_points.h"
 #include "location/triangle_hierarchy.h"
 
 namespace collarmesh::improvement {
@@ -24,6 +25,7 @@ class SmoothSurfaces {
   SmoothSurfaces(const Plc& plc, const TetMesh& mesh, double distance)
       : plc_(plc),
         mesh_(mesh),
+        patch_points_(plc),
         squared_distance_(distance * distance),
         surfaces_(plc.patches.size()),
         first_sample_(mesh.faces.size(), none) {}
@@ -67,6 +69,7 @@ class SmoothSurfaces {
 
   const Plc& plc_;
   const TetMesh& mesh_;
+  PatchPoints patch_points_;
   double squared_distance_;
   mutable std::vector<Surface> surfaces_;
   mutable std::vector<Index> first_sample_;   // of every face, among those of its patch

@@ -10,8 +10,8 @@
 namespace collarmesh::io {
 
 std::string_view TextScanner::word(std::string_view what) {
-  if (at_end()) fail(fmt::format("expected {}, found the end of the file", what));
   const std::string_view next = peek();
+  if (next.empty()) fail(fmt::format("expected {}, found the end of the file", what));
   at_ += next.size();
   return next;
 }
@@ -19,7 +19,7 @@ std::string_view TextScanner::word(std::string_view what) {
 std::string_view TextScanner::peek() {
   if (at_end()) return {};
   const char* stop = at_;
-  while (stop != end_ && *stop != '\n' && !is_blank(*stop) && (*stop != comment_ || comment_ == 0)) ++stop;
+  while (stop != end_ && in_word(*stop)) ++stop;
   return {at_, static_cast<std::size_t>(stop - at_)};
 }
 

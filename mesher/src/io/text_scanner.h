@@ -82,6 +82,11 @@ class TextScanner {
 
  private:
   static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+  // Most characters are told by the first comparison: blanks and line ends are no greater than a space.
+  bool in_word(char c) const {
+    if (static_cast<unsigned char>(c) > ' ') return c != comment_;
+    return c != '\n' && !is_blank(c) && (c != comment_ || comment_ == 0);
+  }
   void skip_blanks() {
     while (at_ != end_ && is_blank(*at_)) ++at_;
     if (at_ != end_ && *at_ == comment_ && comment_ != 0)

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <numeric>
 
 #include "delaunay/predicates.h"
 
@@ -65,33 +64,22 @@ TriangleHierarchy::TriangleHierarchy(std::span<const Point> points,
   std::vector<Point> centres;
   centres.reserve(triangles_.size());
   for (const auto& t : triangles_) centres.push_back((points_[t[0]] + points_[t[1]] + points_[t[2]]) / 3);
-  std::vector<Index> order(triangles_.size());
-  std::iota(order.begin(), order.end(), Index{0});
   nodes_.reserve(2 * triangles_.size());
   Box box;
-  build(order, centres, none, box);
+  build(spatial_order(centres), none, box);
 }
 
-Index TriangleHierarchy::build(std::span<Index> order, std::span<const Point> centres, Index parent,
-                               Box& box) {
+Index TriangleHierarchy::build(std::span<const SpatialKey> keys, Index parent, Box& box) {
   const auto node = static_cast<Index>(nodes_.size());
   nodes_.push_back({{}, 0, parent, none, none, 0, 0});
-  if (order.size() == 1) {
-    for (const Index point : triangles_[order[0]]) box.add(points_[point]);
-    nodes_[node].right = order[0];
+  if (keys.size() == 1) {
+    for (const Index point : triangles_[keys[0].item]) box.add(points_[point]);
+    nodes_[node].right = keys[0].item;
   } else {
-    Box spread;
-    for (const Index triangle : order) spread.add(centres[triangle]);
-    const Vector sides = spread.max - spread.min;
-    const std::size_t axis = sides.x >= sides.y && sides.x >= sides.z ? 0 : sides.y >= sides.z ? 1 : 2;
-    const auto middle = order.begin() + static_cast<std::ptrdiff_t>(order.size() / 2);
-    std::nth_element(order.begin(), middle, order.end(), [&](Index a, Index b) {
-      return centres[a][axis] != centres[b][axis] ? centres[a][axis] < centres[b][axis] : a < b;
-    });
-    const std::size_t half = order.size() / 2;
+    const std::size_t half = spatial_split(keys);
     Box right_box;
-    const Index left = build(order.subspan(0, half), centres, node, box);
-    const Index right = build(order.subspan(half), centres, node, right_box);
+    const Index left = build(keys.first(half), node, box);
+    const Index right = build(keys.subspan(half), node, right_box);
     nodes_[node].left = left;
     nodes_[node].right = right;
     box.add(right_box);
@@ -134,7 +122,7 @@ void TriangleHierarchy::crossings(const Point& p, const Point& q, std::span<cons
                                   std::vector<Crossing>& found) const {
   found.clear();
   const SegmentAgainstBoxes segment(p, q);
-  std::array<Index, 128> stack;
+  std::array<Index, most_spatial_levels + 1> stack;
   for (const Index start : nodes) {
     std::size_t top = 0;
     stack[top++] = start;
@@ -154,7 +142,7 @@ void TriangleHierarchy::crossings(const Point& p, const Point& q, std::span<cons
 void TriangleHierarchy::crossings(const SegmentBundle& bundle, std::span<const Index> nodes,
                                   std::vector<BundleCrossing>& found) const {
   found.clear();
-  std::array<std::pair<Index, SegmentBundle::Mask>, 128> stack;
+  std::array<std::pair<Index, SegmentBundle::Mask>, most_spatial_levels + 1> stack;
   for (std::size_t part = 0; part < bundle.part_count(); ++part)
     for (const Index start : nodes) {
       std::size_t top = 0;

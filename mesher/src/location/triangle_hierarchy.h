@@ -9,6 +9,7 @@
 #include "collarmesh/geometry.h"
 #include "collarmesh/plc.h"
 #include "common/large_pages.h"
+#include "common/spatial_order.h"
 #include "location/centred_box.h"
 #include "location/segment_bundle.h"
 
@@ -71,10 +72,14 @@ class TriangleHierarchy {
   template <class Counts>
   double squared_distance_to(const Point& p, double bound, Index* nearest, const Counts& counts) const;
 
-  /// Some triangle that `counts` accepts and whose squared distance from p is below `bound`; none if
-  /// there is no such triangle.
+  /// Some triangle whose squared distance from p is below `bound`, the `hint` if its is; none if there is no
+  /// such triangle.
+  Index triangle_within(const Point& p, double bound, Index hint = none) const {
+    return triangle_within(p, bound, hint, [](Index) { return true; });
+  }
+  /// The same among the triangles that `counts` accepts. Precondition: it accepts the hint.
   template <class Counts>
-  Index triangle_within(const Point& p, double bound, const Counts& counts) const;
+  Index triangle_within(const Point& p, double bound, Index hint, const Counts& counts) const;
 
   /// Visit triangles below `nodes` as long as their boxes are nearer to p than the bound, which the visitor
   /// may lower: near ones first.
@@ -94,7 +99,7 @@ class TriangleHierarchy {
   };
 
   /// Add to the box what lies below the node that is returned.
-  Index build(std::span<Index> order, std::span<const Point> centres, Index parent, Box& box);
+  Index build(std::span<const SpatialKey> keys, Index parent, Box& box);
   void descend(Index node, const CentredBox& box, double extent, std::vector<Index>& found);
 
   std::span<const Point> points_;
@@ -140,7 +145,7 @@ double TriangleHierarchy::squared_distance_to(const Point& p, double bound, Inde
 template <class Visit>
 void TriangleHierarchy::visit_near(std::span<const Index> nodes, const Point& p, const double& squared_bound,
                                    const Visit& visit) const {
-  std::array<Index, 128> stack;
+  std::array<Index, most_spatial_levels + 1> stack;
   for (const Index start : nodes) {
     std::size_t top = 0;
     stack[top++] = start;
@@ -160,9 +165,15 @@ void TriangleHierarchy::visit_near(std::span<const Index> nodes, const Point& p,
 }
 
 template <class Counts>
-Index TriangleHierarchy::triangle_within(const Point& p, double bound, const Counts& counts) const {
+Index TriangleHierarchy::triangle_within(const Point& p, double bound, Index hint,
+                                         const Counts& counts) const {
+  const auto is_near = [&](Index triangle) {
+    const auto t = corners(triangle);
+    return squared_distance_to_triangle(p, t[0], t[1], t[2]) < bound;
+  };
   if (nodes_.empty()) return none;
-  std::array<Index, 128> stack;
+  if (hint != none && is_near(hint)) return hint;
+  std::array<Index, most_spatial_levels + 1> stack;
   std::size_t top = 0;
   stack[top++] = root();
   while (top > 0) {
@@ -173,8 +184,7 @@ Index TriangleHierarchy::triangle_within(const Point& p, double bound, const Cou
       stack[top++] = node.right;
       continue;
     }
-    const auto t = corners(node.right);
-    if (counts(node.right) && squared_distance_to_triangle(p, t[0], t[1], t[2]) < bound) return node.right;
+    if (counts(node.right) && is_near(node.right)) return node.right;
   }
   return none;
 }

@@ -176,16 +176,18 @@ Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options) {
   remove_collinear_triangles(draft);
   remove_twins_within_soups(draft);
   require_content(draft, faults);
-  orient_components(draft, faults);
+  EdgeTable edges(draft.triangles, draft.points.size());
+  orient_components(draft, edges, faults);
   if (soups.size() > 1) {
     unify_interfaces(draft);
     merge_twins_across_soups(draft);
+    edges = EdgeTable(draft.triangles, draft.points.size());
   }
-  const EdgeTable edges(draft.triangles, draft.points.size());
-  find_intersections(draft, edges, faults);
+  const Simplices simplices(draft, edges);
+  find_intersections(draft, simplices, faults);
   faults.raise();
 
-  Regions regions = find_regions(draft, edges, soups, faults);
+  Regions regions = find_regions(draft, edges, simplices.boxes(), soups, faults);
   faults.raise();
   if (options.require_solid) require_region(draft, edges, regions, soups, faults);
   faults.raise();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 
 #include "common/disjoint_sets.h"
 #include "plc/exact.h"
@@ -89,18 +90,30 @@ void add_cut(const Segment& segment, const CollinearGroups& groups, Draft& resul
 struct Twin {
   Corners key;  // sorted corners
   Index triangle;
+
+  friend bool operator<(const Twin& a, const Twin& b) {
+    return a.key != b.key ? a.key < b.key : a.triangle < b.triangle;
+  }
 };
 
-// Triangles ordered such that those with the same corners follow each other, the first one first.
+// Triangles ordered such that those with the same corners follow each other, the first one first: by counting
+// their lowest corners, then within each.
 std::vector<Twin> sort_by_corners(const Draft& draft) {
+  std::vector<Index> next(draft.points.size() + 1, 0);
+  for (const Corners& t : draft.triangles) ++next[*std::min_element(t.begin(), t.end()) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
   std::vector<Twin> order(draft.triangles.size());
   for (Index t = 0; t < order.size(); ++t) {
-    order[t] = {draft.triangles[t], t};
-    std::sort(order[t].key.begin(), order[t].key.end());
+    Twin twin{draft.triangles[t], t};
+    std::sort(twin.key.begin(), twin.key.end());
+    order[next[twin.key[0]]++] = twin;
   }
-  std::sort(order.begin(), order.end(), [](const Twin& a, const Twin& b) {
-    return a.key != b.key ? a.key < b.key : a.triangle < b.triangle;
-  });
+  auto first = order.begin();
+  for (std::size_t point = 0; point < draft.points.size(); ++point) {
+    const auto last = order.begin() + next[point];
+    std::sort(first, last);
+    first = last;
+  }
   return order;
 }
 

@@ -23,6 +23,8 @@ class EdgeTable {
   Index edge_of(Index side) const { return edge_of_side_[side]; }
   /// The edge between two points, none if there is none.
   Index find(Index a, Index b) const;
+  /// The triangle's corners 1 and 2 were swapped. Cost: linear in the triangles on its sides.
+  void turn(Index triangle);
 
  private:
   std::vector<std::array<Index, 2>> ends_;

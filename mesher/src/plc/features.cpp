@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/disjoint_sets.h"
+
 namespace collarmesh::build {
 
 namespace {
@@ -42,19 +44,23 @@ struct Extent {
   double low = INFINITY, high = -INFINITY;
 };
 
+// Most of them several times.
 std::vector<Index> corners_of(const Draft& draft, const std::vector<Index>& triangles) {
   std::vector<Index> points;
+  points.reserve(3 * triangles.size());
   for (const Index t : triangles)
     points.insert(points.end(), draft.triangles[t].begin(), draft.triangles[t].end());
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
   return points;
 }
 
+// The largest of all, or the first one above the limit.
 double deviation_from(const Draft& draft, const std::vector<Index>& points, const Point& origin,
-                      const Vector& normal) {
+                      const Vector& normal, double limit) {
   double largest = 0;
-  for (const Index p : points) largest = std::fmax(largest, std::fabs(dot(normal, draft.points[p] - origin)));
+  for (const Index p : points) {
+    largest = std::fmax(largest, std::fabs(dot(normal, draft.points[p] - origin)));
+    if (largest > limit) break;
+  }
   return largest;
 }
 
@@ -91,28 +97,15 @@ Index find_patches(const Draft& draft, const EdgeTable& edges, const std::vector
   std::vector<bool> is_segment(edges.size(), false);
   for (const FeatureSegment& s : segments)
     if (s.edge != none) is_segment[s.edge] = true;
-  patch_of.assign(draft.triangles.size(), none);
+  DisjointSets patches(draft.triangles.size());
+  for (Index e = 0; e < edges.size(); ++e)
+    if (!is_segment[e])
+      for (const Index side : edges.sides(e).subspan(1)) patches.unite(edges.sides(e)[0] / 3, side / 3);
+  // A set's representative is its first triangle.
+  patch_of.resize(draft.triangles.size());
   Index count = 0;
-  std::vector<Index> stack;
-  for (Index first = 0; first < draft.triangles.size(); ++first) {
-    if (patch_of[first] != none) continue;
-    patch_of[first] = count;
-    stack.assign(1, first);
-    while (!stack.empty()) {
-      const Index t = stack.back();
-      stack.pop_back();
-      for (unsigned i = 0; i < 3; ++i) {
-        const Index edge = edges.edge_of(3 * t + i);
-        if (is_segment[edge]) continue;
-        for (const Index side : edges.sides(edge)) {
-          if (patch_of[side / 3] != none) continue;
-          patch_of[side / 3] = count;
-          stack.push_back(side / 3);
-        }
-      }
-    }
-    ++count;
-  }
+  for (Index t = 0; t < draft.triangles.size(); ++t)
+    patch_of[t] = patches.find(t) == t ? count++ : patch_of[patches.find(t)];
   return count;
 }
 
@@ -123,14 +116,16 @@ void fit_plane(Draft& draft, const std::vector<Index>& triangles, Plc::Patch& pa
   for (const Index t : triangles) {
     const Vector n = cross(draft.corner(t, 1) - draft.corner(t, 0), draft.corner(t, 2) - draft.corner(t, 0));
     mean = mean + n;
-    if (norm(n) <= largest_area) continue;
+    const double twice_area = norm(n);
+    if (twice_area <= largest_area) continue;
     largest = t;
-    largest_area = norm(n);
+    largest_area = twice_area;
   }
   const std::vector<Index> points = corners_of(draft, triangles);
   const auto accept = [&](const Point& origin, const Vector& normal) {
-    const double deviation = deviation_from(draft, points, origin, normal);
-    if (deviation > std::max(draft.planar_tolerance, draft.rounding())) return false;
+    const double limit = std::max(draft.planar_tolerance, draft.rounding());
+    const double deviation = deviation_from(draft, points, origin, normal, limit);
+    if (deviation > limit) return false;
     patch.planar = true;
     patch.origin = origin;
     patch.normal = normal;
@@ -142,8 +137,9 @@ void fit_plane(Draft& draft, const std::vector<Index>& triangles, Plc::Patch& pa
   Extent extent{mean / norm(mean)};
   const Point& base = draft.corner(largest, 0);
   for (const Index p : points) {
-    extent.low = std::fmin(extent.low, dot(extent.normal, draft.points[p] - base));
-    extent.high = std::fmax(extent.high, dot(extent.normal, draft.points[p] - base));
+    const double height = dot(extent.normal, draft.points[p] - base);
+    extent.low = std::fmin(extent.low, height);
+    extent.high = std::fmax(extent.high, height);
   }
   accept(base + 0.5 * (extent.low + extent.high) * extent.normal, extent.normal);
 }

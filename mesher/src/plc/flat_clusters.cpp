@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "delaunay/predicates.h"
 
@@ -24,7 +23,11 @@ double longest_side(const Draft& draft, Index t) {
 class ClusterFinder {
  public:
   ClusterFinder(const Draft& draft, const EdgeTable& edges)
-      : draft_(draft), edges_(edges), areas_(draft.triangles.size()), heights_(draft.triangles.size()) {
+      : draft_(draft),
+        edges_(edges),
+        areas_(draft.triangles.size()),
+        heights_(draft.triangles.size()),
+        grows_(draft.triangles.size(), false) {
     result_.seed.assign(draft.triangles.size(), none);
     result_.normal.resize(draft.triangles.size());
     for (Index t = 0; t < areas_.size(); ++t) {
@@ -35,35 +38,56 @@ class ClusterFinder {
     }
   }
 
+  // Seeds are taken from the largest on. Most triangles of a curved surface have no neighbour in their
+  // plane: they need no turn of their own.
   FlatClusters run() {
-    std::vector<Index> order(areas_.size());
-    std::iota(order.begin(), order.end(), Index{0});
-    std::sort(order.begin(), order.end(),
-              [this](Index a, Index b) { return areas_[a] != areas_[b] ? areas_[a] > areas_[b] : a < b; });
+    std::vector<Index> order;
+    for (Index t = 0; t < areas_.size(); ++t) {
+      for_each_neighbour(t, [&](Index side) { grows_[t] = grows_[t] || joins(side, t, t); });
+      if (grows_[t]) order.push_back(t);
+    }
+    std::sort(order.begin(), order.end(), [this](Index a, Index b) { return precedes(a, b); });
     for (const Index t : order)
       if (result_.seed[t] == none) grow(t);
-    for (const Index t : order)
+    for (Index t = 0; t < areas_.size(); ++t) {
+      if (result_.seed[t] == none) result_.seed[t] = t;
       if (heights_[t] <= needle_height * draft_.planar_tolerance)
         result_.normal[t] = result_.normal[result_.seed[t]];
+    }
     return std::move(result_);
   }
 
  private:
+  bool precedes(Index a, Index b) const { return areas_[a] != areas_[b] ? areas_[a] > areas_[b] : a < b; }
+
+  // The neighbours' sides on common edges where no third triangle is.
+  template <class Visit>
+  void for_each_neighbour(Index t, const Visit& visit) const {
+    for (unsigned i = 0; i < 3; ++i) {
+      const auto sides = edges_.sides(edges_.edge_of(3 * t + i));
+      if (sides.size() == 2) visit(sides[0] / 3 == t ? sides[1] : sides[0]);
+    }
+  }
+
   void grow(Index seed) {
     result_.seed[seed] = seed;
     stack_.assign(1, seed);
     while (!stack_.empty()) {
       const Index t = stack_.back();
       stack_.pop_back();
-      for (unsigned i = 0; i < 3; ++i) {
-        const auto sides = edges_.sides(edges_.edge_of(3 * t + i));
-        if (sides.size() != 2) continue;
-        const Index side = sides[0] / 3 == t ? sides[1] : sides[0];
-        if (result_.seed[side / 3] != none || !(same_facet(t, side / 3) || in_plane(side, seed))) continue;
-        result_.seed[side / 3] = seed;
-        stack_.push_back(side / 3);
-      }
+      for_each_neighbour(t, [&](Index side) {
+        const Index other = side / 3;
+        const bool had_its_turn = !grows_[other] && precedes(other, seed);
+        if (had_its_turn || result_.seed[other] != none || !joins(side, t, seed)) return;
+        result_.seed[other] = seed;
+        stack_.push_back(other);
+      });
     }
+  }
+
+  // Does the triangle of this side, a neighbour of t in the seed's cluster, belong to it, too?
+  bool joins(Index side, Index t, Index seed) const {
+    return same_facet(t, side / 3) || in_plane(side, seed);
   }
 
   // A polygon is one plane, whatever rounding has done to its corners.
@@ -90,6 +114,7 @@ class ClusterFinder {
   const Draft& draft_;
   const EdgeTable& edges_;
   std::vector<double> areas_, heights_;
+  std::vector<bool> grows_;  // as a seed, when no other one was before
   std::vector<Index> stack_;
   FlatClusters result_;
 };

@@ -8,20 +8,12 @@
 #include <utility>
 
 #include "delaunay/predicates.h"
-#include "plc/box_tree.h"
 #include "plc/exact.h"
 #include "plc/meeting.h"
 
 namespace collarmesh::build {
 
 namespace {
-
-// A triangle, a loose segment or a loose point.
-struct Simplex {
-  Corners points{none, none, none};
-  unsigned size = 0;
-  std::span<const Index> corners() const { return {points.data(), size}; }
-};
 
 // The corners of two simplices, common ones first.
 struct Pair {
@@ -31,24 +23,15 @@ struct Pair {
 
 class IntersectionFinder {
  public:
-  IntersectionFinder(const Draft& draft, const EdgeTable& edges) : draft_(draft) {
-    for (const Corners& t : draft.triangles) simplices_.push_back({t, 3});
-    std::vector<std::array<Index, 2>> loose;
-    for (const Segment& s : draft.segments)
-      if (edges.find(s.a, s.b) == none) loose.push_back({std::min(s.a, s.b), std::max(s.a, s.b)});
-    std::sort(loose.begin(), loose.end());
-    loose.erase(std::unique(loose.begin(), loose.end()), loose.end());
-    for (const auto& [a, b] : loose) simplices_.push_back({{a, b, none}, 2});
-    for (const Index p : draft.loose_points) simplices_.push_back({{p, none, none}, 1});
-  }
+  IntersectionFinder(const Draft& draft, const Simplices& simplices)
+      : draft_(draft), boxes_(simplices.boxes()), simplices_(simplices.list()) {}
 
   void run(Faults& faults) {
-    std::vector<Box> boxes(simplices_.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-      for (const Index p : simplices_[i].corners()) boxes[i].add(draft_.points[p]);
     std::vector<std::pair<Index, Index>> found;
-    BoxTree(std::move(boxes)).for_each_pair([&](Index i, Index j) {
-      if (!of_one_facet(i, j) && illegal(ordered(i, j))) found.push_back(std::minmax(i, j));
+    boxes_.for_each_pair([&](Index i, Index j) {
+      const bool triangles = simplices_[i].size == 3 && simplices_[j].size == 3;
+      if (triangles ? triangles_illegal(simplices_[i].points, simplices_[j].points) : illegal(ordered(i, j)))
+        found.push_back(std::minmax(i, j));
     });
     std::sort(found.begin(), found.end());
     for (const auto& [i, j] : found) report(i, j, faults);
@@ -56,13 +39,6 @@ class IntersectionFinder {
 
  private:
   const Point& at(Index p) const { return draft_.points[p]; }
-
-  // The triangles of a facet come from one triangulation.
-  bool of_one_facet(Index i, Index j) const {
-    return simplices_[i].size == 3 && simplices_[j].size == 3 &&
-           draft_.origins[i].soup == draft_.origins[j].soup &&
-           draft_.origins[i].facet == draft_.origins[j].facet;
-  }
 
   Pair ordered(Index i, Index j) const {
     Pair pair{simplices_[i], simplices_[j], 0};
@@ -78,7 +54,8 @@ class IntersectionFinder {
     return pair;
   }
 
-  // Do they meet in more than their common corners? The first one has at least as many corners.
+  // Do they meet in more than their common corners? The first one has at least as many corners, the second
+  // one at most two.
   bool illegal(const Pair& pair) const {
     const auto& f = pair.first.points;
     const auto& s = pair.second.points;
@@ -89,9 +66,26 @@ class IntersectionFinder {
     if (pair.first.size == 2)
       return pair.common == 1 ? overlap(f[0], f[1], s[1])
                               : segments_meet(at(f[0]), at(f[1]), at(s[0]), at(s[1]));
-    if (pair.second.size == 2) return segment_illegal(pair);
-    if (pair.common == 2) return folded(f, s);
-    return pair.common == 1 ? fans_meet(f, s) : triangles_meet(f, s);
+    return segment_illegal(pair);
+  }
+
+  // The same of two triangles: of almost all pairs.
+  bool triangles_illegal(const Corners& f, const Corners& s) const {
+    const auto from = [](const Corners& t, unsigned i) {
+      return Corners{t[i % 3], t[(i + 1) % 3], t[(i + 2) % 3]};
+    };
+    unsigned common = 0, in_f = 0, in_s = 0;  // the sums of their places
+    for (unsigned a = 0; a < 3; ++a)
+      for (unsigned b = 0; b < 3; ++b)
+        if (f[a] == s[b]) {
+          ++common;
+          in_f += a;
+          in_s += b;
+        }
+    // The places of all three corners have the sum 3: of two common ones it tells the third.
+    if (common == 2) return folded(from(f, 4 - in_f), from(s, 4 - in_s));
+    if (common == 1) return fans_meet(from(f, in_f), from(s, in_s));
+    return common == 0 && triangles_meet(f, s);
   }
 
   // Two segments from a that lie on one ray.
@@ -116,12 +110,13 @@ class IntersectionFinder {
   // Triangles with one common corner that meet elsewhere: then the side of one opposite to it meets
   // the other.
   bool fans_meet(const Corners& f, const Corners& s) const {
+    if (apart(f, s, 1) || apart(s, f, 1)) return false;
     return segment_meets_triangle(at(f[1]), at(f[2]), at(s[0]), at(s[1]), at(s[2])) ||
            segment_meets_triangle(at(s[1]), at(s[2]), at(f[0]), at(f[1]), at(f[2]));
   }
 
   bool triangles_meet(const Corners& f, const Corners& s) const {
-    if (apart(f, s) || apart(s, f)) return false;
+    if (apart(f, s, 0) || apart(s, f, 0)) return false;
     for (unsigned i = 0; i < 3; ++i) {
       const unsigned j = (i + 1) % 3;
       if (segment_meets_triangle(at(f[i]), at(f[j]), at(s[0]), at(s[1]), at(s[2])) ||
@@ -131,11 +126,12 @@ class IntersectionFinder {
     return false;
   }
 
-  // Does the plane of f have all of s on one side?
-  bool apart(const Corners& f, const Corners& s) const {
-    const int side = predicates::orientation(at(f[0]), at(f[1]), at(f[2]), at(s[0]));
-    return side != 0 && side == predicates::orientation(at(f[0]), at(f[1]), at(f[2]), at(s[1])) &&
-           side == predicates::orientation(at(f[0]), at(f[1]), at(f[2]), at(s[2]));
+  // Does the plane of f have all corners of s but the common ones on one side?
+  bool apart(const Corners& f, const Corners& s, unsigned common) const {
+    const auto side = [&](Index p) { return predicates::orientation(at(f[0]), at(f[1]), at(f[2]), at(p)); };
+    const int first = side(s[common]);
+    return first != 0 &&
+           std::all_of(s.begin() + common + 1, s.end(), [&](Index p) { return side(p) == first; });
   }
 
   void report(Index i, Index j, Faults& faults) const {
@@ -217,13 +213,14 @@ class IntersectionFinder {
   }
 
   const Draft& draft_;
-  std::vector<Simplex> simplices_;
+  const BoxTree& boxes_;
+  std::span<const Simplex> simplices_;
 };
 
 }  // namespace
 
-void find_intersections(const Draft& draft, const EdgeTable& edges, Faults& faults) {
-  IntersectionFinder(draft, edges).run(faults);
+void find_intersections(const Draft& draft, const Simplices& simplices, Faults& faults) {
+  IntersectionFinder(draft, simplices).run(faults);
 }
 
 }  // namespace collarmesh::build

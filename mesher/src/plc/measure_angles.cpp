@@ -213,21 +213,60 @@ class AngleFinder {
 
 }  // namespace
 
-std::vector<Crease> measure_angles(const Plc& plc) { return AngleFinder(plc).run(); }
+namespace {
+
+// Triangles that face within this cosine of one of them are all within 30 degrees of each other: their fan is
+// too flat to fold.
+constexpr double flat_cosine = 0.966;
+
+// Points where the triangles of some smooth patch face several ways: all others are flat.
+std::vector<Index> points_not_flat(std::span<const Point> points, const Plc& plc) {
+  struct First {
+    Index patch = none;  // the last one that was seen at the point
+    Vector normal;       // of its first triangle there
+  };
+  std::vector<First> first(points.size());
+  std::vector<bool> flat(points.size(), true);
+  for (const Plc::Triangle& t : plc.triangles) {
+    if (plc.patches[t.patch].planar) continue;
+    const Point& a = points[t.points[0]];
+    const Vector n = cross(points[t.points[1]] - a, points[t.points[2]] - a);
+    const double nn = squared_norm(n);
+    for (const Index p : t.points) {
+      if (first[p].patch != t.patch) first[p] = {t.patch, n};
+      const double agreement = dot(first[p].normal, n);
+      if (!(agreement > 0) ||
+          agreement * agreement < flat_cosine * flat_cosine * nn * squared_norm(first[p].normal))
+        flat[p] = false;
+    }
+  }
+  std::vector<Index> result;
+  for (Index p = 0; p < points.size(); ++p)
+    if (!flat[p]) result.push_back(p);
+  return result;
+}
+
+}  // namespace
+
+std::vector<Crease> measure_angles(const Plc& plc) {
+  if (plc.curves.empty() && plc.vertices.empty()) return {};
+  return AngleFinder(plc).run();
+}
 
 std::vector<Index> find_folds(std::span<const Point> points, const Plc& plc,
                               std::span<const FeatureSegment> segments) {
+  std::vector<Index> folds = points_not_flat(points, plc);
+  if (folds.empty()) return folds;
   std::vector<std::array<Index, 2>> ends;
   ends.reserve(segments.size());
   for (const FeatureSegment& s : segments) ends.push_back({s.a, s.b});
   PatchFans fans(points, plc.triangles, plc.patches, ends);
-  std::vector<Index> folds;
-  for (Index p = 0; p < points.size(); ++p) {
+  std::erase_if(folds, [&](Index p) {
     const std::vector<Fan> around = fans.at(p, true);
-    if (std::any_of(around.begin(), around.end(),
-                    [&](const Fan& fan) { return fans.fold(p, fan, noise * plc.planar_tolerance) < folded; }))
-      folds.push_back(p);
-  }
+    return std::none_of(around.begin(), around.end(), [&](const Fan& fan) {
+      return fans.fold(p, fan, noise * plc.planar_tolerance) < folded;
+    });
+  });
   return folds;
 }
 

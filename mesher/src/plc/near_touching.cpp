@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "plc/box_tree.h"
+#include "common/box_tree.h"
 
 namespace collarmesh::build {
 
@@ -57,7 +57,7 @@ class NearTouchingFinder {
         boxes[e].add(at(elements_[e].points[i]) - reach);
         boxes[e].add(at(elements_[e].points[i]) + reach);
       }
-    BoxTree(std::move(boxes)).for_each_pair([&](Index i, Index j) {
+    BoxTree(boxes, features()).for_each_pair([&](Index i, Index j) {
       const Element &a = elements_[std::min(i, j)], &b = elements_[std::max(i, j)];
       if (have_common_point(a, b) || related(a, b)) return;
       const Nearest nearest = nearest_of(a, b);
@@ -73,15 +73,26 @@ class NearTouchingFinder {
 
   const Point& at(Index p) const { return plc_.points[p]; }
 
+  // Each feature is a group: it touches itself.
+  std::vector<Index> features() const {
+    const auto vertices = static_cast<Index>(plc_.vertices.size()),
+               curves = static_cast<Index>(plc_.curves.size());
+    const std::array<Index, 3> first{0, vertices, vertices + curves};
+    std::vector<Index> groups;
+    groups.reserve(elements_.size());
+    for (const Element& e : elements_) groups.push_back(first[e.dimension] + e.feature);
+    return groups;
+  }
+
   static bool have_common_point(const Element& a, const Element& b) {
     const auto end = b.points.begin() + b.size;
     return std::any_of(a.points.begin(), a.points.begin() + a.size,
                        [&](Index p) { return std::find(b.points.begin(), end, p) != end; });
   }
 
-  // Is one feature part of the other, or do they meet in a common one? The first has the lower dimension.
+  // Is one of two features part of the other, or do they meet in a common one? The first has the lower
+  // dimension.
   bool related(const Element& a, const Element& b) const {
-    if (a.dimension == b.dimension && a.feature == b.feature) return true;
     if (a.dimension == 0) {
       if (b.dimension == 1) return plc_.vertex_on_curve(a.feature, b.feature);
       return b.dimension == 2 && plc_.vertex_on_patch(a.feature, b.feature);
@@ -180,7 +191,8 @@ class NearTouchingFinder {
 }  // namespace
 
 void find_near_touching(const Plc& plc, double limit, Faults& faults) {
-  if (limit > 0) NearTouchingFinder(plc, limit).run(faults);
+  const bool has_pairs = plc.vertices.size() + plc.curves.size() + plc.patches.size() > 1;
+  if (limit > 0 && has_pairs) NearTouchingFinder(plc, limit).run(faults);
 }
 
 }  // namespace collarmesh::build

@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <span>
 #include <utility>
-
-#include "plc/edges.h"
 
 namespace collarmesh::build {
 
@@ -13,16 +10,12 @@ namespace {
 
 class Orienter {
  public:
-  Orienter(Draft& draft, Index first, Index last, Faults& faults)
-      : draft_(draft),
-        faults_(faults),
-        first_(first),
-        triangles_(draft.triangles.data() + first, last - first),
-        edges_(triangles_, draft.points.size()),
-        turned_(triangles_.size(), unvisited) {}
+  Orienter(Draft& draft, EdgeTable& edges, Faults& faults)
+      : draft_(draft), edges_(edges), faults_(faults), turned_(draft.triangles.size(), unvisited) {}
 
   void run() {
-    for (Index t = 0; t < triangles_.size(); ++t) {
+    if (all_agree()) return;
+    for (Index t = 0; t < turned_.size(); ++t) {
       if (turned_[t] != unvisited) continue;
       collect_component(t);
       apply();
@@ -32,6 +25,17 @@ class Orienter {
  private:
   static constexpr signed char unvisited = -1;
 
+  // As in almost all files; then no triangle needs to be turned.
+  bool all_agree() const {
+    for (Index e = 0; e < edges_.size(); ++e)
+      for (const Index side : edges_.sides(e)) {
+        const Index other = across(side);
+        if (other != none && ascending(draft_.triangles, side) == ascending(draft_.triangles, other))
+          return false;
+      }
+    return true;
+  }
+
   void collect_component(Index start) {
     component_.assign(1, start);
     turned_[start] = 0;
@@ -39,11 +43,22 @@ class Orienter {
       for (unsigned i = 0; i < 3; ++i) visit_across(3 * component_[next] + i);
   }
 
+  // The only other side of its soup on the same edge, none if there is no such side.
+  Index across(Index side) const {
+    const Index soup = draft_.origins[side / 3].soup;
+    Index other = none;
+    for (const Index s : edges_.sides(edges_.edge_of(side))) {
+      if (s == side || draft_.origins[s / 3].soup != soup) continue;
+      if (other != none) return none;
+      other = s;
+    }
+    return other;
+  }
+
   void visit_across(Index side) {
-    const auto sides = edges_.sides(edges_.edge_of(side));
-    if (sides.size() != 2) return;
-    const Index other = sides[0] == side ? sides[1] : sides[0];
-    const bool agree = ascending(triangles_, side) != ascending(triangles_, other);
+    const Index other = across(side);
+    if (other == none) return;
+    const bool agree = ascending(draft_.triangles, side) != ascending(draft_.triangles, other);
     const auto turn = static_cast<signed char>(agree ? turned_[side / 3] : 1 - turned_[side / 3]);
     if (turned_[other / 3] == unvisited) {
       turned_[other / 3] = turn;
@@ -55,7 +70,7 @@ class Orienter {
 
   void report(const std::array<Index, 2>& edge, Index triangle) {
     const Point &a = draft_.points[edge[0]], &b = draft_.points[edge[1]];
-    const Origin& origin = draft_.origins[first_ + triangle];
+    const Origin& origin = draft_.origins[triangle];
     faults_.add(
         PlcFault::Kind::not_orientable,
         fmt::format("The surface of {} around facet {} has one side only (a Moebius strip); its facets "
@@ -69,29 +84,25 @@ class Orienter {
     for (const Index t : component_) turns += static_cast<std::size_t>(turned_[t]);
     const signed char turn = 2 * turns > component_.size() ? 0 : 1;
     for (const Index t : component_) {
-      if (turned_[t] == turn) std::swap(triangles_[t][1], triangles_[t][2]);
-      draft_.origins[first_ + t].oriented = turns == 0 || turns == component_.size();
+      if (turned_[t] == turn) {
+        std::swap(draft_.triangles[t][1], draft_.triangles[t][2]);
+        edges_.turn(t);
+      }
+      draft_.origins[t].oriented = turns == 0 || turns == component_.size();
     }
   }
 
   Draft& draft_;
+  EdgeTable& edges_;
   Faults& faults_;
-  Index first_;
-  std::span<Corners> triangles_;
-  EdgeTable edges_;
   std::vector<signed char> turned_;
   std::vector<Index> component_;
 };
 
 }  // namespace
 
-void orient_components(Draft& draft, Faults& faults) {
-  const auto count = static_cast<Index>(draft.triangles.size());
-  for (Index first = 0, last = 0; first < count; first = last) {
-    const Index soup = draft.origins[first].soup;
-    while (last < count && draft.origins[last].soup == soup) ++last;
-    Orienter(draft, first, last, faults).run();
-  }
+void orient_components(Draft& draft, EdgeTable& edges, Faults& faults) {
+  Orienter(draft, edges, faults).run();
 }
 
 }  // namespace collarmesh::build

@@ -7,6 +7,7 @@
 #include "plc/draft.h"
 #include "plc/edges.h"
 #include "plc/shells.h"
+#include "plc/simplices.h"
 
 namespace collarmesh {
 
@@ -21,7 +22,8 @@ class PointPlacer {
         draft_(draft_of(plc)),
         edges_(draft_.triangles, draft_.points.size()),
         shells_(find_shells(draft_, edges_)),
-        caster_(draft_) {}
+        simplices_(draft_, edges_),
+        caster_(draft_, simplices_.boxes()) {}
 
   Index run(PolygonSoup& soup) {
     find_largest_sides();
@@ -131,6 +133,7 @@ class PointPlacer {
   Draft draft_;
   EdgeTable edges_;
   DisjointSets shells_;
+  Simplices simplices_;
   LineCaster caster_;
   std::vector<Index> largest_;  // by shell
   std::vector<double> volume_;

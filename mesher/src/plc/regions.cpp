@@ -46,7 +46,7 @@ struct Chamber {
 
 class RegionFinder {
  public:
-  RegionFinder(const Draft& draft, const EdgeTable& edges, Faults& faults)
+  RegionFinder(const Draft& draft, const EdgeTable& edges, const BoxTree& boxes, Faults& faults)
       : draft_(draft),
         faults_(faults),
         count_(static_cast<Index>(draft.triangles.size())),
@@ -54,7 +54,7 @@ class RegionFinder {
         components_(count_),
         shells_(find_shells(draft, edges)),
         chambers_(shells_),
-        caster_(draft),
+        caster_(draft, boxes),
         outer_shell_(count_, none) {
     for (Index e = 0; e < edges.size(); ++e)
       for (const Index side : edges.sides(e)) components_.unite(side / 3, edges.sides(e)[0] / 3);
@@ -382,9 +382,9 @@ class RegionFinder {
 
 }  // namespace
 
-Regions find_regions(const Draft& draft, const EdgeTable& edges, std::span<const PolygonSoup> soups,
-                     Faults& faults) {
-  return RegionFinder(draft, edges, faults).run(soups);
+Regions find_regions(const Draft& draft, const EdgeTable& edges, const BoxTree& boxes,
+                     std::span<const PolygonSoup> soups, Faults& faults) {
+  return RegionFinder(draft, edges, boxes, faults).run(soups);
 }
 
 }  // namespace collarmesh::build

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "collarmesh/plc.h"
+#include "common/box_tree.h"
 #include "plc/draft.h"
 #include "plc/edges.h"
 #include "plc/faults.h"
@@ -22,7 +23,8 @@ struct Regions {
 /// Precondition: triangles meet in common edges and corners only.
 /// A region is named after the soup that most of its boundary comes from.
 /// Faults: region and hole points on a facet. Warnings: those without effect.
-Regions find_regions(const Draft& draft, const EdgeTable& edges, std::span<const PolygonSoup> soups,
-                     Faults& faults);
+/// The triangles are the first items of the tree, in their order.
+Regions find_regions(const Draft& draft, const EdgeTable& edges, const BoxTree& boxes,
+                     std::span<const PolygonSoup> soups, Faults& faults);
 
 }  // namespace collarmesh::build

@@ -52,13 +52,6 @@ Index side_towards(const Draft& draft, Index side, bool larger) {
   return ascending(draft.triangles, side) == larger ? front_side(side / 3) : back_side(side / 3);
 }
 
-std::vector<Box> triangle_boxes(const Draft& draft) {
-  std::vector<Box> boxes(draft.triangles.size());
-  for (Index t = 0; t < boxes.size(); ++t)
-    for (unsigned i = 0; i < 3; ++i) boxes[t].add(draft.corner(t, i));
-  return boxes;
-}
-
 }  // namespace
 
 DisjointSets find_shells(const Draft& draft, const EdgeTable& edges) {
@@ -79,12 +72,11 @@ DisjointSets find_shells(const Draft& draft, const EdgeTable& edges) {
   return shells;
 }
 
-LineCaster::LineCaster(const Draft& draft) : draft_(draft), tree_(triangle_boxes(draft)) {}
-
 std::optional<std::vector<LineCaster::Crossing>> LineCaster::cast(const Point& p, const Point& q) const {
   std::vector<Crossing> crossings;
   bool degenerate = false;
-  tree_.for_each_near_segment(p, q, [&](Index t) {
+  boxes_.for_each_near_segment(p, q, [&](Index t) {
+    if (t >= draft_.triangles.size()) return;
     const Meeting meeting = meet(t, p, q);
     if (meeting == Meeting::degenerate) degenerate = true;
     if (meeting == Meeting::forward || meeting == Meeting::backward)

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
+#include "common/box_tree.h"
 #include "common/disjoint_sets.h"
-#include "plc/box_tree.h"
 #include "plc/draft.h"
 #include "plc/edges.h"
 
@@ -19,7 +19,8 @@ DisjointSets find_shells(const Draft& draft, const EdgeTable& edges);
 /// Where straight lines meet the triangles.
 class LineCaster {
  public:
-  explicit LineCaster(const Draft& draft);
+  /// Both are kept by reference. The triangles are the first items of the tree, in their order.
+  LineCaster(const Draft& draft, const BoxTree& boxes) : draft_(draft), boxes_(boxes) {}
 
   struct Crossing {
     Index triangle;
@@ -36,7 +37,7 @@ class LineCaster {
   Meeting meet(Index triangle, const Point& p, const Point& q) const;
 
   const Draft& draft_;
-  BoxTree tree_;
+  const BoxTree& boxes_;
 };
 
 /// A direction that no input prefers; another one for each attempt.

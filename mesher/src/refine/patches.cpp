@@ -29,7 +29,7 @@ bool meet(const Plc::Patch& a, const Plc::Patch& b) {
 
 }  // namespace
 
-std::vector<Index> spread_points(const std::vector<Index>& candidates, const std::vector<Point>& points,
+std::vector<Index> spread_points(std::span<const Index> candidates, const std::vector<Point>& points,
                                  std::size_t count) {
   std::vector<Index> chosen{candidates[0]};
   std::vector<double> gap(candidates.size(), INFINITY);
@@ -50,19 +50,9 @@ void Refinement::prepare_patches() {
   for (Index patch = 0; patch < plc_.patches.size(); ++patch) {
     const Plc::Patch& p = plc_.patches[patch];
     if (!p.curves.empty() || !p.vertices.empty()) continue;
-    for (const Index point : spread_points(tessellation_points(p), points_, seeds_per_closed_patch))
+    for (const Index point : spread_points(patch_points_[patch], points_, seeds_per_closed_patch))
       add_unresolved(points_[point], 2, patch);
   }
-}
-
-std::vector<Index> Refinement::tessellation_points(const Plc::Patch& patch) const {
-  std::vector<Index> points;
-  points.reserve(3 * std::size_t{patch.triangle_count});
-  for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t)
-    points.insert(points.end(), plc_.triangles[t].points.begin(), plc_.triangles[t].points.end());
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  return points;
 }
 
 // The box' corners lie outside every region.

@@ -65,6 +65,7 @@ Refinement::Refinement(const Plc& plc, const MeshOptions& options, const Executi
       execution_(execution),
       frame_(plc.bounds),
       points_(framed(plc.points, frame_)),
+      patch_points_(plc),
       sizing_(plc, options, frame_),
       gradation_(options.gradation == 0 && options.elements_across_gap > 0 ? gradation_in_gaps
                                                                            : options.gradation),

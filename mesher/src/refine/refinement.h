@@ -15,6 +15,7 @@
 #include "collar/collar_system.h"
 #include "collarmesh/mesher.h"
 #include "common/large_pages.h"
+#include "common/patch_points.h"
 #include "delaunay/triangulation.h"
 #include "location/curve_paths.h"
 #include "location/location_objects.h"
@@ -30,7 +31,7 @@ namespace collarmesh {
 
 /// Of some points, those that are far from each other: each next one is the farthest from all
 /// before. Cost: candidates times count.
-std::vector<Index> spread_points(const std::vector<Index>& candidates, const std::vector<Point>& points,
+std::vector<Index> spread_points(std::span<const Index> candidates, const std::vector<Point>& points,
                                  std::size_t count);
 
 /// Sparse Voronoi Refinement of a complex (paper, Procedures 1 to 3): owns
@@ -216,7 +217,6 @@ class Refinement {
 
   // patches.cpp
   void prepare_patches();
-  std::vector<Index> tessellation_points(const Plc::Patch& patch) const;
   void label_from_outside(Index cell);
   std::size_t first_label();
   bool on_patch(Index vertex, Index patch) const;
@@ -393,6 +393,7 @@ class Refinement {
   const Execution& execution_;
   Frame frame_;
   std::vector<Point> points_;  // of the complex, in the frame
+  PatchPoints patch_points_;
   Sizing sizing_;
   double gradation_;
   double diagonal_, distance_, floor_;

@@ -210,9 +210,7 @@ bool Refinement::refine_distant_triangles(const std::vector<FaceId>& faces) {
     if (plc_.patches[patch].planar || t.in_collar || t.given_up || t.known_near) continue;
     Index near = t.triangle;  // the next sample is often near the same triangle
     const auto is_near = [&](const Point& p) {
-      const auto corners = hierarchy_.corners(near);
-      if (squared_distance_to_triangle(p, corners[0], corners[1], corners[2]) < tolerance) return true;
-      const Index other = hierarchy_.triangle_within(p, tolerance, [&](Index triangle) {
+      const Index other = hierarchy_.triangle_within(p, tolerance, near, [&](Index triangle) {
         return triangle < plc_.triangles.size() && plc_.triangles[triangle].patch == patch;
       });
       if (other != none) near = other;
@@ -238,7 +236,7 @@ bool Refinement::refine_distant_triangles(const std::vector<FaceId>& faces) {
 // A patch that no triangle was found of: its dual edges cross it back and forth.
 void Refinement::seed_missed_patch(Index patch) {
   const std::size_t seeds = seeds_per_missed_patch << std::min(surface_rounds_, 16U);
-  for (const Index point : spread_points(tessellation_points(plc_.patches[patch]), points_, seeds))
+  for (const Index point : spread_points(patch_points_[patch], points_, seeds))
     add_unresolved(points_[point], 2, patch);
 }
 
@@ -246,7 +244,7 @@ void Refinement::prepare_tessellation() {
   for (Index patch = 0; patch < plc_.patches.size(); ++patch) {
     first_tessellation_point_.push_back(tessellation_.size());
     if (plc_.patches[patch].planar) continue;
-    for (const Index point : tessellation_points(plc_.patches[patch]))
+    for (const Index point : patch_points_[patch])
       if (collars_.ball_containing(points_[point]) == none) tessellation_.push_back({point, no_face, 0});
   }
   first_tessellation_point_.push_back(tessellation_.size());
@@ -264,6 +262,7 @@ bool Refinement::still_near(const TessellationPoint& p, Index patch) const {
 // triangles becomes an unresolved point: the farthest one at each triangle, so that one insertion
 // serves all its neighbours.
 bool Refinement::resolve_distant_points(const std::vector<FaceId>& faces) {
+  const double tolerance = distance_ * distance_;
   if (first_tessellation_point_.empty()) prepare_tessellation();
   std::vector<std::vector<FaceId>> faces_of(plc_.patches.size());
   for (const FaceId face : faces)
@@ -288,15 +287,18 @@ bool Refinement::resolve_distant_points(const std::vector<FaceId>& faces) {
     for (const FaceId face : faces_of[patch]) corners.push_back(mesh_.face_vertices(face));
     const TriangleHierarchy surface(positions, std::move(corners));
     std::vector<std::pair<double, Index>> farthest(faces_of[patch].size(), {0, none});
+    Index near = none;  // the next point is often near the same triangle
     for (TessellationPoint* p : lost) {
-      Index nearest = none;
-      const double d = surface.squared_distance_to(points_[p->point], INFINITY, &nearest);
-      if (d > distance_ * distance_) {
-        if (d > farthest[nearest].first) farthest[nearest] = {d, p->point};
-      } else {
-        p->near = faces_of[patch][nearest];
+      const Point& at = points_[p->point];
+      near = surface.triangle_within(at, tolerance, near);
+      if (near != none) {
+        p->near = faces_of[patch][near];
         p->generation = mesh_.generation(cell_of(p->near));
+        continue;
       }
+      Index nearest = none;
+      const double d = surface.squared_distance_to(at, INFINITY, &nearest);
+      if (d > farthest[nearest].first) farthest[nearest] = {d, p->point};
     }
     for (const auto& [d, point] : farthest) {
       if (point == none) continue;

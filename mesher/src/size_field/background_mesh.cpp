@@ -6,8 +6,8 @@
 
 #include "collarmesh/error.h"
 #include "collarmesh/size_field.h"
+#include "common/box_tree.h"
 #include "location/triangle_hierarchy.h"
-#include "plc/box_tree.h"
 
 namespace collarmesh {
 
@@ -71,7 +71,7 @@ class BackgroundMesh {
   std::vector<Point> points_;
   std::vector<std::array<Index, 4>> tets_;
   std::vector<double> values_;
-  build::BoxTree boxes_;
+  BoxTree boxes_;
   TriangleHierarchy nearest_;
 };
 

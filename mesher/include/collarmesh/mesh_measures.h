@@ -6,22 +6,26 @@
 
 #include "collarmesh/tet_mesh.h"
 
-namespace collarmesh::cli {
+namespace collarmesh {
 
 /// The shapes of a mesh's tetrahedra, for summaries and reports.
 struct MeshMeasures {
   static constexpr std::size_t bins = 18;
 
-  double min_dihedral = 180, max_dihedral = 0;  ///< degrees
-  double max_radius_edge = 0;         ///< outside collars, where it is bounded
-  double max_collar_radius_edge = 0;  ///< in collars; 0: there are none
+  double min_dihedral = 180, max_dihedral = 0;    ///< degrees
+  double max_radius_edge = 0;                     ///< outside collars, where it is bounded
+  double max_collar_radius_edge = 0;              ///< in collars; 0: there are none
   std::array<std::size_t, bins> min_dihedrals{};  ///< tets by their smallest dihedral angle, 10 degrees a bin
   std::array<std::size_t, bins> max_dihedrals{};  ///< tets by their largest one
   std::array<std::size_t, bins>
       radius_edges{};  ///< tets by radius-edge ratio, 0.25 a bin, the last one is open
   std::map<Index, double> region_volumes;
+
+  /// Count a tet of this quality.
+  void add(const TetQuality& quality, Index region, bool in_collar);
 };
 
+/// Of all tets; of a mesh without regions they are those of region 1.
 MeshMeasures measure_mesh(const TetMesh& mesh);
 
-}  // namespace collarmesh::cli
+}  // namespace collarmesh

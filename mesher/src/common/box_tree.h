@@ -1,17 +1,20 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "collarmesh/geometry.h"
+#include "common/spatial_order.h"
 
-namespace collarmesh::build {
+namespace collarmesh {
 
 /// A hierarchy of boxes that finds the pairs of items whose boxes meet, and the items near a segment.
 class BoxTree {
  public:
-  explicit BoxTree(std::vector<Box> boxes);
+  /// Items may belong to groups, numbered in any way; without groups each is alone. Cost: O(n).
+  explicit BoxTree(std::span<const Box> boxes, std::span<const Index> groups = {});
 
-  /// Calls visit(i, j) once for every pair of items whose boxes meet.
+  /// Calls visit(i, j) once for every pair of items of different groups whose boxes meet.
   template <class Visit>
   void for_each_pair(const Visit& visit) const {
     if (!nodes_.empty()) pairs_within(0, visit);
@@ -29,6 +32,7 @@ class BoxTree {
   struct Node {
     Box box;
     Index first, count;  // items, or count 0: the children are the next node and `first`
+    Index group;         // of all its items, none if they differ
   };
   static constexpr Index leaf_size = 4;
 
@@ -39,8 +43,14 @@ class BoxTree {
   // Conservative: never false when the box and the segment meet.
   static bool may_meet(const Box& box, const Point& p, const Point& q);
 
-  class Builder;
-  static void extend(Box& box, const Box& other);
+  Index build(std::span<const SpatialKey> keys, Index first);
+  // Are all items below both nodes of one group?
+  static bool of_one_group(const Node& a, const Node& b) { return a.group != none && a.group == b.group; }
+  bool of_one_group(Index i, Index j) const { return !groups_.empty() && groups_[i] == groups_[j]; }
+  template <class Visit>
+  void visit_pair(Index i, Index j, const Visit& visit) const {
+    if (meet(boxes_[i], boxes_[j]) && !of_one_group(i, j)) visit(items_[i], items_[j]);
+  }
 
   template <class Test, class Visit>
   void descend(Index node, const Test& test, const Visit& visit) const {
@@ -52,12 +62,13 @@ class BoxTree {
       return;
     }
     for (Index i = n.first; i < n.first + n.count; ++i)
-      if (test(boxes_[items_[i]])) visit(items_[i]);
+      if (test(boxes_[i])) visit(items_[i]);
   }
 
   template <class Visit>
   void pairs_within(Index node, const Visit& visit) const {
     const Node& n = nodes_[node];
+    if (n.group != none) return;
     if (n.count == 0) {
       pairs_within(node + 1, visit);
       pairs_within(n.first, visit);
@@ -65,14 +76,13 @@ class BoxTree {
       return;
     }
     for (Index i = n.first; i < n.first + n.count; ++i)
-      for (Index j = i + 1; j < n.first + n.count; ++j)
-        if (meet(boxes_[items_[i]], boxes_[items_[j]])) visit(items_[i], items_[j]);
+      for (Index j = i + 1; j < n.first + n.count; ++j) visit_pair(i, j, visit);
   }
 
   template <class Visit>
   void pairs_between(Index a, Index b, const Visit& visit) const {
     const Node &m = nodes_[a], &n = nodes_[b];
-    if (!meet(m.box, n.box)) return;
+    if (of_one_group(m, n) || !meet(m.box, n.box)) return;
     if (m.count == 0) {
       pairs_between(a + 1, b, visit);
       pairs_between(m.first, b, visit);
@@ -81,14 +91,15 @@ class BoxTree {
       pairs_between(a, n.first, visit);
     } else {
       for (Index i = m.first; i < m.first + m.count; ++i)
-        for (Index j = n.first; j < n.first + n.count; ++j)
-          if (meet(boxes_[items_[i]], boxes_[items_[j]])) visit(items_[i], items_[j]);
+        for (Index j = n.first; j < n.first + n.count; ++j) visit_pair(i, j, visit);
     }
   }
 
-  std::vector<Box> boxes_;
+  // In the order of the leaves:
   std::vector<Index> items_;
+  std::vector<Box> boxes_;
+  std::vector<Index> groups_;
   std::vector<Node> nodes_;
 };
 
-}  // namespace collarmesh::build
+}  // namespace collarmesh

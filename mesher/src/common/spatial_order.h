@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "collarmesh/geometry.h"
+
+namespace collarmesh {
+
+/// An item and its place along a Z-shaped curve through the cells of an octree (Morton 1966): what is near
+/// along the curve is near in space.
+struct SpatialKey {
+  std::uint64_t place;
+  Index item;
+};
+
+/// The items 0, 1, ... at these points, which are finite, in the order of the curve. What shares a cell, of
+/// which there are 2^21 along each axis, is ordered by finer ones, and in one point by number.
+/// Cost: O(n) for every 2^21 in the ratio of the extent and the least distance.
+std::vector<SpatialKey> spatial_order(std::span<const Point> points);
+
+/// Where a hierarchy over ordered items parts them: the first one in the upper half of the smallest octree
+/// cell that holds them all, or the middle when they have one place. Precondition: there are at least two.
+std::size_t spatial_split(std::span<const SpatialKey> keys);
+
+/// No hierarchy made of such splits is deeper.
+inline constexpr std::size_t most_spatial_levels = 63 + 32;
+
+}  // namespace collarmesh
