@@ -7,7 +7,9 @@
 
 #include "collarmesh/check.h"
 #include "location/triangle_hierarchy.h"
+#include "support/acute_shapes.h"
 #include "support/meshes.h"
+#include "support/meshing.h"
 
 namespace collarmesh {
 namespace {
@@ -121,16 +123,24 @@ TEST(CheckRightMeshes, MeasuresOfTheBox) {
   EXPECT_EQ(report.max_surface_distance, 0);
 }
 
-TEST(CheckRightMeshes, MeasuresAreThoseOfAllTets) {
-  const MeshedComplex m = meshed_two_boxes(3);
-  const MeshMeasures found = check(m.mesh, m.plc).measures, expected = measure_mesh(m.mesh);
+void expect_measures_of(const TetMesh& mesh, const Plc& plc) {
+  const MeshMeasures found = check(mesh, plc).measures, expected = measure_mesh(mesh);
   EXPECT_EQ(std::accumulate(found.radius_edges.begin(), found.radius_edges.end(), std::size_t{0}),
-            m.mesh.tets.size());
+            mesh.tets.size());
   EXPECT_EQ(found.radius_edges, expected.radius_edges);
   EXPECT_EQ(found.min_dihedrals, expected.min_dihedrals);
   EXPECT_EQ(found.max_dihedrals, expected.max_dihedrals);
   EXPECT_EQ(found.region_volumes, expected.region_volumes);
   EXPECT_EQ(found.max_radius_edge, expected.max_radius_edge);
+  EXPECT_EQ(found.max_collar_radius_edge, expected.max_collar_radius_edge);
+}
+
+TEST(CheckRightMeshes, MeasuresAreThoseOfAllTets) {
+  const MeshedComplex m = meshed_two_boxes(3);
+  expect_measures_of(m.mesh, m.plc);
+  const Meshed wedge = mesh_of(acute::wedge(30).soups, with_size(0.3), 0);
+  EXPECT_GT(wedge.report.collar_tets, 0U);
+  expect_measures_of(wedge.result.mesh, wedge.plc);
 }
 
 TEST(CheckRightMeshes, MeasuresOfTheBall) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <set>
 #include <span>
@@ -60,6 +61,20 @@ TEST(SpatialOrder, OrdersWhatIsInOnePointByNumber) {
   for (std::size_t i = 1; i < keys.size(); ++i) {
     const SpatialKey &a = keys[i - 1], &b = keys[i];
     ASSERT_TRUE(a.place < b.place || (a.place == b.place && a.item < b.item)) << i;
+  }
+}
+
+TEST(SpatialOrder, OrdersPointsOfAnyExtent) {
+  const double least = std::numeric_limits<double>::denorm_min(), largest = 1.7e308;
+  for (const double unit : {least, 1e-305, largest, HUGE_VAL, std::nan("")}) {
+    std::vector<Point> points;
+    for (Index i = 0; i < 50000; ++i)
+      points.push_back(unit * Point{static_cast<double>(i % 3) - 1, unit == least ? i * 1.0 : 0.5, 0});
+    const auto keys = spatial_order(points);
+    std::set<Index> items;
+    for (const SpatialKey& key : keys) items.insert(key.item);
+    EXPECT_EQ(items.size(), points.size());
+    EXPECT_LE(depth(keys), most_spatial_levels);
   }
 }
 

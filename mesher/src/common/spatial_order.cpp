@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <boost/sort/spreadsort/integer_sort.hpp>
+#include <cmath>
 
 namespace collarmesh {
 
@@ -32,13 +33,12 @@ void put_in_order(std::span<SpatialKey> keys, std::span<const Point> points) {
   Box bounds;
   for (const SpatialKey& key : keys) bounds.add(points[key.item]);
   const Vector sides = bounds.max - bounds.min;
-  const double longest = std::max({sides.x, sides.y, sides.z});
-  if (!(longest > 0)) {
+  const double scale = cells_per_axis / std::max({sides.x, sides.y, sides.z});
+  if (!(scale > 0 && std::isfinite(scale))) {  // one point, or an extent that has no cells
     std::sort(keys.begin(), keys.end(),
               [](const SpatialKey& a, const SpatialKey& b) { return a.item < b.item; });
     return;
   }
-  const double scale = cells_per_axis / longest;
   for (SpatialKey& key : keys) key.place = place_in(bounds, scale, points[key.item]);
   boost::sort::spreadsort::integer_sort(
       keys.begin(), keys.end(), [](const SpatialKey& key, unsigned shift) { return key.place >> shift; },

@@ -15,8 +15,9 @@ struct SpatialKey {
   Index item;
 };
 
-/// The items 0, 1, ... at these points, which are finite, in the order of the curve. What shares a cell, of
-/// which there are 2^21 along each axis, is ordered by finer ones, and in one point by number.
+/// The items 0, 1, ... at these points in the order of the curve. What shares a cell, of which there are 2^21
+/// along each axis, is ordered by finer ones, and in one point by number; so are all when their extent is out
+/// of a double's range.
 /// Cost: O(n) for every 2^21 in the ratio of the extent and the least distance.
 std::vector<SpatialKey> spatial_order(std::span<const Point> points);
 
