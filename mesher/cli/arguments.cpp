@@ -96,6 +96,23 @@ void add_complex_options(CLI::App& app, ComplexArguments& a) {
   add(app, "--weld T", a.plc.weld, "Points closer than this are one, relative to the diagonal")
       ->check(fraction)
       ->group(group);
+  const std::map<std::string, RepairMode> modes{
+      {"auto", RepairMode::automatic}, {"none", RepairMode::off}, {"wrap", RepairMode::wrap}};
+  app.add_option("--repair", a.repair.mode,
+                 "Facets that are no valid complex: auto repairs them, none makes them an error, wrap also puts a "
+                 "closed surface around what cannot be repaired")
+      ->transform(CLI::CheckedTransformer(modes).description(""))
+      ->default_str("auto")
+      ->type_name("auto|none|wrap")
+      ->group(group);
+  add(app, "--repair-tolerance T", a.repair.tolerance,
+      "Features below this are noise to the repair, relative to the diagonal")
+      ->check(small_fraction)
+      ->group(group);
+  add(app, "--wrap-offset T", a.repair.wrap_offset,
+      "Of the surface that --repair wrap puts around everything, relative to the diagonal")
+      ->check(number_in(1e-4, 0.1, "a number from 1e-4 to 0.1 (relative to the diagonal)"))
+      ->group(group);
   add(app, "--crease-angle DEGREES", a.crease_angle,
       "Features that meet below this angle form a crease, degrees")
       ->check(number_in(0, 90, "an angle from 0 to 90 degrees"))

@@ -8,6 +8,7 @@
 #include "collarmesh/improve.h"
 #include "collarmesh/mesher.h"
 #include "collarmesh/plc_builder.h"
+#include "collarmesh/repair.h"
 #include "exit_code.h"
 
 namespace collarmesh::cli {
@@ -17,6 +18,7 @@ enum class ProgressStyle { automatic, json, none };
 /// How files become a complex; all commands share it.
 struct ComplexArguments {
   PlcOptions plc;
+  RepairOptions repair;
   double crease_angle = 60;  ///< degrees
 };
 

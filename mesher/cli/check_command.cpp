@@ -12,7 +12,7 @@ namespace collarmesh::cli {
 ExitCode check_command(const CheckArguments& arguments) {
   const TetMesh mesh = read_mesh(arguments.mesh);
   ComplexInput input(arguments.inputs, {}, arguments.check.distance);
-  const Plc plc = input.build(arguments.complex.plc);
+  const Plc plc = input.build(arguments.complex);
   stop_if_interrupted();
   CheckOptions options = arguments.check;
   options.crease_angle = arguments.complex.crease_angle;

@@ -47,20 +47,36 @@ ComplexInput::ComplexInput(const std::vector<std::string>& paths, const std::str
   }
 }
 
-Plc ComplexInput::build(const PlcOptions& options) {
-  constexpr double finest = 16;
+Plc ComplexInput::build(const ComplexArguments& options) {
+  if (cad_.empty()) return build_repaired(options);
+  // Triangles of faces that nearly touch may meet where finer ones do not.
   std::optional<PlcError> first;
-  for (double finer = 2;; finer *= 2) {
-    try {
-      return build_plc(soups_, options);
-    } catch (const PlcError& error) {
-      if (cad_.empty()) throw;
-      if (!first) first = with_names(error, cad_);
-      if (finer > finest || !may_be_too_coarse(error)) throw PlcError(*first);
+  for (const double finer : {1.0, 4.0}) {
+    if (finer > 1) {
+      stop_if_interrupted();
+      cad_.tessellate(finer, soups_);
     }
-    stop_if_interrupted();
-    cad_.tessellate(finer, soups_);
+    try {
+      return build_plc(soups_, options.plc);
+    } catch (const PlcError& error) {
+      if (!first) first = with_names(error, cad_);
+      if (!may_be_too_coarse(error)) break;
+    }
   }
+  stop_if_interrupted();
+  cad_.tessellate(1, soups_);
+  try {
+    return build_repaired(options);
+  } catch (const PlcError&) {
+    throw PlcError(*first);
+  }
+}
+
+Plc ComplexInput::build_repaired(const ComplexArguments& options) {
+  RepairedPlc result = build_repaired_plc(soups_, options.plc, options.repair);
+  repaired_ = std::move(result.report);
+  if (repaired_.repaired) soups_ = std::move(result.soups);
+  return std::move(result.plc);
 }
 
 ExactGeometry ComplexInput::exact_geometry(const Plc& plc) const {

@@ -3,10 +3,12 @@
 #include <string>
 #include <vector>
 
+#include "arguments.h"
 #include "cad_files.h"
 #include "collarmesh/mesher.h"
 #include "collarmesh/plc_builder.h"
 #include "collarmesh/project_boundary.h"
+#include "collarmesh/repair.h"
 
 namespace collarmesh::cli {
 
@@ -24,9 +26,12 @@ class ComplexInput {
   /// What was done to CAD shapes, a line each.
   std::vector<std::string> notes() const { return cad_.notes(); }
 
-  /// The complex. Where triangles of CAD faces meet that should not, finer ones are tried.
+  /// The complex, of repaired facets where that is needed. Where triangles of CAD faces meet that should not,
+  /// finer ones are tried first.
   /// Throws PlcError; with CAD faces the messages name them.
-  Plc build(const PlcOptions& options);
+  Plc build(const ComplexArguments& options);
+  /// What was done to the facets of the complex built last.
+  const RepairReport& repaired() const { return repaired_; }
 
   /// The exact edges and faces behind the complex built last. Both must outlive the result.
   ExactGeometry exact_geometry(const Plc& plc) const;
@@ -36,8 +41,11 @@ class ComplexInput {
   MeshOptions tightened(const MeshOptions& options, const Plc& plc) const;
 
  private:
+  Plc build_repaired(const ComplexArguments& options);
+
   std::vector<PolygonSoup> soups_;
   CadFiles cad_;
+  RepairReport repaired_;
 };
 
 }  // namespace collarmesh::cli

@@ -28,8 +28,8 @@ void print_mesh(const std::string& path, bool as_json) {
 }
 
 void print_complex(const InfoArguments& arguments) {
-  PlcOptions options = arguments.complex.plc;
-  options.require_solid = false;
+  ComplexArguments options = arguments.complex;
+  options.plc.require_solid = false;
   ComplexInput input(arguments.inputs);
   const Plc plc = input.build(options);
   stop_if_interrupted();

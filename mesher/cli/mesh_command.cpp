@@ -75,12 +75,13 @@ ComplexInput build_complex(const MeshArguments& arguments, Stages& stages, MeshR
   stages.begin("read", 0, 0.02);
   ComplexInput input(arguments.inputs, arguments.input_format, arguments.mesh.distance);
   stages.begin("complex", 0.02, 0.08);
-  run.plc = input.build(arguments.complex.plc);
+  run.plc = input.build(arguments.complex);
   run.notes = input.notes();
+  run.repair = input.repaired();
   require_known_tags(arguments.mesh, run.plc);
   run.summary = summarize(run.plc, arguments.complex.crease_angle);
   run.warnings = option_warnings(arguments, run.plc);
-  std::string text = warnings_text(run.plc);
+  std::string text = warnings_text(run.plc) + repair_text(run.repair);
   for (const std::string& warning : run.warnings) text += fmt::format("warning: {}\n", warning);
   stages.print(text);
   return input;

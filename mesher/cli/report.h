@@ -18,6 +18,7 @@ namespace collarmesh::cli {
 struct MeshRun {
   Plc plc;
   PlcSummary summary;
+  RepairReport repair;
   std::vector<std::string> warnings;  ///< of options; those of the input are in the complex
   MeshResult result;
   std::vector<std::string> notes;           ///< on CAD shapes, a line each
@@ -39,6 +40,8 @@ nlohmann::ordered_json run_json(const MeshArguments& arguments, const MeshRun& r
 // For people, lines of text:
 /// "warning: ..." lines of the input, the first ones if there are very many.
 std::string warnings_text(const Plc& plc);
+/// "repaired: ..." lines.
+std::string repair_text(const RepairReport& report);
 std::string complex_text(const Plc& plc, const PlcSummary& summary);
 std::string mesh_text(const TetMesh& mesh, const MeshMeasures& measures);
 std::string findings_text(const CheckReport& report, std::size_t listed);

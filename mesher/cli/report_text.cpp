@@ -58,6 +58,15 @@ std::string warnings_text(const Plc& plc) {
   return text;
 }
 
+std::string repair_text(const RepairReport& report) {
+  const std::vector<std::string> lines = describe(report);
+  std::string text;
+  for (std::size_t k = 0; k < std::min(lines.size(), listed); ++k)
+    fmt::format_to(Out(text), "repaired: {}\n", lines[k]);
+  if (lines.size() > listed) fmt::format_to(Out(text), "... and {} more repairs\n", lines.size() - listed);
+  return text;
+}
+
 std::string complex_text(const Plc& plc, const PlcSummary& s) {
   std::string text;
   fmt::format_to(Out(text),

@@ -50,7 +50,9 @@ Vector area_vector(const std::vector<Point>& points, const std::vector<Index>& l
 
 class FacetTriangulator {
  public:
-  FacetTriangulator(Draft& draft, Faults& faults) : draft_(draft), faults_(faults) {}
+  /// With `bent`, facets that are no plane polygons are taken as well as can be instead of being faults.
+  FacetTriangulator(Draft& draft, Faults& faults, BentFacets* bent)
+      : draft_(draft), faults_(faults), bent_(bent) {}
 
   void add(const Facet& facet) {
     for (const auto& [a, b] : facet.segments)
@@ -84,6 +86,11 @@ class FacetTriangulator {
       return true;
     }
     const Point& where = draft_.points[facet.loops[0][0]];
+    if (bent_ != nullptr) {
+      ++bent_->dropped;
+      note_bent(where);
+      return false;
+    }
     faults_.add(PlcFault::Kind::degenerate_facet,
                 fmt::format("Facet {} at {} has no area; remove it or correct its corners.", name(facet),
                             text(where)),
@@ -109,6 +116,11 @@ class FacetTriangulator {
       return true;
     }
     const Point& where = draft_.points[worst];
+    if (bent_ != nullptr) {
+      ++bent_->split;
+      note_bent(where);
+      return true;
+    }
     faults_.add(
         PlcFault::Kind::non_planar_polygon,
         fmt::format("Facet {} is not planar: its corner {} lies {:.3g} from its plane, {:.3g} is allowed; "
@@ -132,11 +144,32 @@ class FacetTriangulator {
       extract(facet, n[axis_] > 0, plane_mesh);
     } catch (const PlaneTriangulation::Intersection_of_constraints_exception&) {
       const Point& where = draft_.points[facet.loops[0][0]];
+      if (bent_ != nullptr) {
+        ++bent_->split;
+        note_bent(where);
+        fan(facet);
+        return;
+      }
       faults_.add(PlcFault::Kind::intersection,
                   fmt::format("The edges of facet {} (near {}) cross each other; correct its polygons.",
                               name(facet), text(where)),
                   facet.loops[0], where);
     }
+  }
+
+  void note_bent(const Point& where) {
+    constexpr std::size_t most_places = 100;
+    if (bent_->where.size() < most_places) bent_->where.push_back(where);
+  }
+
+  // Triangles from the first corner of each loop: they close up with the facets around, whatever its shape.
+  void fan(const Facet& facet) {
+    for (const auto& loop : facet.loops)
+      for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
+        const Corners t{loop[0], loop[i], loop[i + 1]};
+        if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
+          draft_.add_triangle(t, {facet.tag, facet.soup, facet.number});
+      }
   }
 
   // The shortcut for the commonest polygon.
@@ -228,6 +261,7 @@ class FacetTriangulator {
 
   Draft& draft_;
   Faults& faults_;
+  BentFacets* bent_;
   unsigned axis_ = 0;  // the coordinate that is dropped
   std::vector<Index> corners_;
   std::vector<PlaneTriangulation::Vertex_handle> handles_;  // by position in corners_
@@ -264,11 +298,9 @@ void add_polygon(std::span<const Index> polygon, const std::vector<Index>& merge
   if (loop.size() > 2) facet.loops.push_back(std::move(loop));
 }
 
-}  // namespace
-
-void triangulate_facets(std::span<const PolygonSoup> soups, const PointMap& map, Draft& draft,
-                        Faults& faults) {
-  FacetTriangulator triangulator(draft, faults);
+void triangulate(std::span<const PolygonSoup> soups, const PointMap& map, Draft& draft, Faults& faults,
+                 BentFacets* bent) {
+  FacetTriangulator triangulator(draft, faults, bent);
   for (Index s = 0; s < soups.size(); ++s) {
     const PolygonSoup& soup = soups[s];
     const std::vector<Index>& merged = map.merged[s];
@@ -292,6 +324,20 @@ void triangulate_facets(std::span<const PolygonSoup> soups, const PointMap& map,
       if (merged[segment.a] != merged[segment.b])
         draft.segments.push_back({merged[segment.a], merged[segment.b], segment.tag, s});
   }
+}
+
+}  // namespace
+
+void triangulate_facets(std::span<const PolygonSoup> soups, const PointMap& map, Draft& draft,
+                        Faults& faults) {
+  triangulate(soups, map, draft, faults, nullptr);
+}
+
+BentFacets triangulate_any_facets(std::span<const PolygonSoup> soups, const PointMap& map, Draft& draft) {
+  BentFacets bent;
+  Faults none_found;
+  triangulate(soups, map, draft, none_found, &bent);
+  return bent;
 }
 
 }  // namespace collarmesh::build

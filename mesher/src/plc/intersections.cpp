@@ -26,7 +26,7 @@ class IntersectionFinder {
   IntersectionFinder(const Draft& draft, const Simplices& simplices)
       : draft_(draft), boxes_(simplices.boxes()), simplices_(simplices.list()) {}
 
-  void run(Faults& faults) {
+  std::vector<std::pair<Index, Index>> pairs() const {
     std::vector<std::pair<Index, Index>> found;
     boxes_.for_each_pair([&](Index i, Index j) {
       const bool triangles = simplices_[i].size == 3 && simplices_[j].size == 3;
@@ -34,7 +34,11 @@ class IntersectionFinder {
         found.push_back(std::minmax(i, j));
     });
     std::sort(found.begin(), found.end());
-    for (const auto& [i, j] : found) report(i, j, faults);
+    return found;
+  }
+
+  void run(Faults& faults) const {
+    for (const auto& [i, j] : pairs()) report(i, j, faults);
   }
 
  private:
@@ -218,6 +222,10 @@ class IntersectionFinder {
 };
 
 }  // namespace
+
+std::vector<std::pair<Index, Index>> intersecting_pairs(const Draft& draft, const Simplices& simplices) {
+  return IntersectionFinder(draft, simplices).pairs();
+}
 
 void find_intersections(const Draft& draft, const Simplices& simplices, Faults& faults) {
   IntersectionFinder(draft, simplices).run(faults);

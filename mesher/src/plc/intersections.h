@@ -1,5 +1,8 @@
 #pragma once
 
+#include <utility>
+#include <vector>
+
 #include "plc/draft.h"
 #include "plc/faults.h"
 #include "plc/simplices.h"
@@ -10,5 +13,8 @@ namespace collarmesh::build {
 /// crossings, overlaps, and corners that lie on another facet or segment without being its corner.
 /// Cost: O(n log n + k) for k pairs of near neighbours.
 void find_intersections(const Draft& draft, const Simplices& simplices, Faults& faults);
+
+/// The same pairs, as numbers in the list of simplices, smaller ones first, in order.
+std::vector<std::pair<Index, Index>> intersecting_pairs(const Draft& draft, const Simplices& simplices);
 
 }  // namespace collarmesh::build

@@ -1,0 +1,331 @@
+// The arrangement of triangles: Zhou, Grinspun, Zorin, Jacobson, "Mesh arrangements for solid geometry", 2016.
+#include "repair/arrangement.h"
+
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+#include <CGAL/intersections.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <unordered_map>
+
+#include "plc/cleanup.h"
+#include "plc/edges.h"
+#include "plc/intersections.h"
+#include "plc/simplices.h"
+
+namespace collarmesh::repairing {
+
+namespace {
+
+using namespace build;
+
+using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
+using ExactPoint = Kernel::Point_3;
+// Of an inserted point, counted from 1; 0 for a vertex that the triangulation made where constraints cross.
+struct Inserted {
+  Index number = 0;
+};
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<Inserted, Kernel>;
+using FaceBase = CGAL::Constrained_triangulation_face_base_2<Kernel>;
+using PlaneTriangulation =
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel,
+                                               CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
+                                               CGAL::Exact_intersections_tag>;
+using Edge = std::array<Index, 2>;
+
+constexpr std::size_t most_rounds = 12;
+constexpr std::size_t most_places = 100;
+
+Edge edge_key(Index a, Index b) { return a < b ? Edge{a, b} : Edge{b, a}; }
+
+Point rounded(const ExactPoint& p) {
+  // Of the exact value, so that equal points are rounded alike.
+  return {CGAL::to_double(p.x().exact()), CGAL::to_double(p.y().exact()), CGAL::to_double(p.z().exact())};
+}
+
+// What cuts a triangle inside: points and segments in its plane.
+struct Cuts {
+  std::vector<ExactPoint> points;
+  std::vector<std::array<ExactPoint, 2>> segments;
+};
+
+// One round: the pairs that intersect are cut exactly, then rounded.
+class Cutter {
+ public:
+  Cutter(Draft& draft, const EdgeTable& edges, std::span<const Simplex> simplices)
+      : draft_(draft), edges_(edges), simplices_(simplices) {}
+
+  std::size_t run(const std::vector<std::pair<Index, Index>>& pairs) {
+    for (const auto& [i, j] : pairs) add_pair(simplices_[i], i, simplices_[j], j);
+    for (auto& [edge, points] : on_edge_) {
+      std::sort(points.begin(), points.end());
+      points.erase(std::unique(points.begin(), points.end()), points.end());
+      const Index e = edges_.find(edge[0], edge[1]);
+      if (e != none)
+        for (const Index side : edges_.sides(e)) cuts_[side / 3];
+    }
+    const std::size_t count = cuts_.size();
+    cut_segments();
+    cut_triangles();
+    return count;
+  }
+
+ private:
+  ExactPoint exact(Index p) const {
+    const Point& q = draft_.points[p];
+    return {q.x, q.y, q.z};
+  }
+  Kernel::Triangle_3 triangle(const Simplex& s) const {
+    return {exact(s.points[0]), exact(s.points[1]), exact(s.points[2])};
+  }
+  Kernel::Segment_3 segment(const Simplex& s) const { return {exact(s.points[0]), exact(s.points[1])}; }
+
+  void add_pair(const Simplex& a, Index i, const Simplex& b, Index j) {
+    if (a.size < b.size) return add_pair(b, j, a, i);
+    if (b.size == 1) return add_point(a, i, exact(b.points[0]));
+    if (a.size == 3 && b.size == 3) {
+      if (const auto met = CGAL::intersection(triangle(a), triangle(b))) add_meeting(a, i, b, j, *met);
+    } else if (a.size == 3) {
+      if (const auto met = CGAL::intersection(triangle(a), segment(b))) add_meeting(a, i, b, j, *met);
+    } else if (const auto met = CGAL::intersection(segment(a), segment(b))) {
+      add_meeting(a, i, b, j, *met);
+    }
+  }
+
+  template <class Meeting>
+  void add_meeting(const Simplex& a, Index i, const Simplex& b, Index j, const Meeting& met) {
+    const std::vector<ExactPoint> corners = boost::apply_visitor(Corners3(), met);
+    for (const auto& [simplex, number] : {std::pair{&a, i}, std::pair{&b, j}}) {
+      for (const ExactPoint& p : corners) add_point(*simplex, number, p);
+      if (simplex->size < 3 || corners.size() < 2) continue;
+      auto& segments = cuts_[number].segments;
+      if (corners.size() == 2) segments.push_back({corners[0], corners[1]});
+      for (std::size_t k = 0; corners.size() > 2 && k < corners.size(); ++k)
+        segments.push_back({corners[k], corners[(k + 1) % corners.size()]});
+    }
+  }
+
+  struct Corners3 : boost::static_visitor<std::vector<ExactPoint>> {
+    std::vector<ExactPoint> operator()(const ExactPoint& p) const { return {p}; }
+    std::vector<ExactPoint> operator()(const Kernel::Segment_3& s) const { return {s.source(), s.target()}; }
+    std::vector<ExactPoint> operator()(const Kernel::Triangle_3& t) const { return {t[0], t[1], t[2]}; }
+    std::vector<ExactPoint> operator()(const std::vector<ExactPoint>& polygon) const { return polygon; }
+  };
+
+  // A point on an edge is one for all triangles there.
+  void add_point(const Simplex& s, Index number, const ExactPoint& p) {
+    std::array<ExactPoint, 3> corners;
+    for (unsigned i = 0; i < s.size; ++i) {
+      corners[i] = exact(s.points[i]);
+      if (corners[i] == p) return;
+    }
+    if (s.size == 2) {
+      on_edge_[edge_key(s.points[0], s.points[1])].push_back(p);
+      return;
+    }
+    if (s.size < 3) return;
+    for (unsigned i = 0; i < 3; ++i) {
+      if (!CGAL::collinear(corners[i], corners[(i + 1) % 3], p)) continue;
+      on_edge_[edge_key(s.points[i], s.points[(i + 1) % 3])].push_back(p);
+      return;
+    }
+    cuts_[number].points.push_back(p);
+  }
+
+  // The points on an edge from a to b, both included.
+  std::vector<ExactPoint> chain(Index a, Index b) const {
+    std::vector<ExactPoint> points{exact(a)};
+    if (const auto found = on_edge_.find(edge_key(a, b)); found != on_edge_.end()) {
+      // They are in lexicographic order, which is an order along the edge.
+      if (exact(a) < exact(b))
+        points.insert(points.end(), found->second.begin(), found->second.end());
+      else
+        points.insert(points.end(), found->second.rbegin(), found->second.rend());
+    }
+    points.push_back(exact(b));
+    return points;
+  }
+
+  Index add_rounded(const ExactPoint& p) {
+    draft_.points.push_back(rounded(p));
+    draft_.point_tags.push_back(0);
+    return static_cast<Index>(draft_.points.size() - 1);
+  }
+
+  void cut_segments() {
+    std::vector<Segment> result;
+    for (const Segment& s : draft_.segments) {
+      const std::vector<ExactPoint> points = chain(s.a, s.b);
+      Segment piece = s;
+      for (std::size_t i = 1; i < points.size(); ++i) {
+        piece.b = i + 1 == points.size() ? s.b : add_rounded(points[i]);
+        result.push_back(piece);
+        piece.a = piece.b;
+      }
+    }
+    draft_.segments = std::move(result);
+  }
+
+  void cut_triangles() {
+    std::vector<build::Corners> triangles;
+    std::vector<Origin> origins;
+    std::vector<build::Corners> before = std::move(draft_.triangles);
+    std::vector<Origin> origins_before = std::move(draft_.origins);
+    draft_.triangles.clear();
+    draft_.origins.clear();
+    for (Index t = 0; t < before.size(); ++t) {
+      const auto found = cuts_.find(t);
+      if (found == cuts_.end())
+        draft_.add_triangle(before[t], origins_before[t]);
+      else
+        cut_triangle(before[t], origins_before[t], found->second);
+    }
+  }
+
+  void cut_triangle(const build::Corners& t, const Origin& origin, const Cuts& cuts) {
+    const Kernel::Plane_3 plane(exact(t[0]), exact(t[1]), exact(t[2]));
+    const std::array<double, 3> normal{std::fabs(CGAL::to_double(plane.a())),
+                                       std::fabs(CGAL::to_double(plane.b())),
+                                       std::fabs(CGAL::to_double(plane.c()))};
+    const auto axis = static_cast<int>(std::max_element(normal.begin(), normal.end()) - normal.begin());
+    const auto project = [&](const ExactPoint& p) {
+      return Kernel::Point_2(p[(axis + 1) % 3], p[(axis + 2) % 3]);
+    };
+    PlaneTriangulation mesh;
+    const auto insert = [&](const ExactPoint& p) {
+      const auto vertex = mesh.insert(project(p));
+      if (vertex->info().number == 0) {
+        inserted_.push_back(p);
+        vertex->info().number = static_cast<Index>(inserted_.size());
+      }
+      return vertex;
+    };
+    const auto constrain = [&](PlaneTriangulation::Vertex_handle a, PlaneTriangulation::Vertex_handle b) {
+      if (a != b) mesh.insert_constraint(a, b);
+    };
+    inserted_.clear();
+    ids_.clear();
+    for (unsigned i = 0; i < 3; ++i) insert(exact(t[i]));
+    ids_.assign(t.begin(), t.end());
+    for (unsigned i = 0; i < 3; ++i) {
+      const std::vector<ExactPoint> points = chain(t[i], t[(i + 1) % 3]);
+      for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+        const auto a = insert(points[k]), b = insert(points[k + 1]);
+        constrain(a, b);
+      }
+    }
+    for (const ExactPoint& p : cuts.points) insert(p);
+    for (const auto& [a, b] : cuts.segments) {
+      const auto from = insert(a), to = insert(b);
+      constrain(from, to);
+    }
+    emit(mesh, plane, axis, origin);
+  }
+
+  void emit(PlaneTriangulation& mesh, const Kernel::Plane_3& plane, int axis, const Origin& origin) {
+    const std::array<Kernel::FT, 3> n{plane.a(), plane.b(), plane.c()};
+    const auto a1 = static_cast<std::size_t>((axis + 1) % 3), a2 = static_cast<std::size_t>((axis + 2) % 3),
+               a0 = static_cast<std::size_t>(axis);
+    const bool turned = CGAL::sign(n[a0]) == CGAL::NEGATIVE;
+    ids_.resize(inserted_.size(), none);
+    for (const auto vertex : mesh.finite_vertex_handles()) {
+      Index& info = vertex->info().number;
+      if (info == 0) {
+        std::array<Kernel::FT, 3> q;
+        q[a1] = vertex->point().x();
+        q[a2] = vertex->point().y();
+        q[a0] = -(n[a1] * q[a1] + n[a2] * q[a2] + plane.d()) / n[a0];
+        inserted_.emplace_back(q[0], q[1], q[2]);
+        ids_.push_back(none);
+        info = static_cast<Index>(inserted_.size());
+      }
+      if (ids_[info - 1] == none) ids_[info - 1] = add_rounded(inserted_[info - 1]);
+    }
+    for (const auto face : mesh.finite_face_handles()) {
+      build::Corners corners{ids_[face->vertex(0)->info().number - 1], ids_[face->vertex(1)->info().number - 1],
+                             ids_[face->vertex(2)->info().number - 1]};
+      if (turned) std::swap(corners[1], corners[2]);
+      draft_.add_triangle(corners, origin);
+    }
+  }
+
+  Draft& draft_;
+  const EdgeTable& edges_;
+  std::span<const Simplex> simplices_;
+  std::map<Edge, std::vector<ExactPoint>> on_edge_;
+  std::map<Index, Cuts> cuts_;  // by triangle
+  // Of the triangle at hand:
+  std::vector<ExactPoint> inserted_;
+  std::vector<Index> ids_;  // of those
+};
+
+void note_places(const Draft& draft, std::span<const Simplex> simplices,
+                 const std::vector<std::pair<Index, Index>>& pairs, std::vector<Point>& places) {
+  const std::size_t step = pairs.size() / most_places + 1;
+  for (std::size_t i = 0; i < pairs.size(); i += step) {
+    std::array<Box, 2> boxes;
+    for (const Index p : simplices[pairs[i].first].corners()) boxes[0].add(draft.points[p]);
+    for (const Index p : simplices[pairs[i].second].corners()) boxes[1].add(draft.points[p]);
+    Box both;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      both.min[axis] = std::max(boxes[0].min[axis], boxes[1].min[axis]);
+      both.max[axis] = std::min(boxes[0].max[axis], boxes[1].max[axis]);
+    }
+    places.push_back(both.centre());
+  }
+}
+
+}  // namespace
+
+void unify_equal_points(Draft& draft) {
+  std::vector<Index> order(draft.points.size()), merged(draft.points.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  const auto key = [&](Index p) {
+    const Point& q = draft.points[p];
+    return std::array{q.x, q.y, q.z};
+  };
+  std::sort(order.begin(), order.end(), [&](Index p, Index q) {
+    const auto a = key(p), b = key(q);
+    return a != b ? a < b : p < q;
+  });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    merged[order[i]] =
+        i > 0 && draft.points[order[i]] == draft.points[order[i - 1]] ? merged[order[i - 1]] : order[i];
+  std::size_t kept = 0;
+  for (Index t = 0; t < draft.triangles.size(); ++t) {
+    build::Corners corners = draft.triangles[t];
+    for (Index& c : corners) c = merged[c];
+    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
+    draft.triangles[kept] = corners;
+    draft.origins[kept++] = draft.origins[t];
+  }
+  draft.triangles.resize(kept);
+  draft.origins.resize(kept);
+  for (Segment& s : draft.segments) s = {merged[s.a], merged[s.b], s.tag, s.soup};
+  std::erase_if(draft.segments, [](const Segment& s) { return s.a == s.b; });
+  for (Index& p : draft.loose_points) p = merged[p];
+}
+
+ArrangementReport arrange(Draft& draft) {
+  ArrangementReport report;
+  for (;; ++report.rounds) {
+    unify_equal_points(draft);
+    remove_collinear_triangles(draft);
+    for (Index t = 0; t < draft.origins.size(); ++t) draft.origins[t].facet = t;
+    const EdgeTable edges(draft.triangles, draft.points.size());
+    const Simplices simplices(draft, edges);
+    const auto pairs = intersecting_pairs(draft, simplices);
+    report.clean = pairs.empty();
+    if (report.rounds == 0) {
+      report.intersecting_pairs = pairs.size();
+      note_places(draft, simplices.list(), pairs, report.places);
+    }
+    if (report.clean || report.rounds == most_rounds) return report;
+    report.cut_triangles += Cutter(draft, edges, simplices.list()).run(pairs);
+  }
+}
+
+}  // namespace collarmesh::repairing

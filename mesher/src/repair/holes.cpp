@@ -1,0 +1,166 @@
+#include "repair/holes.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
+
+#include <algorithm>
+#include <map>
+
+#include "common/disjoint_sets.h"
+#include "plc/edges.h"
+
+namespace collarmesh::repairing {
+
+namespace {
+
+using namespace build;
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+// The directed edges, by soup, that lack a partner: a surface there goes on from their end to their start.
+struct OpenEdges {
+  std::map<Index, std::vector<std::array<Index, 3>>> of_soup;  // from, to, a triangle there
+};
+
+OpenEdges find_open_edges(const Draft& draft) {
+  OpenEdges open;
+  const EdgeTable edges(draft.triangles, draft.points.size());
+  std::vector<std::pair<Index, int>> balance;  // soup, times upwards less times downwards
+  for (Index e = 0; e < edges.size(); ++e) {
+    balance.clear();
+    for (const Index side : edges.sides(e)) {
+      const Index soup = draft.origins[side / 3].soup;
+      auto at = std::find_if(balance.begin(), balance.end(), [&](const auto& b) { return b.first == soup; });
+      if (at == balance.end()) at = balance.insert(at, {soup, 0});
+      at->second += ascending(draft.triangles, side) ? 1 : -1;
+    }
+    for (const auto& [soup, sum] : balance) {
+      if (sum == 0 || draft.soup_is_complex[soup]) continue;
+      const auto [low, high] = edges.ends(e);
+      Index triangle = none;
+      for (const Index side : edges.sides(e))
+        if (draft.origins[side / 3].soup == soup && ascending(draft.triangles, side) == (sum > 0)) triangle = side / 3;
+      for (int i = 0; i < std::abs(sum); ++i)
+        open.of_soup[soup].push_back(sum > 0 ? std::array{low, high, triangle} : std::array{high, low, triangle});
+    }
+  }
+  return open;
+}
+
+// Closed curves of directed edges; where several meet in a point they are parted at it.
+std::vector<std::vector<std::array<Index, 3>>> find_loops(const std::vector<std::array<Index, 3>>& edges) {
+  std::multimap<Index, std::size_t> from;
+  for (std::size_t i = 0; i < edges.size(); ++i) from.emplace(edges[i][0], i);
+  std::vector<bool> used(edges.size(), false);
+  std::vector<std::vector<std::array<Index, 3>>> loops;
+  for (std::size_t start = 0; start < edges.size(); ++start) {
+    if (used[start]) continue;
+    std::vector<std::array<Index, 3>> path;
+    std::map<Index, std::size_t> place;  // of a point in the path
+    std::size_t next = start;
+    for (;;) {
+      used[next] = true;
+      place[edges[next][0]] = path.size();
+      path.push_back(edges[next]);
+      const Index at = edges[next][1];
+      if (const auto seen = place.find(at); seen != place.end()) {
+        const auto first = path.begin() + static_cast<std::ptrdiff_t>(seen->second);
+        loops.emplace_back(first, path.end());
+        for (auto e = first; e != path.end(); ++e) place.erase((*e)[0]);
+        path.erase(first, path.end());
+      }
+      const auto [low, high] = from.equal_range(at);
+      const auto way = std::find_if(low, high, [&](const auto& entry) { return !used[entry.second]; });
+      if (way == high) break;
+      next = way->second;
+    }
+  }
+  return loops;
+}
+
+double area_of(const Draft& draft, const Corners& t) {
+  return 0.5 * norm(cross(draft.points[t[1]] - draft.points[t[0]], draft.points[t[2]] - draft.points[t[0]]));
+}
+
+// The area of the surface that each triangle belongs to.
+class SurfaceAreas {
+ public:
+  explicit SurfaceAreas(const Draft& draft) : sets_(draft.triangles.size()) {
+    const EdgeTable edges(draft.triangles, draft.points.size());
+    for (Index e = 0; e < edges.size(); ++e)
+      for (const Index side : edges.sides(e)) sets_.unite(side / 3, edges.sides(e)[0] / 3);
+    for (Index t = 0; t < draft.triangles.size(); ++t) area_[sets_.find(t)] += area_of(draft, draft.triangles[t]);
+  }
+  double around(Index triangle) { return area_[sets_.find(triangle)]; }
+
+ private:
+  DisjointSets sets_;
+  std::map<Index, double> area_;
+};
+
+Tag next_tag(const Draft& draft) {
+  Tag tag = 0;
+  for (const Origin& origin : draft.origins) tag = std::max(tag, origin.tag);
+  return tag + 1;
+}
+
+std::vector<Corners> triangulate(const Draft& draft, const std::vector<std::array<Index, 3>>& loop) {
+  // The hole's triangles run against the edges around it.
+  std::vector<Index> corners;
+  for (auto e = loop.rbegin(); e != loop.rend(); ++e) corners.push_back((*e)[1]);
+  if (corners.size() == 3) return {{corners[0], corners[1], corners[2]}};
+  std::vector<Kernel::Point_3> polyline;
+  for (const Index p : corners) polyline.emplace_back(draft.points[p].x, draft.points[p].y, draft.points[p].z);
+  struct Face {
+    int a, b, c;
+    Face(int i, int j, int k) : a(i), b(j), c(k) {}
+  };
+  std::vector<Face> faces;
+  CGAL::Polygon_mesh_processing::triangulate_hole_polyline(polyline, std::back_inserter(faces));
+  std::vector<Corners> triangles;
+  const auto at = [&](int i) { return corners[static_cast<std::size_t>(i)]; };
+  for (const Face& face : faces) triangles.push_back({at(face.a), at(face.b), at(face.c)});
+  // Whichever way the library turns them: the first edge tells.
+  for (const Corners& t : triangles)
+    for (unsigned i = 0; i < 3; ++i)
+      if (t[i] == corners[1] && t[(i + 1) % 3] == corners[0]) {
+        for (Corners& turned : triangles) std::swap(turned[1], turned[2]);
+        return triangles;
+      }
+  return triangles;
+}
+
+}  // namespace
+
+std::size_t count_open_edges(const Draft& draft) {
+  std::size_t count = 0;
+  for (const auto& [soup, edges] : find_open_edges(draft).of_soup) count += edges.size();
+  return count;
+}
+
+std::vector<FilledHole> fill_holes(Draft& draft, double largest_share) {
+  std::vector<FilledHole> filled;
+  const OpenEdges open = find_open_edges(draft);
+  if (open.of_soup.empty()) return filled;
+  SurfaceAreas surfaces(draft);
+  Tag tag = next_tag(draft);
+  for (const auto& [soup, edges] : open.of_soup)
+    for (const auto& loop : find_loops(edges)) {
+      if (loop.size() < 3) continue;
+      const std::vector<Corners> triangles = triangulate(draft, loop);
+      FilledHole hole;
+      hole.tag = tag;
+      hole.edges = loop.size();
+      for (const Corners& t : triangles) hole.area += area_of(draft, t);
+      for (const auto& edge : loop) {
+        hole.length += distance(draft.points[edge[0]], draft.points[edge[1]]);
+        hole.where = hole.where + (1.0 / static_cast<double>(loop.size())) * draft.points[edge[0]];
+      }
+      if (triangles.empty() || hole.area > largest_share * surfaces.around(loop[0][2])) continue;
+      for (const Corners& t : triangles) draft.add_triangle(t, {tag, soup, 0, true});
+      filled.push_back(hole);
+      ++tag;
+    }
+  return filled;
+}
+
+}  // namespace collarmesh::repairing

@@ -1,0 +1,381 @@
+#include "repair/inside.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "common/disjoint_sets.h"
+#include "plc/edges.h"
+#include "plc/shells.h"
+#include "repair/winding_number.h"
+
+namespace collarmesh::repairing {
+
+namespace {
+
+using namespace build;
+
+constexpr std::size_t most_places = 100;
+
+Vector area_vector(const Draft& draft, const Corners& t) {
+  return 0.5 * cross(draft.points[t[1]] - draft.points[t[0]], draft.points[t[2]] - draft.points[t[0]]);
+}
+double area_of(const Draft& draft, const Corners& t) { return norm(area_vector(draft, t)); }
+Point centroid(const Draft& draft, const Corners& t) {
+  return (1.0 / 3) * (draft.points[t[0]] + draft.points[t[1]] + draft.points[t[2]]);
+}
+std::array<Point, 3> corner_points(const Draft& draft, const Corners& t) {
+  return {draft.points[t[0]], draft.points[t[1]], draft.points[t[2]]};
+}
+
+void note(std::vector<Point>& places, const Point& p) {
+  if (places.size() < most_places) places.push_back(p);
+}
+
+bool turned_against(const Corners& a, const Corners& b) {
+  const auto at = static_cast<std::size_t>(std::find(b.begin(), b.end(), a[0]) - b.begin());
+  return b[(at + 1) % 3] != a[1];
+}
+
+// The largest few of some triangles.
+class Largest {
+ public:
+  static constexpr std::size_t count = 3;
+
+  void add(double area, Index item) {
+    if (items_.size() == count && items_.back().first >= area) return;
+    if (items_.size() == count) items_.pop_back();
+    items_.insert(std::upper_bound(items_.begin(), items_.end(), area,
+                                   [](double a, const auto& entry) { return a > entry.first; }),
+                  {area, item});
+  }
+  const std::vector<std::pair<double, Index>>& items() const { return items_; }
+
+ private:
+  std::vector<std::pair<double, Index>> items_;
+};
+
+// Triangles of a clean arrangement, copies taken together: a sheet has the corners and the orientation of the
+// first of its copies.
+struct Sheets {
+  struct Copy {
+    Index triangle;
+    int sign;  // -1: turned against the sheet
+  };
+  Draft unique;  // a triangle for each sheet
+  std::vector<Index> first_copy{0};
+  std::vector<Copy> copies;
+
+  explicit Sheets(const Draft& draft) {
+    unique.points = draft.points;
+    std::vector<std::pair<Corners, Index>> order;
+    order.reserve(draft.triangles.size());
+    for (Index t = 0; t < draft.triangles.size(); ++t) {
+      Corners key = draft.triangles[t];
+      std::sort(key.begin(), key.end());
+      order.emplace_back(key, t);
+    }
+    std::sort(order.begin(), order.end());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const Index t = order[i].second;
+      if (i == 0 || order[i].first != order[i - 1].first) {
+        if (i > 0) first_copy.push_back(static_cast<Index>(copies.size()));
+        unique.add_triangle(draft.triangles[t], draft.origins[t]);
+      }
+      copies.push_back({t, turned_against(unique.triangles.back(), draft.triangles[t]) ? -1 : 1});
+    }
+    first_copy.push_back(static_cast<Index>(copies.size()));
+  }
+
+  Index size() const { return static_cast<Index>(unique.triangles.size()); }
+  std::span<const Copy> of(Index sheet) const {
+    return {copies.data() + first_copy[sheet], copies.data() + first_copy[sheet + 1]};
+  }
+};
+
+class BoundaryKeeper {
+ public:
+  explicit BoundaryKeeper(Draft& draft)
+      : draft_(draft), sheets_(draft), edges_(sheets_.unique.triangles, draft.points.size()) {}
+
+  InsideReport run() {
+    find_clusters();
+    if (std::none_of(tangled_.begin(), tangled_.end(), [](bool b) { return b; })) return {};
+    find_patches();
+    for (const Index soup : tangled_soups()) weigh(soup);
+    emit();
+    return std::move(report_);
+  }
+
+ private:
+  const Origin& origin(const Sheets::Copy& copy) const { return draft_.origins[copy.triangle]; }
+  bool of_complex(Index sheet) const {
+    for (const Sheets::Copy& copy : sheets_.of(sheet))
+      if (draft_.soup_is_complex[origin(copy).soup]) return true;
+    return false;
+  }
+  // How often the soup's triangles cover the sheet, turned ones counted negative.
+  int weight(Index sheet, Index soup) const {
+    int sum = 0;
+    for (const Sheets::Copy& copy : sheets_.of(sheet))
+      if (origin(copy).soup == soup) sum += copy.sign;
+    return sum;
+  }
+
+  bool plain(Index edge) const {
+    const auto sides = edges_.sides(edge);
+    if (sides.size() != 2) return false;
+    const Index s = sides[0] / 3, t = sides[1] / 3;
+    return sheets_.of(s).size() == 1 && sheets_.of(t).size() == 1 &&
+           origin(sheets_.of(s)[0]).soup == origin(sheets_.of(t)[0]).soup &&
+           ascending(sheets_.unique.triangles, sides[0]) != ascending(sheets_.unique.triangles, sides[1]);
+  }
+
+  // What hangs together by edges; tangled where any edge is not plain.
+  void find_clusters() {
+    DisjointSets sets(sheets_.size());
+    std::vector<bool> tangled(sheets_.size(), false);
+    for (Index e = 0; e < edges_.size(); ++e)
+      for (const Index side : edges_.sides(e)) sets.unite(side / 3, edges_.sides(e)[0] / 3);
+    for (Index e = 0; e < edges_.size(); ++e)
+      if (!plain(e)) tangled[sets.find(edges_.sides(e)[0] / 3)] = true;
+    tangled_.resize(sheets_.size());
+    for (Index s = 0; s < sheets_.size(); ++s) tangled_[s] = tangled[sets.find(s)];
+  }
+
+  // What hangs together by edges that have two sheets.
+  void find_patches() {
+    DisjointSets sets(sheets_.size());
+    for (Index e = 0; e < edges_.size(); ++e)
+      if (edges_.sides(e).size() == 2) sets.unite(edges_.sides(e)[0] / 3, edges_.sides(e)[1] / 3);
+    patch_.resize(sheets_.size());
+    for (Index s = 0; s < sheets_.size(); ++s) patch_[s] = sets.find(s);
+    DisjointSets shells = find_shells(sheets_.unique, edges_);
+    shell_.resize(2 * std::size_t{sheets_.size()});
+    for (Index side = 0; side < shell_.size(); ++side) shell_[side] = shells.find(side);
+    label_.assign(shell_.size(), none);
+    for (Index s = 0; s < sheets_.size(); ++s) {
+      if (!tangled_[s]) continue;
+      const double area = area_of(draft_, sheets_.unique.triangles[s]);
+      largest_of_shell_[shell_[back_side(s)]].add(area, back_side(s));
+      largest_of_shell_[shell_[front_side(s)]].add(area, front_side(s));
+      largest_of_patch_[patch_[s]].add(area, s);
+    }
+  }
+
+  std::vector<Index> tangled_soups() const {
+    std::vector<Index> soups;
+    for (Index s = 0; s < sheets_.size(); ++s)
+      if (tangled_[s])
+        for (const Sheets::Copy& copy : sheets_.of(s)) soups.push_back(origin(copy).soup);
+    std::sort(soups.begin(), soups.end());
+    soups.erase(std::unique(soups.begin(), soups.end()), soups.end());
+    std::erase_if(soups, [&](Index soup) { return draft_.soup_is_complex[soup]; });
+    return soups;
+  }
+
+  // Label the shells that are inside this soup and no earlier one.
+  void weigh(Index soup) {
+    std::vector<int> weights(sheets_.size());
+    for (Index s = 0; s < sheets_.size(); ++s) weights[s] = weight(s, soup);
+    for (const Index patch : open_sheets(soup, weights)) {
+      walls_.push_back({patch, soup});
+      for (Index s = 0; s < sheets_.size(); ++s)
+        if (patch_[s] == patch) weights[s] = 0;
+    }
+    const WindingNumber winding = winding_of(weights, false);
+    for (const auto& [shell, largest] : largest_of_shell_) {
+      if (label_[shell] != none) continue;
+      double sum = 0, total = 0;
+      for (const auto& [area, side] : largest.items()) {
+        const Index s = side / 2;
+        const double own = 0.5 * weights[s] * (side % 2 == 0 ? 1 : -1);
+        sum += area * (winding.at(centroid(draft_, sheets_.unique.triangles[s]), s) + own);
+        total += area;
+      }
+      if (total > 0 && sum > 0.5 * total) label_[shell] = soup;
+    }
+  }
+
+  WindingNumber winding_of(const std::vector<int>& weights, bool by_patch) const {
+    std::vector<WeightedTriangle> triangles;
+    for (Index s = 0; s < sheets_.size(); ++s)
+      if (weights[s] != 0)
+        triangles.push_back({corner_points(draft_, sheets_.unique.triangles[s]), weights[s],
+                             by_patch ? patch_[s] : s});
+    return WindingNumber(std::move(triangles));
+  }
+
+  // Patches at edges where the soup is open that bound nothing: without them the winding number there is that
+  // of one place, not the mean of inside and outside.
+  std::vector<Index> open_sheets(Index soup, const std::vector<int>& weights) const {
+    std::vector<Index> candidates;
+    for (Index e = 0; e < edges_.size(); ++e) {
+      int sum = 0;
+      for (const Index side : edges_.sides(e))
+        sum += weights[side / 3] * (ascending(sheets_.unique.triangles, side) ? 1 : -1);
+      if (sum == 0) continue;
+      for (const Index side : edges_.sides(e))
+        if (weights[side / 3] != 0) candidates.push_back(patch_[side / 3]);
+    }
+    std::sort(candidates.begin(), candidates.end());
+    candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
+    (void)soup;
+    if (candidates.empty()) return {};
+    const WindingNumber winding = winding_of(weights, true);
+    std::vector<Index> sheets;
+    for (const Index patch : candidates) {
+      const auto found = largest_of_patch_.find(patch);
+      if (found == largest_of_patch_.end()) continue;
+      double sum = 0, total = 0;
+      for (const auto& [area, s] : found->second.items()) {
+        sum += area * winding.at(centroid(draft_, sheets_.unique.triangles[s]), patch);
+        total += area;
+      }
+      const double mean = total > 0 ? sum / total : 0;
+      if (std::fabs(mean - std::floor(mean) - 0.5) > 0.25) sheets.push_back(patch);
+    }
+    return sheets;
+  }
+
+  bool is_wall(Index sheet) const {
+    return std::any_of(walls_.begin(), walls_.end(), [&](const auto& w) {
+      return w.first == patch_[sheet] && std::any_of(sheets_.of(sheet).begin(), sheets_.of(sheet).end(), [&](const auto& c) {
+               return origin(c).soup == w.second;
+             });
+    });
+  }
+
+  void emit() {
+    std::vector<Corners> triangles;
+    std::vector<Origin> origins;
+    const auto add = [&](Corners corners, bool turned, Origin from, Index soup) {
+      if (turned) std::swap(corners[1], corners[2]);
+      from.soup = soup;
+      triangles.push_back(corners);
+      origins.push_back(from);
+    };
+    for (Index s = 0; s < sheets_.size(); ++s) {
+      const Corners& corners = sheets_.unique.triangles[s];
+      if (!tangled_[s] || of_complex(s)) {
+        for (const Sheets::Copy& copy : sheets_.of(s))
+          add(draft_.triangles[copy.triangle], false, origin(copy), origin(copy).soup);
+        continue;
+      }
+      const Index back = label_[shell_[back_side(s)]], front = label_[shell_[front_side(s)]];
+      if (back != front) {
+        if (back != none) add(corners, false, origin_for(s, back), back);
+        if (front != none) add(corners, true, origin_for(s, front), front);
+        continue;
+      }
+      if (!is_wall(s)) {
+        ++report_.removed_triangles;
+        report_.removed_area += area_of(draft_, corners);
+        note(report_.places, centroid(draft_, corners));
+      } else if (back != none) {
+        ++report_.internal_facets;
+        add(corners, false, origin(sheets_.of(s)[0]), origin(sheets_.of(s)[0]).soup);
+      } else {
+        ++report_.dropped_sheets;
+        note(report_.places, centroid(draft_, corners));
+      }
+    }
+    draft_.triangles = std::move(triangles);
+    draft_.origins = std::move(origins);
+  }
+
+  // Of its own copy where the soup has one.
+  Origin origin_for(Index sheet, Index soup) const {
+    for (const Sheets::Copy& copy : sheets_.of(sheet))
+      if (origin(copy).soup == soup) return origin(copy);
+    return origin(sheets_.of(sheet)[0]);
+  }
+
+  Draft& draft_;
+  Sheets sheets_;
+  EdgeTable edges_;  // of the sheets
+  std::vector<bool> tangled_;  // by sheet
+  std::vector<Index> patch_;   // by sheet
+  std::vector<Index> shell_;   // by side of a sheet
+  std::vector<Index> label_;   // by shell: the soup that it is inside of, none outside of all
+  std::map<Index, Largest> largest_of_shell_, largest_of_patch_;
+  std::vector<std::pair<Index, Index>> walls_;  // patch and soup
+  InsideReport report_;
+};
+
+// Triangles that hang together by edges that two triangles of one soup share.
+struct Components {
+  std::vector<Index> of;  // by triangle: the first one
+  std::map<Index, std::vector<Index>> triangles;
+  std::map<Index, bool> closed;
+
+  explicit Components(const Draft& draft) {
+    const EdgeTable edges(draft.triangles, draft.points.size());
+    DisjointSets sets(draft.triangles.size());
+    std::vector<bool> open(draft.triangles.size(), false);
+    std::vector<Index> of_soup;
+    for (Index e = 0; e < edges.size(); ++e) {
+      const auto sides = edges.sides(e);
+      for (const Index side : sides) {
+        of_soup.clear();
+        for (const Index other : sides)
+          if (draft.origins[other / 3].soup == draft.origins[side / 3].soup) of_soup.push_back(other);
+        if (of_soup.size() == 2 && ascending(draft.triangles, of_soup[0]) != ascending(draft.triangles, of_soup[1]))
+          sets.unite(of_soup[0] / 3, of_soup[1] / 3);
+        else
+          open[side / 3] = true;
+      }
+    }
+    of.resize(draft.triangles.size());
+    for (Index t = 0; t < of.size(); ++t) {
+      of[t] = sets.find(t);
+      triangles[of[t]].push_back(t);
+      closed.try_emplace(of[t], true).first->second &= !open[t];
+    }
+  }
+};
+
+}  // namespace
+
+TurnReport turn_components(Draft& draft) {
+  TurnReport report;
+  const Components components(draft);
+  std::map<Index, std::vector<WeightedTriangle>> by_soup;
+  for (Index t = 0; t < draft.triangles.size(); ++t)
+    by_soup[draft.origins[t].soup].push_back({corner_points(draft, draft.triangles[t]), 1, components.of[t]});
+  std::map<Index, WindingNumber> winding;
+  for (auto& [soup, triangles] : by_soup)
+    if (!draft.soup_is_complex[soup]) winding.try_emplace(soup, std::move(triangles));
+  std::vector<Index> turned;
+  const Point origin = draft.bounds.centre();
+  for (const auto& [component, triangles] : components.triangles) {
+    const auto found = winding.find(draft.origins[component].soup);
+    if (found == winding.end() || !components.closed.at(component)) continue;
+    double volume = 0, around = 0, total = 0;
+    Largest largest;
+    for (const Index t : triangles) {
+      const auto p = corner_points(draft, draft.triangles[t]);
+      volume += dot(p[0] - origin, cross(p[1] - origin, p[2] - origin));
+      largest.add(area_of(draft, draft.triangles[t]), t);
+    }
+    for (const auto& [area, t] : largest.items()) {
+      around += area * found->second.at(centroid(draft, draft.triangles[t]), component);
+      total += area;
+    }
+    around = total > 0 ? around / total : 0;
+    if (around < -0.5 || (volume < 0 && around < 0.5)) turned.push_back(component);
+  }
+  for (const Index component : turned) {
+    for (const Index t : components.triangles.at(component))
+      std::swap(draft.triangles[t][1], draft.triangles[t][2]);
+    ++report.turned_components;
+    note(report.places, centroid(draft, draft.triangles[component]));
+  }
+  return report;
+}
+
+InsideReport keep_boundaries(Draft& draft) { return BoundaryKeeper(draft).run(); }
+
+}  // namespace collarmesh::repairing

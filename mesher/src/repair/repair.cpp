@@ -1,0 +1,207 @@
+// From facets as they come to facets that are a complex. The order of the steps is that of `repair` at the end.
+#include "collarmesh/repair.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include "plc/cleanup.h"
+#include "plc/draft.h"
+#include "plc/edges.h"
+#include "plc/facet_triangulation.h"
+#include "plc/faults.h"
+#include "plc/orientation.h"
+#include "plc/weld.h"
+#include "repair/arrangement.h"
+#include "repair/holes.h"
+#include "repair/inside.h"
+#include "repair/repeated.h"
+#include "repair/snapping.h"
+#include "repair/to_soups.h"
+
+namespace collarmesh {
+
+namespace {
+
+using namespace build;
+using namespace repairing;
+
+constexpr std::size_t most_places = 100;
+constexpr std::size_t most_rounds = 6;
+
+void add_places(RepairPlaces& places, std::size_t count, double size, const std::vector<Point>& where) {
+  places.count += count;
+  places.size = std::max(places.size, size);
+  for (const Point& p : where)
+    if (places.where.size() < most_places) places.where.push_back(p);
+}
+
+// The error of coordinates that went through 32 bits, absolute; 0 if some did not.
+double single_precision_error(std::span<const PolygonSoup> soups) {
+  double farthest = 0;
+  for (const PolygonSoup& soup : soups)
+    for (const Point& p : soup.points)
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (static_cast<double>(static_cast<float>(p[axis])) != p[axis]) return 0;
+        farthest = std::max(farthest, std::fabs(p[axis]));
+      }
+  constexpr double half_unit = 6e-8;  // 2^-24
+  return half_unit * farthest;
+}
+
+class Repairer {
+ public:
+  Repairer(std::span<const PolygonSoup> soups, const RepairOptions& options, const PlcOptions& complex)
+      : soups_(soups), options_(options), complex_(complex) {}
+
+  RepairResult run() {
+    collect();
+    tidy();
+    close();
+    make_valid();
+    RepairResult result{to_soups(soups_, draft_, first_new_point_), std::move(report_)};
+    result.report.repaired = true;
+    result.report.lost_tags = lost_tags(result.soups);
+    return result;
+  }
+
+ private:
+  void collect() {
+    Faults faults;
+    for (const PolygonSoup& soup : soups_) {
+      draft_.soup_names.push_back(soup.name);
+      draft_.soup_is_complex.push_back(is_complex(soup));
+      draft_.soup_gives_features.push_back(soup.given_features);
+    }
+    const PointMap map = weld_points(soups_, complex_.weld, draft_, faults);
+    faults.raise();
+    draft_.planar_tolerance = complex_.planar_tolerance * draft_.bounds.diagonal();
+    tolerance_ = std::max(options_.tolerance * draft_.bounds.diagonal(), 8 * single_precision_error(soups_));
+    report_.tolerance = tolerance_;
+    const BentFacets bent = triangulate_any_facets(soups_, map, draft_);
+    report_.split_polygons = bent.split;
+    report_.dropped_polygons = bent.dropped;
+    for (Index s = 0; s < soups_.size(); ++s) {
+      for (const Index v : soups_[s].vertices) draft_.loose_points.push_back(map.merged[s][v]);
+      if (!draft_.soup_is_complex[s]) continue;
+      std::vector<bool> used(draft_.points.size(), false);
+      for (const Corners& t : draft_.triangles)
+        for (const Index p : t) used[p] = true;
+      for (const Index p : map.merged[s])
+        if (!used[p]) draft_.loose_points.push_back(p);
+    }
+  }
+
+  void tidy() {
+    remove_collinear_triangles(draft_);
+    const auto repeated = drop_repeated(draft_);
+    add_places(report_.repeated, repeated.count, 0, repeated.where);
+    EdgeTable edges(draft_.triangles, draft_.points.size());
+    Faults one_sided;
+    orient_components(draft_, edges, one_sided);
+  }
+
+  // Borders that nearly meet do; what stays open is filled where it is a hole.
+  void close() {
+    std::size_t open = count_open_edges(draft_);
+    for (const double factor : {1.0, 10.0, 100.0}) {
+      if (open == 0) break;
+      Draft stitched = draft_;
+      const SnapReport snapped = snap_near_features(stitched, factor * tolerance_, SnapWhat::borders);
+      const std::size_t left = count_open_edges(stitched);
+      if (left >= open) continue;
+      draft_ = std::move(stitched);
+      open = left;
+      add_places(report_.stitched, snapped.merged_points + snapped.cut_edges, snapped.largest_distance,
+                 snapped.places);
+    }
+    if (open > 0) {
+      EdgeTable edges(draft_.triangles, draft_.points.size());
+      Faults one_sided;
+      orient_components(draft_, edges, one_sided);
+      report_.filled = fill_holes(draft_);
+    }
+    const TurnReport turned = turn_components(draft_);
+    add_places(report_.turned, turned.turned_components, 0, turned.places);
+  }
+
+  void make_valid() {
+    first_new_point_ = static_cast<Index>(draft_.points.size());
+    cut_and_keep();
+    for (std::size_t round = 0; round < most_rounds; ++round) {
+      const SnapReport snapped = snap_near_features(draft_, tolerance_);
+      if (!snapped.changed()) return;
+      add_places(report_.collapsed, snapped.merged_points + snapped.cut_edges + snapped.cut_triangles,
+                 snapped.largest_distance, snapped.places);
+      cut_and_keep();
+    }
+  }
+
+  void cut_and_keep() {
+    const ArrangementReport arranged = arrange(draft_);
+    add_places(report_.cut, arranged.intersecting_pairs, 0, arranged.places);
+    if (!arranged.clean) return;
+    cancel_twins(draft_);
+    const InsideReport kept = keep_boundaries(draft_);
+    report_.merged.count += kept.removed_triangles;
+    report_.merged.size += kept.removed_area;
+    for (const Point& p : kept.places)
+      if (report_.merged.where.size() < most_places) report_.merged.where.push_back(p);
+  }
+
+  std::vector<Tag> lost_tags(const std::vector<PolygonSoup>& repaired) const {
+    std::set<Tag> before, after;
+    for (const PolygonSoup& soup : soups_)
+      for (Index f = 0; f < soup.facet_count(); ++f) before.insert(soup.facet_tag(f));
+    for (const PolygonSoup& soup : repaired)
+      for (Index f = 0; f < soup.facet_count(); ++f) after.insert(soup.facet_tag(f));
+    std::vector<Tag> lost;
+    std::set_difference(before.begin(), before.end(), after.begin(), after.end(), std::back_inserter(lost));
+    return lost;
+  }
+
+  std::span<const PolygonSoup> soups_;
+  const RepairOptions& options_;
+  const PlcOptions& complex_;
+  Draft draft_;
+  double tolerance_ = 0;  // absolute
+  Index first_new_point_ = none;
+  RepairReport report_;
+};
+
+}  // namespace
+
+RepairResult repair(std::span<const PolygonSoup> soups, const RepairOptions& options,
+                    const PlcOptions& complex) {
+  return Repairer(soups, options, complex).run();
+}
+
+RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOptions& options,
+                               const RepairOptions& repair_options) {
+  std::optional<PlcError> first;
+  try {
+    return {build_plc(soups, options), {}, {}};
+  } catch (const PlcError& error) {
+    const bool unusable = std::any_of(error.faults.begin(), error.faults.end(), [](const PlcFault& fault) {
+      return fault.kind == PlcFault::Kind::bad_point;
+    });
+    if (repair_options.mode == RepairMode::off || unusable) throw;
+    first = error;
+  }
+  for (const double factor : {1.0, 10.0}) {
+    RepairOptions wider = repair_options;
+    wider.tolerance *= factor;
+    RepairResult result = repair(soups, wider, options);
+    try {
+      return {build_plc(result.soups, options), std::move(result.report), std::move(result.soups)};
+    } catch (const PlcError& error) {
+      if (std::getenv("DBG")) fprintf(stderr, "again: %s\n", error.what());
+    }
+  }
+  throw PlcError(*first);
+}
+
+}  // namespace collarmesh

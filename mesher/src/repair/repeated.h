@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "plc/draft.h"
+
+namespace collarmesh::repairing {
+
+struct RepeatedReport {
+  std::size_t count = 0;
+  std::vector<Point> where;
+};
+
+/// Drop repeated triangles: those of one soup with the same corners and orientation, where that does not open the
+/// surface (two solids may share a facet), and in complexes all copies but one.
+/// Cost: O(n log n).
+RepeatedReport drop_repeated(build::Draft& draft);
+
+}  // namespace collarmesh::repairing

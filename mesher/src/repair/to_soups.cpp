@@ -1,0 +1,119 @@
+#include "repair/to_soups.h"
+
+#include <algorithm>
+#include <set>
+
+#include "plc/edges.h"
+#include "plc/flat_clusters.h"
+
+namespace collarmesh::repairing {
+
+namespace {
+
+using namespace build;
+
+class SoupMaker {
+ public:
+  SoupMaker(std::span<const PolygonSoup> soups, const Draft& draft, Index first_new_point)
+      : soups_(soups), draft_(draft), first_new_point_(first_new_point) {}
+
+  std::vector<PolygonSoup> run() {
+    for (const PolygonSoup& soup : soups_) result_.push_back(frame_of(soup));
+    index_.assign(soups_.size(), {});
+    for (Index t = 0; t < draft_.triangles.size(); ++t) {
+      const Origin& origin = draft_.origins[t];
+      const Corners& c = draft_.triangles[t];
+      result_[origin.soup].add_facet(
+          std::array{point(origin.soup, c[0]), point(origin.soup, c[1]), point(origin.soup, c[2])}, origin.tag);
+    }
+    add_segments();
+    add_vertices();
+    return std::move(result_);
+  }
+
+ private:
+  static PolygonSoup frame_of(const PolygonSoup& soup) {
+    PolygonSoup frame;
+    frame.name = soup.name;
+    frame.given_features = soup.given_features;
+    frame.region_points = soup.region_points;
+    frame.hole_points = soup.hole_points;
+    frame.region_tag = soup.region_tag;
+    return frame;
+  }
+
+  Index point(Index soup, Index p) {
+    auto& index = index_[soup];
+    if (index.empty()) index.assign(draft_.points.size(), none);
+    if (index[p] == none) {
+      PolygonSoup& s = result_[soup];
+      index[p] = static_cast<Index>(s.points.size());
+      s.points.push_back(draft_.points[p]);
+      s.point_tags.push_back(draft_.point_tags[p]);
+    }
+    return index[p];
+  }
+  bool has(Index soup, Index p) const { return !index_[soup].empty() && index_[soup][p] != none; }
+
+  void add_segments() {
+    std::set<std::array<Index, 3>> known;
+    for (const Segment& s : draft_.segments) {
+      if (s.a == s.b || !known.insert({s.soup, std::min(s.a, s.b), std::max(s.a, s.b)}).second) continue;
+      // One whose facets are gone goes with them.
+      if (!draft_.soup_is_complex[s.soup] && !(has(s.soup, s.a) && has(s.soup, s.b))) continue;
+      result_[s.soup].segments.push_back({point(s.soup, s.a), point(s.soup, s.b), s.tag});
+    }
+    add_new_edges(known);
+  }
+
+  void add_new_edges(const std::set<std::array<Index, 3>>& known) {
+    if (std::none_of(soups_.begin(), soups_.end(), [](const PolygonSoup& s) { return s.given_features; })) return;
+    std::vector<Tag> next_tag(soups_.size(), 1);
+    for (const Segment& s : draft_.segments) next_tag[s.soup] = std::max(next_tag[s.soup], s.tag + 1);
+    const EdgeTable edges(draft_.triangles, draft_.points.size());
+    std::vector<Index> of_soup;
+    for (Index e = 0; e < edges.size(); ++e) {
+      const auto [a, b] = edges.ends(e);
+      if (b < first_new_point_) continue;
+      for (const Index side : edges.sides(e)) {
+        const Index soup = draft_.origins[side / 3].soup;
+        if (!soups_[soup].given_features || known.count({soup, a, b}) > 0) continue;
+        of_soup.clear();
+        for (const Index other : edges.sides(e))
+          if (draft_.origins[other / 3].soup == soup) of_soup.push_back(other / 3);
+        if (of_soup[0] != side / 3) continue;
+        if (of_soup.size() != 2 || sharp(of_soup[0], of_soup[1]))
+          result_[soup].segments.push_back({point(soup, a), point(soup, b), next_tag[soup]});
+      }
+    }
+  }
+
+  bool sharp(Index s, Index t) const {
+    constexpr double cosine = 0.866;  // of 30 degrees, the default of PlcOptions::feature_angle
+    return dot(unit_normal(draft_, s), unit_normal(draft_, t)) < cosine;
+  }
+
+  void add_vertices() {
+    for (const Index p : draft_.loose_points)
+      for (Index s = 0; s < soups_.size(); ++s)
+        if (has(s, p) || draft_.soup_is_complex[s]) result_[s].vertices.push_back(point(s, p));
+    for (PolygonSoup& soup : result_) {
+      std::sort(soup.vertices.begin(), soup.vertices.end());
+      soup.vertices.erase(std::unique(soup.vertices.begin(), soup.vertices.end()), soup.vertices.end());
+    }
+  }
+
+  std::span<const PolygonSoup> soups_;
+  const Draft& draft_;
+  Index first_new_point_;
+  std::vector<PolygonSoup> result_;
+  std::vector<std::vector<Index>> index_;  // by soup and point
+};
+
+}  // namespace
+
+std::vector<PolygonSoup> to_soups(std::span<const PolygonSoup> soups, const Draft& draft, Index first_new_point) {
+  return SoupMaker(soups, draft, first_new_point).run();
+}
+
+}  // namespace collarmesh::repairing
