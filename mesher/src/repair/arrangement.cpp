@@ -323,6 +323,7 @@ ArrangementReport arrange(Draft& draft) {
       report.intersecting_pairs = pairs.size();
       note_places(draft, simplices.list(), pairs, report.places);
     }
+    if (std::getenv("DBG")) fprintf(stderr, "arrange round %zu: %zu triangles, %zu pairs\n", report.rounds, draft.triangles.size(), pairs.size());
     if (report.clean || report.rounds == most_rounds) return report;
     report.cut_triangles += Cutter(draft, edges, simplices.list()).run(pairs);
   }

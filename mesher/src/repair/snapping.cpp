@@ -25,7 +25,7 @@ namespace {
 using namespace build;
 using Edge = std::array<Index, 2>;
 
-constexpr std::size_t most_rounds = 8;
+constexpr std::size_t most_rounds = 200, most_overlays = 20;
 constexpr std::size_t most_places = 100;
 
 Edge edge_key(Index a, Index b) { return a < b ? Edge{a, b} : Edge{b, a}; }
@@ -171,6 +171,9 @@ class PolygonCutter {
   bool turned_;
 };
 
+// What has not been looked at yet, in `Origin::facet`, which means nothing else here.
+constexpr Index unseen_by_corners = 1, unseen_by_overlay = 2, unseen = 3;
+
 struct NearestOnSegment {
   double distance, parameter;
 };
@@ -189,13 +192,28 @@ class Snapper {
 
   SnapReport run() {
     report_.cancelled_triangles += cancel_twins(draft_);
+    for (Origin& origin : draft_.origins) origin.facet = unseen;
+    const std::size_t most_triangles = 2 * draft_.triangles.size() + 1000;
+    Draft before = draft_;
+    bool overlaid = false;
+    std::size_t overlays = 0;
+    SnapReport snapped_before;
     for (std::size_t round = 0; round < most_rounds; ++round) {
-      const std::size_t before = changes();
-      merge_points();
-      find_near();
-      apply();
+      const bool merged = merge_points(), snapped = snap_corners();
+      if (!merged && !snapped) {
+        if (what_ == SnapWhat::borders) break;
+        if (!overlaid) {
+          before = draft_;
+          snapped_before = report_;
+        }
+        overlaid = true;
+        if (++overlays > most_overlays || !overlay()) break;
+      }
+      if (std::getenv("DBG")) fprintf(stderr, "  round %zu m%d s%d o%d: %zu tri, edges %zu inside %zu crossings %zu along %zu fallback %zu\n", round, merged, snapped, overlaid, draft_.triangles.size(), on_edge_.size(), inside_.size(), crossing_.size(), along_.size(), fallbacks_);
       report_.cancelled_triangles += cancel_twins(draft_);
-      if (changes() == before) break;
+      if (draft_.triangles.size() <= most_triangles) continue;
+      draft_ = std::move(before);  // it does not end
+      return snapped_before;
     }
     return std::move(report_);
   }
@@ -207,7 +225,6 @@ class Snapper {
   };
 
   const Point& at(Index p) const { return draft_.points[p]; }
-  std::size_t changes() const { return report_.merged_points + report_.cut_edges + report_.cut_triangles; }
 
   void note(const Point& where, double moved) {
     report_.largest_distance = std::max(report_.largest_distance, moved);
@@ -231,7 +248,7 @@ class Snapper {
     return active;
   }
 
-  void merge_points() {
+  bool merge_points() {
     const std::vector<bool> active = active_points();
     std::vector<Index> order, merged(draft_.points.size());
     std::iota(merged.begin(), merged.end(), Index{0});
@@ -254,9 +271,10 @@ class Snapper {
       ++count;
       note(at(near), distance(at(p), at(near)));
     }
-    if (count == 0) return;
+    if (count == 0) return false;
     report_.merged_points += count;
     rename(merged);
+    return true;
   }
 
   void rename(const std::vector<Index>& merged) {
@@ -265,8 +283,10 @@ class Snapper {
       build::Corners corners = draft_.triangles[t];
       for (Index& c : corners) c = merged[c];
       if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
+      Origin origin = draft_.origins[t];
+      if (corners != draft_.triangles[t]) origin.facet = unseen;
       draft_.triangles[kept] = corners;
-      draft_.origins[kept++] = draft_.origins[t];
+      draft_.origins[kept++] = origin;
     }
     draft_.triangles.resize(kept);
     draft_.origins.resize(kept);
@@ -275,11 +295,9 @@ class Snapper {
     for (Index& p : draft_.loose_points) p = merged[p];
   }
 
-  void find_near() {
-    on_edge_.clear();
-    inside_.clear();
-    crossing_.clear();
-    along_.clear();
+  // The pairs of triangles that come near each other and were not looked at yet.
+  template <class Visit>
+  void for_each_near_pair(Index flag, const Visit& visit) {
     edges_.emplace(draft_.triangles, draft_.points.size());
     std::vector<Box> boxes(draft_.triangles.size());
     const Vector reach = 0.5 * limit_ * Vector{1, 1, 1};
@@ -288,44 +306,143 @@ class Snapper {
         boxes[t].add(draft_.corner(t, i) - reach);
         boxes[t].add(draft_.corner(t, i) + reach);
       }
-    for (Index t = 0; t < boxes.size(); ++t)
-      for (unsigned i = 0; i < 3; ++i) consider_edge(t, i, draft_.triangles[t][(i + 2) % 3]);
+    std::vector<Vector> normals(boxes.size());
+    for (Index t = 0; t < normals.size(); ++t) {
+      normals[t] = cross(draft_.corner(t, 1) - draft_.corner(t, 0), draft_.corner(t, 2) - draft_.corner(t, 0));
+      const double length = norm(normals[t]);
+      if (length > 0) normals[t] = normals[t] / length;
+    }
     BoxTree(boxes).for_each_pair([&](Index s, Index t) {
-      if (s > t) std::swap(s, t);
-      consider_corners(s, t);
-      consider_corners(t, s);
-      consider_edges(s, t);
+      if (((draft_.origins[s].facet | draft_.origins[t].facet) & flag) == 0) return;
+      if (beyond(s, t, normals[s]) || beyond(t, s, normals[t])) return;
+      visit(std::min(s, t), std::max(s, t));
     });
+  }
+
+  // Does t keep its distance from the plane of s?
+  bool beyond(Index s, Index t, const Vector& normal) const {
+    const Point& origin = draft_.corner(s, 0);
+    double low = INFINITY, high = -INFINITY;
+    for (unsigned i = 0; i < 3; ++i) {
+      const double height = dot(normal, draft_.corner(t, i) - origin);
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
+    return low > limit_ || high < -limit_;
+  }
+
+  void clear() {
+    on_edge_.clear();
+    inside_.clear();
+    crossing_.clear();
+    along_.clear();
   }
 
   bool may_snap(Index triangle, unsigned side) const {
     return what_ == SnapWhat::all || edges_->sides(edges_->edge_of(3 * triangle + side)).size() == 1;
   }
 
+  // A corner near an edge that it is no end of.
+  struct NearEdge {
+    double length, distance;  // of the edge, and to it
+    Edge edge;
+    OnEdge corner;
+
+    friend bool operator<(const NearEdge& a, const NearEdge& b) {
+      return std::tie(b.length, a.distance, a.edge, a.corner.point) <
+             std::tie(a.length, b.distance, b.edge, b.corner.point);
+    }
+  };
+
+  // Edges get the corners near them, the longest first. In one round a triangle is cut at one of its sides only.
+  bool snap_corners() {
+    clear();
+    std::vector<NearEdge> found;
+    for_each_near_pair(unseen_by_corners, [&](Index s, Index t) {
+      find_near_edges(s, t, found);
+      find_near_edges(t, s, found);
+    });
+    for (Index t = 0; t < draft_.triangles.size(); ++t) {
+      if ((draft_.origins[t].facet & unseen_by_corners) == 0) continue;
+      for (unsigned i = 0; i < 3; ++i) find_near_edge(t, i, draft_.triangles[t][(i + 2) % 3], found);
+      draft_.origins[t].facet &= ~unseen_by_corners;
+    }
+    std::sort(found.begin(), found.end());
+    std::vector<Edge> cut(draft_.triangles.size(), Edge{none, none});  // at which side
+    for (const NearEdge& near : found) {
+      const auto sides = edges_->sides(edges_->find(near.edge[0], near.edge[1]));
+      const bool independent = std::all_of(sides.begin(), sides.end(), [&](Index side) {
+        return cut[side / 3][0] == none || cut[side / 3] == near.edge;
+      });
+      if (!independent || !has_room(near)) {
+        for (const Index side : sides) draft_.origins[side / 3].facet |= unseen_by_corners;
+        continue;
+      }
+      if (!may_cut(near, sides)) continue;
+      for (const Index side : sides) cut[side / 3] = near.edge;
+      add_on_edge(near.edge, near.corner, near.distance);
+    }
+    if (on_edge_.empty()) return false;
+    apply();
+    return true;
+  }
+
+  // Edges that arise are shorter than the one that is cut, or it is cut for the first time: so it ends.
+  bool may_cut(const NearEdge& near, std::span<const Index> sides) {
+    const bool shorter = std::all_of(sides.begin(), sides.end(), [&](Index side) {
+      const Index opposite = apex(draft_.triangles, side);
+      return opposite == near.corner.point || distance(at(opposite), at(near.corner.point)) < near.length;
+    });
+    return shorter || cut_before_.insert(near.edge).second;
+  }
+
+  // Is it away from the other corners that the edge gets?
+  bool has_room(const NearEdge& near) const {
+    const auto found = on_edge_.find(near.edge);
+    if (found == on_edge_.end()) return true;
+    const double length = distance(at(near.edge[0]), at(near.edge[1]));
+    return std::all_of(found->second.begin(), found->second.end(), [&](const OnEdge& o) {
+      return std::fabs(o.parameter - near.corner.parameter) * length > 2 * limit_;
+    });
+  }
+
+  void find_near_edges(Index s, Index t, std::vector<NearEdge>& found) const {
+    const build::Corners& corners = draft_.triangles[t];
+    for (const Index p : draft_.triangles[s])
+      if (std::find(corners.begin(), corners.end(), p) == corners.end())
+        for (unsigned i = 0; i < 3; ++i) find_near_edge(t, i, p, found);
+  }
+
+  void find_near_edge(Index t, unsigned i, Index p, std::vector<NearEdge>& found) const {
+    if (!may_snap(t, i)) return;
+    const Edge key = edge_key(draft_.triangles[t][i], draft_.triangles[t][(i + 1) % 3]);
+    const auto [d, parameter] = nearest_on_segment(at(p), at(key[0]), at(key[1]));
+    if (d <= limit_ && parameter > 0 && parameter < 1) found.push_back({distance(at(key[0]), at(key[1])), d, key, {parameter, p}});
+  }
+
+  // Triangles that run along each other get each other's corners and edges.
+  bool overlay() {
+    clear();
+    for_each_near_pair(unseen_by_overlay, [&](Index s, Index t) {
+      find_near_corners(s, t);
+      find_near_corners(t, s);
+      find_crossings(s, t);
+    });
+    for (Origin& origin : draft_.origins) origin.facet &= ~unseen_by_overlay;
+    if (on_edge_.empty() && inside_.empty()) return false;
+    apply();
+    return true;
+  }
+
   // Those corners of s that t does not have.
-  void consider_corners(Index s, Index t) {
+  void find_near_corners(Index s, Index t) {
     const build::Corners& corners = draft_.triangles[t];
     for (unsigned k = 0; k < 3; ++k) {
       const Index p = draft_.triangles[s][k];
-      if (std::find(corners.begin(), corners.end(), p) != corners.end()) continue;
-      bool near = false;
-      for (unsigned i = 0; i < 3; ++i) near = consider_edge(t, i, p) || near;
-      if (!near && what_ == SnapWhat::all) near = consider_inside(t, p);
-      if (!near || what_ != SnapWhat::all) continue;
+      if (std::find(corners.begin(), corners.end(), p) != corners.end() || !consider_inside(t, p)) continue;
       along_[t].push_back(edge_key(p, draft_.triangles[s][(k + 1) % 3]));
       along_[t].push_back(edge_key(p, draft_.triangles[s][(k + 2) % 3]));
     }
-  }
-
-  // Is the point near this side?
-  bool consider_edge(Index t, unsigned i, Index p) {
-    const Index a = draft_.triangles[t][i], b = draft_.triangles[t][(i + 1) % 3];
-    if (p == a || p == b || !may_snap(t, i)) return false;
-    const Edge key = edge_key(a, b);
-    const auto [d, parameter] = nearest_on_segment(at(p), at(key[0]), at(key[1]));
-    if (d > limit_ || parameter <= 0 || parameter >= 1) return false;
-    add_on_edge(key, {parameter, p}, d);
-    return true;
   }
 
   void add_on_edge(const Edge& key, const OnEdge& point, double moved) {
@@ -353,8 +470,7 @@ class Snapper {
     return true;
   }
 
-  void consider_edges(Index s, Index t) {
-    if (what_ != SnapWhat::all) return;
+  void find_crossings(Index s, Index t) {
     for (unsigned i = 0; i < 3; ++i)
       for (unsigned j = 0; j < 3; ++j)
       {
@@ -382,7 +498,8 @@ class Snapper {
     for (const auto& [end, on] : {std::pair{e[0], on_f}, {e[1], on_f}, {f[0], on_e}, {f[1], on_e}})
       if (distance(at(end), on) <= limit_) return false;  // that end is near
     const auto key = e < f ? std::pair{e, f} : std::pair{f, e};
-    if (!crossing_.emplace(key, none).second) return true;
+    if (!crossing_.insert(key).second) return true;
+    if (!crossed_before_.insert(key).second) return false;
     const auto middle = static_cast<Index>(draft_.points.size());
     draft_.points.push_back(0.5 * (on_e + on_f));
     draft_.point_tags.push_back(0);
@@ -392,7 +509,6 @@ class Snapper {
   }
 
   void apply() {
-    if (on_edge_.empty() && inside_.empty()) return;
     for (auto& [edge, points] : on_edge_)
       std::sort(points.begin(), points.end(), [](const OnEdge& a, const OnEdge& b) {
         return a.parameter != b.parameter ? a.parameter < b.parameter : a.point < b.point;
@@ -411,7 +527,7 @@ class Snapper {
     draft_.segments = std::move(segments);
   }
 
-  void cut(Index t, const build::Corners& corners, const Origin& origin) {
+  void cut(Index t, const build::Corners& corners, Origin origin) {
     std::vector<Index> polygon;
     for (unsigned i = 0; i < 3; ++i) {
       const std::vector<Index> points = chain(corners[i], corners[(i + 1) % 3]);
@@ -422,17 +538,21 @@ class Snapper {
       draft_.add_triangle(corners, origin);
       return;
     }
+    origin.facet = unseen;
     const std::vector<Index> inside = found == inside_.end() ? std::vector<Index>() : found->second;
     std::vector<Index> sorted = polygon;
     std::sort(sorted.begin(), sorted.end());
     const bool simple = std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
-    if (simple) {
+    // A plain step cuts from the opposite corner; a triangulation might take the old edge again.
+    const bool plain = inside.empty() && along_.empty();
+    if (simple && !plain) {
       const Vector normal = cross(at(corners[1]) - at(corners[0]), at(corners[2]) - at(corners[0]));
       if (const auto pieces = PolygonCutter(draft_.points, normal).cut(polygon, inside, constraints(t, corners))) {
         for (const build::Corners& piece : *pieces) draft_.add_triangle(piece, origin);
         return;
       }
     }
+    ++fallbacks_;
     std::vector<build::Corners> pieces{corners};
     for (const Index p : inside) insert(p, pieces);
     for (const build::Corners& piece : pieces) add_cut(piece, origin);
@@ -528,11 +648,13 @@ class Snapper {
   double limit_;
   SnapWhat what_;
   SnapReport report_;
+  std::size_t fallbacks_ = 0;
   std::optional<EdgeTable> edges_;
+  std::set<Edge> cut_before_;
   std::map<Edge, std::vector<OnEdge>> on_edge_;
   std::map<Index, std::vector<Index>> inside_;  // by triangle
   std::map<Index, std::vector<Edge>> along_;      // by triangle: edges that come near it
-  std::map<std::pair<Edge, Edge>, Index> crossing_;
+  std::set<std::pair<Edge, Edge>> crossing_, crossed_before_;
 };
 
 }  // namespace
