@@ -145,7 +145,7 @@ class Repairer {
     add_places(report_.cut, arranged.intersecting_pairs, 0, arranged.places);
     if (!arranged.clean) return;
     cancel_twins(draft_);
-    const InsideReport kept = keep_boundaries(draft_);
+    const InsideReport kept = keep_boundaries(draft_, tolerance_);
     report_.merged.count += kept.removed_triangles;
     report_.merged.size += kept.removed_area;
     for (const Point& p : kept.places)

@@ -25,7 +25,7 @@ namespace {
 using namespace build;
 using Edge = std::array<Index, 2>;
 
-constexpr std::size_t most_rounds = 200, most_overlays = 20;
+constexpr std::size_t most_rounds = 100, most_overlays = 8;
 constexpr std::size_t most_places = 100;
 
 Edge edge_key(Index a, Index b) { return a < b ? Edge{a, b} : Edge{b, a}; }
@@ -207,7 +207,12 @@ class Snapper {
           snapped_before = report_;
         }
         overlaid = true;
-        if (++overlays > most_overlays || !overlay()) break;
+        if (overlays == most_overlays) {  // it does not end
+          draft_ = std::move(before);
+          return snapped_before;
+        }
+        ++overlays;
+        if (!overlay()) break;
       }
       if (std::getenv("DBG")) fprintf(stderr, "  round %zu m%d s%d o%d: %zu tri, edges %zu inside %zu crossings %zu along %zu fallback %zu\n", round, merged, snapped, overlaid, draft_.triangles.size(), on_edge_.size(), inside_.size(), crossing_.size(), along_.size(), fallbacks_);
       report_.cancelled_triangles += cancel_twins(draft_);
