@@ -51,6 +51,7 @@ class Tessellator {
     IMeshTools_Parameters parameters;
     parameters.Deflection = deflection;
     parameters.Angle = angle * std::numbers::pi / 180;
+    parameters.InParallel = true;
     const BRepMesh_IncrementalMesh mesh(topology_.all, parameters);
     for (int f = 1; f <= faces_.Extent(); ++f) add_face(TopoDS::Face(faces_(f)), f);
     bend_single_chords();
@@ -329,11 +330,9 @@ class Tessellator {
   bool is_vertex_of(Index point) const { return point < is_vertex_.size() && is_vertex_[point]; }
 
   PolygonSoup soup_of(const Topology::Solid& solid) const {
-    Collector soup(*this, fmt::format("{}, {}", file_, topology_.name(solid.shape)));
+    Collector soup(*this, fmt::format("{}, Solid{}", file_, solid.number));
     soup.set_region(solid.number);
-    for (TopExp_Explorer face(solid.shape, TopAbs_FACE); face.More(); face.Next())
-      if (face.Current().Orientation() == TopAbs_FORWARD || face.Current().Orientation() == TopAbs_REVERSED)
-        soup.add_face(face.Current());
+    for (const TopoDS_Shape& face : solid.faces) soup.add_face(face);
     return soup.finish();
   }
 

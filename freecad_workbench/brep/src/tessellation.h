@@ -21,6 +21,7 @@ struct Samples {
 struct Tessellation {
   std::vector<PolygonSoup> soups;  ///< one per solid, one for the internal faces where there are any
   std::map<int, std::vector<Samples>> edges, faces;  ///< by number
+  std::vector<std::string> notes;                    ///< on faces that were cut in another way, or not at all
 };
 
 /// Triangulate all faces; neighbours share the points of their edges.
