@@ -26,7 +26,6 @@
 #include <map>
 #include <memory>
 #include <numeric>
-#include <set>
 
 namespace collarmesh::brep {
 
@@ -100,42 +99,52 @@ bool is_plane(const TopoDS_Shape& face) {
   return BRepAdaptor_Surface(TopoDS::Face(face), false).GetType() == GeomAbs_Plane;
 }
 
-/// Adds a vertex for each point that two faces have in common.
-void add_contact_points(const TopoDS_Shape& a, const TopoDS_Shape& b, std::vector<TopoDS_Shape>& vertices) {
-  const BRepExtrema_DistShapeShape extrema(a, b);
-  if (!extrema.IsDone() || extrema.Value() > Precision::Confusion()) return;
-  for (int k = 1; k <= extrema.NbSolution(); ++k)
-    vertices.push_back(BRepBuilderAPI_MakeVertex(extrema.PointOnShape1(k)).Vertex());
-}
-
-/// Where solids touch in a point only, which general fuse does not see: a vertex for each. Two planes touch at
-/// edges, where it does. Solids with more pairs of faces than `most` are left alone, as each costs milliseconds.
-std::vector<TopoDS_Shape> contact_points(const TopoDS_Shape& fused) {
-  constexpr std::size_t most = 50;
-  std::vector<Argument> solids;
-  for (const TopoDS_Shape& solid : subshapes(fused, TopAbs_SOLID)) solids.emplace_back(solid);
-  std::vector<TopoDS_Shape> vertices;
+/// Pairs of faces of solids that have no vertex in common, which may touch in a point that general fuse does not
+/// see. (Two planes touch at edges, where it does.)
+std::vector<std::array<TopoDS_Shape, 2>> pairs_apart(const std::vector<Argument>& solids) {
+  std::map<std::array<std::size_t, 2>, Bnd_Box> tight;  // by solid and face
+  const auto box = [&](std::size_t s, std::size_t f) -> const Bnd_Box& {
+    const auto [found, fresh] = tight.try_emplace({s, f});
+    if (fresh) BRepBndLib::AddOptimal(solids[s].faces[f], found->second, /*useTriangulation=*/false);
+    return found->second;
+  };
+  std::vector<std::array<TopoDS_Shape, 2>> apart;
   for (std::size_t i = 0; i < solids.size(); ++i)
     for (std::size_t j = i + 1; j < solids.size(); ++j) {
-      auto pairs = face_pairs(solids[i], solids[j]);
+      const auto pairs = face_pairs(solids[i], solids[j]);
       if (pairs.empty() || share_a_vertex(solids[i].shape, solids[j].shape)) continue;
-      std::erase_if(pairs, [&](const auto& pair) {
-        return is_plane(solids[i].faces[pair[0]]) && is_plane(solids[j].faces[pair[1]]);
-      });
-      if (pairs.size() > most) continue;
-      for (const auto& [f, g] : pairs) add_contact_points(solids[i].faces[f], solids[j].faces[g], vertices);
+      for (const auto& [f, g] : pairs)
+        if (!(is_plane(solids[i].faces[f]) && is_plane(solids[j].faces[g])) && !box(i, f).IsOut(box(j, g)))
+          apart.push_back({solids[i].faces[f], solids[j].faces[g]});
     }
+  return apart;
+}
+
+/// Where solids touch in a point only, which general fuse does not see: a vertex for each. As each pair of faces
+/// costs milliseconds, nothing is looked for where there are many.
+std::vector<TopoDS_Shape> contact_points(const TopoDS_Shape& fused) {
+  constexpr std::size_t many = 100;
+  std::vector<Argument> solids;
+  for (const TopoDS_Shape& solid : subshapes(fused, TopAbs_SOLID)) solids.emplace_back(solid);
+  const auto pairs = pairs_apart(solids);
+  std::vector<TopoDS_Shape> vertices;
+  if (pairs.size() > many) return vertices;
+  for (const auto& [a, b] : pairs) {
+    const BRepExtrema_DistShapeShape extrema(a, b);
+    if (!extrema.IsDone() || extrema.Value() > Precision::Confusion()) continue;
+    for (int k = 1; k <= extrema.NbSolution(); ++k)
+      vertices.push_back(BRepBuilderAPI_MakeVertex(extrema.PointOnShape1(k)).Vertex());
+  }
   return vertices;
 }
 
 using Fuse = std::shared_ptr<BOPAlgo_Builder>;
 
 /// Null when it fails.
-Fuse general_fuse(const std::vector<TopoDS_Shape>& shapes, double fuzzy) {
+Fuse general_fuse(const std::vector<TopoDS_Shape>& shapes) {
   const auto fuse = std::make_shared<BOPAlgo_Builder>();
   fuse->SetNonDestructive(true);
   fuse->SetRunParallel(true);
-  if (fuzzy > 0) fuse->SetFuzzyValue(fuzzy);
   for (const TopoDS_Shape& shape : shapes) fuse->AddArgument(shape);
   fuse->Perform();
   return fuse->HasErrors() || fuse->Shape().IsNull() ? nullptr : fuse;
@@ -147,47 +156,55 @@ double volume_of(const TopoDS_Shape& shape) {
   return properties.Mass();
 }
 
-/// Empty where a shape is as it was.
-TopTools_ListOfShape changed_parts(BOPAlgo_Builder& fuse, const TopoDS_Shape& shape) {
-  return fuse.IsDeleted(shape) ? TopTools_ListOfShape() : fuse.Modified(shape);
-}
-
-/// Are the parts of each solid closed, and do they fill it?
-bool is_sound(BOPAlgo_Builder& fuse, const std::vector<TopoDS_Shape>& shapes) {
-  constexpr double rough = 0.01;  // of a volume: what integrals over trimmed faces may err
-  for (const TopoDS_Shape& shape : shapes) {
-    if (shape.ShapeType() != TopAbs_SOLID) continue;
-    if (fuse.IsDeleted(shape)) return false;
-    const TopTools_ListOfShape parts = changed_parts(fuse, shape);
-    if (parts.IsEmpty()) continue;
-    double volume = 0;
-    for (const TopoDS_Shape& part : parts) {
-      if (!open_edges(part).empty()) return false;
-      volume += volume_of(part);
-    }
-    const double before = volume_of(shape);
-    if (!(std::fabs(volume - before) <= rough * std::fabs(before))) return false;
+/// What the parts of a solid lack of its volume or exceed it by, relative; infinite when one is open or none is
+/// left.
+double unsoundness(BOPAlgo_Builder& fuse, const TopoDS_Shape& solid) {
+  if (fuse.IsDeleted(solid)) return INFINITY;
+  const TopTools_ListOfShape parts = fuse.Modified(solid);
+  if (parts.IsEmpty()) return 0;  // it is as it was
+  double volume = 0;
+  for (const TopoDS_Shape& part : parts) {
+    if (!open_edges(part).empty()) return INFINITY;
+    volume += volume_of(part);
   }
-  return true;
+  const double before = volume_of(solid);
+  return before != 0 ? std::fabs(volume / before - 1) : INFINITY;
 }
 
-/// The general fuse of what may touch; if that fails, once more with points and edges that come close taken
-/// for the same. Null when that fails, too.
-Fuse sound_fuse(std::vector<TopoDS_Shape> shapes) {
-  constexpr double relative_fuzziness = 1e-6;  // to the diagonal
-  for (const double fuzzy : {0., relative_fuzziness * rough_diagonal(compound_of(shapes))}) try {
-      Fuse fuse = general_fuse(shapes, fuzzy);
-      if (!fuse) continue;
-      const auto contacts = contact_points(fuse->Shape());
-      if (!contacts.empty()) {
-        std::vector<TopoDS_Shape> with_contacts = shapes;
-        with_contacts.insert(with_contacts.end(), contacts.begin(), contacts.end());
-        fuse = general_fuse(with_contacts, fuzzy);
-      }
-      if (fuse && is_sound(*fuse, shapes)) return fuse;
-    } catch (const Standard_Failure&) {
-      continue;
-    }
+/// With a vertex where solids touch in a point. Null when it fails.
+Fuse fuse_with_contacts(const std::vector<TopoDS_Shape>& shapes) {
+  try {
+    const Fuse fuse = general_fuse(shapes);
+    if (!fuse) return nullptr;
+    const auto contacts = contact_points(fuse->Shape());
+    if (contacts.empty()) return fuse;
+    std::vector<TopoDS_Shape> with_contacts = shapes;
+    with_contacts.insert(with_contacts.end(), contacts.begin(), contacts.end());
+    return general_fuse(with_contacts);
+  } catch (const Standard_Failure&) {
+    return nullptr;
+  }
+}
+
+/// The general fuse of what may touch, without the solids of which it makes no sound parts: these are moved
+/// from `shapes` to `left_out`, the worst one first, as it may be what spoils the others. Null when it fails.
+Fuse sound_fuse(std::vector<TopoDS_Shape>& shapes, std::vector<TopoDS_Shape>& left_out) {
+  constexpr double rough = 1e-3;  // of a volume: what integrals over trimmed faces may err
+  constexpr int rounds = 3;       // after which all go
+  for (int round = 1; shapes.size() > 1; ++round) {
+    const Fuse fuse = fuse_with_contacts(shapes);
+    if (!fuse) return nullptr;
+    std::vector<double> off(shapes.size(), 0);
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+      if (shapes[i].ShapeType() == TopAbs_SOLID) off[i] = unsoundness(*fuse, shapes[i]);
+    const double worst = *std::max_element(off.begin(), off.end());
+    if (worst <= rough) return fuse;
+    const double least = round < rounds ? worst : rough;
+    std::vector<TopoDS_Shape> kept;
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+      (off[i] > rough && off[i] >= least ? left_out : kept).push_back(shapes[i]);
+    shapes = kept;
+  }
   return nullptr;
 }
 
@@ -362,17 +379,24 @@ class SharedFaces {
   }
 
   void fuse(const Group& group) {
-    std::vector<TopoDS_Shape> members;
+    std::vector<TopoDS_Shape> members, left_out;
     for (const std::size_t i : group) members.push_back(shapes_[i]);
-    if (const Fuse fuse = sound_fuse(members)) {
+    if (const Fuse fuse = sound_fuse(members, left_out)) {
       fuses_.push_back(fuse);
-      fused_.insert(group.begin(), group.end());
-      return;
+      for (const TopoDS_Shape& member : members) fused_.Add(member);
+    } else {
+      left_out.insert(left_out.end(), members.begin(), members.end());
     }
-    topology_.notes.push_back(fmt::format(
-        "{}: the common faces of {} and {} others around {} were not found by OpenCASCADE's general fuse; their "
-        "surfaces are cut as triangles",
-        file_, topology_.name(members.front()), members.size() - 1, text(place_of(compound_of(members)))));
+    if (left_out.empty()) return;
+    std::vector<std::string> names;
+    for (const TopoDS_Shape& shape : left_out) names.push_back(topology_.name(shape));
+    constexpr std::size_t listed = 5;
+    const bool more = names.size() > listed;
+    names.resize(std::min(listed, names.size()));
+    topology_.notes.push_back(
+        fmt::format("{}: OpenCASCADE's general fuse does not find where {}{} and the solids around {} meet; their "
+                    "triangles have to be cut",
+                    file_, fmt::join(names, ", "), more ? ", ..." : "", text(place_of(left_out.front()))));
   }
 
   /// Solids that touch no face of one that they lie in are regions of their own there.
@@ -429,7 +453,7 @@ class SharedFaces {
 
   /// The faces that are left: walls between parts of one region are gone.
   TopoDS_Shape everything_after() const {
-    if (fuses_.size() == 1 && fused_.size() == shapes_.size() && !has_walls(fuses_.front()->Shape()))
+    if (fuses_.size() == 1 && fused_.Extent() == static_cast<int>(shapes_.size()) && !has_walls(fuses_.front()->Shape()))
       return fuses_.front()->Shape();
     std::vector<TopoDS_Shape> all;
     TopTools_MapOfShape added;
@@ -453,7 +477,7 @@ class SharedFaces {
   Topology& topology_;
   std::vector<TopoDS_Shape> shapes_;  // faces first
   std::vector<Fuse> fuses_;
-  std::set<std::size_t> fused_;
+  TopTools_MapOfShape fused_;
 };
 
 }  // namespace
