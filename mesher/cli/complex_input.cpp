@@ -26,9 +26,10 @@ PlcError with_names(const PlcError& error, const CadFiles& cad) {
   std::vector<PlcFault> faults = error.faults;
   for (PlcFault& fault : faults)
     fault.message += fmt::format(" The nearest faces are {}.", cad.faces_near(fault.where));
-  const std::string invalid = cad.invalid_parts();
+  const std::string open = cad.open_edges(), invalid = cad.invalid_parts();
   return {
-      fmt::format("{}{}", faults.empty() ? error.what() : faults.front().message,
+      fmt::format("{}{}{}", faults.empty() ? error.what() : faults.front().message,
+                  open.empty() ? "" : fmt::format(" {}", open),
                   invalid.empty() ? "" : fmt::format(" OpenCASCADE finds the shape invalid: {}.", invalid)),
       faults};
 }
