@@ -69,9 +69,10 @@ TEST(CadOverlaps, OfTwoBoxesBelongToTheFirst) {
   expect_volumes(part, {{1, 6000}, {2, 6000 - 1875}});
   expect_complex(part, 12000 - 1875);
   ASSERT_EQ(part.notes.size(), 1U);
-  EXPECT_EQ(part.notes[0],
-            "part: Solid1 and Solid2 overlap around (7.5, 12.5, 17.5); their common part, of volume 1875, belongs "
-            "to Solid1");
+  EXPECT_EQ(
+      part.notes[0],
+      "part: Solid1 and Solid2 overlap around (7.5, 12.5, 17.5); their common part, of volume 1875, belongs "
+      "to Solid1");
 }
 
 TEST(CadOverlaps, OfTwoBoxesAreARegion) {
@@ -153,8 +154,9 @@ TEST(CadSolids, ThatDoNotTouchAreNotFused) {
 }
 
 TEST(CadSolids, OfGroupsApartShareFacesWithinEach) {
-  const Read part = read(compound({box(0, 0, 0, 10, 10, 10), box(10, 0, 0, 5, 5, 5), box(50, 0, 0, 10, 10, 10),
-                                   box(60, 0, 0, 5, 5, 5), box(100, 0, 0, 1, 1, 1)}));
+  const Read part =
+      read(compound({box(0, 0, 0, 10, 10, 10), box(10, 0, 0, 5, 5, 5), box(50, 0, 0, 10, 10, 10),
+                     box(60, 0, 0, 5, 5, 5), box(100, 0, 0, 1, 1, 1)}));
   expect_volumes(part, {{1, 1000}, {2, 125}, {3, 1000}, {4, 125}, {5, 1}});
   expect_complex(part, 2251);
 }

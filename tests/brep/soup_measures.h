@@ -14,7 +14,8 @@ inline double volume_of(const PolygonSoup& soup) {
   double volume = 0;
   for (Index f = 0; f < soup.facet_count(); ++f) {
     const auto t = soup.polygon(f);
-    volume += dot(soup.points[t[0]] - Point{}, cross(soup.points[t[1]] - Point{}, soup.points[t[2]] - Point{})) / 6;
+    volume +=
+        dot(soup.points[t[0]] - Point{}, cross(soup.points[t[1]] - Point{}, soup.points[t[2]] - Point{})) / 6;
   }
   return volume;
 }

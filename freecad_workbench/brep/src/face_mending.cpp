@@ -104,7 +104,8 @@ class Mender {
   }
 
   MendedFace run() {
-    constexpr double coarse = 4;  // finer deflections rarely help, and take minutes where an outline crosses itself
+    constexpr double coarse =
+        4;  // finer deflections rarely help, and take minutes where an outline crosses itself
     try_way([&] { return alone(copied(face_), "alone"); });
     try_way([&] { return alone(healed(face_), "alone after shape healing"); });
     try_way([&] { return in_parameter_plane(); });
@@ -203,7 +204,8 @@ class Mender {
   }
 
   /// The nodes of a patch of the surface around the outline, without those that come close to the outline.
-  std::vector<Parameters> inner_parameters(const std::vector<Parameters>& outline, const Parameters& scale) const {
+  std::vector<Parameters> inner_parameters(const std::vector<Parameters>& outline,
+                                           const Parameters& scale) const {
     std::vector<Parameters> inner;
     if (outline.empty()) return inner;
     Parameters low = outline.front(), high = low;
@@ -240,7 +242,8 @@ class Mender {
     result.how = "from its outline in a fitted plane";
     Vector normal;
     for (const auto& [a, b] : outline_.chords)
-      normal = normal + cross(outline_.places[a] - outline_.places.front(), outline_.places[b] - outline_.places[a]);
+      normal = normal +
+               cross(outline_.places[a] - outline_.places.front(), outline_.places[b] - outline_.places[a]);
     if (!(norm(normal) > 0)) return {};
     const Vector across = std::fabs(normal.x) < 0.5 * norm(normal) ? Vector{1, 0, 0} : Vector{0, 1, 0};
     Vector u = cross(across, normal);

@@ -9,7 +9,8 @@
 
 namespace collarmesh::brep {
 
-/// The outline of a face as its neighbours cut it. A node is a point with parameters: points of a seam have two.
+/// The outline of a face as its neighbours cut it. A node is a point with parameters: points of a seam have
+/// two.
 struct Outline {
   std::vector<Index> points;  ///< of the shape's tessellation, by node
   std::vector<Point> places;
@@ -28,15 +29,14 @@ struct MendedFace {
   std::string how;                                ///< "by ...", for a note
 };
 
-/// Triangulate a face that the tessellation of the whole shape fails on, by the first of these ways that fits the
-/// outline: the face alone, as it is and after shape healing; its outline in the parameter plane, with inner points
-/// of the surface; its outline in a fitted plane; the face alone with a larger deflection. If none fits, the first
-/// that makes triangles.
-/// Lengths are absolute, the angle is in radians.
+/// Triangulate a face that the tessellation of the whole shape fails on, by the first of these ways that fits
+/// the outline: the face alone, as it is and after shape healing; its outline in the parameter plane, with
+/// inner points of the surface; its outline in a fitted plane; the face alone with a larger deflection. If
+/// none fits, the first that makes triangles. Lengths are absolute, the angle is in radians.
 MendedFace mend_face(const TopoDS_Face& face, const Outline& outline, double deflection, double angle);
 
-/// Do the sides that an odd number of triangles has make up the outline's chords? Corners and chords are indices of
-/// the same points.
+/// Do the sides that an odd number of triangles has make up the outline's chords? Corners and chords are
+/// indices of the same points.
 bool borders_on(const std::vector<std::array<Index, 3>>& triangles,
                 const std::vector<std::array<Index, 2>>& chords);
 

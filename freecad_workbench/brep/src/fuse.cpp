@@ -99,8 +99,8 @@ bool is_plane(const TopoDS_Shape& face) {
   return BRepAdaptor_Surface(TopoDS::Face(face), false).GetType() == GeomAbs_Plane;
 }
 
-/// Pairs of faces of solids that have no vertex in common, which may touch in a point that general fuse does not
-/// see. (Two planes touch at edges, where it does.)
+/// Pairs of faces of solids that have no vertex in common, which may touch in a point that general fuse does
+/// not see. (Two planes touch at edges, where it does.)
 std::vector<std::array<TopoDS_Shape, 2>> pairs_apart(const std::vector<Argument>& solids) {
   std::map<std::array<std::size_t, 2>, Bnd_Box> tight;  // by solid and face
   const auto box = [&](std::size_t s, std::size_t f) -> const Bnd_Box& {
@@ -120,8 +120,8 @@ std::vector<std::array<TopoDS_Shape, 2>> pairs_apart(const std::vector<Argument>
   return apart;
 }
 
-/// Where solids touch in a point only, which general fuse does not see: a vertex for each. As each pair of faces
-/// costs milliseconds, nothing is looked for where there are many.
+/// Where solids touch in a point only, which general fuse does not see: a vertex for each. As each pair of
+/// faces costs milliseconds, nothing is looked for where there are many.
 std::vector<TopoDS_Shape> contact_points(const TopoDS_Shape& fused) {
   constexpr std::size_t many = 100;
   std::vector<Argument> solids;
@@ -156,8 +156,8 @@ double volume_of(const TopoDS_Shape& shape) {
   return properties.Mass();
 }
 
-/// What the parts of a solid lack of its volume or exceed it by, relative; infinite when one is open or none is
-/// left.
+/// What the parts of a solid lack of its volume or exceed it by, relative; infinite when one is open or none
+/// is left.
 double unsoundness(BOPAlgo_Builder& fuse, const TopoDS_Shape& solid) {
   if (fuse.IsDeleted(solid)) return INFINITY;
   const TopTools_ListOfShape parts = fuse.Modified(solid);
@@ -295,10 +295,10 @@ struct Common {
 void tell_overlaps(const std::string& file, const std::vector<Common>& overlaps, Topology& topology) {
   constexpr std::size_t listed = 10;
   for (std::size_t i = 0; i < std::min(listed, overlaps.size()); ++i)
-    topology.notes.push_back(fmt::format(
-        "{}: {} overlap around {}; their common part, of volume {:.4g}, belongs to Solid{}", file,
-        names_of(overlaps[i].holders, topology.solids), text(overlaps[i].where), overlaps[i].volume,
-        overlaps[i].number));
+    topology.notes.push_back(
+        fmt::format("{}: {} overlap around {}; their common part, of volume {:.4g}, belongs to Solid{}", file,
+                    names_of(overlaps[i].holders, topology.solids), text(overlaps[i].where),
+                    overlaps[i].volume, overlaps[i].number));
   if (overlaps.size() > listed)
     topology.notes.push_back(
         fmt::format("{}: {} more overlaps of solids were resolved", file, overlaps.size() - listed));
@@ -393,10 +393,10 @@ class SharedFaces {
     constexpr std::size_t listed = 5;
     const bool more = names.size() > listed;
     names.resize(std::min(listed, names.size()));
-    topology_.notes.push_back(
-        fmt::format("{}: OpenCASCADE's general fuse does not find where {}{} and the solids around {} meet; their "
-                    "triangles have to be cut",
-                    file_, fmt::join(names, ", "), more ? ", ..." : "", text(place_of(left_out.front()))));
+    topology_.notes.push_back(fmt::format(
+        "{}: OpenCASCADE's general fuse does not find where {}{} and the solids around {} meet; their "
+        "triangles have to be cut",
+        file_, fmt::join(names, ", "), more ? ", ..." : "", text(place_of(left_out.front()))));
   }
 
   /// Solids that touch no face of one that they lie in are regions of their own there.
@@ -405,8 +405,9 @@ class SharedFaces {
       for (const Argument& outer : arguments)
         if (inner.shape.ShapeType() == TopAbs_SOLID && outer.shape.ShapeType() == TopAbs_SOLID &&
             lies_inside(inner, outer))
-          topology_.notes.push_back(fmt::format("{}: {} lies inside {} and is a region of its own there", file_,
-                                                topology_.name(inner.shape), topology_.name(outer.shape)));
+          topology_.notes.push_back(fmt::format("{}: {} lies inside {} and is a region of its own there",
+                                                file_, topology_.name(inner.shape),
+                                                topology_.name(outer.shape)));
   }
   static bool lies_inside(const Argument& inner, const Argument& outer) {
     if (&inner == &outer || inner.box.IsVoid() || outer.box.IsVoid()) return false;
@@ -453,7 +454,8 @@ class SharedFaces {
 
   /// The faces that are left: walls between parts of one region are gone.
   TopoDS_Shape everything_after() const {
-    if (fuses_.size() == 1 && fused_.Extent() == static_cast<int>(shapes_.size()) && !has_walls(fuses_.front()->Shape()))
+    if (fuses_.size() == 1 && fused_.Extent() == static_cast<int>(shapes_.size()) &&
+        !has_walls(fuses_.front()->Shape()))
       return fuses_.front()->Shape();
     std::vector<TopoDS_Shape> all;
     TopTools_MapOfShape added;

@@ -18,10 +18,10 @@ struct Side {
 };
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<Index, Kernel>;
 using FaceBase =
-    CGAL::Triangulation_face_base_with_info_2<Side, Kernel, CGAL::Constrained_triangulation_face_base_2<Kernel>>;
-using Triangulation =
-    CGAL::Constrained_Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
-                                               CGAL::Exact_predicates_tag>;
+    CGAL::Triangulation_face_base_with_info_2<Side, Kernel,
+                                              CGAL::Constrained_triangulation_face_base_2<Kernel>>;
+using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<
+    Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>, CGAL::Exact_predicates_tag>;
 using Ends = std::array<Index, 2>;
 
 Ends sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
@@ -43,8 +43,8 @@ void mark_sides(Triangulation& plane, const std::map<Ends, int>& uses) {
     for (int i = 0; i < 3; ++i) {
       const auto next = face->neighbor(i);
       if (next->info().seen) continue;
-      const auto found = uses.find(sorted(face->vertex(Triangulation::cw(i))->info(),
-                                          face->vertex(Triangulation::ccw(i))->info()));
+      const auto found = uses.find(
+          sorted(face->vertex(Triangulation::cw(i))->info(), face->vertex(Triangulation::ccw(i))->info()));
       const bool crosses = face->is_constrained(i) && (found == uses.end() || found->second % 2 == 1);
       next->info() = {true, face->info().inside != crosses};
       reached.push_back(next);
@@ -68,7 +68,8 @@ OutlineTriangles triangulate_outline(const std::vector<std::array<double, 2>>& n
   const auto crossing = static_cast<Index>(nodes.size());
   std::vector<Triangulation::Vertex_handle> known = vertices;
   for (const Ends& chord : chords)
-    if (vertices[chord[0]] != vertices[chord[1]]) plane.insert_constraint(vertices[chord[0]], vertices[chord[1]]);
+    if (vertices[chord[0]] != vertices[chord[1]])
+      plane.insert_constraint(vertices[chord[0]], vertices[chord[1]]);
   OutlineTriangles result;
   std::sort(known.begin(), known.end());
   for (auto v = plane.finite_vertices_begin(); v != plane.finite_vertices_end(); ++v) {

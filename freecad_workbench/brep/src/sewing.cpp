@@ -89,10 +89,10 @@ void keep_open(const Sewn& sewn, const std::string& file, Topology& topology) {
   open.faces = boundary_of(open.shape);
   open.open = true;
   topology.all = open.shape;
-  topology.open_text =
-      fmt::format("{} holds no solid, and its faces, sewn within {:.3g}, enclose none: {}; close the surface "
-                  "and make a solid of it.",
-                  file, sewn.gap, open_edges_text(topology, open.shape));
+  topology.open_text = fmt::format(
+      "{} holds no solid, and its faces, sewn within {:.3g}, enclose none: {}; close the surface "
+      "and make a solid of it.",
+      file, sewn.gap, open_edges_text(topology, open.shape));
   topology.notes.push_back(topology.open_text);
   topology.solids.push_back(open);
 }
@@ -177,8 +177,8 @@ void sew_faces(const std::string& file, Topology& topology) {
   std::vector<TopoDS_Shape> kept;
   for (const Topology::Solid& solid : topology.solids) kept.push_back(solid.shape);
   topology.all = compound_of(kept);
-  topology.notes.push_back(fmt::format("{}: its faces were sewn within {:.3g} to {} solid{}", file, result.gap,
-                                       closed, closed == 1 ? "" : "s"));
+  topology.notes.push_back(fmt::format("{}: its faces were sewn within {:.3g} to {} solid{}", file,
+                                       result.gap, closed, closed == 1 ? "" : "s"));
   if (left_out > 0)
     topology.notes.push_back(
         fmt::format("{}: {} of its faces enclose nothing and are left out", file, left_out));

@@ -191,7 +191,8 @@ class Tessellator {
 
   /// In another way, see mend_face. Notes tell which.
   void mend(const TopoDS_Face& face, int index) {
-    for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next()) cut_edge(TopoDS::Edge(edge.Current()));
+    for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next())
+      cut_edge(TopoDS::Edge(edge.Current()));
     const MendedFace mended = mend_face(face, outline_of(face), deflection_, angle_);
     std::vector<Index> at = mended.outline_points;
     for (std::size_t i = 0; i < at.size(); ++i) {
@@ -216,8 +217,9 @@ class Tessellator {
         left_out ? "it is left out; its outline is open or crosses itself, or it has no area"
                  : fmt::format("it was triangulated {}{}", mended.how,
                                mended.fits ? "" : ", and its border has other points than its neighbours");
-    result_.notes.push_back(fmt::format("{}: {} around {} cannot be cut into triangles with its neighbours; {}",
-                                        file_, topology_.name(face), text(place_of(face)), done));
+    result_.notes.push_back(
+        fmt::format("{}: {} around {} cannot be cut into triangles with its neighbours; {}", file_,
+                    topology_.name(face), text(place_of(face)), done));
   }
 
   void require_triangles() const {
@@ -236,7 +238,8 @@ class Tessellator {
     const auto node = [&](Index p, const std::array<double, 2>& uv) {
       const gp_Pnt at = surface.Value(uv[0], uv[1]);
       for (const Index n : nodes_of[p])
-        if (at.Distance(surface.Value(outline.parameters[n][0], outline.parameters[n][1])) <= seam_gap_ * diagonal_ &&
+        if (at.Distance(surface.Value(outline.parameters[n][0], outline.parameters[n][1])) <=
+                seam_gap_ * diagonal_ &&
             near_in_plane(surface, uv, outline.parameters[n]))
           return n;
       const auto n = static_cast<Index>(outline.points.size());
@@ -284,7 +287,8 @@ class Tessellator {
     const auto& t = edge_parameters_[index];
     for (std::size_t i = 0; i < t.size(); ++i) {
       gp_Pnt2d uv;
-      if (!curve.IsNull()) uv = curve->Value(first + (t[i] - t.front()) / (t.back() - t.front()) * (last - first));
+      if (!curve.IsNull())
+        uv = curve->Value(first + (t[i] - t.front()) / (t.back() - t.front()) * (last - first));
       if (!BRep_Tool::Degenerated(edge)) {
         const Point& p = points_[edge_points_[index][i]];
         const double off = std::max(deflection_, 2 * BRep_Tool::Tolerance(edge));

@@ -105,8 +105,7 @@ std::vector<TopoDS_Shape> boundary_of(const TopoDS_Shape& solid) {
   return faces;
 }
 
-void carry_numbers(const TopoDS_Shape& before, const TopoDS_Shape& after,
-                   const PartsOf& parts_of,
+void carry_numbers(const TopoDS_Shape& before, const TopoDS_Shape& after, const PartsOf& parts_of,
                    Topology& topology) {
   TopTools_DataMapOfShapeInteger numbers;
   for (const TopAbs_ShapeEnum kind : numbered_kinds) {

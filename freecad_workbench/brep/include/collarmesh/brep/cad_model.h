@@ -17,7 +17,8 @@ namespace collarmesh::brep {
 
 /// Whose is what several solids have in common?
 enum class Overlap {
-  first,  ///< the first one's, in the order of their numbers; or that of one which lies wholly inside the first
+  first,  ///< the first one's, in the order of their numbers; or that of one which lies wholly inside the
+          ///< first
   region  ///< a region of its own, one for each set of solids, numbered after the solids
 };
 
@@ -37,12 +38,12 @@ struct TessellationOptions {
 ///
 /// Solids that touch are made to share the faces there; faces and edges that are cut in this keep the
 /// number of what they were part of, edges that arise get the next free ones. What solids have in common is
-/// given to one of them. A shape of faces alone is sewn and becomes a solid where it is closed; so are the faces
-/// of an open solid.
+/// given to one of them. A shape of faces alone is sewn and becomes a solid where it is closed; so are the
+/// faces of an open solid.
 ///
-/// What OpenCASCADE cannot do is left to whoever makes a complex of the soups, and told in `notes`: solids that it
-/// cannot fuse may intersect, solids that stay open have holes, and a face that it cannot cut into triangles may
-/// have points along its edges that its neighbours lack, or may be missing.
+/// What OpenCASCADE cannot do is left to whoever makes a complex of the soups, and told in `notes`: solids
+/// that it cannot fuse may intersect, solids that stay open have holes, and a face that it cannot cut into
+/// triangles may have points along its edges that its neighbours lack, or may be missing.
 ///
 /// What it can do is virtual, so that a program without OpenCASCADE can use one that the module has made
 /// (module.cpp).
@@ -66,8 +67,8 @@ class CadModel {
   /// What was done to the shape (faces sewn, overlaps, faces that were mended, ...), for people.
   virtual std::vector<std::string> notes() const;
 
-  /// Which solids are open, at which edges and where, and what to do; empty when all are closed. For the message
-  /// when no complex can be made of the soups.
+  /// Which solids are open, at which edges and where, and what to do; empty when all are closed. For the
+  /// message when no complex can be made of the soups.
   virtual const std::string& open_edges_text() const;
 
   /// The nearest point of EdgeN (dimension 1), or of the surface of FaceN (dimension 2), to a point that is
