@@ -19,8 +19,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
-#include <optional>
 
 #include "outline_triangles.h"
 #include "topology.h"
@@ -120,20 +120,24 @@ class Mender {
     if (best_.fits) return;
     try {
       MendedFace next = way();
-      next.fits = !next.triangles.empty() && fits(next);
-      if (next.fits || best_.triangles.empty()) best_ = std::move(next);
+      if (next.triangles.empty()) return;
+      const std::size_t off = off_outline(next);
+      next.fits = off == 0;
+      if (off >= least_off_) return;
+      least_off_ = off;
+      best_ = std::move(next);
     } catch (const Standard_Failure&) {
       return;  // the next way
     }
   }
 
-  bool fits(const MendedFace& mended) const {
+  std::size_t off_outline(const MendedFace& mended) const {
     std::vector<std::array<Index, 3>> triangles;
     const auto point = [&](Index p) {
       return mended.outline_points[p] != none ? mended.outline_points[p] : first_own + p;
     };
     for (const auto& [a, b, c] : mended.triangles) triangles.push_back({point(a), point(b), point(c)});
-    return borders_on(triangles, chords_);
+    return sides_off(triangles, chords_);
   }
 
   MendedFace alone(const TopoDS_Face& face, const char* how, double factor = 1) const {
@@ -284,16 +288,18 @@ class Mender {
   double near_ = 0;           // points of the outline and of the face alone are the same
   std::vector<Ends> chords_;  // of points
   MendedFace best_;
+  std::size_t least_off_ = std::numeric_limits<std::size_t>::max();
 };
 
 }  // namespace
 
-bool borders_on(const std::vector<std::array<Index, 3>>& triangles,
-                const std::vector<std::array<Index, 2>>& chords) {
-  std::map<Ends, int> left = odd_sides(triangles);
+std::size_t sides_off(const std::vector<std::array<Index, 3>>& triangles,
+                      const std::vector<std::array<Index, 2>>& chords) {
+  std::map<Ends, int> uses = odd_sides(triangles);
   for (const auto& [a, b] : chords)
-    if (a != b) ++left[sorted(a, b)];
-  return std::all_of(left.begin(), left.end(), [](const auto& side) { return side.second % 2 == 0; });
+    if (a != b) ++uses[sorted(a, b)];
+  return static_cast<std::size_t>(
+      std::count_if(uses.begin(), uses.end(), [](const auto& side) { return side.second % 2 == 1; }));
 }
 
 MendedFace mend_face(const TopoDS_Face& face, const Outline& outline, double deflection, double angle) {

@@ -32,12 +32,12 @@ struct MendedFace {
 /// Triangulate a face that the tessellation of the whole shape fails on, by the first of these ways that fits
 /// the outline: the face alone, as it is and after shape healing; its outline in the parameter plane, with
 /// inner points of the surface; its outline in a fitted plane; the face alone with a larger deflection. If
-/// none fits, the first that makes triangles. Lengths are absolute, the angle is in radians.
+/// none fits, by that which leaves the fewest sides off it. Lengths are absolute, the angle is in radians.
 MendedFace mend_face(const TopoDS_Face& face, const Outline& outline, double deflection, double angle);
 
-/// Do the sides that an odd number of triangles has make up the outline's chords? Corners and chords are
-/// indices of the same points.
-bool borders_on(const std::vector<std::array<Index, 3>>& triangles,
-                const std::vector<std::array<Index, 2>>& chords);
+/// How many sides of a face's triangles and chords of its outline have no counterpart; 0: the outline is the
+/// border of the triangles. Corners and chords are indices of the same points.
+std::size_t sides_off(const std::vector<std::array<Index, 3>>& triangles,
+                      const std::vector<std::array<Index, 2>>& chords);
 
 }  // namespace collarmesh::brep

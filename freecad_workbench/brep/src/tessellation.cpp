@@ -97,7 +97,7 @@ class Tessellator {
       if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0])
         triangles.push_back(corners);
     }
-    if (!borders_on(triangles, chords_of(face))) {  // it has holes, or covers too much
+    if (sides_off(triangles, chords_of(face)) > 0) {  // it has holes, or covers too much
       triangles.clear();
       points_.resize(first_inner);
       result_.faces[topology_.number(face)].pop_back();
