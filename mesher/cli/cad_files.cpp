@@ -95,6 +95,10 @@ std::string CadFiles::invalid_parts() const {
   return parts;
 }
 
+bool CadFiles::fused() const {
+  return std::all_of(files_.begin(), files_.end(), [](const File& file) { return file.model->fused(); });
+}
+
 std::string CadFiles::open_edges() const {
   std::string text;
   for (const File& file : files_) {

@@ -57,7 +57,7 @@ Plc ComplexInput::build(const PlcOptions& options) {
     } catch (const PlcError& error) {
       if (cad_.empty()) throw;
       if (!first) first = with_names(error, cad_);
-      if (finer > finest || !may_be_too_coarse(error)) throw PlcError(*first);
+      if (finer > finest || !cad_.fused() || !may_be_too_coarse(error)) throw PlcError(*first);
     }
     stop_if_interrupted();
     cad_.tessellate(finer, soups_);

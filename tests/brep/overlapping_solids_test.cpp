@@ -35,6 +35,7 @@ struct Read {
 
 Read read(const TopoDS_Shape& shape, Overlap overlap = Overlap::first) {
   CadModel model(shape, "part", {.overlap = overlap});
+  EXPECT_TRUE(model.fused());
   std::vector<PolygonSoup> soups = model.tessellate({});
   return {std::move(soups), model.notes()};
 }
@@ -45,7 +46,9 @@ void expect_volumes(const Read& part, const Volumes& expected, double relative =
   for (const auto& [tag, volume] : expected)
     EXPECT_NEAR(found.at(tag), volume, relative * volume) << "Solid" << tag;
   for (const PolygonSoup& soup : part.soups)
-    if (soup.region_tag) EXPECT_EQ(open_sides(soup), 0U) << soup.name;
+    if (soup.region_tag) {
+      EXPECT_EQ(open_sides(soup), 0U) << soup.name;
+    }
 }
 
 /// The complex of the soups is valid, and as large.

@@ -68,6 +68,7 @@ CadModel& CadModel::operator=(CadModel&&) noexcept = default;
 
 const std::string& CadModel::name() const { return parts_->name; }
 double CadModel::diagonal() const { return parts_->diagonal; }
+bool CadModel::fused() const { return parts_->topology.fused; }
 const std::string& CadModel::open_edges_text() const { return parts_->topology.open_text; }
 std::vector<std::string> CadModel::notes() const {
   std::vector<std::string> notes = parts_->topology.notes;

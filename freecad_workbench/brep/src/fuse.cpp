@@ -388,6 +388,7 @@ class SharedFaces {
       left_out.insert(left_out.end(), members.begin(), members.end());
     }
     if (left_out.empty()) return;
+    topology_.fused = false;
     std::vector<std::string> names;
     for (const TopoDS_Shape& shape : left_out) names.push_back(topology_.name(shape));
     constexpr std::size_t listed = 5;

@@ -30,6 +30,7 @@ struct Topology {
   TopoDS_Shape all;                          ///< what is tessellated
   TopTools_DataMapOfShapeInteger numbers;    ///< of solids, faces, edges and vertices
   std::vector<std::string> notes;
+  bool fused = true;      ///< all that touch or overlap
   std::string open_text;  ///< which solids are open, at which edges; empty: none
 
   int number(const TopoDS_Shape& shape) const { return numbers.IsBound(shape) ? numbers.Find(shape) : 0; }

@@ -67,6 +67,9 @@ class CadModel {
   /// What was done to the shape (faces sewn, overlaps, faces that were mended, ...), for people.
   virtual std::vector<std::string> notes() const;
 
+  /// False: solids that touch or overlap were left as they are, so their soups intersect, however fine.
+  virtual bool fused() const;
+
   /// Which solids are open, at which edges and where, and what to do; empty when all are closed. For the
   /// message when no complex can be made of the soups.
   virtual const std::string& open_edges_text() const;
