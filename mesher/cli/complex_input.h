@@ -42,9 +42,11 @@ class ComplexInput {
 
  private:
   Plc build_repaired(const ComplexArguments& options);
+  void tessellate(double finer);
 
   std::vector<PolygonSoup> soups_;
   CadFiles cad_;
+  double finer_ = 1;  // than the first triangles of CAD shapes
   RepairReport repaired_;
 };
 
