@@ -195,6 +195,23 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
     RepairOptions wider = repair_options;
     wider.tolerance *= factor;
     RepairResult result = repair(soups, wider, options);
+    if (std::getenv("DUMP")) {
+      FILE* f = fopen(std::getenv("DUMP"), "w");
+      std::size_t n = 0, m = 0;
+      for (auto& q : result.soups) n += q.points.size(), m += q.facet_count();
+      fprintf(f, "OFF\n%zu %zu 0\n", n, m);
+      for (auto& q : result.soups)
+        for (auto& p : q.points) fprintf(f, "%.17g %.17g %.17g\n", p.x, p.y, p.z);
+      std::size_t base = 0;
+      for (auto& q : result.soups) {
+        for (Index t = 0; t < q.facet_count(); ++t) {
+          auto c = q.polygon(t);
+          fprintf(f, "3 %zu %zu %zu\n", base + c[0], base + c[1], base + c[2]);
+        }
+        base += q.points.size();
+      }
+      fclose(f);
+    }
     try {
       return {build_plc(result.soups, options), std::move(result.report), std::move(result.soups)};
     } catch (const PlcError& error) {
