@@ -239,6 +239,12 @@ TEST(Collar, WrongBallsAreFound) {
   mesh = meshed.result.mesh;
   mesh.collar_balls[0].radius = -1;
   EXPECT_TRUE(has_finding(mesh, meshed.plc, "valid_arrays"));
+  mesh = meshed.result.mesh;
+  mesh.collar_balls[0].centre.x = NAN;
+  EXPECT_TRUE(has_finding(mesh, meshed.plc, "valid_arrays"));
+  mesh = meshed.result.mesh;
+  mesh.collar_balls[0].centre.x += 0.01;
+  EXPECT_TRUE(has_finding(mesh, meshed.plc, "collar_centre"));
 }
 
 // A file may have no place for the marks of the cells, or for any label: the complex has the creases.
