@@ -12,6 +12,8 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double infinite = std::numeric_limits<double>::infinity();
 // Planes that one curve is on are taken in turns; they hardly differ, or meet in the curve.
 constexpr int most_turns = 20;
+// What is moved back ends safely within its room, relative to that.
+constexpr double inside = 0.99;
 
 Point nearest_on_segment(const Point& p, const Point& a, const Point& b) {
   const Vector d = b - a;
@@ -40,9 +42,7 @@ double rounding_of(const Plc& plc) {
 FlatFeatures::FlatFeatures(const Plc& plc)
     : plc_(plc), curve_room_(plc.curves.size(), infinite), patch_room_(plc.patches.size(), infinite) {
   const double rounding = rounding_of(plc);
-  const auto room = [&](double deviation) {
-    return std::min(2 * deviation, 0.5 * plc.planar_tolerance) + rounding;
-  };
+  const auto permitted = [&](double deviation) { return std::min(4 * deviation, plc.planar_tolerance); };
   for (Index c = 0; c < plc.curves.size(); ++c) {
     const std::vector<Index>& chain = plc.curves[c].points;
     if (!plc.curves[c].straight) continue;
@@ -51,7 +51,7 @@ FlatFeatures::FlatFeatures(const Plc& plc)
       deviation = std::max(deviation, distance(plc.points[i], nearest_on_segment(plc.points[i],
                                                                                  plc.points[chain.front()],
                                                                                  plc.points[chain.back()])));
-    curve_room_[c] = room(deviation);
+    curve_room_[c] = 0.5 * permitted(deviation) + rounding;
   }
   for (Index k = 0; k < plc.patches.size(); ++k) {
     const Plc::Patch& patch = plc.patches[k];
@@ -60,7 +60,7 @@ FlatFeatures::FlatFeatures(const Plc& plc)
     for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t)
       for (const Index i : plc.triangles[t].points)
         deviation = std::max(deviation, std::fabs(dot(plc.points[i] - patch.origin, patch.normal)));
-    patch_room_[k] = room(deviation);
+    patch_room_[k] = permitted(deviation) + rounding;
   }
 }
 
@@ -90,7 +90,7 @@ bool FlatFeatures::put_on_curve(Index curve, Point& p) const {
   const Point q = nearest_on_chain(plc_.points, plc_.curves[curve].points, p);
   const double off = distance(p, q);
   if (!(off > curve_room_[curve])) return false;
-  p = q + 0.5 * curve_room_[curve] / off * (p - q);
+  p = q + inside * curve_room_[curve] / off * (p - q);
   return true;
 }
 
@@ -99,7 +99,7 @@ bool FlatFeatures::put_on_plane(Index patch, Point& p) const {
   if (patch_room_[patch] == infinite) return false;
   const double off = dot(p - plane.origin, plane.normal);
   if (!(std::fabs(off) > patch_room_[patch])) return false;
-  p = p - (off - std::copysign(0.5 * patch_room_[patch], off)) * plane.normal;
+  p = p - (off - std::copysign(inside * patch_room_[patch], off)) * plane.normal;
   return true;
 }
 

@@ -16,9 +16,11 @@ class FlatFeatures {
   explicit FlatFeatures(const Plc& plc);
 
   /// The exact geometry as far as it stays with the straight curves and planar patches that the feature is,
-  /// or is on: a place off them by more than half of what the certificate permits (that is
-  /// min(4 d, planar tolerance) and rounding, where d is how far the complex' own points are off) is moved
-  /// back towards them. Nothing where there is no such place near. This and `exact` are kept by reference.
+  /// or is on: a place off a plane by more than the certificate permits (that is min(4 d, planar tolerance)
+  /// and rounding, where d is how far the complex' own points are off), or off a straight curve by more than
+  /// half of that, is moved back towards it. Half, because the edges between nodes must be near the curve's
+  /// own points, too, and those are up to 2 d off the chords. Nothing where there is no such place near.
+  /// This and `exact` are kept by reference.
   ExactGeometry limit(const ExactGeometry& exact) const;
 
   /// The same for one place on the exact geometry of a curve (dimension 1) or patch (2).
