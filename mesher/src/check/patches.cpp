@@ -102,33 +102,37 @@ class PatchCheck {
   // An internal facet may be turned either way.
   void check_area() {
     std::vector<double> areas;
-    long double found = 0;
     for (const Index f : faces_) {
       const auto [a, b, c] = corners(f);
       areas.push_back(area_in_plane(a, b, c) * (reversed(subject_, f) ? -1 : 1));
-      found += areas.back();
     }
     const bool turned = patch_.regions[0] == patch_.regions[1] &&
                         std::count_if(areas.begin(), areas.end(), [](double a) { return a < 0; }) * 2 >
                             static_cast<std::ptrdiff_t>(areas.size());
-    for (std::size_t i = 0; i < areas.size(); ++i) check_fold(faces_[i], turned ? -areas[i] : areas[i]);
-    compare_area(std::fabs(static_cast<double>(found)));
+    long double found = 0;
+    for (std::size_t i = 0; i < areas.size(); ++i) {
+      const double area = turned ? -areas[i] : areas[i];
+      found += check_fold(faces_[i], area) ? area : std::fabs(area);
+    }
+    compare_area(static_cast<double>(found));
   }
 
-  void check_fold(Index face, double signed_area) {
+  // False when it is turned.
+  bool check_fold(Index face, double signed_area) {
     const auto [a, b, c] = corners(face);
     const double longest = std::max({distance(a, b), distance(b, c), distance(c, a)});
-    if (signed_area >= -longest * allowed_) return;
+    if (signed_area >= -longest * allowed_) return true;
     const Point where = subject_.centroid(subject_.mesh.faces[face]);
     findings_.add(guarantee::patch_orientation, where, {id_, face},
                   "Face {} at {} is turned against the plane of its patch {} (tag {}): the surface folds "
                   "back on itself "
                   "or the face lists its corners the wrong way round.",
                   face, At{where}, id_, patch_.tag);
+    return false;
   }
 
-  // Both areas are those of the projections along the plane's normal, with signs. Such an area depends on the
-  // border alone: it is half the sum of dot(normal, cross(a, b)) over its edges ab, to which each inner edge
+  // Both areas are those of the projections along the plane's normal, with signs (a finding about a turned
+  // face is told already, so it counts as if it were not). Such an area depends on the border alone: it is half the sum of dot(normal, cross(a, b)) over its edges ab, to which each inner edge
   // adds nothing, as its two sides run against each other. How the triangles of a patch that is planar up to a
   // tolerance are tilted, or folded where they are narrower than that, is no part of it. (The triangles' own
   // areas are: tilted by an angle t they exceed their projection by t^2 / 2, relatively, needles by anything.)

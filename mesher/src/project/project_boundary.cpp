@@ -37,7 +37,7 @@ class BoundaryProjection {
       if (!room_.good(t)) tets.push_back(t);
     for (tets = room_.relax(std::move(tets)); !tets.empty();) tets = give_way(tets);
     room_.commit();
-    for (int pass = 0; pass < retries && retry(); ++pass) {
+    for (int pass = 0; pass < retries && retry(pass > 0); ++pass) {
     }
     finish();
     return report_;
@@ -53,6 +53,7 @@ class BoundaryProjection {
     Point to;
     bool limited;  // off the exact geometry, for something flat
     bool done = false;
+    std::size_t tried = 0;  // after so many commits, in vain
   };
 
   void find_targets() {
@@ -113,12 +114,13 @@ class BoundaryProjection {
     return room_.relax(std::move(around));
   }
 
-  // One by one, what went back may go now, if there is room. True: something did.
-  bool retry() {
+  // One by one, what went back may go now, if there is room, and again where something has changed since.
+  // True: something did.
+  bool retry(bool again) {
     bool any = false;
     for (Index slot = 0; slot < moves_.size() && !execution_.cancelled(); ++slot) {
-      const Move& move = moves_[slot];
-      if (move.done) continue;
+      Move& move = moves_[slot];
+      if (move.done || (again && !room_.changed_around(move.point, move.tried))) continue;
       room_.put(move.point, move.to);
       const auto tets = room_.tets_at()[move.point];
       if (room_.relax({tets.begin(), tets.end()}).empty()) {
@@ -127,6 +129,7 @@ class BoundaryProjection {
         room_.commit();
       } else {
         room_.roll_back();
+        move.tried = room_.commits();
       }
     }
     return any;

@@ -76,7 +76,7 @@ class WorkQueue {
 
  private:
   static constexpr unsigned bucket_count = 192;
-  static constexpr unsigned far_larger = 16;  // buckets: a radius 256 times as large
+  static constexpr unsigned far_larger = 20;  // buckets: a radius 1024 times as large
 
   /// The first one that holds something, their number if none does.
   unsigned first_bucket(unsigned priority) {
