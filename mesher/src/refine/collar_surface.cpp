@@ -246,6 +246,24 @@ bool Refinement::bends(CollarTriangle& t) const {
   return false;
 }
 
+// The edge and the ball's centre make a face between two regions. Does it lead from one sheet of a smooth
+// patch to another? In balls smaller than the distance tolerance that does not tell.
+bool Refinement::spans_sheets(const CollarBall& ball, Index a, Index b) const {
+  constexpr double largest_sagitta = 0.15;  // a turn of 30 degrees makes 0.13
+  const Point middle = 0.5 * (mesh_.point(a) + mesh_.point(b));
+  const double most = largest_sagitta * distance(mesh_.point(a), mesh_.point(b));
+  if (most >= distance_) return false;
+  bool found = false;
+  for (const Index patch : patches_through(ball)) {
+    if (!on_patch(a, patch) || !on_patch(b, patch)) continue;
+    if (plc_.patches[patch].planar ||
+        squared_distance(middle, collars_.features().nearest_point({2, patch}, middle)) <= most * most)
+      return false;
+    found = true;
+  }
+  return found;
+}
+
 // A point near a given one where a patch through the ball's centre meets its sphere.
 std::optional<Point> Refinement::arc_point(const CollarBall& ball, Index patch, const Point& near) const {
   const auto on_sphere_towards = [&](const Point& p) {

@@ -313,6 +313,7 @@ class Refinement {
   bool far_from_patch(Index patch, const Point& p) const;
   std::optional<Point> arc_point(const CollarBall& ball, Index patch, const Point& near) const;
   bool crosses_patch(const CollarBall& ball, Index a, Index b);
+  bool spans_sheets(const CollarBall& ball, Index a, Index b) const;
   bool on_another_sheet(const CollarBall& ball, const Point& p, Index triangle) const;
   bool spans_patch(std::span<const Index> corners) const;
   bool at_fold(std::span<const Index> corners) const;
