@@ -38,7 +38,9 @@ Relaxation::Relaxation(TetMesh& mesh, const ExactGeometry& exact, const Bounds& 
       origins_(mesh.points),
       free_(mesh.points.size()),
       wanted_(mesh.tets.size()),
-      changed_(mesh.points.size(), 0) {
+      changed_(mesh.points.size(), 0),
+      moved_(mesh.points.size(), 0),
+      stuck_(mesh.points.size(), 0) {
   for (std::size_t v = 0; v < free_.size(); ++v) free_[v] = mesh.features[v].dimension == 3;
 }
 
@@ -60,6 +62,7 @@ bool Relaxation::good(Index tet) const {
 void Relaxation::put(Index vertex, const Point& place) {
   log_.emplace_back(vertex, mesh_.points[vertex]);
   mesh_.points[vertex] = place;
+  moved_[vertex] = ++moves_;
 }
 
 void Relaxation::commit() {
@@ -76,7 +79,20 @@ bool Relaxation::changed_around(Index vertex, std::size_t since) const {
 }
 
 void Relaxation::roll_back() {
-  for (; !log_.empty(); log_.pop_back()) mesh_.points[log_.back().first] = log_.back().second;
+  for (; !log_.empty(); log_.pop_back()) {
+    const auto& [vertex, place] = log_.back();
+    mesh_.points[vertex] = place;
+    moved_[vertex] = ++moves_;
+  }
+}
+
+// Was there no better place for it when its surroundings were as they are?
+bool Relaxation::in_vain(Index vertex) const {
+  if (stuck_[vertex] == 0) return false;
+  for (const Index t : tets_at_[vertex])
+    for (const Index v : mesh_.tets[t])
+      if (moved_[v] > stuck_[vertex]) return false;
+  return true;
 }
 
 // 1 for a tet that keeps its bound and its shape, positive for one with positive volume.
@@ -206,7 +222,11 @@ std::vector<Index> Relaxation::relax(std::vector<Index> tets) {
     sort_out(vertices);
     bool moved = false;
     for (const Index v : vertices) {
-      if (!improve(v)) continue;
+      if (in_vain(v)) continue;
+      if (!improve(v)) {
+        stuck_[v] = moves_;
+        continue;
+      }
       moved = true;
       tets.insert(tets.end(), tets_at_[v].begin(), tets_at_[v].end());
     }

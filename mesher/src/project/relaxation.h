@@ -61,6 +61,7 @@ class Relaxation {
   double lack_of(Index tet, const Corners& p) const;
   double lack_around(std::span<const Index> tets, Index vertex, const Point& place, double below) const;
   bool improve(Index vertex);
+  bool in_vain(Index vertex) const;
   std::optional<Point> on_feature(Index vertex, const Point& wish) const;
   bool keeps_sag(Index vertex, const Point& place);
   double sag_around(Index vertex) const;
@@ -74,6 +75,9 @@ class Relaxation {
   mutable std::vector<Wanted> wanted_;  // by tet
   std::vector<std::size_t> changed_;    // by vertex: the commit that moved it last, 0: none did
   std::size_t commits_ = 0;
+  // By vertex: how many moves there were when it moved last, and when there was no better place for it.
+  std::vector<std::size_t> moved_, stuck_;
+  std::size_t moves_ = 0;
   std::vector<std::pair<double, Index>> worst_first_;
   std::vector<Index> around_;
   std::vector<std::pair<Index, Point>> log_;  // vertices and where they were, in order
