@@ -55,7 +55,7 @@ Plc ComplexInput::build(const ComplexArguments& options) {
   for (const double finer : {1.0, 4.0}) {
     if (finer > 1) tessellate(finer);
     try {
-      return build_plc(soups_, options.plc);
+      return take(remove_noise(build_plc(soups_, options.plc), soups_, options.plc, options.repair));
     } catch (const PlcError& error) {
       if (!first) first = with_names(error, cad_);
       if (!cad_.fused() || !may_be_too_coarse(error)) break;
@@ -77,7 +77,10 @@ void ComplexInput::tessellate(double finer) {
 }
 
 Plc ComplexInput::build_repaired(const ComplexArguments& options) {
-  RepairedPlc result = build_repaired_plc(soups_, options.plc, options.repair);
+  return take(build_repaired_plc(soups_, options.plc, options.repair));
+}
+
+Plc ComplexInput::take(RepairedPlc result) {
   repaired_ = std::move(result.report);
   if (repaired_.repaired) soups_ = std::move(result.soups);
   return std::move(result.plc);

@@ -42,6 +42,7 @@ class ComplexInput {
 
  private:
   Plc build_repaired(const ComplexArguments& options);
+  Plc take(RepairedPlc result);
   void tessellate(double finer);
 
   std::vector<PolygonSoup> soups_;

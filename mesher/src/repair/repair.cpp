@@ -18,6 +18,7 @@
 #include "repair/arrangement.h"
 #include "repair/holes.h"
 #include "repair/inside.h"
+#include "repair/noise.h"
 #include "repair/repeated.h"
 #include "repair/snapping.h"
 #include "repair/to_soups.h"
@@ -179,11 +180,24 @@ RepairResult repair(std::span<const PolygonSoup> soups, const RepairOptions& opt
   return Repairer(soups, options, complex).run();
 }
 
+RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcOptions& options,
+                         const RepairOptions& repair_options) {
+  if (repair_options.mode == RepairMode::off ||
+      !has_noise(plc, repair_options.tolerance * plc.bounds.diagonal()))
+    return {std::move(plc), {}, {}};
+  RepairResult result = repair(soups, repair_options, options);
+  try {
+    return {build_plc(result.soups, options), std::move(result.report), std::move(result.soups)};
+  } catch (const PlcError&) {
+    return {std::move(plc), {}, {}};
+  }
+}
+
 RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOptions& options,
                                const RepairOptions& repair_options) {
   std::optional<PlcError> first;
   try {
-    return {build_plc(soups, options), {}, {}};
+    return remove_noise(build_plc(soups, options), soups, options, repair_options);
   } catch (const PlcError& error) {
     const bool unusable = std::any_of(error.faults.begin(), error.faults.end(), [](const PlcFault& fault) {
       return fault.kind == PlcFault::Kind::bad_point;
@@ -195,27 +209,10 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
     RepairOptions wider = repair_options;
     wider.tolerance *= factor;
     RepairResult result = repair(soups, wider, options);
-    if (std::getenv("DUMP")) {
-      FILE* f = fopen(std::getenv("DUMP"), "w");
-      std::size_t n = 0, m = 0;
-      for (auto& q : result.soups) n += q.points.size(), m += q.facet_count();
-      fprintf(f, "OFF\n%zu %zu 0\n", n, m);
-      for (auto& q : result.soups)
-        for (auto& p : q.points) fprintf(f, "%.17g %.17g %.17g\n", p.x, p.y, p.z);
-      std::size_t base = 0;
-      for (auto& q : result.soups) {
-        for (Index t = 0; t < q.facet_count(); ++t) {
-          auto c = q.polygon(t);
-          fprintf(f, "3 %zu %zu %zu\n", base + c[0], base + c[1], base + c[2]);
-        }
-        base += q.points.size();
-      }
-      fclose(f);
-    }
     try {
       return {build_plc(result.soups, options), std::move(result.report), std::move(result.soups)};
-    } catch (const PlcError& error) {
-      if (std::getenv("DBG")) fprintf(stderr, "again: %s\n", error.what());
+    } catch (const PlcError&) {
+      continue;  // a wider tolerance may help
     }
   }
   throw PlcError(*first);
