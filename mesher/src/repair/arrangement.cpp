@@ -369,7 +369,8 @@ void unify_equal_points(Draft& draft) {
 
 ArrangementReport arrange(Draft& draft) {
   ArrangementReport report;
-  for (;; ++report.rounds) {
+  constexpr std::size_t few = 1000;
+  for (std::size_t fewest = none;; ++report.rounds) {
     unify_equal_points(draft);
     remove_collinear_triangles(draft);
     for (Index t = 0; t < draft.origins.size(); ++t) draft.origins[t].facet = t;
@@ -381,7 +382,9 @@ ArrangementReport arrange(Draft& draft) {
       report.intersecting_pairs = pairs.size();
       note_places(draft, simplices.list(), pairs, report.places);
     }
-    if (report.clean || report.rounds == most_rounds) return report;
+    // Rounding may make more of them than there were: it does not end then.
+    if (report.clean || report.rounds == most_rounds || pairs.size() > 2 * fewest + few) return report;
+    fewest = std::min(fewest, pairs.size());
     report.cut_triangles += Cutter(draft, edges, simplices.list()).run(pairs);
   }
 }

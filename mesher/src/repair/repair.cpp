@@ -129,28 +129,36 @@ class Repairer {
     add_places(report_.turned, turned.turned_components, 0, turned.places);
   }
 
+  // What is clean once stays so: where snapping spoils it, less far is tried.
   void make_valid() {
     first_new_point_ = static_cast<Index>(draft_.points.size());
-    cut_and_keep();
+    if (!cut_and_keep()) return;
+    double reach = tolerance_;
     for (std::size_t round = 0; round < most_rounds; ++round) {
-      const SnapReport snapped = snap_near_features(draft_, tolerance_);
+      const Draft clean = draft_;
+      const RepairReport report_of_clean = report_;
+      const SnapReport snapped = snap_near_features(draft_, reach);
       if (!snapped.changed()) return;
       add_places(report_.collapsed, snapped.merged_points + snapped.cut_edges + snapped.cut_triangles,
                  snapped.largest_distance, snapped.places);
-      cut_and_keep();
+      if (cut_and_keep()) continue;
+      draft_ = clean;
+      report_ = report_of_clean;
+      reach *= 0.1;
     }
   }
 
-  void cut_and_keep() {
+  bool cut_and_keep() {
     const ArrangementReport arranged = arrange(draft_);
     add_places(report_.cut, arranged.intersecting_pairs, 0, arranged.places);
-    if (!arranged.clean) return;
+    if (!arranged.clean) return false;
     cancel_twins(draft_);
     const InsideReport kept = keep_boundaries(draft_, tolerance_);
     report_.merged.count += kept.removed_triangles;
     report_.merged.size += kept.removed_area;
     for (const Point& p : kept.places)
       if (report_.merged.where.size() < most_places) report_.merged.where.push_back(p);
+    return true;
   }
 
   std::vector<Tag> lost_tags(const std::vector<PolygonSoup>& repaired) const {

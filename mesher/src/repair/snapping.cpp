@@ -25,7 +25,7 @@ namespace {
 using namespace build;
 using Edge = std::array<Index, 2>;
 
-constexpr std::size_t most_rounds = 100, most_overlays = 8;
+constexpr std::size_t most_rounds = 50;
 constexpr std::size_t most_places = 100;
 
 Edge edge_key(Index a, Index b) { return a < b ? Edge{a, b} : Edge{b, a}; }
@@ -195,31 +195,19 @@ class Snapper {
     for (Origin& origin : draft_.origins) origin.facet = unseen;
     const std::size_t most_triangles = 2 * draft_.triangles.size() + 1000;
     Draft before = draft_;
-    bool overlaid = false;
-    std::size_t overlays = 0;
-    SnapReport snapped_before;
-    for (std::size_t round = 0; round < most_rounds; ++round) {
-      const bool merged = merge_points(), snapped = snap_corners();
-      if (!merged && !snapped) {
-        if (what_ == SnapWhat::borders) break;
-        if (!overlaid) {
-          before = draft_;
-          snapped_before = report_;
-        }
-        overlaid = true;
-        if (overlays == most_overlays) {  // it does not end
-          draft_ = std::move(before);
-          return snapped_before;
-        }
-        ++overlays;
-        if (!overlay()) break;
-      }
+    SnapReport report_before;
+    if (!snap_all_corners(most_triangles)) return give_back(before, report_before);
+    if (what_ == SnapWhat::borders) return std::move(report_);
+    // Overlays make new corners. They end where each makes fewer of them.
+    before = draft_;
+    report_before = report_;
+    for (std::size_t crossings = none;;) {
+      if (!overlay()) return std::move(report_);
+      const std::size_t count = crossing_.size() + inside_.size();
       report_.cancelled_triangles += cancel_twins(draft_);
-      if (draft_.triangles.size() <= most_triangles) continue;
-      draft_ = std::move(before);  // it does not end
-      return snapped_before;
+      if (2 * count > crossings || !snap_all_corners(most_triangles)) return give_back(before, report_before);
+      crossings = count;
     }
-    return std::move(report_);
   }
 
  private:
@@ -227,6 +215,22 @@ class Snapper {
     double parameter;  // from the smaller end
     Index point;
   };
+
+  SnapReport give_back(Draft& before, SnapReport& report) {
+    draft_ = std::move(before);
+    return std::move(report);
+  }
+
+  // Until nothing is near or many rounds are over; false where triangles grow and grow.
+  bool snap_all_corners(std::size_t most_triangles) {
+    for (std::size_t round = 0; round < most_rounds; ++round) {
+      const bool merged = merge_points(), snapped = snap_corners();
+      if (!merged && !snapped) return true;
+      report_.cancelled_triangles += cancel_twins(draft_);
+      if (draft_.triangles.size() > most_triangles) return false;
+    }
+    return true;
+  }
 
   const Point& at(Index p) const { return draft_.points[p]; }
 
