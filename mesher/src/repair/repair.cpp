@@ -21,6 +21,7 @@
 #include "repair/repeated.h"
 #include "repair/snapping.h"
 #include "repair/to_soups.h"
+#include "repair/wrap.h"
 
 namespace collarmesh {
 
@@ -201,6 +202,9 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
       if (std::getenv("DBG")) fprintf(stderr, "again: %s\n", error.what());
     }
   }
+  // The last resort, on request.
+  if (repair_options.mode == RepairMode::wrap)
+    if (auto wrapped = build_wrapped_plc(soups, options, repair_options)) return *std::move(wrapped);
   throw PlcError(*first);
 }
 
