@@ -98,9 +98,10 @@ void add_complex_options(CLI::App& app, ComplexArguments& a) {
       ->group(group);
   const std::map<std::string, RepairMode> modes{
       {"auto", RepairMode::automatic}, {"none", RepairMode::off}, {"wrap", RepairMode::wrap}};
-  app.add_option("--repair", a.repair.mode,
-                 "Facets that are no valid complex: auto repairs them, none makes them an error, wrap also puts a "
-                 "closed surface around what cannot be repaired")
+  app.add_option(
+         "--repair", a.repair.mode,
+         "Facets that are no valid complex: auto repairs them, none makes them an error, wrap also puts a "
+         "closed surface around what cannot be repaired")
       ->transform(CLI::CheckedTransformer(modes).description(""))
       ->default_str("auto")
       ->type_name("auto|none|wrap")
@@ -467,9 +468,9 @@ std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
     const bool subcommand_last =
         !app.get_subcommands().empty() && (!mesh.inputs.empty() || !mesh.output.empty());
     fmt::print(stderr, "collarmesh: {}\nRun with --help for more information.\n",
-               subcommand_last
-                   ? "a subcommand comes first: collarmesh check MESH ..., info INPUT ..., convert IN ..., repair IN ..."
-                   : usage_message(app, error));
+               subcommand_last ? "a subcommand comes first: collarmesh check MESH ..., info INPUT ..., "
+                                 "convert IN ..., repair IN ..."
+                               : usage_message(app, error));
     return ExitCode::usage;
   }
   if (check_command->parsed()) return Arguments(check);

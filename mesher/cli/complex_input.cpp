@@ -48,8 +48,8 @@ std::string advice(const PlcError& error, const RepairOptions& options) {
   switch (options.mode) {
     case RepairMode::off: return " Without --repair none this would be repaired as far as possible.";
     case RepairMode::wrap:
-      return fmt::format(" A closed surface around everything failed, too; {} or another --wrap-offset may help.",
-                         wider);
+      return fmt::format(
+          " A closed surface around everything failed, too; {} or another --wrap-offset may help.", wider);
     case RepairMode::automatic: break;
   }
   const bool open = has_fault(error, {Kind::open_boundary, Kind::empty});

@@ -27,7 +27,8 @@ void print_mesh(const std::string& path, bool as_json) {
   fmt::print("{}\n", json.dump(1));
 }
 
-/// The complex that would be meshed; what bounds no region, and cannot be repaired so that it does, is one here, too.
+/// The complex that would be meshed; what bounds no region, and cannot be repaired so that it does, is one
+/// here, too.
 Plc build_any(ComplexInput& input, ComplexArguments options) {
   try {
     return input.build(options);

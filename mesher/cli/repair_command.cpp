@@ -24,8 +24,8 @@ std::string read_again(const std::string& path, const RepairArguments& a) {
     build_plc(soups, a.complex.plc);
   } catch (const PlcError& error) {
     return fmt::format(
-        "warning: what this format keeps of it is no valid complex: {} Formats that keep more are .off, .obj and "
-        ".ply (64 bits), and .poly (regions).\n",
+        "warning: what this format keeps of it is no valid complex: {} Formats that keep more are .off, .obj "
+        "and .ply (64 bits), and .poly (regions).\n",
         error.what());
   }
   return {};

@@ -24,7 +24,8 @@ std::string place_regions(const std::vector<PolygonSoup>& soups, PlcOptions opti
     const Plc plc = build_plc(soups, options);
     fmt::print(stderr, "{}", warnings_text(plc));
     const Index missing = place_region_points(plc, merged);
-    return missing > 0 ? fmt::format("{} regions or cavities are too thin for a point inside\n", missing) : "";
+    return missing > 0 ? fmt::format("{} regions or cavities are too thin for a point inside\n", missing)
+                       : "";
   } catch (const PlcError& error) {
     return fmt::format("no regions are named, because this is no valid complex: {}\n", error.what());
   }

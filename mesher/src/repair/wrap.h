@@ -8,21 +8,27 @@
 
 namespace collarmesh::repairing {
 
-/// A closed surface around all facets of the soups: free of intersections, orientable, at least `offset` and
-/// about that far outside of them. It enters gaps and holes that are wider than about 2 `alpha`. Its facets are
-/// triangles with tag 1.
+/// A closed surface around all facets of the soups, of triangles with tag 1: orientable, free of
+/// intersections, everywhere at least `offset` outside of them and at most about twice that, or as far as
+/// gaps and holes make it that it does not enter. It enters those wider than about 2 `alpha`.
+///
 /// `alpha` and `offset` are absolute, input units; `alpha` is to be 2 to 4 times `offset`.
-/// Returns a soup without facets where there are no triangles to wrap.
+///
+/// Without triangles to wrap the result has no facets.
+///
 /// Throws PlcError for points that are not finite and indices out of range.
-/// Cost: O(n log n) for n triangles, and O(k log n) for the area of the result being some k alpha^2.
-/// Portaneri, Rouxel-Labbe, Hemmer, Cohen-Steiner, Alliez 2022, by CGAL's Alpha_wrap_3.
+///
+/// Cost: O(n log n) for n triangles, and O(k log k) for a result of area k alpha^2. Portaneri, Rouxel-Labbe,
+/// Hemmer, Cohen-Steiner, Alliez 2022, by CGAL's Alpha_wrap_3.
 PolygonSoup wrap(std::span<const PolygonSoup> soups, double alpha, double offset);
 
-/// The largest distance of a surface of triangles from the facets of the soups, absolute: at corners, the midpoints
-/// of edges and the centroids of triangles. How far facets inside the surface are from it does not count.
+/// The largest distance of a surface of triangles from the facets of the soups, absolute: at corners, the
+/// midpoints of edges and the centroids of triangles. How far facets inside the surface are from it does not
+/// count.
 double largest_distance_from(std::span<const PolygonSoup> soups, const PolygonSoup& surface);
 
-/// The complex of the surface that `wrap` makes with the offset of the options; nothing where that bounds none.
+/// The complex of the surface that `wrap` makes with the offset of the options; nothing where that bounds
+/// none.
 std::optional<RepairedPlc> build_wrapped_plc(std::span<const PolygonSoup> soups, const PlcOptions& options,
                                              const RepairOptions& repair_options);
 
