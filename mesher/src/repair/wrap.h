@@ -9,8 +9,8 @@
 namespace collarmesh::repairing {
 
 /// A closed surface around all facets of the soups, of triangles with tag 1: orientable, free of
-/// intersections, everywhere at least `offset` outside of them and at most about twice that, or as far as
-/// gaps and holes make it that it does not enter. It enters those wider than about 2 `alpha`.
+/// intersections, outside of them. It is `offset` away or more, mostly less than 3 times that; farther where
+/// it spans a gap or a hole, of which it enters those wider than about 2 `alpha`.
 ///
 /// `alpha` and `offset` are absolute, input units; `alpha` is to be 2 to 4 times `offset`.
 ///
