@@ -13,7 +13,8 @@ namespace collarmesh::cli {
 namespace {
 
 // OpenCASCADE's libraries take longer to load than a small mesh to make.
-std::unique_ptr<brep::CadModel> read_by_module(const std::string& path, std::string_view format) {
+std::unique_ptr<brep::CadModel> read_by_module(const std::string& path, std::string_view format,
+                                               const brep::CadOptions& options) {
   constexpr const char* module = "collarmesh_cad.so";
   // Looked for along the run path of the program; stays loaded as long as its models may live.
   void* const loaded = dlopen(module, RTLD_NOW | RTLD_LOCAL);
@@ -25,8 +26,9 @@ std::unique_ptr<brep::CadModel> read_by_module(const std::string& path, std::str
                     "export the shape as .stl",
                     path, module, dlerror()));
   std::unique_ptr<brep::CadModel> model;
-  reinterpret_cast<void (*)(const std::string&, std::string_view, std::unique_ptr<brep::CadModel>&)>(found)(
-      path, format, model);
+  using Read = void (*)(const std::string&, std::string_view, const brep::CadOptions&,
+                        std::unique_ptr<brep::CadModel>&);
+  reinterpret_cast<Read>(found)(path, format, options, model);
   return model;
 }
 
@@ -51,7 +53,7 @@ bool CadFiles::empty() const { return files_.empty(); }
 
 void CadFiles::read(const std::string& path, std::string_view format, double deflection,
                     std::vector<PolygonSoup>& soups) {
-  std::unique_ptr<brep::CadModel> model = read_by_module(path, format);
+  std::unique_ptr<brep::CadModel> model = read_by_module(path, format, {});
   constexpr double relative_deflection = 1e-4;
   if (!(deflection > 0)) deflection = relative_deflection * model->diagonal();
   std::vector<PolygonSoup> own = model->tessellate({.deflection = deflection});
@@ -93,10 +95,25 @@ std::string CadFiles::invalid_parts() const {
   return parts;
 }
 
+bool CadFiles::fused() const {
+  return std::all_of(files_.begin(), files_.end(), [](const File& file) { return file.model->fused(); });
+}
+
+std::string CadFiles::open_edges() const {
+  std::string text;
+  for (const File& file : files_) {
+    const std::string& own = file.model->open_edges_text();
+    if (!own.empty()) text += (text.empty() ? "" : " ") + own;
+  }
+  return text;
+}
+
 std::vector<std::string> CadFiles::notes() const {
   std::vector<std::string> notes;
-  for (const File& file : files_)
-    notes.insert(notes.end(), file.model->notes().begin(), file.model->notes().end());
+  for (const File& file : files_) {
+    const std::vector<std::string> own = file.model->notes();
+    notes.insert(notes.end(), own.begin(), own.end());
+  }
   return notes;
 }
 

@@ -40,6 +40,10 @@ class CadFiles {
   std::string faces_near(const Point& where) const;
   /// The sub-shapes that OpenCASCADE finds invalid, or empty.
   std::string invalid_parts() const;
+  /// False: solids that touch or overlap could not be fused, so their soups intersect, however fine.
+  bool fused() const;
+  /// Which solids are open, at which edges and where; or empty.
+  std::string open_edges() const;
   std::vector<std::string> notes() const;
 
  private:

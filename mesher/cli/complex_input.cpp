@@ -27,9 +27,10 @@ PlcError with_names(const PlcError& error, const CadFiles& cad) {
   std::vector<PlcFault> faults = error.faults;
   for (PlcFault& fault : faults)
     fault.message += fmt::format(" The nearest faces are {}.", cad.faces_near(fault.where));
-  const std::string invalid = cad.invalid_parts();
+  const std::string open = cad.open_edges(), invalid = cad.invalid_parts();
   return {
-      fmt::format("{}{}", faults.empty() ? error.what() : faults.front().message,
+      fmt::format("{}{}{}", faults.empty() ? error.what() : faults.front().message,
+                  open.empty() ? "" : fmt::format(" {}", open),
                   invalid.empty() ? "" : fmt::format(" OpenCASCADE finds the shape invalid: {}.", invalid)),
       faults};
 }
@@ -83,19 +84,16 @@ Plc ComplexInput::build(const ComplexArguments& options) {
   // Triangles of faces that nearly touch may meet where finer ones do not.
   std::optional<PlcError> first;
   for (const double finer : {1.0, 4.0}) {
-    if (finer > 1) {
-      stop_if_interrupted();
-      cad_.tessellate(finer, soups_);
-    }
+    if (finer > 1) tessellate(finer);
     try {
-      return build_plc(soups_, options.plc);
+      return take(remove_noise(build_plc(soups_, options.plc), soups_, options.plc, options.repair));
     } catch (const PlcError& error) {
       if (!first) first = with_names(error, cad_);
-      if (!may_be_too_coarse(error)) break;
+      if (!cad_.fused() || !may_be_too_coarse(error)) break;
     }
   }
-  stop_if_interrupted();
-  cad_.tessellate(1, soups_);
+  if (options.repair.mode == RepairMode::off) throw with_advice(*first, options.repair);
+  tessellate(1);
   try {
     return build_repaired(options);
   } catch (const PlcError&) {
@@ -109,8 +107,17 @@ PlcError ComplexInput::with_advice(const PlcError& error, const RepairOptions& o
   return {error.what() + (has_facets ? advice(error, options) : std::string()), error.faults};
 }
 
+void ComplexInput::tessellate(double finer) {
+  stop_if_interrupted();
+  if (finer_ != finer) cad_.tessellate(finer, soups_);
+  finer_ = finer;
+}
+
 Plc ComplexInput::build_repaired(const ComplexArguments& options) {
-  RepairedPlc result = build_repaired_plc(soups_, options.plc, options.repair);
+  return take(build_repaired_plc(soups_, options.plc, options.repair));
+}
+
+Plc ComplexInput::take(RepairedPlc result) {
   repaired_ = std::move(result.report);
   if (repaired_.repaired) soups_ = std::move(result.soups);
   return std::move(result.plc);

@@ -44,9 +44,12 @@ class ComplexInput {
  private:
   Plc build_repaired(const ComplexArguments& options);
   PlcError with_advice(const PlcError& error, const RepairOptions& options) const;
+  Plc take(RepairedPlc result);
+  void tessellate(double finer);
 
   std::vector<PolygonSoup> soups_;
   CadFiles cad_;
+  double finer_ = 1;  // than the first triangles of CAD shapes
   RepairReport repaired_;
 };
 

@@ -101,33 +101,6 @@ TEST(CadFaults, NullAndEmptyShapes) {
       {"part", "no solid"});
 }
 
-// A box without its last face, as a solid and as loose faces.
-TEST(CadFaults, OpenShellsNameEdgesFacesAndPlaces) {
-  BRep_Builder builder;
-  TopoDS_Shell shell;
-  TopoDS_Solid solid;
-  builder.MakeShell(shell);
-  builder.MakeSolid(solid);
-  int faces = 0;
-  for (TopExp_Explorer face(box(), TopAbs_FACE); face.More(); face.Next())
-    if (++faces < 6) builder.Add(shell, face.Current());
-  builder.Add(solid, shell);
-  const std::string open_solid = fault_of(solid, PlcFault::Kind::open_boundary);
-  expect_mentions(open_solid, {"Solid1 is open", "4 edges", "Edge", " of Face", "30)"});
-  expect_mentions(fault_of(shell, PlcFault::Kind::open_boundary),
-                  {"part", "no solid", "4 edges", "Edge", "Face"});
-}
-
-TEST(CadFaults, SolidsThatOverlap) {
-  BRep_Builder builder;
-  TopoDS_Compound two;
-  builder.MakeCompound(two);
-  builder.Add(two, box());
-  builder.Add(two, BRepPrimAPI_MakeBox(gp_Pnt(5, 5, 5), 10, 20, 30).Shape());
-  expect_mentions(fault_of(two, PlcFault::Kind::intersection),
-                  {"Solid1 and Solid2 overlap", "(7.5, 12.5, 17.5)"});
-}
-
 TEST(CadTessellation, KeepsTheDeflection) {
   const double radius = 10;
   CadModel model(BRepPrimAPI_MakeSphere(radius).Shape(), "ball");

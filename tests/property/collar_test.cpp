@@ -210,6 +210,33 @@ TEST(Collar, RimsAndSheetsThatComeBack) {
     for (const double apex_angle : {45.0, 30.0, 15.0}) expect_right(acute::drop_cone(angle, apex_angle));
 }
 
+// A dent in a side of a box, one of whose faces continues that side round a bend that is no feature: this smooth
+// patch passes through corner 8 in two sheets, and the balls there are smaller than the distance tolerance.
+TEST(Collar, SheetsOfOnePatchAtACorner) {
+  PolygonSoup soup;
+  soup.points = {{9, 0, -4},  {13, 0, -4}, {13, 0, 1}, {9, 0, 1}, {9, 2, -4}, {13, 2, -4}, {13, 2, 1}, {9, 2, 1},
+                 {11.4, 0, -1.442}, {11.3455, 0, -1.2646}, {10.5, 0, -1.4418}, {11.4, 0.143, -1.2439}};
+  const auto facet = [&](const std::vector<Index>& corners) { soup.add_facet(corners); };
+  soup.begin_facet();
+  soup.add_polygon(std::vector<Index>{0, 1, 2, 3});
+  soup.add_polygon(std::vector<Index>{8, 9, 10});
+  soup.facet_holes.push_back({0, {11.1, 0, -1.4}});
+  facet({7, 6, 5, 4});
+  facet({0, 4, 5, 1});
+  facet({1, 5, 6, 2});
+  facet({2, 6, 7, 3});
+  facet({3, 7, 4, 0});
+  facet({9, 11, 8});
+  facet({11, 10, 8});
+  facet({11, 9, 10});
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    MeshOptions options = testing::with_size(0.5);
+    options.distance = 0.065;
+    options.seed = seed;
+    EXPECT_EQ(testing::faults(testing::mesh_of(soup, options, 37)), "") << seed;
+  }
+}
+
 TEST(Collar, CurvedSheetsInsideARegion) {
   for (const double angle : {55.0, 30.0, 15.0, 5.0}) expect_right(acute::curved_facet_ending_inside(angle));
   for (const double angle : {20.0, 75.0, 100.0}) expect_right(acute::drop_cone_in_a_room(angle, 30));
@@ -239,6 +266,12 @@ TEST(Collar, WrongBallsAreFound) {
   mesh = meshed.result.mesh;
   mesh.collar_balls[0].radius = -1;
   EXPECT_TRUE(has_finding(mesh, meshed.plc, "valid_arrays"));
+  mesh = meshed.result.mesh;
+  mesh.collar_balls[0].centre.x = NAN;
+  EXPECT_TRUE(has_finding(mesh, meshed.plc, "valid_arrays"));
+  mesh = meshed.result.mesh;
+  mesh.collar_balls[0].centre.x += 0.01;
+  EXPECT_TRUE(has_finding(mesh, meshed.plc, "collar_centre"));
 }
 
 // A file may have no place for the marks of the cells, or for any label: the complex has the creases.

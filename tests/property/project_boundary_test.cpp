@@ -8,6 +8,7 @@
 
 #include "collarmesh/geometry.h"
 #include "collarmesh/improve.h"
+#include "collarmesh/second_order.h"
 #include "support/meshing.h"
 #include "support/plc_shapes.h"
 #include "support/shapes.h"
@@ -76,6 +77,13 @@ ExactGeometry with_waves(const Plc& plc, double height) {
   };
 }
 
+/// Nothing of it is meant to be planar or straight.
+Plc without_flat_features(Plc plc) {
+  for (Plc::Patch& patch : plc.patches) patch.planar = false;
+  for (Plc::Curve& curve : plc.curves) curve.straight = false;
+  return plc;
+}
+
 // Low waves can be reached by all, high ones cannot, and every vertex that does not reach them is told.
 TEST(ProjectBoundary, MakesRoomAndLeavesVerticesThatFindNone) {
   for (const auto* name : {"cube", "wedge"})
@@ -86,7 +94,8 @@ TEST(ProjectBoundary, MakesRoomAndLeavesVerticesThatFindNone) {
       ASSERT_EQ(faults(meshed), "");
       const TetMesh before = meshed.result.mesh;
       const ExactGeometry waves = with_waves(meshed.plc, height);
-      const ProjectReport report = project_boundary(meshed.result.mesh, meshed.plc, waves, {.reach = 2});
+      const ProjectReport report =
+          project_boundary(meshed.result.mesh, without_flat_features(meshed.plc), waves, {.reach = 2});
       expect_guarantees(before, meshed.result.mesh, {});
       std::set<Index> left;
       for (const auto& exception : report.exceptions) left.insert(exception.point);
@@ -122,6 +131,79 @@ TEST(ProjectBoundary, LeavesWhatIsOutOfReach) {
   EXPECT_EQ(before.points, meshed.result.mesh.points);
   EXPECT_EQ(report.exceptions.size(), report.vertices);
   EXPECT_NEAR(report.largest_distance, 0.05, 1e-12);
+}
+
+// Exact geometry that is flat up to the tolerance of its shape only, as CAD faces and edges may be: what the
+// complex calls planar or straight stays so, and vertices that are off the exact geometry then are told.
+TEST(ProjectBoundary, KeepsFlatFeaturesFlat) {
+  for (const double height : {1e-9, 1e-7, 1e-5}) {
+    Meshed meshed = mesh_of(subdivided_box({0, 0, 0}, {1, 1, 1}, 1), with_size(0.2));
+    ASSERT_EQ(faults(meshed), "");
+    const ExactGeometry waves = with_waves(meshed.plc, height);
+    const ProjectReport report = project_boundary(meshed.result.mesh, meshed.plc, waves);
+    EXPECT_EQ(check(meshed.result.mesh, meshed.plc).findings.size(), 0U) << height;
+    std::set<Index> told;
+    for (const auto& exception : report.exceptions) {
+      EXPECT_GT(exception.distance, 1e-9);
+      told.insert(exception.point);
+    }
+    double largest = 0;
+    for (Index p = 0; p < meshed.result.mesh.points.size(); ++p) {
+      const auto [dimension, feature] = meshed.result.mesh.features[p];
+      if (dimension != 1 && dimension != 2) continue;
+      const Point& now = meshed.result.mesh.points[p];
+      const double off = distance(now, *waves(dimension, feature, now));
+      EXPECT_EQ(told.count(p) > 0, off > 1e-9);
+      largest = std::max(largest, off);
+    }
+    EXPECT_DOUBLE_EQ(report.largest_distance, largest);
+    make_second_order(meshed.result.mesh, meshed.plc, {.exact = waves});
+    EXPECT_EQ(check(meshed.result.mesh, meshed.plc).findings.size(), 0U) << height;
+  }
+}
+
+// The exact rims leave the planes of the caps.
+TEST(ProjectBoundary, KeepsCapsFlatAtCurvedRims) {
+  Meshed meshed = mesh_of(cylinder(Index{64}, 1.0, 1.0), with_size(0.3));
+  ASSERT_EQ(faults(meshed), "");
+  const ExactGeometry exact = [](unsigned, Index, const Point& p) -> std::optional<Point> {
+    const double radius = std::hypot(p.x, p.y);
+    if (radius < 0.99) return p;
+    return Point{p.x / radius, p.y / radius, p.z + 1e-4 * std::sin(3 * std::atan2(p.y, p.x))};
+  };
+  const ProjectReport report = project_boundary(meshed.result.mesh, meshed.plc, exact, {.reach = 0.01});
+  EXPECT_EQ(check(meshed.result.mesh, meshed.plc).findings.size(), 0U);
+  EXPECT_GT(report.exceptions.size(), 0U);
+  std::size_t on_rims = 0;
+  for (Index p = 0; p < meshed.result.mesh.points.size(); ++p) {
+    const Point& now = meshed.result.mesh.points[p];
+    if (meshed.result.mesh.features[p].dimension != 1) continue;
+    ++on_rims;
+    EXPECT_NEAR(std::hypot(now.x, now.y), 1, 1e-9);
+  }
+  EXPECT_GT(on_rims, 20U);
+}
+
+// The balls of a collar are placed by distances in the complex; projection has nothing to say about them.
+TEST(ProjectBoundary, LeavesTheBallsOfCollarsAsTheyAre) {
+  Meshed meshed = mesh_of(wedge(20, 1), with_size(0.3));
+  ASSERT_EQ(faults(meshed), "");
+  const TetMesh before = meshed.result.mesh;
+  ASSERT_FALSE(before.collar_balls.empty());
+  const Plc smooth = without_flat_features(meshed.plc);
+  CheckOptions options;
+  options.distance = 0.02;
+  project_boundary(meshed.result.mesh, smooth, with_waves(meshed.plc, 0.01), {.reach = options.distance});
+  const TetMesh& mesh = meshed.result.mesh;
+  std::size_t moved = 0;
+  ASSERT_EQ(mesh.collar_balls.size(), before.collar_balls.size());
+  for (std::size_t b = 0; b < mesh.collar_balls.size(); ++b) {
+    EXPECT_EQ(mesh.collar_balls[b].radius, before.collar_balls[b].radius);
+    EXPECT_EQ(mesh.collar_balls[b].centre, before.points[mesh.collar_balls[b].point]);
+    if (mesh.points[mesh.collar_balls[b].point] != mesh.collar_balls[b].centre) ++moved;
+  }
+  EXPECT_GT(moved, 0U);
+  EXPECT_EQ(check(mesh, smooth, options).findings.size(), 0U);
 }
 
 }  // namespace

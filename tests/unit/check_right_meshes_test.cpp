@@ -43,6 +43,21 @@ TEST(CheckRightMeshes, SmoothCurvesAndPlanarPatches) {
   expect_pass(meshed_cylinder(12, 4), {.distance = 0.05});
 }
 
+// The two triangles of the upper side are one planar patch up to the tolerance; they are tilted against each
+// other, so that their areas exceed that of the patch' outline seen from above by 8e-9 of it.
+TEST(CheckRightMeshes, PlanarPatchOfTiltedTriangles) {
+  constexpr double width = 0.005, lift = 0.9e-6;
+  PolygonSoup bar;
+  bar.points = {{0, 0, 0},     {1, 0, 0},     {1, width, 0},            {0, width, 0},
+                {0, 0, width}, {1, 0, width}, {1, width, width + lift}, {0, width, width}};
+  const std::vector<std::vector<Index>> facets{{0, 3, 2, 1}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6},
+                                               {3, 0, 4, 7}, {4, 5, 7},    {5, 6, 7}};
+  for (const auto& facet : facets) bar.add_facet(facet);
+  const Meshed meshed = mesh_of(bar, with_size(0.05));
+  ASSERT_EQ(meshed.plc.patches.size(), 6U);
+  EXPECT_EQ(faults(meshed), "");
+}
+
 // Of the smooth patches: of their faces' corners, centres and two points on each side.
 double largest_distance(const MeshedComplex& m, bool centres_only) {
   double largest = 0;

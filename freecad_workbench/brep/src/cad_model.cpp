@@ -50,13 +50,14 @@ std::vector<std::pair<double, int>> faces_by_distance(const Tessellation& tessel
 
 }  // namespace
 
-CadModel::CadModel(const TopoDS_Shape& shape, std::string name) : parts_(std::make_unique<Parts>()) {
+CadModel::CadModel(const TopoDS_Shape& shape, std::string name, const CadOptions& options)
+    : parts_(std::make_unique<Parts>()) {
   parts_->name = std::move(name);
   on_shape(parts_->name, "finding solids", [&] {
     // A copy: the triangles that the caller's shape has stay as they are.
     const TopoDS_Shape copy =
         shape.IsNull() ? shape : BRepBuilderAPI_Copy(shape, /*copyGeom=*/false, /*copyMesh=*/false).Shape();
-    parts_->topology = find_topology(copy, parts_->name);
+    parts_->topology = find_topology(copy, parts_->name, options);
     parts_->diagonal = diagonal_of(parts_->topology.all);
   });
 }
@@ -67,7 +68,13 @@ CadModel& CadModel::operator=(CadModel&&) noexcept = default;
 
 const std::string& CadModel::name() const { return parts_->name; }
 double CadModel::diagonal() const { return parts_->diagonal; }
-const std::vector<std::string>& CadModel::notes() const { return parts_->topology.notes; }
+bool CadModel::fused() const { return parts_->topology.fused; }
+const std::string& CadModel::open_edges_text() const { return parts_->topology.open_text; }
+std::vector<std::string> CadModel::notes() const {
+  std::vector<std::string> notes = parts_->topology.notes;
+  notes.insert(notes.end(), parts_->tessellation.notes.begin(), parts_->tessellation.notes.end());
+  return notes;
+}
 
 std::vector<PolygonSoup> CadModel::tessellate(const TessellationOptions& options) {
   constexpr double relative_deflection = 1e-4;

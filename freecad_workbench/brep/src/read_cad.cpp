@@ -81,8 +81,8 @@ TopoDS_Shape read_shape(const std::string& path, CadFormat format) {
 
 }  // namespace
 
-CadModel read_cad(const std::string& path, std::string_view format) {
-  return {read_shape(path, cad_format_of(path, format)), path};
+CadModel read_cad(const std::string& path, std::string_view format, const CadOptions& options) {
+  return {read_shape(path, cad_format_of(path, format)), path, options};
 }
 
 }  // namespace collarmesh::brep

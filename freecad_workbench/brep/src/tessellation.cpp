@@ -1,6 +1,7 @@
 // Triangles of faces whose edges are cut once, for all faces that share them.
 #include "tessellation.h"
 
+#include "face_mending.h"
 #include "flat_triangles.h"
 
 #include <fmt/format.h>
@@ -9,9 +10,12 @@
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Tool.hxx>
+#include <GCPnts_TangentialDeflection.hxx>
+#include <Geom2d_Curve.hxx>
 #include <IMeshTools_Parameters.hxx>
 #include <Poly_PolygonOnTriangulation.hxx>
 #include <Poly_Triangulation.hxx>
+#include <ShapeAnalysis_Surface.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
@@ -41,18 +45,25 @@ class Tessellator {
     for (const Point& p : points_) box.add(p);
     diagonal_ = box.diagonal();
     edge_points_.resize(static_cast<std::size_t>(edges_.Extent()));
+    edge_parameters_.resize(edge_points_.size());
     face_triangles_.resize(static_cast<std::size_t>(faces_.Extent()));
     is_vertex_.assign(points_.size(), false);
   }
 
   Tessellation run(double deflection, double angle) {
     deflection_ = deflection;
+    angle_ = angle * std::numbers::pi / 180;
     BRepTools::Clean(topology_.all);
     IMeshTools_Parameters parameters;
     parameters.Deflection = deflection;
-    parameters.Angle = angle * std::numbers::pi / 180;
+    parameters.Angle = angle_;
+    parameters.InParallel = true;
     const BRepMesh_IncrementalMesh mesh(topology_.all, parameters);
-    for (int f = 1; f <= faces_.Extent(); ++f) add_face(TopoDS::Face(faces_(f)), f);
+    std::vector<int> failed;
+    for (int f = 1; f <= faces_.Extent(); ++f)
+      if (!add_face(TopoDS::Face(faces_(f)), f)) failed.push_back(f);
+    for (const int f : failed) mend(TopoDS::Face(faces_(f)), f);
+    require_triangles();
     bend_single_chords();
     find_features();
     for (const Topology::Solid& solid : topology_.solids) result_.soups.push_back(soup_of(solid));
@@ -62,23 +73,20 @@ class Tessellator {
 
  private:
   static constexpr double straight_ = 1e-13;  // rounding, relative to the diagonal
+  static constexpr double seam_gap_ = 1e-3;   // between the ends of edges in the parameter plane, likewise
   static constexpr double flat_ = 1e-3;       // height of a triangle without one, relative to the deflection
 
   static std::size_t slot(int index) { return static_cast<std::size_t>(index - 1); }
 
-  void add_face(const TopoDS_Face& face, int index) {
+  /// The triangles that BRepMesh gave a face, unless it failed: then nothing is added and false returned.
+  bool add_face(const TopoDS_Face& face, int index) {
     TopLoc_Location location;
     const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location);
-    if (triangulation.IsNull() || triangulation->NbTriangles() == 0)
-      fail(PlcFault::Kind::degenerate_facet,
-           fmt::format("{}: {} around {} cannot be cut into triangles; its outline is open or crosses "
-                       "itself, or it has "
-                       "no area. Repair it.",
-                       file_, topology_.name(face), text(place_of(face))),
-           place_of(face));
+    if (!fits_neighbours(face, triangulation, location)) return false;
     std::vector<Index> at(static_cast<std::size_t>(triangulation->NbNodes()), none);
     for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next())
-      add_edge(TopoDS::Edge(edge.Current()), face, triangulation, location, at);
+      add_edge(TopoDS::Edge(edge.Current()), triangulation, location, at);
+    const std::size_t first_inner = points_.size();
     add_inner_points(face, *triangulation, location, at);
     auto& triangles = face_triangles_[slot(index)];
     for (int t = 1; t <= triangulation->NbTriangles(); ++t) {
@@ -89,54 +97,207 @@ class Tessellator {
       if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0])
         triangles.push_back(corners);
     }
+    if (sides_off(triangles, chords_of(face)) > 0) {  // it has holes, or covers too much
+      triangles.clear();
+      points_.resize(first_inner);
+      result_.faces[topology_.number(face)].pop_back();
+      return false;
+    }
     insert_vertices_amid(face, at, triangles);
     flip_flat_triangles(points_, flat_ * deflection_, triangles);
+    return true;
+  }
+
+  /// Does a face have triangles, and the same points along its edges as the faces that came before?
+  bool fits_neighbours(const TopoDS_Face& face, const Handle(Poly_Triangulation) & triangulation,
+                       const TopLoc_Location& location) const {
+    if (triangulation.IsNull() || triangulation->NbTriangles() == 0) return false;
+    for (TopExp_Explorer side(face, TopAbs_EDGE); side.More(); side.Next()) {
+      const TopoDS_Edge& edge = TopoDS::Edge(side.Current());
+      const Handle(Poly_PolygonOnTriangulation) polygon =
+          BRep_Tool::PolygonOnTriangulation(edge, triangulation, location);
+      if (polygon.IsNull()) return false;
+      const auto& points = edge_points_[slot(edges_.FindIndex(edge))];
+      if (!points.empty() && !BRep_Tool::Degenerated(edge) &&
+          points.size() != static_cast<std::size_t>(polygon->NbNodes()))
+        return false;
+    }
+    return true;
+  }
+
+  /// The chords around a face; edges inside it have none.
+  std::vector<std::array<Index, 2>> chords_of(const TopoDS_Face& face) const {
+    std::vector<std::array<Index, 2>> chords;
+    for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next()) {
+      const auto& points = edge_points_[slot(edges_.FindIndex(edge.Current()))];
+      if (inside_orientation(edge.Current())) continue;
+      for (std::size_t i = 0; i + 1 < points.size(); ++i) chords.push_back({points[i], points[i + 1]});
+    }
+    return chords;
   }
 
   /// Says which points of the shape the triangulation's nodes on an edge are.
-  void add_edge(const TopoDS_Edge& edge, const TopoDS_Face& face,
-                const Handle(Poly_Triangulation) & triangulation, const TopLoc_Location& location,
-                std::vector<Index>& at) {
+  void add_edge(const TopoDS_Edge& edge, const Handle(Poly_Triangulation) & triangulation,
+                const TopLoc_Location& location, std::vector<Index>& at) {
     const Handle(Poly_PolygonOnTriangulation) polygon =
         BRep_Tool::PolygonOnTriangulation(edge, triangulation, location);
-    if (polygon.IsNull())
-      fail(PlcFault::Kind::degenerate_facet,
-           fmt::format("{}: {} around {} cannot be cut into triangles along its {}; repair it.", file_,
-                       topology_.name(face), text(place_of(face)), topology_.name(edge)),
-           place_of(edge));
-    const std::vector<Index>& points = points_of(edge, *polygon);
-    if (points.size() != static_cast<std::size_t>(polygon->NbNodes()) && !BRep_Tool::Degenerated(edge))
-      fail(PlcFault::Kind::degenerate_facet,
-           fmt::format("{}: the faces at {} around {} have different points on it; repair it.", file_,
-                       topology_.name(edge), text(place_of(edge))),
-           place_of(edge));
+    std::vector<double> parameters;
+    for (int i = 1; i <= polygon->NbNodes(); ++i) parameters.push_back(polygon->Parameter(i));
+    const std::vector<Index>& points = points_of(edge, parameters);
     for (int i = 1; i <= polygon->NbNodes(); ++i)
       at[slot(polygon->Node(i))] = points[BRep_Tool::Degenerated(edge) ? 0 : slot(i)];
   }
 
-  /// The points on an edge in the order of its parameter; of a degenerate one its vertex.
-  const std::vector<Index>& points_of(const TopoDS_Edge& edge, const Poly_PolygonOnTriangulation& polygon) {
-    std::vector<Index>& points = edge_points_[slot(edges_.FindIndex(edge))];
+  /// The points on an edge in the order of its parameter; of a degenerate one its vertex. It is cut at the
+  /// parameters when it has not been.
+  const std::vector<Index>& points_of(const TopoDS_Edge& edge, const std::vector<double>& parameters) {
+    const std::size_t index = slot(edges_.FindIndex(edge));
+    std::vector<Index>& points = edge_points_[index];
     if (!points.empty()) return points;
     const TopoDS_Edge forward = TopoDS::Edge(edge.Oriented(TopAbs_FORWARD));
     const TopoDS_Vertex first = TopExp::FirstVertex(forward), last = TopExp::LastVertex(forward);
-    const Index first_point = static_cast<Index>(slot(vertices_.FindIndex(first)));
-    points.push_back(first_point);
+    points.push_back(static_cast<Index>(slot(vertices_.FindIndex(first))));
+    edge_parameters_[index] = parameters;
     if (BRep_Tool::Degenerated(edge)) return points;
     const BRepAdaptor_Curve curve(forward);
     Samples& samples = result_.edges[topology_.number(edge)].emplace_back();
     samples.shape = forward;
-    for (int i = 1; i <= polygon.NbNodes(); ++i) {
-      const double t = polygon.Parameter(i);
-      const Point p = to_point(curve.Value(t));
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      const Point p = to_point(curve.Value(parameters[i]));
       samples.points.push_back(p);
-      samples.parameters.push_back({t, 0});
-      if (i == 1 || i == polygon.NbNodes()) continue;
+      samples.parameters.push_back({parameters[i], 0});
+      if (i == 0 || i + 1 == parameters.size()) continue;
       points.push_back(static_cast<Index>(points_.size()));
       points_.push_back(p);
     }
     points.push_back(static_cast<Index>(slot(vertices_.FindIndex(last))));
     return points;
+  }
+
+  /// An edge that only faces have which BRepMesh failed on.
+  void cut_edge(const TopoDS_Edge& edge) {
+    if (!edge_points_[slot(edges_.FindIndex(edge))].empty()) return;
+    const BRepAdaptor_Curve curve(TopoDS::Edge(edge.Oriented(TopAbs_FORWARD)));
+    std::vector<double> parameters;
+    if (BRep_Tool::Degenerated(edge)) {
+      parameters = {curve.FirstParameter(), curve.LastParameter()};
+    } else {
+      constexpr int least = 3;  // points, that a circle is none that is flat
+      const GCPnts_TangentialDeflection cut(curve, angle_, deflection_, least);
+      for (int i = 1; i <= cut.NbPoints(); ++i) parameters.push_back(cut.Parameter(i));
+    }
+    points_of(edge, parameters);
+  }
+
+  /// In another way, see mend_face. Notes tell which.
+  void mend(const TopoDS_Face& face, int index) {
+    for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next())
+      cut_edge(TopoDS::Edge(edge.Current()));
+    const MendedFace mended = mend_face(face, outline_of(face), deflection_, angle_);
+    std::vector<Index> at = mended.outline_points;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      if (at[i] != none) continue;
+      at[i] = static_cast<Index>(points_.size());
+      points_.push_back(mended.points[i]);
+    }
+    auto& triangles = face_triangles_[slot(index)];
+    for (const auto& [a, b, c] : mended.triangles)
+      if (at[a] != at[b] && at[b] != at[c] && at[c] != at[a]) triangles.push_back({at[a], at[b], at[c]});
+    flip_flat_triangles(points_, flat_ * deflection_, triangles);
+    Samples& samples = result_.faces[topology_.number(face)].emplace_back();
+    samples.shape = mended.triangles.empty() ? face : mended.face;
+    samples.points = mended.points;
+    samples.parameters = mended.parameters;
+    if (!mended.parameters.empty()) samples.triangles = mended.triangles;
+    tell(face, mended, triangles.empty());
+  }
+
+  void tell(const TopoDS_Face& face, const MendedFace& mended, bool left_out) {
+    const std::string done =
+        left_out ? "it is left out; its outline is open or crosses itself, or it has no area"
+                 : fmt::format("it was triangulated {}{}", mended.how,
+                               mended.fits ? "" : ", and its border has other points than its neighbours");
+    result_.notes.push_back(
+        fmt::format("{}: {} around {} cannot be cut into triangles with its neighbours; {}", file_,
+                    topology_.name(face), text(place_of(face)), done));
+  }
+
+  void require_triangles() const {
+    if (std::any_of(face_triangles_.begin(), face_triangles_.end(), [](const auto& t) { return !t.empty(); }))
+      return;
+    fail(PlcFault::Kind::degenerate_facet,
+         fmt::format("{}: none of its faces can be cut into triangles; check and repair the shape.", file_),
+         place_of(topology_.all));
+  }
+
+  /// The chords of a face's edges, with the parameters of the points on its surface.
+  Outline outline_of(const TopoDS_Face& face) const {
+    Outline outline;
+    std::map<Index, std::vector<Index>> nodes_of;  // by point
+    const BRepAdaptor_Surface surface(face, false);
+    const auto node = [&](Index p, const std::array<double, 2>& uv) {
+      const gp_Pnt at = surface.Value(uv[0], uv[1]);
+      for (const Index n : nodes_of[p])
+        if (at.Distance(surface.Value(outline.parameters[n][0], outline.parameters[n][1])) <=
+                seam_gap_ * diagonal_ &&
+            near_in_plane(surface, uv, outline.parameters[n]))
+          return n;
+      const auto n = static_cast<Index>(outline.points.size());
+      outline.points.push_back(p);
+      outline.places.push_back(points_[p]);
+      outline.parameters.push_back(uv);
+      nodes_of[p].push_back(n);
+      return n;
+    };
+    for (TopExp_Explorer side(face.Oriented(TopAbs_FORWARD), TopAbs_EDGE); side.More(); side.Next()) {
+      const TopoDS_Edge& edge = TopoDS::Edge(side.Current());
+      if (inside_orientation(edge)) continue;
+      const auto& points = edge_points_[slot(edges_.FindIndex(edge))];
+      const auto uv = parameters_on(face, edge, surface);
+      std::vector<Index> nodes;
+      for (std::size_t i = 0; i < uv.size(); ++i)
+        nodes.push_back(node(points[BRep_Tool::Degenerated(edge) ? 0 : i], uv[i]));
+      if (edge.Orientation() == TopAbs_REVERSED) std::reverse(nodes.begin(), nodes.end());
+      for (std::size_t i = 0; i + 1 < nodes.size(); ++i)
+        if (nodes[i] != nodes[i + 1]) outline.chords.push_back({nodes[i], nodes[i + 1]});
+    }
+    return outline;
+  }
+
+  /// Points of a seam have two places in the parameter plane.
+  static bool near_in_plane(const BRepAdaptor_Surface& surface, const std::array<double, 2>& a,
+                            const std::array<double, 2>& b) {
+    constexpr double share = 0.01;  // of a period
+    return !(surface.IsUPeriodic() && std::fabs(a[0] - b[0]) > share * surface.UPeriod()) &&
+           !(surface.IsVPeriodic() && std::fabs(a[1] - b[1]) > share * surface.VPeriod()) &&
+           !(!surface.IsUPeriodic() && surface.IsUClosed() &&
+             std::fabs(a[0] - b[0]) > share * (surface.LastUParameter() - surface.FirstUParameter())) &&
+           !(!surface.IsVPeriodic() && surface.IsVClosed() &&
+             std::fabs(a[1] - b[1]) > share * (surface.LastVParameter() - surface.FirstVParameter()));
+  }
+
+  /// Of an edge's points on a face: by its curve in the parameter plane, or where that is off by projection.
+  std::vector<std::array<double, 2>> parameters_on(const TopoDS_Face& face, const TopoDS_Edge& edge,
+                                                   const BRepAdaptor_Surface& surface) const {
+    const std::size_t index = slot(edges_.FindIndex(edge));
+    double first = 0, last = 0;
+    const Handle(Geom2d_Curve) curve = BRep_Tool::CurveOnSurface(edge, face, first, last);
+    ShapeAnalysis_Surface projection(BRep_Tool::Surface(face));
+    std::vector<std::array<double, 2>> result;
+    const auto& t = edge_parameters_[index];
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      gp_Pnt2d uv;
+      if (!curve.IsNull())
+        uv = curve->Value(first + (t[i] - t.front()) / (t.back() - t.front()) * (last - first));
+      if (!BRep_Tool::Degenerated(edge)) {
+        const Point& p = points_[edge_points_[index][i]];
+        const double off = std::max(deflection_, 2 * BRep_Tool::Tolerance(edge));
+        if (curve.IsNull() || distance(to_point(surface.Value(uv.X(), uv.Y())), p) > off)
+          uv = projection.ValueOfUV(gp_Pnt(p.x, p.y, p.z), BRep_Tool::Tolerance(edge));
+      }
+      result.push_back({uv.X(), uv.Y()});
+    }
+    return result;
   }
 
   void add_inner_points(const TopoDS_Face& face, const Poly_Triangulation& triangulation,
@@ -329,11 +490,9 @@ class Tessellator {
   bool is_vertex_of(Index point) const { return point < is_vertex_.size() && is_vertex_[point]; }
 
   PolygonSoup soup_of(const Topology::Solid& solid) const {
-    Collector soup(*this, fmt::format("{}, {}", file_, topology_.name(solid.shape)));
+    Collector soup(*this, fmt::format("{}, Solid{}", file_, solid.number));
     soup.set_region(solid.number);
-    for (TopExp_Explorer face(solid.shape, TopAbs_FACE); face.More(); face.Next())
-      if (face.Current().Orientation() == TopAbs_FORWARD || face.Current().Orientation() == TopAbs_REVERSED)
-        soup.add_face(face.Current());
+    for (const TopoDS_Shape& face : solid.faces) soup.add_face(face);
     return soup.finish();
   }
 
@@ -348,9 +507,10 @@ class Tessellator {
   TopTools_IndexedMapOfShape vertices_, edges_, faces_;
   std::vector<Point> points_;                    // vertices first
   std::vector<std::vector<Index>> edge_points_;  // by index in edges_
+  std::vector<std::vector<double>> edge_parameters_;
   std::vector<std::vector<std::array<Index, 3>>> face_triangles_;
   std::vector<bool> is_feature_, is_vertex_;
-  double deflection_ = 0, diagonal_ = 0;
+  double deflection_ = 0, angle_ = 0, diagonal_ = 0;
   Tessellation result_;
 };
 

@@ -21,10 +21,11 @@ struct Samples {
 struct Tessellation {
   std::vector<PolygonSoup> soups;  ///< one per solid, one for the internal faces where there are any
   std::map<int, std::vector<Samples>> edges, faces;  ///< by number
+  std::vector<std::string> notes;                    ///< on faces that were cut in another way, or not at all
 };
 
-/// Triangulate all faces; neighbours share the points of their edges.
-/// Throws PlcError for a face without a triangulation.
+/// Triangulate all faces; neighbours share the points of their edges, but for faces that notes name.
+/// Throws PlcError when no face has a triangulation.
 Tessellation tessellate(const Topology& topology, const std::string& file, double deflection, double angle);
 
 }  // namespace collarmesh::brep

@@ -174,10 +174,11 @@ def finish(obj, job, exit_code=0):
         raise MesherError("The mesher wrote a mesh without elements; please report it with the shape.")
     groups.add_groups(obj, fem_mesh)
     obj.FemMesh = fem_mesh
-    said = job.messages if exit_code == GUARANTEE_MISSED else job.warnings()
+    report = job.report()
+    said = job.messages if exit_code == GUARANTEE_MISSED else [*job.warnings(), *report["notes"]]
     if said:
         FreeCAD.Console.PrintWarning("collarmesh: " + "\n".join(said) + "\n")
-    return job.report()
+    return report
 
 
 def remesh(obj, progress=None):

@@ -81,8 +81,13 @@ struct RepairedPlc {
   std::vector<PolygonSoup> soups;  ///< what the complex was built from, if anything was repaired; else empty
 };
 
-/// `build_plc`, and where it finds faults, `repair` first, with a tolerance that grows where that helps. Valid
-/// soups give the complex of `build_plc`.
+/// The complex as it is, or that of the repaired soups where it has features below the tolerance: curves that are
+/// shorter, features that come as close without meeting, slits. `plc` is that of the soups.
+RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcOptions& options = {},
+                         const RepairOptions& repair_options = {});
+
+/// `build_plc`, and where it finds faults or noise, `repair` first, with a tolerance that grows where that helps. Valid
+/// soups without features below the tolerance give the complex of `build_plc`.
 /// Throws PlcError: the faults of what came in, and what helps.
 RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOptions& options = {},
                                const RepairOptions& repair_options = {});

@@ -60,6 +60,9 @@ struct TetMesh {
   struct CollarBall {
     Index point = none;  ///< its centre, on a crease
     double radius = 0;   ///< absolute
+    /// Where that point was when the ball was placed, by distances in the complex; since then the point may
+    /// have moved onto exact geometry.
+    Point centre;
   };
   std::vector<CollarBall> collar_balls;  ///< empty when unknown (read from a file)
 };

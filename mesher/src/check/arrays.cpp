@@ -123,14 +123,16 @@ void check_referenced(const TetMesh& mesh, Findings& findings) {
 
 void check_collar_balls(const TetMesh& mesh, Findings& findings) {
   for (Index b = 0; b < mesh.collar_balls.size(); ++b) {
-    const auto& [point, radius] = mesh.collar_balls[b];
+    const auto& [point, radius, centre] = mesh.collar_balls[b];
     const bool on_crease = point < mesh.points.size() && point < mesh.features.size() &&
                            mesh.features[point].dimension < 2 && mesh.features[point].feature != none;
-    if (!on_crease || !(radius > 0 && std::isfinite(radius)))
+    const bool is_finite = std::isfinite(radius) && std::isfinite(centre.x) && std::isfinite(centre.y) &&
+                           std::isfinite(centre.z);
+    if (!on_crease || !is_finite || !(radius > 0))
       findings.add(
           guarantee::valid_arrays, {}, {b},
           "Ball {} of a collar is centred at point {} with radius {:.6g}; it must be a point on a vertex "
-          "or curve, and the radius positive.",
+          "or curve, and the radius positive and finite, as its coordinates.",
           b, point, radius);
   }
 }

@@ -41,6 +41,7 @@ class CollarCheck {
   }
 
   void run() {
+    check_centres();
     collect_elements();
     look_around();
     check_circles();
@@ -54,10 +55,27 @@ class CollarCheck {
     std::array<Index, 3> points;
   };
 
-  const Point& centre(Index ball) const { return subject_.point(balls_[ball].point); }
+  // Where it was placed: distances are those of the complex, which projection does not know.
+  const Point& centre(Index ball) const { return balls_[ball].centre; }
   double radius(Index ball) const { return balls_[ball].radius; }
   const TetMesh::VertexFeature& feature_of(Index ball) const {
     return subject_.mesh.features[balls_[ball].point];
+  }
+
+  // A vertex of the complex stays where it is; a point on a curve moves onto exact geometry, which is within
+  // the distance tolerance.
+  void check_centres() {
+    for (Index b = 0; b < balls_.size(); ++b) {
+      const Point& now = subject_.point(balls_[b].point);
+      const double way = distance(centre(b), now);
+      const double allowed =
+          subject_.rounding + (feature_of(b).dimension == 0 ? 0 : subject_.options.distance);
+      if (way <= allowed) continue;
+      findings_.add(guarantee::collar_centre, now, {balls_[b].point},
+                    "The collar's ball at {} (radius {:.9g}) has its centre at point {}, which is {:.6g} away "
+                    "from there, allowed is {:.6g}; the point was moved, or the ball is another point's.",
+                    At{centre(b)}, radius(b), balls_[b].point, way, allowed);
+    }
   }
 
   void collect_elements() {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <unordered_set>
 
+#include "common/flat_features.h"
 #include "project/relaxation.h"
 
 namespace collarmesh {
@@ -17,10 +18,12 @@ class BoundaryProjection {
                      const Execution& execution)
       : mesh_(mesh),
         exact_(exact),
+        flat_(plc),
+        limited_(flat_.limit(exact)),
         options_(options),
         execution_(execution),
         reach_(options.reach > 0 ? options.reach : default_reach * plc.bounds.diagonal()),
-        room_(mesh, exact, {options.radius_edge, options.collar_angle, largest_sag * reach_}) {}
+        room_(mesh, limited_, {options.radius_edge, options.collar_angle, largest_sag * reach_}) {}
 
   ProjectReport run() {
     find_targets();
@@ -34,9 +37,8 @@ class BoundaryProjection {
       if (!room_.good(t)) tets.push_back(t);
     for (tets = room_.relax(std::move(tets)); !tets.empty();) tets = give_way(tets);
     room_.commit();
-    for (int pass = 0; pass < retries && retry(); ++pass) {
+    for (int pass = 0; pass < retries && retry(pass > 0); ++pass) {
     }
-    shrink_balls();
     finish();
     return report_;
   }
@@ -49,7 +51,9 @@ class BoundaryProjection {
   struct Move {
     Index point;
     Point to;
+    bool limited;  // off the exact geometry, for something flat
     bool done = false;
+    std::size_t tried = 0;  // after so many commits, in vain
   };
 
   void find_targets() {
@@ -62,12 +66,13 @@ class BoundaryProjection {
       if (!target) continue;
       ++report_.vertices;
       const double off = distance(*target, mesh_.points[p]);
-      if (!(off <= reach_)) {
+      const std::optional<Point> place = off <= reach_ ? flat_.keep(dimension, feature, *target) : std::nullopt;
+      if (!place) {
         add_exception(p, off);
         continue;
       }
       slot_of_[p] = static_cast<Index>(moves_.size());
-      moves_.push_back({p, *target});
+      moves_.push_back({p, *place, *place != *target});
     }
     for (const TetMesh::CollarBall& ball : mesh_.collar_balls) is_centre_.insert(ball.point);
   }
@@ -109,12 +114,13 @@ class BoundaryProjection {
     return room_.relax(std::move(around));
   }
 
-  // One by one, what went back may go now, if there is room. True: something did.
-  bool retry() {
+  // One by one, what went back may go now, if there is room, and again where something has changed since.
+  // True: something did.
+  bool retry(bool again) {
     bool any = false;
     for (Index slot = 0; slot < moves_.size() && !execution_.cancelled(); ++slot) {
-      const Move& move = moves_[slot];
-      if (move.done) continue;
+      Move& move = moves_[slot];
+      if (move.done || (again && !room_.changed_around(move.point, move.tried))) continue;
       room_.put(move.point, move.to);
       const auto tets = room_.tets_at()[move.point];
       if (room_.relax({tets.begin(), tets.end()}).empty()) {
@@ -123,6 +129,7 @@ class BoundaryProjection {
         room_.commit();
       } else {
         room_.roll_back();
+        move.tried = room_.commits();
       }
     }
     return any;
@@ -133,21 +140,21 @@ class BoundaryProjection {
       if (mesh_.features[p].dimension == 3 && mesh_.points[p] != room_.origin(p)) ++report_.moved_inside;
     for (Index slot = 0; slot < moves_.size(); ++slot) {
       const Move& move = moves_[slot];
-      const double off = way_of(slot);
+      const double off = move.limited ? off_exact(move.point) : move.done ? 0 : way_of(slot);
       if (move.done)
         report_.largest_move =
             std::max(report_.largest_move, distance(room_.origin(move.point), mesh_.points[move.point]));
-      else if (off > options_.tolerance)
+      if (off > options_.tolerance)
         add_exception(move.point, off);
       else
         report_.largest_distance = std::max(report_.largest_distance, off);
     }
   }
 
-  // Balls whose centres moved: the part that surely lies in the former one keeps its distances.
-  void shrink_balls() {
-    for (TetMesh::CollarBall& ball : mesh_.collar_balls)
-      ball.radius -= distance(room_.origin(ball.point), mesh_.points[ball.point]);
+  double off_exact(Index point) const {
+    const auto& [dimension, feature] = mesh_.features[point];
+    const Point& now = mesh_.points[point];
+    return distance(now, exact_(dimension, feature, now).value_or(now));
   }
 
   void add_exception(Index p, double off) {
@@ -158,6 +165,8 @@ class BoundaryProjection {
 
   TetMesh& mesh_;
   const ExactGeometry& exact_;
+  FlatFeatures flat_;
+  ExactGeometry limited_;
   const ProjectOptions& options_;
   const Execution& execution_;
   double reach_;

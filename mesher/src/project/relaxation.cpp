@@ -23,6 +23,11 @@ constexpr double good_shape = 0.2;
 // The bounds are kept with room for rounding.
 constexpr double margin = 1e-6;
 
+double radius_edge(const improvement::Corners& p) {
+  const improvement::Circumsphere sphere = improvement::circumsphere(p);
+  return std::sqrt(sphere.squared_radius / sphere.shortest_squared_edge);
+}
+
 }  // namespace
 
 Relaxation::Relaxation(TetMesh& mesh, const ExactGeometry& exact, const Bounds& bounds)
@@ -31,7 +36,11 @@ Relaxation::Relaxation(TetMesh& mesh, const ExactGeometry& exact, const Bounds& 
       bounds_(bounds),
       tets_at_(mesh.tets, mesh.points.size()),
       origins_(mesh.points),
-      free_(mesh.points.size()) {
+      free_(mesh.points.size()),
+      wanted_(mesh.tets.size()),
+      changed_(mesh.points.size(), 0),
+      moved_(mesh.points.size(), 0),
+      stuck_(mesh.points.size(), 0) {
   for (std::size_t v = 0; v < free_.size(); ++v) free_[v] = mesh.features[v].dimension == 3;
 }
 
@@ -53,10 +62,37 @@ bool Relaxation::good(Index tet) const {
 void Relaxation::put(Index vertex, const Point& place) {
   log_.emplace_back(vertex, mesh_.points[vertex]);
   mesh_.points[vertex] = place;
+  moved_[vertex] = ++moves_;
+}
+
+void Relaxation::commit() {
+  ++commits_;
+  for (const auto& [vertex, place] : log_) changed_[vertex] = commits_;
+  log_.clear();
+}
+
+bool Relaxation::changed_around(Index vertex, std::size_t since) const {
+  for (const Index t : tets_at_[vertex])
+    for (const Index v : mesh_.tets[t])
+      if (changed_[v] > since) return true;
+  return false;
 }
 
 void Relaxation::roll_back() {
-  for (; !log_.empty(); log_.pop_back()) mesh_.points[log_.back().first] = log_.back().second;
+  for (; !log_.empty(); log_.pop_back()) {
+    const auto& [vertex, place] = log_.back();
+    mesh_.points[vertex] = place;
+    moved_[vertex] = ++moves_;
+  }
+}
+
+// Was there no better place for it when its surroundings were as they are?
+bool Relaxation::in_vain(Index vertex) const {
+  if (stuck_[vertex] == 0) return false;
+  for (const Index t : tets_at_[vertex])
+    for (const Index v : mesh_.tets[t])
+      if (moved_[v] > stuck_[vertex]) return false;
+  return true;
 }
 
 // 1 for a tet that keeps its bound and its shape, positive for one with positive volume.
@@ -68,29 +104,34 @@ double Relaxation::score(Index tet, const Corners& p) const {
       for (unsigned j = i + 1; j < 4; ++j) longest = std::max(longest, squared_distance(p[i], p[j]));
     return longest > 0 ? six / (longest * std::sqrt(longest)) : -1;
   }
-  const Corners before = corners(tet, origins_);
-  const double shape = improvement::shape_quality(p);
-  const double wanted = std::min(good_shape, improvement::shape_quality(before));
-  double score = std::min(1., shape / wanted);
+  const Wanted& want = wanted(tet);
+  const double score = std::min(1., improvement::shape_quality(p) / want.shape);
   if (mesh_.tet_collar[tet] != 0) {
     const double angle = measure(p[0], p[1], p[2], p[3]).max_dihedral;
-    if (angle <= bounds_.collar_angle) return score;
-    const double most =
-        std::max(bounds_.collar_angle, measure(before[0], before[1], before[2], before[3]).max_dihedral);
-    return std::min(score, (180 - angle) / (180 - most * (1 - margin)));
+    return angle <= bounds_.collar_angle ? score : std::min(score, (180 - angle) / (180 - want.bound));
   }
-  const auto radius_edge = [](const Corners& q) {
-    const improvement::Circumsphere sphere = improvement::circumsphere(q);
-    return std::sqrt(sphere.squared_radius / sphere.shortest_squared_edge);
-  };
   const double ratio = radius_edge(p), most = bounds_.radius_edge * (1 - margin);
-  return ratio <= most ? score : std::min(score, std::max(most, radius_edge(before) * (1 - margin)) / ratio);
+  return ratio <= most ? score : std::min(score, want.bound / ratio);
 }
 
-// What the tets around the vertex lack, in sum; anything not below `below` when it is not below that.
-double Relaxation::lack_around(Index vertex, const Point& place, double below) const {
+const Relaxation::Wanted& Relaxation::wanted(Index tet) const {
+  Wanted& want = wanted_[tet];
+  if (want.shape >= 0) return want;
+  const Corners before = corners(tet, origins_);
+  want.shape = std::min(good_shape, improvement::shape_quality(before));
+  if (mesh_.tet_collar[tet] != 0)
+    want.bound = (1 - margin) * std::max(bounds_.collar_angle,
+                                         measure(before[0], before[1], before[2], before[3]).max_dihedral);
+  else
+    want.bound = (1 - margin) * std::max(bounds_.radius_edge, radius_edge(before));
+  return want;
+}
+
+// What the tets at the vertex lack, in sum; anything not below `below` when it is not below that.
+double Relaxation::lack_around(std::span<const Index> tets, Index vertex, const Point& place,
+                               double below) const {
   double lack = 0;
-  for (const Index t : tets_at_[vertex]) {
+  for (const Index t : tets) {
     Corners p = corners(t, mesh_.points);
     for (unsigned i = 0; i < 4; ++i)
       if (mesh_.tets[t][i] == vertex) p[i] = place;
@@ -113,7 +154,16 @@ std::optional<Point> Relaxation::on_feature(Index vertex, const Point& wish) con
 // Pattern search for the place where the tets around the vertex lack least.
 bool Relaxation::improve(Index vertex) {
   const Point start = mesh_.points[vertex];
-  const double at_start = lack_around(vertex, start, INFINITY);
+  // Most places do not help the worst tets: these are asked first.
+  worst_first_.clear();
+  for (const Index t : tets_at_[vertex]) worst_first_.emplace_back(-lack_of(t, corners(t, mesh_.points)), t);
+  std::sort(worst_first_.begin(), worst_first_.end());
+  around_.clear();
+  double at_start = 0;
+  for (const auto& [lack, t] : worst_first_) {
+    at_start -= lack;
+    around_.push_back(t);
+  }
   if (at_start <= 0) return false;
   double least = at_start;
   Vector to_centre{0, 0, 0};
@@ -129,7 +179,7 @@ bool Relaxation::improve(Index vertex) {
   const auto consider = [&](const Point& wish) {
     const std::optional<Point> p = on_feature(vertex, wish);
     if (!p || least <= 0) return false;
-    const double lack = lack_around(vertex, *p, least);
+    const double lack = lack_around(around_, vertex, *p, least);
     if (lack >= least || !keeps_sag(vertex, *p)) return false;
     least = lack;
     place = *p;
@@ -172,7 +222,11 @@ std::vector<Index> Relaxation::relax(std::vector<Index> tets) {
     sort_out(vertices);
     bool moved = false;
     for (const Index v : vertices) {
-      if (!improve(v)) continue;
+      if (in_vain(v)) continue;
+      if (!improve(v)) {
+        stuck_[v] = moves_;
+        continue;
+      }
       moved = true;
       tets.insert(tets.end(), tets_at_[v].begin(), tets_at_[v].end());
     }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -39,17 +40,28 @@ class Relaxation {
   /// those that are not good in the end, of `tets` and of all tets around what moved.
   std::vector<Index> relax(std::vector<Index> tets);
 
-  void commit() { log_.clear(); }
+  void commit();
   void roll_back();
+  /// How often something was committed; and whether that changed a tet at the vertex after so many times.
+  std::size_t commits() const { return commits_; }
+  bool changed_around(Index vertex, std::size_t since) const;
 
  private:
   using Corners = std::array<Point, 4>;
 
+  /// What a tet is asked for: its bound, or what it was at the beginning if that was poorer.
+  struct Wanted {
+    double shape = -1;  // negative until it is known
+    double bound = 0;   // on its dihedral angles in collars, elsewhere on its radius-edge ratio
+  };
+
+  const Wanted& wanted(Index tet) const;
   Corners corners(Index tet, const std::vector<Point>& points) const;
   double score(Index tet, const Corners& p) const;
   double lack_of(Index tet, const Corners& p) const;
-  double lack_around(Index vertex, const Point& place, double below) const;
+  double lack_around(std::span<const Index> tets, Index vertex, const Point& place, double below) const;
   bool improve(Index vertex);
+  bool in_vain(Index vertex) const;
   std::optional<Point> on_feature(Index vertex, const Point& wish) const;
   bool keeps_sag(Index vertex, const Point& place);
   double sag_around(Index vertex) const;
@@ -60,6 +72,14 @@ class Relaxation {
   CellsAtVertices tets_at_, faces_at_, edges_at_;
   std::vector<Point> origins_;
   std::vector<bool> free_;
+  mutable std::vector<Wanted> wanted_;  // by tet
+  std::vector<std::size_t> changed_;    // by vertex: the commit that moved it last, 0: none did
+  std::size_t commits_ = 0;
+  // By vertex: how many moves there were when it moved last, and when there was no better place for it.
+  std::vector<std::size_t> moved_, stuck_;
+  std::size_t moves_ = 0;
+  std::vector<std::pair<double, Index>> worst_first_;
+  std::vector<Index> around_;
   std::vector<std::pair<Index, Point>> log_;  // vertices and where they were, in order
 };
 

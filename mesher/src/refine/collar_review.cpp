@@ -218,7 +218,9 @@ bool Refinement::poor_edge(const CollarTriangle& t, Index a, Index b) const {
     if (found->face != t.face) neighbour = found;
   });
   if (count != 2) return true;
-  if (t.ball == neighbour->ball) return false;
+  if (t.ball == neighbour->ball)
+    return labels_[cell_of(t.face)].region != labels_[cell_of(neighbour->face)].region &&
+           spans_sheets(collars_.balls()[t.ball], a, b);
   return !collars_.consecutive(t.ball, neighbour->ball) ||
          poor_book(t, *neighbour, {std::min(a, b), std::max(a, b)});
 }

@@ -246,6 +246,24 @@ bool Refinement::bends(CollarTriangle& t) const {
   return false;
 }
 
+// The edge and the ball's centre make a face between two regions. Does it lead from one sheet of a smooth
+// patch to another? In balls smaller than the distance tolerance that does not tell.
+bool Refinement::spans_sheets(const CollarBall& ball, Index a, Index b) const {
+  constexpr double largest_sagitta = 0.15;  // a turn of 30 degrees makes 0.13
+  const Point middle = 0.5 * (mesh_.point(a) + mesh_.point(b));
+  const double most = largest_sagitta * distance(mesh_.point(a), mesh_.point(b));
+  if (most >= distance_) return false;
+  bool found = false;
+  for (const Index patch : patches_through(ball)) {
+    if (!on_patch(a, patch) || !on_patch(b, patch)) continue;
+    if (plc_.patches[patch].planar ||
+        squared_distance(middle, collars_.features().nearest_point({2, patch}, middle)) <= most * most)
+      return false;
+    found = true;
+  }
+  return found;
+}
+
 // A point near a given one where a patch through the ball's centre meets its sphere.
 std::optional<Point> Refinement::arc_point(const CollarBall& ball, Index patch, const Point& near) const {
   const auto on_sphere_towards = [&](const Point& p) {
@@ -272,8 +290,9 @@ bool Refinement::crosses_patch(const CollarBall& ball, Index a, Index b) {
   const bool near =
       squared_distance(p, ball.centre) < reach * reach && squared_distance(q, ball.centre) < reach * reach;
   const auto on_one_side = [&](Index patch) {
-    if (on_patch(a, patch) || on_patch(b, patch)) return true;
     const Plc::Patch& plane = plc_.patches[patch];
+    if (on_patch(a, patch) || on_patch(b, patch))
+      return plane.planar || (on_patch(a, patch) && on_patch(b, patch));
     if (!plane.planar) return false;
     const Point origin = frame_.inside(plane.origin);
     return dot(plane.normal, p - origin) * dot(plane.normal, q - origin) > 0;
@@ -284,8 +303,20 @@ bool Refinement::crosses_patch(const CollarBall& ball, Index a, Index b) {
   hierarchy_.crossings(p, q, {&root, 1}, crossings_);
   return std::any_of(crossings_.begin(), crossings_.end(), [&](const auto& crossing) {
     const Index patch = plc_.triangles[crossing.triangle].patch;
-    return !on_patch(a, patch) && !on_patch(b, patch);
+    const bool a_on = on_patch(a, patch), b_on = on_patch(b, patch);
+    if (a_on == b_on) return !a_on;
+    return !plc_.patches[patch].planar && on_another_sheet(ball, mesh_.point(a_on ? a : b), crossing.triangle);
   });
+}
+
+// A smooth patch may pass through a ball's centre in several sheets, of which an edge may begin on one and
+// cross another. A sheet leaves its chords by the shares that the balls are made for (collar/flatness.cpp):
+// by h over a radius r, with a triangle tilted by about 4 h / r; so a point of it is off the triangle's plane
+// by less than 8 h, where h is half the distance tolerance at most, and less than r / 2.
+bool Refinement::on_another_sheet(const CollarBall& ball, const Point& p, Index triangle) const {
+  const auto [a, b, c] = hierarchy_.corners(triangle);
+  const Vector normal = cross(b - a, c - a);
+  return std::fabs(dot(p - a, normal)) > std::min(4 * distance_, 0.5 * ball.radius) * norm(normal);
 }
 
 bool Refinement::poor_book(const CollarTriangle& t, const CollarTriangle& u,

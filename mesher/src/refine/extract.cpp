@@ -48,7 +48,7 @@ TetMesh Refinement::extract() const {
   }
   for (Index ball = 0; ball < collars_.balls().size(); ++ball)
     if (const Index v = ball_vertex(ball); v != none && number[v] != none)
-      mesh.collar_balls.push_back({number[v], collars_.balls()[ball].radius});
+      mesh.collar_balls.push_back({number[v], collars_.balls()[ball].radius, mesh.points[number[v]]});
   for (const FaceId face : marked_faces()) extract_face(face, number, mesh);
   for (const Subsegment& s : subsegments_) {
     if (!s.alive || number[s.ends[0]] == none || number[s.ends[1]] == none) continue;

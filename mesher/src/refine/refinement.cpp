@@ -20,9 +20,11 @@ constexpr int most_offsets = 16, offsets_of_full_length = 8;
 // What lies between two surfaces is as fine as they are: sizes spread from them when gaps were asked for.
 constexpr double gradation_in_gaps = 0.25;
 // Hierarchy nodes of a vertex are filtered again after so many insertions in its star: rarely on the
-// surface, where they never run out.
-constexpr std::uint16_t insertions_between_refreshes = 16;
-constexpr std::uint16_t insertions_between_surface_refreshes = 48;
+// surface, where they never run out. In a large star after as many as a share of its cells, because
+// filtering visits all of them: a hub with n cells would cost n^2 while they are made.
+constexpr std::size_t insertions_between_refreshes = 16;
+constexpr std::size_t insertions_between_surface_refreshes = 48;
+constexpr std::size_t cells_per_insertion = 4;
 // No ball smaller than this share of the diagonal is destroyed: it ends what would never end.
 constexpr double floor_per_diagonal = 1e-10;
 // A cell whose volume is below this share of its longest edge cubed is flat.
@@ -85,6 +87,7 @@ Refinement::Refinement(const Plc& plc, const MeshOptions& options, const Executi
 
 void Refinement::start() {
   vertices_.resize(mesh_.vertex_count());
+  for (Index v = 0; v < mesh_.vertex_count(); ++v) expect_insertions(v, 0);
   if (!hierarchy_.empty()) {
     node_pool_.push_back(hierarchy_.root());
     for (MeshVertex& v : vertices_) v.node_count = 1;
@@ -353,6 +356,7 @@ Index Refinement::force_insert(std::uint8_t dimension, Index feature) {
   made.dimension = dimension;
   made.feature = feature;
   vertices_.push_back(made);
+  expect_insertions(vertex, zone_.created.size());
   labels_.resize(mesh_.cell_capacity());
   marks_.resize(mesh_.cell_capacity());
   inherit_nodes(vertex);
@@ -393,16 +397,20 @@ void Refinement::inherit_nodes(Index vertex) {
     const auto nodes = nodes_of(neighbour);
     if (nodes.empty()) continue;
     seeds_scratch_.insert(seeds_scratch_.end(), nodes.begin(), nodes.end());
-    ++vertices_[neighbour].insertions;
+    if (vertices_[neighbour].insertions_left > 0) --vertices_[neighbour].insertions_left;
   }
   if (seeds_scratch_.empty()) return;
   find_nodes(zone_.created);
   store_nodes(vertices_[vertex], nodes_scratch_);
   for (const Index neighbour : zone_.vertices)
-    if (vertices_[neighbour].insertions >= (vertices_[neighbour].dimension == 3
-                                                ? insertions_between_refreshes
-                                                : insertions_between_surface_refreshes))
-      refresh_nodes(neighbour);
+    if (vertices_[neighbour].insertions_left == 0) refresh_nodes(neighbour);
+}
+
+void Refinement::expect_insertions(Index vertex, std::size_t star) {
+  const std::size_t least =
+      vertices_[vertex].dimension == 3 ? insertions_between_refreshes : insertions_between_surface_refreshes;
+  vertices_[vertex].insertions_left = static_cast<std::uint16_t>(
+      std::min<std::size_t>(std::max(least, star / cells_per_insertion), UINT16_MAX));
 }
 
 // The nodes that cover the triangles in the Voronoi cell of a vertex with these cells: the box of its
@@ -426,7 +434,7 @@ void Refinement::refresh_nodes(Index vertex) {
   seeds_scratch_.assign(nodes.begin(), nodes.end());
   find_nodes(cells_scratch_);
   store_nodes(vertices_[vertex], nodes_scratch_);
-  vertices_[vertex].insertions = 0;
+  expect_insertions(vertex, cells_scratch_.size());
 }
 
 void Refinement::store_nodes(MeshVertex& vertex, const std::vector<Index>& nodes) {

@@ -77,7 +77,7 @@ class Refinement {
   struct MeshVertex {
     std::uint8_t dimension = 3;    // containment dimension: of the lowest feature it lies on
     bool near_collar = false;      // B(v, R_v) meets a collar ball
-    std::uint16_t insertions = 0;  // in its star since its nodes were filtered last
+    std::uint16_t insertions_left = 0;  // in its star before its nodes are filtered again
     Index feature = none;          // index of that vertex, curve or patch of the complex
     Index first_node = 0,
           node_count = 0;  // in node_pool_: hierarchy nodes that meet the box of its Voronoi cell
@@ -176,6 +176,7 @@ class Refinement {
   void inherit_nodes(Index vertex);
   void find_nodes(const std::vector<Index>& cells);
   void refresh_nodes(Index vertex);
+  void expect_insertions(Index vertex, std::size_t star);
   void store_nodes(MeshVertex& vertex, const std::vector<Index>& nodes);
   std::span<const Index> nodes_of(Index vertex) const {
     return {node_pool_.data() + vertices_[vertex].first_node, vertices_[vertex].node_count};
@@ -312,6 +313,8 @@ class Refinement {
   bool far_from_patch(Index patch, const Point& p) const;
   std::optional<Point> arc_point(const CollarBall& ball, Index patch, const Point& near) const;
   bool crosses_patch(const CollarBall& ball, Index a, Index b);
+  bool spans_sheets(const CollarBall& ball, Index a, Index b) const;
+  bool on_another_sheet(const CollarBall& ball, const Point& p, Index triangle) const;
   bool spans_patch(std::span<const Index> corners) const;
   bool at_fold(std::span<const Index> corners) const;
   bool on_crease(Index vertex) const;

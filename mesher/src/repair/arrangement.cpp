@@ -11,6 +11,7 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "delaunay/predicates.h"
 #include "plc/cleanup.h"
 #include "plc/edges.h"
 #include "plc/intersections.h"
@@ -87,12 +88,68 @@ class Cutter {
     if (a.size < b.size) return add_pair(b, j, a, i);
     if (b.size == 1) return add_point(a, i, exact(b.points[0]));
     if (a.size == 3 && b.size == 3) {
+      if (add_crossing(a.points, i, b.points, j)) return;
       if (const auto met = CGAL::intersection(triangle(a), triangle(b))) add_meeting(a, i, b, j, *met);
     } else if (a.size == 3) {
       if (const auto met = CGAL::intersection(triangle(a), segment(b))) add_meeting(a, i, b, j, *met);
     } else if (const auto met = CGAL::intersection(segment(a), segment(b))) {
       add_meeting(a, i, b, j, *met);
     }
+  }
+
+  // Where the sides of s pierce t. False where a corner of one is in the plane of the other or a side meets an edge:
+  // those are taken by their constructions.
+  bool find_piercings(const build::Corners& s, const build::Corners& t, Index number,
+                      std::vector<ExactPoint>& found) {
+    const auto at = [&](Index p) -> const Point& { return draft_.points[p]; };
+    const auto shared = [&](Index p) { return p == t[0] || p == t[1] || p == t[2]; };
+    std::array<int, 3> above{};
+    for (unsigned k = 0; k < 3; ++k) {
+      if (shared(s[k])) continue;
+      above[k] = predicates::orientation(at(t[0]), at(t[1]), at(t[2]), at(s[k]));
+      if (above[k] == 0) return false;
+    }
+    for (unsigned k = 0; k < 3; ++k) {
+      const unsigned next = (k + 1) % 3;
+      if (above[k] * above[next] >= 0) continue;
+      const Point &p = at(s[k]), &q = at(s[next]);
+      const std::array<int, 3> around{predicates::orientation(p, q, at(t[0]), at(t[1])),
+                                      predicates::orientation(p, q, at(t[1]), at(t[2])),
+                                      predicates::orientation(p, q, at(t[2]), at(t[0]))};
+      const auto [low, high] = std::minmax({around[0], around[1], around[2]});
+      if (low < 0 && high > 0) continue;
+      if (low == 0 || high == 0) return false;
+      found.push_back(piercing(edge_key(s[k], s[next]), t, number));
+    }
+    return true;
+  }
+
+  // Once for all triangles at the edge.
+  ExactPoint piercing(const Edge& edge, const build::Corners& t, Index number) {
+    const auto [at, added] = piercings_.try_emplace({edge[0], edge[1], number});
+    if (!added) return at->second;
+    const ExactPoint p = exact(edge[0]), q = exact(edge[1]), origin = exact(t[0]);
+    const Kernel::Vector_3 normal = CGAL::cross_product(exact(t[1]) - origin, exact(t[2]) - origin);
+    const Kernel::FT from = normal * (p - origin), to = normal * (q - origin);
+    at->second = p + from / (from - to) * (q - p);
+    on_edge_[edge].push_back(at->second);
+    return at->second;
+  }
+
+  // Two triangles that cross each other in general position, with no common corner or one.
+  bool add_crossing(const build::Corners& s, Index i, const build::Corners& t, Index j) {
+    std::vector<ExactPoint> ends;
+    std::size_t common = 0;
+    for (const Index p : s)
+      if (p == t[0] || p == t[1] || p == t[2]) {
+        ++common;
+        ends.push_back(exact(p));
+      }
+    if (common > 1 || !find_piercings(s, t, j, ends) || !find_piercings(t, s, i, ends) || ends.size() != 2)
+      return false;
+    cuts_[i].segments.push_back({ends[0], ends[1]});
+    cuts_[j].segments.push_back({ends[0], ends[1]});
+    return true;
   }
 
   template <class Meeting>
@@ -256,7 +313,8 @@ class Cutter {
   const EdgeTable& edges_;
   std::span<const Simplex> simplices_;
   std::map<Edge, std::vector<ExactPoint>> on_edge_;
-  std::map<Index, Cuts> cuts_;  // by triangle
+  std::map<std::array<Index, 3>, ExactPoint> piercings_;  // by edge and triangle
+  std::map<Index, Cuts> cuts_;                            // by triangle
   // Of the triangle at hand:
   std::vector<ExactPoint> inserted_;
   std::vector<Index> ids_;  // of those
@@ -323,7 +381,6 @@ ArrangementReport arrange(Draft& draft) {
       report.intersecting_pairs = pairs.size();
       note_places(draft, simplices.list(), pairs, report.places);
     }
-    if (std::getenv("DBG")) fprintf(stderr, "arrange round %zu: %zu triangles, %zu pairs\n", report.rounds, draft.triangles.size(), pairs.size());
     if (report.clean || report.rounds == most_rounds) return report;
     report.cut_triangles += Cutter(draft, edges, simplices.list()).run(pairs);
   }

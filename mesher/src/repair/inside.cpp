@@ -97,14 +97,15 @@ struct Sheets {
 
 class BoundaryKeeper {
  public:
-  explicit BoundaryKeeper(Draft& draft)
-      : draft_(draft), sheets_(draft), edges_(sheets_.unique.triangles, draft.points.size()) {}
+  BoundaryKeeper(Draft& draft, double thickness)
+      : draft_(draft), thickness_(thickness), sheets_(draft), edges_(sheets_.unique.triangles, draft.points.size()) {}
 
   InsideReport run() {
     find_clusters();
     if (std::none_of(tangled_.begin(), tangled_.end(), [](bool b) { return b; })) return {};
     find_patches();
     for (const Index soup : tangled_soups()) weigh(soup);
+    give_away_thin_chambers();
     emit();
     return std::move(report_);
   }
@@ -248,6 +249,56 @@ class BoundaryKeeper {
     });
   }
 
+  // What a shell encloses, seen from the chamber that it is a border of.
+  struct Chamber {
+    Point origin;
+    double volume = 0, area = 0;
+    std::vector<std::pair<Index, double>> neighbours;  // shells across, and the common area
+  };
+
+  std::map<Index, Chamber> thin_chambers() const {
+    std::map<Index, Chamber> chambers;
+    for (Index side = 0; side < shell_.size(); ++side) {
+      if (!tangled_[side / 2]) continue;
+      const auto p = corner_points(draft_, sheets_.unique.triangles[side / 2]);
+      const auto [at, added] = chambers.try_emplace(shell_[side]);
+      Chamber& chamber = at->second;
+      if (added) chamber.origin = p[0];
+      const double area = 0.5 * norm(cross(p[1] - p[0], p[2] - p[0]));
+      chamber.volume += (side == back_side(side / 2) ? 1 : -1) * six_volume(p[0], p[1], p[2], chamber.origin) / -6;
+      chamber.area += area;
+      if (shell_[side ^ 1U] != shell_[side]) chamber.neighbours.emplace_back(shell_[side ^ 1U], area);
+    }
+    std::erase_if(chambers, [&](const auto& entry) {
+      const Chamber& c = entry.second;
+      return c.volume < 0 || 2 * c.volume > thickness_ * c.area || c.neighbours.empty();
+    });
+    return chambers;
+  }
+
+  // Each takes the label that it has most area in common with, from what is thick inwards.
+  void give_away_thin_chambers() {
+    std::map<Index, Chamber> left = thin_chambers();
+    report_.thin_chambers = left.size();
+    while (!left.empty()) {
+      std::vector<std::pair<Index, Index>> labelled;
+      for (const auto& [shell, chamber] : left) {
+        std::map<Index, double> area;  // by label
+        for (const auto& [neighbour, common] : chamber.neighbours)
+          if (left.count(neighbour) == 0) area[label_[neighbour]] += common;
+        if (area.empty()) continue;
+        const auto most = std::max_element(area.begin(), area.end(),
+                                           [](const auto& a, const auto& b) { return a.second < b.second; });
+        labelled.emplace_back(shell, most->first);
+      }
+      if (labelled.empty()) return;  // thin ones among themselves
+      for (const auto& [shell, label] : labelled) {
+        label_[shell] = label;
+        left.erase(shell);
+      }
+    }
+  }
+
   void emit() {
     std::vector<Corners> triangles;
     std::vector<Origin> origins;
@@ -294,6 +345,7 @@ class BoundaryKeeper {
   }
 
   Draft& draft_;
+  double thickness_;
   Sheets sheets_;
   EdgeTable edges_;  // of the sheets
   std::vector<bool> tangled_;  // by sheet
@@ -376,6 +428,6 @@ TurnReport turn_components(Draft& draft) {
   return report;
 }
 
-InsideReport keep_boundaries(Draft& draft) { return BoundaryKeeper(draft).run(); }
+InsideReport keep_boundaries(Draft& draft, double thickness) { return BoundaryKeeper(draft, thickness).run(); }
 
 }  // namespace collarmesh::repairing

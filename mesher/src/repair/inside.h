@@ -25,7 +25,7 @@ struct InsideReport {
   double removed_area = 0;
   std::size_t internal_facets = 0;    ///< open sheets inside a solid, which stay
   std::size_t dropped_sheets = 0;     ///< triangles of open sheets outside of all solids
-  std::size_t overlap_triangles = 0;  ///< of a soup inside an earlier one, which has the place
+  std::size_t thin_chambers = 0;      ///< that became part of their neighbours
   std::vector<Point> places;
 };
 
@@ -33,8 +33,10 @@ struct InsideReport {
 /// its surface is above 1/2; where several soups are inside, the first one is. Each soup then has the boundary
 /// of its place, oriented outwards; what parts two soups has a copy for each. Components of which every edge
 /// has two triangles of one soup, oriented alike, stay as they are. So do the facets of complexes.
+/// A chamber that is thinner than `thickness` (absolute: twice its volume by its area), as sheets that nearly
+/// coincide have many between them, becomes part of what it has most of its area in common with.
 /// Precondition: triangles meet in common edges and corners only, or are copies of each other.
 /// Cost: O(n log n).
-InsideReport keep_boundaries(build::Draft& draft);
+InsideReport keep_boundaries(build::Draft& draft, double thickness);
 
 }  // namespace collarmesh::repairing

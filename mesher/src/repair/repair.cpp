@@ -18,6 +18,7 @@
 #include "repair/arrangement.h"
 #include "repair/holes.h"
 #include "repair/inside.h"
+#include "repair/noise.h"
 #include "repair/repeated.h"
 #include "repair/snapping.h"
 #include "repair/to_soups.h"
@@ -146,7 +147,7 @@ class Repairer {
     add_places(report_.cut, arranged.intersecting_pairs, 0, arranged.places);
     if (!arranged.clean) return;
     cancel_twins(draft_);
-    const InsideReport kept = keep_boundaries(draft_);
+    const InsideReport kept = keep_boundaries(draft_, tolerance_);
     report_.merged.count += kept.removed_triangles;
     report_.merged.size += kept.removed_area;
     for (const Point& p : kept.places)
@@ -180,11 +181,24 @@ RepairResult repair(std::span<const PolygonSoup> soups, const RepairOptions& opt
   return Repairer(soups, options, complex).run();
 }
 
+RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcOptions& options,
+                         const RepairOptions& repair_options) {
+  if (repair_options.mode == RepairMode::off ||
+      !has_noise(plc, repair_options.tolerance * plc.bounds.diagonal()))
+    return {std::move(plc), {}, {}};
+  RepairResult result = repair(soups, repair_options, options);
+  try {
+    return {build_plc(result.soups, options), std::move(result.report), std::move(result.soups)};
+  } catch (const PlcError&) {
+    return {std::move(plc), {}, {}};
+  }
+}
+
 RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOptions& options,
                                const RepairOptions& repair_options) {
   std::optional<PlcError> first;
   try {
-    return {build_plc(soups, options), {}, {}};
+    return remove_noise(build_plc(soups, options), soups, options, repair_options);
   } catch (const PlcError& error) {
     const bool unusable = std::any_of(error.faults.begin(), error.faults.end(), [](const PlcFault& fault) {
       return fault.kind == PlcFault::Kind::bad_point;
@@ -198,8 +212,8 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
     RepairResult result = repair(soups, wider, options);
     try {
       return {build_plc(result.soups, options), std::move(result.report), std::move(result.soups)};
-    } catch (const PlcError& error) {
-      if (std::getenv("DBG")) fprintf(stderr, "again: %s\n", error.what());
+    } catch (const PlcError&) {
+      continue;  // a wider tolerance may help
     }
   }
   // The last resort, on request.

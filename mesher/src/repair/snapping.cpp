@@ -25,7 +25,7 @@ namespace {
 using namespace build;
 using Edge = std::array<Index, 2>;
 
-constexpr std::size_t most_rounds = 200, most_overlays = 20;
+constexpr std::size_t most_rounds = 100, most_overlays = 8;
 constexpr std::size_t most_places = 100;
 
 Edge edge_key(Index a, Index b) { return a < b ? Edge{a, b} : Edge{b, a}; }
@@ -207,9 +207,13 @@ class Snapper {
           snapped_before = report_;
         }
         overlaid = true;
-        if (++overlays > most_overlays || !overlay()) break;
+        if (overlays == most_overlays) {  // it does not end
+          draft_ = std::move(before);
+          return snapped_before;
+        }
+        ++overlays;
+        if (!overlay()) break;
       }
-      if (std::getenv("DBG")) fprintf(stderr, "  round %zu m%d s%d o%d: %zu tri, edges %zu inside %zu crossings %zu along %zu fallback %zu\n", round, merged, snapped, overlaid, draft_.triangles.size(), on_edge_.size(), inside_.size(), crossing_.size(), along_.size(), fallbacks_);
       report_.cancelled_triangles += cancel_twins(draft_);
       if (draft_.triangles.size() <= most_triangles) continue;
       draft_ = std::move(before);  // it does not end
@@ -552,7 +556,6 @@ class Snapper {
         return;
       }
     }
-    ++fallbacks_;
     std::vector<build::Corners> pieces{corners};
     for (const Index p : inside) insert(p, pieces);
     for (const build::Corners& piece : pieces) add_cut(piece, origin);
@@ -648,7 +651,6 @@ class Snapper {
   double limit_;
   SnapWhat what_;
   SnapReport report_;
-  std::size_t fallbacks_ = 0;
   std::optional<EdgeTable> edges_;
   std::set<Edge> cut_before_;
   std::map<Edge, std::vector<OnEdge>> on_edge_;
@@ -680,17 +682,15 @@ std::size_t cancel_twins(Draft& draft) {
     return std::tie(a.corners, a.soup, a.odd, a.triangle) < std::tie(b.corners, b.soup, b.odd, b.triangle);
   });
   std::vector<bool> removed(draft.triangles.size(), false);
-  for (std::size_t first = 0; first < keys.size();) {
-    std::size_t last = first, even = 0;
-    for (; last < keys.size() && keys[last].corners == keys[first].corners && keys[last].soup == keys[first].soup; ++last)
-      even += keys[last].odd ? 0 : 1;
-    const std::size_t odd = last - first - even;
-    if (draft.soup_is_complex[keys[first].soup]) {
-      for (std::size_t i = first + 1; i < last; ++i) removed[keys[i].triangle] = true;
+  const auto same = [](const Key& a, const Key& b) { return a.corners == b.corners && a.soup == b.soup; };
+  for (auto first = keys.begin(); first != keys.end();) {
+    const auto last = std::find_if(first, keys.end(), [&](const Key& key) { return !same(key, *first); });
+    const auto middle = std::find_if(first, last, [](const Key& key) { return key.odd; });
+    if (draft.soup_is_complex[first->soup]) {
+      for (auto key = first + 1; key != last; ++key) removed[key->triangle] = true;
     } else {
-      const std::size_t pairs = std::min(even, odd);
-      for (std::size_t i = 0; i < pairs; ++i)
-        removed[keys[first + i].triangle] = removed[keys[first + even + i].triangle] = true;
+      for (auto even = first, odd = middle; even != middle && odd != last; ++even, ++odd)
+        removed[even->triangle] = removed[odd->triangle] = true;
     }
     first = last;
   }

@@ -9,6 +9,7 @@
 #include "collarmesh/curved_tet.h"
 #include "collarmesh/error.h"
 #include "common/cells_at_vertices.h"
+#include "common/flat_features.h"
 #include "second_order/mid_nodes.h"
 #include "second_order/nearest_on_features.h"
 
@@ -31,7 +32,14 @@ constexpr std::array<double, 3> parts_of_the_way{0.5, 0.25, 1};
 class Curving {
  public:
   Curving(TetMesh& mesh, const Plc& plc, const SecondOrderOptions& options, const Execution& execution)
-      : mesh_(mesh), plc_(plc), options_(options), execution_(execution), edges_(mesh), nearest_(plc) {}
+      : mesh_(mesh),
+        plc_(plc),
+        options_(options),
+        execution_(execution),
+        edges_(mesh),
+        nearest_(plc),
+        flat_(plc),
+        exact_(options.exact ? flat_.limit(options.exact) : ExactGeometry{}) {}
 
   SecondOrderReport run() {
     const auto start = std::chrono::steady_clock::now();
@@ -74,7 +82,7 @@ class Curving {
   void find_moves() {
     for (Index e = 0; e < edges_.size() && !execution_.cancelled(); ++e) {
       const TetMesh::VertexFeature& feature = edges_.feature(e);
-      if (!is_smooth(feature) && !(options_.exact && on_feature(feature))) continue;
+      if (!is_smooth(feature) && !(exact_ && on_feature(feature))) continue;
       const auto [a, b] = edges_.ends(e);
       const Point middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
       const Vector way = place_on(feature, middle) - middle;
@@ -86,8 +94,8 @@ class Curving {
   }
 
   Point place_on(const TetMesh::VertexFeature& feature, const Point& middle) {
-    if (options_.exact)
-      if (const auto place = options_.exact(feature.dimension, feature.feature, middle)) return *place;
+    if (exact_)
+      if (const auto place = exact_(feature.dimension, feature.feature, middle)) return *place;
     return is_smooth(feature) ? nearest_.nearest(feature, middle) : middle;
   }
 
@@ -257,6 +265,8 @@ class Curving {
   const Execution& execution_;
   MeshEdges edges_;
   NearestOnFeatures nearest_;
+  FlatFeatures flat_;
+  ExactGeometry exact_;  // limited; empty when there is none
   std::vector<Move> moves_;         // sorted by edge
   CellsAtVertices tets_at_vertex_;  // empty until it is needed
   std::unordered_set<Index> stay_;  // edges inside whose node has been put back

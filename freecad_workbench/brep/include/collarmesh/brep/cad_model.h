@@ -15,6 +15,18 @@ class TopoDS_Shape;
 /// CAD shapes: boundary representations of OpenCASCADE, as FreeCAD has them. Lengths are millimetres.
 namespace collarmesh::brep {
 
+/// Whose is what several solids have in common?
+enum class Overlap {
+  first,  ///< the first one's, in the order of their numbers; or that of one which lies wholly inside the
+          ///< first
+  region  ///< a region of its own, one for each set of solids, numbered after the solids
+};
+
+/// How a shape is read.
+struct CadOptions {
+  Overlap overlap = Overlap::first;
+};
+
 /// How near the triangles come to the faces.
 struct TessellationOptions {
   double deflection = 0;  ///< largest distance from curved edges and faces, absolute; 0: 1e-4 of the diagonal
@@ -25,16 +37,20 @@ struct TessellationOptions {
 /// gives them (the order of TopExp::MapShapes): FaceN has the tag N.
 ///
 /// Solids that touch are made to share the faces there; faces and edges that are cut in this keep the
-/// number of what they were part of, edges that arise get the next free ones. A shape of faces alone is sewn
-/// and becomes a solid where it is closed.
+/// number of what they were part of, edges that arise get the next free ones. What solids have in common is
+/// given to one of them. A shape of faces alone is sewn and becomes a solid where it is closed; so are the
+/// faces of an open solid.
+///
+/// What OpenCASCADE cannot do is left to whoever makes a complex of the soups, and told in `notes`: solids
+/// that it cannot fuse may intersect, solids that stay open have holes, and a face that it cannot cut into
+/// triangles may have points along its edges that its neighbours lack, or may be missing.
 ///
 /// What it can do is virtual, so that a program without OpenCASCADE can use one that the module has made
 /// (module.cpp).
 class CadModel {
  public:
-  /// Throws PlcError for a shape without solids or faces, for an open solid and for solids that overlap;
-  /// the messages name sub-shapes and places.
-  CadModel(const TopoDS_Shape& shape, std::string name);
+  /// Throws PlcError for a shape without solids and faces. The result does not depend on the number of cores.
+  CadModel(const TopoDS_Shape& shape, std::string name, const CadOptions& options = {});
   virtual ~CadModel();
   CadModel(CadModel&&) noexcept;
   CadModel& operator=(CadModel&&) noexcept;
@@ -45,11 +61,18 @@ class CadModel {
   /// Triangles of all faces: one soup for each solid and a last one for the faces that belong to none.
   /// Neighbouring faces share the points of their edges. Vertices, edges and faces of the shape are
   /// features with their numbers as tags; seams and degenerate edges are none.
-  /// Throws PlcError for a face that cannot be tessellated.
+  /// Throws PlcError when OpenCASCADE fails, or no face can be cut into triangles.
   virtual std::vector<PolygonSoup> tessellate(const TessellationOptions& options);
 
-  /// What was done to the shape (faces sewn, ...), for people.
-  virtual const std::vector<std::string>& notes() const;
+  /// What was done to the shape (faces sewn, overlaps, faces that were mended, ...), for people.
+  virtual std::vector<std::string> notes() const;
+
+  /// False: solids that touch or overlap were left as they are, so their soups intersect, however fine.
+  virtual bool fused() const;
+
+  /// Which solids are open, at which edges and where, and what to do; empty when all are closed. For the
+  /// message when no complex can be made of the soups.
+  virtual const std::string& open_edges_text() const;
 
   /// The nearest point of EdgeN (dimension 1), or of the surface of FaceN (dimension 2), to a point that is
   /// about as near to it as the tessellation; nothing where there is no such sub-shape or OpenCASCADE finds
@@ -76,6 +99,6 @@ class CadModel {
 /// Read a file by its extension (any case) or as `format` says: .brep .brp (OpenCASCADE), .step .stp,
 /// .iges .igs; the units of STEP and IGES become millimetres.
 /// Throws ReadError, and PlcError as the constructor does.
-CadModel read_cad(const std::string& path, std::string_view format = {});
+CadModel read_cad(const std::string& path, std::string_view format = {}, const CadOptions& options = {});
 
 }  // namespace collarmesh::brep

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "collarmesh/geometry.h"
+
+namespace collarmesh::brep {
+
+/// Triangles between the nodes of a plane outline. `crossings` are further nodes where chords cross, numbered
+/// after the others.
+struct OutlineTriangles {
+  std::vector<std::array<Index, 3>> triangles;  ///< counterclockwise
+  std::vector<std::array<double, 2>> crossings;
+};
+
+/// The constrained Delaunay triangles that an odd number of chords parts from the outside. Nodes that no
+/// chord has are inner points. Cost: n log n.
+OutlineTriangles triangulate_outline(const std::vector<std::array<double, 2>>& nodes,
+                                     const std::vector<std::array<Index, 2>>& chords);
+
+}  // namespace collarmesh::brep

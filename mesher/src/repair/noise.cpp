@@ -1,0 +1,50 @@
+#include "repair/noise.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "collarmesh/plc_builder.h"
+#include "plc/faults.h"
+#include "plc/near_touching.h"
+
+namespace collarmesh::repairing {
+
+namespace {
+
+bool is_short(const Plc& plc, const Plc::Curve& curve, double tolerance) {
+  double length = 0;
+  for (std::size_t i = 0; i + 1 < curve.points.size() && length < tolerance; ++i)
+    length += distance(plc.points[curve.points[i]], plc.points[curve.points[i + 1]]);
+  return length < tolerance;
+}
+
+double extent(const Plc& plc, Index patch) {
+  Box box;
+  const Plc::Patch& p = plc.patches[patch];
+  for (Index t = p.first_triangle; t < p.first_triangle + p.triangle_count; ++t)
+    for (const Index point : plc.triangles[t].points) box.add(plc.points[point]);
+  return box.diagonal();
+}
+
+// Patches that part from each other by less than the tolerance.
+bool is_slit(const Plc& plc, const Crease& crease, double tolerance) {
+  if (crease.kind != Crease::Kind::facets && crease.kind != Crease::Kind::facets_in_vertex) return false;
+  const double radians = crease.angle * std::numbers::pi / 180;
+  return std::min(extent(plc, crease.features[0]), extent(plc, crease.features[1])) * radians < tolerance;
+}
+
+}  // namespace
+
+bool has_noise(const Plc& plc, double tolerance) {
+  if (!(tolerance > 0)) return false;
+  for (const Plc::Curve& curve : plc.curves)
+    if (is_short(plc, curve, tolerance)) return true;
+  constexpr double flat_angle = 1;  // degrees
+  for (const Crease& crease : find_creases(plc, flat_angle))
+    if (is_slit(plc, crease, tolerance)) return true;
+  build::Faults faults;
+  build::find_near_touching(plc, tolerance, faults);
+  return !faults.empty();
+}
+
+}  // namespace collarmesh::repairing
