@@ -13,6 +13,7 @@
 #include "collarmesh/io/tet_mesh_io.h"
 #include "collarmesh/mesher.h"
 #include "collarmesh/plc_builder.h"
+#include "collarmesh/repair.h"
 #include "collarmesh/second_order.h"
 
 namespace py = pybind11;
@@ -69,6 +70,7 @@ PolygonSoup soup_of(const py::tuple& surface, std::size_t number) {
 struct Mesh {
   TetMesh mesh;
   CheckReport report;
+  std::vector<std::string> repairs;
 };
 
 /// A view of a vector, kept alive by the mesh; not to be written to.
@@ -92,6 +94,8 @@ auto property(std::vector<Item> TetMesh::*member) {
 
 struct Wanted {
   MeshOptions mesh;
+  PlcOptions plc;
+  RepairOptions repair;
   unsigned improve = 2;
   int order = 1;
 };
@@ -101,13 +105,21 @@ void require_complete(const MeshResult& result) {
     throw Error(result.message.empty() ? "cancelled" : result.message);
 }
 
-std::unique_ptr<Mesh> generate_mesh(const std::vector<PolygonSoup>& soups, const PlcOptions& plc_options,
-                                    const Wanted& wanted, const Execution& execution) {
-  const Plc plc = build_plc(soups, plc_options);
+RepairMode repair_mode(const std::string& word) {
+  if (word == "auto") return RepairMode::automatic;
+  if (word == "none") return RepairMode::off;
+  if (word == "wrap") return RepairMode::wrap;
+  refuse("repair must be \"auto\", \"none\" or \"wrap\"");
+}
+
+std::unique_ptr<Mesh> generate_mesh(const std::vector<PolygonSoup>& soups, const Wanted& wanted,
+                                    const Execution& execution) {
+  const auto [plc, repaired, repaired_soups] = build_repaired_plc(soups, wanted.plc, wanted.repair);
   MeshResult result = generate(plc, wanted.mesh, execution);
   require_complete(result);
   auto made = std::make_unique<Mesh>();
   made->mesh = std::move(result.mesh);
+  made->repairs = describe(repaired);
   if (wanted.improve > 0) {
     ImproveOptions options = improve_options(wanted.improve);
     options.radius_edge = wanted.mesh.radius_edge;
@@ -129,7 +141,8 @@ std::unique_ptr<Mesh> mesh(const py::args& surfaces, double size, double size_mi
                            double gradation, double elements_per_circle, double elements_across_gap,
                            double radius_edge, double feature_angle, double crease_angle, double collar_angle,
                            double distance, unsigned improve, int order, std::uint64_t seed,
-                           double time_limit, const py::object& progress) {
+                           double time_limit, const std::string& repair, double repair_tolerance,
+                           const py::object& progress) {
   if (order != 1 && order != 2) refuse("order must be 1 or 2");
   if (surfaces.empty()) refuse("there is no surface to mesh: give tuples (points, triangles)");
   std::vector<PolygonSoup> soups;
@@ -151,8 +164,9 @@ std::unique_ptr<Mesh> mesh(const py::args& surfaces, double size, double size_mi
   wanted.mesh.distance = distance;
   wanted.mesh.seed = seed;
   wanted.mesh.time_limit = time_limit;
-  PlcOptions plc_options;
-  plc_options.feature_angle = feature_angle;
+  wanted.plc.feature_angle = feature_angle;
+  wanted.repair.mode = repair_mode(repair);
+  wanted.repair.tolerance = repair_tolerance;
   Execution execution;
   if (!progress.is_none())
     execution.progress = [&progress](const ProgressReport& report) {
@@ -160,7 +174,7 @@ std::unique_ptr<Mesh> mesh(const py::args& surfaces, double size, double size_mi
       return progress(std::string(report.phase), report.fraction).cast<bool>();
     };
   const py::gil_scoped_release release;
-  return generate_mesh(soups, plc_options, wanted, execution);
+  return generate_mesh(soups, wanted, execution);
 }
 
 std::vector<std::string> findings(const Mesh& mesh) {
@@ -179,9 +193,12 @@ the faces of the mesh are found again. Several surfaces are several regions, num
 inside another and oriented inwards is a cavity. Lengths are absolute: size is a target edge length (0: 1/20
 of the diagonal), distance how far smooth surfaces may be off (0: 1/1000 of the diagonal). Angles are degrees.
 progress(phase, fraction) may return False to cancel.
+Surfaces that are no valid complex are repaired, which `repairs` of the result tells: repair="none" makes them an
+error, repair="wrap" puts a closed surface around what cannot be repaired. repair_tolerance, relative to the
+diagonal of the bounding box, is the size below which features are noise to the repair.
 
 Returns a Mesh; its `passed` tells whether every guarantee holds. Raises Error for surfaces that are no valid
-complex, with names and places, for contradicting options, and when it is cancelled or the time (seconds) is up.)";
+complex and cannot be repaired, with names and places, for contradicting options, and when it is cancelled or the time (seconds) is up.)";
 
 }  // namespace
 
@@ -213,6 +230,9 @@ PYBIND11_MODULE(collarmesh, module) {
           "passed", [](const Mesh& self) { return self.report.passed(); }, "does every guarantee hold?")
       .def_property_readonly("findings", &findings, "what does not hold: sentences with places")
       .def_property_readonly(
+          "repairs", [](const Mesh& self) { return self.repairs; },
+          "what was done to surfaces that were no valid complex: sentences with places")
+      .def_property_readonly(
           "min_dihedral", [](const Mesh& self) { return self.report.min_dihedral; },
           "smallest dihedral angle outside of collars, degrees")
       .def_property_readonly(
@@ -231,6 +251,7 @@ PYBIND11_MODULE(collarmesh, module) {
              "gradation"_a = 0., "elements_per_circle"_a = 0., "elements_across_gap"_a = 0.,
              "radius_edge"_a = 2., "feature_angle"_a = 30., "crease_angle"_a = 60., "collar_angle"_a = 150.,
              "distance"_a = 0., "improve"_a = 2U, "order"_a = 1, "seed"_a = 0U, "time_limit"_a = 0.,
+             "repair"_a = "auto", "repair_tolerance"_a = RepairOptions().tolerance,
              "progress"_a = py::none());
 }
 

@@ -98,9 +98,10 @@ void add_complex_options(CLI::App& app, ComplexArguments& a) {
       ->group(group);
   const std::map<std::string, RepairMode> modes{
       {"auto", RepairMode::automatic}, {"none", RepairMode::off}, {"wrap", RepairMode::wrap}};
-  app.add_option("--repair", a.repair.mode,
-                 "Facets that are no valid complex: auto repairs them, none makes them an error, wrap also puts a "
-                 "closed surface around what cannot be repaired")
+  app.add_option(
+         "--repair", a.repair.mode,
+         "Facets that are no valid complex: auto repairs them, none makes them an error, wrap also puts a "
+         "closed surface around what cannot be repaired")
       ->transform(CLI::CheckedTransformer(modes).description(""))
       ->default_str("auto")
       ->type_name("auto|none|wrap")
@@ -236,6 +237,14 @@ bool is_meshing_group(const std::string& group) {
   return group == size_group || group == quality_group || group == elements_group;
 }
 
+void add_report_option(CLI::App& app, std::string& report, const std::string& text) {
+  app.add_option("--report", report, text)->type_name("FILE.json");
+}
+
+void add_quiet_flag(CLI::App& app, bool& quiet) {
+  app.add_flag("-q,--quiet", quiet, "Say nothing unless something is wrong");
+}
+
 void add_run_options(CLI::App& app, MeshArguments& a) {
   add_size_options(app, a);
   add_quality_options(app, a.mesh);
@@ -244,7 +253,7 @@ void add_run_options(CLI::App& app, MeshArguments& a) {
   add_complex_options(app, a.complex);
   add_budget_options(app, a.mesh);
   add_threads_option(app, a.threads, "Of improvement and certificate, at most");
-  app.add_option("--report", a.report, "Write what was measured as JSON")->type_name("FILE.json");
+  add_report_option(app, a.report, "Write what was measured as JSON");
   const auto set_progress = [&a](const std::string& word) {
     a.progress = word == "json"   ? ProgressStyle::json
                  : word == "none" ? ProgressStyle::none
@@ -256,7 +265,7 @@ void add_run_options(CLI::App& app, MeshArguments& a) {
       ->default_str("auto")
       ->type_name("STYLE");
   app.add_flag("-v,--verbose", a.verbose, "Say more: time per stage, statistics");
-  app.add_flag("-q,--quiet", a.quiet, "Say nothing unless something is wrong");
+  add_quiet_flag(app, a.quiet);
 }
 
 void add_mesh_options(CLI::App& app, MeshArguments& a) {
@@ -268,25 +277,28 @@ void add_mesh_options(CLI::App& app, MeshArguments& a) {
   add_run_options(app, a);
 }
 
+/// The files of commands that make one file of others; both kinds of arguments have these members.
+template <class SomeArguments>
+void add_conversion_files(CLI::App& app, SomeArguments& a, const std::string& inputs) {
+  app.add_option("IN", a.inputs, inputs + "; -: standard input")->required()->type_name("FILE");
+  app.add_option("-o,--output", a.output, "The file to write; -: standard output")
+      ->required()
+      ->type_name("FILE");
+  app.add_option("--format", a.output_format, "Of the output, an extension such as stl; needed for -")
+      ->transform(format_name(all_formats()))
+      ->type_name("FORMAT")
+      ->default_str("by extension");
+  app.add_option("--input-format", a.input_format, "Of the inputs; needed for -")
+      ->transform(format_name(all_formats()))
+      ->type_name("FORMAT")
+      ->default_str("by extension");
+}
+
 CLI::App* add_convert_command(CLI::App& app, MeshArguments& a) {
   CLI::App* convert = app.add_subcommand(
       "convert",
       "Convert surfaces, complexes and meshes into each other; a surface into a mesh by meshing it");
-  convert
-      ->add_option("IN", a.inputs, "Surfaces and complexes, which become one, or one mesh; -: standard input")
-      ->required()
-      ->type_name("FILE");
-  convert->add_option("-o,--output", a.output, "The file to write; -: standard output")
-      ->required()
-      ->type_name("FILE");
-  convert->add_option("--format", a.output_format, "Of the output, an extension such as stl; needed for -")
-      ->transform(format_name(all_formats()))
-      ->type_name("FORMAT")
-      ->default_str("by extension");
-  convert->add_option("--input-format", a.input_format, "Of the inputs; needed for -")
-      ->transform(format_name(all_formats()))
-      ->type_name("FORMAT")
-      ->default_str("by extension");
+  add_conversion_files(*convert, a, "Surfaces and complexes, which become one, or one mesh");
   add_run_options(*convert, a);
   return convert;
 }
@@ -321,6 +333,18 @@ CLI::App* add_info_command(CLI::App& app, InfoArguments& a) {
   return info;
 }
 
+CLI::App* add_repair_command(CLI::App& app, RepairArguments& a) {
+  CLI::App* repair = app.add_subcommand(
+      "repair", "Write the facets that would be meshed: repaired where they are no valid complex");
+  add_conversion_files(*repair, a, "Surfaces, complexes and CAD shapes, which become one");
+  add_complex_options(*repair, a.complex);
+  add_report_option(*repair, a.report, "Write what was repaired as JSON");
+  add(*repair, "--time-limit SECONDS", a.time_limit, "For everything", "none")->check(seconds);
+  repair->add_flag("--json", a.json, "Print what was repaired as JSON");
+  add_quiet_flag(*repair, a.quiet);
+  return repair;
+}
+
 std::string extension_list(const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension().string();
   return extension.empty() ? "has no extension" : fmt::format("ends in '{}'", extension);
@@ -331,14 +355,19 @@ bool same_file(const std::string& a, const std::string& b) {
   return std::filesystem::weakly_canonical(a, ignored) == std::filesystem::weakly_canonical(b, ignored);
 }
 
-/// What one option alone cannot tell.
-void check_run_arguments(const MeshArguments& a) {
-  if (a.verbose && a.quiet) throw CLI::ValidationError("--quiet", "contradicts --verbose; use one of them");
+template <class SomeArguments>
+void check_report(const SomeArguments& a) {
   if (!a.report.empty() && same_file(a.report, a.output))
     throw CLI::ValidationError("--report", "names the same file as --output; choose another");
   for (const std::string& input : a.inputs)
     if (!a.report.empty() && same_file(a.report, input))
       throw CLI::ValidationError("--report", fmt::format("names the input {}; choose another", input));
+}
+
+/// What one option alone cannot tell.
+void check_run_arguments(const MeshArguments& a) {
+  if (a.verbose && a.quiet) throw CLI::ValidationError("--quiet", "contradicts --verbose; use one of them");
+  check_report(a);
   if (a.mesh.size > 0 && a.mesh.size_min > a.mesh.size)
     throw CLI::ValidationError(
         "--size-min", fmt::format("{} exceeds --size {}; make it smaller", a.mesh.size_min, a.mesh.size));
@@ -355,14 +384,29 @@ void check_mesh_arguments(const MeshArguments& a) {
   check_run_arguments(a);
 }
 
-void check_convert_arguments(const MeshArguments& a) {
-  if (a.output_format.empty() && !is_surface_format(a.output) && !io::is_tet_mesh_format(a.output))
-    throw CLI::ValidationError("--output", fmt::format("'{}' {}; use {}, or name one with --format", a.output,
-                                                       extension_list(a.output), known_formats()));
+template <class SomeArguments>
+void check_standard_input(const SomeArguments& a) {
   const auto dashes = std::count(a.inputs.begin(), a.inputs.end(), "-");
   if (dashes > 1) throw CLI::ValidationError("IN", "standard input (-) can be read once only");
   if (dashes > 0 && a.input_format.empty())
     throw CLI::ValidationError("--input-format", "is needed for standard input (-)");
+}
+
+void check_repair_arguments(const RepairArguments& a) {
+  if (!is_surface_format(a.output, a.output_format))
+    throw CLI::ValidationError("--output", fmt::format("'{}' {}; use {}, or name one with --format", a.output,
+                                                       extension_list(a.output), list(surface_formats())));
+  if (a.output == "-" && a.json)
+    throw CLI::ValidationError("--json", "has no place on standard output beside the file; use --report");
+  check_standard_input(a);
+  check_report(a);
+}
+
+void check_convert_arguments(const MeshArguments& a) {
+  if (a.output_format.empty() && !is_surface_format(a.output) && !io::is_tet_mesh_format(a.output))
+    throw CLI::ValidationError("--output", fmt::format("'{}' {}; use {}, or name one with --format", a.output,
+                                                       extension_list(a.output), known_formats()));
+  check_standard_input(a);
   if (a.output == "-" && (a.output_format == ".ele" || a.output_format == ".xdmf"))
     throw CLI::ValidationError("--format", "is of several files, which standard output cannot take");
   check_run_arguments(a);
@@ -375,7 +419,7 @@ class HelpText : public CLI::Formatter {
   std::string make_usage(const CLI::App* app, std::string name) const override {
     if (app->get_parent() != nullptr) return CLI::Formatter::make_usage(app, name);
     std::string text = "Usage:";
-    for (const char* command : {"", "check", "info", "convert"})
+    for (const char* command : {"", "check", "info", "convert", "repair"})
       text += fmt::format("{} {} [options]\n", text.size() > 6 ? "      " : "", usage_of(command));
     return text;
   }
@@ -394,6 +438,7 @@ std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
   CheckArguments check;
   InfoArguments info;
   ConvertArguments convert;
+  RepairArguments repair;
   CLI::App app("collarmesh: tetrahedral meshes of piecewise-linear complexes, certified", "collarmesh");
   app.set_version_flag("--version", "collarmesh " COLLARMESH_VERSION);
   app.formatter(std::make_shared<HelpText>());
@@ -403,29 +448,34 @@ std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
   CLI::App* const check_command = add_check_command(app, check);
   CLI::App* const info_command = add_info_command(app, info);
   CLI::App* const convert_command = add_convert_command(app, convert.mesh);
+  CLI::App* const repair_command = add_repair_command(app, repair);
   try {
     app.parse(argc, argv);
-    const bool subcommand = check_command->parsed() || info_command->parsed() || convert_command->parsed();
+    const bool subcommand = !app.get_subcommands().empty();
     if (!subcommand) check_mesh_arguments(mesh);
     if (convert_command->parsed()) {
       check_convert_arguments(convert.mesh);
+      convert.repair = convert_command->get_option("--repair")->count() > 0 &&
+                       convert.mesh.complex.repair.mode != RepairMode::off;
       for (const CLI::Option* option : convert_command->get_options())
         if (option->count() > 0 && is_meshing_group(option->get_group()))
           convert.meshing_options.push_back(option->get_name());
     }
+    if (repair_command->parsed()) check_repair_arguments(repair);
     if (subcommand && (!mesh.inputs.empty() || !mesh.output.empty())) throw CLI::HorribleError("");
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error), ExitCode::success;  // --help, --version
     const bool subcommand_last =
         !app.get_subcommands().empty() && (!mesh.inputs.empty() || !mesh.output.empty());
     fmt::print(stderr, "collarmesh: {}\nRun with --help for more information.\n",
-               subcommand_last
-                   ? "a subcommand comes first: collarmesh check MESH ..., info INPUT ..., convert IN ..."
-                   : usage_message(app, error));
+               subcommand_last ? "a subcommand comes first: collarmesh check MESH ..., info INPUT ..., "
+                                 "convert IN ..., repair IN ..."
+                               : usage_message(app, error));
     return ExitCode::usage;
   }
   if (check_command->parsed()) return Arguments(check);
   if (info_command->parsed()) return Arguments(info);
+  if (repair_command->parsed()) return Arguments(repair);
   if (convert_command->parsed()) {
     convert.mesh.tell_losses = true;
     return Arguments(convert);

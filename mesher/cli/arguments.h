@@ -62,9 +62,23 @@ struct InfoArguments {
 struct ConvertArguments {
   MeshArguments mesh;
   std::vector<std::string> meshing_options;  ///< those given that only meshing has a use for
+  bool repair = false;  ///< surfaces that become surfaces, too: --repair was given and is not none
 };
 
-using Arguments = std::variant<MeshArguments, CheckArguments, InfoArguments, ConvertArguments>;
+/// `collarmesh repair IN... -o OUT`; "-" as in ConvertArguments.
+struct RepairArguments {
+  std::vector<std::string> inputs;
+  std::string output;
+  ComplexArguments complex;
+  std::string input_format, output_format;  ///< extensions with their dot; empty: those of the files
+  std::string report;                       ///< path, empty: none
+  double time_limit = 0;                    ///< seconds; 0: none
+  bool json = false;
+  bool quiet = false;
+};
+
+using Arguments =
+    std::variant<MeshArguments, CheckArguments, InfoArguments, ConvertArguments, RepairArguments>;
 
 /// Understand a command line. When there is nothing to run (help, version, a mistake) the text has
 /// been printed and the exit code is returned instead.

@@ -16,7 +16,9 @@ ExitCode check_command(const CheckArguments& arguments) {
   stop_if_interrupted();
   CheckOptions options = arguments.check;
   options.crease_angle = arguments.complex.crease_angle;
-  const CheckReport report = check(mesh, plc, options);
+  CheckReport report = check(mesh, plc, options);
+  for (const std::string& repair : describe(input.repaired()))
+    report.notes.push_back("the input was repaired: " + repair);
   if (arguments.json)
     fmt::print("{}\n", check_json(report).dump(1));
   else

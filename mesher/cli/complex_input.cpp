@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <optional>
 
 #include "collarmesh/error.h"
@@ -34,6 +35,30 @@ PlcError with_names(const PlcError& error, const CadFiles& cad) {
       faults};
 }
 
+bool has_fault(const PlcError& error, std::initializer_list<PlcFault::Kind> kinds) {
+  return std::any_of(error.faults.begin(), error.faults.end(), [&](const PlcFault& fault) {
+    return std::find(kinds.begin(), kinds.end(), fault.kind) != kinds.end();
+  });
+}
+
+/// A sentence on what may help where the repair did not.
+std::string advice(const PlcError& error, const RepairOptions& options) {
+  using Kind = PlcFault::Kind;
+  if (has_fault(error, {Kind::bad_point})) return {};
+  const std::string wider = fmt::format("a larger --repair-tolerance than {:.3g}", options.tolerance);
+  switch (options.mode) {
+    case RepairMode::off: return " Without --repair none this would be repaired as far as possible.";
+    case RepairMode::wrap:
+      return fmt::format(
+          " A closed surface around everything failed, too; {} or another --wrap-offset may help.", wider);
+    case RepairMode::automatic: break;
+  }
+  const bool open = has_fault(error, {Kind::open_boundary, Kind::empty});
+  return fmt::format(
+      " It could not be repaired: {}try {}, or --repair wrap, which puts a closed surface around everything.",
+      open ? "close the surface, " : "", wider);
+}
+
 }  // namespace
 
 ComplexInput::ComplexInput(const std::vector<std::string>& paths, const std::string& format,
@@ -49,7 +74,13 @@ ComplexInput::ComplexInput(const std::vector<std::string>& paths, const std::str
 }
 
 Plc ComplexInput::build(const ComplexArguments& options) {
-  if (cad_.empty()) return build_repaired(options);
+  if (cad_.empty()) {
+    try {
+      return build_repaired(options);
+    } catch (const PlcError& error) {
+      throw with_advice(error, options.repair);
+    }
+  }
   // Triangles of faces that nearly touch may meet where finer ones do not.
   std::optional<PlcError> first;
   for (const double finer : {1.0, 4.0}) {
@@ -61,13 +92,19 @@ Plc ComplexInput::build(const ComplexArguments& options) {
       if (!cad_.fused() || !may_be_too_coarse(error)) break;
     }
   }
-  if (options.repair.mode == RepairMode::off) throw PlcError(*first);
+  if (options.repair.mode == RepairMode::off) throw with_advice(*first, options.repair);
   tessellate(1);
   try {
     return build_repaired(options);
   } catch (const PlcError&) {
-    throw PlcError(*first);
+    throw with_advice(*first, options.repair);
   }
+}
+
+PlcError ComplexInput::with_advice(const PlcError& error, const RepairOptions& options) const {
+  const bool has_facets = std::any_of(soups_.begin(), soups_.end(),
+                                      [](const PolygonSoup& soup) { return soup.facet_count() > 0; });
+  return {error.what() + (has_facets ? advice(error, options) : std::string()), error.faults};
 }
 
 void ComplexInput::tessellate(double finer) {
@@ -88,6 +125,7 @@ Plc ComplexInput::take(RepairedPlc result) {
 
 ExactGeometry ComplexInput::exact_geometry(const Plc& plc) const {
   return [this, &plc](unsigned dimension, Index feature, const Point& p) -> std::optional<Point> {
+    if (repaired_.wrapped) return std::nullopt;  // its tags are no numbers of faces
     const Index patch = dimension == 2                        ? feature
                         : plc.curves[feature].patches.empty() ? none
                                                               : plc.curves[feature].patches.front();

@@ -5,6 +5,7 @@
 
 #include "arguments.h"
 #include "cad_files.h"
+#include "collarmesh/error.h"
 #include "collarmesh/mesher.h"
 #include "collarmesh/plc_builder.h"
 #include "collarmesh/project_boundary.h"
@@ -42,6 +43,7 @@ class ComplexInput {
 
  private:
   Plc build_repaired(const ComplexArguments& options);
+  PlcError with_advice(const PlcError& error, const RepairOptions& options) const;
   Plc take(RepairedPlc result);
   void tessellate(double finer);
 

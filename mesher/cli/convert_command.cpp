@@ -7,13 +7,13 @@
 
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
-#include "collarmesh/merge_soups.h"
 #include "complex_input.h"
 #include "conversion_report.h"
 #include "input_files.h"
 #include "interrupt.h"
 #include "mesh_command.h"
 #include "report.h"
+#include "soup_output.h"
 #include "staged_file.h"
 #include "surface_files.h"
 
@@ -32,35 +32,10 @@ void write(const MeshArguments& a, const std::function<void(const std::string&)>
   StagedFile::commit({&file});
 }
 
-CutFacets cut_for(const std::string& format) {
-  if (format == ".poly") return CutFacets::nothing;
-  return format == ".stl" ? CutFacets::all : CutFacets::complex;
-}
-
-/// Region and hole points say which parts of space are solid; a surface says it by its orientation.
-void place_regions(const MeshArguments& a, const std::vector<PolygonSoup>& soups, PolygonSoup& merged) {
-  PlcOptions options = a.complex.plc;
-  options.require_solid = false;
-  try {
-    const Plc plc = build_plc(soups, options);
-    fmt::print(stderr, "{}", warnings_text(plc));
-    const Index missing = place_region_points(plc, merged);
-    if (missing > 0)
-      tell(a, fmt::format("{} regions or cavities are too thin for a point inside\n", missing));
-  } catch (const PlcError& error) {
-    tell(a, fmt::format("no regions are named, because this is no valid complex: {}\n", error.what()));
-  }
-}
-
 void write_soup(const MeshArguments& a, const std::vector<PolygonSoup>& soups) {
-  const std::string format = format_of(a.output, a.output_format);
-  MergeReport report;
-  PolygonSoup merged = merge_soups(soups, {a.complex.plc.weld, cut_for(format)}, report);
-  if (format == ".poly" || format == ".smesh") place_regions(a, soups, merged);
-  write(a, [&](const std::string& path) { write_surface(path, merged, a.output_format); });
-  tell(a, soup_text(a.output, merged));
-  tell(a, merge_text(report));
-  tell(a, losses_text(lost_by(format, merged)));
+  const MergedSoup merged = merge_for_output(soups, a.output, a.output_format, a.complex.plc);
+  write(a, [&](const std::string& path) { write_surface(path, merged.soup, a.output_format); });
+  tell(a, merged.told);
 }
 
 /// The boundary and interface triangles of a mesh with their tags.
@@ -90,6 +65,12 @@ void convert_mesh(const MeshArguments& a) {
   tell(a, losses_text(lost_by(format_of(a.output, a.output_format), mesh)));
 }
 
+/// The soups become those of a complex that encloses something; unless it can be one, PlcError is thrown.
+void repair(const MeshArguments& a, ComplexInput& input) {
+  const Plc plc = input.build(a.complex);
+  fmt::print(stderr, "{}{}", warnings_text(plc), repair_text(input.repaired(), a.quiet));
+}
+
 }  // namespace
 
 ExitCode convert_command(const ConvertArguments& arguments) {
@@ -106,7 +87,9 @@ ExitCode convert_command(const ConvertArguments& arguments) {
     return ExitCode::success;
   }
   if (!to_surface) return mesh_command(a);
-  write_soup(a, ComplexInput(a.inputs, a.input_format).soups());
+  ComplexInput input(a.inputs, a.input_format);
+  if (arguments.repair) repair(a, input);
+  write_soup(a, input.soups());
   return ExitCode::success;
 }
 

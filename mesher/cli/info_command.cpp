@@ -27,17 +27,28 @@ void print_mesh(const std::string& path, bool as_json) {
   fmt::print("{}\n", json.dump(1));
 }
 
+/// The complex that would be meshed; what bounds no region, and cannot be repaired so that it does, is one
+/// here, too.
+Plc build_any(ComplexInput& input, ComplexArguments options) {
+  try {
+    return input.build(options);
+  } catch (const PlcError&) {
+    options.plc.require_solid = false;
+    return input.build(options);
+  }
+}
+
 void print_complex(const InfoArguments& arguments) {
-  ComplexArguments options = arguments.complex;
-  options.plc.require_solid = false;
   ComplexInput input(arguments.inputs);
-  const Plc plc = input.build(options);
+  const Plc plc = build_any(input, arguments.complex);
   stop_if_interrupted();
   const PlcSummary summary = summarize(plc, arguments.complex.crease_angle);
   if (arguments.json)
-    fmt::print("{}\n", nlohmann::ordered_json{{"complex", complex_json(plc, summary)}}.dump(1));
+    fmt::print("{}\n", nlohmann::ordered_json{{"complex", complex_json(plc, summary)},
+                                              {"repair", repair_json(input.repaired())}}
+                           .dump(1));
   else
-    fmt::print("{}{}", complex_text(plc, summary), warnings_text(plc));
+    fmt::print("{}{}{}", repair_text(input.repaired()), complex_text(plc, summary), warnings_text(plc));
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ ComplexInput build_complex(const MeshArguments& arguments, Stages& stages, MeshR
   require_known_tags(arguments.mesh, run.plc);
   run.summary = summarize(run.plc, arguments.complex.crease_angle);
   run.warnings = option_warnings(arguments, run.plc);
-  std::string text = warnings_text(run.plc) + repair_text(run.repair);
+  std::string text = warnings_text(run.plc) + repair_text(run.repair, arguments.quiet);
   for (const std::string& warning : run.warnings) text += fmt::format("warning: {}\n", warning);
   stages.print(text);
   return input;

@@ -15,6 +15,7 @@
 #include "info_command.h"
 #include "interrupt.h"
 #include "mesh_command.h"
+#include "repair_command.h"
 
 namespace collarmesh::cli {
 
@@ -25,6 +26,7 @@ struct Execute {
   ExitCode operator()(const CheckArguments& arguments) const { return check_command(arguments); }
   ExitCode operator()(const InfoArguments& arguments) const { return info_command(arguments); }
   ExitCode operator()(const ConvertArguments& arguments) const { return convert_command(arguments); }
+  ExitCode operator()(const RepairArguments& arguments) const { return repair_command(arguments); }
 };
 
 ExitCode fail(ExitCode code, const std::string& message) {

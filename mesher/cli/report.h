@@ -35,13 +35,18 @@ struct MeshRun {
 nlohmann::ordered_json complex_json(const Plc& plc, const PlcSummary& summary);
 nlohmann::ordered_json measures_json(const TetMesh& mesh, const MeshMeasures& measures);
 nlohmann::ordered_json check_json(const CheckReport& report);
+nlohmann::ordered_json repair_json(const RepairReport& report);
 nlohmann::ordered_json run_json(const MeshArguments& arguments, const MeshRun& run);
+/// Of `collarmesh repair`.
+nlohmann::ordered_json repair_run_json(const RepairArguments& arguments, const Plc& plc,
+                                       const PlcSummary& summary, const RepairReport& report);
 
 // For people, lines of text:
 /// "warning: ..." lines of the input, the first ones if there are very many.
 std::string warnings_text(const Plc& plc);
-/// "repaired: ..." lines.
-std::string repair_text(const RepairReport& report);
+/// "repaired: ..." lines, the first ones if there are very many. `quiet`: only of what may change the shape
+/// by more than the tolerance.
+std::string repair_text(const RepairReport& report, bool quiet = false);
 std::string complex_text(const Plc& plc, const PlcSummary& summary);
 std::string mesh_text(const TetMesh& mesh, const MeshMeasures& measures);
 std::string findings_text(const CheckReport& report, std::size_t listed);

@@ -42,6 +42,36 @@ const char* status_name(MeshStatus status) {
   return "unknown";
 }
 
+const char* repair_mode_name(RepairMode mode) {
+  switch (mode) {
+    case RepairMode::off: return "none";
+    case RepairMode::automatic: return "auto";
+    case RepairMode::wrap: return "wrap";
+  }
+  return "unknown";
+}
+
+/// Some places of a change; `size` is what their size is called, or null.
+Json places_json(const RepairPlaces& places, const char* size) {
+  Json where = Json::array();
+  for (const Point& p : places.where) where.push_back(point_json(p));
+  Json json{{"count", places.count}};
+  if (size != nullptr) json[size] = number_json(places.size);
+  json["where"] = std::move(where);
+  return json;
+}
+
+Json filled_json(const std::vector<FilledHole>& holes) {
+  Json json = Json::array();
+  for (const FilledHole& hole : holes)
+    json.push_back({{"tag", hole.tag},
+                    {"edges", hole.edges},
+                    {"length", hole.length},
+                    {"area", hole.area},
+                    {"where", point_json(hole.where)}});
+  return json;
+}
+
 /// 0 stands for a default or for "none" in the options; null does so here.
 template <class Number>
 Json or_null(Number value) {
@@ -66,6 +96,9 @@ Json options_json(const MeshArguments& a) {
           {"feature_angle", a.complex.plc.feature_angle},
           {"planar_tolerance", a.complex.plc.planar_tolerance},
           {"weld", a.complex.plc.weld},
+          {"repair", repair_mode_name(a.complex.repair.mode)},
+          {"repair_tolerance", a.complex.repair.tolerance},
+          {"wrap_offset", a.complex.repair.wrap_offset},
           {"crease_angle", a.complex.crease_angle},
           {"collar_angle", m.collar_angle},
           {"collar_creation", m.collar_creation == CollarCreation::in_pass ? "in-pass" : "up-front"},
@@ -212,6 +245,34 @@ Json check_json(const CheckReport& r) {
           {"region_volumes", by_number(volumes)}};
 }
 
+Json repair_json(const RepairReport& r) {
+  return {{"repaired", r.repaired},
+          {"wrapped", r.wrapped},
+          {"tolerance", r.tolerance},
+          {"largest_distance", number_json(r.largest_distance)},
+          {"split_polygons", r.split_polygons},
+          {"dropped_polygons", r.dropped_polygons},
+          {"repeated", places_json(r.repeated, nullptr)},
+          {"turned", places_json(r.turned, nullptr)},
+          {"stitched", places_json(r.stitched, "largest_distance")},
+          {"cut", places_json(r.cut, nullptr)},
+          {"merged", places_json(r.merged, "area")},
+          {"collapsed", places_json(r.collapsed, "largest_distance")},
+          {"filled", filled_json(r.filled)},
+          {"lost_tags", r.lost_tags},
+          {"messages", describe(r)}};
+}
+
+Json repair_run_json(const RepairArguments& arguments, const Plc& plc, const PlcSummary& summary,
+                     const RepairReport& report) {
+  return {{"program", "collarmesh"},
+          {"version", COLLARMESH_VERSION},
+          {"inputs", arguments.inputs},
+          {"output", arguments.output},
+          {"repair", repair_json(report)},
+          {"complex", complex_json(plc, summary)}};
+}
+
 Json run_json(const MeshArguments& arguments, const MeshRun& run) {
   Json seconds = Json::object();
   for (const auto& [stage, time] : run.times.stages()) seconds[stage] = time;
@@ -225,6 +286,7 @@ Json run_json(const MeshArguments& arguments, const MeshRun& run) {
           {"status", status_name(run.result.status)},
           {"message", run.result.message},
           {"guarantees_hold", run.guarantees_hold()},
+          {"repair", repair_json(run.repair)},
           {"complex", complex_json(run.plc, run.summary)},
           {"mesh", measures_json(run.result.mesh, run.check.measures)},
           {"check", check_json(run.check)},

@@ -47,6 +47,18 @@ std::string times_text(const StageTimes& times) {
   return text;
 }
 
+/// Of a report what is no matter of the tolerance: holes filled, parts removed, a surface around everything.
+RepairReport beyond_tolerance(const RepairReport& report) {
+  RepairReport rest;
+  rest.turned = report.turned;
+  rest.merged = report.merged;
+  rest.filled = report.filled;
+  rest.lost_tags = report.lost_tags;
+  rest.wrapped = report.wrapped;
+  rest.largest_distance = report.largest_distance;
+  return rest;
+}
+
 }  // namespace
 
 std::string warnings_text(const Plc& plc) {
@@ -58,8 +70,8 @@ std::string warnings_text(const Plc& plc) {
   return text;
 }
 
-std::string repair_text(const RepairReport& report) {
-  const std::vector<std::string> lines = describe(report);
+std::string repair_text(const RepairReport& report, bool quiet) {
+  const std::vector<std::string> lines = describe(quiet ? beyond_tolerance(report) : report);
   std::string text;
   for (std::size_t k = 0; k < std::min(lines.size(), listed); ++k)
     fmt::format_to(Out(text), "repaired: {}\n", lines[k]);

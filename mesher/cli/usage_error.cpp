@@ -56,6 +56,7 @@ std::string usage_of(const std::string& command) {
   if (command == "check") return "collarmesh check MESH --against INPUT...";
   if (command == "info") return "collarmesh info INPUT...";
   if (command == "convert") return "collarmesh convert IN... -o OUT";
+  if (command == "repair") return "collarmesh repair IN... -o OUT";
   return "collarmesh INPUT... -o OUT";
 }
 

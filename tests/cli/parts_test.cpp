@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -7,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <variant>
+#include <vector>
 
 #include "arguments.h"
 #include "collarmesh/error.h"
@@ -16,6 +19,7 @@
 #include "option_values.h"
 #include "program.h"
 #include "progress_display.h"
+#include "report.h"
 #include "staged_file.h"
 
 namespace collarmesh::cli {
@@ -152,6 +156,72 @@ TEST(Guarded, EveryErrorHasItsCode) {
   expect_code(ExitCode::cannot_write, WriteError("disk full"), "disk full");
   expect_code(ExitCode::budget_hit, std::bad_alloc(), "raise --size");
   expect_code(ExitCode::cancelled, Cancelled(), "cancelled");
+}
+
+template <class Kind, std::size_t n>
+Kind parsed(const std::array<const char*, n>& words) {
+  const auto result = parse(static_cast<int>(n), words.data());
+  EXPECT_TRUE(std::holds_alternative<Arguments>(result));
+  return std::get<Kind>(std::get<Arguments>(result));
+}
+
+TEST(RepairArguments, AreUnderstood) {
+  const auto repair = parsed<RepairArguments>(
+      std::array{"collarmesh", "repair", "a.stl", "-o", "b.off", "--repair", "wrap", "--repair-tolerance",
+                 "1e-4", "--wrap-offset", "0.01", "--json", "--report", "r.json"});
+  EXPECT_EQ(repair.inputs, std::vector<std::string>{"a.stl"});
+  EXPECT_EQ(repair.output, "b.off");
+  EXPECT_EQ(repair.report, "r.json");
+  EXPECT_TRUE(repair.json);
+  EXPECT_EQ(repair.complex.repair.mode, RepairMode::wrap);
+  EXPECT_EQ(repair.complex.repair.tolerance, 1e-4);
+  EXPECT_EQ(repair.complex.repair.wrap_offset, 0.01);
+}
+
+TEST(RepairArguments, ConvertRepairsOnRequestOnly) {
+  EXPECT_FALSE(parsed<ConvertArguments>(std::array{"collarmesh", "convert", "a.stl", "-o", "b.off"}).repair);
+  EXPECT_FALSE(parsed<ConvertArguments>(
+                   std::array{"collarmesh", "convert", "a.stl", "-o", "b.off", "--repair", "none"})
+                   .repair);
+  EXPECT_TRUE(parsed<ConvertArguments>(
+                  std::array{"collarmesh", "convert", "a.stl", "-o", "b.off", "--repair", "auto"})
+                  .repair);
+}
+
+RepairReport every_kind_of_repair() {
+  RepairReport report;
+  report.repaired = report.wrapped = true;
+  report.split_polygons = report.dropped_polygons = 1;
+  for (RepairPlaces RepairReport::*kind :
+       {&RepairReport::repeated, &RepairReport::turned, &RepairReport::stitched, &RepairReport::collapsed,
+        &RepairReport::cut, &RepairReport::merged})
+    report.*kind = {2, 0.5, {{1, 2, 3}, {4, 5, 6}}};
+  report.filled = {{7, 4, 4.0, 1.0, {0.5, 0.5, 0}}};
+  report.lost_tags = {3};
+  return report;
+}
+
+TEST(RepairReports, HaveEveryKind) {
+  const auto json = repair_json(every_kind_of_repair());
+  for (const char* kind : {"repeated", "turned", "stitched", "collapsed", "cut", "merged"}) {
+    EXPECT_EQ(json[kind]["count"], 2) << kind;
+    EXPECT_EQ(json[kind]["where"].size(), 2U) << kind;
+  }
+  EXPECT_EQ(json["stitched"]["largest_distance"], 0.5);
+  EXPECT_EQ(json["merged"]["area"], 0.5);
+  EXPECT_EQ(json["filled"][0]["edges"], 4);
+  EXPECT_EQ(json["messages"].size(), describe(every_kind_of_repair()).size());
+}
+
+TEST(RepairReports, QuietOnesLeaveOutWhatIsWithinTheTolerance) {
+  const std::string all = repair_text(every_kind_of_repair()),
+                    quiet = repair_text(every_kind_of_repair(), true);
+  for (const char* word : {"stitched", "collapsed", "repeated", "cut"})
+    EXPECT_EQ(quiet.find(word), std::string::npos) << word;
+  for (const char* word : {"a hole", "removed", "inside out", "nothing is left", "wrapped"}) {
+    EXPECT_NE(quiet.find(word), std::string::npos) << word;
+    EXPECT_NE(all.find(word), std::string::npos) << word;
+  }
 }
 
 // Also a stage that never looks at the clock.

@@ -197,7 +197,8 @@ class Headless(unittest.TestCase):
         values = {
             "CharacteristicLengthMax": 4, "CharacteristicLengthMin": 0.5, "MeshSizeFromCurvature": 12,
             "ElementsAcrossGap": 2, "Gradation": 0.5, "SurfaceDistance": 0.02, "CreaseAngle": 55, "CollarAngle": 155,
-            "PlanarTolerance": 2e-6, "WeldTolerance": 2e-9, "RadiusEdgeRatio": 1.9, "ImproveLevel": 3,
+            "PlanarTolerance": 2e-6, "WeldTolerance": 2e-9,
+            "RepairTolerance": 2e-5, "RadiusEdgeRatio": 1.9, "ImproveLevel": 3,
             "MinDihedralAngle": 25, "Seed": 7, "TimeLimit": 60,
         }  # fmt: skip
         self.assertEqual(set(values), {name for _, name, *_ in mesh_object.PROPERTIES})
@@ -209,6 +210,21 @@ class Headless(unittest.TestCase):
         self.assertEqual(obj.FemMesh.VolumeCount > 0, True)
         for _, name, field, *_ in mesh_object.PROPERTIES:
             self.assertEqual(options[field], values[name], name)
+
+    def test_kinds_of_repair_reach_the_program(self):
+        obj = collarmesh_workbench.mesh(self.add(Part.makeBox(10, 10, 10)), size=4, repair="none")
+        self.assertEqual(obj.Repair, "None")
+        for kind, word in mesh_object.REPAIRS.items():
+            obj.Repair = kind
+            report = mesh_object.remesh(obj)
+            self.assertEqual(report["options"]["repair"], word)
+            self.assertFalse(report["repair"]["repaired"])
+
+    def test_repairs_are_warnings(self):
+        """A message of the program, as the panel and the report view show it."""
+        lines = ["repaired: a hole filled at (1, 2, 3)", "warning: a point lies outside", "stage: done"]
+        self.assertEqual([program.as_warning(line) for line in lines],
+                         ["warning: the shape was repaired: a hole filled at (1, 2, 3)", lines[1], None])  # fmt: skip
 
     def test_save_and_reopen(self):
         obj = collarmesh_workbench.mesh(self.add(plate_with_hole()), size=4)

@@ -77,7 +77,7 @@ class Module(unittest.TestCase):
     def test_mistakes_are_told(self):
         points, triangles, tags = box((0, 0, 0), (1, 1, 1))
         for surface, words in (
-            ((points, triangles[:-1]), r"open|border"),
+            ((points, triangles[:2]), r"open|border"),
             ((points, triangles + 1), "corner 8"),
             ((points[:, :2], triangles), r"\(n, 3\)"),
             ((points, triangles, tags[1:]), "tags"),
@@ -89,6 +89,22 @@ class Module(unittest.TestCase):
             collarmesh.mesh()
         with self.assertRaises(collarmesh.Error):
             collarmesh.mesh((points, triangles), order=3)
+
+    def test_invalid_surfaces_are_repaired_and_told(self):
+        points, triangles, tags = box((0, 0, 0), (1, 1, 1))
+        self.assertEqual(collarmesh.mesh((points, triangles), size=0.5).repairs, [])
+        mesh = collarmesh.mesh((points, triangles[:-1], tags[:-1]), size=0.5)
+        self.assertTrue(mesh.passed, mesh.findings)
+        self.assertAlmostEqual(volumes(mesh).sum(), 1, places=12)
+        self.assertEqual(len(mesh.repairs), 1)
+        self.assertRegex(mesh.repairs[0], "hole of 3 edges")
+        with self.assertRaisesRegex(collarmesh.Error, "open"):
+            collarmesh.mesh((points, triangles[:-1]), repair="none")
+        with self.assertRaisesRegex(collarmesh.Error, "repair must be"):
+            collarmesh.mesh((points, triangles), repair="maybe")
+        wrapped = collarmesh.mesh((points, triangles[:2]), size=0.5, repair="wrap")
+        self.assertGreater(volumes(wrapped).sum(), 0)
+        self.assertRegex(wrapped.repairs[-1], "wrapped around everything")
 
     def test_files(self):
         mesh = collarmesh.mesh(box((0, 0, 0), (1, 1, 1)), size=0.5)

@@ -25,6 +25,8 @@ PROPERTIES = (
      "Faces this near to a plane are planar, relative to the diagonal; 0: 1e-6"),
     ("App::PropertyFloat", "WeldTolerance", "weld", FEATURES,
      "Points closer than this are one, relative to the diagonal; 0: 1e-9"),
+    ("App::PropertyFloat", "RepairTolerance", "repair_tolerance", FEATURES,
+     "Where the shape has to be repaired, features below this are noise, relative to the diagonal; 0: 1e-5"),
     ("App::PropertyFloat", "RadiusEdgeRatio", "radius_edge", QUALITY, "Bound on circumradius / shortest edge"),
     ("App::PropertyInteger", "ImproveLevel", "improve", QUALITY, "Removal of slivers: 0 none, 1 quick, 2 good, 3 best"),
     ("App::PropertyAngle", "MinDihedralAngle", "min_dihedral", QUALITY,
@@ -33,6 +35,7 @@ PROPERTIES = (
     ("App::PropertyFloat", "TimeLimit", "time_limit", RUN, "Give up after so many seconds; 0: never"),
 )  # fmt: skip
 ORDERS = ["1st", "2nd"]
+REPAIRS = {"Automatic": "auto", "None": "none", "Wrap": "wrap"}  # the program's words
 TINY = 0.01  # of the target edge length: edges that hardly anybody means
 REFINEMENTS = {"Solid": "solid_sizes", "Face": "face_sizes", "Edge": "edge_sizes"}
 
@@ -68,6 +71,12 @@ def add_properties(obj):
         obj.addProperty("App::PropertyEnumeration", "ElementOrder", QUALITY, "Order of the elements")
         obj.ElementOrder = ORDERS
         obj.ElementOrder = ORDERS[preferences.second_order()]
+    if "Repair" not in have:
+        obj.addProperty("App::PropertyEnumeration", "Repair", FEATURES,
+                        "What to do with triangles of the shape that intersect or leave holes. Automatic: repair them; "
+                        "None: refuse them; Wrap: where repair fails, mesh a closed surface around everything")
+        obj.Repair = list(REPAIRS)
+        obj.Repair = "Automatic"
     for name, text in (("MeshRegionList", "Finer parts of the mesh"), ("MeshGroupList", "Groups of the mesh")):
         if name not in have:
             obj.addProperty("App::PropertyLinkList", name, "Base", text)
@@ -92,7 +101,7 @@ def settings_of(obj):
     for _kind, name, field, _group, _text in PROPERTIES:
         value = getattr(obj, name)
         values[field] = getattr(value, "Value", value)
-    settings = Settings(order=ORDERS.index(obj.ElementOrder) + 1, **values)
+    settings = Settings(order=ORDERS.index(obj.ElementOrder) + 1, repair=REPAIRS[obj.Repair], **values)
     for region in obj.MeshRegionList:
         add_refinement(region, compatibility.meshed_object(obj), settings)
     return settings
@@ -103,6 +112,7 @@ def apply_settings(obj, settings):
     for _kind, name, field, _group, _text in PROPERTIES:
         setattr(obj, name, getattr(settings, field))
     obj.ElementOrder = ORDERS[settings.order - 1]
+    obj.Repair = next(name for name, word in REPAIRS.items() if word == settings.repair)
 
 
 def add_refinement(region, part, settings):
@@ -164,9 +174,11 @@ def finish(obj, job, exit_code=0):
         raise MesherError("The mesher wrote a mesh without elements; please report it with the shape.")
     groups.add_groups(obj, fem_mesh)
     obj.FemMesh = fem_mesh
-    if exit_code == GUARANTEE_MISSED:
-        FreeCAD.Console.PrintWarning("collarmesh: " + "\n".join(job.messages) + "\n")
-    return job.report()
+    report = job.report()
+    said = job.messages if exit_code == GUARANTEE_MISSED else [*job.warnings(), *report["notes"]]
+    if said:
+        FreeCAD.Console.PrintWarning("collarmesh: " + "\n".join(said) + "\n")
+    return report
 
 
 def remesh(obj, progress=None):

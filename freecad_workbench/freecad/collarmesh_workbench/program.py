@@ -35,11 +35,13 @@ class Settings:
     distance: float = 0
     planar_tolerance: float = 0
     weld: float = 0
+    repair_tolerance: float = 0
     min_dihedral: float = 0
     seed: int = 0
     time_limit: float = 0
     improve: int = 2
     order: int = 1
+    repair: str = "auto"  # or "none", or "wrap"
     solid_sizes: dict = dataclasses.field(default_factory=dict)
     face_sizes: dict = dataclasses.field(default_factory=dict)
     edge_sizes: dict = dataclasses.field(default_factory=dict)
@@ -54,6 +56,8 @@ class Settings:
         arguments += ["--improve", str(int(self.improve))]
         if self.order != 1:
             arguments += ["--order", str(self.order)]
+        if self.repair != "auto":
+            arguments += ["--repair", self.repair]
         for option, sizes in (("region", self.solid_sizes), ("patch", self.face_sizes), ("curve", self.edge_sizes)):
             for number, size in sorted(sizes.items()):
                 arguments += [f"--{option}-size", f"{number}={float(size)!r}"]
@@ -99,6 +103,13 @@ def parse_line(line):
     return line.rstrip("\n")
 
 
+def as_warning(line):
+    """What the program says of the input and of what it repaired, as a warning; None for other lines."""
+    if line.startswith("repaired: "):
+        return "warning: the shape was repaired: " + line.removeprefix("repaired: ")
+    return line if line.startswith("warning: ") else None
+
+
 class Job:
     """One run: a folder with the shape, the mesh and the report, which is removed at the end."""
 
@@ -126,6 +137,10 @@ class Job:
         if said.strip():
             self.messages.append(said)
         return None
+
+    def warnings(self):
+        """What was said of the shape that the user should know, with places, one line each."""
+        return [warning for warning in map(as_warning, self.messages) if warning]
 
     def require_success(self, exit_code):
         """Raises MesherError unless there is a mesh."""

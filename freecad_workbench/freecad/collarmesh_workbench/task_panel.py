@@ -5,7 +5,7 @@ import FreeCADGui
 from PySide import QtCore, QtGui
 
 from . import mesh_object, worst_elements
-from .program import MesherError
+from .program import MesherError, as_warning
 
 FIELDS = (
     ("CharacteristicLengthMax", "Size"),
@@ -128,7 +128,7 @@ class MeshTaskPanel:
                 self.bar.setValue(int(1000 * step.fraction))
                 self.bar.setFormat(f"{step.phase} %p%")
             elif line.strip():
-                self.say(line.rstrip())
+                self.say(as_warning(line.rstrip()) or line.rstrip())
 
     def _finished(self, exit_code, _status=None):
         self._read()

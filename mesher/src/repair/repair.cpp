@@ -22,6 +22,7 @@
 #include "repair/repeated.h"
 #include "repair/snapping.h"
 #include "repair/to_soups.h"
+#include "repair/wrap.h"
 
 namespace collarmesh {
 
@@ -223,6 +224,9 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
       continue;  // a wider tolerance may help
     }
   }
+  // The last resort, on request.
+  if (repair_options.mode == RepairMode::wrap)
+    if (auto wrapped = build_wrapped_plc(soups, options, repair_options)) return *std::move(wrapped);
   throw PlcError(*first);
 }
 

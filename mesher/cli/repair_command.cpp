@@ -1,0 +1,76 @@
+#include "repair_command.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <optional>
+
+#include "collarmesh/error.h"
+#include "complex_input.h"
+#include "interrupt.h"
+#include "report.h"
+#include "soup_output.h"
+#include "staged_file.h"
+#include "surface_files.h"
+
+namespace collarmesh::cli {
+
+namespace {
+
+/// What a file says when it is read again: coordinates may have lost digits, and interfaces their regions.
+std::string read_again(const std::string& path, const RepairArguments& a) {
+  try {
+    const PolygonSoup soups[] = {read_surface(path, a.output_format)};
+    build_plc(soups, a.complex.plc);
+  } catch (const PlcError& error) {
+    return fmt::format(
+        "warning: what this format keeps of it is no valid complex: {} Formats that keep more are .off, .obj "
+        "and .ply (64 bits), and .poly (regions).\n",
+        error.what());
+  }
+  return {};
+}
+
+void write_report(const std::string& path, const nlohmann::ordered_json& report) {
+  std::ofstream file(path);
+  file << report.dump(1) << '\n';
+  file.close();
+  if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path));
+}
+
+std::string repairs_text(const RepairReport& report, const RepairArguments& a) {
+  if (report.repaired || a.quiet) return repair_text(report, a.quiet);
+  return "valid: nothing had to be repaired, the input is written as it is\n";
+}
+
+}  // namespace
+
+ExitCode repair_command(const RepairArguments& a) {
+  set_time_limit(a.time_limit);
+  require_writable(a.output);
+  if (!a.report.empty()) require_writable(a.report);
+  ComplexInput input(a.inputs, a.input_format);
+  const Plc plc = input.build(a.complex);
+  stop_if_interrupted();
+  const nlohmann::ordered_json told =
+      repair_run_json(a, plc, summarize(plc, a.complex.crease_angle), input.repaired());
+  const MergedSoup merged = merge_for_output(input.soups(), a.output, a.output_format, a.complex.plc);
+  std::string warning;
+  StagedFile surface(a.output);
+  surface.write([&](const std::string& path) {
+    write_surface(path, merged.soup, a.output_format);
+    warning = read_again(path, a);
+  });
+  std::optional<StagedFile> report;
+  if (!a.report.empty()) {
+    report.emplace(a.report);
+    report->write([&](const std::string& path) { write_report(path, told); });
+  }
+  StagedFile::commit({&surface, report ? &*report : nullptr});
+  fmt::print(stderr, "{}{}{}{}", warnings_text(plc), repairs_text(input.repaired(), a),
+             a.quiet ? "" : merged.told, warning);
+  if (a.json) fmt::print("{}\n", told.dump(1));
+  return ExitCode::success;
+}
+
+}  // namespace collarmesh::cli

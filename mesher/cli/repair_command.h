@@ -1,0 +1,11 @@
+#pragma once
+
+#include "arguments.h"
+
+namespace collarmesh::cli {
+
+/// Write the facets that the mesher would take: repaired, or as they are if they are a valid complex. Throws
+/// PlcError if they cannot be repaired.
+ExitCode repair_command(const RepairArguments& arguments);
+
+}  // namespace collarmesh::cli
