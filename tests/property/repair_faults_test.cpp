@@ -34,23 +34,26 @@ void expect_sampled_volume(const RepairedPlc& r, const PolygonSoup& soup, Random
   EXPECT_NEAR(total_volume(r.plc), sampled.volume, 4 * sampled.deviation + slack(r, soup));
 }
 
-TEST(RepairFaults, WallsInABox) {
-  Random random(1);
-  for (unsigned member = 0; member < members(40); ++member) {
-    const double share = member % 2 == 0 ? 1 : uniform(random, 0.2, 0.8);
-    const double overhang = member % 4 < 2 ? 0 : uniform(random, 0.05, 0.3);
-    const PolygonSoup soup = turned(box_with_wall(uniform(random, 0.1, 0.9), share, overhang), random);
-    SCOPED_TRACE(fmt::format("member {}: share {}, overhang {}", member, share, overhang));
-    const RepairedPlc r = repaired(soup);
-    EXPECT_TRUE(r.report.repaired);
-    EXPECT_GT(r.report.cut.count, 0U);
-    expect_sound(r, soup);
-    EXPECT_NEAR(total_volume(r.plc), 1, slack(r, soup));
-    EXPECT_TRUE(r.report.filled.empty());
-    if (member < 4) {
-      EXPECT_EQ(faults(mesh_of(r.plc, with_size(0.3))), "");
-    }
+void expect_wall_harmless(Random& random, unsigned member, double overhang) {
+  const double share = uniform(random, 0.2, 0.8);
+  const PolygonSoup wall = box_with_wall(uniform(random, 0.1, 0.9), share, overhang);
+  const PolygonSoup soup = member < 2 ? wall : turned(wall, random);
+  SCOPED_TRACE(fmt::format("member {}: share {}, overhang {}", member, share, overhang));
+  const RepairedPlc r = repaired(soup);
+  EXPECT_TRUE(r.report.repaired);
+  EXPECT_GT(r.report.cut.count, 0U);
+  expect_sound(r, soup);
+  EXPECT_NEAR(total_volume(r.plc), 1, slack(r, soup));
+  EXPECT_TRUE(r.report.filled.empty());
+  if (member < 4) {
+    EXPECT_EQ(faults(mesh_of(r.plc, with_size(0.3))), "");
   }
+}
+
+TEST(RepairFaults, WallsThroughSidesOfABoxThatEndInside) {
+  Random random(1);
+  for (unsigned member = 0; member < members(40); ++member)
+    expect_wall_harmless(random, member, uniform(random, 0.05, 0.3));
 }
 
 TEST(RepairFaults, TorusThroughItself) {
@@ -58,7 +61,7 @@ TEST(RepairFaults, TorusThroughItself) {
   for (unsigned member = 0; member < members(20); ++member) {
     const double major = uniform(random, 0.2, 0.7);
     const auto n = static_cast<unsigned>(8 + random() % 17), m = static_cast<unsigned>(8 + random() % 9);
-    const PolygonSoup soup = turned(testing::torus(major, 0.75, n, m), random);
+    const PolygonSoup soup = jittered(testing::torus(major, 0.75, n, m), random, 0.02);
     SCOPED_TRACE(fmt::format("member {}: major {}, {} x {}", member, major, n, m));
     const RepairedPlc r = repaired(soup);
     EXPECT_TRUE(r.report.repaired);
@@ -75,7 +78,7 @@ TEST(RepairFaults, TwistedPrisms) {
   for (unsigned member = 0; member < members(40); ++member) {
     const auto k = static_cast<unsigned>(3 + random() % 5);
     const double degrees = uniform(random, 20, 240);
-    const PolygonSoup soup = turned(twisted_prism(k, degrees, false), random);
+    const PolygonSoup soup = jittered(triangulated(twisted_prism(k, degrees, false)), random, 0.1);
     SCOPED_TRACE(fmt::format("member {}: {} sides, {} degrees", member, k, degrees));
     const RepairedPlc r = repaired(soup);
     expect_sound(r, soup);
@@ -118,16 +121,15 @@ TEST(RepairFaults, NestedShellsTurnedWrong) {
                              signed_volume(testing::icosphere(inner, 2)),
                      small = signed_volume(testing::icosphere(inner, 2));
         const RepairResult r = repair({&soup, 1});
-        // Both inverted is a cavity inside out.
+        // What lies in a component that is turned is turned with it.
         const bool cavity = outer_inverted != inner_inverted;
-        EXPECT_EQ(r.report.turned.count,
-                  (outer_inverted ? 1U : 0U) + (outer_inverted && inner_inverted ? 1U : 0U));
+        EXPECT_EQ(r.report.turned.count, outer_inverted ? 2U : 0U);
         const Plc plc = build_plc(r.soups);
         // Inside means something only to what is tangled: clean surfaces stay.
         EXPECT_NEAR(total_volume(plc), cavity ? large - small : large, 1e-9);
         EXPECT_EQ(plc.regions.size(), cavity ? 2U : 3U);
-        const RepairedPlc whole = repaired(soup);
-        EXPECT_NEAR(total_volume(whole.plc), total_volume(plc), 1e-9);
+        // To the builder none of this is a fault.
+        EXPECT_FALSE(repaired(soup).report.repaired);
       }
 }
 
@@ -245,7 +247,7 @@ TEST(RepairFaults, ThinFeaturesVanishBelowTheTolerance) {
           EXPECT_NEAR(actual, 1 + feature, 2 * tolerance * tolerance + 1e-9);
         } else if (width < 0.5 * tolerance) {
           EXPECT_NEAR(actual, 1, tolerance * area(soup));
-          EXPECT_GT(r.report.collapsed.count, 0U);
+          EXPECT_EQ(r.report.collapsed.count > 0, width > 4e-9);  // closer points are one from the start
           double top = -INFINITY;
           if (family.make == finned_box && member == 0) {
             for (const PolygonSoup& s : r.soups)
@@ -266,7 +268,7 @@ TEST(RepairFaults, TerrainFoldedThroughItself) {
     const RepairedPlc r = repaired(soup);
     expect_sound(r, soup);
     if (r.report.repaired) expect_sampled_volume(r, soup, random, 10);
-    if (member < 2) {
+    if (member == 0) {
       EXPECT_EQ(faults(mesh_of(r.plc, with_size(0.4))), "");
     }
   }

@@ -82,26 +82,29 @@ std::vector<Family> families() {
     return testing::translated(turned(testing::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, 1), random),
                                0.4 * random_direction(random));
   };
-  return {
-      {"turned cubes, one soup",
-       [=](Random& r) {
-         return Soups{joined(std::array{cube(r), cube(r)})};
-       }},
-      {"turned cubes, two soups",
-       [=](Random& r) {
-         return Soups{cube(r), cube(r)};
-       }},
-      {"boxes of a lattice",
-       [](Random& r) {
-         Soups soups;
-         for (const Box& b : random_boxes(r, 3, 3)) soups.push_back(soup_of(b));
-         return soups;
-       }},
-      {"wall", [](Random& r) { return Soups{box_with_wall(uniform(r, 0.2, 0.8), uniform(r, 0.3, 1.2))}; }},
-      {"holes", [](Random& r) { return Soups{sphere_with_holes(r, 6, 2).soup}; }},
-      {"prism", [](Random& r) { return Soups{twisted_prism(4, uniform(r, 100, 200), false)}; }},
-      {"t-junctions", [](Random& r) { return Soups{box_with_t_junctions(r, 3)}; }},
-      {"terrain", [](Random& r) { return Soups{folded_terrain(r, 8, 0.4)}; }}};
+  return {{"turned cubes, one soup",
+           [=](Random& r) {
+             return Soups{joined(std::array{cube(r), cube(r)})};
+           }},
+          {"turned cubes, two soups",
+           [=](Random& r) {
+             return Soups{cube(r), cube(r)};
+           }},
+          {"boxes of a lattice",
+           [](Random& r) {
+             Soups soups;
+             for (const Box& b : random_boxes(r, 3, 3)) soups.push_back(soup_of(b));
+             return soups;
+           }},
+          {"wall",
+           [](Random& r) { return Soups{box_with_wall(uniform(r, 0.2, 0.8), uniform(r, 0.3, 0.7), 0.1)}; }},
+          {"holes", [](Random& r) { return Soups{sphere_with_holes(r, 6, 2).soup}; }},
+          {"prism",
+           [](Random& r) {
+             return Soups{jittered(triangulated(twisted_prism(4, uniform(r, 100, 200), false)), r, 0.1)};
+           }},
+          {"t-junctions", [](Random& r) { return Soups{box_with_t_junctions(r, 3)}; }},
+          {"terrain", [](Random& r) { return Soups{folded_terrain(r, 8, 0.4)}; }}};
 }
 
 std::vector<double> volumes_of(std::span<const PolygonSoup> soups) {

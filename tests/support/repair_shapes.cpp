@@ -20,6 +20,7 @@ namespace {
 
 using std::numbers::pi;
 
+// Fans: with their signs they cover polygons that are not convex, too.
 template <class Visit>
 void for_each_triangle(const PolygonSoup& soup, const Visit& visit) {
   for (Index q = 0; q < soup.polygon_count(); ++q) {
@@ -71,6 +72,34 @@ Point nearest_on_triangle(const Point& p, const Point& a, const Point& b, const 
   return a + (vb / (va + vb + vc)) * ab + (vc / (va + vb + vc)) * ac;
 }
 
+// A polygon in triangles, one ear after the other.
+std::vector<std::array<Index, 3>> ears(const std::vector<Point>& points, std::span<const Index> polygon) {
+  std::vector<Index> rest(polygon.begin(), polygon.end());
+  Vector normal;
+  for (std::size_t i = 1; i + 1 < rest.size(); ++i)
+    normal = normal + cross(points[rest[i]] - points[rest[0]], points[rest[i + 1]] - points[rest[0]]);
+  const auto left = [&](Index a, Index b, Index c) {
+    return dot(normal, cross(points[b] - points[a], points[c] - points[a]));
+  };
+  std::vector<std::array<Index, 3>> triangles;
+  while (rest.size() > 3) {
+    const std::size_t n = rest.size();
+    std::size_t ear = n;
+    for (std::size_t i = 0; i < n && ear == n; ++i) {
+      const Index a = rest[(i + n - 1) % n], b = rest[i], c = rest[(i + 1) % n];
+      const bool free = std::none_of(rest.begin(), rest.end(), [&](Index p) {
+        return p != a && p != b && p != c && left(a, b, p) >= 0 && left(b, c, p) >= 0 && left(c, a, p) >= 0;
+      });
+      if (left(a, b, c) > 0 && free) ear = i;
+    }
+    if (ear == n) ear = 1;
+    triangles.push_back({rest[(ear + n - 1) % n], rest[ear], rest[(ear + 1) % n]});
+    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(ear));
+  }
+  triangles.push_back({rest[0], rest[1], rest[2]});
+  return triangles;
+}
+
 }  // namespace
 
 unsigned members(unsigned count) {
@@ -95,13 +124,18 @@ PolygonSoup turned(const PolygonSoup& soup, Random& random) {
   return rotated(soup, axis, uniform(random, 0, 360));
 }
 
+PolygonSoup jittered(const PolygonSoup& soup, Random& random, double by) {
+  PolygonSoup result = soup;
+  for (Point& p : result.points)
+    p = p + Vector{uniform(random, -by, by), uniform(random, -by, by), uniform(random, -by, by)};
+  return result;
+}
+
 PolygonSoup triangulated(const PolygonSoup& soup) {
   PolygonSoup result = frame_of(soup);
-  for (Index f = 0; f < soup.facet_count(); ++f) {
-    const auto corners = soup.polygon(soup.facet_polygons(f)[0]);
-    for (std::size_t i = 1; i + 1 < corners.size(); ++i)
-      result.add_facet(std::array{corners[0], corners[i], corners[i + 1]}, soup.facet_tag(f));
-  }
+  for (Index f = 0; f < soup.facet_count(); ++f)
+    for (const auto& t : ears(soup.points, soup.polygon(soup.facet_polygons(f)[0])))
+      result.add_facet(t, soup.facet_tag(f));
   return result;
 }
 
@@ -444,8 +478,11 @@ Convex convex_of(const PolygonSoup& soup) {
 Convex clipped(const Convex& body, const Point& origin, const Vector& normal) {
   Convex result;
   std::vector<Point> cut;
+  bool has_cap = false;  // a polygon in the plane
   const auto height = [&](const Point& p) { return dot(p - origin, normal); };
   for (const auto& polygon : body) {
+    has_cap = has_cap ||
+              std::all_of(polygon.begin(), polygon.end(), [&](const Point& p) { return height(p) == 0; });
     std::vector<Point> kept;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
       const Point &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
@@ -460,7 +497,7 @@ Convex clipped(const Convex& body, const Point& origin, const Vector& normal) {
     }
     if (kept.size() >= 3) result.push_back(kept);
   }
-  if (cut.size() < 3) return result;
+  if (has_cap || cut.size() < 3) return result;
   Point centre;
   for (const Point& p : cut) centre = centre + (1.0 / static_cast<double>(cut.size())) * p;
   const Vector along = std::fabs(normal.x) < 0.6 * norm(normal) ? Vector{1, 0, 0} : Vector{0, 1, 0};

@@ -23,7 +23,9 @@ double uniform(Random& random, double low, double high);
 Vector random_direction(Random& random);
 /// About a random axis through the origin, by a random angle.
 PolygonSoup turned(const PolygonSoup& soup, Random& random);
-/// Every polygon cut into triangles from its first corner.
+/// Every point moved by up to this much along each axis, so that nothing meets by symmetry.
+PolygonSoup jittered(const PolygonSoup& soup, Random& random, double by);
+/// Every polygon cut into triangles.
 PolygonSoup triangulated(const PolygonSoup& soup);
 /// Every polygon begins with another corner, its orientation kept.
 PolygonSoup corners_rotated(const PolygonSoup& soup, Random& random);
