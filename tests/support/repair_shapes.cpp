@@ -81,6 +81,7 @@ std::vector<std::array<Index, 3>> ears(const std::vector<Point>& points, std::sp
   const auto left = [&](Index a, Index b, Index c) {
     return dot(normal, cross(points[b] - points[a], points[c] - points[a]));
   };
+  const double rounding = 1e-9 * squared_norm(normal);
   std::vector<std::array<Index, 3>> triangles;
   while (rest.size() > 3) {
     const std::size_t n = rest.size();
@@ -88,9 +89,10 @@ std::vector<std::array<Index, 3>> ears(const std::vector<Point>& points, std::sp
     for (std::size_t i = 0; i < n && ear == n; ++i) {
       const Index a = rest[(i + n - 1) % n], b = rest[i], c = rest[(i + 1) % n];
       const bool free = std::none_of(rest.begin(), rest.end(), [&](Index p) {
-        return p != a && p != b && p != c && left(a, b, p) >= 0 && left(b, c, p) >= 0 && left(c, a, p) >= 0;
+        return p != a && p != b && p != c && left(a, b, p) > -rounding && left(b, c, p) > -rounding &&
+               left(c, a, p) > -rounding;
       });
-      if (left(a, b, c) > 0 && free) ear = i;
+      if (left(a, b, c) > rounding && free) ear = i;
     }
     if (ear == n) ear = 1;
     triangles.push_back({rest[(ear + n - 1) % n], rest[ear], rest[(ear + 1) % n]});
