@@ -1,0 +1,157 @@
+// Facets that meet within rounding of each other: in planes that are common but for rounding, along borders
+// that end in other facets, many in one point. Each member runs in a process of its own with a limit of time.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <numeric>
+
+#include "support/meshing.h"
+#include "support/repair_shapes.h"
+#include "support/shapes.h"
+
+namespace collarmesh {
+namespace {
+
+using namespace testing::faulty;
+
+constexpr unsigned time_limit = 8;  // seconds
+
+// The action says what is wrong.
+template <class Action>
+void expect_in_time(const std::string& name, const Action& action) {
+  EXPECT_EXIT(
+      {
+        alarm(time_limit);
+        const std::string wrong = action();
+        std::fprintf(stderr, "%s\n", wrong.c_str());
+        _exit(wrong.empty() ? 0 : 1);
+      },
+      ::testing::ExitedWithCode(0), "")
+      << name;
+}
+
+std::string wrong_volume(const PolygonSoup& soup, double volume, double deviation = 0) {
+  try {
+    const RepairedPlc r = build_repaired_plc({&soup, 1});
+    const auto faults = faults_of(r, {&soup, 1}, 2 * r.report.tolerance);
+    if (!faults.empty()) return faults[0];
+    const double actual = total_volume(r.plc);
+    if (std::fabs(actual - volume) <= r.report.tolerance * area(soup) + deviation + 1e-9) return "";
+    return fmt::format("volume {}, expected {}", actual, volume);
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+// The wall is an open sheet: it bounds nothing, whatever its border lies on.
+TEST(RepairHard, WallsFlushWithTheSides) {
+  Random random(1);
+  for (unsigned member = 0; member < members(8); ++member) {
+    const double share = member % 2 == 0 ? 1 : uniform(random, 0.2, 0.8);
+    const PolygonSoup wall = box_with_wall(uniform(random, 0.1, 0.9), share);
+    const PolygonSoup soup = member < 2 ? wall : turned(wall, random);
+    expect_in_time(fmt::format("member {}: share {}", member, share), [&] { return wrong_volume(soup, 1); });
+  }
+}
+
+TEST(RepairHard, WallsThroughAllSides) {
+  Random random(2);
+  for (unsigned member = 0; member < members(60); ++member) {
+    const double overhang = uniform(random, 0.01, 0.3);
+    const PolygonSoup soup = turned(box_with_wall(uniform(random, 0.1, 0.9), 1, overhang), random);
+    expect_in_time(fmt::format("member {}: overhang {}", member, overhang),
+                   [&] { return wrong_volume(soup, 1); });
+  }
+}
+
+// All quadrangles that run through the axis meet there.
+TEST(RepairHard, TorusThroughItself) {
+  Random random(3);
+  for (unsigned member = 0; member < members(6); ++member) {
+    const double major = uniform(random, 0.2, 0.7);
+    const auto n = static_cast<unsigned>(8 + random() % 9), m = static_cast<unsigned>(8 + random() % 5);
+    PolygonSoup soup = testing::torus(major, 0.75, n, m);
+    if (member % 2 == 1) soup = jittered(soup, random, 0.02);
+    const Sampled sampled = sampled_volume(soup, random, 12);
+    expect_in_time(fmt::format("member {}: torus({}, 0.75, {}, {})", member, major, n, m),
+                   [&] { return wrong_volume(soup, sampled.volume, 4 * sampled.deviation); });
+  }
+}
+
+TEST(RepairHard, RegularPrismsTwistedByHalfATurn) {
+  Random random(4);
+  for (unsigned k = 3; k <= 6; ++k)
+    for (const double degrees : {140.0, 180.0}) {
+      const PolygonSoup soup = triangulated(twisted_prism(k, degrees, false));
+      const Sampled sampled = sampled_volume(soup, random, 12);
+      expect_in_time(fmt::format("twisted_prism({}, {})", k, degrees),
+                     [&] { return wrong_volume(soup, sampled.volume, 4 * sampled.deviation); });
+    }
+}
+
+std::string wrong_regions(std::span<const PolygonSoup> soups,
+                          const std::map<Tag, std::vector<double>>& expected) {
+  try {
+    const RepairedPlc r = build_repaired_plc(soups);
+    if (!r.report.repaired) return "";
+    const auto actual = region_volumes(r.plc);
+    for (const auto& [tag, volumes] : expected) {
+      const auto found = actual.find(tag);
+      if (found == actual.end() || found->second.size() != volumes.size())
+        return fmt::format("regions of tag {}", tag);
+      for (std::size_t i = 0; i < volumes.size(); ++i)
+        if (std::fabs(found->second[i] - volumes[i]) > 1e-4)
+          return fmt::format("volume {}, expected {}", found->second[i], volumes[i]);
+    }
+    return actual.size() == expected.size() ? "" : "more regions";
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+// Sides in one plane, which rounding moves apart.
+TEST(RepairHard, TwoTurnedCubesSideBySide) {
+  std::vector<PolygonSoup> soups;
+  for (const Box& b : {Box{{0, 0, 0}, {1, 1, 1}}, Box{{0.5, 0, 0}, {1.5, 1, 1}}}) {
+    soups.push_back(testing::rotated(soup_of(b), {1, 2, -1}, 37));
+    soups.back().region_tag = 11 + static_cast<Tag>(soups.size());
+  }
+  expect_in_time("cubes", [&] { return wrong_regions(soups, {{12, {1}}, {13, {0.5}}}); });
+}
+
+TEST(RepairHard, TurnedBoxesOfALattice) {
+  Random random(5);
+  for (unsigned member = 0; member < members(12); ++member) {
+    const auto boxes = random_boxes(random, 2 + member % 2, 3);
+    const Vector axis = random_direction(random);
+    const double degrees = uniform(random, 0, 360);
+    std::vector<PolygonSoup> soups;
+    for (const Box& box : boxes) {
+      soups.push_back(testing::rotated(soup_of(box), axis, degrees));
+      soups.back().region_tag = 11 + static_cast<Tag>(soups.size());
+    }
+    std::vector<Tag> labels(boxes.size());
+    std::iota(labels.begin(), labels.end(), Tag{12});
+    expect_in_time(fmt::format("member {}", member),
+                   [&] { return wrong_regions(soups, piece_volumes(boxes, labels)); });
+  }
+}
+
+TEST(RepairHard, MeshOfAFoldedTerrainIsCertified) {
+  Random random(10);
+  for (unsigned member = 0; member < 3; ++member) {
+    const double fold = uniform(random, 0.15, 0.5);
+    const PolygonSoup soup = folded_terrain(random, 8 + static_cast<unsigned>(random() % 5), fold);
+    SCOPED_TRACE(fmt::format("member {}: fold {}", member, fold));
+    EXPECT_EQ(testing::faults(testing::mesh_of(repaired(soup).plc, testing::with_size(0.4))), "");
+    sampled_volume(soup, random, 10);
+  }
+}
+
+}  // namespace
+}  // namespace collarmesh

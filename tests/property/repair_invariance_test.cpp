@@ -1,0 +1,184 @@
+// Valid input stays as it is; what repair makes does not depend on place, scale, rotation and order.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <functional>
+
+#include "support/acute_shapes.h"
+#include "support/repair_shapes.h"
+#include "support/shapes.h"
+
+namespace collarmesh {
+namespace {
+
+using namespace testing::faulty;
+
+void expect_same_complex(const Plc& a, const Plc& b) {
+  ASSERT_EQ(a.points, b.points);
+  ASSERT_EQ(a.triangles.size(), b.triangles.size());
+  for (std::size_t t = 0; t < a.triangles.size(); ++t) {
+    EXPECT_EQ(a.triangles[t].points, b.triangles[t].points);
+    EXPECT_EQ(a.triangles[t].patch, b.triangles[t].patch);
+  }
+  EXPECT_EQ(a.curves.size(), b.curves.size());
+  ASSERT_EQ(a.regions.size(), b.regions.size());
+  for (std::size_t r = 0; r < a.regions.size(); ++r) EXPECT_EQ(a.regions[r].volume, b.regions[r].volume);
+}
+
+void expect_untouched(std::span<const PolygonSoup> soups) {
+  const RepairedPlc r = build_repaired_plc(soups);
+  EXPECT_FALSE(r.report.repaired);
+  EXPECT_TRUE(r.soups.empty());
+  EXPECT_TRUE(describe(r.report).empty());
+  expect_same_complex(r.plc, build_plc(soups));
+}
+
+TEST(RepairInvariance, ValidInputStays) {
+  using namespace testing;
+  for (const PolygonSoup& soup :
+       {box(), box({0, 0, 0}, {1, 2, 3}, 4), l_shape(), regular_prism(7), icosphere(1, 6),
+        torus(1, 0.3, 30, 12), cylinder(1, 2, 24, 3), cone(1, 2, 24, 3), spiked_sphere(0.05, 1),
+        box_with_cavity(0.3), box_with_small_facet(1e-3), two_boxes(), box_with_dangling_facet(),
+        box_with_skew_lines(5), plate_with_hole(1, 24), random_prism(3), random_hull(4, 20),
+        faulty::slotted_box(1e-7), faulty::finned_box(1e-7)})
+    expect_untouched({&soup, 1});
+  for (const auto& soups :
+       {touching_boxes(), boxes_touching_in_an_edge(), rings_touching_in_a_circle(), nested_boxes(4)})
+    expect_untouched(soups);
+  for (std::uint32_t seed = 1; seed <= 3; ++seed)
+    for (const acute::Shape& shape : acute::random_members(seed)) {
+      SCOPED_TRACE(shape.name);
+      expect_untouched(shape.soups);
+    }
+}
+
+TEST(RepairInvariance, FineValidSphereStays) {
+  const PolygonSoup soup = testing::icosphere_of(1, 100000);
+  EXPECT_FALSE(build_repaired_plc({&soup, 1}).report.repaired);
+}
+
+TEST(RepairInvariance, ModeOffThrowsWhatTheBuilderThrows) {
+  const PolygonSoup soup = box_with_wall(0.5, 0.5);
+  RepairOptions off;
+  off.mode = RepairMode::off;
+  EXPECT_THROW(build_repaired_plc({&soup, 1}, {}, off), PlcError);
+  PolygonSoup bad = testing::box();
+  bad.points[3].y = NAN;
+  EXPECT_THROW(build_repaired_plc({&bad, 1}), PlcError);
+  EXPECT_THROW(repair({&bad, 1}), PlcError);
+}
+
+struct Family {
+  const char* name;
+  std::function<std::vector<PolygonSoup>(Random&)> make;
+};
+
+std::vector<Family> families() {
+  using Soups = std::vector<PolygonSoup>;
+  const auto cube = [](Random& random) {
+    return testing::translated(turned(testing::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, 1), random),
+                               0.4 * random_direction(random));
+  };
+  return {{"turned cubes, one soup",
+           [=](Random& r) {
+             return Soups{joined(std::array{cube(r), cube(r)})};
+           }},
+          {"turned cubes, two soups",
+           [=](Random& r) {
+             return Soups{cube(r), cube(r)};
+           }},
+          {"boxes of a lattice",
+           [](Random& r) {
+             Soups soups;
+             for (const Box& b : random_boxes(r, 3, 3)) soups.push_back(soup_of(b));
+             return soups;
+           }},
+          {"wall",
+           [](Random& r) { return Soups{box_with_wall(uniform(r, 0.2, 0.8), uniform(r, 0.3, 0.7), 0.1)}; }},
+          {"holes", [](Random& r) { return Soups{jittered(sphere_with_holes(r, 6, 2).soup, r, 0.01)}; }},
+          {"prism",
+           [](Random& r) {
+             return Soups{jittered(triangulated(twisted_prism(4, uniform(r, 100, 200), false)), r, 0.1)};
+           }},
+          {"t-junctions", [](Random& r) { return Soups{box_with_t_junctions(r, 3)}; }},
+          {"terrain", [](Random& r) { return Soups{folded_terrain(r, 8, 0.4)}; }}};
+}
+
+std::vector<double> volumes_of(std::span<const PolygonSoup> soups) {
+  const RepairedPlc r = repaired(soups);
+  std::vector<double> volumes;
+  for (std::size_t i = 1; i < r.plc.regions.size(); ++i) volumes.push_back(r.plc.regions[i].volume);
+  std::sort(volumes.begin(), volumes.end());
+  return volumes;
+}
+
+using Change = std::function<PolygonSoup(const PolygonSoup&)>;
+
+void expect_invariant(unsigned count, std::uint64_t seed, double relative, const Change& change,
+                      double scale) {
+  for (const Family& family : families()) {
+    Random random(seed);
+    for (unsigned member = 0; member < members(count); ++member) {
+      SCOPED_TRACE(fmt::format("{}, member {}", family.name, member));
+      const auto soups = family.make(random);
+      std::vector<PolygonSoup> changed;
+      for (const PolygonSoup& soup : soups) changed.push_back(change(soup));
+      const auto before = volumes_of(soups), after = volumes_of(changed);
+      ASSERT_EQ(before.size(), after.size());
+      for (std::size_t i = 0; i < before.size(); ++i)
+        EXPECT_NEAR(after[i] / std::pow(scale, 3), before[i], relative * std::max(1.0, before[i]));
+    }
+  }
+}
+
+TEST(RepairInvariance, PowersOfTwoChangeNothing) {
+  for (const double scale : {1.0 / 1024, 64.0})
+    expect_invariant(
+        2, 21, 0, [&](const PolygonSoup& soup) { return testing::scaled(soup, scale); }, scale);
+}
+
+TEST(RepairInvariance, ScaledAndMoved) {
+  expect_invariant(
+      2, 22, 1e-6, [](const PolygonSoup& soup) { return testing::scaled(soup, 25.4); }, 25.4);
+  expect_invariant(
+      2, 23, 1e-6,
+      [](const PolygonSoup& soup) {
+        return testing::translated(soup, {3.1, -7.7, 1.3});
+      },
+      1);
+}
+
+TEST(RepairInvariance, OrderOfPointsFacetsAndCorners) {
+  expect_invariant(
+      2, 25, 1e-6, [](const PolygonSoup& soup) { return testing::permuted(soup, 5); }, 1);
+  Random random(26);
+  expect_invariant(
+      2, 27, 1e-6, [&](const PolygonSoup& soup) { return corners_rotated(soup, random); }, 1);
+}
+
+TEST(RepairInvariance, SameInputSameResult) {
+  Random random(28);
+  for (const Family& family : families()) {
+    const auto soups = family.make(random);
+    const RepairedPlc first = repaired(soups), second = repaired(soups);
+    expect_same_complex(first.plc, second.plc);
+  }
+}
+
+// What is repaired needs no repair.
+TEST(RepairInvariance, RepairedSoupsAreValid) {
+  Random random(29);
+  for (const Family& family : families()) {
+    SCOPED_TRACE(family.name);
+    const RepairedPlc r = repaired(family.make(random));
+    if (r.report.repaired) {
+      EXPECT_FALSE(repaired(r.soups).report.repaired);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace collarmesh

@@ -1,0 +1,141 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "collarmesh/repair.h"
+
+/// Facets that are no complex, one generator per fault, and oracles for what they have to become. Lengths are
+/// about 1. Facets have tags above 0.
+namespace collarmesh::testing::faulty {
+
+using Random = std::mt19937_64;
+
+/// How many random members a test takes: `count`, times the environment variable COLLARMESH_REPAIR_MEMBERS.
+unsigned members(unsigned count);
+
+double uniform(Random& random, double low, double high);
+Vector random_direction(Random& random);
+/// About a random axis through the origin, by a random angle.
+PolygonSoup turned(const PolygonSoup& soup, Random& random);
+/// Every point moved by up to this much along each axis, so that nothing meets by symmetry.
+PolygonSoup jittered(const PolygonSoup& soup, Random& random, double by);
+/// Every polygon cut into triangles.
+PolygonSoup triangulated(const PolygonSoup& soup);
+/// Every polygon begins with another corner, its orientation kept.
+PolygonSoup corners_rotated(const PolygonSoup& soup, Random& random);
+/// Only the facets for which `keep` holds.
+template <class Keep>
+PolygonSoup filtered(const PolygonSoup& soup, const Keep& keep) {
+  PolygonSoup result;
+  result.name = soup.name;
+  result.points = soup.points;
+  result.region_tag = soup.region_tag;
+  for (Index f = 0; f < soup.facet_count(); ++f)
+    if (keep(f)) result.add_facet(soup.polygon(soup.facet_polygons(f)[0]), soup.facet_tag(f));
+  return result;
+}
+/// All in one soup, points not merged.
+PolygonSoup joined(std::span<const PolygonSoup> soups);
+
+// --- Shapes ---
+
+/// Boxes whose corners are multiples of 1/4 between 0 and `grid` / 4: many share faces and edges, overlap in
+/// faces, touch or lie inside each other. No two are equal.
+std::vector<Box> random_boxes(Random& random, unsigned count, unsigned grid);
+PolygonSoup soup_of(const Box& box);
+
+/// The unit box with a rectangle (tag 7) across at z = height; `share` < 1: it ends inside. Its corners lie
+/// on sides of the box, or `overhang` outside.
+PolygonSoup box_with_wall(double height, double share, double overhang = 0);
+
+/// A prism of height 1 over a regular k-gon of radius 1 whose top is twisted: sides are quadrangles that are
+/// not planar, or two triangles each.
+PolygonSoup twisted_prism(unsigned k, double degrees, bool quadrangles);
+
+/// Two spheres of radius 1 and `inner`, either turned inside out.
+PolygonSoup nested_spheres(double inner, bool outer_inverted, bool inner_inverted);
+
+struct OpenSphere {
+  PolygonSoup soup;
+  std::vector<Point> holes;        ///< centres
+  std::vector<std::size_t> edges;  ///< around each
+};
+/// A unit sphere without the facets around some of its points, which are far from each other.
+OpenSphere sphere_with_holes(Random& random, unsigned frequency, unsigned holes);
+
+/// Some facets a second time, the same way round or the other.
+PolygonSoup with_repeated_facets(const PolygonSoup& soup, Random& random, unsigned count, bool inverted);
+/// Some facets turned round.
+PolygonSoup with_inverted_facets(const PolygonSoup& soup, Random& random, unsigned count);
+
+/// The unit box with some sides cut into n x n squares, so that their corners lie on edges of others.
+PolygonSoup box_with_t_junctions(Random& random, unsigned n);
+
+/// A cube of edge 1 with a slot of this width, as deep as half of it, from above.
+PolygonSoup slotted_box(double width);
+/// A cube of edge 1 with a fin of this width and height 1/2 on top.
+PolygonSoup finned_box(double width);
+/// A cube of edge 1 with a pyramid of this width and height 1/2 on top: its base lies in a facet of
+/// triangles.
+PolygonSoup spiked_box(double width);
+
+/// A block whose upper side is a landscape of n x n squares that folds over and through itself.
+PolygonSoup folded_terrain(Random& random, unsigned n, double fold);
+
+/// Moved by this much along a random direction, coordinates rounded to 32 bits.
+PolygonSoup in_single_precision(const PolygonSoup& soup, const Vector& offset);
+
+// --- Oracles ---
+
+double signed_volume(const PolygonSoup& soup);
+double area(const PolygonSoup& soup);
+Box bounds(std::span<const PolygonSoup> soups);
+
+/// By its definition: the sum of the signed solid angles of all triangles over 4 pi.
+double direct_winding_number(const PolygonSoup& soup, const Point& p);
+
+struct Sampled {
+  double volume = 0, deviation = 0;  ///< and its standard deviation
+};
+/// The volume of what winding numbers above 1/2 enclose, from two random points in each of n^3 cells.
+Sampled sampled_volume(const PolygonSoup& soup, Random& random, unsigned n);
+
+/// The volumes of what boxes enclose, in pieces that are connected through facets: by label, sorted. The
+/// first box has the place; boxes with one label are one.
+std::map<Tag, std::vector<double>> piece_volumes(std::span<const Box> boxes, std::span<const Tag> labels);
+
+/// Polygons around a convex body, outwards.
+using Convex = std::vector<std::vector<Point>>;
+Convex convex_of(const PolygonSoup& soup);
+/// What lies behind the plane.
+Convex clipped(const Convex& body, const Point& origin, const Vector& normal);
+Convex intersection(Convex a, const Convex& b);
+double volume(const Convex& body);
+/// By inclusion and exclusion. The second: what each has that no earlier one has.
+double union_volume(std::span<const Convex> bodies);
+std::vector<double> places(std::span<const Convex> bodies);
+
+// --- Judgement ---
+
+double total_volume(const Plc& plc);
+/// By region tag, sorted.
+std::map<Tag, std::vector<double>> region_volumes(const Plc& plc);
+
+/// What is wrong with a repaired complex whatever it was before: the complex itself, tags that come from
+/// nowhere, corners further from the input than `reach` (absolute) that fill no hole.
+std::vector<std::string> faults_of(const RepairedPlc& repaired, std::span<const PolygonSoup> input,
+                                   double reach);
+
+/// Builds, or says what was thrown.
+RepairedPlc repaired(std::span<const PolygonSoup> soups, const RepairOptions& options = {});
+inline RepairedPlc repaired(const PolygonSoup& soup, const RepairOptions& options = {}) {
+  return repaired({&soup, 1}, options);
+}
+
+}  // namespace collarmesh::testing::faulty

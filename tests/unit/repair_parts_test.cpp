@@ -1,0 +1,543 @@
+// Parts of repair, each alone.
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/intersections.h>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "plc/edges.h"
+#include "repair/arrangement.h"
+#include "repair/holes.h"
+#include "repair/inside.h"
+#include "repair/repeated.h"
+#include "repair/snapping.h"
+#include "repair/winding_number.h"
+#include "support/repair_shapes.h"
+#include "support/shapes.h"
+
+namespace collarmesh::repairing {
+namespace {
+
+using namespace build;
+using namespace testing::faulty;
+
+// A draft of surfaces as the stage takes them; equal points are one, unless `torn`.
+Draft draft_of(std::span<const PolygonSoup> soups, bool torn = false) {
+  Draft draft;
+  for (Index s = 0; s < soups.size(); ++s) {
+    const PolygonSoup soup = triangulated(soups[s]);
+    const auto first = static_cast<Index>(draft.points.size());
+    draft.points.insert(draft.points.end(), soup.points.begin(), soup.points.end());
+    for (Index f = 0; f < soup.facet_count(); ++f) {
+      const auto c = soup.polygon(f);
+      draft.add_triangle({first + c[0], first + c[1], first + c[2]}, {soup.facet_tag(f), s, f, true});
+    }
+    draft.soup_names.push_back(fmt::format("soup {}", s));
+    draft.soup_is_complex.push_back(false);
+    draft.soup_gives_features.push_back(false);
+  }
+  draft.point_tags.assign(draft.points.size(), 0);
+  for (const Point& p : draft.points) draft.bounds.add(p);
+  draft.planar_tolerance = 1e-6 * draft.bounds.diagonal();
+  if (!torn) unify_equal_points(draft);
+  return draft;
+}
+Draft draft_of(const PolygonSoup& soup) { return draft_of({&soup, 1}); }
+
+double volume_of(const Draft& draft) {
+  double six = 0;
+  for (Index t = 0; t < draft.triangles.size(); ++t)
+    six += dot(draft.corner(t, 0), cross(draft.corner(t, 1), draft.corner(t, 2)));
+  return six / 6;
+}
+
+double area_of(const Draft& draft) {
+  double twice = 0;
+  for (Index t = 0; t < draft.triangles.size(); ++t)
+    twice += norm(cross(draft.corner(t, 1) - draft.corner(t, 0), draft.corner(t, 2) - draft.corner(t, 0)));
+  return twice / 2;
+}
+
+using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
+
+struct MeetingPoints : boost::static_visitor<std::vector<Exact::Point_3>> {
+  result_type operator()(const Exact::Point_3& p) const { return {p}; }
+  result_type operator()(const Exact::Segment_3& s) const { return {s.source(), s.target()}; }
+  result_type operator()(const Exact::Triangle_3& t) const { return {t[0], t[1], t[2]}; }
+  result_type operator()(const result_type& polygon) const { return polygon; }
+};
+
+// The pairs of triangles that meet anywhere but in a common corner, a common edge or as copies.
+std::size_t brute_force_intersections(const Draft& draft) {
+  std::vector<Exact::Triangle_3> triangles;
+  for (Index t = 0; t < draft.triangles.size(); ++t) {
+    std::array<Exact::Point_3, 3> p;
+    for (unsigned i = 0; i < 3; ++i)
+      p[i] = {draft.corner(t, i).x, draft.corner(t, i).y, draft.corner(t, i).z};
+    triangles.emplace_back(p[0], p[1], p[2]);
+  }
+  std::size_t count = 0;
+  for (Index s = 0; s < triangles.size(); ++s)
+    for (Index t = 0; t < s; ++t) {
+      if (!CGAL::do_intersect(triangles[s].bbox(), triangles[t].bbox())) continue;
+      const auto met = CGAL::intersection(triangles[s], triangles[t]);
+      if (!met) continue;
+      const auto common = [&](const Exact::Point_3& p) {
+        for (unsigned i = 0; i < 3; ++i)
+          for (unsigned j = 0; j < 3; ++j)
+            if (draft.triangles[s][i] == draft.triangles[t][j] && triangles[s][static_cast<int>(i)] == p)
+              return true;
+        return false;
+      };
+      const auto points = boost::apply_visitor(MeetingPoints(), *met);
+      count += std::all_of(points.begin(), points.end(), common) ? 0 : 1;
+    }
+  return count;
+}
+
+// --- WindingNumber ---
+
+WindingNumber winding_of(const PolygonSoup& soup, int weight = 1) {
+  const PolygonSoup flat = triangulated(soup);
+  std::vector<WeightedTriangle> triangles;
+  for (Index f = 0; f < flat.facet_count(); ++f) {
+    const auto c = flat.polygon(f);
+    triangles.push_back({{flat.points[c[0]], flat.points[c[1]], flat.points[c[2]]}, weight, f});
+  }
+  return WindingNumber(std::move(triangles));
+}
+
+TEST(WindingNumber, OfNothingIsZero) { EXPECT_EQ(WindingNumber({}).at({1, 2, 3}), 0); }
+
+TEST(WindingNumber, IsTheDirectSum) {
+  Random random(1);
+  for (unsigned member = 0; member < members(12); ++member) {
+    SCOPED_TRACE(member);
+    const PolygonSoup soup = member % 3 == 0   ? folded_terrain(random, 12, 0.4)
+                             : member % 3 == 1 ? sphere_with_holes(random, 8, 3).soup
+                                               : triangulated(twisted_prism(6, 150, false));
+    const WindingNumber winding = winding_of(soup);
+    for (int i = 0; i < 200; ++i) {
+      const Point p{uniform(random, -2, 2), uniform(random, -2, 2), uniform(random, -2, 2)};
+      EXPECT_NEAR(winding.at(p), direct_winding_number(soup, p), 0.05);
+    }
+  }
+}
+
+TEST(WindingNumber, OfClosedSurfacesIsWhole) {
+  Random random(2);
+  const WindingNumber sphere = winding_of(testing::icosphere(1, 20)),
+                      twice = winding_of(testing::icosphere(1, 20), 2),
+                      inverted = winding_of(testing::inverted(testing::icosphere(1, 20)));
+  for (int i = 0; i < 500; ++i) {
+    const double radius = uniform(random, 0, 2);
+    if (std::fabs(radius - 1) < 0.01) continue;
+    const Point p = radius * random_direction(random);
+    const double inside = radius < 1 ? 1 : 0;
+    EXPECT_NEAR(sphere.at(p), inside, 0.05);
+    EXPECT_NEAR(twice.at(p), 2 * inside, 0.1);
+    EXPECT_NEAR(inverted.at(p), -inside, 0.05);
+  }
+}
+
+TEST(WindingNumber, OnATriangleLeftOutIsTheMeanOfItsSides) {
+  const PolygonSoup sphere = testing::icosphere(1, 10);
+  const WindingNumber winding = winding_of(sphere);
+  for (Index f = 0; f < sphere.facet_count(); f += 17) {
+    const auto c = sphere.polygon(f);
+    const Point centre = (1.0 / 3) * (sphere.points[c[0]] + sphere.points[c[1]] + sphere.points[c[2]]);
+    EXPECT_NEAR(winding.at(centre, f), 0.5, 0.02);
+  }
+}
+
+// --- arrange ---
+
+Draft pair_of(const std::array<Point, 3>& a, const std::array<Point, 3>& b, bool two_soups = false) {
+  std::array<PolygonSoup, 2> soups;
+  const std::array<std::array<Point, 3>, 2> triangles{a, b};
+  for (std::size_t i = 0; i < 2; ++i) {
+    soups[i].points.assign(triangles[i].begin(), triangles[i].end());
+    soups[i].add_facet(std::array<Index, 3>{0, 1, 2}, 1 + static_cast<Tag>(i));
+  }
+  if (two_soups) return draft_of(soups);
+  return draft_of(joined(soups));
+}
+
+// Areas by tag: what cutting must not change.
+std::map<Tag, double> areas(const Draft& draft) {
+  std::map<Tag, double> result;
+  for (Index t = 0; t < draft.triangles.size(); ++t)
+    result[draft.origins[t].tag] +=
+        0.5 * norm(cross(draft.corner(t, 1) - draft.corner(t, 0), draft.corner(t, 2) - draft.corner(t, 0)));
+  return result;
+}
+
+void expect_arranged(Draft draft, bool meets, double slack = 1e-12) {
+  const auto before = areas(draft);
+  const ArrangementReport report = arrange(draft);
+  EXPECT_TRUE(report.clean);
+  EXPECT_EQ(report.intersecting_pairs > 0, meets);
+  EXPECT_EQ(brute_force_intersections(draft), 0U);
+  const auto after = areas(draft);
+  ASSERT_EQ(after.size(), before.size());
+  for (const auto& [tag, a] : before) EXPECT_NEAR(after.at(tag), a, slack);
+  if (!meets) {
+    EXPECT_EQ(draft.triangles.size(), 2U);
+  }
+}
+
+TEST(Arrangement, SinglePairsOfEveryKind) {
+  const std::array<Point, 3> flat{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}};
+  struct Case {
+    const char* name;
+    std::array<Point, 3> second;
+    bool meets;
+  };
+  for (const Case& c :
+       {Case{"apart", {{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}}, false},
+        {"crossing inside", {{{1, 1, -1}, {1, 1, 1}, {1.5, 1, 1}}}, true},
+        {"crossing through an edge", {{{1, -1, -1}, {1, 1, 1}, {1.5, 1, 1}}}, true},
+        {"crossing through both", {{{-1, 1, -1}, {-1, 1, 1}, {9, 1, 0}}}, true},
+        {"touching with a corner inside", {{{1, 1, 0}, {1, 1, 1}, {2, 1, 1}}}, true},
+        {"touching with a corner on an edge", {{{1, 0, 0}, {1, 0, 1}, {2, 0, 1}}}, true},
+        {"touching with an edge inside", {{{1, 1, 0}, {2, 1, 0}, {1, 1, 1}}}, true},
+        {"touching with an edge over a corner", {{{-1, 1, 0}, {1, -1, 0}, {0, 0, 1}}}, true},
+        {"edge across an edge", {{{2, -1, -1}, {2, 1, 1}, {2, -3, 1}}}, true},
+        {"part of an edge in common", {{{1, 0, 0}, {3, 0, 0}, {2, 0, 1}}}, true},
+        {"an edge in common", {{{0, 0, 0}, {4, 0, 0}, {2, 0, 1}}}, false},
+        {"a corner in common", {{{0, 0, 0}, {-1, 0, 1}, {0, -1, 1}}}, false},
+        {"a corner in common and crossing", {{{0, 0, 0}, {2, 2, 1}, {2, 2, -1}}}, true},
+        {"coplanar, inside", {{{1, 1, 0}, {2, 1, 0}, {1, 2, 0}}}, true},
+        {"coplanar, crossing", {{{1, 1, 0}, {5, 1, 0}, {1, 5, 0}}}, true},
+        {"coplanar, a star", {{{3, 3, 0}, {-1, 3, 0}, {3, -1, 0}}}, true},
+        {"coplanar, an edge in common, beside", {{{0, 0, 0}, {2, -2, 0}, {4, 0, 0}}}, false},
+        {"coplanar, an edge in common, folded", {{{0, 0, 0}, {4, 0, 0}, {2, 1, 0}}}, true},
+        {"coplanar, an edge in common, folded over", {{{0, 0, 0}, {4, 0, 0}, {3, 3, 0}}}, true},
+        {"coplanar, a corner in common", {{{0, 0, 0}, {3, 1, 0}, {1, 3, 0}}}, true},
+        {"coplanar, part of an edge in common", {{{1, 0, 0}, {2, 0, 0}, {1, -1, 0}}}, true},
+        {"coplanar, apart", {{{5, 5, 0}, {6, 5, 0}, {5, 6, 0}}}, false}}) {
+    SCOPED_TRACE(c.name);
+    for (const bool two_soups : {false, true})
+      for (unsigned turn = 0; turn < 6; ++turn) {
+        std::array<Point, 3> second = c.second;
+        std::rotate(second.begin(), second.begin() + turn % 3, second.end());
+        if (turn >= 3) std::swap(second[1], second[2]);
+        expect_arranged(pair_of(flat, second, two_soups), c.meets);
+        expect_arranged(pair_of(second, flat, two_soups), c.meets);
+      }
+  }
+}
+
+TEST(Arrangement, CopiesStay) {
+  const std::array<Point, 3> a{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}},
+      turned_a{{{0, 0, 0}, {0, 4, 0}, {4, 0, 0}}};
+  for (const auto& b : {a, turned_a}) {
+    Draft draft = pair_of(a, b);
+    EXPECT_TRUE(arrange(draft).clean);
+    EXPECT_EQ(draft.triangles.size(), 2U);
+  }
+}
+
+TEST(Arrangement, RandomPairsAndHandfuls) {
+  Random random(3);
+  for (unsigned member = 0; member < members(150); ++member) {
+    SCOPED_TRACE(member);
+    // On a lattice most meetings are special; elsewhere few are.
+    const bool lattice = member % 2 == 0;
+    std::vector<PolygonSoup> soups;
+    for (unsigned i = 0; i < 2 + member % 5; ++i) {
+      PolygonSoup soup;
+      do {
+        soup.points.clear();
+        for (int k = 0; k < 3; ++k) {
+          Point p;
+          for (std::size_t axis = 0; axis < 3; ++axis)
+            p[axis] = lattice ? static_cast<double>(random() % (axis == 2 ? 2 : 5)) : uniform(random, 0, 4);
+          soup.points.push_back(p);
+        }
+      } while (!(norm(cross(soup.points[1] - soup.points[0], soup.points[2] - soup.points[0])) > 0.01));
+      soup.add_facet(std::array<Index, 3>{0, 1, 2}, 1 + static_cast<Tag>(i));
+      soups.push_back(soup);
+    }
+    Draft draft = draft_of(joined(soups));
+    const auto before = areas(draft);
+    EXPECT_TRUE(arrange(draft).clean);
+    EXPECT_EQ(brute_force_intersections(draft), 0U);
+    const auto after = areas(draft);
+    for (const auto& [tag, a] : before) EXPECT_NEAR(after.at(tag), a, 1e-10);
+  }
+}
+
+// --- snap_near_features ---
+
+// Is every edge of every soup run through as often one way as the other?
+bool balanced(const Draft& draft) { return count_open_edges(draft) == 0; }
+
+TEST(Snapping, ClosesTJunctionsThatAreOpen) {
+  Random random(4);
+  for (unsigned member = 0; member < members(30); ++member) {
+    SCOPED_TRACE(member);
+    Draft draft = draft_of(turned(box_with_t_junctions(random, 2 + member % 4), random));
+    EXPECT_FALSE(balanced(draft));
+    const double before = volume_of(draft);
+    snap_near_features(draft, 1e-6, member % 2 == 0 ? SnapWhat::borders : SnapWhat::all);
+    EXPECT_TRUE(balanced(draft));
+    EXPECT_NEAR(volume_of(draft), before, 1e-5);
+  }
+}
+
+TEST(Snapping, KeepsClosedSurfacesClosed) {
+  Random random(5);
+  for (unsigned member = 0; member < members(40); ++member) {
+    const double distance_limit = std::pow(10, uniform(random, -4, -1));
+    SCOPED_TRACE(fmt::format("member {}: {}", member, distance_limit));
+    PolygonSoup soup;
+    switch (member % 4) {
+      case 0: soup = turned(finned_box(uniform(random, 0, 2) * distance_limit), random); break;
+      case 1: soup = turned(slotted_box(uniform(random, 0, 2) * distance_limit), random); break;
+      case 2: soup = turned(spiked_box(uniform(random, 0, 2) * distance_limit), random); break;
+      default: soup = testing::icosphere(1, 6);
+    }
+    Draft draft = draft_of(soup);
+    ASSERT_TRUE(balanced(draft));
+    const double before = volume_of(draft);
+    const SnapReport report = snap_near_features(draft, distance_limit);
+    EXPECT_TRUE(balanced(draft));
+    EXPECT_LE(report.largest_distance, distance_limit);
+    EXPECT_NEAR(volume_of(draft), before, 2 * distance_limit * area(soup));
+  }
+}
+
+TEST(Snapping, LeavesWhatIsFarApart) {
+  Random random(6);
+  for (const PolygonSoup& soup :
+       {testing::box(), testing::icosphere(1, 5), testing::torus(1, 0.3, 20, 10), finned_box(0.1)}) {
+    Draft draft = draft_of(turned(soup, random));
+    const auto triangles = draft.triangles;
+    const auto points = draft.points;
+    EXPECT_FALSE(snap_near_features(draft, 1e-5).changed());
+    EXPECT_EQ(draft.triangles, triangles);
+    EXPECT_EQ(draft.points, points);
+  }
+}
+
+// The corners that are closer to others or to edges that they do not end.
+std::size_t near_corners(const Draft& draft, double limit) {
+  std::size_t count = 0;
+  std::set<Index> used;
+  for (const Corners& t : draft.triangles) used.insert(t.begin(), t.end());
+  const EdgeTable edges(draft.triangles, draft.points.size());
+  for (const Index p : used) {
+    for (const Index q : used) count += p < q && distance(draft.points[p], draft.points[q]) < limit ? 1 : 0;
+    for (Index e = 0; e < edges.size(); ++e) {
+      const auto [a, b] = edges.ends(e);
+      if (p == a || p == b) continue;
+      const Vector d = draft.points[b] - draft.points[a];
+      const double t = std::clamp(dot(draft.points[p] - draft.points[a], d) / squared_norm(d), 0.0, 1.0);
+      count += distance(draft.points[p], draft.points[a] + t * d) < limit ? 1 : 0;
+    }
+  }
+  return count;
+}
+
+Draft arranged_spheres(Random& random) {
+  Draft draft = draft_of(
+      joined(std::array{turned(testing::icosphere(1, 3), random),
+                        testing::translated(turned(testing::icosphere(1, 3), random), {0.5, 0.2, 0})}));
+  EXPECT_TRUE(arrange(draft).clean);
+  return draft;
+}
+
+TEST(Snapping, LeavesNothingNear) {
+  Random random(7);
+  for (unsigned member = 0; member < members(20); ++member) {
+    SCOPED_TRACE(member);
+    Draft draft = arranged_spheres(random);
+    snap_near_features(draft, 1e-5);
+    EXPECT_EQ(near_corners(draft, 0.99e-5), 0U);
+  }
+}
+
+TEST(Snapping, CancelsTwins) {
+  const PolygonSoup ball = testing::icosphere(1, 2);
+  Draft draft = draft_of(joined(std::array{ball, testing::inverted(ball), ball}));
+  EXPECT_EQ(draft.triangles.size(), 3U * ball.facet_count());
+  EXPECT_EQ(cancel_twins(draft), 2U * ball.facet_count());
+  EXPECT_NEAR(volume_of(draft), signed_volume(ball), 1e-12);
+  // Not those of different soups.
+  Draft two = draft_of(std::array{ball, testing::inverted(ball)});
+  EXPECT_EQ(cancel_twins(two), 0U);
+}
+
+// --- drop_repeated ---
+
+TEST(Repeated, FacetsAreDropped) {
+  Random random(8);
+  for (unsigned member = 0; member < members(20); ++member) {
+    const auto count = static_cast<unsigned>(1 + random() % 8);
+    const PolygonSoup ball = testing::icosphere(1, 3);
+    Draft draft = draft_of(with_repeated_facets(ball, random, count, false));
+    const RepeatedReport report = drop_repeated(draft);
+    EXPECT_EQ(report.count, count);
+    EXPECT_EQ(report.where.size(), count);
+    EXPECT_EQ(draft.triangles.size(), ball.facet_count());
+    EXPECT_TRUE(balanced(draft));
+  }
+}
+
+TEST(Repeated, ACopyOfAWholeSurfaceIsDropped) {
+  const PolygonSoup ball = testing::icosphere(1, 2);
+  Draft draft = draft_of(joined(std::array{ball, ball}));
+  const auto report = drop_repeated(draft);
+  EXPECT_TRUE(balanced(draft));
+  EXPECT_TRUE(report.count == 0 || draft.triangles.size() == ball.facet_count());
+}
+
+TEST(Repeated, ThoseOfOtherSoupsAndOrientationsStay) {
+  const PolygonSoup ball = testing::icosphere(1, 2);
+  Draft two = draft_of(std::array{ball, ball});
+  EXPECT_EQ(drop_repeated(two).count, 0U);
+  Draft inverted = draft_of(joined(std::array{ball, testing::inverted(ball)}));
+  EXPECT_EQ(drop_repeated(inverted).count, 0U);
+  EXPECT_EQ(inverted.triangles.size(), 2U * ball.facet_count());
+}
+
+// --- fill_holes ---
+
+TEST(Holes, AreFilledWithATagOfTheirOwn) {
+  Random random(9);
+  for (unsigned member = 0; member < members(20); ++member) {
+    SCOPED_TRACE(member);
+    const OpenSphere open = sphere_with_holes(random, 8, 1 + member % 5);
+    Draft draft = draft_of(open.soup);
+    std::size_t around = 0;
+    for (const std::size_t edges : open.edges) around += edges;
+    EXPECT_EQ(count_open_edges(draft), around);
+    const std::size_t before = draft.triangles.size();
+    const auto filled = fill_holes(draft);
+    ASSERT_EQ(filled.size(), open.holes.size());
+    EXPECT_TRUE(balanced(draft));
+    EXPECT_EQ(draft.triangles.size(), before + around - 2 * filled.size());
+    std::set<Tag> tags;
+    for (const FilledHole& hole : filled) tags.insert(hole.tag);
+    EXPECT_EQ(tags.size(), filled.size());
+    EXPECT_EQ(tags.count(1), 0U);
+    EXPECT_GT(volume_of(draft), 0.9 * signed_volume(testing::icosphere(1, 8)));
+  }
+}
+
+TEST(Holes, OfAPlaneSideHaveItsArea) {
+  Random random(10);
+  for (Tag side = 1; side <= 6; ++side) {
+    const PolygonSoup cube = testing::box({0, 0, 0}, {1, 1, 1}, 3);
+    Draft draft = draft_of(filtered(cube, [&](Index f) { return cube.facet_tag(f) != side; }));
+    const auto filled = fill_holes(draft);
+    ASSERT_EQ(filled.size(), 1U);
+    EXPECT_EQ(filled[0].edges, 12U);
+    EXPECT_EQ(filled[0].tag, side == 6 ? 6 : 7);
+    EXPECT_NEAR(filled[0].area, 1, 1e-12);
+    EXPECT_NEAR(filled[0].length, 4, 1e-12);
+    EXPECT_NEAR(volume_of(draft), 1, 1e-12);
+    EXPECT_TRUE(balanced(draft));
+  }
+}
+
+TEST(Holes, SheetsAreNoHoles) {
+  PolygonSoup sheet;
+  sheet.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  sheet.add_facet(std::array<Index, 4>{0, 1, 2, 3}, 1);
+  Draft draft = draft_of(sheet);
+  EXPECT_TRUE(fill_holes(draft).empty());
+  EXPECT_EQ(draft.triangles.size(), 2U);
+}
+
+// --- turn_components ---
+
+TEST(TurnComponents, WhatIsInsideOutIsTurned) {
+  const PolygonSoup ball = testing::icosphere(1, 2), small = testing::icosphere(0.4, 2);
+  const double large = signed_volume(ball), little = signed_volume(small);
+  const auto turned_volume = [](const std::vector<PolygonSoup>& soups, std::size_t turned) {
+    Draft draft = draft_of(joined(soups));
+    EXPECT_EQ(turn_components(draft).turned_components, turned);
+    return volume_of(draft);
+  };
+  using testing::inverted;
+  EXPECT_NEAR(turned_volume({ball}, 0), large, 1e-12);
+  EXPECT_NEAR(turned_volume({inverted(ball)}, 1), large, 1e-12);
+  EXPECT_NEAR(turned_volume({ball, inverted(small)}, 0), large - little, 1e-12);
+  EXPECT_NEAR(turned_volume({ball, small}, 0), large + little, 1e-12);
+  EXPECT_NEAR(turned_volume({inverted(ball), small}, 2), large - little, 1e-12);
+  EXPECT_NEAR(turned_volume({inverted(ball), inverted(small)}, 2), large + little, 1e-12);
+  EXPECT_NEAR(turned_volume({ball, testing::translated(inverted(small), {5, 0, 0})}, 1), large + little,
+              1e-12);
+}
+
+// --- keep_boundaries ---
+
+TEST(KeepBoundaries, OfLatticeBoxesIsTheBoundaryOfTheirUnion) {
+  Random random(11);
+  for (unsigned member = 0; member < members(60); ++member) {
+    SCOPED_TRACE(member);
+    const auto boxes = random_boxes(random, 2 + member % 3, 2 + member % 3);
+    std::vector<PolygonSoup> soups;
+    for (const Box& box : boxes) soups.push_back(soup_of(box));
+    // In one soup.
+    Draft one = draft_of(joined(soups));
+    // Clusters without any tangle stay: those have to be the whole of it to be compared.
+    const bool meet = arrange(one).intersecting_pairs > 0;
+    cancel_twins(one);
+    const InsideReport report = keep_boundaries(one);
+    EXPECT_TRUE(balanced(one));
+    double all = 0;
+    for (const auto& [tag, volumes] : piece_volumes(boxes, std::vector<Tag>(boxes.size(), 1)))
+      for (const double v : volumes) all += v;
+    if (meet && boxes.size() == 2) {
+      EXPECT_NEAR(volume_of(one), all, 1e-12);
+    }
+    if (!meet) {
+      EXPECT_EQ(report.removed_triangles, 0U);
+    }
+    // In several.
+    Draft several = draft_of(soups);
+    const bool touch = arrange(several).intersecting_pairs > 0;
+    keep_boundaries(several);
+    EXPECT_TRUE(balanced(several));
+    if (!touch || boxes.size() > 2) continue;
+    EXPECT_NEAR(volume_of(several), all, 1e-12);
+    EXPECT_EQ(brute_force_intersections(several), 0U);
+  }
+}
+
+TEST(KeepBoundaries, CleanSurfacesStay) {
+  for (const PolygonSoup& soup :
+       {testing::box(), testing::icosphere(1, 3), nested_spheres(0.5, false, true)}) {
+    Draft draft = draft_of(soup);
+    const auto before = draft.triangles;
+    keep_boundaries(draft);
+    EXPECT_EQ(draft.triangles, before);
+  }
+}
+
+TEST(KeepBoundaries, WallInsideStaysAndOutsideGoes) {
+  Draft draft = draft_of(box_with_wall(0.5, 0.5, 0.25));
+  ASSERT_TRUE(arrange(draft).clean);
+  const InsideReport report = keep_boundaries(draft);
+  double inside = 0;
+  for (Index t = 0; t < draft.triangles.size(); ++t)
+    if (draft.origins[t].tag == 7)
+      inside +=
+          0.5 * norm(cross(draft.corner(t, 1) - draft.corner(t, 0), draft.corner(t, 2) - draft.corner(t, 0)));
+  EXPECT_NEAR(inside, 0.5, 1e-12);
+  EXPECT_GT(report.internal_facets, 0U);
+  EXPECT_GT(report.dropped_sheets, 0U);
+  EXPECT_NEAR(area_of(draft), 6.5, 1e-12);
+}
+
+}  // namespace
+}  // namespace collarmesh::repairing
