@@ -23,6 +23,7 @@ from judging import JUDGE, TIME_LIMIT, Failed, run, verdict
 
 CORPUS = os.environ.get("COLLARMESH_CORPUS", "")
 RELATIVE_SIZE = 1 / 25
+REPAIR_LIMIT = 20  # seconds
 RELATIVE_DISTANCE = 1e-3
 # Facets that are triangles of flat faces, each with a tag of its own: their acute corners in the plane
 # are creases (curves 58 and 59 meet at 0.59 degrees in (19.5, 0, 0)), which the judge does not look for.
@@ -36,7 +37,7 @@ COORDINATES = re.compile(r"-?\d[\d.e+-]*, ?-?\d[\d.e+-]*, ?-?\d")
 
 
 def expected_code(name, expect):
-    """The exit code that fits what the manifest expects."""
+    """The exit code that fits what the manifest expects, as the file is."""
     return 0 if expect.startswith(("mesh:", "CAD:")) or name in CLOSED_WHEN_WELDED else 4
 
 
@@ -94,8 +95,9 @@ def mesh_one(program, path, expect, folder):
     size = [] if diagonal is None else ["--size", diagonal * RELATIVE_SIZE]
     report = folder / (path.name + ".json")
     exact = ["--feature-angle", 0] if is_exact(path) else []
-    result = run(program, path, "-o", mesh, *size, *exact, "--time-limit", TIME_LIMIT, "--report", report)
     expected = expected_code(path.name, expect)
+    as_it_is = ["--repair", "none"] if expected else []
+    result = run(program, path, "-o", mesh, *size, *exact, *as_it_is, "--time-limit", TIME_LIMIT, "--report", report)
     if result.returncode != expected:
         raise Failed(f"exit code {result.returncode} in place of {expected}: {(result.stderr.splitlines() or [''])[0]}")
     if result.returncode == 0:
@@ -107,7 +109,20 @@ def mesh_one(program, path, expect, folder):
         raise Failed(f"a mesh was written in spite of exit code {result.returncode}")
     if not COORDINATES.search(result.stderr):
         raise Failed(f"exit code {result.returncode} without coordinates: {result.stderr}")
-    return f"refused ({result.returncode}): {result.stderr.splitlines()[0]}"
+    return f"refused ({result.returncode}){repaired(program, path, mesh)}: {result.stderr.splitlines()[0]}"
+
+
+def repaired(program, path, mesh):
+    """What repair makes of a file that is no complex: a mesh that keeps every guarantee, or a clear error."""
+    result = run(program, path, "-o", mesh, "--time-limit", REPAIR_LIMIT)
+    if result.returncode not in (0, 4, 5):
+        raise Failed(f"repaired: exit code {result.returncode}: {(result.stderr.splitlines() or [''])[0]}")
+    if result.returncode != 0:
+        return f", not repaired ({result.returncode})"
+    checked = run(program, "check", mesh, "--against", path)
+    if checked.returncode != 0:
+        raise Failed(f"repaired: check disagrees: {(checked.stdout.splitlines() or [''])[0]}")
+    return ", repaired"
 
 
 def outcome(program, path, expect, folder):

@@ -180,7 +180,7 @@ std::map<Tag, double> areas(const Draft& draft) {
 
 void expect_arranged(Draft draft, bool meets, double slack = 1e-12) {
   const auto before = areas(draft);
-  const ArrangementReport report = arrange(draft);
+  const ArrangementReport report = arrange(draft, 0);
   EXPECT_TRUE(report.clean);
   EXPECT_EQ(report.intersecting_pairs > 0, meets);
   EXPECT_EQ(brute_force_intersections(draft), 0U);
@@ -239,7 +239,7 @@ TEST(Arrangement, CopiesStay) {
       turned_a{{{0, 0, 0}, {0, 4, 0}, {4, 0, 0}}};
   for (const auto& b : {a, turned_a}) {
     Draft draft = pair_of(a, b);
-    EXPECT_TRUE(arrange(draft).clean);
+    EXPECT_TRUE(arrange(draft, 0).clean);
     EXPECT_EQ(draft.triangles.size(), 2U);
   }
 }
@@ -267,7 +267,7 @@ TEST(Arrangement, RandomPairsAndHandfuls) {
     }
     Draft draft = draft_of(joined(soups));
     const auto before = areas(draft);
-    EXPECT_TRUE(arrange(draft).clean);
+    EXPECT_TRUE(arrange(draft, 0).clean);
     EXPECT_EQ(brute_force_intersections(draft), 0U);
     const auto after = areas(draft);
     for (const auto& [tag, a] : before) EXPECT_NEAR(after.at(tag), a, 1e-10);
@@ -350,7 +350,7 @@ Draft arranged_spheres(Random& random) {
   Draft draft = draft_of(
       joined(std::array{turned(testing::icosphere(1, 3), random),
                         testing::translated(turned(testing::icosphere(1, 3), random), {0.5, 0.2, 0})}));
-  EXPECT_TRUE(arrange(draft).clean);
+  EXPECT_TRUE(arrange(draft, 0).clean);
   return draft;
 }
 
@@ -490,9 +490,9 @@ TEST(KeepBoundaries, OfLatticeBoxesIsTheBoundaryOfTheirUnion) {
     // In one soup.
     Draft one = draft_of(joined(soups));
     // Clusters without any tangle stay: those have to be the whole of it to be compared.
-    const bool meet = arrange(one).intersecting_pairs > 0;
+    const bool meet = arrange(one, 0).intersecting_pairs > 0;
     cancel_twins(one);
-    const InsideReport report = keep_boundaries(one);
+    const InsideReport report = keep_boundaries(one, 0);
     EXPECT_TRUE(balanced(one));
     double all = 0;
     for (const auto& [tag, volumes] : piece_volumes(boxes, std::vector<Tag>(boxes.size(), 1)))
@@ -505,8 +505,8 @@ TEST(KeepBoundaries, OfLatticeBoxesIsTheBoundaryOfTheirUnion) {
     }
     // In several.
     Draft several = draft_of(soups);
-    const bool touch = arrange(several).intersecting_pairs > 0;
-    keep_boundaries(several);
+    const bool touch = arrange(several, 0).intersecting_pairs > 0;
+    keep_boundaries(several, 0);
     EXPECT_TRUE(balanced(several));
     if (!touch || boxes.size() > 2) continue;
     EXPECT_NEAR(volume_of(several), all, 1e-12);
@@ -519,15 +519,15 @@ TEST(KeepBoundaries, CleanSurfacesStay) {
        {testing::box(), testing::icosphere(1, 3), nested_spheres(0.5, false, true)}) {
     Draft draft = draft_of(soup);
     const auto before = draft.triangles;
-    keep_boundaries(draft);
+    keep_boundaries(draft, 0);
     EXPECT_EQ(draft.triangles, before);
   }
 }
 
 TEST(KeepBoundaries, WallInsideStaysAndOutsideGoes) {
   Draft draft = draft_of(box_with_wall(0.5, 0.5, 0.25));
-  ASSERT_TRUE(arrange(draft).clean);
-  const InsideReport report = keep_boundaries(draft);
+  ASSERT_TRUE(arrange(draft, 0).clean);
+  const InsideReport report = keep_boundaries(draft, 0);
   double inside = 0;
   for (Index t = 0; t < draft.triangles.size(); ++t)
     if (draft.origins[t].tag == 7)

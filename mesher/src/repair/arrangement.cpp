@@ -16,6 +16,7 @@
 #include "plc/edges.h"
 #include "plc/intersections.h"
 #include "plc/simplices.h"
+#include "repair/snapping.h"
 
 namespace collarmesh::repairing {
 
@@ -367,7 +368,7 @@ void unify_equal_points(Draft& draft) {
   for (Index& p : draft.loose_points) p = merged[p];
 }
 
-ArrangementReport arrange(Draft& draft) {
+ArrangementReport arrange(Draft& draft, double grain) {
   ArrangementReport report;
   constexpr std::size_t few = 1000;
   for (std::size_t fewest = none;; ++report.rounds) {
@@ -386,6 +387,8 @@ ArrangementReport arrange(Draft& draft) {
     if (report.clean || report.rounds == most_rounds || pairs.size() > 2 * fewest + few) return report;
     fewest = std::min(fewest, pairs.size());
     report.cut_triangles += Cutter(draft, edges, simplices.list()).run(pairs);
+    unify_equal_points(draft);
+    if (grain > 0) snap_near_features(draft, grain, SnapWhat::corners);
   }
 }
 

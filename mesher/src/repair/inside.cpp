@@ -181,11 +181,7 @@ class BoundaryKeeper {
   void weigh(Index soup) {
     std::vector<int> weights(sheets_.size());
     for (Index s = 0; s < sheets_.size(); ++s) weights[s] = weight(s, soup);
-    for (const Index patch : open_sheets(soup, weights)) {
-      walls_.push_back({patch, soup});
-      for (Index s = 0; s < sheets_.size(); ++s)
-        if (patch_[s] == patch) weights[s] = 0;
-    }
+    remove_open_sheets(soup, weights);
     const WindingNumber winding = winding_of(weights, false);
     for (const auto& [shell, largest] : largest_of_shell_) {
       if (label_[shell] != none) continue;
@@ -209,24 +205,47 @@ class BoundaryKeeper {
     return WindingNumber(std::move(triangles));
   }
 
-  // Patches at edges where the soup is open that bound nothing: without them the winding number there is that
-  // of one place, not the mean of inside and outside.
-  std::vector<Index> open_sheets(Index soup, const std::vector<int>& weights) const {
-    std::vector<Index> candidates;
+  // Patches at edges where the soup is open bound nothing if the winding number there is, without them, that of one
+  // place, not the mean of inside and outside. The smallest one goes first: half a box and a wall amid the box
+  // are closed without the other half, too.
+  void remove_open_sheets(Index soup, std::vector<int>& weights) {
+    constexpr std::size_t most = 100;
+    for (std::size_t count = 0; count < most; ++count) {
+      const Index patch = find_open_sheet(weights);
+      if (patch == none) return;
+      walls_.push_back({patch, soup});
+      for (Index s = 0; s < sheets_.size(); ++s)
+        if (patch_[s] == patch) weights[s] = 0;
+    }
+  }
+
+  // The patches at edges where the soup is open, small ones first.
+  std::vector<Index> open_patches(const std::vector<int>& weights) const {
+    std::map<Index, double> area;
     for (Index e = 0; e < edges_.size(); ++e) {
       int sum = 0;
       for (const Index side : edges_.sides(e))
         sum += weights[side / 3] * (ascending(sheets_.unique.triangles, side) ? 1 : -1);
       if (sum == 0) continue;
       for (const Index side : edges_.sides(e))
-        if (weights[side / 3] != 0) candidates.push_back(patch_[side / 3]);
+        if (weights[side / 3] != 0) area[patch_[side / 3]] = 0;
     }
-    std::sort(candidates.begin(), candidates.end());
-    candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
-    (void)soup;
-    if (candidates.empty()) return {};
+    if (area.empty()) return {};
+    for (Index s = 0; s < sheets_.size(); ++s)
+      if (const auto at = area.find(patch_[s]); at != area.end())
+        at->second += area_of(draft_, sheets_.unique.triangles[s]);
+    std::vector<std::pair<double, Index>> order;
+    for (const auto& [patch, own] : area) order.emplace_back(own, patch);
+    std::sort(order.begin(), order.end());
+    std::vector<Index> patches;
+    for (const auto& [own, patch] : order) patches.push_back(patch);
+    return patches;
+  }
+
+  Index find_open_sheet(const std::vector<int>& weights) const {
+    const std::vector<Index> candidates = open_patches(weights);
+    if (candidates.empty()) return none;
     const WindingNumber winding = winding_of(weights, true);
-    std::vector<Index> sheets;
     for (const Index patch : candidates) {
       const auto found = largest_of_patch_.find(patch);
       if (found == largest_of_patch_.end()) continue;
@@ -236,9 +255,9 @@ class BoundaryKeeper {
         total += area;
       }
       const double mean = total > 0 ? sum / total : 0;
-      if (std::fabs(mean - std::floor(mean) - 0.5) > 0.25) sheets.push_back(patch);
+      if (std::fabs(mean - std::floor(mean) - 0.5) > 0.25) return patch;
     }
-    return sheets;
+    return none;
   }
 
   bool is_wall(Index sheet) const {

@@ -33,6 +33,7 @@ using namespace repairing;
 
 constexpr std::size_t most_places = 100;
 constexpr std::size_t most_rounds = 6;
+constexpr double grain = 1e-3;  // of the arrangement, relative to the tolerance
 
 void add_places(RepairPlaces& places, std::size_t count, double size, const std::vector<Point>& where) {
   places.count += count;
@@ -150,7 +151,7 @@ class Repairer {
   }
 
   bool cut_and_keep() {
-    const ArrangementReport arranged = arrange(draft_);
+    const ArrangementReport arranged = arrange(draft_, grain * tolerance_);
     add_places(report_.cut, arranged.intersecting_pairs, 0, arranged.places);
     if (!arranged.clean) return false;
     cancel_twins(draft_);

@@ -197,7 +197,7 @@ class Snapper {
     Draft before = draft_;
     SnapReport report_before;
     if (!snap_all_corners(most_triangles)) return give_back(before, report_before);
-    if (what_ == SnapWhat::borders) return std::move(report_);
+    if (what_ != SnapWhat::all) return std::move(report_);
     // Overlays make new corners. They end where each makes fewer of them.
     before = draft_;
     report_before = report_;
@@ -242,7 +242,7 @@ class Snapper {
   // Which points take part, by index.
   std::vector<bool> active_points() const {
     std::vector<bool> active(draft_.points.size(), false);
-    if (what_ == SnapWhat::all) {
+    if (what_ != SnapWhat::borders) {
       for (const build::Corners& t : draft_.triangles)
         for (const Index p : t) active[p] = true;
       for (const Segment& s : draft_.segments) active[s.a] = active[s.b] = true;
@@ -347,7 +347,7 @@ class Snapper {
   }
 
   bool may_snap(Index triangle, unsigned side) const {
-    return what_ == SnapWhat::all || edges_->sides(edges_->edge_of(3 * triangle + side)).size() == 1;
+    return what_ != SnapWhat::borders || edges_->sides(edges_->edge_of(3 * triangle + side)).size() == 1;
   }
 
   // A corner near an edge that it is no end of.

@@ -20,13 +20,16 @@ struct SnapReport {
 };
 
 /// Which triangles take part.
-enum class SnapWhat { all, borders };
+enum class SnapWhat {
+  all,      ///< corners, edges and triangles
+  corners,  ///< corners to each other and to edges
+  borders   ///< the same of border edges and their ends
+};
 
 /// Let corners, edges and triangles that come within `distance` (absolute) of each other without meeting meet:
 /// points become one, edges and triangles get the corner that is near them, two edges a common one in between.
 /// Short edges, needles, caps, slits and T-junctions vanish by this. Surfaces stay closed: as chains, triangles
-/// change by boundaries only. They may intersect afterwards. With `SnapWhat::borders` only border edges and
-/// their ends are drawn to each other.
+/// change by boundaries only. They may intersect afterwards.
 /// Runs until nothing is near or a number of rounds is over.
 /// Cost: O(n log n + k) for k pairs of near neighbours, each round.
 SnapReport snap_near_features(build::Draft& draft, double distance, SnapWhat what = SnapWhat::all);

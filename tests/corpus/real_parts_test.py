@@ -1,0 +1,70 @@
+"""Mesh a sample of real parts as they come.
+
+    real_parts_test.py PROGRAM [--every N]
+
+COLLARMESH_REAL names a folder of CAD files and surfaces, good and bad. Each N-th of them is meshed with the
+defaults. A file may be refused with a message or reach its time limit, but nothing may crash, no guarantee may be
+missed, `check` must agree, and most files must be meshed. Exit code 77 (skipped) without such a folder.
+"""
+
+import argparse
+import concurrent.futures
+import os
+import pathlib
+import sys
+import tempfile
+
+from judging import Failed, run
+
+KINDS = {".step", ".stp", ".brep", ".brp", ".igs", ".iges", ".stl", ".obj", ".off", ".ply"}
+LARGEST = 600_000  # bytes
+SECONDS = 30
+MESHED = 0.8  # of the sample, at least
+
+
+def sample(folder, every):
+    files = sorted(f for f in pathlib.Path(folder).rglob("*") if f.suffix.lower() in KINDS)
+    return [f for f in files if f.stat().st_size < LARGEST][every // 2 :: every]
+
+
+def outcome(program, path, folder):
+    mesh = pathlib.Path(folder) / (path.name + ".vtu")
+    result = run(program, path, "-o", mesh, "--time-limit", SECONDS)
+    said = (result.stderr.splitlines() or [""])[0]
+    if result.returncode in (4, 5):
+        return False, f"exit code {result.returncode}: {said}"
+    if result.returncode != 0:
+        raise Failed(f"exit code {result.returncode}: {said}")
+    checked = run(program, "check", mesh, "--against", path)
+    if checked.returncode != 0:
+        raise Failed(f"check disagrees: {(checked.stdout.splitlines() or [''])[0]}")
+    return True, "meshed and checked"
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("program")
+    parser.add_argument("--every", type=int, default=12)
+    arguments = parser.parse_args()
+    folder = os.environ.get("COLLARMESH_REAL", "")
+    if not folder:
+        print("COLLARMESH_REAL is not set: no parts to mesh")
+        return 77
+    files = sample(folder, arguments.every)
+    meshed = failures = 0
+    with tempfile.TemporaryDirectory() as temporary, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        results = [pool.submit(outcome, arguments.program, path, temporary) for path in files]
+        for path, result in zip(files, results):
+            try:
+                good, text = result.result()
+                meshed += good
+            except Failed as failure:
+                failures += 1
+                text = f"FAILED: {failure}"
+            print(f"{path.name:70}{text}"[:220], flush=True)
+    print(f"{meshed} of {len(files)} meshed, {failures} failed")
+    return 1 if failures or meshed < MESHED * len(files) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
