@@ -43,7 +43,7 @@ TEST(RepairInvariance, ValidInputStays) {
         torus(1, 0.3, 30, 12), cylinder(1, 2, 24, 3), cone(1, 2, 24, 3), spiked_sphere(0.05, 1),
         box_with_cavity(0.3), box_with_small_facet(1e-3), two_boxes(), box_with_dangling_facet(),
         box_with_skew_lines(5), plate_with_hole(1, 24), random_prism(3), random_hull(4, 20),
-        faulty::slotted_box(1e-7), faulty::finned_box(1e-7)})
+        faulty::slotted_box(1e-3), faulty::finned_box(1e-3)})
     expect_untouched({&soup, 1});
   for (const auto& soups :
        {touching_boxes(), boxes_touching_in_an_edge(), rings_touching_in_a_circle(), nested_boxes(4)})
@@ -53,6 +53,17 @@ TEST(RepairInvariance, ValidInputStays) {
       SCOPED_TRACE(shape.name);
       expect_untouched(shape.soups);
     }
+}
+
+// What is valid but below the tolerance is noise.
+TEST(RepairInvariance, NoiseInValidInputIsRepaired) {
+  for (const PolygonSoup& soup : {slotted_box(1e-7), finned_box(1e-7)}) {
+    const RepairedPlc r = build_repaired_plc({&soup, 1});
+    EXPECT_TRUE(r.report.repaired);
+    RepairOptions off;
+    off.mode = RepairMode::off;
+    EXPECT_FALSE(build_repaired_plc({&soup, 1}, {}, off).report.repaired);
+  }
 }
 
 TEST(RepairInvariance, FineValidSphereStays) {

@@ -134,7 +134,7 @@ class Repairer {
   // What is clean once stays so: where snapping spoils it, less far is tried.
   void make_valid() {
     first_new_point_ = static_cast<Index>(draft_.points.size());
-    if (!cut_and_keep()) return;
+    if (!cut_what_nearly_coincides()) return;
     double reach = tolerance_;
     for (std::size_t round = 0; round < most_rounds; ++round) {
       const Draft clean = draft_;
@@ -148,6 +148,23 @@ class Repairer {
       report_ = report_of_clean;
       reach *= 0.1;
     }
+  }
+
+  // Where facets nearly coincide, rounding what cuts them makes ever more intersections: they are made to coincide
+  // first, no farther than needed.
+  bool cut_what_nearly_coincides() {
+    const Draft before = draft_;
+    const RepairReport report_before = report_;
+    if (cut_and_keep()) return true;
+    for (const double share : {grain, 10 * grain, 100 * grain, 1.0}) {
+      draft_ = before;
+      report_ = report_before;
+      const SnapReport snapped = snap_near_features(draft_, share * tolerance_);
+      add_places(report_.collapsed, snapped.merged_points + snapped.cut_edges + snapped.cut_triangles,
+                 snapped.largest_distance, snapped.places);
+      if (cut_and_keep()) return true;
+    }
+    return false;
   }
 
   bool cut_and_keep() {
