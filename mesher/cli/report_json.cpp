@@ -257,6 +257,7 @@ Json repair_json(const RepairReport& r) {
           {"stitched", places_json(r.stitched, "largest_distance")},
           {"cut", places_json(r.cut, nullptr)},
           {"merged", places_json(r.merged, "area")},
+          {"dropped", r.dropped.count},
           {"collapsed", places_json(r.collapsed, "largest_distance")},
           {"filled", filled_json(r.filled)},
           {"lost_tags", r.lost_tags},

@@ -1,6 +1,7 @@
 // Facets that meet within rounding of each other: in planes that are common but for rounding, along borders
 // that end in other facets, many in one point. Each member runs in a process of its own with a limit of time.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -103,7 +104,9 @@ std::string wrong_regions(std::span<const PolygonSoup> soups,
     for (const auto& [tag, volumes] : expected) {
       const auto found = actual.find(tag);
       if (found == actual.end() || found->second.size() != volumes.size())
-        return fmt::format("regions of tag {}", tag);
+        return fmt::format("regions of tag {}: {} in place of {}", tag,
+                           found == actual.end() ? "none" : fmt::format("{}", fmt::join(found->second, " ")),
+                           fmt::join(volumes, " "));
       for (std::size_t i = 0; i < volumes.size(); ++i)
         if (std::fabs(found->second[i] - volumes[i]) > 1e-4)
           return fmt::format("volume {}, expected {}", found->second[i], volumes[i]);

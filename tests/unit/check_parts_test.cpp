@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "check/distance_tree.h"
+#include "common/distance_tree.h"
 #include "check/orientation.h"
 #include "check/polyline.h"
 #include "check/subject.h"

@@ -420,7 +420,7 @@ TEST(Holes, AreFilledWithATagOfTheirOwn) {
     for (const std::size_t edges : open.edges) around += edges;
     EXPECT_EQ(count_open_edges(draft), around);
     const std::size_t before = draft.triangles.size();
-    const auto filled = fill_holes(draft);
+    const auto filled = fill_holes(draft, 7);
     ASSERT_EQ(filled.size(), open.holes.size());
     EXPECT_TRUE(balanced(draft));
     EXPECT_EQ(draft.triangles.size(), before + around - 2 * filled.size());
@@ -437,10 +437,10 @@ TEST(Holes, OfAPlaneSideHaveItsArea) {
   for (Tag side = 1; side <= 6; ++side) {
     const PolygonSoup cube = testing::box({0, 0, 0}, {1, 1, 1}, 3);
     Draft draft = draft_of(filtered(cube, [&](Index f) { return cube.facet_tag(f) != side; }));
-    const auto filled = fill_holes(draft);
+    const auto filled = fill_holes(draft, 7);
     ASSERT_EQ(filled.size(), 1U);
     EXPECT_EQ(filled[0].edges, 12U);
-    EXPECT_EQ(filled[0].tag, side == 6 ? 6 : 7);
+    EXPECT_EQ(filled[0].tag, 7);
     EXPECT_NEAR(filled[0].area, 1, 1e-12);
     EXPECT_NEAR(filled[0].length, 4, 1e-12);
     EXPECT_NEAR(volume_of(draft), 1, 1e-12);
@@ -453,7 +453,7 @@ TEST(Holes, SheetsAreNoHoles) {
   sheet.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   sheet.add_facet(std::array<Index, 4>{0, 1, 2, 3}, 1);
   Draft draft = draft_of(sheet);
-  EXPECT_TRUE(fill_holes(draft).empty());
+  EXPECT_TRUE(fill_holes(draft, 7).empty());
   EXPECT_EQ(draft.triangles.size(), 2U);
 }
 

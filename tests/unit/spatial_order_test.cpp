@@ -11,7 +11,7 @@
 #include <span>
 #include <utility>
 
-#include "check/distance_tree.h"
+#include "common/distance_tree.h"
 #include "common/box_tree.h"
 #include "location/triangle_hierarchy.h"
 
@@ -100,13 +100,13 @@ TEST(SpatialOrder, BoundsTheDepth) {
 TEST(SpatialOrder, HierarchiesOfAnyDepthCanBeSearched) {
   const auto points = deep_points();
   std::vector<std::array<Index, 3>> corners;
-  std::vector<checks::DistanceTree::Triangle> triangles;
+  std::vector<DistanceTree::Triangle> triangles;
   for (Index i = 0; i < points.size(); ++i) {
     corners.push_back({i, i, i});
     triangles.push_back({points[i], points[i], points[i]});
   }
   const TriangleHierarchy hierarchy(points, corners);
-  const checks::DistanceTree tree(triangles);
+  const DistanceTree tree(triangles);
   for (const Point& p : {Point{}, Point{1, 1, 1}, Point{1e-5, 1e-5, 0}, Point{0, 0, 0.7}}) {
     double least = INFINITY;
     for (const Point& q : points) least = std::min(least, squared_distance(p, q));

@@ -54,9 +54,10 @@ struct RepairReport {
   RepairPlaces collapsed;         ///< points, edges and triangles below the tolerance; size: largest distance
   RepairPlaces cut;               ///< pairs of facets that intersected
   RepairPlaces merged;            ///< triangles inside solids, removed; size: area
+  RepairPlaces dropped;           ///< triangles of open sheets outside of all solids, removed
   std::vector<FilledHole> filled;
   std::vector<Tag> lost_tags;     ///< of facets of which nothing is left
-  double largest_distance = 0;    ///< absolute, both ways, between the kept facets and those of the input
+  double largest_distance = 0;    ///< absolute, from what is left of the facets to those of the input
 };
 
 struct RepairResult {

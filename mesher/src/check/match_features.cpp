@@ -7,7 +7,7 @@
 #include <memory>
 #include <numeric>
 
-#include "check/distance_tree.h"
+#include "common/distance_tree.h"
 #include "check/subject.h"
 #include "common/disjoint_sets.h"
 

@@ -3,7 +3,7 @@
 #include <bit>
 #include <cmath>
 
-#include "check/distance_tree.h"
+#include "common/distance_tree.h"
 #include "check/patch_topology.h"
 #include "check/polyline.h"
 #include "check/subject.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <span>
 
-#include "check/distance_tree.h"
+#include "common/distance_tree.h"
 #include "check/subject.h"
 #include "common/disjoint_sets.h"
 

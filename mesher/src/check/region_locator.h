@@ -3,7 +3,7 @@
 #include <mutex>
 #include <optional>
 
-#include "check/distance_tree.h"
+#include "common/distance_tree.h"
 #include "collarmesh/plc.h"
 #include "common/box_tree.h"
 

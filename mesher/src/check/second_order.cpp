@@ -1,7 +1,7 @@
 // Cells of second order: their mid-side nodes and their Jacobian.
 #include <algorithm>
 
-#include "check/distance_tree.h"
+#include "common/distance_tree.h"
 #include "check/subject.h"
 #include "collarmesh/curved_tet.h"
 

@@ -42,6 +42,9 @@ std::vector<std::string> describe(const RepairReport& r) {
   if (r.merged.count > 0)
     lines.push_back(fmt::format("{} triangle{} inside solids or enclosing nothing removed, an area of {:.4g}{}",
                                 r.merged.count, plural(r.merged.count), r.merged.size, first_place(r.merged)));
+  if (r.dropped.count > 0)
+    lines.push_back(fmt::format("{} triangle{} of open sheets outside of all solids removed", r.dropped.count,
+                                plural(r.dropped.count)));
   if (r.collapsed.count > 0)
     lines.push_back(fmt::format("{} feature{} below the tolerance of {:.3g} collapsed, over at most {:.3g}{}",
                                 r.collapsed.count, plural(r.collapsed.count), r.tolerance, r.collapsed.size,

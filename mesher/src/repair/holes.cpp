@@ -97,12 +97,6 @@ class SurfaceAreas {
   std::map<Index, double> area_;
 };
 
-Tag next_tag(const Draft& draft) {
-  Tag tag = 0;
-  for (const Origin& origin : draft.origins) tag = std::max(tag, origin.tag);
-  return tag + 1;
-}
-
 std::vector<Corners> triangulate(const Draft& draft, const std::vector<std::array<Index, 3>>& loop) {
   // The hole's triangles run against the edges around it.
   std::vector<Index> corners;
@@ -137,12 +131,12 @@ std::size_t count_open_edges(const Draft& draft) {
   return count;
 }
 
-std::vector<FilledHole> fill_holes(Draft& draft, double largest_share) {
+std::vector<FilledHole> fill_holes(Draft& draft, Tag first_tag, double largest_share) {
   std::vector<FilledHole> filled;
   const OpenEdges open = find_open_edges(draft);
   if (open.of_soup.empty()) return filled;
   SurfaceAreas surfaces(draft);
-  Tag tag = next_tag(draft);
+  Tag tag = first_tag;
   for (const auto& [soup, edges] : open.of_soup)
     for (const auto& loop : find_loops(edges)) {
       if (loop.size() < 3) continue;

@@ -18,6 +18,7 @@ namespace {
 using namespace build;
 
 constexpr std::size_t most_places = 100;
+constexpr std::size_t most_asked = 3;  // triangles of a shell, a patch or a component, for the winding number there
 
 Vector area_vector(const Draft& draft, const Corners& t) {
   return 0.5 * cross(draft.points[t[1]] - draft.points[t[0]], draft.points[t[2]] - draft.points[t[0]]);
@@ -42,7 +43,7 @@ bool turned_against(const Corners& a, const Corners& b) {
 // The largest few of some triangles.
 class Largest {
  public:
-  static constexpr std::size_t count = 3;
+  static constexpr std::size_t count = 24;
 
   void add(double area, Index item) {
     if (items_.size() == count && items_.back().first >= area) return;
@@ -52,6 +53,9 @@ class Largest {
                   {area, item});
   }
   const std::vector<std::pair<double, Index>>& items() const { return items_; }
+  std::span<const std::pair<double, Index>> first(std::size_t most) const {
+    return std::span(items_).first(std::min(most, items_.size()));
+  }
 
  private:
   std::vector<std::pair<double, Index>> items_;
@@ -186,11 +190,15 @@ class BoundaryKeeper {
     for (const auto& [shell, largest] : largest_of_shell_) {
       if (label_[shell] != none) continue;
       double sum = 0, total = 0;
+      std::size_t asked = 0;
       for (const auto& [area, side] : largest.items()) {
         const Index s = side / 2;
+        const Point p = centroid(draft_, sheets_.unique.triangles[s]);
+        if (winding.is_on_another(p, s)) continue;
         const double own = 0.5 * weights[s] * (side % 2 == 0 ? 1 : -1);
-        sum += area * (winding.at(centroid(draft_, sheets_.unique.triangles[s]), s) + own);
+        sum += area * (winding.at(p, s) + own);
         total += area;
+        if (++asked == most_asked) break;
       }
       if (total > 0 && sum > 0.5 * total) label_[shell] = soup;
     }
@@ -219,26 +227,38 @@ class BoundaryKeeper {
     }
   }
 
-  // The patches at edges where the soup is open, small ones first.
+  // The patches without which the soup has less open edges, by length; small ones first.
   std::vector<Index> open_patches(const std::vector<int>& weights) const {
-    std::map<Index, double> area;
+    std::map<Index, double> gain;
+    std::vector<std::pair<Index, int>> own;  // of each patch at the edge
     for (Index e = 0; e < edges_.size(); ++e) {
       int sum = 0;
-      for (const Index side : edges_.sides(e))
-        sum += weights[side / 3] * (ascending(sheets_.unique.triangles, side) ? 1 : -1);
-      if (sum == 0) continue;
-      for (const Index side : edges_.sides(e))
-        if (weights[side / 3] != 0) area[patch_[side / 3]] = 0;
+      own.clear();
+      for (const Index side : edges_.sides(e)) {
+        const int weight = weights[side / 3] * (ascending(sheets_.unique.triangles, side) ? 1 : -1);
+        if (weight == 0) continue;
+        sum += weight;
+        const Index patch = patch_[side / 3];
+        const auto at = std::find_if(own.begin(), own.end(), [&](const auto& o) { return o.first == patch; });
+        if (at == own.end())
+          own.emplace_back(patch, weight);
+        else
+          at->second += weight;
+      }
+      const auto [a, b] = edges_.ends(e);
+      const double length = distance(draft_.points[a], draft_.points[b]);
+      for (const auto& [patch, weight] : own) gain[patch] += (std::abs(sum) - std::abs(sum - weight)) * length;
     }
-    if (area.empty()) return {};
-    for (Index s = 0; s < sheets_.size(); ++s)
+    std::map<Index, double> area;
+    for (const auto& [patch, length] : gain)
+      if (length > 0) area[patch] = 0;
+    for (Index s = 0; s < sheets_.size() && !area.empty(); ++s)
       if (const auto at = area.find(patch_[s]); at != area.end())
         at->second += area_of(draft_, sheets_.unique.triangles[s]);
-    std::vector<std::pair<double, Index>> order;
-    for (const auto& [patch, own] : area) order.emplace_back(own, patch);
-    std::sort(order.begin(), order.end());
     std::vector<Index> patches;
-    for (const auto& [own, patch] : order) patches.push_back(patch);
+    patches.reserve(area.size());
+    for (const auto& [patch, size] : area) patches.push_back(patch);
+    std::stable_sort(patches.begin(), patches.end(), [&](Index a, Index b) { return area.at(a) < area.at(b); });
     return patches;
   }
 
@@ -250,7 +270,7 @@ class BoundaryKeeper {
       const auto found = largest_of_patch_.find(patch);
       if (found == largest_of_patch_.end()) continue;
       double sum = 0, total = 0;
-      for (const auto& [area, s] : found->second.items()) {
+      for (const auto& [area, s] : found->second.first(most_asked)) {
         sum += area * winding.at(centroid(draft_, sheets_.unique.triangles[s]), patch);
         total += area;
       }
@@ -431,7 +451,7 @@ TurnReport turn_components(Draft& draft) {
       volume += dot(p[0] - origin, cross(p[1] - origin, p[2] - origin));
       largest.add(area_of(draft, draft.triangles[t]), t);
     }
-    for (const auto& [area, t] : largest.items()) {
+    for (const auto& [area, t] : largest.first(most_asked)) {
       around += area * found->second.at(centroid(draft, draft.triangles[t]), component);
       total += area;
     }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "common/distance_tree.h"
 #include "plc/cleanup.h"
 #include "plc/draft.h"
 #include "plc/edges.h"
@@ -67,6 +68,7 @@ class Repairer {
     make_valid();
     RepairResult result{to_soups(soups_, draft_, first_new_point_), std::move(report_)};
     result.report.repaired = true;
+    result.report.largest_distance = largest_distance();
     result.report.lost_tags = lost_tags(result.soups);
     return result;
   }
@@ -85,6 +87,8 @@ class Repairer {
     tolerance_ = std::max(options_.tolerance * draft_.bounds.diagonal(), 8 * single_precision_error(soups_));
     report_.tolerance = tolerance_;
     const BentFacets bent = triangulate_any_facets(soups_, map, draft_);
+    for (Index t = 0; t < draft_.triangles.size(); ++t)
+      input_triangles_.push_back({draft_.corner(t, 0), draft_.corner(t, 1), draft_.corner(t, 2)});
     report_.split_polygons = bent.split;
     report_.dropped_polygons = bent.dropped;
     for (Index s = 0; s < soups_.size(); ++s) {
@@ -125,10 +129,18 @@ class Repairer {
       EdgeTable edges(draft_.triangles, draft_.points.size());
       Faults one_sided;
       orient_components(draft_, edges, one_sided);
-      report_.filled = fill_holes(draft_);
+      report_.filled = fill_holes(draft_, next_tag());
     }
     const TurnReport turned = turn_components(draft_);
     add_places(report_.turned, turned.turned_components, 0, turned.places);
+  }
+
+  // None of the input's: those of CAD faces are their numbers.
+  Tag next_tag() const {
+    Tag tag = 0;
+    for (const PolygonSoup& soup : soups_)
+      for (Index f = 0; f < soup.facet_count(); ++f) tag = std::max(tag, soup.facet_tag(f));
+    return tag + 1;
   }
 
   // What is clean once stays so: where snapping spoils it, less far is tried.
@@ -169,15 +181,31 @@ class Repairer {
 
   bool cut_and_keep() {
     const ArrangementReport arranged = arrange(draft_, grain * tolerance_);
-    add_places(report_.cut, arranged.intersecting_pairs, 0, arranged.places);
+    if (report_.cut.count == 0) add_places(report_.cut, arranged.intersecting_pairs, 0, arranged.places);
     if (!arranged.clean) return false;
     cancel_twins(draft_);
     const InsideReport kept = keep_boundaries(draft_, tolerance_);
     report_.merged.count += kept.removed_triangles;
     report_.merged.size += kept.removed_area;
+    report_.dropped.count += kept.dropped_sheets;
     for (const Point& p : kept.places)
       if (report_.merged.where.size() < most_places) report_.merged.where.push_back(p);
     return true;
+  }
+
+  // From the corners and centres of what is left to the input, but of what fills holes.
+  double largest_distance() const {
+    std::set<Tag> fills;
+    for (const FilledHole& hole : report_.filled) fills.insert(hole.tag);
+    const DistanceTree input(input_triangles_);
+    double largest = 0;
+    for (Index t = 0; t < draft_.triangles.size(); ++t) {
+      if (fills.count(draft_.origins[t].tag) > 0) continue;
+      const Point &a = draft_.corner(t, 0), &b = draft_.corner(t, 1), &c = draft_.corner(t, 2);
+      for (const Point& p : {a, b, c, (1.0 / 3) * (a + b + c)})
+        largest = std::max(largest, input.nearest(p, largest).distance);
+    }
+    return largest;
   }
 
   std::vector<Tag> lost_tags(const std::vector<PolygonSoup>& repaired) const {
@@ -195,6 +223,7 @@ class Repairer {
   const RepairOptions& options_;
   const PlcOptions& complex_;
   Draft draft_;
+  std::vector<DistanceTree::Triangle> input_triangles_;
   double tolerance_ = 0;  // absolute
   Index first_new_point_ = none;
   RepairReport report_;

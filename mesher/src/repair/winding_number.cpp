@@ -76,6 +76,21 @@ double WindingNumber::at(const Point& p, Index left_out) const {
   return nodes_.empty() ? 0 : at_node(0, p, left_out) / (4 * std::numbers::pi);
 }
 
+bool WindingNumber::is_on_another(const Point& p, Index left_out) const {
+  return !nodes_.empty() && is_on_another(0, p, left_out);
+}
+
+bool WindingNumber::is_on_another(Index node, const Point& p, Index left_out) const {
+  // Seen from a point on it, a triangle covers half of the sphere.
+  constexpr double half_sphere = 2 * std::numbers::pi - 1e-6;
+  const Node& n = nodes_[node];
+  if (distance(n.centre, p) > 1.001 * n.radius) return false;
+  if (n.count == 0) return is_on_another(node + 1, p, left_out) || is_on_another(n.first, p, left_out);
+  for (Index i = n.first; i < n.first + n.count; ++i)
+    if (triangles_[i].number != left_out && std::fabs(solid_angle(triangles_[i], p)) > half_sphere) return true;
+  return false;
+}
+
 double WindingNumber::at_node(Index node, const Point& p, Index left_out) const {
   const Node& n = nodes_[node];
   const Vector r = n.centre - p;

@@ -29,6 +29,9 @@ class WindingNumber {
   /// Cost: O(log n) for a surface that is not folded up around the point.
   double at(const Point& p, Index left_out = none) const;
 
+  /// Does another triangle than those pass so closely by the point that rounding decides on which side it is?
+  bool is_on_another(const Point& p, Index left_out) const;
+
  private:
   struct Node {
     Point centre;        // weighted by area
@@ -42,6 +45,7 @@ class WindingNumber {
   Index build(std::span<const SpatialKey> keys, Index first);
   Node summary(Index first, Index count) const;
   double at_node(Index node, const Point& p, Index left_out) const;
+  bool is_on_another(Index node, const Point& p, Index left_out) const;
 
   std::vector<WeightedTriangle> triangles_;  // in the order of the leaves
   std::vector<Node> nodes_;

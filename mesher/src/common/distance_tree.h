@@ -8,7 +8,7 @@
 #include "collarmesh/geometry.h"
 #include "common/spatial_order.h"
 
-namespace collarmesh::checks {
+namespace collarmesh {
 
 /// Finds the nearest of many triangles, which may be degenerate. A hierarchy of boxes.
 class DistanceTree {
@@ -44,4 +44,4 @@ class DistanceTree {
   std::vector<Node> nodes_;
 };
 
-}  // namespace collarmesh::checks
+}  // namespace collarmesh

@@ -1,9 +1,9 @@
-#include "check/distance_tree.h"
+#include "common/distance_tree.h"
 
 #include <algorithm>
 #include <utility>
 
-namespace collarmesh::checks {
+namespace collarmesh {
 
 namespace {
 
@@ -128,4 +128,4 @@ DistanceTree::Nearest DistanceTree::nearest(const Point& p, double enough, Index
   return {std::sqrt(least), number_[best]};
 }
 
-}  // namespace collarmesh::checks
+}  // namespace collarmesh
