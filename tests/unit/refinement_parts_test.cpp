@@ -15,25 +15,11 @@ TEST(WorkQueue, TakesTheFirstPriorityAndThenTheLargestBall) {
   queue.push(WorkQueue::large_cells, 0.9, {1, 0});
   queue.push(WorkQueue::skinny_cells, 1e-6, {2, 0});
   queue.push(WorkQueue::skinny_cells, 0.5, {3, 0});
-  queue.push(WorkQueue::encroached_subsegments, 1e-5, {4, 0});
+  queue.push(WorkQueue::encroached_subsegments, 1e-12, {4, 0});
   std::vector<Index> order;
   WorkQueue::Item item;
   while (queue.pop(item)) order.push_back(item.entry.id);
   EXPECT_EQ(order, (std::vector<Index>{4, 3, 2, 1}));
-}
-
-// Else two curves very close to each other would be cut into all their pieces in a coarse mesh.
-TEST(WorkQueue, SubsegmentsWaitForFarLargerSkinnyCells) {
-  WorkQueue queue(1.0);
-  queue.push(WorkQueue::encroached_subsegments, 1e-2, {1, 0});
-  queue.push(WorkQueue::encroached_subsegments, 1e-8, {2, 0});
-  queue.push(WorkQueue::skinny_cells, 0.5, {3, 0});
-  queue.push(WorkQueue::skinny_cells, 1e-4, {4, 0});
-  queue.push(WorkQueue::large_cells, 0.5, {5, 0});
-  std::vector<Index> order;
-  WorkQueue::Item item;
-  while (queue.pop(item)) order.push_back(item.entry.id);
-  EXPECT_EQ(order, (std::vector<Index>{1, 3, 2, 4, 5}));
 }
 
 TEST(WorkQueue, TakesALargerBallThatComesLater) {

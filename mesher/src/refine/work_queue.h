@@ -13,9 +13,6 @@ namespace collarmesh {
 /// The paper's work queue (Procedure 1): priorities, and inside a priority the
 /// largest ball first, in buckets of log2(r^2), last in first out inside a bucket, which keeps the
 /// working set in the cache. Entries are never removed early: whoever takes one compares its stamp.
-/// Subsegments wait for skinny cells that are far larger: two curves very close to each other would be cut
-/// into all their pieces in a coarse mesh otherwise, whose stars then have so many cells, all of which each
-/// insertion nearby replaces.
 class WorkQueue {
  public:
   enum Priority : unsigned {
@@ -52,14 +49,14 @@ class WorkQueue {
   /// Take the next entry: largest ball of the first priority that has any. False when empty.
   bool pop(Item& item) {
     for (unsigned priority = 0; priority < priority_count; ++priority) {
-      const unsigned bucket = first_bucket(priority);
-      if (bucket == bucket_count) continue;
-      if (priority == encroached_subsegments && first_bucket(skinny_cells) + far_larger <= bucket)
-        priority = skinny_cells;
-      auto& entries = buckets_[priority][first_[priority]];
-      item = {static_cast<Priority>(priority), entries.back()};
-      entries.pop_back();
-      return true;
+      unsigned& bucket = first_[priority];
+      for (; bucket < bucket_count; ++bucket) {
+        auto& entries = buckets_[priority][bucket];
+        if (entries.empty()) continue;
+        item = {static_cast<Priority>(priority), entries.back()};
+        entries.pop_back();
+        return true;
+      }
     }
     return false;
   }
@@ -76,15 +73,6 @@ class WorkQueue {
 
  private:
   static constexpr unsigned bucket_count = 192;
-  static constexpr unsigned far_larger = 20;  // buckets: a radius 1024 times as large
-
-  /// The first one that holds something, their number if none does.
-  unsigned first_bucket(unsigned priority) {
-    unsigned& bucket = first_[priority];
-    while (bucket < bucket_count && buckets_[priority][bucket].empty()) ++bucket;
-    return bucket;
-  }
-
   int largest_exponent_;
   std::array<std::array<std::vector<Entry>, bucket_count>, priority_count> buckets_;
   std::array<unsigned, priority_count> first_{};

@@ -100,9 +100,11 @@ class SurfaceAreas {
 std::vector<Corners> triangulate(const Draft& draft, const std::vector<std::array<Index, 3>>& loop) {
   // The hole's triangles run against the edges around it.
   std::vector<Index> corners;
+  corners.reserve(loop.size());
   for (auto e = loop.rbegin(); e != loop.rend(); ++e) corners.push_back((*e)[1]);
   if (corners.size() == 3) return {{corners[0], corners[1], corners[2]}};
   std::vector<Kernel::Point_3> polyline;
+  polyline.reserve(corners.size());
   for (const Index p : corners) polyline.emplace_back(draft.points[p].x, draft.points[p].y, draft.points[p].z);
   struct Face {
     int a, b, c;
@@ -111,6 +113,7 @@ std::vector<Corners> triangulate(const Draft& draft, const std::vector<std::arra
   std::vector<Face> faces;
   CGAL::Polygon_mesh_processing::triangulate_hole_polyline(polyline, std::back_inserter(faces));
   std::vector<Corners> triangles;
+  triangles.reserve(faces.size());
   const auto at = [&](int i) { return corners[static_cast<std::size_t>(i)]; };
   for (const Face& face : faces) triangles.push_back({at(face.a), at(face.b), at(face.c)});
   // Whichever way the library turns them: the first edge tells.
