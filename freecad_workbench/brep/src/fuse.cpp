@@ -329,6 +329,7 @@ std::vector<Topology::Solid> distribute(const std::string& file, Overlap overlap
     regions[number].push_back(pieces.shape(p));
   }
   std::vector<Common> list;
+  list.reserve(overlaps.size());
   for (const auto& [key, common] : overlaps) list.push_back(common);
   tell_overlaps(file, list, topology);
   for (const Topology::Solid& solid : topology.solids)
@@ -390,6 +391,7 @@ class SharedFaces {
     if (left_out.empty()) return;
     topology_.fused = false;
     std::vector<std::string> names;
+    names.reserve(left_out.size());
     for (const TopoDS_Shape& shape : left_out) names.push_back(topology_.name(shape));
     constexpr std::size_t listed = 5;
     const bool more = names.size() > listed;
