@@ -20,7 +20,11 @@ namespace {
 
 using namespace testing::faulty;
 
-constexpr unsigned time_limit = 8;  // seconds
+#ifdef __SANITIZE_ADDRESS__
+constexpr unsigned time_limit = 240;  // seconds
+#else
+constexpr unsigned time_limit = 20;
+#endif
 
 // The action says what is wrong.
 template <class Action>
