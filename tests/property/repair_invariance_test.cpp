@@ -162,6 +162,12 @@ TEST(RepairInvariance, ScaledAndMoved) {
       1);
 }
 
+// Sides in one plane part by rounding when they are turned, and are snapped together within the tolerance.
+TEST(RepairInvariance, Rotated) {
+  expect_invariant(
+      2, 24, 1e-4, [](const PolygonSoup& soup) { return testing::rotated(soup, {1, 2, -1}, 37); }, 1);
+}
+
 TEST(RepairInvariance, OrderOfPointsFacetsAndCorners) {
   expect_invariant(
       2, 25, 1e-6, [](const PolygonSoup& soup) { return testing::permuted(soup, 5); }, 1);

@@ -8,6 +8,7 @@
 #include "collarmesh/geometry.h"
 #include "collarmesh/plc_builder.h"
 #include "collarmesh/polygon_soup.h"
+#include "collarmesh/progress.h"
 
 /// From facets as they come to facets that are a complex: borders that nearly meet are stitched, features below
 /// a tolerance collapsed, facets that intersect or cover each other cut, what lies inside removed, holes filled.
@@ -23,6 +24,9 @@ struct RepairOptions {
   RepairMode mode = RepairMode::automatic;
   double tolerance = 1e-5;   ///< relative to the bounding-box diagonal; features below it are noise
   double wrap_offset = 5e-3; ///< relative to the bounding-box diagonal; of the closed surface around everything
+  /// Repair gives up beyond so much work, counted in pairs of facets near each other (some 0.2 microseconds each; to cut
+  /// a pair that intersects counts 1000), so that it ends in the same place on every machine. In `RepairMode::wrap` a quarter of this counts.
+  std::size_t max_work = 200'000'000;
 };
 
 /// Places of one kind of change, some of them.
@@ -57,7 +61,12 @@ struct RepairReport {
   RepairPlaces dropped;           ///< triangles of open sheets outside of all solids, removed
   std::vector<FilledHole> filled;
   std::vector<Tag> lost_tags;     ///< of facets of which nothing is left
-  double largest_distance = 0;    ///< absolute, from what is left of the facets to those of the input
+  /// Absolute: of a point of what is left of the facets from those of the input. What fills holes does not count.
+  double largest_distance = 0;
+  /// Absolute: of a point of the input's facets from the repaired ones. What lies inside of these does not count.
+  double largest_distance_of_input = 0;
+  bool gave_up = false;    ///< the work was more than `RepairOptions::max_work`
+  bool cancelled = false;  ///< by the execution
 };
 
 struct RepairResult {
@@ -68,12 +77,13 @@ struct RepairResult {
 /// Make the soups fit for `build_plc`. Tags and features survive cutting; each soup keeps the place that it
 /// encloses and no earlier one does (winding number above 1/2). Region points, hole points and loose segments
 /// stay. What cannot be repaired is left for `build_plc` to name.
+/// Where it gave up or was cancelled, as the report says, the soups are those that came in.
 /// Throws PlcError for points that are not finite and indices out of range.
-/// Cost: O(n log n), and some 0.2 ms for each pair of facets that intersect.
+/// Cost: O(n log n), and some 0.1 ms for each pair of facets that intersect.
 /// Based on Zhou, Grinspun, Zorin, Jacobson 2016 (arrangements) and Jacobson, Kavan, Sorkine-Hornung 2013
 /// (winding numbers).
 RepairResult repair(std::span<const PolygonSoup> soups, const RepairOptions& options = {},
-                    const PlcOptions& complex = {});
+                    const PlcOptions& complex = {}, const Execution& execution = {});
 
 /// A complex, and what was done to the soups to make it one.
 struct RepairedPlc {
@@ -83,15 +93,17 @@ struct RepairedPlc {
 };
 
 /// The complex as it is, or that of the repaired soups where it has features below the tolerance: curves that are
-/// shorter, features that come as close without meeting, slits. `plc` is that of the soups.
+/// shorter, features that come as close without meeting, slits. `plc` is that of the soups. Where they cannot be
+/// removed, it stays and has a warning that says so.
 RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcOptions& options = {},
-                         const RepairOptions& repair_options = {});
+                         const RepairOptions& repair_options = {}, const Execution& execution = {});
 
 /// `build_plc`, and where it finds faults or noise, `repair` first, with a tolerance that grows where that helps. Valid
 /// soups without features below the tolerance give the complex of `build_plc`.
+/// When the report says that it was cancelled, the complex is empty.
 /// Throws PlcError: the faults of what came in, and what helps.
 RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOptions& options = {},
-                               const RepairOptions& repair_options = {});
+                               const RepairOptions& repair_options = {}, const Execution& execution = {});
 
 /// For people: a line for each kind of change with counts, sizes and places; empty if there was none.
 std::vector<std::string> describe(const RepairReport& report);

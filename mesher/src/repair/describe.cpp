@@ -52,6 +52,10 @@ std::vector<std::string> describe(const RepairReport& r) {
   if (!r.lost_tags.empty())
     lines.push_back(fmt::format("nothing is left of the facets with tag{} {}", plural(r.lost_tags.size()),
                                 fmt::join(r.lost_tags, ", ")));
+  if (r.repaired && !r.wrapped)
+    lines.push_back(fmt::format("the repaired facets are within {:.3g} of the input, and the input, but for what lies "
+                                "inside of them, within {:.3g} of them",
+                                r.largest_distance, r.largest_distance_of_input));
   if (r.wrapped)
     lines.push_back(fmt::format("a closed surface was wrapped around everything; it keeps within {:.3g} of the input",
                                 r.largest_distance));

@@ -7,6 +7,12 @@
 
 namespace collarmesh::repairing {
 
+/// Do the triangles enclose nothing, whatever their orientation? Precondition: they meet in common edges and corners only,
+/// or are copies of each other. True is certain: nothing is left when triangles with an edge of their own are taken away
+/// one after the other, as closed surfaces have none. Only that is looked at, so false is not.
+/// Cost: O(n).
+bool peels_away(const build::Draft& draft);
+
 /// What `turn_components` did.
 struct TurnReport {
   std::size_t turned_components = 0;

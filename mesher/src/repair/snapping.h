@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "plc/draft.h"
+#include "repair/work.h"
 
 namespace collarmesh::repairing {
 
@@ -31,11 +32,11 @@ enum class SnapWhat {
 /// Short edges, needles, caps, slits and T-junctions vanish by this. Surfaces stay closed: as chains, triangles
 /// change by boundaries only. They may intersect afterwards.
 /// Runs until nothing is near or a number of rounds is over.
-/// Cost: O(n log n + k) for k pairs of near neighbours, each round.
-SnapReport snap_near_features(build::Draft& draft, double distance, SnapWhat what = SnapWhat::all);
-
-/// Drop pairs of triangles of one soup with the same corners that are turned against each other. In a complex,
-/// where orientation means nothing, all copies but one.
-std::size_t cancel_twins(build::Draft& draft);
+/// What is between two `known` triangles (by number; empty: none are) is not looked at: nothing there is near.
+/// Throws WorkStopped; the draft is then of no use.
+/// Cost: O(n log n + k) for k pairs of near neighbours; each round after the first one looks at what the one before has
+/// changed.
+SnapReport snap_near_features(build::Draft& draft, double distance, SnapWhat what = SnapWhat::all,
+                              Work* work = nullptr, const std::vector<bool>& known = {});
 
 }  // namespace collarmesh::repairing
