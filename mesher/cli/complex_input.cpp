@@ -93,7 +93,8 @@ Plc ComplexInput::build(const ComplexArguments& options) {
   for (const double finer : {1.0, 4.0}) {
     if (finer > 1) tessellate(finer);
     try {
-      return take(remove_noise(build_plc(soups_, options.plc), soups_, options.plc, options.repair, watched()));
+      return take(
+          remove_noise(build_plc(soups_, options.plc), soups_, options.plc, options.repair, watched()));
     } catch (const PlcError& error) {
       if (!first) first = with_names(error, cad_);
       if (!cad_.fused() || !may_be_too_coarse(error)) break;

@@ -16,8 +16,8 @@ namespace collarmesh::cli {
 /// How the files of one complex are read.
 struct InputReading {
   std::string format;   ///< in place of the files' extensions; empty: by these
-  double distance = 0;  ///< surface distance tolerance, absolute, 0: 1e-3 of the diagonal; the triangles of CAD
-                        ///< shapes keep a tenth of it
+  double distance = 0;  ///< surface distance tolerance, absolute, 0: 1e-3 of the diagonal; the triangles of
+                        ///< CAD shapes keep a tenth of it
   SolidOverlap overlap = SolidOverlap::first;
 };
 

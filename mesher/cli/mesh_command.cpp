@@ -167,10 +167,11 @@ void certify(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   options.threads = arguments.threads;
   run.check = check(run.result.mesh, run.plc, options);
   if (run.repair.repaired)
-    run.check.notes.push_back(fmt::format(
-        "the mesh was judged against the repaired complex; its facets are within {:.3g} of the input, and the input, but for "
-        "what lies inside of them, within {:.3g} of them",
-        run.repair.largest_distance, run.repair.largest_distance_of_input));
+    run.check.notes.push_back(
+        fmt::format("the mesh was judged against the repaired complex; its facets are within {:.3g} of the "
+                    "input, and the input, but for "
+                    "what lies inside of them, within {:.3g} of them",
+                    run.repair.largest_distance, run.repair.largest_distance_of_input));
 }
 
 void write_report(const std::string& path, const MeshArguments& arguments, const MeshRun& run) {

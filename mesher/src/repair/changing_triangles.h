@@ -17,9 +17,9 @@ namespace collarmesh::repairing {
 /// Holds between calls: the draft's points may have grown, its triangles change by these functions alone.
 class ChangingTriangles {
  public:
-  /// Triangles are near each other where their boxes, larger by half of `reach` (absolute) on all sides, meet, and
-  /// each comes within `reach` of the plane of the other.
-  /// Pairs of boxes that meet are spent from `work`.
+  /// Triangles are near each other where their boxes, larger by half of `reach` (absolute) on all sides,
+  /// meet, and each comes within `reach` of the plane of the other. Pairs of boxes that meet are spent from
+  /// `work`.
   ChangingTriangles(build::Draft& draft, double reach, Work& work);
 
   /// How many there are.
@@ -45,9 +45,9 @@ class ChangingTriangles {
   /// The unit normal of a triangle, or zero.
   const Vector& normal(Index triangle) const { return normals_[triangle]; }
 
-  /// Calls visit(s, t), s < t, once for each pair of triangles near each other of which one at least is `changed`;
-  /// those are alive and in order.
-  /// Cost: O(k log n + p) for k changed ones and p pairs of boxes; O(n log n + p) where k is no small share of n.
+  /// Calls visit(s, t), s < t, once for each pair of triangles near each other of which one at least is
+  /// `changed`; those are alive and in order. Cost: O(k log n + p) for k changed ones and p pairs of boxes;
+  /// O(n log n + p) where k is no small share of n.
   template <class Visit>
   void for_each_near_pair(const std::vector<Index>& changed, const Visit& visit) {
     std::vector<bool> among(end(), false);

@@ -28,7 +28,8 @@ bool before(const CornerPoints& s, const CornerPoints& t) {
 }
 
 // Those triangles of which the other surface has no copy.
-std::vector<CornerPoints> without(std::span<const CornerPoints> triangles, std::span<const CornerPoints> others) {
+std::vector<CornerPoints> without(std::span<const CornerPoints> triangles,
+                                  std::span<const CornerPoints> others) {
   std::vector<CornerPoints> sorted;
   sorted.reserve(others.size());
   for (const CornerPoints& t : others) sorted.push_back(canonical(t));
@@ -106,11 +107,13 @@ RepairDistances measure_distances(std::span<const CornerPoints> input, std::span
   for (const CornerPoints& t : gone) {
     // Most of what is gone lies deep inside, far from all that is left.
     const Point centroid = (1.0 / 3) * (t[0] + t[1] + t[2]);
-    const double radius = std::max({distance(centroid, t[0]), distance(centroid, t[1]), distance(centroid, t[2])});
+    const double radius =
+        std::max({distance(centroid, t[0]), distance(centroid, t[1]), distance(centroid, t[2])});
     if (winding.at(centroid) > half && tree.nearest(centroid, radius, hint).distance > radius) continue;
     for_each_sample(t, spacing, [&](const Point& p) {
       const DistanceTree::Nearest nearest = tree.nearest(p, distances.of_input, hint);
-      if (nearest.distance > distances.of_input && winding.at(p) < half) distances.of_input = nearest.distance;
+      if (nearest.distance > distances.of_input && winding.at(p) < half)
+        distances.of_input = nearest.distance;
       hint = nearest.triangle;
     });
   }

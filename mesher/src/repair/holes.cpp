@@ -41,9 +41,11 @@ OpenEdges find_open_edges(const Draft& draft) {
       const auto [low, high] = edges.ends(e);
       Index triangle = none;
       for (const Index side : edges.sides(e))
-        if (draft.origins[side / 3].soup == soup && ascending(draft.triangles, side) == (sum > 0)) triangle = side / 3;
+        if (draft.origins[side / 3].soup == soup && ascending(draft.triangles, side) == (sum > 0))
+          triangle = side / 3;
       for (int i = 0; i < std::abs(sum); ++i)
-        open.of_soup[soup].push_back(sum > 0 ? std::array{low, high, triangle} : std::array{high, low, triangle});
+        open.of_soup[soup].push_back(sum > 0 ? std::array{low, high, triangle}
+                                             : std::array{high, low, triangle});
     }
   }
   return open;
@@ -65,8 +67,8 @@ void start_first(const Draft& draft, Loop& loop) {
   std::rotate(loop.begin(), first, loop.end());
 }
 
-// Closed curves of directed edges; where several meet in a point they are parted at it. The edges are in an order by
-// coordinates, so the curves and where they start do not depend on the order of the facets.
+// Closed curves of directed edges; where several meet in a point they are parted at it. The edges are in an
+// order by coordinates, so the curves and where they start do not depend on the order of the facets.
 std::vector<Loop> find_loops(const Draft& draft, std::vector<std::array<Index, 3>> edges) {
   std::sort(edges.begin(), edges.end(), [&](const auto& e, const auto& f) {
     if (e[0] != f[0]) return comes_before(draft, e[0], f[0]);
@@ -113,7 +115,8 @@ class SurfaceAreas {
     const EdgeTable edges(draft.triangles, draft.points.size());
     for (Index e = 0; e < edges.size(); ++e)
       for (const Index side : edges.sides(e)) sets_.unite(side / 3, edges.sides(e)[0] / 3);
-    for (Index t = 0; t < draft.triangles.size(); ++t) area_[sets_.find(t)] += area_of(draft, draft.triangles[t]);
+    for (Index t = 0; t < draft.triangles.size(); ++t)
+      area_[sets_.find(t)] += area_of(draft, draft.triangles[t]);
   }
   double around(Index triangle) { return area_[sets_.find(triangle)]; }
 
@@ -126,7 +129,8 @@ class SurfaceAreas {
 double least_area(const Draft& draft, const Loop& loop) {
   const Point& origin = draft.points[loop[0][0]];
   Vector twice{};
-  for (const auto& edge : loop) twice = twice + cross(draft.points[edge[0]] - origin, draft.points[edge[1]] - origin);
+  for (const auto& edge : loop)
+    twice = twice + cross(draft.points[edge[0]] - origin, draft.points[edge[1]] - origin);
   return 0.5 * norm(twice);
 }
 
@@ -138,14 +142,15 @@ std::vector<Corners> triangulate(const Draft& draft, const Loop& loop) {
   if (corners.size() == 3) return {{corners[0], corners[1], corners[2]}};
   std::vector<Kernel::Point_3> polyline;
   polyline.reserve(corners.size());
-  for (const Index p : corners) polyline.emplace_back(draft.points[p].x, draft.points[p].y, draft.points[p].z);
+  for (const Index p : corners)
+    polyline.emplace_back(draft.points[p].x, draft.points[p].y, draft.points[p].z);
   struct Face {
     int a, b, c;
     Face(int i, int j, int k) : a(i), b(j), c(k) {}
   };
   std::vector<Face> faces;
-  // Among the edges of the Delaunay triangulation of the points; where those hold no triangulation of the curve, among
-  // all, which takes cubic time.
+  // Among the edges of the Delaunay triangulation of the points; where those hold no triangulation of the
+  // curve, among all, which takes cubic time.
   CGAL::Polygon_mesh_processing::triangulate_hole_polyline(
       polyline, std::back_inserter(faces),
       CGAL::parameters::do_not_use_cubic_algorithm(corners.size() > most_edges_for_cubic_time));

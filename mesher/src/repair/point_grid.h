@@ -16,8 +16,8 @@ class PointGrid {
 
   void add(Index p);
 
-  /// The nearest one that `accept(point)` takes within the reach; of those as near the lexicographically first; `none`
-  /// if there is none.
+  /// The nearest one that `accept(point)` takes within the reach; of those as near the lexicographically
+  /// first; `none` if there is none.
   template <class Accept>
   Index nearest(const Point& p, const Accept& accept) const {
     Index best = none;

@@ -65,7 +65,8 @@ class PolygonCutter {
         const auto across = face->neighbor(i);
         if (across->info()) continue;
         const auto a = face->vertex(mesh_.cw(i)), b = face->vertex(mesh_.ccw(i));
-        if (!mesh_.is_infinite(a) && !mesh_.is_infinite(b) && border.count(edge_key(a->info(), b->info())) > 0)
+        if (!mesh_.is_infinite(a) && !mesh_.is_infinite(b) &&
+            border.count(edge_key(a->info(), b->info())) > 0)
           continue;
         across->info() = true;
         stack.push_back(across);

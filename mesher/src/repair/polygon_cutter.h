@@ -20,9 +20,9 @@ struct PolygonCuts {
   std::vector<Edge> edges;    ///< between any of these points
 };
 
-/// The constrained Delaunay triangulation of a polygon that is nearly planar, seen along `normal`, with the points and
-/// edges inside. The triangles are oriented like the polygon.
-/// Nothing where points coincide or edges cross, seen along the normal.
+/// The constrained Delaunay triangulation of a polygon that is nearly planar, seen along `normal`, with the
+/// points and edges inside. The triangles are oriented like the polygon. Nothing where points coincide or
+/// edges cross, seen along the normal.
 std::optional<std::vector<build::Corners>> cut_polygon(const std::vector<Point>& points, const Vector& normal,
                                                        const PolygonCuts& cuts);
 

@@ -1,4 +1,5 @@
-// From facets as they come to facets that are a complex. The order of the steps is that of `repair` at the end.
+// From facets as they come to facets that are a complex. The order of the steps is that of `repair` at the
+// end.
 #include "collarmesh/repair.h"
 
 #include <fmt/format.h>
@@ -22,8 +23,8 @@
 #include "repair/noise.h"
 #include "repair/repeated.h"
 #include "repair/snapping.h"
-#include "repair/twins.h"
 #include "repair/to_soups.h"
+#include "repair/twins.h"
 #include "repair/work.h"
 #include "repair/wrap.h"
 
@@ -199,8 +200,8 @@ class Repairer {
     }
   }
 
-  // Where facets nearly coincide, rounding what cuts them makes ever more intersections: they are made to coincide
-  // first, no farther than needed.
+  // Where facets nearly coincide, rounding what cuts them makes ever more intersections: they are made to
+  // coincide first, no farther than needed.
   bool cut_what_nearly_coincides() {
     const Draft before = draft_;
     const RepairReport report_before = report_;
@@ -271,13 +272,14 @@ RepairedPlc judged(const Repairer& repairer, RepairResult result, const PlcOptio
 }
 
 PlcError given_up(const PlcError& error, const RepairOptions& options) {
-  return {fmt::format("{} Its repair was given up after {} steps.", error.what(), options.max_work), error.faults};
+  return {fmt::format("{} Its repair was given up after {} steps.", error.what(), options.max_work),
+          error.faults};
 }
 
 }  // namespace
 
-RepairResult repair(std::span<const PolygonSoup> soups, const RepairOptions& options, const PlcOptions& complex,
-                    const Execution& execution) {
+RepairResult repair(std::span<const PolygonSoup> soups, const RepairOptions& options,
+                    const PlcOptions& complex, const Execution& execution) {
   Repairer repairer(soups, options, complex, execution);
   RepairResult result = repairer.run();
   if (result.report.repaired) repairer.measure(result.report);
@@ -301,10 +303,11 @@ RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcO
     }
   }
   plc.warnings.push_back(
-      {fmt::format("Features below the repair tolerance of {:.3g} stay, the first one at {}: to remove them {}; they "
-                   "cost elements and time, another --repair-tolerance may help.",
-                   tolerance, text(*noise),
-                   result.report.gave_up ? "takes too long" : "would make the facets no valid complex"),
+      {fmt::format(
+           "Features below the repair tolerance of {:.3g} stay, the first one at {}: to remove them {}; they "
+           "cost elements and time, another --repair-tolerance may help.",
+           tolerance, text(*noise),
+           result.report.gave_up ? "takes too long" : "would make the facets no valid complex"),
        *noise});
   return {std::move(plc), {}, {}};
 }

@@ -42,7 +42,11 @@ NearestOnSegment nearest_on_segment(const Point& p, const Point& a, const Point&
 class Snapper {
  public:
   Snapper(Draft& draft, double distance_limit, SnapWhat what, Work& work)
-      : draft_(draft), limit_(distance_limit), what_(what), work_(work), triangles_(draft, distance_limit, work),
+      : draft_(draft),
+        limit_(distance_limit),
+        what_(what),
+        work_(work),
+        triangles_(draft, distance_limit, work),
         grid_(draft.points, distance_limit) {}
 
   SnapReport run(const std::vector<bool>& known) {
@@ -77,6 +81,11 @@ class Snapper {
   void begin(const std::vector<bool>& known) {
     in_grid_.assign(draft_.points.size(), false);
     for (Index t = 0; t < triangles_.end(); ++t) {
+      // Only borders can be near anything there.
+      if (what_ == SnapWhat::borders && !has_border(t)) {
+        draft_.origins[t].facet = 0;
+        continue;
+      }
       if (known.empty() || !known[t]) {
         draft_.origins[t].facet = unseen;
         for (auto& list : unseen_) list.push_back(t);
@@ -140,7 +149,8 @@ class Snapper {
   // Those that are still there and were not looked at, in order; they count as looked at from now on.
   std::vector<Index> take_unseen(Index flag) {
     std::vector<Index>& list = unseen_[flag == unseen_by_corners ? 0 : 1];
-    std::erase_if(list, [&](Index t) { return !triangles_.alive(t) || (draft_.origins[t].facet & flag) == 0; });
+    std::erase_if(list,
+                  [&](Index t) { return !triangles_.alive(t) || (draft_.origins[t].facet & flag) == 0; });
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
     for (const Index t : list) draft_.origins[t].facet &= ~flag;
@@ -190,6 +200,11 @@ class Snapper {
     });
     return border;
   }
+  bool has_border(Index t) const {
+    const build::Corners& c = draft_.triangles[t];
+    return is_border(edge_key(c[0], c[1])) || is_border(edge_key(c[1], c[2])) ||
+           is_border(edge_key(c[2], c[0]));
+  }
   bool is_border(const Edge& edge) const { return triangles_.sides(edge).size() == 1; }
 
   bool before(Index p, Index q) const {
@@ -197,8 +212,8 @@ class Snapper {
     return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z != b.z ? a.z < b.z : p < q;
   }
 
-  // Those that were compared before are apart from each other: new ones are compared with them and among themselves,
-  // in an order that does not depend on that of the input.
+  // Those that were compared before are apart from each other: new ones are compared with them and among
+  // themselves, in an order that does not depend on that of the input.
   bool merge_points() {
     std::vector<Index> order = points_to_compare();
     std::vector<std::pair<Index, Index>> merged;  // what, into what
@@ -261,7 +276,8 @@ class Snapper {
       const build::Corners corners{renamed(before[0]), renamed(before[1]), renamed(before[2])};
       const Origin origin = draft_.origins[t];
       take(t);
-      if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0]) put(corners, origin);
+      if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0])
+        put(corners, origin);
     }
     for (Segment& s : draft_.segments) s = {renamed(s.a), renamed(s.b), s.tag, s.soup};
     std::erase_if(draft_.segments, [](const Segment& s) { return s.a == s.b; });
@@ -299,7 +315,8 @@ class Snapper {
     bool deferred = false;  // its triangles are looked at again
   };
 
-  // Edges get the corners near them, the longest first. In one round a triangle is cut at one of its sides only.
+  // Edges get the corners near them, the longest first. In one round a triangle is cut at one of its sides
+  // only.
   bool snap_corners() {
     clear();
     const std::vector<Index> looked_at = take_unseen(unseen_by_corners);
@@ -400,9 +417,8 @@ class Snapper {
   bool overlay() {
     clear();
     std::vector<std::pair<Index, Index>> pairs;
-    triangles_.for_each_near_pair(take_unseen(unseen_by_overlay), [&](Index s, Index t) {
-      pairs.emplace_back(s, t);
-    });
+    triangles_.for_each_near_pair(take_unseen(unseen_by_overlay),
+                                  [&](Index s, Index t) { pairs.emplace_back(s, t); });
     std::sort(pairs.begin(), pairs.end());
     for (const auto& [s, t] : pairs) {
       find_near_corners(s, t);
@@ -427,7 +443,8 @@ class Snapper {
 
   void add_on_edge(const Edge& key, const OnEdge& point, double moved) {
     auto& points = on_edge_[key];
-    if (std::any_of(points.begin(), points.end(), [&](const OnEdge& o) { return o.point == point.point; })) return;
+    if (std::any_of(points.begin(), points.end(), [&](const OnEdge& o) { return o.point == point.point; }))
+      return;
     if (points.empty()) ++report_.cut_edges;
     points.push_back(point);
     note(at(point.point), moved);
@@ -440,7 +457,8 @@ class Snapper {
     if (!(nn > 0)) return false;
     const double height = std::fabs(dot(q - a, n)) / std::sqrt(nn);
     if (height > limit_) return false;
-    if (dot(cross(b - a, q - a), n) <= 0 || dot(cross(c - b, q - b), n) <= 0 || dot(cross(a - c, q - c), n) <= 0)
+    if (dot(cross(b - a, q - a), n) <= 0 || dot(cross(c - b, q - b), n) <= 0 ||
+        dot(cross(a - c, q - c), n) <= 0)
       return false;
     auto& points = inside_[t];
     if (std::find(points.begin(), points.end(), p) != points.end()) return true;
@@ -593,10 +611,10 @@ class Snapper {
       const Vector n = cross(at(b) - at(a), at(c) - at(a));
       const double nn = squared_norm(n);
       if (!(nn > 0)) continue;
-      const double least = std::min({dot(cross(at(b) - at(a), at(p) - at(a)), n),
-                                     dot(cross(at(c) - at(b), at(p) - at(b)), n),
-                                     dot(cross(at(a) - at(c), at(p) - at(c)), n)}) /
-                           nn;
+      const double least =
+          std::min({dot(cross(at(b) - at(a), at(p) - at(a)), n), dot(cross(at(c) - at(b), at(p) - at(b)), n),
+                    dot(cross(at(a) - at(c), at(p) - at(c)), n)}) /
+          nn;
       if (least <= depth) continue;
       depth = least;
       best = i;
@@ -635,8 +653,7 @@ class Snapper {
           // Side 0 is a piece of an edge that is cut already; sides 1 and 2 are whole edges at the ends only.
           const bool first = k == 0, last = k + 2 == points.size();
           const unsigned side_after = done >> ((i + 1) % 3) & 1U, side_before = done >> ((i + 2) % 3) & 1U;
-          const unsigned flags =
-              1U | (last ? side_after : 1U) << 1U | (first ? side_before : 1U) << 2U;
+          const unsigned flags = 1U | (last ? side_after : 1U) << 1U | (first ? side_before : 1U) << 2U;
           stack.push_back({{points[k], points[k + 1], apex}, flags});
         }
       }

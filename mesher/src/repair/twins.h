@@ -19,8 +19,8 @@ struct Twin {
 /// Is it an odd permutation of its sorted corners?
 bool is_odd(const build::Corners& corners);
 
-/// Which of these triangles with the same corners, all those of one soup, cancel each other: pairs that are turned
-/// against each other; in a complex, where orientation means nothing, all but one.
+/// Which of these triangles with the same corners, all those of one soup, cancel each other: pairs that are
+/// turned against each other; in a complex, where orientation means nothing, all but one.
 std::vector<Index> cancelled_among(std::vector<Twin> twins, bool in_complex);
 
 /// Drop those of all triangles, and tell how many.

@@ -11,8 +11,8 @@ struct WorkStopped {
   bool cancelled;  ///< else the work was too much
 };
 
-/// How much repair may do. Work is counted, not timed, so that it ends in the same place on every machine: a unit is a
-/// pair of triangles near each other that is looked at, some 0.1 microseconds.
+/// How much repair may do. Work is counted, not timed, so that it ends in the same place on every machine: a
+/// unit is a pair of triangles near each other that is looked at, some 0.1 microseconds.
 class Work {
  public:
   /// Any amount, which nobody watches.
