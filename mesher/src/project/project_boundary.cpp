@@ -33,6 +33,7 @@ class BoundaryProjection {
       set_done(slot, true);
       room_.put(moves_[slot].point, moves_[slot].to);
     }
+    keep_courses();
     for (Index t = 0; t < mesh_.tets.size(); ++t)
       if (!room_.good(t)) tets.push_back(t);
     for (tets = room_.relax(std::move(tets)); !tets.empty();) tets = give_way(tets);
@@ -85,6 +86,27 @@ class BoundaryProjection {
     room_.set_free(moves_[slot].point, done && is_centre_.count(moves_[slot].point) == 0);
   }
 
+  // Where exact curves end beside their vertices, as tolerances of CAD files allow, a vertex near the end may
+  // have gone past it: of such an edge's ends the one with the longer way goes back, until none is left.
+  void keep_courses() {
+    for (bool turned = true; turned;) {
+      turned = false;
+      for (Index edge = 0; edge < mesh_.edges.size(); ++edge) {
+        if (room_.on_course(edge)) continue;
+        Index farthest = none;
+        for (const Index p : mesh_.edges[edge]) {
+          const Index slot = slot_of_[p];
+          if (slot == none || !moves_[slot].done) continue;
+          if (farthest == none || way_of(slot) > way_of(farthest)) farthest = slot;
+        }
+        if (farthest == none) continue;
+        set_done(farthest, false);
+        room_.put(moves_[farthest].point, room_.origin(moves_[farthest].point));
+        turned = true;
+      }
+    }
+  }
+
   // In each spoilt tet the vertex with the longest way goes back, or else all that moved do. Returns what is
   // spoilt then.
   std::vector<Index> give_way(const std::vector<Index>& spoilt) {
@@ -123,7 +145,7 @@ class BoundaryProjection {
       if (move.done || (again && !room_.changed_around(move.point, move.tried))) continue;
       room_.put(move.point, move.to);
       const auto tets = room_.tets_at()[move.point];
-      if (room_.relax({tets.begin(), tets.end()}).empty()) {
+      if (room_.keeps_course(move.point) && room_.relax({tets.begin(), tets.end()}).empty()) {
         set_done(slot, true);
         any = true;
         room_.commit();
