@@ -1,7 +1,7 @@
 // The topology of the surface as it is extracted, restricted and stitched triangles together: along its curves
-// each patch has as many triangles as the complex, elsewhere two at each edge, and those at a vertex hang
-// together. Sheets of a smooth patch that are closer than the distance tolerance miss that at first, because
-// triangles may lead from one to the other: these are split.
+// each patch has as many triangles as the complex, elsewhere two at each edge; those at a vertex hang together;
+// and the vertices lie on their patches. Sheets of a smooth patch that are closer than the distance tolerance
+// miss that at first, because triangles may lead from one to the other: these are split.
 #include <algorithm>
 #include <tuple>
 
@@ -130,7 +130,7 @@ bool Refinement::check_surface_topology() {
   bool found = false;
   for (const SurfaceTriangle& t : triangles) {
     if (t.face == no_face || restricted(t.face).given_up) continue;
-    const auto is_wrong = [&](Index v) { return wrong_at[v] == t.patch; };
+    const auto is_wrong = [&](Index v) { return wrong_at[v] == t.patch || !on_patch(v, t.patch); };
     if (std::none_of(t.corners.begin(), t.corners.end(), is_wrong)) continue;
     refine_triangle(t.face);
     found = true;
