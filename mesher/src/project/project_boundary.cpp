@@ -30,6 +30,7 @@ class BoundaryProjection {
     if (execution_.cancelled()) return report_;
     std::vector<Index> tets;
     for (Index slot = 0; slot < moves_.size(); ++slot) {
+      if (moves_[slot].hopeless) continue;
       set_done(slot, true);
       room_.put(moves_[slot].point, moves_[slot].to);
     }
@@ -47,12 +48,16 @@ class BoundaryProjection {
  private:
   static constexpr double default_reach = 1e-3;
   static constexpr double largest_sag = 0.5;  // relative to the reach
+  // A way of so many times the shortest edge at the vertex leads through other tets: parts of a CAD file may be
+  // off each other by more than what lies between them.
+  static constexpr double longest_way = 2;
   static constexpr int retries = 2;
 
   struct Move {
     Index point;
     Point to;
-    bool limited;  // off the exact geometry, for something flat
+    bool limited;   // off the exact geometry, for something flat
+    bool hopeless;  // farther than the tets there can follow
     bool done = false;
     std::size_t tried = 0;  // after so many commits, in vain
   };
@@ -73,7 +78,9 @@ class BoundaryProjection {
         continue;
       }
       slot_of_[p] = static_cast<Index>(moves_.size());
-      moves_.push_back({p, *place, *place != *target});
+      const double most = longest_way * room_.shortest_edge(p);
+      moves_.push_back(
+          {p, *place, *place != *target, squared_distance(*place, mesh_.points[p]) > most * most});
     }
     for (const TetMesh::CollarBall& ball : mesh_.collar_balls) is_centre_.insert(ball.point);
   }
@@ -142,7 +149,7 @@ class BoundaryProjection {
     bool any = false;
     for (Index slot = 0; slot < moves_.size() && !execution_.cancelled(); ++slot) {
       Move& move = moves_[slot];
-      if (move.done || (again && !room_.changed_around(move.point, move.tried))) continue;
+      if (move.done || move.hopeless || (again && !room_.changed_around(move.point, move.tried))) continue;
       room_.put(move.point, move.to);
       const auto tets = room_.tets_at()[move.point];
       if (room_.keeps_course(move.point) && room_.relax({tets.begin(), tets.end()}).empty()) {

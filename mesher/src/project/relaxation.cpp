@@ -51,6 +51,14 @@ Relaxation::Corners Relaxation::corners(Index tet, const std::vector<Point>& poi
   return {points[a], points[b], points[c], points[d]};
 }
 
+double Relaxation::shortest_edge(Index vertex) const {
+  double shortest = INFINITY;
+  for (const Index t : tets_at_[vertex])
+    for (const Index v : mesh_.tets[t])
+      if (v != vertex) shortest = std::min(shortest, squared_distance(origins_[v], origins_[vertex]));
+  return std::sqrt(shortest);
+}
+
 bool Relaxation::good(Index tet) const {
   const Corners now = corners(tet, mesh_.points), then = corners(tet, origins_);
   if (predicates::orientation(now[0], now[1], now[2], now[3]) <= 0) return false;

@@ -29,6 +29,8 @@ class Relaxation {
   const CellsAtVertices& tets_at() const { return tets_at_; }
   /// Where the vertex was at the beginning.
   const Point& origin(Index vertex) const { return origins_[vertex]; }
+  /// At the vertex, in the beginning.
+  double shortest_edge(Index vertex) const;
   /// Is the tet positive and within its bound?
   bool good(Index tet) const;
 
