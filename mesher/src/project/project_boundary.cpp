@@ -30,9 +30,11 @@ class BoundaryProjection {
     if (execution_.cancelled()) return report_;
     std::vector<Index> tets;
     for (Index slot = 0; slot < moves_.size(); ++slot) {
+      if (moves_[slot].hopeless) continue;
       set_done(slot, true);
       room_.put(moves_[slot].point, moves_[slot].to);
     }
+    keep_courses();
     for (Index t = 0; t < mesh_.tets.size(); ++t)
       if (!room_.good(t)) tets.push_back(t);
     for (tets = room_.relax(std::move(tets)); !tets.empty();) tets = give_way(tets);
@@ -46,12 +48,16 @@ class BoundaryProjection {
  private:
   static constexpr double default_reach = 1e-3;
   static constexpr double largest_sag = 0.5;  // relative to the reach
+  // A way of so many times the shortest edge at the vertex leads through other tets: parts of a CAD file may be
+  // off each other by more than what lies between them.
+  static constexpr double longest_way = 2;
   static constexpr int retries = 2;
 
   struct Move {
     Index point;
     Point to;
-    bool limited;  // off the exact geometry, for something flat
+    bool limited;   // off the exact geometry, for something flat
+    bool hopeless;  // farther than the tets there can follow
     bool done = false;
     std::size_t tried = 0;  // after so many commits, in vain
   };
@@ -72,7 +78,9 @@ class BoundaryProjection {
         continue;
       }
       slot_of_[p] = static_cast<Index>(moves_.size());
-      moves_.push_back({p, *place, *place != *target});
+      const double most = longest_way * room_.shortest_edge(p);
+      moves_.push_back(
+          {p, *place, *place != *target, squared_distance(*place, mesh_.points[p]) > most * most});
     }
     for (const TetMesh::CollarBall& ball : mesh_.collar_balls) is_centre_.insert(ball.point);
   }
@@ -83,6 +91,27 @@ class BoundaryProjection {
   void set_done(Index slot, bool done) {
     moves_[slot].done = done;
     room_.set_free(moves_[slot].point, done && is_centre_.count(moves_[slot].point) == 0);
+  }
+
+  // Where exact curves end beside their vertices, as tolerances of CAD files allow, a vertex near the end may
+  // have gone past it: of such an edge's ends the one with the longer way goes back, until none is left.
+  void keep_courses() {
+    for (bool turned = true; turned;) {
+      turned = false;
+      for (Index edge = 0; edge < mesh_.edges.size(); ++edge) {
+        if (room_.on_course(edge)) continue;
+        Index farthest = none;
+        for (const Index p : mesh_.edges[edge]) {
+          const Index slot = slot_of_[p];
+          if (slot == none || !moves_[slot].done) continue;
+          if (farthest == none || way_of(slot) > way_of(farthest)) farthest = slot;
+        }
+        if (farthest == none) continue;
+        set_done(farthest, false);
+        room_.put(moves_[farthest].point, room_.origin(moves_[farthest].point));
+        turned = true;
+      }
+    }
   }
 
   // In each spoilt tet the vertex with the longest way goes back, or else all that moved do. Returns what is
@@ -120,10 +149,10 @@ class BoundaryProjection {
     bool any = false;
     for (Index slot = 0; slot < moves_.size() && !execution_.cancelled(); ++slot) {
       Move& move = moves_[slot];
-      if (move.done || (again && !room_.changed_around(move.point, move.tried))) continue;
+      if (move.done || move.hopeless || (again && !room_.changed_around(move.point, move.tried))) continue;
       room_.put(move.point, move.to);
       const auto tets = room_.tets_at()[move.point];
-      if (room_.relax({tets.begin(), tets.end()}).empty()) {
+      if (room_.keeps_course(move.point) && room_.relax({tets.begin(), tets.end()}).empty()) {
         set_done(slot, true);
         any = true;
         room_.commit();

@@ -20,6 +20,8 @@ constexpr unsigned halvings = 5;
 constexpr double least_gain = 1e-3;
 // Room is made until tets are as good as they were, or as this: the smallest sine of their dihedral angles.
 constexpr double good_shape = 0.2;
+// The cosine between an edge of a curve and itself as it was.
+constexpr double least_course = 0.5;
 // The bounds are kept with room for rounding.
 constexpr double margin = 1e-6;
 
@@ -47,6 +49,14 @@ Relaxation::Relaxation(TetMesh& mesh, const ExactGeometry& exact, const Bounds& 
 Relaxation::Corners Relaxation::corners(Index tet, const std::vector<Point>& points) const {
   const auto& [a, b, c, d] = mesh_.tets[tet];
   return {points[a], points[b], points[c], points[d]};
+}
+
+double Relaxation::shortest_edge(Index vertex) const {
+  double shortest = INFINITY;
+  for (const Index t : tets_at_[vertex])
+    for (const Index v : mesh_.tets[t])
+      if (v != vertex) shortest = std::min(shortest, squared_distance(origins_[v], origins_[vertex]));
+  return std::sqrt(shortest);
 }
 
 bool Relaxation::good(Index tet) const {
@@ -180,7 +190,7 @@ bool Relaxation::improve(Index vertex) {
     const std::optional<Point> p = on_feature(vertex, wish);
     if (!p || least <= 0) return false;
     const double lack = lack_around(around_, vertex, *p, least);
-    if (lack >= least || !keeps_sag(vertex, *p)) return false;
+    if (lack >= least || !fits_features(vertex, *p)) return false;
     least = lack;
     place = *p;
     return true;
@@ -237,18 +247,34 @@ std::vector<Index> Relaxation::relax(std::vector<Index> tets) {
   return tets;
 }
 
+void Relaxation::find_features_around() {
+  if (!faces_at_.empty()) return;
+  faces_at_ = {mesh_.faces, mesh_.points.size()};
+  edges_at_ = {mesh_.edges, mesh_.points.size()};
+}
+
+bool Relaxation::on_course(Index edge) const {
+  const auto& [a, b] = mesh_.edges[edge];
+  const Vector then = origins_[b] - origins_[a], now = mesh_.points[b] - mesh_.points[a];
+  return dot(then, now) > least_course * norm(then) * norm(now);
+}
+
+bool Relaxation::keeps_course(Index vertex) {
+  find_features_around();
+  const auto edges = edges_at_[vertex];
+  return std::all_of(edges.begin(), edges.end(), [&](Index edge) { return on_course(edge); });
+}
+
 // Faces and edges on smooth features follow the vertices that slide along them.
-bool Relaxation::keeps_sag(Index vertex, const Point& place) {
+bool Relaxation::fits_features(Index vertex, const Point& place) {
   if (mesh_.features[vertex].dimension == 3) return true;
-  if (faces_at_.empty()) {
-    faces_at_ = {mesh_.faces, mesh_.points.size()};
-    edges_at_ = {mesh_.edges, mesh_.points.size()};
-  }
+  find_features_around();
   const Point now = mesh_.points[vertex];
   mesh_.points[vertex] = place;
-  const double after = sag_around(vertex);
+  const bool on_course = keeps_course(vertex);
+  const double after = on_course ? sag_around(vertex) : 0;
   mesh_.points[vertex] = now;
-  return after <= bounds_.sag || after <= sag_around(vertex);
+  return on_course && (after <= bounds_.sag || after <= sag_around(vertex));
 }
 
 // The largest distance of a face's or edge's middle from the exact geometry.

@@ -29,8 +29,16 @@ class Relaxation {
   const CellsAtVertices& tets_at() const { return tets_at_; }
   /// Where the vertex was at the beginning.
   const Point& origin(Index vertex) const { return origins_[vertex]; }
+  /// At the vertex, in the beginning.
+  double shortest_edge(Index vertex) const;
   /// Is the tet positive and within its bound?
   bool good(Index tet) const;
+
+  /// Does a mesh edge of a curve turn by less than 60 degrees from where it was? Where it turns by more, a vertex
+  /// has run past its neighbour.
+  bool on_course(Index edge) const;
+  /// All those at the vertex.
+  bool keeps_course(Index vertex);
 
   void put(Index vertex, const Point& place);
   /// Say whether `relax` may move a vertex; at first it may move those inside regions only.
@@ -63,7 +71,8 @@ class Relaxation {
   bool improve(Index vertex);
   bool in_vain(Index vertex) const;
   std::optional<Point> on_feature(Index vertex, const Point& wish) const;
-  bool keeps_sag(Index vertex, const Point& place);
+  bool fits_features(Index vertex, const Point& place);
+  void find_features_around();
   double sag_around(Index vertex) const;
 
   TetMesh& mesh_;

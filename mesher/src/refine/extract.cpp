@@ -50,6 +50,12 @@ TetMesh Refinement::extract() const {
     if (const Index v = ball_vertex(ball); v != none && number[v] != none)
       mesh.collar_balls.push_back({number[v], collars_.balls()[ball].radius, mesh.points[number[v]]});
   for (const FaceId face : marked_faces()) extract_face(face, number, mesh);
+  // The middle of a triangle may lie in the plane of its patch, but beside the patch.
+  std::vector<bool> on_surface(mesh.points.size(), false);
+  for (const auto& face : mesh.faces)
+    for (const Index v : face) on_surface[v] = true;
+  for (Index v = 0; v < mesh.features.size(); ++v)
+    if (mesh.features[v].dimension == 2 && !on_surface[v]) mesh.features[v] = {3, none};
   for (const Subsegment& s : subsegments_) {
     if (!s.alive || number[s.ends[0]] == none || number[s.ends[1]] == none) continue;
     mesh.edges.push_back({number[s.ends[0]], number[s.ends[1]]});

@@ -149,12 +149,18 @@ MeshStatus Refinement::run() {
     if (mending_collars && check_collars()) continue;
     const bool collars_settled = std::exchange(mending_collars, false);
     if (check_surface() || check_gradation()) continue;
-    if (collars_settled || !check_collars()) break;
-    mending_collars = true;
+    if (!collars_settled && check_collars()) {
+      mending_collars = true;
+      continue;
+    }
+    rip_and_stitch();
+    if (!check_surface_topology()) break;
   }
   if (stop_ != MeshStatus::complete) return stop_;
-  relabel_flat_cells();
-  rip_and_stitch();
+  if (relabel_flat_cells()) rip_and_stitch();
+  if (!stitched_.open.empty())
+    give_up(mesh_.point(stitched_.open[0]), "a collar could not be stitched to its surroundings",
+            "try a smaller size or another seed");
   seconds_ = elapsed();
   return message_.empty() ? MeshStatus::complete : MeshStatus::guarantee_missed;
 }

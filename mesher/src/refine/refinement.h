@@ -39,7 +39,8 @@ std::vector<Index> spread_points(std::span<const Index> candidates, const std::v
 ///
 /// refinement.cpp holds the loop, destroy and force_insert; curves.cpp the subsegments;
 /// patches.cpp labels and restricted triangles; gradation.cpp target sizes at vertices;
-/// surface_check.cpp what is looked at when the queue has run empty; collar_surface.cpp and
+/// surface_check.cpp what is looked at when the queue has run empty, surface_topology.cpp
+/// what is looked at in the end; collar_surface.cpp and
 /// collar_review.cpp the collars, rip_and_stitch.cpp their tets; extract.cpp turns the result
 /// into a TetMesh.
 class Refinement {
@@ -260,9 +261,10 @@ class Refinement {
   // surface_check.cpp
   /// Look at the whole restricted surface and queue what is wrong. False when nothing is.
   bool check_surface();
+  /// Gives up after too many.
+  bool another_surface_round();
   std::vector<bool> vertices_at_collars() const;
   bool check_patch_topology(const std::vector<FaceId>& faces);
-  bool open_pinches(const std::vector<FaceId>& faces);
   bool refine_distant_triangles(const std::vector<FaceId>& faces);
   void seed_missed_patch(Index patch);
   void prepare_tessellation();
@@ -272,8 +274,14 @@ class Refinement {
   std::vector<FaceId> marked_faces() const;
   void refine_triangle(FaceId face);
   bool flat_on_patch(Index cell) const;
-  void relabel_flat_cells();
+  /// False when there are none.
+  bool relabel_flat_cells();
   void toggle_mark(FaceId face, const RestrictedTriangle& record);
+
+  // surface_topology.cpp
+  void count_curve_sides();
+  std::size_t sides_at(Index curve, Index patch) const;
+  bool check_surface_topology();
 
   // extract.cpp
   void extract_face(FaceId face, const std::vector<Index>& number, TetMesh& mesh) const;
@@ -376,6 +384,7 @@ class Refinement {
     std::vector<Tet> tets;
     std::vector<Face> faces;
     std::vector<Edge> edges;
+    std::vector<Index> open;  ///< mesh vertices of faces between regions that lie on no patch between them
   };
   /// Where a curve that is no crease leaves the ball at its end.
   struct ClippedEnd {
@@ -432,6 +441,7 @@ class Refinement {
   LargeVector<Index> node_pool_;
   std::vector<TessellationPoint> tessellation_;        // of all smooth patches, one after the other
   std::vector<std::size_t> first_tessellation_point_;  // of each patch; empty before the first check
+  std::vector<std::vector<Index>> curve_sides_;        // by curve: triangles of each of its patches
 
   LargeVector<UnresolvedPoint> unresolved_;
   std::vector<PendingSubsegment> pending_;

@@ -29,6 +29,7 @@ FaceUse face_use(const std::array<Index, 3>& face, Index region) {
 }  // namespace
 
 void Refinement::rip_and_stitch() {
+  stitched_ = {};
   if (collars_.empty()) return;
   const std::vector<CollarTriangle> triangles = collar_triangles();
   for (const CollarTriangle& t : triangles) {
@@ -105,8 +106,7 @@ void Refinement::stitch_faces(const std::vector<CollarTriangle>& triangles) {
     const Index patch = patch_between(uses[i].key, uses[i].region, beyond);
     if (patch == none) {
       if (uses[i].region != beyond || j - i > 2)
-        give_up(mesh_.point(uses[i].key[0]), "a collar could not be stitched to its surroundings",
-                "try a smaller size or another seed");
+        stitched_.open.insert(stitched_.open.end(), uses[i].key.begin(), uses[i].key.end());
       continue;
     }
     auto face = uses[i].face;

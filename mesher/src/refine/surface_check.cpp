@@ -5,10 +5,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <iterator>
 #include <numeric>
 
-#include "common/disjoint_sets.h"
 #include "refine/refinement.h"
 
 namespace collarmesh {
@@ -64,15 +62,15 @@ bool Refinement::check_surface() {
   found |= refine_distant_triangles(faces);
   found |= resolve_distant_points(faces);
   found |= check_flat_cells();
-  if (!found) found = open_pinches(faces);
-  if (found && ++surface_rounds_ > most_rounds) {
-    give_up(
-        mesh_.point(last_vertex()),
-        fmt::format("the surface did not settle in {} rounds of repairs; the last vertex is", most_rounds),
-        "raise distance, or try a smaller size or another seed");
-    return false;
-  }
-  return found;
+  return found && another_surface_round();
+}
+
+bool Refinement::another_surface_round() {
+  if (++surface_rounds_ <= most_rounds) return true;
+  give_up(mesh_.point(last_vertex()),
+          fmt::format("the surface did not settle in {} rounds of repairs; the last vertex is", most_rounds),
+          "raise distance, or try a smaller size or another seed");
+  return false;
 }
 
 std::vector<FaceId> Refinement::marked_faces() const {
@@ -138,56 +136,6 @@ bool Refinement::check_patch_topology(const std::vector<FaceId>& faces) {
       if (restricted(uses[k].face).squared_radius > restricted(uses[largest].face).squared_radius)
         largest = k;
     refine_triangle(uses[largest].face);
-    found = true;
-  }
-  return found;
-}
-
-// Two sheets of a smooth patch closer than the tolerance may share a vertex: the triangles there hang
-// together by more than one chain of edges. Precondition: every edge lies in at most two of a patch's
-// triangles.
-bool Refinement::open_pinches(const std::vector<FaceId>& faces) {
-  struct Side {
-    EdgeUse use;
-    Index low, high;  // the triangle's corners at the edge's ends, 3 * place in `smooth` + i
-    bool operator<(const Side& other) const { return use < other.use; }
-  };
-  std::vector<FaceId> smooth;
-  std::copy_if(faces.begin(), faces.end(), std::back_inserter(smooth),
-               [&](FaceId face) { return !plc_.patches[patch_of(restricted(face))].planar; });
-  std::vector<Side> sides;
-  sides.reserve(3 * smooth.size());
-  for (Index f = 0; f < smooth.size(); ++f) {
-    const auto v = mesh_.face_vertices(smooth[f]);
-    const Index patch = patch_of(restricted(smooth[f]));
-    for (unsigned i = 0; i < 3; ++i) {
-      unsigned a = i, b = (i + 1) % 3;
-      if (v[a] > v[b]) std::swap(a, b);
-      sides.push_back({{edge_between(v[a], v[b]), patch, smooth[f]}, 3 * f + a, 3 * f + b});
-    }
-  }
-  std::sort(sides.begin(), sides.end());
-  DisjointSets fans(3 * smooth.size());
-  for (std::size_t i = 1; i < sides.size(); ++i) {
-    if (!sides[i].use.same_place(sides[i - 1].use)) continue;
-    fans.unite(sides[i].low, sides[i - 1].low);
-    fans.unite(sides[i].high, sides[i - 1].high);
-  }
-  const std::vector<bool> at_collars = vertices_at_collars();
-  std::vector<Index> fan_at(mesh_.vertex_count(), none);
-  std::vector<bool> pinched(mesh_.vertex_count(), false);
-  for (Index corner = 0; corner < 3 * smooth.size(); ++corner) {
-    const Index v = mesh_.face_vertices(smooth[corner / 3])[corner % 3];
-    if (vertices_[v].dimension != 2 || at_collars[v]) continue;
-    const Index fan = fans.find(corner);
-    if (fan_at[v] == none) fan_at[v] = fan;
-    if (fan_at[v] != fan) pinched[v] = true;
-  }
-  bool found = false;
-  for (const FaceId face : smooth) {
-    const auto v = mesh_.face_vertices(face);
-    if (restricted(face).given_up || !(pinched[v[0]] || pinched[v[1]] || pinched[v[2]])) continue;
-    refine_triangle(face);
     found = true;
   }
   return found;
@@ -346,7 +294,8 @@ bool Refinement::check_flat_cells() {
 }
 
 // Four cocircular vertices of a boundary facet can make a flat cell just inside: it belongs outside.
-void Refinement::relabel_flat_cells() {
+bool Refinement::relabel_flat_cells() {
+  bool found = false;
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
     if (!mesh_.alive(cell) || labels_[cell].region == 0 || labels_[cell].marked == 0 ||
         labels_[cell].in_collar || !flat_on_patch(cell))
@@ -362,7 +311,9 @@ void Refinement::relabel_flat_cells() {
     if (!boundary) continue;
     labels_[cell].region = 0;
     for (unsigned corner = 0; corner < 4; ++corner) toggle_mark(face_id(cell, corner), record);
+    found = true;
   }
+  return found;
 }
 
 void Refinement::toggle_mark(FaceId face, const RestrictedTriangle& record) {
