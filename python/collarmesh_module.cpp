@@ -114,7 +114,8 @@ RepairMode repair_mode(const std::string& word) {
 
 std::unique_ptr<Mesh> generate_mesh(const std::vector<PolygonSoup>& soups, const Wanted& wanted,
                                     const Execution& execution) {
-  const auto [plc, repaired, repaired_soups] = build_repaired_plc(soups, wanted.plc, wanted.repair);
+  const auto [plc, repaired, repaired_soups] = build_repaired_plc(soups, wanted.plc, wanted.repair, execution);
+  if (repaired.cancelled) throw Error("cancelled");
   MeshResult result = generate(plc, wanted.mesh, execution);
   require_complete(result);
   auto made = std::make_unique<Mesh>();

@@ -114,6 +114,15 @@ void add_complex_options(CLI::App& app, ComplexArguments& a) {
       "Of the surface that --repair wrap puts around everything, relative to the diagonal")
       ->check(number_in(1e-4, 0.1, "a number from 1e-4 to 0.1 (relative to the diagonal)"))
       ->group(group);
+  const std::map<std::string, SolidOverlap> overlaps{{"first", SolidOverlap::first},
+                                                     {"region", SolidOverlap::region}};
+  app.add_option("--overlap", a.overlap,
+                 "What solids of a CAD file have in common: first gives it to the first one, region makes it a "
+                 "region of its own")
+      ->transform(CLI::CheckedTransformer(overlaps).description(""))
+      ->default_str("first")
+      ->type_name("first|region")
+      ->group(group);
   add(app, "--crease-angle DEGREES", a.crease_angle,
       "Features that meet below this angle form a crease, degrees")
       ->check(number_in(0, 90, "an angle from 0 to 90 degrees"))

@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "cad_files.h"
 #include "collarmesh/check.h"
 #include "collarmesh/improve.h"
 #include "collarmesh/mesher.h"
@@ -19,6 +20,7 @@ enum class ProgressStyle { automatic, json, none };
 struct ComplexArguments {
   PlcOptions plc;
   RepairOptions repair;
+  SolidOverlap overlap = SolidOverlap::first;
   double crease_angle = 60;  ///< degrees
 };
 

@@ -51,11 +51,14 @@ bool CadFiles::knows(const std::string& path, std::string_view format) {
 }
 bool CadFiles::empty() const { return files_.empty(); }
 
-void CadFiles::read(const std::string& path, std::string_view format, double deflection,
+void CadFiles::read(const std::string& path, std::string_view format, const CadReading& reading,
                     std::vector<PolygonSoup>& soups) {
-  std::unique_ptr<brep::CadModel> model = read_by_module(path, format, {});
+  const brep::Overlap overlap =
+      reading.overlap == SolidOverlap::region ? brep::Overlap::region : brep::Overlap::first;
+  std::unique_ptr<brep::CadModel> model = read_by_module(path, format, {.overlap = overlap});
   constexpr double relative_deflection = 1e-4;
-  if (!(deflection > 0)) deflection = relative_deflection * model->diagonal();
+  const double deflection =
+      reading.deflection > 0 ? reading.deflection : relative_deflection * model->diagonal();
   std::vector<PolygonSoup> own = model->tessellate({.deflection = deflection});
   files_.push_back(
       {std::move(model), deflection, static_cast<Index>(soups.size()), static_cast<Index>(own.size())});

@@ -11,6 +11,18 @@
 
 namespace collarmesh::cli {
 
+/// Whose is what several solids of a CAD file have in common?
+enum class SolidOverlap {
+  first,  ///< the first one's, or that of one which lies wholly inside it
+  region  ///< a region of its own
+};
+
+/// How CAD files are read.
+struct CadReading {
+  double deflection = 0;  ///< of the triangles, absolute; 0: 1e-4 of the diagonal
+  SolidOverlap overlap = SolidOverlap::first;
+};
+
 /// The CAD files among the inputs. The first one loads the module with OpenCASCADE.
 class CadFiles {
  public:
@@ -23,9 +35,9 @@ class CadFiles {
   /// Is it a CAD file by its extension, or as `format` says?
   static bool knows(const std::string& path, std::string_view format);
 
-  /// Read a file and append its soups. `deflection` is absolute, 0: 1e-4 of the diagonal.
+  /// Read a file and append its soups.
   /// Throws ReadError and PlcError.
-  void read(const std::string& path, std::string_view format, double deflection,
+  void read(const std::string& path, std::string_view format, const CadReading& reading,
             std::vector<PolygonSoup>& soups);
   bool empty() const;
 

@@ -11,12 +11,14 @@ namespace collarmesh::cli {
 
 ExitCode check_command(const CheckArguments& arguments) {
   const TetMesh mesh = read_mesh(arguments.mesh);
-  ComplexInput input(arguments.inputs, {}, arguments.check.distance);
+  ComplexInput input(arguments.inputs, {{}, arguments.check.distance, arguments.complex.overlap});
   const Plc plc = input.build(arguments.complex);
   stop_if_interrupted();
   CheckOptions options = arguments.check;
   options.crease_angle = arguments.complex.crease_angle;
   CheckReport report = check(mesh, plc, options);
+  if (input.repaired().repaired)
+    report.notes.emplace_back("the mesh was judged against the repaired complex, and that against the input:");
   for (const std::string& repair : describe(input.repaired()))
     report.notes.push_back("the input was repaired: " + repair);
   if (arguments.json)

@@ -23,6 +23,13 @@ bool may_be_too_coarse(const PlcError& error) {
   });
 }
 
+// Ends when the user asks for it or the time is up.
+Execution watched() {
+  Execution execution;
+  execution.cancel = &interrupt_flag();
+  return execution;
+}
+
 PlcError with_names(const PlcError& error, const CadFiles& cad) {
   std::vector<PlcFault> faults = error.faults;
   for (PlcFault& fault : faults)
@@ -61,15 +68,15 @@ std::string advice(const PlcError& error, const RepairOptions& options) {
 
 }  // namespace
 
-ComplexInput::ComplexInput(const std::vector<std::string>& paths, const std::string& format,
-                           double distance) {
+ComplexInput::ComplexInput(const std::vector<std::string>& paths, const InputReading& reading) {
+  const CadReading cad{share_of_triangles * reading.distance, reading.overlap};
   for (const std::string& path : paths) {
     stop_if_interrupted();
     const std::string file = existing_file(path);
-    if (CadFiles::knows(file, format))
-      cad_.read(file, format, share_of_triangles * distance, soups_);
+    if (CadFiles::knows(file, reading.format))
+      cad_.read(file, reading.format, cad, soups_);
     else
-      soups_.push_back(read_surface(file, format));
+      soups_.push_back(read_surface(file, reading.format));
   }
 }
 
@@ -86,7 +93,8 @@ Plc ComplexInput::build(const ComplexArguments& options) {
   for (const double finer : {1.0, 4.0}) {
     if (finer > 1) tessellate(finer);
     try {
-      return take(remove_noise(build_plc(soups_, options.plc), soups_, options.plc, options.repair));
+      return take(
+          remove_noise(build_plc(soups_, options.plc), soups_, options.plc, options.repair, watched()));
     } catch (const PlcError& error) {
       if (!first) first = with_names(error, cad_);
       if (!cad_.fused() || !may_be_too_coarse(error)) break;
@@ -114,10 +122,11 @@ void ComplexInput::tessellate(double finer) {
 }
 
 Plc ComplexInput::build_repaired(const ComplexArguments& options) {
-  return take(build_repaired_plc(soups_, options.plc, options.repair));
+  return take(build_repaired_plc(soups_, options.plc, options.repair, watched()));
 }
 
 Plc ComplexInput::take(RepairedPlc result) {
+  if (result.report.cancelled) stop_if_interrupted();
   repaired_ = std::move(result.report);
   if (repaired_.repaired) soups_ = std::move(result.soups);
   return std::move(result.plc);

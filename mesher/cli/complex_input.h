@@ -13,14 +13,20 @@
 
 namespace collarmesh::cli {
 
+/// How the files of one complex are read.
+struct InputReading {
+  std::string format;   ///< in place of the files' extensions; empty: by these
+  double distance = 0;  ///< surface distance tolerance, absolute, 0: 1e-3 of the diagonal; the triangles of
+                        ///< CAD shapes keep a tenth of it
+  SolidOverlap overlap = SolidOverlap::first;
+};
+
 /// The files of one complex: surfaces, complexes and CAD shapes, which are cut into triangles here.
 class ComplexInput {
  public:
-  /// Read them; "-" is standard input. `format` overrides the extensions. `distance` is the surface distance
-  /// tolerance, absolute (0: 1e-3 of the diagonal); the triangles of CAD shapes keep a tenth of it.
+  /// Read them; "-" is standard input.
   /// Throws ReadError, for a file that does not exist with the most similar name, and PlcError.
-  explicit ComplexInput(const std::vector<std::string>& paths, const std::string& format = {},
-                        double distance = 0);
+  explicit ComplexInput(const std::vector<std::string>& paths, const InputReading& reading = {});
 
   const std::vector<PolygonSoup>& soups() const { return soups_; }
   bool has_cad() const { return !cad_.empty(); }

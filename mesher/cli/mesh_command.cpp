@@ -73,7 +73,8 @@ void require_known_tags(const MeshOptions& options, const Plc& plc) {
 
 ComplexInput build_complex(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   stages.begin("read", 0, 0.02);
-  ComplexInput input(arguments.inputs, arguments.input_format, arguments.mesh.distance);
+  ComplexInput input(arguments.inputs,
+                     {arguments.input_format, arguments.mesh.distance, arguments.complex.overlap});
   stages.begin("complex", 0.02, 0.08);
   run.plc = input.build(arguments.complex);
   run.notes = input.notes();
@@ -165,6 +166,12 @@ void certify(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   options.crease_angle = arguments.complex.crease_angle;
   options.threads = arguments.threads;
   run.check = check(run.result.mesh, run.plc, options);
+  if (run.repair.repaired)
+    run.check.notes.push_back(
+        fmt::format("the mesh was judged against the repaired complex; its facets are within {:.3g} of the "
+                    "input, and the input, but for "
+                    "what lies inside of them, within {:.3g} of them",
+                    run.repair.largest_distance, run.repair.largest_distance_of_input));
 }
 
 void write_report(const std::string& path, const MeshArguments& arguments, const MeshRun& run) {

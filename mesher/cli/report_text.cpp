@@ -56,6 +56,8 @@ RepairReport beyond_tolerance(const RepairReport& report) {
   rest.lost_tags = report.lost_tags;
   rest.wrapped = report.wrapped;
   rest.largest_distance = report.largest_distance;
+  rest.largest_distance_of_input = report.largest_distance_of_input;
+  rest.repaired = std::max(report.largest_distance, report.largest_distance_of_input) > report.tolerance;
   return rest;
 }
 

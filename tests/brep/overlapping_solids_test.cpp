@@ -4,18 +4,24 @@
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
+#include <BRepTools.hxx>
 #include <OSD_ThreadPool.hxx>
 #include <gp_Ax2.hxx>
 #include <gp_Trsf.hxx>
 
+#include <array>
 #include <cmath>
 #include <set>
+#include <variant>
 
+#include "arguments.h"
 #include "cad_meshing.h"
 #include "collarmesh/brep/cad_model.h"
 #include "collarmesh/plc_builder.h"
+#include "complex_input.h"
 #include "shapes.h"
 #include "soup_measures.h"
+#include "support/temporary_file.h"
 
 namespace collarmesh::testing {
 namespace {
@@ -162,6 +168,31 @@ TEST(CadSolids, OfGroupsApartShareFacesWithinEach) {
                      box(60, 0, 0, 5, 5, 5), box(100, 0, 0, 1, 1, 1)}));
   expect_volumes(part, {{1, 1000}, {2, 125}, {3, 1000}, {4, 125}, {5, 1}});
   expect_complex(part, 2251);
+}
+
+// As the program reads a file: what `--overlap` says reaches the module that reads CAD files.
+TEST(CadOverlaps, OptionOfTheProgram) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("boxes.brep");
+  BRepTools::Write(compound({box(0, 0, 0, 10, 20, 30), box(5, 5, 5, 10, 20, 30)}), path.c_str());
+  const auto volumes = [&](const std::vector<const char*>& options) {
+    std::vector<const char*> words{"collarmesh", "info", path.c_str()};
+    words.insert(words.end(), options.begin(), options.end());
+    const auto parsed = cli::parse(static_cast<int>(words.size()), words.data());
+    const auto& info = std::get<cli::InfoArguments>(std::get<cli::Arguments>(parsed));
+    cli::ComplexInput input(info.inputs, {.overlap = info.complex.overlap});
+    return volumes_of(input.soups());
+  };
+  const Volumes first{{1, 6000}, {2, 6000 - 1875}}, region{{1, 6000 - 1875}, {2, 6000 - 1875}, {3, 1875}};
+  const auto expect_near = [](const Volumes& found, const Volumes& expected) {
+    ASSERT_EQ(found.size(), expected.size());
+    for (const auto& [tag, volume] : expected) EXPECT_NEAR(found.at(tag), volume, 1e-6) << "Solid" << tag;
+  };
+  expect_near(volumes({}), first);
+  expect_near(volumes({"--overlap", "first"}), first);
+  expect_near(volumes({"--overlap", "region"}), region);
+  const std::array wrong{"collarmesh", "info", path.c_str(), "--overlap", "both"};
+  EXPECT_EQ(std::get<cli::ExitCode>(cli::parse(static_cast<int>(wrong.size()), wrong.data())), cli::ExitCode::usage);
 }
 
 bool same(const std::vector<PolygonSoup>& a, const std::vector<PolygonSoup>& b) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <string_view>
 
 #include "support/acute_shapes.h"
 #include "support/repair_shapes.h"
@@ -129,8 +130,9 @@ std::vector<double> volumes_of(std::span<const PolygonSoup> soups) {
 using Change = std::function<PolygonSoup(const PolygonSoup&)>;
 
 void expect_invariant(unsigned count, std::uint64_t seed, double relative, const Change& change,
-                      double scale) {
+                      double scale, std::string_view left_out = {}) {
   for (const Family& family : families()) {
+    if (family.name == left_out) continue;
     Random random(seed);
     for (unsigned member = 0; member < members(count); ++member) {
       SCOPED_TRACE(fmt::format("{}, member {}", family.name, member));
@@ -160,6 +162,14 @@ TEST(RepairInvariance, ScaledAndMoved) {
         return testing::translated(soup, {3.1, -7.7, 1.3});
       },
       1);
+}
+
+// But for three boxes of a lattice: their sides in one plane part by rounding when they are turned, which is not always
+// repaired.
+TEST(RepairInvariance, Rotated) {
+  expect_invariant(
+      2, 24, 1e-4, [](const PolygonSoup& soup) { return testing::rotated(soup, {1, 2, -1}, 37); }, 1,
+      "boxes of a lattice");
 }
 
 TEST(RepairInvariance, OrderOfPointsFacetsAndCorners) {

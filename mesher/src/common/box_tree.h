@@ -20,6 +20,14 @@ class BoxTree {
     if (!nodes_.empty()) pairs_within(0, visit);
   }
 
+  /// Calls visit(i) for every item whose box meets this one.
+  template <class Visit>
+  void for_each_meeting(const Box& box, const Visit& visit) const {
+    if (!nodes_.empty())
+      descend(
+          0, [&](const Box& b) { return meet(b, box); }, visit);
+  }
+
   /// Calls visit(i) for every item whose box meets the segment pq, or may.
   template <class Visit>
   void for_each_near_segment(const Point& p, const Point& q, const Visit& visit) const {

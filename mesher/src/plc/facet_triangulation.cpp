@@ -1,29 +1,16 @@
 #include "plc/facet_triangulation.h"
 
-#include <CGAL/Constrained_Delaunay_triangulation_2.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Triangulation_face_base_with_info_2.h>
-#include <CGAL/Triangulation_vertex_base_with_info_2.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "plc/exact.h"
+#include "plc/plane_triangulation.h"
 
 namespace collarmesh::build {
 
 namespace {
-
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<Index, Kernel>;
-using FaceBase =
-    CGAL::Constrained_triangulation_face_base_2<Kernel,
-                                                CGAL::Triangulation_face_base_with_info_2<bool, Kernel>>;
-using PlaneTriangulation =
-    CGAL::Constrained_Delaunay_triangulation_2<Kernel,
-                                               CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
-                                               CGAL::No_constraint_intersection_requiring_constructions_tag>;
 
 // A facet with the draft's point indices.
 struct Facet {
@@ -130,7 +117,7 @@ class FacetTriangulator {
     return false;
   }
 
-  Kernel::Point_2 project(const Point& p) const { return {p[(axis_ + 1) % 3], p[(axis_ + 2) % 3]}; }
+  PlaneKernel::Point_2 project(const Point& p) const { return {p[(axis_ + 1) % 3], p[(axis_ + 2) % 3]}; }
 
   void triangulate(const Facet& facet, const Plane& plane) {
     const Vector& n = plane.normal;
@@ -197,7 +184,7 @@ class FacetTriangulator {
     corners_.insert(corners_.end(), facet.points.begin(), facet.points.end());
     std::sort(corners_.begin(), corners_.end());
     corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
-    std::vector<std::pair<Kernel::Point_2, Index>> projected;
+    std::vector<std::pair<PlaneKernel::Point_2, Index>> projected;
     for (const Index p : corners_) projected.emplace_back(project(draft_.points[p]), p);
     mesh.insert(projected.begin(), projected.end());
 

@@ -18,6 +18,9 @@ class Faults {
   /// Is another fault of this kind only counted?
   bool full(PlcFault::Kind kind) const { return counts_[static_cast<std::size_t>(kind)] >= listed_per_kind; }
 
+  /// The first ones of each kind.
+  const std::vector<PlcFault>& list() const { return faults_; }
+
   /// Throws PlcError, if there is any fault.
   void raise() const;
 

@@ -26,9 +26,10 @@ class IntersectionFinder {
   IntersectionFinder(const Draft& draft, const Simplices& simplices)
       : draft_(draft), boxes_(simplices.boxes()), simplices_(simplices.list()) {}
 
-  std::vector<std::pair<Index, Index>> pairs() const {
+  std::vector<std::pair<Index, Index>> pairs(const std::vector<bool>& settled = {}) const {
     std::vector<std::pair<Index, Index>> found;
     boxes_.for_each_pair([&](Index i, Index j) {
+      if (!settled.empty() && settled[i] && settled[j]) return;
       const bool triangles = simplices_[i].size == 3 && simplices_[j].size == 3;
       if (triangles ? triangles_illegal(simplices_[i].points, simplices_[j].points) : illegal(ordered(i, j)))
         found.push_back(std::minmax(i, j));
@@ -223,8 +224,9 @@ class IntersectionFinder {
 
 }  // namespace
 
-std::vector<std::pair<Index, Index>> intersecting_pairs(const Draft& draft, const Simplices& simplices) {
-  return IntersectionFinder(draft, simplices).pairs();
+std::vector<std::pair<Index, Index>> intersecting_pairs(const Draft& draft, const Simplices& simplices,
+                                                        const std::vector<bool>& settled) {
+  return IntersectionFinder(draft, simplices).pairs(settled);
 }
 
 void find_intersections(const Draft& draft, const Simplices& simplices, Faults& faults) {

@@ -14,7 +14,9 @@ namespace collarmesh::build {
 /// Cost: O(n log n + k) for k pairs of near neighbours.
 void find_intersections(const Draft& draft, const Simplices& simplices, Faults& faults);
 
-/// The same pairs, as numbers in the list of simplices, smaller ones first, in order.
-std::vector<std::pair<Index, Index>> intersecting_pairs(const Draft& draft, const Simplices& simplices);
+/// The same pairs, as numbers in the list of simplices, smaller ones first, in order. Pairs of `settled`
+/// simplices (by number; empty: none are) are known not to meet.
+std::vector<std::pair<Index, Index>> intersecting_pairs(const Draft& draft, const Simplices& simplices,
+                                                        const std::vector<bool>& settled = {});
 
 }  // namespace collarmesh::build

@@ -1,4 +1,5 @@
-// The arrangement of triangles: Zhou, Grinspun, Zorin, Jacobson, "Mesh arrangements for solid geometry", 2016.
+// The arrangement of triangles: Zhou, Grinspun, Zorin, Jacobson, "Mesh arrangements for solid geometry",
+// 2016.
 #include "repair/arrangement.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
@@ -9,11 +10,13 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <set>
 #include <unordered_map>
 
 #include "delaunay/predicates.h"
 #include "plc/cleanup.h"
 #include "plc/edges.h"
+#include "plc/exact.h"
 #include "plc/intersections.h"
 #include "plc/simplices.h"
 #include "repair/snapping.h"
@@ -32,14 +35,13 @@ struct Inserted {
 };
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<Inserted, Kernel>;
 using FaceBase = CGAL::Constrained_triangulation_face_base_2<Kernel>;
-using PlaneTriangulation =
-    CGAL::Constrained_Delaunay_triangulation_2<Kernel,
-                                               CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
-                                               CGAL::Exact_intersections_tag>;
+using PlaneTriangulation = CGAL::Constrained_Delaunay_triangulation_2<
+    Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>, CGAL::Exact_intersections_tag>;
 using Edge = std::array<Index, 2>;
 
 constexpr std::size_t most_rounds = 12;
 constexpr std::size_t most_places = 100;
+constexpr std::size_t work_of_a_cut = 1000;  // of a pair of facets, in units of Work
 
 Edge edge_key(Index a, Index b) { return a < b ? Edge{a, b} : Edge{b, a}; }
 
@@ -89,7 +91,7 @@ class Cutter {
     if (a.size < b.size) return add_pair(b, j, a, i);
     if (b.size == 1) return add_point(a, i, exact(b.points[0]));
     if (a.size == 3 && b.size == 3) {
-      if (add_crossing(a.points, i, b.points, j)) return;
+      if (add_crossing(a.points, i, b.points, j) || add_coplanar(a.points, i, b.points, j)) return;
       if (const auto met = CGAL::intersection(triangle(a), triangle(b))) add_meeting(a, i, b, j, *met);
     } else if (a.size == 3) {
       if (const auto met = CGAL::intersection(triangle(a), segment(b))) add_meeting(a, i, b, j, *met);
@@ -98,8 +100,8 @@ class Cutter {
     }
   }
 
-  // Where the sides of s pierce t. False where a corner of one is in the plane of the other or a side meets an edge:
-  // those are taken by their constructions.
+  // Where the sides of s pierce t. False where a corner of one is in the plane of the other or a side meets
+  // an edge: those are taken by their constructions.
   bool find_piercings(const build::Corners& s, const build::Corners& t, Index number,
                       std::vector<ExactPoint>& found) {
     const auto at = [&](Index p) -> const Point& { return draft_.points[p]; };
@@ -151,6 +153,83 @@ class Cutter {
     cuts_[i].segments.push_back({ends[0], ends[1]});
     cuts_[j].segments.push_back({ends[0], ends[1]});
     return true;
+  }
+
+  // Two triangles in one plane: the sides of each cut the other.
+  bool add_coplanar(const build::Corners& s, Index i, const build::Corners& t, Index j) {
+    const auto at = [&](Index p) -> const Point& { return draft_.points[p]; };
+    for (const Index p : t)
+      if (predicates::orientation(at(s[0]), at(s[1]), at(s[2]), at(p)) != 0) return false;
+    const Vector normal = cross(at(s[1]) - at(s[0]), at(s[2]) - at(s[0]));
+    const double x = std::fabs(normal.x), y = std::fabs(normal.y), z = std::fabs(normal.z);
+    const unsigned axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+    if (planar_orientation(axis, at(s[0]), at(s[1]), at(s[2])) == 0 ||
+        planar_orientation(axis, at(t[0]), at(t[1]), at(t[2])) == 0)
+      return false;
+    for (unsigned k = 0; k < 3; ++k) {
+      clip(edge_key(t[k], t[(k + 1) % 3]), s, i, axis);
+      clip(edge_key(s[k], s[(k + 1) % 3]), t, j, axis);
+    }
+    return true;
+  }
+
+  // What an edge in the plane of a triangle has in common with it: nothing, a point or a segment, of which
+  // the ends are ends of the edge, corners, or crossings with the sides.
+  void clip(const Edge& e, const build::Corners& t, Index number, unsigned axis) {
+    if (!clipped_.insert({number, e}).second) return;
+    const auto turn = [&](Index p, Index q, Index r) {
+      return planar_orientation(axis, draft_.points[p], draft_.points[q], draft_.points[r]);
+    };
+    const int inwards = turn(t[0], t[1], t[2]);
+    std::array<std::array<int, 3>, 2> within{};  // by end and side
+    for (unsigned end = 0; end < 2; ++end)
+      for (unsigned k = 0; k < 3; ++k) within[end][k] = inwards * turn(t[k], t[(k + 1) % 3], e[end]);
+    bool along = false;
+    for (unsigned k = 0; k < 3; ++k) {
+      if (within[0][k] < 0 && within[1][k] < 0) return;
+      along |= within[0][k] == 0 && within[1][k] == 0;
+    }
+    std::vector<ExactPoint> common;
+    for (unsigned end = 0; end < 2; ++end) add_end(e[end], t, within[end], common);
+    std::array<int, 3> beside{};  // by corner: on which side of the edge
+    for (unsigned k = 0; k < 3; ++k) beside[k] = turn(e[0], e[1], t[k]);
+    for (unsigned k = 0; k < 3; ++k) {
+      const unsigned next = (k + 1) % 3;
+      if (beside[k] * beside[next] < 0 && within[0][k] * within[1][k] < 0)
+        common.push_back(crossing(e, edge_key(t[k], t[next]), axis));
+      if (beside[k] == 0 && t[k] != e[0] && t[k] != e[1] &&
+          between(draft_.points[e[0]], draft_.points[t[k]], draft_.points[e[1]])) {
+        common.push_back(exact(t[k]));
+        on_edge_[e].push_back(common.back());
+      }
+    }
+    if (common.size() == 2 && !along) cuts_[number].segments.push_back({common[0], common[1]});
+  }
+
+  // The end of an edge, if it is in the triangle.
+  void add_end(Index p, const build::Corners& t, const std::array<int, 3>& within,
+               std::vector<ExactPoint>& common) {
+    if (*std::min_element(within.begin(), within.end()) < 0) return;
+    common.push_back(exact(p));
+    if (std::count(within.begin(), within.end(), 0) != 1) return;
+    const auto k = static_cast<unsigned>(std::find(within.begin(), within.end(), 0) - within.begin());
+    on_edge_[edge_key(t[k], t[(k + 1) % 3])].push_back(common.back());
+  }
+
+  // Once for both edges.
+  ExactPoint crossing(const Edge& e, const Edge& f, unsigned axis) {
+    const auto [at, added] = crossings_.try_emplace(e < f ? std::pair{e, f} : std::pair{f, e});
+    if (!added) return at->second;
+    const ExactPoint p = exact(e[0]), q = exact(e[1]), r = exact(f[0]), s = exact(f[1]);
+    const auto u = static_cast<int>((axis + 1) % 3), v = static_cast<int>((axis + 2) % 3);
+    const auto area = [&](const ExactPoint& x) -> Kernel::FT {
+      return (s[u] - r[u]) * (x[v] - r[v]) - (s[v] - r[v]) * (x[u] - r[u]);
+    };
+    const Kernel::FT from = area(p), to = area(q);
+    at->second = p + from / (from - to) * (q - p);
+    on_edge_[e].push_back(at->second);
+    on_edge_[f].push_back(at->second);
+    return at->second;
   }
 
   template <class Meeting>
@@ -303,7 +382,8 @@ class Cutter {
       if (ids_[info - 1] == none) ids_[info - 1] = add_rounded(inserted_[info - 1]);
     }
     for (const auto face : mesh.finite_face_handles()) {
-      build::Corners corners{ids_[face->vertex(0)->info().number - 1], ids_[face->vertex(1)->info().number - 1],
+      build::Corners corners{ids_[face->vertex(0)->info().number - 1],
+                             ids_[face->vertex(1)->info().number - 1],
                              ids_[face->vertex(2)->info().number - 1]};
       if (turned) std::swap(corners[1], corners[2]);
       draft_.add_triangle(corners, origin);
@@ -315,7 +395,9 @@ class Cutter {
   std::span<const Simplex> simplices_;
   std::map<Edge, std::vector<ExactPoint>> on_edge_;
   std::map<std::array<Index, 3>, ExactPoint> piercings_;  // by edge and triangle
-  std::map<Index, Cuts> cuts_;                            // by triangle
+  std::map<std::pair<Edge, Edge>, ExactPoint> crossings_;
+  std::set<std::pair<Index, Edge>> clipped_;  // triangles, and edges in their planes
+  std::map<Index, Cuts> cuts_;                // by triangle
   // Of the triangle at hand:
   std::vector<ExactPoint> inserted_;
   std::vector<Index> ids_;  // of those
@@ -336,6 +418,74 @@ void note_places(const Draft& draft, std::span<const Simplex> simplices,
     places.push_back(both.centre());
   }
 }
+
+// Simplices by their corners. Points never move, so what had the same corners was in the same place.
+class KnownSimplices {
+ public:
+  void clear() { corners_.clear(); }
+  bool empty() const { return corners_.empty(); }
+  void add(const Corners& corners) { corners_.push_back(corners); }
+  void close() { std::sort(corners_.begin(), corners_.end()); }
+  bool has(const Corners& corners) const {
+    return std::binary_search(corners_.begin(), corners_.end(), corners);
+  }
+
+ private:
+  std::vector<Corners> corners_;
+};
+
+// What met nothing in the round before meets only what arose since then.
+class Settled {
+ public:
+  /// By number: was it there, and met nothing?
+  std::vector<bool> among(std::span<const Simplex> simplices) const {
+    std::vector<bool> result;
+    if (known_.empty()) return result;
+    result.reserve(simplices.size());
+    for (const Simplex& s : simplices) result.push_back(known_.has(s.points));
+    return result;
+  }
+
+  void settle(std::span<const Simplex> simplices, const std::vector<std::pair<Index, Index>>& pairs) {
+    std::vector<bool> met(simplices.size(), false);
+    for (const auto& [i, j] : pairs) met[i] = met[j] = true;
+    known_.clear();
+    for (std::size_t i = 0; i < simplices.size(); ++i)
+      if (!met[i]) known_.add(simplices[i].points);
+    known_.close();
+  }
+
+ private:
+  KnownSimplices known_;
+};
+
+// Corners that come near others or edges become one with them. What was there in the round before need not be
+// compared with itself.
+class GrainSnapper {
+ public:
+  GrainSnapper(Draft& draft, double reach, Work* work) : draft_(draft), reach_(reach), work_(work) {}
+
+  // A round was of no help: where snapping undoes what was cut, rounds without it help.
+  void change() { pausing_ = !pausing_; }
+
+  void run() {
+    if (pausing_ || !(reach_ > 0)) return;
+    std::vector<bool> known;
+    known.reserve(draft_.triangles.size());
+    for (const Corners& t : draft_.triangles) known.push_back(known_.has(t));
+    snap_near_features(draft_, reach_, SnapWhat::corners, work_, known);
+    known_.clear();
+    for (const Corners& t : draft_.triangles) known_.add(t);
+    known_.close();
+  }
+
+ private:
+  Draft& draft_;
+  double reach_;
+  bool pausing_ = false;
+  Work* work_;
+  KnownSimplices known_;
+};
 
 }  // namespace
 
@@ -368,16 +518,18 @@ void unify_equal_points(Draft& draft) {
   for (Index& p : draft.loose_points) p = merged[p];
 }
 
-ArrangementReport arrange(Draft& draft, double grain) {
+ArrangementReport arrange(Draft& draft, double grain, Work* work) {
   ArrangementReport report;
   constexpr std::size_t few = 1000;
+  Settled settled;
+  GrainSnapper snapper(draft, grain, work);
   for (std::size_t fewest = none;; ++report.rounds) {
     unify_equal_points(draft);
     remove_collinear_triangles(draft);
     for (Index t = 0; t < draft.origins.size(); ++t) draft.origins[t].facet = t;
     const EdgeTable edges(draft.triangles, draft.points.size());
     const Simplices simplices(draft, edges);
-    const auto pairs = intersecting_pairs(draft, simplices);
+    const auto pairs = intersecting_pairs(draft, simplices, settled.among(simplices.list()));
     report.clean = pairs.empty();
     if (report.rounds == 0) {
       report.intersecting_pairs = pairs.size();
@@ -385,10 +537,13 @@ ArrangementReport arrange(Draft& draft, double grain) {
     }
     // Rounding may make more of them than there were: it does not end then.
     if (report.clean || report.rounds == most_rounds || pairs.size() > 2 * fewest + few) return report;
+    if (pairs.size() >= fewest) snapper.change();
     fewest = std::min(fewest, pairs.size());
+    settled.settle(simplices.list(), pairs);
+    if (work != nullptr) work->spend(work_of_a_cut * pairs.size());
     report.cut_triangles += Cutter(draft, edges, simplices.list()).run(pairs);
     unify_equal_points(draft);
-    if (grain > 0) snap_near_features(draft, grain, SnapWhat::corners);
+    snapper.run();
   }
 }
 

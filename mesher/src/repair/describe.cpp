@@ -23,25 +23,28 @@ std::vector<std::string> describe(const RepairReport& r) {
     lines.push_back(fmt::format("{} polygon{} not planar or crossing {} cut into triangles", r.split_polygons,
                                 plural(r.split_polygons), r.split_polygons == 1 ? "itself" : "themselves"));
   if (r.dropped_polygons > 0)
-    lines.push_back(fmt::format("{} polygon{} without an area dropped", r.dropped_polygons, plural(r.dropped_polygons)));
+    lines.push_back(
+        fmt::format("{} polygon{} without an area dropped", r.dropped_polygons, plural(r.dropped_polygons)));
   if (r.repeated.count > 0)
     lines.push_back(fmt::format("{} repeated facet{} dropped{}", r.repeated.count, plural(r.repeated.count),
                                 first_place(r.repeated)));
   if (r.turned.count > 0)
-    lines.push_back(fmt::format("{} closed surface{} turned inside out{}", r.turned.count, plural(r.turned.count),
-                                first_place(r.turned)));
+    lines.push_back(fmt::format("{} closed surface{} turned inside out{}", r.turned.count,
+                                plural(r.turned.count), first_place(r.turned)));
   if (r.stitched.count > 0)
     lines.push_back(fmt::format("{} place{} where borders nearly met stitched, over at most {:.3g}{}",
-                                r.stitched.count, plural(r.stitched.count), r.stitched.size, first_place(r.stitched)));
+                                r.stitched.count, plural(r.stitched.count), r.stitched.size,
+                                first_place(r.stitched)));
   for (const FilledHole& hole : r.filled)
-    lines.push_back(fmt::format("a hole of {} edges around {} filled with an area of {:.4g}, tag {}", hole.edges,
-                                place(hole.where), hole.area, hole.tag));
+    lines.push_back(fmt::format("a hole of {} edges around {} filled with an area of {:.4g}, tag {}",
+                                hole.edges, place(hole.where), hole.area, hole.tag));
   if (r.cut.count > 0)
     lines.push_back(fmt::format("{} pair{} of intersecting facets cut{}", r.cut.count, plural(r.cut.count),
                                 first_place(r.cut)));
   if (r.merged.count > 0)
-    lines.push_back(fmt::format("{} triangle{} inside solids or enclosing nothing removed, an area of {:.4g}{}",
-                                r.merged.count, plural(r.merged.count), r.merged.size, first_place(r.merged)));
+    lines.push_back(
+        fmt::format("{} triangle{} inside solids or enclosing nothing removed, an area of {:.4g}{}",
+                    r.merged.count, plural(r.merged.count), r.merged.size, first_place(r.merged)));
   if (r.dropped.count > 0)
     lines.push_back(fmt::format("{} triangle{} of open sheets outside of all solids removed", r.dropped.count,
                                 plural(r.dropped.count)));
@@ -52,9 +55,15 @@ std::vector<std::string> describe(const RepairReport& r) {
   if (!r.lost_tags.empty())
     lines.push_back(fmt::format("nothing is left of the facets with tag{} {}", plural(r.lost_tags.size()),
                                 fmt::join(r.lost_tags, ", ")));
+  if (r.repaired && !r.wrapped)
+    lines.push_back(
+        fmt::format("the repaired facets are within {:.3g} of the input, and the input, but for what lies "
+                    "inside of them, within {:.3g} of them",
+                    r.largest_distance, r.largest_distance_of_input));
   if (r.wrapped)
-    lines.push_back(fmt::format("a closed surface was wrapped around everything; it keeps within {:.3g} of the input",
-                                r.largest_distance));
+    lines.push_back(
+        fmt::format("a closed surface was wrapped around everything; it keeps within {:.3g} of the input",
+                    r.largest_distance));
   return lines;
 }
 

@@ -16,6 +16,9 @@ namespace {
 using namespace build;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
+constexpr std::size_t most_edges_for_cubic_time = 200;
+constexpr std::size_t work_of_an_edge = 1000;  // around a hole, in units of Work
+
 // The directed edges, by soup, that lack a partner: a surface there goes on from their end to their start.
 struct OpenEdges {
   std::map<Index, std::vector<std::array<Index, 3>>> of_soup;  // from, to, a triangle there
@@ -38,23 +41,46 @@ OpenEdges find_open_edges(const Draft& draft) {
       const auto [low, high] = edges.ends(e);
       Index triangle = none;
       for (const Index side : edges.sides(e))
-        if (draft.origins[side / 3].soup == soup && ascending(draft.triangles, side) == (sum > 0)) triangle = side / 3;
+        if (draft.origins[side / 3].soup == soup && ascending(draft.triangles, side) == (sum > 0))
+          triangle = side / 3;
       for (int i = 0; i < std::abs(sum); ++i)
-        open.of_soup[soup].push_back(sum > 0 ? std::array{low, high, triangle} : std::array{high, low, triangle});
+        open.of_soup[soup].push_back(sum > 0 ? std::array{low, high, triangle}
+                                             : std::array{high, low, triangle});
     }
   }
   return open;
 }
 
-// Closed curves of directed edges; where several meet in a point they are parted at it.
-std::vector<std::vector<std::array<Index, 3>>> find_loops(const std::vector<std::array<Index, 3>>& edges) {
+// By coordinates: an order that does not depend on that of points and facets.
+bool comes_before(const Draft& draft, Index p, Index q) {
+  const Point &a = draft.points[p], &b = draft.points[q];
+  return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+}
+
+using Loop = std::vector<std::array<Index, 3>>;
+
+// The loop starts at its first point.
+void start_first(const Draft& draft, Loop& loop) {
+  const auto first = std::min_element(loop.begin(), loop.end(), [&](const auto& e, const auto& f) {
+    return comes_before(draft, e[0], f[0]);
+  });
+  std::rotate(loop.begin(), first, loop.end());
+}
+
+// Closed curves of directed edges; where several meet in a point they are parted at it. The edges are in an
+// order by coordinates, so the curves and where they start do not depend on the order of the facets.
+std::vector<Loop> find_loops(const Draft& draft, std::vector<std::array<Index, 3>> edges) {
+  std::sort(edges.begin(), edges.end(), [&](const auto& e, const auto& f) {
+    if (e[0] != f[0]) return comes_before(draft, e[0], f[0]);
+    return e[1] != f[1] && comes_before(draft, e[1], f[1]);
+  });
   std::multimap<Index, std::size_t> from;
   for (std::size_t i = 0; i < edges.size(); ++i) from.emplace(edges[i][0], i);
   std::vector<bool> used(edges.size(), false);
-  std::vector<std::vector<std::array<Index, 3>>> loops;
+  std::vector<Loop> loops;
   for (std::size_t start = 0; start < edges.size(); ++start) {
     if (used[start]) continue;
-    std::vector<std::array<Index, 3>> path;
+    Loop path;
     std::map<Index, std::size_t> place;  // of a point in the path
     std::size_t next = start;
     for (;;) {
@@ -65,6 +91,7 @@ std::vector<std::vector<std::array<Index, 3>>> find_loops(const std::vector<std:
       if (const auto seen = place.find(at); seen != place.end()) {
         const auto first = path.begin() + static_cast<std::ptrdiff_t>(seen->second);
         loops.emplace_back(first, path.end());
+        start_first(draft, loops.back());
         for (auto e = first; e != path.end(); ++e) place.erase((*e)[0]);
         path.erase(first, path.end());
       }
@@ -88,7 +115,8 @@ class SurfaceAreas {
     const EdgeTable edges(draft.triangles, draft.points.size());
     for (Index e = 0; e < edges.size(); ++e)
       for (const Index side : edges.sides(e)) sets_.unite(side / 3, edges.sides(e)[0] / 3);
-    for (Index t = 0; t < draft.triangles.size(); ++t) area_[sets_.find(t)] += area_of(draft, draft.triangles[t]);
+    for (Index t = 0; t < draft.triangles.size(); ++t)
+      area_[sets_.find(t)] += area_of(draft, draft.triangles[t]);
   }
   double around(Index triangle) { return area_[sets_.find(triangle)]; }
 
@@ -97,7 +125,16 @@ class SurfaceAreas {
   std::map<Index, double> area_;
 };
 
-std::vector<Corners> triangulate(const Draft& draft, const std::vector<std::array<Index, 3>>& loop) {
+// No surface with this border has less area than its area vector is long.
+double least_area(const Draft& draft, const Loop& loop) {
+  const Point& origin = draft.points[loop[0][0]];
+  Vector twice{};
+  for (const auto& edge : loop)
+    twice = twice + cross(draft.points[edge[0]] - origin, draft.points[edge[1]] - origin);
+  return 0.5 * norm(twice);
+}
+
+std::vector<Corners> triangulate(const Draft& draft, const Loop& loop) {
   // The hole's triangles run against the edges around it.
   std::vector<Index> corners;
   corners.reserve(loop.size());
@@ -105,13 +142,18 @@ std::vector<Corners> triangulate(const Draft& draft, const std::vector<std::arra
   if (corners.size() == 3) return {{corners[0], corners[1], corners[2]}};
   std::vector<Kernel::Point_3> polyline;
   polyline.reserve(corners.size());
-  for (const Index p : corners) polyline.emplace_back(draft.points[p].x, draft.points[p].y, draft.points[p].z);
+  for (const Index p : corners)
+    polyline.emplace_back(draft.points[p].x, draft.points[p].y, draft.points[p].z);
   struct Face {
     int a, b, c;
     Face(int i, int j, int k) : a(i), b(j), c(k) {}
   };
   std::vector<Face> faces;
-  CGAL::Polygon_mesh_processing::triangulate_hole_polyline(polyline, std::back_inserter(faces));
+  // Among the edges of the Delaunay triangulation of the points; where those hold no triangulation of the
+  // curve, among all, which takes cubic time.
+  CGAL::Polygon_mesh_processing::triangulate_hole_polyline(
+      polyline, std::back_inserter(faces),
+      CGAL::parameters::do_not_use_cubic_algorithm(corners.size() > most_edges_for_cubic_time));
   std::vector<Corners> triangles;
   triangles.reserve(faces.size());
   const auto at = [&](int i) { return corners[static_cast<std::size_t>(i)]; };
@@ -134,15 +176,18 @@ std::size_t count_open_edges(const Draft& draft) {
   return count;
 }
 
-std::vector<FilledHole> fill_holes(Draft& draft, Tag first_tag, double largest_share) {
+std::vector<FilledHole> fill_holes(Draft& draft, Tag first_tag, Work* work, double largest_share) {
   std::vector<FilledHole> filled;
   const OpenEdges open = find_open_edges(draft);
   if (open.of_soup.empty()) return filled;
   SurfaceAreas surfaces(draft);
   Tag tag = first_tag;
   for (const auto& [soup, edges] : open.of_soup)
-    for (const auto& loop : find_loops(edges)) {
+    for (const Loop& loop : find_loops(draft, edges)) {
       if (loop.size() < 3) continue;
+      const double most_area = largest_share * surfaces.around(loop[0][2]);
+      if (least_area(draft, loop) > most_area) continue;
+      if (work != nullptr) work->spend(work_of_an_edge * loop.size());
       const std::vector<Corners> triangles = triangulate(draft, loop);
       FilledHole hole;
       hole.tag = tag;
@@ -152,7 +197,7 @@ std::vector<FilledHole> fill_holes(Draft& draft, Tag first_tag, double largest_s
         hole.length += distance(draft.points[edge[0]], draft.points[edge[1]]);
         hole.where = hole.where + (1.0 / static_cast<double>(loop.size())) * draft.points[edge[0]];
       }
-      if (triangles.empty() || hole.area > largest_share * surfaces.around(loop[0][2])) continue;
+      if (triangles.empty() || hole.area > most_area) continue;
       for (const Corners& t : triangles) draft.add_triangle(t, {tag, soup, 0, true});
       filled.push_back(hole);
       ++tag;

@@ -430,6 +430,31 @@ struct Components {
 
 }  // namespace
 
+bool peels_away(const Draft& draft) {
+  const EdgeTable edges(draft.triangles, draft.points.size());
+  std::vector<std::size_t> left(edges.size());  // triangles at the edge
+  std::vector<bool> gone(draft.triangles.size(), false);
+  std::vector<Index> open;
+  for (Index e = 0; e < edges.size(); ++e) {
+    left[e] = edges.sides(e).size();
+    if (left[e] == 1) open.push_back(e);
+  }
+  std::size_t count = 0;
+  while (!open.empty()) {
+    const Index e = open.back();
+    open.pop_back();
+    for (const Index side : edges.sides(e)) {
+      const Index t = side / 3;
+      if (gone[t]) continue;
+      gone[t] = true;
+      ++count;
+      for (Index i = 0; i < 3; ++i)
+        if (--left[edges.edge_of(3 * t + i)] == 1) open.push_back(edges.edge_of(3 * t + i));
+    }
+  }
+  return count == draft.triangles.size();
+}
+
 TurnReport turn_components(Draft& draft) {
   TurnReport report;
   const Components components(draft);

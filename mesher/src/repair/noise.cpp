@@ -35,16 +35,17 @@ bool is_slit(const Plc& plc, const Crease& crease, double tolerance) {
 
 }  // namespace
 
-bool has_noise(const Plc& plc, double tolerance) {
-  if (!(tolerance > 0)) return false;
+std::optional<Point> find_noise(const Plc& plc, double tolerance) {
+  if (!(tolerance > 0)) return std::nullopt;
   for (const Plc::Curve& curve : plc.curves)
-    if (is_short(plc, curve, tolerance)) return true;
+    if (is_short(plc, curve, tolerance)) return plc.points[curve.points.front()];
   constexpr double flat_angle = 1;  // degrees
   for (const Crease& crease : find_creases(plc, flat_angle))
-    if (is_slit(plc, crease, tolerance)) return true;
+    if (is_slit(plc, crease, tolerance)) return crease.where;
   build::Faults faults;
   build::find_near_touching(plc, tolerance, faults);
-  return !faults.empty();
+  if (faults.empty()) return std::nullopt;
+  return faults.list().front().where;
 }
 
 }  // namespace collarmesh::repairing

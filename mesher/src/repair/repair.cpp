@@ -1,4 +1,5 @@
-// From facets as they come to facets that are a complex. The order of the steps is that of `repair` at the end.
+// From facets as they come to facets that are a complex. The order of the steps is that of `repair` at the
+// end.
 #include "collarmesh/repair.h"
 
 #include <fmt/format.h>
@@ -8,7 +9,6 @@
 #include <optional>
 #include <set>
 
-#include "common/distance_tree.h"
 #include "plc/cleanup.h"
 #include "plc/draft.h"
 #include "plc/edges.h"
@@ -17,12 +17,15 @@
 #include "plc/orientation.h"
 #include "plc/weld.h"
 #include "repair/arrangement.h"
+#include "repair/distances.h"
 #include "repair/holes.h"
 #include "repair/inside.h"
 #include "repair/noise.h"
 #include "repair/repeated.h"
 #include "repair/snapping.h"
 #include "repair/to_soups.h"
+#include "repair/twins.h"
+#include "repair/work.h"
 #include "repair/wrap.h"
 
 namespace collarmesh {
@@ -58,22 +61,50 @@ double single_precision_error(std::span<const PolygonSoup> soups) {
 
 class Repairer {
  public:
-  Repairer(std::span<const PolygonSoup> soups, const RepairOptions& options, const PlcOptions& complex)
-      : soups_(soups), options_(options), complex_(complex) {}
+  Repairer(std::span<const PolygonSoup> soups, const RepairOptions& options, const PlcOptions& complex,
+           const Execution& execution)
+      : soups_(soups), options_(options), complex_(complex), work_(options.max_work, execution) {}
 
   RepairResult run() {
+    try {
+      return repaired();
+    } catch (const WorkStopped& stopped) {
+      RepairResult result{{soups_.begin(), soups_.end()}, {}};
+      result.report.tolerance = tolerance_;
+      (stopped.cancelled ? result.report.cancelled : result.report.gave_up) = true;
+      return result;
+    }
+  }
+
+  /// All is open sheets that do not even meet.
+  bool encloses_nothing() const { return encloses_nothing_; }
+
+  /// How far the result is from the input.
+  void measure(RepairReport& report) const {
+    std::set<Tag> fills;
+    for (const FilledHole& hole : report.filled) fills.insert(hole.tag);
+    std::vector<CornerPoints> repaired, filled;
+    for (Index t = 0; t < draft_.triangles.size(); ++t)
+      (fills.count(draft_.origins[t].tag) > 0 ? filled : repaired)
+          .push_back({draft_.corner(t, 0), draft_.corner(t, 1), draft_.corner(t, 2)});
+    const RepairDistances distances = measure_distances(input_triangles_, repaired, filled);
+    report.largest_distance = distances.of_repaired;
+    report.largest_distance_of_input = distances.of_input;
+  }
+
+ private:
+  RepairResult repaired() {
     collect();
     tidy();
     close();
     make_valid();
+    work_.spend(0);
     RepairResult result{to_soups(soups_, draft_, first_new_point_), std::move(report_)};
     result.report.repaired = true;
-    result.report.largest_distance = largest_distance();
     result.report.lost_tags = lost_tags(result.soups);
     return result;
   }
 
- private:
   void collect() {
     Faults faults;
     for (const PolygonSoup& soup : soups_) {
@@ -117,7 +148,7 @@ class Repairer {
     for (const double factor : {1.0, 10.0, 100.0}) {
       if (open == 0) break;
       Draft stitched = draft_;
-      const SnapReport snapped = snap_near_features(stitched, factor * tolerance_, SnapWhat::borders);
+      const SnapReport snapped = snap_near_features(stitched, factor * tolerance_, SnapWhat::borders, &work_);
       const std::size_t left = count_open_edges(stitched);
       if (left >= open) continue;
       draft_ = std::move(stitched);
@@ -129,7 +160,7 @@ class Repairer {
       EdgeTable edges(draft_.triangles, draft_.points.size());
       Faults one_sided;
       orient_components(draft_, edges, one_sided);
-      report_.filled = fill_holes(draft_, next_tag());
+      report_.filled = fill_holes(draft_, next_tag(), &work_);
     }
     const TurnReport turned = turn_components(draft_);
     add_places(report_.turned, turned.turned_components, 0, turned.places);
@@ -146,13 +177,20 @@ class Repairer {
   // What is clean once stays so: where snapping spoils it, less far is tried.
   void make_valid() {
     first_new_point_ = static_cast<Index>(draft_.points.size());
-    if (!cut_what_nearly_coincides()) return;
+    if (!cut_what_nearly_coincides() || encloses_nothing_) return;
     double reach = tolerance_;
+    std::size_t changes_before = none;
     for (std::size_t round = 0; round < most_rounds; ++round) {
       const Draft clean = draft_;
       const RepairReport report_of_clean = report_;
-      const SnapReport snapped = snap_near_features(draft_, reach);
-      if (!snapped.changed()) return;
+      const SnapReport snapped = snap_near_features(draft_, reach, SnapWhat::all, &work_);
+      // Where cutting undoes much of what snapping does, more of both would not end.
+      const std::size_t changes = snapped.merged_points + snapped.cut_edges + snapped.cut_triangles;
+      if (!snapped.changed() || 2 * changes > changes_before) {
+        draft_ = clean;
+        return;
+      }
+      changes_before = changes;
       add_places(report_.collapsed, snapped.merged_points + snapped.cut_edges + snapped.cut_triangles,
                  snapped.largest_distance, snapped.places);
       if (cut_and_keep()) continue;
@@ -162,8 +200,8 @@ class Repairer {
     }
   }
 
-  // Where facets nearly coincide, rounding what cuts them makes ever more intersections: they are made to coincide
-  // first, no farther than needed.
+  // Where facets nearly coincide, rounding what cuts them makes ever more intersections: they are made to
+  // coincide first, no farther than needed.
   bool cut_what_nearly_coincides() {
     const Draft before = draft_;
     const RepairReport report_before = report_;
@@ -171,7 +209,7 @@ class Repairer {
     for (const double share : {grain, 10 * grain, 100 * grain, 1.0}) {
       draft_ = before;
       report_ = report_before;
-      const SnapReport snapped = snap_near_features(draft_, share * tolerance_);
+      const SnapReport snapped = snap_near_features(draft_, share * tolerance_, SnapWhat::all, &work_);
       add_places(report_.collapsed, snapped.merged_points + snapped.cut_edges + snapped.cut_triangles,
                  snapped.largest_distance, snapped.places);
       if (cut_and_keep()) return true;
@@ -180,9 +218,11 @@ class Repairer {
   }
 
   bool cut_and_keep() {
-    const ArrangementReport arranged = arrange(draft_, grain * tolerance_);
+    const ArrangementReport arranged = arrange(draft_, grain * tolerance_, &work_);
     if (report_.cut.count == 0) add_places(report_.cut, arranged.intersecting_pairs, 0, arranged.places);
     if (!arranged.clean) return false;
+    encloses_nothing_ = arranged.intersecting_pairs == 0 && peels_away(draft_);
+    if (encloses_nothing_) return true;
     cancel_twins(draft_);
     const InsideReport kept = keep_boundaries(draft_, tolerance_);
     report_.merged.count += kept.removed_triangles;
@@ -191,21 +231,6 @@ class Repairer {
     for (const Point& p : kept.places)
       if (report_.merged.where.size() < most_places) report_.merged.where.push_back(p);
     return true;
-  }
-
-  // From the corners and centres of what is left to the input, but of what fills holes.
-  double largest_distance() const {
-    std::set<Tag> fills;
-    for (const FilledHole& hole : report_.filled) fills.insert(hole.tag);
-    const DistanceTree input(input_triangles_);
-    double largest = 0;
-    for (Index t = 0; t < draft_.triangles.size(); ++t) {
-      if (fills.count(draft_.origins[t].tag) > 0) continue;
-      const Point &a = draft_.corner(t, 0), &b = draft_.corner(t, 1), &c = draft_.corner(t, 2);
-      for (const Point& p : {a, b, c, (1.0 / 3) * (a + b + c)})
-        largest = std::max(largest, input.nearest(p, largest).distance);
-    }
-    return largest;
   }
 
   std::vector<Tag> lost_tags(const std::vector<PolygonSoup>& repaired) const {
@@ -223,37 +248,75 @@ class Repairer {
   const RepairOptions& options_;
   const PlcOptions& complex_;
   Draft draft_;
-  std::vector<DistanceTree::Triangle> input_triangles_;
+  std::vector<CornerPoints> input_triangles_;
   double tolerance_ = 0;  // absolute
   Index first_new_point_ = none;
+  bool encloses_nothing_ = false;
+  Work work_;
   RepairReport report_;
 };
+
+// A try of `build_repaired_plc`. What is wrapped in the end is not worth much work before.
+RepairOptions for_try(RepairOptions options, double factor) {
+  constexpr std::size_t share_of_work = 4;
+  options.tolerance *= factor;
+  if (options.mode == RepairMode::wrap) options.max_work /= share_of_work;
+  return options;
+}
+
+// The complex of what was repaired, and how far it is from the input. Throws PlcError.
+RepairedPlc judged(const Repairer& repairer, RepairResult result, const PlcOptions& options) {
+  RepairedPlc complex{build_plc(result.soups, options), std::move(result.report), std::move(result.soups)};
+  repairer.measure(complex.report);
+  return complex;
+}
+
+PlcError given_up(const PlcError& error, const RepairOptions& options) {
+  return {fmt::format("{} Its repair was given up after {} steps.", error.what(), options.max_work),
+          error.faults};
+}
 
 }  // namespace
 
 RepairResult repair(std::span<const PolygonSoup> soups, const RepairOptions& options,
-                    const PlcOptions& complex) {
-  return Repairer(soups, options, complex).run();
+                    const PlcOptions& complex, const Execution& execution) {
+  Repairer repairer(soups, options, complex, execution);
+  RepairResult result = repairer.run();
+  if (result.report.repaired) repairer.measure(result.report);
+  return result;
 }
 
 RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcOptions& options,
-                         const RepairOptions& repair_options) {
-  if (repair_options.mode == RepairMode::off ||
-      !has_noise(plc, repair_options.tolerance * plc.bounds.diagonal()))
-    return {std::move(plc), {}, {}};
-  RepairResult result = repair(soups, repair_options, options);
-  try {
-    return {build_plc(result.soups, options), std::move(result.report), std::move(result.soups)};
-  } catch (const PlcError&) {
-    return {std::move(plc), {}, {}};
+                         const RepairOptions& repair_options, const Execution& execution) {
+  if (repair_options.mode == RepairMode::off) return {std::move(plc), {}, {}};
+  const double tolerance = repair_options.tolerance * plc.bounds.diagonal();
+  const std::optional<Point> noise = find_noise(plc, tolerance);
+  if (!noise) return {std::move(plc), {}, {}};
+  Repairer repairer(soups, repair_options, options, execution);
+  RepairResult result = repairer.run();
+  if (result.report.cancelled) return {Plc(), std::move(result.report), {}};
+  if (!result.report.gave_up) {
+    try {
+      return judged(repairer, std::move(result), options);
+    } catch (const PlcError&) {
+      // The complex is valid without it.
+    }
   }
+  plc.warnings.push_back(
+      {fmt::format(
+           "Features below the repair tolerance of {:.3g} stay, the first one at {}: to remove them {}; they "
+           "cost elements and time, another --repair-tolerance may help.",
+           tolerance, text(*noise),
+           result.report.gave_up ? "takes too long" : "would make the facets no valid complex"),
+       *noise});
+  return {std::move(plc), {}, {}};
 }
 
 RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOptions& options,
-                               const RepairOptions& repair_options) {
+                               const RepairOptions& repair_options, const Execution& execution) {
   std::optional<PlcError> first;
   try {
-    return remove_noise(build_plc(soups, options), soups, options, repair_options);
+    return remove_noise(build_plc(soups, options), soups, options, repair_options, execution);
   } catch (const PlcError& error) {
     const bool unusable = std::any_of(error.faults.begin(), error.faults.end(), [](const PlcFault& fault) {
       return fault.kind == PlcFault::Kind::bad_point;
@@ -262,11 +325,17 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
     first = error;
   }
   for (const double factor : {1.0, 10.0}) {
-    RepairOptions wider = repair_options;
-    wider.tolerance *= factor;
-    RepairResult result = repair(soups, wider, options);
+    const RepairOptions wider = for_try(repair_options, factor);
+    Repairer repairer(soups, wider, options, execution);
+    RepairResult result = repairer.run();
+    if (result.report.cancelled) return {Plc(), std::move(result.report), {}};
+    if (result.report.gave_up) {
+      first = given_up(*first, wider);
+      break;
+    }
+    if (repairer.encloses_nothing() && options.require_solid) continue;
     try {
-      return {build_plc(result.soups, options), std::move(result.report), std::move(result.soups)};
+      return judged(repairer, std::move(result), options);
     } catch (const PlcError&) {
       continue;  // a wider tolerance may help
     }

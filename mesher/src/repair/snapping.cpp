@@ -1,175 +1,28 @@
 #include "repair/snapping.h"
 
-#include <CGAL/Constrained_Delaunay_triangulation_2.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Triangulation_face_base_with_info_2.h>
-#include <CGAL/Triangulation_vertex_base_with_info_2.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
-#include <optional>
 #include <set>
+#include <span>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
 
-#include "common/box_tree.h"
 #include "plc/edges.h"
-#include "repair/arrangement.h"
+#include "repair/changing_triangles.h"
+#include "repair/point_grid.h"
+#include "repair/polygon_cutter.h"
+#include "repair/twins.h"
 
 namespace collarmesh::repairing {
 
 namespace {
 
 using namespace build;
-using Edge = std::array<Index, 2>;
 
 constexpr std::size_t most_rounds = 50;
 constexpr std::size_t most_places = 100;
-
-Edge edge_key(Index a, Index b) { return a < b ? Edge{a, b} : Edge{b, a}; }
-
-// Points in a grid of cells as large as the distance that is looked for.
-class PointGrid {
- public:
-  PointGrid(const std::vector<Point>& points, double cell) : points_(points), cell_(cell) {}
-
-  void add(Index p) { cells_[key(cell_of(points_[p]))].push_back(p); }
-
-  /// The nearest one within the distance, none if there is none.
-  Index nearest(const Point& p, double distance_limit) const {
-    const auto c = cell_of(p);
-    Index best = none;
-    double least = distance_limit * distance_limit;
-    for (std::int64_t x = -1; x <= 1; ++x)
-      for (std::int64_t y = -1; y <= 1; ++y)
-        for (std::int64_t z = -1; z <= 1; ++z) {
-          const auto found = cells_.find(key({c[0] + x, c[1] + y, c[2] + z}));
-          if (found == cells_.end()) continue;
-          for (const Index q : found->second) {
-            const double d = squared_distance(p, points_[q]);
-            if (d < least || (d == least && best == none)) {
-              least = d;
-              best = q;
-            }
-          }
-        }
-    return best;
-  }
-
- private:
-  using Cell = std::array<std::int64_t, 3>;
-  Cell cell_of(const Point& p) const {
-    return {static_cast<std::int64_t>(std::floor(p.x / cell_)),
-            static_cast<std::int64_t>(std::floor(p.y / cell_)),
-            static_cast<std::int64_t>(std::floor(p.z / cell_))};
-  }
-  // Cells that share a key only cost time.
-  static std::uint64_t key(const Cell& c) {
-    std::uint64_t h = 0;
-    for (const std::int64_t i : c)
-      h = (h ^ static_cast<std::uint64_t>(i)) * 0x9e3779b97f4a7c15ULL, h ^= h >> 31U;
-    return h;
-  }
-
-  const std::vector<Point>& points_;
-  double cell_;
-  std::unordered_map<std::uint64_t, std::vector<Index>> cells_;
-};
-
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<Index, Kernel>;
-using FaceBase =
-    CGAL::Constrained_triangulation_face_base_2<Kernel,
-                                                CGAL::Triangulation_face_base_with_info_2<bool, Kernel>>;
-using PlaneTriangulation =
-    CGAL::Constrained_Delaunay_triangulation_2<Kernel,
-                                               CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
-                                               CGAL::No_constraint_intersection_requiring_constructions_tag>;
-
-// Cuts a polygon that is nearly plane into triangles, with points and edges inside.
-class PolygonCutter {
- public:
-  PolygonCutter(const std::vector<Point>& points, const Vector& normal) : points_(points) {
-    const double x = std::fabs(normal.x), y = std::fabs(normal.y), z = std::fabs(normal.z);
-    axis_ = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
-    turned_ = normal[axis_] < 0;
-  }
-
-  /// Nothing where its edges cross each other, seen along the normal.
-  std::optional<std::vector<build::Corners>> cut(const std::vector<Index>& polygon, const std::vector<Index>& inside,
-                                                 const std::vector<Edge>& constraints) {
-    PlaneTriangulation mesh;
-    std::map<Index, PlaneTriangulation::Vertex_handle> handles;
-    const auto insert = [&](Index p) {
-      const auto [at, added] = handles.try_emplace(p);
-      if (added) {
-        const std::size_t before = mesh.number_of_vertices();
-        at->second = mesh.insert(Kernel::Point_2(points_[p][(axis_ + 1) % 3], points_[p][(axis_ + 2) % 3]));
-        if (mesh.number_of_vertices() == before) return false;  // above another one
-        at->second->info() = p;
-      }
-      return true;
-    };
-    try {
-      for (const auto* list : {&polygon, &inside})
-        for (const Index p : *list)
-          if (!insert(p)) return std::nullopt;
-      for (std::size_t i = 0; i < polygon.size(); ++i)
-        mesh.insert_constraint(handles[polygon[i]], handles[polygon[(i + 1) % polygon.size()]]);
-      for (const auto& [a, b] : constraints)
-        if (handles.count(a) > 0 && handles.count(b) > 0 && a != b) mesh.insert_constraint(handles[a], handles[b]);
-    } catch (const PlaneTriangulation::Intersection_of_constraints_exception&) {
-      return std::nullopt;
-    }
-    mark_outside(mesh, polygon);
-    return triangles(mesh, polygon);
-  }
-
- private:
-  void mark_outside(PlaneTriangulation& mesh, const std::vector<Index>& polygon) const {
-    std::set<Edge> border;
-    for (std::size_t i = 0; i < polygon.size(); ++i)
-      border.insert(edge_key(polygon[i], polygon[(i + 1) % polygon.size()]));
-    for (const auto face : mesh.all_face_handles()) face->info() = false;
-    std::vector<PlaneTriangulation::Face_handle> stack{mesh.infinite_face()};
-    stack.back()->info() = true;
-    while (!stack.empty()) {
-      const auto face = stack.back();
-      stack.pop_back();
-      for (int i = 0; i < 3; ++i) {
-        const auto next = face->neighbor(i);
-        if (next->info()) continue;
-        const auto a = face->vertex(mesh.cw(i)), b = face->vertex(mesh.ccw(i));
-        if (!mesh.is_infinite(a) && !mesh.is_infinite(b) && border.count(edge_key(a->info(), b->info())) > 0) continue;
-        next->info() = true;
-        stack.push_back(next);
-      }
-    }
-  }
-
-  // Nothing unless they have the polygon for a border.
-  std::optional<std::vector<build::Corners>> triangles(PlaneTriangulation& mesh,
-                                                       const std::vector<Index>& polygon) const {
-    std::vector<build::Corners> result;
-    std::set<Edge> sides;
-    for (const auto face : mesh.finite_face_handles()) {
-      if (face->info()) continue;
-      build::Corners t{face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()};
-      if (turned_) std::swap(t[1], t[2]);
-      result.push_back(t);
-      for (unsigned i = 0; i < 3; ++i) sides.insert({t[i], t[(i + 1) % 3]});
-    }
-    for (std::size_t i = 0; i < polygon.size(); ++i)
-      if (sides.count({polygon[i], polygon[(i + 1) % polygon.size()]}) == 0) return std::nullopt;
-    return result;
-  }
-
-  const std::vector<Point>& points_;
-  unsigned axis_;
-  bool turned_;
-};
 
 // What has not been looked at yet, in `Origin::facet`, which means nothing else here.
 constexpr Index unseen_by_corners = 1, unseen_by_overlay = 2, unseen = 3;
@@ -185,27 +38,35 @@ NearestOnSegment nearest_on_segment(const Point& p, const Point& a, const Point&
   return {distance(p, a + t * d), t};
 }
 
+// Each round looks at the triangles that the one before has changed.
 class Snapper {
  public:
-  Snapper(Draft& draft, double distance_limit, SnapWhat what)
-      : draft_(draft), limit_(distance_limit), what_(what) {}
+  Snapper(Draft& draft, double distance_limit, SnapWhat what, Work& work)
+      : draft_(draft),
+        limit_(distance_limit),
+        what_(what),
+        work_(work),
+        triangles_(draft, distance_limit, work),
+        grid_(draft.points, distance_limit) {}
 
-  SnapReport run() {
-    report_.cancelled_triangles += cancel_twins(draft_);
-    for (Origin& origin : draft_.origins) origin.facet = unseen;
-    const std::size_t most_triangles = 2 * draft_.triangles.size() + 1000;
+  SnapReport run(const std::vector<bool>& known) {
+    find_pinned_points();
+    begin(known);
+    if (!known.empty()) cancel_new_twins();
+    // Corners alone are few after a cut: where they multiply triangles, these run along each other.
+    most_triangles_ = triangles_.count() / (what_ == SnapWhat::corners ? 4 : 1) + triangles_.count() + 1000;
     Draft before = draft_;
     SnapReport report_before;
-    if (!snap_all_corners(most_triangles)) return give_back(before, report_before);
-    if (what_ != SnapWhat::all) return std::move(report_);
+    if (!snap_all_corners()) return give_back(before, report_before);
+    if (what_ != SnapWhat::all) return finish();
     // Overlays make new corners. They end where each makes fewer of them.
-    before = draft_;
+    before = triangles_.compacted();
     report_before = report_;
     for (std::size_t crossings = none;;) {
-      if (!overlay()) return std::move(report_);
+      if (!overlay()) return finish();
       const std::size_t count = crossing_.size() + inside_.size();
-      report_.cancelled_triangles += cancel_twins(draft_);
-      if (2 * count > crossings || !snap_all_corners(most_triangles)) return give_back(before, report_before);
+      cancel_new_twins();
+      if (2 * count > crossings || !snap_all_corners()) return give_back(before, report_before);
       crossings = count;
     }
   }
@@ -216,18 +77,49 @@ class Snapper {
     Index point;
   };
 
+  // All but the triangles that are known are to be looked at, and the points that none of those has.
+  void begin(const std::vector<bool>& known) {
+    in_grid_.assign(draft_.points.size(), false);
+    for (Index t = 0; t < triangles_.end(); ++t) {
+      // Only borders can be near anything there.
+      if (what_ == SnapWhat::borders && !has_border(t)) {
+        draft_.origins[t].facet = 0;
+        continue;
+      }
+      if (known.empty() || !known[t]) {
+        draft_.origins[t].facet = unseen;
+        for (auto& list : unseen_) list.push_back(t);
+        if (!known.empty()) added_.push_back(t);
+        continue;
+      }
+      draft_.origins[t].facet = 0;
+      for (const Index p : draft_.triangles[t]) in_grid_[p] = true;
+    }
+    for (Index p = 0; p < draft_.points.size(); ++p)
+      if (in_grid_[p])
+        grid_.add(p);
+      else
+        touched_.push_back(p);
+  }
+
+  SnapReport finish() {
+    draft_ = triangles_.compacted();
+    return std::move(report_);
+  }
+
   SnapReport give_back(Draft& before, SnapReport& report) {
     draft_ = std::move(before);
     return std::move(report);
   }
 
   // Until nothing is near or many rounds are over; false where triangles grow and grow.
-  bool snap_all_corners(std::size_t most_triangles) {
+  bool snap_all_corners() {
     for (std::size_t round = 0; round < most_rounds; ++round) {
       const bool merged = merge_points(), snapped = snap_corners();
+      if (grows_) return false;
       if (!merged && !snapped) return true;
-      report_.cancelled_triangles += cancel_twins(draft_);
-      if (draft_.triangles.size() > most_triangles) return false;
+      cancel_new_twins();
+      if (triangles_.count() > most_triangles_) return false;
     }
     return true;
   }
@@ -239,105 +131,160 @@ class Snapper {
     if (report_.places.size() < most_places) report_.places.push_back(where);
   }
 
-  // Which points take part, by index.
-  std::vector<bool> active_points() const {
-    std::vector<bool> active(draft_.points.size(), false);
-    if (what_ != SnapWhat::borders) {
-      for (const build::Corners& t : draft_.triangles)
-        for (const Index p : t) active[p] = true;
-      for (const Segment& s : draft_.segments) active[s.a] = active[s.b] = true;
-      for (const Index p : draft_.loose_points) active[p] = true;
-      return active;
-    }
-    const EdgeTable edges(draft_.triangles, draft_.points.size());
-    for (Index e = 0; e < edges.size(); ++e)
-      if (edges.sides(e).size() == 1)
-        for (const Index p : edges.ends(e)) active[p] = true;
-    return active;
+  // --- Triangles that come and go ---
+
+  void put(const build::Corners& corners, Origin origin) {
+    origin.facet = unseen;
+    const Index t = triangles_.add(corners, origin);
+    for (auto& list : unseen_) list.push_back(t);
+    added_.push_back(t);
+    touched_.insert(touched_.end(), corners.begin(), corners.end());
   }
 
-  bool merge_points() {
-    const std::vector<bool> active = active_points();
-    std::vector<Index> order, merged(draft_.points.size());
-    std::iota(merged.begin(), merged.end(), Index{0});
-    for (Index p = 0; p < draft_.points.size(); ++p)
-      if (active[p]) order.push_back(p);
-    // An order that does not depend on that of the input.
-    std::sort(order.begin(), order.end(), [&](Index p, Index q) {
-      const Point &a = at(p), &b = at(q);
-      return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z != b.z ? a.z < b.z : p < q;
+  void take(Index t) {
+    triangles_.remove(t);
+    touched_.insert(touched_.end(), draft_.triangles[t].begin(), draft_.triangles[t].end());
+  }
+
+  // Those that are still there and were not looked at, in order; they count as looked at from now on.
+  std::vector<Index> take_unseen(Index flag) {
+    std::vector<Index>& list = unseen_[flag == unseen_by_corners ? 0 : 1];
+    std::erase_if(list,
+                  [&](Index t) { return !triangles_.alive(t) || (draft_.origins[t].facet & flag) == 0; });
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    for (const Index t : list) draft_.origins[t].facet &= ~flag;
+    return std::exchange(list, {});
+  }
+
+  // To be looked at again in the next round.
+  void defer(Index t) {
+    draft_.origins[t].facet |= unseen_by_corners;
+    unseen_[0].push_back(t);
+  }
+
+  // Only triangles that were added can have become twins.
+  void cancel_new_twins() {
+    for (const Index t : std::exchange(added_, {})) {
+      if (!triangles_.alive(t)) continue;
+      const build::Corners& corners = draft_.triangles[t];
+      const Index soup = draft_.origins[t].soup;
+      std::vector<Twin> twins;
+      triangles_.for_each_at(corners[0], [&](Index side) {
+        const build::Corners& c = draft_.triangles[side / 3];
+        if (draft_.origins[side / 3].soup == soup && std::find(c.begin(), c.end(), corners[1]) != c.end() &&
+            std::find(c.begin(), c.end(), corners[2]) != c.end())
+          twins.push_back({is_odd(c), side / 3});
+      });
+      for (const Index twin : cancelled_among(std::move(twins), draft_.soup_is_complex[soup])) {
+        take(twin);
+        ++report_.cancelled_triangles;
+      }
+    }
+  }
+
+  // --- Points that become one ---
+
+  void find_pinned_points() {
+    pinned_.assign(draft_.points.size(), false);
+    for (const Segment& s : draft_.segments) pinned_[s.a] = pinned_[s.b] = true;
+    for (const Index p : draft_.loose_points) pinned_[p] = true;
+  }
+
+  bool takes_part(Index p) const {
+    if (what_ != SnapWhat::borders) return triangles_.uses(p) || (p < pinned_.size() && pinned_[p]);
+    bool border = false;
+    triangles_.for_each_at(p, [&](Index side) {
+      for (const Index k : {1U, 2U})
+        border = border || is_border(edge_key(p, draft_.triangles[side / 3][(side % 3 + k) % 3]));
     });
-    PointGrid grid(draft_.points, limit_);
-    std::size_t count = 0;
+    return border;
+  }
+  bool has_border(Index t) const {
+    const build::Corners& c = draft_.triangles[t];
+    return is_border(edge_key(c[0], c[1])) || is_border(edge_key(c[1], c[2])) ||
+           is_border(edge_key(c[2], c[0]));
+  }
+  bool is_border(const Edge& edge) const { return triangles_.sides(edge).size() == 1; }
+
+  bool before(Index p, Index q) const {
+    const Point &a = at(p), &b = at(q);
+    return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z != b.z ? a.z < b.z : p < q;
+  }
+
+  // Those that were compared before are apart from each other: new ones are compared with them and among
+  // themselves, in an order that does not depend on that of the input.
+  bool merge_points() {
+    std::vector<Index> order = points_to_compare();
+    std::vector<std::pair<Index, Index>> merged;  // what, into what
     for (const Index p : order) {
-      const Index near = grid.nearest(at(p), limit_);
+      const Index near = grid_.nearest(at(p), [&](Index q) { return in_grid_[q]; });
       if (near == none) {
-        grid.add(p);
+        in_grid_[p] = true;
+        grid_.add(p);
         continue;
       }
-      merged[p] = near;
-      ++count;
+      merged.emplace_back(p, near);
       note(at(near), distance(at(p), at(near)));
     }
-    if (count == 0) return false;
-    report_.merged_points += count;
+    if (merged.empty()) return false;
+    report_.merged_points += merged.size();
     rename(merged);
     return true;
   }
 
-  void rename(const std::vector<Index>& merged) {
-    std::size_t kept = 0;
-    for (Index t = 0; t < draft_.triangles.size(); ++t) {
-      build::Corners corners = draft_.triangles[t];
-      for (Index& c : corners) c = merged[c];
-      if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
-      Origin origin = draft_.origins[t];
-      if (corners != draft_.triangles[t]) origin.facet = unseen;
-      draft_.triangles[kept] = corners;
-      draft_.origins[kept++] = origin;
+  // New points and the old ones near them; these leave the grid.
+  std::vector<Index> points_to_compare() {
+    in_grid_.resize(draft_.points.size(), false);
+    std::vector<Index> order;
+    std::sort(touched_.begin(), touched_.end());
+    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+    work_.spend(touched_.size());
+    for (const Index p : touched_) {
+      const bool takes = takes_part(p);
+      if (takes && !in_grid_[p]) order.push_back(p);
+      if (!takes) in_grid_[p] = false;
     }
-    draft_.triangles.resize(kept);
-    draft_.origins.resize(kept);
-    for (Segment& s : draft_.segments) s = {merged[s.a], merged[s.b], s.tag, s.soup};
+    touched_.clear();
+    for (std::size_t i = 0, fresh = order.size(); i < fresh; ++i)
+      grid_.for_each_near(at(order[i]), [&](Index q) {
+        if (!in_grid_[q]) return;
+        in_grid_[q] = false;
+        order.push_back(q);
+      });
+    std::sort(order.begin(), order.end(), [&](Index p, Index q) { return before(p, q); });
+    return order;
+  }
+
+  void rename(const std::vector<std::pair<Index, Index>>& merged) {
+    std::map<Index, Index> name(merged.begin(), merged.end());
+    const auto renamed = [&](Index p) {
+      const auto found = name.find(p);
+      return found == name.end() ? p : found->second;
+    };
+    std::vector<Index> changed;
+    for (const auto& [p, into] : merged) {
+      triangles_.for_each_at(p, [&](Index side) { changed.push_back(side / 3); });
+      if (p >= pinned_.size() || !pinned_[p]) continue;
+      pinned_.resize(std::max<std::size_t>(pinned_.size(), into + 1), false);
+      pinned_[into] = true;
+    }
+    std::sort(changed.begin(), changed.end());
+    changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+    for (const Index t : changed) {
+      const build::Corners before = draft_.triangles[t];
+      const build::Corners corners{renamed(before[0]), renamed(before[1]), renamed(before[2])};
+      const Origin origin = draft_.origins[t];
+      take(t);
+      if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0])
+        put(corners, origin);
+    }
+    for (Segment& s : draft_.segments) s = {renamed(s.a), renamed(s.b), s.tag, s.soup};
     std::erase_if(draft_.segments, [](const Segment& s) { return s.a == s.b; });
-    for (Index& p : draft_.loose_points) p = merged[p];
+    for (Index& p : draft_.loose_points) p = renamed(p);
   }
 
-  // The pairs of triangles that come near each other and were not looked at yet.
-  template <class Visit>
-  void for_each_near_pair(Index flag, const Visit& visit) {
-    edges_.emplace(draft_.triangles, draft_.points.size());
-    std::vector<Box> boxes(draft_.triangles.size());
-    const Vector reach = 0.5 * limit_ * Vector{1, 1, 1};
-    for (Index t = 0; t < boxes.size(); ++t)
-      for (unsigned i = 0; i < 3; ++i) {
-        boxes[t].add(draft_.corner(t, i) - reach);
-        boxes[t].add(draft_.corner(t, i) + reach);
-      }
-    std::vector<Vector> normals(boxes.size());
-    for (Index t = 0; t < normals.size(); ++t) {
-      normals[t] = cross(draft_.corner(t, 1) - draft_.corner(t, 0), draft_.corner(t, 2) - draft_.corner(t, 0));
-      const double length = norm(normals[t]);
-      if (length > 0) normals[t] = normals[t] / length;
-    }
-    BoxTree(boxes).for_each_pair([&](Index s, Index t) {
-      if (((draft_.origins[s].facet | draft_.origins[t].facet) & flag) == 0) return;
-      if (beyond(s, t, normals[s]) || beyond(t, s, normals[t])) return;
-      visit(std::min(s, t), std::max(s, t));
-    });
-  }
-
-  // Does t keep its distance from the plane of s?
-  bool beyond(Index s, Index t, const Vector& normal) const {
-    const Point& origin = draft_.corner(s, 0);
-    double low = INFINITY, high = -INFINITY;
-    for (unsigned i = 0; i < 3; ++i) {
-      const double height = dot(normal, draft_.corner(t, i) - origin);
-      low = std::min(low, height);
-      high = std::max(high, height);
-    }
-    return low > limit_ || high < -limit_;
-  }
+  // --- Corners near edges ---
 
   void clear() {
     on_edge_.clear();
@@ -346,9 +293,7 @@ class Snapper {
     along_.clear();
   }
 
-  bool may_snap(Index triangle, unsigned side) const {
-    return what_ != SnapWhat::borders || edges_->sides(edges_->edge_of(3 * triangle + side)).size() == 1;
-  }
+  bool may_snap(const Edge& edge) const { return what_ != SnapWhat::borders || is_border(edge); }
 
   // A corner near an edge that it is no end of.
   struct NearEdge {
@@ -362,37 +307,68 @@ class Snapper {
     }
   };
 
-  // Edges get the corners near them, the longest first. In one round a triangle is cut at one of its sides only.
+  // An edge while those are chosen that are cut in this round.
+  struct EdgeState {
+    std::vector<Index> sides;
+    bool taken = false;     // it is cut
+    bool blocked = false;   // a triangle there is cut at another side
+    bool deferred = false;  // its triangles are looked at again
+  };
+
+  // Edges get the corners near them, the longest first. In one round a triangle is cut at one of its sides
+  // only.
   bool snap_corners() {
     clear();
+    const std::vector<Index> looked_at = take_unseen(unseen_by_corners);
     std::vector<NearEdge> found;
-    for_each_near_pair(unseen_by_corners, [&](Index s, Index t) {
+    triangles_.for_each_near_pair(looked_at, [&](Index s, Index t) {
       find_near_edges(s, t, found);
       find_near_edges(t, s, found);
     });
-    for (Index t = 0; t < draft_.triangles.size(); ++t) {
-      if ((draft_.origins[t].facet & unseen_by_corners) == 0) continue;
+    for (const Index t : looked_at)
       for (unsigned i = 0; i < 3; ++i) find_near_edge(t, i, draft_.triangles[t][(i + 2) % 3], found);
-      draft_.origins[t].facet &= ~unseen_by_corners;
-    }
     std::sort(found.begin(), found.end());
-    std::vector<Edge> cut(draft_.triangles.size(), Edge{none, none});  // at which side
+    found.erase(std::unique(found.begin(), found.end(),
+                            [](const NearEdge& a, const NearEdge& b) {
+                              return a.edge == b.edge && a.corner.point == b.corner.point;
+                            }),
+                found.end());
+    std::unordered_map<Index, Edge> cut;  // by triangle: at which side
+    std::map<Edge, EdgeState> states;
     for (const NearEdge& near : found) {
-      const auto sides = edges_->sides(edges_->find(near.edge[0], near.edge[1]));
-      const bool independent = std::all_of(sides.begin(), sides.end(), [&](Index side) {
-        return cut[side / 3][0] == none || cut[side / 3] == near.edge;
-      });
-      if (!independent || !has_room(near)) {
-        for (const Index side : sides) draft_.origins[side / 3].facet |= unseen_by_corners;
+      const auto [at, added] = states.try_emplace(near.edge);
+      EdgeState& state = at->second;
+      if (added) state.sides = triangles_.sides(near.edge);
+      if (!state.taken && !state.blocked)
+        state.blocked = std::any_of(state.sides.begin(), state.sides.end(), [&](Index side) {
+          const auto before = cut.find(side / 3);
+          return before != cut.end() && before->second != near.edge;
+        });
+      if (state.blocked || !has_room(near)) {
+        if (!std::exchange(state.deferred, true))
+          for (const Index side : state.sides) defer(side / 3);
         continue;
       }
-      if (!may_cut(near, sides)) continue;
-      for (const Index side : sides) cut[side / 3] = near.edge;
+      work_.spend(state.sides.size());
+      if (!may_cut(near, state.sides)) continue;
+      if (!std::exchange(state.taken, true))
+        for (const Index side : state.sides) cut.try_emplace(side / 3, near.edge);
       add_on_edge(near.edge, near.corner, near.distance);
     }
     if (on_edge_.empty()) return false;
+    if (pieces() > most_triangles_) {
+      grows_ = true;
+      return false;
+    }
     apply();
     return true;
+  }
+
+  // How many triangles cutting the edges would make.
+  std::size_t pieces() const {
+    std::size_t count = 0;
+    for (const auto& [edge, points] : on_edge_) count += points.size() * triangles_.sides(edge).size();
+    return count;
   }
 
   // Edges that arise are shorter than the one that is cut, or it is cut for the first time: so it ends.
@@ -416,27 +392,39 @@ class Snapper {
 
   void find_near_edges(Index s, Index t, std::vector<NearEdge>& found) const {
     const build::Corners& corners = draft_.triangles[t];
-    for (const Index p : draft_.triangles[s])
-      if (std::find(corners.begin(), corners.end(), p) == corners.end())
-        for (unsigned i = 0; i < 3; ++i) find_near_edge(t, i, p, found);
+    const Vector& normal = triangles_.normal(t);
+    for (const Index p : draft_.triangles[s]) {
+      if (p == corners[0] || p == corners[1] || p == corners[2]) continue;
+      if (std::fabs(dot(normal, at(p) - at(corners[0]))) > beyond_plane * limit_) continue;
+      for (unsigned i = 0; i < 3; ++i) find_near_edge(t, i, p, found);
+    }
   }
 
   void find_near_edge(Index t, unsigned i, Index p, std::vector<NearEdge>& found) const {
-    if (!may_snap(t, i)) return;
     const Edge key = edge_key(draft_.triangles[t][i], draft_.triangles[t][(i + 1) % 3]);
+    const Vector along = at(key[1]) - at(key[0]), to = at(p) - at(key[0]);
+    const double ll = squared_norm(along), d1 = dot(to, along);
+    if (!(d1 > 0 && d1 < ll)) return;
+    if (squared_norm(cross(along, to)) > beyond_plane * beyond_plane * limit_ * limit_ * ll) return;
     const auto [d, parameter] = nearest_on_segment(at(p), at(key[0]), at(key[1]));
-    if (d <= limit_ && parameter > 0 && parameter < 1) found.push_back({distance(at(key[0]), at(key[1])), d, key, {parameter, p}});
+    if (d > limit_ || !(parameter > 0 && parameter < 1) || !may_snap(key)) return;
+    found.push_back({distance(at(key[0]), at(key[1])), d, key, {parameter, p}});
   }
 
-  // Triangles that run along each other get each other's corners and edges.
+  // --- Triangles that run along each other ---
+
+  // They get each other's corners and edges.
   bool overlay() {
     clear();
-    for_each_near_pair(unseen_by_overlay, [&](Index s, Index t) {
+    std::vector<std::pair<Index, Index>> pairs;
+    triangles_.for_each_near_pair(take_unseen(unseen_by_overlay),
+                                  [&](Index s, Index t) { pairs.emplace_back(s, t); });
+    std::sort(pairs.begin(), pairs.end());
+    for (const auto& [s, t] : pairs) {
       find_near_corners(s, t);
       find_near_corners(t, s);
       find_crossings(s, t);
-    });
-    for (Origin& origin : draft_.origins) origin.facet &= ~unseen_by_overlay;
+    }
     if (on_edge_.empty() && inside_.empty()) return false;
     apply();
     return true;
@@ -455,7 +443,8 @@ class Snapper {
 
   void add_on_edge(const Edge& key, const OnEdge& point, double moved) {
     auto& points = on_edge_[key];
-    if (std::any_of(points.begin(), points.end(), [&](const OnEdge& o) { return o.point == point.point; })) return;
+    if (std::any_of(points.begin(), points.end(), [&](const OnEdge& o) { return o.point == point.point; }))
+      return;
     if (points.empty()) ++report_.cut_edges;
     points.push_back(point);
     note(at(point.point), moved);
@@ -468,7 +457,8 @@ class Snapper {
     if (!(nn > 0)) return false;
     const double height = std::fabs(dot(q - a, n)) / std::sqrt(nn);
     if (height > limit_) return false;
-    if (dot(cross(b - a, q - a), n) <= 0 || dot(cross(c - b, q - b), n) <= 0 || dot(cross(a - c, q - c), n) <= 0)
+    if (dot(cross(b - a, q - a), n) <= 0 || dot(cross(c - b, q - b), n) <= 0 ||
+        dot(cross(a - c, q - c), n) <= 0)
       return false;
     auto& points = inside_[t];
     if (std::find(points.begin(), points.end(), p) != points.end()) return true;
@@ -478,16 +468,26 @@ class Snapper {
     return true;
   }
 
+  // Does the edge keep its distance from the plane of a triangle?
+  bool beyond(const Edge& edge, Index t) const {
+    const Vector& normal = triangles_.normal(t);
+    const Point& origin = draft_.corner(t, 0);
+    const double a = dot(normal, at(edge[0]) - origin), b = dot(normal, at(edge[1]) - origin);
+    const double reach = beyond_plane * limit_;
+    return std::min(a, b) > reach || std::max(a, b) < -reach;
+  }
+
   void find_crossings(Index s, Index t) {
-    for (unsigned i = 0; i < 3; ++i)
-      for (unsigned j = 0; j < 3; ++j)
-      {
-        const Edge e = edge_key(draft_.triangles[s][i], draft_.triangles[s][(i + 1) % 3]),
-                   f = edge_key(draft_.triangles[t][j], draft_.triangles[t][(j + 1) % 3]);
+    for (unsigned i = 0; i < 3; ++i) {
+      const Edge e = edge_key(draft_.triangles[s][i], draft_.triangles[s][(i + 1) % 3]);
+      if (beyond(e, t)) continue;
+      for (unsigned j = 0; j < 3; ++j) {
+        const Edge f = edge_key(draft_.triangles[t][j], draft_.triangles[t][(j + 1) % 3]);
         if (!consider_crossing(e, f)) continue;
         along_[s].push_back(f);
         along_[t].push_back(e);
       }
+    }
   }
 
   // Two edges that pass each other closely, away from their ends: a new point in between.
@@ -516,17 +516,33 @@ class Snapper {
     return true;
   }
 
+  // --- Cutting ---
+
   void apply() {
-    for (auto& [edge, points] : on_edge_)
+    std::vector<Index> affected;
+    for (auto& [edge, points] : on_edge_) {
       std::sort(points.begin(), points.end(), [](const OnEdge& a, const OnEdge& b) {
         return a.parameter != b.parameter ? a.parameter < b.parameter : a.point < b.point;
       });
-    std::vector<build::Corners> before = std::move(draft_.triangles);
-    const std::vector<Origin> origins = std::move(draft_.origins);
-    draft_.triangles.clear();
-    draft_.origins.clear();
-    for (Index t = 0; t < before.size(); ++t) cut(t, before[t], origins[t]);
+      for (const Index side : triangles_.sides(edge)) affected.push_back(side / 3);
+    }
+    for (const auto& [t, points] : inside_) affected.push_back(t);
+    std::sort(affected.begin(), affected.end());
+    affected.erase(std::unique(affected.begin(), affected.end()), affected.end());
+    work_.spend(affected.size());
+    for (const Index t : affected) {
+      const build::Corners corners = draft_.triangles[t];
+      const Origin origin = draft_.origins[t];
+      take(t);
+      cut(t, corners, origin);
+    }
+    cut_segments();
+  }
+
+  void cut_segments() {
+    if (on_edge_.empty()) return;
     std::vector<Segment> segments;
+    segments.reserve(draft_.segments.size());
     for (const Segment& s : draft_.segments) {
       const std::vector<Index> points = chain(s.a, s.b);
       for (std::size_t i = 0; i + 1 < points.size(); ++i)
@@ -535,33 +551,28 @@ class Snapper {
     draft_.segments = std::move(segments);
   }
 
-  void cut(Index t, const build::Corners& corners, Origin origin) {
-    std::vector<Index> polygon;
+  void cut(Index t, const build::Corners& corners, const Origin& origin) {
+    PolygonCuts cuts;
     for (unsigned i = 0; i < 3; ++i) {
       const std::vector<Index> points = chain(corners[i], corners[(i + 1) % 3]);
-      polygon.insert(polygon.end(), points.begin(), points.end() - 1);
+      cuts.border.insert(cuts.border.end(), points.begin(), points.end() - 1);
     }
-    const auto found = inside_.find(t);
-    if (polygon.size() == 3 && found == inside_.end()) {
-      draft_.add_triangle(corners, origin);
-      return;
-    }
-    origin.facet = unseen;
-    const std::vector<Index> inside = found == inside_.end() ? std::vector<Index>() : found->second;
-    std::vector<Index> sorted = polygon;
+    if (const auto found = inside_.find(t); found != inside_.end()) cuts.inside = found->second;
+    std::vector<Index> sorted = cuts.border;
     std::sort(sorted.begin(), sorted.end());
     const bool simple = std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
     // A plain step cuts from the opposite corner; a triangulation might take the old edge again.
-    const bool plain = inside.empty() && along_.empty();
+    const bool plain = cuts.inside.empty() && along_.empty();
     if (simple && !plain) {
       const Vector normal = cross(at(corners[1]) - at(corners[0]), at(corners[2]) - at(corners[0]));
-      if (const auto pieces = PolygonCutter(draft_.points, normal).cut(polygon, inside, constraints(t, corners))) {
-        for (const build::Corners& piece : *pieces) draft_.add_triangle(piece, origin);
+      cuts.edges = constraints(t, corners);
+      if (const auto pieces = cut_polygon(draft_.points, normal, cuts)) {
+        for (const build::Corners& piece : *pieces) put(piece, origin);
         return;
       }
     }
     std::vector<build::Corners> pieces{corners};
-    for (const Index p : inside) insert(p, pieces);
+    for (const Index p : cuts.inside) insert(p, pieces);
     for (const build::Corners& piece : pieces) add_cut(piece, origin);
   }
 
@@ -600,10 +611,10 @@ class Snapper {
       const Vector n = cross(at(b) - at(a), at(c) - at(a));
       const double nn = squared_norm(n);
       if (!(nn > 0)) continue;
-      const double least = std::min({dot(cross(at(b) - at(a), at(p) - at(a)), n),
-                                     dot(cross(at(c) - at(b), at(p) - at(b)), n),
-                                     dot(cross(at(a) - at(c), at(p) - at(c)), n)}) /
-                           nn;
+      const double least =
+          std::min({dot(cross(at(b) - at(a), at(p) - at(a)), n), dot(cross(at(c) - at(b), at(p) - at(b)), n),
+                    dot(cross(at(a) - at(c), at(p) - at(c)), n)}) /
+          nn;
       if (least <= depth) continue;
       depth = least;
       best = i;
@@ -642,72 +653,48 @@ class Snapper {
           // Side 0 is a piece of an edge that is cut already; sides 1 and 2 are whole edges at the ends only.
           const bool first = k == 0, last = k + 2 == points.size();
           const unsigned side_after = done >> ((i + 1) % 3) & 1U, side_before = done >> ((i + 2) % 3) & 1U;
-          const unsigned flags =
-              1U | (last ? side_after : 1U) << 1U | (first ? side_before : 1U) << 2U;
+          const unsigned flags = 1U | (last ? side_after : 1U) << 1U | (first ? side_before : 1U) << 2U;
           stack.push_back({{points[k], points[k + 1], apex}, flags});
         }
       }
-      if (!cut && t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) draft_.add_triangle(t, origin);
+      if (!cut && t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) put(t, origin);
     }
   }
+
+  // Rounding of heights over a plane, in which only edges of the triangle there are near.
+  static constexpr double beyond_plane = 1 + 1e-9;
 
   Draft& draft_;
   double limit_;
   SnapWhat what_;
+  Work& work_;
   SnapReport report_;
-  std::optional<EdgeTable> edges_;
+  std::size_t most_triangles_ = 0;
+  bool grows_ = false;  // beyond that
+  ChangingTriangles triangles_;
+  std::array<std::vector<Index>, 2> unseen_;  // triangles, by corners and by overlay; some are gone
+  std::vector<Index> added_;                  // triangles that may have become twins
+  std::vector<Index> touched_;                // corners of triangles that came or went
+  std::vector<bool> pinned_;                  // by point: of a segment or loose
+  std::vector<bool> in_grid_;                 // by point: apart from all others there
+  PointGrid grid_;
   std::set<Edge> cut_before_;
   std::map<Edge, std::vector<OnEdge>> on_edge_;
   std::map<Index, std::vector<Index>> inside_;  // by triangle
-  std::map<Index, std::vector<Edge>> along_;      // by triangle: edges that come near it
+  std::map<Index, std::vector<Edge>> along_;    // by triangle: edges that come near it
   std::set<std::pair<Edge, Edge>> crossing_, crossed_before_;
 };
 
 }  // namespace
 
-SnapReport snap_near_features(Draft& draft, double distance, SnapWhat what) {
-  return Snapper(draft, distance, what).run();
-}
-
-std::size_t cancel_twins(Draft& draft) {
-  struct Key {
-    build::Corners corners;
-    Index soup, triangle;
-    bool odd;
-  };
-  std::vector<Key> keys(draft.triangles.size());
-  for (Index t = 0; t < keys.size(); ++t) {
-    build::Corners c = draft.triangles[t];
-    const bool odd = (c[0] > c[1]) != ((c[1] > c[2]) != (c[0] > c[2]));
-    std::sort(c.begin(), c.end());
-    keys[t] = {c, draft.origins[t].soup, t, odd};
-  }
-  std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
-    return std::tie(a.corners, a.soup, a.odd, a.triangle) < std::tie(b.corners, b.soup, b.odd, b.triangle);
-  });
-  std::vector<bool> removed(draft.triangles.size(), false);
-  const auto same = [](const Key& a, const Key& b) { return a.corners == b.corners && a.soup == b.soup; };
-  for (auto first = keys.begin(); first != keys.end();) {
-    const auto last = std::find_if(first, keys.end(), [&](const Key& key) { return !same(key, *first); });
-    const auto middle = std::find_if(first, last, [](const Key& key) { return key.odd; });
-    if (draft.soup_is_complex[first->soup]) {
-      for (auto key = first + 1; key != last; ++key) removed[key->triangle] = true;
-    } else {
-      for (auto even = first, odd = middle; even != middle && odd != last; ++even, ++odd)
-        removed[even->triangle] = removed[odd->triangle] = true;
-    }
-    first = last;
-  }
-  std::size_t kept = 0;
-  for (Index t = 0; t < draft.triangles.size(); ++t) {
-    if (removed[t]) continue;
-    draft.triangles[kept] = draft.triangles[t];
-    draft.origins[kept++] = draft.origins[t];
-  }
-  const std::size_t count = draft.triangles.size() - kept;
-  draft.triangles.resize(kept);
-  draft.origins.resize(kept);
-  return count;
+SnapReport snap_near_features(Draft& draft, double distance, SnapWhat what, Work* work,
+                              const std::vector<bool>& known) {
+  Work any;
+  const std::size_t twins = known.empty() ? cancel_twins(draft) : 0;
+  SnapReport report;
+  if (distance > 0) report = Snapper(draft, distance, what, work != nullptr ? *work : any).run(known);
+  report.cancelled_triangles += twins;
+  return report;
 }
 
 }  // namespace collarmesh::repairing

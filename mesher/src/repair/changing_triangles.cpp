@@ -1,0 +1,128 @@
+#include "repair/changing_triangles.h"
+
+#include <cmath>
+
+namespace collarmesh::repairing {
+
+using namespace build;
+
+ChangingTriangles::ChangingTriangles(Draft& draft, double reach, Work& work)
+    : draft_(draft), reach_(reach), work_(work) {
+  alive_.assign(draft.triangles.size(), true);
+  count_ = draft.triangles.size();
+  normals_.resize(count_);
+  first_.assign(draft.points.size(), none);
+  degree_.assign(draft.points.size(), 0);
+  next_.assign(3 * count_, none);
+  for (Index t = 0; t < end(); ++t) link(t);
+}
+
+void ChangingTriangles::link(Index t) {
+  const Vector normal =
+      cross(draft_.corner(t, 1) - draft_.corner(t, 0), draft_.corner(t, 2) - draft_.corner(t, 0));
+  const double length = norm(normal);
+  normals_[t] = length > 0 ? normal / length : normal;
+  for (unsigned i = 0; i < 3; ++i) {
+    const Index p = draft_.triangles[t][i];
+    next_[3 * t + i] = first_[p];
+    first_[p] = 3 * t + i;
+    ++degree_[p];
+  }
+}
+
+Index ChangingTriangles::add(const Corners& corners, const Origin& origin) {
+  draft_.add_triangle(corners, origin);
+  ++count_;
+  alive_.push_back(true);
+  normals_.emplace_back();
+  first_.resize(draft_.points.size(), none);
+  degree_.resize(draft_.points.size(), 0);
+  next_.resize(next_.size() + 3, none);
+  link(end() - 1);
+  return end() - 1;
+}
+
+void ChangingTriangles::remove(Index t) {
+  alive_[t] = false;
+  --count_;
+  for (unsigned i = 0; i < 3; ++i) {
+    --degree_[draft_.triangles[t][i]];
+    Index* at = &first_[draft_.triangles[t][i]];
+    while (*at != 3 * t + i) at = &next_[*at];
+    *at = next_[3 * t + i];
+  }
+}
+
+std::vector<Index> ChangingTriangles::sides(const Edge& edge) const {
+  std::vector<Index> found;
+  if (edge[0] >= degree_.size() || edge[1] >= degree_.size()) return found;
+  const bool first_is_busier = degree_[edge[0]] > degree_[edge[1]];
+  const Index from = edge[first_is_busier ? 1 : 0], to = edge[first_is_busier ? 0 : 1];
+  for_each_at(from, [&](Index side) {
+    const Corners& t = draft_.triangles[side / 3];
+    const Index i = side % 3;
+    if (t[(i + 1) % 3] == to) found.push_back(side);
+    if (t[(i + 2) % 3] == to) found.push_back(side - i + (i + 2) % 3);
+  });
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+Box ChangingTriangles::box_of(Index t) const {
+  const Vector margin = 0.5 * reach_ * Vector{1, 1, 1};
+  Box box;
+  for (unsigned i = 0; i < 3; ++i) {
+    box.add(draft_.corner(t, i) - margin);
+    box.add(draft_.corner(t, i) + margin);
+  }
+  return box;
+}
+
+bool ChangingTriangles::beyond(Index s, Index t) const {
+  const Point& origin = draft_.corner(s, 0);
+  double low = INFINITY, high = -INFINITY;
+  for (unsigned i = 0; i < 3; ++i) {
+    const double height = dot(normals_[s], draft_.corner(t, i) - origin);
+    low = std::min(low, height);
+    high = std::max(high, height);
+  }
+  return low > reach_ || high < -reach_;
+}
+
+void ChangingTriangles::Tree::build(const ChangingTriangles& of, Index from) {
+  triangles.clear();
+  std::vector<Box> boxes;
+  end = of.end();
+  boxes.reserve(end - from);
+  triangles.reserve(end - from);
+  for (Index t = from; t < end; ++t) {
+    if (!of.alive_[t]) continue;
+    triangles.push_back(t);
+    boxes.push_back(of.box_of(t));
+  }
+  tree = std::make_unique<BoxTree>(boxes);
+}
+
+void ChangingTriangles::renew_trees() {
+  const bool stale = !all_.tree || few * (end() - all_.end) > count_;
+  if (stale) all_.build(*this, 0);
+  if (end() > all_.end)
+    late_.build(*this, all_.end);
+  else
+    late_.clear();
+}
+
+Draft ChangingTriangles::compacted() const {
+  Draft result = draft_;
+  std::size_t kept = 0;
+  for (Index t = 0; t < alive_.size(); ++t) {
+    if (!alive_[t]) continue;
+    result.triangles[kept] = draft_.triangles[t];
+    result.origins[kept++] = draft_.origins[t];
+  }
+  result.triangles.resize(kept);
+  result.origins.resize(kept);
+  return result;
+}
+
+}  // namespace collarmesh::repairing

@@ -1,0 +1,123 @@
+#include "repair/distances.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "common/distance_tree.h"
+#include "repair/winding_number.h"
+
+namespace collarmesh::repairing {
+
+namespace {
+
+constexpr double spacing_by_diagonal = 0.02;
+
+// In an order that two copies share.
+CornerPoints canonical(CornerPoints t) {
+  const auto key = [](const Point& p) { return std::array{p.x, p.y, p.z}; };
+  std::sort(t.begin(), t.end(), [&](const Point& a, const Point& b) { return key(a) < key(b); });
+  return t;
+}
+
+bool before(const CornerPoints& s, const CornerPoints& t) {
+  for (unsigned i = 0; i < 3; ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (s[i][axis] != t[i][axis]) return s[i][axis] < t[i][axis];
+  return false;
+}
+
+// Those triangles of which the other surface has no copy.
+std::vector<CornerPoints> without(std::span<const CornerPoints> triangles,
+                                  std::span<const CornerPoints> others) {
+  std::vector<CornerPoints> sorted;
+  sorted.reserve(others.size());
+  for (const CornerPoints& t : others) sorted.push_back(canonical(t));
+  std::sort(sorted.begin(), sorted.end(), before);
+  std::vector<CornerPoints> rest;
+  for (const CornerPoints& t : triangles)
+    if (!std::binary_search(sorted.begin(), sorted.end(), canonical(t), before)) rest.push_back(t);
+  return rest;
+}
+
+unsigned steps(double length, double spacing) {
+  constexpr double most = 200;
+  return static_cast<unsigned>(std::clamp(std::ceil(length / spacing), 1.0, most));
+}
+
+// Its corners, its centroid, and points on lines along its longest side, no farther apart than the spacing.
+template <class Visit>
+void for_each_sample(const CornerPoints& t, double spacing, const Visit& visit) {
+  unsigned first = 0;
+  for (unsigned i = 1; i < 3; ++i)
+    if (distance(t[i], t[(i + 1) % 3]) > distance(t[first], t[(first + 1) % 3])) first = i;
+  const Point &a = t[first], &b = t[(first + 1) % 3], &c = t[(first + 2) % 3];
+  const double length = distance(a, b), area = norm(cross(b - a, c - a));
+  const unsigned lines = steps(length > 0 ? area / length : 0, spacing);
+  for (unsigned j = 0; j < lines; ++j) {
+    const double up = static_cast<double>(j) / lines;
+    const Point from = a + up * (c - a), to = b + up * (c - b);
+    const unsigned n = steps((1 - up) * length, spacing);
+    for (unsigned i = 0; i <= n; ++i) visit(from + (static_cast<double>(i) / n) * (to - from));
+  }
+  visit(c);
+  visit((1.0 / 3) * (a + b + c));
+}
+
+double diagonal_of(std::span<const CornerPoints> triangles) {
+  Box box;
+  for (const CornerPoints& t : triangles)
+    for (const Point& p : t) box.add(p);
+  return box.diagonal();
+}
+
+WindingNumber winding_of(std::span<const CornerPoints> repaired, std::span<const CornerPoints> filled) {
+  std::vector<WeightedTriangle> triangles;
+  triangles.reserve(repaired.size() + filled.size());
+  for (const auto& list : {repaired, filled})
+    for (const CornerPoints& t : list) triangles.push_back({t, 1, 0});
+  return WindingNumber(std::move(triangles));
+}
+
+}  // namespace
+
+RepairDistances measure_distances(std::span<const CornerPoints> input, std::span<const CornerPoints> repaired,
+                                  std::span<const CornerPoints> filled) {
+  RepairDistances distances;
+  const double spacing = spacing_by_diagonal * diagonal_of(input);
+  if (!(spacing > 0) || repaired.empty()) return distances;
+  const std::vector<CornerPoints> arisen = without(repaired, input), gone = without(input, repaired);
+  if (!arisen.empty()) {
+    const DistanceTree tree({input.begin(), input.end()});
+    Index hint = none;
+    for (const CornerPoints& t : arisen)
+      for_each_sample(t, spacing, [&](const Point& p) {
+        const DistanceTree::Nearest nearest = tree.nearest(p, distances.of_repaired, hint);
+        distances.of_repaired = std::max(distances.of_repaired, nearest.distance);
+        hint = nearest.triangle;
+      });
+  }
+  if (gone.empty()) return distances;
+  std::vector<CornerPoints> all(repaired.begin(), repaired.end());
+  all.insert(all.end(), filled.begin(), filled.end());
+  const DistanceTree tree(std::move(all));
+  const WindingNumber winding = winding_of(repaired, filled);
+  constexpr double half = 0.5;
+  Index hint = none;
+  for (const CornerPoints& t : gone) {
+    // Most of what is gone lies deep inside, far from all that is left.
+    const Point centroid = (1.0 / 3) * (t[0] + t[1] + t[2]);
+    const double radius =
+        std::max({distance(centroid, t[0]), distance(centroid, t[1]), distance(centroid, t[2])});
+    if (winding.at(centroid) > half && tree.nearest(centroid, radius, hint).distance > radius) continue;
+    for_each_sample(t, spacing, [&](const Point& p) {
+      const DistanceTree::Nearest nearest = tree.nearest(p, distances.of_input, hint);
+      if (nearest.distance > distances.of_input && winding.at(p) < half)
+        distances.of_input = nearest.distance;
+      hint = nearest.triangle;
+    });
+  }
+  return distances;
+}
+
+}  // namespace collarmesh::repairing

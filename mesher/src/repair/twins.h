@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "plc/draft.h"
+
+namespace collarmesh::repairing {
+
+/// A triangle among others of its soup with the same corners.
+struct Twin {
+  bool odd;  ///< its corners are an odd permutation of their order: turned against those that are even
+  Index triangle;
+
+  friend auto operator<=>(const Twin&, const Twin&) = default;
+};
+
+/// Is it an odd permutation of its sorted corners?
+bool is_odd(const build::Corners& corners);
+
+/// Which of these triangles with the same corners, all those of one soup, cancel each other: pairs that are
+/// turned against each other; in a complex, where orientation means nothing, all but one.
+std::vector<Index> cancelled_among(std::vector<Twin> twins, bool in_complex);
+
+/// Drop those of all triangles, and tell how many.
+/// Cost: O(n log n).
+std::size_t cancel_twins(build::Draft& draft);
+
+}  // namespace collarmesh::repairing

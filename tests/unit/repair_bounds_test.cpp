@@ -1,0 +1,93 @@
+// Repair ends: when it is cancelled, when it takes too much work, and where nothing can be enclosed.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <string>
+
+#include "collarmesh/error.h"
+#include "collarmesh/repair.h"
+#include "support/repair_shapes.h"
+#include "support/shapes.h"
+
+namespace collarmesh {
+namespace {
+
+using namespace testing::faulty;
+
+PolygonSoup crossing_balls() {
+  return testing::joined(testing::icosphere(1, 8),
+                         testing::translated(testing::icosphere(1, 8), {0.71, 0.53, 0.37}));
+}
+
+TEST(RepairBounds, CancelledBeforeItBegins) {
+  const PolygonSoup soup = crossing_balls();
+  const std::atomic<bool> cancel{true};
+  Execution execution;
+  execution.cancel = &cancel;
+  const RepairResult r = repair({&soup, 1}, {}, {}, execution);
+  EXPECT_TRUE(r.report.cancelled);
+  EXPECT_FALSE(r.report.repaired);
+  ASSERT_EQ(r.soups.size(), 1U);
+  EXPECT_EQ(r.soups[0].facet_count(), soup.facet_count());
+  const RepairedPlc built = build_repaired_plc({&soup, 1}, {}, {}, execution);
+  EXPECT_TRUE(built.report.cancelled);
+  EXPECT_TRUE(built.plc.triangles.empty());
+}
+
+TEST(RepairBounds, GivesUpBeyondItsWork) {
+  const PolygonSoup soup = crossing_balls();
+  RepairOptions options;
+  options.max_work = 10000;
+  const RepairResult r = repair({&soup, 1}, options);
+  EXPECT_TRUE(r.report.gave_up);
+  EXPECT_FALSE(r.report.repaired);
+  try {
+    build_repaired_plc({&soup, 1}, {}, options);
+    FAIL() << "it was repaired";
+  } catch (const PlcError& error) {
+    EXPECT_NE(std::string(error.what()).find("given up"), std::string::npos) << error.what();
+    EXPECT_FALSE(error.faults.empty());
+  }
+  // With enough work it is repaired, and how much is enough does not change.
+  EXPECT_TRUE(repair({&soup, 1}).report.repaired);
+  // Wrapping needs none of it.
+  options.mode = RepairMode::wrap;
+  EXPECT_TRUE(build_repaired_plc({&soup, 1}, {}, options).report.wrapped);
+}
+
+// A valid complex with features that cannot be removed within the work stays, with a warning.
+TEST(RepairBounds, NoiseThatStaysIsTold) {
+  const PolygonSoup slotted = slotted_box(1e-7);
+  RepairOptions options;
+  options.max_work = 1;
+  const RepairedPlc r = build_repaired_plc({&slotted, 1}, {}, options);
+  EXPECT_FALSE(r.report.repaired);
+  ASSERT_FALSE(r.plc.warnings.empty());
+  EXPECT_NE(r.plc.warnings.back().message.find("below the repair tolerance"), std::string::npos);
+  EXPECT_TRUE(std::isfinite(r.plc.warnings.back().where.x));
+  const RepairedPlc repaired = build_repaired_plc({&slotted, 1});
+  EXPECT_TRUE(repaired.report.repaired);
+  EXPECT_TRUE(repaired.plc.warnings.empty());
+}
+
+// A curved sheet with a long border: neither stitching nor filling makes a solid of it.
+TEST(RepairBounds, OpenSheetsAreRefused) {
+  constexpr Index n = 100;
+  PolygonSoup sheet;
+  for (Index j = 0; j <= n; ++j)
+    for (Index i = 0; i <= n; ++i) {
+      const double u = 3.0 * i / n, v = 6.0 * j / n;
+      sheet.points.push_back({u, v, 0.4 * std::sin(2 * u) * std::cos(v)});
+    }
+  for (Index j = 0; j < n; ++j)
+    for (Index i = 0; i < n; ++i) {
+      const Index p = j * (n + 1) + i;
+      sheet.add_facet(std::array<Index, 3>{p, p + 1, p + n + 2}, 1);
+      sheet.add_facet(std::array<Index, 3>{p, p + n + 2, p + n + 1}, 1);
+    }
+  EXPECT_THROW(build_repaired_plc({&sheet, 1}), PlcError);
+}
+
+}  // namespace
+}  // namespace collarmesh

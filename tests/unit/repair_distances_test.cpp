@@ -1,0 +1,120 @@
+// How far a repaired surface and its input are from each other.
+#include "repair/distances.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/repair_shapes.h"
+#include "support/shapes.h"
+
+namespace collarmesh::repairing {
+namespace {
+
+using namespace testing::faulty;
+
+std::vector<CornerPoints> triangles_of(const PolygonSoup& soup) {
+  const PolygonSoup flat = triangulated(soup);
+  std::vector<CornerPoints> triangles;
+  triangles.reserve(flat.facet_count());
+  for (Index f = 0; f < flat.facet_count(); ++f) {
+    const auto c = flat.polygon(f);
+    triangles.push_back({flat.points[c[0]], flat.points[c[1]], flat.points[c[2]]});
+  }
+  return triangles;
+}
+
+RepairDistances between(const PolygonSoup& input, const PolygonSoup& repaired) {
+  return measure_distances(triangles_of(input), triangles_of(repaired), {});
+}
+
+Point random_point(const CornerPoints& t, Random& random) {
+  double a = uniform(random, 0, 1), b = uniform(random, 0, 1);
+  if (a + b > 1) a = 1 - a, b = 1 - b;
+  return t[0] + a * (t[1] - t[0]) + b * (t[2] - t[0]);
+}
+
+// By Ericson's regions would be exact, too; many points of the triangle are enough, from above.
+double distance_to(const Point& p, const std::vector<CornerPoints>& triangles) {
+  constexpr int n = 40;
+  double least = INFINITY;
+  for (const CornerPoints& t : triangles)
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; i + j <= n; ++j)
+        least = std::min(
+            least, distance(p, t[0] + (i / double{n}) * (t[1] - t[0]) + (j / double{n}) * (t[2] - t[0])));
+  return least;
+}
+
+TEST(RepairDistances, OfASurfaceToItselfAreZero) {
+  const PolygonSoup ball = testing::icosphere(1, 5);
+  const RepairDistances same = between(ball, ball), permuted = between(ball, testing::permuted(ball, 3));
+  EXPECT_EQ(same.of_repaired, 0);
+  EXPECT_EQ(same.of_input, 0);
+  EXPECT_EQ(permuted.of_repaired, 0);
+  EXPECT_EQ(permuted.of_input, 0);
+}
+
+TEST(RepairDistances, ABoxAboveASheet) {
+  PolygonSoup sheet;
+  sheet.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  sheet.add_facet(std::array<Index, 4>{0, 1, 2, 3}, 1);
+  const RepairDistances above = between(sheet, testing::box({0, 0, 0.25}, {1, 1, 1.5}));
+  EXPECT_NEAR(above.of_repaired, 1.5, 1e-12);
+  EXPECT_NEAR(above.of_input, 0.25, 1e-12);
+  // Inside of the box it does not count.
+  const RepairDistances around = between(sheet, testing::box({-1, -1, -0.5}, {2, 2, 0.5}));
+  EXPECT_NEAR(around.of_repaired, std::sqrt(2 + 0.25), 1e-12);
+  EXPECT_EQ(around.of_input, 0);
+}
+
+TEST(RepairDistances, FilledHolesDoNotCountButAreThere) {
+  const PolygonSoup cube = testing::box();
+  const auto side = [&](bool top) {
+    return triangles_of(filtered(cube, [&](Index f) { return (cube.facet_tag(f) == 6) == top; }));
+  };
+  const RepairDistances d = measure_distances(side(false), side(false), side(true));
+  EXPECT_EQ(d.of_repaired, 0);
+  EXPECT_EQ(d.of_input, 0);
+  // As part of what was repaired they do: the centre of the side is 1/2 from the others.
+  const RepairDistances whole = measure_distances(side(false), triangles_of(cube), {});
+  EXPECT_NEAR(whole.of_repaired, 0.5, 0.02);
+}
+
+// Random points and sums of solid angles instead of a lattice and hierarchies.
+TEST(RepairDistances, AreThoseOfRandomPoints) {
+  Random random(31);
+  for (unsigned member = 0; member < members(4); ++member) {
+    SCOPED_TRACE(member);
+    const PolygonSoup input = testing::icosphere(1, 2);
+    const PolygonSoup repaired = testing::translated(testing::scaled(input, uniform(random, 0.7, 1.2)),
+                                                     uniform(random, 0.1, 0.5) * random_direction(random));
+    const auto a = triangles_of(input), b = triangles_of(repaired);
+    const RepairDistances d = between(input, repaired);
+    double of_repaired = 0, of_input = 0;
+    for (int i = 0; i < 400; ++i) {
+      of_repaired = std::max(of_repaired, distance_to(random_point(b[random() % b.size()], random), a));
+      const Point p = random_point(a[random() % a.size()], random);
+      if (direct_winding_number(repaired, p) < 0.5) of_input = std::max(of_input, distance_to(p, b));
+    }
+    // 400 points on the surface miss the farthest place by no more than the mean distance of some.
+    EXPECT_NEAR(d.of_repaired, of_repaired, 0.06);
+    EXPECT_NEAR(d.of_input, of_input, 0.06);
+    EXPECT_GT(d.of_repaired, of_repaired - 0.02);
+    EXPECT_GT(d.of_input, of_input - 0.02);
+  }
+}
+
+// Of a whole repair: what is thinner than the tolerance vanishes, and that is told.
+TEST(RepairDistances, OfAFinThatVanishes) {
+  const PolygonSoup finned = finned_box(1e-7);
+  const RepairedPlc r = build_repaired_plc({&finned, 1});
+  ASSERT_TRUE(r.report.repaired);
+  EXPECT_LT(r.report.largest_distance, r.report.tolerance);
+  EXPECT_NEAR(r.report.largest_distance_of_input, 0.5, 1e-6);
+  const auto lines = describe(r.report);
+  EXPECT_NE(lines.back().find("within 0.5 of them"), std::string::npos) << lines.back();
+}
+
+}  // namespace
+}  // namespace collarmesh::repairing
