@@ -50,6 +50,7 @@ const std::string quality_group = "Quality";
 const std::string elements_group = "Elements";
 
 const CLI::Validator collar_angle = number_in(100, 175, "an angle from 100 to 175 degrees");
+const CLI::Validator thin_angle = number_in(0.1, 30, "an angle from 0.1 to 30 degrees");
 const CLI::Validator ratio = number_in(1, 1e300, "a ratio of at least 1");
 const CLI::Validator number = number_in(0, 1e300, "a number >= 0");
 const CLI::Validator seconds = number_in(0, 1e300, "a number of seconds >= 0");
@@ -147,6 +148,22 @@ void add_size_options(CLI::App& app, MeshArguments& a) {
   add(app, "--gradation G", m.gradation, "Growth of size per unit length away from finer features",
       "unlimited")
       ->check(number)
+      ->group(group);
+}
+
+void add_coarsening_options(CLI::App& app, MeshArguments& a) {
+  const std::string& group = quality_group;
+  app.add_option("--coarsen", a.coarsen,
+                 "on: as few tetrahedra as the sizes ask for, thin ones in thin places; off: the bound on "
+                 "circumradius / shortest edge holds everywhere outside collars")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, bool>{{"on", true}, {"off", false}})
+                      .description(""))
+      ->default_str("on")
+      ->type_name("on|off")
+      ->group(group);
+  add(app, "--thin-angle DEGREES", a.thin_angle,
+      "Smallest dihedral angle of thin tetrahedra; at sharper creases half their angle")
+      ->check(thin_angle)
       ->group(group);
 }
 
@@ -248,6 +265,7 @@ void add_quiet_flag(CLI::App& app, bool& quiet) {
 void add_run_options(CLI::App& app, MeshArguments& a) {
   add_size_options(app, a);
   add_quality_options(app, a.mesh);
+  add_coarsening_options(app, a);
   add_improvement_options(app, a);
   add_order_option(app, a);
   add_complex_options(app, a.complex);
@@ -312,6 +330,9 @@ CLI::App* add_check_command(CLI::App& app, CheckArguments& a) {
   add(*check, "--radius-edge RHO", a.check.radius_edge,
       "Bound on circumradius / shortest edge of a tetrahedron")
       ->check(ratio);
+  add(*check, "--thin-angle DEGREES", a.check.thin_angle,
+      "Smallest dihedral angle of thin tetrahedra, which may exceed that bound; 0: none may")
+      ->check(number_in(0, 30, "an angle from 0 to 30 degrees"));
   add(*check, "--collar-angle DEGREES", a.check.collar_angle, "Bound on dihedral angles in collars, degrees")
       ->check(collar_angle);
   add(*check, "--distance LENGTH", a.check.distance,

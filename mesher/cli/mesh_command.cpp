@@ -87,19 +87,25 @@ ComplexInput build_complex(const MeshArguments& arguments, Stages& stages, MeshR
   return input;
 }
 
-void refine(const MeshArguments& arguments, const ComplexInput& input, Stages& stages, MeshRun& run) {
-  stages.begin("refine", 0.08, 0.7);
+MeshOptions options_of_refinement(const MeshArguments& arguments, const ComplexInput& input,
+                                  const MeshRun& run) {
+  MeshOptions options = arguments.mesh;
+  options.crease_angle = arguments.complex.crease_angle;
+  if (!arguments.size_field.empty()) options.size_field = read_size_field(arguments.size_field, run.plc);
+  options.time_limit = 0;  // one limit for all stages: the interrupt flag
+  return input.tightened(options, run.plc);
+}
+
+void refine(const MeshArguments& arguments, const ComplexInput& input, const MeshOptions& options,
+            Stages& stages, MeshRun& run) {
+  stages.begin("refine", 0.08, arguments.coarsen ? 0.6 : 0.7);
   Execution execution;
   execution.cancel = &interrupt_flag();
   execution.progress = [&stages](const ProgressReport& report) {
     stages.update(report);
     return true;
   };
-  MeshOptions options = arguments.mesh;
-  options.crease_angle = arguments.complex.crease_angle;
-  if (!arguments.size_field.empty()) options.size_field = read_size_field(arguments.size_field, run.plc);
-  options.time_limit = 0;  // one limit for all stages: the interrupt flag
-  run.result = generate(run.plc, input.tightened(options, run.plc), execution);
+  run.result = generate(run.plc, options, execution);
   if (input.has_cad()) run.result.mesh.group_names = GroupNames::cad;
   if (run.result.status == MeshStatus::cancelled) {
     const MeshStatistics& reached = run.result.statistics;
@@ -114,6 +120,16 @@ void refine(const MeshArguments& arguments, const ComplexInput& input, Stages& s
     throw Stopped(ExitCode::budget_hit, run.result.message + "; nothing was written");
 }
 
+void coarsen_elements(const MeshArguments& arguments, const MeshOptions& options, Stages& stages,
+                      MeshRun& run) {
+  if (!arguments.coarsen || run.result.status != MeshStatus::complete) return;
+  stages.begin("coarsen", 0.6, 0.7, run.result.mesh.tets.size());
+  Execution execution;
+  execution.cancel = &interrupt_flag();
+  run.coarsening = coarsen(run.result.mesh, run.plc, options, {.thin_angle = arguments.thin_angle}, execution);
+  stop_if_interrupted();
+}
+
 void improve_elements(const MeshArguments& arguments, const ComplexInput& input, Stages& stages,
                       MeshRun& run) {
   if (arguments.improve == 0) return;
@@ -125,6 +141,10 @@ void improve_elements(const MeshArguments& arguments, const ComplexInput& input,
   options.radius_edge = bounds.radius_edge;
   options.distance = bounds.distance;
   options.threads = arguments.threads;
+  if (run.coarsening) {
+    options.thin_angle = arguments.thin_angle;
+    options.keep_vertices = true;
+  }
   if (arguments.min_dihedral > 0) options.min_dihedral = arguments.min_dihedral;
   run.improvement = improve(run.result.mesh, run.plc, options, execution);
   stop_if_interrupted();
@@ -140,6 +160,7 @@ void project_onto_cad(const MeshArguments& arguments, const ComplexInput& input,
   options.radius_edge = arguments.mesh.radius_edge;
   options.collar_angle = arguments.mesh.collar_angle;
   options.reach = arguments.mesh.distance;
+  if (run.coarsening) options.thin_angle = arguments.thin_angle;
   run.projection =
       project_boundary(run.result.mesh, run.plc, input.exact_geometry(run.plc), options, execution);
   stop_if_interrupted();
@@ -161,6 +182,7 @@ void certify(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   CheckOptions options;
   options.radius_edge = arguments.mesh.radius_edge;
   options.distance = arguments.mesh.distance;
+  options.thin_angle = arguments.thin_angle;
   options.collar_angle = arguments.mesh.collar_angle;
   options.crease_angle = arguments.complex.crease_angle;
   options.threads = arguments.threads;
@@ -213,7 +235,9 @@ ExitCode mesh_command(const MeshArguments& arguments) {
   {
     Stages stages(arguments.quiet ? ProgressStyle::none : arguments.progress, run.times);
     const ComplexInput input = build_complex(arguments, stages, run);
-    refine(arguments, input, stages, run);
+    const MeshOptions options = options_of_refinement(arguments, input, run);
+    refine(arguments, input, options, stages, run);
+    coarsen_elements(arguments, options, stages, run);
     improve_elements(arguments, input, stages, run);
     project_onto_cad(arguments, input, stages, run);
     raise_order(arguments, input, stages, run);

@@ -54,7 +54,7 @@ struct Workbench {
   Workbench(const Meshed& meshed, const TetMesh& of)
       : mesh(of),
         workpiece(mesh, meshed.plc, 1e-3 * meshed.plc.bounds.diagonal()),
-        operations(workpiece, radius_edge) {}
+        operations(workpiece, rule) {}
 
   double worst(std::span<const Index> tets) const {
     double quality = INFINITY;
@@ -65,6 +65,7 @@ struct Workbench {
   TetMesh mesh;
   Workpiece workpiece;
   const TetComplex& complex = workpiece.complex;
+  improvement::SliverRule rule{radius_edge};
   Operations operations;
 };
 

@@ -27,6 +27,9 @@ PROPERTIES = (
      "Points closer than this are one, relative to the diagonal; 0: 1e-9"),
     ("App::PropertyFloat", "RepairTolerance", "repair_tolerance", FEATURES,
      "Where the shape has to be repaired, features below this are noise, relative to the diagonal; 0: 1e-5"),
+    ("App::PropertyBool", "Coarsen", "coarsen", QUALITY,
+     "As few elements as the sizes ask for, thin ones in thin places; else the bound on circumradius / shortest edge "
+     "holds everywhere outside collars"),
     ("App::PropertyFloat", "RadiusEdgeRatio", "radius_edge", QUALITY, "Bound on circumradius / shortest edge"),
     ("App::PropertyInteger", "ImproveLevel", "improve", QUALITY, "Removal of slivers: 0 none, 1 quick, 2 good, 3 best"),
     ("App::PropertyAngle", "MinDihedralAngle", "min_dihedral", QUALITY,

@@ -11,6 +11,7 @@ namespace collarmesh {
 
 struct ProjectOptions {
   double radius_edge = 2;     ///< bound on circumradius / shortest edge that no tet outside collars breaks
+  double thin_angle = 0;      ///< degrees: thin tets may exceed that bound, see `coarsen`; 0: none may
   double collar_angle = 150;  ///< bound on dihedral angles in collars, degrees
   double tolerance = 1e-9;    ///< absolute: a vertex that stays and is nearer to its feature is no exception
   double reach =

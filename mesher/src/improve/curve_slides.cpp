@@ -16,12 +16,12 @@ double squared_distance_to_segment(const Point& p, const Point& a, const Point& 
 }  // namespace
 
 bool CurveSlides::movable(Index vertex) const {
-  std::call_once(prepared_, [&] { prepare(); });
+  prepare();
   return vertex < places_.size() && places_[vertex].neighbours[0] != none &&
          places_[vertex].neighbours[1] != none;
 }
 
-void CurveSlides::prepare() const {
+void CurveSlides::find_all_places() const {
   places_.resize(mesh_.points.size());
   std::vector<Index> point_of(plc_.vertices.size(), none);
   std::vector<std::vector<Index>> vertices(plc_.curves.size());
@@ -108,8 +108,13 @@ bool CurveSlides::may_skip(Index vertex) const {
 
 void CurveSlides::skipped(Index vertex) {
   const auto [before, after] = places_[vertex].neighbours;
-  if (mesh_.features[before].dimension == 1) places_[before].neighbours[1] = after;
-  if (mesh_.features[after].dimension == 1) places_[after].neighbours[0] = before;
+  const auto join = [&](Index end, unsigned side, Index neighbour) {
+    if (mesh_.features[end].dimension != 1) return;
+    old_places_.note(places_, end);
+    places_[end].neighbours[side] = neighbour;
+  };
+  join(before, 1, after);
+  join(after, 0, before);
 }
 
 // The edge ab and the part of a curve that starts at `from` and is `way` long.

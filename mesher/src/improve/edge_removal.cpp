@@ -17,10 +17,8 @@ constexpr double flat_volume = 1e-13;
 double Operations::new_quality(const std::array<Index, 4>& v, double above) const {
   const auto& points = mesh_.points;
   const Corners p{points[v[0]], points[v[1]], points[v[2]], points[v[3]]};
-  const double quality = shape_quality(p);
-  if (quality <= above) return -1;
-  const Circumsphere sphere = circumsphere(p);
-  return sphere.squared_radius <= squared_radius_edge_ * sphere.shortest_squared_edge ? quality : -1;
+  const double quality = rule_.quality(p, v);
+  return quality > above && rule_.allows(p, v, quality) ? quality : -1;
 }
 
 // Triangulate the polygon around the edge ab so that the worst of the two tets on each triangle is as
@@ -78,7 +76,7 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change) 
   double worst = INFINITY;
   for (std::size_t k = 0; k < n; ++k) {
     const auto& t = complex_[ring_.tets[k]];
-    if (t.collar) return;
+    if (untouchable(t)) return;
     worst = std::min(worst, quality(ring_.tets[k]));
     for (unsigned corner = 0; corner < 4; ++corner) {
       const Index opposite = t.corners[corner];
@@ -141,7 +139,8 @@ bool Operations::may_lose(Index tet, Index a, Index b) const {
     if (complex_.pinched(v)) return false;
   for (unsigned corner = 0; corner < 4; ++corner) {
     if (t.corners[corner] != a && t.corners[corner] != b) continue;
-    if (t.faces[corner] != none || t.neighbours[corner] == none || complex_[t.neighbours[corner]].collar)
+    if (t.faces[corner] != none || t.neighbours[corner] == none ||
+        untouchable(complex_[t.neighbours[corner]]))
       return false;
   }
   return true;

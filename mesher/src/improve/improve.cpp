@@ -32,11 +32,15 @@ class Improvement {
   Improvement(TetMesh& mesh, const Plc& plc, const ImproveOptions& options, const Execution& execution)
       : workpiece_(mesh, plc,
                    options.distance > 0 ? options.distance : default_distance * plc.bounds.diagonal()),
-        operations_([this, &options] { return Operations(workpiece_, options.radius_edge); }),
+        thin_(plc, mesh, options.thin_angle),
+        rule_(options.radius_edge, options.thin_angle > 0 ? &thin_ : nullptr),
+        operations_([this] { return Operations(workpiece_, rule_); }),
         execution_(execution),
         threads_(options.threads),
         move_vertices_(options.move_vertices),
+        keep_vertices_(options.keep_vertices),
         wanted_(std::sin(options.min_dihedral * std::numbers::pi / 180)),
+        radius_edge_(options.radius_edge),
         passes_(options.passes) {}
 
   ImproveReport run() {
@@ -51,6 +55,7 @@ class Improvement {
     }
     report_.remaining = count_remaining();
     workpiece_.complex.store();
+    if (!thin_.empty()) mark_thin_tets(workpiece_.complex.mesh(), radius_edge_);
     report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return report_;
   }
@@ -136,7 +141,7 @@ class Improvement {
     const auto found = [&] { return change.kind != Change::Kind::none; };
     if (found() || !move_vertices_) return change;
     for (const Index v : corners) operations.move_vertex(v, change);
-    if (found()) return change;
+    if (found() || keep_vertices_) return change;
     for (const Index v : corners)
       for (const Index w : corners)
         if (v != w) operations.contract_edge(v, w, change);
@@ -175,11 +180,13 @@ class Improvement {
   }
 
   Workpiece workpiece_;
+  ThinShape thin_;
+  SliverRule rule_;
   tbb::enumerable_thread_specific<Operations> operations_;
   const Execution& execution_;
   ThreadLimit threads_;
-  bool move_vertices_;
-  double wanted_;
+  bool move_vertices_, keep_vertices_;
+  double wanted_, radius_edge_;
   unsigned passes_;
   std::priority_queue<Item> queue_;
   std::vector<Item> batch_;

@@ -165,6 +165,24 @@ bool SmoothSurfaces::fit(std::span<const Index> old, std::span<const Face> creat
   return true;
 }
 
+void SmoothSurfaces::prepare() const {
+  for (Index patch = 0; patch < plc_.patches.size(); ++patch)
+    if (!plc_.patches[patch].planar) surface(patch);
+}
+
+void SmoothSurfaces::begin_trial() {
+  on_trial_ = true;
+  old_first_samples_.begin(first_sample_.size());
+  old_links_.clear();
+}
+
+void SmoothSurfaces::undo() {
+  on_trial_ = false;
+  old_first_samples_.undo(first_sample_);
+  for (auto link = old_links_.rbegin(); link != old_links_.rend(); ++link)
+    surfaces_[link->patch].next_sample[link->sample] = link->next;
+}
+
 void SmoothSurfaces::take_samples(std::span<const Index> faces) {
   moving_.clear();
   for (const Index face : faces) {
@@ -172,6 +190,7 @@ void SmoothSurfaces::take_samples(std::span<const Index> faces) {
     const Index patch = mesh_.face_patch[face];
     for (Index s = first_sample_[face]; s != none; s = surfaces_[patch].next_sample[s])
       moving_.push_back({patch, s});
+    old_first_samples_.note(first_sample_, face);
     first_sample_[face] = none;
   }
 }
@@ -190,6 +209,8 @@ void SmoothSurfaces::give_samples(std::span<const Index> faces) {
         nearest = face;
       }
     }
+    if (on_trial_) old_links_.push_back({patch, s, of.next_sample[s]});
+    old_first_samples_.note(first_sample_, nearest);
     of.next_sample[s] = first_sample_[nearest];
     first_sample_[nearest] = s;
   }

@@ -39,6 +39,13 @@ class Workpiece {
   /// Precondition: nothing that the change depends on has changed since it was proposed.
   const std::vector<Index>& apply(Change change);
 
+  /// What is made when first asked for must be made before the first trial.
+  void prepare() { surfaces.prepare(), curves.prepare(); }
+  /// What is applied from here on can be undone as a whole, until it is kept. Insertions cannot.
+  void begin_trial() { complex.begin_trial(), surfaces.begin_trial(), curves.begin_trial(); }
+  void keep() { complex.keep(), surfaces.keep(), curves.keep(); }
+  void undo() { complex.undo(), surfaces.undo(), curves.undo(); }
+
   TetComplex complex;
   SmoothSurfaces surfaces;
   CurveSlides curves;

@@ -27,6 +27,7 @@ struct VtkArray {
 ///   tag                       of the region, patch or curve
 ///   feature                   index of the patch or curve in the complex; -1: unknown or a tet
 ///   collar, crease            TetMesh::tet_collar, TetMesh::tet_crease; 0 for faces and edges
+///   thin                      TetMesh::tet_thin, if there is any; 0 for faces and edges
 ///   radius_edge, min_dihedral, max_dihedral   of tets; 0 for faces and edges
 /// Point arrays, if features are known: feature_dimension, feature.
 struct VtkGrid {

@@ -23,7 +23,10 @@ class BoundaryProjection {
         options_(options),
         execution_(execution),
         reach_(options.reach > 0 ? options.reach : default_reach * plc.bounds.diagonal()),
-        room_(mesh, limited_, {options.radius_edge, options.collar_angle, largest_sag * reach_}) {}
+        thin_(plc, mesh, options.thin_angle),
+        room_(mesh, limited_,
+              {options.radius_edge, options.collar_angle, thin_.empty() ? nullptr : &thin_,
+               largest_sag * reach_}) {}
 
   ProjectReport run() {
     find_targets();
@@ -40,6 +43,7 @@ class BoundaryProjection {
     for (int pass = 0; pass < retries && retry(pass > 0); ++pass) {
     }
     finish();
+    if (!thin_.empty()) improvement::mark_thin_tets(mesh_, options_.radius_edge);
     return report_;
   }
 
@@ -170,6 +174,7 @@ class BoundaryProjection {
   const ProjectOptions& options_;
   const Execution& execution_;
   double reach_;
+  improvement::ThinShape thin_;
   projection::Relaxation room_;
   std::vector<Move> moves_;
   std::vector<Index> slot_of_;           // in moves_, by point

@@ -56,7 +56,8 @@ bool Relaxation::good(Index tet) const {
   const auto before = [&] { return measure(then[0], then[1], then[2], then[3]); };
   if (mesh_.tet_collar[tet] != 0)
     return quality.max_dihedral <= bounds_.collar_angle || quality.max_dihedral <= before().max_dihedral;
-  return quality.radius_edge <= bounds_.radius_edge || quality.radius_edge <= before().radius_edge;
+  if (quality.radius_edge <= bounds_.radius_edge || is_thin(tet, now)) return true;
+  return quality.radius_edge <= before().radius_edge && !is_thin(tet, then);
 }
 
 void Relaxation::put(Index vertex, const Point& place) {
@@ -110,8 +111,13 @@ double Relaxation::score(Index tet, const Corners& p) const {
     const double angle = measure(p[0], p[1], p[2], p[3]).max_dihedral;
     return angle <= bounds_.collar_angle ? score : std::min(score, (180 - angle) / (180 - want.bound));
   }
+  if (want.thin && is_thin(tet, p)) return score;
   const double ratio = radius_edge(p), most = bounds_.radius_edge * (1 - margin);
-  return ratio <= most ? score : std::min(score, want.bound / ratio);
+  if (ratio <= most) return score;
+  if (!want.thin) return std::min(score, want.bound / ratio);
+  const improvement::ExtremeAngles angles = improvement::extreme_angles(p);
+  return std::min({score, angles.smallest / bounds_.thin->smallest_angle(mesh_.tets[tet]) - margin,
+                   (180 - angles.largest) / (180 - improvement::ThinShape::largest_angle) - margin});
 }
 
 const Relaxation::Wanted& Relaxation::wanted(Index tet) const {
@@ -124,6 +130,7 @@ const Relaxation::Wanted& Relaxation::wanted(Index tet) const {
                                          measure(before[0], before[1], before[2], before[3]).max_dihedral);
   else
     want.bound = (1 - margin) * std::max(bounds_.radius_edge, radius_edge(before));
+  want.thin = mesh_.tet_collar[tet] == 0 && radius_edge(before) > bounds_.radius_edge && is_thin(tet, before);
   return want;
 }
 

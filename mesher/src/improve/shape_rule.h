@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+
+#include "improve/shape.h"
+#include "improve/thin_shape.h"
+
+namespace collarmesh::improvement {
+
+/// How good tets are, and which ones operations may make. Several threads may ask at once.
+class ShapeRule {
+ public:
+  ShapeRule() = default;
+  ShapeRule(const ShapeRule&) = delete;
+  ShapeRule& operator=(const ShapeRule&) = delete;
+  virtual ~ShapeRule() = default;
+
+  /// The larger the better; not positive for a flat or an inverted tet.
+  virtual double quality(const Corners& p, const std::array<Index, 4>& corners) const = 0;
+  /// May an operation make this tet, of positive quality?
+  virtual bool allows(const Corners& p, const std::array<Index, 4>& corners, double quality) const = 0;
+  /// May operations replace cells of collars?
+  virtual bool dissolves_collars() const { return false; }
+};
+
+/// A bound on circumradius / shortest edge, which thin tets may exceed.
+class RadiusEdgeBound {
+ public:
+  explicit RadiusEdgeBound(double radius_edge) : squared_(radius_edge * radius_edge) {}
+  bool holds(const Corners& p) const {
+    const Circumsphere sphere = circumsphere(p);
+    return sphere.squared_radius <= squared_ * sphere.shortest_squared_edge;
+  }
+
+ private:
+  double squared_;
+};
+
+/// The rule of improvement: the smallest sine of the dihedral angles, within the bound.
+class SliverRule final : public ShapeRule {
+ public:
+  /// `thin` is kept by reference; null: no tet exceeds the bound.
+  explicit SliverRule(double radius_edge, const ThinShape* thin = nullptr)
+      : bound_(radius_edge), thin_(thin) {}
+
+  double quality(const Corners& p, const std::array<Index, 4>&) const override { return shape_quality(p); }
+  bool allows(const Corners& p, const std::array<Index, 4>& corners, double) const override {
+    return bound_.holds(p) || (thin_ != nullptr && thin_->contains(p, corners));
+  }
+
+ private:
+  RadiusEdgeBound bound_;
+  const ThinShape* thin_;
+};
+
+}  // namespace collarmesh::improvement
