@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <queue>
-#include <unordered_map>
+#include <ctime>
+#include <cstdio>
 
 #include "coarsen/coarsening_rule.h"
 #include "coarsen/target_sizes.h"
@@ -23,9 +23,9 @@ using improvement::Workpiece;
 using Mode = CoarseningRule::Mode;
 
 constexpr double default_distance = 1e-3;  // of the diagonal
-// By the target length: edges below the first are contracted, no new one is above the second.
-constexpr double contracted_below = 0.7, longest_new = 1.4;
-constexpr unsigned plain_passes = 2, repair_passes = 2;
+// Edges below this times the target length are contracted.
+constexpr double contracted_below = 0.7;
+constexpr unsigned plain_passes = 4, repair_passes = 4;
 // A contraction that makes nothing worse than this may be repaired, in so many steps.
 constexpr double repairable = 0.05;
 constexpr unsigned most_repairs = 12;
@@ -35,6 +35,7 @@ constexpr double improved_below = 1.3;
 constexpr double worthwhile = 0.005;
 constexpr std::size_t steps_between_reports = 4096;
 
+static long g_trials, g_steps, g_tries;
 class Coarsening {
  public:
   Coarsening(TetMesh& mesh, const Plc& plc, const MeshOptions& made_with, const CoarsenOptions& options,
@@ -47,36 +48,32 @@ class Coarsening {
         rule_(thin_, made_with.radius_edge, sizes_),
         operations_(workpiece_, rule_),
         execution_(execution),
-        changed_(mesh.points.size(), 0) {}
+        changed_(mesh.points.size(), 0),
+        stamps_(mesh.points.size(), 0) {}
 
   CoarsenReport run() {
     const auto started = std::chrono::steady_clock::now();
     report_.tets_before = tets_ = complex().size();
     workpiece_.prepare();
-    for (unsigned pass = 0; pass < plain_passes && !report_.cancelled; ++pass) contract_all(false);
+    for (unsigned pass = 0; pass < plain_passes && !report_.cancelled; ++pass)
+      if (!contract_all(false)) break;
     for (unsigned pass = 0; pass < repair_passes && !report_.cancelled; ++pass) {
       improve_all();
-      const std::size_t before = tets_;
-      contract_all(true);
-      if (static_cast<double>(before - tets_) < worthwhile * static_cast<double>(before)) break;
+      if (!contract_all(true)) break;
     }
     if (!report_.cancelled) improve_all();
+    {double lo=180,hi=0,lo0=180,hi0=0;long nb=0;for (Index t=0;t<complex().size();++t) if(complex()[t].alive){auto a=improvement::extreme_angles(complex().corners(t)); (complex()[t].collar?lo0:lo)=std::min(complex()[t].collar?lo0:lo,a.smallest); (complex()[t].collar?hi0:hi)=std::max(complex()[t].collar?hi0:hi,a.largest);nb+=quality(t)<1;} fprintf(stderr,"end: angles %.2f %.2f collars %.2f %.2f poor %ld\n",lo,hi,lo0,hi0,nb);}
     store();
     report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return report_;
   }
 
  private:
-  struct Candidate {
+  struct Neighbour {
     double squared_relative_length;
-    Index a, b;
+    Index vertex;
 
-    friend bool operator<(const Candidate& x, const Candidate& y) {  // the shortest on top
-      if (x.squared_relative_length != y.squared_relative_length)
-        return x.squared_relative_length > y.squared_relative_length;
-      return std::pair(x.a, x.b) > std::pair(y.a, y.b);
-    }
-    friend bool operator==(const Candidate&, const Candidate&) = default;
+    friend auto operator<=>(const Neighbour&, const Neighbour&) = default;
   };
 
   const TetComplex& complex() const { return workpiece_.complex; }
@@ -86,70 +83,92 @@ class Coarsening {
   double squared_relative_length(Index a, Index b) const {
     return rule_.squared_relative_length(squared_distance(mesh().points[a], mesh().points[b]), a, b);
   }
-
-  void queue_short_edges(Index tet) {
-    const auto& v = complex()[tet].corners;
-    for (unsigned i = 0; i < 4; ++i)
-      for (unsigned j = i + 1; j < 4; ++j) {
-        const double length = squared_relative_length(v[i], v[j]);
-        if (length < contracted_below * contracted_below)
-          found_.push_back({length, std::min(v[i], v[j]), std::max(v[i], v[j])});
-      }
+  static bool is_short(double squared_relative_length) {
+    return squared_relative_length < contracted_below * contracted_below;
   }
 
-  void queue_found() {
-    std::sort(found_.begin(), found_.end());
-    found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
-    for (const Candidate& c : found_) queue_.push(c);
-    found_.clear();
-  }
-
-  void contract_all(bool repair) {
-    for (Index t = 0; t < complex().size(); ++t)
-      if (complex()[t].alive) queue_short_edges(t);
-    queue_found();
-    for (std::size_t steps = 1; !queue_.empty(); ++steps) {
-      if (steps % steps_between_reports == 0 && stopped()) {
-        report_.cancelled = true;
-        queue_ = {};
-        return;
-      }
-      const Candidate c = queue_.top();
-      queue_.pop();
-      if (!complex().in_use(c.a) || !complex().in_use(c.b)) continue;
-      if (squared_relative_length(c.a, c.b) != c.squared_relative_length) continue;
-      if (!was_tried(c, repair)) contract_edge(c, repair);
+  // The vertices with a short edge, those with the shortest one first, where something has changed since they were
+  // asked last.
+  std::vector<Neighbour> find_candidates(std::uint32_t changed_since) const {
+    std::vector<double> shortest(mesh().points.size(), INFINITY);
+    for (Index t = 0; t < complex().size(); ++t) {
+      if (!complex()[t].alive) continue;
+      const auto& v = complex()[t].corners;
+      for (unsigned i = 0; i < 4; ++i)
+        for (unsigned j = i + 1; j < 4; ++j) {
+          const double length = squared_relative_length(v[i], v[j]);
+          shortest[v[i]] = std::min(shortest[v[i]], length);
+          shortest[v[j]] = std::min(shortest[v[j]], length);
+        }
     }
+    std::vector<Neighbour> candidates;
+    for (Index v = 0; v < shortest.size(); ++v)
+      if (is_short(shortest[v]) && mesh().features[v].dimension > 0 && changed_[v] >= changed_since)
+        candidates.push_back({shortest[v], v});
+    std::sort(candidates.begin(), candidates.end());
+    return candidates;
+  }
+
+  // Every vertex once. Is another pass worthwhile?
+  bool contract_all(bool repair) {
+    std::uint32_t& since = last_pass_[repair ? 1 : 0];
+    const auto candidates = find_candidates(since);
+    since = ++clock_;
+    const std::size_t before = tets_;
+    std::size_t steps = 0;
+    for (const Neighbour& candidate : candidates) {
+      if (++steps % steps_between_reports == 0 && stopped()) {
+        report_.cancelled = true;
+        return false;
+      }
+      if (complex().in_use(candidate.vertex)) contract_vertex(candidate.vertex, repair);
+    }
+    fprintf(stderr, "pass %d: %zu candidates, %zu -> %zu tets, contracted %zu repaired %zu trials %ld steps %ld tries %ld %.3f s\n", repair, candidates.size(), before, tets_, report_.contracted_edges, report_.repaired, g_trials, g_steps, g_tries, double(clock())/CLOCKS_PER_SEC);
+    return static_cast<double>(before - tets_) > worthwhile * static_cast<double>(before);
   }
 
   bool stopped() const {
     return execution_.cancelled() || (execution_.progress && !execution_.progress({"coarsen", 0, 0, tets_}));
   }
 
-  // In vain, and nothing has changed there since?
-  bool was_tried(const Candidate& c, bool repair) {
-    const std::uint64_t key = (std::uint64_t{c.a} << 32 | c.b);
-    std::uint32_t& when = tried_[repair ? 1 : 0][key];
-    if (when > 0 && changed_[c.a] < when && changed_[c.b] < when) return true;
-    when = ++clock_;
-    return false;
+  // Onto the nearest neighbour that will do.
+  void contract_vertex(Index vertex, bool repair) {
+    rule_.set_mode(Mode::final);
+    if (!operations_.begin_contractions(vertex)) return;
+    find_neighbours(vertex);
+    for (std::size_t i = 0; i < neighbours_.size() && is_short(neighbours_[i].squared_relative_length); ++i)
+      if (contract(vertex, neighbours_[i].vertex)) return;
+    if (!repair) return;
+    const double floor = std::min(1.0, operations_.worst_at_vertex());
+    const auto neighbours = neighbours_;
+    for (const Neighbour& n : neighbours) {
+      if (!is_short(n.squared_relative_length)) return;
+      rule_.set_mode(Mode::force);
+      if (!operations_.begin_contractions(vertex)) return;
+      if (contract_and_repair(vertex, n.vertex, floor)) return;
+    }
   }
 
-  void contract_edge(const Candidate& c, bool repair) {
-    const auto& features = mesh().features;
-    const bool swapped = features[c.a].dimension < features[c.b].dimension;
-    const Index first = swapped ? c.b : c.a, second = swapped ? c.a : c.b;
-    const bool either = features[c.a].dimension == features[c.b].dimension;
-    if (contract(first, second) || (either && contract(second, first))) return;
-    if (!repair) return;
-    if (contract_and_repair(first, second) || !either) return;
-    contract_and_repair(second, first);
+  // The nearest by the size first.
+  void find_neighbours(Index vertex) {
+    neighbours_.clear();
+    ++stamp_;
+    shortest_ = INFINITY;
+    for (const Index t : operations_.tets_at_vertex())
+      for (const Index w : complex()[t].corners) {
+        if (w == vertex || stamps_[w] == stamp_) continue;
+        stamps_[w] = stamp_;
+        const double squared = squared_distance(mesh().points[vertex], mesh().points[w]);
+        shortest_ = std::min(shortest_, squared);
+        neighbours_.push_back({rule_.squared_relative_length(squared, vertex, w), w});
+      }
+    shortest_ = std::sqrt(shortest_);
+    std::sort(neighbours_.begin(), neighbours_.end());
   }
 
   bool contract(Index vertex, Index onto) {
-    rule_.set_mode(Mode::final);
-    rule_.limit_lengths(0, INFINITY);  // those of new edges are looked at here
-    if (!operations_.begin_contractions(vertex) || !lengths_fit(vertex, onto)) return false;
+    if (!lengths_fit(vertex, onto)) return false;
+    ++g_tries;
     Change change;
     operations_.contract_onto(onto, 0, 1, change);
     if (change.kind == Change::Kind::none) return false;
@@ -164,50 +183,34 @@ class Coarsening {
   // place of one as long, or shorter than what there is around.
   bool lengths_fit(Index vertex, Index onto) {
     const auto& points = mesh().points;
-    bool joined = false;
-    ends_.clear();
+    ++stamp_;
     for (const Index t : operations_.tets_at_vertex()) {
       const auto& v = complex()[t].corners;
-      const bool at_edge = std::find(v.begin(), v.end(), onto) != v.end();
-      joined = joined || at_edge;
-      for (const Index w : v)
-        if (w != vertex && w != onto) ends_.emplace_back(w, !at_edge);
+      if (std::find(v.begin(), v.end(), onto) == v.end()) continue;
+      for (const Index w : v) stamps_[w] = stamp_;
     }
-    if (!joined) return false;
-    std::sort(ends_.begin(), ends_.end());
-    double shortest = squared_distance(points[vertex], points[onto]), longest = 0, created = INFINITY;
-    Index last = none;
-    for (const auto& [end, is_new] : ends_) {
-      if (end == last) continue;  // one beside the edge comes first
-      last = end;
-      const double before = squared_distance(points[vertex], points[end]);
-      shortest = std::min(shortest, before);
-      longest = std::max(longest, rule_.squared_relative_length(before, vertex, end));
-      if (!is_new) continue;
-      const double after = squared_distance(points[onto], points[end]);
-      created = std::min(created, after);
-      if (after > before && rule_.squared_relative_length(after, onto, end) > longest_new * longest_new)
-        return false;
+    for (const Neighbour& n : neighbours_) {
+      if (stamps_[n.vertex] == stamp_) continue;
+      const double after = squared_distance(points[onto], points[n.vertex]);
+      if (after < shortest_ * shortest_) return false;
+      const double before = squared_distance(points[vertex], points[n.vertex]);
+      if (!rule_.allows_edge(onto, n.vertex, after, before)) return false;
     }
-    shortest_ = std::sqrt(shortest);
-    longest_ = std::max(longest_new, std::sqrt(longest));
-    return created >= shortest;
+    return true;
   }
 
-  bool contract_and_repair(Index vertex, Index onto) {
-    rule_.set_mode(Mode::final);
-    if (!operations_.begin_contractions(vertex) || !lengths_fit(vertex, onto)) return false;
-    const double floor = std::min(1.0, operations_.worst_at_vertex());
-    rule_.set_mode(Mode::force);
+  bool contract_and_repair(Index vertex, Index onto, double floor) {
+    find_neighbours(vertex);
+    if (!lengths_fit(vertex, onto)) return false;
     Change change;
     operations_.contract_onto(onto, repairable, -INFINITY, change);
     if (change.kind == Change::Kind::none) return false;
+    ++g_trials;
     workpiece_.begin_trial();
     touched_.clear();
     const std::size_t before = tets_;
     apply(std::move(change));
     rule_.set_mode(Mode::trial);
-    rule_.limit_lengths(shortest_, longest_);
     for (unsigned step = 0;; ++step) {
       const Index worst = worst_touched(floor);
       if (worst == none) {
@@ -217,6 +220,7 @@ class Coarsening {
         ++report_.repaired;
         return true;
       }
+      ++g_steps;
       if (step == most_repairs || !improve_tet(worst)) break;
     }
     workpiece_.undo();
@@ -254,7 +258,6 @@ class Coarsening {
 
   void improve_all() {
     rule_.set_mode(Mode::final);
-    rule_.limit_lengths(0, longest_new);
     std::vector<std::pair<double, Index>> poor;
     for (Index t = 0; t < complex().size(); ++t)
       if (complex()[t].alive)
@@ -277,12 +280,9 @@ class Coarsening {
   // What was changed stays.
   void settle() {
     ++clock_;
-    for (const Index t : touched_) {
-      if (!complex()[t].alive) continue;
-      for (const Index v : complex()[t].corners) changed_[v] = clock_;
-      queue_short_edges(t);
-    }
-    queue_found();
+    for (const Index t : touched_)
+      if (complex()[t].alive)
+        for (const Index v : complex()[t].corners) changed_[v] = clock_;
   }
 
   void store() {
@@ -302,14 +302,14 @@ class Coarsening {
   Operations operations_;
   const Execution& execution_;
   std::size_t tets_ = 0;
-  std::priority_queue<Candidate> queue_;
-  std::vector<Candidate> found_;
-  std::unordered_map<std::uint64_t, std::uint32_t> tried_[2];  // when: without and with repair
-  std::vector<std::uint32_t> changed_;                         // when: the tets at a vertex
+  std::vector<std::uint32_t> changed_;            // by vertex: when the tets at it did
+  std::array<std::uint32_t, 2> last_pass_{0, 0};  // when it began, without and with repair
   std::uint32_t clock_ = 0;
   std::vector<Index> touched_;
-  std::vector<std::pair<Index, bool>> ends_;
-  double shortest_ = 0, longest_ = 0;  // of the edges at the vertex asked about last
+  std::vector<Neighbour> neighbours_;  // of the vertex asked about last
+  double shortest_ = 0;                // edge there
+  std::vector<std::uint32_t> stamps_;
+  std::uint32_t stamp_ = 0;
   CoarsenReport report_;
 };
 

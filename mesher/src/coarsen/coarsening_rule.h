@@ -15,9 +15,12 @@ class CoarseningRule final : public improvement::ShapeRule {
  public:
   enum class Mode {
     final,  ///< new tets keep the guarantee: they are thin or within the radius-edge bound
-    trial,  ///< they need not do so yet, but have edges between two lengths
+    trial,  ///< they need not do so yet
     force   ///< they only have to have a volume; quality without the last sentence above
   };
+
+  /// No operation makes an edge longer than this times the target length and than what was there.
+  static constexpr double longest_new = 1.4;
 
   /// `thin` and `sizes`, by vertex, are kept by reference.
   CoarseningRule(const improvement::ThinShape& thin, double radius_edge, std::span<const double> sizes)
@@ -31,10 +34,12 @@ class CoarseningRule final : public improvement::ShapeRule {
                  sharp = angles.smallest / (thin_.smallest_angle(corners) + margin);
     return blunt < 1 && mode_ != Mode::force ? beyond * blunt * std::min(1.0, sharp) : std::min(blunt, sharp);
   }
-  bool allows(const Corners& p, const std::array<Index, 4>& corners, double quality) const override {
-    if (mode_ == Mode::force) return true;
-    if (mode_ == Mode::trial) return lengths_fit(p, corners);
-    return keeps_guarantee(p, quality) && lengths_fit(p, corners);
+  bool allows(const Corners& p, const std::array<Index, 4>&, double quality) const override {
+    return mode_ != Mode::final || keeps_guarantee(p, quality);
+  }
+  bool allows_edge(Index a, Index b, double squared_length, double squared_before) const override {
+    return squared_length <= squared_before ||
+           squared_relative_length(squared_length, a, b) <= longest_new * longest_new;
   }
   bool dissolves_collars() const override { return true; }
 
@@ -42,12 +47,6 @@ class CoarseningRule final : public improvement::ShapeRule {
 
   Mode mode() const { return mode_; }
   void set_mode(Mode mode) { mode_ = mode; }
-  /// Edges that operations make are at least so long, absolute, and at most this multiple of the target
-  /// length between their ends.
-  void limit_lengths(double shortest, double longest_relative) {
-    squared_shortest_ = shortest * shortest;
-    squared_longest_ = longest_relative * longest_relative;
-  }
   /// Squared length of an edge by the target there.
   double squared_relative_length(double squared_length, Index a, Index b) const {
     const double target = 0.5 * (sizes_[a] + sizes_[b]);
@@ -58,21 +57,10 @@ class CoarseningRule final : public improvement::ShapeRule {
   static constexpr double margin = 2 * improvement::ThinShape::rounding;
   static constexpr double beyond = 1e-6;
 
-  bool lengths_fit(const Corners& p, const std::array<Index, 4>& corners) const {
-    for (unsigned i = 0; i < 4; ++i)
-      for (unsigned j = i + 1; j < 4; ++j) {
-        const double squared = squared_distance(p[i], p[j]);
-        if (squared < squared_shortest_) return false;
-        if (squared_relative_length(squared, corners[i], corners[j]) > squared_longest_) return false;
-      }
-    return true;
-  }
-
   const improvement::ThinShape& thin_;
   improvement::RadiusEdgeBound bound_;
   std::span<const double> sizes_;
   Mode mode_ = Mode::final;
-  double squared_shortest_ = 0, squared_longest_ = INFINITY;
 };
 
 }  // namespace collarmesh::coarsening

@@ -23,8 +23,10 @@ double Operations::new_quality(const std::array<Index, 4>& v, double above) cons
 
 // Triangulate the polygon around the edge ab so that the worst of the two tets on each triangle is as
 // good as possible (Klincsek 1980). Cost: the polygon's vertices cubed.
-double Operations::triangulate(Index a, Index b, const Polygon& polygon, double above) {
+double Operations::triangulate(Index a, Index b, const Polygon& polygon, bool closed, double above) {
   const std::size_t n = polygon.size();
+  const auto& points = mesh_.points;
+  const double removed = squared_distance(points[a], points[b]);
   best_.assign(n * n, INFINITY);
   apex_.assign(n * n, 0);
   for (std::size_t width = 2; width < n; ++width)
@@ -32,6 +34,10 @@ double Operations::triangulate(Index a, Index b, const Polygon& polygon, double 
       const std::size_t j = i + width;
       double& best = best_[i * n + j];
       best = -1;
+      const bool is_new = width + 1 < n || !closed;
+      if (is_new && !rule_.allows_edge(polygon[i], polygon[j],
+                                       squared_distance(points[polygon[i]], points[polygon[j]]), removed))
+        continue;
       for (std::size_t k = i + 1; k < j; ++k) {
         double q = std::min(best_[i * n + k], best_[k * n + j]);
         const double bar = std::max(above, best);
@@ -122,7 +128,7 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change) 
   }
   made.quality = INFINITY;
   for (std::size_t k = 0; k < polygons.size(); ++k) {
-    made.quality = std::min(made.quality, triangulate(a, b, polygons[k], above));
+    made.quality = std::min(made.quality, triangulate(a, b, polygons[k], kept.empty(), above));
     if (made.quality <= above) return;
     collect(a, b, polygons[k], 0, polygons[k].size() - 1, like[k], made);
   }

@@ -54,6 +54,7 @@ class Improvement {
       for (Index t = 0; t < complex().size(); ++t) queue(t);
     }
     report_.remaining = count_remaining();
+    {double lo=180,hi=0;for (Index t=0;t<complex().size();++t) if(complex()[t].alive&&!complex()[t].collar){auto a=improvement::extreme_angles(complex().corners(t)); lo=std::min(lo,a.smallest);hi=std::max(hi,a.largest);} fprintf(stderr,"improved: angles %.2f %.2f\n",lo,hi);}
     workpiece_.complex.store();
     if (!thin_.empty()) mark_thin_tets(workpiece_.complex.mesh(), radius_edge_);
     report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
@@ -73,6 +74,8 @@ class Improvement {
 
   const TetComplex& complex() const { return workpiece_.complex; }
 
+  double quality(Index tet) const { return rule_.quality(complex().corners(tet), complex()[tet].corners); }
+
   std::size_t changes() const {
     return report_.edge_removals + report_.boundary_flips + report_.moved_vertices +
            report_.inserted_vertices + report_.contracted_edges;
@@ -81,20 +84,20 @@ class Improvement {
   std::size_t count_remaining() const {
     std::size_t count = 0;
     for (Index t = 0; t < complex().size(); ++t)
-      count += complex()[t].alive && !complex()[t].collar && workpiece_.quality(t) < wanted_;
+      count += complex()[t].alive && !complex()[t].collar && quality(t) < wanted_;
     return count;
   }
 
   void queue(Index tet) {
     if (!complex()[tet].alive || complex()[tet].collar) return;
-    const double quality = workpiece_.quality(tet);
-    if (quality < wanted_) queue_.push({quality, tet, complex()[tet].generation});
+    const double q = quality(tet);
+    if (q < wanted_) queue_.push({q, tet, complex()[tet].generation});
   }
 
   bool is_up_to_date(const Item& item) const {
     const auto& tet = complex()[item.tet];
     return tet.alive && tet.generation == item.generation &&
-           workpiece_.quality(item.tet) == item.quality;  // else a vertex has moved since
+           quality(item.tet) == item.quality;  // else a vertex has moved since
   }
 
   void work_off() {

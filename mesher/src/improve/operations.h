@@ -77,7 +77,8 @@ class Operations {
   double new_quality(const std::array<Index, 4>& corners, double above) const;
 
   // Edge removal.
-  double triangulate(Index a, Index b, const Polygon& polygon, double above);
+  double triangulate(Index a, Index b, const Polygon& polygon, bool closed, double above);
+  bool edges_allowed(Index vertex, const Point& from, const Point& to) const;
   void collect(Index a, Index b, const Polygon& polygon, std::size_t i, std::size_t j, Index like,
                Change& change) const;
   bool flat(Index a, Index b, Index c, Index d) const;

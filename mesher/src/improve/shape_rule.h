@@ -19,6 +19,10 @@ class ShapeRule {
   virtual double quality(const Corners& p, const std::array<Index, 4>& corners) const = 0;
   /// May an operation make this tet, of positive quality?
   virtual bool allows(const Corners& p, const std::array<Index, 4>& corners, double quality) const = 0;
+  /// May an operation make an edge between these vertices where there was one of another length?
+  virtual bool allows_edge(Index, Index, double /*squared_length*/, double /*squared_before*/) const {
+    return true;
+  }
   /// May operations replace cells of collars?
   virtual bool dissolves_collars() const { return false; }
 };
@@ -36,19 +40,26 @@ class RadiusEdgeBound {
   double squared_;
 };
 
-/// The rule of improvement: the smallest sine of the dihedral angles, within the bound.
+/// The rule of improvement: the smallest sine of the dihedral angles, within the bound. Where tets may be thin
+/// those with an angle above the largest of thin ones are worse than all others.
 class SliverRule final : public ShapeRule {
  public:
   /// `thin` is kept by reference; null: no tet exceeds the bound.
   explicit SliverRule(double radius_edge, const ThinShape* thin = nullptr)
       : bound_(radius_edge), thin_(thin) {}
 
-  double quality(const Corners& p, const std::array<Index, 4>&) const override { return shape_quality(p); }
+  double quality(const Corners& p, const std::array<Index, 4>&) const override {
+    const double sine = shape_quality(p);
+    const bool blunt = thin_ != nullptr && sine > 0 && extreme_angles(p).largest > ThinShape::largest_angle;
+    return blunt ? beyond * sine : sine;
+  }
   bool allows(const Corners& p, const std::array<Index, 4>& corners, double) const override {
     return bound_.holds(p) || (thin_ != nullptr && thin_->contains(p, corners));
   }
 
  private:
+  static constexpr double beyond = 1e-3;
+
   RadiusEdgeBound bound_;
   const ThinShape* thin_;
 };

@@ -102,6 +102,16 @@ double Operations::quality_around(const Point& apex, Index id, double above) con
   return worst;
 }
 
+// To the vertices around, when the vertex moves.
+bool Operations::edges_allowed(Index vertex, const Point& from, const Point& to) const {
+  const auto& points = mesh_.points;
+  for (const auto& face : cone_.hull)
+    for (const Index v : face)
+      if (!rule_.allows_edge(vertex, v, squared_distance(to, points[v]), squared_distance(from, points[v])))
+        return false;
+  return true;
+}
+
 bool Operations::surfaces_allow(const Point& apex) {
   if (cone_.faces.empty()) return true;
   faces_.clear();
@@ -164,6 +174,7 @@ std::pair<Point, double> Operations::best_place(const Point& start, Index id, co
   Point place = start;
   const auto consider = [&](const Point& wish) {
     const Point p = back_on_feature(wish, start, freedom);
+    if (id != none && !edges_allowed(id, start, p)) return false;
     const double quality = quality_around(p, id, best);
     if (quality <= best || (ask_surfaces_ && !surfaces_allow(p))) return false;
     best = quality;
@@ -188,6 +199,7 @@ std::pair<double, double> Operations::best_way(Index vertex, double best) {
   double way = 0;
   const auto consider = [&](double wish) {
     const Point p = curves_.ahead(vertex, wish);
+    if (!edges_allowed(vertex, points[vertex], p)) return false;
     const double quality = quality_around(p, vertex, best);
     if (quality <= best || !curves_.fits(vertex, wish) || !surfaces_allow(p)) return false;
     best = quality;

@@ -55,7 +55,7 @@ class Relaxation {
   struct Wanted {
     double shape = -1;  // negative until it is known
     double bound = 0;   // on its dihedral angles in collars, elsewhere on its radius-edge ratio
-    bool thin = false;  // the ratio is not bounded, its angles are
+    bool thin = false;  // its angles are bounded, the ratio need not be
   };
 
   const Wanted& wanted(Index tet) const;
@@ -64,6 +64,7 @@ class Relaxation {
     return bounds_.thin != nullptr && bounds_.thin->contains(p, mesh_.tets[tet]);
   }
   double score(Index tet, const Corners& p) const;
+  double angle_score(Index tet, const Corners& p) const;
   double lack_of(Index tet, const Corners& p) const;
   double lack_around(std::span<const Index> tets, Index vertex, const Point& place, double below) const;
   bool improve(Index vertex);
