@@ -234,9 +234,9 @@ class Coarsening {
     double least = INFINITY;
     for (const Index t : touched_) {
       if (!complex()[t].alive) continue;
-      const double q = quality(t);
-      const bool poor = q < floor || (q < 1 && !rule_.keeps_guarantee(complex().corners(t), q));
-      if (!poor || q >= least) continue;
+      const double q = qualities_[t];
+      if (q >= least || q >= 1) continue;
+      if (q >= floor && rule_.keeps_guarantee(complex().corners(t), q)) continue;
       least = q;
       worst = t;
     }
@@ -275,6 +275,10 @@ class Coarsening {
     tets_ += change.replacement.created.size();
     const auto& changed = workpiece_.apply(std::move(change));
     touched_.insert(touched_.end(), changed.begin(), changed.end());
+    if (rule_.mode() == Mode::final) return;
+    if (qualities_.size() < complex().size()) qualities_.resize(complex().size());
+    rule_.set_mode(Mode::trial);
+    for (const Index t : changed) qualities_[t] = quality(t);
   }
 
   // What was changed stays.
@@ -306,6 +310,7 @@ class Coarsening {
   std::array<std::uint32_t, 2> last_pass_{0, 0};  // when it began, without and with repair
   std::uint32_t clock_ = 0;
   std::vector<Index> touched_;
+  std::vector<double> qualities_;  // by tet, of those a trial changed
   std::vector<Neighbour> neighbours_;  // of the vertex asked about last
   double shortest_ = 0;                // edge there
   std::vector<std::uint32_t> stamps_;

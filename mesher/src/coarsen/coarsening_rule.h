@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <span>
 
 #include "improve/shape_rule.h"
@@ -27,11 +29,11 @@ class CoarseningRule final : public improvement::ShapeRule {
       : thin_(thin), bound_(radius_edge), sizes_(sizes) {}
 
   double quality(const Corners& p, const std::array<Index, 4>& corners) const override {
-    const improvement::ExtremeAngles angles = improvement::extreme_angles(p);
-    if (angles.smallest < 0) return -1;
-    constexpr double largest = improvement::ThinShape::largest_angle - margin;
-    const double blunt = (180 - angles.largest) / (180 - largest),
-                 sharp = angles.smallest / (thin_.smallest_angle(corners) + margin);
+    const improvement::ExtremeCosines cosines = improvement::extreme_cosines(p);
+    if (!cosines.positive) return -1;
+    // Sines of the smallest angle and of what the largest lacks to 180 degrees, by their bounds.
+    const double sharp = sine(cosines.smallest_angle) / thin_.smallest_sine(corners),
+                 blunt = (cosines.largest_angle < 0 ? sine(cosines.largest_angle) : 1) / least_blunt_;
     return blunt < 1 && mode_ != Mode::force ? beyond * blunt * std::min(1.0, sharp) : std::min(blunt, sharp);
   }
   bool allows(const Corners& p, const std::array<Index, 4>&, double quality) const override {
@@ -54,12 +56,15 @@ class CoarseningRule final : public improvement::ShapeRule {
   }
 
  private:
-  static constexpr double margin = 2 * improvement::ThinShape::rounding;
   static constexpr double beyond = 1e-6;
+
+  static double sine(double cosine) { return std::sqrt(1 - cosine * cosine); }
 
   const improvement::ThinShape& thin_;
   improvement::RadiusEdgeBound bound_;
   std::span<const double> sizes_;
+  double least_blunt_ = std::sin((180 - improvement::ThinShape::largest_angle + 2 * improvement::ThinShape::rounding) *
+                                 std::numbers::pi / 180);
   Mode mode_ = Mode::final;
 };
 

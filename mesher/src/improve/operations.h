@@ -90,7 +90,7 @@ class Operations {
   void drop_from_cone(Index vertex);
   bool find_cone_of_edge(Index a, Index b);
   void add_to_rim(Index face, Index apex);
-  double quality_around(const Point& apex, Index id, double above) const;
+  double quality_around(const Point& apex, Index id, double above);
   bool surfaces_allow(const Point& apex);
   Freedom on_patch(Index patch, const Point& p);
   std::optional<Freedom> freedom(Index vertex);

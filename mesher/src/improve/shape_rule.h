@@ -50,7 +50,7 @@ class SliverRule final : public ShapeRule {
 
   double quality(const Corners& p, const std::array<Index, 4>&) const override {
     const double sine = shape_quality(p);
-    const bool blunt = thin_ != nullptr && sine > 0 && extreme_angles(p).largest > ThinShape::largest_angle;
+    const bool blunt = thin_ != nullptr && sine > 0 && extreme_cosines(p).largest_angle < cosine_of_largest;
     return blunt ? beyond * sine : sine;
   }
   bool allows(const Corners& p, const std::array<Index, 4>& corners, double) const override {
@@ -59,6 +59,7 @@ class SliverRule final : public ShapeRule {
 
  private:
   static constexpr double beyond = 1e-3;
+  static constexpr double cosine_of_largest = -0.866025;  // of 150 degrees, rounded up
 
   RadiusEdgeBound bound_;
   const ThinShape* thin_;

@@ -4,7 +4,14 @@
 
 namespace collarmesh::improvement {
 
-ThinShape::ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle) : smallest_(smallest_angle) {
+namespace {
+
+double sine_above(double degrees) { return std::sin((degrees + 2 * ThinShape::rounding) * std::numbers::pi / 180); }
+
+}  // namespace
+
+ThinShape::ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle)
+    : smallest_(smallest_angle), sine_(sine_above(smallest_angle)) {
   if (empty()) return;
   std::vector<double> of_vertex(plc.vertices.size(), smallest_), of_curve(plc.curves.size(), smallest_);
   bool any = false;
@@ -25,6 +32,8 @@ ThinShape::ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle)
     if (dimension == 0) at_vertex_[v] = of_vertex[feature];
     if (dimension == 1) at_vertex_[v] = of_curve[feature];
   }
+  sine_at_vertex_.reserve(at_vertex_.size());
+  for (const double angle : at_vertex_) sine_at_vertex_.push_back(sine_above(angle));
 }
 
 void mark_thin_tets(TetMesh& mesh, double radius_edge) {

@@ -89,15 +89,19 @@ double Operations::worst_at_vertex() {
 }
 
 // The worst tet of the cone with an apex; -1 when that is not above `above` or the rule forbids one.
-double Operations::quality_around(const Point& apex, Index id, double above) const {
+double Operations::quality_around(const Point& apex, Index id, double above) {
   const auto& points = mesh_.points;
   double worst = INFINITY;
-  for (const auto& face : cone_.hull) {
+  for (std::size_t i = 0; i < cone_.hull.size(); ++i) {
+    const auto& face = cone_.hull[i];
     const Corners p{apex, points[face[0]], points[face[1]], points[face[2]]};
     const std::array<Index, 4> corners{id, face[0], face[1], face[2]};
     const double quality = rule_.quality(p, corners);
     worst = std::min(worst, quality);
-    if (worst <= above || !rule_.allows(p, corners, quality)) return -1;
+    if (worst > above && rule_.allows(p, corners, quality)) continue;
+    std::swap(cone_.hull[0], cone_.hull[i]);  // is likely to decide for the next place, too
+    std::swap(cone_.hull_tet[0], cone_.hull_tet[i]);
+    return -1;
   }
   return worst;
 }
@@ -174,9 +178,8 @@ std::pair<Point, double> Operations::best_place(const Point& start, Index id, co
   Point place = start;
   const auto consider = [&](const Point& wish) {
     const Point p = back_on_feature(wish, start, freedom);
-    if (id != none && !edges_allowed(id, start, p)) return false;
     const double quality = quality_around(p, id, best);
-    if (quality <= best || (ask_surfaces_ && !surfaces_allow(p))) return false;
+    if (quality <= best || (id != none && !edges_allowed(id, start, p)) || (ask_surfaces_ && !surfaces_allow(p))) return false;
     best = quality;
     place = p;
     return true;
@@ -199,9 +202,8 @@ std::pair<double, double> Operations::best_way(Index vertex, double best) {
   double way = 0;
   const auto consider = [&](double wish) {
     const Point p = curves_.ahead(vertex, wish);
-    if (!edges_allowed(vertex, points[vertex], p)) return false;
     const double quality = quality_around(p, vertex, best);
-    if (quality <= best || !curves_.fits(vertex, wish) || !surfaces_allow(p)) return false;
+    if (quality <= best || !edges_allowed(vertex, points[vertex], p) || !curves_.fits(vertex, wish) || !surfaces_allow(p)) return false;
     best = quality;
     way = wish;
     return true;
