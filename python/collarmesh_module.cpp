@@ -201,7 +201,7 @@ Each surface is a tuple (points, triangles) or (points, triangles, tags): points
 of length; triangles of shape (m, 3), rows of points, oriented outwards; tags of shape (m,), integers, by which
 the faces of the mesh are found again. Several surfaces are several regions, numbered from 1; one that is
 inside another and oriented inwards is a cavity. Lengths are absolute: size is a target edge length (0: 1/20
-of the diagonal), distance how far smooth surfaces may be off (0: 1/1000 of the diagonal). Angles are degrees.
+of the diagonal), distance how far smooth surfaces may be off (0: 1/20 of the size, at most 1/400 of the diagonal). Angles are degrees.
 There are about as many tetrahedra as size asks for; in thin places they are thin, with dihedral angles of at least
 thin_angle. coarsen=False makes them so small there that circumradius / shortest edge is at most radius_edge.
 progress(phase, fraction) may return False to cancel.

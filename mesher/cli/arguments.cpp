@@ -212,7 +212,8 @@ void add_quality_options(CLI::App& app, MeshOptions& m) {
       ->check(number_in(0, 0.449, "a number from 0 to below 0.45"))
       ->group(group);
   add(app, "--distance LENGTH", m.distance,
-      "Largest distance from smooth surfaces and curves, absolute, input units", "1e-3 of the diagonal")
+      "Largest distance from smooth surfaces and curves, absolute, input units",
+      "1/20 of the size, at most 1/400 of the diagonal")
       ->check(length)
       ->group(group);
   add(app, "--seed N", m.seed, "Of the pseudo-random offsets: same input, options and seed, same mesh")
@@ -336,7 +337,7 @@ CLI::App* add_check_command(CLI::App& app, CheckArguments& a) {
   add(*check, "--collar-angle DEGREES", a.check.collar_angle, "Bound on dihedral angles in collars, degrees")
       ->check(collar_angle);
   add(*check, "--distance LENGTH", a.check.distance,
-      "Largest distance from smooth surfaces and curves, absolute, input units", "1e-3 of the diagonal")
+      "Largest distance from smooth surfaces and curves, absolute, input units", "1/400 of the diagonal")
       ->check(length);
   add(*check, "--findings N", a.check.findings_per_guarantee, "List at most this many per guarantee")
       ->check(count);

@@ -51,14 +51,14 @@ bool CadFiles::knows(const std::string& path, std::string_view format) {
 }
 bool CadFiles::empty() const { return files_.empty(); }
 
-void CadFiles::read(const std::string& path, std::string_view format, double deflection,
+void CadFiles::read(const std::string& path, std::string_view format,
+                    const std::function<double(double diagonal)>& deflection,
                     std::vector<PolygonSoup>& soups) {
   std::unique_ptr<brep::CadModel> model = read_by_module(path, format, {});
-  constexpr double relative_deflection = 1e-4;
-  if (!(deflection > 0)) deflection = relative_deflection * model->diagonal();
-  std::vector<PolygonSoup> own = model->tessellate({.deflection = deflection});
+  const double absolute = deflection(model->diagonal());
+  std::vector<PolygonSoup> own = model->tessellate({.deflection = absolute});
   files_.push_back(
-      {std::move(model), deflection, static_cast<Index>(soups.size()), static_cast<Index>(own.size())});
+      {std::move(model), absolute, static_cast<Index>(soups.size()), static_cast<Index>(own.size())});
   std::move(own.begin(), own.end(), std::back_inserter(soups));
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,10 +24,11 @@ class CadFiles {
   /// Is it a CAD file by its extension, or as `format` says?
   static bool knows(const std::string& path, std::string_view format);
 
-  /// Read a file and append its soups. `deflection` is absolute, 0: 1e-4 of the diagonal.
+  /// Read a file and append its soups. The absolute deflection of its triangles follows from the diagonal of the
+  /// shape.
   /// Throws ReadError and PlcError.
-  void read(const std::string& path, std::string_view format, double deflection,
-            std::vector<PolygonSoup>& soups);
+  void read(const std::string& path, std::string_view format,
+            const std::function<double(double diagonal)>& deflection, std::vector<PolygonSoup>& soups);
   bool empty() const;
 
   /// Make triangles that are finer than the first ones by a factor, in the places of the former soups.

@@ -62,12 +62,17 @@ std::string advice(const PlcError& error, const RepairOptions& options) {
 }  // namespace
 
 ComplexInput::ComplexInput(const std::vector<std::string>& paths, const std::string& format,
-                           double distance) {
+                           double distance, double size) {
   for (const std::string& path : paths) {
     stop_if_interrupted();
     const std::string file = existing_file(path);
     if (CadFiles::knows(file, format))
-      cad_.read(file, format, share_of_triangles * distance, soups_);
+      cad_.read(
+          file, format,
+          [&](double diagonal) {
+            return share_of_triangles * (distance > 0 ? distance : default_distance(size, diagonal));
+          },
+          soups_);
     else
       soups_.push_back(read_surface(file, format));
   }
@@ -137,12 +142,12 @@ ExactGeometry ComplexInput::exact_geometry(const Plc& plc) const {
 
 MeshOptions ComplexInput::tightened(const MeshOptions& options, const Plc& plc) const {
   if (!has_cad()) return options;
-  constexpr double default_distance = 1e-3;  // of the diagonal
   constexpr double distance_left = 0.75;     // the triangles' share twice, and some room
   constexpr double ratio_left = 0.99;
   MeshOptions tight = options;
   tight.distance =
-      distance_left * (options.distance > 0 ? options.distance : default_distance * plc.bounds.diagonal());
+      distance_left *
+      (options.distance > 0 ? options.distance : default_distance(options.size, plc.bounds.diagonal()));
   tight.radius_edge = std::max(1.0, ratio_left * options.radius_edge);
   return tight;
 }

@@ -17,10 +17,10 @@ namespace collarmesh::cli {
 class ComplexInput {
  public:
   /// Read them; "-" is standard input. `format` overrides the extensions. `distance` is the surface distance
-  /// tolerance, absolute (0: 1e-3 of the diagonal); the triangles of CAD shapes keep a tenth of it.
+  /// tolerance, absolute (0: the default at that size); the triangles of CAD shapes keep a tenth of it.
   /// Throws ReadError, for a file that does not exist with the most similar name, and PlcError.
   explicit ComplexInput(const std::vector<std::string>& paths, const std::string& format = {},
-                        double distance = 0);
+                        double distance = 0, double size = 0);
 
   const std::vector<PolygonSoup>& soups() const { return soups_; }
   bool has_cad() const { return !cad_.empty(); }

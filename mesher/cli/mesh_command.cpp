@@ -73,7 +73,8 @@ void require_known_tags(const MeshOptions& options, const Plc& plc) {
 
 ComplexInput build_complex(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   stages.begin("read", 0, 0.02);
-  ComplexInput input(arguments.inputs, arguments.input_format, arguments.mesh.distance);
+  ComplexInput input(arguments.inputs, arguments.input_format, arguments.mesh.distance,
+                     arguments.mesh.size);
   stages.begin("complex", 0.02, 0.08);
   run.plc = input.build(arguments.complex);
   run.notes = input.notes();

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
-#include <cstdio>
 
 #include "coarsen/coarsening_rule.h"
 #include "coarsen/target_sizes.h"
@@ -22,9 +20,8 @@ using improvement::ThinShape;
 using improvement::Workpiece;
 using Mode = CoarseningRule::Mode;
 
-constexpr double default_distance = 1e-3;  // of the diagonal
 // Edges below this times the target length are contracted.
-constexpr double contracted_below = 0.7;
+constexpr double contracted_below = 0.8;
 constexpr unsigned plain_passes = 4, repair_passes = 4;
 // A contraction that makes nothing worse than this may be repaired, in so many steps.
 constexpr double repairable = 0.05;
@@ -35,21 +32,28 @@ constexpr double improved_below = 1.3;
 constexpr double worthwhile = 0.005;
 constexpr std::size_t steps_between_reports = 4096;
 
-static long g_trials, g_steps, g_tries;
 class Coarsening {
  public:
   Coarsening(TetMesh& mesh, const Plc& plc, const MeshOptions& made_with, const CoarsenOptions& options,
              const Execution& execution)
       : workpiece_(mesh, plc,
-                   made_with.distance > 0 ? made_with.distance : default_distance * plc.bounds.diagonal()),
+                   made_with.distance > 0 ? made_with.distance
+                                        : default_distance(made_with.size, plc.bounds.diagonal()),
+                   made_with.edges_per_hole),
         radius_edge_(made_with.radius_edge),
-        sizes_(target_sizes(mesh, plc, made_with)),
+        sizes_(target_sizes(mesh, plc, sizes_asked_for(made_with))),
         thin_(plc, mesh, options.thin_angle),
         rule_(thin_, made_with.radius_edge, sizes_),
         operations_(workpiece_, rule_),
         execution_(execution),
         changed_(mesh.points.size(), 0),
         stamps_(mesh.points.size(), 0) {}
+
+  // Holes stay round all the same.
+  static MeshOptions sizes_asked_for(MeshOptions options) {
+    options.edges_per_hole = 0;
+    return options;
+  }
 
   CoarsenReport run() {
     const auto started = std::chrono::steady_clock::now();
@@ -62,7 +66,6 @@ class Coarsening {
       if (!contract_all(true)) break;
     }
     if (!report_.cancelled) improve_all();
-    {double lo=180,hi=0,lo0=180,hi0=0;long nb=0;for (Index t=0;t<complex().size();++t) if(complex()[t].alive){auto a=improvement::extreme_angles(complex().corners(t)); (complex()[t].collar?lo0:lo)=std::min(complex()[t].collar?lo0:lo,a.smallest); (complex()[t].collar?hi0:hi)=std::max(complex()[t].collar?hi0:hi,a.largest);nb+=quality(t)<1;} fprintf(stderr,"end: angles %.2f %.2f collars %.2f %.2f poor %ld\n",lo,hi,lo0,hi0,nb);}
     store();
     report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return report_;
@@ -123,7 +126,6 @@ class Coarsening {
       }
       if (complex().in_use(candidate.vertex)) contract_vertex(candidate.vertex, repair);
     }
-    fprintf(stderr, "pass %d: %zu candidates, %zu -> %zu tets, contracted %zu repaired %zu trials %ld steps %ld tries %ld %.3f s\n", repair, candidates.size(), before, tets_, report_.contracted_edges, report_.repaired, g_trials, g_steps, g_tries, double(clock())/CLOCKS_PER_SEC);
     return static_cast<double>(before - tets_) > worthwhile * static_cast<double>(before);
   }
 
@@ -168,7 +170,6 @@ class Coarsening {
 
   bool contract(Index vertex, Index onto) {
     if (!lengths_fit(vertex, onto)) return false;
-    ++g_tries;
     Change change;
     operations_.contract_onto(onto, 0, 1, change);
     if (change.kind == Change::Kind::none) return false;
@@ -205,7 +206,6 @@ class Coarsening {
     Change change;
     operations_.contract_onto(onto, repairable, -INFINITY, change);
     if (change.kind == Change::Kind::none) return false;
-    ++g_trials;
     workpiece_.begin_trial();
     touched_.clear();
     const std::size_t before = tets_;
@@ -220,7 +220,6 @@ class Coarsening {
         ++report_.repaired;
         return true;
       }
-      ++g_steps;
       if (step == most_repairs || !improve_tet(worst)) break;
     }
     workpiece_.undo();

@@ -22,7 +22,7 @@ class CoarseningRule final : public improvement::ShapeRule {
   };
 
   /// No operation makes an edge longer than this times the target length and than what was there.
-  static constexpr double longest_new = 1.4;
+  static constexpr double longest_new = 1.5;
 
   /// `thin` and `sizes`, by vertex, are kept by reference.
   CoarseningRule(const improvement::ThinShape& thin, double radius_edge, std::span<const double> sizes)

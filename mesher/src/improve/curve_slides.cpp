@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/round_curves.h"
 #include "location/triangle_hierarchy.h"
 
 namespace collarmesh::improvement {
@@ -14,6 +15,15 @@ double squared_distance_to_segment(const Point& p, const Point& a, const Point& 
 }
 
 }  // namespace
+
+CurveSlides::CurveSlides(const Plc& plc, const TetMesh& mesh, double distance, double edges_per_hole)
+    : plc_(plc), mesh_(mesh), squared_distance_(distance * distance), paths_(plc, plc.points) {
+  spare_edges_.reserve(plc.curves.size());
+  for (const Plc::Curve& curve : plc.curves)
+    spare_edges_.push_back(-static_cast<std::ptrdiff_t>(least_edges(plc, curve, edges_per_hole)));
+  for (const Index curve : mesh.edge_curve)
+    if (curve != none) ++spare_edges_[curve];
+}
 
 bool CurveSlides::movable(Index vertex) const {
   prepare();
@@ -100,7 +110,7 @@ bool CurveSlides::fits(Index vertex, double way) const {
 
 bool CurveSlides::may_skip(Index vertex) const {
   const auto [before, after] = places_[vertex].neighbours;
-  if (before == after) return false;
+  if (before == after || spare_edges_[mesh_.features[vertex].feature] <= 0) return false;
   const double behind = way_to_neighbour(vertex, 0), ahead = way_to_neighbour(vertex, 1);
   return edge_fits(mesh_.features[vertex].feature, places_[vertex].parameter - behind, behind + ahead,
                    mesh_.points[before], mesh_.points[after]);
@@ -108,6 +118,8 @@ bool CurveSlides::may_skip(Index vertex) const {
 
 void CurveSlides::skipped(Index vertex) {
   const auto [before, after] = places_[vertex].neighbours;
+  old_spare_edges_.note(spare_edges_, mesh_.features[vertex].feature);
+  --spare_edges_[mesh_.features[vertex].feature];
   const auto join = [&](Index end, unsigned side, Index neighbour) {
     if (mesh_.features[end].dimension != 1) return;
     old_places_.note(places_, end);

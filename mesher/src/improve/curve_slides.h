@@ -17,8 +17,7 @@ namespace collarmesh::improvement {
 class CurveSlides {
  public:
   /// Both are kept by reference. `distance` is absolute. Several threads may ask at once.
-  CurveSlides(const Plc& plc, const TetMesh& mesh, double distance)
-      : plc_(plc), mesh_(mesh), squared_distance_(distance * distance), paths_(plc, plc.points) {}
+  CurveSlides(const Plc& plc, const TetMesh& mesh, double distance, double edges_per_hole = 0);
 
   /// Can this vertex, on a curve, be moved at all?
   bool movable(Index vertex) const;
@@ -43,9 +42,9 @@ class CurveSlides {
     std::call_once(prepared_, [this] { find_all_places(); });
   }
   /// What moves and is skipped from here on can be undone, until it is kept.
-  void begin_trial() { old_places_.begin(places_.size()); }
-  void keep() { old_places_.end(); }
-  void undo() { old_places_.undo(places_); }
+  void begin_trial() { old_places_.begin(places_.size()), old_spare_edges_.begin(spare_edges_.size()); }
+  void keep() { old_places_.end(), old_spare_edges_.end(); }
+  void undo() { old_places_.undo(places_), old_spare_edges_.undo(spare_edges_); }
 
  private:
   struct Place {
@@ -64,7 +63,9 @@ class CurveSlides {
   CurvePaths paths_;
   mutable std::once_flag prepared_;
   mutable std::vector<Place> places_;  // of every vertex there was then; made when first asked for
+  std::vector<std::ptrdiff_t> spare_edges_;  // of every curve: more than it has to have
   UndoLog<Place> old_places_;
+  UndoLog<std::ptrdiff_t> old_spare_edges_;
 };
 
 }  // namespace collarmesh::improvement

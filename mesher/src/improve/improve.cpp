@@ -8,6 +8,7 @@
 #include <queue>
 
 #include "collarmesh/error.h"
+#include "collarmesh/mesher.h"
 #include "improve/operations.h"
 #include "thread_limit.h"
 
@@ -18,7 +19,6 @@ namespace {
 
 // An inserted vertex has to bring the tets around it to this share of the wanted quality.
 constexpr double enough = 0.7;
-constexpr double default_distance = 1e-3;
 // Changes are proposed for so many tets at once: few of all, so that they hardly meet.
 constexpr std::size_t tets_per_proposal = 2000;
 constexpr std::size_t most_proposals = 1024;
@@ -31,7 +31,7 @@ class Improvement {
  public:
   Improvement(TetMesh& mesh, const Plc& plc, const ImproveOptions& options, const Execution& execution)
       : workpiece_(mesh, plc,
-                   options.distance > 0 ? options.distance : default_distance * plc.bounds.diagonal()),
+                   options.distance > 0 ? options.distance : default_distance(0, plc.bounds.diagonal())),
         thin_(plc, mesh, options.thin_angle),
         rule_(options.radius_edge, options.thin_angle > 0 ? &thin_ : nullptr),
         operations_([this] { return Operations(workpiece_, rule_); }),
@@ -54,7 +54,6 @@ class Improvement {
       for (Index t = 0; t < complex().size(); ++t) queue(t);
     }
     report_.remaining = count_remaining();
-    {double lo=180,hi=0;for (Index t=0;t<complex().size();++t) if(complex()[t].alive&&!complex()[t].collar){auto a=improvement::extreme_angles(complex().corners(t)); lo=std::min(lo,a.smallest);hi=std::max(hi,a.largest);} fprintf(stderr,"improved: angles %.2f %.2f\n",lo,hi);}
     workpiece_.complex.store();
     if (!thin_.empty()) mark_thin_tets(workpiece_.complex.mesh(), radius_edge_);
     report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();

@@ -29,9 +29,13 @@ struct Change {
 /// While nothing is applied several threads may read it.
 class Workpiece {
  public:
-  /// Both are kept by reference. `distance` is absolute.
-  Workpiece(TetMesh& mesh, const Plc& meant, double distance)
-      : complex(mesh), surfaces(meant, mesh, distance), curves(meant, mesh, distance), plc(meant) {}
+  /// Both are kept by reference. `distance` is absolute. Curves that turn by half a circle or more keep
+  /// `edges_per_hole` edges to a full circle.
+  Workpiece(TetMesh& mesh, const Plc& meant, double distance, double edges_per_hole = 0)
+      : complex(mesh),
+        surfaces(meant, mesh, distance),
+        curves(meant, mesh, distance, edges_per_hole),
+        plc(meant) {}
 
   double quality(Index tet) const;
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <unordered_set>
 
+#include "collarmesh/mesher.h"
 #include "common/flat_features.h"
 #include "project/relaxation.h"
 
@@ -22,7 +23,7 @@ class BoundaryProjection {
         limited_(flat_.limit(exact)),
         options_(options),
         execution_(execution),
-        reach_(options.reach > 0 ? options.reach : default_reach * plc.bounds.diagonal()),
+        reach_(options.reach > 0 ? options.reach : default_distance(0, plc.bounds.diagonal())),
         thin_(plc, mesh, options.thin_angle),
         room_(mesh, limited_,
               {options.radius_edge, options.collar_angle, thin_.empty() ? nullptr : &thin_,
@@ -48,7 +49,6 @@ class BoundaryProjection {
   }
 
  private:
-  static constexpr double default_reach = 1e-3;
   static constexpr double largest_sag = 0.5;  // relative to the reach
   static constexpr int retries = 2;
 
