@@ -289,9 +289,12 @@ void Operations::contract_onto(Index onto, double least, double enough, Change& 
   remaining_ = cone_;
   drop_from_cone(onto);
   const double quality = quality_around(place, onto, least);
-  const bool fits = quality >= 0 && surfaces_allow(place);
   std::swap(cone_, remaining_);
-  if (!fits || (quality < enough && quality < worst_at_vertex()) || !keeps_topology(vertex_, onto)) return;
+  if (quality < 0 || (quality < enough && quality < worst_at_vertex()) || !keeps_topology(vertex_, onto)) return;
+  std::swap(cone_, remaining_);
+  const bool fits = surfaces_allow(place);
+  std::swap(cone_, remaining_);
+  if (!fits) return;
   change = {};
   change.kind = Change::Kind::contraction;
   change.quality = quality;
