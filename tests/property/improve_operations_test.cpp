@@ -46,7 +46,7 @@ std::vector<Shape> shapes() {
 }
 
 constexpr double radius_edge = 2;
-constexpr std::size_t attempts = 2000;  // on each mesh
+constexpr std::size_t attempts = 8000;  // on each mesh
 constexpr std::size_t single_steps = 4;
 
 /// A complex and its operations on a mesh of its own.

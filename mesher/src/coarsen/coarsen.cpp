@@ -22,14 +22,15 @@ using Mode = CoarseningRule::Mode;
 
 // Edges below this times the target length are contracted.
 constexpr double contracted_below = 0.8;
-constexpr unsigned plain_passes = 4, repair_passes = 4;
+constexpr unsigned plain_passes = 4, repair_passes = 6, rounds = 3;
 // A contraction that makes nothing worse than this may be repaired, in so many steps.
-constexpr double repairable = 0.05;
+constexpr double repairable = 0.15;
 constexpr unsigned most_repairs = 12;
 // Tets below this quality are improved between the passes.
 constexpr double improved_below = 1.3;
-// A pass that removes a smaller share of the tets is the last.
-constexpr double worthwhile = 0.005;
+constexpr unsigned most_sweeps = 8;
+// A pass, or a round of them, that removes a smaller share of the tets is the last.
+constexpr double least_share = 0.005;
 constexpr std::size_t steps_between_reports = 4096;
 
 class Coarsening {
@@ -61,11 +62,14 @@ class Coarsening {
     workpiece_.prepare();
     for (unsigned pass = 0; pass < plain_passes && !report_.cancelled; ++pass)
       if (!contract_all(false)) break;
-    for (unsigned pass = 0; pass < repair_passes && !report_.cancelled; ++pass) {
+    // Improvement makes room for more contractions; between the passes of a round it would have all vertices asked again.
+    for (unsigned round = 0; round < rounds && !report_.cancelled; ++round) {
       improve_all();
-      if (!contract_all(true)) break;
+      const std::size_t before = tets_;
+      for (unsigned pass = 0; pass < repair_passes; ++pass)
+        if (!contract_all(true)) break;
+      if (!worthwhile(before)) break;
     }
-    if (!report_.cancelled) improve_all();
     store();
     report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return report_;
@@ -126,7 +130,11 @@ class Coarsening {
       }
       if (complex().in_use(candidate.vertex)) contract_vertex(candidate.vertex, repair);
     }
-    return static_cast<double>(before - tets_) > worthwhile * static_cast<double>(before);
+    return worthwhile(before);
+  }
+
+  bool worthwhile(std::size_t before) const {
+    return static_cast<double>(before - tets_) > least_share * static_cast<double>(before);
   }
 
   bool stopped() const {
@@ -255,18 +263,34 @@ class Coarsening {
     return true;
   }
 
+  // Until nothing more helps, so that asking again finds the mesh as it is.
   void improve_all() {
     rule_.set_mode(Mode::final);
+    for (unsigned sweep = 0; sweep < most_sweeps && improve_once(); ++sweep) {
+    }
+  }
+
+  bool improve_once() {
     std::vector<std::pair<double, Index>> poor;
     for (Index t = 0; t < complex().size(); ++t)
-      if (complex()[t].alive)
+      if (complex()[t].alive && changed_since(t, last_sweep_))
         if (const double q = quality(t); q < improved_below) poor.emplace_back(q, t);
     std::sort(poor.begin(), poor.end());
+    last_sweep_ = ++clock_;
+    bool any = false;
     for (const auto& [q, t] : poor) {
       if (!complex()[t].alive || quality(t) != q) continue;
       touched_.clear();
-      if (improve_tet(t)) settle();
+      if (!improve_tet(t)) continue;
+      settle();
+      any = true;
     }
+    return any;
+  }
+
+  bool changed_since(Index tet, std::uint32_t when) const {
+    const auto& v = complex()[tet].corners;
+    return std::any_of(v.begin(), v.end(), [&](Index w) { return changed_[w] >= when; });
   }
 
   void apply(Change change) {
@@ -307,6 +331,7 @@ class Coarsening {
   std::size_t tets_ = 0;
   std::vector<std::uint32_t> changed_;            // by vertex: when the tets at it did
   std::array<std::uint32_t, 2> last_pass_{0, 0};  // when it began, without and with repair
+  std::uint32_t last_sweep_ = 0;                  // of improvement
   std::uint32_t clock_ = 0;
   std::vector<Index> touched_;
   std::vector<double> qualities_;  // by tet, of those a trial changed
