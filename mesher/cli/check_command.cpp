@@ -11,7 +11,9 @@ namespace collarmesh::cli {
 
 ExitCode check_command(const CheckArguments& arguments) {
   const TetMesh mesh = read_mesh(arguments.mesh);
-  ComplexInput input(arguments.inputs, {}, arguments.check.distance);
+  ComplexInput input(arguments.inputs, {}, [&](double diagonal) {
+    return arguments.check.distance > 0 ? arguments.check.distance : default_distance(0, diagonal);
+  });
   const Plc plc = input.build(arguments.complex);
   stop_if_interrupted();
   CheckOptions options = arguments.check;

@@ -62,17 +62,14 @@ std::string advice(const PlcError& error, const RepairOptions& options) {
 }  // namespace
 
 ComplexInput::ComplexInput(const std::vector<std::string>& paths, const std::string& format,
-                           double distance, double size) {
+                           const std::function<double(double)>& distance) {
   for (const std::string& path : paths) {
     stop_if_interrupted();
     const std::string file = existing_file(path);
     if (CadFiles::knows(file, format))
       cad_.read(
           file, format,
-          [&](double diagonal) {
-            return share_of_triangles * (distance > 0 ? distance : default_distance(size, diagonal));
-          },
-          soups_);
+          [&](double diagonal) { return share_of_triangles * distance(diagonal); }, soups_);
     else
       soups_.push_back(read_surface(file, format));
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,11 +17,13 @@ namespace collarmesh::cli {
 /// The files of one complex: surfaces, complexes and CAD shapes, which are cut into triangles here.
 class ComplexInput {
  public:
-  /// Read them; "-" is standard input. `format` overrides the extensions. `distance` is the surface distance
-  /// tolerance, absolute (0: the default at that size); the triangles of CAD shapes keep a tenth of it.
+  /// Read them; "-" is standard input. `format` overrides the extensions. `distance` gives the surface distance
+  /// tolerance, absolute, from the diagonal; the triangles of CAD shapes keep a tenth of it.
   /// Throws ReadError, for a file that does not exist with the most similar name, and PlcError.
   explicit ComplexInput(const std::vector<std::string>& paths, const std::string& format = {},
-                        double distance = 0, double size = 0);
+                        const std::function<double(double diagonal)>& distance = [](double diagonal) {
+                          return default_distance(0, diagonal);
+                        });
 
   const std::vector<PolygonSoup>& soups() const { return soups_; }
   bool has_cad() const { return !cad_.empty(); }

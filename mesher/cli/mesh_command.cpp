@@ -71,10 +71,19 @@ void require_known_tags(const MeshOptions& options, const Plc& plc) {
   require_tags(options.curve_size, plc.curves, "--curve-size", "curve");
 }
 
+/// Curved elements are judged by their corners' triangles, which the default for straight ones would leave too
+/// coarse to curve without inverting elements.
+double distance_of(const MeshArguments& arguments, double diagonal) {
+  constexpr double for_curved_elements = 1e-3;
+  if (arguments.mesh.distance > 0) return arguments.mesh.distance;
+  const double distance = default_distance(arguments.mesh.size, diagonal);
+  return arguments.order == 2 ? std::min(distance, for_curved_elements * diagonal) : distance;
+}
+
 ComplexInput build_complex(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   stages.begin("read", 0, 0.02);
-  ComplexInput input(arguments.inputs, arguments.input_format, arguments.mesh.distance,
-                     arguments.mesh.size);
+  ComplexInput input(arguments.inputs, arguments.input_format,
+                     [&](double diagonal) { return distance_of(arguments, diagonal); });
   stages.begin("complex", 0.02, 0.08);
   run.plc = input.build(arguments.complex);
   run.notes = input.notes();
@@ -94,6 +103,7 @@ MeshOptions options_of_refinement(const MeshArguments& arguments, const ComplexI
   options.crease_angle = arguments.complex.crease_angle;
   if (!arguments.size_field.empty()) options.size_field = read_size_field(arguments.size_field, run.plc);
   options.time_limit = 0;  // one limit for all stages: the interrupt flag
+  options.distance = distance_of(arguments, run.plc.bounds.diagonal());
   return input.tightened(options, run.plc);
 }
 
@@ -131,14 +141,12 @@ void coarsen_elements(const MeshArguments& arguments, const MeshOptions& options
   stop_if_interrupted();
 }
 
-void improve_elements(const MeshArguments& arguments, const ComplexInput& input, Stages& stages,
-                      MeshRun& run) {
+void improve_elements(const MeshArguments& arguments, const MeshOptions& bounds, Stages& stages, MeshRun& run) {
   if (arguments.improve == 0) return;
   stages.begin("improve", 0.7, 0.79, run.result.mesh.tets.size());
   Execution execution;
   execution.cancel = &interrupt_flag();
   ImproveOptions options = improve_options(arguments.improve);
-  const MeshOptions bounds = input.tightened(arguments.mesh, run.plc);
   options.radius_edge = bounds.radius_edge;
   options.distance = bounds.distance;
   options.threads = arguments.threads;
@@ -160,7 +168,7 @@ void project_onto_cad(const MeshArguments& arguments, const ComplexInput& input,
   ProjectOptions options;
   options.radius_edge = arguments.mesh.radius_edge;
   options.collar_angle = arguments.mesh.collar_angle;
-  options.reach = arguments.mesh.distance;
+  options.reach = distance_of(arguments, run.plc.bounds.diagonal());
   if (run.coarsening) options.thin_angle = arguments.thin_angle;
   run.projection =
       project_boundary(run.result.mesh, run.plc, input.exact_geometry(run.plc), options, execution);
@@ -182,7 +190,7 @@ void certify(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   stages.begin("check", 0.83, 0.93, run.result.mesh.tets.size());
   CheckOptions options;
   options.radius_edge = arguments.mesh.radius_edge;
-  options.distance = arguments.mesh.distance;
+  options.distance = distance_of(arguments, run.plc.bounds.diagonal());
   options.thin_angle = arguments.thin_angle;
   options.collar_angle = arguments.mesh.collar_angle;
   options.crease_angle = arguments.complex.crease_angle;
@@ -239,7 +247,7 @@ ExitCode mesh_command(const MeshArguments& arguments) {
     const MeshOptions options = options_of_refinement(arguments, input, run);
     refine(arguments, input, options, stages, run);
     coarsen_elements(arguments, options, stages, run);
-    improve_elements(arguments, input, stages, run);
+    improve_elements(arguments, options, stages, run);
     project_onto_cad(arguments, input, stages, run);
     raise_order(arguments, input, stages, run);
     certify(arguments, stages, run);

@@ -46,14 +46,14 @@ std::vector<Shape> shapes() {
 }
 
 constexpr double radius_edge = 2;
-constexpr std::size_t attempts = 8000;  // on each mesh
+constexpr std::size_t attempts = 2000;  // on each mesh
 constexpr std::size_t single_steps = 4;
 
 /// A complex and its operations on a mesh of its own.
 struct Workbench {
   Workbench(const Meshed& meshed, const TetMesh& of)
       : mesh(of),
-        workpiece(mesh, meshed.plc, 1e-3 * meshed.plc.bounds.diagonal()),
+        workpiece(mesh, meshed.plc, default_distance(0, meshed.plc.bounds.diagonal())),
         operations(workpiece, rule) {}
 
   double worst(std::span<const Index> tets) const {

@@ -314,7 +314,10 @@ class Coarsening {
 
   void store() {
     TetMesh& mesh = workpiece_.complex.mesh();
-    if (report_.contracted_edges > 0) mesh.collar_balls.clear();  // their cells are not what they were
+    mesh.collar_balls.clear();  // their cells are not what they were
+    for (Index t = 0; t < complex().size(); ++t)
+      if (complex()[t].alive && complex()[t].collar && rule_.keeps_guarantee(complex().corners(t), quality(t)))
+        workpiece_.complex.dissolve(t);
     workpiece_.complex.store();
     improvement::mark_thin_tets(mesh, radius_edge_);
     report_.tets_after = mesh.tets.size();

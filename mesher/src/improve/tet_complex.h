@@ -90,6 +90,9 @@ class TetComplex {
   void keep();
   void undo();
 
+  /// A cell of a collar is one no longer.
+  void dissolve(Index cell) { tets_[cell].collar = false; }
+
   /// Write the tets back to the mesh, without vertices and faces that are gone.
   void store();
 
