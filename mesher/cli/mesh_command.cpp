@@ -131,17 +131,22 @@ void refine(const MeshArguments& arguments, const ComplexInput& input, const Mes
     throw Stopped(ExitCode::budget_hit, run.result.message + "; nothing was written");
 }
 
-void coarsen_elements(const MeshArguments& arguments, const MeshOptions& options, Stages& stages,
-                      MeshRun& run) {
+/// Of the bounds on angles, where vertices move onto exact geometry afterwards.
+double reserve_of_angles(const ComplexInput& input) { return input.has_cad() ? 0.05 : 0; }
+
+void coarsen_elements(const MeshArguments& arguments, const ComplexInput& input, const MeshOptions& options,
+                      Stages& stages, MeshRun& run) {
   if (!arguments.coarsen || run.result.status != MeshStatus::complete) return;
   stages.begin("coarsen", 0.6, 0.7, run.result.mesh.tets.size());
   Execution execution;
   execution.cancel = &interrupt_flag();
-  run.coarsening = coarsen(run.result.mesh, run.plc, options, {.thin_angle = arguments.thin_angle}, execution);
+  run.coarsening = coarsen(run.result.mesh, run.plc, options,
+                           {.thin_angle = arguments.thin_angle, .reserve = reserve_of_angles(input)}, execution);
   stop_if_interrupted();
 }
 
-void improve_elements(const MeshArguments& arguments, const MeshOptions& bounds, Stages& stages, MeshRun& run) {
+void improve_elements(const MeshArguments& arguments, const ComplexInput& input, const MeshOptions& bounds,
+                      Stages& stages, MeshRun& run) {
   if (arguments.improve == 0) return;
   stages.begin("improve", 0.7, 0.79, run.result.mesh.tets.size());
   Execution execution;
@@ -152,6 +157,7 @@ void improve_elements(const MeshArguments& arguments, const MeshOptions& bounds,
   options.threads = arguments.threads;
   if (run.coarsening) {
     options.thin_angle = arguments.thin_angle;
+    options.thin_reserve = reserve_of_angles(input);
     options.keep_vertices = true;
   }
   if (arguments.min_dihedral > 0) options.min_dihedral = arguments.min_dihedral;
@@ -246,8 +252,8 @@ ExitCode mesh_command(const MeshArguments& arguments) {
     const ComplexInput input = build_complex(arguments, stages, run);
     const MeshOptions options = options_of_refinement(arguments, input, run);
     refine(arguments, input, options, stages, run);
-    coarsen_elements(arguments, options, stages, run);
-    improve_elements(arguments, options, stages, run);
+    coarsen_elements(arguments, input, options, stages, run);
+    improve_elements(arguments, input, options, stages, run);
     project_onto_cad(arguments, input, stages, run);
     raise_order(arguments, input, stages, run);
     certify(arguments, stages, run);

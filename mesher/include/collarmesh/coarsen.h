@@ -14,6 +14,9 @@ struct CoarsenOptions {
   /// Degrees, above 0 and at most 30: no dihedral angle of a thin tet is below this; where features meet at
   /// less than twice this angle, not below half the angle that they meet at.
   double thin_angle = 8;
+  /// The share of both bounds on the angles of thin tets, counted from 0 and from 180 degrees, that is kept free for what
+  /// moves vertices afterwards, as `project_boundary` does; 0 to 0.5.
+  double reserve = 0;
 };
 
 struct CoarsenReport {

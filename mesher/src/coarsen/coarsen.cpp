@@ -43,7 +43,7 @@ class Coarsening {
                    made_with.edges_per_hole),
         radius_edge_(made_with.radius_edge),
         sizes_(target_sizes(mesh, plc, sizes_asked_for(made_with))),
-        thin_(plc, mesh, options.thin_angle),
+        thin_(plc, mesh, options.thin_angle, options.reserve),
         rule_(thin_, made_with.radius_edge, sizes_),
         operations_(workpiece_, rule_),
         execution_(execution),
@@ -80,7 +80,11 @@ class Coarsening {
     double squared_relative_length;
     Index vertex;
 
-    friend auto operator<=>(const Neighbour&, const Neighbour&) = default;
+    friend bool operator<(const Neighbour& x, const Neighbour& y) {
+      return x.squared_relative_length != y.squared_relative_length
+                 ? x.squared_relative_length < y.squared_relative_length
+                 : x.vertex < y.vertex;
+    }
   };
 
   const TetComplex& complex() const { return workpiece_.complex; }
@@ -352,6 +356,8 @@ CoarsenReport coarsen(TetMesh& mesh, const Plc& plc, const MeshOptions& made_wit
                       const CoarsenOptions& options, const Execution& execution) {
   if (!(options.thin_angle > 0 && options.thin_angle <= 30))
     throw OptionError("the smallest angle of thin tetrahedra must be above 0 and at most 30 degrees");
+  if (!(options.reserve >= 0 && options.reserve <= 0.5))
+    throw OptionError("the reserve of angles must be from 0 to 0.5");
   return coarsening::Coarsening(mesh, plc, made_with, options, execution).run();
 }
 

@@ -26,7 +26,10 @@ class CoarseningRule final : public improvement::ShapeRule {
 
   /// `thin` and `sizes`, by vertex, are kept by reference.
   CoarseningRule(const improvement::ThinShape& thin, double radius_edge, std::span<const double> sizes)
-      : thin_(thin), bound_(radius_edge), sizes_(sizes) {}
+      : thin_(thin),
+        bound_(radius_edge),
+        sizes_(sizes),
+        least_blunt_(std::sin((180 - thin.most() + 2 * improvement::ThinShape::rounding) * std::numbers::pi / 180)) {}
 
   double quality(const Corners& p, const std::array<Index, 4>& corners) const override {
     const improvement::ExtremeCosines cosines = improvement::extreme_cosines(p);
@@ -63,8 +66,7 @@ class CoarseningRule final : public improvement::ShapeRule {
   const improvement::ThinShape& thin_;
   improvement::RadiusEdgeBound bound_;
   std::span<const double> sizes_;
-  double least_blunt_ = std::sin((180 - improvement::ThinShape::largest_angle + 2 * improvement::ThinShape::rounding) *
-                                 std::numbers::pi / 180);
+  double least_blunt_;
   Mode mode_ = Mode::final;
 };
 

@@ -32,7 +32,7 @@ class Improvement {
   Improvement(TetMesh& mesh, const Plc& plc, const ImproveOptions& options, const Execution& execution)
       : workpiece_(mesh, plc,
                    options.distance > 0 ? options.distance : default_distance(0, plc.bounds.diagonal())),
-        thin_(plc, mesh, options.thin_angle),
+        thin_(plc, mesh, options.thin_angle, options.thin_reserve),
         rule_(options.radius_edge, options.thin_angle > 0 ? &thin_ : nullptr),
         operations_([this] { return Operations(workpiece_, rule_); }),
         execution_(execution),

@@ -46,11 +46,14 @@ class SliverRule final : public ShapeRule {
  public:
   /// `thin` is kept by reference; null: no tet exceeds the bound.
   explicit SliverRule(double radius_edge, const ThinShape* thin = nullptr)
-      : bound_(radius_edge), thin_(thin) {}
+      : bound_(radius_edge),
+        thin_(thin),
+        cosine_of_largest_(thin == nullptr ? -1
+                                           : std::cos((thin->most() - ThinShape::rounding) * std::numbers::pi / 180)) {}
 
   double quality(const Corners& p, const std::array<Index, 4>&) const override {
     const double sine = shape_quality(p);
-    const bool blunt = thin_ != nullptr && sine > 0 && extreme_cosines(p).largest_angle < cosine_of_largest;
+    const bool blunt = thin_ != nullptr && sine > 0 && extreme_cosines(p).largest_angle < cosine_of_largest_;
     return blunt ? beyond * sine : sine;
   }
   bool allows(const Corners& p, const std::array<Index, 4>& corners, double) const override {
@@ -59,10 +62,10 @@ class SliverRule final : public ShapeRule {
 
  private:
   static constexpr double beyond = 1e-3;
-  static constexpr double cosine_of_largest = -0.866025;  // of 150 degrees, rounded up
 
   RadiusEdgeBound bound_;
   const ThinShape* thin_;
+  double cosine_of_largest_;
 };
 
 }  // namespace collarmesh::improvement

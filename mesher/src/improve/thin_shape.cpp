@@ -10,14 +10,16 @@ double sine_above(double degrees) { return std::sin((degrees + 2 * ThinShape::ro
 
 }  // namespace
 
-ThinShape::ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle)
-    : smallest_(smallest_angle), sine_(sine_above(smallest_angle)) {
+ThinShape::ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle, double reserve)
+    : smallest_(smallest_angle * (1 + reserve)),
+      most_(180 - (180 - largest_angle) * (1 + reserve)),
+      sine_(sine_above(smallest_)) {
   if (empty()) return;
   std::vector<double> of_vertex(plc.vertices.size(), smallest_), of_curve(plc.curves.size(), smallest_);
   bool any = false;
-  for (const Crease& crease : find_creases(plc, 2 * smallest_)) {
+  for (const Crease& crease : find_creases(plc, 2 * smallest_angle)) {
     any = true;
-    const auto lower = [&](double& bound) { bound = std::min(bound, 0.5 * crease.angle); };
+    const auto lower = [&](double& bound) { bound = std::min(bound, 0.5 * crease.angle * (1 + reserve)); };
     if (crease.vertex != none) lower(of_vertex[crease.vertex]);
     if (crease.curve == none) continue;
     lower(of_curve[crease.curve]);

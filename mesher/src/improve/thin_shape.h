@@ -70,8 +70,9 @@ class ThinShape {
   static constexpr double largest_angle = 150;  ///< degrees
   static constexpr double rounding = 1e-6;      ///< degrees, kept free for other ways to compute an angle
 
-  /// `smallest_angle` in degrees; 0: no tet is thin. Vertices are those that the mesh has now.
-  ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle);
+  /// `smallest_angle` in degrees; 0: no tet is thin. Vertices are those that the mesh has now. `reserve` is the
+  /// share of the bounds, counted from 0 and from 180 degrees, that is kept free.
+  ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle, double reserve = 0);
 
   bool empty() const { return !(smallest_ > 0); }
   /// The sine of `smallest_angle`, with room for rounding.
@@ -90,15 +91,17 @@ class ThinShape {
       if (v < at_vertex_.size()) least = std::min(least, at_vertex_[v]);
     return least;
   }
+  /// Upper bound on dihedral angles and those of faces, degrees.
+  double most() const { return most_; }
   bool contains(const Corners& p, const std::array<Index, 4>& corners) const {
     if (empty()) return false;
     const ExtremeAngles angles = extreme_angles(p);
-    return angles.largest <= largest_angle - rounding &&
+    return angles.largest <= most_ - rounding &&
            angles.smallest >= smallest_angle(corners) + rounding;
   }
 
  private:
-  double smallest_, sine_;
+  double smallest_, most_, sine_;
   std::vector<double> at_vertex_, sine_at_vertex_;  // empty where no crease is that sharp
 };
 
