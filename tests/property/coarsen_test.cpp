@@ -32,9 +32,6 @@ struct Shape {
 
 PolygonSoup plate() { return box({0, 0, 0}, {100, 100, 1}); }
 
-// A thin shell: a tube whose wall is a tenth of the size.
-PolygonSoup tube() { return joined(cylinder(1, 2, 64, 6), inverted(cylinder(0.97, 1.94, 64, 6))); }
-
 std::vector<Shape> thin_shapes() {
   return {{"plate", {plate()}, 10, 0, 8, 0.06, 0.03},
           {"plate with a hole", {scaled(plate_with_hole(1, 32), 1)}, 1.5, 30, 8, 0.8, 0.05},
