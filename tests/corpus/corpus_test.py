@@ -98,7 +98,7 @@ def mesh_one(program, path, expect, folder):
     """What happened, as a line for the table. Throws Failed."""
     diagonal = diagonal_of(program, path)
     mesh = folder / (path.name + ".vtu")
-    size = [] if diagonal is None else ["--size", diagonal * RELATIVE_SIZE]
+    size = [] if diagonal is None else ["--size", diagonal * RELATIVE_SIZE, "--distance", diagonal * RELATIVE_DISTANCE]
     report = folder / (path.name + ".json")
     exact = ["--feature-angle", 0] if is_exact(path) else []
     expected = expected_code(path.name, expect)
