@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "collarmesh/check.h"
+#include "collarmesh/coarsen.h"
 #include "collarmesh/error.h"
 #include "collarmesh/improve.h"
 #include "collarmesh/io/tet_mesh_io.h"
@@ -96,6 +97,8 @@ struct Wanted {
   MeshOptions mesh;
   PlcOptions plc;
   RepairOptions repair;
+  bool coarsen = true;
+  CoarsenOptions thin;
   unsigned improve = 2;
   int order = 1;
 };
@@ -121,15 +124,28 @@ std::unique_ptr<Mesh> generate_mesh(const std::vector<PolygonSoup>& soups, const
   auto made = std::make_unique<Mesh>();
   made->mesh = std::move(result.mesh);
   made->repairs = describe(repaired);
+  const bool coarse = wanted.coarsen && result.status == MeshStatus::complete;
+  if (coarse) {
+    Execution later = execution;  // than what the fractions count
+    if (execution.progress)
+      later.progress = [&](ProgressReport report) {
+        report.fraction = 1;
+        return execution.progress(report);
+      };
+    if (coarsen(made->mesh, plc, wanted.mesh, wanted.thin, later).cancelled) throw Error("cancelled");
+  }
   if (wanted.improve > 0) {
     ImproveOptions options = improve_options(wanted.improve);
     options.radius_edge = wanted.mesh.radius_edge;
     options.distance = wanted.mesh.distance;
+    options.thin_angle = coarse ? wanted.thin.thin_angle : 0;
+    options.keep_vertices = coarse;
     improve(made->mesh, plc, options);
   }
   if (wanted.order == 2) make_second_order(made->mesh, plc);
   CheckOptions bounds;
   bounds.radius_edge = wanted.mesh.radius_edge;
+  bounds.thin_angle = wanted.thin.thin_angle;
   bounds.distance = wanted.mesh.distance;
   bounds.collar_angle = wanted.mesh.collar_angle;
   bounds.crease_angle = wanted.mesh.crease_angle;
@@ -141,8 +157,8 @@ std::unique_ptr<Mesh> mesh(const py::args& surfaces, double size, double size_mi
                            const std::map<Tag, double>& region_size, const std::map<Tag, double>& patch_size,
                            double gradation, double elements_per_circle, double elements_across_gap,
                            double radius_edge, double feature_angle, double crease_angle, double collar_angle,
-                           double distance, unsigned improve, int order, std::uint64_t seed,
-                           double time_limit, const std::string& repair, double repair_tolerance,
+                           double distance, bool coarsen, double thin_angle, unsigned improve, int order,
+                           std::uint64_t seed, double time_limit, const std::string& repair, double repair_tolerance,
                            const py::object& progress) {
   if (order != 1 && order != 2) refuse("order must be 1 or 2");
   if (surfaces.empty()) refuse("there is no surface to mesh: give tuples (points, triangles)");
@@ -150,6 +166,8 @@ std::unique_ptr<Mesh> mesh(const py::args& surfaces, double size, double size_mi
   for (const py::handle& surface : surfaces)
     soups.push_back(soup_of(surface.cast<py::tuple>(), soups.size() + 1));
   Wanted wanted;
+  wanted.coarsen = coarsen;
+  wanted.thin.thin_angle = thin_angle;
   wanted.improve = improve;
   wanted.order = order;
   wanted.mesh.size = size;
@@ -192,7 +210,10 @@ Each surface is a tuple (points, triangles) or (points, triangles, tags): points
 of length; triangles of shape (m, 3), rows of points, oriented outwards; tags of shape (m,), integers, by which
 the faces of the mesh are found again. Several surfaces are several regions, numbered from 1; one that is
 inside another and oriented inwards is a cavity. Lengths are absolute: size is a target edge length (0: 1/20
-of the diagonal), distance how far smooth surfaces may be off (0: 1/1000 of the diagonal). Angles are degrees.
+of the diagonal), distance how far smooth surfaces may be off (0: 1/20 of the size, at most 1/400 of the diagonal).
+Angles are degrees.
+There are about as many tetrahedra as size asks for; in thin places they are thin, with dihedral angles of at least
+thin_angle. coarsen=False makes them so small there that circumradius / shortest edge is at most radius_edge.
 progress(phase, fraction) may return False to cancel.
 Surfaces that are no valid complex are repaired, which `repairs` of the result tells: repair="none" makes them an
 error, repair="wrap" puts a closed surface around what cannot be repaired. repair_tolerance, relative to the
@@ -215,6 +236,8 @@ PYBIND11_MODULE(collarmesh, module) {
                              "(m,), numbers of regions, from 1")
       .def_property_readonly("tet_collar", property<std::uint8_t, 1>(&TetMesh::tet_collar),
                              "(m,), 0 outside of collars, 1 star, 2 book")
+      .def_property_readonly("tet_thin", property<std::uint8_t, 1>(&TetMesh::tet_thin),
+                             "(m,), 1 for thin tetrahedra, which exceed radius_edge; (0,) when there is none")
       .def_property_readonly("tet_mid_nodes", property<Index, 6>(&TetMesh::tet_mid_nodes),
                              "(m, 6), nodes amid the edges ab, bc, ca, ad, bd, cd; (0, 6) for first order")
       .def_property_readonly("faces", property<Index, 3>(&TetMesh::faces),
@@ -251,7 +274,8 @@ PYBIND11_MODULE(collarmesh, module) {
              "region_size"_a = std::map<Tag, double>(), "patch_size"_a = std::map<Tag, double>(),
              "gradation"_a = 0., "elements_per_circle"_a = 0., "elements_across_gap"_a = 0.,
              "radius_edge"_a = 2., "feature_angle"_a = 30., "crease_angle"_a = 60., "collar_angle"_a = 150.,
-             "distance"_a = 0., "improve"_a = 2U, "order"_a = 1, "seed"_a = 0U, "time_limit"_a = 0.,
+             "distance"_a = 0., "coarsen"_a = true, "thin_angle"_a = CoarsenOptions().thin_angle,
+             "improve"_a = 2U, "order"_a = 1, "seed"_a = 0U, "time_limit"_a = 0.,
              "repair"_a = "auto", "repair_tolerance"_a = RepairOptions().tolerance,
              "progress"_a = py::none());
 }

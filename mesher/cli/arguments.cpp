@@ -50,6 +50,7 @@ const std::string quality_group = "Quality";
 const std::string elements_group = "Elements";
 
 const CLI::Validator collar_angle = number_in(100, 175, "an angle from 100 to 175 degrees");
+const CLI::Validator thin_angle = number_in(0.1, 30, "an angle from 0.1 to 30 degrees");
 const CLI::Validator ratio = number_in(1, 1e300, "a ratio of at least 1");
 const CLI::Validator number = number_in(0, 1e300, "a number >= 0");
 const CLI::Validator seconds = number_in(0, 1e300, "a number of seconds >= 0");
@@ -159,6 +160,22 @@ void add_size_options(CLI::App& app, MeshArguments& a) {
       ->group(group);
 }
 
+void add_coarsening_options(CLI::App& app, MeshArguments& a) {
+  const std::string& group = quality_group;
+  app.add_option("--coarsen", a.coarsen,
+                 "on: as few tetrahedra as the sizes ask for, thin ones in thin places; off: the bound on "
+                 "circumradius / shortest edge holds everywhere outside collars")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, bool>{{"on", true}, {"off", false}})
+                      .description(""))
+      ->default_str("on")
+      ->type_name("on|off")
+      ->group(group);
+  add(app, "--thin-angle DEGREES", a.thin_angle,
+      "Smallest dihedral angle of thin tetrahedra; at sharper creases half their angle")
+      ->check(thin_angle)
+      ->group(group);
+}
+
 void add_improvement_options(CLI::App& app, MeshArguments& a) {
   const std::string& group = quality_group;
   add(app, "--improve LEVEL", a.improve, "Removal of slivers: 0 none, 1 quick, 2 good, 3 best")
@@ -204,7 +221,8 @@ void add_quality_options(CLI::App& app, MeshOptions& m) {
       ->check(number_in(0, 0.449, "a number from 0 to below 0.45"))
       ->group(group);
   add(app, "--distance LENGTH", m.distance,
-      "Largest distance from smooth surfaces and curves, absolute, input units", "1e-3 of the diagonal")
+      "Largest distance from smooth surfaces and curves, absolute, input units",
+      "1/20 of the size, at most 1/400 of the diagonal")
       ->check(length)
       ->group(group);
   add(app, "--seed N", m.seed, "Of the pseudo-random offsets: same input, options and seed, same mesh")
@@ -257,6 +275,7 @@ void add_quiet_flag(CLI::App& app, bool& quiet) {
 void add_run_options(CLI::App& app, MeshArguments& a) {
   add_size_options(app, a);
   add_quality_options(app, a.mesh);
+  add_coarsening_options(app, a);
   add_improvement_options(app, a);
   add_order_option(app, a);
   add_complex_options(app, a.complex);
@@ -321,10 +340,13 @@ CLI::App* add_check_command(CLI::App& app, CheckArguments& a) {
   add(*check, "--radius-edge RHO", a.check.radius_edge,
       "Bound on circumradius / shortest edge of a tetrahedron")
       ->check(ratio);
+  add(*check, "--thin-angle DEGREES", a.check.thin_angle,
+      "Smallest dihedral angle of thin tetrahedra, which may exceed that bound; 0: none may")
+      ->check(number_in(0, 30, "an angle from 0 to 30 degrees"));
   add(*check, "--collar-angle DEGREES", a.check.collar_angle, "Bound on dihedral angles in collars, degrees")
       ->check(collar_angle);
   add(*check, "--distance LENGTH", a.check.distance,
-      "Largest distance from smooth surfaces and curves, absolute, input units", "1e-3 of the diagonal")
+      "Largest distance from smooth surfaces and curves, absolute, input units", "1/400 of the diagonal")
       ->check(length);
   add(*check, "--findings N", a.check.findings_per_guarantee, "List at most this many per guarantee")
       ->check(count);

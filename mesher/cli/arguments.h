@@ -6,6 +6,7 @@
 
 #include "cad_files.h"
 #include "collarmesh/check.h"
+#include "collarmesh/coarsen.h"
 #include "collarmesh/improve.h"
 #include "collarmesh/mesher.h"
 #include "collarmesh/plc_builder.h"
@@ -31,6 +32,8 @@ struct MeshArguments {
   ComplexArguments complex;
   MeshOptions mesh;
   std::string size_field;                   ///< path, empty: none
+  bool coarsen = true;                      ///< as few tets as the sizes ask for
+  double thin_angle = CoarsenOptions{}.thin_angle;  ///< degrees, where it coarsens
   unsigned improve = 2;                     ///< level; 0: leave the elements as they are
   unsigned order = 1;                       ///< of the cells, 1 or 2
   double min_dihedral = 0;                  ///< degrees, in place of the level's; 0: the level's

@@ -56,12 +56,10 @@ void CadFiles::read(const std::string& path, std::string_view format, const CadR
   const brep::Overlap overlap =
       reading.overlap == SolidOverlap::region ? brep::Overlap::region : brep::Overlap::first;
   std::unique_ptr<brep::CadModel> model = read_by_module(path, format, {.overlap = overlap});
-  constexpr double relative_deflection = 1e-4;
-  const double deflection =
-      reading.deflection > 0 ? reading.deflection : relative_deflection * model->diagonal();
-  std::vector<PolygonSoup> own = model->tessellate({.deflection = deflection});
+  const double absolute = reading.deflection(model->diagonal());
+  std::vector<PolygonSoup> own = model->tessellate({.deflection = absolute});
   files_.push_back(
-      {std::move(model), deflection, static_cast<Index>(soups.size()), static_cast<Index>(own.size())});
+      {std::move(model), absolute, static_cast<Index>(soups.size()), static_cast<Index>(own.size())});
   std::move(own.begin(), own.end(), std::back_inserter(soups));
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,7 +20,7 @@ enum class SolidOverlap {
 
 /// How CAD files are read.
 struct CadReading {
-  double deflection = 0;  ///< of the triangles, absolute; 0: 1e-4 of the diagonal
+  std::function<double(double diagonal)> deflection;  ///< of the triangles, absolute, from the shape's diagonal
   SolidOverlap overlap = SolidOverlap::first;
 };
 

@@ -11,7 +11,10 @@ namespace collarmesh::cli {
 
 ExitCode check_command(const CheckArguments& arguments) {
   const TetMesh mesh = read_mesh(arguments.mesh);
-  ComplexInput input(arguments.inputs, {{}, arguments.check.distance, arguments.complex.overlap});
+  const auto distance = [&](double diagonal) {
+    return arguments.check.distance > 0 ? arguments.check.distance : default_distance(0, diagonal);
+  };
+  ComplexInput input(arguments.inputs, {{}, distance, arguments.complex.overlap});
   const Plc plc = input.build(arguments.complex);
   stop_if_interrupted();
   CheckOptions options = arguments.check;

@@ -69,7 +69,8 @@ std::string advice(const PlcError& error, const RepairOptions& options) {
 }  // namespace
 
 ComplexInput::ComplexInput(const std::vector<std::string>& paths, const InputReading& reading) {
-  const CadReading cad{share_of_triangles * reading.distance, reading.overlap};
+  const CadReading cad{[&](double diagonal) { return share_of_triangles * reading.distance(diagonal); },
+                       reading.overlap};
   for (const std::string& path : paths) {
     stop_if_interrupted();
     const std::string file = existing_file(path);
@@ -146,12 +147,12 @@ ExactGeometry ComplexInput::exact_geometry(const Plc& plc) const {
 
 MeshOptions ComplexInput::tightened(const MeshOptions& options, const Plc& plc) const {
   if (!has_cad()) return options;
-  constexpr double default_distance = 1e-3;  // of the diagonal
   constexpr double distance_left = 0.75;     // the triangles' share twice, and some room
   constexpr double ratio_left = 0.99;
   MeshOptions tight = options;
   tight.distance =
-      distance_left * (options.distance > 0 ? options.distance : default_distance * plc.bounds.diagonal());
+      distance_left *
+      (options.distance > 0 ? options.distance : default_distance(options.size, plc.bounds.diagonal()));
   tight.radius_edge = std::max(1.0, ratio_left * options.radius_edge);
   return tight;
 }

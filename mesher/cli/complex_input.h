@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -15,9 +16,11 @@ namespace collarmesh::cli {
 
 /// How the files of one complex are read.
 struct InputReading {
-  std::string format;   ///< in place of the files' extensions; empty: by these
-  double distance = 0;  ///< surface distance tolerance, absolute, 0: 1e-3 of the diagonal; the triangles of
-                        ///< CAD shapes keep a tenth of it
+  std::string format;  ///< in place of the files' extensions; empty: by these
+  /// Surface distance tolerance, absolute, from the diagonal; the triangles of CAD shapes keep a tenth of it.
+  std::function<double(double diagonal)> distance = [](double diagonal) {
+    return default_distance(0, diagonal);
+  };
   SolidOverlap overlap = SolidOverlap::first;
 };
 

@@ -86,6 +86,7 @@ std::vector<std::string> lost_by(const std::string& format, const TetMesh& mesh)
   if (kept == meshes.end()) return {};
   std::vector<std::string> losses;
   add(losses, kept->collar, count_tags(mesh.tet_collar), "collar marks of tets");
+  add(losses, kept->collar, count_tags(mesh.tet_thin), "marks of thin tets");
   add(losses, kept->features, mesh.features.size(), "features of points");
   add(losses, kept->edges, mesh.edges.size(), "edges on curves (node sets are kept)");
   const auto loose =

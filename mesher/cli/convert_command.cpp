@@ -87,7 +87,7 @@ ExitCode convert_command(const ConvertArguments& arguments) {
     return ExitCode::success;
   }
   if (!to_surface) return mesh_command(a);
-  ComplexInput input(a.inputs, {a.input_format, 0, a.complex.overlap});
+  ComplexInput input(a.inputs, {.format = a.input_format, .overlap = a.complex.overlap});
   if (arguments.repair) repair(a, input);
   write_soup(a, input.soups());
   return ExitCode::success;

@@ -39,7 +39,7 @@ Plc build_any(ComplexInput& input, ComplexArguments options) {
 }
 
 void print_complex(const InfoArguments& arguments) {
-  ComplexInput input(arguments.inputs, {{}, 0, arguments.complex.overlap});
+  ComplexInput input(arguments.inputs, {.format = {}, .overlap = arguments.complex.overlap});
   const Plc plc = build_any(input, arguments.complex);
   stop_if_interrupted();
   const PlcSummary summary = summarize(plc, arguments.complex.crease_angle);

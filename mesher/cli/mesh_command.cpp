@@ -71,10 +71,19 @@ void require_known_tags(const MeshOptions& options, const Plc& plc) {
   require_tags(options.curve_size, plc.curves, "--curve-size", "curve");
 }
 
+/// Curved elements are judged by their corners' triangles, which the default for straight ones would leave too
+/// coarse to curve without inverting elements.
+double distance_of(const MeshArguments& arguments, double diagonal) {
+  constexpr double for_curved_elements = 1e-3;
+  if (arguments.mesh.distance > 0) return arguments.mesh.distance;
+  const double distance = default_distance(arguments.mesh.size, diagonal);
+  return arguments.order == 2 ? std::min(distance, for_curved_elements * diagonal) : distance;
+}
+
 ComplexInput build_complex(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   stages.begin("read", 0, 0.02);
-  ComplexInput input(arguments.inputs,
-                     {arguments.input_format, arguments.mesh.distance, arguments.complex.overlap});
+  const auto distance = [&](double diagonal) { return distance_of(arguments, diagonal); };
+  ComplexInput input(arguments.inputs, {arguments.input_format, distance, arguments.complex.overlap});
   stages.begin("complex", 0.02, 0.08);
   run.plc = input.build(arguments.complex);
   run.notes = input.notes();
@@ -88,19 +97,26 @@ ComplexInput build_complex(const MeshArguments& arguments, Stages& stages, MeshR
   return input;
 }
 
-void refine(const MeshArguments& arguments, const ComplexInput& input, Stages& stages, MeshRun& run) {
-  stages.begin("refine", 0.08, 0.7);
+MeshOptions options_of_refinement(const MeshArguments& arguments, const ComplexInput& input,
+                                  const MeshRun& run) {
+  MeshOptions options = arguments.mesh;
+  options.crease_angle = arguments.complex.crease_angle;
+  if (!arguments.size_field.empty()) options.size_field = read_size_field(arguments.size_field, run.plc);
+  options.time_limit = 0;  // one limit for all stages: the interrupt flag
+  options.distance = distance_of(arguments, run.plc.bounds.diagonal());
+  return input.tightened(options, run.plc);
+}
+
+void refine(const MeshArguments& arguments, const ComplexInput& input, const MeshOptions& options,
+            Stages& stages, MeshRun& run) {
+  stages.begin("refine", 0.08, arguments.coarsen ? 0.6 : 0.7);
   Execution execution;
   execution.cancel = &interrupt_flag();
   execution.progress = [&stages](const ProgressReport& report) {
     stages.update(report);
     return true;
   };
-  MeshOptions options = arguments.mesh;
-  options.crease_angle = arguments.complex.crease_angle;
-  if (!arguments.size_field.empty()) options.size_field = read_size_field(arguments.size_field, run.plc);
-  options.time_limit = 0;  // one limit for all stages: the interrupt flag
-  run.result = generate(run.plc, input.tightened(options, run.plc), execution);
+  run.result = generate(run.plc, options, execution);
   if (input.has_cad()) run.result.mesh.group_names = GroupNames::cad;
   if (run.result.status == MeshStatus::cancelled) {
     const MeshStatistics& reached = run.result.statistics;
@@ -115,17 +131,35 @@ void refine(const MeshArguments& arguments, const ComplexInput& input, Stages& s
     throw Stopped(ExitCode::budget_hit, run.result.message + "; nothing was written");
 }
 
-void improve_elements(const MeshArguments& arguments, const ComplexInput& input, Stages& stages,
-                      MeshRun& run) {
+/// Of the bounds on angles, where vertices move onto exact geometry afterwards.
+double reserve_of_angles(const ComplexInput& input) { return input.has_cad() ? 0.05 : 0; }
+
+void coarsen_elements(const MeshArguments& arguments, const ComplexInput& input, const MeshOptions& options,
+                      Stages& stages, MeshRun& run) {
+  if (!arguments.coarsen || run.result.status != MeshStatus::complete) return;
+  stages.begin("coarsen", 0.6, 0.7, run.result.mesh.tets.size());
+  Execution execution;
+  execution.cancel = &interrupt_flag();
+  run.coarsening = coarsen(run.result.mesh, run.plc, options,
+                           {.thin_angle = arguments.thin_angle, .reserve = reserve_of_angles(input)}, execution);
+  stop_if_interrupted();
+}
+
+void improve_elements(const MeshArguments& arguments, const ComplexInput& input, const MeshOptions& bounds,
+                      Stages& stages, MeshRun& run) {
   if (arguments.improve == 0) return;
   stages.begin("improve", 0.7, 0.79, run.result.mesh.tets.size());
   Execution execution;
   execution.cancel = &interrupt_flag();
   ImproveOptions options = improve_options(arguments.improve);
-  const MeshOptions bounds = input.tightened(arguments.mesh, run.plc);
   options.radius_edge = bounds.radius_edge;
   options.distance = bounds.distance;
   options.threads = arguments.threads;
+  if (run.coarsening) {
+    options.thin_angle = arguments.thin_angle;
+    options.thin_reserve = reserve_of_angles(input);
+    options.keep_vertices = true;
+  }
   if (arguments.min_dihedral > 0) options.min_dihedral = arguments.min_dihedral;
   run.improvement = improve(run.result.mesh, run.plc, options, execution);
   stop_if_interrupted();
@@ -140,7 +174,8 @@ void project_onto_cad(const MeshArguments& arguments, const ComplexInput& input,
   ProjectOptions options;
   options.radius_edge = arguments.mesh.radius_edge;
   options.collar_angle = arguments.mesh.collar_angle;
-  options.reach = arguments.mesh.distance;
+  options.reach = distance_of(arguments, run.plc.bounds.diagonal());
+  if (run.coarsening) options.thin_angle = arguments.thin_angle;
   run.projection =
       project_boundary(run.result.mesh, run.plc, input.exact_geometry(run.plc), options, execution);
   stop_if_interrupted();
@@ -161,7 +196,8 @@ void certify(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   stages.begin("check", 0.83, 0.93, run.result.mesh.tets.size());
   CheckOptions options;
   options.radius_edge = arguments.mesh.radius_edge;
-  options.distance = arguments.mesh.distance;
+  options.distance = distance_of(arguments, run.plc.bounds.diagonal());
+  options.thin_angle = arguments.thin_angle;
   options.collar_angle = arguments.mesh.collar_angle;
   options.crease_angle = arguments.complex.crease_angle;
   options.threads = arguments.threads;
@@ -220,8 +256,10 @@ ExitCode mesh_command(const MeshArguments& arguments) {
   {
     Stages stages(arguments.quiet ? ProgressStyle::none : arguments.progress, run.times);
     const ComplexInput input = build_complex(arguments, stages, run);
-    refine(arguments, input, stages, run);
-    improve_elements(arguments, input, stages, run);
+    const MeshOptions options = options_of_refinement(arguments, input, run);
+    refine(arguments, input, options, stages, run);
+    coarsen_elements(arguments, input, options, stages, run);
+    improve_elements(arguments, input, options, stages, run);
     project_onto_cad(arguments, input, stages, run);
     raise_order(arguments, input, stages, run);
     certify(arguments, stages, run);

@@ -23,6 +23,7 @@ struct MeshRun {
   MeshResult result;
   std::vector<std::string> notes;           ///< on CAD shapes, a line each
   std::optional<ProjectReport> projection;  ///< when there are CAD shapes
+  std::optional<CoarsenReport> coarsening;  ///< unless it was switched off
   ImproveReport improvement;
   SecondOrderReport second_order;
   CheckReport check;

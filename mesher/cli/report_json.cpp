@@ -103,6 +103,8 @@ Json options_json(const MeshArguments& a) {
           {"crease_angle", a.complex.crease_angle},
           {"collar_angle", m.collar_angle},
           {"collar_creation", m.collar_creation == CollarCreation::in_pass ? "in-pass" : "up-front"},
+          {"coarsen", a.coarsen},
+          {"thin_angle", a.thin_angle},
           {"improve", a.improve},
           {"min_dihedral", or_null(a.min_dihedral)},
           {"order", a.order},
@@ -146,6 +148,14 @@ Json improvement_json(const ImproveReport& r) {
           {"moved_vertices", r.moved_vertices},
           {"contracted_edges", r.contracted_edges},
           {"inserted_vertices", r.inserted_vertices},
+          {"seconds", r.seconds}};
+}
+
+Json coarsening_json(const CoarsenReport& r) {
+  return {{"tets_before", r.tets_before},
+          {"tets_after", r.tets_after},
+          {"contracted_edges", r.contracted_edges},
+          {"repaired", r.repaired},
           {"seconds", r.seconds}};
 }
 
@@ -210,6 +220,7 @@ Json measures_json(const TetMesh& mesh, const MeshMeasures& m) {
           {"min_dihedral", m.min_dihedral},
           {"max_dihedral", m.max_dihedral},
           {"max_radius_edge", number_json(m.max_radius_edge)},
+          {"max_thin_radius_edge", number_json(m.max_thin_radius_edge)},
           {"max_collar_radius_edge", number_json(m.max_collar_radius_edge)},
           {"region_volumes", by_number(m.region_volumes)},
           {"histograms",
@@ -237,7 +248,9 @@ Json check_json(const CheckReport& r) {
           {"faces", r.faces},
           {"edges", r.edges},
           {"collar_tets", r.collar_tets},
+          {"thin_tets", r.thin_tets},
           {"max_radius_edge", number_json(r.max_radius_edge)},
+          {"max_thin_radius_edge", number_json(r.max_thin_radius_edge)},
           {"min_dihedral", r.min_dihedral},
           {"max_dihedral", r.max_dihedral},
           {"max_collar_dihedral", r.max_collar_dihedral},
@@ -296,6 +309,7 @@ Json run_json(const MeshArguments& arguments, const MeshRun& run) {
           {"statistics", statistics_json(run.result.statistics)},
           {"notes", run.notes},
           {"projection", run.projection ? projection_json(run.plc, *run.projection) : Json(nullptr)},
+          {"coarsening", run.coarsening ? coarsening_json(*run.coarsening) : Json(nullptr)},
           {"improvement", improvement_json(run.improvement)},
           {"second_order", arguments.order == 2 ? second_order_json(run.second_order) : Json(nullptr)},
           {"seconds", std::move(seconds)}};

@@ -104,7 +104,8 @@ std::string mesh_text(const TetMesh& mesh, const MeshMeasures& m) {
   fmt::format_to(Out(text), "{} tets, {} points, {} boundary and interface triangles, {} curve edges\n",
                  mesh.tets.size(), mesh.points.size(), mesh.faces.size(), mesh.edges.size());
   fmt::format_to(
-      Out(text), "  {}{}\n", shape_text(m.min_dihedral, m.max_dihedral, m.max_radius_edge),
+      Out(text), "  {}{}{}\n", shape_text(m.min_dihedral, m.max_dihedral, m.max_radius_edge),
+      m.max_thin_radius_edge > 0 ? fmt::format(" (of thin tets {:.4g})", m.max_thin_radius_edge) : "",
       m.max_collar_radius_edge > 0 ? fmt::format(" (in collars {:.4g})", m.max_collar_radius_edge) : "");
   std::size_t line = 0;
   for (const auto& [region, volume] : m.region_volumes) {
@@ -129,6 +130,8 @@ std::string check_text(const CheckReport& r) {
   for (const std::string& note : r.notes) fmt::format_to(Out(text), "note: {}\n", note);
   fmt::format_to(Out(text), "{} tets, {} points, {} faces, {} edges; {}\n", r.tets, r.points, r.faces,
                  r.edges, shape_text(r.min_dihedral, r.max_dihedral, r.max_radius_edge));
+  if (r.thin_tets > 0)
+    fmt::format_to(Out(text), "thin: {} tets, radius-edge to {:.4g}\n", r.thin_tets, r.max_thin_radius_edge);
   if (r.collar_tets > 0)
     fmt::format_to(Out(text), "in collars: {} tets, dihedral angles to {:.2f} degrees\n", r.collar_tets,
                    r.max_collar_dihedral);
@@ -191,6 +194,10 @@ std::string run_text(const MeshArguments& arguments, const MeshRun& run) {
                    static_cast<double>(s.peak_bytes) / 1e6);
   for (const std::string& note : run.notes) fmt::format_to(Out(text), "  {}\n", note);
   if (run.projection) text += projection_text(run.plc, *run.projection);
+  if (run.coarsening && arguments.verbose)
+    fmt::format_to(Out(text), "  {} tets coarsened to {}: {} edges contracted, {} of them with repair\n",
+                   run.coarsening->tets_before, run.coarsening->tets_after, run.coarsening->contracted_edges,
+                   run.coarsening->repaired);
   const ImproveReport& i = run.improvement;
   if (arguments.verbose && i.candidates > 0)
     fmt::format_to(Out(text),

@@ -56,21 +56,25 @@ double distance_to_face(const gp_Pnt& p, const TopoDS_Face& face) {
 }  // namespace
 
 CadMeshed mesh_of_cad_file(const std::string& path, double relative_size, int order) {
-  cli::ComplexInput input({path});
+  constexpr double relative_distance = 1e-3;
+  cli::InputReading reading;
+  reading.distance = [](double diagonal) { return relative_distance * diagonal; };
+  cli::ComplexInput input({path}, reading);
   CadMeshed meshed;
   meshed.plc = input.build({});
   MeshOptions options;
   options.size = relative_size * meshed.plc.bounds.diagonal();
+  options.distance = relative_distance * meshed.plc.bounds.diagonal();
   options.time_limit = 60;
   meshed.result = generate(meshed.plc, input.tightened(options, meshed.plc));
   if (meshed.result.status != MeshStatus::complete) return meshed;
   TetMesh& mesh = meshed.result.mesh;
-  const MeshOptions bounds = input.tightened({}, meshed.plc);
+  const MeshOptions bounds = input.tightened(options, meshed.plc);
   improve(mesh, meshed.plc, {.radius_edge = bounds.radius_edge, .distance = bounds.distance});
-  meshed.projection = project_boundary(mesh, meshed.plc, input.exact_geometry(meshed.plc));
+  meshed.projection = project_boundary(mesh, meshed.plc, input.exact_geometry(meshed.plc), {.reach = options.distance});
   if (order == 2)
     meshed.second_order = make_second_order(mesh, meshed.plc, {.exact = input.exact_geometry(meshed.plc)});
-  meshed.report = check(meshed.result.mesh, meshed.plc);
+  meshed.report = check(meshed.result.mesh, meshed.plc, {.distance = options.distance});
   return meshed;
 }
 

@@ -79,7 +79,7 @@ class ProgramTest(unittest.TestCase):
 class Usage(ProgramTest):
     def test_help_tells_defaults_and_codes(self):
         run = self.expect(0, "--help")
-        for text in ("1/20 of the diagonal", "1e-3 of the diagonal", "--collar-angle", "--theta", "--improve", "Exit codes", "check", "info"):
+        for text in ("1/20 of the diagonal", "1/400 of the diagonal", "--coarsen", "--collar-angle", "--theta", "--improve", "Exit codes", "check", "info"):
             self.assertIn(text, run.stdout)
         for command in ("check", "info", "convert", "repair"):
             self.assertIn("--feature-angle", self.expect(0, command, "--help").stdout)
@@ -331,15 +331,35 @@ class Creases(ProgramTest):
     def test_a_sharp_wedge_gets_collars(self):
         report = self.folder / "report.json"
         wedge = self.write("wedge.off", wedge_text(10))
-        self.expect(0, wedge, "-o", self.out, "--report", report, writes=True)
+        self.expect(0, wedge, "-o", self.out, "--coarsen", "off", "--report", report, writes=True)
         found = json.loads(report.read_text())
         self.assertGreater(len(found["complex"]["creases"]), 0)
         self.assertGreater(found["check"]["collar_tets"], 0)
+        self.assertEqual(found["check"]["thin_tets"], 0)
+        self.assertIsNone(found["coarsening"])
         self.expect(0, "check", self.out, "--against", wedge, writes=True)
+
+    def test_a_sharp_wedge_gets_thin_tets_in_the_place_of_many(self):
+        wedge = self.write("wedge.off", wedge_text(5))
+        tets = {}
+        for coarsen in ("on", "off"):
+            report = self.folder / "report.json"
+            self.expect(0, wedge, "-o", self.out, "--coarsen", coarsen, "--report", report, writes=True)
+            found = json.loads(report.read_text())
+            tets[coarsen] = found["mesh"]["tets"]
+            self.assertEqual(found["check"]["thin_tets"] > 0, coarsen == "on")
+            self.expect(0, "check", self.out, "--against", wedge, writes=True)
+            strict = self.run_program("check", self.out, "--against", wedge, "--thin-angle", "0", "--json")
+            guarantees = {finding["guarantee"] for finding in json.loads(strict.stdout)["findings"]}
+            self.assertEqual(guarantees, {"radius_edge"} if coarsen == "on" else set())
+        self.assertLess(tets["on"], 0.2 * tets["off"])
+        self.out.unlink()
+        for word, value in (("--coarsen", "maybe"), ("--thin-angle", "31")):
+            self.expect(2, wedge, "-o", self.folder / "other.vtu", word, value, says=[word])
 
     def test_the_bound_in_collars_is_an_option(self):
         wedge = self.write("wedge.off", wedge_text(30))
-        self.expect(0, wedge, "-o", self.out, "--collar-angle", "140", writes=True)
+        self.expect(0, wedge, "-o", self.out, "--coarsen", "off", "--collar-angle", "140", writes=True)
         self.expect(0, "check", self.out, "--against", wedge, "--collar-angle", "140", writes=True)
         self.expect(7, "check", self.out, "--against", wedge, "--collar-angle", "100", writes=True)
         self.out.unlink()
@@ -446,7 +466,8 @@ class MeshesOfOtherPrograms(ProgramTest):
         self.assertAlmostEqual(report["region_volumes"]["1"], 1, places=9)
         self.assertGreater(report["edges"], 0)
         bound = report["max_radius_edge"]
-        strict = self.run_program("check", mesh, "--against", surface, "--radius-edge", str(0.95 * bound), "--json")
+        strict = self.run_program("check", mesh, "--against", surface, "--radius-edge", str(0.95 * bound),
+                                  "--thin-angle", "0", "--json")
         self.assertEqual(strict.returncode, 7)
         self.assertEqual({f["guarantee"] for f in json.loads(strict.stdout)["findings"]}, {"radius_edge"})
 
@@ -748,7 +769,7 @@ class Convert(ProgramTest):
 
     def test_collars_in_every_format(self):
         wedge = self.write("wedge.off", wedge_text(20))
-        self.convert(0, wedge, "-o", "a.vtu", "--size", "0.3")
+        self.convert(0, wedge, "-o", "a.vtu", "--size", "0.3", "--coarsen", "off")
         for extension in ("vtk", "msh", "mesh", "unv", "ele", "vtu", "inp"):
             with self.subTest(extension=extension):
                 self.convert(0, "a.vtu", "-o", f"b.{extension}")
@@ -758,6 +779,20 @@ class Convert(ProgramTest):
                 self.assertGreater(report["collar_tets"], 0)
                 blunt = self.run_program("check", f"b.{extension}", "--against", wedge, "--crease-angle", "5", "--json")
                 self.assertEqual(json.loads(blunt.stdout)["collar_tets"], 0)
+
+    def test_thin_tets_in_every_format(self):
+        wedge = self.write("wedge.off", wedge_text(20))
+        self.convert(0, wedge, "-o", "a.vtu", "--size", "0.3")
+        for extension in ("vtk", "msh", "mesh", "unv", "ele", "vtu", "inp"):
+            with self.subTest(extension=extension):
+                self.convert(0, "a.vtu", "-o", f"b.{extension}")
+                check = self.run_program("check", f"b.{extension}", "--against", wedge, "--json")
+                report = json.loads(check.stdout)
+                self.assertTrue(report["passed"], check.stdout)
+                # Where no cell is marked all at the crease count as its collar's.
+                self.assertGreater(report["thin_tets"] + report["collar_tets"], 0)
+                if extension in ("vtk", "msh", "vtu"):
+                    self.assertGreater(report["thin_tets"], 0)
 
     def test_says_which_triangles_are_lost(self):
         self.write("loose.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices 5\n0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 1\n"

@@ -16,6 +16,7 @@ certificate, which has to hold before the checker is asked, judges the angles th
 import argparse
 import concurrent.futures
 import json
+import math
 import re
 import sys
 import tempfile
@@ -92,11 +93,14 @@ def mesh_and_judge(program, generator, member, folder):
     files = sorted(folder.glob(f"{prefix.name}_[0-9]*.poly"))
     told = next(path for path in map(Path, (f"{prefix}.off", f"{prefix}.poly")) if path.exists())
     mesh, report = f"{prefix}.vtu", f"{prefix}.json"
-    run_well(program, *files, "-o", mesh, "--size", SIZE, "--distance", DISTANCE, "--report", report,
-             "--feature-angle", 30 if member.curved else 0, "--threads", 1, "--time-limit", TIME_LIMIT)
-    said = verdict(mesh, "--surface", told, *(["--distance", DISTANCE] if member.curved else ["--exact"]))
-    found = json.loads(Path(report).read_text())["mesh"]
-    return f"{found['tets']:7} tets, judge ({told.suffix}): {said}"
+    tets = {}
+    for coarsen, radius_edge in (("off", 2), ("on", math.inf)):
+        run_well(program, *files, "-o", mesh, "--size", SIZE, "--distance", DISTANCE, "--report", report, "--coarsen",
+                 coarsen, "--feature-angle", 30 if member.curved else 0, "--threads", 1, "--time-limit", TIME_LIMIT)
+        said = verdict(mesh, "--surface", told, *(["--distance", DISTANCE] if member.curved else ["--exact"]),
+                       radius_edge=radius_edge)
+        tets[coarsen] = json.loads(Path(report).read_text())["mesh"]["tets"]
+    return f"{tets['off']:7} tets, coarsened {tets['on']:7}, judge ({told.suffix}): {said}"
 
 
 def outcome(*arguments):

@@ -12,6 +12,7 @@ import concurrent.futures
 import csv
 import functools
 import json
+import math
 import os
 import pathlib
 import re
@@ -58,7 +59,7 @@ def is_exact(path):
     return path.suffix == ".poly" or path.stem in EXACT
 
 
-def judge(path, expect, mesh, diagonal):
+def judge(path, expect, mesh, diagonal, radius_edge=math.inf):
     """An independent word on a mesh: ", judged". Inputs that are no clean surface have no volume or
     boundary to compare with; their meshes are judged by themselves."""
     if not JUDGE or path.name in NOT_JUDGED:
@@ -67,7 +68,7 @@ def judge(path, expect, mesh, diagonal):
     if expect.startswith("mesh:"):
         tolerance = ["--exact"] if is_exact(path) else ["--distance", RELATIVE_DISTANCE * diagonal]
         against = ["--surface", path, *tolerance]
-    verdict(mesh, *against)
+    verdict(mesh, *against, radius_edge=radius_edge)
     return ", judged" if against else ", judged by itself"
 
 
@@ -82,20 +83,22 @@ def projected(report):
     return f", {off} of {projection['vertices']} off"
 
 
-def create_collars_in_the_pass(program, path, expect, mesh, options):
-    """The other way to place balls meets every guarantee, too."""
+def create_collars_in_the_pass(program, path, expect, mesh, options, diagonal):
+    """The other way to place balls meets every guarantee, too; not coarsened, with a radius-edge bound everywhere."""
     if not expect.startswith("mesh:"):
         return
-    result = run(program, path, "-o", mesh, *options, "--collar-creation", "in-pass", "--improve", 0)
+    way = ["--collar-creation", "in-pass", "--coarsen", "off", "--improve", 0]
+    result = run(program, path, "-o", mesh, *options, *way)
     if result.returncode != 0:
         raise Failed(f"collars in the pass: exit code {result.returncode}: {(result.stderr.splitlines() or [''])[0]}")
+    judge(path, expect, mesh, diagonal, radius_edge=2)
 
 
 def mesh_one(program, path, expect, folder):
     """What happened, as a line for the table. Throws Failed."""
     diagonal = diagonal_of(program, path)
     mesh = folder / (path.name + ".vtu")
-    size = [] if diagonal is None else ["--size", diagonal * RELATIVE_SIZE]
+    size = [] if diagonal is None else ["--size", diagonal * RELATIVE_SIZE, "--distance", diagonal * RELATIVE_DISTANCE]
     report = folder / (path.name + ".json")
     exact = ["--feature-angle", 0] if is_exact(path) else []
     expected = expected_code(path.name, expect)
@@ -109,7 +112,7 @@ def mesh_one(program, path, expect, folder):
     if result.returncode == 0:
         found = json.loads(report.read_text())
         judged = judge(path, expect, mesh, diagonal)
-        create_collars_in_the_pass(program, path, expect, mesh, [*size, *exact])
+        create_collars_in_the_pass(program, path, expect, mesh, [*size, *exact], diagonal)
         return f"{found['mesh']['tets']} tets in {found['seconds']['refine']:.2f} s{judged}{projected(found)}"
     if mesh.exists():
         raise Failed(f"a mesh was written in spite of exit code {result.returncode}")

@@ -1,7 +1,7 @@
 """Programs that the tests run, and the independent checker that judges meshes.
 
 COLLARMESH_JUDGE may name one:
-    JUDGE MESH --surface FILE [--exact | --distance D]; exit code 0 when everything holds.
+    JUDGE MESH --surface FILE [--exact | --distance D] [--rho BOUND]; exit code 0 when everything holds.
 """
 
 import os
@@ -23,9 +23,10 @@ def run(*arguments, limit=TIME_LIMIT):
         raise Failed(f"still running after {limit} s")
 
 
-def verdict(mesh, *against):
-    """What the judge says last of a mesh that it finds nothing wrong with. Throws Failed."""
-    result = run(sys.executable, JUDGE, mesh, *against)
+def verdict(mesh, *against, radius_edge=2):
+    """What the judge says last of a mesh that it finds nothing wrong with. It knows no thin tetrahedra, so that those
+    of coarsened meshes need an infinite bound. Throws Failed."""
+    result = run(sys.executable, JUDGE, mesh, *against, "--rho", radius_edge)
     last = (result.stdout + result.stderr or "it says nothing").strip().splitlines()[-1]
     if result.returncode != 0:
         raise Failed(f"judge: {last}")

@@ -46,6 +46,7 @@ std::vector<Shape> shapes() {
 }
 
 constexpr double radius_edge = 2;
+constexpr double distance = 2e-3;  // about a thousandth of the diagonals
 constexpr std::size_t attempts = 2000;  // on each mesh
 constexpr std::size_t single_steps = 4;
 
@@ -53,8 +54,8 @@ constexpr std::size_t single_steps = 4;
 struct Workbench {
   Workbench(const Meshed& meshed, const TetMesh& of)
       : mesh(of),
-        workpiece(mesh, meshed.plc, 1e-3 * meshed.plc.bounds.diagonal()),
-        operations(workpiece, radius_edge) {}
+        workpiece(mesh, meshed.plc, distance),
+        operations(workpiece, rule) {}
 
   double worst(std::span<const Index> tets) const {
     double quality = INFINITY;
@@ -65,6 +66,7 @@ struct Workbench {
   TetMesh mesh;
   Workpiece workpiece;
   const TetComplex& complex = workpiece.complex;
+  improvement::SliverRule rule{radius_edge};
   Operations operations;
 };
 
@@ -129,7 +131,7 @@ void apply(Workbench& on, const Change& change) {
 std::string faults_of(const Meshed& meshed, TetMesh mesh) {
   Meshed changed{meshed.plc, {}, {}};
   changed.result.mesh = std::move(mesh);
-  changed.report = check(changed.result.mesh, changed.plc);
+  changed.report = check(changed.result.mesh, changed.plc, {.distance = distance});
   return testing::faults(changed);
 }
 
@@ -154,7 +156,9 @@ class ImproveOperations : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     for (const Shape& shape : shapes()) {
-      meshes().emplace_back(shape.name, mesh_of(shape.soups, with_size(shape.size), shape.feature_angle));
+      MeshOptions options = with_size(shape.size);
+      options.distance = distance;
+      meshes().emplace_back(shape.name, mesh_of(shape.soups, options, shape.feature_angle));
       ASSERT_EQ(testing::faults(meshes().back().second), "") << shape.name;
     }
   }

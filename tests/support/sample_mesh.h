@@ -91,6 +91,7 @@ class SampleMesh {
     mesh_.tet_collar.push_back(static_cast<std::uint8_t>(mesh_.tets.size() % 3));
     mesh_.tet_crease.push_back(mesh_.tet_collar.back() == 0 ? 0
                                                             : 7 - static_cast<Tag>(mesh_.tets.size() % 11));
+    mesh_.tet_thin.push_back(static_cast<std::uint8_t>(mesh_.tets.size() % 2));
     mesh_.tets.push_back(t);
     mesh_.tet_region.push_back(region);
     mesh_.tet_tag.push_back(tag_of_region(region));

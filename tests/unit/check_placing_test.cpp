@@ -92,7 +92,7 @@ TEST(CheckPlacing, LabelsInMemoryCount) {
 TEST(CheckPlacing, FaultsAreStillFound) {
   const MeshedComplex m = meshed_two_boxes(4);
   const TetMesh strange = without_faces(without_edges(with_strange_tags(m)));
-  EXPECT_EQ(broken(strange, m.plc, {.radius_edge = 0.8}), Names{guarantee::radius_edge});
+  EXPECT_EQ(broken(strange, m.plc, {.radius_edge = 0.8, .thin_angle = 0}), Names{guarantee::radius_edge});
   TetMesh mesh = strange;
   mesh.tets.pop_back();
   mesh.tet_region.pop_back();
@@ -110,7 +110,7 @@ TEST(CheckPlacing, FaultsAreStillFound) {
 TEST(CheckPlacing, CreasesExcuseWhatTouchesThem) {
   const MeshedComplex m = meshed_box(4);  // all twelve edges are creases for angles below 91 degrees
   const TetMesh mesh = without_features(m.mesh);
-  const CheckOptions creases{.radius_edge = 0.1, .crease_angle = 91};
+  const CheckOptions creases{.radius_edge = 0.1, .thin_angle = 0, .crease_angle = 91};
   const CheckReport report = check(mesh, m.plc, creases);
   EXPECT_GT(report.collar_tets, 0U);
   EXPECT_EQ(report.findings_total, report.tets - report.collar_tets);
@@ -121,7 +121,7 @@ TEST(CheckPlacing, CreasesExcuseWhatTouchesThem) {
 TEST(CheckPlacing, MarksAloneExcuseNothing) {
   MeshedComplex m = meshed_box(4);
   m.mesh.tet_collar.assign(m.mesh.tets.size(), 1);
-  const CheckOptions strict{.radius_edge = 0.1};
+  const CheckOptions strict{.radius_edge = 0.1, .thin_angle = 0};
   EXPECT_EQ(broken(m.mesh, m.plc, strict), (Names{guarantee::collar_cells, guarantee::radius_edge}));
   const CheckReport report = check(without_features(m.mesh), m.plc, strict);
   EXPECT_EQ(report.collar_tets, 0U);

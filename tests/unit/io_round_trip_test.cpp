@@ -99,6 +99,7 @@ TetMesh as_kept(TetMesh mesh, const Format& format) {
   if (!format.collar) {
     std::fill(mesh.tet_collar.begin(), mesh.tet_collar.end(), 0);
     std::fill(mesh.tet_crease.begin(), mesh.tet_crease.end(), 0);
+    mesh.tet_thin.clear();
   }
   if (!format.features) mesh = without_features(std::move(mesh));
   if (!format.edges) {
@@ -141,6 +142,7 @@ TetMesh canonical(TetMesh mesh) {
   permute(mesh.tet_tag, tets);
   permute(mesh.tet_collar, tets);
   permute(mesh.tet_crease, tets);
+  permute(mesh.tet_thin, tets);
   permute(mesh.tet_mid_nodes, tets);
   permute(mesh.tets, tets);
   permute(mesh.face_regions, faces);

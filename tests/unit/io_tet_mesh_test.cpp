@@ -39,6 +39,7 @@ TetMesh as_medit_keeps_it(TetMesh mesh) {
   mesh.tet_tag.assign(mesh.tet_region.begin(), mesh.tet_region.end());
   std::fill(mesh.tet_collar.begin(), mesh.tet_collar.end(), 0);
   std::fill(mesh.tet_crease.begin(), mesh.tet_crease.end(), 0);
+  mesh.tet_thin.clear();
   std::fill(mesh.face_patch.begin(), mesh.face_patch.end(), none);
   std::fill(mesh.edge_curve.begin(), mesh.edge_curve.end(), none);
   return mesh;

@@ -18,7 +18,7 @@ PROPERTIES = (
     ("App::PropertyInteger", "ElementsAcrossGap", "elements_across_gap", SIZES, "Elements across thin parts; 0: any"),
     ("App::PropertyFloat", "Gradation", "gradation", SIZES, "Growth of size per unit length away from finer ones; 0: any"),
     ("App::PropertyLength", "SurfaceDistance", "distance", FEATURES,
-     "Largest distance of faces and edges of the mesh from the shape; 0: 1/1000 of the diagonal"),
+     "Largest distance of faces and edges of the mesh from the shape; 0: 1/20 of the size, at most 1/400 of the diagonal"),
     ("App::PropertyAngle", "CreaseAngle", "crease_angle", FEATURES, "Edges and faces that meet below it get a collar"),
     ("App::PropertyAngle", "CollarAngle", "collar_angle", FEATURES, "Bound on dihedral angles in collars"),
     ("App::PropertyFloat", "PlanarTolerance", "planar_tolerance", FEATURES,
@@ -27,6 +27,9 @@ PROPERTIES = (
      "Points closer than this are one, relative to the diagonal; 0: 1e-9"),
     ("App::PropertyFloat", "RepairTolerance", "repair_tolerance", FEATURES,
      "Where the shape has to be repaired, features below this are noise, relative to the diagonal; 0: 1e-5"),
+    ("App::PropertyBool", "Coarsen", "coarsen", QUALITY,
+     "As few elements as the sizes ask for, thin ones in thin places; else the bound on circumradius / shortest edge "
+     "holds everywhere outside collars"),
     ("App::PropertyFloat", "RadiusEdgeRatio", "radius_edge", QUALITY, "Bound on circumradius / shortest edge"),
     ("App::PropertyInteger", "ImproveLevel", "improve", QUALITY, "Removal of slivers: 0 none, 1 quick, 2 good, 3 best"),
     ("App::PropertyAngle", "MinDihedralAngle", "min_dihedral", QUALITY,

@@ -40,6 +40,7 @@ class Settings:
     seed: int = 0
     time_limit: float = 0
     improve: int = 2
+    coarsen: bool = True
     order: int = 1
     repair: str = "auto"  # or "none", or "wrap"
     solid_sizes: dict = dataclasses.field(default_factory=dict)
@@ -54,6 +55,8 @@ class Settings:
             if value:
                 arguments += ["--" + field.name.replace("_", "-"), repr(field.type(value))]
         arguments += ["--improve", str(int(self.improve))]
+        if not self.coarsen:
+            arguments += ["--coarsen", "off"]
         if self.order != 1:
             arguments += ["--order", str(self.order)]
         if self.repair != "auto":

@@ -10,8 +10,12 @@
 namespace collarmesh {
 
 struct CheckOptions {
-  double radius_edge = 2;      ///< bound outside collars
-  double distance = 0;         ///< surface distance tolerance on smooth patches and curves, absolute; 0: 1e-3 of the diagonal
+  double radius_edge = 2;      ///< bound outside collars, but for thin tets
+  /// Degrees: a thin tet, which may exceed that bound, has dihedral angles of at least this (at a sharper crease half
+  /// its angle) and dihedral and face angles of at most 150; 0: no tet may exceed the bound. Where a mesh
+  /// tells which tets are thin only these may be, in memory as well as read from a file.
+  double thin_angle = 8;
+  double distance = 0;         ///< surface distance tolerance on smooth patches and curves, absolute; 0: 1/400 of the diagonal
   double collar_angle = 150;   ///< largest dihedral angle in collars, degrees
   double crease_angle = 60;    ///< degrees; features that meet below it are the creases that excuse a collar's cells
   std::size_t findings_per_guarantee = 20;  ///< more are counted, not listed
@@ -31,8 +35,9 @@ struct CheckReport {
   std::size_t findings_total = 0;  ///< with those not listed
   std::vector<std::string> notes;  ///< sentences: labels that were not the complex', so that positions decided
   // What was measured:
-  std::size_t tets = 0, points = 0, faces = 0, edges = 0, collar_tets = 0;
-  double max_radius_edge = 0;          ///< outside collars
+  std::size_t tets = 0, points = 0, faces = 0, edges = 0, collar_tets = 0, thin_tets = 0;
+  double max_radius_edge = 0;          ///< outside collars, without thin tets
+  double max_thin_radius_edge = 0;     ///< of thin tets
   double min_dihedral = 180, max_dihedral = 0;  ///< outside collars
   double max_collar_dihedral = 0;
   double max_surface_distance = 0;     ///< two-sided, on smooth patches and curves
@@ -45,7 +50,7 @@ struct CheckReport {
 
 /// Recompute every guarantee from the mesh alone, independently of how it was made: positive
 /// volumes, conformity, watertight regions, region volumes, curves as unions of edges, facets as
-/// unions of faces with equal area, radius-edge ratio, surface distance.
+/// unions of faces with equal area, radius-edge ratio or angles, surface distance.
 /// A mesh read from a file (no feature indices) is matched to the complex by tags and position; where its
 /// tags are not the complex', or it has no boundary triangles or curve edges, by position alone.
 /// Tets count as a collar's cells only at creases of the complex.

@@ -12,8 +12,11 @@ namespace collarmesh {
 struct ImproveOptions {
   double min_dihedral = 20;  ///< degrees; tets with a smaller dihedral angle, or one as bad beyond 90 degrees, are worked on
   double radius_edge = 2;    ///< bound on circumradius / shortest edge that no new tet breaks
-  double distance = 0;       ///< surface distance tolerance on smooth patches; 0: 1e-3 of the diagonal
+  double thin_angle = 0;     ///< degrees: thin tets may exceed that bound, see `coarsen`; 0: none may
+  double thin_reserve = 0;   ///< as CoarsenOptions::reserve
+  double distance = 0;       ///< surface distance tolerance on smooth patches; 0: 1/400 of the diagonal
   bool move_vertices = true; ///< and take some out or in, not only change how they are connected
+  bool keep_vertices = false;  ///< take none out or in: a coarsened mesh has as many as it needs
   unsigned passes = 3;       ///< at most, over what could not be helped before
   unsigned threads = 0;      ///< at most; 0: as many as there are cores. The result does not depend on it
 };
@@ -37,7 +40,8 @@ struct ImproveReport {
 /// becomes longer than those before, and by inserting vertices amid edges (Freitag and Ollivier-Gooch
 /// 1997; the edge removal is Klincsek's optimal triangulation of the ring, as in Klingner and Shewchuk
 /// 2007, section 2). A sliver with two faces on a smooth patch is taken off the region.
-/// No operation makes the worst tet of its cavity worse, breaks the radius-edge bound, touches a
+/// No operation makes the worst tet of its cavity worse, breaks the radius-edge bound (by a tet that is not
+/// thin), touches a
 /// collar, leaves the plane of a planar patch, or takes a smooth patch or curve and its faces or edges
 /// farther apart than `distance`.
 /// Preconditions: `mesh` comes from `generate` for `plc`, first order, with the same `distance`.

@@ -13,7 +13,8 @@ struct MeshMeasures {
   static constexpr std::size_t bins = 18;
 
   double min_dihedral = 180, max_dihedral = 0;    ///< degrees
-  double max_radius_edge = 0;                     ///< outside collars, where it is bounded
+  double max_radius_edge = 0;                     ///< outside collars and of no thin tet: where it is bounded
+  double max_thin_radius_edge = 0;                ///< of thin tets; 0: there are none
   double max_collar_radius_edge = 0;              ///< in collars; 0: there are none
   std::array<std::size_t, bins> min_dihedrals{};  ///< tets by their smallest dihedral angle, 10 degrees a bin
   std::array<std::size_t, bins> max_dihedrals{};  ///< tets by their largest one
@@ -21,8 +22,9 @@ struct MeshMeasures {
       radius_edges{};  ///< tets by radius-edge ratio, 0.25 a bin, the last one is open
   std::map<Index, double> region_volumes;
 
+  enum class Kind { plain, thin, collar };
   /// Count a tet of this quality.
-  void add(const TetQuality& quality, Index region, bool in_collar);
+  void add(const TetQuality& quality, Index region, Kind kind);
 };
 
 /// Of all tets; of a mesh without regions they are those of region 1.

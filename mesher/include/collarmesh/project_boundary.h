@@ -11,10 +11,11 @@ namespace collarmesh {
 
 struct ProjectOptions {
   double radius_edge = 2;     ///< bound on circumradius / shortest edge that no tet outside collars breaks
+  double thin_angle = 0;      ///< degrees: thin tets may exceed that bound, see `coarsen`; 0: none may
   double collar_angle = 150;  ///< bound on dihedral angles in collars, degrees
   double tolerance = 1e-9;    ///< absolute: a vertex that stays and is nearer to its feature is no exception
   double reach =
-      0;  ///< absolute: vertices farther than this from their feature stay; 0: 1e-3 of the diagonal
+      0;  ///< absolute: vertices farther than this from their feature stay; 0: 1/400 of the diagonal
 };
 
 struct ProjectReport {

@@ -32,6 +32,8 @@ struct TetMesh {
   std::vector<Index> tet_region;         ///< index of the region in the complex, from 1
   std::vector<Tag> tet_tag;              ///< tag of that region
   std::vector<std::uint8_t> tet_collar;  ///< 0 outside collars, 1 star, 2 book
+  /// 1: one that exceeds the radius-edge bound as a thin tet may (see `coarsen`); empty: there is none.
+  std::vector<std::uint8_t> tet_thin;
   std::vector<Tag> tet_crease;           ///< in collars the tag of the crease, a curve or vertex; 0 outside
 
   /// Boundary, interface and internal-facet triangles; the normal (b-a) x (c-a) points from
@@ -73,6 +75,7 @@ struct TetQuality {
   double radius_edge;   ///< circumradius / shortest edge; infinite for a flat one
   double min_dihedral;  ///< degrees
   double max_dihedral;  ///< degrees
+  double max_face_angle = 0;  ///< degrees: the largest angle of its faces
 };
 /// At any scale: squares and products of lengths may be out of a double's range.
 TetQuality measure(const Point& a, const Point& b, const Point& c, const Point& d);

@@ -61,6 +61,8 @@ void check_lengths(const TetMesh& mesh, Findings& findings) {
   check_length(mesh.tet_tag.size(), mesh.tets.size(), "tags", "tets", findings);
   check_length(mesh.tet_collar.size(), mesh.tets.size(), "collar marks", "tets", findings);
   check_length(mesh.tet_crease.size(), mesh.tets.size(), "tags of creases", "tets", findings);
+  if (!mesh.tet_thin.empty())
+    check_length(mesh.tet_thin.size(), mesh.tets.size(), "marks of thin tets", "tets", findings);
   check_length(mesh.face_regions.size(), mesh.faces.size(), "pairs of regions", "faces", findings);
   check_length(mesh.face_patch.size(), mesh.faces.size(), "patches", "faces", findings);
   check_length(mesh.face_tag.size(), mesh.faces.size(), "tags", "faces", findings);

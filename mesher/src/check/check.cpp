@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "check/subject.h"
+#include "collarmesh/mesher.h"
 #include "thread_limit.h"
 
 namespace collarmesh {
@@ -43,7 +44,7 @@ Subject make_subject(const TetMesh& mesh, const Plc& plc, const CheckOptions& op
                   std::make_shared<RegionLocator>(plc),
                   {},
                   {}};
-  if (!(subject.options.distance > 0)) subject.options.distance = 1e-3 * box.diagonal();
+  if (!(subject.options.distance > 0)) subject.options.distance = default_distance(0, box.diagonal());
   subject.curve_allowance = curve_allowances(subject);
   subject.patch_allowance = patch_allowances(subject);
   return subject;
@@ -51,6 +52,8 @@ Subject make_subject(const TetMesh& mesh, const Plc& plc, const CheckOptions& op
 
 void take_measures(CheckReport& report, CheckReport&& part) {
   report.collar_tets += part.collar_tets;
+  report.thin_tets += part.thin_tets;
+  report.max_thin_radius_edge = std::max(report.max_thin_radius_edge, part.max_thin_radius_edge);
   report.max_radius_edge = std::max(report.max_radius_edge, part.max_radius_edge);
   report.min_dihedral = std::min(report.min_dihedral, part.min_dihedral);
   report.max_dihedral = std::max(report.max_dihedral, part.max_dihedral);

@@ -15,7 +15,8 @@ inline constexpr char vertex_feature[] = "vertex_feature";  ///< what a vertex s
 inline constexpr char positive_volume[] = "positive_volume";  ///< by exact arithmetic
 inline constexpr char distinct_tets[] = "distinct_tets";
 inline constexpr char conforming[] = "conforming";    ///< a face has at most two tets, on its two sides
-inline constexpr char radius_edge[] = "radius_edge";  ///< outside collars
+inline constexpr char radius_edge[] = "radius_edge";  ///< outside collars, but for thin tets
+inline constexpr char thin_angles[] = "thin_angles";  ///< of tets that exceed the radius-edge bound
 inline constexpr char collar_dihedral[] = "collar_dihedral";  ///< in collars
 
 // The balls of the collars, where the mesh tells them

@@ -14,10 +14,12 @@ std::size_t bin_of(double value, double width) {
 
 }  // namespace
 
-void MeshMeasures::add(const TetQuality& quality, Index region, bool in_collar) {
+void MeshMeasures::add(const TetQuality& quality, Index region, Kind kind) {
   min_dihedral = std::min(min_dihedral, quality.min_dihedral);
   max_dihedral = std::max(max_dihedral, quality.max_dihedral);
-  double& radius_edge = in_collar ? max_collar_radius_edge : max_radius_edge;
+  double& radius_edge = kind == Kind::collar ? max_collar_radius_edge
+                        : kind == Kind::thin ? max_thin_radius_edge
+                                             : max_radius_edge;
   radius_edge = std::max(radius_edge, quality.radius_edge);
   ++min_dihedrals[bin_of(quality.min_dihedral, 10)];
   ++max_dihedrals[bin_of(quality.max_dihedral, 10)];
@@ -31,7 +33,9 @@ MeshMeasures measure_mesh(const TetMesh& mesh) {
     const auto& [a, b, c, d] = mesh.tets[t];
     measures.add(measure(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]),
                  t < mesh.tet_region.size() ? mesh.tet_region[t] : 1,
-                 t < mesh.tet_collar.size() && mesh.tet_collar[t] != 0);
+                 t < mesh.tet_collar.size() && mesh.tet_collar[t] != 0 ? MeshMeasures::Kind::collar
+                 : t < mesh.tet_thin.size() && mesh.tet_thin[t] != 0   ? MeshMeasures::Kind::thin
+                                                                       : MeshMeasures::Kind::plain);
   }
   return measures;
 }

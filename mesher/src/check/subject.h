@@ -43,6 +43,28 @@ struct Subject {
   const Point& plc_corner(const Plc::Triangle& t, unsigned i) const { return plc.points[t.points[i]]; }
 };
 
+/// The tets that may exceed the radius-edge bound if their angles are bounded: dihedral angles from below, these
+/// and those of faces by 150 degrees. Where the mesh marks such tets, the marked ones, of a file without
+/// marks any. Where features meet at less than twice the bound from below it is half the angle they meet at.
+class ThinCells {
+ public:
+  static constexpr double largest_angle = 150;  ///< degrees
+
+  /// Precondition: subject.match is filled in.
+  explicit ThinCells(const Subject& subject);
+
+  bool claimed(Index tet) const;
+  /// Degrees.
+  double smallest_angle(const std::array<Index, 4>& tet) const;
+  bool are_bounded(const TetQuality& quality, const std::array<Index, 4>& tet) const;
+
+ private:
+  double smallest_;
+  const std::vector<std::uint8_t>& marks_;
+  bool all_;
+  std::vector<double> at_point_;  // empty where nothing meets that sharply
+};
+
 /// Items in groups by a key below `groups`; items whose key is none are left out.
 class Grouping {
  public:

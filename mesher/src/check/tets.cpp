@@ -27,7 +27,7 @@ void check_orientation(Index tet, const Corners& p, const TetQuality& quality, F
 }
 
 void check_shape(Index tet, const Corners& p, const TetQuality& quality, const Subject& subject,
-                 CheckReport& report, Findings& findings) {
+                 const ThinCells& thin, CheckReport& report, Findings& findings) {
   const CheckOptions& options = subject.options;
   if (subject.collar[tet] != 0) {
     ++report.collar_tets;
@@ -40,10 +40,24 @@ void check_shape(Index tet, const Corners& p, const TetQuality& quality, const S
           tet, At{p.centre()}, quality.max_dihedral, options.collar_angle);
     return;
   }
-  report.max_radius_edge = std::max(report.max_radius_edge, quality.radius_edge);
   report.min_dihedral = std::min(report.min_dihedral, quality.min_dihedral);
   report.max_dihedral = std::max(report.max_dihedral, quality.max_dihedral);
-  if (!(quality.radius_edge <= options.radius_edge * slack))
+  const bool within = quality.radius_edge <= options.radius_edge * slack;
+  if (!within && thin.claimed(tet)) {
+    ++report.thin_tets;
+    report.max_thin_radius_edge = std::max(report.max_thin_radius_edge, quality.radius_edge);
+    const auto& corners = subject.mesh.tets[tet];
+    if (thin.are_bounded(quality, corners)) return;
+    findings.add(guarantee::thin_angles, p.centre(), {tet},
+                 "Tet {} at {} has circumradius / shortest edge {:.6g} and is no thin one: its dihedral angles are "
+                 "from {:.6g} to {:.6g} degrees, those of its faces at most {:.6g}, allowed are {:.6g} to {:.6g}; "
+                 "check with the angle that the mesh was made with.",
+                 tet, At{p.centre()}, quality.radius_edge, quality.min_dihedral, quality.max_dihedral,
+                 quality.max_face_angle, thin.smallest_angle(corners), ThinCells::largest_angle);
+    return;
+  }
+  report.max_radius_edge = std::max(report.max_radius_edge, quality.radius_edge);
+  if (!within)
     findings.add(
         guarantee::radius_edge, p.centre(), {tet},
         "Tet {} at {} has circumradius / shortest edge {:.9g}, allowed is {:.9g}; refine with that bound, or "
@@ -67,13 +81,18 @@ void check_region_tag(Index tet, const Corners& p, const Subject& subject, Findi
 void check_tets(const Subject& subject, CheckReport& report, Findings& findings) {
   const TetMesh& mesh = subject.mesh;
   std::vector<long double> volumes(subject.plc.regions.size(), 0);
+  const ThinCells thin(subject);
   for (Index tet = 0; tet < mesh.tets.size(); ++tet) {
     const auto& t = mesh.tets[tet];
     const Corners p{mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]};
     const TetQuality quality = measure(p.a, p.b, p.c, p.d);
-    report.measures.add(quality, mesh.tet_region[tet], subject.collar[tet] != 0);
+    const bool is_thin = thin.claimed(tet) && quality.radius_edge > subject.options.radius_edge * slack;
+    report.measures.add(quality, mesh.tet_region[tet],
+                        subject.collar[tet] != 0 ? MeshMeasures::Kind::collar
+                        : is_thin                ? MeshMeasures::Kind::thin
+                                                 : MeshMeasures::Kind::plain);
     check_orientation(tet, p, quality, findings);
-    check_shape(tet, p, quality, subject, report, findings);
+    check_shape(tet, p, quality, subject, thin, report, findings);
     check_region_tag(tet, p, subject, findings);
     volumes[mesh.tet_region[tet]] += quality.volume;
   }

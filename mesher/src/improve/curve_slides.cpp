@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/round_curves.h"
 #include "location/triangle_hierarchy.h"
 
 namespace collarmesh::improvement {
@@ -15,13 +16,22 @@ double squared_distance_to_segment(const Point& p, const Point& a, const Point& 
 
 }  // namespace
 
+CurveSlides::CurveSlides(const Plc& plc, const TetMesh& mesh, double distance, double edges_per_hole)
+    : plc_(plc), mesh_(mesh), squared_distance_(distance * distance), paths_(plc, plc.points) {
+  spare_edges_.reserve(plc.curves.size());
+  for (const Plc::Curve& curve : plc.curves)
+    spare_edges_.push_back(-static_cast<std::ptrdiff_t>(least_edges(plc, curve, edges_per_hole)));
+  for (const Index curve : mesh.edge_curve)
+    if (curve != none) ++spare_edges_[curve];
+}
+
 bool CurveSlides::movable(Index vertex) const {
-  std::call_once(prepared_, [&] { prepare(); });
+  prepare();
   return vertex < places_.size() && places_[vertex].neighbours[0] != none &&
          places_[vertex].neighbours[1] != none;
 }
 
-void CurveSlides::prepare() const {
+void CurveSlides::find_all_places() const {
   places_.resize(mesh_.points.size());
   std::vector<Index> point_of(plc_.vertices.size(), none);
   std::vector<std::vector<Index>> vertices(plc_.curves.size());
@@ -100,7 +110,7 @@ bool CurveSlides::fits(Index vertex, double way) const {
 
 bool CurveSlides::may_skip(Index vertex) const {
   const auto [before, after] = places_[vertex].neighbours;
-  if (before == after) return false;
+  if (before == after || spare_edges_[mesh_.features[vertex].feature] <= 0) return false;
   const double behind = way_to_neighbour(vertex, 0), ahead = way_to_neighbour(vertex, 1);
   return edge_fits(mesh_.features[vertex].feature, places_[vertex].parameter - behind, behind + ahead,
                    mesh_.points[before], mesh_.points[after]);
@@ -108,8 +118,15 @@ bool CurveSlides::may_skip(Index vertex) const {
 
 void CurveSlides::skipped(Index vertex) {
   const auto [before, after] = places_[vertex].neighbours;
-  if (mesh_.features[before].dimension == 1) places_[before].neighbours[1] = after;
-  if (mesh_.features[after].dimension == 1) places_[after].neighbours[0] = before;
+  old_spare_edges_.note(spare_edges_, mesh_.features[vertex].feature);
+  --spare_edges_[mesh_.features[vertex].feature];
+  const auto join = [&](Index end, unsigned side, Index neighbour) {
+    if (mesh_.features[end].dimension != 1) return;
+    old_places_.note(places_, end);
+    places_[end].neighbours[side] = neighbour;
+  };
+  join(before, 1, after);
+  join(after, 0, before);
 }
 
 // The edge ab and the part of a curve that starts at `from` and is `way` long.

@@ -6,6 +6,7 @@
 
 #include "collarmesh/plc.h"
 #include "collarmesh/tet_mesh.h"
+#include "improve/undo_log.h"
 #include "location/curve_paths.h"
 
 namespace collarmesh::improvement {
@@ -16,8 +17,7 @@ namespace collarmesh::improvement {
 class CurveSlides {
  public:
   /// Both are kept by reference. `distance` is absolute. Several threads may ask at once.
-  CurveSlides(const Plc& plc, const TetMesh& mesh, double distance)
-      : plc_(plc), mesh_(mesh), squared_distance_(distance * distance), paths_(plc, plc.points) {}
+  CurveSlides(const Plc& plc, const TetMesh& mesh, double distance, double edges_per_hole = 0);
 
   /// Can this vertex, on a curve, be moved at all?
   bool movable(Index vertex) const;
@@ -26,7 +26,10 @@ class CurveSlides {
   /// May it be moved there?
   bool fits(Index vertex, double way) const;
   /// It was.
-  void moved(Index vertex, double way) { places_[vertex].parameter += way; }
+  void moved(Index vertex, double way) {
+    old_places_.note(places_, vertex);
+    places_[vertex].parameter += way;
+  }
   /// The mesh vertices before and after it. Precondition: it is movable.
   const std::array<Index, 2>& neighbours(Index vertex) const { return places_[vertex].neighbours; }
   /// Could one edge join its neighbours?
@@ -34,13 +37,22 @@ class CurveSlides {
   /// One does.
   void skipped(Index vertex);
 
+  /// Find the places of all vertices now.
+  void prepare() const {
+    std::call_once(prepared_, [this] { find_all_places(); });
+  }
+  /// What moves and is skipped from here on can be undone, until it is kept.
+  void begin_trial() { old_places_.begin(places_.size()), old_spare_edges_.begin(spare_edges_.size()); }
+  void keep() { old_places_.end(), old_spare_edges_.end(); }
+  void undo() { old_places_.undo(places_), old_spare_edges_.undo(spare_edges_); }
+
  private:
   struct Place {
     double parameter = 0;
     std::array<Index, 2> neighbours{none, none};  // mesh vertices before and after it
   };
 
-  void prepare() const;
+  void find_all_places() const;
   void find_places(Index curve, std::vector<Index>& vertices, const std::array<Index, 2>& ends) const;
   double way_to_neighbour(Index vertex, unsigned side) const;
   bool edge_fits(Index curve, double from, double way, const Point& a, const Point& b) const;
@@ -51,6 +63,9 @@ class CurveSlides {
   CurvePaths paths_;
   mutable std::once_flag prepared_;
   mutable std::vector<Place> places_;  // of every vertex there was then; made when first asked for
+  std::vector<std::ptrdiff_t> spare_edges_;  // of every curve: more than it has to have
+  UndoLog<Place> old_places_;
+  UndoLog<std::ptrdiff_t> old_spare_edges_;
 };
 
 }  // namespace collarmesh::improvement

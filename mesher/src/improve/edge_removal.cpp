@@ -17,16 +17,16 @@ constexpr double flat_volume = 1e-13;
 double Operations::new_quality(const std::array<Index, 4>& v, double above) const {
   const auto& points = mesh_.points;
   const Corners p{points[v[0]], points[v[1]], points[v[2]], points[v[3]]};
-  const double quality = shape_quality(p);
-  if (quality <= above) return -1;
-  const Circumsphere sphere = circumsphere(p);
-  return sphere.squared_radius <= squared_radius_edge_ * sphere.shortest_squared_edge ? quality : -1;
+  const double quality = rule_.quality(p, v);
+  return quality > above && rule_.allows(p, v, quality) ? quality : -1;
 }
 
 // Triangulate the polygon around the edge ab so that the worst of the two tets on each triangle is as
 // good as possible (Klincsek 1980). Cost: the polygon's vertices cubed.
-double Operations::triangulate(Index a, Index b, const Polygon& polygon, double above) {
+double Operations::triangulate(Index a, Index b, const Polygon& polygon, bool closed, double above) {
   const std::size_t n = polygon.size();
+  const auto& points = mesh_.points;
+  const double removed = squared_distance(points[a], points[b]);
   best_.assign(n * n, INFINITY);
   apex_.assign(n * n, 0);
   for (std::size_t width = 2; width < n; ++width)
@@ -34,6 +34,10 @@ double Operations::triangulate(Index a, Index b, const Polygon& polygon, double 
       const std::size_t j = i + width;
       double& best = best_[i * n + j];
       best = -1;
+      const bool is_new = width + 1 < n || !closed;
+      if (is_new && !rule_.allows_edge(polygon[i], polygon[j],
+                                       squared_distance(points[polygon[i]], points[polygon[j]]), removed))
+        continue;
       for (std::size_t k = i + 1; k < j; ++k) {
         double q = std::min(best_[i * n + k], best_[k * n + j]);
         const double bar = std::max(above, best);
@@ -78,7 +82,7 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change) 
   double worst = INFINITY;
   for (std::size_t k = 0; k < n; ++k) {
     const auto& t = complex_[ring_.tets[k]];
-    if (t.collar) return;
+    if (untouchable(t)) return;
     worst = std::min(worst, quality(ring_.tets[k]));
     for (unsigned corner = 0; corner < 4; ++corner) {
       const Index opposite = t.corners[corner];
@@ -124,7 +128,7 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change) 
   }
   made.quality = INFINITY;
   for (std::size_t k = 0; k < polygons.size(); ++k) {
-    made.quality = std::min(made.quality, triangulate(a, b, polygons[k], above));
+    made.quality = std::min(made.quality, triangulate(a, b, polygons[k], kept.empty(), above));
     if (made.quality <= above) return;
     collect(a, b, polygons[k], 0, polygons[k].size() - 1, like[k], made);
   }
@@ -141,7 +145,8 @@ bool Operations::may_lose(Index tet, Index a, Index b) const {
     if (complex_.pinched(v)) return false;
   for (unsigned corner = 0; corner < 4; ++corner) {
     if (t.corners[corner] != a && t.corners[corner] != b) continue;
-    if (t.faces[corner] != none || t.neighbours[corner] == none || complex_[t.neighbours[corner]].collar)
+    if (t.faces[corner] != none || t.neighbours[corner] == none ||
+        untouchable(complex_[t.neighbours[corner]]))
       return false;
   }
   return true;

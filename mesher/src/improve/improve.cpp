@@ -8,6 +8,7 @@
 #include <queue>
 
 #include "collarmesh/error.h"
+#include "collarmesh/mesher.h"
 #include "improve/operations.h"
 #include "thread_limit.h"
 
@@ -18,7 +19,6 @@ namespace {
 
 // An inserted vertex has to bring the tets around it to this share of the wanted quality.
 constexpr double enough = 0.7;
-constexpr double default_distance = 1e-3;
 // Changes are proposed for so many tets at once: few of all, so that they hardly meet.
 constexpr std::size_t tets_per_proposal = 2000;
 constexpr std::size_t most_proposals = 1024;
@@ -31,12 +31,16 @@ class Improvement {
  public:
   Improvement(TetMesh& mesh, const Plc& plc, const ImproveOptions& options, const Execution& execution)
       : workpiece_(mesh, plc,
-                   options.distance > 0 ? options.distance : default_distance * plc.bounds.diagonal()),
-        operations_([this, &options] { return Operations(workpiece_, options.radius_edge); }),
+                   options.distance > 0 ? options.distance : default_distance(0, plc.bounds.diagonal())),
+        thin_(plc, mesh, options.thin_angle, options.thin_reserve),
+        rule_(options.radius_edge, options.thin_angle > 0 ? &thin_ : nullptr),
+        operations_([this] { return Operations(workpiece_, rule_); }),
         execution_(execution),
         threads_(options.threads),
         move_vertices_(options.move_vertices),
+        keep_vertices_(options.keep_vertices),
         wanted_(std::sin(options.min_dihedral * std::numbers::pi / 180)),
+        radius_edge_(options.radius_edge),
         passes_(options.passes) {}
 
   ImproveReport run() {
@@ -51,6 +55,7 @@ class Improvement {
     }
     report_.remaining = count_remaining();
     workpiece_.complex.store();
+    if (!thin_.empty()) mark_thin_tets(workpiece_.complex.mesh(), radius_edge_);
     report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return report_;
   }
@@ -68,6 +73,8 @@ class Improvement {
 
   const TetComplex& complex() const { return workpiece_.complex; }
 
+  double quality(Index tet) const { return rule_.quality(complex().corners(tet), complex()[tet].corners); }
+
   std::size_t changes() const {
     return report_.edge_removals + report_.boundary_flips + report_.moved_vertices +
            report_.inserted_vertices + report_.contracted_edges;
@@ -76,20 +83,20 @@ class Improvement {
   std::size_t count_remaining() const {
     std::size_t count = 0;
     for (Index t = 0; t < complex().size(); ++t)
-      count += complex()[t].alive && !complex()[t].collar && workpiece_.quality(t) < wanted_;
+      count += complex()[t].alive && !complex()[t].collar && quality(t) < wanted_;
     return count;
   }
 
   void queue(Index tet) {
     if (!complex()[tet].alive || complex()[tet].collar) return;
-    const double quality = workpiece_.quality(tet);
-    if (quality < wanted_) queue_.push({quality, tet, complex()[tet].generation});
+    const double q = quality(tet);
+    if (q < wanted_) queue_.push({q, tet, complex()[tet].generation});
   }
 
   bool is_up_to_date(const Item& item) const {
     const auto& tet = complex()[item.tet];
     return tet.alive && tet.generation == item.generation &&
-           workpiece_.quality(item.tet) == item.quality;  // else a vertex has moved since
+           quality(item.tet) == item.quality;  // else a vertex has moved since
   }
 
   void work_off() {
@@ -136,7 +143,7 @@ class Improvement {
     const auto found = [&] { return change.kind != Change::Kind::none; };
     if (found() || !move_vertices_) return change;
     for (const Index v : corners) operations.move_vertex(v, change);
-    if (found()) return change;
+    if (found() || keep_vertices_) return change;
     for (const Index v : corners)
       for (const Index w : corners)
         if (v != w) operations.contract_edge(v, w, change);
@@ -175,11 +182,13 @@ class Improvement {
   }
 
   Workpiece workpiece_;
+  ThinShape thin_;
+  SliverRule rule_;
   tbb::enumerable_thread_specific<Operations> operations_;
   const Execution& execution_;
   ThreadLimit threads_;
-  bool move_vertices_;
-  double wanted_;
+  bool move_vertices_, keep_vertices_;
+  double wanted_, radius_edge_;
   unsigned passes_;
   std::priority_queue<Item> queue_;
   std::vector<Item> batch_;

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "improve/shape_rule.h"
 #include "improve/workpiece.h"
 
 namespace collarmesh::improvement {
@@ -13,15 +14,14 @@ namespace collarmesh::improvement {
 /// Each thread has its own.
 class Operations {
  public:
-  /// Kept by reference.
-  Operations(const Workpiece& workpiece, double radius_edge)
+  /// Both are kept by reference.
+  Operations(const Workpiece& workpiece, const ShapeRule& rule)
       : complex_(workpiece.complex),
         mesh_(workpiece.complex.mesh()),
         plc_(workpiece.plc),
         surfaces_(workpiece.surfaces),
         curves_(workpiece.curves),
-        workpiece_(workpiece),
-        squared_radius_edge_(radius_edge * radius_edge) {}
+        rule_(rule) {}
 
   /// Remove the edge between two corners of a tet: its ring is triangulated anew, as well as possible.
   /// An edge inside a patch is removed together with its two triangles there, and a sliver that has both
@@ -35,6 +35,15 @@ class Operations {
   /// Move a vertex along an edge within its feature onto the other end, so that the tets at the edge vanish.
   /// No edge becomes longer than the longest one of the cavity.
   void contract_edge(Index vertex, Index onto, Change& change);
+
+  /// The next questions are about contractions of edges at this vertex. False when it has to stay.
+  bool begin_contractions(Index vertex);
+  /// The same contraction for the sake of fewer tets: the rule allows all new ones, and they are no worse than
+  /// `least`; below `enough` no worse than the worst tet of the cavity, either.
+  void contract_onto(Index onto, double least, double enough, Change& change);
+  /// The tets at the vertex that contractions were begun with.
+  const std::vector<Index>& tets_at_vertex() const { return cone_.tets; }
+  double worst_at_vertex();
 
  private:
   /// Larger rings are hardly ever improved by an operation at their edge.
@@ -52,18 +61,24 @@ class Operations {
   /// or would be.
   struct Cone {
     std::vector<Index> tets;
-    double worst = INFINITY;                 ///< of their qualities
+    double worst = INFINITY;                 ///< of their qualities; not known yet: infinite
     std::vector<std::array<Index, 3>> hull;  ///< make positive tets with the apex
     std::vector<Index> hull_tet;             ///< where each of these comes from
     std::vector<Index> faces;
     std::vector<std::array<Index, 2>> rim;  ///< make faces with the apex
     std::vector<Index> rim_face;
+
+    void clear() {
+      tets.clear(), hull.clear(), hull_tet.clear(), faces.clear(), rim.clear(), rim_face.clear();
+      worst = INFINITY;
+    }
   };
 
   double new_quality(const std::array<Index, 4>& corners, double above) const;
 
   // Edge removal.
-  double triangulate(Index a, Index b, const Polygon& polygon, double above);
+  double triangulate(Index a, Index b, const Polygon& polygon, bool closed, double above);
+  bool edges_allowed(Index vertex, const Point& from, const Point& to) const;
   void collect(Index a, Index b, const Polygon& polygon, std::size_t i, std::size_t j, Index like,
                Change& change) const;
   bool flat(Index a, Index b, Index c, Index d) const;
@@ -72,31 +87,33 @@ class Operations {
 
   // Cones.
   bool find_cone_of_vertex(Index vertex);
+  void drop_from_cone(Index vertex);
   bool find_cone_of_edge(Index a, Index b);
   void add_to_rim(Index face, Index apex);
-  double quality_around(const Point& apex, double above) const;
+  double quality_around(const Point& apex, Index id, double above);
   bool surfaces_allow(const Point& apex);
   Freedom on_patch(Index patch, const Point& p);
   std::optional<Freedom> freedom(Index vertex);
   Point back_on_feature(const Point& p, const Point& from, const Freedom& freedom);
-  std::pair<Point, double> best_place(const Point& start, const Freedom& freedom, double best);
+  std::pair<Point, double> best_place(const Point& start, Index id, const Freedom& freedom, double best);
   std::pair<double, double> best_way(Index vertex, double best);
   bool may_contract(Index vertex, Index onto);
   bool keeps_topology(Index vertex, Index onto);
   bool keeps_lengths(Index vertex, Index onto) const;
   void fill(const Cone& cone, Index apex, Change& change) const;
 
-  double quality(Index tet) const { return workpiece_.quality(tet); }
+  bool untouchable(const TetComplex::Tet& tet) const { return tet.collar && !rule_.dissolves_collars(); }
+  double quality(Index tet) const { return rule_.quality(complex_.corners(tet), complex_[tet].corners); }
 
   const TetComplex& complex_;
   const TetMesh& mesh_;
   const Plc& plc_;
   const SmoothSurfaces& surfaces_;
   const CurveSlides& curves_;
-  const Workpiece& workpiece_;
-  double squared_radius_edge_;
+  const ShapeRule& rule_;
   TetComplex::Ring ring_;
-  Cone cone_;
+  Cone cone_, remaining_;
+  Index vertex_ = none;  // that contractions were begun with
   bool ask_surfaces_ = true;
   std::vector<Index> star_;
   std::vector<SmoothSurfaces::Face> faces_;  // that would be created

@@ -25,6 +25,14 @@ bool has_foot(const Point& p, const SmoothSurfaces::Triangle& t) {
   return true;
 }
 
+// Is the triangle, with this normal, nearer to p than the square root of the bound? Most points are far from
+// its plane, or above or below it.
+bool is_near(const Point& p, const SmoothSurfaces::Triangle& t, const Vector& n, double squared_bound) {
+  const double height = dot(p - t[0], n), length = squared_norm(n);
+  if (height * height >= squared_bound * length && length > 0) return false;
+  return (length > 0 && has_foot(p, t)) || squared_distance_to(p, t) < squared_bound;
+}
+
 Point centre(const SmoothSurfaces::Triangle& t) { return (t[0] + t[1] + t[2]) / 3; }
 
 }  // namespace
@@ -150,19 +158,46 @@ bool SmoothSurfaces::fit(std::span<const Index> old, std::span<const Face> creat
     least = std::min(least, agreement(patch, corners, near[i]));
     if (least < enough_agreement && least < worst_agreement(old)) return false;
   }
+  std::vector<Vector> normals;
+  normals.reserve(created.size());
+  for (const Face& t : created) normals.push_back(normal(t.corners));
+  std::size_t last = 0;  // the next point of a patch is often near the same face
   for (const Index face : old) {
     if (!smooth(face)) continue;
     const Index patch = mesh_.face_patch[face];
     const Surface& of = surface(patch);
+    const auto has_face = [&](const Point& sample) {
+      for (std::size_t tried = 0; tried < created.size(); ++tried) {
+        const Face& t = created[last];
+        if (t.patch == patch && is_near(sample, t.corners, normals[last], squared_distance_)) return true;
+        last = last + 1 < created.size() ? last + 1 : 0;
+      }
+      return false;
+    };
     for (Index s = first_sample_[face]; s != none; s = of.next_sample[s])
-      if (std::none_of(created.begin(), created.end(), [&](const Face& t) {
-            return t.patch == patch && squared_distance_to(of.samples[s], t.corners) < squared_distance_;
-          }))
-        return false;
+      if (!has_face(of.samples[s])) return false;
   }
   for (std::size_t i = 0; i < created.size(); ++i)
     if (!is_planar(created[i]) && !edges_near(created[i].patch, created[i].corners, near[i])) return false;
   return true;
+}
+
+void SmoothSurfaces::prepare() const {
+  for (Index patch = 0; patch < plc_.patches.size(); ++patch)
+    if (!plc_.patches[patch].planar) surface(patch);
+}
+
+void SmoothSurfaces::begin_trial() {
+  on_trial_ = true;
+  old_first_samples_.begin(first_sample_.size());
+  old_links_.clear();
+}
+
+void SmoothSurfaces::undo() {
+  on_trial_ = false;
+  old_first_samples_.undo(first_sample_);
+  for (auto link = old_links_.rbegin(); link != old_links_.rend(); ++link)
+    surfaces_[link->patch].next_sample[link->sample] = link->next;
 }
 
 void SmoothSurfaces::take_samples(std::span<const Index> faces) {
@@ -172,6 +207,7 @@ void SmoothSurfaces::take_samples(std::span<const Index> faces) {
     const Index patch = mesh_.face_patch[face];
     for (Index s = first_sample_[face]; s != none; s = surfaces_[patch].next_sample[s])
       moving_.push_back({patch, s});
+    old_first_samples_.note(first_sample_, face);
     first_sample_[face] = none;
   }
 }
@@ -190,6 +226,8 @@ void SmoothSurfaces::give_samples(std::span<const Index> faces) {
         nearest = face;
       }
     }
+    if (on_trial_) old_links_.push_back({patch, s, of.next_sample[s]});
+    old_first_samples_.note(first_sample_, nearest);
     of.next_sample[s] = first_sample_[nearest];
     first_sample_[nearest] = s;
   }

@@ -9,6 +9,7 @@
 #include "collarmesh/plc.h"
 #include "collarmesh/tet_mesh.h"
 #include "common/patch_points.h"
+#include "improve/undo_log.h"
 #include "location/triangle_hierarchy.h"
 
 namespace collarmesh::improvement {
@@ -48,6 +49,13 @@ class SmoothSurfaces {
   /// and after it, give them to those that `fit`.
   void give_samples(std::span<const Index> faces);
 
+  /// Give all patches' points to faces now.
+  void prepare() const;
+  /// What is taken and given from here on can be undone, until it is kept.
+  void begin_trial();
+  void keep() { old_first_samples_.end(), on_trial_ = false; }
+  void undo();
+
  private:
   /// Made when first asked for, by any thread.
   struct Surface {
@@ -74,6 +82,12 @@ class SmoothSurfaces {
   mutable std::vector<Surface> surfaces_;
   mutable std::vector<Index> first_sample_;   // of every face, among those of its patch
   std::vector<std::array<Index, 2>> moving_;  // patch and sample
+  bool on_trial_ = false;
+  UndoLog<Index> old_first_samples_;
+  struct Link {
+    Index patch, sample, next;
+  };
+  std::vector<Link> old_links_;
 };
 
 }  // namespace collarmesh::improvement

@@ -218,12 +218,13 @@ std::span<const Index> TetComplex::replace(const Replacement& replacement) {
   for (const Index t : old) {
     for (const Index v : tets_[t].corners) {
       if (vertex_tet_[v] == none) continue;
-      vertex_tet_[v] = none;
+      set_vertex_tet(v, none);
       cavity_vertices_.push_back(v);
     }
+    old_tets_.note(tets_, t);
     tets_[t].alive = false;
     ++tets_[t].generation;
-    free_.push_back(t);
+    free_steps_.push(free_, t);
   }
   created_.clear();
   for (std::size_t i = 0; i < created.size(); ++i) {
@@ -234,15 +235,16 @@ std::span<const Index> TetComplex::replace(const Replacement& replacement) {
       origin_.push_back(none);
       stamps_.push_back(0);
     } else {
-      t = free_.back();
-      free_.pop_back();
+      t = free_steps_.pop(free_);
     }
+    old_tets_.note(tets_, t);
+    old_origins_.note(origin_, t);
     Tet& tet = tets_[t];
     tet = {corners, {none, none, none, none}, {none, none, none, none}, tags_[i].first, tet.generation, true,
            false};
     origin_[t] = tags_[i].second;
     created_.push_back(t);
-    for (const Index v : corners) vertex_tet_[v] = t;
+    for (const Index v : corners) set_vertex_tet(v, t);
     for (unsigned corner = 0; corner < 4; ++corner) {
       const auto key = sorted(face_corners(corners, corner));
       const auto open =
@@ -253,7 +255,7 @@ std::span<const Index> TetComplex::replace(const Replacement& replacement) {
       }
       tet.neighbours[corner] = open->tet;
       tet.faces[corner] = open->face;
-      if (open->tet != none) tets_[open->tet].neighbours[open->corner] = t;
+      if (open->tet != none) set_neighbour(open->tet, open->corner, t);
       *open = open_.back();
       open_.pop_back();
     }
@@ -261,8 +263,8 @@ std::span<const Index> TetComplex::replace(const Replacement& replacement) {
   // What is left of the border has nothing on this side now.
   for (const OpenFace& open : open_) {
     if (open.tet == none) continue;
-    tets_[open.tet].neighbours[open.corner] = none;
-    for (const Index v : open.key) vertex_tet_[v] = open.tet;
+    set_neighbour(open.tet, open.corner, none);
+    for (const Index v : open.key) set_vertex_tet(v, open.tet);
   }
   for (const Index v : cavity_vertices_)
     if (vertex_tet_[v] == none) lost_vertices_.push_back(v);
@@ -277,9 +279,10 @@ void TetComplex::make_faces(const Replacement& replacement) {
     face_tags_.push_back(
         {mesh_.face_patch[face.like], mesh_.face_tag[face.like], mesh_.face_regions[face.like]});
   for (const Index face : replacement.old_faces) {
+    if (on_trial_) old_faces_.emplace_back(face, face_record(face));
     mesh_.faces[face] = lost_face;
     mesh_.face_patch[face] = none;
-    free_faces_.push_back(face);
+    free_face_steps_.push(free_faces_, face);
   }
   for (std::size_t i = 0; i < replacement.created_faces.size(); ++i) {
     Index face = static_cast<Index>(mesh_.faces.size());
@@ -289,13 +292,11 @@ void TetComplex::make_faces(const Replacement& replacement) {
       mesh_.face_tag.push_back(0);
       mesh_.face_regions.push_back({});
     } else {
-      face = free_faces_.back();
-      free_faces_.pop_back();
+      face = free_face_steps_.pop(free_faces_);
     }
-    mesh_.faces[face] = replacement.created_faces[i].corners;
-    mesh_.face_patch[face] = face_tags_[i].patch;
-    mesh_.face_tag[face] = face_tags_[i].tag;
-    mesh_.face_regions[face] = face_tags_[i].regions;
+    if (on_trial_) old_faces_.emplace_back(face, face_record(face));
+    set_face_record(face, {replacement.created_faces[i].corners, face_tags_[i].patch, face_tags_[i].tag,
+                           face_tags_[i].regions});
     set_face(mesh_.faces[face], face);
     created_faces_.push_back(face);
   }
@@ -305,13 +306,13 @@ void TetComplex::make_faces(const Replacement& replacement) {
 void TetComplex::set_face(const std::array<Index, 3>& corners, Index face) {
   const auto key = sorted(corners);
   for (const OpenFace& open : open_)
-    if (open.tet != none && open.key == key) tets_[open.tet].faces[open.corner] = face;
+    if (open.tet != none && open.key == key) set_face_of_tet(open.tet, open.corner, face);
   for (const Index t : created_)
     for (unsigned corner = 0; corner < 4; ++corner) {
       if (sorted(face_corners(tets_[t].corners, corner)) != key) continue;
-      tets_[t].faces[corner] = face;
+      set_face_of_tet(t, corner, face);
       const Index other = tets_[t].neighbours[corner];
-      if (other != none) tets_[other].faces[corner_across(other, key)] = face;
+      if (other != none) set_face_of_tet(other, corner_across(other, key), face);
     }
 }
 
@@ -319,6 +320,9 @@ void TetComplex::join_curve_edges(Index before, Index vertex, Index after) {
   const auto first = curve_edges_.find(edge_key(before, vertex)),
              second = curve_edges_.find(edge_key(vertex, after));
   const Index kept = first->second, gone = second->second;
+  if (on_trial_)
+    joined_.push_back({first->first, second->first, edge_key(before, after), kept, gone, mesh_.edges[kept],
+                       mesh_.edges[gone]});
   // The edge keeps its direction.
   for (Index& end : mesh_.edges[kept])
     if (end == vertex) end = after;
@@ -328,6 +332,86 @@ void TetComplex::join_curve_edges(Index before, Index vertex, Index after) {
   curve_edges_.emplace(edge_key(before, after), kept);
 }
 
+void TetComplex::set_neighbour(Index tet, unsigned corner, Index neighbour) {
+  old_tets_.note(tets_, tet);
+  tets_[tet].neighbours[corner] = neighbour;
+}
+
+void TetComplex::set_face_of_tet(Index tet, unsigned corner, Index face) {
+  old_tets_.note(tets_, tet);
+  tets_[tet].faces[corner] = face;
+}
+
+void TetComplex::set_vertex_tet(Index vertex, Index tet) {
+  old_vertex_tets_.note(vertex_tet_, vertex);
+  vertex_tet_[vertex] = tet;
+}
+
+void TetComplex::move_vertex(Index vertex, const Point& p) {
+  old_points_.note(mesh_.points, vertex);
+  mesh_.points[vertex] = p;
+}
+
+TetComplex::FaceRecord TetComplex::face_record(Index face) const {
+  return {mesh_.faces[face], mesh_.face_patch[face], mesh_.face_tag[face], mesh_.face_regions[face]};
+}
+
+void TetComplex::set_face_record(Index face, const FaceRecord& record) {
+  mesh_.faces[face] = record.corners;
+  mesh_.face_patch[face] = record.patch;
+  mesh_.face_tag[face] = record.tag;
+  mesh_.face_regions[face] = record.regions;
+}
+
+void TetComplex::begin_trial() {
+  on_trial_ = true;
+  old_tets_.begin(tets_.size());
+  old_origins_.begin(origin_.size());
+  old_vertex_tets_.begin(vertex_tet_.size());
+  old_lost_vertices_.begin(lost_vertices_.size());
+  old_points_.begin(mesh_.points.size());
+  free_steps_.begin();
+  free_face_steps_.begin();
+  old_faces_.clear();
+  face_count_ = mesh_.faces.size();
+  joined_.clear();
+}
+
+void TetComplex::keep() {
+  on_trial_ = false;
+  old_tets_.end();
+  old_origins_.end();
+  old_vertex_tets_.end();
+  old_lost_vertices_.end();
+  old_points_.end();
+  free_steps_.end();
+  free_face_steps_.end();
+}
+
+void TetComplex::undo() {
+  on_trial_ = false;
+  old_tets_.undo(tets_);
+  old_origins_.undo(origin_);
+  stamps_.resize(tets_.size());
+  old_vertex_tets_.undo(vertex_tet_);
+  old_lost_vertices_.undo(lost_vertices_);
+  old_points_.undo(mesh_.points);
+  free_steps_.undo(free_);
+  free_face_steps_.undo(free_faces_);
+  for (auto old = old_faces_.rbegin(); old != old_faces_.rend(); ++old) set_face_record(old->first, old->second);
+  mesh_.faces.resize(face_count_);
+  mesh_.face_patch.resize(face_count_);
+  mesh_.face_tag.resize(face_count_);
+  mesh_.face_regions.resize(face_count_);
+  for (auto edges = joined_.rbegin(); edges != joined_.rend(); ++edges) {
+    curve_edges_.erase(edges->joined);
+    curve_edges_.emplace(edges->first, edges->kept);
+    curve_edges_.emplace(edges->second, edges->gone);
+    mesh_.edges[edges->kept] = edges->kept_ends;
+    mesh_.edges[edges->gone] = edges->gone_ends;
+  }
+}
+
 void TetComplex::store() {
   TetMesh stored;
   for (Index t = 0; t < tets_.size(); ++t) {
@@ -335,14 +419,16 @@ void TetComplex::store() {
     stored.tets.push_back(tets_[t].corners);
     stored.tet_region.push_back(tets_[t].region);
     stored.tet_tag.push_back(mesh_.tet_tag[origin_[t]]);
-    stored.tet_collar.push_back(mesh_.tet_collar[origin_[t]]);
-    stored.tet_crease.push_back(mesh_.tet_crease[origin_[t]]);
+    const bool collar = tets_[t].collar;
+    stored.tet_collar.push_back(collar ? mesh_.tet_collar[origin_[t]] : std::uint8_t{0});
+    stored.tet_crease.push_back(collar ? mesh_.tet_crease[origin_[t]] : Tag{0});
   }
   mesh_.tets = std::move(stored.tets);
   mesh_.tet_region = std::move(stored.tet_region);
   mesh_.tet_tag = std::move(stored.tet_tag);
   mesh_.tet_collar = std::move(stored.tet_collar);
   mesh_.tet_crease = std::move(stored.tet_crease);
+  mesh_.tet_thin.clear();
   drop_lost_faces_and_edges();
   drop_lost_vertices();
 }

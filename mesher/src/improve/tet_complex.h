@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "collarmesh/tet_mesh.h"
+#include "improve/undo_log.h"
 
 namespace collarmesh::improvement {
 
@@ -60,6 +61,8 @@ class TetComplex {
   /// Is the edge ab one of a mesh' face? At a pinched vertex a: always.
   bool on_faces(Index a, Index b) const;
 
+  /// Is the vertex a corner of any tet?
+  bool in_use(Index vertex) const { return vertex_tet_[vertex] != none; }
   /// Do tets at the vertex hang together only in the vertex or in edges, as where bodies touch? Then its star
   /// is not complete.
   bool pinched(Index vertex) const { return pinched_.contains(vertex); }
@@ -79,6 +82,17 @@ class TetComplex {
   /// A vertex on a curve between two others there is gone: its edges become the one that joins these.
   void join_curve_edges(Index before, Index vertex, Index after);
 
+  /// Move a vertex; tets and faces stay connected as they are.
+  void move_vertex(Index vertex, const Point& p);
+
+  /// What changes from here on can be undone, until it is kept. No vertex may be added meanwhile.
+  void begin_trial();
+  void keep();
+  void undo();
+
+  /// A cell of a collar is one no longer.
+  void dissolve(Index cell) { tets_[cell].collar = false; }
+
   /// Write the tets back to the mesh, without vertices and faces that are gone.
   void store();
 
@@ -90,6 +104,19 @@ class TetComplex {
     Index face;
   };
 
+  /// All that the mesh tells of a face.
+  struct FaceRecord {
+    std::array<Index, 3> corners;
+    Index patch;
+    Tag tag;
+    std::array<Index, 2> regions;
+  };
+  struct CurveEdges {
+    std::uint64_t first, second, joined;  // keys
+    Index kept, gone;                     // edges of the mesh
+    std::array<Index, 2> kept_ends, gone_ends;
+  };
+
   static std::uint64_t edge_key(Index a, Index b) {
     return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
   }
@@ -97,6 +124,11 @@ class TetComplex {
   void find_pinched_vertices();
   void make_faces(const Replacement& replacement);
   void set_face(const std::array<Index, 3>& corners, Index face);
+  void set_neighbour(Index tet, unsigned corner, Index neighbour);
+  void set_face_of_tet(Index tet, unsigned corner, Index face);
+  void set_vertex_tet(Index vertex, Index tet);
+  FaceRecord face_record(Index face) const;
+  void set_face_record(Index face, const FaceRecord& record);
   void drop_lost_faces_and_edges();
   void drop_lost_vertices();
   unsigned corner_across(Index tet, const std::array<Index, 3>& sorted_face) const;
@@ -121,6 +153,16 @@ class TetComplex {
   std::vector<Index> cavity_vertices_;
   std::vector<Index> lost_vertices_;
   std::vector<OpenFace> open_;
+
+  // What a trial changes.
+  bool on_trial_ = false;
+  UndoLog<Tet> old_tets_;
+  UndoLog<Index> old_origins_, old_vertex_tets_, old_lost_vertices_;
+  UndoLog<Point> old_points_;
+  UndoStack<Index> free_steps_, free_face_steps_;
+  std::vector<std::pair<Index, FaceRecord>> old_faces_;
+  std::size_t face_count_ = 0;
+  std::vector<CurveEdges> joined_;
 };
 
 /// The corners of a tet's face opposite a corner, seen counterclockwise from outside.

@@ -22,14 +22,13 @@ bool contains(const auto& range, Index v) { return std::find(range.begin(), rang
 
 // The tets and the mesh' faces at a vertex; false at a collar and where they do not hang together.
 bool Operations::find_cone_of_vertex(Index vertex) {
-  cone_ = {};
+  cone_.clear();
   if (complex_.pinched(vertex)) return false;
   complex_.star(vertex, cone_.tets);
   const bool on_feature = mesh_.features[vertex].dimension < 3;
   for (const Index t : cone_.tets) {
     const auto& tet = complex_[t];
-    if (tet.collar) return false;
-    cone_.worst = std::min(cone_.worst, quality(t));
+    if (untouchable(tet)) return false;
     for (unsigned corner = 0; corner < 4; ++corner) {
       if (tet.corners[corner] == vertex) {
         cone_.hull.push_back(face_corners(tet.corners, corner));
@@ -50,12 +49,11 @@ bool Operations::find_cone_of_edge(Index a, Index b) {
   complex_.ring(at, a, b, ring_);
   const std::size_t n = ring_.tets.size(), m = ring_.link.size();
   if (n > largest_ring) return false;
-  cone_ = {};
+  cone_.clear();
   cone_.tets = ring_.tets;
   for (std::size_t k = 0; k < n; ++k) {
     const auto& tet = complex_[ring_.tets[k]];
-    if (tet.collar) return false;
-    cone_.worst = std::min(cone_.worst, quality(ring_.tets[k]));
+    if (untouchable(tet)) return false;
     const Index p = ring_.link[k], q = ring_.link[(k + 1) % m];
     cone_.hull.push_back({a, q, p});
     cone_.hull.push_back({b, p, q});
@@ -84,19 +82,38 @@ void Operations::add_to_rim(Index face, Index opposite) {
   cone_.rim_face.push_back(face);
 }
 
-// The worst tet of the cone with an apex; -1 when that is not above `above` or one breaks the radius-edge
-// bound.
-double Operations::quality_around(const Point& apex, double above) const {
+double Operations::worst_at_vertex() {
+  if (std::isinf(cone_.worst))
+    for (const Index t : cone_.tets) cone_.worst = std::min(cone_.worst, quality(t));
+  return cone_.worst;
+}
+
+// The worst tet of the cone with an apex; -1 when that is not above `above` or the rule forbids one.
+double Operations::quality_around(const Point& apex, Index id, double above) {
   const auto& points = mesh_.points;
   double worst = INFINITY;
-  for (const auto& face : cone_.hull) {
+  for (std::size_t i = 0; i < cone_.hull.size(); ++i) {
+    const auto& face = cone_.hull[i];
     const Corners p{apex, points[face[0]], points[face[1]], points[face[2]]};
-    worst = std::min(worst, shape_quality(p));
-    if (worst <= above) return -1;
-    const Circumsphere sphere = circumsphere(p);
-    if (sphere.squared_radius > squared_radius_edge_ * sphere.shortest_squared_edge) return -1;
+    const std::array<Index, 4> corners{id, face[0], face[1], face[2]};
+    const double quality = rule_.quality(p, corners);
+    worst = std::min(worst, quality);
+    if (worst > above && rule_.allows(p, corners, quality)) continue;
+    std::swap(cone_.hull[0], cone_.hull[i]);  // is likely to decide for the next place, too
+    std::swap(cone_.hull_tet[0], cone_.hull_tet[i]);
+    return -1;
   }
   return worst;
+}
+
+// To the vertices around, when the vertex moves.
+bool Operations::edges_allowed(Index vertex, const Point& from, const Point& to) const {
+  const auto& points = mesh_.points;
+  for (const auto& face : cone_.hull)
+    for (const Index v : face)
+      if (!rule_.allows_edge(vertex, v, squared_distance(to, points[v]), squared_distance(from, points[v])))
+        return false;
+  return true;
 }
 
 bool Operations::surfaces_allow(const Point& apex) {
@@ -148,7 +165,8 @@ Point Operations::back_on_feature(const Point& p, const Point& from, const Freed
 }
 
 // Pattern search from `start`, whose quality is `best`.
-std::pair<Point, double> Operations::best_place(const Point& start, const Freedom& freedom, double best) {
+std::pair<Point, double> Operations::best_place(const Point& start, Index id, const Freedom& freedom,
+                                                double best) {
   const auto& points = mesh_.points;
   Vector to_centre{0, 0, 0};
   double shortest = INFINITY;
@@ -160,8 +178,8 @@ std::pair<Point, double> Operations::best_place(const Point& start, const Freedo
   Point place = start;
   const auto consider = [&](const Point& wish) {
     const Point p = back_on_feature(wish, start, freedom);
-    const double quality = quality_around(p, best);
-    if (quality <= best || (ask_surfaces_ && !surfaces_allow(p))) return false;
+    const double quality = quality_around(p, id, best);
+    if (quality <= best || (id != none && !edges_allowed(id, start, p)) || (ask_surfaces_ && !surfaces_allow(p))) return false;
     best = quality;
     place = p;
     return true;
@@ -184,8 +202,8 @@ std::pair<double, double> Operations::best_way(Index vertex, double best) {
   double way = 0;
   const auto consider = [&](double wish) {
     const Point p = curves_.ahead(vertex, wish);
-    const double quality = quality_around(p, best);
-    if (quality <= best || !curves_.fits(vertex, wish) || !surfaces_allow(p)) return false;
+    const double quality = quality_around(p, vertex, best);
+    if (quality <= best || !edges_allowed(vertex, points[vertex], p) || !curves_.fits(vertex, wish) || !surfaces_allow(p)) return false;
     best = quality;
     way = wish;
     return true;
@@ -202,6 +220,7 @@ void Operations::move_vertex(Index vertex, Change& change) {
   const auto where = on_curve ? std::optional(everywhere) : freedom(vertex);
   if (!where || !find_cone_of_vertex(vertex)) return;
   const Point& p = mesh_.points[vertex];
+  worst_at_vertex();
   const double wanted = std::max(cone_.worst * (1 + least_gain) + 1e-12, change.quality);
   Point place = p;
   double way = 0, after = 0;
@@ -211,9 +230,10 @@ void Operations::move_vertex(Index vertex, Change& change) {
   } else {
     // Most often the best place is one that the surface allows.
     ask_surfaces_ = false;
-    std::tie(place, after) = best_place(p, *where, cone_.worst);
+    std::tie(place, after) = best_place(p, vertex, *where, cone_.worst);
     ask_surfaces_ = true;
-    if (after > wanted && !surfaces_allow(place)) std::tie(place, after) = best_place(p, *where, cone_.worst);
+    if (after > wanted && !surfaces_allow(place))
+      std::tie(place, after) = best_place(p, vertex, *where, cone_.worst);
   }
   if (after <= wanted) return;
   change = {};
@@ -231,8 +251,8 @@ void Operations::split_edge(Index a, Index b, double least, Change& change) {
   const Index patch = cone_.faces.empty() ? none : mesh_.face_patch[cone_.faces[0]];
   const Point middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
   const Freedom where = patch == none ? everywhere : on_patch(patch, middle);
-  const auto [place, quality] = best_place(back_on_feature(middle, mesh_.points[a], where), where, -1);
-  if (quality <= std::max({cone_.worst, least, change.quality})) return;
+  const auto [place, quality] = best_place(back_on_feature(middle, mesh_.points[a], where), none, where, -1);
+  if (quality <= std::max({worst_at_vertex(), least, change.quality})) return;
   change = {};
   change.kind = Change::Kind::insertion;
   change.quality = quality;
@@ -245,28 +265,57 @@ void Operations::contract_edge(Index vertex, Index onto, Change& change) {
   if (mesh_.features[vertex].dimension == 0) return;
   if (!find_cone_of_vertex(vertex) || !may_contract(vertex, onto)) return;
   if (!keeps_lengths(vertex, onto) || !keeps_topology(vertex, onto)) return;
-  Cone& cone = cone_;
-  const auto drop = [&](auto& of, auto& origins) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < of.size(); ++i) {
-      if (contains(of[i], onto)) continue;
-      of[kept] = of[i];
-      origins[kept++] = origins[i];
-    }
-    of.resize(kept);
-    origins.resize(kept);
-  };
-  drop(cone.hull, cone.hull_tet);
-  drop(cone.rim, cone.rim_face);
+  worst_at_vertex();
+  drop_from_cone(onto);
   const Point& place = mesh_.points[onto];
-  const double quality = quality_around(place, std::max(cone.worst, change.quality));
+  const double quality = quality_around(place, onto, std::max(cone_.worst, change.quality));
   if (quality < 0 || !surfaces_allow(place)) return;
   change = {};
   change.kind = Change::Kind::contraction;
   change.quality = quality;
   change.vertex = vertex;
   if (mesh_.features[vertex].dimension < 3) change.read = star_;  // of the other end
-  fill(cone, onto, change);
+  fill(cone_, onto, change);
+}
+
+bool Operations::begin_contractions(Index vertex) {
+  vertex_ = vertex;
+  return mesh_.features[vertex].dimension > 0 && find_cone_of_vertex(vertex);
+}
+
+void Operations::contract_onto(Index onto, double least, double enough, Change& change) {
+  if (!may_contract(vertex_, onto)) return;
+  const Point& place = mesh_.points[onto];
+  remaining_ = cone_;
+  drop_from_cone(onto);
+  const double quality = quality_around(place, onto, least);
+  std::swap(cone_, remaining_);
+  if (quality < 0 || (quality < enough && quality < worst_at_vertex()) || !keeps_topology(vertex_, onto)) return;
+  std::swap(cone_, remaining_);
+  const bool fits = surfaces_allow(place);
+  std::swap(cone_, remaining_);
+  if (!fits) return;
+  change = {};
+  change.kind = Change::Kind::contraction;
+  change.quality = quality;
+  change.vertex = vertex_;
+  fill(remaining_, onto, change);
+}
+
+// What has this corner is no longer part of hull and rim.
+void Operations::drop_from_cone(Index vertex) {
+  const auto drop = [&](auto& of, auto& origins) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < of.size(); ++i) {
+      if (contains(of[i], vertex)) continue;
+      of[kept] = of[i];
+      origins[kept++] = origins[i];
+    }
+    of.resize(kept);
+    origins.resize(kept);
+  };
+  drop(cone_.hull, cone_.hull_tet);
+  drop(cone_.rim, cone_.rim_face);
 }
 
 // Does the edge to `onto` lie in the vertex' feature?

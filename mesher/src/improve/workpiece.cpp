@@ -13,7 +13,7 @@ const std::vector<Index>& Workpiece::apply(Change change) {
   surfaces.take_samples(old_faces);
   if (change.kind == Change::Kind::move) {
     complex.star(change.vertex, changed_);
-    complex.mesh().points[change.vertex] = change.place;
+    complex.move_vertex(change.vertex, change.place);
     if (complex.mesh().features[change.vertex].dimension == 1) curves.moved(change.vertex, change.way);
     surfaces.give_samples(old_faces);
     return changed_;

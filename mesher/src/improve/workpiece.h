@@ -29,15 +29,26 @@ struct Change {
 /// While nothing is applied several threads may read it.
 class Workpiece {
  public:
-  /// Both are kept by reference. `distance` is absolute.
-  Workpiece(TetMesh& mesh, const Plc& meant, double distance)
-      : complex(mesh), surfaces(meant, mesh, distance), curves(meant, mesh, distance), plc(meant) {}
+  /// Both are kept by reference. `distance` is absolute. Curves that turn by half a circle or more keep
+  /// `edges_per_hole` edges to a full circle.
+  Workpiece(TetMesh& mesh, const Plc& meant, double distance, double edges_per_hole = 0)
+      : complex(mesh),
+        surfaces(meant, mesh, distance),
+        curves(meant, mesh, distance, edges_per_hole),
+        plc(meant) {}
 
   double quality(Index tet) const;
 
   /// Returns the tets that are new or have changed, until the next call.
   /// Precondition: nothing that the change depends on has changed since it was proposed.
   const std::vector<Index>& apply(Change change);
+
+  /// What is made when first asked for must be made before the first trial.
+  void prepare() { surfaces.prepare(), curves.prepare(); }
+  /// What is applied from here on can be undone as a whole, until it is kept. Insertions cannot.
+  void begin_trial() { complex.begin_trial(), surfaces.begin_trial(), curves.begin_trial(); }
+  void keep() { complex.keep(), surfaces.keep(), curves.keep(); }
+  void undo() { complex.undo(), surfaces.undo(), curves.undo(); }
 
   TetComplex complex;
   SmoothSurfaces surfaces;

@@ -42,7 +42,7 @@ struct Contents {
   std::array<std::vector<Cell>, 4> cells;                        ///< by dimension
   std::array<std::map<int, Tag>, 4> physical_of_entity;          ///< the first one
   std::array<std::map<Tag, Tag>, 4> tag_of_physical;             ///< where its name says so
-  std::vector<std::pair<std::uint64_t, double>> collar, crease;  ///< cell number and value
+  std::vector<std::pair<std::uint64_t, double>> collar, crease, thin;  ///< cell number and value
   bool numbers_are_features = false;
 };
 
@@ -324,10 +324,12 @@ DataHead read_data_head(MshText& values) {
 
 void read_data(MshText values, Contents& contents) {
   const DataHead head = read_data_head(values);
-  if (head.name != "collar" && head.name != "crease") return;
+  if (head.name != "collar" && head.name != "crease" && head.name != "thin") return;
   if (head.components != 1)
     values.fail(fmt::format("{} has {} components, but has to have 1", head.name, head.components));
-  auto& data = head.name == "collar" ? contents.collar : contents.crease;
+  auto& data = head.name == "collar"   ? contents.collar
+               : head.name == "crease" ? contents.crease
+                                       : contents.thin;
   for (int i = 0; i < head.count; ++i) {
     const std::uint64_t number = values.number("the number of an element");
     data.emplace_back(number, values.real("a value for an element"));
@@ -451,6 +453,7 @@ TetMesh make_mesh(const std::string& path, Contents& contents) {
   add_data(contents.collar, 0, 2, contents.cells[3], mesh.tet_collar);
   constexpr double most = 0x1p52;  // that doubles hold
   add_data(contents.crease, -most, most, contents.cells[3], mesh.tet_crease);
+  if (!contents.thin.empty()) add_data(contents.thin, 0, 1, contents.cells[3], mesh.tet_thin);
   complete_mesh(path, mesh);
   return mesh;
 }

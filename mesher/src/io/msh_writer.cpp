@@ -181,6 +181,7 @@ void write_msh(const std::string& path, const TetMesh& mesh) {
   write_elements(out, mesh, entities, groups);
   write_data(out, "collar", mesh.tet_collar, groups);
   write_data(out, "crease", mesh.tet_crease, groups);
+  if (!mesh.tet_thin.empty()) write_data(out, "thin", mesh.tet_thin, groups);
   out.commit();
 }
 

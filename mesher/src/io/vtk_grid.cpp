@@ -98,6 +98,9 @@ void add_labels(const TetMesh& mesh, std::vector<VtkArray>& arrays) {
                                   mesh, [&](std::size_t i) { return mesh.tet_collar[i]; }, zero, zero)});
   arrays.push_back({"crease", per_cell<std::int64_t>(
                                   mesh, [&](std::size_t i) { return mesh.tet_crease[i]; }, zero, zero)});
+  if (mesh.tet_thin.empty()) return;
+  arrays.push_back({"thin", per_cell<std::uint8_t>(
+                                mesh, [&](std::size_t i) { return mesh.tet_thin[i]; }, zero, zero)});
 }
 
 /// Programs that read the file do not all take infinity.
@@ -219,6 +222,7 @@ void add_read_labels(const VtkPiece& piece, const CellKinds& kinds, TetMesh& mes
     pick(regions, kinds.tets, mesh.tet_region);
   pick(find({"collar"}), kinds.tets, mesh.tet_collar);
   pick(find({"crease"}), kinds.tets, mesh.tet_crease);
+  pick(find({"thin"}), kinds.tets, mesh.tet_thin);
   const auto& features = find({"feature"});
   pick(features, kinds.faces, mesh.face_patch);
   pick(features, kinds.edges, mesh.edge_curve);
@@ -277,6 +281,7 @@ void complete_vtk_mesh(const std::string& path, TetMesh& mesh) {
   drop_partial(mesh.tet_region, mesh.tets.size());
   drop_partial(mesh.tet_collar, mesh.tets.size());
   drop_partial(mesh.tet_crease, mesh.tets.size());
+  drop_partial(mesh.tet_thin, mesh.tets.size());
   drop_partial(mesh.face_tag, mesh.faces.size());
   drop_partial(mesh.face_patch, mesh.faces.size());
   drop_partial(mesh.face_regions, mesh.faces.size());

@@ -27,6 +27,7 @@ struct VtkArray {
 ///   tag                       of the region, patch or curve
 ///   feature                   index of the patch or curve in the complex; -1: unknown or a tet
 ///   collar, crease            TetMesh::tet_collar, TetMesh::tet_crease; 0 for faces and edges
+///   thin                      TetMesh::tet_thin, if there is any; 0 for faces and edges
 ///   radius_edge, min_dihedral, max_dihedral   of tets; 0 for faces and edges
 /// Point arrays, if features are known: feature_dimension, feature.
 struct VtkGrid {
@@ -47,9 +48,9 @@ struct VtkPiece {
 
 /// Arrays that say something about a mesh: ours, and the names that meshio and Gmsh give to labels.
 constexpr std::array<std::string_view, 2> vtk_point_arrays{"feature_dimension", "feature"};
-constexpr std::array<std::string_view, 10> vtk_cell_arrays{
+constexpr std::array<std::string_view, 11> vtk_cell_arrays{
     "tag",         "gmsh:physical", "medit:ref", "CellEntityIds", "region",
-    "region_back", "region_front",  "feature",   "collar",        "crease"};
+    "region_back", "region_front",  "feature",   "collar",        "crease", "thin"};
 
 /// What is wrong with a piece: for the caller to add the file and the place.
 struct VtkPieceError {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <unordered_set>
 
+#include "collarmesh/mesher.h"
 #include "common/flat_features.h"
 #include "project/relaxation.h"
 
@@ -22,8 +23,11 @@ class BoundaryProjection {
         limited_(flat_.limit(exact)),
         options_(options),
         execution_(execution),
-        reach_(options.reach > 0 ? options.reach : default_reach * plc.bounds.diagonal()),
-        room_(mesh, limited_, {options.radius_edge, options.collar_angle, largest_sag * reach_}) {}
+        reach_(options.reach > 0 ? options.reach : default_distance(0, plc.bounds.diagonal())),
+        thin_(plc, mesh, options.thin_angle),
+        room_(mesh, limited_,
+              {options.radius_edge, options.collar_angle, thin_.empty() ? nullptr : &thin_,
+               largest_sag * reach_}) {}
 
   ProjectReport run() {
     find_targets();
@@ -42,11 +46,11 @@ class BoundaryProjection {
     for (int pass = 0; pass < retries && retry(pass > 0); ++pass) {
     }
     finish();
+    if (!thin_.empty()) improvement::mark_thin_tets(mesh_, options_.radius_edge);
     return report_;
   }
 
  private:
-  static constexpr double default_reach = 1e-3;
   static constexpr double largest_sag = 0.5;  // relative to the reach
   // A way of so many times the shortest edge at the vertex leads through other tets: parts of a CAD file may be
   // off each other by more than what lies between them.
@@ -199,6 +203,7 @@ class BoundaryProjection {
   const ProjectOptions& options_;
   const Execution& execution_;
   double reach_;
+  improvement::ThinShape thin_;
   projection::Relaxation room_;
   std::vector<Move> moves_;
   std::vector<Index> slot_of_;           // in moves_, by point

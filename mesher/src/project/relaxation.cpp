@@ -66,6 +66,10 @@ bool Relaxation::good(Index tet) const {
   const auto before = [&] { return measure(then[0], then[1], then[2], then[3]); };
   if (mesh_.tet_collar[tet] != 0)
     return quality.max_dihedral <= bounds_.collar_angle || quality.max_dihedral <= before().max_dihedral;
+  if (bounds_.thin != nullptr) {
+    if (is_thin(tet, now)) return true;
+    if (is_thin(tet, then) || angle_score(tet, now) < 1) return false;
+  }
   return quality.radius_edge <= bounds_.radius_edge || quality.radius_edge <= before().radius_edge;
 }
 
@@ -115,13 +119,25 @@ double Relaxation::score(Index tet, const Corners& p) const {
     return longest > 0 ? six / (longest * std::sqrt(longest)) : -1;
   }
   const Wanted& want = wanted(tet);
-  const double score = std::min(1., improvement::shape_quality(p) / want.shape);
+  double score = std::min(1., improvement::shape_quality(p) / want.shape);
   if (mesh_.tet_collar[tet] != 0) {
     const double angle = measure(p[0], p[1], p[2], p[3]).max_dihedral;
     return angle <= bounds_.collar_angle ? score : std::min(score, (180 - angle) / (180 - want.bound));
   }
+  if (bounds_.thin != nullptr) score = std::min(score, angle_score(tet, p));
+  if (want.thin) return score;
   const double ratio = radius_edge(p), most = bounds_.radius_edge * (1 - margin);
   return ratio <= most ? score : std::min(score, want.bound / ratio);
+}
+
+// 1 for angles within the bounds of thin tets, or no farther beyond them than at the beginning.
+double Relaxation::angle_score(Index tet, const Corners& p) const {
+  constexpr double largest = improvement::ThinShape::largest_angle, rounding = improvement::ThinShape::rounding;
+  const improvement::ExtremeAngles now = improvement::extreme_angles(p),
+                                   then = improvement::extreme_angles(corners(tet, origins_));
+  const double sharpest = std::min(bounds_.thin->smallest_angle(mesh_.tets[tet]) + 2 * rounding, then.smallest),
+               bluntest = std::max(largest - 2 * rounding, then.largest);
+  return std::min({1., now.smallest / sharpest, (180 - now.largest) / (180 - bluntest)});
 }
 
 const Relaxation::Wanted& Relaxation::wanted(Index tet) const {
@@ -134,6 +150,7 @@ const Relaxation::Wanted& Relaxation::wanted(Index tet) const {
                                          measure(before[0], before[1], before[2], before[3]).max_dihedral);
   else
     want.bound = (1 - margin) * std::max(bounds_.radius_edge, radius_edge(before));
+  want.thin = mesh_.tet_collar[tet] == 0 && is_thin(tet, before);
   return want;
 }
 

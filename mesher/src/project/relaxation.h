@@ -9,12 +9,14 @@
 #include "collarmesh/exact_geometry.h"
 #include "collarmesh/tet_mesh.h"
 #include "common/cells_at_vertices.h"
+#include "improve/thin_shape.h"
 
 namespace collarmesh::projection {
 
 struct Bounds {
-  double radius_edge = 2;     ///< outside collars
+  double radius_edge = 2;     ///< outside collars, but for thin tets
   double collar_angle = 150;  ///< largest dihedral angle in collars, degrees
+  const improvement::ThinShape* thin = nullptr;  ///< null: no tet is thin
   double sag = 0;             ///< absolute: largest distance of faces and edges from the exact geometry
 };
 
@@ -61,11 +63,16 @@ class Relaxation {
   struct Wanted {
     double shape = -1;  // negative until it is known
     double bound = 0;   // on its dihedral angles in collars, elsewhere on its radius-edge ratio
+    bool thin = false;  // its angles are bounded, the ratio need not be
   };
 
   const Wanted& wanted(Index tet) const;
   Corners corners(Index tet, const std::vector<Point>& points) const;
+  bool is_thin(Index tet, const Corners& p) const {
+    return bounds_.thin != nullptr && bounds_.thin->contains(p, mesh_.tets[tet]);
+  }
   double score(Index tet, const Corners& p) const;
+  double angle_score(Index tet, const Corners& p) const;
   double lack_of(Index tet, const Corners& p) const;
   double lack_around(std::span<const Index> tets, Index vertex, const Point& place, double below) const;
   bool improve(Index vertex);

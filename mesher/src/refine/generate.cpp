@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "collarmesh/error.h"
 #include "collarmesh/mesher.h"
 #include "refine/refinement.h"
@@ -15,8 +17,8 @@ void require(bool holds, const std::string& message) {
 void validate(const MeshOptions& o) {
   require(o.size >= 0 && o.size_min >= 0 && o.distance >= 0 && o.gradation >= 0,
           "sizes, distance and gradation must not be negative; 0 stands for the default");
-  require(o.elements_per_circle >= 0 && o.elements_across_gap >= 0,
-          "elements per circle and across gaps must not be negative; 0 switches them off");
+  require(o.elements_per_circle >= 0 && o.elements_across_gap >= 0 && o.edges_per_hole >= 0,
+          "elements per circle, across gaps and edges per hole must not be negative; 0 switches them off");
   require(o.size == 0 || o.size_min <= o.size,
           fmt::format("size-min {} exceeds size {}; make it smaller", o.size_min, o.size));
   require(o.radius_edge >= 1 && o.exterior_radius_edge >= 1, "radius-edge must be at least 1");
@@ -34,6 +36,12 @@ void validate(const MeshOptions& o) {
 }
 
 }  // namespace
+
+double default_distance(double size, double diagonal) {
+  constexpr double share_of_size = 0.05, sizes_per_diagonal = 20;
+  const double largest = diagonal / sizes_per_diagonal;
+  return share_of_size * (size > 0 ? std::min(size, largest) : largest);
+}
 
 MeshResult generate(const Plc& plc, const MeshOptions& options, const Execution& execution) {
   validate(options);

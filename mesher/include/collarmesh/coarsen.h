@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+
+#include "collarmesh/mesher.h"
+#include "collarmesh/plc.h"
+#include "collarmesh/progress.h"
+#include "collarmesh/tet_mesh.h"
+
+namespace collarmesh {
+
+/// What bounds the shapes of a coarsened mesh.
+struct CoarsenOptions {
+  /// Degrees, above 0 and at most 30: no dihedral angle of a thin tet is below this; where features meet at
+  /// less than twice this angle, not below half the angle that they meet at.
+  double thin_angle = 8;
+  /// The share of both bounds on the angles of thin tets, counted from 0 and from 180 degrees, that is kept free for what
+  /// moves vertices afterwards, as `project_boundary` does; 0 to 0.5.
+  double reserve = 0;
+};
+
+struct CoarsenReport {
+  std::size_t tets_before = 0, tets_after = 0;
+  std::size_t contracted_edges = 0;  ///< with those repaired
+  std::size_t repaired = 0;          ///< of these, those that needed changes of the tets around
+  std::size_t thin_tets = 0;         ///< that exceed the radius-edge bound now
+  double seconds = 0;
+  bool cancelled = false;            ///< the mesh is valid, as coarse as it had become
+};
+
+/// Make as few tets as the sizes ask for: edges shorter than 0.7 times the target edge length there are
+/// contracted, within their features, where no new edge exceeds 1.4 times it. A radius-edge bound makes tets
+/// as small as the thinnest wall and the smallest angle; here it may be exceeded by thin tets:
+/// dihedral angles of at least `thin_angle` and dihedral and face angles of at most 150 degrees (the
+/// maximum-angle condition: Babuska and Aziz 1976, Krizek 1992). Collars dissolve as far as their cells can
+/// become thin tets or such within the bound.
+/// What nearly fits is repaired at once, by edge removal and by moving vertices, else undone.
+/// All other guarantees hold as before; planar patches stay planar, smooth patches and curves keep the
+/// distance.
+/// Preconditions: `mesh` comes from `generate` for `plc` with the options `made_with`, first order.
+/// Guarantee: same input and options, same mesh. Throws OptionError for an angle out of range.
+/// Cost: linear in the tets with local changes, about the time that making those takes that vanish.
+CoarsenReport coarsen(TetMesh& mesh, const Plc& plc, const MeshOptions& made_with,
+                      const CoarsenOptions& options = {}, const Execution& execution = {});
+
+}  // namespace collarmesh

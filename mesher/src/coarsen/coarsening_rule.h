@@ -1,0 +1,73 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include "improve/shape_rule.h"
+
+namespace collarmesh::coarsening {
+
+using improvement::Corners;
+
+/// The rule of coarsening: a tet of quality 1 or more is thin; its quality says how far its angles are within or beyond
+/// these bounds. Whatever has an angle above the largest is worse than all that has none.
+class CoarseningRule final : public improvement::ShapeRule {
+ public:
+  enum class Mode {
+    final,  ///< new tets keep the guarantee: they are thin or within the radius-edge bound
+    trial,  ///< they need not do so yet
+    force   ///< they only have to have a volume; quality without the last sentence above
+  };
+
+  /// No operation makes an edge longer than this times the target length and than what was there.
+  static constexpr double longest_new = 1.5;
+
+  /// `thin` and `sizes`, by vertex, are kept by reference.
+  CoarseningRule(const improvement::ThinShape& thin, double radius_edge, std::span<const double> sizes)
+      : thin_(thin),
+        bound_(radius_edge),
+        sizes_(sizes),
+        least_blunt_(std::sin((180 - thin.most() + 2 * improvement::ThinShape::rounding) * std::numbers::pi / 180)) {}
+
+  double quality(const Corners& p, const std::array<Index, 4>& corners) const override {
+    const improvement::ExtremeCosines cosines = improvement::extreme_cosines(p);
+    if (!cosines.positive) return -1;
+    // Sines of the smallest angle and of what the largest lacks to 180 degrees, by their bounds.
+    const double sharp = sine(cosines.smallest_angle) / thin_.smallest_sine(corners),
+                 blunt = (cosines.largest_angle < 0 ? sine(cosines.largest_angle) : 1) / least_blunt_;
+    return blunt < 1 && mode_ != Mode::force ? beyond * blunt * std::min(1.0, sharp) : std::min(blunt, sharp);
+  }
+  bool allows(const Corners& p, const std::array<Index, 4>&, double quality) const override {
+    return mode_ != Mode::final || keeps_guarantee(p, quality);
+  }
+  bool allows_edge(Index a, Index b, double squared_length, double squared_before) const override {
+    return squared_length <= squared_before ||
+           squared_relative_length(squared_length, a, b) <= longest_new * longest_new;
+  }
+  bool dissolves_collars() const override { return true; }
+
+  bool keeps_guarantee(const Corners& p, double quality) const { return quality >= 1 || bound_.holds(p); }
+
+  Mode mode() const { return mode_; }
+  void set_mode(Mode mode) { mode_ = mode; }
+  /// Squared length of an edge by the target there.
+  double squared_relative_length(double squared_length, Index a, Index b) const {
+    const double target = 0.5 * (sizes_[a] + sizes_[b]);
+    return squared_length / (target * target);
+  }
+
+ private:
+  static constexpr double beyond = 1e-6;
+
+  static double sine(double cosine) { return std::sqrt(1 - cosine * cosine); }
+
+  const improvement::ThinShape& thin_;
+  improvement::RadiusEdgeBound bound_;
+  std::span<const double> sizes_;
+  double least_blunt_;
+  Mode mode_ = Mode::final;
+};
+
+}  // namespace collarmesh::coarsening

@@ -1,0 +1,38 @@
+#include "common/round_curves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace collarmesh {
+
+namespace {
+
+// A half circle's polyline turns by less than it.
+constexpr double least_turn = 0.85 * std::numbers::pi;
+
+}  // namespace
+
+double length_of(const Plc& plc, const Plc::Curve& curve) {
+  double length = 0;
+  const auto& p = curve.points;
+  for (std::size_t i = 1; i < p.size(); ++i) length += distance(plc.points[p[i - 1]], plc.points[p[i]]);
+  return curve.closed ? length + distance(plc.points[p.back()], plc.points[p.front()]) : length;
+}
+
+std::size_t least_edges(const Plc& plc, const Plc::Curve& curve, double edges_per_circle) {
+  if (curve.straight || !(edges_per_circle > 0)) return 0;
+  const auto& p = curve.points;
+  const std::size_t count = p.size();
+  const auto point = [&](std::size_t i) { return plc.points[p[i % count]]; };
+  double turn = 0;
+  for (std::size_t i = curve.closed ? 0 : 1; i + (curve.closed ? 0 : 1) < count; ++i) {
+    const Vector u = point(i) - point(i + count - 1), v = point(i + 1) - point(i);
+    turn += std::atan2(norm(cross(u, v)), dot(u, v));
+  }
+  if (turn < least_turn) return 0;
+  const double circles = std::min(1.0, turn / (2 * std::numbers::pi));
+  return static_cast<std::size_t>(std::lround(std::ceil(edges_per_circle * circles - 0.1)));
+}
+
+}  // namespace collarmesh

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+
+#include "improve/shape.h"
+#include "improve/thin_shape.h"
+
+namespace collarmesh::improvement {
+
+/// How good tets are, and which ones operations may make. Several threads may ask at once.
+class ShapeRule {
+ public:
+  ShapeRule() = default;
+  ShapeRule(const ShapeRule&) = delete;
+  ShapeRule& operator=(const ShapeRule&) = delete;
+  virtual ~ShapeRule() = default;
+
+  /// The larger the better; not positive for a flat or an inverted tet.
+  virtual double quality(const Corners& p, const std::array<Index, 4>& corners) const = 0;
+  /// May an operation make this tet, of positive quality?
+  virtual bool allows(const Corners& p, const std::array<Index, 4>& corners, double quality) const = 0;
+  /// May an operation make an edge between these vertices where there was one of another length?
+  virtual bool allows_edge(Index, Index, double /*squared_length*/, double /*squared_before*/) const {
+    return true;
+  }
+  /// May operations replace cells of collars?
+  virtual bool dissolves_collars() const { return false; }
+};
+
+/// A bound on circumradius / shortest edge, which thin tets may exceed.
+class RadiusEdgeBound {
+ public:
+  explicit RadiusEdgeBound(double radius_edge) : squared_(radius_edge * radius_edge) {}
+  bool holds(const Corners& p) const {
+    const Circumsphere sphere = circumsphere(p);
+    return sphere.squared_radius <= squared_ * sphere.shortest_squared_edge;
+  }
+
+ private:
+  double squared_;
+};
+
+/// The rule of improvement: the smallest sine of the dihedral angles, within the bound. Where tets may be thin
+/// those with an angle above the largest of thin ones are worse than all others.
+class SliverRule final : public ShapeRule {
+ public:
+  /// `thin` is kept by reference; null: no tet exceeds the bound.
+  explicit SliverRule(double radius_edge, const ThinShape* thin = nullptr)
+      : bound_(radius_edge),
+        thin_(thin),
+        cosine_of_largest_(thin == nullptr ? -1
+                                           : std::cos((thin->most() - ThinShape::rounding) * std::numbers::pi / 180)) {}
+
+  double quality(const Corners& p, const std::array<Index, 4>&) const override {
+    const double sine = shape_quality(p);
+    const bool blunt = thin_ != nullptr && sine > 0 && extreme_cosines(p).largest_angle < cosine_of_largest_;
+    return blunt ? beyond * sine : sine;
+  }
+  bool allows(const Corners& p, const std::array<Index, 4>& corners, double) const override {
+    return bound_.holds(p) || (thin_ != nullptr && thin_->contains(p, corners));
+  }
+
+ private:
+  static constexpr double beyond = 1e-3;
+
+  RadiusEdgeBound bound_;
+  const ThinShape* thin_;
+  double cosine_of_largest_;
+};
+
+}  // namespace collarmesh::improvement

@@ -1,0 +1,54 @@
+#include "improve/thin_shape.h"
+
+#include "collarmesh/plc_builder.h"
+
+namespace collarmesh::improvement {
+
+namespace {
+
+double sine_above(double degrees) { return std::sin((degrees + 2 * ThinShape::rounding) * std::numbers::pi / 180); }
+
+}  // namespace
+
+ThinShape::ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle, double reserve)
+    : smallest_(smallest_angle * (1 + reserve)),
+      most_(180 - (180 - largest_angle) * (1 + reserve)),
+      sine_(sine_above(smallest_)) {
+  if (empty()) return;
+  std::vector<double> of_vertex(plc.vertices.size(), smallest_), of_curve(plc.curves.size(), smallest_);
+  bool any = false;
+  for (const Crease& crease : find_creases(plc, 2 * smallest_angle)) {
+    any = true;
+    const auto lower = [&](double& bound) { bound = std::min(bound, 0.5 * crease.angle * (1 + reserve)); };
+    if (crease.vertex != none) lower(of_vertex[crease.vertex]);
+    if (crease.curve == none) continue;
+    lower(of_curve[crease.curve]);
+    for (const Index end : plc.curves[crease.curve].ends)
+      if (end != none) lower(of_vertex[end]);
+  }
+  if (!any) return;
+  at_vertex_.assign(mesh.points.size(), smallest_);
+  for (Index v = 0; v < mesh.features.size(); ++v) {
+    const auto& [dimension, feature] = mesh.features[v];
+    if (feature == none) continue;
+    if (dimension == 0) at_vertex_[v] = of_vertex[feature];
+    if (dimension == 1) at_vertex_[v] = of_curve[feature];
+  }
+  sine_at_vertex_.reserve(at_vertex_.size());
+  for (const double angle : at_vertex_) sine_at_vertex_.push_back(sine_above(angle));
+}
+
+void mark_thin_tets(TetMesh& mesh, double radius_edge) {
+  mesh.tet_thin.clear();
+  for (Index t = 0; t < mesh.tets.size(); ++t) {
+    if (mesh.tet_collar[t] != 0) continue;
+    const auto& v = mesh.tets[t];
+    const TetQuality quality =
+        measure(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]]);
+    if (quality.radius_edge <= radius_edge) continue;
+    mesh.tet_thin.resize(mesh.tets.size(), 0);
+    mesh.tet_thin[t] = 1;
+  }
+}
+
+}  // namespace collarmesh::improvement

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "collarmesh/tet_mesh.h"
+#include "improve/shape.h"
+
+namespace collarmesh::improvement {
+
+/// The cosines of a tet's extreme angles.
+struct ExtremeCosines {
+  double smallest_angle;  ///< of the smallest dihedral angle
+  double largest_angle;   ///< of the largest one, of those of faces, too
+  bool positive;          ///< volume
+};
+
+inline ExtremeCosines extreme_cosines(const Corners& p) {
+  const Vector ab = p[1] - p[0], ac = p[2] - p[0], ad = p[3] - p[0], bc = p[2] - p[1], bd = p[3] - p[1],
+               cd = p[3] - p[2];
+  const Vector n_a = cross(bc, bd), n_b = cross(ad, ac), n_c = cross(ab, ad), n_d = cross(ac, ab);
+  if (!(-dot(n_d, ad) > 0)) return {1, -1, false};
+  const double a = 1 / norm(n_a), b = 1 / norm(n_b), c = 1 / norm(n_c), d = 1 / norm(n_d);
+  // Outward normals: minus their product is the cosine of the angle between the faces.
+  const std::array<double, 6> cosines{-dot(n_c, n_d) * c * d, -dot(n_b, n_d) * b * d, -dot(n_b, n_c) * b * c,
+                                      -dot(n_a, n_d) * a * d, -dot(n_a, n_c) * a * c, -dot(n_a, n_b) * a * b};
+  double least = cosines[0], greatest = cosines[0];
+  for (unsigned i = 1; i < 6; ++i) {
+    least = std::min(least, cosines[i]);
+    greatest = std::max(greatest, cosines[i]);
+  }
+  const double l_ab = squared_norm(ab), l_ac = squared_norm(ac), l_ad = squared_norm(ad),
+               l_bc = squared_norm(bc), l_bd = squared_norm(bd), l_cd = squared_norm(cd);
+  const auto see_face = [&least](double x, double y, double z) {
+    const double longest = std::max({x, y, z}), excess = x + y + z - 2 * longest;
+    if (excess >= 0) return;
+    const double others = longest == x ? y * z : longest == y ? x * z : x * y;
+    least = std::min(least, 0.5 * excess / std::sqrt(others));
+  };
+  see_face(l_ab, l_ac, l_bc);
+  see_face(l_ab, l_ad, l_bd);
+  see_face(l_ac, l_ad, l_cd);
+  see_face(l_bc, l_bd, l_cd);
+  return {std::min(1.0, greatest), std::max(-1.0, least), true};
+}
+
+/// The extreme angles of a tet, degrees.
+struct ExtremeAngles {
+  double smallest;  ///< dihedral; negative for a flat or an inverted tet
+  double largest;   ///< dihedral, or of a face
+};
+
+inline ExtremeAngles extreme_angles(const Corners& p) {
+  const ExtremeCosines cosines = extreme_cosines(p);
+  if (!cosines.positive) return {-1, 180};
+  constexpr double degrees = 180 / std::numbers::pi;
+  return {std::acos(cosines.smallest_angle) * degrees, std::acos(cosines.largest_angle) * degrees};
+}
+
+/// Which tets are thin: their dihedral angles are bounded from below and above and those of their faces from
+/// above, which is a shape as good as thin places permit. Where features meet at less than twice the
+/// smallest angle, half the angle they meet at is the bound from below.
+class ThinShape {
+ public:
+  static constexpr double largest_angle = 150;  ///< degrees
+  static constexpr double rounding = 1e-6;      ///< degrees, kept free for other ways to compute an angle
+
+  /// `smallest_angle` in degrees; 0: no tet is thin. Vertices are those that the mesh has now. `reserve` is the
+  /// share of the bounds, counted from 0 and from 180 degrees, that is kept free.
+  ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle, double reserve = 0);
+
+  bool empty() const { return !(smallest_ > 0); }
+  /// The sine of `smallest_angle`, with room for rounding.
+  double smallest_sine(const std::array<Index, 4>& corners) const {
+    double least = sine_;
+    if (sine_at_vertex_.empty()) return least;
+    for (const Index v : corners)
+      if (v < sine_at_vertex_.size()) least = std::min(least, sine_at_vertex_[v]);
+    return least;
+  }
+  /// Lower bound on the dihedral angles of a tet with these corners, degrees.
+  double smallest_angle(const std::array<Index, 4>& corners) const {
+    double least = smallest_;
+    if (at_vertex_.empty()) return least;
+    for (const Index v : corners)
+      if (v < at_vertex_.size()) least = std::min(least, at_vertex_[v]);
+    return least;
+  }
+  /// Upper bound on dihedral angles and those of faces, degrees.
+  double most() const { return most_; }
+  bool contains(const Corners& p, const std::array<Index, 4>& corners) const {
+    if (empty()) return false;
+    const ExtremeAngles angles = extreme_angles(p);
+    return angles.largest <= most_ - rounding &&
+           angles.smallest >= smallest_angle(corners) + rounding;
+  }
+
+ private:
+  double smallest_, most_, sine_;
+  std::vector<double> at_vertex_, sine_at_vertex_;  // empty where no crease is that sharp
+};
+
+/// Mark the tets outside collars whose circumradius / shortest edge is above the bound.
+void mark_thin_tets(TetMesh& mesh, double radius_edge);
+
+}  // namespace collarmesh::improvement

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace collarmesh::improvement {
+
+/// What entries of an array were before they changed, while it is on, so that they can be put back.
+template <class Value>
+class UndoLog {
+ public:
+  void begin(std::size_t size) {
+    on_ = true;
+    size_ = size;
+    entries_.clear();
+  }
+  void end() { on_ = false; }
+  /// This entry is about to change.
+  void note(const std::vector<Value>& values, std::size_t i) {
+    if (on_ && i < size_) entries_.emplace_back(i, values[i]);
+  }
+  /// Put all entries back that there were when it began, drop those added since, and end.
+  void undo(std::vector<Value>& values) {
+    for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry)
+      values[entry->first] = entry->second;
+    values.resize(size_);
+    on_ = false;
+  }
+
+ private:
+  bool on_ = false;
+  std::size_t size_ = 0;
+  std::vector<std::pair<std::size_t, Value>> entries_;
+};
+
+/// The same for a stack: what was pushed and popped.
+template <class Value>
+class UndoStack {
+ public:
+  void begin() {
+    on_ = true;
+    steps_.clear();
+  }
+  void end() { on_ = false; }
+  void push(std::vector<Value>& stack, const Value& value) {
+    stack.push_back(value);
+    if (on_) steps_.push_back({true, value});
+  }
+  Value pop(std::vector<Value>& stack) {
+    const Value value = stack.back();
+    stack.pop_back();
+    if (on_) steps_.push_back({false, value});
+    return value;
+  }
+  void undo(std::vector<Value>& stack) {
+    for (auto step = steps_.rbegin(); step != steps_.rend(); ++step) {
+      if (step->pushed)
+        stack.pop_back();
+      else
+        stack.push_back(step->value);
+    }
+    on_ = false;
+  }
+
+ private:
+  struct Step {
+    bool pushed;
+    Value value;
+  };
+  bool on_ = false;
+  std::vector<Step> steps_;
+};
+
+}  // namespace collarmesh::improvement

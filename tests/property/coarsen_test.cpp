@@ -1,0 +1,189 @@
+// Coarsening: about as few tets as the sizes ask for, and every guarantee but the radius-edge bound stays.
+#include "collarmesh/coarsen.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "collarmesh/error.h"
+#include "collarmesh/improve.h"
+#include "support/acute_shapes.h"
+#include "support/meshing.h"
+#include "support/shapes.h"
+#include "support/tet_mesh_comparison.h"
+
+namespace collarmesh {
+namespace {
+
+using namespace collarmesh::testing;
+
+struct Shape {
+  std::string name;
+  std::vector<PolygonSoup> soups;
+  double size;
+  double feature_angle;
+  double smallest;  ///< that dihedral angles may have, degrees
+  double share;     ///< of the tets that may be left
+  double again = 0.01;  ///< of those may go when it is coarsened again
+};
+
+PolygonSoup plate() { return box({0, 0, 0}, {100, 100, 1}); }
+
+std::vector<Shape> thin_shapes() {
+  return {{"plate", {plate()}, 10, 0, 8, 0.06, 0.03},
+          {"plate with a hole", {scaled(plate_with_hole(1, 32), 1)}, 1.5, 30, 8, 0.8, 0.05},
+          {"sphere in a sphere", {icosphere(1, 12), icosphere(0.95, 12)}, 0.3, 30, 8, 0.3},
+          {"wedge of 1 degree", acute::wedge(1).soups, 0.3, 0, 0.5, 0.1, 0.1},
+          {"wedge of 2 degrees", acute::wedge(2).soups, 0.3, 0, 1, 0.15, 0.2},
+          {"wedge of 5 degrees", acute::wedge(5).soups, 0.3, 0, 2.5, 0.3},
+          {"wedge of 20 degrees", acute::wedge(20).soups, 0.2, 0, 8, 0.8},
+          {"fan", acute::fan(8).soups, 0.3, 0, 8, 0.8},
+          {"two boxes", {two_boxes()}, 0.3, 0, 8, 1},
+          {"dangling facet", {box_with_dangling_facet()}, 0.3, 0, 8, 1},
+          {"torus", {torus(1, 0.1, 60, 12)}, 0.4, 30, 8, 0.8},
+          {"touching boxes", boxes_touching_in_an_edge(), 0.6, 30, 8, 1}};
+}
+
+struct Coarsened {
+  Meshed meshed;
+  CoarsenReport report;
+};
+
+Coarsened coarsened(const Shape& shape) {
+  const MeshOptions options = with_size(shape.size);
+  Coarsened made{mesh_of(shape.soups, options, shape.feature_angle), {}};
+  EXPECT_EQ(faults(made.meshed), "");
+  TetMesh& mesh = made.meshed.result.mesh;
+  made.report = coarsen(mesh, made.meshed.plc, options);
+  improve(mesh, made.meshed.plc, {.thin_angle = 8, .keep_vertices = true});
+  made.meshed.report = check(mesh, made.meshed.plc);
+  return made;
+}
+
+TEST(Coarsen, KeepsEveryGuaranteeOfThinShapes) {
+  for (const Shape& shape : thin_shapes()) {
+    SCOPED_TRACE(shape.name);
+    const auto [meshed, report] = coarsened(shape);
+    EXPECT_EQ(faults(meshed), "");
+    EXPECT_LE(meshed.report.max_dihedral, 150.01);
+    EXPECT_GE(meshed.report.min_dihedral, shape.smallest);
+    EXPECT_LE(static_cast<double>(report.tets_after), shape.share * static_cast<double>(report.tets_before));
+    EXPECT_EQ(report.tets_after > 0, true);
+    EXPECT_FALSE(report.cancelled);
+  }
+}
+
+// In sharp wedges and plates with hardly a vertex that is not on their faces there is always something.
+TEST(Coarsen, RemovesHardlyAnythingAgain) {
+  std::size_t most = 0, removed = 0;
+  for (const Shape& shape : thin_shapes()) {
+    SCOPED_TRACE(shape.name);
+    const MeshOptions options = with_size(shape.size);
+    Meshed meshed = mesh_of(shape.soups, options, shape.feature_angle);
+    coarsen(meshed.result.mesh, meshed.plc, options);
+    const CoarsenReport again = coarsen(meshed.result.mesh, meshed.plc, options);
+    const double found = 1 - static_cast<double>(again.tets_after) / static_cast<double>(again.tets_before);
+    EXPECT_LE(found, shape.again) << again.tets_before;
+    most += again.tets_before, removed += again.tets_before - again.tets_after;
+    EXPECT_EQ(faults({meshed.plc, {}, check(meshed.result.mesh, meshed.plc)}), "");
+  }
+  EXPECT_LE(static_cast<double>(removed), 0.03 * static_cast<double>(most));
+}
+
+TEST(Coarsen, KeepsVolumesAndTags) {
+  const auto tags = [](const TetMesh& mesh) {
+    return std::tuple(std::set<Tag>(mesh.tet_tag.begin(), mesh.tet_tag.end()),
+                      std::set<Tag>(mesh.face_tag.begin(), mesh.face_tag.end()),
+                      std::set<Index>(mesh.edge_curve.begin(), mesh.edge_curve.end()));
+  };
+  for (const Shape& shape : thin_shapes()) {
+    SCOPED_TRACE(shape.name);
+    const MeshOptions options = with_size(shape.size);
+    Meshed meshed = mesh_of(shape.soups, options, shape.feature_angle);
+    const auto before = tags(meshed.result.mesh);
+    const auto volumes = meshed.report.region_volumes;
+    coarsen(meshed.result.mesh, meshed.plc, options);
+    EXPECT_EQ(tags(meshed.result.mesh), before);
+    const CheckReport after = check(meshed.result.mesh, meshed.plc);
+    ASSERT_EQ(after.region_volumes.size(), volumes.size());
+    for (std::size_t r = 1; r < volumes.size(); ++r)
+      EXPECT_NEAR(after.region_volumes[r], volumes[r], (shape.feature_angle > 0 ? 0.02 : 1e-9) * volumes[r]);
+  }
+}
+
+TEST(Coarsen, IsDeterministic) {
+  const Shape shape{"fan", acute::fan(8).soups, 0.3, 0, 8, 1};
+  const Coarsened first = coarsened(shape), second = coarsened(shape);
+  expect_same(first.meshed.result.mesh, second.meshed.result.mesh);
+}
+
+// The median edge of what is coarse is about the size; nothing but features is far shorter.
+TEST(Coarsen, EdgesAreAsLongAsAskedFor) {
+  const auto [meshed, report] = coarsened({"plate", {plate()}, 10, 0, 8, 1});
+  const TetMesh& mesh = meshed.result.mesh;
+  std::map<std::pair<Index, Index>, double> in_faces;
+  for (const auto& f : mesh.faces)
+    for (unsigned i = 0; i < 3; ++i) {
+      const Index a = f[i], b = f[(i + 1) % 3];
+      in_faces[{std::min(a, b), std::max(a, b)}] = distance(mesh.points[a], mesh.points[b]);
+    }
+  std::vector<double> lengths;
+  for (const auto& [ends, length] : in_faces)
+    if (length > 1.5) lengths.push_back(length);  // not across the plate
+  std::nth_element(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2), lengths.end());
+  EXPECT_GT(lengths[lengths.size() / 2], 6);
+  EXPECT_LT(lengths[lengths.size() / 2], 12);
+}
+
+// Smaller sizes of one side hold there, larger ones elsewhere.
+TEST(Coarsen, SizesByTagHold) {
+  MeshOptions options = with_size(0.5);
+  options.patch_size[1] = 0.08;
+  Meshed meshed = mesh_of(box(), options, 0);
+  coarsen(meshed.result.mesh, meshed.plc, options);
+  const TetMesh& mesh = meshed.result.mesh;
+  double on_side = 0, elsewhere = 0;
+  std::size_t faces_on_side = 0, faces_elsewhere = 0;
+  for (Index f = 0; f < mesh.faces.size(); ++f) {
+    const auto& [a, b, c] = mesh.faces[f];
+    const double longest = std::max({distance(mesh.points[a], mesh.points[b]), distance(mesh.points[b], mesh.points[c]),
+                                     distance(mesh.points[c], mesh.points[a])});
+    if (mesh.face_tag[f] == 1) on_side += longest, ++faces_on_side;
+    if (mesh.face_tag[f] == 2) elsewhere += longest, ++faces_elsewhere;
+  }
+  ASSERT_GT(faces_on_side, 0U);
+  ASSERT_GT(faces_elsewhere, 0U);
+  EXPECT_LT(on_side / static_cast<double>(faces_on_side), 0.12);
+  EXPECT_GT(elsewhere / static_cast<double>(faces_elsewhere), 0.3);
+}
+
+// A mark is no reason: the angles of a marked tet are, and nobody is excused when no tet may be thin.
+TEST(CoarsenCheck, JudgesThinTetsByTheirAngles) {
+  auto [meshed, report] = coarsened({"plate", {plate()}, 10, 0, 8, 1});
+  TetMesh& mesh = meshed.result.mesh;
+  ASSERT_GT(report.thin_tets, 0U);
+  EXPECT_EQ(meshed.report.thin_tets,
+            static_cast<std::size_t>(std::count(mesh.tet_thin.begin(), mesh.tet_thin.end(), 1)));
+  const auto kinds = [&](const CheckOptions& options) {
+    std::set<std::string> found;
+    for (const Finding& f : check(mesh, meshed.plc, options).findings) found.insert(f.guarantee);
+    return found;
+  };
+  EXPECT_EQ(kinds({}), std::set<std::string>());
+  EXPECT_EQ(kinds({.thin_angle = 0}), std::set<std::string>{"radius_edge"});
+  EXPECT_EQ(kinds({.thin_angle = 20}), std::set<std::string>{"thin_angles"});
+  mesh.tet_thin.assign(mesh.tets.size(), 0);
+  EXPECT_EQ(kinds({}), std::set<std::string>{"radius_edge"});
+}
+
+TEST(Coarsen, RefusesAnglesOutOfRange) {
+  Meshed meshed = mesh_of(box(), with_size(0.5), 0);
+  for (const double angle : {0.0, -1.0, 31.0})
+    EXPECT_THROW(coarsen(meshed.result.mesh, meshed.plc, {}, {.thin_angle = angle}), OptionError);
+}
+
+}  // namespace
+}  // namespace collarmesh
