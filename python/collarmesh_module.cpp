@@ -117,9 +117,13 @@ RepairMode repair_mode(const std::string& word) {
 
 std::unique_ptr<Mesh> generate_mesh(const std::vector<PolygonSoup>& soups, const Wanted& wanted,
                                     const Execution& execution) {
-  const auto [plc, repaired, repaired_soups] = build_repaired_plc(soups, wanted.plc, wanted.repair, execution);
+  const auto [plc, repaired, repaired_soups] =
+      build_repaired_plc(soups, wanted.plc, wanted.repair, execution);
   if (repaired.cancelled) throw Error("cancelled");
-  MeshResult result = generate(plc, wanted.mesh, execution);
+  MeshOptions options = wanted.mesh;
+  if (!(options.distance > 0))
+    options.distance = default_distance(options.size, plc.bounds.diagonal(), wanted.order);
+  MeshResult result = generate(plc, options, execution);
   require_complete(result);
   auto made = std::make_unique<Mesh>();
   made->mesh = std::move(result.mesh);
@@ -132,21 +136,21 @@ std::unique_ptr<Mesh> generate_mesh(const std::vector<PolygonSoup>& soups, const
         report.fraction = 1;
         return execution.progress(report);
       };
-    if (coarsen(made->mesh, plc, wanted.mesh, wanted.thin, later).cancelled) throw Error("cancelled");
+    if (coarsen(made->mesh, plc, options, wanted.thin, later).cancelled) throw Error("cancelled");
   }
   if (wanted.improve > 0) {
-    ImproveOptions options = improve_options(wanted.improve);
-    options.radius_edge = wanted.mesh.radius_edge;
-    options.distance = wanted.mesh.distance;
-    options.thin_angle = coarse ? wanted.thin.thin_angle : 0;
-    options.keep_vertices = coarse;
-    improve(made->mesh, plc, options);
+    ImproveOptions improvement = improve_options(wanted.improve);
+    improvement.radius_edge = options.radius_edge;
+    improvement.distance = options.distance;
+    improvement.thin_angle = coarse ? wanted.thin.thin_angle : 0;
+    improvement.keep_vertices = coarse;
+    collarmesh::improve(made->mesh, plc, improvement);
   }
   if (wanted.order == 2) make_second_order(made->mesh, plc);
   CheckOptions bounds;
   bounds.radius_edge = wanted.mesh.radius_edge;
   bounds.thin_angle = wanted.thin.thin_angle;
-  bounds.distance = wanted.mesh.distance;
+  bounds.distance = options.distance;
   bounds.collar_angle = wanted.mesh.collar_angle;
   bounds.crease_angle = wanted.mesh.crease_angle;
   made->report = check(made->mesh, plc, bounds);
@@ -158,8 +162,8 @@ std::unique_ptr<Mesh> mesh(const py::args& surfaces, double size, double size_mi
                            double gradation, double elements_per_circle, double elements_across_gap,
                            double radius_edge, double feature_angle, double crease_angle, double collar_angle,
                            double distance, bool coarsen, double thin_angle, unsigned improve, int order,
-                           std::uint64_t seed, double time_limit, const std::string& repair, double repair_tolerance,
-                           const py::object& progress) {
+                           std::uint64_t seed, double time_limit, const std::string& repair,
+                           double repair_tolerance, const py::object& progress) {
   if (order != 1 && order != 2) refuse("order must be 1 or 2");
   if (surfaces.empty()) refuse("there is no surface to mesh: give tuples (points, triangles)");
   std::vector<PolygonSoup> soups;
@@ -275,9 +279,8 @@ PYBIND11_MODULE(collarmesh, module) {
              "gradation"_a = 0., "elements_per_circle"_a = 0., "elements_across_gap"_a = 0.,
              "radius_edge"_a = 2., "feature_angle"_a = 30., "crease_angle"_a = 60., "collar_angle"_a = 150.,
              "distance"_a = 0., "coarsen"_a = true, "thin_angle"_a = CoarsenOptions().thin_angle,
-             "improve"_a = 2U, "order"_a = 1, "seed"_a = 0U, "time_limit"_a = 0.,
-             "repair"_a = "auto", "repair_tolerance"_a = RepairOptions().tolerance,
-             "progress"_a = py::none());
+             "improve"_a = 2U, "order"_a = 1, "seed"_a = 0U, "time_limit"_a = 0., "repair"_a = "auto",
+             "repair_tolerance"_a = RepairOptions().tolerance, "progress"_a = py::none());
 }
 
 }  // namespace collarmesh::python

@@ -31,15 +31,15 @@ struct MeshArguments {
   std::string output;
   ComplexArguments complex;
   MeshOptions mesh;
-  std::string size_field;                   ///< path, empty: none
-  bool coarsen = true;                      ///< as few tets as the sizes ask for
+  std::string size_field;                           ///< path, empty: none
+  bool coarsen = true;                              ///< as few tets as the sizes ask for
   double thin_angle = CoarsenOptions{}.thin_angle;  ///< degrees, where it coarsens
-  unsigned improve = 2;                     ///< level; 0: leave the elements as they are
-  unsigned order = 1;                       ///< of the cells, 1 or 2
-  double min_dihedral = 0;                  ///< degrees, in place of the level's; 0: the level's
-  std::string input_format, output_format;  ///< extensions with their dot; empty: those of the files
-  unsigned threads = 0;                     ///< at most; 0: as many as there are cores
-  std::string report;                       ///< path, empty: none
+  unsigned improve = 2;                             ///< level; 0: leave the elements as they are
+  unsigned order = 1;                               ///< of the cells, 1 or 2
+  double min_dihedral = 0;                          ///< degrees, in place of the level's; 0: the level's
+  std::string input_format, output_format;          ///< extensions with their dot; empty: those of the files
+  unsigned threads = 0;                             ///< at most; 0: as many as there are cores
+  std::string report;                               ///< path, empty: none
   ProgressStyle progress = ProgressStyle::automatic;
   bool verbose = false;
   bool quiet = false;

@@ -20,7 +20,8 @@ enum class SolidOverlap {
 
 /// How CAD files are read.
 struct CadReading {
-  std::function<double(double diagonal)> deflection;  ///< of the triangles, absolute, from the shape's diagonal
+  std::function<double(double diagonal)>
+      deflection;  ///< of the triangles, absolute, from the shape's diagonal
   SolidOverlap overlap = SolidOverlap::first;
 };
 

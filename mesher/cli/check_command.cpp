@@ -21,7 +21,8 @@ ExitCode check_command(const CheckArguments& arguments) {
   options.crease_angle = arguments.complex.crease_angle;
   CheckReport report = check(mesh, plc, options);
   if (input.repaired().repaired)
-    report.notes.emplace_back("the mesh was judged against the repaired complex, and that against the input:");
+    report.notes.emplace_back(
+        "the mesh was judged against the repaired complex, and that against the input:");
   for (const std::string& repair : describe(input.repaired()))
     report.notes.push_back("the input was repaired: " + repair);
   if (arguments.json)

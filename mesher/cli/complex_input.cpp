@@ -147,7 +147,7 @@ ExactGeometry ComplexInput::exact_geometry(const Plc& plc) const {
 
 MeshOptions ComplexInput::tightened(const MeshOptions& options, const Plc& plc) const {
   if (!has_cad()) return options;
-  constexpr double distance_left = 0.75;     // the triangles' share twice, and some room
+  constexpr double distance_left = 0.75;  // the triangles' share twice, and some room
   constexpr double ratio_left = 0.99;
   MeshOptions tight = options;
   tight.distance =

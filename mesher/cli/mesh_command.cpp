@@ -71,13 +71,9 @@ void require_known_tags(const MeshOptions& options, const Plc& plc) {
   require_tags(options.curve_size, plc.curves, "--curve-size", "curve");
 }
 
-/// Curved elements are judged by their corners' triangles, which the default for straight ones would leave too
-/// coarse to curve without inverting elements.
 double distance_of(const MeshArguments& arguments, double diagonal) {
-  constexpr double for_curved_elements = 1e-3;
-  if (arguments.mesh.distance > 0) return arguments.mesh.distance;
-  const double distance = default_distance(arguments.mesh.size, diagonal);
-  return arguments.order == 2 ? std::min(distance, for_curved_elements * diagonal) : distance;
+  return arguments.mesh.distance > 0 ? arguments.mesh.distance
+                                     : default_distance(arguments.mesh.size, diagonal, arguments.order);
 }
 
 ComplexInput build_complex(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
@@ -140,8 +136,9 @@ void coarsen_elements(const MeshArguments& arguments, const ComplexInput& input,
   stages.begin("coarsen", 0.6, 0.7, run.result.mesh.tets.size());
   Execution execution;
   execution.cancel = &interrupt_flag();
-  run.coarsening = coarsen(run.result.mesh, run.plc, options,
-                           {.thin_angle = arguments.thin_angle, .reserve = reserve_of_angles(input)}, execution);
+  run.coarsening =
+      coarsen(run.result.mesh, run.plc, options,
+              {.thin_angle = arguments.thin_angle, .reserve = reserve_of_angles(input)}, execution);
   stop_if_interrupted();
 }
 
@@ -203,11 +200,8 @@ void certify(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   options.threads = arguments.threads;
   run.check = check(run.result.mesh, run.plc, options);
   if (run.repair.repaired)
-    run.check.notes.push_back(
-        fmt::format("the mesh was judged against the repaired complex; its facets are within {:.3g} of the "
-                    "input, and the input, but for "
-                    "what lies inside of them, within {:.3g} of them",
-                    run.repair.largest_distance, run.repair.largest_distance_of_input));
+    run.check.notes.push_back(fmt::format("the mesh was judged against the {} complex",
+                                          run.repair.wrapped ? "wrapped" : "repaired"));
 }
 
 void write_report(const std::string& path, const MeshArguments& arguments, const MeshRun& run) {

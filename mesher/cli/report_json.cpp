@@ -281,12 +281,9 @@ Json repair_json(const RepairReport& r) {
 
 Json repair_run_json(const RepairArguments& arguments, const Plc& plc, const PlcSummary& summary,
                      const RepairReport& report) {
-  return {{"program", "collarmesh"},
-          {"version", COLLARMESH_VERSION},
-          {"inputs", arguments.inputs},
-          {"output", arguments.output},
-          {"repair", repair_json(report)},
-          {"complex", complex_json(plc, summary)}};
+  return {{"program", "collarmesh"},       {"version", COLLARMESH_VERSION},
+          {"inputs", arguments.inputs},    {"output", arguments.output},
+          {"repair", repair_json(report)}, {"complex", complex_json(plc, summary)}};
 }
 
 Json run_json(const MeshArguments& arguments, const MeshRun& run) {

@@ -71,7 +71,8 @@ CadMeshed mesh_of_cad_file(const std::string& path, double relative_size, int or
   TetMesh& mesh = meshed.result.mesh;
   const MeshOptions bounds = input.tightened(options, meshed.plc);
   improve(mesh, meshed.plc, {.radius_edge = bounds.radius_edge, .distance = bounds.distance});
-  meshed.projection = project_boundary(mesh, meshed.plc, input.exact_geometry(meshed.plc), {.reach = options.distance});
+  meshed.projection =
+      project_boundary(mesh, meshed.plc, input.exact_geometry(meshed.plc), {.reach = options.distance});
   if (order == 2)
     meshed.second_order = make_second_order(mesh, meshed.plc, {.exact = input.exact_geometry(meshed.plc)});
   meshed.report = check(meshed.result.mesh, meshed.plc, {.distance = options.distance});

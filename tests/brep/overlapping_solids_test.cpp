@@ -192,7 +192,8 @@ TEST(CadOverlaps, OptionOfTheProgram) {
   expect_near(volumes({"--overlap", "first"}), first);
   expect_near(volumes({"--overlap", "region"}), region);
   const std::array wrong{"collarmesh", "info", path.c_str(), "--overlap", "both"};
-  EXPECT_EQ(std::get<cli::ExitCode>(cli::parse(static_cast<int>(wrong.size()), wrong.data())), cli::ExitCode::usage);
+  EXPECT_EQ(std::get<cli::ExitCode>(cli::parse(static_cast<int>(wrong.size()), wrong.data())),
+            cli::ExitCode::usage);
 }
 
 bool same(const std::vector<PolygonSoup>& a, const std::vector<PolygonSoup>& b) {

@@ -25,8 +25,8 @@ from judging import JUDGE, TIME_LIMIT, Failed, run, verdict
 CORPUS = os.environ.get("COLLARMESH_CORPUS", "")
 RELATIVE_SIZE = 1 / 25
 REPAIR_LIMIT = 20  # seconds
-# Known faults of the mesher, which the certificate finds: a smooth patch that nearly touches itself once it is
-# repaired; a vertex that projection puts past its neighbour on an edge.
+# A known fault of the mesher, which the certificate finds: a smooth patch that nearly touches itself once it is
+# repaired.
 KNOWN_MISSES = {"cow.obj": "patch_border"}
 RELATIVE_DISTANCE = 1e-3
 # Facets that are triangles of flat faces, each with a tag of its own: their acute corners in the plane

@@ -198,7 +198,7 @@ class Headless(unittest.TestCase):
             "CharacteristicLengthMax": 4, "CharacteristicLengthMin": 0.5, "MeshSizeFromCurvature": 12,
             "ElementsAcrossGap": 2, "Gradation": 0.5, "SurfaceDistance": 0.02, "CreaseAngle": 55, "CollarAngle": 155,
             "PlanarTolerance": 2e-6, "WeldTolerance": 2e-9,
-            "RepairTolerance": 2e-5, "RadiusEdgeRatio": 1.9, "ImproveLevel": 3,
+            "RepairTolerance": 2e-5, "RadiusEdgeRatio": 1.9, "Coarsen": False, "ImproveLevel": 3,
             "MinDihedralAngle": 25, "Seed": 7, "TimeLimit": 60,
         }  # fmt: skip
         self.assertEqual(set(values), {name for _, name, *_ in mesh_object.PROPERTIES})

@@ -25,8 +25,8 @@ struct Shape {
   std::vector<PolygonSoup> soups;
   double size;
   double feature_angle;
-  double smallest;  ///< that dihedral angles may have, degrees
-  double share;     ///< of the tets that may be left
+  double smallest;      ///< that dihedral angles may have, degrees
+  double share;         ///< of the tets that may be left
   double again = 0.01;  ///< of those may go when it is coarsened again
 };
 
@@ -133,7 +133,8 @@ TEST(Coarsen, EdgesAreAsLongAsAskedFor) {
   std::vector<double> lengths;
   for (const auto& [ends, length] : in_faces)
     if (length > 1.5) lengths.push_back(length);  // not across the plate
-  std::nth_element(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2), lengths.end());
+  std::nth_element(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2),
+                   lengths.end());
   EXPECT_GT(lengths[lengths.size() / 2], 6);
   EXPECT_LT(lengths[lengths.size() / 2], 12);
 }
@@ -149,8 +150,9 @@ TEST(Coarsen, SizesByTagHold) {
   std::size_t faces_on_side = 0, faces_elsewhere = 0;
   for (Index f = 0; f < mesh.faces.size(); ++f) {
     const auto& [a, b, c] = mesh.faces[f];
-    const double longest = std::max({distance(mesh.points[a], mesh.points[b]), distance(mesh.points[b], mesh.points[c]),
-                                     distance(mesh.points[c], mesh.points[a])});
+    const double longest =
+        std::max({distance(mesh.points[a], mesh.points[b]), distance(mesh.points[b], mesh.points[c]),
+                  distance(mesh.points[c], mesh.points[a])});
     if (mesh.face_tag[f] == 1) on_side += longest, ++faces_on_side;
     if (mesh.face_tag[f] == 2) elsewhere += longest, ++faces_elsewhere;
   }

@@ -46,16 +46,14 @@ std::vector<Shape> shapes() {
 }
 
 constexpr double radius_edge = 2;
-constexpr double distance = 2e-3;  // about a thousandth of the diagonals
+constexpr double distance = 2e-3;       // about a thousandth of the diagonals
 constexpr std::size_t attempts = 2000;  // on each mesh
 constexpr std::size_t single_steps = 4;
 
 /// A complex and its operations on a mesh of its own.
 struct Workbench {
   Workbench(const Meshed& meshed, const TetMesh& of)
-      : mesh(of),
-        workpiece(mesh, meshed.plc, distance),
-        operations(workpiece, rule) {}
+      : mesh(of), workpiece(mesh, meshed.plc, distance), operations(workpiece, rule) {}
 
   double worst(std::span<const Index> tets) const {
     double quality = INFINITY;

@@ -47,7 +47,8 @@ void expect_close(const PolygonSoup& soup, double coarse, double fine, double vo
     SCOPED_TRACE(size);
     const Meshed meshed = mesh_of(soup, with_size(size));
     EXPECT_EQ(faults(meshed), "");
-    EXPECT_NEAR(meshed.report.region_volumes.at(1), volume, default_distance(size, meshed.plc.bounds.diagonal()) * area);
+    EXPECT_NEAR(meshed.report.region_volumes.at(1), volume,
+                default_distance(size, meshed.plc.bounds.diagonal()) * area);
   }
 }
 

@@ -129,8 +129,8 @@ std::vector<double> volumes_of(std::span<const PolygonSoup> soups) {
 
 using Change = std::function<PolygonSoup(const PolygonSoup&)>;
 
-void expect_invariant(unsigned count, std::uint64_t seed, double relative, const Change& change,
-                      double scale, std::string_view left_out = {}) {
+void expect_invariant(unsigned count, std::uint64_t seed, double relative, const Change& change, double scale,
+                      std::string_view left_out = {}) {
   for (const Family& family : families()) {
     if (family.name == left_out) continue;
     Random random(seed);
@@ -164,12 +164,15 @@ TEST(RepairInvariance, ScaledAndMoved) {
       1);
 }
 
-// But for three boxes of a lattice: their sides in one plane part by rounding when they are turned, which is not always
-// repaired.
+// But for three boxes of a lattice: their sides in one plane part by rounding when they are turned, which is
+// not always repaired.
 TEST(RepairInvariance, Rotated) {
   expect_invariant(
-      2, 24, 1e-4, [](const PolygonSoup& soup) { return testing::rotated(soup, {1, 2, -1}, 37); }, 1,
-      "boxes of a lattice");
+      2, 24, 1e-4,
+      [](const PolygonSoup& soup) {
+        return testing::rotated(soup, {1, 2, -1}, 37);
+      },
+      1, "boxes of a lattice");
 }
 
 TEST(RepairInvariance, OrderOfPointsFacetsAndCorners) {

@@ -96,8 +96,9 @@ class Module(unittest.TestCase):
         mesh = collarmesh.mesh((points, triangles[:-1], tags[:-1]), size=0.5)
         self.assertTrue(mesh.passed, mesh.findings)
         self.assertAlmostEqual(volumes(mesh).sum(), 1, places=12)
-        self.assertEqual(len(mesh.repairs), 1)
+        self.assertEqual(len(mesh.repairs), 2)
         self.assertRegex(mesh.repairs[0], "hole of 3 edges")
+        self.assertRegex(mesh.repairs[1], "within 0 of the input")
         with self.assertRaisesRegex(collarmesh.Error, "open"):
             collarmesh.mesh((points, triangles[:-1]), repair="none")
         with self.assertRaisesRegex(collarmesh.Error, "repair must be"):

@@ -116,8 +116,9 @@ WindingNumber winding_of(const PolygonSoup& soup, int weight = 1) {
 
 TEST(WindingNumber, OfNothingIsZero) { EXPECT_EQ(WindingNumber({}).at({1, 2, 3}), 0); }
 
-// Two terms of the expansion of far triangles leave out what falls with the square of their distance in radii: with 4 radii
-// in place of 3 the sum is still off by up to 0.03. Decisions are at 1/2, so 0.05 is near enough.
+// Two terms of the expansion of far triangles leave out what falls with the square of their distance in
+// radii: with 4 radii in place of 3 the sum is still off by up to 0.03. Decisions are at 1/2, so 0.05 is near
+// enough.
 TEST(WindingNumber, IsTheDirectSum) {
   Random random(1);
   for (unsigned member = 0; member < members(12); ++member) {
@@ -456,7 +457,8 @@ std::map<std::array<std::array<double, 3>, 3>, Tag> facets_by_place(const Draft&
   std::map<std::array<std::array<double, 3>, 3>, Tag> facets;
   for (Index t = 0; t < draft.triangles.size(); ++t) {
     std::array<std::array<double, 3>, 3> key;
-    for (unsigned i = 0; i < 3; ++i) key[i] = {draft.corner(t, i).x, draft.corner(t, i).y, draft.corner(t, i).z};
+    for (unsigned i = 0; i < 3; ++i)
+      key[i] = {draft.corner(t, i).x, draft.corner(t, i).y, draft.corner(t, i).z};
     std::sort(key.begin(), key.end());
     facets[key] = draft.origins[t].tag;
   }

@@ -10,37 +10,40 @@
 namespace collarmesh {
 
 struct CheckOptions {
-  double radius_edge = 2;      ///< bound outside collars, but for thin tets
-  /// Degrees: a thin tet, which may exceed that bound, has dihedral angles of at least this (at a sharper crease half
-  /// its angle) and dihedral and face angles of at most 150; 0: no tet may exceed the bound. Where a mesh
-  /// tells which tets are thin only these may be, in memory as well as read from a file.
+  double radius_edge = 2;  ///< bound outside collars, but for thin tets
+  /// Degrees: a thin tet, which may exceed that bound, has dihedral angles of at least this (at a sharper
+  /// crease half its angle) and dihedral and face angles of at most 150; 0: no tet may exceed the bound.
+  /// Where a mesh tells which tets are thin only these may be, in memory as well as read from a file.
   double thin_angle = 8;
-  double distance = 0;         ///< surface distance tolerance on smooth patches and curves, absolute; 0: 1/400 of the diagonal
-  double collar_angle = 150;   ///< largest dihedral angle in collars, degrees
-  double crease_angle = 60;    ///< degrees; features that meet below it are the creases that excuse a collar's cells
+  double distance =
+      0;  ///< surface distance tolerance on smooth patches and curves, absolute; 0: 1/400 of the diagonal
+  double collar_angle = 150;  ///< largest dihedral angle in collars, degrees
+  double crease_angle =
+      60;  ///< degrees; features that meet below it are the creases that excuse a collar's cells
   std::size_t findings_per_guarantee = 20;  ///< more are counted, not listed
-  unsigned threads = 0;        ///< at most; 0: as many as there are cores
+  unsigned threads = 0;                     ///< at most; 0: as many as there are cores
 };
 
 /// A guarantee that does not hold, and where.
 struct Finding {
-  std::string guarantee;    ///< short stable name, e.g. "positive_volume", "watertight", "region_volume"
-  std::string message;      ///< full sentence with ids, coordinates, measured and allowed value
-  std::vector<Index> ids;   ///< of the mesh entities concerned
+  std::string guarantee;   ///< short stable name, e.g. "positive_volume", "watertight", "region_volume"
+  std::string message;     ///< full sentence with ids, coordinates, measured and allowed value
+  std::vector<Index> ids;  ///< of the mesh entities concerned
   Point where;
 };
 
 struct CheckReport {
   std::vector<Finding> findings;
   std::size_t findings_total = 0;  ///< with those not listed
-  std::vector<std::string> notes;  ///< sentences: labels that were not the complex', so that positions decided
+  std::vector<std::string>
+      notes;  ///< sentences: labels that were not the complex', so that positions decided
   // What was measured:
   std::size_t tets = 0, points = 0, faces = 0, edges = 0, collar_tets = 0, thin_tets = 0;
-  double max_radius_edge = 0;          ///< outside collars, without thin tets
-  double max_thin_radius_edge = 0;     ///< of thin tets
+  double max_radius_edge = 0;                   ///< outside collars, without thin tets
+  double max_thin_radius_edge = 0;              ///< of thin tets
   double min_dihedral = 180, max_dihedral = 0;  ///< outside collars
   double max_collar_dihedral = 0;
-  double max_surface_distance = 0;     ///< two-sided, on smooth patches and curves
+  double max_surface_distance = 0;  ///< two-sided, on smooth patches and curves
   double median_edge = 0;
   std::vector<double> region_volumes;  ///< by region index, [0] unused
   MeshMeasures measures;               ///< in collars, too; of no tet when labels or points are not usable

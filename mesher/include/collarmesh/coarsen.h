@@ -14,8 +14,8 @@ struct CoarsenOptions {
   /// Degrees, above 0 and at most 30: no dihedral angle of a thin tet is below this; where features meet at
   /// less than twice this angle, not below half the angle that they meet at.
   double thin_angle = 8;
-  /// The share of both bounds on the angles of thin tets, counted from 0 and from 180 degrees, that is kept free for what
-  /// moves vertices afterwards, as `project_boundary` does; 0 to 0.5.
+  /// The share of both bounds on the angles of thin tets, counted from 0 and from 180 degrees, that is kept
+  /// free for what moves vertices afterwards, as `project_boundary` does; 0 to 0.5.
   double reserve = 0;
 };
 
@@ -25,11 +25,11 @@ struct CoarsenReport {
   std::size_t repaired = 0;          ///< of these, those that needed changes of the tets around
   std::size_t thin_tets = 0;         ///< that exceed the radius-edge bound now
   double seconds = 0;
-  bool cancelled = false;            ///< the mesh is valid, as coarse as it had become
+  bool cancelled = false;  ///< the mesh is valid, as coarse as it had become
 };
 
-/// Make as few tets as the sizes ask for: edges shorter than 0.7 times the target edge length there are
-/// contracted, within their features, where no new edge exceeds 1.4 times it. A radius-edge bound makes tets
+/// Make as few tets as the sizes ask for: edges shorter than 0.8 times the target edge length there are
+/// contracted, within their features, where no new edge exceeds 1.5 times it. A radius-edge bound makes tets
 /// as small as the thinnest wall and the smallest angle; here it may be exceeded by thin tets:
 /// dihedral angles of at least `thin_angle` and dihedral and face angles of at most 150 degrees (the
 /// maximum-angle condition: Babuska and Aziz 1976, Krizek 1992). Collars dissolve as far as their cells can

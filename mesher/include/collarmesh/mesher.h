@@ -30,12 +30,12 @@ struct MeshOptions {
   SizeField size_field;            ///< target edge length at a point; may be empty
   double elements_per_circle = 0;  ///< target edge lengths on smooth patches and curves put so many on a full
                                    ///< circle of their curvature; 0: none
-  /// Smooth curves that turn by half a circle or more get at least so many edges to a full circle: small holes
-  /// stay round. No target edge length otherwise; 0: none.
+  /// Smooth curves that turn by half a circle or more get at least so many edges to a full circle: small
+  /// holes stay round. No target edge length otherwise; 0: none.
   double edges_per_hole = 7;
-  double elements_across_gap = 0;  ///< target edge lengths on patches put so many between them and what they
-                                   ///< face across a region; 0: none
-  double radius_edge = 2;          ///< bound on circumradius / shortest edge in the regions; at least 1
+  double elements_across_gap = 0;   ///< target edge lengths on patches put so many between them and what they
+                                    ///< face across a region; 0: none
+  double radius_edge = 2;           ///< bound on circumradius / shortest edge in the regions; at least 1
   double exterior_radius_edge = 8;  ///< the same outside every region, where that is larger
   double vertex_ratio = 0;  ///< bound on largest circumradius / shortest edge at a vertex in the regions
                             ///< (paper, section 1.2); 0: none, else > 2 sqrt 2
@@ -44,19 +44,21 @@ struct MeshOptions {
   double collar_angle = 150;  ///< bound on dihedral angles in collars, degrees; 100 to 175
   CollarCreation collar_creation = CollarCreation::up_front;  ///< when collars are created
   double representation_angle = 50;  ///< bound on the tilt of collar triangles (Definition 12), degrees
-  double distance = 0;  ///< surface distance tolerance on smooth patches and curves; 0: `default_distance`
-  std::uint64_t seed = 0;        ///< of the offsets; same input, options and seed: same mesh
+  double distance = 0;     ///< surface distance tolerance on smooth patches and curves; 0: `default_distance`
+  std::uint64_t seed = 0;  ///< of the offsets; same input, options and seed: same mesh
   std::size_t max_vertices = 0;  ///< budget; 0: none
   /// Budget in bytes for the mesh structures (a whole run takes about 1.2 times as much); 0: none.
   std::size_t max_memory = 0;
   double time_limit = 0;  ///< budget in seconds; 0: none
 };
 
-/// The surface distance tolerance unless another one is asked for: a twentieth of the target edge length (0: of its
-/// default, as in MeshOptions), at most 1/400 of the diagonal. So a circle of about its radius gets some ten
-/// edges of the target length: the chord error is that of edges of the length asked for, and small curves may be
-/// rougher than large ones, but see MeshOptions::edges_per_hole. Absolute.
-double default_distance(double size, double diagonal);
+/// The surface distance tolerance unless another one is asked for: a twentieth of the target edge length (0:
+/// of its default, as in MeshOptions), at most 1/400 of the diagonal. So a circle of about its radius gets
+/// some ten edges of the target length: the chord error is that of edges of the length asked for, and small
+/// curves may be rougher than large ones, but see MeshOptions::edges_per_hole. For cells of second order at
+/// most 1/1000 of the diagonal: they are judged by their corners' triangles, which would else be too coarse
+/// to curve without inverting elements. Absolute.
+double default_distance(double size, double diagonal, int order = 1);
 
 enum class MeshStatus {
   complete,          ///< the refinement ended; `check` certifies the mesh

@@ -9,8 +9,9 @@ namespace collarmesh {
 
 /// Where a long operation stands. `fraction` never decreases within one operation.
 struct ProgressReport {
-  std::string_view phase;    ///< "read", "complex", "refine", "surface check", "extract", "check", "write"
-  double fraction = 0;       ///< of the whole operation, 0 to 1; an estimate
+  std::string_view phase;  ///< "read", "complex", "refine", "surface check", "extract", "coarsen", "improve",
+                           ///< "check", "write"
+  double fraction = 0;     ///< of the whole operation, 0 to 1; an estimate
   std::size_t vertices = 0;  ///< mesh vertices so far
   std::size_t tets = 0;      ///< cells so far
 };

@@ -40,9 +40,9 @@ struct ProjectReport {
 /// room by moving inside their region or along their exact features, as little as keeps faces and edges
 /// within half of the reach of the exact geometry. A vertex for which that does not suffice stays where it
 /// is; these are the exceptions. So are vertices on what the complex calls straight or planar where the exact
-/// geometry is not: they go only as near as that permits. Preconditions: `mesh` comes from `generate` for `plc`, first order; `exact`
-/// gives a point that is its own nearest one. Cost: linear in the tets, with a large factor for those that
-/// are spoilt.
+/// geometry is not: they go only as near as that permits. Preconditions: `mesh` comes from `generate` for
+/// `plc`, first order; `exact` gives a point that is its own nearest one. Cost: linear in the tets, with a
+/// large factor for those that are spoilt.
 ProjectReport project_boundary(TetMesh& mesh, const Plc& plc, const ExactGeometry& exact,
                                const ProjectOptions& options = {}, const Execution& execution = {});
 

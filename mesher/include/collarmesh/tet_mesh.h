@@ -34,7 +34,7 @@ struct TetMesh {
   std::vector<std::uint8_t> tet_collar;  ///< 0 outside collars, 1 star, 2 book
   /// 1: one that exceeds the radius-edge bound as a thin tet may (see `coarsen`); empty: there is none.
   std::vector<std::uint8_t> tet_thin;
-  std::vector<Tag> tet_crease;           ///< in collars the tag of the crease, a curve or vertex; 0 outside
+  std::vector<Tag> tet_crease;  ///< in collars the tag of the crease, a curve or vertex; 0 outside
 
   /// Boundary, interface and internal-facet triangles; the normal (b-a) x (c-a) points from
   /// face_regions[0] to face_regions[1]. A boundary triangle has its solid in [0] and 0 in [1].
@@ -71,10 +71,10 @@ struct TetMesh {
 
 /// Shape measures of one tetrahedron.
 struct TetQuality {
-  double volume;        ///< signed
-  double radius_edge;   ///< circumradius / shortest edge; infinite for a flat one
-  double min_dihedral;  ///< degrees
-  double max_dihedral;  ///< degrees
+  double volume;              ///< signed
+  double radius_edge;         ///< circumradius / shortest edge; infinite for a flat one
+  double min_dihedral;        ///< degrees
+  double max_dihedral;        ///< degrees
   double max_face_angle = 0;  ///< degrees: the largest angle of its faces
 };
 /// At any scale: squares and products of lengths may be out of a double's range.

@@ -21,7 +21,7 @@ inline constexpr char collar_dihedral[] = "collar_dihedral";  ///< in collars
 
 // The balls of the collars, where the mesh tells them
 inline constexpr char collar_centre[] = "collar_centre";  ///< the balls are where their points are
-inline constexpr char collar_gap[] = "collar_gap";  ///< radius at most a third of the gap size
+inline constexpr char collar_gap[] = "collar_gap";        ///< radius at most a third of the gap size
 inline constexpr char collar_disjoint[] =
     "collar_disjoint";  ///< different creases' are apart, consecutive ones meet in a circle of their own
 inline constexpr char collar_cells[] = "collar_cells";  ///< stars and books have their balls' centres

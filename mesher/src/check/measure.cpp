@@ -100,8 +100,8 @@ Measures<Real> measure_as(const Point& a, const Point& b, const Point& c, const 
   };
   Direction<Real> widest = at(ab, ac, n_d);
   for (const Direction<Real>& angle :
-       {at(Real(-1) * ab, bc, n_d), at(ac, bc, n_d), at(ab, ad, n_c), at(Real(-1) * ab, bd, n_c), at(ad, bd, n_c),
-        at(ac, ad, n_b), at(Real(-1) * ac, cd, n_b), at(ad, cd, n_b), at(bc, bd, n_a),
+       {at(Real(-1) * ab, bc, n_d), at(ac, bc, n_d), at(ab, ad, n_c), at(Real(-1) * ab, bd, n_c),
+        at(ad, bd, n_c), at(ac, ad, n_b), at(Real(-1) * ac, cd, n_b), at(ad, cd, n_b), at(bc, bd, n_a),
         at(Real(-1) * bc, cd, n_a), at(bd, cd, n_a)})
     if (widest.less_than(angle)) widest = angle;
   quality.max_face_angle = widest.degrees();

@@ -43,9 +43,10 @@ struct Subject {
   const Point& plc_corner(const Plc::Triangle& t, unsigned i) const { return plc.points[t.points[i]]; }
 };
 
-/// The tets that may exceed the radius-edge bound if their angles are bounded: dihedral angles from below, these
-/// and those of faces by 150 degrees. Where the mesh marks such tets, the marked ones, of a file without
-/// marks any. Where features meet at less than twice the bound from below it is half the angle they meet at.
+/// The tets that may exceed the radius-edge bound if their angles are bounded: dihedral angles from below,
+/// these and those of faces by 150 degrees. Where the mesh marks such tets, the marked ones, of a file
+/// without marks any. Where features meet at less than twice the bound from below it is half the angle they
+/// meet at.
 class ThinCells {
  public:
   static constexpr double largest_angle = 150;  ///< degrees

@@ -48,12 +48,13 @@ void check_shape(Index tet, const Corners& p, const TetQuality& quality, const S
     report.max_thin_radius_edge = std::max(report.max_thin_radius_edge, quality.radius_edge);
     const auto& corners = subject.mesh.tets[tet];
     if (thin.are_bounded(quality, corners)) return;
-    findings.add(guarantee::thin_angles, p.centre(), {tet},
-                 "Tet {} at {} has circumradius / shortest edge {:.6g} and is no thin one: its dihedral angles are "
-                 "from {:.6g} to {:.6g} degrees, those of its faces at most {:.6g}, allowed are {:.6g} to {:.6g}; "
-                 "check with the angle that the mesh was made with.",
-                 tet, At{p.centre()}, quality.radius_edge, quality.min_dihedral, quality.max_dihedral,
-                 quality.max_face_angle, thin.smallest_angle(corners), ThinCells::largest_angle);
+    findings.add(
+        guarantee::thin_angles, p.centre(), {tet},
+        "Tet {} at {} has circumradius / shortest edge {:.6g} and is no thin one: its dihedral angles are "
+        "from {:.6g} to {:.6g} degrees, those of its faces at most {:.6g}, allowed are {:.6g} to {:.6g}; "
+        "check with the angle that the mesh was made with.",
+        tet, At{p.centre()}, quality.radius_edge, quality.min_dihedral, quality.max_dihedral,
+        quality.max_face_angle, thin.smallest_angle(corners), ThinCells::largest_angle);
     return;
   }
   report.max_radius_edge = std::max(report.max_radius_edge, quality.radius_edge);

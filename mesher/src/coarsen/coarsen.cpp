@@ -39,7 +39,7 @@ class Coarsening {
              const Execution& execution)
       : workpiece_(mesh, plc,
                    made_with.distance > 0 ? made_with.distance
-                                        : default_distance(made_with.size, plc.bounds.diagonal()),
+                                          : default_distance(made_with.size, plc.bounds.diagonal()),
                    made_with.edges_per_hole),
         radius_edge_(made_with.radius_edge),
         sizes_(target_sizes(mesh, plc, sizes_asked_for(made_with))),
@@ -62,7 +62,8 @@ class Coarsening {
     workpiece_.prepare();
     for (unsigned pass = 0; pass < plain_passes && !report_.cancelled; ++pass)
       if (!contract_all(false)) break;
-    // Improvement makes room for more contractions; between the passes of a round it would have all vertices asked again.
+    // Improvement makes room for more contractions; between the passes of a round it would have all vertices
+    // asked again.
     for (unsigned round = 0; round < rounds && !report_.cancelled; ++round) {
       improve_all();
       const std::size_t before = tets_;
@@ -98,8 +99,8 @@ class Coarsening {
     return squared_relative_length < contracted_below * contracted_below;
   }
 
-  // The vertices with a short edge, those with the shortest one first, where something has changed since they were
-  // asked last.
+  // The vertices with a short edge, those with the shortest one first, where something has changed since they
+  // were asked last.
   std::vector<Neighbour> find_candidates(std::uint32_t changed_since) const {
     std::vector<double> shortest(mesh().points.size(), INFINITY);
     for (Index t = 0; t < complex().size(); ++t) {
@@ -128,10 +129,7 @@ class Coarsening {
     const std::size_t before = tets_;
     std::size_t steps = 0;
     for (const Neighbour& candidate : candidates) {
-      if (++steps % steps_between_reports == 0 && stopped()) {
-        report_.cancelled = true;
-        return false;
-      }
+      if (stopped(++steps)) return false;
       if (complex().in_use(candidate.vertex)) contract_vertex(candidate.vertex, repair);
     }
     return worthwhile(before);
@@ -141,8 +139,12 @@ class Coarsening {
     return static_cast<double>(before - tets_) > least_share * static_cast<double>(before);
   }
 
-  bool stopped() const {
-    return execution_.cancelled() || (execution_.progress && !execution_.progress({"coarsen", 0, 0, tets_}));
+  bool stopped(std::size_t step) {
+    if (execution_.cancelled()) report_.cancelled = true;
+    if (step % steps_between_reports == 0 && execution_.progress &&
+        !execution_.progress({"coarsen", 0, 0, tets_}))
+      report_.cancelled = true;
+    return report_.cancelled;
   }
 
   // Onto the nearest neighbour that will do.
@@ -282,7 +284,9 @@ class Coarsening {
     std::sort(poor.begin(), poor.end());
     last_sweep_ = ++clock_;
     bool any = false;
+    std::size_t steps = 0;
     for (const auto& [q, t] : poor) {
+      if (stopped(++steps)) return false;
       if (!complex()[t].alive || quality(t) != q) continue;
       touched_.clear();
       if (!improve_tet(t)) continue;
@@ -320,7 +324,8 @@ class Coarsening {
     TetMesh& mesh = workpiece_.complex.mesh();
     mesh.collar_balls.clear();  // their cells are not what they were
     for (Index t = 0; t < complex().size(); ++t)
-      if (complex()[t].alive && complex()[t].collar && rule_.keeps_guarantee(complex().corners(t), quality(t)))
+      if (complex()[t].alive && complex()[t].collar &&
+          rule_.keeps_guarantee(complex().corners(t), quality(t)))
         workpiece_.complex.dissolve(t);
     workpiece_.complex.store();
     improvement::mark_thin_tets(mesh, radius_edge_);
@@ -341,7 +346,7 @@ class Coarsening {
   std::uint32_t last_sweep_ = 0;                  // of improvement
   std::uint32_t clock_ = 0;
   std::vector<Index> touched_;
-  std::vector<double> qualities_;  // by tet, of those a trial changed
+  std::vector<double> qualities_;      // by tet, of those a trial changed
   std::vector<Neighbour> neighbours_;  // of the vertex asked about last
   double shortest_ = 0;                // edge there
   std::vector<std::uint32_t> stamps_;

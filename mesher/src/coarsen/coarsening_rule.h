@@ -11,8 +11,8 @@ namespace collarmesh::coarsening {
 
 using improvement::Corners;
 
-/// The rule of coarsening: a tet of quality 1 or more is thin; its quality says how far its angles are within or beyond
-/// these bounds. Whatever has an angle above the largest is worse than all that has none.
+/// The rule of coarsening: a tet of quality 1 or more is thin; its quality says how far its angles are within
+/// or beyond these bounds. Whatever has an angle above the largest is worse than all that has none.
 class CoarseningRule final : public improvement::ShapeRule {
  public:
   enum class Mode {
@@ -29,7 +29,8 @@ class CoarseningRule final : public improvement::ShapeRule {
       : thin_(thin),
         bound_(radius_edge),
         sizes_(sizes),
-        least_blunt_(std::sin((180 - thin.most() + 2 * improvement::ThinShape::rounding) * std::numbers::pi / 180)) {}
+        least_blunt_(
+            std::sin((180 - thin.most() + 2 * improvement::ThinShape::rounding) * std::numbers::pi / 180)) {}
 
   double quality(const Corners& p, const std::array<Index, 4>& corners) const override {
     const improvement::ExtremeCosines cosines = improvement::extreme_cosines(p);

@@ -7,8 +7,8 @@ namespace collarmesh::coarsening {
 
 namespace {
 
-// The cosine between a normal and that of what it faces; of parts of the surface that meet elsewhere only what
-// is almost parallel counts, else gaps would close in wedges.
+// The cosine between a normal and that of what it faces; of parts of the surface that meet elsewhere only
+// what is almost parallel counts, else gaps would close in wedges.
 constexpr double least_facing = 0.5, least_facing_of_neighbours = 0.966;
 
 std::vector<std::array<Index, 3>> triangles_of(const Plc& plc) {
@@ -47,8 +47,8 @@ double GapWidths::from(const Point& p, Index patch, double widest) {
   return width;
 }
 
-double GapWidths::towards(Index triangle, const Point& x, const Vector& normal, const Vector& way, Index patch,
-                          double widest) const {
+double GapWidths::towards(Index triangle, const Point& x, const Vector& normal, const Vector& way,
+                          Index patch, double widest) const {
   const Index other = plc_.triangles[triangle].patch;
   const auto corners = triangles_.corners(triangle);
   const Vector n = normal_of(corners);

@@ -9,8 +9,8 @@
 
 namespace collarmesh::coarsening {
 
-/// How far the surface is from what it faces across a region, as the refinement measures it: along the normal,
-/// by what turns towards it.
+/// How far the surface is from what it faces across a region, as the refinement measures it: along the
+/// normal, by what turns towards it.
 class GapWidths {
  public:
   /// Kept by reference.

@@ -62,7 +62,7 @@ class CurveSlides {
   double squared_distance_;
   CurvePaths paths_;
   mutable std::once_flag prepared_;
-  mutable std::vector<Place> places_;  // of every vertex there was then; made when first asked for
+  mutable std::vector<Place> places_;        // of every vertex there was then; made when first asked for
   std::vector<std::ptrdiff_t> spare_edges_;  // of every curve: more than it has to have
   UndoLog<Place> old_places_;
   UndoLog<std::ptrdiff_t> old_spare_edges_;

@@ -38,8 +38,8 @@ class Operations {
 
   /// The next questions are about contractions of edges at this vertex. False when it has to stay.
   bool begin_contractions(Index vertex);
-  /// The same contraction for the sake of fewer tets: the rule allows all new ones, and they are no worse than
-  /// `least`; below `enough` no worse than the worst tet of the cavity, either.
+  /// The same contraction for the sake of fewer tets: the rule allows all new ones, and they are no worse
+  /// than `least`; below `enough` no worse than the worst tet of the cavity, either.
   void contract_onto(Index onto, double least, double enough, Change& change);
   /// The tets at the vertex that contractions were begun with.
   const std::vector<Index>& tets_at_vertex() const { return cone_.tets; }

@@ -40,16 +40,16 @@ class RadiusEdgeBound {
   double squared_;
 };
 
-/// The rule of improvement: the smallest sine of the dihedral angles, within the bound. Where tets may be thin
-/// those with an angle above the largest of thin ones are worse than all others.
+/// The rule of improvement: the smallest sine of the dihedral angles, within the bound. Where tets may be
+/// thin those with an angle above the largest of thin ones are worse than all others.
 class SliverRule final : public ShapeRule {
  public:
   /// `thin` is kept by reference; null: no tet exceeds the bound.
   explicit SliverRule(double radius_edge, const ThinShape* thin = nullptr)
       : bound_(radius_edge),
         thin_(thin),
-        cosine_of_largest_(thin == nullptr ? -1
-                                           : std::cos((thin->most() - ThinShape::rounding) * std::numbers::pi / 180)) {}
+        cosine_of_largest_(
+            thin == nullptr ? -1 : std::cos((thin->most() - ThinShape::rounding) * std::numbers::pi / 180)) {}
 
   double quality(const Corners& p, const std::array<Index, 4>&) const override {
     const double sine = shape_quality(p);

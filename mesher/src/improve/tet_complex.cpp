@@ -398,7 +398,8 @@ void TetComplex::undo() {
   old_points_.undo(mesh_.points);
   free_steps_.undo(free_);
   free_face_steps_.undo(free_faces_);
-  for (auto old = old_faces_.rbegin(); old != old_faces_.rend(); ++old) set_face_record(old->first, old->second);
+  for (auto old = old_faces_.rbegin(); old != old_faces_.rend(); ++old)
+    set_face_record(old->first, old->second);
   mesh_.faces.resize(face_count_);
   mesh_.face_patch.resize(face_count_);
   mesh_.face_tag.resize(face_count_);

@@ -6,7 +6,9 @@ namespace collarmesh::improvement {
 
 namespace {
 
-double sine_above(double degrees) { return std::sin((degrees + 2 * ThinShape::rounding) * std::numbers::pi / 180); }
+double sine_above(double degrees) {
+  return std::sin((degrees + 2 * ThinShape::rounding) * std::numbers::pi / 180);
+}
 
 }  // namespace
 

@@ -70,8 +70,8 @@ class ThinShape {
   static constexpr double largest_angle = 150;  ///< degrees
   static constexpr double rounding = 1e-6;      ///< degrees, kept free for other ways to compute an angle
 
-  /// `smallest_angle` in degrees; 0: no tet is thin. Vertices are those that the mesh has now. `reserve` is the
-  /// share of the bounds, counted from 0 and from 180 degrees, that is kept free.
+  /// `smallest_angle` in degrees; 0: no tet is thin. Vertices are those that the mesh has now. `reserve` is
+  /// the share of the bounds, counted from 0 and from 180 degrees, that is kept free.
   ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle, double reserve = 0);
 
   bool empty() const { return !(smallest_ > 0); }
@@ -96,8 +96,7 @@ class ThinShape {
   bool contains(const Corners& p, const std::array<Index, 4>& corners) const {
     if (empty()) return false;
     const ExtremeAngles angles = extreme_angles(p);
-    return angles.largest <= most_ - rounding &&
-           angles.smallest >= smallest_angle(corners) + rounding;
+    return angles.largest <= most_ - rounding && angles.smallest >= smallest_angle(corners) + rounding;
   }
 
  private:

@@ -179,7 +179,9 @@ std::pair<Point, double> Operations::best_place(const Point& start, Index id, co
   const auto consider = [&](const Point& wish) {
     const Point p = back_on_feature(wish, start, freedom);
     const double quality = quality_around(p, id, best);
-    if (quality <= best || (id != none && !edges_allowed(id, start, p)) || (ask_surfaces_ && !surfaces_allow(p))) return false;
+    if (quality <= best || (id != none && !edges_allowed(id, start, p)) ||
+        (ask_surfaces_ && !surfaces_allow(p)))
+      return false;
     best = quality;
     place = p;
     return true;
@@ -203,7 +205,9 @@ std::pair<double, double> Operations::best_way(Index vertex, double best) {
   const auto consider = [&](double wish) {
     const Point p = curves_.ahead(vertex, wish);
     const double quality = quality_around(p, vertex, best);
-    if (quality <= best || !edges_allowed(vertex, points[vertex], p) || !curves_.fits(vertex, wish) || !surfaces_allow(p)) return false;
+    if (quality <= best || !edges_allowed(vertex, points[vertex], p) || !curves_.fits(vertex, wish) ||
+        !surfaces_allow(p))
+      return false;
     best = quality;
     way = wish;
     return true;
@@ -290,7 +294,8 @@ void Operations::contract_onto(Index onto, double least, double enough, Change& 
   drop_from_cone(onto);
   const double quality = quality_around(place, onto, least);
   std::swap(cone_, remaining_);
-  if (quality < 0 || (quality < enough && quality < worst_at_vertex()) || !keeps_topology(vertex_, onto)) return;
+  if (quality < 0 || (quality < enough && quality < worst_at_vertex()) || !keeps_topology(vertex_, onto))
+    return;
   std::swap(cone_, remaining_);
   const bool fits = surfaces_allow(place);
   std::swap(cone_, remaining_);

@@ -37,11 +37,11 @@ struct Cell {
 };
 
 struct Contents {
-  std::vector<Node> nodes;                                       ///< in the order of their numbers
-  bool dense = false;                                            ///< are the numbers 1, 2, ...?
-  std::array<std::vector<Cell>, 4> cells;                        ///< by dimension
-  std::array<std::map<int, Tag>, 4> physical_of_entity;          ///< the first one
-  std::array<std::map<Tag, Tag>, 4> tag_of_physical;             ///< where its name says so
+  std::vector<Node> nodes;                                             ///< in the order of their numbers
+  bool dense = false;                                                  ///< are the numbers 1, 2, ...?
+  std::array<std::vector<Cell>, 4> cells;                              ///< by dimension
+  std::array<std::map<int, Tag>, 4> physical_of_entity;                ///< the first one
+  std::array<std::map<Tag, Tag>, 4> tag_of_physical;                   ///< where its name says so
   std::vector<std::pair<std::uint64_t, double>> collar, crease, thin;  ///< cell number and value
   bool numbers_are_features = false;
 };

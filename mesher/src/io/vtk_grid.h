@@ -49,8 +49,8 @@ struct VtkPiece {
 /// Arrays that say something about a mesh: ours, and the names that meshio and Gmsh give to labels.
 constexpr std::array<std::string_view, 2> vtk_point_arrays{"feature_dimension", "feature"};
 constexpr std::array<std::string_view, 11> vtk_cell_arrays{
-    "tag",         "gmsh:physical", "medit:ref", "CellEntityIds", "region",
-    "region_back", "region_front",  "feature",   "collar",        "crease", "thin"};
+    "tag",          "gmsh:physical", "medit:ref", "CellEntityIds", "region", "region_back",
+    "region_front", "feature",       "collar",    "crease",        "thin"};
 
 /// What is wrong with a piece: for the caller to add the file and the place.
 struct VtkPieceError {

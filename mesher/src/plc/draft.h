@@ -49,7 +49,7 @@ struct Draft {
   std::vector<Claim> claims;
 
   std::vector<std::string> soup_names;
-  std::vector<bool> soup_is_complex;  ///< PolygonSoup::Kind::complex, by soup
+  std::vector<bool> soup_is_complex;      ///< PolygonSoup::Kind::complex, by soup
   std::vector<bool> soup_gives_features;  ///< PolygonSoup::given_features, by soup
 
   Box bounds;
@@ -70,6 +70,12 @@ struct Draft {
     origins.push_back(origin);
   }
 };
+
+/// Half the cross product of two sides.
+inline Vector area_vector(const Draft& draft, const Corners& t) {
+  return 0.5 * cross(draft.points[t[1]] - draft.points[t[0]], draft.points[t[2]] - draft.points[t[0]]);
+}
+inline double area_of(const Draft& draft, const Corners& t) { return norm(area_vector(draft, t)); }
 
 inline Index back_side(Index triangle) { return 2 * triangle; }
 inline Index front_side(Index triangle) { return 2 * triangle + 1; }

@@ -41,7 +41,10 @@ class BoundaryProjection {
     keep_courses();
     for (Index t = 0; t < mesh_.tets.size(); ++t)
       if (!room_.good(t)) tets.push_back(t);
-    for (tets = room_.relax(std::move(tets)); !tets.empty();) tets = give_way(tets);
+    do {
+      for (tets = room_.relax(std::move(tets)); !tets.empty();) tets = give_way(tets);
+      tets = keep_courses();
+    } while (!tets.empty());
     room_.commit();
     for (int pass = 0; pass < retries && retry(pass > 0); ++pass) {
     }
@@ -52,8 +55,8 @@ class BoundaryProjection {
 
  private:
   static constexpr double largest_sag = 0.5;  // relative to the reach
-  // A way of so many times the shortest edge at the vertex leads through other tets: parts of a CAD file may be
-  // off each other by more than what lies between them.
+  // A way of so many times the shortest edge at the vertex leads through other tets: parts of a CAD file may
+  // be off each other by more than what lies between them.
   static constexpr double longest_way = 2;
   static constexpr int retries = 2;
 
@@ -76,7 +79,8 @@ class BoundaryProjection {
       if (!target) continue;
       ++report_.vertices;
       const double off = distance(*target, mesh_.points[p]);
-      const std::optional<Point> place = off <= reach_ ? flat_.keep(dimension, feature, *target) : std::nullopt;
+      const std::optional<Point> place =
+          off <= reach_ ? flat_.keep(dimension, feature, *target) : std::nullopt;
       if (!place) {
         add_exception(p, off);
         continue;
@@ -99,7 +103,9 @@ class BoundaryProjection {
 
   // Where exact curves end beside their vertices, as tolerances of CAD files allow, a vertex near the end may
   // have gone past it: of such an edge's ends the one with the longer way goes back, until none is left.
-  void keep_courses() {
+  // Returns the tets around what went back.
+  std::vector<Index> keep_courses() {
+    std::vector<Index> around;
     for (bool turned = true; turned;) {
       turned = false;
       for (Index edge = 0; edge < mesh_.edges.size(); ++edge) {
@@ -112,10 +118,14 @@ class BoundaryProjection {
         }
         if (farthest == none) continue;
         set_done(farthest, false);
-        room_.put(moves_[farthest].point, room_.origin(moves_[farthest].point));
+        const Index point = moves_[farthest].point;
+        room_.put(point, room_.origin(point));
+        const auto tets = room_.tets_at()[point];
+        around.insert(around.end(), tets.begin(), tets.end());
         turned = true;
       }
     }
+    return around;
   }
 
   // In each spoilt tet the vertex with the longest way goes back, or else all that moved do. Returns what is

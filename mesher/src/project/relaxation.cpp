@@ -132,10 +132,12 @@ double Relaxation::score(Index tet, const Corners& p) const {
 
 // 1 for angles within the bounds of thin tets, or no farther beyond them than at the beginning.
 double Relaxation::angle_score(Index tet, const Corners& p) const {
-  constexpr double largest = improvement::ThinShape::largest_angle, rounding = improvement::ThinShape::rounding;
+  constexpr double largest = improvement::ThinShape::largest_angle,
+                   rounding = improvement::ThinShape::rounding;
   const improvement::ExtremeAngles now = improvement::extreme_angles(p),
                                    then = improvement::extreme_angles(corners(tet, origins_));
-  const double sharpest = std::min(bounds_.thin->smallest_angle(mesh_.tets[tet]) + 2 * rounding, then.smallest),
+  const double sharpest =
+                   std::min(bounds_.thin->smallest_angle(mesh_.tets[tet]) + 2 * rounding, then.smallest),
                bluntest = std::max(largest - 2 * rounding, then.largest);
   return std::min({1., now.smallest / sharpest, (180 - now.largest) / (180 - bluntest)});
 }

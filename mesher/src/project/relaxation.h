@@ -14,10 +14,10 @@
 namespace collarmesh::projection {
 
 struct Bounds {
-  double radius_edge = 2;     ///< outside collars, but for thin tets
-  double collar_angle = 150;  ///< largest dihedral angle in collars, degrees
+  double radius_edge = 2;                        ///< outside collars, but for thin tets
+  double collar_angle = 150;                     ///< largest dihedral angle in collars, degrees
   const improvement::ThinShape* thin = nullptr;  ///< null: no tet is thin
-  double sag = 0;             ///< absolute: largest distance of faces and edges from the exact geometry
+  double sag = 0;  ///< absolute: largest distance of faces and edges from the exact geometry
 };
 
 /// Makes room for vertices that were put somewhere: the corners of the tets that this spoilt move, inside
@@ -36,8 +36,8 @@ class Relaxation {
   /// Is the tet positive and within its bound?
   bool good(Index tet) const;
 
-  /// Does a mesh edge of a curve turn by less than 60 degrees from where it was? Where it turns by more, a vertex
-  /// has run past its neighbour.
+  /// Does a mesh edge of a curve turn by less than 60 degrees from where it was? Where it turns by more, a
+  /// vertex has run past its neighbour.
   bool on_course(Index edge) const;
   /// All those at the vertex.
   bool keeps_course(Index vertex);

@@ -37,10 +37,11 @@ void validate(const MeshOptions& o) {
 
 }  // namespace
 
-double default_distance(double size, double diagonal) {
-  constexpr double share_of_size = 0.05, sizes_per_diagonal = 20;
+double default_distance(double size, double diagonal, int order) {
+  constexpr double share_of_size = 0.05, sizes_per_diagonal = 20, for_curved_elements = 1e-3;
   const double largest = diagonal / sizes_per_diagonal;
-  return share_of_size * (size > 0 ? std::min(size, largest) : largest);
+  const double distance = share_of_size * (size > 0 ? std::min(size, largest) : largest);
+  return order == 2 ? std::min(distance, for_curved_elements * diagonal) : distance;
 }
 
 MeshResult generate(const Plc& plc, const MeshOptions& options, const Execution& execution) {

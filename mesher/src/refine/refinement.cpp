@@ -72,8 +72,8 @@ Refinement::Refinement(const Plc& plc, const MeshOptions& options, const Executi
       gradation_(options.gradation == 0 && options.elements_across_gap > 0 ? gradation_in_gaps
                                                                            : options.gradation),
       diagonal_(plc.bounds.diagonal()),
-      distance_(distance_reserve * (options.distance > 0 ? options.distance
-                                                         : default_distance(options.size, diagonal_))),
+      distance_(distance_reserve *
+                (options.distance > 0 ? options.distance : default_distance(options.size, diagonal_))),
       floor_(floor_per_diagonal * diagonal_),
       box_(surrounding_box(framed(plc.bounds, frame_))),
       paths_(plc, points_),

@@ -76,10 +76,10 @@ class Refinement {
 
   /// What refinement knows of a mesh vertex besides its position.
   struct MeshVertex {
-    std::uint8_t dimension = 3;    // containment dimension: of the lowest feature it lies on
-    bool near_collar = false;      // B(v, R_v) meets a collar ball
+    std::uint8_t dimension = 3;         // containment dimension: of the lowest feature it lies on
+    bool near_collar = false;           // B(v, R_v) meets a collar ball
     std::uint16_t insertions_left = 0;  // in its star before its nodes are filtered again
-    Index feature = none;          // index of that vertex, curve or patch of the complex
+    Index feature = none;               // index of that vertex, curve or patch of the complex
     Index first_node = 0,
           node_count = 0;  // in node_pool_: hierarchy nodes that meet the box of its Voronoi cell
   };

@@ -42,7 +42,8 @@ Sizing::Sizing(const Plc& plc, const MeshOptions& options, const Frame& frame)
     double size = std::min(global, size_of_tag(options.curve_size, curve.tag));
     for (const Index patch : curve.patches) size = std::min(size, patch_size_[patch]);
     if (const std::size_t edges = least_edges(plc, curve, options.edges_per_hole); edges > 0)
-      size = std::min(size, length_of(plc, curve) / (subsegment_length_per_edge * static_cast<double>(edges)));
+      size =
+          std::min(size, length_of(plc, curve) / (subsegment_length_per_edge * static_cast<double>(edges)));
     curve_size_.push_back(std::max(size, size_min_));
   }
 }

@@ -1,7 +1,7 @@
-// The topology of the surface as it is extracted, restricted and stitched triangles together: along its curves
-// each patch has as many triangles as the complex, elsewhere two at each edge; those at a vertex hang together;
-// and the vertices lie on their patches. Sheets of a smooth patch that are closer than the distance tolerance
-// miss that at first, because triangles may lead from one to the other: these are split.
+// The topology of the surface as it is extracted, restricted and stitched triangles together: along its
+// curves each patch has as many triangles as the complex, elsewhere two at each edge; those at a vertex hang
+// together; and the vertices lie on their patches. Sheets of a smooth patch that are closer than the distance
+// tolerance miss that at first, because triangles may lead from one to the other: these are split.
 #include <algorithm>
 #include <tuple>
 
@@ -47,8 +47,8 @@ std::vector<Side> sorted_sides(const std::vector<SurfaceTriangle>& triangles) {
       const unsigned j = (i + 1) % 3;
       const Index a = triangles[t].corners[i], b = triangles[t].corners[j];
       const Index at_a = 3 * t + i, at_b = 3 * t + j;
-      sides.push_back({sorted(a, b), triangles[t].patch, t,
-                       a < b ? std::array{at_a, at_b} : std::array{at_b, at_a}});
+      sides.push_back(
+          {sorted(a, b), triangles[t].patch, t, a < b ? std::array{at_a, at_b} : std::array{at_b, at_a}});
     }
   std::sort(sides.begin(), sides.end());
   return sides;
@@ -103,7 +103,8 @@ bool Refinement::check_surface_topology() {
   const std::vector<Side> sides = sorted_sides(triangles);
   DisjointSets fans(3 * triangles.size());
   std::vector<Index> wrong_at(mesh_.vertex_count(), none);  // a patch that is wrong at the vertex
-  for (const Index v : stitched_.open) wrong_at[v] = vertices_[v].dimension == 2 ? vertices_[v].feature : none;
+  for (const Index v : stitched_.open)
+    wrong_at[v] = vertices_[v].dimension == 2 ? vertices_[v].feature : none;
   const auto expected = [&](const Side& side) -> std::size_t {
     const auto edge = std::lower_bound(curve_edges.begin(), curve_edges.end(), CurveEdge{side.ends, none});
     if (edge == curve_edges.end() || edge->ends != side.ends || !plc_.curve_on_patch(edge->curve, side.patch))
@@ -135,7 +136,7 @@ bool Refinement::check_surface_topology() {
     refine_triangle(t.face);
     found = true;
   }
-  return found;
+  return found && another_surface_round();
 }
 
 }  // namespace collarmesh

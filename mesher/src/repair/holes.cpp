@@ -71,8 +71,8 @@ void start_first(const Draft& draft, Loop& loop) {
 // order by coordinates, so the curves and where they start do not depend on the order of the facets.
 std::vector<Loop> find_loops(const Draft& draft, std::vector<std::array<Index, 3>> edges) {
   std::sort(edges.begin(), edges.end(), [&](const auto& e, const auto& f) {
-    if (e[0] != f[0]) return comes_before(draft, e[0], f[0]);
-    return e[1] != f[1] && comes_before(draft, e[1], f[1]);
+    if (comes_before(draft, e[0], f[0])) return true;
+    return !comes_before(draft, f[0], e[0]) && comes_before(draft, e[1], f[1]);
   });
   std::multimap<Index, std::size_t> from;
   for (std::size_t i = 0; i < edges.size(); ++i) from.emplace(edges[i][0], i);
@@ -102,10 +102,6 @@ std::vector<Loop> find_loops(const Draft& draft, std::vector<std::array<Index, 3
     }
   }
   return loops;
-}
-
-double area_of(const Draft& draft, const Corners& t) {
-  return 0.5 * norm(cross(draft.points[t[1]] - draft.points[t[0]], draft.points[t[2]] - draft.points[t[0]]));
 }
 
 // The area of the surface that each triangle belongs to.

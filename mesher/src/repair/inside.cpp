@@ -18,12 +18,9 @@ namespace {
 using namespace build;
 
 constexpr std::size_t most_places = 100;
-constexpr std::size_t most_asked = 3;  // triangles of a shell, a patch or a component, for the winding number there
+constexpr std::size_t most_asked =
+    3;  // triangles of a shell, a patch or a component, for the winding number there
 
-Vector area_vector(const Draft& draft, const Corners& t) {
-  return 0.5 * cross(draft.points[t[1]] - draft.points[t[0]], draft.points[t[2]] - draft.points[t[0]]);
-}
-double area_of(const Draft& draft, const Corners& t) { return norm(area_vector(draft, t)); }
 Point centroid(const Draft& draft, const Corners& t) {
   return (1.0 / 3) * (draft.points[t[0]] + draft.points[t[1]] + draft.points[t[2]]);
 }
@@ -102,7 +99,10 @@ struct Sheets {
 class BoundaryKeeper {
  public:
   BoundaryKeeper(Draft& draft, double thickness)
-      : draft_(draft), thickness_(thickness), sheets_(draft), edges_(sheets_.unique.triangles, draft.points.size()) {}
+      : draft_(draft),
+        thickness_(thickness),
+        sheets_(draft),
+        edges_(sheets_.unique.triangles, draft.points.size()) {}
 
   InsideReport run() {
     find_clusters();
@@ -208,14 +208,14 @@ class BoundaryKeeper {
     std::vector<WeightedTriangle> triangles;
     for (Index s = 0; s < sheets_.size(); ++s)
       if (weights[s] != 0)
-        triangles.push_back({corner_points(draft_, sheets_.unique.triangles[s]), weights[s],
-                             by_patch ? patch_[s] : s});
+        triangles.push_back(
+            {corner_points(draft_, sheets_.unique.triangles[s]), weights[s], by_patch ? patch_[s] : s});
     return WindingNumber(std::move(triangles));
   }
 
-  // Patches at edges where the soup is open bound nothing if the winding number there is, without them, that of one
-  // place, not the mean of inside and outside. The smallest one goes first: half a box and a wall amid the box
-  // are closed without the other half, too.
+  // Patches at edges where the soup is open bound nothing if the winding number there is, without them, that
+  // of one place, not the mean of inside and outside. The smallest one goes first: half a box and a wall amid
+  // the box are closed without the other half, too.
   void remove_open_sheets(Index soup, std::vector<int>& weights) {
     constexpr std::size_t most = 100;
     for (std::size_t count = 0; count < most; ++count) {
@@ -247,7 +247,8 @@ class BoundaryKeeper {
       }
       const auto [a, b] = edges_.ends(e);
       const double length = distance(draft_.points[a], draft_.points[b]);
-      for (const auto& [patch, weight] : own) gain[patch] += (std::abs(sum) - std::abs(sum - weight)) * length;
+      for (const auto& [patch, weight] : own)
+        gain[patch] += (std::abs(sum) - std::abs(sum - weight)) * length;
     }
     std::map<Index, double> area;
     for (const auto& [patch, length] : gain)
@@ -258,7 +259,8 @@ class BoundaryKeeper {
     std::vector<Index> patches;
     patches.reserve(area.size());
     for (const auto& [patch, size] : area) patches.push_back(patch);
-    std::stable_sort(patches.begin(), patches.end(), [&](Index a, Index b) { return area.at(a) < area.at(b); });
+    std::stable_sort(patches.begin(), patches.end(),
+                     [&](Index a, Index b) { return area.at(a) < area.at(b); });
     return patches;
   }
 
@@ -282,9 +284,9 @@ class BoundaryKeeper {
 
   bool is_wall(Index sheet) const {
     return std::any_of(walls_.begin(), walls_.end(), [&](const auto& w) {
-      return w.first == patch_[sheet] && std::any_of(sheets_.of(sheet).begin(), sheets_.of(sheet).end(), [&](const auto& c) {
-               return origin(c).soup == w.second;
-             });
+      return w.first == patch_[sheet] &&
+             std::any_of(sheets_.of(sheet).begin(), sheets_.of(sheet).end(),
+                         [&](const auto& c) { return origin(c).soup == w.second; });
     });
   }
 
@@ -304,7 +306,8 @@ class BoundaryKeeper {
       Chamber& chamber = at->second;
       if (added) chamber.origin = p[0];
       const double area = 0.5 * norm(cross(p[1] - p[0], p[2] - p[0]));
-      chamber.volume += (side == back_side(side / 2) ? 1 : -1) * six_volume(p[0], p[1], p[2], chamber.origin) / -6;
+      chamber.volume +=
+          (side == back_side(side / 2) ? 1 : -1) * six_volume(p[0], p[1], p[2], chamber.origin) / -6;
       chamber.area += area;
       if (shell_[side ^ 1U] != shell_[side]) chamber.neighbours.emplace_back(shell_[side ^ 1U], area);
     }
@@ -369,6 +372,7 @@ class BoundaryKeeper {
         add(corners, false, origin(sheets_.of(s)[0]), origin(sheets_.of(s)[0]).soup);
       } else {
         ++report_.dropped_sheets;
+        report_.dropped_area += area_of(draft_, corners);
         note(report_.places, centroid(draft_, corners));
       }
     }
@@ -386,7 +390,7 @@ class BoundaryKeeper {
   Draft& draft_;
   double thickness_;
   Sheets sheets_;
-  EdgeTable edges_;  // of the sheets
+  EdgeTable edges_;            // of the sheets
   std::vector<bool> tangled_;  // by sheet
   std::vector<Index> patch_;   // by sheet
   std::vector<Index> shell_;   // by side of a sheet
@@ -413,7 +417,8 @@ struct Components {
         of_soup.clear();
         for (const Index other : sides)
           if (draft.origins[other / 3].soup == draft.origins[side / 3].soup) of_soup.push_back(other);
-        if (of_soup.size() == 2 && ascending(draft.triangles, of_soup[0]) != ascending(draft.triangles, of_soup[1]))
+        if (of_soup.size() == 2 &&
+            ascending(draft.triangles, of_soup[0]) != ascending(draft.triangles, of_soup[1]))
           sets.unite(of_soup[0] / 3, of_soup[1] / 3);
         else
           open[side / 3] = true;
@@ -492,6 +497,8 @@ TurnReport turn_components(Draft& draft) {
   return report;
 }
 
-InsideReport keep_boundaries(Draft& draft, double thickness) { return BoundaryKeeper(draft, thickness).run(); }
+InsideReport keep_boundaries(Draft& draft, double thickness) {
+  return BoundaryKeeper(draft, thickness).run();
+}
 
 }  // namespace collarmesh::repairing

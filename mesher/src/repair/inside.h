@@ -30,6 +30,7 @@ struct InsideReport {
   double removed_area = 0;
   std::size_t internal_facets = 0;  ///< open sheets inside a solid, which stay
   std::size_t dropped_sheets = 0;   ///< triangles of open sheets outside of all solids
+  double dropped_area = 0;          ///< of these
   std::size_t thin_chambers = 0;    ///< that became part of their neighbours
   std::vector<Point> places;
 };

@@ -34,6 +34,7 @@ class PolygonCutter {
     } catch (const PlaneTriangulation::Intersection_of_constraints_exception&) {
       return std::nullopt;
     }
+    if (mesh_.dimension() < 2) return std::nullopt;  // all in one line
     mark_outside();
     return triangles();
   }

@@ -37,6 +37,10 @@ using namespace repairing;
 
 constexpr std::size_t most_places = 100;
 constexpr std::size_t most_rounds = 6;
+// Borders are stitched over at most so much of the diagonal: what is farther apart is meant to be.
+constexpr double widest_stitch = 1e-3;
+// What leaves more than this share of the area in open sheets is no repair of a solid.
+constexpr double most_in_open_sheets = 0.5;
 constexpr double grain = 1e-3;  // of the arrangement, relative to the tolerance
 
 void add_places(RepairPlaces& places, std::size_t count, double size, const std::vector<Point>& where) {
@@ -76,7 +80,7 @@ class Repairer {
     }
   }
 
-  /// All is open sheets that do not even meet.
+  /// All is open sheets that do not even meet, or most of it is open sheets.
   bool encloses_nothing() const { return encloses_nothing_; }
 
   /// How far the result is from the input.
@@ -146,9 +150,10 @@ class Repairer {
   void close() {
     std::size_t open = count_open_edges(draft_);
     for (const double factor : {1.0, 10.0, 100.0}) {
-      if (open == 0) break;
+      const double width = factor * tolerance_;
+      if (open == 0 || (factor > 1 && width > widest_stitch * draft_.bounds.diagonal())) break;
       Draft stitched = draft_;
-      const SnapReport snapped = snap_near_features(stitched, factor * tolerance_, SnapWhat::borders, &work_);
+      const SnapReport snapped = snap_near_features(stitched, width, SnapWhat::borders, &work_);
       const std::size_t left = count_open_edges(stitched);
       if (left >= open) continue;
       draft_ = std::move(stitched);
@@ -223,8 +228,11 @@ class Repairer {
     if (!arranged.clean) return false;
     encloses_nothing_ = arranged.intersecting_pairs == 0 && peels_away(draft_);
     if (encloses_nothing_) return true;
+    double area = 0;
+    for (const Corners& t : draft_.triangles) area += area_of(draft_, t);
     cancel_twins(draft_);
     const InsideReport kept = keep_boundaries(draft_, tolerance_);
+    encloses_nothing_ = kept.dropped_area > most_in_open_sheets * area;
     report_.merged.count += kept.removed_triangles;
     report_.merged.size += kept.removed_area;
     report_.dropped.count += kept.dropped_sheets;
@@ -272,8 +280,10 @@ RepairedPlc judged(const Repairer& repairer, RepairResult result, const PlcOptio
 }
 
 PlcError given_up(const PlcError& error, const RepairOptions& options) {
-  return {fmt::format("{} Its repair was given up after {} steps.", error.what(), options.max_work),
-          error.faults};
+  return {
+      fmt::format("{} Its repair was given up after {} steps; try a smaller repair tolerance, or wrap it.",
+                  error.what(), options.max_work),
+      error.faults};
 }
 
 }  // namespace
