@@ -114,7 +114,7 @@ def with_meshio(folder):
         import meshio
     except ImportError:
         skip("meshio")
-    found = meshio.read(mesh("sphere.off", folder / "sphere.vtu", "--size", "0.3"))
+    found = meshio.read(mesh("sphere.off", folder / "sphere.vtu", "--size", "0.4", "--coarsen", "off"))
     tets = found.points[found.cells_dict["tetra10"]]
     ends = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))   # of VTK_QUADRATIC_TETRA
     volume = 0
