@@ -13,7 +13,10 @@ struct Twin {
   bool odd;  ///< its corners are an odd permutation of their order: turned against those that are even
   Index triangle;
 
-  friend auto operator<=>(const Twin&, const Twin&) = default;
+  friend bool operator==(const Twin& a, const Twin& b) = default;
+  friend bool operator<(const Twin& a, const Twin& b) {
+    return a.odd != b.odd ? b.odd : a.triangle < b.triangle;
+  }
 };
 
 /// Is it an odd permutation of its sorted corners?
