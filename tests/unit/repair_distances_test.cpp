@@ -34,7 +34,7 @@ Point random_point(const CornerPoints& t, Random& random) {
   return t[0] + a * (t[1] - t[0]) + b * (t[2] - t[0]);
 }
 
-// By Ericson's regions would be exact, too; many points of the triangle are enough, from above.
+// From above: to the nearest of many points of each triangle.
 double distance_to(const Point& p, const std::vector<CornerPoints>& triangles) {
   constexpr int n = 40;
   double least = INFINITY;

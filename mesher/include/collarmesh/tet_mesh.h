@@ -32,7 +32,7 @@ struct TetMesh {
   std::vector<Index> tet_region;         ///< index of the region in the complex, from 1
   std::vector<Tag> tet_tag;              ///< tag of that region
   std::vector<std::uint8_t> tet_collar;  ///< 0 outside collars, 1 star, 2 book
-  /// 1: one that exceeds the radius-edge bound as a thin tet may (see `coarsen`); empty: there is none.
+  /// 1: one that exceeds the radius-edge bound as a thin tet may (see `coarsen`), else 0; empty: not known.
   std::vector<std::uint8_t> tet_thin;
   std::vector<Tag> tet_crease;  ///< in collars the tag of the crease, a curve or vertex; 0 outside
 

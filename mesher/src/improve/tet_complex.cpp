@@ -429,7 +429,7 @@ void TetComplex::store() {
   mesh_.tet_tag = std::move(stored.tet_tag);
   mesh_.tet_collar = std::move(stored.tet_collar);
   mesh_.tet_crease = std::move(stored.tet_crease);
-  mesh_.tet_thin.clear();
+  mesh_.tet_thin.assign(mesh_.tet_thin.empty() ? 0 : mesh_.tets.size(), 0);
   drop_lost_faces_and_edges();
   drop_lost_vertices();
 }

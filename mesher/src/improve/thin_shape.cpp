@@ -41,15 +41,13 @@ ThinShape::ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle,
 }
 
 void mark_thin_tets(TetMesh& mesh, double radius_edge) {
-  mesh.tet_thin.clear();
+  mesh.tet_thin.assign(mesh.tets.size(), 0);
   for (Index t = 0; t < mesh.tets.size(); ++t) {
     if (mesh.tet_collar[t] != 0) continue;
     const auto& v = mesh.tets[t];
     const TetQuality quality =
         measure(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]]);
-    if (quality.radius_edge <= radius_edge) continue;
-    mesh.tet_thin.resize(mesh.tets.size(), 0);
-    mesh.tet_thin[t] = 1;
+    if (quality.radius_edge > radius_edge) mesh.tet_thin[t] = 1;
   }
 }
 

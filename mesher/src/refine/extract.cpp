@@ -33,6 +33,7 @@ TetMesh Refinement::extract() const {
     mesh.tet_collar.push_back(tet.collar);
     mesh.tet_crease.push_back(tet.crease);
   }
+  mesh.tet_thin.assign(mesh.tets.size(), 0);
   for (const auto& face : stitched_.faces) {
     const auto& v = face.corners;
     mesh.faces.push_back({vertex(v[0]), vertex(v[1]), vertex(v[2])});
