@@ -23,9 +23,10 @@ using Mode = CoarseningRule::Mode;
 // Edges below this times the target length are contracted.
 constexpr double contracted_below = 0.8;
 constexpr unsigned plain_passes = 4, repair_passes = 6, rounds = 3;
-// A contraction that makes nothing worse than this may be repaired, in so many steps.
+// A contraction that makes nothing worse than this may be repaired, in so many steps. Hardly a step mends two
+// tets, so what has more tets to mend than steps left is given up.
 constexpr double repairable = 0.15;
-constexpr unsigned most_repairs = 12;
+constexpr unsigned most_repairs = 16;
 // Tets below this quality are improved between the passes.
 constexpr double improved_below = 1.3;
 constexpr unsigned most_sweeps = 8;
@@ -226,34 +227,39 @@ class Coarsening {
     apply(std::move(change));
     rule_.set_mode(Mode::trial);
     for (unsigned step = 0;; ++step) {
-      const Index worst = worst_touched(floor);
-      if (worst == none) {
+      const auto [count, worst] = tets_to_mend(floor);
+      if (count == 0) {
         workpiece_.keep();
         settle();
         ++report_.contracted_edges;
         ++report_.repaired;
         return true;
       }
-      if (step == most_repairs || !improve_tet(worst)) break;
+      if (step + count > most_repairs + 1 || !improve_tet(worst)) break;
     }
     workpiece_.undo();
     tets_ = before;
     return false;
   }
 
-  // Among the tets that a trial made or changed: one that must not stay.
-  Index worst_touched(double floor) const {
+  struct ToMend {
+    std::size_t count = 0;
     Index worst = none;
+  };
+  // Of the tets that a trial made or changed those that must not stay.
+  ToMend tets_to_mend(double floor) const {
+    ToMend found;
     double least = INFINITY;
     for (const Index t : touched_) {
       if (!complex()[t].alive) continue;
       const double q = qualities_[t];
-      if (q >= least || q >= 1) continue;
-      if (q >= floor && rule_.keeps_guarantee(complex().corners(t), q)) continue;
+      if (q >= 1 || (q >= floor && rule_.keeps_guarantee(complex().corners(t), q))) continue;
+      ++found.count;
+      if (q >= least) continue;
       least = q;
-      worst = t;
+      found.worst = t;
     }
-    return worst;
+    return found;
   }
 
   // By the first that helps of: an edge removed, a corner moved.

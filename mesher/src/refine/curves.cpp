@@ -194,9 +194,11 @@ bool Refinement::destroy_subsegment(Index index) {
     return false;
   }
   const Index nearest = objects_[s.object].vertex;
+  const auto across = parameter_across_gap(s, nearest);
   // A little off the centre: halves of symmetric curves would be cocircular.
   const double parameter =
-      s.centre_parameter + subsegment_offset * std::sqrt(s.squared_radius) * random_in_cube().x;
+      across ? *across
+             : s.centre_parameter + subsegment_offset * std::sqrt(s.squared_radius) * random_in_cube().x;
   const Point p = frame_.rounded(paths_.point(s.curve, parameter));
   const Index around = walk_.nearest(p, nearest);
   const Index cell = mesh_.conflicting_cell_around(around, p);
@@ -219,6 +221,7 @@ bool Refinement::destroy_subsegment(Index index) {
       return true;
     }
     remove_subsegment(index);
+    if (across) note_pair(nearest, mesh_.vertex_count());
     vertex = force_insert(1, s.curve);
   }
   add_subsegment(s.curve, {s.ends[0], vertex}, {s.parameters[0], parameter}, vertex);

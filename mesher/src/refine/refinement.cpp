@@ -32,6 +32,8 @@ constexpr double flat_volume = 1e-11;
 // The share of the distance tolerance that refinement aims at: it looks at a few points of a face.
 constexpr double distance_reserve = 0.75;
 constexpr std::size_t steps_between_reports = 512;
+// Of the set of pairs: a node and its place in the table.
+constexpr std::size_t bytes_per_pair = 32;
 
 // A box well away from the input; slightly different in each axis so that its corners are not
 // cospherical with points of symmetric input.
@@ -282,6 +284,7 @@ bool Refinement::destroy(Candidate candidate) {
         }
       }
     }
+    if (candidate.across != none) note_pair(candidate.across, mesh_.vertex_count());
     force_insert(candidate.dimension, candidate.feature);
     return true;
   }
@@ -468,7 +471,9 @@ void Refinement::judge_cell(Index cell) {
   const Point& centre = mesh_.circumcentre(cell);
   const double bound =
       region == 0 ? std::max(options_.exterior_radius_edge, options_.radius_edge) : options_.radius_edge;
-  if (r2 > bound * bound * shortest_squared_edge(cell) || (region != 0 && flat(cell))) {
+  const bool skinny =
+      r2 > bound * bound * shortest_squared_edge(cell) && !(region == 0 && fills_gap(cell, bound));
+  if (skinny || (region != 0 && flat(cell))) {
     if (inside_box(centre)) queue_.push(WorkQueue::skinny_cells, r2, {cell, mesh_.generation(cell)});
     return;
   }
@@ -527,6 +532,7 @@ std::optional<Refinement::Candidate> Refinement::cell_candidate(Index cell) {
 }
 
 std::optional<Refinement::Candidate> Refinement::triangle_candidate(FaceId face) {
+  if (auto candidate = candidate_across_gap(face)) return candidate;
   const RestrictedTriangle& t = restricted(face);
   const Index patch = patch_of(t);
   Point p = t.x;
@@ -612,7 +618,7 @@ std::size_t Refinement::bytes() const {
          marks_.bytes() + vertices_.capacity() * sizeof(MeshVertex) +
          restricted_.capacity() * sizeof(RestrictedTriangle) + node_pool_.capacity() * sizeof(Index) +
          unresolved_.capacity() * sizeof(UnresolvedPoint) + subsegments_.capacity() * sizeof(Subsegment) +
-         collar_review_.triangles.bytes();
+         collar_review_.triangles.bytes() + pairs_.size() * bytes_per_pair;
 }
 
 bool Refinement::stopped() {

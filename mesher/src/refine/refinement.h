@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "collar/collar_placement.h"
@@ -39,10 +40,9 @@ std::vector<Index> spread_points(std::span<const Index> candidates, const std::v
 ///
 /// refinement.cpp holds the loop, destroy and force_insert; curves.cpp the subsegments;
 /// patches.cpp labels and restricted triangles; gradation.cpp target sizes at vertices;
-/// surface_check.cpp what is looked at when the queue has run empty, surface_topology.cpp
-/// what is looked at in the end; collar_surface.cpp and
-/// collar_review.cpp the collars, rip_and_stitch.cpp their tets; extract.cpp turns the result
-/// into a TetMesh.
+/// facing_sheets.cpp samples in pairs across gaps; surface_check.cpp what is looked at when the queue has run
+/// empty, surface_topology.cpp what is looked at in the end; collar_surface.cpp and collar_review.cpp the
+/// collars, rip_and_stitch.cpp their tets; extract.cpp turns the result into a TetMesh.
 class Refinement {
  public:
   Refinement(const Plc& plc, const MeshOptions& options, const Execution& execution);
@@ -151,7 +151,8 @@ class Refinement {
     Point ball_centre;
     std::uint8_t dimension;
     Index feature;
-    Index start;  // a cell in conflict with the point
+    Index start;          // a cell in conflict with the point
+    Index across = none;  // the vertex that it faces across a gap
   };
 
   // refinement.cpp
@@ -245,6 +246,15 @@ class Refinement {
     return restricted_[marks_[cell_of(face)][corner_of(face)]];
   }
   RestrictedTriangle& restricted(FaceId face) { return restricted_[marks_[cell_of(face)][corner_of(face)]]; }
+
+  // facing_sheets.cpp
+  std::optional<Candidate> candidate_across_gap(FaceId face);
+  std::optional<double> parameter_across_gap(const Subsegment& s, Index vertex) const;
+  Index nearest_triangle(const Point& p, Index patch, double& within_squared) const;
+  bool faces(Index vertex, Index patch, const Vector& normal) const;
+  bool apart(Index vertex, Index curve) const;
+  void note_pair(Index a, Index b);
+  bool fills_gap(Index cell, double bound) const;
 
   // gradation.cpp
   void grade_vertex(Index vertex);
@@ -432,8 +442,9 @@ class Refinement {
   ConflictZone zone_;
 
   LargeVector<MeshVertex> vertices_;
-  GrowingArray<double> target_size_;    // of every vertex, with gradation only
-  GrowingArray<double> shortest_edge_;  // at every vertex, with a vertex ratio only
+  std::unordered_set<std::uint64_t> pairs_;  // of vertices that face each other across gaps, as edges
+  GrowingArray<double> target_size_;         // of every vertex, with gradation only
+  GrowingArray<double> shortest_edge_;       // at every vertex, with a vertex ratio only
   GrowingArray<CellLabel> labels_;
   GrowingArray<std::array<Index, 4>> marks_;  // restricted triangles of marked faces
   LargeVector<RestrictedTriangle> restricted_;

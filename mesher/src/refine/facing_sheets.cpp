@@ -1,0 +1,141 @@
+// Sheets of the surface that face each other across a gap narrower than the elements around it. With samples
+// of its own each of them would encroach the other one until both are sampled as densely as the gap is
+// narrow. So what a vertex encroaches from across a gap is split beneath that vertex. Samples in such pairs
+// leave the balls of the other sheet's triangles and subsegments empty, whatever their size: what makes them
+// smaller is the quality of cells in a thin part. Outside the regions nobody wants that, so there the edge
+// between the vertices of a pair counts in no radius-edge ratio.
+#include <algorithm>
+#include <cmath>
+
+#include "refine/refinement.h"
+
+namespace collarmesh {
+
+namespace {
+
+// Of the radius of the ball that is to be split. Where a gap is wider, samples are as dense as it is narrow
+// anyway.
+constexpr double widest_gap_per_radius = 0.9;
+// The new vertex keeps this share of that radius to all vertices on its own side.
+constexpr double least_spacing_per_radius = 0.35;
+// The least cosine between the way across and the normals of sheets that face each other.
+constexpr double least_facing = 0.97;
+// A curve is split beneath a vertex in this middle part of a subsegment only.
+constexpr double least_part = 0.25;
+
+std::uint64_t pair_of(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
+
+}  // namespace
+
+// For a restricted triangle with a vertex on another sheet: the point of its patch beneath that vertex.
+std::optional<Refinement::Candidate> Refinement::candidate_across_gap(FaceId face) {
+  const RestrictedTriangle& t = restricted(face);
+  if (t.resolved_vertices) return std::nullopt;
+  const Index patch = patch_of(t);
+  double squared_gap = widest_gap_per_radius * widest_gap_per_radius * t.squared_radius;
+  Index across = none;
+  Point beneath;
+  for (const Index v : mesh_.face_vertices(face)) {
+    if (vertices_[v].dimension == 3 || on_patch(v, patch)) continue;
+    const Point& p = mesh_.point(v);
+    double squared = squared_gap;
+    const Index triangle = nearest_triangle(p, patch, squared);
+    if (triangle == none) continue;
+    const auto corners = hierarchy_.corners(triangle);
+    const Point q = nearest_point_on_triangle(p, corners[0], corners[1], corners[2]);
+    const Vector n = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    const Vector normal = n / norm(n);
+    if (!(std::fabs(dot(p - q, normal)) > least_facing * std::sqrt(squared)) || !faces(v, patch, normal) ||
+        collars_.ball_containing(q) != none)
+      continue;
+    squared_gap = squared;
+    across = v;
+    beneath = frame_.rounded(plc_.patches[patch].planar ? on_plane(patch, q) : q);
+  }
+  if (across == none) return std::nullopt;
+  const Index start = mesh_.conflicting_cell_around(across, beneath);
+  if (start == none) return std::nullopt;
+  mesh_.find_conflict_zone(beneath, start, zone_);
+  const double spacing = least_spacing_per_radius * least_spacing_per_radius * t.squared_radius;
+  for (const Index v : zone_.vertices)
+    if (v != across && squared_distance(beneath, mesh_.point(v)) < spacing) return std::nullopt;
+  return Candidate{beneath, t.squared_radius, t.x, 2, patch, start, across};
+}
+
+// Where on a subsegment the vertex is nearest that encroaches it from across a gap, if it does.
+std::optional<double> Refinement::parameter_across_gap(const Subsegment& s, Index vertex) const {
+  if (vertex == s.ends[0] || vertex == s.ends[1] || !apart(vertex, s.curve)) return std::nullopt;
+  const Point& p = mesh_.point(vertex);
+  if (squared_distance(p, s.centre) > s.squared_radius) return std::nullopt;
+  const Vector along = mesh_.point(s.ends[1]) - mesh_.point(s.ends[0]);
+  const double length = s.parameters[1] - s.parameters[0];
+  double low = s.parameters[0] + least_part * length, high = s.parameters[1] - least_part * length;
+  const auto before = [&](double parameter) { return dot(paths_.point(s.curve, parameter) - p, along) < 0; };
+  if (!before(low) || before(high)) return std::nullopt;
+  for (int step = 0; step < 50; ++step) {
+    const double middle = 0.5 * (low + high);
+    (before(middle) ? low : high) = middle;
+  }
+  const double widest = widest_gap_per_radius * widest_gap_per_radius * s.squared_radius;
+  if (squared_distance(paths_.point(s.curve, low), p) > widest) return std::nullopt;
+  return low;
+}
+
+// The triangle of a patch that is nearest to p within the distance, which becomes its own.
+Index Refinement::nearest_triangle(const Point& p, Index patch, double& within_squared) const {
+  Index nearest = none;
+  within_squared = hierarchy_.squared_distance_to(p, within_squared, &nearest, [&](Index triangle) {
+    return triangle < plc_.triangles.size() && plc_.triangles[triangle].patch == patch;
+  });
+  return nearest;
+}
+
+// Features that meet would bring each other's samples ever closer to where they do: sheets face each other
+// only where they are parallel, and no other features that have a point in common.
+bool Refinement::faces(Index vertex, Index patch, const Vector& normal) const {
+  const MeshVertex& v = vertices_[vertex];
+  if (v.dimension == 0) return true;
+  if (v.dimension == 1) {
+    const auto& ends = plc_.curves[v.feature].ends;
+    return std::none_of(ends.begin(), ends.end(),
+                        [&](Index end) { return end != none && plc_.vertex_on_patch(end, patch); });
+  }
+  const Plc::Patch& other = plc_.patches[v.feature];
+  if (other.planar) return std::fabs(dot(normal, other.normal)) > least_facing;
+  double any = INFINITY;
+  const auto corners = hierarchy_.corners(nearest_triangle(mesh_.point(vertex), v.feature, any));
+  const Vector n = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  return std::fabs(dot(normal, n)) > least_facing * norm(n);
+}
+
+// Does a vertex lie on a feature that has no point in common with the curve?
+bool Refinement::apart(Index vertex, Index curve) const {
+  const MeshVertex& v = vertices_[vertex];
+  if (v.dimension == 3) return false;
+  if (v.dimension == 0) return true;
+  if (v.feature == curve && v.dimension == 1) return false;
+  if (v.dimension == 2 && plc_.curve_on_patch(curve, v.feature)) return false;
+  const auto& ends = plc_.curves[curve].ends;
+  return std::none_of(ends.begin(), ends.end(), [&](Index end) {
+    if (end == none) return false;
+    if (v.dimension == 2) return plc_.vertex_on_patch(end, v.feature);
+    const auto& others = plc_.curves[v.feature].ends;
+    return end == others[0] || end == others[1];
+  });
+}
+
+void Refinement::note_pair(Index a, Index b) { pairs_.insert(pair_of(a, b)); }
+
+// Is a cell within the radius-edge bound but for the edges between vertices of a pair?
+bool Refinement::fills_gap(Index cell, double bound) const {
+  if (pairs_.empty()) return false;
+  const auto& v = mesh_.corners(cell);
+  double shortest = INFINITY;
+  for (unsigned i = 0; i < 4; ++i)
+    for (unsigned j = 0; j < i; ++j)
+      if (!pairs_.contains(pair_of(v[i], v[j])))
+        shortest = std::min(shortest, squared_distance(mesh_.point(v[i]), mesh_.point(v[j])));
+  return mesh_.squared_radius(cell) <= bound * bound * shortest;
+}
+
+}  // namespace collarmesh
