@@ -10,9 +10,11 @@
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
 #include "complex_input.h"
+#include "console.h"
 #include "conversion_report.h"
 #include "interrupt.h"
 #include "option_warnings.h"
+#include "out_of_memory.h"
 #include "progress_display.h"
 #include "report.h"
 #include "staged_file.h"
@@ -206,7 +208,7 @@ void certify(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
 
 void write_report(const std::string& path, const MeshArguments& arguments, const MeshRun& run) {
   std::ofstream file(path);
-  file << run_json(arguments, run).dump(1) << '\n';
+  file << json_text(run_json(arguments, run), 1) << '\n';
   file.close();
   if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path));
 }
@@ -225,26 +227,25 @@ void write_files(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   StagedFile::commit({&mesh, report ? &*report : nullptr});
 }
 
-void tell(const MeshArguments& arguments, const MeshRun& run) {
+void tell_of(const MeshArguments& arguments, const MeshRun& run) {
   if (run.result.status == MeshStatus::guarantee_missed)
-    fmt::print(stderr, "collarmesh: a guarantee is missed: {}\n", run.result.message);
+    tell("collarmesh: a guarantee is missed: {}\n", run.result.message);
   constexpr std::size_t listed = 10;
-  fmt::print(stderr, "{}", findings_text(run.check, arguments.verbose ? run.check.findings.size() : listed));
-  fmt::print(
-      stderr, "{}",
-      straightened_text(run.second_order, arguments.verbose ? run.second_order.straightened.size() : listed));
+  tell("{}", findings_text(run.check, arguments.verbose ? run.check.findings.size() : listed));
+  tell("{}", straightened_text(run.second_order,
+                               arguments.verbose ? run.second_order.straightened.size() : listed));
   if (arguments.quiet) return;
-  fmt::print(stderr, "{}", run_text(arguments, run));
+  tell("{}", run_text(arguments, run));
   if (arguments.tell_losses)
-    fmt::print(stderr, "{}",
-               losses_text(lost_by(format_of(arguments.output, arguments.output_format), run.result.mesh)));
+    tell("{}", losses_text(lost_by(format_of(arguments.output, arguments.output_format), run.result.mesh)));
 }
 
 }  // namespace
 
 ExitCode mesh_command(const MeshArguments& arguments) {
   set_time_limit(arguments.mesh.time_limit);
-  require_writable(arguments.output);
+  limit_memory(arguments.mesh.max_memory);
+  require_writable(arguments.output, arguments.output_format);
   if (!arguments.report.empty()) require_writable(arguments.report);
   MeshRun run;
   {
@@ -259,7 +260,7 @@ ExitCode mesh_command(const MeshArguments& arguments) {
     certify(arguments, stages, run);
     write_files(arguments, stages, run);
   }
-  tell(arguments, run);
+  tell_of(arguments, run);
   return run.guarantees_hold() ? ExitCode::success : ExitCode::guarantee_missed;
 }
 

@@ -3,18 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <variant>
 
 #include "arguments.h"
 #include "check_command.h"
 #include "collarmesh/error.h"
+#include "console.h"
 #include "convert_command.h"
 #include "info_command.h"
 #include "interrupt.h"
 #include "mesh_command.h"
+#include "out_of_memory.h"
 #include "repair_command.h"
 
 namespace collarmesh::cli {
@@ -30,7 +32,7 @@ struct Execute {
 };
 
 ExitCode fail(ExitCode code, const std::string& message) {
-  fmt::print(stderr, "collarmesh: {}\n", message);
+  tell("collarmesh: {}\n", message);
   return code;
 }
 
@@ -39,9 +41,8 @@ ExitCode fail(const PlcError& error) {
   fail(ExitCode::invalid_complex, error.what());
   const std::string_view said = error.what();
   for (std::size_t k = 0; k < std::min(error.faults.size(), listed); ++k)
-    if (said.find(error.faults[k].message) == std::string_view::npos)
-      fmt::print(stderr, "  {}\n", error.faults[k].message);
-  if (error.faults.size() > listed) fmt::print(stderr, "  ... and {} more\n", error.faults.size() - listed);
+    if (said.find(error.faults[k].message) == std::string_view::npos) tell("  {}\n", error.faults[k].message);
+  if (error.faults.size() > listed) tell("  ... and {} more\n", error.faults.size() - listed);
   return ExitCode::invalid_complex;
 }
 
@@ -63,7 +64,9 @@ ExitCode guarded(const std::function<ExitCode()>& command) {
   } catch (const std::bad_alloc&) {
     return fail(
         ExitCode::budget_hit,
-        "the memory is used up; raise --size for a coarser mesh, or set --max-memory to stop earlier");
+        "the memory is used up; nothing was written; raise --max-memory, or --size for a coarser mesh");
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(ExitCode::cannot_write, error.what());
   } catch (const std::exception& error) {
     return fail(
         ExitCode::internal_error,
@@ -72,11 +75,15 @@ ExitCode guarded(const std::function<ExitCode()>& command) {
 }
 
 int run(int argc, const char* const* argv) {
-  const std::variant<Arguments, ExitCode> parsed = parse(argc, argv);
-  if (const ExitCode* code = std::get_if<ExitCode>(&parsed)) return static_cast<int>(*code);
-  install_interrupt_handlers();
-  return static_cast<int>(run_interruptible(
-      [&] { return guarded([&] { return std::visit(Execute(), std::get<Arguments>(parsed)); }); }));
+  replace_closed_streams();
+  end_when_memory_is_used_up();
+  return static_cast<int>(guarded([&] {
+    const std::variant<Arguments, ExitCode> parsed = parse(argc, argv);
+    if (const ExitCode* code = std::get_if<ExitCode>(&parsed)) return *code;
+    install_interrupt_handlers();
+    return run_interruptible(
+        [&] { return guarded([&] { return std::visit(Execute(), std::get<Arguments>(parsed)); }); });
+  }));
 }
 
 }  // namespace collarmesh::cli
