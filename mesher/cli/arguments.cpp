@@ -354,6 +354,7 @@ CLI::App* add_check_command(CLI::App& app, CheckArguments& a) {
       ->check(count);
   add_threads_option(*check, a.check.threads, "At most");
   add_complex_options(*check, a.complex);
+  add(*check, "--time-limit SECONDS", a.time_limit, "For everything", "none")->check(seconds);
   check->add_flag("--json", a.json, "Print JSON");
   return check;
 }
@@ -362,6 +363,7 @@ CLI::App* add_info_command(CLI::App& app, InfoArguments& a) {
   CLI::App* info = app.add_subcommand("info", "Say what the input is: features, regions, creases, angles");
   info->add_option("INPUT", a.inputs, "Files of one complex, or one mesh")->required()->type_name("FILE");
   add_complex_options(*info, a.complex);
+  add(*info, "--time-limit SECONDS", a.time_limit, "For everything", "none")->check(seconds);
   info->add_flag("--json", a.json, "Print JSON");
   return info;
 }

@@ -13,6 +13,7 @@
 namespace collarmesh::cli {
 
 ExitCode check_command(const CheckArguments& arguments) {
+  set_time_limit(arguments.time_limit);
   limit_memory(memory_of_the_machine() / 2);
   const TetMesh mesh = read_mesh(arguments.mesh);
   const auto distance = [&](double diagonal) {

@@ -57,6 +57,7 @@ void print_complex(const InfoArguments& arguments) {
 }  // namespace
 
 ExitCode info_command(const InfoArguments& arguments) {
+  set_time_limit(arguments.time_limit);
   limit_memory(memory_of_the_machine() / 2);
   const std::string& first = arguments.inputs.front();
   if (!io::is_tet_mesh_format(first))

@@ -18,6 +18,7 @@
 
 #include "console.h"
 #include "staged_file.h"
+#include "supervisor.h"
 
 namespace collarmesh::cli {
 
@@ -99,6 +100,7 @@ void set_time_limit(double seconds) {
       seconds > 0 && seconds < a_year
           ? Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds))
           : Clock::time_point::max();
+  supervise_time(seconds);
   if (!watched) set_flag_at_the_deadline();
 }
 

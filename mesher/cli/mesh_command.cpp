@@ -18,6 +18,7 @@
 #include "progress_display.h"
 #include "report.h"
 #include "staged_file.h"
+#include "supervisor.h"
 
 namespace collarmesh::cli {
 
@@ -175,6 +176,7 @@ void project_onto_cad(const MeshArguments& arguments, const ComplexInput& input,
   options.collar_angle = arguments.mesh.collar_angle;
   options.reach = distance_of(arguments, run.plc.bounds.diagonal());
   if (run.coarsening) options.thin_angle = arguments.thin_angle;
+  const CadWork projecting("finding the nearest points of its faces and edges", input.cad_names());
   run.projection =
       project_boundary(run.result.mesh, run.plc, input.exact_geometry(run.plc), options, execution);
   stop_if_interrupted();
@@ -187,6 +189,9 @@ void raise_order(const MeshArguments& arguments, const ComplexInput& input, Stag
   execution.cancel = &interrupt_flag();
   SecondOrderOptions options;
   if (input.has_cad()) options.exact = input.exact_geometry(run.plc);
+  std::optional<CadWork> projecting;
+  if (input.has_cad())
+    projecting.emplace("finding the nearest points of its faces and edges", input.cad_names());
   run.second_order = make_second_order(run.result.mesh, run.plc, options, execution);
   stop_if_interrupted();
 }

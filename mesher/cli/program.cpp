@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "arguments.h"
+#include "cad_files.h"
 #include "check_command.h"
 #include "collarmesh/error.h"
 #include "console.h"
@@ -18,6 +19,7 @@
 #include "mesh_command.h"
 #include "out_of_memory.h"
 #include "repair_command.h"
+#include "supervisor.h"
 
 namespace collarmesh::cli {
 
@@ -30,6 +32,23 @@ struct Execute {
   ExitCode operator()(const ConvertArguments& arguments) const { return convert_command(arguments); }
   ExitCode operator()(const RepairArguments& arguments) const { return repair_command(arguments); }
 };
+
+bool reads_cad(const Arguments& arguments) {
+  return std::visit(
+      [](const auto& a) {
+        const auto any = [](const auto& inputs, const std::string& format) {
+          return std::any_of(inputs.begin(), inputs.end(),
+                             [&](const std::string& path) { return CadFiles::knows(path, format); });
+        };
+        if constexpr (requires { a.mesh.inputs; })
+          return any(a.mesh.inputs, a.mesh.input_format);
+        else if constexpr (requires { a.input_format; })
+          return any(a.inputs, a.input_format);
+        else
+          return any(a.inputs, {});
+      },
+      arguments);
+}
 
 ExitCode fail(ExitCode code, const std::string& message) {
   tell("collarmesh: {}\n", message);
@@ -80,9 +99,12 @@ int run(int argc, const char* const* argv) {
   return static_cast<int>(guarded([&] {
     const std::variant<Arguments, ExitCode> parsed = parse(argc, argv);
     if (const ExitCode* code = std::get_if<ExitCode>(&parsed)) return *code;
-    install_interrupt_handlers();
-    return run_interruptible(
-        [&] { return guarded([&] { return std::visit(Execute(), std::get<Arguments>(parsed)); }); });
+    const Arguments& arguments = std::get<Arguments>(parsed);
+    const auto command = [&] {
+      install_interrupt_handlers();
+      return run_interruptible([&] { return guarded([&] { return std::visit(Execute(), arguments); }); });
+    };
+    return reads_cad(arguments) ? run_supervised(command) : command();
   }));
 }
 

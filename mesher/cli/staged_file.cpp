@@ -15,11 +15,13 @@
 #include <fstream>
 #include <mutex>
 #include <set>
+#include <string_view>
 #include <vector>
 
 #include "collarmesh/error.h"
 #include "file_groups.h"
 #include "interrupt.h"
+#include "supervisor.h"
 
 namespace collarmesh::cli {
 
@@ -29,6 +31,7 @@ namespace {
 
 constexpr const char* standard_output = "-";
 constexpr const char* folder_prefix = ".collarmesh-";
+constexpr std::string_view kept_prefix = "kept-";
 
 std::recursive_mutex staged_mutex;  // guards what follows; recursive: memory may be used up while it is held
 std::vector<fs::path> staged_folders;
@@ -74,7 +77,7 @@ void remove_dead_folders(const fs::path& parent) {
       continue;
     const int lock = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW);
     if (lock < 0) continue;
-    if (flock(lock, LOCK_EX | LOCK_NB) == 0) fs::remove_all(folder, ignored);
+    if (flock(lock, LOCK_EX | LOCK_NB) == 0) remove_dead_folder(folder);
     close(lock);
   }
 }
@@ -164,6 +167,7 @@ StagedFile::StagedFile(fs::path target) : target_(std::move(target)) {
   lock_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (lock_ >= 0) flock(lock_, LOCK_EX | LOCK_NB);
   staged_folders.push_back(folder_);
+  supervise_folder(folder_.string());
 }
 
 StagedFile::~StagedFile() {
@@ -195,7 +199,8 @@ std::vector<StagedFile::Move> StagedFile::moves() const {
     const fs::path place = target_.parent_path() / name;
     std::error_code ignored;
     const bool there = fs::exists(fs::symlink_status(place, ignored));
-    moves.push_back({folder_ / name, place, there ? folder_ / ("kept-" + name.string()) : fs::path()});
+    moves.push_back(
+        {folder_ / name, place, there ? folder_ / (std::string(kept_prefix) + name.string()) : fs::path()});
   }
   return moves;
 }
@@ -250,6 +255,18 @@ void StagedFile::commit(std::initializer_list<StagedFile*> files) {
 void require_writable(const fs::path& target, const std::string& format) {
   const StagedFile probe(target);
   for (const fs::path& file : files_written(target, format)) require_place(file);
+}
+
+void remove_dead_folder(const fs::path& folder) {
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    std::error_code ignored;
+    if (!name.starts_with(kept_prefix)) continue;
+    const fs::path place = folder.parent_path() / name.substr(kept_prefix.size());
+    if (!fs::exists(fs::symlink_status(place, ignored))) fs::rename(entry->path(), place, ignored);
+  }
+  fs::remove_all(folder, error);
 }
 
 bool abandon_staged_files() {

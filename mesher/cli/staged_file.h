@@ -46,6 +46,10 @@ class StagedFile {
 /// to be asked before long work.
 void require_writable(const std::filesystem::path& target, const std::string& format = {});
 
+/// Remove the temporary folder of a process that has ended. Where it ended in a commit, between taking a file
+/// away and putting another one in its place, the former is put back.
+void remove_dead_folder(const std::filesystem::path& folder);
+
 /// Remove what is not committed and block later commits: the program is about to end while another
 /// thread writes. A commit that has begun is taken back when this thread was at it, else waited for. False
 /// when the commit has taken place, the command is then about to succeed.

@@ -231,11 +231,11 @@ class Signals(HostileTest):
         self.expect(0, self.box, "-o", self.out, "--size", "0.04", writes=True)
         duration = time.monotonic() - begin
         after = self.out.read_bytes()
-        for k in range(12):
+        for k in range(6):
             self.out.write_bytes(before)
             run = subprocess.Popen([PROGRAM, self.box, "-o", self.out, "--size", "0.04", "-q"],
                                    stderr=subprocess.DEVNULL)
-            time.sleep(duration * (0.7 + 0.04 * k))
+            time.sleep(duration * (0.7 + 0.08 * k))
             run.send_signal(signal.SIGHUP)
             code = run.wait(timeout=20)
             self.assertIn(code, (0, 6, -signal.SIGHUP))
@@ -332,6 +332,80 @@ class Memory(HostileTest):
                 self.assertEqual(self.out.exists(), run.returncode == 0)
                 self.out.unlink(missing_ok=True)
                 self.assert_nothing_left()
+
+
+HOSTILE = pathlib.Path(__file__).resolve().parent / "hostile"
+reads_cad = "OpenCASCADE" in subprocess.run([PROGRAM, "info", HOSTILE / "cad_crash" / "mut_300.brep"],
+                                            capture_output=True, text=True).stderr
+
+
+@unittest.skipUnless(reads_cad, "built without OpenCASCADE")
+class CadFilesThatCrash(HostileTest):
+    def test_say_file_and_stage(self):
+        for path in sorted((HOSTILE / "cad_crash").iterdir()):
+            for arguments in (("-o", self.out), None):
+                with self.subTest(path=path.name, arguments=arguments):
+                    run = self.run_program(path, *arguments) if arguments else self.run_program("info", path)
+                    self.assertEqual(run.returncode, 3, run.stderr)
+                    self.assertIn(path.name, run.stderr)
+                    self.assertRegex(run.stderr, "OpenCASCADE")
+                    self.assertEqual([p.name for p in self.folder.iterdir()], ["box.off"])
+
+    def test_that_end_early(self):
+        whole = (HOSTILE / "brep_truncated_hang" / "half.brep").read_bytes()
+        for length in range(10, len(whole) + 1, 97):
+            (self.folder / "part.brep").write_bytes(whole[:length])
+            run = self.run_program("info", self.folder / "part.brep", timeout=30)
+            self.assertEqual(run.returncode, 3, run.stderr)
+
+    def test_the_child_dies_with_the_program_and_is_told_to_stop(self):
+        """A pipe without an end instead of a file: OpenCASCADE waits for it."""
+        endless = self.folder / "endless.brep"
+        os.mkfifo(endless)
+        keep_open = os.open(endless, os.O_RDWR)
+        self.addCleanup(os.close, keep_open)
+        for number, code in ((signal.SIGTERM, 6), (signal.SIGINT, 6), (signal.SIGHUP, 6), (signal.SIGKILL, -9)):
+            with self.subTest(signal=number):
+                run = subprocess.Popen([PROGRAM, endless, "-o", self.out], stderr=subprocess.PIPE, text=True)
+                self.addCleanup(run.kill)
+                time.sleep(0.5)
+                children = pathlib.Path(f"/proc/{run.pid}/task/{run.pid}/children").read_text().split()
+                self.assertEqual(len(children), 1)
+                run.send_signal(number)
+                messages = run.communicate(timeout=20)[1]
+                self.assertEqual(run.returncode, code, messages)
+                for _ in range(50):
+                    if not pathlib.Path(f"/proc/{children[0]}").exists():
+                        break
+                    time.sleep(0.1)
+                state = pathlib.Path(f"/proc/{children[0]}/stat")
+                self.assertTrue(not state.exists() or ") Z " in state.read_text())
+        self.expect(5, endless, "-o", self.out, "--time-limit", "0.3", says=["time limit"])
+        self.expect(5, "info", endless, "--time-limit", "0.3", says=["time limit"])
+
+    def test_a_crash_of_the_child_in_each_stage(self):
+        """Whatever kills it, the program says so and leaves nothing."""
+        part = HOSTILE / "iges_closed_face" / "sphere.igs"
+        for number, code in ((signal.SIGSEGV, (1, 3)), (signal.SIGKILL, (5,))):
+            for delay in (0.05, 0.2, 0.4, 0.8):
+                run = subprocess.Popen([PROGRAM, part, "-o", self.out, "--size", "0.3"], stderr=subprocess.PIPE, text=True)
+                self.addCleanup(run.kill)
+                time.sleep(delay)
+                children = pathlib.Path(f"/proc/{run.pid}/task/{run.pid}/children").read_text().split()
+                if not children:
+                    run.communicate(timeout=100)
+                    continue
+                os.kill(int(children[0]), number)
+                messages = run.communicate(timeout=100)[1]
+                self.assertIn(run.returncode, code, messages)
+                self.assertFalse(self.out.exists())
+                self.assert_nothing_left()
+
+    def test_closed_faces(self):
+        for path in sorted((HOSTILE / "iges_closed_face").iterdir()):
+            with self.subTest(path=path.name):
+                self.expect(0, path, "-o", self.out, writes=True)
+                self.out.unlink()
 
 
 if __name__ == "__main__":
