@@ -407,6 +407,91 @@ class CadFilesThatCrash(HostileTest):
                 self.expect(0, path, "-o", self.out, writes=True)
                 self.out.unlink()
 
+class Regions(HostileTest):
+    """No body is lost without a word."""
+
+    def volumes(self, path, *options):
+        report = self.folder / "report.json"
+        run = self.run_program(path, "-o", self.out, "--report", report, *options)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return run.stderr, json.loads(report.read_text())["check"]["region_volumes"]
+
+    def test_a_body_inside_out_beside_another_one(self):
+        _, volumes = self.volumes(HOSTILE / "lost_region" / "two_cubes.off")
+        self.assertEqual(len(volumes), 2)
+        for volume in volumes.values():
+            self.assertAlmostEqual(volume, 1, places=9)
+
+    def test_any_facets_turned(self):
+        """Two stacked cubes: whatever facets are turned, there are two bodies."""
+        lines = (HOSTILE / "lost_region" / "two_cubes.off").read_text().splitlines()
+        for turned in list(range(0, 2048, 37)) + [2047]:
+            facets = [line.split() for line in lines[14:25]]
+            facets = [[f[0], *reversed(f[1:])] if turned >> i & 1 else f for i, f in enumerate(facets)]
+            path = self.write("turned.off", "\n".join(lines[:14] + [" ".join(f) for f in facets]) + "\n")
+            run = self.run_program("info", path, "--json")
+            regions = json.loads(run.stdout)["complex"]["regions"]
+            volumes = [r["volume"] for r in (regions if isinstance(regions, list) else [])]
+            self.assertEqual(run.stdout.count('"volume"'), 2, f"{turned}: {run.stdout}")
+            for volume in volumes:
+                self.assertAlmostEqual(volume, 1, places=9)
+
+    def test_small_bodies_are_kept_or_told(self):
+        for folder in ("small_body", "welded_away"):
+            for path in sorted((HOSTILE / folder).iterdir()):
+                with self.subTest(path=path.name):
+                    messages, volumes = self.volumes(path, "-q", "--time-limit", "60")
+                    if len(volumes) < 2:
+                        self.assertRegex(messages, r"warning: The body of 6 facets at \(.*is lost")
+        _, volumes = self.volumes(HOSTILE / "small_body" / "sm_1e-06_0.off", "-q", "--repair", "none")
+        self.assertAlmostEqual(volumes["2"] * 1e18, 1, places=6)
+
+
+class Judgement(HostileTest):
+    def test_an_inverted_tet_is_a_finding(self):
+        mesh = self.folder / "box.mesh"
+        self.assertEqual(self.run_program(self.box, "-o", mesh, "--size", "0.4").returncode, 0)
+        lines = mesh.read_text().splitlines()
+        at = lines.index("Tetrahedra") + 2
+
+        def swapped(line):
+            a, b, *rest = line.split()
+            return " ".join([b, a, *rest])
+
+        self.expect(0, "check", mesh, "--against", self.box)
+        for count in (1, 3):
+            changed = lines[:at] + [swapped(line) for line in lines[at:at + count]] + lines[at + count:]
+            mesh.write_text("\n".join(changed) + "\n")
+            self.expect(7, "check", mesh, "--against", self.box)
+        tets = int(lines[at - 1])
+        mesh.write_text("\n".join(lines[:at] + [swapped(line) for line in lines[at:at + tets]] + lines[at + tets:]) + "\n")
+        self.expect(0, "check", mesh, "--against", self.box)  # another convention
+
+
+class Repairs(HostileTest):
+    def test_t_junctions_filled_by_flat_triangles(self):
+        for path in sorted((HOSTILE / "cap_stl").iterdir()):
+            with self.subTest(path=path.name):
+                self.expect(0, path, "-o", self.out, writes=True)
+                self.out.unlink()
+
+
+class Ends(HostileTest):
+    def test_slivers_between_bodies(self):
+        """They are meshed, or refused, or end at a budget that is kept."""
+        for path in sorted((HOSTILE / "hang").iterdir()):
+            for budget in (("--max-vertices", "20000"), ("--max-memory", "40M")):
+                with self.subTest(path=path.name, budget=budget):
+                    run = self.run_program(path, "-o", self.out, *budget, timeout=100)
+                    self.assertIn(run.returncode, (0, 4, 5), run.stderr)
+                    self.assertNotIn("time limit", run.stderr)
+                    self.out.unlink(missing_ok=True)
+
+    def test_bodies_far_from_the_origin(self):
+        for path in sorted((HOSTILE / "segv_far_from_origin").iterdir()):
+            with self.subTest(path=path.name):
+                self.expect(4, path, "-o", self.out, "--time-limit", "60", says=["from the origin"])
+
 
 if __name__ == "__main__":
     unittest.main()
