@@ -9,6 +9,7 @@
 
 #include "collarmesh/brep/cad_model.h"
 #include "collarmesh/error.h"
+#include "collarmesh/usable_threads.h"
 #include "supervisor.h"
 
 namespace collarmesh::cli {
@@ -70,6 +71,7 @@ void CadFiles::read(const std::string& path, std::string_view format, const CadR
                     std::vector<PolygonSoup>& soups) {
   const brep::Overlap overlap =
       reading.overlap == SolidOverlap::region ? brep::Overlap::region : brep::Overlap::first;
+  usable_threads();  // OpenCASCADE would ask TBB for more
   const double patience = patience_with(path);
   std::optional<CadWork> work(std::in_place, "reading it and finding its solids", path, patience);
   std::unique_ptr<brep::CadModel> model = read_by_module(path, format, {.overlap = overlap});

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <exception>
-#include <filesystem>
 #include <new>
+#include <system_error>
 #include <variant>
 
 #include "arguments.h"
@@ -84,8 +84,11 @@ ExitCode guarded(const std::function<ExitCode()>& command) {
     return fail(
         ExitCode::budget_hit,
         "the memory is used up; nothing was written; raise --max-memory, or --size for a coarser mesh");
-  } catch (const std::filesystem::filesystem_error& error) {
-    return fail(ExitCode::cannot_write, error.what());
+  } catch (const std::system_error& error) {
+    return error.code() == std::errc::resource_unavailable_try_again
+               ? fail(ExitCode::budget_hit,
+                      "no thread can be made; nothing was written; raise the limit of threads or memory")
+               : fail(ExitCode::cannot_write, error.what());
   } catch (const std::exception& error) {
     return fail(
         ExitCode::internal_error,

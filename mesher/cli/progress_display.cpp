@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 namespace collarmesh::cli {
 
@@ -49,7 +50,12 @@ ProgressDisplay::ProgressDisplay(ProgressStyle style)
     : form_(style == ProgressStyle::json                                 ? Form::json
             : style == ProgressStyle::automatic && isatty(STDERR_FILENO) ? Form::bar
                                                                          : Form::nothing) {
-  if (form_ == Form::bar) drawing_ = std::thread([this] { keep_drawing(); });
+  if (form_ != Form::bar) return;
+  try {
+    drawing_ = std::thread([this] { keep_drawing(); });
+  } catch (const std::system_error&) {
+    form_ = Form::nothing;
+  }
 }
 
 ProgressDisplay::~ProgressDisplay() {

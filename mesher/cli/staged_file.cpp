@@ -33,9 +33,30 @@ constexpr const char* standard_output = "-";
 constexpr const char* folder_prefix = ".collarmesh-";
 constexpr std::string_view kept_prefix = "kept-";
 
-std::recursive_mutex staged_mutex;  // guards what follows; recursive: memory may be used up while it is held
-std::vector<fs::path> staged_folders;
+std::mutex staged_mutex;  // guards what follows
+
+/// Holds that mutex. A thread may hold it already: memory may be used up while it does.
+class StagedLock {
+ public:
+  StagedLock() {
+    if (held_++ == 0) staged_mutex.lock();
+  }
+  ~StagedLock() {
+    if (--held_ == 0) staged_mutex.unlock();
+  }
+  StagedLock(const StagedLock&) = delete;
+  StagedLock& operator=(const StagedLock&) = delete;
+  /// For good: the program is about to end.
+  static void keep() { ++held_; }
+
+ private:
+  static thread_local int held_;
+};
+thread_local int StagedLock::held_ = 0;
+
+std::vector<std::string> staged_folders;
 bool committed = false;
+bool keep_folders = false;  // what was there before could not be put back from them
 
 /// What a commit has done so far, to be taken back.
 struct Done {
@@ -101,12 +122,16 @@ fs::path make_folder_beside(const fs::path& target) {
         fmt::format("{}: {} is not a folder; choose another place", target.string(), parent.string()));
   if (target != standard_output) require_place(target);
   remove_dead_folders(parent);
-  std::string name = (parent / fmt::format("{}XXXXXX", folder_prefix)).string();
-  if (mkdtemp(name.data()) == nullptr)
+  // In the list before it is there: memory may be used up at any time.
+  staged_folders.push_back((parent / fmt::format("{}XXXXXX", folder_prefix)).string());
+  if (mkdtemp(staged_folders.back().data()) == nullptr) {
+    const std::string why = reason();
+    staged_folders.pop_back();
     throw WriteError(
         fmt::format("{}: cannot write to the folder {} ({}); choose another or change its permissions",
-                    target.string(), parent.string(), reason()));
-  return name;
+                    target.string(), parent.string(), why));
+  }
+  return staged_folders.back();
 }
 
 /// File systems that cannot flush say so by these numbers.
@@ -147,10 +172,8 @@ bool keep(const fs::path& place, const fs::path& kept) {
 void take_back() noexcept {
   for (; !done.empty(); done.pop_back()) {
     const Done& last = done.back();
-    if (last.kept.empty())
-      unlink(last.place.c_str());
-    else
-      rename(last.kept.c_str(), last.place.c_str());
+    if ((last.kept.empty() ? unlink(last.place.c_str()) : rename(last.kept.c_str(), last.place.c_str())) != 0)
+      keep_folders = true;
   }
 }
 
@@ -161,21 +184,19 @@ StagedFile::StagedFile(fs::path target) : target_(std::move(target)) {
   std::error_code error;
   if (fs::is_symlink(target_, error))
     if (fs::path named = fs::weakly_canonical(target_, error); !error) target_ = std::move(named);
-  const std::lock_guard lock(staged_mutex);
-  staged_folders.reserve(staged_folders.size() + 1);
+  const StagedLock lock;
   folder_ = make_folder_beside(target_);
   lock_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (lock_ >= 0) flock(lock_, LOCK_EX | LOCK_NB);
-  staged_folders.push_back(folder_);
   supervise_folder(folder_.string());
 }
 
 StagedFile::~StagedFile() {
-  const std::lock_guard lock(staged_mutex);
+  const StagedLock lock;
   std::error_code ignored;
-  fs::remove_all(folder_, ignored);
+  if (!keep_folders) fs::remove_all(folder_, ignored);
   if (lock_ >= 0) close(lock_);
-  std::erase(staged_folders, folder_);
+  std::erase(staged_folders, folder_.native());
 }
 
 void StagedFile::write(const std::function<void(const std::string&)>& write) {
@@ -220,7 +241,7 @@ void StagedFile::copy_to_standard_output() const {
 }
 
 void StagedFile::commit(std::initializer_list<StagedFile*> files) {
-  const std::lock_guard lock(staged_mutex);
+  const StagedLock lock;
   stop_if_interrupted();
   std::vector<Move> all;
   for (const StagedFile* file : files)
@@ -241,8 +262,11 @@ void StagedFile::commit(std::initializer_list<StagedFile*> files) {
       const std::string why = reason();
       if (move.kept.empty()) done.pop_back();  // what is there now, if anything, is somebody else's
       take_back();
-      throw WriteError(
-          fmt::format("{}: cannot be replaced ({}); choose another name", move.to.string(), why));
+      throw WriteError(fmt::format(
+          "{}: cannot be replaced ({}); choose another name{}", move.to.string(), why,
+          keep_folders ? fmt::format("; nor can files be put back: what was there before is in {}",
+                                     move.from.parent_path().string())
+                       : ""));
     }
   }
   committed = true;
@@ -270,13 +294,15 @@ void remove_dead_folder(const fs::path& folder) {
 }
 
 bool abandon_staged_files() {
-  std::unique_lock lock(staged_mutex);
-  if (committed) return false;
-  lock.release();  // held until the program ends
-  take_back();
+  const StagedLock lock;
+  if (!committed) {
+    StagedLock::keep();
+    take_back();
+  }
   std::error_code ignored;
-  for (const fs::path& folder : staged_folders) fs::remove_all(folder, ignored);
-  return true;
+  if (!keep_folders)
+    for (const std::string& folder : staged_folders) fs::remove_all(folder, ignored);
+  return !committed;
 }
 
 }  // namespace collarmesh::cli
