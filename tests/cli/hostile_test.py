@@ -12,6 +12,7 @@ import resource
 import shutil
 import signal
 import subprocess
+import tempfile
 import time
 import unittest
 
@@ -335,11 +336,16 @@ class Memory(HostileTest):
 
 
 HOSTILE = pathlib.Path(__file__).resolve().parent / "hostile"
-reads_cad = "OpenCASCADE" in subprocess.run([PROGRAM, "info", HOSTILE / "cad_crash" / "mut_300.brep"],
-                                            capture_output=True, text=True).stderr
 
 
-@unittest.skipUnless(reads_cad, "built without OpenCASCADE")
+def reads_cad():
+    """Is the module there?"""
+    with tempfile.NamedTemporaryFile(suffix=".step") as empty:
+        said = subprocess.run([PROGRAM, "info", empty.name], capture_output=True, text=True).stderr
+    return "STEP" in said
+
+
+@unittest.skipUnless(reads_cad(), "built without OpenCASCADE")
 class CadFilesThatCrash(HostileTest):
     def test_say_file_and_stage(self):
         for path in sorted((HOSTILE / "cad_crash").iterdir()):

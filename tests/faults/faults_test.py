@@ -97,7 +97,7 @@ class Memory(FaultsTest):
         for name in ("vtu", "unv") if not ALL else self.runs:
             total = self.calls(name, "new")
             with self.subTest(name=name):
-                first = 1 if ALL else max(1, total - 6000)
+                first = 1 if ALL else max(1, total - 3000)
                 code, messages = self.run_with(name, kind="new", at=first, forks=1)
                 self.assertEqual(code, 0, messages[-2000:])
                 wrong = [line for line in self.count.read_text().splitlines() if not line.startswith("calls")]
@@ -108,8 +108,8 @@ class Memory(FaultsTest):
         """In runs of their own, those of writing above all."""
         for name in self.runs:
             total = self.calls(name, "new")
-            last = range(max(1, total - 800), total + 1, 1 if ALL else 29)
-            sample = sorted({*range(1, total, max(1, total // (200 if ALL else 12))), *last})
+            last = range(max(1, total - 800), total + 1, 1 if ALL else 67)
+            sample = sorted({*range(1, total, max(1, total // (200 if ALL else 6))), *last})
             for at in sample:
                 with self.subTest(name=name, at=at):
                     code, messages = self.run_with(name, kind="new", at=at)
