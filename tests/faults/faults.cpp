@@ -71,7 +71,7 @@ bool fails(const char* kind) {
   if (inside || !is_kind(kind)) return false;
   inside = true;
   const long call = calls.fetch_add(1) + 1;
-  bool failing = plan().at > 0 && (call == plan().at || (plan().lasts && call > plan().at));
+  bool failing = !plan().forks && plan().at > 0 && (call == plan().at || (plan().lasts && call > plan().at));
   if (plan().forks && folders.load() < 2 && call >= plan().at && getpid() == plan().process)
     failing = fails_in_a_child(call);
   inside = false;

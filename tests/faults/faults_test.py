@@ -97,7 +97,7 @@ class Memory(FaultsTest):
         for name in ("vtu", "unv") if not ALL else self.runs:
             total = self.calls(name, "new")
             with self.subTest(name=name):
-                first = 1 if ALL else max(1, total - 3000)
+                first = 1 if ALL else max(1, total - 9000)
                 code, messages = self.run_with(name, kind="new", at=first, forks=1)
                 self.assertEqual(code, 0, messages[-2000:])
                 wrong = [line for line in self.count.read_text().splitlines() if not line.startswith("calls")]
