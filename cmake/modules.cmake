@@ -3,13 +3,20 @@
 set(COLLARMESH_MODULE_DIR ${CMAKE_INSTALL_LIBDIR}/collarmesh)
 set(COLLARMESH_MODULE_BUILD_DIR ${PROJECT_BINARY_DIR}/lib/collarmesh)
 list(APPEND CMAKE_BUILD_RPATH ${COLLARMESH_MODULE_BUILD_DIR})
-file(RELATIVE_PATH path_from_bin ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR}/collarmesh)
-list(APPEND CMAKE_INSTALL_RPATH $ORIGIN/${path_from_bin})
+
+# The run path of an installed target in `folder` (absolute). It is that of the build folder, too, where modules are in
+# ../lib: CMake ends one that it is to exchange with a colon, which stands for the current folder.
+function(collarmesh_run_path target folder)
+  file(RELATIVE_PATH path ${folder} ${CMAKE_INSTALL_FULL_LIBDIR}/collarmesh)
+  set(run_path $ORIGIN/${path} $ORIGIN/../lib/collarmesh)
+  list(REMOVE_DUPLICATES run_path)
+  set_target_properties(${target} PROPERTIES BUILD_WITH_INSTALL_RPATH ON INSTALL_RPATH "${run_path}")
+endfunction()
 
 function(collarmesh_module target)
   set_target_properties(${target} PROPERTIES
     PREFIX "" SUFFIX ".so" CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
-    BUILD_RPATH "" INSTALL_RPATH "" LIBRARY_OUTPUT_DIRECTORY ${COLLARMESH_MODULE_BUILD_DIR})
+    BUILD_WITH_INSTALL_RPATH ON INSTALL_RPATH "" LIBRARY_OUTPUT_DIRECTORY ${COLLARMESH_MODULE_BUILD_DIR})
   if(COLLARMESH_INSTALL)
     install(TARGETS ${target} LIBRARY DESTINATION ${COLLARMESH_MODULE_DIR})
   endif()

@@ -5,13 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <sstream>
 #include <stdexcept>
 
 #include "cad_files.h"
 #include "collarmesh/io/tet_mesh_io.h"
+#include "console.h"
+#include "file_groups.h"
 #include "machine.h"
 #include "option_values.h"
 #include "surface_files.h"
@@ -244,9 +246,8 @@ void add_budget_options(CLI::App& app, MeshOptions& m) {
       throw CLI::ValidationError("--max-memory", error.what());
     }
   };
-  app.add_option_function<std::string>(
-         "--max-memory", set_memory,
-         "Bytes of the mesh structures, as 500M or 1.5G; 0: none. A whole run takes about 1.2 times as much")
+  app.add_option_function<std::string>("--max-memory", set_memory,
+                                       "Bytes for everything, as 500M or 1.5G; 0: none")
       ->default_str("half of the machine's")
       ->group(group)
       ->type_name("BYTES");
@@ -353,6 +354,7 @@ CLI::App* add_check_command(CLI::App& app, CheckArguments& a) {
       ->check(count);
   add_threads_option(*check, a.check.threads, "At most");
   add_complex_options(*check, a.complex);
+  add(*check, "--time-limit SECONDS", a.time_limit, "For everything", "none")->check(seconds);
   check->add_flag("--json", a.json, "Print JSON");
   return check;
 }
@@ -361,6 +363,7 @@ CLI::App* add_info_command(CLI::App& app, InfoArguments& a) {
   CLI::App* info = app.add_subcommand("info", "Say what the input is: features, regions, creases, angles");
   info->add_option("INPUT", a.inputs, "Files of one complex, or one mesh")->required()->type_name("FILE");
   add_complex_options(*info, a.complex);
+  add(*info, "--time-limit SECONDS", a.time_limit, "For everything", "none")->check(seconds);
   info->add_flag("--json", a.json, "Print JSON");
   return info;
 }
@@ -382,24 +385,34 @@ std::string extension_list(const std::string& path) {
   return extension.empty() ? "has no extension" : fmt::format("ends in '{}'", extension);
 }
 
-bool same_file(const std::string& a, const std::string& b) {
-  std::error_code ignored;
-  return std::filesystem::weakly_canonical(a, ignored) == std::filesystem::weakly_canonical(b, ignored);
+/// No output takes the place of an input, or of another output.
+template <class SomeArguments>
+void check_outputs(const SomeArguments& a, const std::string& output_format,
+                   std::vector<std::string> inputs) {
+  const std::vector<std::filesystem::path> written = files_written(a.output, output_format);
+  const std::string in_the_way = overwritten(written, inputs, a.input_format);
+  if (!in_the_way.empty())
+    throw CLI::ValidationError(
+        "--output",
+        fmt::format("'{}' would overwrite {}; choose another name or folder", a.output, in_the_way));
+  if (a.report.empty()) return;
+  if (overwritten(written, {a.report}, {}).size() > 0)
+    throw CLI::ValidationError("--report", "names a file of --output; choose another");
+  const std::string lost = overwritten({a.report}, inputs, a.input_format);
+  if (!lost.empty())
+    throw CLI::ValidationError("--report", fmt::format("would overwrite {}; choose another", lost));
 }
 
-template <class SomeArguments>
-void check_report(const SomeArguments& a) {
-  if (!a.report.empty() && same_file(a.report, a.output))
-    throw CLI::ValidationError("--report", "names the same file as --output; choose another");
-  for (const std::string& input : a.inputs)
-    if (!a.report.empty() && same_file(a.report, input))
-      throw CLI::ValidationError("--report", fmt::format("names the input {}; choose another", input));
+std::vector<std::string> all_inputs(const MeshArguments& a) {
+  std::vector<std::string> inputs = a.inputs;
+  if (!a.size_field.empty()) inputs.push_back(a.size_field);
+  return inputs;
 }
 
 /// What one option alone cannot tell.
 void check_run_arguments(const MeshArguments& a) {
   if (a.verbose && a.quiet) throw CLI::ValidationError("--quiet", "contradicts --verbose; use one of them");
-  check_report(a);
+  check_outputs(a, a.output_format, all_inputs(a));
   if (a.mesh.size > 0 && a.mesh.size_min > a.mesh.size)
     throw CLI::ValidationError(
         "--size-min", fmt::format("{} exceeds --size {}; make it smaller", a.mesh.size_min, a.mesh.size));
@@ -431,7 +444,7 @@ void check_repair_arguments(const RepairArguments& a) {
   if (a.output == "-" && a.json)
     throw CLI::ValidationError("--json", "has no place on standard output beside the file; use --report");
   check_standard_input(a);
-  check_report(a);
+  check_outputs(a, a.output_format, a.inputs);
 }
 
 void check_convert_arguments(const MeshArguments& a) {
@@ -496,13 +509,18 @@ std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
     if (repair_command->parsed()) check_repair_arguments(repair);
     if (subcommand && (!mesh.inputs.empty() || !mesh.output.empty())) throw CLI::HorribleError("");
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error), ExitCode::success;  // --help, --version
+    if (error.get_exit_code() == 0) {  // --help, --version
+      std::ostringstream text, nothing;
+      app.exit(error, text, nothing);
+      print_result(text.str());
+      return ExitCode::success;
+    }
     const bool subcommand_last =
         !app.get_subcommands().empty() && (!mesh.inputs.empty() || !mesh.output.empty());
-    fmt::print(stderr, "collarmesh: {}\nRun with --help for more information.\n",
-               subcommand_last ? "a subcommand comes first: collarmesh check MESH ..., info INPUT ..., "
-                                 "convert IN ..., repair IN ..."
-                               : usage_message(app, error));
+    tell("collarmesh: {}\nRun with --help for more information.\n",
+         subcommand_last ? "a subcommand comes first: collarmesh check MESH ..., info INPUT ..., "
+                           "convert IN ..., repair IN ..."
+                         : usage_message(app, error));
     return ExitCode::usage;
   }
   if (check_command->parsed()) return Arguments(check);

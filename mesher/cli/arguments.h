@@ -52,6 +52,7 @@ struct CheckArguments {
   std::vector<std::string> inputs;
   ComplexArguments complex;
   CheckOptions check;
+  double time_limit = 0;  ///< seconds; 0: none
   bool json = false;
 };
 
@@ -59,6 +60,7 @@ struct CheckArguments {
 struct InfoArguments {
   std::vector<std::string> inputs;
   ComplexArguments complex;
+  double time_limit = 0;  ///< seconds; 0: none
   bool json = false;
 };
 

@@ -4,9 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 
 #include "collarmesh/brep/cad_model.h"
 #include "collarmesh/error.h"
+#include "collarmesh/usable_threads.h"
+#include "supervisor.h"
 
 namespace collarmesh::cli {
 
@@ -34,6 +38,18 @@ std::unique_ptr<brep::CadModel> read_by_module(const std::string& path, std::str
 
 }  // namespace
 
+namespace {
+
+/// Seconds, without a time limit. Parts of a hundred MB have taken minutes.
+double patience_with(const std::string& path) {
+  constexpr double at_least = 600, for_a_megabyte = 60;
+  std::error_code error;
+  const auto size = std::filesystem::file_size(path, error);
+  return at_least + (error ? 0 : for_a_megabyte * static_cast<double>(size) / 1e6);
+}
+
+}  // namespace
+
 struct CadFiles::File {
   std::unique_ptr<brep::CadModel> model;
   double deflection;
@@ -55,8 +71,13 @@ void CadFiles::read(const std::string& path, std::string_view format, const CadR
                     std::vector<PolygonSoup>& soups) {
   const brep::Overlap overlap =
       reading.overlap == SolidOverlap::region ? brep::Overlap::region : brep::Overlap::first;
+  usable_threads();  // OpenCASCADE would ask TBB for more
+  const double patience = patience_with(path);
+  std::optional<CadWork> work(std::in_place, "reading it and finding its solids", path, patience);
   std::unique_ptr<brep::CadModel> model = read_by_module(path, format, {.overlap = overlap});
   const double absolute = reading.deflection(model->diagonal());
+  work.reset();
+  work.emplace("cutting faces into triangles", path, patience);
   std::vector<PolygonSoup> own = model->tessellate({.deflection = absolute});
   files_.push_back(
       {std::move(model), absolute, static_cast<Index>(soups.size()), static_cast<Index>(own.size())});
@@ -65,6 +86,7 @@ void CadFiles::read(const std::string& path, std::string_view format, const CadR
 
 void CadFiles::tessellate(double finer, std::vector<PolygonSoup>& soups) {
   for (File& file : files_) {
+    const CadWork cutting("cutting faces into finer triangles", file.model->name());
     std::vector<PolygonSoup> own = file.model->tessellate(
         {.deflection = file.deflection / finer, .angle = brep::TessellationOptions().angle / finer});
     std::move(own.begin(), own.end(), soups.begin() + file.first_soup);
@@ -76,6 +98,12 @@ std::optional<Point> CadFiles::nearest(Index soup, unsigned dimension, Tag numbe
     if (soup >= file.first_soup && soup - file.first_soup < file.soup_count)
       return file.model->nearest(dimension, number, p);
   return std::nullopt;
+}
+
+std::string CadFiles::names() const {
+  std::string names;
+  for (const File& file : files_) names += (names.empty() ? "" : ", ") + file.model->name();
+  return names;
 }
 
 std::string CadFiles::faces_near(const Point& where) const {
@@ -90,6 +118,7 @@ std::string CadFiles::faces_near(const Point& where) const {
 std::string CadFiles::invalid_parts() const {
   std::string parts;
   for (const File& file : files_) {
+    const CadWork checking("checking the shape", file.model->name());
     const std::string own = file.model->invalid_parts();
     if (!own.empty()) parts += fmt::format("{}{}: {}", parts.empty() ? "" : "; ", file.model->name(), own);
   }

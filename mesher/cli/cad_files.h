@@ -42,6 +42,8 @@ class CadFiles {
   void read(const std::string& path, std::string_view format, const CadReading& reading,
             std::vector<PolygonSoup>& soups);
   bool empty() const;
+  /// Of the files, for people.
+  std::string names() const;
 
   /// Make triangles that are finer than the first ones by a factor, in the places of the former soups.
   void tessellate(double finer, std::vector<PolygonSoup>& soups);

@@ -3,13 +3,18 @@
 #include <fmt/format.h>
 
 #include "complex_input.h"
+#include "console.h"
 #include "input_files.h"
 #include "interrupt.h"
+#include "machine.h"
+#include "out_of_memory.h"
 #include "report.h"
 
 namespace collarmesh::cli {
 
 ExitCode check_command(const CheckArguments& arguments) {
+  set_time_limit(arguments.time_limit);
+  limit_memory(memory_of_the_machine() / 2);
   const TetMesh mesh = read_mesh(arguments.mesh);
   const auto distance = [&](double diagonal) {
     return arguments.check.distance > 0 ? arguments.check.distance : default_distance(0, diagonal);
@@ -26,9 +31,9 @@ ExitCode check_command(const CheckArguments& arguments) {
   for (const std::string& repair : describe(input.repaired()))
     report.notes.push_back("the input was repaired: " + repair);
   if (arguments.json)
-    fmt::print("{}\n", check_json(report).dump(1));
+    print_result(json_text(check_json(report), 1) + "\n");
   else
-    fmt::print("{}", check_text(report));
+    print_result(check_text(report));
   return report.passed() ? ExitCode::success : ExitCode::guarantee_missed;
 }
 

@@ -33,6 +33,7 @@ class ComplexInput {
 
   const std::vector<PolygonSoup>& soups() const { return soups_; }
   bool has_cad() const { return !cad_.empty(); }
+  std::string cad_names() const { return cad_.names(); }
   /// What was done to CAD shapes, a line each.
   std::vector<std::string> notes() const { return cad_.notes(); }
 

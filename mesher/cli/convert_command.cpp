@@ -8,10 +8,12 @@
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
 #include "complex_input.h"
+#include "console.h"
 #include "conversion_report.h"
 #include "input_files.h"
 #include "interrupt.h"
 #include "mesh_command.h"
+#include "out_of_memory.h"
 #include "report.h"
 #include "soup_output.h"
 #include "staged_file.h"
@@ -21,8 +23,8 @@ namespace collarmesh::cli {
 
 namespace {
 
-void tell(const MeshArguments& a, const std::string& text) {
-  if (!a.quiet) fmt::print(stderr, "{}", text);
+void tell_unless_quiet(const MeshArguments& a, const std::string& text) {
+  if (!a.quiet) tell_text(text);
 }
 
 void write(const MeshArguments& a, const std::function<void(const std::string&)>& write_file) {
@@ -35,7 +37,7 @@ void write(const MeshArguments& a, const std::function<void(const std::string&)>
 void write_soup(const MeshArguments& a, const std::vector<PolygonSoup>& soups) {
   const MergedSoup merged = merge_for_output(soups, a.output, a.output_format, a.complex.plc);
   write(a, [&](const std::string& path) { write_surface(path, merged.soup, a.output_format); });
-  tell(a, merged.told);
+  tell_unless_quiet(a, merged.told);
 }
 
 /// The boundary and interface triangles of a mesh with their tags.
@@ -61,14 +63,14 @@ void convert_mesh(const MeshArguments& a) {
     return;
   }
   write(a, [&](const std::string& path) { io::write_tet_mesh(path, mesh, a.output_format); });
-  tell(a, tet_mesh_text(a.output, mesh));
-  tell(a, losses_text(lost_by(format_of(a.output, a.output_format), mesh)));
+  tell_unless_quiet(a, tet_mesh_text(a.output, mesh));
+  tell_unless_quiet(a, losses_text(lost_by(format_of(a.output, a.output_format), mesh)));
 }
 
 /// The soups become those of a complex that encloses something; unless it can be one, PlcError is thrown.
 void repair(const MeshArguments& a, ComplexInput& input) {
   const Plc plc = input.build(a.complex);
-  fmt::print(stderr, "{}{}", warnings_text(plc), repair_text(input.repaired(), a.quiet));
+  tell("{}{}", warnings_text(plc), repair_text(input.repaired(), a.quiet));
 }
 
 }  // namespace
@@ -76,12 +78,13 @@ void repair(const MeshArguments& a, ComplexInput& input) {
 ExitCode convert_command(const ConvertArguments& arguments) {
   const MeshArguments& a = arguments.mesh;
   set_time_limit(a.mesh.time_limit);
-  require_writable(a.output);
+  limit_memory(a.mesh.max_memory);
+  require_writable(a.output, a.output_format);
   const bool to_surface = is_surface_format(a.output, a.output_format);
   const bool from_mesh = io::is_tet_mesh_format(a.inputs.front(), a.input_format);
   if ((to_surface || from_mesh) && !arguments.meshing_options.empty())
-    fmt::print(stderr, "warning: {}: no effect, since nothing is meshed here.\n",
-               fmt::join(arguments.meshing_options, " "));
+    tell("warning: {}: no effect, since nothing is meshed here.\n",
+         fmt::join(arguments.meshing_options, " "));
   if (from_mesh) {
     convert_mesh(a);
     return ExitCode::success;

@@ -5,8 +5,11 @@
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
 #include "complex_input.h"
+#include "console.h"
 #include "input_files.h"
 #include "interrupt.h"
+#include "machine.h"
+#include "out_of_memory.h"
 #include "report.h"
 
 namespace collarmesh::cli {
@@ -19,12 +22,12 @@ void print_mesh(const std::string& path, bool as_json) {
   const MeshMeasures measures = measure_mesh(mesh);
   const double median = median_edge(mesh);
   if (!as_json) {
-    fmt::print("{}  median edge {:.6g}\n", mesh_text(mesh, measures), median);
+    print_result(fmt::format("{}  median edge {:.6g}\n", mesh_text(mesh, measures), median));
     return;
   }
   nlohmann::ordered_json json{{"mesh", measures_json(mesh, measures)}};
   json["mesh"]["median_edge"] = median;
-  fmt::print("{}\n", json.dump(1));
+  print_result(json_text(json, 1) + "\n");
 }
 
 /// The complex that would be meshed; what bounds no region, and cannot be repaired so that it does, is one
@@ -44,16 +47,18 @@ void print_complex(const InfoArguments& arguments) {
   stop_if_interrupted();
   const PlcSummary summary = summarize(plc, arguments.complex.crease_angle);
   if (arguments.json)
-    fmt::print("{}\n", nlohmann::ordered_json{{"complex", complex_json(plc, summary)},
-                                              {"repair", repair_json(input.repaired())}}
-                           .dump(1));
+    print_result(
+        json_text({{"complex", complex_json(plc, summary)}, {"repair", repair_json(input.repaired())}}, 1) +
+        "\n");
   else
-    fmt::print("{}{}{}", repair_text(input.repaired()), complex_text(plc, summary), warnings_text(plc));
+    print_result(repair_text(input.repaired()) + complex_text(plc, summary) + warnings_text(plc));
 }
 
 }  // namespace
 
 ExitCode info_command(const InfoArguments& arguments) {
+  set_time_limit(arguments.time_limit);
+  limit_memory(memory_of_the_machine() / 2);
   const std::string& first = arguments.inputs.front();
   if (!io::is_tet_mesh_format(first))
     print_complex(arguments);

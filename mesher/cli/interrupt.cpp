@@ -1,18 +1,24 @@
 #include "interrupt.h"
 
 #include <fmt/format.h>
+#include <sys/time.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
+#include <system_error>
 #include <thread>
 
+#include "console.h"
 #include "staged_file.h"
+#include "supervisor.h"
 
 namespace collarmesh::cli {
 
@@ -20,18 +26,38 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-std::atomic<bool> interrupted{false}, by_user{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "signal handlers need it");
+std::atomic<bool> interrupted{false};
+std::atomic<int> signals{0};  // that the user sent
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
+              "signal handlers need it");
 
 std::mutex deadline_mutex;  // guards the three below
 double time_limit = 0;
 Clock::time_point deadline = Clock::time_point::max();
 std::string stage_now = "stage: start";
 
-extern "C" void on_interrupt(int) {
-  by_user.store(true, std::memory_order_relaxed);
+extern "C" void on_interrupt(int number) {
   interrupted.store(true, std::memory_order_relaxed);
+  if (signals.fetch_add(1, std::memory_order_relaxed) < 2) return;
+  std::signal(number, SIG_DFL);  // nothing else has helped
+  std::raise(number);
 }
+
+extern "C" void on_time(int) { interrupted.store(true, std::memory_order_relaxed); }
+
+/// Without a thread that watches, stages that watch the flag end at the time limit; others do not.
+void set_flag_at_the_deadline() {
+  if (deadline == Clock::time_point::max()) return;
+  const std::chrono::duration<double> left = deadline - Clock::now();
+  const double seconds = std::max(left.count(), 1e-3);
+  std::signal(SIGALRM, on_time);
+  itimerval timer = {};
+  timer.it_value.tv_sec = static_cast<time_t>(seconds);
+  timer.it_value.tv_usec = static_cast<suseconds_t>(1e6 * (seconds - std::floor(seconds)));
+  setitimer(ITIMER_REAL, &timer, nullptr);
+}
+
+bool watched = false;
 
 bool asked_to_stop() {
   const std::lock_guard lock(deadline_mutex);
@@ -40,7 +66,7 @@ bool asked_to_stop() {
 }
 
 Stopped reason_to_stop() {
-  if (by_user.load(std::memory_order_relaxed)) return Cancelled();
+  if (signals.load(std::memory_order_relaxed) > 0) return Cancelled();
   const std::lock_guard lock(deadline_mutex);
   return {ExitCode::budget_hit,
           fmt::format(
@@ -54,13 +80,16 @@ Stopped reason_to_stop() {
 const std::atomic<bool>& interrupt_flag() { return interrupted; }
 
 void install_interrupt_handlers() {
-  struct sigaction action = {};
+  struct sigaction action = {}, before = {};
   action.sa_handler = on_interrupt;
-  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  action.sa_flags = static_cast<int>(SA_RESTART);
   sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that grew too large is a write error like others
+  for (const int number : {SIGINT, SIGTERM}) sigaction(number, &action, nullptr);
+  for (const int number : {SIGHUP, SIGQUIT})  // nohup has them ignored
+    if (sigaction(number, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
+      sigaction(number, &action, nullptr);
+  // A file that grew too large and a pipe that nobody reads are write errors like others.
+  for (const int number : {SIGXFSZ, SIGPIPE}) std::signal(number, SIG_IGN);
 }
 
 void set_time_limit(double seconds) {
@@ -71,6 +100,8 @@ void set_time_limit(double seconds) {
       seconds > 0 && seconds < a_year
           ? Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds))
           : Clock::time_point::max();
+  supervise_time(seconds);
+  if (!watched) set_flag_at_the_deadline();
 }
 
 void note_stage(const std::string& stage) {
@@ -82,25 +113,48 @@ void stop_if_interrupted() {
   if (asked_to_stop()) throw reason_to_stop();
 }
 
-ExitCode run_interruptible(const std::function<ExitCode()>& command) {
-  using namespace std::chrono_literals;
-  std::mutex mutex;
-  std::condition_variable_any ended;
-  // Ends with the command, or ends the program in its place.
-  const std::jthread watcher([&](const std::stop_token& end) {
-    std::unique_lock lock(mutex);
-    const auto command_ends_within = [&](std::chrono::milliseconds time) {
-      return ended.wait_for(lock, end, time, [&end] { return end.stop_requested(); });
-    };
-    while (!command_ends_within(50ms)) {
+namespace {
+
+/// Ends with the command, or ends the program in its place.
+class Watcher {
+ public:
+  /// Throws std::system_error when no thread can be made.
+  Watcher() : thread_([this](const std::stop_token& end) { watch(end); }) {}
+
+ private:
+  bool command_ends_within(const std::stop_token& end, std::chrono::milliseconds time) {
+    std::unique_lock lock(mutex_);
+    return ended_.wait_for(lock, end, time, [&end] { return end.stop_requested(); });
+  }
+
+  void watch(const std::stop_token& end) {
+    using namespace std::chrono_literals;
+    while (!command_ends_within(end, 50ms)) {
       if (!asked_to_stop()) continue;
-      if (command_ends_within(700ms) || !abandon_staged_files()) return;
+      for (int waited = 0; waited < 14 && signals.load(std::memory_order_relaxed) < 2; ++waited)
+        if (command_ends_within(end, 50ms)) return;
+      if (!abandon_staged_files()) return;
       const Stopped reason = reason_to_stop();
-      fmt::print(stderr, "\ncollarmesh: {}\n", reason.what());
-      std::fflush(nullptr);
+      tell("\ncollarmesh: {}\n", reason.what());
       std::_Exit(static_cast<int>(reason.code));
     }
-  });
+  }
+
+  std::mutex mutex_;
+  std::condition_variable_any ended_;
+  std::jthread thread_;
+};
+
+}  // namespace
+
+ExitCode run_interruptible(const std::function<ExitCode()>& command) {
+  std::optional<Watcher> watcher;
+  try {
+    watcher.emplace();
+    watched = true;
+  } catch (const std::system_error&) {
+    watched = false;
+  }
   return command();
 }
 

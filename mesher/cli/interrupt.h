@@ -20,7 +20,8 @@ struct Cancelled : Stopped {
   Cancelled() : Stopped(ExitCode::cancelled, "cancelled; nothing was written") {}
 };
 
-/// Set by the first Ctrl-C (SIGINT) or SIGTERM, the second one kills; and when the time is up.
+/// Set by the first SIGINT (Ctrl-C), SIGTERM, SIGHUP or SIGQUIT, and when the time is up. The second signal
+/// ends the program at once, without unfinished files; the third one kills it.
 const std::atomic<bool>& interrupt_flag();
 
 /// Catch the signals from now on.

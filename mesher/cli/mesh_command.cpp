@@ -10,12 +10,15 @@
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
 #include "complex_input.h"
+#include "console.h"
 #include "conversion_report.h"
 #include "interrupt.h"
 #include "option_warnings.h"
+#include "out_of_memory.h"
 #include "progress_display.h"
 #include "report.h"
 #include "staged_file.h"
+#include "supervisor.h"
 
 namespace collarmesh::cli {
 
@@ -173,6 +176,7 @@ void project_onto_cad(const MeshArguments& arguments, const ComplexInput& input,
   options.collar_angle = arguments.mesh.collar_angle;
   options.reach = distance_of(arguments, run.plc.bounds.diagonal());
   if (run.coarsening) options.thin_angle = arguments.thin_angle;
+  const CadWork projecting("finding the nearest points of its faces and edges", input.cad_names());
   run.projection =
       project_boundary(run.result.mesh, run.plc, input.exact_geometry(run.plc), options, execution);
   stop_if_interrupted();
@@ -185,6 +189,9 @@ void raise_order(const MeshArguments& arguments, const ComplexInput& input, Stag
   execution.cancel = &interrupt_flag();
   SecondOrderOptions options;
   if (input.has_cad()) options.exact = input.exact_geometry(run.plc);
+  std::optional<CadWork> projecting;
+  if (input.has_cad())
+    projecting.emplace("finding the nearest points of its faces and edges", input.cad_names());
   run.second_order = make_second_order(run.result.mesh, run.plc, options, execution);
   stop_if_interrupted();
 }
@@ -206,7 +213,7 @@ void certify(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
 
 void write_report(const std::string& path, const MeshArguments& arguments, const MeshRun& run) {
   std::ofstream file(path);
-  file << run_json(arguments, run).dump(1) << '\n';
+  file << json_text(run_json(arguments, run), 1) << '\n';
   file.close();
   if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path));
 }
@@ -225,26 +232,25 @@ void write_files(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   StagedFile::commit({&mesh, report ? &*report : nullptr});
 }
 
-void tell(const MeshArguments& arguments, const MeshRun& run) {
+void tell_of(const MeshArguments& arguments, const MeshRun& run) {
   if (run.result.status == MeshStatus::guarantee_missed)
-    fmt::print(stderr, "collarmesh: a guarantee is missed: {}\n", run.result.message);
+    tell("collarmesh: a guarantee is missed: {}\n", run.result.message);
   constexpr std::size_t listed = 10;
-  fmt::print(stderr, "{}", findings_text(run.check, arguments.verbose ? run.check.findings.size() : listed));
-  fmt::print(
-      stderr, "{}",
-      straightened_text(run.second_order, arguments.verbose ? run.second_order.straightened.size() : listed));
+  tell("{}", findings_text(run.check, arguments.verbose ? run.check.findings.size() : listed));
+  tell("{}", straightened_text(run.second_order,
+                               arguments.verbose ? run.second_order.straightened.size() : listed));
   if (arguments.quiet) return;
-  fmt::print(stderr, "{}", run_text(arguments, run));
+  tell("{}", run_text(arguments, run));
   if (arguments.tell_losses)
-    fmt::print(stderr, "{}",
-               losses_text(lost_by(format_of(arguments.output, arguments.output_format), run.result.mesh)));
+    tell("{}", losses_text(lost_by(format_of(arguments.output, arguments.output_format), run.result.mesh)));
 }
 
 }  // namespace
 
 ExitCode mesh_command(const MeshArguments& arguments) {
   set_time_limit(arguments.mesh.time_limit);
-  require_writable(arguments.output);
+  limit_memory(arguments.mesh.max_memory);
+  require_writable(arguments.output, arguments.output_format);
   if (!arguments.report.empty()) require_writable(arguments.report);
   MeshRun run;
   {
@@ -259,7 +265,7 @@ ExitCode mesh_command(const MeshArguments& arguments) {
     certify(arguments, stages, run);
     write_files(arguments, stages, run);
   }
-  tell(arguments, run);
+  tell_of(arguments, run);
   return run.guarantees_hold() ? ExitCode::success : ExitCode::guarantee_missed;
 }
 

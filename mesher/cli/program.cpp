@@ -3,19 +3,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <exception>
 #include <new>
+#include <system_error>
 #include <variant>
 
 #include "arguments.h"
+#include "cad_files.h"
 #include "check_command.h"
 #include "collarmesh/error.h"
+#include "console.h"
 #include "convert_command.h"
 #include "info_command.h"
 #include "interrupt.h"
 #include "mesh_command.h"
+#include "out_of_memory.h"
 #include "repair_command.h"
+#include "supervisor.h"
 
 namespace collarmesh::cli {
 
@@ -29,8 +33,25 @@ struct Execute {
   ExitCode operator()(const RepairArguments& arguments) const { return repair_command(arguments); }
 };
 
+bool reads_cad(const Arguments& arguments) {
+  return std::visit(
+      [](const auto& a) {
+        const auto any = [](const auto& inputs, const std::string& format) {
+          return std::any_of(inputs.begin(), inputs.end(),
+                             [&](const std::string& path) { return CadFiles::knows(path, format); });
+        };
+        if constexpr (requires { a.mesh.inputs; })
+          return any(a.mesh.inputs, a.mesh.input_format);
+        else if constexpr (requires { a.input_format; })
+          return any(a.inputs, a.input_format);
+        else
+          return any(a.inputs, {});
+      },
+      arguments);
+}
+
 ExitCode fail(ExitCode code, const std::string& message) {
-  fmt::print(stderr, "collarmesh: {}\n", message);
+  tell("collarmesh: {}\n", message);
   return code;
 }
 
@@ -39,9 +60,8 @@ ExitCode fail(const PlcError& error) {
   fail(ExitCode::invalid_complex, error.what());
   const std::string_view said = error.what();
   for (std::size_t k = 0; k < std::min(error.faults.size(), listed); ++k)
-    if (said.find(error.faults[k].message) == std::string_view::npos)
-      fmt::print(stderr, "  {}\n", error.faults[k].message);
-  if (error.faults.size() > listed) fmt::print(stderr, "  ... and {} more\n", error.faults.size() - listed);
+    if (said.find(error.faults[k].message) == std::string_view::npos) tell("  {}\n", error.faults[k].message);
+  if (error.faults.size() > listed) tell("  ... and {} more\n", error.faults.size() - listed);
   return ExitCode::invalid_complex;
 }
 
@@ -63,7 +83,12 @@ ExitCode guarded(const std::function<ExitCode()>& command) {
   } catch (const std::bad_alloc&) {
     return fail(
         ExitCode::budget_hit,
-        "the memory is used up; raise --size for a coarser mesh, or set --max-memory to stop earlier");
+        "the memory is used up; nothing was written; raise --max-memory, or --size for a coarser mesh");
+  } catch (const std::system_error& error) {
+    return error.code() == std::errc::resource_unavailable_try_again
+               ? fail(ExitCode::budget_hit,
+                      "no thread can be made; nothing was written; raise the limit of threads or memory")
+               : fail(ExitCode::cannot_write, error.what());
   } catch (const std::exception& error) {
     return fail(
         ExitCode::internal_error,
@@ -72,11 +97,18 @@ ExitCode guarded(const std::function<ExitCode()>& command) {
 }
 
 int run(int argc, const char* const* argv) {
-  const std::variant<Arguments, ExitCode> parsed = parse(argc, argv);
-  if (const ExitCode* code = std::get_if<ExitCode>(&parsed)) return static_cast<int>(*code);
-  install_interrupt_handlers();
-  return static_cast<int>(run_interruptible(
-      [&] { return guarded([&] { return std::visit(Execute(), std::get<Arguments>(parsed)); }); }));
+  replace_closed_streams();
+  end_when_memory_is_used_up();
+  return static_cast<int>(guarded([&] {
+    const std::variant<Arguments, ExitCode> parsed = parse(argc, argv);
+    if (const ExitCode* code = std::get_if<ExitCode>(&parsed)) return *code;
+    const Arguments& arguments = std::get<Arguments>(parsed);
+    const auto command = [&] {
+      install_interrupt_handlers();
+      return run_interruptible([&] { return guarded([&] { return std::visit(Execute(), arguments); }); });
+    };
+    return reads_cad(arguments) ? run_supervised(command) : command();
+  }));
 }
 
 }  // namespace collarmesh::cli

@@ -1,4 +1,5 @@
 #include "progress_display.h"
+#include "console.h"
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 namespace collarmesh::cli {
 
@@ -48,7 +50,12 @@ ProgressDisplay::ProgressDisplay(ProgressStyle style)
     : form_(style == ProgressStyle::json                                 ? Form::json
             : style == ProgressStyle::automatic && isatty(STDERR_FILENO) ? Form::bar
                                                                          : Form::nothing) {
-  if (form_ == Form::bar) drawing_ = std::thread([this] { keep_drawing(); });
+  if (form_ != Form::bar) return;
+  try {
+    drawing_ = std::thread([this] { keep_drawing(); });
+  } catch (const std::system_error&) {
+    form_ = Form::nothing;
+  }
 }
 
 ProgressDisplay::~ProgressDisplay() {
@@ -73,7 +80,7 @@ void ProgressDisplay::begin_stage(std::string phase, double begin, double end) {
 void ProgressDisplay::print(const std::string& text) {
   if (text.empty()) return;
   const std::lock_guard lock(mutex_);
-  fmt::print(stderr, "{}{}", form_ == Form::bar ? "\r\033[K" : "", text);
+  tell("{}{}", form_ == Form::bar ? "\r\033[K" : "", text);
 }
 
 void ProgressDisplay::update(const ProgressReport& report) {
@@ -94,20 +101,18 @@ void ProgressDisplay::print_json() {
                                     {"vertices", vertices_},
                                     {"tets", tets_},
                                     {"seconds", json_printed_}};
-  fmt::print(stderr, "{}\n", line.dump());
+  tell("{}\n", json_text(line));
 }
 
 void ProgressDisplay::redraw() {
   if (phase_.empty()) return;
-  fmt::print(stderr, "\r{}\033[K", progress_line(phase_, fraction_, tets_, seconds(), terminal_width() - 1));
-  std::fflush(stderr);
+  tell("\r{}\033[K", progress_line(phase_, fraction_, tets_, seconds(), terminal_width() - 1));
 }
 
 void ProgressDisplay::keep_drawing() {
   std::unique_lock lock(mutex_);
   while (!wake_.wait_for(lock, std::chrono::milliseconds(150), [this] { return finished_; })) redraw();
-  fmt::print(stderr, "\r\033[K");
-  std::fflush(stderr);
+  tell("\r\033[K");
 }
 
 }  // namespace collarmesh::cli

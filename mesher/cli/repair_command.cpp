@@ -7,7 +7,10 @@
 
 #include "collarmesh/error.h"
 #include "complex_input.h"
+#include "console.h"
 #include "interrupt.h"
+#include "machine.h"
+#include "out_of_memory.h"
 #include "report.h"
 #include "soup_output.h"
 #include "staged_file.h"
@@ -33,7 +36,7 @@ std::string read_again(const std::string& path, const RepairArguments& a) {
 
 void write_report(const std::string& path, const nlohmann::ordered_json& report) {
   std::ofstream file(path);
-  file << report.dump(1) << '\n';
+  file << json_text(report, 1) << '\n';
   file.close();
   if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path));
 }
@@ -47,7 +50,8 @@ std::string repairs_text(const RepairReport& report, const RepairArguments& a) {
 
 ExitCode repair_command(const RepairArguments& a) {
   set_time_limit(a.time_limit);
-  require_writable(a.output);
+  limit_memory(memory_of_the_machine() / 2);
+  require_writable(a.output, a.output_format);
   if (!a.report.empty()) require_writable(a.report);
   ComplexInput input(a.inputs, {.format = a.input_format, .overlap = a.complex.overlap});
   const Plc plc = input.build(a.complex);
@@ -67,9 +71,9 @@ ExitCode repair_command(const RepairArguments& a) {
     report->write([&](const std::string& path) { write_report(path, told); });
   }
   StagedFile::commit({&surface, report ? &*report : nullptr});
-  fmt::print(stderr, "{}{}{}{}", warnings_text(plc), repairs_text(input.repaired(), a),
-             a.quiet ? "" : merged.told, warning);
-  if (a.json) fmt::print("{}\n", told.dump(1));
+  tell("{}{}{}{}", warnings_text(plc), repairs_text(input.repaired(), a), a.quiet ? "" : merged.told,
+       warning);
+  if (a.json) print_result(json_text(told, 1) + "\n");
   return ExitCode::success;
 }
 

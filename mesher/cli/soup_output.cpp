@@ -4,6 +4,7 @@
 
 #include "collarmesh/error.h"
 #include "collarmesh/merge_soups.h"
+#include "console.h"
 #include "conversion_report.h"
 #include "report.h"
 
@@ -22,7 +23,7 @@ std::string place_regions(const std::vector<PolygonSoup>& soups, PlcOptions opti
   options.require_solid = false;
   try {
     const Plc plc = build_plc(soups, options);
-    fmt::print(stderr, "{}", warnings_text(plc));
+    tell("{}", warnings_text(plc));
     const Index missing = place_region_points(plc, merged);
     return missing > 0 ? fmt::format("{} regions or cavities are too thin for a point inside\n", missing)
                        : "";

@@ -1,18 +1,21 @@
 #pragma once
 
-#include <tbb/info.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 
+#include "collarmesh/usable_threads.h"
+
 namespace collarmesh {
 
 /// Runs work whose parallel parts use so many threads at most, and never more than there are cores; 0: as
-/// many as there are.
+/// many as there are, or can be made.
 class ThreadLimit {
  public:
   explicit ThreadLimit(unsigned threads)
-      : arena_(threads == 0 ? cores() : std::min(cores(), static_cast<int>(threads))) {}
+      : arena_(threads == 0   ? usable_threads()
+               : threads == 1 ? 1
+                              : std::min(usable_threads(), static_cast<int>(threads))) {}
 
   template <class Work>
   void run(const Work& work) {
@@ -20,8 +23,6 @@ class ThreadLimit {
   }
 
  private:
-  static int cores() { return tbb::info::default_concurrency(); }
-
   tbb::task_arena arena_;
 };
 

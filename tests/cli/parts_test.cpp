@@ -154,7 +154,7 @@ TEST(Guarded, EveryErrorHasItsCode) {
   expect_code(ExitCode::unreadable, ReadError("a.off: line 3"), "a.off: line 3");
   expect_code(ExitCode::invalid_complex, PlcError("open", {}), "open");
   expect_code(ExitCode::cannot_write, WriteError("disk full"), "disk full");
-  expect_code(ExitCode::budget_hit, std::bad_alloc(), "raise --size");
+  expect_code(ExitCode::budget_hit, std::bad_alloc(), "raise --max-memory, or --size");
   expect_code(ExitCode::cancelled, Cancelled(), "cancelled");
 }
 

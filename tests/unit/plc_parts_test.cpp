@@ -111,10 +111,12 @@ std::vector<Index> seeds_one_by_one(const Draft& draft, const EdgeTable& edges) 
   const auto height = [&](Index t) {
     return 2 * area(t) / std::max({norm(side(t, 0)), norm(side(t, 1)), norm(side(t, 2))});
   };
+  const auto tolerance = [&](Index seed) {
+    return std::min(draft.planar_tolerance, std::max(0.1 * height(seed), draft.rounding()));
+  };
   const auto in_plane = [&](const Point& p, Index seed) {
     const Point& a = draft.corner(seed, 0);
-    if (draft.planar_tolerance > 0)
-      return std::fabs(dot(unit_normal(draft, seed), p - a)) <= draft.planar_tolerance;
+    if (draft.planar_tolerance > 0) return std::fabs(dot(unit_normal(draft, seed), p - a)) <= tolerance(seed);
     return predicates::orientation_exact(a, draft.corner(seed, 1), draft.corner(seed, 2), p) == 0;
   };
   std::vector<Index> order(draft.triangles.size()), seeds(order.size(), none);
@@ -131,7 +133,7 @@ std::vector<Index> seeds_one_by_one(const Draft& draft, const EdgeTable& edges) 
         for (const Index other : edges.sides(edges.edge_of(i))) {
           const Index neighbour = other / 3;
           const bool alike = dot(unit_normal(draft, seed), unit_normal(draft, neighbour)) > 0 ||
-                             height(neighbour) <= 2 * draft.planar_tolerance;
+                             height(neighbour) <= 2 * tolerance(seed);
           const bool joins = draft.origins[t].facet == draft.origins[neighbour].facet ||
                              (in_plane(draft.points[apex(draft.triangles, other)], seed) && alike);
           if (seeds[neighbour] != none || !joins) continue;

@@ -5,10 +5,12 @@
 #include <BRepBuilderAPI_Copy.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <Bnd_Box.hxx>
+#include <Standard_OutOfMemory.hxx>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 
 #include "parts.h"
 
@@ -21,6 +23,8 @@ template <class Work>
 auto on_shape(const std::string& name, const char* doing, const Work& work) {
   try {
     return work();
+  } catch (const Standard_OutOfMemory&) {
+    throw std::bad_alloc();
   } catch (const Standard_Failure& failure) {
     fail(PlcFault::Kind::intersection,
          fmt::format("{}: OpenCASCADE failed in {} ({}); the shape is probably invalid, check and repair it.",

@@ -8,9 +8,12 @@
 #include <Message_Messenger.hxx>
 #include <Message_Printer.hxx>
 #include <STEPControl_Reader.hxx>
+#include <Standard_OutOfMemory.hxx>
 #include <TopoDS_Shape.hxx>
 
 #include <array>
+#include <fstream>
+#include <new>
 
 #include "collarmesh/brep/cad_model.h"
 #include "topology.h"
@@ -43,7 +46,15 @@ class CapturedOutput {
 TopoDS_Shape read_brep(const std::string& path) {
   TopoDS_Shape shape;
   const CapturedOutput said;
-  if (!BRepTools::Read(shape, path.c_str(), BRep_Builder()) || shape.IsNull())
+  try {
+    std::ifstream file(path);
+    // OpenCASCADE asks a stream for words until one comes that it knows, also where there are no more.
+    file.exceptions(std::ios::failbit | std::ios::badbit);
+    BRepTools::Read(shape, file, BRep_Builder());
+  } catch (const std::ios::failure&) {
+    shape.Nullify();
+  }
+  if (shape.IsNull())
     throw ReadError(
         fmt::format("{}: this is no BREP file in text form, or it ends early; write it with FreeCAD or "
                     "OpenCASCADE{}",
@@ -73,6 +84,8 @@ TopoDS_Shape read_shape(const std::string& path, CadFormat format) {
       case CadFormat::iges: return read_exchange<IGESControl_Reader>(path, "IGES");
       case CadFormat::other: break;
     }
+  } catch (const Standard_OutOfMemory&) {
+    throw std::bad_alloc();
   } catch (const Standard_Failure& failure) {
     throw ReadError(fmt::format("{}: OpenCASCADE cannot read it ({})", path, text(failure)));
   }

@@ -1,7 +1,13 @@
 // Where the balls go and how large they are.
 #include "collar/collar_placement.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <string>
+
+#include "collarmesh/error.h"
+#include "plc/faults.h"
 
 namespace collarmesh {
 
@@ -73,7 +79,19 @@ void CollarPlacement::place_on_curve(Index curve) {
   system_.index_balls();
 }
 
-bool CollarPlacement::stopped() { return stopped_ = stopped_ || (options_.stopped && options_.stopped()); }
+bool CollarPlacement::stopped(std::size_t more_balls) {
+  return stopped_ = stopped_ || (options_.stopped && options_.stopped(system_.balls_.size() + more_balls));
+}
+
+void CollarPlacement::require_room(double radius, const Point& where) const {
+  if (radius >= options_.smallest_radius && radius > 0) return;
+  const Point p = options_.outside ? options_.outside(where) : where;
+  const std::string message = fmt::format(
+      "Features come so near to each other at {} that nothing fits between them: {:.3g}; move them apart, or "
+      "remove one.",
+      build::text(p), radius / radius_per_gap);
+  throw PlcError(message, {{PlcFault::Kind::intersection, message, {}, p}});
+}
 
 double CollarPlacement::shrink() {
   std::uint64_t z = (random_state_ += 0x9e3779b97f4a7c15ULL);
@@ -87,6 +105,7 @@ void CollarPlacement::add_at_vertex(Index vertex) {
   const double size = options_.size({0, vertex}, centre);
   const double gap = gap_.at_vertex(vertex, gap_per_size * size);
   const double radius = flatness_.radius_at_vertex(vertex, std::min(radius_per_gap * gap, size));
+  require_room(radius, centre);
   system_.vertex_ball_[vertex] = static_cast<Index>(system_.balls_.size());
   system_.balls_.push_back({centre, radius * shrink(), 0, vertex});
   corners_.add_around(system_.balls_.back());
@@ -109,8 +128,10 @@ CollarPlacement::Profile CollarPlacement::make_profile(Index curve, double from,
     profile.radii.push_back(radius);
     flat.push_back(curved ? flatness_.radius_on_curve(curve, s, radius) : radius);
     if (s >= to) break;
+    require_room(flat.back(), paths_.point(curve, s));
     s = std::min(to, s + sample_step * flat.back());
-    if (options_.stopped && options_.stopped()) return {};
+    // Two samples to a radius, and balls 1.2 radii apart.
+    if (stopped(profile.parameters.size() / 3)) return {};
   }
   limit_slope(profile.parameters, radius_slope, closed, profile.radii);
   if (curved) {
@@ -169,13 +190,14 @@ void CollarPlacement::add_on_curve(Index curve) {
     to = length - system_.balls_[ends[1]].radius;
   }
   const Profile profile = make_profile(curve, from, to);
-  if (stopped()) return;
+  if (stopped_) return;
   std::vector<double> parameters = centres(profile);
   if (closed) parameters.pop_back();
   const auto first = static_cast<Index>(system_.balls_.size());
   Index previous = ends[0];
   double before = 0;
   for (const double parameter : parameters) {
+    if (stopped()) return;
     const Index ball = add_ball(curve, parameter, profile.radius(parameter));
     if (previous != none) link(previous, ball, curve, before, parameter);
     previous = ball;

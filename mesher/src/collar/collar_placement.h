@@ -39,7 +39,8 @@ class CollarPlacement {
   std::vector<double> centres(const Profile& profile) const;
   Index add_ball(Index curve, double parameter, double radius);
   double shrink();
-  bool stopped();
+  bool stopped(std::size_t more_balls = 0);
+  void require_room(double radius, const Point& where) const;
 
   const Plc& plc_;
   std::span<const Point> points_;

@@ -46,8 +46,13 @@ struct CollarOptions {
   /// Absolute: how far what replaces smooth curves and patches inside a ball may be from them.
   double distance = 0;
   std::uint64_t seed = 0;
-  /// Asked now and then; when it says yes the system stays incomplete. May be empty.
-  std::function<bool()> stopped = {};
+  /// Asked now and then, with how many balls there are and will be at least; when it says yes the system
+  /// stays incomplete. May be empty.
+  std::function<bool(std::size_t balls)> stopped = {};
+  /// Absolute: where balls would have to be smaller, features cannot be told apart.
+  double smallest_radius = 0;
+  /// Where a place is in the input, for messages. May be empty.
+  std::function<Point(const Point&)> outside = {};
 };
 
 /// The union of balls that covers every crease, and its own features (paper, section 3.2).
@@ -61,6 +66,7 @@ class CollarSystem {
   /// Place balls on all creases: radius a third of the gap size, never more than the size allows,
   /// shrunk by up to 2% (seeded) so that spheres are generic; on smooth curves and patches small
   /// enough that what replaces them inside a ball stays within the distance.
+  /// Throws PlcError where a ball would be smaller than the smallest radius.
   /// Cost: O((n + b) log n) for n elements of the complex and b balls.
   CollarSystem(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases,
                const CollarOptions& options);

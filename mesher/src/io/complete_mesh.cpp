@@ -16,16 +16,25 @@ namespace {
 constexpr std::array<std::array<std::size_t, 3>, 4> outward_faces{
     {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
+void turn_tet(TetMesh& mesh, std::size_t tet) {
+  std::swap(mesh.tets[tet][2], mesh.tets[tet][3]);
+  if (mesh.order() == 1) return;
+  auto& [ab, bc, ca, ad, bd, cd] = mesh.tet_mid_nodes[tet];
+  std::swap(bc, bd);
+  std::swap(ca, ad);
+}
+
+/// Programs differ in the order of a tet's corners, so all are turned where most are negative. Those that are
+/// turned against the others are inverted, and stay.
 void orient_tets(TetMesh& mesh) {
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    auto& [a, b, c, d] = mesh.tets[t];
-    if (six_volume(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]) >= 0) continue;
-    std::swap(c, d);
-    if (mesh.order() == 1) continue;
-    auto& [ab, bc, ca, ad, bd, cd] = mesh.tet_mid_nodes[t];
-    std::swap(bc, bd);
-    std::swap(ca, ad);
+  std::size_t negative = 0, positive = 0;
+  for (const auto& [a, b, c, d] : mesh.tets) {
+    const double volume = six_volume(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]);
+    if (volume < 0) ++negative;
+    if (volume > 0) ++positive;
   }
+  if (negative <= positive) return;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) turn_tet(mesh, t);
 }
 
 void turn_face(TetMesh& mesh, std::size_t face) {

@@ -1,6 +1,9 @@
 #include "io/unfinished_file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -16,6 +19,18 @@ namespace collarmesh::io {
 namespace {
 
 constexpr int names_to_try = 100;
+
+/// On the disk before it takes its name, with the mode of the file that had it. Returns the system's number
+/// of an error, 0: none. File systems that cannot flush say so by two of these numbers.
+int settle(const std::string& temporary, const std::string& path) {
+  struct stat before = {};
+  if (stat(path.c_str(), &before) == 0 && chmod(temporary.c_str(), before.st_mode & 07777) != 0) return errno;
+  const int file = open(temporary.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return errno;
+  const int reason = fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP ? 0 : errno;
+  close(file);
+  return reason;
+}
 
 }  // namespace
 
@@ -38,6 +53,7 @@ UnfinishedFile::~UnfinishedFile() {
 }
 
 void UnfinishedFile::commit() {
+  if (const int reason = settle(temporary_, path_); reason != 0) fail(reason);
   std::error_code error;
   std::filesystem::rename(temporary_, path_, error);
   if (error) fail(error.value());

@@ -17,6 +17,7 @@ class UnfinishedFile {
 
   /// Where to write.
   const std::string& temporary() const { return temporary_; }
+  /// It is on the disk before it takes its name, and has the mode of the file that it replaces.
   /// Precondition: the temporary file is closed.
   void commit();
   /// `reason` is the system's number of an error, 0: unknown.

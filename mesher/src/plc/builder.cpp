@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "collarmesh/plc_builder.h"
 #include "plc/angles.h"
@@ -13,6 +14,7 @@
 #include "plc/flat_clusters.h"
 #include "plc/interfaces.h"
 #include "plc/intersections.h"
+#include "plc/lost_bodies.h"
 #include "plc/near_touching.h"
 #include "plc/orientation.h"
 #include "plc/regions.h"
@@ -168,6 +170,7 @@ Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options) {
   name_soups(soups, draft);
   const PointMap map = weld_points(soups, options.weld, draft, faults);
   faults.raise();
+  const bool welding_moved = draft.largest_deviation > 0;
   draft.planar_tolerance = options.planar_tolerance * draft.bounds.diagonal();
 
   triangulate_facets(soups, map, draft, faults);
@@ -207,6 +210,10 @@ Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options) {
   plc.bounds = draft.bounds;
   plc.largest_deviation = draft.largest_deviation;
   plc.cleanup = draft.cleanup;
+  if (welding_moved) {
+    const double distance = options.weld * plc.bounds.diagonal();
+    std::ranges::copy(lost_bodies(soups, plc, distance), std::back_inserter(plc.warnings));
+  }
   find_near_touching(plc, options.weld * plc.bounds.diagonal(), faults);
   faults.raise();
   return plc;

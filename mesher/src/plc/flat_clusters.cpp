@@ -13,6 +13,9 @@ namespace {
 constexpr double needle_height = 10;
 // One lower than this many may lie in a plane whatever its own normal says.
 constexpr double foldable_height = 2;
+// The plane of a triangle says nothing beyond this share of its height: a body smaller than the tolerance has
+// sides, too.
+constexpr double share_of_height = 0.1;
 
 double longest_side(const Draft& draft, Index t) {
   return std::max({distance(draft.corner(t, 0), draft.corner(t, 1)),
@@ -101,13 +104,16 @@ class ClusterFinder {
     const Point& p = draft_.points[apex(draft_.triangles, side)];
     if (!point_in_plane(p, seed)) return false;
     return dot(result_.normal[side / 3], result_.normal[seed]) > 0 ||
-           heights_[side / 3] <= foldable_height * draft_.planar_tolerance;
+           heights_[side / 3] <= foldable_height * tolerance(seed);
+  }
+
+  double tolerance(Index seed) const {
+    return std::min(draft_.planar_tolerance, std::max(share_of_height * heights_[seed], draft_.rounding()));
   }
 
   bool point_in_plane(const Point& p, Index seed) const {
     const Point& a = draft_.corner(seed, 0);
-    if (draft_.planar_tolerance > 0)
-      return std::fabs(dot(result_.normal[seed], p - a)) <= draft_.planar_tolerance;
+    if (draft_.planar_tolerance > 0) return std::fabs(dot(result_.normal[seed], p - a)) <= tolerance(seed);
     return predicates::orientation(a, draft_.corner(seed, 1), draft_.corner(seed, 2), p) == 0;
   }
 

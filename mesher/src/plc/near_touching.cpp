@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/box_tree.h"
@@ -65,6 +67,7 @@ class NearTouchingFinder {
       Nearest& known = found_[{a.dimension, a.feature, b.dimension, b.feature}];
       if (nearest.squared_distance < known.squared_distance) known = nearest;
     });
+    find_slits_between_curves();
     for (const auto& [pair, nearest] : found_) report(pair, nearest, faults);
   }
 
@@ -82,6 +85,39 @@ class NearTouchingFinder {
     groups.reserve(elements_.size());
     for (const Element& e : elements_) groups.push_back(first[e.dimension] + e.feature);
     return groups;
+  }
+
+  // Two curves between the same ends meet there. Where they are near each other everywhere there is nothing
+  // between them: a facet without a height has such sides.
+  void find_slits_between_curves() {
+    std::map<std::array<Index, 2>, std::vector<Index>> between;
+    for (Index c = 0; c < plc_.curves.size(); ++c) {
+      const auto& [a, b] = plc_.curves[c].ends;
+      if (!plc_.curves[c].closed && a != b) between[{std::min(a, b), std::max(a, b)}].push_back(c);
+    }
+    for (const auto& [ends, curves] : between)
+      for (std::size_t i = 0; i < curves.size(); ++i)
+        for (std::size_t j = i + 1; j < curves.size(); ++j) {
+          const auto apart = largest_distance(curves[i], curves[j]);
+          if (apart) found_[{1, curves[i], 1, curves[j]}] = *apart;
+        }
+  }
+
+  // Between two curves, both ways; nothing if it is above the limit.
+  std::optional<Nearest> largest_distance(Index c, Index d) const {
+    Nearest largest{0, at(plc_.curves[c].points.front())};
+    for (const auto& [from, to] : {std::pair(c, d), std::pair(d, c)}) {
+      const auto &points = plc_.curves[from].points, &others = plc_.curves[to].points;
+      for (const Index p : points) {
+        Nearest nearest;
+        for (std::size_t i = 0; i + 1 < others.size() && nearest.squared_distance > 0; ++i)
+          keep_nearer(nearest, at(p),
+                      nearest_point(at(p), {{others[i], others[i + 1], others[i]}, 2, 1, to}));
+        if (nearest.squared_distance > limit_ * limit_) return std::nullopt;
+        if (nearest.squared_distance > largest.squared_distance) largest = nearest;
+      }
+    }
+    return largest;
   }
 
   static bool have_common_point(const Element& a, const Element& b) {

@@ -37,6 +37,7 @@ struct Chamber {
   bool complex = false;
   bool claimed = false;           // a facet has its back towards it
   bool behind_claimed = false;    // a facet that has its front towards it has its back towards a claimed one
+  bool beside_outside = false;    // a facet parts it from what is around the component
   Index claiming_surface = none;  // a soup that is a surface
   Index hole_soup = none;
   Index owner = none;           // the soup that most of its inner shell comes from
@@ -145,6 +146,7 @@ class RegionFinder {
         chamber_of_shell_[shell] = static_cast<Index>(list_.size());
         list_.emplace_back().inner_shell = shell;
       }
+      if (is_outer(shells_.find(side ^ 1U))) list_[chamber_of_shell_[shell]].beside_outside = true;
       const Origin& origin = draft_.origins[side / 2];
       if (draft_.soup_is_complex[origin.soup] || (origin.oriented && side % 2 == 0)) claim(side, origin.soup);
     }
@@ -267,10 +269,13 @@ class RegionFinder {
     return chambers_.find(outer_shell_[components_.find(chamber.inner_shell / 2)]);
   }
 
+  // A cavity that touches the surface around it is behind that one's facets everywhere. What has facets to
+  // the outside, too, is a body beside others that is inside out, as one alone may be.
   static bool is_region(const Chamber& chamber, bool inside_region) {
     const bool filled = chamber.claiming_surface != none && chamber.claiming_surface != chamber.hole_soup;
     if (chamber.hole_soup != none) return filled;
-    return chamber.complex || chamber.claimed || !(inside_region || chamber.behind_claimed);
+    return chamber.complex || chamber.claimed ||
+           !(inside_region || (chamber.behind_claimed && !chamber.beside_outside));
   }
 
   // Regions are numbered from 1 by their first soup, then by their first triangle.

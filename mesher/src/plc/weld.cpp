@@ -68,6 +68,8 @@ UsedPoints collect(std::span<const PolygonSoup> soups, PointMap& map, Faults& fa
   return all;
 }
 
+// Coordinates must be able to tell so many places across the input.
+constexpr double fewest_steps = 4096;
 // Between these, products of lengths that decide anything stay within a double's range.
 constexpr double smallest_extent = 1e-30, largest_coordinate = 1e30;
 
@@ -78,6 +80,14 @@ void require_range(const Box& box, Faults& faults) {
     farthest = std::max({farthest, std::fabs(box.min[axis]), std::fabs(box.max[axis])});
     extent = std::max(extent, box.max[axis] - box.min[axis]);
   }
+  if (extent > 0 && farthest <= largest_coordinate && extent < fewest_steps * 0x1p-52 * farthest)
+    faults.add(
+        PlcFault::Kind::bad_point,
+        fmt::format(
+            "The input is {:.2g} times its extent away from the origin, at {}: numbers are so coarse there "
+            "that no mesh of it can be told; move it towards the origin.",
+            farthest / extent, text(box.min)),
+        {}, box.min);
   const bool large = farthest > largest_coordinate;
   if (!large && (extent >= smallest_extent || extent == 0)) return;
   faults.add(

@@ -31,7 +31,14 @@ void Refinement::prepare_collars() {
   options.size = [this](const Feature& feature, const Point& p) { return collar_size(feature, p); };
   options.distance = distance_;
   options.seed = options_.seed;
-  options.stopped = [this] { return stopped(); };
+  options.stopped = [this](std::size_t balls) {
+    planned_balls_ = balls;
+    const bool stop = stopped();
+    planned_balls_ = 0;
+    return stop;
+  };
+  options.smallest_radius = floor_;
+  options.outside = [this](const Point& p) { return frame_.outside(p); };
   const std::vector<Crease> creases = find_creases(plc_, options_.crease_angle);
   if (creases.empty()) return;
   if (options_.collar_creation == CollarCreation::in_pass) {
@@ -305,7 +312,8 @@ bool Refinement::crosses_patch(const CollarBall& ball, Index a, Index b) {
     const Index patch = plc_.triangles[crossing.triangle].patch;
     const bool a_on = on_patch(a, patch), b_on = on_patch(b, patch);
     if (a_on == b_on) return !a_on;
-    return !plc_.patches[patch].planar && on_another_sheet(ball, mesh_.point(a_on ? a : b), crossing.triangle);
+    return !plc_.patches[patch].planar &&
+           on_another_sheet(ball, mesh_.point(a_on ? a : b), crossing.triangle);
   });
 }
 

@@ -27,6 +27,8 @@ constexpr std::size_t insertions_between_surface_refreshes = 48;
 constexpr std::size_t cells_per_insertion = 4;
 // No ball smaller than this share of the diagonal is destroyed: it ends what would never end.
 constexpr double floor_per_diagonal = 1e-10;
+// With its links, corner points and places in hierarchies.
+constexpr std::size_t bytes_of_ball = 512;
 // A cell whose volume is below this share of its longest edge cubed is flat.
 constexpr double flat_volume = 1e-11;
 // The share of the distance tolerance that refinement aims at: it looks at a few points of a face.
@@ -618,7 +620,7 @@ std::size_t Refinement::bytes() const {
          marks_.bytes() + vertices_.capacity() * sizeof(MeshVertex) +
          restricted_.capacity() * sizeof(RestrictedTriangle) + node_pool_.capacity() * sizeof(Index) +
          unresolved_.capacity() * sizeof(UnresolvedPoint) + subsegments_.capacity() * sizeof(Subsegment) +
-         collar_review_.triangles.bytes() + pairs_.size() * bytes_per_pair;
+         collar_review_.triangles.bytes() + pairs_.size() * bytes_per_pair + planned_balls_ * bytes_of_ball;
 }
 
 bool Refinement::stopped() {
@@ -627,7 +629,7 @@ bool Refinement::stopped() {
   peak_bytes_ = std::max(peak_bytes_, bytes());
   if (execution_.cancelled() || !report_progress())
     stop_here(MeshStatus::cancelled, "the refinement was stopped", "start it again");
-  else if (options_.max_vertices > 0 && mesh_.vertex_count() > options_.max_vertices)
+  else if (options_.max_vertices > 0 && mesh_.vertex_count() + planned_balls_ > options_.max_vertices)
     stop_here(MeshStatus::budget_hit,
               fmt::format("the budget of {} vertices is spent", options_.max_vertices),
               fmt::format(more, "max-vertices"));

@@ -419,6 +419,7 @@ class Refinement {
   Sizing sizing_;
   double gradation_;
   double diagonal_, distance_, floor_;
+  std::size_t planned_balls_ = 0;  // while they are placed: each will be a vertex
   Box box_;
 
   CurvePaths paths_;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <set>
 
@@ -14,6 +15,7 @@
 #include "plc/edges.h"
 #include "plc/facet_triangulation.h"
 #include "plc/faults.h"
+#include "plc/lost_bodies.h"
 #include "plc/orientation.h"
 #include "plc/weld.h"
 #include "repair/arrangement.h"
@@ -79,6 +81,9 @@ class Repairer {
       return result;
     }
   }
+
+  std::span<const PolygonSoup> input() const { return soups_; }
+  double tolerance() const { return tolerance_; }  // absolute
 
   /// All is open sheets that do not even meet, or most of it is open sheets.
   bool encloses_nothing() const { return encloses_nothing_; }
@@ -276,6 +281,9 @@ RepairOptions for_try(RepairOptions options, double factor) {
 RepairedPlc judged(const Repairer& repairer, RepairResult result, const PlcOptions& options) {
   RepairedPlc complex{build_plc(result.soups, options), std::move(result.report), std::move(result.soups)};
   repairer.measure(complex.report);
+  if (complex.report.repaired)
+    std::ranges::copy(build::lost_bodies(repairer.input(), complex.plc, repairer.tolerance()),
+                      std::back_inserter(complex.plc.warnings));
   return complex;
 }
 

@@ -21,6 +21,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double default_growth = 0.3;
+constexpr int deepest = 16;  // levels of JSON; some would exhaust the stack
 
 [[noreturn]] void fail(const std::string& place, const std::string& message) {
   throw OptionError(fmt::format("size field: {}: {}", place, message));
@@ -128,7 +129,12 @@ struct Source {
 SizeField size_field_from_json(const std::string& text, const Plc& plc) {
   Json json;
   try {
-    json = Json::parse(text);
+    json = Json::parse(text, [](int depth, Json::parse_event_t, const Json&) {
+      if (depth > deepest)
+        throw ReadError(
+            fmt::format("size field: it is nested deeper than {} levels; this is no size field", deepest));
+      return true;
+    });
   } catch (const Json::parse_error& error) {
     throw OptionError(fmt::format("size field: byte {}: this is no JSON", error.byte));
   } catch (const Json::out_of_range&) {
@@ -166,6 +172,9 @@ SizeField read_size_field(const std::string& path, const Plc& plc) {
     return size_field_on_mesh(field.mesh, field.values);
   } catch (const OptionError& error) {
     throw OptionError(fmt::format("{}: {}", path, error.what()));
+  } catch (const ReadError& error) {
+    if (std::string_view(error.what()).starts_with(path)) throw;
+    throw ReadError(fmt::format("{}: {}", path, error.what()));
   }
 }
 

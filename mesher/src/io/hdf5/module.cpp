@@ -1,5 +1,15 @@
 // What the module offers to hdf5_formats.cpp, by name.
+#include <hdf5.h>
+
 #include "io/tet_mesh_formats.h"
+
+namespace {
+
+/// Files are closed, or could not be written. At the program's end HDF5 would try again to write those, and
+/// crash. Works before the first use of HDF5 only.
+const herr_t no_work_at_the_end = H5dont_atexit();
+
+}  // namespace
 
 extern "C" {
 

@@ -1,0 +1,62 @@
+#include "file_groups.h"
+
+#include <fmt/format.h>
+
+#include <initializer_list>
+#include <system_error>
+
+namespace collarmesh::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string extension_of(const fs::path& path, const std::string& format) {
+  std::string extension = format.empty() ? path.extension().string() : format;
+  for (char& c : extension)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
+  return extension;
+}
+
+std::vector<fs::path> with_siblings(const fs::path& path, std::initializer_list<const char*> extensions) {
+  std::vector<fs::path> files{path};
+  for (const char* extension : extensions) files.push_back(fs::path(path).replace_extension(extension));
+  return files;
+}
+
+}  // namespace
+
+std::vector<fs::path> files_written(const fs::path& path, const std::string& format) {
+  const std::string extension = extension_of(path, format);
+  if (path == "-") return {};
+  if (extension == ".ele") return with_siblings(path, {".ele", ".node", ".face", ".edge"});
+  if (extension == ".xdmf") return with_siblings(path, {".h5"});
+  return {path};
+}
+
+std::vector<fs::path> files_read(const fs::path& path, const std::string& format) {
+  if (path == "-") return {"/dev/stdin"};
+  const std::string extension = extension_of(path, format);
+  if (extension == ".ele") return with_siblings(path, {".node", ".face", ".edge"});
+  if (extension == ".poly" || extension == ".smesh") return with_siblings(path, {".node"});
+  return {path};
+}
+
+bool same_file(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  if (fs::equivalent(a, b, error) && !error) return fs::is_regular_file(a, error);
+  return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error);
+}
+
+std::string overwritten(const std::vector<fs::path>& written, const std::vector<std::string>& inputs,
+                        const std::string& input_format) {
+  for (const std::string& input : inputs)
+    for (const fs::path& read : files_read(input, input_format))
+      for (const fs::path& file : written)
+        if (same_file(file, read))
+          return read == input ? fmt::format("the input {}", input)
+                               : fmt::format("{}, a file of the input {}", read.string(), input);
+  return {};
+}
+
+}  // namespace collarmesh::cli

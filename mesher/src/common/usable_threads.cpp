@@ -1,0 +1,75 @@
+#include "collarmesh/usable_threads.h"
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <latch>
+#include <memory>
+#include <stdexcept>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+namespace collarmesh {
+
+namespace {
+
+/// How many threads there can be at once, this one included, up to `most`.
+int count_threads(int most) {
+  std::latch counted(1);
+  std::vector<std::jthread> threads;  // joined before the latch ends
+  threads.reserve(static_cast<std::size_t>(most));
+  try {
+    while (static_cast<int>(threads.size()) + 1 < most) threads.emplace_back([&counted] { counted.wait(); });
+  } catch (const std::system_error&) {
+    // There are no more.
+  }
+  counted.count_down();
+  return static_cast<int>(threads.size()) + 1;
+}
+
+/// TBB makes its threads when there is work.
+bool tbb_has_its_threads(int threads) {
+  constexpr int pieces = 256;
+  try {
+    tbb::task_arena arena(threads);
+    arena.execute([] { tbb::parallel_for(0, pieces, [](int) { std::this_thread::yield(); }); });
+  } catch (const std::runtime_error&) {
+    return false;
+  }
+  return true;
+}
+
+class Threads {
+ public:
+  Threads() {
+    const int cores = tbb::info::default_concurrency();
+    count_ = count_threads(cores);
+    if (count_ < cores) keep_to(count_);
+    if (count_ == 1 || tbb_has_its_threads(count_)) return;
+    count_ = 1;
+    keep_to(count_);
+  }
+  int count() const { return count_; }
+
+ private:
+  void keep_to(int threads) {
+    limit_.reset();
+    limit_ = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                   static_cast<std::size_t>(threads));
+  }
+
+  int count_ = 1;
+  std::unique_ptr<tbb::global_control> limit_;
+};
+
+}  // namespace
+
+int usable_threads() {
+  static const Threads threads;
+  return threads.count();
+}
+
+}  // namespace collarmesh

@@ -1,0 +1,125 @@
+#include "plc/lost_bodies.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "common/disjoint_sets.h"
+#include "plc/faults.h"
+
+namespace collarmesh::build {
+
+namespace {
+
+/// Facets that hang together by corners.
+struct Body {
+  Box box;
+  Index facets = 0;
+};
+
+bool before(const Point& p, const Point& q) {
+  if (p.x != q.x) return p.x < q.x;
+  return p.y != q.y ? p.y < q.y : p.z < q.z;
+}
+
+void unite_equal_points(const std::vector<Point>& points, DisjointSets& sets) {
+  std::vector<Index> order(points.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return before(points[a], points[b]); });
+  for (std::size_t i = 1; i < order.size(); ++i)
+    if (points[order[i - 1]] == points[order[i]]) sets.unite(order[i - 1], order[i]);
+}
+
+template <class Visit>
+void for_each_polygon(const PolygonSoup& soup, const Visit& visit) {
+  for (Index f = 0; f < soup.facet_count(); ++f) {
+    const auto [first, last] = soup.facet_polygons(f);
+    for (Index q = first; q < last; ++q) visit(soup.polygon(q));
+  }
+}
+
+void add_bodies(const PolygonSoup& soup, std::vector<Body>& bodies) {
+  DisjointSets sets(soup.points.size());
+  unite_equal_points(soup.points, sets);
+  for_each_polygon(soup, [&](std::span<const Index> corners) {
+    for (const Index corner : corners) sets.unite(corners.front(), corner);
+  });
+  std::vector<Index> body_of(soup.points.size(), none);
+  for_each_polygon(soup, [&](std::span<const Index> corners) {
+    if (corners.empty()) return;
+    Index& body = body_of[sets.find(corners.front())];
+    if (body == none) {
+      body = static_cast<Index>(bodies.size());
+      bodies.emplace_back();
+    }
+    ++bodies[body].facets;
+    for (const Index corner : corners) bodies[body].box.add(soup.points[corner]);
+  });
+}
+
+/// Is there a triangle within the box, or a bit around it?
+class TrianglesByPlace {
+ public:
+  explicit TrianglesByPlace(const Plc& plc) : plc_(plc), order_(plc.triangles.size()) {
+    std::iota(order_.begin(), order_.end(), Index{0});
+    std::sort(order_.begin(), order_.end(), [this](Index a, Index b) { return x(a) < x(b); });
+  }
+
+  bool any_in(Box box, double around) const {
+    const Vector margin{around, around, around};
+    box.min = box.min - margin;
+    box.max = box.max + margin;
+    auto at = std::partition_point(order_.begin(), order_.end(), [&](Index t) { return x(t) < box.min.x; });
+    for (; at != order_.end() && x(*at) <= box.max.x; ++at)
+      if (std::all_of(plc_.triangles[*at].points.begin(), plc_.triangles[*at].points.end(),
+                      [&](Index p) { return holds(box, plc_.points[p]); }))
+        return true;
+    return false;
+  }
+
+ private:
+  double x(Index t) const { return plc_.points[plc_.triangles[t].points[0]].x; }
+  static bool holds(const Box& box, const Point& p) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (p[axis] < box.min[axis] || p[axis] > box.max[axis]) return false;
+    return true;
+  }
+
+  const Plc& plc_;
+  std::vector<Index> order_;
+};
+
+}  // namespace
+
+std::vector<Plc::Warning> lost_bodies(std::span<const PolygonSoup> soups, const Plc& plc, double distance) {
+  constexpr std::size_t listed = 10;
+  constexpr Index smallest_closed = 4;       // facets
+  constexpr double largest_collapsed = 100;  // distances that points of one body may have moved in a chain
+  std::vector<Body> small;
+  for (const PolygonSoup& soup : soups) add_bodies(soup, small);
+  std::erase_if(small, [&](const Body& body) {
+    return body.facets < smallest_closed || body.box.diagonal() == 0 ||
+           body.box.diagonal() > largest_collapsed * distance;
+  });
+  if (small.empty()) return {};
+  const TrianglesByPlace triangles(plc);
+  std::vector<Plc::Warning> warnings;
+  std::size_t more = 0;
+  for (const Body& body : small) {
+    if (triangles.any_in(body.box, 2 * distance)) continue;
+    if (warnings.size() < listed)
+      warnings.push_back(
+          {fmt::format("The body of {} facets at {}, {:.3g} across, is lost, because that is less than what "
+                       "is welded or "
+                       "repaired here, {:.3g}; mesh it by itself, or lower --weld and --repair-tolerance.",
+                       body.facets, text(body.box.centre()), body.box.diagonal(), distance),
+           body.box.centre()});
+    else
+      ++more;
+  }
+  if (more > 0) warnings.push_back({fmt::format("{} more bodies are lost in the same way.", more), {}});
+  return warnings;
+}
+
+}  // namespace collarmesh::build

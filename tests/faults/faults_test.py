@@ -1,0 +1,121 @@
+"""Each call of the system that a run makes fails in turn; after that: the right exit code, whole files or none, and what was
+there before as it was.
+
+Run by ctest with COLLARMESH_PROGRAM and COLLARMESH_FAULTS, the library to preload (faults.cpp). Allocations are many:
+COLLARMESH_ALL_FAULTS=1 has every one fail (minutes), else samples of them do.
+"""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+PROGRAM, FAULTS = os.environ["COLLARMESH_PROGRAM"], os.environ["COLLARMESH_FAULTS"]
+ALL = os.environ.get("COLLARMESH_ALL_FAULTS") == "1"
+SOURCES = pathlib.Path(__file__).resolve().parents[2]
+BRACKET = SOURCES / "resources" / "models" / "bracket.off"
+CAD = SOURCES / "tests" / "cli" / "hostile" / "iges_closed_face" / "sphere.igs"
+BEFORE = "what was there before"
+
+
+class FaultsTest(unittest.TestCase):
+    """Runs, by name, and the files that each writes."""
+    runs = {"vtu": (BRACKET, ["out.vtu"]), "med": (BRACKET, ["out.med"]),
+            "ele": (BRACKET, ["out.ele", "out.node", "out.face", "out.edge"]), "unv": (CAD, ["out.unv"])}
+
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="collarmesh-test-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        self.count = self.folder / "count"
+
+    def run_with(self, name, **faults):
+        part, files = self.runs[name]
+        environment = dict(os.environ, LD_PRELOAD=FAULTS, FAULT_COUNT=str(self.count),
+                           **{f"FAULT_{key.upper()}": str(value) for key, value in faults.items()})
+        for left in self.folder.iterdir():
+            shutil.rmtree(left) if left.is_dir() else left.unlink()
+        for file in files:
+            (self.folder / file).write_text(BEFORE)
+        run = subprocess.run([PROGRAM, part, "-o", files[0], "-q", "--threads", "1"], cwd=self.folder, env=environment,
+                             capture_output=True, text=True, timeout=600)
+        return run.returncode, run.stderr
+
+    def calls(self, name, kind):
+        code, messages = self.run_with(name, kind=kind, at=0)
+        if "cannot be loaded" in messages or code == 2:
+            self.skipTest("built without this format")
+        self.assertEqual(code, 0, messages)
+        return max(int(line.split()[1]) for line in self.count.read_text().splitlines())
+
+    def assert_whole(self, name, code, context):
+        """The files are all new after success and all old else; nothing is left beside them."""
+        files = self.runs[name][1]
+        old = [(self.folder / file).exists() and (self.folder / file).read_bytes() == BEFORE.encode() for file in files]
+        self.assertEqual(old, [code != 0] * len(files), context)
+        self.assertTrue(all((self.folder / file).stat().st_size > 0 for file in files), context)
+        left = {p.name for p in self.folder.iterdir()} - set(files) - {"count"}
+        self.assertEqual(left, set(), context)
+
+    def assert_kept(self, name, messages):
+        """Files could not be put back either: each is in its place or in the folder that is told."""
+        folder = self.folder / messages.strip().rsplit(" ", 1)[-1]
+        for file in self.runs[name][1]:
+            places = [self.folder / file, folder / f"kept-{file}"]
+            self.assertTrue(any(p.exists() and p.read_bytes() == BEFORE.encode() for p in places), messages)
+
+
+class Threads(FaultsTest):
+    def test_each_thread(self):
+        for name in self.runs:
+            for at in range(1, self.calls(name, "thread") + 3):
+                for lasts in ({}, {"lasts": 1}):
+                    with self.subTest(name=name, at=at, lasts=bool(lasts)):
+                        code, messages = self.run_with(name, kind="thread", at=at, **lasts)
+                        self.assertIn(code, (0, 5), messages)
+                        self.assert_whole(name, code, messages)
+
+
+class Files(FaultsTest):
+    def test_each_call(self):
+        for name in self.runs:
+            for at in range(1, self.calls(name, "file") + 1):
+                for lasts in ({}, {"lasts": 1}) if ALL or name in ("vtu", "ele") else ({},):
+                    with self.subTest(name=name, at=at, lasts=bool(lasts)):
+                        code, messages = self.run_with(name, kind="file", at=at, **lasts)
+                        self.assertIn(code, (0, 8), messages)
+                        if lasts and "what was there before is in" in messages:
+                            self.assert_kept(name, messages)
+                        else:
+                            self.assert_whole(name, code, messages)
+
+
+class Memory(FaultsTest):
+    def test_each_allocation_before_writing(self):
+        """In children that are forked at each (faults.cpp), which is a millisecond for each."""
+        for name in ("vtu", "unv") if not ALL else self.runs:
+            total = self.calls(name, "new")
+            with self.subTest(name=name):
+                first = 1 if ALL else max(1, total - 9000)
+                code, messages = self.run_with(name, kind="new", at=first, forks=1)
+                self.assertEqual(code, 0, messages[-2000:])
+                wrong = [line for line in self.count.read_text().splitlines() if not line.startswith("calls")]
+                self.assertEqual(wrong, [])
+                self.assert_whole(name, 0, messages[-2000:])
+
+    def test_allocations(self):
+        """In runs of their own, those of writing above all."""
+        for name in self.runs:
+            total = self.calls(name, "new")
+            last = range(max(1, total - 800), total + 1, 1 if ALL else 67)
+            sample = sorted({*range(1, total, max(1, total // (200 if ALL else 6))), *last})
+            for at in sample:
+                with self.subTest(name=name, at=at):
+                    code, messages = self.run_with(name, kind="new", at=at)
+                    self.assertIn(code, (0, 5), messages)
+                    self.assert_whole(name, code, messages)
+
+
+if __name__ == "__main__":
+    unittest.main()
