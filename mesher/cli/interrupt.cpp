@@ -82,6 +82,12 @@ void stop_if_interrupted() {
   if (asked_to_stop()) throw reason_to_stop();
 }
 
+InputReading interruptible(InputReading reading) {
+  reading.cancel = &interrupt_flag();
+  reading.stop = [] { stop_if_interrupted(); };
+  return reading;
+}
+
 ExitCode run_interruptible(const std::function<ExitCode()>& command) {
   using namespace std::chrono_literals;
   std::mutex mutex;

@@ -49,7 +49,7 @@ ExitCode repair_command(const RepairArguments& a) {
   set_time_limit(a.time_limit);
   require_writable(a.output);
   if (!a.report.empty()) require_writable(a.report);
-  ComplexInput input(a.inputs, {.format = a.input_format, .overlap = a.complex.overlap});
+  ComplexInput input(a.inputs, interruptible({.format = a.input_format, .overlap = a.complex.overlap}));
   const Plc plc = input.build(a.complex);
   stop_if_interrupted();
   const nlohmann::ordered_json told =

@@ -207,6 +207,8 @@ Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options) {
   plc.bounds = draft.bounds;
   plc.largest_deviation = draft.largest_deviation;
   plc.cleanup = draft.cleanup;
+  for (const PolygonSoup& soup : soups) plc.names.add(soup.tag_names);
+  number_untagged(soups, plc);
   find_near_touching(plc, options.weld * plc.bounds.diagonal(), faults);
   faults.raise();
   return plc;
