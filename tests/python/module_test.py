@@ -303,6 +303,10 @@ class Meshes(unittest.TestCase):
                     report = collarmesh.check(subject, (points, triangles, tags))
                     self.assertTrue(report["passed"], (extension, report["findings"]))
                 self.assertEqual(collarmesh.info(path)["mesh"]["tets"], len(self.mesh.tets))
+            self.mesh.write(pathlib.Path(folder) / "small.msh", scale=0.001)
+            numpy.testing.assert_array_equal(
+                sorted(map(tuple, collarmesh.read(pathlib.Path(folder) / "small.msh").points)),
+                sorted(map(tuple, 0.001 * self.mesh.points)))
         report = collarmesh.check(self.mesh, box((0, 0, 0), (1, 1, 1.1)))
         self.assertFalse(report["passed"])
         self.assertTrue(report["findings"])

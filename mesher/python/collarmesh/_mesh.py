@@ -150,12 +150,15 @@ class Mesh:
         kinds = ("Vertex", "Edge", "Face", "Solid") if self._cad_names else ("vertex_", "curve_", "patch_", "region_")
         return f"{kinds[dimension]}{tag}"
 
-    def write(self, path: Path, format: str = "") -> None:
+    def write(self, path: Path, format: str = "", scale: float = 1) -> None:
         """Write a file. Its extension tells the format (.vtu, .msh, .inp ...), or `format` does (".vtu").
 
-        Raises WriteError.
+        scale: coordinates are multiplied by this, 0.001 for metres of millimetres. Raises WriteError.
         """
-        _core.write_mesh(self._arrays(), os.fspath(path), format)
+        arrays = self._arrays()
+        if scale != 1:
+            arrays["points"] = scale * self.points
+        _core.write_mesh(arrays, os.fspath(path), format)
 
     def info(self) -> Dict[str, Any]:
         """Counts, angles, volumes and histograms, as `collarmesh info --json` prints them."""
