@@ -67,7 +67,7 @@ up_to_date() {
   local parts=("$root/CMakeLists.txt" "$root/cmake" "$root/mesher") newer
   [ -d "$root/openmesh_io" ] && parts+=("$root/openmesh_io")
   [ -d "$root/freecad_workbench/brep" ] && parts+=("$root/freecad_workbench/brep")
-  newer=$(find "${parts[@]}" \( -path "$root/mesher/doc" -o -path "$root/mesher/bench" \) -prune \
+  newer=$(find "${parts[@]}" \( -path "$root/mesher/doc" -o -path "$root/mesher/bench" -o -name __pycache__ \) -prune \
     -o -newer "$stamp" -print -quit)
   [ -z "$newer" ]
 }

@@ -9,12 +9,14 @@
 #include <memory>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 
 #include "cad_files.h"
 #include "collarmesh/io/tet_mesh_io.h"
 #include "console.h"
 #include "file_groups.h"
 #include "machine.h"
+#include "option_table.h"
 #include "option_values.h"
 #include "surface_files.h"
 #include "usage_error.h"
@@ -126,6 +128,11 @@ void add_complex_options(CLI::App& app, ComplexArguments& a) {
       ->transform(CLI::CheckedTransformer(overlaps).description(""))
       ->default_str("first")
       ->type_name("first|region")
+      ->group(group);
+  app.add_option(
+         "--names", a.names,
+         "Names of patches, curves and regions, by number or by a point on them, for formats with names")
+      ->type_name("FILE.json")
       ->group(group);
   add(app, "--crease-angle DEGREES", a.crease_angle,
       "Features that meet below this angle form a crease, degrees")
@@ -283,6 +290,9 @@ void add_run_options(CLI::App& app, MeshArguments& a) {
   add_complex_options(app, a.complex);
   add_budget_options(app, a.mesh);
   add_threads_option(app, a.threads, "Of improvement and certificate, at most");
+  add(app, "--scale FACTOR", a.scale,
+      "Coordinates are multiplied by this when they are written, 0.001 for m of mm")
+      ->check(number_in(1e-100, 1e100, "a positive number"));
   add_report_option(app, a.report, "Write what was measured as JSON");
   const auto set_progress = [&a](const std::string& word) {
     a.progress = word == "json"   ? ProgressStyle::json
@@ -298,12 +308,20 @@ void add_run_options(CLI::App& app, MeshArguments& a) {
   add_quiet_flag(app, a.quiet);
 }
 
+void add_output_format(CLI::App& app, std::string& format, const std::string& when) {
+  app.add_option("--format", format, "Of the output, an extension such as vtu or msh2" + when)
+      ->transform(format_name(all_formats()))
+      ->type_name("FORMAT")
+      ->default_str("by extension");
+}
+
 void add_mesh_options(CLI::App& app, MeshArguments& a) {
   app.add_option("INPUT", a.inputs,
                  "Surfaces, complexes and CAD shapes (" + known_inputs() + "); several are one complex")
       ->type_name("FILE");
   app.add_option("-o,--output", a.output, "The mesh to write: " + list(io::written_tet_mesh_formats()))
       ->type_name("FILE");
+  add_output_format(app, a.output_format, "");
   add_run_options(app, a);
 }
 
@@ -314,10 +332,7 @@ void add_conversion_files(CLI::App& app, SomeArguments& a, const std::string& in
   app.add_option("-o,--output", a.output, "The file to write; -: standard output")
       ->required()
       ->type_name("FILE");
-  app.add_option("--format", a.output_format, "Of the output, an extension such as stl; needed for -")
-      ->transform(format_name(all_formats()))
-      ->type_name("FORMAT")
-      ->default_str("by extension");
+  add_output_format(app, a.output_format, "; needed for -");
   app.add_option("--input-format", a.input_format, "Of the inputs; needed for -")
       ->transform(format_name(all_formats()))
       ->type_name("FORMAT")
@@ -423,7 +438,11 @@ void check_run_arguments(const MeshArguments& a) {
 void check_mesh_arguments(const MeshArguments& a) {
   if (a.inputs.empty()) throw CLI::RequiredError("INPUT, a file to mesh,");
   if (a.output.empty()) throw CLI::RequiredError("--output, the mesh to write,");
-  if (!io::is_tet_mesh_format(a.output))
+  if (a.output == "-")
+    throw CLI::ValidationError(
+        "--output",
+        "- is standard output, to which convert writes: collarmesh convert IN... -o - --format vtu");
+  if (!io::is_tet_mesh_format(a.output, a.output_format))
     throw CLI::ValidationError("--output", fmt::format("'{}' {}; use {}", a.output, extension_list(a.output),
                                                        list(io::written_tet_mesh_formats())));
   check_run_arguments(a);
@@ -494,6 +513,15 @@ std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
   CLI::App* const info_command = add_info_command(app, info);
   CLI::App* const convert_command = add_convert_command(app, convert.mesh);
   CLI::App* const repair_command = add_repair_command(app, repair);
+  if (argc == 3 && argv[1] == std::string_view("--generate")) {  // when it is built; not for users
+    const bool man = argv[2] == std::string_view("man");
+    fmt::print("{}", man ? man_page(app, COLLARMESH_VERSION, footer) : bash_completion(app));
+    return ExitCode::success;
+  }
+  if (const std::string mistaken = argc > 1 ? mistaken_command(argv[1]) : ""; !mistaken.empty()) {
+    fmt::print(stderr, "collarmesh: {}\nRun with --help for more information.\n", mistaken);
+    return ExitCode::usage;
+  }
   try {
     app.parse(argc, argv);
     const bool subcommand = !app.get_subcommands().empty();

@@ -23,6 +23,7 @@ struct ComplexArguments {
   RepairOptions repair;
   SolidOverlap overlap = SolidOverlap::first;
   double crease_angle = 60;  ///< degrees
+  std::string names;         ///< path of a file that names features; empty: none
 };
 
 /// `collarmesh INPUT... -o OUT`
@@ -37,6 +38,7 @@ struct MeshArguments {
   unsigned improve = 2;                             ///< level; 0: leave the elements as they are
   unsigned order = 1;                               ///< of the cells, 1 or 2
   double min_dihedral = 0;                          ///< degrees, in place of the level's; 0: the level's
+  double scale = 1;                                 ///< of the coordinates that are written
   std::string input_format, output_format;          ///< extensions with their dot; empty: those of the files
   unsigned threads = 0;                             ///< at most; 0: as many as there are cores
   std::string report;                               ///< path, empty: none

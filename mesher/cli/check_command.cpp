@@ -19,7 +19,7 @@ ExitCode check_command(const CheckArguments& arguments) {
   const auto distance = [&](double diagonal) {
     return arguments.check.distance > 0 ? arguments.check.distance : default_distance(0, diagonal);
   };
-  ComplexInput input(arguments.inputs, {{}, distance, arguments.complex.overlap});
+  ComplexInput input(arguments.inputs, interruptible({{}, distance, arguments.complex.overlap}));
   const Plc plc = input.build(arguments.complex);
   stop_if_interrupted();
   CheckOptions options = arguments.check;

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 #include <initializer_list>
+#include <iterator>
 #include <optional>
 
 #include "collarmesh/error.h"
+#include "collarmesh/name_features.h"
 #include "input_files.h"
-#include "interrupt.h"
 #include "surface_files.h"
 
 namespace collarmesh::cli {
@@ -21,13 +23,6 @@ bool may_be_too_coarse(const PlcError& error) {
   return std::all_of(error.faults.begin(), error.faults.end(), [](const PlcFault& fault) {
     return fault.kind == PlcFault::Kind::intersection || fault.kind == PlcFault::Kind::not_orientable;
   });
-}
-
-// Ends when the user asks for it or the time is up.
-Execution watched() {
-  Execution execution;
-  execution.cancel = &interrupt_flag();
-  return execution;
 }
 
 PlcError with_names(const PlcError& error, const CadFiles& cad) {
@@ -68,20 +63,59 @@ std::string advice(const PlcError& error, const RepairOptions& options) {
 
 }  // namespace
 
-ComplexInput::ComplexInput(const std::vector<std::string>& paths, const InputReading& reading) {
-  const CadReading cad{[&](double diagonal) { return share_of_triangles * reading.distance(diagonal); },
-                       reading.overlap};
+ComplexInput::ComplexInput(const std::vector<std::string>& paths, InputReading reading)
+    : reading_(std::move(reading)) {
+  const CadReading cad{[&](double diagonal) { return share_of_triangles * reading_.distance(diagonal); },
+                       reading_.overlap};
+  Tag largest_named = 0;  // numbers of names are those of their file
   for (const std::string& path : paths) {
-    stop_if_interrupted();
+    reading_.stop();
     const std::string file = existing_file(path);
-    if (CadFiles::knows(file, reading.format))
-      cad_.read(file, reading.format, cad, soups_);
-    else
-      soups_.push_back(read_surface(file, reading.format));
+    if (CadFiles::knows(file, reading_.format)) {
+      cad_.read(file, reading_.format, cad, soups_);
+      continue;
+    }
+    PolygonSoup soup = read_surface(file, reading_.format);
+    if (!soup.tag_names.of(2).empty()) {
+      soup.shift_facet_tags(largest_named);
+      largest_named = soup.tag_names.of(2).rbegin()->first;
+    }
+    soups_.push_back(std::move(soup));
   }
 }
 
+Execution ComplexInput::watched() const {
+  Execution execution;
+  execution.cancel = reading_.cancel;
+  return execution;
+}
+
 Plc ComplexInput::build(const ComplexArguments& options) {
+  Plc plc = build_unnamed(options);
+  patch_numbers_.clear();
+  curve_numbers_.clear();
+  for (const Plc::Patch& patch : plc.patches) patch_numbers_.push_back(patch.tag);
+  for (const Plc::Curve& curve : plc.curves) curve_numbers_.push_back(curve.tag);
+  if (!options.names.empty()) name(options.names, plc);
+  return plc;
+}
+
+/// The path of a file, or the text itself.
+void ComplexInput::name(const std::string& path, Plc& plc) {
+  if (path.starts_with('{')) {
+    name_features(path, plc);
+    return;
+  }
+  std::ifstream file(existing_file(path));
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  try {
+    name_features(text, plc);
+  } catch (const OptionError& error) {
+    throw OptionError(fmt::format("{}: {}", path, error.what()));
+  }
+}
+
+Plc ComplexInput::build_unnamed(const ComplexArguments& options) {
   if (cad_.empty()) {
     try {
       return build_repaired(options);
@@ -117,7 +151,7 @@ PlcError ComplexInput::with_advice(const PlcError& error, const RepairOptions& o
 }
 
 void ComplexInput::tessellate(double finer) {
-  stop_if_interrupted();
+  reading_.stop();
   if (finer_ != finer) cad_.tessellate(finer, soups_);
   finer_ = finer;
 }
@@ -127,7 +161,7 @@ Plc ComplexInput::build_repaired(const ComplexArguments& options) {
 }
 
 Plc ComplexInput::take(RepairedPlc result) {
-  if (result.report.cancelled) stop_if_interrupted();
+  if (result.report.cancelled) reading_.stop();
   repaired_ = std::move(result.report);
   if (repaired_.repaired) soups_ = std::move(result.soups);
   return std::move(result.plc);
@@ -140,21 +174,9 @@ ExactGeometry ComplexInput::exact_geometry(const Plc& plc) const {
                         : plc.curves[feature].patches.empty() ? none
                                                               : plc.curves[feature].patches.front();
     if (patch == none) return std::nullopt;
-    const Tag number = dimension == 2 ? plc.patches[feature].tag : plc.curves[feature].tag;
+    const Tag number = dimension == 2 ? patch_numbers_[feature] : curve_numbers_[feature];
     return cad_.nearest(plc.patches[patch].file, dimension, number, p);
   };
-}
-
-MeshOptions ComplexInput::tightened(const MeshOptions& options, const Plc& plc) const {
-  if (!has_cad()) return options;
-  constexpr double distance_left = 0.75;  // the triangles' share twice, and some room
-  constexpr double ratio_left = 0.99;
-  MeshOptions tight = options;
-  tight.distance =
-      distance_left *
-      (options.distance > 0 ? options.distance : default_distance(options.size, plc.bounds.diagonal()));
-  tight.radius_edge = std::max(1.0, ratio_left * options.radius_edge);
-  return tight;
 }
 
 }  // namespace collarmesh::cli

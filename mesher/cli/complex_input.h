@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "collarmesh/error.h"
 #include "collarmesh/mesher.h"
 #include "collarmesh/plc_builder.h"
+#include "collarmesh/progress.h"
 #include "collarmesh/project_boundary.h"
 #include "collarmesh/repair.h"
 
@@ -22,6 +24,8 @@ struct InputReading {
     return default_distance(0, diagonal);
   };
   SolidOverlap overlap = SolidOverlap::first;
+  const std::atomic<bool>* cancel = nullptr;  ///< ends the work when it is set
+  std::function<void()> stop = [] {};         ///< called between steps; throws when the work is to end
 };
 
 /// The files of one complex: surfaces, complexes and CAD shapes, which are cut into triangles here.
@@ -29,7 +33,10 @@ class ComplexInput {
  public:
   /// Read them; "-" is standard input.
   /// Throws ReadError, for a file that does not exist with the most similar name, and PlcError.
-  explicit ComplexInput(const std::vector<std::string>& paths, const InputReading& reading = {});
+  explicit ComplexInput(const std::vector<std::string>& paths, InputReading reading = {});
+
+  /// Surfaces that are no files.
+  void add(PolygonSoup soup) { soups_.push_back(std::move(soup)); }
 
   const std::vector<PolygonSoup>& soups() const { return soups_; }
   bool has_cad() const { return !cad_.empty(); }
@@ -44,23 +51,26 @@ class ComplexInput {
   /// What was done to the facets of the complex built last.
   const RepairReport& repaired() const { return repaired_; }
 
-  /// The exact edges and faces behind the complex built last. Both must outlive the result.
+  /// The exact edges and faces behind the complex built last, for `run_pipeline`. Both must outlive the
+  /// result.
   ExactGeometry exact_geometry(const Plc& plc) const;
 
-  /// The options for `generate`, tighter with CAD files: the bounds have to hold still when the vertices have
-  /// moved onto the shape.
-  MeshOptions tightened(const MeshOptions& options, const Plc& plc) const;
-
  private:
+  void name(const std::string& path, Plc& plc);
+  Plc build_unnamed(const ComplexArguments& options);
   Plc build_repaired(const ComplexArguments& options);
   PlcError with_advice(const PlcError& error, const RepairOptions& options) const;
   Plc take(RepairedPlc result);
   void tessellate(double finer);
 
+  Execution watched() const;
+
+  InputReading reading_;
   std::vector<PolygonSoup> soups_;
   CadFiles cad_;
   double finer_ = 1;  // than the first triangles of CAD shapes
   RepairReport repaired_;
+  std::vector<Tag> patch_numbers_, curve_numbers_;  // of the complex built last, before names were given
 };
 
 }  // namespace collarmesh::cli

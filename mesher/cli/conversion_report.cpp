@@ -30,6 +30,7 @@ struct MeshKept {
 constexpr std::array meshes{MeshKept{".vtu", true, true},
                             MeshKept{".vtk", true, true},
                             MeshKept{".msh", true, true},
+                            MeshKept{".msh2", false, false},
                             MeshKept{".mesh", false, false, true, false, true},
                             MeshKept{".inp", false, false, false, true, true, false},
                             MeshKept{".unv", false, false, true, true, true},

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
@@ -15,6 +16,7 @@
 #include "mesh_command.h"
 #include "out_of_memory.h"
 #include "report.h"
+#include "scale.h"
 #include "soup_output.h"
 #include "staged_file.h"
 #include "surface_files.h"
@@ -34,8 +36,20 @@ void write(const MeshArguments& a, const std::function<void(const std::string&)>
   StagedFile::commit({&file});
 }
 
+void scale_soup(PolygonSoup& soup, double factor) {
+  scale(soup.points, factor);
+  scale(soup.hole_points, factor);
+  for (auto& region : soup.region_points) {
+    region.point = {factor * region.point.x, factor * region.point.y, factor * region.point.z};
+    region.size *= factor;
+  }
+  for (auto& hole : soup.facet_holes)
+    hole.point = {factor * hole.point.x, factor * hole.point.y, factor * hole.point.z};
+}
+
 void write_soup(const MeshArguments& a, const std::vector<PolygonSoup>& soups) {
-  const MergedSoup merged = merge_for_output(soups, a.output, a.output_format, a.complex.plc);
+  MergedSoup merged = merge_for_output(soups, a.output, a.output_format, a.complex.plc);
+  scale_soup(merged.soup, a.scale);
   write(a, [&](const std::string& path) { write_surface(path, merged.soup, a.output_format); });
   tell_unless_quiet(a, merged.told);
 }
@@ -53,15 +67,15 @@ PolygonSoup surface_of(const TetMesh& mesh, const std::string& name) {
   return soup;
 }
 
-void convert_mesh(const MeshArguments& a) {
+void convert_mesh(const MeshArguments& a, TetMesh& mesh) {
   if (a.inputs.size() > 1)
     throw OptionError(
         fmt::format("{} is a mesh, of which one at a time is converted; name it alone", a.inputs.front()));
-  const TetMesh mesh = read_mesh(a.inputs.front(), a.input_format);
   if (is_surface_format(a.output, a.output_format)) {
     write_soup(a, {surface_of(mesh, a.inputs.front())});
     return;
   }
+  scale(mesh.points, a.scale);
   write(a, [&](const std::string& path) { io::write_tet_mesh(path, mesh, a.output_format); });
   tell_unless_quiet(a, tet_mesh_text(a.output, mesh));
   tell_unless_quiet(a, losses_text(lost_by(format_of(a.output, a.output_format), mesh)));
@@ -81,16 +95,17 @@ ExitCode convert_command(const ConvertArguments& arguments) {
   limit_memory(a.mesh.max_memory);
   require_writable(a.output, a.output_format);
   const bool to_surface = is_surface_format(a.output, a.output_format);
-  const bool from_mesh = io::is_tet_mesh_format(a.inputs.front(), a.input_format);
+  std::optional<TetMesh> mesh = read_mesh_if_there(a.inputs.front(), a.input_format);
+  const bool from_mesh = mesh.has_value();
   if ((to_surface || from_mesh) && !arguments.meshing_options.empty())
     tell("warning: {}: no effect, since nothing is meshed here.\n",
          fmt::join(arguments.meshing_options, " "));
   if (from_mesh) {
-    convert_mesh(a);
+    convert_mesh(a, *mesh);
     return ExitCode::success;
   }
   if (!to_surface) return mesh_command(a);
-  ComplexInput input(a.inputs, {.format = a.input_format, .overlap = a.complex.overlap});
+  ComplexInput input(a.inputs, interruptible({.format = a.input_format, .overlap = a.complex.overlap}));
   if (arguments.repair) repair(a, input);
   write_soup(a, input.soups());
   return ExitCode::success;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "collarmesh/error.h"
-#include "collarmesh/io/tet_mesh_io.h"
 #include "complex_input.h"
 #include "console.h"
 #include "input_files.h"
@@ -16,8 +15,7 @@ namespace collarmesh::cli {
 
 namespace {
 
-void print_mesh(const std::string& path, bool as_json) {
-  const TetMesh mesh = read_mesh(path);
+void print_mesh(const TetMesh& mesh, bool as_json) {
   stop_if_interrupted();
   const MeshMeasures measures = measure_mesh(mesh);
   const double median = median_edge(mesh);
@@ -42,7 +40,7 @@ Plc build_any(ComplexInput& input, ComplexArguments options) {
 }
 
 void print_complex(const InfoArguments& arguments) {
-  ComplexInput input(arguments.inputs, {.format = {}, .overlap = arguments.complex.overlap});
+  ComplexInput input(arguments.inputs, interruptible({.format = {}, .overlap = arguments.complex.overlap}));
   const Plc plc = build_any(input, arguments.complex);
   stop_if_interrupted();
   const PlcSummary summary = summarize(plc, arguments.complex.crease_angle);
@@ -60,10 +58,11 @@ ExitCode info_command(const InfoArguments& arguments) {
   set_time_limit(arguments.time_limit);
   limit_memory(memory_of_the_machine() / 2);
   const std::string& first = arguments.inputs.front();
-  if (!io::is_tet_mesh_format(first))
+  const std::optional<TetMesh> mesh = read_mesh_if_there(first);
+  if (!mesh)
     print_complex(arguments);
   else if (arguments.inputs.size() == 1)
-    print_mesh(first, arguments.json);
+    print_mesh(*mesh, arguments.json);
   else
     throw OptionError(
         fmt::format("{} is a mesh, of which info tells about one at a time; name it alone", first));

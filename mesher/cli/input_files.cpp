@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <string_view>
 
 #include "collarmesh/error.h"
+#include "collarmesh/io/mesh_surface_io.h"
 #include "collarmesh/io/tet_mesh_io.h"
 #include "edit_distance.h"
 
@@ -65,6 +67,18 @@ TetMesh read_mesh(const std::string& path, const std::string& format) {
                                 fs::path(path).extension().string(),
                                 fmt::join(io::read_tet_mesh_formats(), " ")));
   return io::read_tet_mesh(file, format);
+}
+
+std::optional<TetMesh> read_mesh_if_there(const std::string& path, const std::string& format) {
+  if (!io::is_tet_mesh_format(path, format)) return std::nullopt;
+  if (!io::is_mesh_surface_format(path, format)) return read_mesh(path, format);
+  try {
+    return read_mesh(path, format);
+  } catch (const ReadError& error) {
+    if (std::string_view(error.what()).find("expected tetrahedra, found none") == std::string_view::npos)
+      throw;
+    return std::nullopt;
+  }
 }
 
 }  // namespace collarmesh::cli

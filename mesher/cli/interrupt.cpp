@@ -113,6 +113,12 @@ void stop_if_interrupted() {
   if (asked_to_stop()) throw reason_to_stop();
 }
 
+InputReading interruptible(InputReading reading) {
+  reading.cancel = &interrupt_flag();
+  reading.stop = [] { stop_if_interrupted(); };
+  return reading;
+}
+
 namespace {
 
 /// Ends with the command, or ends the program in its place.

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "complex_input.h"
 #include "exit_code.h"
 
 namespace collarmesh::cli {
@@ -35,6 +36,9 @@ void note_stage(const std::string& stage);
 
 /// Throws Stopped when the user asked to stop or the time is up.
 void stop_if_interrupted();
+
+/// How a command's input is read: as given, and so that it ends when that flag is set.
+InputReading interruptible(InputReading reading);
 
 /// Run a command so that an interrupt ends the program within a second whatever it is doing: stages
 /// that watch the flag return by themselves, others are abandoned, with their unfinished files.

@@ -53,7 +53,7 @@ ExitCode repair_command(const RepairArguments& a) {
   limit_memory(memory_of_the_machine() / 2);
   require_writable(a.output, a.output_format);
   if (!a.report.empty()) require_writable(a.report);
-  ComplexInput input(a.inputs, {.format = a.input_format, .overlap = a.complex.overlap});
+  ComplexInput input(a.inputs, interruptible({.format = a.input_format, .overlap = a.complex.overlap}));
   const Plc plc = input.build(a.complex);
   stop_if_interrupted();
   const nlohmann::ordered_json told =

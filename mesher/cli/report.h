@@ -1,35 +1,23 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "arguments.h"
 #include "collarmesh/check.h"
+#include "collarmesh/pipeline.h"
 #include "collarmesh/plc_builder.h"
-#include "collarmesh/project_boundary.h"
-#include "collarmesh/second_order.h"
 #include "stage_times.h"
 
 namespace collarmesh::cli {
 
 /// Everything one run of the mesher found out.
-struct MeshRun {
-  Plc plc;
+struct MeshRun : SoupPipelineResult {
   PlcSummary summary;
-  RepairReport repair;
   std::vector<std::string> warnings;  ///< of options; those of the input are in the complex
-  MeshResult result;
-  std::vector<std::string> notes;           ///< on CAD shapes, a line each
-  std::optional<ProjectReport> projection;  ///< when there are CAD shapes
-  std::optional<CoarsenReport> coarsening;  ///< unless it was switched off
-  ImproveReport improvement;
-  SecondOrderReport second_order;
-  CheckReport check;
+  std::vector<std::string> notes;     ///< on CAD shapes, a line each
   StageTimes times;
-
-  bool guarantees_hold() const { return result.status == MeshStatus::complete && check.passed(); }
 };
 
 // For programs (--report, --json):

@@ -184,6 +184,14 @@ Json complex_json(const Plc& plc, const PlcSummary& s) {
                        {"tag", plc.regions[r].tag},
                        {"name", plc.regions[r].name},
                        {"volume", plc.regions[r].volume}});
+  Json patch_list = Json::array();
+  for (const PatchSummary& p : summarize_patches(plc))
+    patch_list.push_back({{"tag", p.tag},
+                          {"name", p.name.empty() ? Json(nullptr) : Json(p.name)},
+                          {"patches", p.count},
+                          {"planar", p.planar},
+                          {"area", p.area},
+                          {"where", point_json(p.where)}});
   Json creases = Json::array();
   for (const Crease& crease : s.creases)
     creases.push_back({{"kind", kind_name(crease.kind)},
@@ -208,6 +216,7 @@ Json complex_json(const Plc& plc, const PlcSummary& s) {
           {"planar_tolerance", plc.planar_tolerance},
           {"largest_deviation", s.largest_deviation},
           {"regions", std::move(regions)},
+          {"patch_list", std::move(patch_list)},
           {"creases", std::move(creases)},
           {"warnings", std::move(warnings)}};
 }

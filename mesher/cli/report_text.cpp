@@ -61,6 +61,19 @@ RepairReport beyond_tolerance(const RepairReport& report) {
   return rest;
 }
 
+/// By number, as sizes and formats name them.
+void append_patches(std::string& text, const Plc& plc) {
+  const std::vector<PatchSummary> patches = summarize_patches(plc);
+  for (std::size_t k = 0; k < std::min(patches.size(), listed); ++k) {
+    const PatchSummary& p = patches[k];
+    fmt::format_to(Out(text), "  patch {}{}: {}, area {:.6g}, at ({:.6g}, {:.6g}, {:.6g})\n", p.tag,
+                   p.name.empty() ? "" : fmt::format(" ({})", p.name), p.planar ? "planar" : "smooth", p.area,
+                   p.where.x, p.where.y, p.where.z);
+  }
+  if (patches.size() > listed)
+    fmt::format_to(Out(text), "  ... and {} more patches (--json lists all)\n", patches.size() - listed);
+}
+
 }  // namespace
 
 std::string warnings_text(const Plc& plc) {
@@ -95,6 +108,7 @@ std::string complex_text(const Plc& plc, const PlcSummary& s) {
                  s.smallest_angle, s.shortest_segment, s.spread);
   fmt::format_to(Out(text), "  merging moved the input by at most {:.3g}\n", s.largest_deviation);
   append_regions(text, plc);
+  append_patches(text, plc);
   append_creases(text, plc, s.creases);
   return text;
 }

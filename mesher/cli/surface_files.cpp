@@ -6,6 +6,7 @@
 
 #include "cad_files.h"
 #include "collarmesh/error.h"
+#include "collarmesh/io/mesh_surface_io.h"
 #include "collarmesh/io/soup_io.h"
 #ifdef COLLARMESH_OPENMESH
 #include "collarmesh/openmesh_io/read_om.h"
@@ -44,6 +45,7 @@ PolygonSoup read_surface(const std::string& path, std::string_view format) {
 #ifdef COLLARMESH_OPENMESH
   if (is_om(path, format)) return openmesh_io::read_om(path);
 #endif
+  if (io::is_mesh_surface_format(path, format)) return io::read_mesh_surface(path, format);
   if (!io::is_soup_format(path, format))
     throw ReadError(fmt::format("{}: its format is not known by its extension '{}'; use {}{}{}", path,
                                 std::filesystem::path(path).extension().string(),

@@ -12,7 +12,7 @@ namespace collarmesh::cli {
 bool is_surface_format(const std::string& path, std::string_view format = {});
 std::vector<std::string> surface_formats();
 
-/// Throws ReadError.
+/// These, and the tagged triangles of mesh files (io/mesh_surface_io.h). Throws ReadError.
 PolygonSoup read_surface(const std::string& path, std::string_view format = {});
 /// Throws WriteError.
 void write_surface(const std::string& path, const PolygonSoup& soup, std::string_view format = {});

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <system_error>
 #include <vector>
 
 #include "edit_distance.h"
@@ -58,6 +60,22 @@ std::string usage_of(const std::string& command) {
   if (command == "convert") return "collarmesh convert IN... -o OUT";
   if (command == "repair") return "collarmesh repair IN... -o OUT";
   return "collarmesh INPUT... -o OUT";
+}
+
+std::string mistaken_command(const std::string& word) {
+  std::error_code ignored;
+  if (word.find_first_of("./-") != std::string::npos || std::filesystem::exists(word, ignored)) return {};
+  std::string found;
+  std::size_t nearest = 3;
+  for (const char* command : {"check", "info", "convert", "repair"}) {
+    const std::size_t distance = edit_distance(word, command);
+    if (distance == 0) return {};
+    if (distance >= nearest) continue;
+    nearest = distance;
+    found = command;
+  }
+  return found.empty() ? found
+                       : fmt::format("{}: there is no such command or file; did you mean {}?", word, found);
 }
 
 std::string usage_message(const CLI::App& app, const CLI::Error& error) {

@@ -9,6 +9,9 @@ namespace collarmesh::cli {
 /// CLI11's own messages tell of its types and its patterns.
 std::string usage_message(const CLI::App& app, const CLI::Error& error);
 
+/// What is wrong with a first argument that is no file and nearly a command; else empty.
+std::string mistaken_command(const std::string& word);
+
 /// How a command is called; the one that meshes has an empty name.
 std::string usage_of(const std::string& command);
 

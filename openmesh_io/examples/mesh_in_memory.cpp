@@ -2,9 +2,8 @@
 // OpenMesh mesh:
 //   find_package(collarmesh REQUIRED)
 //   target_link_libraries(mesh_in_memory PRIVATE collarmesh::openmesh_io)
-#include <collarmesh/check.h>
-#include <collarmesh/mesher.h>
 #include <collarmesh/openmesh_io.h>
+#include <collarmesh/pipeline.h>
 
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
@@ -45,18 +44,18 @@ int main() {
   for (const std::string& note : complex.notes) std::printf("%s\n", note.c_str());
 
   // ... and the complex a mesh: fine near side 2, the top.
-  collarmesh::MeshOptions options;
-  options.size = 0.5;
-  options.patch_size[2] = 0.2;
-  options.gradation = 0.5;
-  const collarmesh::MeshResult result = collarmesh::generate(complex.plc, options);
-  if (result.status != collarmesh::MeshStatus::complete) {
-    std::printf("%s\n", result.message.c_str());
+  collarmesh::PipelineOptions options;
+  options.mesh.size = 0.5;
+  options.mesh.patch_size[2] = 0.2;
+  options.mesh.gradation = 0.5;
+  const collarmesh::PipelineResult made = collarmesh::run_pipeline(complex.plc, options);
+  if (!made.guarantees_hold()) {
+    std::printf("%s\n", made.result.message.c_str());
     return 1;
   }
 
   // Walk the tetrahedra.
-  const collarmesh::TetMesh& mesh = result.mesh;
+  const collarmesh::TetMesh& mesh = made.result.mesh;
   double volume = 0, worst = 0;
   for (const auto& [a, b, c, d] : mesh.tets) {
     const collarmesh::TetQuality quality =
@@ -74,6 +73,5 @@ int main() {
   for (const auto face : surface.faces()) top += surface.property(tag, face) == 2 ? 1 : 0;
   std::printf("%zu of %zu boundary triangles are on the top\n", top, surface.n_faces());
 
-  const bool certified = collarmesh::check(mesh, complex.plc).passed();
-  return certified && std::fabs(volume - 6) < 1e-5 && top > 0 ? 0 : 1;
+  return std::fabs(volume - 6) < 1e-5 && top > 0 ? 0 : 1;
 }

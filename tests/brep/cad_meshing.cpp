@@ -20,7 +20,7 @@
 #include <map>
 #include <set>
 
-#include "collarmesh/improve.h"
+#include "collarmesh/pipeline.h"
 #include "complex_input.h"
 #include "support/temporary_file.h"
 
@@ -62,20 +62,18 @@ CadMeshed mesh_of_cad_file(const std::string& path, double relative_size, int or
   cli::ComplexInput input({path}, reading);
   CadMeshed meshed;
   meshed.plc = input.build({});
-  MeshOptions options;
-  options.size = relative_size * meshed.plc.bounds.diagonal();
-  options.distance = relative_distance * meshed.plc.bounds.diagonal();
-  options.time_limit = 60;
-  meshed.result = generate(meshed.plc, input.tightened(options, meshed.plc));
-  if (meshed.result.status != MeshStatus::complete) return meshed;
-  TetMesh& mesh = meshed.result.mesh;
-  const MeshOptions bounds = input.tightened(options, meshed.plc);
-  improve(mesh, meshed.plc, {.radius_edge = bounds.radius_edge, .distance = bounds.distance});
-  meshed.projection =
-      project_boundary(mesh, meshed.plc, input.exact_geometry(meshed.plc), {.reach = options.distance});
-  if (order == 2)
-    meshed.second_order = make_second_order(mesh, meshed.plc, {.exact = input.exact_geometry(meshed.plc)});
-  meshed.report = check(meshed.result.mesh, meshed.plc, {.distance = options.distance});
+  PipelineOptions options;
+  options.mesh.size = relative_size * meshed.plc.bounds.diagonal();
+  options.mesh.distance = relative_distance * meshed.plc.bounds.diagonal();
+  options.mesh.time_limit = 60;
+  options.coarsen = false;
+  options.order = static_cast<unsigned>(order);
+  options.exact = input.exact_geometry(meshed.plc);
+  PipelineResult run = run_pipeline(meshed.plc, options);
+  meshed.result = std::move(run.result);
+  meshed.projection = run.projection.value_or(ProjectReport());
+  meshed.second_order = std::move(run.second_order);
+  meshed.report = std::move(run.check);
   return meshed;
 }
 

@@ -819,12 +819,5 @@ class Convert(ProgramTest):
         self.convert(8, self.box, "-o", "missing/a.stl", says=["does not exist"])
 
 
-class Documentation(ProgramTest):
-    def test_readme_has_every_option(self):
-        readme = (SOURCES / "README.md").read_text()
-        for option in set(re.findall(r"--[a-z][a-z-]+", self.run_program("--help").stdout)):
-            self.assertIn(option, readme.replace("`", " ").split(), "not in the README")
-
-
 if __name__ == "__main__":
     unittest.main()

@@ -63,19 +63,32 @@ def canonical(points, cells, values):
     return sorted((tuple(sorted(map(tuple, rounded[cell]))), int(value)) for cell, value in zip(cells, values))
 
 
-def check_vtu_with_meshio(path, counts):
+def check_vtk_with_meshio(path, counts):
+    """All kinds of cells."""
     mesh = meshio.read(path)
-    check_counts("vtu by meshio", mesh, counts)
+    check_counts("vtk by meshio", mesh, counts)
     names = {"region", "region_back", "region_front", "tag", "feature", "collar",
              "radius_edge", "min_dihedral", "max_dihedral"}
-    expect(names <= set(mesh.cell_data), f"vtu by meshio: cell arrays {sorted(mesh.cell_data)}")
-    for name in names:
+    check_arrays("vtk by meshio", mesh, names)
+    return mesh
+
+
+def check_arrays(label, mesh, names):
+    expect(names <= set(mesh.cell_data), f"{label}: cell arrays {sorted(mesh.cell_data)}")
+    for name in names & set(mesh.cell_data):
         for block, values in zip(mesh.cells, mesh.cell_data[name]):
-            expect(np.shape(values) == (len(block.data),), f"vtu by meshio: shape of {name} for {block.type}")
-            expect(np.isfinite(values).all(), f"vtu by meshio: {name} finite")
-    expect(set(by_type(mesh, "collar")["tetra"]) == {0, 1, 2}, "vtu by meshio: collar")
-    expect(set(by_type(mesh, "region")["tetra"]) == {1, 2}, "vtu by meshio: region")
-    expect(set(mesh.point_data["feature_dimension"]) == {0, 1, 2, 3}, "vtu by meshio: feature_dimension")
+            expect(np.shape(np.squeeze(values)) == (len(block.data),), f"{label}: shape of {name} for {block.type}")
+            expect(np.isfinite(values).all(), f"{label}: {name} finite")
+    expect(set(np.squeeze(by_type(mesh, "collar")["tetra"])) == {0, 1, 2}, f"{label}: collar")
+    expect(set(np.squeeze(by_type(mesh, "region")["tetra"])) == {1, 2}, f"{label}: region")
+    expect(set(np.squeeze(mesh.point_data["feature_dimension"])) == {0, 1, 2, 3}, f"{label}: feature_dimension")
+
+
+def check_vtu_with_meshio(path, counts):
+    """Tetrahedra alone."""
+    mesh = meshio.read(path)
+    expect([(block.type, len(block.data)) for block in mesh.cells] == [("tetra", counts[1])], "vtu by meshio: cells")
+    check_arrays("vtu by meshio", mesh, {"region", "tag", "collar", "radius_edge", "min_dihedral", "max_dihedral"})
     return mesh
 
 
@@ -137,14 +150,15 @@ def main():
         print("python3-meshio is not installed: nothing tested")
         return 77
     with tempfile.TemporaryDirectory() as folder:
-        vtu, msh, mesh = (os.path.join(folder, "sample" + ext) for ext in (".vtu", ".msh", ".mesh"))
-        run = subprocess.run([sys.argv[1], str(N), "1", vtu, msh, mesh], capture_output=True, text=True, check=True)
+        vtu, vtk_file, msh, mesh = (os.path.join(folder, "sample" + ext) for ext in (".vtu", ".vtk", ".msh", ".mesh"))
+        run = subprocess.run([sys.argv[1], str(N), "1", vtu, vtk_file, msh, mesh], capture_output=True, text=True, check=True)
         counts = tuple(map(int, run.stdout.split()))
-        ours = check_vtu_with_meshio(vtu, counts)
+        ours = check_vtk_with_meshio(vtk_file, counts)
+        volume = check_vtu_with_meshio(vtu, counts)
         if vtk is None:
             print("python3-vtk9 is not installed: not tested with VTK")
         else:
-            check_vtu_with_vtk(vtu, ours)
+            check_vtu_with_vtk(vtu, volume)
         read = check_msh_with_meshio("msh by meshio", msh, counts, ours)
         expect("collar" in read.cell_data, "msh by meshio: collar is there")
         check_medit_with_meshio(mesh, counts, ours)

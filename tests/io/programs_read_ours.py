@@ -87,19 +87,17 @@ def check_meshio_mesh(label, mesh, sample, kinds=3):
     return cells
 
 
-def check_xdmf_topology(sample):
-    """Cells of second order by the numbers of types in the XDMF model."""
-    import h5py
-    with h5py.File(sample.files[".xdmf"].replace(".xdmf", ".h5")) as file:
-        topology, points = file["topology"][()], file["points"][()]
-    cells, at = {}, 0
-    while at < len(topology):
-        nodes = {38: 10, 36: 6, 34: 3}[int(topology[at])]
-        cells.setdefault(nodes, []).append(topology[at + 1:at + 1 + nodes])
-        at += 1 + nodes
-    found = {nodes: len(list_of) for nodes, list_of in cells.items()}
-    expect(found == {10: sample.tets, 6: sample.faces, 3: sample.edges}, f".xdmf of order 2 by h5py: {found}")
-    check_mid_nodes(".xdmf of order 2 by h5py", points, np.array(cells[10]), MID_EDGES)
+def check_xdmf_parts(sample, meshio):
+    """Faces and edges are in files of their own beside the tetrahedra."""
+    stem = sample.files[".xdmf"][: -len(".xdmf")]
+    _, triangle, line = MESHIO_TYPES[sample.order]
+    for part, kind, count in (("faces", triangle, sample.faces), ("edges", line, sample.edges)):
+        mesh = meshio.read(f"{stem}_{part}.xdmf")
+        cells = cells_by_type(mesh)
+        label = f".xdmf of order {sample.order} by meshio: {part}"
+        expect(set(cells) == {kind} and len(cells[kind]) == count, f"{label}: {[(k, len(v)) for k, v in cells.items()]}")
+        expect(len(mesh.cell_data["tag"][0]) == count, f"{label}: tags")
+        expect(len(mesh.points) == sample.points, f"{label}: points")
 
 
 def with_meshio(folder):
@@ -119,11 +117,10 @@ def with_meshio(folder):
         sample = Sample(folder, order, ".vtk", ".vtu", ".msh", ".inp", ".unv", *optional)
         for extension in (".vtk", ".vtu", ".msh", ".inp", *optional):
             label = f"{extension} of order {order} by meshio"
-            if extension == ".xdmf" and order == 2:  # meshio has no mixed cells of second order
-                check_xdmf_topology(sample)
-                continue
             mesh = meshio.read(sample.files[extension])
-            check_meshio_mesh(label, mesh, sample, 1 if extension == ".inp" else 3)
+            check_meshio_mesh(label, mesh, sample, 1 if extension in (".inp", ".vtu", ".xdmf") else 3)
+            if extension == ".xdmf":
+                check_xdmf_parts(sample, meshio)
             if extension == ".inp":
                 expect({"REGION_20", "REGION_MINUS_4", "VOLUME_1", "EALL"} <= set(mesh.cell_sets), f"{label}: element sets {set(mesh.cell_sets)}")
                 expect("PATCH_MINUS_3_NODES" in mesh.point_sets and any(name.startswith("CURVE_") for name in mesh.point_sets),
@@ -131,6 +128,21 @@ def with_meshio(folder):
             if extension == ".med":
                 names = {name for families in mesh.cell_tags.values() for name in families}
                 expect({"region_20", "region_-4", "patch_-3"} <= names, f"{label}: groups {names}")
+
+
+def cut_through(grid, vtk):
+    """A plane and a threshold give sections of the volume, without the outlines of faces and edges in them."""
+    cutter = vtk.vtkCutter()
+    plane = vtk.vtkPlane()
+    plane.SetOrigin(grid.GetCenter())
+    plane.SetNormal(0.3, 0.5, 0.8)
+    cutter.SetCutFunction(plane)
+    cutter.SetInputData(grid)
+    cutter.Update()
+    kinds = {cutter.GetOutput().GetCellType(i) for i in range(cutter.GetOutput().GetNumberOfCells())}
+    expect(kinds and kinds <= {vtk.VTK_TRIANGLE, vtk.VTK_QUAD, vtk.VTK_POLYGON}, f"a cut has cells of the types {kinds}")
+    low, high = grid.GetCellData().GetArray("min_dihedral").GetRange()
+    expect(low > 0, f"min_dihedral is from {low} to {high}")
 
 
 def with_vtk(folder):
@@ -150,19 +162,24 @@ def with_vtk(folder):
             reader.Update()
             grid = reader.GetOutput()
             expect(grid.GetNumberOfPoints() == sample.points, f"{label}: points")
-            expect(grid.GetNumberOfCells() == sample.tets + sample.faces + sample.edges, f"{label}: cells")
+            cells = sample.tets + (0 if extension == ".vtu" else sample.faces + sample.edges)
+            expect(grid.GetNumberOfCells() == cells, f"{label}: {grid.GetNumberOfCells()} cells")
             types = vtk_to_numpy(grid.GetCellTypesArray())
             expect((types == (10 if order == 1 else 24)).sum() == sample.tets, f"{label}: types of cells")
             grids.append(grid)
         first, second = grids
         expect(np.array_equal(vtk_to_numpy(first.GetPoints().GetData()), vtk_to_numpy(second.GetPoints().GetData())), "points differ")
-        expect(np.array_equal(vtk_to_numpy(first.GetCells().GetConnectivityArray()),
-                              vtk_to_numpy(second.GetCells().GetConnectivityArray())), "corners differ")
+        volume = vtk_to_numpy(second.GetCells().GetConnectivityArray())
+        expect(np.array_equal(vtk_to_numpy(first.GetCells().GetConnectivityArray())[: len(volume)], volume), "corners differ")
         for k in range(second.GetCellData().GetNumberOfArrays()):
             name = second.GetCellData().GetArrayName(k)
             array = first.GetCellData().GetArray(name)
-            expect(array is not None and np.array_equal(vtk_to_numpy(array), vtk_to_numpy(second.GetCellData().GetArray(k))),
+            of_tets = None if array is None else vtk_to_numpy(array)[: sample.tets]
+            expect(of_tets is not None and np.array_equal(of_tets, vtk_to_numpy(second.GetCellData().GetArray(k))),
                    f"cell array {name}")
+        field = second.GetFieldData()
+        expect(len(vtk_to_numpy(field.GetArray("boundary_types"))) == sample.faces + sample.edges, ".vtu: boundary in field data")
+        cut_through(second, vtk)
 
 
 def with_gmsh(folder):

@@ -1,8 +1,17 @@
 """The Python module: arrays in and out, guarantees, errors. Run by CTest with the module on PYTHONPATH."""
 
+import copy
 import gc
+import json
 import os
+import pathlib
+import pickle
+import signal
+import subprocess
+import sys
 import tempfile
+import threading
+import time
 import unittest
 
 import collarmesh
@@ -117,6 +126,343 @@ class Module(unittest.TestCase):
             self.assertEqual(len(meshio.read(path).points), len(mesh.points))
         with self.assertRaises(collarmesh.Error):
             mesh.write("/no/such/folder/box.vtu")
+
+
+MODELS = pathlib.Path(os.environ["COLLARMESH_MODELS"])
+
+
+class Inputs(unittest.TestCase):
+    def test_files_by_path(self):
+        for path in (MODELS / "box.off", str(MODELS / "box.off")):
+            mesh = collarmesh.mesh(path, size=0.5)
+            self.assertTrue(mesh.passed, mesh.findings)
+        self.assertEqual(set(mesh.face_tag), set(range(1, 7)))  # numbered where the file has no tags
+
+    def test_a_cad_shape(self):
+        real = os.environ.get("COLLARMESH_REAL")
+        if not real:
+            self.skipTest("no CAD files beside the sources")
+        path = min(pathlib.Path(real).rglob("*.st*p"), key=lambda p: p.stat().st_size)
+        try:
+            mesh = collarmesh.mesh(path)
+        except collarmesh.ReadError as error:
+            self.skipTest(str(error))
+        self.assertTrue(mesh.passed, mesh.findings)
+        self.assertEqual(mesh.name(2, 1), "Face1")
+
+    def test_a_complex_with_a_hole_a_region_and_an_open_facet(self):
+        outer, _, _ = box((0, 0, 0), (3, 3, 3))
+        inner, _, _ = box((1, 1, 1), (2, 2, 2))
+        quads = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
+        facets = [*quads, *[[i + 8 for i in quad] for quad in quads]]
+        tags = [*range(1, 7), *[7] * 6]
+        complex_ = collarmesh.Complex(numpy.vstack([outer, inner]), facets, facet_tags=tags, holes=[(1.5, 1.5, 1.5)],
+                                      regions=[((0.5, 0.5, 0.5), 42, 0.8)], names={7: "cavity"})
+        mesh = collarmesh.mesh(complex_)
+        self.assertTrue(mesh.passed, mesh.findings)
+        self.assertAlmostEqual(volumes(mesh).sum(), 26, places=10)
+        self.assertEqual(set(mesh.tet_tag), {42})
+        self.assertEqual(mesh.names, {2: {7: "cavity"}})
+        a, b, c = (mesh.points[mesh.faces[mesh.face_tag == 7, i]] for i in range(3))
+        self.assertAlmostEqual(numpy.linalg.norm(numpy.cross(b - a, c - a), axis=1).sum() / 2, 6, places=10)
+
+    def test_a_facet_with_a_hole(self):
+        points = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (3, 0), (3, 3), (0, 3), (1, 1), (2, 1), (2, 2), (1, 2))]
+        ring = lambda first: [[first + i for i in range(4)], [first + 4 + i for i in range(4)]]
+        facets = [ring(0), ring(8)]
+        facets += [[i, (i + 1) % 4, 8 + (i + 1) % 4, 8 + i] for i in range(4)]
+        facets += [[4 + i, 4 + (i + 1) % 4, 12 + (i + 1) % 4, 12 + i] for i in range(4)]
+        mesh = collarmesh.mesh(collarmesh.Complex(points, facets, facet_holes={0: [(1.5, 1.5, 0)], 1: [(1.5, 1.5, 1)]},
+                                                  holes=[(1.5, 1.5, 0.5)]), size=0.5)
+        self.assertTrue(mesh.passed, mesh.findings)
+        self.assertAlmostEqual(volumes(mesh).sum(), 8, places=10)
+
+    def test_kinds_and_shapes_of_arrays(self):
+        points, triangles, tags = box((0, 0, 0), (1, 1, 1))
+        for surface, words in (
+            ((points, triangles + 0.5), "integers"),
+            ((points, triangles.astype(float)), "integers"),
+            ((points, triangles, tags.astype(float)), "integers"),
+            ((points, triangles.ravel()), r"\(n, 3\)"),
+            ((points.astype(str), triangles), "numbers"),
+            ((points,), "tuple"),
+            (7, "path"),
+        ):
+            with self.assertRaisesRegex(collarmesh.OptionError, words):
+                collarmesh.mesh(surface)
+        mesh = collarmesh.mesh((points.tolist(), triangles.astype(numpy.uint32)), size=0.5)
+        self.assertTrue(mesh.passed)
+
+
+class Options(unittest.TestCase):
+    def setUp(self):
+        self.box = box((0, 0, 0), (1, 1, 1))
+
+    def count(self, **options):
+        mesh = collarmesh.mesh(self.box, **options)
+        self.assertTrue(mesh.passed, mesh.findings)
+        return len(mesh.tets)
+
+    def test_size_fields(self):
+        coarse = self.count(size=0.5)
+        fine_below = lambda x, y, z: 0.1 if z < 0.2 else 0.5
+        points = numpy.array([(-1, -1, -1), (5, -1, -1), (-1, 5, -1), (-1, -1, 5)], dtype=float)
+        for field in (fine_below, (points, [(0, 1, 2, 3)], numpy.full(4, 0.15)),
+                      {"sources": [{"ball": {"centre": [0, 0, 0], "radius": 0.2}, "size": 0.1}]}):
+            self.assertGreater(self.count(size=0.5, size_field=field), 2 * coarse)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "field.json"
+            path.write_text(json.dumps({"sources": [{"patches": [5], "size": 0.1}]}))
+            self.assertGreater(self.count(size=0.5, size_field=path), 2 * coarse)
+
+    def test_what_a_size_field_raises_comes_out(self):
+        with self.assertRaisesRegex(ZeroDivisionError, "division"):
+            collarmesh.mesh(self.box, size_field=lambda x, y, z: 1 / 0)
+
+    def test_curve_sizes_and_unknown_tags(self):
+        tags = [patch["tag"] for patch in collarmesh.info(self.box)["complex"]["patch_list"]]
+        self.assertEqual(tags, [1, 2, 3, 4, 5, 6])
+        self.assertGreater(self.count(size=0.5, curve_size={1: 0.05}), 2 * self.count(size=0.5))
+        for option in ("region_size", "patch_size", "curve_size"):
+            with self.assertRaisesRegex(collarmesh.OptionError, "99"):
+                collarmesh.mesh(self.box, **{option: {99: 0.1}})
+            with self.assertRaisesRegex(collarmesh.OptionError, "integers"):
+                collarmesh.mesh(self.box, **{option: {1.5: 0.1}})
+
+    def test_out_of_range(self):
+        for option in ({"weld": 0.5}, {"feature_angle": 190}, {"crease_angle": 91}, {"collar_angle": 90}, {"improve": 4},
+                       {"thin_angle": 40}, {"theta": 0.5}, {"radius_edge": 0.5}, {"vertex_ratio": 2}, {"order": 3},
+                       {"overlap": "both"}, {"collar_creation": "later"}, {"seed": -1}, {"size": "small"},
+                       {"max_memory": "much"}, {"planar_tolerance": 0.1}, {"size": -1}):
+            with self.assertRaises(collarmesh.OptionError, msg=option):
+                collarmesh.mesh(self.box, **option)
+
+    def test_names(self):
+        points, triangles, _ = self.box
+        names = {"patches": {"inlet": {"at": [0, 0.5, 0.5]}, "lid": 6}, "regions": {"air": 1}}
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "names.json"
+            path.write_text(json.dumps(names))
+            for given in (names, path):
+                mesh = collarmesh.mesh((points, triangles), size=0.5, names=given)
+                self.assertEqual(set(mesh.names[2].values()), {"inlet", "lid"})
+                self.assertEqual(mesh.name(3, 1), "air")
+                (inlet,) = [tag for tag, name in mesh.names[2].items() if name == "inlet"]
+                self.assertEqual(mesh.points[mesh.faces[mesh.face_tag == inlet]][:, :, 0].max(), 0)
+                self.assertIn("inlet", mesh.to_meshio().cell_sets)
+            mesh.write(pathlib.Path(folder) / "box.inp")
+            self.assertIn("NAME=INLET,", (pathlib.Path(folder) / "box.inp").read_text())
+        with self.assertRaisesRegex(collarmesh.OptionError, "no patch has the number 99"):
+            collarmesh.mesh((points, triangles), names={"patches": {"a": 99}})
+
+    def test_threads_change_nothing(self):
+        one, two = (collarmesh.mesh(self.box, size=0.2, threads=n) for n in (1, 2))
+        numpy.testing.assert_array_equal(one.tets, two.tets)
+
+    def test_budgets(self):
+        with self.assertRaisesRegex(collarmesh.BudgetError, "200 vertices"):
+            collarmesh.mesh(self.box, size=0.05, max_vertices=200)
+        with self.assertRaisesRegex(collarmesh.BudgetError, "memory"):
+            collarmesh.mesh(self.box, size=0.02, max_memory="1M")
+
+    def test_weld_and_coarsen(self):
+        points, triangles, tags = self.box
+        torn = points[triangles].reshape(-1, 3) + numpy.repeat([[0, 0, 0], [1e-7, 0, 0]], 18, axis=0)
+        loose = numpy.arange(36).reshape(-1, 3)
+        mesh = collarmesh.mesh((torn, loose, tags), size=0.5, weld=1e-5, repair="none")
+        self.assertAlmostEqual(volumes(mesh).sum(), 1, places=5)
+        plate = box((0, 0, 0), (4, 4, 0.1))
+        self.assertLess(3 * len(collarmesh.mesh(plate, size=1).tets), len(collarmesh.mesh(plate, size=1, coarsen=False).tets))
+
+
+class Meshes(unittest.TestCase):
+    def setUp(self):
+        self.mesh = collarmesh.mesh(box((0, 0, 0), (1, 1, 1)), size=0.4)
+
+    def test_indices_are_signed(self):
+        for name in ("tets", "faces", "edges", "face_regions", "tet_region", "tet_mid_nodes"):
+            self.assertEqual(getattr(self.mesh, name).dtype, numpy.int64, name)
+
+    def test_pickle_and_copy(self):
+        for other in (pickle.loads(pickle.dumps(self.mesh)), copy.deepcopy(self.mesh)):
+            numpy.testing.assert_array_equal(other.tets, self.mesh.tets)
+            self.assertEqual(other.report, self.mesh.report)
+            self.assertTrue(other.passed)
+            with self.assertRaises(ValueError):
+                other.points[0] = 0
+
+    def test_write_read_check(self):
+        points, triangles, tags = box((0, 0, 0), (1, 1, 1))
+        with tempfile.TemporaryDirectory() as folder:
+            for extension in (".vtu", ".msh", ".mesh", ".inp", ".unv", ".vtk"):
+                path = pathlib.Path(folder) / f"box{extension}"
+                self.mesh.write(path)
+                other = collarmesh.read(path)
+                self.assertEqual(len(other.tets), len(self.mesh.tets))
+                for subject in (other, path):
+                    report = collarmesh.check(subject, (points, triangles, tags))
+                    self.assertTrue(report["passed"], (extension, report["findings"]))
+                self.assertEqual(collarmesh.info(path)["mesh"]["tets"], len(self.mesh.tets))
+            self.mesh.write(pathlib.Path(folder) / "small.msh", scale=0.001)
+            numpy.testing.assert_array_equal(
+                sorted(map(tuple, collarmesh.read(pathlib.Path(folder) / "small.msh").points)),
+                sorted(map(tuple, 0.001 * self.mesh.points)))
+        report = collarmesh.check(self.mesh, box((0, 0, 0), (1, 1, 1.1)))
+        self.assertFalse(report["passed"])
+        self.assertTrue(report["findings"])
+
+    def test_convert_and_repair(self):
+        points, triangles, tags = box((0, 0, 0), (1, 1, 1))
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            collarmesh.convert((points, triangles, tags), folder / "box.stl")
+            collarmesh.convert(folder / "box.stl", folder / "box.obj")
+            collarmesh.convert(folder / "box.obj", folder / "box.vtu", size=0.5)
+            collarmesh.convert(folder / "box.vtu", folder / "skin.off")
+            self.assertTrue(collarmesh.check(folder / "box.vtu", folder / "skin.off")["passed"])
+            surfaces, messages = collarmesh.repair((points, triangles[:-1], tags[:-1]), output=folder / "whole.off")
+            self.assertRegex(messages[0], "hole of 3 edges")
+            self.assertEqual(len(surfaces[0][1]), 12)
+            self.assertEqual(collarmesh.info(folder / "whole.off")["repair"]["repaired"], False)
+        whole, nothing = collarmesh.repair((points, triangles, tags))
+        self.assertEqual(nothing, [])
+        numpy.testing.assert_array_equal(whole[0][2], tags)
+
+    def test_to_meshio(self):
+        try:
+            import meshio
+        except ImportError:
+            self.skipTest("meshio is not installed")
+        for order in (1, 2):
+            mesh = collarmesh.mesh(box((0, 0, 0), (1, 1, 1)), size=0.5, order=order)
+            other = mesh.to_meshio()
+            with tempfile.TemporaryDirectory() as folder:
+                # meshio has no mixed cells of second order in .xdmf.
+                for name in ("box.vtu", "box.xdmf")[: 3 - order]:
+                    path = os.path.join(folder, name)
+                    meshio.Mesh(other.points, other.cells, cell_data=other.cell_data).write(path)
+                    back = meshio.read(path)
+                    self.assertEqual(sum(len(block.data) for block in back.cells),
+                                     len(mesh.tets) + len(mesh.faces) + len(mesh.edges))
+            self.assertEqual(len(other.cell_sets["patch_3"][1]), (mesh.face_tag == 3).sum())
+
+    def test_plot(self):
+        try:
+            import matplotlib
+        except ImportError:
+            self.skipTest("matplotlib is not installed")
+        matplotlib.use("agg")
+        axes = self.mesh.plot()
+        self.assertEqual(len(axes.collections), 1)
+        with tempfile.TemporaryDirectory() as folder:
+            axes.figure.savefig(os.path.join(folder, "box.png"))
+
+    def test_to_pyvista(self):
+        try:
+            import pyvista
+        except ImportError:
+            with self.assertRaises(ImportError):
+                self.mesh.to_pyvista()
+            return
+        self.assertEqual(self.mesh.to_pyvista().n_cells, len(self.mesh.tets))
+
+
+class Stopping(unittest.TestCase):
+    def test_a_callback_that_returns_nothing_goes_on_and_hears_of_all_stages(self):
+        seen = []
+        mesh = collarmesh.mesh(box((0, 0, 0), (1, 1, 1)), size=0.04, coarsen=True,
+                               progress=lambda phase, part: seen.append((phase, part)))
+        self.assertTrue(mesh.passed)
+        parts = [part for _, part in seen]
+        self.assertEqual(parts, sorted(parts))
+        self.assertLessEqual({"refine", "improve"}, {phase for phase, _ in seen})
+
+    def test_what_a_callback_raises_comes_out(self):
+        def fail(phase, part):
+            raise KeyError(phase)
+
+        with self.assertRaises(KeyError):
+            collarmesh.mesh(box((0, 0, 0), (1, 1, 1)), size=0.02, progress=fail)
+
+    def run_script(self, script, after):
+        """Send Ctrl-C so many seconds after the script says that it begins; how long it takes to end."""
+        process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
+        self.assertEqual(process.stdout.readline().strip(), "begin")
+        time.sleep(after)
+        begin = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+        self.assertIn("stopped", out, err)
+        return float(out.split()[-1]) - begin
+
+    def test_interrupt_in_every_stage(self):
+        for stage in ("refine", "coarsen", "improve", "check"):
+            with self.subTest(stage=stage):
+                took = self.run_script(f"""
+import os, signal, sys, time
+sys.path[:0] = {sys.path!r}
+import collarmesh
+sys.path.insert(0, {os.path.dirname(__file__)!r})
+from module_test import box
+def told(phase, part):
+    if phase == {stage!r} and not heard:
+        heard.append(part)
+        print("begin", flush=True)
+heard = []
+try:
+    collarmesh.mesh(box((0, 0, 0), (1, 1, 1)), size=0.015, coarsen={stage == 'coarsen'}, progress=told)
+    print("ended", time.monotonic(), flush=True)
+except KeyboardInterrupt:
+    print("stopped", time.monotonic(), flush=True)
+""", 0.05)
+                self.assertLess(took, 2)  # a second, on a busy machine
+
+    def test_interrupt_while_reading(self):
+        with tempfile.TemporaryDirectory() as folder:
+            endless = os.path.join(folder, "endless.off")
+            os.mkfifo(endless)
+            took = self.run_script(f"""
+import sys, time
+sys.path[:0] = {sys.path!r}
+import collarmesh
+print("begin", flush=True)
+try:
+    collarmesh.mesh({endless!r})
+except KeyboardInterrupt:
+    print("stopped", time.monotonic(), flush=True)
+import os
+os._exit(0)
+""", 0.3)
+            self.assertLess(took, 2)
+            begin = time.monotonic()
+            with self.assertRaisesRegex(collarmesh.BudgetError, "0.2 s .*read"):
+                collarmesh.mesh(endless, time_limit=0.2)
+            self.assertLess(time.monotonic() - begin, 3)
+            with open(endless, "w"):
+                pass  # let the abandoned reader end
+
+    def test_time_limit(self):
+        begin = time.monotonic()
+        with self.assertRaisesRegex(collarmesh.BudgetError, "time limit of 0.5 s"):
+            collarmesh.mesh(box((0, 0, 0), (1, 1, 1)), size=0.005, time_limit=0.5)
+        self.assertLess(time.monotonic() - begin, 3)
+
+    def test_other_threads_go_on(self):
+        counted = []
+        done = threading.Event()
+
+        def count():
+            while not done.is_set():
+                counted.append(1)
+                time.sleep(0.001)
+
+        thread = threading.Thread(target=count)
+        thread.start()
+        collarmesh.mesh(box((0, 0, 0), (1, 1, 1)), size=0.05)
+        done.set()
+        thread.join()
+        self.assertGreater(len(counted), 10)
 
 
 if __name__ == "__main__":

@@ -69,13 +69,25 @@ struct Format {
   bool all_digits = true, regions = true, tet_tags = true, edges = true, collar = false, features = false;
 };
 
-const std::vector<Format> formats{{.extension = ".vtu", .collar = true, .features = true},
-                                  {.extension = ".vtk", .collar = true, .features = true},
-                                  {.extension = ".msh", .collar = true, .features = true},
-                                  {.extension = ".mesh", .tet_tags = false},
-                                  {.extension = ".inp", .all_digits = false, .edges = false},
-                                  {.extension = ".unv"},
-                                  {.extension = ".ele", .regions = false}};
+const std::vector<Format> always_there{{.extension = ".vtu", .collar = true, .features = true},
+                                       {.extension = ".vtk", .collar = true, .features = true},
+                                       {.extension = ".msh", .collar = true, .features = true},
+                                       {.extension = ".mesh", .tet_tags = false},
+                                       {.extension = ".inp", .all_digits = false, .edges = false},
+                                       {.extension = ".unv"},
+                                       {.extension = ".msh2", .regions = false},
+                                       {.extension = ".ele", .regions = false}};
+
+/// With those that need HDF5.
+std::vector<Format> formats_built_in() {
+  std::vector<Format> all = always_there;
+  for (const Format& format : std::vector<Format>{{.extension = ".xdmf", .collar = true, .features = true},
+                                                  {.extension = ".med", .regions = false}})
+    if (io::is_tet_mesh_format(std::string("a") + format.extension)) all.push_back(format);
+  return all;
+}
+
+const std::vector<Format> formats = formats_built_in();
 
 /// Regions by ascending tag.
 void number_regions_by_tag(TetMesh& mesh) {

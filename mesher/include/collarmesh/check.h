@@ -5,6 +5,7 @@
 
 #include "collarmesh/mesh_measures.h"
 #include "collarmesh/plc.h"
+#include "collarmesh/progress.h"
 #include "collarmesh/tet_mesh.h"
 
 namespace collarmesh {
@@ -48,7 +49,9 @@ struct CheckReport {
   std::vector<double> region_volumes;  ///< by region index, [0] unused
   MeshMeasures measures;               ///< in collars, too; of no tet when labels or points are not usable
 
-  bool passed() const { return findings_total == 0; }
+  bool cancelled = false;  ///< by the execution; then not everything was looked at
+
+  bool passed() const { return findings_total == 0 && !cancelled; }
 };
 
 /// Recompute every guarantee from the mesh alone, independently of how it was made: positive
@@ -57,6 +60,8 @@ struct CheckReport {
 /// A mesh read from a file (no feature indices) is matched to the complex by tags and position; where its
 /// tags are not the complex', or it has no boundary triangles or curve edges, by position alone.
 /// Tets count as a collar's cells only at creases of the complex.
-CheckReport check(const TetMesh& mesh, const Plc& plc, const CheckOptions& options = {});
+/// Cancelling is looked at between groups of guarantees.
+CheckReport check(const TetMesh& mesh, const Plc& plc, const CheckOptions& options = {},
+                  const Execution& execution = {});
 
 }  // namespace collarmesh

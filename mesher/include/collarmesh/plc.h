@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "collarmesh/geometry.h"
+#include "collarmesh/tag_names.h"
 
 namespace collarmesh {
 
@@ -82,6 +83,10 @@ struct Plc {
   std::vector<Patch> patches;
   std::vector<Triangle> triangles;
   std::vector<Region> regions;  ///< regions[0] is the outside (and every hole)
+  TagNames names;               ///< that files gave to tags
+  /// The tags of all patches (curves) are numbers from `number_untagged`: another order of the same facets
+  /// would give others.
+  bool numbered_patches = false, numbered_curves = false;
 
   Box bounds;
   double planar_tolerance = 0;   ///< absolute, input units: used to build this complex

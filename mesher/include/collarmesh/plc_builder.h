@@ -24,6 +24,11 @@ struct PlcOptions {
 /// Cost: O(n log n) for n corners.
 Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options = {});
 
+/// Facets without any tag make patches without one: number these from 1 in their order, and so the curves
+/// where no segment of the soups has a tag. `build_plc` does so; call it with the soups that came in when the
+/// complex is that of repaired ones, where what fills holes has tags.
+void number_untagged(std::span<const PolygonSoup> soups, Plc& plc);
+
 /// Two features that meet at an acute angle (paper, Definition 1).
 struct Crease {
   enum class Kind { facets, segments, segment_and_facet, facets_in_vertex, patch_fold };
@@ -50,6 +55,18 @@ struct PlcSummary {
   std::vector<Crease> creases;   ///< below the threshold given
 };
 PlcSummary summarize(const Plc& plc, double crease_threshold = 60);
+
+/// The patches of one tag.
+struct PatchSummary {
+  Tag tag = 0;
+  std::string name;       ///< empty: none
+  std::size_t count = 0;  ///< of patches
+  bool planar = true;     ///< each of them
+  double area = 0;        ///< input units squared
+  Point where;            ///< a point on the first one: the centre of its largest triangle
+};
+/// By tag. Cost: linear.
+std::vector<PatchSummary> summarize_patches(const Plc& plc);
 
 /// One sentence for people: what meets what, where, at which angle.
 std::string describe(const Plc& plc, const Crease& crease);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "collarmesh/geometry.h"
+#include "collarmesh/tag_names.h"
 
 namespace collarmesh {
 
@@ -47,6 +48,7 @@ class PolygonSoup {
   std::vector<RegionPoint> region_points;  ///< .poly: with hole_points they decide for their file
   std::vector<Point> hole_points;          ///< the region around each is empty
   std::vector<FacetHole> facet_holes;
+  TagNames tag_names;                      ///< that the file gives to tags
   std::optional<Tag> region_tag;  ///< of the regions that this surface is the first to bound; else their number
 
   /// Start a facet; the polygons added next belong to it.
@@ -62,6 +64,15 @@ class PolygonSoup {
   void add_facet(std::span<const Index> corners, Tag tag = 0) {
     begin_facet(tag);
     add_polygon(corners);
+  }
+
+  /// Add a number to the tags of facets and to their names.
+  void shift_facet_tags(Tag by) {
+    for (Facet& facet : facets_) facet.tag += by;
+    TagNames shifted;
+    for (std::size_t d = 0; d < 4; ++d)
+      for (const auto& [tag, text] : tag_names.of(d)) shifted.set(d, d == 2 ? tag + by : tag, text);
+    tag_names = std::move(shifted);
   }
 
   Index facet_count() const { return static_cast<Index>(facets_.size()); }

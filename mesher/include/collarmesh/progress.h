@@ -9,11 +9,12 @@ namespace collarmesh {
 
 /// Where a long operation stands. `fraction` never decreases within one operation.
 struct ProgressReport {
-  std::string_view phase;  ///< "read", "complex", "refine", "surface check", "extract", "coarsen", "improve",
+  std::string_view phase;  ///< "read", "complex", "refine", "coarsen", "improve", "project", "second order",
                            ///< "check", "write"
   double fraction = 0;     ///< of the whole operation, 0 to 1; an estimate
   std::size_t vertices = 0;  ///< mesh vertices so far
   std::size_t tets = 0;      ///< cells so far
+  bool begins = false;       ///< a stage of a whole run begins (`run_pipeline`)
 };
 
 /// How the caller watches and stops a long operation. Both members may be empty.

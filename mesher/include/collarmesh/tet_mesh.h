@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "collarmesh/geometry.h"
+#include "collarmesh/tag_names.h"
 
 namespace collarmesh {
 
@@ -55,6 +56,7 @@ struct TetMesh {
   std::vector<Index> edge_mid_nodes;
 
   GroupNames group_names = GroupNames::complex;
+  TagNames names;  ///< in place of those, for the tags that have one
 
   int order() const { return tet_mid_nodes.empty() ? 1 : 2; }
 

@@ -67,7 +67,7 @@ void take_measures(CheckReport& report, CheckReport&& part) {
 
 // Groups of guarantees that have nothing to do with each other are looked at at once, each with a report of
 // its own.
-void judge(Subject subject, CheckReport& report, Findings& findings) {
+void judge(Subject subject, CheckReport& report, Findings& findings, const Execution& execution) {
   report.faces = subject.mesh.faces.size();
   report.edges = subject.mesh.edges.size();
   subject.match = match_features(subject.mesh, subject.plc, subject.rounding);
@@ -92,6 +92,7 @@ void judge(Subject subject, CheckReport& report, Findings& findings) {
   std::array<CheckReport, groups.size()> parts;
   ThreadLimit(subject.options.threads).run([&] {
     tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t i) {
+      if (execution.cancelled()) return;
       Findings own(parts[i], subject.options.findings_per_guarantee);
       groups[i](subject, parts[i], own);
     });
@@ -100,11 +101,13 @@ void judge(Subject subject, CheckReport& report, Findings& findings) {
     findings.take(part);
     take_measures(report, std::move(part));
   }
+  report.cancelled = execution.cancelled();
 }
 
 }  // namespace
 
-CheckReport check(const TetMesh& mesh, const Plc& plc, const CheckOptions& options) {
+CheckReport check(const TetMesh& mesh, const Plc& plc, const CheckOptions& options,
+                  const Execution& execution) {
   CheckReport report;
   Findings findings(report, options.findings_per_guarantee);
   report.tets = mesh.tets.size();
@@ -118,9 +121,9 @@ CheckReport check(const TetMesh& mesh, const Plc& plc, const CheckOptions& optio
   const std::optional<TetMesh> placed = place_by_position(given, report, findings);
   if (findings.total() > before || !check_labels(placed ? *placed : mesh, plc, findings)) return report;
   if (placed)
-    judge(make_subject(*placed, plc, options), report, findings);
+    judge(make_subject(*placed, plc, options), report, findings, execution);
   else
-    judge(std::move(given), report, findings);
+    judge(std::move(given), report, findings, execution);
   return report;
 }
 

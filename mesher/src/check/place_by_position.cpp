@@ -5,9 +5,9 @@
 #include <cmath>
 #include <span>
 
-#include "common/distance_tree.h"
 #include "check/subject.h"
 #include "common/disjoint_sets.h"
+#include "common/distance_tree.h"
 
 namespace collarmesh::checks {
 
@@ -123,6 +123,49 @@ struct CurveSegments {
   std::vector<double> lengths;  // by curve
 };
 
+// Are most of some of the faces and edges on the patches and curves that their tags name? Asked where tags
+// are only numbers, which another order of the facets changes.
+class Numbers {
+ public:
+  explicit Numbers(const Subject& subject) : subject_(subject) {}
+
+  bool fit_faces() const {
+    const Plc& plc = subject_.plc;
+    if (!plc.numbered_patches) return true;
+    std::vector<DistanceTree::Triangle> triangles;
+    for (const Plc::Triangle& t : plc.triangles)
+      triangles.push_back({subject_.plc_corner(t, 0), subject_.plc_corner(t, 1), subject_.plc_corner(t, 2)});
+    const DistanceTree tree(std::move(triangles));
+    return most(subject_.mesh.faces.size(), [&](std::size_t f) {
+      const Index nearest = tree.nearest(subject_.centroid(subject_.mesh.faces[f])).triangle;
+      return nearest != none && plc.patches[plc.triangles[nearest].patch].tag == subject_.mesh.face_tag[f];
+    });
+  }
+
+  bool fit_edges() const {
+    const Plc& plc = subject_.plc;
+    if (!plc.numbered_curves || plc.curves.empty()) return true;
+    const CurveSegments curves(plc);
+    const DistanceTree tree(curves.segments);
+    return most(subject_.mesh.edges.size(), [&](std::size_t e) {
+      const Index nearest = tree.nearest(subject_.midpoint(subject_.mesh.edges[e])).triangle;
+      return nearest != none && plc.curves[curves.curve[nearest]].tag == subject_.mesh.edge_tag[e];
+    });
+  }
+
+ private:
+  template <class Fits>
+  static bool most(std::size_t count, const Fits& fits) {
+    constexpr std::size_t looked_at = 500;
+    const std::size_t step = std::max<std::size_t>(1, count / looked_at);
+    std::size_t asked = 0, fitting = 0;
+    for (std::size_t i = 0; i < count; i += step, ++asked) fitting += fits(i) ? 1 : 0;
+    return 2 * fitting >= asked;
+  }
+
+  const Subject& subject_;
+};
+
 class Placement {
  public:
   Placement(const Subject& subject, CheckReport& report, Findings& findings)
@@ -134,8 +177,10 @@ class Placement {
     const std::span regions(plc_.regions);
     tets_known_ = 2 * in_regions >= mesh.tets.size() ||
                   are_known(mesh.tet_tag, regions.subspan(std::min<std::size_t>(1, regions.size())));
-    new_faces_ = mesh.faces.empty() || !are_known(mesh.face_tag, plc_.patches);
-    new_edges_ = !plc_.curves.empty() && (mesh.edges.empty() || !are_known(mesh.edge_tag, plc_.curves));
+    const Numbers numbers(subject);
+    new_faces_ = mesh.faces.empty() || !are_known(mesh.face_tag, plc_.patches) || !numbers.fit_faces();
+    new_edges_ = !plc_.curves.empty() &&
+                 (mesh.edges.empty() || !are_known(mesh.edge_tag, plc_.curves) || !numbers.fit_edges());
   }
 
   std::optional<TetMesh> run() {
@@ -162,7 +207,8 @@ class Placement {
   // which they cut faces. Empty when there are none.
   std::vector<bool> stray_edges() const {
     const TetMesh& mesh = subject_.mesh;
-    if (mesh.edges.empty() || plc_.curves.empty() || tell_apart(plc_.curves)) return {};
+    const bool told = !plc_.numbered_curves && tell_apart(plc_.curves);
+    if (mesh.edges.empty() || plc_.curves.empty() || told) return {};
     const CurveSegments curves(plc_);
     const DistanceTree tree(curves.segments);
     std::vector<std::array<Index, 2>> off;
@@ -443,8 +489,19 @@ class Placement {
 }  // namespace
 
 std::optional<TetMesh> place_by_position(const Subject& subject, CheckReport& report, Findings& findings) {
-  if (!subject.mesh.features.empty()) return std::nullopt;
-  return Placement(subject, report, findings).run();
+  if (subject.mesh.features.empty()) return Placement(subject, report, findings).run();
+  const Numbers numbers(subject);
+  if (numbers.fit_faces() && numbers.fit_edges()) return std::nullopt;
+  TetMesh unplaced = subject.mesh;  // of a complex that was numbered in another order
+  unplaced.features.clear();
+  std::fill(unplaced.face_patch.begin(), unplaced.face_patch.end(), none);
+  std::fill(unplaced.edge_curve.begin(), unplaced.edge_curve.end(), none);
+  std::optional<TetMesh> placed =
+      Placement({unplaced, subject.plc, subject.options, subject.rounding, subject.curve_allowance,
+                 subject.patch_allowance, subject.regions, subject.match, subject.collar},
+                report, findings)
+          .run();
+  return placed ? std::move(placed) : std::optional(std::move(unplaced));
 }
 
 }  // namespace collarmesh::checks

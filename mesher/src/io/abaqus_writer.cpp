@@ -45,10 +45,13 @@ Groups nodes_by_tag(const TetMesh& mesh, const Cells& nodes_of, const std::vecto
   return groups;
 }
 
-std::string name_of(GroupNames names, std::size_t dimension, Tag tag) {
-  std::string name = group_name(names, dimension, tag);
-  for (char& c : name)
+/// Upper case, of letters, digits, `_` and `-`.
+std::string name_of(const TetMesh& mesh, std::size_t dimension, Tag tag) {
+  std::string name = group_name(mesh, dimension, tag);
+  for (char& c : name) {
     if (c >= 'a' && c <= 'z') c = static_cast<char>(c - ('a' - 'A'));
+    if (!((c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-')) c = '_';
+  }
   return name;
 }
 
@@ -57,9 +60,9 @@ void write_numbers(FileWriter& out, const std::vector<Index>& numbers) {
     out << numbers[i] << (i + 1 == numbers.size() || (i + 1) % numbers_a_line == 0 ? ",\n" : ", ");
 }
 
-void write_node_sets(FileWriter& out, GroupNames names, std::size_t dimension, const Groups& groups) {
+void write_node_sets(FileWriter& out, const TetMesh& mesh, std::size_t dimension, const Groups& groups) {
   for (const auto& [tag, nodes] : groups) {
-    out << "*NSET, NSET=" << name_of(names, dimension, tag) << "_NODES\n";
+    out << "*NSET, NSET=" << name_of(mesh, dimension, tag) << "_NODES\n";
     write_numbers(out, nodes);
   }
 }
@@ -90,7 +93,7 @@ void write_elements(FileWriter& out, const TetMesh& mesh) {
   out << "*ELSET, ELSET=EALL\n";
   for (const auto& volume : volumes) out << abaqus_volume_prefix << volume.first << ",\n";
   for (const auto& [tag, regions] : regions_of_tag) {
-    out << "*ELSET, ELSET=" << name_of(mesh.group_names, 3, tag) << '\n';
+    out << "*ELSET, ELSET=" << name_of(mesh, 3, tag) << '\n';
     for (const Index region : regions) out << abaqus_volume_prefix << region << ",\n";
   }
 }
@@ -115,7 +118,7 @@ void write_surfaces(FileWriter& out, const TetMesh& mesh) {
   for (std::size_t f = 0; f < mesh.faces.size(); ++f)
     if (behind[f].tet != none) surfaces[mesh.face_tag[f]].push_back(behind[f]);
   for (const auto& [tag, sides] : surfaces) {
-    out << "*SURFACE, NAME=" << name_of(mesh.group_names, 2, tag) << ", TYPE=ELEMENT\n";
+    out << "*SURFACE, NAME=" << name_of(mesh, 2, tag) << ", TYPE=ELEMENT\n";
     for (const Side& side : sides) out << side.tet + 1 << ", S" << side.side + 1 << '\n';
   }
 }
@@ -128,8 +131,8 @@ void write_abaqus(const std::string& path, const TetMesh& mesh) {
   write_nodes(out, mesh);
   write_elements(out, mesh);
   write_surfaces(out, mesh);
-  write_node_sets(out, mesh.group_names, 2, nodes_by_tag(mesh, nodes_of_face, mesh.face_tag));
-  write_node_sets(out, mesh.group_names, 1, nodes_by_tag(mesh, nodes_of_edge, mesh.edge_tag));
+  write_node_sets(out, mesh, 2, nodes_by_tag(mesh, nodes_of_face, mesh.face_tag));
+  write_node_sets(out, mesh, 1, nodes_by_tag(mesh, nodes_of_edge, mesh.edge_tag));
   out.commit();
 }
 

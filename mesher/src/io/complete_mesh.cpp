@@ -133,6 +133,7 @@ void complete_mesh(const std::string& path, TetMesh& mesh) {
   mesh.face_patch.resize(mesh.faces.size(), none);
   mesh.edge_tag.resize(mesh.edges.size(), 0);
   mesh.edge_curve.resize(mesh.edges.size(), none);
+  if (mesh.tets.empty()) mesh.face_regions.assign(mesh.faces.size(), {0, 0});  // a surface stays as it is
   if (mesh.face_regions.empty()) find_face_regions(mesh);
 }
 

@@ -10,20 +10,41 @@ namespace collarmesh::io {
 
 namespace {
 
-void write_by_module(const char* writer, const std::string& path, const TetMesh& mesh) {
+/// A function of the module; null, with the reason, when that cannot be loaded.
+void* find_in_module(const char* function, std::string& reason) {
   constexpr const char* module = "collarmesh_hdf5.so";
   // Looked for along the run path of the program; stays loaded, as HDF5 has functions that run at its end.
   void* const loaded = dlopen(module, RTLD_NOW | RTLD_LOCAL);
-  void* const found = loaded == nullptr ? nullptr : dlsym(loaded, writer);
+  void* const found = loaded == nullptr ? nullptr : dlsym(loaded, function);
   if (found == nullptr)
-    throw WriteError(
-        fmt::format("{}: cannot be written, because {} cannot be loaded ({}); install it with the "
-                    "program or name its folder in LD_LIBRARY_PATH, or write .vtu",
-                    path, module, dlerror()));
+    reason = fmt::format(
+        "{} cannot be loaded ({}); install it with the program or name its folder in LD_LIBRARY_PATH", module,
+        dlerror());
+  return found;
+}
+
+void write_by_module(const char* writer, const std::string& path, const TetMesh& mesh) {
+  std::string reason;
+  void* const found = find_in_module(writer, reason);
+  if (found == nullptr)
+    throw WriteError(fmt::format("{}: cannot be written, because {}, or write .vtu", path, reason));
   reinterpret_cast<void (*)(const std::string&, const TetMesh&)>(found)(path, mesh);
 }
 
+TetMesh read_by_module(const char* reader, const std::string& path) {
+  std::string reason;
+  void* const found = find_in_module(reader, reason);
+  if (found == nullptr)
+    throw ReadError(fmt::format("{}: cannot be read, because {}, or use another format", path, reason));
+  TetMesh mesh;
+  reinterpret_cast<void (*)(const std::string&, TetMesh&)>(found)(path, mesh);
+  return mesh;
+}
+
 }  // namespace
+
+TetMesh read_xdmf(const std::string& path) { return read_by_module("collarmesh_read_xdmf", path); }
+TetMesh read_med(const std::string& path) { return read_by_module("collarmesh_read_med", path); }
 
 void write_xdmf(const std::string& path, const TetMesh& mesh) {
   write_by_module("collarmesh_write_xdmf", path, mesh);

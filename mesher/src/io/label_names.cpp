@@ -22,6 +22,15 @@ std::string group_name(GroupNames names, std::size_t dimension, Tag tag, std::st
   return fmt::format("{}{}", prefixes[dimension], digits);
 }
 
+std::string group_name(const TetMesh& mesh, std::size_t dimension, Tag tag, std::string_view minus) {
+  const std::string* given = mesh.names.find(dimension, tag);
+  if (given == nullptr) return group_name(mesh.group_names, dimension, tag, minus);
+  std::string name = *given;
+  for (char& c : name)
+    if (static_cast<unsigned char>(c) < ' ' || c == '"') c = '_';
+  return name;
+}
+
 std::optional<Tag> tag_of_group_name(std::size_t dimension, std::string_view name) {
   const std::string lower = lower_case(name);
   std::string prefix(group_name_prefix[dimension]);

@@ -18,6 +18,10 @@ constexpr std::array<std::string_view, 4> cad_name_prefix{"Vertex", "Edge", "Fac
 /// "patch_7" or "Face7"; "patch_minus_7" where a hyphen is not allowed in names.
 std::string group_name(GroupNames names, std::size_t dimension, Tag tag, std::string_view minus = "minus_");
 
+/// The name that the tag was given, with `_` for quotes and control characters; else as above.
+std::string group_name(const TetMesh& mesh, std::size_t dimension, Tag tag,
+                       std::string_view minus = "minus_");
+
 /// The tag that a name of ours stands for, in any case.
 std::optional<Tag> tag_of_group_name(std::size_t dimension, std::string_view name);
 

@@ -90,7 +90,9 @@ bool read_section(TextScanner& scan, TetMesh& mesh) {
 
 }  // namespace
 
-TetMesh read_medit(const std::string& path) {
+namespace {
+
+TetMesh read(const std::string& path, bool needs_tets) {
   const std::string text = read_bytes(path);
   TextScanner scan(path, text);
   if (const std::string_view first = scan.peek(); first != "MeshVersionFormatted")
@@ -98,11 +100,16 @@ TetMesh read_medit(const std::string& path) {
   TetMesh mesh;
   while (!scan.at_end() && read_section(scan, mesh)) {
   }
-  if (mesh.tets.empty()) scan.fail("expected tetrahedra, found none");
+  if (needs_tets && mesh.tets.empty()) scan.fail("expected tetrahedra, found none");
   // Ours refer to the region itself, of others only the order is known.
   if (text.starts_with(medit_signature)) mesh.tet_region.assign(mesh.tet_tag.begin(), mesh.tet_tag.end());
   complete_mesh(path, mesh);
   return mesh;
 }
+
+}  // namespace
+
+TetMesh read_medit(const std::string& path) { return read(path, true); }
+TetMesh read_medit_cells(const std::string& path) { return read(path, false); }
 
 }  // namespace collarmesh::io

@@ -43,6 +43,7 @@ struct Contents {
   std::array<std::map<int, Tag>, 4> physical_of_entity;                ///< the first one
   std::array<std::map<Tag, Tag>, 4> tag_of_physical;                   ///< where its name says so
   std::vector<std::pair<std::uint64_t, double>> collar, crease, thin;  ///< cell number and value
+  TagNames names;                                                      ///< of physical groups, but ours
   bool numbers_are_features = false;
 };
 
@@ -128,6 +129,8 @@ void read_physical_names(MshText values, Contents& contents) {
     if (name.size() >= 2) name = name.substr(1, name.size() - 2);  // the quotes
     if (const auto tag = tag_of_group_name(dimension, name))
       contents.tag_of_physical[dimension][physical] = *tag;
+    else if (!name.empty())
+      contents.names.set(dimension, physical, std::string(name));
   }
 }
 
@@ -454,6 +457,7 @@ TetMesh make_mesh(const std::string& path, Contents& contents) {
   constexpr double most = 0x1p52;  // that doubles hold
   add_data(contents.crease, -most, most, contents.cells[3], mesh.tet_crease);
   if (!contents.thin.empty()) add_data(contents.thin, 0, 1, contents.cells[3], mesh.tet_thin);
+  mesh.names = contents.names;
   complete_mesh(path, mesh);
   return mesh;
 }
@@ -496,10 +500,10 @@ struct MshFile {
     format = read_format(path, sections.front());
   }
 
-  Contents contents(const std::string& path) const {
+  Contents contents(const std::string& path, bool needs_tets = true) const {
     Contents contents;
     for (const MshSection& section : sections) read_section(path, section, format, contents);
-    if (contents.cells[3].empty())
+    if (needs_tets && contents.cells[3].empty())
       throw ReadError(
           fmt::format("{}: line {}: expected tetrahedra, found none", path, sections.back().first_line));
     return contents;
@@ -511,6 +515,12 @@ struct MshFile {
 TetMesh read_msh(const std::string& path) {
   const MshFile file(path);
   Contents contents = file.contents(path);
+  return make_mesh(path, contents);
+}
+
+TetMesh read_msh_cells(const std::string& path) {
+  const MshFile file(path);
+  Contents contents = file.contents(path, false);
   return make_mesh(path, contents);
 }
 

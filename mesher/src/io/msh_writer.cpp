@@ -18,13 +18,13 @@ namespace collarmesh::io {
 
 namespace {
 
-void write_physical_names(FileWriter& out, GroupNames names, const MshEntities& entities) {
+void write_physical_names(FileWriter& out, const TetMesh& mesh, const MshEntities& entities) {
   std::size_t count = 0;
   for (const auto& numbers : entities.physicals) count += numbers.size();
   out << "$PhysicalNames\n" << count << '\n';
   for (std::size_t dimension = 0; dimension < 4; ++dimension)
     for (const auto& [tag, number] : entities.physicals[dimension])
-      out << dimension << ' ' << number << " \"" << group_name(names, dimension, tag, "-") << "\"\n";
+      out << dimension << ' ' << number << " \"" << group_name(mesh, dimension, tag, "-") << "\"\n";
   out << "$EndPhysicalNames\n";
 }
 
@@ -175,7 +175,7 @@ void write_msh(const std::string& path, const TetMesh& mesh) {
   out << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\nWritten by collarmesh.\n";
   if (entities.numbers_are_features) out << msh_numbers_are_features << '\n';
   out << "$EndComments\n";
-  write_physical_names(out, mesh.group_names, entities);
+  write_physical_names(out, mesh, entities);
   write_entities(out, entities);
   write_nodes(out, mesh, entities);
   write_elements(out, mesh, entities, groups);

@@ -2,6 +2,10 @@
 // off after two corners and the index 0, and rejects lines continued with a backslash.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -19,13 +23,29 @@ namespace {
 struct Element {
   std::size_t first_corner, line;
   bool is_face;
-  Tag tag;
+  std::size_t group, material;  ///< positions among their names
+};
+
+/// Names in the order in which they come first; "" is none.
+class Names {
+ public:
+  std::size_t position(std::string_view name) {
+    const auto [known, added] = positions_.try_emplace(std::string(name), list_.size());
+    if (added) list_.emplace_back(name);
+    return known->second;
+  }
+  const std::vector<std::string>& list() const { return list_; }
+
+ private:
+  std::map<std::string, std::size_t> positions_{{"", 0}};
+  std::vector<std::string> list_{""};
 };
 
 struct Elements {
   std::vector<Element> list;
-  Tag tag = 0;                        ///< of the group at hand, if its name is one of ours
-  std::vector<std::int64_t> corners;  ///< counted from 0; negative ones are already resolved
+  Names groups, materials;
+  std::size_t group = 0, material = 0;  ///< those at hand
+  std::vector<std::int64_t> corners;    ///< counted from 0; negative ones are already resolved
 };
 
 /// A line that ends with a backslash goes on in the next one.
@@ -58,7 +78,7 @@ void read_element(TextScanner& scan, bool is_face, std::size_t points_so_far, El
   if (n < least)
     scan.fail(
         fmt::format("expected {} of at least {} corners, found {}", is_face ? "a face" : "a line", least, n));
-  elements.list.push_back({first, line, is_face, elements.tag});
+  elements.list.push_back({first, line, is_face, elements.group, elements.material});
 }
 
 void require_in_range(const std::string& path, const Element& element, std::int64_t corner,
@@ -68,8 +88,37 @@ void require_in_range(const std::string& path, const Element& element, std::int6
       .fail(fmt::format("a corner is vertex {}, but the file has {} vertices", corner + 1, size));
 }
 
+/// What the faces are told apart by: groups, where there are several or ours, else materials.
+std::vector<Tag> tags_of_faces(const Elements& elements, PolygonSoup& soup) {
+  std::set<std::size_t> groups, materials;
+  for (const Element& element : elements.list) {
+    if (!element.is_face) continue;
+    groups.insert(element.group);
+    materials.insert(element.material);
+  }
+  const bool ours = std::any_of(groups.begin(), groups.end(), [&](std::size_t group) {
+    return tag_of_group_name(2, elements.groups.list()[group]).has_value();
+  });
+  std::vector<Tag> tags(elements.list.size(), 0);
+  const bool by_group = ours || groups.size() > 1;
+  if (!by_group && materials.size() < 2) return tags;
+  const std::vector<std::string>& names = (by_group ? elements.groups : elements.materials).list();
+  GroupTags known;
+  for (const std::string& name : names)
+    if (tag_of_group_name(2, name)) known.find(2, name);
+  for (std::size_t i = 0; i < tags.size(); ++i) {
+    const Element& element = elements.list[i];
+    const std::string& name = names[by_group ? element.group : element.material];
+    if (!element.is_face || name.empty()) continue;
+    tags[i] = known.find(2, name);
+    if (!tag_of_group_name(2, name)) soup.tag_names.set(2, tags[i], name);
+  }
+  return tags;
+}
+
 void add_elements(const std::string& path, const Elements& elements, PolygonSoup& soup) {
   std::vector<Index> corners;
+  const std::vector<Tag> tags = tags_of_faces(elements, soup);
   for (std::size_t i = 0; i < elements.list.size(); ++i) {
     const Element& element = elements.list[i];
     const std::size_t end =
@@ -80,7 +129,7 @@ void add_elements(const std::string& path, const Elements& elements, PolygonSoup
       corners.push_back(static_cast<Index>(elements.corners[k]));
     }
     if (element.is_face)
-      soup.add_facet(corners, element.tag);
+      soup.add_facet(corners, tags[i]);
     else
       for (std::size_t k = 1; k < corners.size(); ++k) soup.segments.push_back({corners[k - 1], corners[k]});
   }
@@ -101,7 +150,9 @@ PolygonSoup read_obj(const std::string& path) {
     } else if (keyword == "f" || keyword == "l")
       read_element(scan, keyword == "f", soup.points.size(), elements);
     else if (keyword == "g" && !scan.at_line_end())
-      elements.tag = tag_of_group_name(2, scan.word("a group")).value_or(0);
+      elements.group = elements.groups.position(scan.word("a group"));
+    else if (keyword == "usemtl" && !scan.at_line_end())
+      elements.material = elements.materials.position(scan.word("a material"));
     else if (!((keyword[0] >= 'a' && keyword[0] <= 'z') || (keyword[0] >= 'A' && keyword[0] <= 'Z')))
       scan.fail("a keyword such as v or f", keyword);
     while (!end_of_statement(scan)) scan.word("");

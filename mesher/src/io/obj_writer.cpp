@@ -9,13 +9,27 @@
 
 namespace collarmesh::io {
 
+namespace {
+
+/// A word.
+std::string name_of(const PolygonSoup& soup, Tag tag) {
+  const std::string* given = soup.tag_names.find(2, tag);
+  if (given == nullptr) return group_name(GroupNames::complex, 2, tag);
+  std::string name = *given;
+  for (char& c : name)
+    if (static_cast<unsigned char>(c) <= ' ' || c == '#') c = '_';
+  return name;
+}
+
+}  // namespace
+
 void write_obj(const std::string& path, const PolygonSoup& soup) {
   FileWriter out(path);
   out << "# Written by collarmesh.\n";
   for (const Point& p : soup.points) out << "v " << p.x << ' ' << p.y << ' ' << p.z << '\n';
   Tag group = 0;
   for (Index f = 0; f < soup.facet_count(); ++f) {
-    if (soup.facet_tag(f) != group) out << "g " << group_name(GroupNames::complex, 2, group = soup.facet_tag(f)) << '\n';
+    if (soup.facet_tag(f) != group) out << "g " << name_of(soup, group = soup.facet_tag(f)) << '\n';
     out << 'f';
     for (const Index v : one_polygon(path, soup, f)) out << ' ' << std::size_t{v} + 1;
     out << '\n';

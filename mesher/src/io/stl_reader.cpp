@@ -4,7 +4,9 @@
 
 #include <bit>
 #include <cmath>
+#include <map>
 #include <string_view>
+#include <vector>
 
 #include "io/byte_reader.h"
 #include "io/file_bytes.h"
@@ -44,7 +46,12 @@ void expect(TextScanner& scan, std::string_view keyword) {
   if (!equal_ignoring_case(found, keyword)) scan.fail(keyword, found);
 }
 
-void read_text_facet(TextScanner& scan, PointMerger& merger, PolygonSoup& soup) {
+struct Solids {
+  std::vector<std::string> names;
+  std::vector<std::size_t> ends;  // of each: how many triangles there are then
+};
+
+void read_text_facet(TextScanner& scan, PointMerger& merger, std::vector<std::array<Index, 3>>& triangles) {
   expect(scan, "normal");
   scan.skip_line();  // normals are often zero or wrong; the order of the corners counts
   expect(scan, "outer");
@@ -56,26 +63,47 @@ void read_text_facet(TextScanner& scan, PointMerger& merger, PolygonSoup& soup) 
   }
   expect(scan, "endloop");
   expect(scan, "endfacet");
-  soup.add_facet(corners);
+  triangles.push_back(corners);
 }
 
-void read_text_solid(TextScanner& scan, PointMerger& merger, PolygonSoup& soup) {
+void read_text_solid(TextScanner& scan, PointMerger& merger, std::vector<std::array<Index, 3>>& triangles,
+                     Solids& solids) {
   expect(scan, "solid");
-  scan.skip_line();  // its name
+  solids.names.emplace_back(scan.rest_of_line());
   for (;;) {
     const std::string_view keyword = scan.word("facet or endsolid");
     if (equal_ignoring_case(keyword, "endsolid")) break;
     if (!equal_ignoring_case(keyword, "facet")) scan.fail("facet or endsolid", keyword);
-    read_text_facet(scan, merger, soup);
+    read_text_facet(scan, merger, triangles);
   }
   scan.skip_line();
+  solids.ends.push_back(triangles.size());
+}
+
+/// Several solids of one file are its patches, with their names; one alone says nothing of its facets.
+void add_solids(const std::vector<std::array<Index, 3>>& triangles, const Solids& solids, PolygonSoup& soup) {
+  std::map<std::string, Tag> tags;
+  const auto tag_of = [&](std::size_t solid) {
+    const std::string& name = solids.names[solid];
+    const Tag next = static_cast<Tag>(tags.size()) + 1;
+    return tags.try_emplace(name.empty() ? fmt::format("solid_{}", solid + 1) : name, next).first->second;
+  };
+  std::size_t first = 0;
+  for (std::size_t s = 0; s < solids.ends.size(); ++s) {
+    const Tag tag = solids.ends.size() > 1 && solids.ends[s] > first ? tag_of(s) : 0;
+    for (; first < solids.ends[s]; ++first) soup.add_facet(triangles[first], tag);
+  }
+  for (const auto& [name, tag] : tags) soup.tag_names.set(2, tag, name);
 }
 
 PolygonSoup read_text(const std::string& path, std::string_view text) {
   TextScanner scan(path, text, 0);
   PolygonSoup soup;
   PointMerger merger(soup.points);
-  while (!scan.at_end()) read_text_solid(scan, merger, soup);
+  std::vector<std::array<Index, 3>> triangles;
+  Solids solids;
+  while (!scan.at_end()) read_text_solid(scan, merger, triangles, solids);
+  add_solids(triangles, solids, soup);
   return soup;
 }
 

@@ -12,6 +12,7 @@ namespace collarmesh::io {
 void write_vtu(const std::string& path, const TetMesh& mesh);
 void write_vtk(const std::string& path, const TetMesh& mesh);
 void write_msh(const std::string& path, const TetMesh& mesh);
+void write_msh2(const std::string& path, const TetMesh& mesh);
 void write_medit(const std::string& path, const TetMesh& mesh);
 void write_abaqus(const std::string& path, const TetMesh& mesh);
 void write_unv(const std::string& path, const TetMesh& mesh);
@@ -20,6 +21,9 @@ void write_tetgen(const std::string& path, const TetMesh& mesh);
 void write_xdmf(const std::string& path, const TetMesh& mesh);
 void write_med(const std::string& path, const TetMesh& mesh);
 
+TetMesh read_xdmf(const std::string& path);
+TetMesh read_med(const std::string& path);
+
 TetMesh read_vtu(const std::string& path);
 TetMesh read_vtk(const std::string& path);
 TetMesh read_msh(const std::string& path);
@@ -27,6 +31,12 @@ TetMesh read_medit(const std::string& path);
 TetMesh read_abaqus(const std::string& path);
 TetMesh read_unv(const std::string& path);
 TetMesh read_tetgen(const std::string& path);
+
+// What is there, tetrahedra or not:
+TetMesh read_vtu_cells(const std::string& path);
+TetMesh read_vtp_cells(const std::string& path);
+TetMesh read_msh_cells(const std::string& path);
+TetMesh read_medit_cells(const std::string& path);
 
 PointField read_vtu_field(const std::string& path, const std::string& name);
 PointField read_msh_field(const std::string& path, const std::string& name);

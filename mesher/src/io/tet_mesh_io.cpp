@@ -23,14 +23,15 @@ struct TetMeshFormat {
 
 constexpr std::array tet_mesh_formats{
     TetMeshFormat{".vtu", write_vtu, read_vtu},       TetMeshFormat{".vtk", write_vtk, read_vtk},
-    TetMeshFormat{".msh", write_msh, read_msh},       TetMeshFormat{".mesh", write_medit, read_medit},
+    TetMeshFormat{".msh", write_msh, read_msh},       TetMeshFormat{".msh2", write_msh2, read_msh},
+    TetMeshFormat{".mesh", write_medit, read_medit},
     TetMeshFormat{".inp", write_abaqus, read_abaqus}, TetMeshFormat{".unv", write_unv, read_unv},
     TetMeshFormat{".ele", write_tetgen, read_tetgen},
 #ifdef COLLARMESH_XDMF
-    TetMeshFormat{".xdmf", write_xdmf, nullptr},
+    TetMeshFormat{".xdmf", write_xdmf, read_xdmf},
 #endif
 #ifdef COLLARMESH_MED
-    TetMeshFormat{".med", write_med, nullptr},
+    TetMeshFormat{".med", write_med, read_med},
 #endif
 };
 

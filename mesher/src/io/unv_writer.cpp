@@ -47,13 +47,13 @@ const UnvType& type_of(std::size_t dimension, std::size_t nodes) {
 
 class ElementWriter {
  public:
-  ElementWriter(FileWriter& out, GroupNames names) : out_(out), names_(names) {}
+  ElementWriter(FileWriter& out, const TetMesh& mesh) : out_(out), mesh_(mesh) {}
 
   template <class NodesOf>
-  void write(const TetMesh& mesh, std::size_t dimension, const std::vector<Tag>& tags,
-             const std::vector<Index>* materials, NodesOf nodes_of) {
+  void write(std::size_t dimension, const std::vector<Tag>& tags, const std::vector<Index>* materials,
+             NodesOf nodes_of) {
     for (std::size_t i = 0; i < tags.size(); ++i) {
-      const CellNodes nodes = nodes_of(mesh, i);
+      const CellNodes nodes = nodes_of(mesh_, i);
       const UnvType& type = type_of(dimension, nodes.size());
       const Index material = materials != nullptr ? (*materials)[i] : 1;
       line_.clear();
@@ -76,7 +76,7 @@ class ElementWriter {
     std::size_t number = 0;
     for (const auto& [key, members] : groups_) {
       out_ << fmt::format("{:10}{:10}{:10}{:10}{:10}{:10}{:10}{:10}\n{}\n", ++number, 0, 0, 0, 0, 0, 0,
-                          members.size(), group_name(names_, key.first, key.second, "-"));
+                          members.size(), group_name(mesh_, key.first, key.second, "-"));
       for (std::size_t i = 0; i < members.size(); ++i)
         out_ << fmt::format("{:10}{:10}{:10}{:10}{}", unv_group_element, members[i], 0, 0,
                             i % 2 == 1 || i + 1 == members.size() ? "\n" : "");
@@ -86,7 +86,7 @@ class ElementWriter {
 
  private:
   FileWriter& out_;
-  GroupNames names_;
+  const TetMesh& mesh_;
   std::string line_;
   std::size_t count_ = 0;
   std::map<std::pair<std::size_t, Tag>, std::vector<std::size_t>> groups_;
@@ -98,10 +98,10 @@ void write_unv(const std::string& path, const TetMesh& mesh) {
   FileWriter out(path);
   write_nodes(out, mesh);
   begin_dataset(out, unv_elements);
-  ElementWriter elements(out, mesh.group_names);
-  elements.write(mesh, 3, mesh.tet_tag, &mesh.tet_region, nodes_of_tet);
-  elements.write(mesh, 2, mesh.face_tag, nullptr, nodes_of_face);
-  elements.write(mesh, 1, mesh.edge_tag, nullptr, nodes_of_edge);
+  ElementWriter elements(out, mesh);
+  elements.write(3, mesh.tet_tag, &mesh.tet_region, nodes_of_tet);
+  elements.write(2, mesh.face_tag, nullptr, nodes_of_face);
+  elements.write(1, mesh.edge_tag, nullptr, nodes_of_edge);
   end_dataset(out);
   elements.write_groups();
   out.commit();

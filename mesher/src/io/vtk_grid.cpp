@@ -120,7 +120,7 @@ void add_measures(const TetMesh& mesh, std::vector<VtkArray>& arrays) {
   constexpr std::array<std::string_view, 3> names{"radius_edge", "min_dihedral", "max_dihedral"};
   for (std::size_t k = 0; k < names.size(); ++k) {
     values[k].resize(cell_count(mesh), 0.0F);
-    arrays.push_back({names[k], std::move(values[k])});
+    arrays.push_back({std::string(names[k]), std::move(values[k])});
   }
 }
 
@@ -263,6 +263,43 @@ VtkGrid make_vtk_grid(const TetMesh& mesh) {
   add_labels(mesh, grid.cell_data);
   add_measures(mesh, grid.cell_data);
   return grid;
+}
+
+std::vector<VtkArray> take_boundary(const TetMesh& mesh, VtkGrid& grid) {
+  const std::size_t tets = mesh.tets.size(), corners = tets * (mesh.order() == 2 ? 10 : 4);
+  const auto name_of = [](const VtkArray& array) { return std::string(vtk_boundary_prefix) + array.name; };
+  std::vector<VtkArray> boundary;
+  // Cuts an array and returns what was behind the cut.
+  const auto cut = [&](VtkArray& array, std::size_t at) {
+    VtkArray rest{name_of(array), {}};
+    std::visit(
+        [&](auto& values) {
+          const auto middle = values.begin() + static_cast<std::ptrdiff_t>(at);
+          rest.values = std::decay_t<decltype(values)>(middle, values.end());
+          values.erase(middle, values.end());
+        },
+        array.values);
+    return rest;
+  };
+  boundary.push_back({std::string(vtk_boundary_prefix) + "of",
+                      std::vector<std::int64_t>{static_cast<std::int64_t>(mesh.points.size()),
+                                                static_cast<std::int64_t>(tets)}});
+  boundary.push_back(cut(grid.connectivity, corners));
+  boundary.push_back(cut(grid.offsets, tets));
+  for (auto& end : std::get<std::vector<std::int64_t>>(boundary.back().values))
+    end -= static_cast<std::int64_t>(corners);
+  boundary.push_back(cut(grid.types, tets));
+  for (VtkArray& array : grid.cell_data) {
+    VtkArray rest = cut(array, tets);
+    if (std::find(vtk_boundary_arrays.begin(), vtk_boundary_arrays.end(), array.name) !=
+        vtk_boundary_arrays.end())
+      boundary.push_back(std::move(rest));
+  }
+  std::erase_if(grid.cell_data, [](const VtkArray& array) {
+    return array.name == "region_back" || array.name == "region_front" || array.name == "feature";
+  });
+  grid.cell_count = tets;
+  return boundary;
 }
 
 void add_vtk_piece(const VtkPiece& piece, TetMesh& mesh) {

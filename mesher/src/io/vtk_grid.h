@@ -14,7 +14,7 @@
 namespace collarmesh::io {
 
 struct VtkArray {
-  std::string_view name;
+  std::string name;
   std::variant<std::vector<std::uint8_t>, std::vector<std::int32_t>, std::vector<std::int64_t>,
                std::vector<float>, std::vector<double>>
       values;
@@ -37,6 +37,16 @@ struct VtkGrid {
   std::size_t point_count = 0, cell_count = 0;
 };
 VtkGrid make_vtk_grid(const TetMesh& mesh);
+
+/// Leave the tets as cells and give the other cells as data of the whole grid: views that cut or select cells
+/// are then of the volume alone. Arrays: `boundary_` and the name of what they continue, and `boundary_of`,
+/// how many points and tets there are, so that a reader knows that nobody changed these. Cell arrays that say
+/// something about faces and edges alone go.
+std::vector<VtkArray> take_boundary(const TetMesh& mesh, VtkGrid& grid);
+constexpr std::string_view vtk_boundary_prefix = "boundary_";
+/// The arrays that continue those of cells.
+constexpr std::array<std::string_view, 5> vtk_boundary_arrays{"tag", "region", "region_back", "region_front",
+                                                              "feature"};
 
 /// A part of a file that is being read.
 struct VtkPiece {

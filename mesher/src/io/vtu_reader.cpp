@@ -27,15 +27,16 @@ namespace {
 /// A file taken apart: its XML, and the appended bytes, which need not be XML.
 class VtuFile {
  public:
-  explicit VtuFile(const std::string& path) : path_(path), text_(read_bytes(path)) {
+  explicit VtuFile(const std::string& path, const char* type = "UnstructuredGrid")
+      : path_(path), type_(type), text_(read_bytes(path)) {
     parse_xml();
     read_storage();
     find_appended();
   }
 
   pugi::xml_node grid() const {
-    const pugi::xml_node node = document_.child("VTKFile").child("UnstructuredGrid");
-    if (!node) fail(document_.child("VTKFile"), "expected an UnstructuredGrid");
+    const pugi::xml_node node = document_.child("VTKFile").child(type_);
+    if (!node) fail(document_.child("VTKFile"), fmt::format("expected {}", type_));
     return node;
   }
 
@@ -102,8 +103,8 @@ class VtuFile {
               fmt::format("the XML is malformed: {}", result.description()));
     const pugi::xml_node root = document_.child("VTKFile");
     if (!root) fail_at(0, "expected a VTKFile");
-    if (const std::string_view type = root.attribute("type").value(); type != "UnstructuredGrid")
-      fail(root, fmt::format("expected the type UnstructuredGrid, found {}", quoted(type)));
+    if (const std::string_view type = root.attribute("type").value(); type != type_)
+      fail(root, fmt::format("expected the type {}, found {}", type_, quoted(type)));
   }
 
   void read_storage() {
@@ -210,6 +211,7 @@ class VtuFile {
   }
 
   const std::string& path_;
+  const char* type_;
   std::string text_;
   pugi::xml_document document_;
   VtkStorage storage_;
@@ -226,21 +228,32 @@ pugi::xml_node find_array(const pugi::xml_node& section, const char* name) {
 
 class PieceReader {
  public:
-  PieceReader(const VtuFile& file, const pugi::xml_node& piece)
+  PieceReader(const VtuFile& file, const pugi::xml_node& piece, bool polygons = false)
       : file_(file),
         piece_(piece),
+        polygons_(polygons),
         point_count_(file.number(piece, "NumberOfPoints")),
-        cell_count_(file.number(piece, "NumberOfCells")) {}
+        cell_count_(file.number(piece, polygons ? "NumberOfPolys" : "NumberOfCells")) {
+    if (!polygons) return;
+    for (const char* other : {"NumberOfVerts", "NumberOfLines", "NumberOfStrips"})
+      if (piece.attribute(other) && file.number(piece, other) > 0)
+        file.fail(piece, fmt::format("{} is not 0; save the triangles alone", other));
+  }
 
   void read(TetMesh& mesh) const {
     VtkPiece piece;
     read_points(piece);
-    const pugi::xml_node cells = piece_.child("Cells");
-    piece.types = file_.values<std::int64_t>(required(cells, "types"), cell_count_);
+    const pugi::xml_node cells = piece_.child(polygons_ ? "Polys" : "Cells");
+    constexpr std::int64_t triangle = 5;
     piece.ends = file_.values<std::int64_t>(required(cells, "offsets"), cell_count_);
+    if (polygons_)
+      piece.types.assign(cell_count_, triangle);
+    else
+      piece.types = file_.values<std::int64_t>(required(cells, "types"), cell_count_);
     piece.connectivity = file_.values<std::int64_t>(required(cells, "connectivity"));
     read_arrays(piece_.child("PointData"), vtk_point_arrays, point_count_, piece.point_data);
     read_arrays(piece_.child("CellData"), vtk_cell_arrays, cell_count_, piece.cell_data);
+    if (!polygons_) append_boundary(piece);
     try {
       add_vtk_piece(piece, mesh);
     } catch (const VtkPieceError& error) {
@@ -277,6 +290,36 @@ class PieceReader {
         arrays.emplace(name, file_.values<std::int64_t>(array, count));
   }
 
+  /// The faces and edges that our files have beside the cells (`take_boundary`), unless somebody changed the
+  /// cells since.
+  void append_boundary(VtkPiece& piece) const {
+    const pugi::xml_node data = piece_.parent().child("FieldData");
+    const auto find = [&](std::string_view name) {
+      return find_array(data, (std::string(vtk_boundary_prefix) + std::string(name)).c_str());
+    };
+    if (!find("of") || !find("connectivity") || !find("offsets") || !find("types")) return;
+    const auto counts = file_.values<std::int64_t>(find("of"), 2);
+    if (counts[0] != static_cast<std::int64_t>(point_count_) ||
+        counts[1] != static_cast<std::int64_t>(cell_count_))
+      return;
+    const auto types = file_.values<std::int64_t>(find("types"));
+    const auto ends = file_.values<std::int64_t>(find("offsets"), types.size());
+    const auto corners = file_.values<std::int64_t>(find("connectivity"));
+    const auto before = static_cast<std::int64_t>(piece.connectivity.size());
+    piece.types.insert(piece.types.end(), types.begin(), types.end());
+    for (const std::int64_t end : ends) piece.ends.push_back(end > 0 ? before + std::min(end, limit) : end);
+    piece.connectivity.insert(piece.connectivity.end(), corners.begin(), corners.end());
+    for (const std::string_view name : vtk_boundary_arrays)
+      if (const pugi::xml_node array = find(name)) {
+        const auto values = file_.values<std::int64_t>(array, types.size());
+        auto& all = piece.cell_data[std::string(name)];
+        all.resize(cell_count_);
+        all.insert(all.end(), values.begin(), values.end());
+      }
+    for (auto& [name, values] : piece.cell_data) values.resize(piece.types.size());
+  }
+  static constexpr std::int64_t limit = std::int64_t{1} << 48;  // far more corners than there are
+
   pugi::xml_node place_of(std::string_view array) const {
     if (array == "connectivity") return find_array(piece_.child("Cells"), "connectivity");
     if (array == "types") return piece_.child("Cells");
@@ -286,16 +329,33 @@ class PieceReader {
 
   const VtuFile& file_;
   const pugi::xml_node piece_;
+  bool polygons_;
   std::size_t point_count_, cell_count_;
 };
 
 }  // namespace
 
-TetMesh read_vtu(const std::string& path) {
+namespace {
+
+TetMesh read_grid(const std::string& path, bool needs_tets) {
   const VtuFile file(path);
   TetMesh mesh;
   for (const pugi::xml_node& piece : file.grid().children("Piece")) PieceReader(file, piece).read(mesh);
-  if (mesh.tets.empty()) file.fail(file.grid(), "expected tetrahedra, found none");
+  if (needs_tets && mesh.tets.empty()) file.fail(file.grid(), "expected tetrahedra, found none");
+  complete_vtk_mesh(path, mesh);
+  return mesh;
+}
+
+}  // namespace
+
+TetMesh read_vtu(const std::string& path) { return read_grid(path, true); }
+TetMesh read_vtu_cells(const std::string& path) { return read_grid(path, false); }
+
+// Polygons of three corners and tags by cell, as ParaView saves surfaces.
+TetMesh read_vtp_cells(const std::string& path) {
+  const VtuFile file(path, "PolyData");
+  TetMesh mesh;
+  for (const pugi::xml_node& piece : file.grid().children("Piece")) PieceReader(file, piece, true).read(mesh);
   complete_vtk_mesh(path, mesh);
   return mesh;
 }

@@ -1,10 +1,12 @@
 // VTK's XML format for unstructured grids: appended arrays, compressed in blocks, base64. Headers
 // are UInt64. See "VTK File Formats" (VTK User's Guide) and vtkXMLDataReader. What the arrays are:
-// vtk_grid.h.
+// vtk_grid.h. The cells are the tets; faces and edges are in FieldData.
 #include <zlib.h>
 
 #include <bit>
 #include <new>
+#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -35,7 +37,9 @@ constexpr std::string_view type_name<double> = "Float64";
 /// One array, compressed: the header (number of blocks, their size, size of the last one if it is
 /// smaller, compressed sizes) and the blocks.
 struct DataArray {
-  std::string_view name, type;
+  std::string name;
+  std::string_view type;
+  std::size_t values = 0;
   int components = 1;
   std::vector<std::uint64_t> header;
   std::string blocks;
@@ -63,8 +67,12 @@ DataArray compressed(const VtkArray& array) {
         using T = typename std::decay_t<decltype(values)>::value_type;
         const std::string_view bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
         const std::size_t count = (bytes.size() + block_bytes - 1) / block_bytes;
-        DataArray result{
-            array.name, type_name<T>, array.components, {count, block_bytes, bytes.size() % block_bytes}, {}};
+        DataArray result{array.name,
+                         type_name<T>,
+                         values.size(),
+                         array.components,
+                         {count, block_bytes, bytes.size() % block_bytes},
+                         {}};
         for (std::size_t at = 0; at < bytes.size(); at += block_bytes)
           append_compressed(bytes.substr(at, block_bytes), result);
         return result;
@@ -90,6 +98,7 @@ void write_section(FileWriter& out, const Section& section, std::size_t& offset)
     out << "        <DataArray type=\"" << array.type << "\" Name=\"" << array.name << '"';
     // meshio gives arrays with the attribute a second dimension.
     if (array.components > 1) out << " NumberOfComponents=\"" << array.components << '"';
+    if (section.name == "FieldData") out << " NumberOfTuples=\"" << array.values << '"';
     out << " format=\"appended\" offset=\"" << offset << "\"/>\n";
     offset += array.encoded_size();
   }
@@ -101,17 +110,20 @@ void write_section(FileWriter& out, const Section& section, std::size_t& offset)
 void write_vtu(const std::string& path, const TetMesh& mesh) {
   static_assert(std::endian::native == std::endian::little);
   FileWriter out(path);
-  const VtkGrid grid = make_vtk_grid(mesh);
+  VtkGrid grid = make_vtk_grid(mesh);
   const Section sections[] = {
-      compressed("Points", {grid.points}), compressed("Cells", {grid.connectivity, grid.offsets, grid.types}),
+      compressed("FieldData", take_boundary(mesh, grid)), compressed("Points", {grid.points}),
+      compressed("Cells", {grid.connectivity, grid.offsets, grid.types}),
       compressed("PointData", grid.point_data), compressed("CellData", grid.cell_data)};
   out << "<?xml version=\"1.0\"?>\n"
          "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
          "header_type=\"UInt64\" "
-         "compressor=\"vtkZLibDataCompressor\">\n  <UnstructuredGrid>\n    <Piece NumberOfPoints=\""
-      << grid.point_count << "\" NumberOfCells=\"" << grid.cell_count << "\">\n";
+         "compressor=\"vtkZLibDataCompressor\">\n  <UnstructuredGrid>\n";
   std::size_t offset = 0;
-  for (const Section& section : sections) write_section(out, section, offset);
+  write_section(out, sections[0], offset);
+  out << "    <Piece NumberOfPoints=\"" << grid.point_count << "\" NumberOfCells=\"" << grid.cell_count
+      << "\">\n";
+  for (const Section& section : std::span(sections).subspan(1)) write_section(out, section, offset);
   out << "    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"base64\">\n   _";
   for (const Section& section : sections)
     for (const DataArray& array : section.arrays)

@@ -214,6 +214,8 @@ Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options) {
     const double distance = options.weld * plc.bounds.diagonal();
     std::ranges::copy(lost_bodies(soups, plc, distance), std::back_inserter(plc.warnings));
   }
+  for (const PolygonSoup& soup : soups) plc.names.add(soup.tag_names);
+  number_untagged(soups, plc);
   find_near_touching(plc, options.weld * plc.bounds.diagonal(), faults);
   faults.raise();
   return plc;

@@ -63,6 +63,7 @@ class Merger {
   void add_soup(std::size_t s) {
     const PolygonSoup& soup = soups_[s];
     if (result_.name.empty()) result_.name = soup.name;
+    result_.tag_names.add(soup.tag_names);
     report_.unused_points +=
         static_cast<Index>(std::count(map_.merged[s].begin(), map_.merged[s].end(), none));
     std::vector<Index> number(soup.facet_count(), none);

@@ -63,6 +63,7 @@ TetMesh Refinement::extract() const {
     mesh.edge_curve.push_back(s.curve);
     mesh.edge_tag.push_back(plc_.curves[s.curve].tag);
   }
+  mesh.names = plc_.names;
   return mesh;
 }
 

@@ -86,6 +86,7 @@ class Repairer {
   double tolerance() const { return tolerance_; }  // absolute
 
   /// All is open sheets that do not even meet, or most of it is open sheets.
+  std::span<const PolygonSoup> soups() const { return soups_; }
   bool encloses_nothing() const { return encloses_nothing_; }
 
   /// How far the result is from the input.
@@ -257,7 +258,7 @@ class Repairer {
     return lost;
   }
 
-  std::span<const PolygonSoup> soups_;
+  std::span<const PolygonSoup> soups_;  // as they came in
   const RepairOptions& options_;
   const PlcOptions& complex_;
   Draft draft_;
@@ -280,6 +281,7 @@ RepairOptions for_try(RepairOptions options, double factor) {
 // The complex of what was repaired, and how far it is from the input. Throws PlcError.
 RepairedPlc judged(const Repairer& repairer, RepairResult result, const PlcOptions& options) {
   RepairedPlc complex{build_plc(result.soups, options), std::move(result.report), std::move(result.soups)};
+  number_untagged(repairer.soups(), complex.plc);
   repairer.measure(complex.report);
   if (complex.report.repaired)
     std::ranges::copy(build::lost_bodies(repairer.input(), complex.plc, repairer.tolerance()),

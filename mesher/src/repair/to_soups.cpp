@@ -39,6 +39,7 @@ class SoupMaker {
     frame.region_points = soup.region_points;
     frame.hole_points = soup.hole_points;
     frame.region_tag = soup.region_tag;
+    frame.tag_names = soup.tag_names;
     return frame;
   }
 

@@ -1,9 +1,10 @@
-// SALOME's format MED (.med) with its library: one unstructured mesh "mesh" of tetrahedra, triangles and
-// segments. A family for each tag, in a group named as in label_names.h.
+// SALOME's format MED (.med) with its library: one unstructured mesh, named as the file, of tetrahedra,
+// triangles and segments. A family for each tag, in a group named as in label_names.h.
 #include <fmt/format.h>
 #include <med.h>
 
 #include <array>
+#include <filesystem>
 #include <map>
 #include <span>
 #include <string>
@@ -23,8 +24,6 @@ namespace {
 constexpr std::array<std::uint8_t, 4> med_tet_order{0, 2, 1, 3};
 constexpr std::array<std::uint8_t, 10> med_tet_order_2{0, 2, 1, 3, 6, 5, 4, 7, 9, 8};
 
-constexpr const char* mesh_name = "mesh";
-
 /// Texts of MED have a fixed size.
 std::string padded(std::string text, std::size_t size) {
   text.resize(size, '\0');
@@ -33,9 +32,10 @@ std::string padded(std::string text, std::size_t size) {
 
 class MedFile {
  public:
-  MedFile(std::string path, GroupNames names)
-      : target_(std::move(path)),
-        names_(names),
+  MedFile(std::string path, const TetMesh& mesh)
+      : name_(std::filesystem::path(path).stem().string().substr(0, MED_NAME_SIZE)),
+        target_(std::move(path)),
+        mesh_(mesh),
         file_(MEDfileOpen(target_.temporary().c_str(), MED_ACC_CREAT)) {
     require(file_);
   }
@@ -49,17 +49,17 @@ class MedFile {
     const std::string axes =
         padded("x", MED_SNAME_SIZE) + padded("y", MED_SNAME_SIZE) + padded("z", MED_SNAME_SIZE);
     const std::string units(3 * MED_SNAME_SIZE, '\0');
-    require(MEDmeshCr(file_, mesh_name, 3, 3, MED_UNSTRUCTURED_MESH, "Written by collarmesh.", "",
+    require(MEDmeshCr(file_, name_.c_str(), 3, 3, MED_UNSTRUCTURED_MESH, "Written by collarmesh.", "",
                       MED_SORT_DTIT, MED_CARTESIAN, axes.c_str(), units.c_str()));
-    require(MEDfamilyCr(file_, mesh_name, "FAMILLE_ZERO", 0, 0, ""));
+    require(MEDfamilyCr(file_, name_.c_str(), "FAMILLE_ZERO", 0, 0, ""));
   }
 
   void write_points(const std::vector<Point>& points) const {
     std::vector<double> values;
     values.reserve(3 * points.size());
     for (const Point& p : points) values.insert(values.end(), {p.x, p.y, p.z});
-    require(MEDmeshNodeCoordinateWr(file_, mesh_name, MED_NO_DT, MED_NO_IT, MED_UNDEF_DT, MED_FULL_INTERLACE,
-                                    static_cast<med_int>(points.size()), values.data()));
+    require(MEDmeshNodeCoordinateWr(file_, name_.c_str(), MED_NO_DT, MED_NO_IT, MED_UNDEF_DT,
+                                    MED_FULL_INTERLACE, static_cast<med_int>(points.size()), values.data()));
   }
 
   template <class NodesOf>
@@ -72,9 +72,9 @@ class MedFile {
       families.push_back(family(dimension, tags[i]));
     }
     const auto count = static_cast<med_int>(tags.size());
-    require(MEDmeshElementConnectivityWr(file_, mesh_name, MED_NO_DT, MED_NO_IT, MED_UNDEF_DT, MED_CELL, type,
-                                         MED_NODAL, MED_FULL_INTERLACE, count, nodes.data()));
-    require(MEDmeshEntityFamilyNumberWr(file_, mesh_name, MED_NO_DT, MED_NO_IT, MED_CELL, type, count,
+    require(MEDmeshElementConnectivityWr(file_, name_.c_str(), MED_NO_DT, MED_NO_IT, MED_UNDEF_DT, MED_CELL,
+                                         type, MED_NODAL, MED_FULL_INTERLACE, count, nodes.data()));
+    require(MEDmeshEntityFamilyNumberWr(file_, name_.c_str(), MED_NO_DT, MED_NO_IT, MED_CELL, type, count,
                                         families.data()));
   }
 
@@ -89,8 +89,8 @@ class MedFile {
     const auto [found, added] =
         families_.try_emplace({dimension, tag}, -1 - static_cast<med_int>(families_.size()));
     if (added) {
-      const std::string group = group_name(names_, dimension, tag, "-");
-      require(MEDfamilyCr(file_, mesh_name, fmt::format("FAM_{}_{}", -found->second, group).c_str(),
+      const std::string group = group_name(mesh_, dimension, tag, "-");
+      require(MEDfamilyCr(file_, name_.c_str(), fmt::format("FAM_{}_{}", -found->second, group).c_str(),
                           found->second, 1, padded(group, MED_LNAME_SIZE).c_str()));
     }
     return found->second;
@@ -100,8 +100,9 @@ class MedFile {
     if (result < 0) target_.fail(0);
   }
 
+  std::string name_;  // of the mesh: that of the file
   UnfinishedFile target_;
-  GroupNames names_;
+  const TetMesh& mesh_;
   med_idt file_;
   std::map<std::pair<std::size_t, Tag>, med_int> families_;
 };
@@ -109,7 +110,7 @@ class MedFile {
 }  // namespace
 
 void write_med(const std::string& path, const TetMesh& mesh) {
-  MedFile file(path, mesh.group_names);
+  MedFile file(path, mesh);
   file.create_mesh();
   file.write_points(mesh.points);
   if (mesh.order() == 2) {

@@ -18,12 +18,20 @@ __attribute__((visibility("default"))) void collarmesh_write_xdmf(const std::str
                                                                   const collarmesh::TetMesh& mesh) {
   collarmesh::io::write_xdmf(path, mesh);
 }
+__attribute__((visibility("default"))) void collarmesh_read_xdmf(const std::string& path,
+                                                                 collarmesh::TetMesh& mesh) {
+  mesh = collarmesh::io::read_xdmf(path);
+}
 #endif
 
 #ifdef COLLARMESH_MED
 __attribute__((visibility("default"))) void collarmesh_write_med(const std::string& path,
                                                                  const collarmesh::TetMesh& mesh) {
   collarmesh::io::write_med(path, mesh);
+}
+__attribute__((visibility("default"))) void collarmesh_read_med(const std::string& path,
+                                                                collarmesh::TetMesh& mesh) {
+  mesh = collarmesh::io::read_med(path);
 }
 #endif
 }

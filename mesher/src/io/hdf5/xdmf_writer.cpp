@@ -1,11 +1,14 @@
-// XDMF 3 with its values in HDF5: NAME.xdmf and beside it NAME.h5 (www.xdmf.org, "XDMF Model and Format").
-// One uniform grid of mixed cells; what the arrays are: vtk_grid.h.
+// XDMF 3 with its values in HDF5 (www.xdmf.org, "XDMF Model and Format"), as uniform grids of one kind of
+// cells each, one in a file, which is what dolfinx and meshio read. What the arrays are: vtk_grid.h.
 #include <fmt/format.h>
 #include <hdf5.h>
 
+#include <array>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -19,10 +22,6 @@
 namespace collarmesh::io {
 
 namespace {
-
-/// XDMF's numbers of cell types.
-constexpr std::int32_t xdmf_polyline = 2, xdmf_triangle = 4, xdmf_tet = 6, xdmf_edge_2 = 34,
-                       xdmf_triangle_2 = 36, xdmf_tet_2 = 38;
 
 struct NumberType {
   std::string_view name;
@@ -75,53 +74,89 @@ class ValueFile {
   hid_t file_ = -1;
 };
 
-/// The type and nodes of each cell; lines of first order say how many nodes they have.
-std::vector<std::int32_t> mixed_topology(const TetMesh& mesh) {
-  std::vector<std::int32_t> values;
-  const bool second = mesh.order() == 2;
-  const auto add = [&](std::int32_t type, const CellNodes& nodes) {
-    values.push_back(type);
-    if (type == xdmf_polyline) values.push_back(2);
-    values.insert(values.end(), nodes.begin(), nodes.end());
-  };
-  for (std::size_t i = 0; i < mesh.tets.size(); ++i)
-    add(second ? xdmf_tet_2 : xdmf_tet, nodes_of_tet(mesh, i));
-  for (std::size_t i = 0; i < mesh.faces.size(); ++i)
-    add(second ? xdmf_triangle_2 : xdmf_triangle, nodes_of_face(mesh, i));
-  for (std::size_t i = 0; i < mesh.edges.size(); ++i)
-    add(second ? xdmf_edge_2 : xdmf_polyline, nodes_of_edge(mesh, i));
-  return values;
+/// What one file shows: the cells of one dimension, as a uniform grid.
+struct Cells {
+  std::string_view name;      ///< of the grid, and of its topology in the HDF5 file
+  std::string_view topology;  ///< XDMF's name of the kind of cells
+  std::size_t first, count;   ///< among all cells of the grid
+  std::vector<std::int64_t> nodes;
+  std::vector<std::string_view> arrays;  ///< that these cells have; dolfinx takes the first one for tags
+};
+
+template <class NodesOf>
+std::vector<std::int64_t> nodes_of_all(const TetMesh& mesh, std::size_t count, NodesOf nodes_of) {
+  std::vector<std::int64_t> nodes;
+  for (std::size_t i = 0; i < count; ++i)
+    for (const Index v : nodes_of(mesh, i)) nodes.push_back(v);
+  return nodes;
 }
 
-class XdmfWriter {
- public:
-  explicit XdmfWriter(const std::string& path)
-      : values_(std::filesystem::path(path).replace_extension(".h5").string()),
-        file_name_(std::filesystem::path(path).replace_extension(".h5").filename().string()),
-        out_(path) {}
+std::array<Cells, 3> cells_by_dimension(const TetMesh& mesh) {
+  const bool second = mesh.order() == 2;
+  const std::size_t tets = mesh.tets.size(), faces = mesh.faces.size(), edges = mesh.edges.size();
+  return {Cells{"mesh",
+                second ? "Tetrahedron_10" : "Tetrahedron",
+                0,
+                tets,
+                nodes_of_all(mesh, tets, nodes_of_tet),
+                {"tag", "region", "collar", "crease", "thin", "radius_edge", "min_dihedral", "max_dihedral"}},
+          Cells{"faces",
+                second ? "Triangle_6" : "Triangle",
+                tets,
+                faces,
+                nodes_of_all(mesh, faces, nodes_of_face),
+                {"tag", "region_back", "region_front", "feature"}},
+          Cells{"edges",
+                second ? "Edge_3" : "Polyline",
+                tets + faces,
+                edges,
+                nodes_of_all(mesh, edges, nodes_of_edge),
+                {"tag", "feature"}}};
+}
 
-  void write(const TetMesh& mesh) {
-    const VtkGrid grid = make_vtk_grid(mesh);
-    out_ << "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n<Grid Name=\"mesh\" "
-            "GridType=\"Uniform\">\n"
-         << "<Topology TopologyType=\"Mixed\" NumberOfElements=\"" << grid.cell_count << "\">\n";
-    write_item("topology", mixed_topology(mesh), 1);
+/// A file and the one with its values, which dolfinx wants to have the same name.
+class GridFile {
+ public:
+  explicit GridFile(const std::filesystem::path& path)
+      : values_(std::filesystem::path(path).replace_extension(".h5").string()),
+        values_name_(std::filesystem::path(path).replace_extension(".h5").filename().string()),
+        out_(path.string()) {}
+
+  void write(const VtkGrid& grid, const Cells& cells) {
+    const std::size_t nodes = cells.count == 0 ? 1 : cells.nodes.size() / cells.count;
+    out_ << "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n<Grid Name=\"" << cells.name
+         << "\" GridType=\"Uniform\">\n<Topology TopologyType=\"" << cells.topology
+         << "\" NumberOfElements=\"" << cells.count << "\" NodesPerElement=\"" << nodes << "\">\n";
+    write_item("topology", cells.nodes, nodes);
     out_ << "</Topology>\n<Geometry GeometryType=\"XYZ\">\n";
     write_item("points", std::get<std::vector<double>>(grid.points.values), 3);
     out_ << "</Geometry>\n";
-    for (const VtkArray& array : grid.cell_data) write_attribute("Cell", "cell_", array);
-    for (const VtkArray& array : grid.point_data) write_attribute("Node", "point_", array);
+    for (const std::string_view name : cells.arrays)
+      for (const VtkArray& array : grid.cell_data)
+        if (array.name == name) write_attribute("Cell", "cell_", array, cells.first, cells.count);
+    if (cells.first == 0)
+      for (const VtkArray& array : grid.point_data)
+        write_attribute("Node", "point_", array, 0, grid.point_count);
     out_ << "</Grid>\n</Domain>\n</Xdmf>\n";
+  }
+
+  void commit() {
     values_.commit();
     out_.commit();
   }
 
  private:
-  void write_attribute(std::string_view centre, const std::string& prefix, const VtkArray& array) {
+  void write_attribute(std::string_view centre, const std::string& prefix, const VtkArray& array,
+                       std::size_t first, std::size_t count) {
     out_ << "<Attribute Name=\"" << array.name << "\" AttributeType=\"Scalar\" Center=\"" << centre
          << "\">\n";
-    std::visit([&](const auto& values) { write_item(prefix + std::string(array.name), values, 1); },
-               array.values);
+    std::visit(
+        [&](const auto& values) {
+          const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
+          write_item(prefix + array.name,
+                     std::decay_t<decltype(values)>(begin, begin + static_cast<std::ptrdiff_t>(count)), 1);
+        },
+        array.values);
     out_ << "</Attribute>\n";
   }
 
@@ -131,17 +166,34 @@ class XdmfWriter {
     out_ << "<DataItem Format=\"HDF\" NumberType=\"" << type.name << "\" Precision=\"" << type.bytes
          << "\" Dimensions=\"" << values.size() / columns;
     if (columns > 1) out_ << ' ' << columns;
-    out_ << "\">" << file_name_ << ":/" << name << "</DataItem>\n";
+    out_ << "\">" << values_name_ << ":/" << name << "</DataItem>\n";
     values_.write(name, values, columns);
   }
 
   ValueFile values_;
-  std::string file_name_;
+  std::string values_name_;
   FileWriter out_;
 };
 
+/// NAME.xdmf for the tetrahedra, NAME_faces.xdmf and NAME_edges.xdmf for the others.
+std::filesystem::path path_of(const std::filesystem::path& path, const Cells& cells) {
+  if (cells.first == 0 && cells.name == "mesh") return path;
+  return path.parent_path() /
+         fmt::format("{}_{}{}", path.stem().string(), cells.name, path.extension().string());
+}
+
 }  // namespace
 
-void write_xdmf(const std::string& path, const TetMesh& mesh) { XdmfWriter(path).write(mesh); }
+void write_xdmf(const std::string& path, const TetMesh& mesh) {
+  const VtkGrid grid = make_vtk_grid(mesh);
+  std::vector<std::unique_ptr<GridFile>> files;
+  for (const Cells& cells : cells_by_dimension(mesh)) {
+    if (cells.count == 0 && cells.name != "mesh") continue;
+    files.push_back(std::make_unique<GridFile>(path_of(path, cells)));
+    files.back()->write(grid, cells);
+  }
+  // The one that was asked for last: who sees it sees the others, too.
+  for (auto file = files.rbegin(); file != files.rend(); ++file) (*file)->commit();
+}
 
 }  // namespace collarmesh::io

@@ -1,0 +1,120 @@
+#include "option_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+#include <vector>
+
+#include "usage_error.h"
+
+namespace collarmesh::cli {
+
+namespace {
+
+/// Text for roff: no line begins with a dot, backslashes and hyphens are themselves.
+std::string roff(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '\\')
+      result += "\\e";
+    else if (c == '-')
+      result += "\\-";
+    else if ((c == '.' || c == '\'') && (result.empty() || result.back() == '\n'))
+      result += std::string("\\&") + c;
+    else
+      result += c;
+  }
+  return result;
+}
+
+std::vector<const CLI::App*> subcommands(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App*) { return true; });
+}
+
+void add_option(std::string& text, const CLI::Option& option) {
+  std::string names;
+  for (const std::string& name : option.get_snames())
+    names += fmt::format("{}\\fB{}\\fR", names.empty() ? "" : ", ", roff("-" + name));
+  for (const std::string& name : option.get_lnames())
+    names += fmt::format("{}\\fB{}\\fR", names.empty() ? "" : ", ", roff("--" + name));
+  if (names.empty()) names = fmt::format("\\fI{}\\fR", roff(option.get_name()));
+  const std::string type = option.get_expected_max() == 0 ? std::string() : option.get_type_name();
+  fmt::format_to(
+      std::back_inserter(text), ".TP\n{}{}\n{}{}\n", names,
+      type.empty() ? "" : fmt::format(" \\fI{}\\fR", roff(type)), roff(option.get_description()),
+      option.get_default_str().empty() ? "" : fmt::format(" (default: {})", roff(option.get_default_str())));
+}
+
+void add_options(std::string& text, const CLI::App& app, const char* heading) {
+  for (const std::string& group : app.get_groups()) {
+    const auto members =
+        app.get_options([&](const CLI::Option* option) { return option->get_group() == group; });
+    if (members.empty()) continue;
+    fmt::format_to(std::back_inserter(text), "{} {}\n", heading, roff(group));
+    for (const CLI::Option* option : members) add_option(text, *option);
+  }
+}
+
+/// "on|off" are words to choose from; a name in capitals is none.
+std::string words_of(const CLI::Option& option) {
+  std::string words = option.get_type_name();
+  if (words.find('|') == std::string::npos) return {};
+  std::replace(words.begin(), words.end(), '|', ' ');
+  return words;
+}
+
+std::string long_names(const CLI::App& app) {
+  std::string names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames())
+      names += fmt::format("{}--{}", names.empty() ? "" : " ", name);
+  return names;
+}
+
+}  // namespace
+
+std::string man_page(const CLI::App& app, const std::string& version, const std::string& footer) {
+  std::string text =
+      fmt::format(".TH COLLARMESH 1 \"\" \"collarmesh {}\"\n.SH NAME\ncollarmesh \\- {}\n.SH SYNOPSIS\n",
+                  version, roff("tetrahedral meshes of surfaces, CAD shapes and complexes, certified"));
+  const auto subs = subcommands(app);
+  std::vector<std::string> usages{usage_of("")};
+  for (const CLI::App* sub : subs) usages.push_back(usage_of(sub->get_name()));
+  for (const std::string& usage : usages)
+    fmt::format_to(std::back_inserter(text), "{} [options]\n.br\n", roff(usage));
+  text += ".SH DESCRIPTION\n" + roff(app.get_description()) + "\n.SH OPTIONS\n";
+  add_options(text, app, ".SS");
+  for (const CLI::App* sub : subs) {
+    fmt::format_to(std::back_inserter(text), ".SH COLLARMESH {}\n{}\n", roff(sub->get_name()),
+                   roff(sub->get_description()));
+    add_options(text, *sub, ".SS");
+  }
+  text += ".SH NOTES\n.nf\n" + roff(footer) + "\n.fi\n";
+  return text;
+}
+
+std::string bash_completion(const CLI::App& app) {
+  std::string commands, options, words;
+  for (const CLI::App* sub : subcommands(app)) {
+    commands += (commands.empty() ? "" : " ") + sub->get_name();
+    options += fmt::format("    {}) options='{}' ;;\n", sub->get_name(), long_names(*sub));
+  }
+  for (const CLI::Option* option : app.get_options())
+    if (const std::string known = words_of(*option); !known.empty())
+      for (const std::string& name : option->get_lnames())
+        words +=
+            fmt::format("    --{}) COMPREPLY=($(compgen -W '{}' -- \"$word\")); return ;;\n", name, known);
+  return fmt::format(
+      "# bash completion for collarmesh\n_collarmesh() {{\n  local word=${{COMP_WORDS[COMP_CWORD]}} "
+      "before=${{COMP_WORDS[COMP_CWORD-1]}} options\n  COMPREPLY=()\n  case $before in\n{}  esac\n"
+      "  case ${{COMP_WORDS[1]}} in\n{}    *) options='{}' ;;\n  esac\n"
+      "  if [[ $word == -* ]]; then\n    COMPREPLY=($(compgen -W \"$options\" -- \"$word\"))\n  else\n"
+      "    COMPREPLY=($(compgen -f -- \"$word\"))\n"
+      "    if [ \"$COMP_CWORD\" -eq 1 ]; then COMPREPLY+=($(compgen -W '{}' -- \"$word\")); fi\n  fi\n}}\n"
+      "complete -o filenames -F _collarmesh collarmesh\n",
+      words, options, long_names(app), commands);
+}
+
+}  // namespace collarmesh::cli

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "collarmesh/polygon_soup.h"
+
+namespace collarmesh::io {
+
+/// Read the tagged triangles and lines of a mesh file, with the names of their groups, as a surface: .msh
+/// .mesh .vtu .vtp, by extension or as `format` says. Tetrahedra that are there as well are left out, nodes
+/// amid edges too. Throws ReadError.
+PolygonSoup read_mesh_surface(const std::string& path, std::string_view format = {});
+
+/// Does `read_mesh_surface` know this extension or format?
+bool is_mesh_surface_format(const std::string& path, std::string_view format = {});
+
+std::vector<std::string> mesh_surface_formats();
+
+}  // namespace collarmesh::io

@@ -1,0 +1,164 @@
+"""What can be meshed: files, surfaces of arrays, complexes with holes and regions."""
+
+import os
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+
+import numpy
+
+from ._core import OptionError
+
+if TYPE_CHECKING:  # importing numpy.typing takes as long as all the rest
+    import numpy.typing
+
+    Array = numpy.typing.NDArray[Any]
+    ArrayLike = numpy.typing.ArrayLike
+else:
+    Array = ArrayLike = Any
+Path = Union[str, "os.PathLike[str]"]
+
+
+def reals(values: ArrayLike, what: str, columns: int) -> Array:
+    """An array of shape (n, columns), float64."""
+    array = numpy.asarray(values)
+    if array.size == 0:
+        return numpy.empty((0, columns))
+    if array.dtype.kind not in "fiu":
+        raise OptionError(f"{what} must be numbers, not {array.dtype}")
+    if array.ndim != 2 or array.shape[1] != columns:
+        raise OptionError(f"{what} must be an array of shape (n, {columns}), not {array.shape}")
+    return numpy.ascontiguousarray(array, dtype=numpy.float64)
+
+
+def integers(values: ArrayLike, what: str, columns: Optional[int] = None) -> Array:
+    """An array of shape (n, columns), or (n,) without columns; int64. Numbers with a fraction are no integers."""
+    array = numpy.asarray(values)
+    shape = "(n,)" if columns is None else f"(n, {columns})"
+    if array.size == 0:
+        return numpy.empty(0 if columns is None else (0, columns), dtype=numpy.int64)
+    if array.dtype.kind not in "iu":
+        raise OptionError(f"{what} must be integers, not {array.dtype}")
+    if array.ndim != (1 if columns is None else 2) or (columns is not None and array.shape[1] != columns):
+        raise OptionError(f"{what} must be an array of shape {shape}, not {array.shape}")
+    if array.dtype.kind == "u" and array.max() > numpy.iinfo(numpy.int64).max:
+        raise OptionError(f"{what} must be integers of 64 bits with a sign")
+    return numpy.ascontiguousarray(array, dtype=numpy.int64)
+
+
+def _one_for_each(values: Array, count: int, what: str, of: str) -> Array:
+    if len(values) != count:
+        raise OptionError(f"{what} must be an array of shape (n,), one for each {of}: {count}, not {len(values)}")
+    return values
+
+
+def _polygons(facet: Any) -> List[Sequence[int]]:
+    """A facet is one polygon, or several polygons in one plane."""
+    several = len(facet) > 0 and hasattr(facet[0], "__len__")
+    return list(facet) if several else [facet]
+
+
+class Complex:
+    """A piecewise-linear complex: facets that bound regions, with holes and facets inside.
+
+    points: (n, 3), any unit of length.
+    facets: a sequence. A facet is a polygon, a sequence of three or more rows of `points`, in either
+        orientation; or a sequence of such polygons in one plane, where a polygon of two corners is a segment
+        inside of the facet and one of one corner a point inside of it.
+    facet_tags: (f,), integers by which the faces of the mesh are found again; default: facets are numbered.
+    facet_holes: by row of `facets`, points in the plane of the facet in the holes that are cut out of it.
+    segments: (s, 2), rows of `points`: edges that the mesh must have; segment_tags: (s,).
+    holes: (h, 3), a point in each region that stays empty.
+    regions: a sequence of (point, tag) or (point, tag, size): names the region around the point, where size is
+        the target edge length there.
+    names: names of facet tags, {3: "inlet"}.
+
+    Raises OptionError for wrong shapes and for indices that are no integers or out of range.
+    """
+
+    def __init__(
+        self,
+        points: ArrayLike,
+        facets: Sequence[Any],
+        *,
+        facet_tags: Optional[ArrayLike] = None,
+        facet_holes: Optional[Mapping[int, ArrayLike]] = None,
+        segments: Optional[ArrayLike] = None,
+        segment_tags: Optional[ArrayLike] = None,
+        holes: Optional[ArrayLike] = None,
+        regions: Sequence[Tuple[Any, ...]] = (),
+        names: Optional[Mapping[int, str]] = None,
+        name: str = "complex",
+    ) -> None:
+        corners: List[Any] = []
+        polygon_ends: List[int] = []
+        facet_ends: List[int] = []
+        for facet in facets:
+            for polygon in _polygons(facet):
+                corners.extend(polygon)
+                polygon_ends.append(len(corners))
+            facet_ends.append(len(polygon_ends))
+        self.arrays: Dict[str, Any] = {
+            "name": name,
+            "points": reals(points, f"the points of {name}", 3),
+            "corners": integers(corners, f"the facets of {name}"),
+            "polygon_ends": integers(polygon_ends, "ends"),
+            "facet_ends": integers(facet_ends, "ends"),
+            "names": {2: {int(tag): str(text) for tag, text in (names or {}).items()}},
+        }
+        if facet_tags is not None:
+            tags = integers(facet_tags, f"the tags of {name}")
+            self.arrays["facet_tags"] = _one_for_each(tags, len(facet_ends), f"the tags of {name}", "facet")
+        if segments is not None:
+            self.arrays["segments"] = integers(segments, f"the segments of {name}", 2)
+        if segment_tags is not None:
+            tags = integers(segment_tags, "segment_tags")
+            self.arrays["segment_tags"] = _one_for_each(
+                tags, len(self.arrays.get("segments", ())), "segment_tags", "segment"
+            )
+        if holes is not None:
+            self.arrays["holes"] = reals(holes, f"the holes of {name}", 3)
+        rows = [(*region[0], region[1], region[2] if len(region) > 2 else 0) for region in regions]
+        self.arrays["regions"] = reals(rows, f"the regions of {name}", 5)
+        cut_out = []
+        for facet_row, places in (facet_holes or {}).items():
+            if not 0 <= facet_row < len(facet_ends):
+                raise OptionError(f"facet_holes has the facet {facet_row}; they are 0 to {len(facet_ends) - 1}")
+            cut_out += [(facet_row, *place) for place in reals(places, f"facet_holes[{facet_row}]", 3)]
+        self.arrays["facet_holes"] = reals(cut_out, "facet_holes", 4)
+
+
+def _triangles(surface: Tuple[Any, ...], name: str) -> Dict[str, Any]:
+    if len(surface) not in (2, 3):
+        raise OptionError(f"{name} must be a tuple (points, triangles) or (points, triangles, tags)")
+    triangles = integers(surface[1], f"the triangles of {name}", 3)
+    count = len(triangles)
+    arrays: Dict[str, Any] = {
+        "name": name,
+        "points": reals(surface[0], f"the points of {name}", 3),
+        "corners": triangles.ravel(),
+        "polygon_ends": 3 * numpy.arange(1, count + 1),
+        "facet_ends": numpy.arange(1, count + 1),
+    }
+    if len(surface) == 3:
+        tags = integers(surface[2], f"the tags of {name}")
+        arrays["facet_tags"] = _one_for_each(tags, count, f"the tags of {name}", "triangle")
+    return arrays
+
+
+Input = Union[Path, Complex, Tuple[ArrayLike, ArrayLike], Tuple[ArrayLike, ArrayLike, ArrayLike]]
+
+
+def inputs(given: Sequence[Input]) -> List[Any]:
+    """What the compiled part takes: paths, and dicts of arrays."""
+    if not given:
+        raise OptionError("there is nothing to mesh: give files, surfaces (points, triangles) or complexes")
+    result: List[Any] = []
+    for number, each in enumerate(given, 1):
+        if isinstance(each, Complex):
+            result.append(each.arrays)
+        elif isinstance(each, (str, os.PathLike)):
+            result.append(os.fspath(each))
+        elif isinstance(each, (tuple, list)):
+            result.append(_triangles(tuple(each), f"surface {number}"))
+        else:
+            raise OptionError(f"input {number} must be a path, a tuple (points, triangles) or a Complex, not {each!r}")
+    return result

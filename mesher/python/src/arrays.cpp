@@ -1,0 +1,240 @@
+#include "arrays.h"
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <cstring>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "collarmesh/error.h"
+
+namespace py = pybind11;
+
+namespace collarmesh::python {
+
+namespace {
+
+template <class T>
+using Array = py::array_t<T, py::array::c_style | py::array::forcecast>;
+
+template <class T>
+std::vector<T> values(const py::dict& arrays, const char* key) {
+  if (!arrays.contains(key)) return {};
+  const auto array = arrays[key].cast<Array<T>>();
+  return {array.data(), array.data() + array.size()};
+}
+
+std::vector<Point> points(const py::dict& arrays, const char* key) {
+  const auto flat = values<double>(arrays, key);
+  std::vector<Point> result;
+  result.reserve(flat.size() / 3);
+  for (std::size_t i = 0; i + 2 < flat.size(); i += 3) result.push_back({flat[i], flat[i + 1], flat[i + 2]});
+  return result;
+}
+
+Index index(std::int64_t value, std::size_t size, const std::string& what) {
+  if (value < 0 || value >= static_cast<std::int64_t>(size))
+    throw OptionError(
+        fmt::format("{} has the corner {}; its points are 0 to {}", what, value, std::int64_t(size) - 1));
+  return static_cast<Index>(value);
+}
+
+/// Rows of indices of points.
+template <std::size_t columns>
+std::vector<std::array<Index, columns>> rows(const py::dict& arrays, const char* key, std::size_t points) {
+  const auto flat = values<std::int64_t>(arrays, key);
+  std::vector<std::array<Index, columns>> result(flat.size() / columns);
+  for (std::size_t i = 0; i < result.size(); ++i)
+    for (std::size_t k = 0; k < columns; ++k)
+      result[i][k] = index(flat[i * columns + k], points, fmt::format("row {} of {}", i, key));
+  return result;
+}
+
+template <class T>
+std::vector<T> numbers(const py::dict& arrays, const char* key) {
+  const auto wide = values<std::int64_t>(arrays, key);
+  return {wide.begin(), wide.end()};
+}
+
+/// An array that owns its values and is not to be written to.
+template <class T>
+py::array owned(std::vector<T> values, py::ssize_t columns) {
+  auto kept = std::make_unique<std::vector<T>>(std::move(values));
+  const T* data = kept->data();
+  const auto rows = static_cast<py::ssize_t>(kept->size()) / columns;
+  const py::capsule owner(kept.release(), [](void* p) { delete static_cast<std::vector<T>*>(p); });
+  py::array array = columns == 1 ? py::array(py::dtype::of<T>(), {rows}, {}, data, owner)
+                                 : py::array(py::dtype::of<T>(), {rows, columns}, {}, data, owner);
+  array.attr("setflags")(py::arg("write") = false);
+  return array;
+}
+
+template <class T>
+py::array signed_array(const std::vector<T>& items) {
+  return owned(std::vector<std::int64_t>(items.begin(), items.end()), 1);
+}
+/// `none` is -1.
+py::array index_array(const std::vector<Index>& items) {
+  std::vector<std::int64_t> wide;
+  wide.reserve(items.size());
+  for (const Index i : items) wide.push_back(i == none ? -1 : std::int64_t{i});
+  return owned(std::move(wide), 1);
+}
+template <std::size_t columns>
+py::array index_array(const std::vector<std::array<Index, columns>>& items) {
+  std::vector<std::int64_t> wide;
+  wide.reserve(items.size() * columns);
+  for (const auto& row : items) wide.insert(wide.end(), row.begin(), row.end());
+  return owned(std::move(wide), columns);
+}
+py::array point_array(const std::vector<Point>& items) {
+  std::vector<double> flat;
+  flat.reserve(3 * items.size());
+  for (const Point& p : items) flat.insert(flat.end(), {p.x, p.y, p.z});
+  return owned(std::move(flat), 3);
+}
+
+using Names = std::map<int, std::map<Tag, std::string>>;
+
+TagNames names_of(const py::dict& arrays) {
+  TagNames names;
+  if (!arrays.contains("names")) return names;
+  for (const auto& [dimension, by_tag] : arrays["names"].cast<Names>())
+    for (const auto& [tag, name] : by_tag)
+      if (dimension >= 0 && dimension <= 3) names.set(static_cast<std::size_t>(dimension), tag, name);
+  return names;
+}
+
+Names names_of(const TagNames& names) {
+  Names result;
+  for (int d = 0; d < 4; ++d)
+    if (!names.of(static_cast<std::size_t>(d)).empty()) result[d] = names.of(static_cast<std::size_t>(d));
+  return result;
+}
+
+}  // namespace
+
+PolygonSoup soup_of(const py::dict& arrays) {
+  PolygonSoup soup;
+  soup.name = arrays["name"].cast<std::string>();
+  soup.points = points(arrays, "points");
+  const std::size_t n = soup.points.size();
+  const auto corners = values<std::int64_t>(arrays, "corners");
+  const auto polygon_ends = values<std::int64_t>(arrays, "polygon_ends");
+  const auto facet_ends = values<std::int64_t>(arrays, "facet_ends");
+  const auto tags = values<std::int64_t>(arrays, "facet_tags");
+  std::vector<Index> polygon;
+  std::size_t corner = 0, q = 0;
+  for (std::size_t f = 0; f < facet_ends.size(); ++f) {
+    soup.begin_facet(tags.empty() ? 0 : tags[f]);
+    for (; q < static_cast<std::size_t>(facet_ends[f]); ++q) {
+      polygon.clear();
+      for (; corner < static_cast<std::size_t>(polygon_ends[q]); ++corner)
+        polygon.push_back(index(corners[corner], n, fmt::format("facet {} of {}", f, soup.name)));
+      soup.add_polygon(polygon);
+    }
+  }
+  const auto segments = rows<2>(arrays, "segments", n);
+  const auto segment_tags = values<std::int64_t>(arrays, "segment_tags");
+  for (std::size_t i = 0; i < segments.size(); ++i)
+    soup.segments.push_back({segments[i][0], segments[i][1], segment_tags.empty() ? 0 : segment_tags[i]});
+  soup.hole_points = points(arrays, "holes");
+  const auto regions = values<double>(arrays, "regions");
+  for (std::size_t i = 0; i + 4 < regions.size(); i += 5)
+    soup.region_points.push_back(
+        {{regions[i], regions[i + 1], regions[i + 2]}, static_cast<Tag>(regions[i + 3]), regions[i + 4]});
+  const auto holes = values<double>(arrays, "facet_holes");
+  for (std::size_t i = 0; i + 3 < holes.size(); i += 4)
+    soup.facet_holes.push_back({static_cast<Index>(holes[i]), {holes[i + 1], holes[i + 2], holes[i + 3]}});
+  soup.tag_names = names_of(arrays);
+  return soup;
+}
+
+py::dict arrays_of(const PolygonSoup& soup) {
+  std::vector<std::int64_t> corners, polygon_ends, facet_ends, tags;
+  for (Index f = 0; f < soup.facet_count(); ++f) {
+    const auto [first, last] = soup.facet_polygons(f);
+    for (Index q = first; q < last; ++q) {
+      for (const Index corner : soup.polygon(q)) corners.push_back(corner);
+      polygon_ends.push_back(static_cast<std::int64_t>(corners.size()));
+    }
+    facet_ends.push_back(last);
+    tags.push_back(soup.facet_tag(f));
+  }
+  py::dict arrays;
+  arrays["name"] = soup.name;
+  arrays["points"] = point_array(soup.points);
+  arrays["corners"] = owned(std::move(corners), 1);
+  arrays["polygon_ends"] = owned(std::move(polygon_ends), 1);
+  arrays["facet_ends"] = owned(std::move(facet_ends), 1);
+  arrays["facet_tags"] = owned(std::move(tags), 1);
+  arrays["names"] = names_of(soup.tag_names);
+  return arrays;
+}
+
+TetMesh tet_mesh_of(const py::dict& arrays) {
+  TetMesh mesh;
+  mesh.points = points(arrays, "points");
+  const std::size_t n = mesh.points.size();
+  mesh.tets = rows<4>(arrays, "tets", n);
+  mesh.tet_region = numbers<Index>(arrays, "tet_region");
+  mesh.tet_tag = numbers<Tag>(arrays, "tet_tag");
+  mesh.tet_collar = numbers<std::uint8_t>(arrays, "tet_collar");
+  mesh.tet_thin = numbers<std::uint8_t>(arrays, "tet_thin");
+  mesh.tet_crease = numbers<Tag>(arrays, "tet_crease");
+  mesh.faces = rows<3>(arrays, "faces", n);
+  const auto regions = numbers<Index>(arrays, "face_regions");
+  for (std::size_t i = 0; i + 1 < regions.size(); i += 2)
+    mesh.face_regions.push_back({regions[i], regions[i + 1]});
+  mesh.face_patch = numbers<Index>(arrays, "face_patch");
+  mesh.face_tag = numbers<Tag>(arrays, "face_tag");
+  mesh.edges = rows<2>(arrays, "edges", n);
+  mesh.edge_curve = numbers<Index>(arrays, "edge_curve");
+  mesh.edge_tag = numbers<Tag>(arrays, "edge_tag");
+  mesh.tet_mid_nodes = rows<6>(arrays, "tet_mid_nodes", n);
+  mesh.face_mid_nodes = rows<3>(arrays, "face_mid_nodes", n);
+  for (const auto& row : rows<1>(arrays, "edge_mid_nodes", n)) mesh.edge_mid_nodes.push_back(row[0]);
+  const auto dimension = numbers<std::uint8_t>(arrays, "feature_dimension");
+  const auto feature = numbers<Index>(arrays, "feature");
+  for (std::size_t i = 0; i < dimension.size(); ++i) mesh.features.push_back({dimension[i], feature[i]});
+  mesh.names = names_of(arrays);
+  if (arrays["cad_names"].cast<bool>()) mesh.group_names = GroupNames::cad;
+  return mesh;
+}
+
+py::dict arrays_of(TetMesh mesh) {
+  py::dict arrays;
+  arrays["points"] = point_array(mesh.points);
+  arrays["tets"] = index_array(mesh.tets);
+  arrays["tet_region"] = index_array(mesh.tet_region);
+  arrays["tet_tag"] = owned(std::move(mesh.tet_tag), 1);
+  arrays["tet_collar"] = owned(std::move(mesh.tet_collar), 1);
+  arrays["tet_thin"] = owned(std::move(mesh.tet_thin), 1);
+  arrays["tet_crease"] = owned(std::move(mesh.tet_crease), 1);
+  arrays["tet_mid_nodes"] = index_array(mesh.tet_mid_nodes);
+  arrays["faces"] = index_array(mesh.faces);
+  arrays["face_regions"] = index_array(mesh.face_regions);
+  arrays["face_tag"] = owned(std::move(mesh.face_tag), 1);
+  arrays["face_patch"] = index_array(mesh.face_patch);
+  arrays["face_mid_nodes"] = index_array(mesh.face_mid_nodes);
+  arrays["edges"] = index_array(mesh.edges);
+  arrays["edge_tag"] = owned(std::move(mesh.edge_tag), 1);
+  arrays["edge_curve"] = index_array(mesh.edge_curve);
+  arrays["edge_mid_nodes"] = index_array(mesh.edge_mid_nodes);
+  std::vector<std::uint8_t> dimension;
+  std::vector<Index> feature;
+  for (const TetMesh::VertexFeature& f : mesh.features) {
+    dimension.push_back(f.dimension);
+    feature.push_back(f.feature);
+  }
+  arrays["feature_dimension"] = owned(std::move(dimension), 1);
+  arrays["feature"] = index_array(feature);
+  arrays["names"] = names_of(mesh.names);
+  arrays["cad_names"] = mesh.group_names == GroupNames::cad;
+  return arrays;
+}
+
+}  // namespace collarmesh::python

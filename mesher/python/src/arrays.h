@@ -1,0 +1,24 @@
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include "collarmesh/polygon_soup.h"
+#include "collarmesh/tet_mesh.h"
+
+/// Arrays of numpy to and from the library's types. The Python side has looked at their shapes and kinds.
+namespace collarmesh::python {
+
+/// Keys: name, points (n, 3); corners (c,), polygon_ends (p,), facet_ends (f,), facet_tags (f,); segments
+/// (s, 2), segment_tags (s,); holes (h, 3); regions (r, 5): place, tag, size; facet_holes (k, 4): facet,
+/// place. Throws OptionError for corners out of range.
+PolygonSoup soup_of(const pybind11::dict& arrays);
+/// The facets as triangles and polygons, in the same keys.
+pybind11::dict arrays_of(const PolygonSoup& soup);
+
+/// Keys: the arrays of TetMesh by their names, feature_dimension and feature for those of points, `names`, a
+/// dict of dimension to a dict of tag to name, and `cad_names`.
+TetMesh tet_mesh_of(const pybind11::dict& arrays);
+pybind11::dict arrays_of(TetMesh mesh);
+
+}  // namespace collarmesh::python

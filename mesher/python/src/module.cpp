@@ -1,0 +1,260 @@
+// The mesher for Python: what collarmesh/__init__.py calls.
+#include <fmt/format.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "arrays.h"
+#include "collarmesh/error.h"
+#include "collarmesh/io/tet_mesh_io.h"
+#include "collarmesh/mesh_measures.h"
+#include "collarmesh/pipeline.h"
+#include "complex_input.h"
+#include "input_files.h"
+#include "options.h"
+#include "report.h"
+#include "soup_output.h"
+#include "surface_files.h"
+#include "watched.h"
+
+namespace py = pybind11;
+
+namespace collarmesh::python {
+
+namespace {
+
+/// What is to be meshed: paths and surfaces of arrays, in their order.
+struct Inputs {
+  std::vector<std::string> paths;
+  std::vector<PolygonSoup> soups;
+};
+
+Inputs inputs_of(const py::list& given) {
+  Inputs inputs;
+  for (const py::handle& each : given) {
+    if (py::isinstance<py::str>(each))
+      inputs.paths.push_back(each.cast<std::string>());
+    else
+      inputs.soups.push_back(soup_of(py::reinterpret_borrow<py::dict>(each)));
+  }
+  return inputs;
+}
+
+/// A complex and where it came from; what refers to the other stays beside it.
+struct Complex {
+  std::optional<cli::ComplexInput> input;
+  Plc plc;
+};
+
+cli::ComplexInput read(const Inputs& inputs, const Options& options, Watch& watch) {
+  watch.begin_stage("read");
+  cli::InputReading reading;
+  reading.format = options.input_format;
+  reading.distance = [&options](double diagonal) { return distance_of(options.pipeline, diagonal); };
+  reading.overlap = options.overlap;
+  reading.cancel = &watch.flag();
+  reading.stop = [&watch] { watch.stop_if_asked(); };
+  cli::ComplexInput input(inputs.paths, reading);
+  for (const PolygonSoup& soup : inputs.soups) input.add(soup);
+  return input;
+}
+
+void build(const Inputs& inputs, const Options& options, Watch& watch, Complex& complex) {
+  complex.input.emplace(read(inputs, options, watch));
+  watch.begin_stage("complex");
+  complex.plc = complex.input->build(options.complex());
+  watch.stop_if_asked();
+}
+
+py::object parsed(const nlohmann::ordered_json& json) {
+  return py::module_::import("json").attr("loads")(json.dump());
+}
+
+/// What a call owns while its work runs, and afterwards what came out.
+struct MeshCall {
+  Inputs inputs;
+  Options options;
+  Complex complex;
+  PipelineResult run;
+};
+
+void mesh(MeshCall& call, Watch& watch) {
+  build(call.inputs, call.options, watch, call.complex);
+  const Plc& plc = call.complex.plc;
+  PipelineOptions options = call.options.pipeline;
+  options.mesh.time_limit = 0;  // the watch looks at it, over all that the call does
+  if (!call.options.size_field_file.empty())
+    options.mesh.size_field = read_size_field(call.options.size_field_file, plc);
+  if (!call.options.size_field_json.empty())
+    options.mesh.size_field = size_field_from_json(call.options.size_field_json, plc);
+  if (call.complex.input->has_cad()) options.exact = call.complex.input->exact_geometry(plc);
+  call.run = run_pipeline(plc, options, watch.execution());
+  MeshResult& result = call.run.result;
+  if (result.status == MeshStatus::budget_hit) throw BudgetSpent(result.message);
+  if (result.status == MeshStatus::cancelled) throw Cancelled(result.message);
+  if (call.complex.input->has_cad()) result.mesh.group_names = GroupNames::cad;
+}
+
+py::dict mesh_of(const py::list& inputs, const py::dict& options, const py::object& progress) {
+  const auto call = std::make_shared<MeshCall>();
+  call->inputs = inputs_of(inputs);
+  call->options = options_of(options);
+  const double time_limit = call->options.pipeline.mesh.time_limit;
+  run_watched([call](Watch& watch) { mesh(*call, watch); }, progress, time_limit);
+  py::dict arrays = arrays_of(std::move(call->run.result.mesh));
+  const cli::ComplexInput& input = *call->complex.input;
+  arrays["status_message"] = call->run.result.message;
+  arrays["check"] = parsed(cli::check_json(call->run.check));
+  arrays["repairs"] = describe(input.repaired());
+  arrays["notes"] = input.notes();
+  std::vector<std::string> warnings;
+  for (const Plc::Warning& warning : call->complex.plc.warnings) warnings.push_back(warning.message);
+  arrays["warnings"] = warnings;
+  return arrays;
+}
+
+struct CheckCall {
+  TetMesh mesh;
+  Inputs inputs;
+  Options options;
+  Complex complex;
+  CheckReport report;
+};
+
+py::object check_mesh(const py::dict& mesh, const py::list& against, const py::dict& options) {
+  const auto call = std::make_shared<CheckCall>();
+  call->mesh = tet_mesh_of(mesh);
+  call->inputs = inputs_of(against);
+  call->options = options_of(options);
+  const auto work = [call](Watch& watch) {
+    build(call->inputs, call->options, watch, call->complex);
+    watch.begin_stage("check");
+    call->report = check(call->mesh, call->complex.plc, call->options.check, watch.execution());
+    watch.stop_if_asked();
+  };
+  run_watched(work, py::none(), call->options.pipeline.mesh.time_limit);
+  return parsed(cli::check_json(call->report));
+}
+
+struct ComplexCall {
+  Inputs inputs;
+  Options options;
+  Complex complex;
+  PlcSummary summary;
+};
+
+py::object info(const py::list& inputs, const py::dict& options) {
+  const auto call = std::make_shared<ComplexCall>();
+  call->inputs = inputs_of(inputs);
+  call->options = options_of(options);
+  const auto work = [call](Watch& watch) {
+    try {
+      build(call->inputs, call->options, watch, call->complex);
+    } catch (const PlcError&) {
+      call->options.pipeline.complex.require_solid = false;
+      build(call->inputs, call->options, watch, call->complex);
+    }
+    call->summary = summarize(call->complex.plc, call->options.pipeline.mesh.crease_angle);
+  };
+  run_watched(work, py::none(), call->options.pipeline.mesh.time_limit);
+  nlohmann::ordered_json json{{"complex", cli::complex_json(call->complex.plc, call->summary)},
+                              {"repair", cli::repair_json(call->complex.input->repaired())}};
+  return parsed(json);
+}
+
+py::object measures(const py::dict& arrays) {
+  const TetMesh mesh = tet_mesh_of(arrays);
+  nlohmann::ordered_json json = cli::measures_json(mesh, measure_mesh(mesh));
+  json["median_edge"] = median_edge(mesh);
+  return parsed({{"mesh", json}});
+}
+
+py::list repaired(const py::list& inputs, const py::dict& options, py::list& messages) {
+  const auto call = std::make_shared<ComplexCall>();
+  call->inputs = inputs_of(inputs);
+  call->options = options_of(options);
+  run_watched([call](Watch& watch) { build(call->inputs, call->options, watch, call->complex); }, py::none(),
+              call->options.pipeline.mesh.time_limit);
+  py::list soups;
+  for (const PolygonSoup& soup : call->complex.input->soups()) soups.append(arrays_of(soup));
+  for (const std::string& line : describe(call->complex.input->repaired())) messages.append(line);
+  return soups;
+}
+
+struct ConvertCall {
+  Inputs inputs;
+  Options options;
+  std::string output;
+  std::vector<PolygonSoup> soups;
+  std::string told;
+};
+
+/// Surfaces as they are become one file. What was welded, merged and dropped is returned as text.
+std::string convert_surfaces(const py::list& inputs, const std::string& output, const py::dict& options) {
+  const auto call = std::make_shared<ConvertCall>();
+  call->inputs = inputs_of(inputs);
+  call->options = options_of(options);
+  call->output = output;
+  const auto work = [call](Watch& watch) {
+    const cli::ComplexInput input = read(call->inputs, call->options, watch);
+    const cli::MergedSoup merged = cli::merge_for_output(
+        input.soups(), call->output, call->options.output_format, call->options.pipeline.complex);
+    cli::write_surface(call->output, merged.soup, call->options.output_format);
+    call->told = merged.told;
+  };
+  run_watched(work, py::none(), call->options.pipeline.mesh.time_limit);
+  return call->told;
+}
+
+py::dict read_mesh(const std::string& path, const std::string& format) {
+  const auto mesh = std::make_shared<TetMesh>();
+  run_watched([mesh, path, format](Watch&) { *mesh = cli::read_mesh(path, format); }, py::none(), 0);
+  return arrays_of(std::move(*mesh));
+}
+
+/// None for a surface.
+py::object read_mesh_if_there(const std::string& path, const std::string& format) {
+  const auto mesh = std::make_shared<std::optional<TetMesh>>();
+  run_watched([mesh, path, format](Watch&) { *mesh = cli::read_mesh_if_there(path, format); }, py::none(), 0);
+  if (!*mesh) return py::none();
+  return arrays_of(std::move(**mesh));
+}
+
+void write_mesh(const py::dict& arrays, const std::string& path, const std::string& format) {
+  const auto mesh = std::make_shared<TetMesh>(tet_mesh_of(arrays));
+  run_watched([mesh, path, format](Watch&) { io::write_tet_mesh(path, *mesh, format); }, py::none(), 0);
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_core, module) {
+  module.attr("__version__") = COLLARMESH_VERSION;
+  const auto error = py::register_exception<Error>(module, "Error", PyExc_RuntimeError);
+  // Looked at from the last one to the first: a subclass comes after what it is one of.
+  py::register_exception<OptionError>(module, "OptionError", error.ptr());
+  py::register_exception<ReadError>(module, "ReadError", error.ptr());
+  py::register_exception<WriteError>(module, "WriteError", error.ptr());
+  py::register_exception<PlcError>(module, "ComplexError", error.ptr());
+  py::register_exception<BudgetSpent>(module, "BudgetError", error.ptr());
+  py::register_exception<Cancelled>(module, "CancelledError", error.ptr());
+  module.def("mesh", &mesh_of);
+  module.def("check", &check_mesh);
+  module.def("info", &info);
+  module.def("measures", &measures);
+  module.def("repaired", &repaired);
+  module.def("convert_surfaces", &convert_surfaces);
+  module.def("read_mesh", &read_mesh);
+  module.def("read_mesh_if_there", &read_mesh_if_there);
+  module.def("write_mesh", &write_mesh);
+  module.def("is_surface_format", [](const std::string& path, const std::string& format) {
+    return cli::is_surface_format(path, format);
+  });
+  py::module_::import("atexit").attr("register")(py::cpp_function(&wait_for_abandoned));
+}
+
+}  // namespace collarmesh::python

@@ -1,0 +1,142 @@
+#include "watched.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <thread>
+#include <utility>
+
+namespace py = pybind11;
+
+namespace collarmesh::python {
+
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto between_looks = 30ms;     // at signals
+constexpr auto until_abandoned = 700ms;  // from the wish to stop
+constexpr auto until_interpreter_ends = 10s;
+
+std::atomic<int> abandoned{0};
+
+/// May Python go on? Runs the handlers of signals that came in the meantime.
+bool signals_handled() {
+  const py::gil_scoped_acquire acquire;
+  return PyErr_CheckSignals() == 0;
+}
+
+}  // namespace
+
+Execution Watch::execution() {
+  Execution execution;
+  execution.cancel = &cancel_;
+  execution.progress = [this](const ProgressReport& report) {
+    const std::lock_guard lock(mutex_);
+    stage_ = report.phase;
+    news_ = News{std::string(report.phase), report.fraction};
+    return true;
+  };
+  return execution;
+}
+
+void Watch::stop_if_asked() const {
+  if (cancel_) throw Cancelled("cancelled");
+}
+
+void Watch::begin_stage(std::string stage) {
+  stop_if_asked();
+  const std::lock_guard lock(mutex_);
+  stage_ = stage;
+  news_ = News{std::move(stage), 0};
+}
+
+void run_watched(std::function<void(Watch&)> work, const py::object& progress, double time_limit) {
+  const auto watch = std::make_shared<Watch>();
+  std::thread([watch, work = std::move(work)]() mutable {
+    std::exception_ptr failure;
+    try {
+      work(*watch);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    work = nullptr;  // what it owns goes before anybody hears of the end
+    const std::lock_guard lock(watch->mutex_);
+    watch->failure_ = failure;
+    watch->done_ = true;
+    watch->changed_.notify_all();
+  }).detach();
+
+  enum class Reason { none, time, callback, python } reason = Reason::none;
+  std::exception_ptr raised;
+  std::string stage;
+  const Clock::time_point start = Clock::now();
+  Clock::time_point stopped{};
+  const bool limited = time_limit > 0 && time_limit < 3e7;
+  const py::gil_scoped_release release;
+  const auto stop = [&](Reason why) {
+    reason = why;
+    watch->cancel_ = true;
+    stopped = Clock::now();
+  };
+  std::unique_lock lock(watch->mutex_);
+  for (double told = 0;;) {
+    watch->changed_.wait_for(lock, between_looks, [&] { return watch->done_; });
+    const std::optional<Watch::News> news = std::exchange(watch->news_, std::nullopt);
+    stage = watch->stage_;
+    const bool done = watch->done_;
+    lock.unlock();
+    if (reason == Reason::none) {
+      try {
+        if (news && !progress.is_none() && news->fraction >= told) {
+          const py::gil_scoped_acquire acquire;
+          told = news->fraction;
+          if (progress(news->phase, told).is(py::bool_(false))) stop(Reason::callback);
+        }
+        if (!signals_handled()) {
+          const py::gil_scoped_acquire acquire;
+          throw py::error_already_set();
+        }
+      } catch (...) {
+        raised = std::current_exception();
+        stop(Reason::python);
+      }
+      if (reason == Reason::none && !done && limited &&
+          std::chrono::duration<double>(Clock::now() - start).count() > time_limit)
+        stop(Reason::time);
+    } else if (!done && Clock::now() - stopped > until_abandoned) {
+      lock.lock();
+      break;
+    }
+    lock.lock();
+    if (done) break;
+  }
+  const bool done = watch->done_;
+  const std::exception_ptr failure = watch->failure_;
+  lock.unlock();
+  if (!done) {
+    ++abandoned;
+    std::thread([watch] {
+      std::unique_lock wait(watch->mutex_);
+      watch->changed_.wait(wait, [&] { return watch->done_; });
+      --abandoned;
+    }).detach();
+  }
+  if (reason == Reason::python) std::rethrow_exception(raised);
+  if (reason == Reason::time)
+    throw BudgetSpent(
+        fmt::format("the time limit of {} s is reached ({}); raise time_limit, or size for a coarser mesh",
+                    time_limit, stage));
+  if (reason == Reason::callback) throw Cancelled(fmt::format("the run was stopped at {}", stage));
+  if (failure) std::rethrow_exception(failure);
+}
+
+void wait_for_abandoned() {
+  const py::gil_scoped_release release;
+  const Clock::time_point start = Clock::now();
+  while (abandoned > 0 && Clock::now() - start < until_interpreter_ends)
+    std::this_thread::sleep_for(between_looks);
+}
+
+}  // namespace collarmesh::python

@@ -1,0 +1,164 @@
+// SALOME's format MED with its library: the first mesh of a file, its tetrahedra, triangles and segments;
+// groups become tags, by our names what they stand for, others numbered and with their names.
+#include <fmt/format.h>
+#include <med.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "collarmesh/error.h"
+#include "io/cell_nodes.h"
+#include "io/complete_mesh.h"
+#include "io/label_names.h"
+#include "io/tet_mesh_formats.h"
+
+namespace collarmesh::io {
+
+namespace {
+
+/// The node of MED at each place of TetMesh's. MED's tetrahedra are turned the other way.
+constexpr std::array<std::uint8_t, 4> tet_order{0, 2, 1, 3};
+constexpr std::array<std::uint8_t, 10> tet_order_2{0, 2, 1, 3, 6, 5, 4, 7, 9, 8};
+constexpr std::array<std::uint8_t, 6> as_is{0, 1, 2, 3, 4, 5};
+
+class MedReader {
+ public:
+  explicit MedReader(const std::string& path)
+      : path_(path), file_(MEDfileOpen(path.c_str(), MED_ACC_RDONLY)) {
+    if (file_ < 0) fail("is no MED file of a version that can be read");
+  }
+  ~MedReader() {
+    if (file_ >= 0) MEDfileClose(file_);
+  }
+  MedReader(const MedReader&) = delete;
+  MedReader& operator=(const MedReader&) = delete;
+
+  TetMesh read() {
+    find_mesh();
+    read_families();
+    read_points();
+    read_cells(MED_TETRA4, 3, tet_order, add_tet, mesh_.tet_tag);
+    read_cells(MED_TETRA10, 3, tet_order_2, add_tet, mesh_.tet_tag);
+    read_cells(MED_TRIA3, 2, std::span(as_is).first(3), add_face, mesh_.face_tag);
+    read_cells(MED_TRIA6, 2, as_is, add_face, mesh_.face_tag);
+    read_cells(MED_SEG2, 1, std::span(as_is).first(2), add_edge, mesh_.edge_tag);
+    read_cells(MED_SEG3, 1, std::span(as_is).first(3), add_edge, mesh_.edge_tag);
+    if (mesh_.tets.empty()) fail("expected tetrahedra, found none");
+    complete_mesh(path_, mesh_);
+    return std::move(mesh_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const {
+    throw ReadError(fmt::format("{}: {}", path_, message));
+  }
+
+  void find_mesh() {
+    if (MEDnMesh(file_) < 1) fail("has no mesh");
+    std::array<char, MED_NAME_SIZE + 1> name{};
+    std::array<char, MED_COMMENT_SIZE + 1> comment{};
+    std::array<char, MED_SNAME_SIZE + 1> time_unit{};
+    std::array<char, 3 * MED_SNAME_SIZE + 1> axes{}, units{};
+    med_int space = 0, dimension = 0, steps = 0;
+    med_mesh_type type = MED_UNSTRUCTURED_MESH;
+    med_sorting_type sorting = MED_SORT_DTIT;
+    med_axis_type axis = MED_CARTESIAN;
+    if (MEDmeshnAxis(file_, 1) != 3) fail("its mesh is not in three dimensions");
+    if (MEDmeshInfo(file_, 1, name.data(), &space, &dimension, &type, comment.data(), time_unit.data(),
+                    &sorting, &steps, &axis, axes.data(), units.data()) < 0)
+      fail("its mesh cannot be read");
+    if (type != MED_UNSTRUCTURED_MESH) fail("its mesh is structured; save it as an unstructured one");
+    name_ = name.data();
+  }
+
+  /// The first group of each family.
+  void read_families() {
+    const med_int count = MEDnFamily(file_, name_.c_str());
+    for (med_int i = 1; i <= count; ++i) {
+      const med_int groups = MEDnFamilyGroup(file_, name_.c_str(), static_cast<int>(i));
+      if (groups < 1) continue;
+      std::array<char, MED_NAME_SIZE + 1> family{};
+      std::string names(static_cast<std::size_t>(groups) * MED_LNAME_SIZE + 1, '\0');
+      med_int number = 0;
+      if (MEDfamilyInfo(file_, name_.c_str(), static_cast<int>(i), family.data(), &number, names.data()) < 0)
+        continue;
+      std::string group = names.substr(0, MED_LNAME_SIZE).c_str();
+      group.erase(group.find_last_not_of(' ') + 1);
+      if (number < 0 && !group.empty()) group_of_family_.emplace(number, std::move(group));
+    }
+  }
+
+  med_int count_of(med_entity_type entity, med_geometry_type type, med_data_type data,
+                   med_connectivity_mode mode) const {
+    med_bool changed = MED_FALSE, moved = MED_FALSE;
+    return MEDmeshnEntity(file_, name_.c_str(), MED_NO_DT, MED_NO_IT, entity, type, data, mode, &changed,
+                          &moved);
+  }
+
+  void read_points() {
+    const med_int count = count_of(MED_NODE, MED_NONE, MED_COORDINATE, MED_NO_CMODE);
+    if (count < 1) fail("its mesh has no points");
+    std::vector<double> values(3 * static_cast<std::size_t>(count));
+    if (MEDmeshNodeCoordinateRd(file_, name_.c_str(), MED_NO_DT, MED_NO_IT, MED_FULL_INTERLACE,
+                                values.data()) < 0)
+      fail("its points cannot be read");
+    for (std::size_t i = 0; i < values.size(); i += 3) {
+      const Point p{values[i], values[i + 1], values[i + 2]};
+      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+        fail(fmt::format("point {}, ({}, {}, {}), is not finite", i / 3, p.x, p.y, p.z));
+      mesh_.points.push_back(p);
+    }
+  }
+
+  template <class Add>
+  void read_cells(med_geometry_type type, std::size_t dimension, std::span<const std::uint8_t> order, Add add,
+                  std::vector<Tag>& tags) {
+    const med_int count = count_of(MED_CELL, type, MED_CONNECTIVITY, MED_NODAL);
+    if (count < 1) return;
+    const auto n = static_cast<std::size_t>(count);
+    std::vector<med_int> nodes(n * order.size()), families(n, 0);
+    if (MEDmeshElementConnectivityRd(file_, name_.c_str(), MED_NO_DT, MED_NO_IT, MED_CELL, type, MED_NODAL,
+                                     MED_FULL_INTERLACE, nodes.data()) < 0)
+      fail("its cells cannot be read");
+    // Without families all cells are in none.
+    if (MEDmeshEntityFamilyNumberRd(file_, name_.c_str(), MED_NO_DT, MED_NO_IT, MED_CELL, type,
+                                    families.data()) < 0)
+      families.assign(n, 0);
+    for (std::size_t i = 0; i < n; ++i) {
+      CellNodes cell;
+      for (const std::uint8_t place : order) {
+        const med_int node = nodes[i * order.size() + place];
+        if (node < 1 || static_cast<std::size_t>(node) > mesh_.points.size())
+          fail(fmt::format("a cell has the node {}, but there are {}", node, mesh_.points.size()));
+        cell.add(static_cast<Index>(node - 1));
+      }
+      add(cell, mesh_);
+      tags.push_back(tag_of(dimension, families[i]));
+    }
+  }
+
+  Tag tag_of(std::size_t dimension, med_int family) {
+    const auto found = group_of_family_.find(family);
+    if (found == group_of_family_.end()) return 0;
+    const Tag tag = tags_.find(dimension, found->second);
+    if (!tag_of_group_name(dimension, found->second)) mesh_.names.set(dimension, tag, found->second);
+    return tag;
+  }
+
+  const std::string& path_;
+  med_idt file_;
+  std::string name_;
+  std::map<med_int, std::string> group_of_family_;
+  GroupTags tags_;
+  TetMesh mesh_;
+};
+
+}  // namespace
+
+TetMesh read_med(const std::string& path) { return MedReader(path).read(); }
+
+}  // namespace collarmesh::io

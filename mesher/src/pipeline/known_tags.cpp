@@ -1,0 +1,44 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+
+#include "collarmesh/error.h"
+#include "collarmesh/pipeline.h"
+
+namespace collarmesh {
+
+namespace {
+
+template <class Features>
+void require_tags(const std::map<Tag, double>& sizes, const Features& features, const std::string& option,
+                  const std::string& what) {
+  std::set<Tag> tags;
+  for (const auto& feature : features) tags.insert(feature.tag);
+  for (const auto& [tag, size] : sizes) {
+    if (tags.count(tag) > 0) continue;
+    std::string known;
+    for (const Tag each : tags) {
+      if (known.size() > 60) {
+        known += ", ...";
+        break;
+      }
+      known += (known.empty() ? "" : ", ") + std::to_string(each);
+    }
+    throw OptionError(fmt::format("{} {}={}: no {} has the tag {}; the tags are {}", option, tag, size, what,
+                                  tag, known.empty() ? "none" : known));
+  }
+}
+
+}  // namespace
+
+void require_known_tags(const MeshOptions& options, const Plc& plc) {
+  const std::vector<Plc::Region> solids(
+      plc.regions.begin() + std::min<std::ptrdiff_t>(1, std::ssize(plc.regions)), plc.regions.end());
+  require_tags(options.region_size, solids, "region-size", "region");
+  require_tags(options.patch_size, plc.patches, "patch-size", "patch");
+  require_tags(options.curve_size, plc.curves, "curve-size", "curve");
+}
+
+}  // namespace collarmesh

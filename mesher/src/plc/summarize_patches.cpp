@@ -1,0 +1,33 @@
+#include <map>
+
+#include "collarmesh/plc_builder.h"
+
+namespace collarmesh {
+
+std::vector<PatchSummary> summarize_patches(const Plc& plc) {
+  std::map<Tag, PatchSummary> by_tag;
+  for (const Plc::Patch& patch : plc.patches) {
+    PatchSummary& summary = by_tag[patch.tag];
+    summary.tag = patch.tag;
+    summary.planar = summary.planar && patch.planar;
+    double largest = -1;
+    for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
+      const auto& [i, j, k] = plc.triangles[t].points;
+      const Point &a = plc.points[i], &b = plc.points[j], &c = plc.points[k];
+      const double area = 0.5 * norm(cross(b - a, c - a));
+      summary.area += area;
+      if (summary.count > 0 || area <= largest) continue;
+      largest = area;
+      summary.where = {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3, (a.z + b.z + c.z) / 3};
+    }
+    ++summary.count;
+  }
+  std::vector<PatchSummary> summaries;
+  for (auto& [tag, summary] : by_tag) {
+    if (const std::string* name = plc.names.find(2, tag)) summary.name = *name;
+    summaries.push_back(std::move(summary));
+  }
+  return summaries;
+}
+
+}  // namespace collarmesh

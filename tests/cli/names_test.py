@@ -1,0 +1,221 @@
+"""Numbers and names of patches from input to output, surfaces in mesh files, and units, as users meet them."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import unittest
+
+from program_test import MODELS, ProgramTest
+
+
+def faces_by_tag(path):
+    import meshio
+
+    mesh = meshio.read(path)
+    tags = {}
+    for block, tag in zip(mesh.cells, mesh.cell_data["tag"]):
+        if block.type == "triangle":
+            for each in tag:
+                tags[int(each)] = tags.get(int(each), 0) + 1
+    return tags
+
+
+class Numbers(ProgramTest):
+    def patches(self, *inputs):
+        info = json.loads(self.run_program("info", "--json", *inputs).stdout)
+        return {patch["tag"]: patch for patch in info["complex"]["patch_list"]}
+
+    def test_info_and_formats_agree(self):
+        patches = self.patches(MODELS / "bracket.off")
+        self.assertGreater(len(patches), 6)
+        self.assertEqual(sorted(patches), list(range(1, len(patches) + 1)))
+        listed = self.run_program("info", MODELS / "bracket.off").stdout
+        self.assertIn("patch 3: planar, area", listed)
+        out = self.folder / "bracket.vtk"
+        self.assertEqual(self.run_program(MODELS / "bracket.off", "-o", out, "--size", "6").returncode, 0)
+        self.assertEqual(set(faces_by_tag(out)), set(patches))
+        self.run_program(MODELS / "bracket.off", "-o", self.folder / "bracket.inp", "--size", "6")
+        names = set(re.findall(r"SURFACE, NAME=PATCH_(\d+)", (self.folder / "bracket.inp").read_text()))
+        self.assertEqual({int(n) for n in names}, set(patches))
+
+    def test_patch_sizes_by_these_numbers(self):
+        out = self.folder / "box.vtk"
+        for extra in ((), ("--patch-size", "3=0.1")):
+            self.assertEqual(self.run_program(self.box, "-o", out, "--size", "0.5", *extra).returncode, 0)
+            counts = faces_by_tag(out)
+            if extra:
+                self.assertGreater(counts[3], 4 * before[3])
+            before = counts
+        self.expect(2, self.box, "-o", self.out, "--patch-size", "7=0.1", says=["7", "1, 2, 3, 4, 5, 6"])
+
+    def test_a_mesh_with_numbers_passes_check(self):
+        self.expect(0, self.box, "-o", self.out, "--size", "0.5", writes=True)
+        run = self.run_program("check", self.out, "--against", self.box)
+        self.assertEqual(run.returncode, 0, run.stdout)
+        self.assertNotIn("note:", run.stdout)
+
+
+class Names(ProgramTest):
+    def stl(self):
+        """The box with a solid for its bottom, one for its top, and one for the rest."""
+        import program_test as p
+
+        points = p.box_points()
+        solids = {"bottom plate": p.BOX_FACES[:1], "top": p.BOX_FACES[1:2], "walls": p.BOX_FACES[2:]}
+        text = ""
+        for name, faces in solids.items():
+            text += f"solid {name}\n"
+            for a, b, c, d in faces:
+                for triangle in ((a, b, c), (a, c, d)):
+                    corners = "".join("vertex %g %g %g\n" % points[i] for i in triangle)
+                    text += f"facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet\n"
+            text += f"endsolid {name}\n"
+        return self.write("box.stl", text)
+
+    def test_solids_of_stl(self):
+        self.run_program(self.stl(), "-o", self.folder / "a.inp", "--size", "0.5")
+        text = (self.folder / "a.inp").read_text()
+        self.assertEqual(set(re.findall(r"SURFACE, NAME=(\w+)", text)), {"BOTTOM_PLATE", "TOP", "WALLS"})
+        self.run_program(self.stl(), "-o", self.folder / "a.msh", "--size", "0.5")
+        self.assertIn('"bottom plate"', (self.folder / "a.msh").read_text())
+        self.assertIn("patch 1 (bottom plate)", self.run_program("info", self.stl()).stdout)
+
+    def test_two_files_with_names_keep_apart(self):
+        first = self.stl()
+        text = first.read_text().replace("walls", "sides")
+        shifted = re.sub(r"vertex (\S+)", lambda m: f"vertex {float(m[1]) + 1:g}", text)
+        second = self.write("other.stl", shifted)
+        self.run_program(first, second, "-o", self.folder / "a.msh", "--size", "0.5")
+        names = set(re.findall(r'^2 \d+ "(.*)"', (self.folder / "a.msh").read_text(), re.M))
+        self.assertLessEqual({"bottom plate", "top", "walls", "sides"}, names)
+
+    def test_names_by_number_and_point(self):
+        names = {"patches": {"fixed": 1, "loaded": {"at": [0.5, 0.5, 1]}}, "regions": {"steel": 1}}
+        path = self.write("names.json", json.dumps(names))
+        out = self.folder / "a.inp"
+        run = self.run_program(self.box, "-o", out, "--size", "0.5", "--names", path)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        for word in ("NAME=FIXED,", "NSET=LOADED_NODES", "ELSET=STEEL"):
+            self.assertIn(word, out.read_text())
+        path.write_text('{"patches": {"fixed": 99}}')
+        self.expect(2, self.box, "-o", self.out, "--names", path, says=["names.json", "patches.fixed", "99"])
+        self.expect(3, self.box, "-o", self.out, "--names", "nmaes.json", says=["did you mean names.json"])
+
+
+class Surfaces(ProgramTest):
+    def test_surfaces_in_mesh_files(self):
+        """What gmsh and meshio save of a tagged surface is meshed with its tags."""
+        import meshio
+        import numpy
+        import program_test as p
+
+        points = numpy.array(p.box_points(), dtype=float)
+        triangles = numpy.array([t for a, b, c, d in p.BOX_FACES for t in ((a, b, c), (a, c, d))])
+        tags = numpy.repeat(numpy.arange(11, 17), 2)
+        gmsh = {"gmsh:physical": [tags], "gmsh:geometrical": [tags]}
+        meshio.Mesh(points, [("triangle", triangles)], cell_data=gmsh).write(self.folder / "box.msh", file_format="gmsh22", binary=False)
+        meshio.Mesh(points, [("triangle", triangles)], cell_data={"medit:ref": [tags]}).write(self.folder / "box.mesh")
+        meshio.Mesh(points, [("triangle", triangles)], cell_data={"tag": [tags]}).write(self.folder / "box.vtu")
+        self.write_vtp(points, triangles, tags)
+        for name in ("box.msh", "box.mesh", "box.vtu", "box.vtp"):
+            with self.subTest(name=name):
+                out = self.folder / "out.vtk"
+                run = self.run_program(self.folder / name, "-o", out, "--size", "0.5")
+                self.assertEqual(run.returncode, 0, run.stderr)
+                self.assertEqual(set(faces_by_tag(out)), set(range(11, 17)))
+                info = self.run_program("info", self.folder / name).stdout
+                self.assertIn("volume 1", info)
+                run = self.run_program("convert", self.folder / name, "-o", self.folder / "back.ply")
+                self.assertEqual(run.returncode, 0, run.stderr)
+
+    def write_vtp(self, points, triangles, tags):
+        try:
+            import vtk
+            from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+        except ImportError:
+            self.skipTest("python3-vtk9 is not installed")
+        import numpy
+
+        data, nodes, cells = vtk.vtkPolyData(), vtk.vtkPoints(), vtk.vtkCellArray()
+        nodes.SetData(numpy_to_vtk(points, deep=True))
+        flat = numpy.hstack([numpy.full((len(triangles), 1), 3), triangles]).ravel()
+        cells.SetCells(len(triangles), numpy_to_vtkIdTypeArray(flat.astype(numpy.int64), deep=True))
+        data.SetPoints(nodes)
+        data.SetPolys(cells)
+        array = numpy_to_vtk(tags.astype(numpy.int32), deep=True)
+        array.SetName("tag")
+        data.GetCellData().AddArray(array)
+        writer = vtk.vtkXMLPolyDataWriter()
+        writer.SetFileName(str(self.folder / "box.vtp"))
+        writer.SetInputData(data)
+        writer.Write()
+
+
+class Units(ProgramTest):
+    def test_scale(self):
+        import meshio
+
+        for name, scale in (("a.vtu", "0.001"), ("b.vtu", "1")):
+            self.assertEqual(self.run_program(self.box, "-o", self.folder / name, "--size", "0.5", "--scale", scale).returncode, 0)
+        small, large = (meshio.read(self.folder / name) for name in ("a.vtu", "b.vtu"))
+        self.assertTrue((small.points == 0.001 * large.points).all())
+        self.run_program("convert", self.box, "-o", self.folder / "c.off", "--scale", "1000")
+        self.assertIn("diagonal 1732.05", self.run_program("info", self.folder / "c.off").stdout)
+        self.run_program("convert", self.folder / "b.vtu", "-o", self.folder / "c.vtu", "--scale", "0.001")
+        self.assertTrue((meshio.read(self.folder / "c.vtu").points == small.points).all())
+
+
+class Words(ProgramTest):
+    def test_typos_in_commands(self):
+        for typo, command in (("chek", "check"), ("inof", "info"), ("convrt", "convert"), ("repiar", "repair")):
+            self.expect(2, typo, self.box, says=[f"{typo}: there is no such command or file; did you mean {command}"])
+        self.write("chek", "a file")
+        self.expect(3, "chek", "-o", self.out, says=["format is not known"])
+
+    def test_help_says_what_commands_do(self):
+        for command, words in (("check", "Certify a mesh"), ("info", "Say what"), ("convert", "Convert surfaces"),
+                               ("repair", "Write the facets")):
+            self.assertIn(words, self.expect(0, command, "--help").stdout)
+
+    def test_standard_output_names_convert(self):
+        self.expect(2, self.box, "-o", "-", says=["convert IN"])
+
+    def test_a_format_by_its_name(self):
+        run = self.run_program(self.box, "-o", self.folder / "box.gmsh", "--format", "msh2", "--size", "0.5")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertTrue((self.folder / "box.gmsh").read_text().startswith("$MeshFormat\n2.2"))
+
+
+class Generated(ProgramTest):
+    def test_manual_page(self):
+        page = self.run_program("--generate", "man").stdout
+        path = self.write("collarmesh.1", page)
+        for option in re.findall(r"--[a-z][a-z-]+", self.run_program("--help").stdout):
+            self.assertIn(option.replace("-", "\\-"), page)
+        if shutil.which("man"):
+            run = subprocess.run(["man", "--warnings", "-l", path], capture_output=True, text=True,
+                                 env={**os.environ, "MANWIDTH": "100", "LC_ALL": "C.UTF-8"})
+            self.assertEqual((run.returncode, run.stderr), (0, ""))
+            self.assertIn("--patch-size TAG=LENGTH", run.stdout)
+
+    def complete(self, *words):
+        path = self.write("completion", self.run_program("--generate", "bash").stdout)
+        script = f"source {path}; COMP_WORDS=({' '.join(words)} ''); COMP_CWORD={len(words)}; "
+        if words[-1] != "--coarsen":
+            script = f"source {path}; COMP_WORDS=({' '.join(words)}); COMP_CWORD={len(words) - 1}; "
+        run = subprocess.run(["bash", "-c", script + '_collarmesh; echo "${COMPREPLY[@]}"'], capture_output=True, text=True,
+                             cwd=self.folder)
+        self.assertEqual(run.stderr, "")
+        return run.stdout.split()
+
+    def test_completion(self):
+        self.assertEqual(self.complete("collarmesh", "--patch"), ["--patch-size"])
+        self.assertEqual(self.complete("collarmesh", "check", "--again"), ["--against"])
+        self.assertEqual(self.complete("collarmesh", "conv"), ["convert"])
+        self.assertEqual(self.complete("collarmesh", "box.off", "--coarsen"), ["on", "off"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,63 @@
+"""`pip install .` from a copy of the sources into a fresh environment, without network, and what it gives.
+
+    install_test.py SOURCES BUILD
+"""
+
+import importlib.util
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+USE = """
+import importlib.metadata, importlib.resources, pathlib, sys
+import collarmesh, numpy
+assert sys.prefix in collarmesh.__file__, collarmesh.__file__
+assert collarmesh.__version__ == importlib.metadata.version("collarmesh")
+files = {str(f) for f in importlib.metadata.files("collarmesh")}
+for wanted in ("collarmesh/py.typed", "collarmesh/_core.pyi"):
+    assert wanted in files, (wanted, files)
+assert any("LICENSE" in f for f in files), files
+mesh = collarmesh.mesh(sys.argv[1], size=0.5)
+assert mesh.passed and len(mesh.tets) > 10
+mesh.write("box.vtu")
+assert len(collarmesh.read("box.vtu").tets) == len(mesh.tets)
+"""
+MODULES = """
+import collarmesh, sys
+collarmesh.mesh(sys.argv[1], size=0.5).write("box.xdmf")   # loads the module with HDF5
+try:
+    collarmesh.mesh("no.step")
+except collarmesh.ReadError as error:
+    assert "no such file" in str(error), error
+"""
+
+
+def main():
+    sources, build = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
+    for needed in ("venv", "setuptools", "wheel", "pip"):
+        if importlib.util.find_spec(needed) is None:
+            print(f"{needed} is not installed")
+            return 77
+    with tempfile.TemporaryDirectory(prefix="collarmesh-pip-") as folder:
+        folder = pathlib.Path(folder)
+        copy = folder / "sources"
+        shutil.copytree(sources, copy, ignore=shutil.ignore_patterns("build", ".git", "*.egg-info"))
+        # numpy, setuptools and pip are the system's: nothing is downloaded.
+        subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", folder / "venv"], check=True)
+        python = folder / "venv" / "bin" / "python"
+        environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+        environment["COLLARMESH_BUILD_DIR"] = str(build)
+        subprocess.run([python, "-m", "pip", "install", "--no-build-isolation", "--no-index", "--no-deps", copy],
+                       check=True, env=environment)
+        box = sources / "resources/models/box.off"
+        subprocess.run([python, "-c", USE, box], check=True, cwd=folder, env=environment)
+        if list(build.glob("lib/collarmesh/collarmesh_hdf5.so")):
+            subprocess.run([python, "-c", MODULES, box], check=True, cwd=folder, env=environment)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

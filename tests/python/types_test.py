@@ -1,0 +1,51 @@
+"""mypy on the package, and its stub against the compiled module.
+
+    types_test.py SOURCES   (the module on PYTHONPATH)
+"""
+
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+USE = """
+import pathlib
+from typing import List
+import collarmesh
+import numpy
+
+m: collarmesh.Mesh = collarmesh.mesh(pathlib.Path("box.off"), size=0.5, patch_size={3: 0.1}, size_field=lambda x, y, z: 1.0)
+told: List[str] = m.findings
+m.write(pathlib.Path("box.vtu"))
+"""
+
+
+def main():
+    sources = pathlib.Path(sys.argv[1])
+    mypy = shutil.which("mypy")
+    if mypy is None:
+        print("mypy is not installed")
+        return 77
+    with tempfile.TemporaryDirectory() as folder:
+        use = pathlib.Path(folder) / "use.py"
+        wrong = pathlib.Path(folder) / "wrong.py"
+        use.write_text(USE)
+        wrong.write_text('import collarmesh\ncollarmesh.mesh("box.off", size="small")\n')
+        common = [mypy, "--strict", "--config-file", sources / "pyproject.toml", "--cache-dir", f"{folder}/cache"]
+        subprocess.run([*common, sources / "mesher/python/collarmesh", use], check=True, cwd=sources)
+        refused = subprocess.run([*common, wrong], cwd=sources, capture_output=True, text=True)
+        if 'incompatible type "str"' not in refused.stdout:
+            raise SystemExit(f"mypy does not see a wrong type:\n{refused.stdout}{refused.stderr}")
+    import collarmesh._core as core
+
+    stub = (sources / "mesher/python/collarmesh/_core.pyi").read_text()
+    functions = {name for name in vars(core) if not name.startswith("_")}
+    told = {line.split("(")[0].split()[1].rstrip(":") for line in stub.splitlines() if line.startswith(("def ", "class "))}
+    if functions != told:
+        raise SystemExit(f"the stub differs from the module: {functions ^ told}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
