@@ -137,7 +137,7 @@ class Pipeline {
   }
 
   void improve_elements() {
-    if (options_.improve == 0) return;
+    if (options_.improve == 0 || made_.result.status != MeshStatus::complete) return;
     begin("improve", 0.7, 0.8);
     ImproveOptions options = improve_options(options_.improve);
     options.radius_edge = bounds_.radius_edge;
@@ -154,7 +154,7 @@ class Pipeline {
   }
 
   void project() {
-    if (!exact()) return;
+    if (!exact() || made_.result.status != MeshStatus::complete) return;
     begin("project", 0.8, 0.83);
     ProjectOptions options;
     options.radius_edge = options_.mesh.radius_edge;
