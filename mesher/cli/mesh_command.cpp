@@ -69,13 +69,17 @@ PipelineOptions pipeline_options(const MeshArguments& a) {
   return options;
 }
 
-ComplexInput build_complex(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
+ComplexInput read_inputs(const MeshArguments& arguments, Stages& stages) {
   stages.begin("read", 0, 0.02);
   const auto distance = [&](double diagonal) { return distance_of(pipeline_options(arguments), diagonal); };
-  ComplexInput input(arguments.inputs,
-                     interruptible({arguments.input_format, distance, arguments.complex.overlap}));
+  return ComplexInput(arguments.inputs,
+                      interruptible({arguments.input_format, distance, arguments.complex.overlap}));
+}
+
+void build_complex(const MeshArguments& arguments, const ComplexArguments& how, ComplexInput& input,
+                   Stages& stages, MeshRun& run) {
   stages.begin("complex", 0.02, 0.08);
-  run.plc = input.build(arguments.complex);
+  run.plc = input.build(how);
   run.notes = input.notes();
   run.repair = input.repaired();
   require_known_tags(arguments.mesh, run.plc);
@@ -84,7 +88,6 @@ ComplexInput build_complex(const MeshArguments& arguments, Stages& stages, MeshR
   std::string text = warnings_text(run.plc) + repair_text(run.repair, arguments.quiet);
   for (const std::string& warning : run.warnings) text += fmt::format("warning: {}\n", warning);
   stages.print(text);
-  return input;
 }
 
 /// For the message when the time is up.
@@ -123,6 +126,23 @@ void mesh(const MeshArguments& arguments, const ComplexInput& input, Stages& sta
   if (run.result.status == MeshStatus::budget_hit)
     throw Stopped(ExitCode::budget_hit, run.result.message + "; nothing was written");
   if (input.has_cad()) run.result.mesh.group_names = GroupNames::cad;
+}
+
+// Refinement does not end in folds about as fine as the tolerance that repair has left.
+void mesh_with_coarser_repair(const MeshArguments& arguments, ComplexInput& input, Stages& stages,
+                              MeshRun& run) {
+  constexpr double coarser = 3;
+  if (run.result.status != MeshStatus::guarantee_missed || !run.repair.repaired || run.repair.wrapped) return;
+  ComplexArguments how = arguments.complex;
+  how.repair.tolerance *= coarser;
+  stages.print(fmt::format("repaired again, with --repair-tolerance {:.3g}: at {:.3g} {}\n",
+                           how.repair.tolerance, arguments.complex.repair.tolerance, run.result.message));
+  try {
+    build_complex(arguments, how, input, stages, run);
+  } catch (const PlcError&) {
+    return;  // what there is stays
+  }
+  mesh(arguments, input, stages, run);
 }
 
 void write_report(const std::string& path, const MeshArguments& arguments, const MeshRun& run) {
@@ -170,8 +190,10 @@ ExitCode mesh_command(const MeshArguments& arguments) {
   MeshRun run;
   {
     Stages stages(arguments.quiet ? ProgressStyle::none : arguments.progress, run.times);
-    const ComplexInput input = build_complex(arguments, stages, run);
+    ComplexInput input = read_inputs(arguments, stages);
+    build_complex(arguments, arguments.complex, input, stages, run);
     mesh(arguments, input, stages, run);
+    mesh_with_coarser_repair(arguments, input, stages, run);
     write_files(arguments, stages, run);
   }
   tell_of(arguments, run);

@@ -130,6 +130,8 @@ ExitCode reason_for(int status, bool out_of_time) {
   if (number == SIGKILL)
     return told(ExitCode::budget_hit,
                 "it was killed, probably because the machine's memory is used up; nothing was written");
+  if (number == SIGXCPU)
+    return told(ExitCode::budget_hit, "the system's limit of CPU time is reached; nothing was written");
   if (shared->in_cad.load())
     return told(
         ExitCode::unreadable,

@@ -249,8 +249,8 @@ class Libraries(HostileTest):
 
     def targets(self):
         root = pathlib.Path(PROGRAM).parents[1]
-        found = [pathlib.Path(PROGRAM), *root.glob("lib/**/collarmesh/*.so"), *root.glob("python/*.so"),
-                 *root.glob("lib/python3/dist-packages/collarmesh*.so")]
+        found = [pathlib.Path(PROGRAM), *root.glob("lib/**/collarmesh/*.so"), *root.glob("python/collarmesh/*.so"),
+                 *root.glob("lib/python3/dist-packages/collarmesh/*.so")]
         self.assertGreater(len(found), 0)
         return found
 
