@@ -152,25 +152,26 @@ bool Operations::may_lose(Index tet, Index a, Index b) const {
   return true;
 }
 
-// May two faces of a patch become these, which share the edge that neither had? On a planar patch the
-// tets' volumes have told.
+// May two faces of a patch become these, which share the edge that neither had? Not where that edge has faces
+// already: one of these would be there twice.
 bool Operations::may_turn(Change& change) {
   const auto& turned = change.replacement.created_faces;
-  const Index patch = mesh_.face_patch[turned[0].like];
-  if (plc_.patches[patch].planar) return true;
-  faces_.clear();
   std::array<Index, 2> shared{none, none};
-  for (const TetComplex::NewFace& face : turned)
-    faces_.push_back(
-        {{mesh_.points[face.corners[0]], mesh_.points[face.corners[1]], mesh_.points[face.corners[2]]},
-         patch});
   unsigned count = 0;
   for (const Index v : turned[0].corners)
     if (count < 2 &&
         std::find(turned[1].corners.begin(), turned[1].corners.end(), v) != turned[1].corners.end())
       shared[count++] = v;
   complex_.star(shared[0], change.read);
-  return !complex_.on_faces(shared[0], shared[1]) && surfaces_.fit(change.replacement.old_faces, faces_);
+  if (complex_.on_faces(shared[0], shared[1])) return false;
+  const Index patch = mesh_.face_patch[turned[0].like];
+  if (plc_.patches[patch].planar) return true;  // the tets' volumes have told
+  faces_.clear();
+  for (const TetComplex::NewFace& face : turned)
+    faces_.push_back(
+        {{mesh_.points[face.corners[0]], mesh_.points[face.corners[1]], mesh_.points[face.corners[2]]},
+         patch});
+  return surfaces_.fit(change.replacement.old_faces, faces_);
 }
 
 }  // namespace collarmesh::improvement
