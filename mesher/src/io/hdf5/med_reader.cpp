@@ -1,5 +1,6 @@
 // SALOME's format MED with its library: the first mesh of a file, its tetrahedra, triangles and segments;
 // groups become tags, by our names what they stand for, others numbered and with their names.
+#include <algorithm>
 #include <fmt/format.h>
 #include <med.h>
 
@@ -86,7 +87,7 @@ class MedReader {
       med_int number = 0;
       if (MEDfamilyInfo(file_, name_.c_str(), static_cast<int>(i), family.data(), &number, names.data()) < 0)
         continue;
-      std::string group = names.substr(0, MED_LNAME_SIZE).c_str();
+      std::string group = names.substr(0, std::min<std::size_t>(MED_LNAME_SIZE, names.find('\0')));
       group.erase(group.find_last_not_of(' ') + 1);
       if (number < 0 && !group.empty()) group_of_family_.emplace(number, std::move(group));
     }
