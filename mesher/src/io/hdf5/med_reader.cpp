@@ -1,8 +1,8 @@
 // SALOME's format MED with its library: the first mesh of a file, its tetrahedra, triangles and segments;
 // groups become tags, by our names what they stand for, others numbered and with their names.
-#include <algorithm>
 #include <fmt/format.h>
 #include <med.h>
+#include <algorithm>
 
 #include <array>
 #include <cmath>
