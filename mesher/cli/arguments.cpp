@@ -420,7 +420,8 @@ void check_outputs(const SomeArguments& a, const std::string& output_format,
 
 std::vector<std::string> all_inputs(const MeshArguments& a) {
   std::vector<std::string> inputs = a.inputs;
-  if (!a.size_field.empty()) inputs.push_back(a.size_field);
+  for (const std::string& file : {a.size_field, a.complex.names})
+    if (!file.empty()) inputs.push_back(file);
   return inputs;
 }
 

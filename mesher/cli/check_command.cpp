@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "complex_input.h"
+#include "check_against.h"
 #include "console.h"
 #include "input_files.h"
 #include "interrupt.h"
@@ -20,16 +20,12 @@ ExitCode check_command(const CheckArguments& arguments) {
     return arguments.check.distance > 0 ? arguments.check.distance : default_distance(0, diagonal);
   };
   ComplexInput input(arguments.inputs, interruptible({{}, distance, arguments.complex.overlap}));
-  const Plc plc = input.build(arguments.complex);
-  stop_if_interrupted();
   CheckOptions options = arguments.check;
   options.crease_angle = arguments.complex.crease_angle;
-  CheckReport report = check(mesh, plc, options);
-  if (input.repaired().repaired)
-    report.notes.emplace_back(
-        "the mesh was judged against the repaired complex, and that against the input:");
-  for (const std::string& repair : describe(input.repaired()))
-    report.notes.push_back("the input was repaired: " + repair);
+  Execution execution;
+  execution.cancel = &interrupt_flag();
+  const CheckReport report = check_against(mesh, input, arguments.complex, options, execution);
+  stop_if_interrupted();
   if (arguments.json)
     print_result(json_text(check_json(report), 1) + "\n");
   else

@@ -91,13 +91,28 @@ Execution ComplexInput::watched() const {
 }
 
 Plc ComplexInput::build(const ComplexArguments& options) {
+  built_ = {};
   Plc plc = build_unnamed(options);
-  patch_numbers_.clear();
-  curve_numbers_.clear();
-  for (const Plc::Patch& patch : plc.patches) patch_numbers_.push_back(patch.tag);
-  for (const Plc::Curve& curve : plc.curves) curve_numbers_.push_back(curve.tag);
+  for (const Plc::Patch& patch : plc.patches) built_.patch_numbers.push_back(patch.tag);
+  for (const Plc::Curve& curve : plc.curves) built_.curve_numbers.push_back(curve.tag);
   if (!options.names.empty()) name(options.names, plc);
   return plc;
+}
+
+std::optional<Plc> ComplexInput::build_coarser(ComplexArguments& options) {
+  const std::optional<RepairOptions> coarser = coarser_repair(options.repair, built_.repaired);
+  if (!coarser) return std::nullopt;
+  ComplexArguments how = options;
+  how.repair = *coarser;
+  const Built before = built_;
+  try {
+    Plc plc = build(how);
+    options = how;
+    return plc;
+  } catch (const PlcError&) {
+    built_ = before;
+    return std::nullopt;
+  }
 }
 
 /// The path of a file, or the text itself.
@@ -126,7 +141,7 @@ Plc ComplexInput::build_unnamed(const ComplexArguments& options) {
   // Triangles of faces that nearly touch may meet where finer ones do not.
   std::optional<PlcError> first;
   for (const double finer : {1.0, 4.0}) {
-    if (finer > 1) tessellate(finer);
+    tessellate(finer);
     try {
       return take(
           remove_noise(build_plc(soups_, options.plc), soups_, options.plc, options.repair, watched()));
@@ -162,19 +177,19 @@ Plc ComplexInput::build_repaired(const ComplexArguments& options) {
 
 Plc ComplexInput::take(RepairedPlc result) {
   if (result.report.cancelled) reading_.stop();
-  repaired_ = std::move(result.report);
-  if (repaired_.repaired) soups_ = std::move(result.soups);
+  built_.repaired = std::move(result.report);
+  built_.soups = std::move(result.soups);
   return std::move(result.plc);
 }
 
 ExactGeometry ComplexInput::exact_geometry(const Plc& plc) const {
   return [this, &plc](unsigned dimension, Index feature, const Point& p) -> std::optional<Point> {
-    if (repaired_.wrapped) return std::nullopt;  // its tags are no numbers of faces
+    if (built_.repaired.wrapped) return std::nullopt;  // its tags are no numbers of faces
     const Index patch = dimension == 2                        ? feature
                         : plc.curves[feature].patches.empty() ? none
                                                               : plc.curves[feature].patches.front();
     if (patch == none) return std::nullopt;
-    const Tag number = dimension == 2 ? patch_numbers_[feature] : curve_numbers_[feature];
+    const Tag number = dimension == 2 ? built_.patch_numbers[feature] : built_.curve_numbers[feature];
     return cad_.nearest(plc.patches[patch].file, dimension, number, p);
   };
 }

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,8 @@ class ComplexInput {
   /// Surfaces that are no files.
   void add(PolygonSoup soup) { soups_.push_back(std::move(soup)); }
 
-  const std::vector<PolygonSoup>& soups() const { return soups_; }
+  /// What the complex built last was made of; before, what was read.
+  const std::vector<PolygonSoup>& soups() const { return built_.soups.empty() ? soups_ : built_.soups; }
   bool has_cad() const { return !cad_.empty(); }
   std::string cad_names() const { return cad_.names(); }
   /// What was done to CAD shapes, a line each.
@@ -48,8 +50,12 @@ class ComplexInput {
   /// finer ones are tried first.
   /// Throws PlcError; with CAD faces the messages name them.
   Plc build(const ComplexArguments& options);
+  /// The complex of a coarser repair than that of `options`, with which the one built last was made; changes
+  /// `options` to it. None, and nothing changes, where there is no such repair (`coarser_repair`) or it
+  /// fails.
+  std::optional<Plc> build_coarser(ComplexArguments& options);
   /// What was done to the facets of the complex built last.
-  const RepairReport& repaired() const { return repaired_; }
+  const RepairReport& repaired() const { return built_.repaired; }
 
   /// The exact edges and faces behind the complex built last, for `run_pipeline`. Both must outlive the
   /// result.
@@ -65,12 +71,18 @@ class ComplexInput {
 
   Execution watched() const;
 
+  /// Of the complex built last.
+  struct Built {
+    RepairReport repaired;
+    std::vector<PolygonSoup> soups;                 // repaired; empty where nothing was
+    std::vector<Tag> patch_numbers, curve_numbers;  // before names were given
+  };
+
   InputReading reading_;
-  std::vector<PolygonSoup> soups_;
+  std::vector<PolygonSoup> soups_;  // as they were read
   CadFiles cad_;
   double finer_ = 1;  // than the first triangles of CAD shapes
-  RepairReport repaired_;
-  std::vector<Tag> patch_numbers_, curve_numbers_;  // of the complex built last, before names were given
+  Built built_;
 };
 
 }  // namespace collarmesh::cli

@@ -24,13 +24,22 @@ std::vector<fs::path> with_siblings(const fs::path& path, std::initializer_list<
   return files;
 }
 
+/// With the files of faces and edges beside it.
+std::vector<fs::path> parts_of_xdmf(const fs::path& path) {
+  std::vector<fs::path> files;
+  for (const char* part : {"", "_faces", "_edges"})
+    for (const std::string& extension : {path.extension().string(), std::string(".h5")})
+      files.push_back(path.parent_path() / (path.stem().string() + part + extension));
+  return files;
+}
+
 }  // namespace
 
 std::vector<fs::path> files_written(const fs::path& path, const std::string& format) {
   const std::string extension = extension_of(path, format);
   if (path == "-") return {};
   if (extension == ".ele") return with_siblings(path, {".ele", ".node", ".face", ".edge"});
-  if (extension == ".xdmf") return with_siblings(path, {".h5"});
+  if (extension == ".xdmf") return parts_of_xdmf(path);
   return {path};
 }
 
@@ -38,6 +47,7 @@ std::vector<fs::path> files_read(const fs::path& path, const std::string& format
   if (path == "-") return {"/dev/stdin"};
   const std::string extension = extension_of(path, format);
   if (extension == ".ele") return with_siblings(path, {".node", ".face", ".edge"});
+  if (extension == ".xdmf") return parts_of_xdmf(path);
   if (extension == ".poly" || extension == ".smesh") return with_siblings(path, {".node"});
   return {path};
 }

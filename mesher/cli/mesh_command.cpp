@@ -76,10 +76,9 @@ ComplexInput read_inputs(const MeshArguments& arguments, Stages& stages) {
                       interruptible({arguments.input_format, distance, arguments.complex.overlap}));
 }
 
-void build_complex(const MeshArguments& arguments, const ComplexArguments& how, ComplexInput& input,
-                   Stages& stages, MeshRun& run) {
-  stages.begin("complex", 0.02, 0.08);
-  run.plc = input.build(how);
+void take_complex(const MeshArguments& arguments, Plc plc, const ComplexInput& input, Stages& stages,
+                  MeshRun& run) {
+  run.plc = std::move(plc);
   run.notes = input.notes();
   run.repair = input.repaired();
   require_known_tags(arguments.mesh, run.plc);
@@ -100,10 +99,12 @@ void note_where_it_stopped(const MeshResult& result) {
       p.z));
 }
 
-void mesh(const MeshArguments& arguments, const ComplexInput& input, Stages& stages, MeshRun& run) {
+void mesh(const MeshArguments& arguments, const ComplexInput& input, bool last_repair, Stages& stages,
+          MeshRun& run) {
   PipelineOptions options = pipeline_options(arguments);
   if (!arguments.size_field.empty()) options.mesh.size_field = read_size_field(arguments.size_field, run.plc);
   if (input.has_cad()) options.exact = input.exact_geometry(run.plc);
+  if (!last_repair) options.seeds = 1;
   Execution execution;
   execution.cancel = &interrupt_flag();
   std::optional<CadWork> projecting;
@@ -128,21 +129,16 @@ void mesh(const MeshArguments& arguments, const ComplexInput& input, Stages& sta
   if (input.has_cad()) run.result.mesh.group_names = GroupNames::cad;
 }
 
-// Refinement does not end in folds about as fine as the tolerance that repair has left.
 void mesh_with_coarser_repair(const MeshArguments& arguments, ComplexInput& input, Stages& stages,
                               MeshRun& run) {
-  constexpr double coarser = 3;
-  if (run.result.status != MeshStatus::guarantee_missed || !run.repair.repaired || run.repair.wrapped) return;
+  if (run.guarantees_hold()) return;
   ComplexArguments how = arguments.complex;
-  how.repair.tolerance *= coarser;
+  std::optional<Plc> coarser = input.build_coarser(how);
+  if (!coarser) return;
   stages.print(fmt::format("repaired again, with --repair-tolerance {:.3g}: at {:.3g} {}\n",
-                           how.repair.tolerance, arguments.complex.repair.tolerance, run.result.message));
-  try {
-    build_complex(arguments, how, input, stages, run);
-  } catch (const PlcError&) {
-    return;  // what there is stays
-  }
-  mesh(arguments, input, stages, run);
+                           how.repair.tolerance, arguments.complex.repair.tolerance, run.missed()));
+  take_complex(arguments, *std::move(coarser), input, stages, run);
+  mesh(arguments, input, true, stages, run);
 }
 
 void write_report(const std::string& path, const MeshArguments& arguments, const MeshRun& run) {
@@ -191,8 +187,9 @@ ExitCode mesh_command(const MeshArguments& arguments) {
   {
     Stages stages(arguments.quiet ? ProgressStyle::none : arguments.progress, run.times);
     ComplexInput input = read_inputs(arguments, stages);
-    build_complex(arguments, arguments.complex, input, stages, run);
-    mesh(arguments, input, stages, run);
+    stages.begin("complex", 0.02, 0.08);
+    take_complex(arguments, input.build(arguments.complex), input, stages, run);
+    mesh(arguments, input, !coarser_repair(arguments.complex.repair, run.repair), stages, run);
     mesh_with_coarser_repair(arguments, input, stages, run);
     write_files(arguments, stages, run);
   }

@@ -36,7 +36,8 @@ struct MeshOptions {
   double elements_across_gap = 0;   ///< target edge lengths on patches put so many between them and what they
                                     ///< face across a region; 0: none
   double radius_edge = 2;           ///< bound on circumradius / shortest edge in the regions; at least 1
-  double exterior_radius_edge = 8;  ///< the same outside every region, where that is larger
+  /// The same outside every region, where that is larger; edges straight across a gap do not count there.
+  double exterior_radius_edge = 8;
   double vertex_ratio = 0;  ///< bound on largest circumradius / shortest edge at a vertex in the regions
                             ///< (paper, section 1.2); 0: none, else > 2 sqrt 2
   double theta = 0.3;  ///< warp distance relative to a gap ball's radius (paper, Procedure 2); 0: never warp
@@ -90,7 +91,8 @@ struct MeshResult {
 /// edge <= radius_edge, every one in a collar no dihedral angle above collar_angle;
 /// curves are unions of edges, patches unions of faces, planar ones exactly up to rounding and smooth
 /// ones within `distance`.
-/// Throws OptionError when options contradict each other.
+/// Throws OptionError when options contradict each other, PlcError where features come so near to each other
+/// that no collar fits between them.
 /// Cost: near linear in the output.
 MeshResult generate(const Plc& plc, const MeshOptions& options = {}, const Execution& execution = {});
 

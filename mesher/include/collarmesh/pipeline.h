@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 
 #include "collarmesh/check.h"
 #include "collarmesh/coarsen.h"
@@ -30,7 +31,8 @@ struct PipelineOptions {
   unsigned improve = 2;                             ///< level, 1 to 3; 0: leave the slivers
   double min_dihedral = 0;                          ///< degrees, in place of the level's; 0: the level's
   unsigned order = 1;                               ///< of the cells, 1 or 2
-  unsigned threads = 0;                             ///< at most; 0: as many as there are cores
+  unsigned seeds = 2;    ///< so many are tried, from `mesh.seed` on, until every guarantee holds
+  unsigned threads = 0;  ///< at most; 0: as many as there are cores
   /// What the facets approximate, as a CAD shape. The mesh is kept within tighter bounds first, so that its
   /// vertices can move onto this; may be empty.
   ExactGeometry exact;
@@ -46,6 +48,8 @@ struct PipelineResult {
   CheckReport check;
 
   bool guarantees_hold() const { return result.status == MeshStatus::complete && check.passed(); }
+  /// The first guarantee that is missed, a sentence; empty where all hold.
+  std::string missed() const;
 };
 
 struct SoupPipelineResult : PipelineResult {
@@ -53,7 +57,8 @@ struct SoupPipelineResult : PipelineResult {
   RepairReport repair;  ///< what was done to make it one
 };
 
-/// Mesh the solids that one or several soups bound, and certify the mesh against their complex.
+/// Mesh the solids that one or several soups bound, and certify the mesh against their complex. Where a
+/// guarantee is missed on a repaired complex, it is repaired once more (`coarser_repair`).
 /// `execution.progress` is called at the begin of each stage, too (`ProgressReport::begins`), and its
 /// fraction is that of all stages. Cancelled or out of time, the result has that status and no mesh. Throws
 /// PlcError for facets that are no complex and cannot be repaired, OptionError for options that contradict

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -109,6 +110,11 @@ RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcO
 /// helps.
 RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOptions& options = {},
                                const RepairOptions& repair_options = {}, const Execution& execution = {});
+
+/// The options of another repair, three times as coarse, where refinement misses a guarantee on the complex
+/// of the first: it does not end in folds about as fine as the tolerance, which a repair may leave. None
+/// where nothing was repaired automatically or the tolerance would be more than 1% of the diagonal.
+std::optional<RepairOptions> coarser_repair(const RepairOptions& options, const RepairReport& report);
 
 /// For people: a line for each kind of change with counts, sizes and places; empty if there was none.
 std::vector<std::string> describe(const RepairReport& report);

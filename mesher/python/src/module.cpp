@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "arrays.h"
+#include "check_against.h"
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
 #include "collarmesh/mesh_measures.h"
@@ -83,8 +84,7 @@ struct MeshCall {
   PipelineResult run;
 };
 
-void mesh(MeshCall& call, Watch& watch) {
-  build(call.inputs, call.options, watch, call.complex);
+void mesh_complex(MeshCall& call, bool last_repair, Watch& watch) {
   const Plc& plc = call.complex.plc;
   PipelineOptions options = call.options.pipeline;
   options.mesh.time_limit = 0;  // the watch looks at it, over all that the call does
@@ -93,11 +93,24 @@ void mesh(MeshCall& call, Watch& watch) {
   if (!call.options.size_field_json.empty())
     options.mesh.size_field = size_field_from_json(call.options.size_field_json, plc);
   if (call.complex.input->has_cad()) options.exact = call.complex.input->exact_geometry(plc);
+  if (!last_repair) options.seeds = 1;
   call.run = run_pipeline(plc, options, watch.execution());
+}
+
+void mesh(MeshCall& call, Watch& watch) {
+  Complex& complex = call.complex;
+  build(call.inputs, call.options, watch, complex);
+  cli::ComplexArguments how = call.options.complex();
+  mesh_complex(call, !coarser_repair(how.repair, complex.input->repaired()), watch);
+  if (!call.run.guarantees_hold())
+    if (std::optional<Plc> coarser = complex.input->build_coarser(how)) {
+      complex.plc = *std::move(coarser);
+      mesh_complex(call, true, watch);
+    }
   MeshResult& result = call.run.result;
   if (result.status == MeshStatus::budget_hit) throw BudgetSpent(result.message);
   if (result.status == MeshStatus::cancelled) throw Cancelled(result.message);
-  if (call.complex.input->has_cad()) result.mesh.group_names = GroupNames::cad;
+  if (complex.input->has_cad()) result.mesh.group_names = GroupNames::cad;
 }
 
 py::dict mesh_of(const py::list& inputs, const py::dict& options, const py::object& progress) {
@@ -122,7 +135,7 @@ struct CheckCall {
   TetMesh mesh;
   Inputs inputs;
   Options options;
-  Complex complex;
+  std::optional<cli::ComplexInput> input;
   CheckReport report;
 };
 
@@ -132,9 +145,10 @@ py::object check_mesh(const py::dict& mesh, const py::list& against, const py::d
   call->inputs = inputs_of(against);
   call->options = options_of(options);
   const auto work = [call](Watch& watch) {
-    build(call->inputs, call->options, watch, call->complex);
+    call->input.emplace(read(call->inputs, call->options, watch));
     watch.begin_stage("check");
-    call->report = check(call->mesh, call->complex.plc, call->options.check, watch.execution());
+    call->report = cli::check_against(call->mesh, *call->input, call->options.complex(), call->options.check,
+                                      watch.execution());
     watch.stop_if_asked();
   };
   run_watched(work, py::none(), call->options.pipeline.mesh.time_limit);

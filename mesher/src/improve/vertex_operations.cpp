@@ -20,8 +20,7 @@ bool contains(const auto& range, Index v) { return std::find(range.begin(), rang
 
 }  // namespace
 
-// The tets and the mesh' faces at a vertex; false at a collar, where they do not hang together, and for a vertex
-// inside a region that has faces all the same.
+// The tets and the mesh' faces at a vertex; false at a collar and where they do not hang together.
 bool Operations::find_cone_of_vertex(Index vertex) {
   cone_.clear();
   if (complex_.pinched(vertex)) return false;
@@ -34,9 +33,8 @@ bool Operations::find_cone_of_vertex(Index vertex) {
       if (tet.corners[corner] == vertex) {
         cone_.hull.push_back(face_corners(tet.corners, corner));
         cone_.hull_tet.push_back(t);
-      } else if (tet.faces[corner] != none) {
-        if (!on_feature) return false;
-        if (!contains(cone_.faces, tet.faces[corner])) add_to_rim(tet.faces[corner], vertex);
+      } else if (on_feature && tet.faces[corner] != none && !contains(cone_.faces, tet.faces[corner])) {
+        add_to_rim(tet.faces[corner], vertex);
       }
     }
   }

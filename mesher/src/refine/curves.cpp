@@ -213,7 +213,7 @@ bool Refinement::destroy_subsegment(Index index) {
     remove_subsegment(index);
   } else {
     mesh_.find_conflict_zone(p, cell, zone_);
-    const Candidate candidate{p, s.squared_radius, s.centre, 1, s.curve, cell};
+    const Candidate candidate{p, s.squared_radius, across ? p : s.centre, 1, s.curve, cell};
     if (const Index point = warp_target(candidate); point != none) {
       ++warps_;
       insert_point(point);

@@ -59,7 +59,7 @@ std::optional<Refinement::Candidate> Refinement::candidate_across_gap(FaceId fac
   const double spacing = least_spacing_per_radius * least_spacing_per_radius * t.squared_radius;
   for (const Index v : zone_.vertices)
     if (v != across && squared_distance(beneath, mesh_.point(v)) < spacing) return std::nullopt;
-  return Candidate{beneath, t.squared_radius, t.x, 2, patch, start, across};
+  return Candidate{beneath, t.squared_radius, beneath, 2, patch, start, across};
 }
 
 // Where on a subsegment the vertex is nearest that encroaches it from across a gap, if it does.

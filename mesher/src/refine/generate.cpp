@@ -4,6 +4,7 @@
 
 #include "collarmesh/error.h"
 #include "collarmesh/mesher.h"
+#include "refine/features_inside.h"
 #include "refine/refinement.h"
 
 namespace collarmesh {
@@ -46,14 +47,15 @@ double default_distance(double size, double diagonal, int order) {
 
 MeshResult generate(const Plc& plc, const MeshOptions& options, const Execution& execution) {
   validate(options);
-  Refinement refinement(plc, options, execution);
+  const FeaturesInside inside(plc);
+  Refinement refinement(inside.plc(), options, execution);
   MeshResult result;
   result.status = refinement.run();
   result.statistics = refinement.statistics();
   result.message = refinement.message();
   if (!result.message.empty()) result.where = refinement.where();
   if (result.status == MeshStatus::complete || result.status == MeshStatus::guarantee_missed)
-    result.mesh = refinement.extract();
+    inside.restore_numbers(result.mesh = refinement.extract());
   return result;
 }
 

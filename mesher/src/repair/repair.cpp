@@ -84,9 +84,7 @@ class Repairer {
 
   std::span<const PolygonSoup> input() const { return soups_; }
   double tolerance() const { return tolerance_; }  // absolute
-
   /// All is open sheets that do not even meet, or most of it is open sheets.
-  std::span<const PolygonSoup> soups() const { return soups_; }
   bool encloses_nothing() const { return encloses_nothing_; }
 
   /// How far the result is from the input.
@@ -281,7 +279,7 @@ RepairOptions for_try(RepairOptions options, double factor) {
 // The complex of what was repaired, and how far it is from the input. Throws PlcError.
 RepairedPlc judged(const Repairer& repairer, RepairResult result, const PlcOptions& options) {
   RepairedPlc complex{build_plc(result.soups, options), std::move(result.report), std::move(result.soups)};
-  number_untagged(repairer.soups(), complex.plc);
+  number_untagged(repairer.input(), complex.plc);
   repairer.measure(complex.report);
   if (complex.report.repaired)
     std::ranges::copy(build::lost_bodies(repairer.input(), complex.plc, repairer.tolerance()),
@@ -364,6 +362,14 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
   if (repair_options.mode == RepairMode::wrap)
     if (auto wrapped = build_wrapped_plc(soups, options, repair_options)) return *std::move(wrapped);
   throw PlcError(*first);
+}
+
+std::optional<RepairOptions> coarser_repair(const RepairOptions& options, const RepairReport& report) {
+  constexpr double factor = 3, coarsest = 1e-2;
+  if (!report.repaired || report.wrapped || factor * options.tolerance > coarsest) return std::nullopt;
+  RepairOptions coarser = options;
+  coarser.tolerance *= factor;
+  return coarser;
 }
 
 }  // namespace collarmesh
