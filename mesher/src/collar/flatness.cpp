@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace collarmesh {
 
@@ -20,7 +21,8 @@ constexpr double pieces_per_radius = 3;
 constexpr double detour = 1.5;
 // Where chords are compared with what they stand for.
 constexpr std::array<double, 3> chord_shares{0.25, 0.5, 0.75};
-constexpr double rounding = 1e-6;  // of lengths, relative to the ball
+constexpr std::size_t most_spokes = 16;  // of a patch in a ball
+constexpr double rounding = 1e-6;        // of lengths, relative to the ball
 constexpr int most_steps = 60;
 
 }  // namespace
@@ -59,12 +61,39 @@ double Flatness::off_chord(Index curve, double from, double to) const {
 
 // How far a patch leaves the chord from the centre to its point in the direction of a sheet.
 double Flatness::off_patch(const Sheet& sheet, const Point& centre, double radius) const {
-  const Point end = features_.nearest_point({2, sheet.patch}, centre + radius * sheet.direction);
+  return off_spoke(sheet.patch, centre,
+                   features_.nearest_point({2, sheet.patch}, centre + radius * sheet.direction));
+}
+
+// How far the edge from the centre to a point of the patch leaves it.
+double Flatness::off_spoke(Index patch, const Point& centre, const Point& end) const {
   double largest = 0;
   for (const double share : chord_shares) {
     const Point p = centre + share * (end - centre);
-    largest = std::fmax(largest, distance(p, features_.nearest_point({2, sheet.patch}, p)));
+    largest = std::fmax(largest, distance(p, features_.nearest_point({2, patch}, p)));
   }
+  return largest;
+}
+
+// The same for edges to where the patch meets the sphere: where sides of its triangles do, or some of them.
+double Flatness::off_arc(Index patch, const Point& centre, double radius) const {
+  Box box;
+  box.add(centre - radius * Vector{1, 1, 1});
+  box.add(centre + radius * Vector{1, 1, 1});
+  std::vector<Point> ends;
+  features_.visit_box({2, patch}, box, [&](Index element) {
+    const auto t = features_.corners(element);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vector a = t[i] - centre, side = t[(i + 1) % 3] - t[i];
+      const double aa = squared_norm(a), ab = dot(a, side), bb = squared_norm(side);
+      if (aa > radius * radius || squared_norm(a + side) <= radius * radius) continue;
+      ends.push_back(t[i] + (std::sqrt(ab * ab + bb * (radius * radius - aa)) - ab) / bb * side);
+    }
+  });
+  double largest = 0;
+  const std::size_t stride = ends.size() / most_spokes + 1;
+  for (std::size_t i = 0; i < ends.size(); i += stride)
+    largest = std::fmax(largest, off_spoke(patch, centre, ends[i]));
   return largest;
 }
 
@@ -193,9 +222,11 @@ double Flatness::radius_at_vertex(Index vertex, double radius) const {
   for (const Sheet& sheet : sheets_.at_vertex(vertex))
     radius = shrunk(radius, [&](double r) { return off_patch(sheet, centre, r); });
   const Index point = plc_.vertices[vertex].point;
-  for (const Index patch : plc_.vertices[vertex].patches)
-    if (!plc_.patches[patch].planar)
-      radius = other_sheets(patch, centre, pieces_per_radius * radius, {point, point}) / pieces_per_radius;
+  for (const Index patch : plc_.vertices[vertex].patches) {
+    if (plc_.patches[patch].planar) continue;
+    radius = other_sheets(patch, centre, pieces_per_radius * radius, {point, point}) / pieces_per_radius;
+    radius = shrunk(radius, [&](double r) { return off_arc(patch, centre, r); });
+  }
   return radius;
 }
 

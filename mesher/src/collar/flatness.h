@@ -27,6 +27,8 @@ class Flatness {
   double shrunk(double radius, const Deviation& deviation) const;
   double off_chord(Index curve, double from, double to) const;
   double off_patch(const Sheet& sheet, const Point& centre, double radius) const;
+  double off_spoke(Index patch, const Point& centre, const Point& end) const;
+  double off_arc(Index patch, const Point& centre, double radius) const;
   double other_arcs(Index curve, double parameter, double reach) const;
   double other_sheets(Index patch, const Point& centre, double reach,
                       const std::array<Index, 2>& points) const;
