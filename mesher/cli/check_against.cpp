@@ -11,14 +11,16 @@ CheckReport check_against(const TetMesh& mesh, ComplexInput& input, ComplexArgum
   CheckReport report = check(mesh, input.build(how), options, execution);
   std::vector<std::string> repairs = describe(input.repaired());
   if (!report.passed()) {
-    const std::optional<Plc> coarser = input.build_coarser(how);
-    if (coarser) {
-      CheckReport against_coarser = check(mesh, *coarser, options, execution);
-      if (against_coarser.passed()) {
-        report = std::move(against_coarser);
+    const std::optional<Plc> next = input.build_next(how);
+    if (next) {
+      CheckReport against_next = check(mesh, *next, options, execution);
+      if (against_next.passed()) {
+        report = std::move(against_next);
         repairs = describe(input.repaired());
-        report.notes.push_back(
-            fmt::format("the mesh is one of a repair with --repair-tolerance {:.3g}", how.repair.tolerance));
+        report.notes.push_back(input.repaired().wrapped
+                                   ? "the mesh is one of a surface around everything"
+                                   : fmt::format("the mesh is one of a repair with --repair-tolerance {:.3g}",
+                                                 how.repair.tolerance));
       }
     }
   }

@@ -8,7 +8,7 @@
 namespace collarmesh::cli {
 
 /// The certificate of a mesh against the complex of `input`, built as `how` says; for meshes of inputs that
-/// were repaired once more, `coarser_repair`, against the complex of that.
+/// were repaired once more, `next_repair`, against the complex of that.
 CheckReport check_against(const TetMesh& mesh, ComplexInput& input, ComplexArguments how,
                           const CheckOptions& options, const Execution& execution = {});
 

@@ -99,11 +99,11 @@ Plc ComplexInput::build(const ComplexArguments& options) {
   return plc;
 }
 
-std::optional<Plc> ComplexInput::build_coarser(ComplexArguments& options) {
-  const std::optional<RepairOptions> coarser = coarser_repair(options.repair, built_.repaired);
-  if (!coarser) return std::nullopt;
+std::optional<Plc> ComplexInput::build_next(ComplexArguments& options) {
+  const std::optional<RepairOptions> next = next_repair(options.repair, built_.repaired);
+  if (!next) return std::nullopt;
   ComplexArguments how = options;
-  how.repair = *coarser;
+  how.repair = *next;
   const Built before = built_;
   try {
     Plc plc = build(how);
@@ -131,7 +131,7 @@ void ComplexInput::name(const std::string& path, Plc& plc) {
 }
 
 Plc ComplexInput::build_unnamed(const ComplexArguments& options) {
-  if (cad_.empty()) {
+  if (cad_.empty() || options.repair.wrap_at_once) {
     try {
       return build_repaired(options);
     } catch (const PlcError& error) {

@@ -99,12 +99,13 @@ void note_where_it_stopped(const MeshResult& result) {
       p.z));
 }
 
-void mesh(const MeshArguments& arguments, const ComplexInput& input, bool last_repair, Stages& stages,
-          MeshRun& run) {
+/// `next`: the repair that comes next should the mesh miss a guarantee.
+void mesh(const MeshArguments& arguments, const ComplexInput& input, const std::optional<RepairOptions>& next,
+          Stages& stages, MeshRun& run) {
   PipelineOptions options = pipeline_options(arguments);
   if (!arguments.size_field.empty()) options.mesh.size_field = read_size_field(arguments.size_field, run.plc);
   if (input.has_cad()) options.exact = input.exact_geometry(run.plc);
-  if (!last_repair) options.seeds = 1;
+  if (next) options = before_next_repair(std::move(options), *next, run.plc);
   Execution execution;
   execution.cancel = &interrupt_flag();
   std::optional<CadWork> projecting;
@@ -124,21 +125,35 @@ void mesh(const MeshArguments& arguments, const ComplexInput& input, bool last_r
     if (run.times.stages().back().first == "refine") note_where_it_stopped(run.result);
     stop_if_interrupted();
   }
-  if (run.result.status == MeshStatus::budget_hit)
+  if (run.result.status == MeshStatus::budget_hit && !(next && next->wrap_at_once))
     throw Stopped(ExitCode::budget_hit, run.result.message + "; nothing was written");
   if (input.has_cad()) run.result.mesh.group_names = GroupNames::cad;
 }
 
-void mesh_with_coarser_repair(const MeshArguments& arguments, ComplexInput& input, Stages& stages,
-                              MeshRun& run) {
-  if (run.guarantees_hold()) return;
+void mesh_with_repairs(const MeshArguments& arguments, ComplexInput& input, Stages& stages, MeshRun& run) {
   ComplexArguments how = arguments.complex;
-  std::optional<Plc> coarser = input.build_coarser(how);
-  if (!coarser) return;
-  stages.print(fmt::format("repaired again, with --repair-tolerance {:.3g}: at {:.3g} {}\n",
-                           how.repair.tolerance, arguments.complex.repair.tolerance, run.missed()));
-  take_complex(arguments, *std::move(coarser), input, stages, run);
-  mesh(arguments, input, true, stages, run);
+  const std::optional<RepairOptions> next = next_repair(how.repair, run.repair);
+  std::string missed;
+  bool has_mesh = false;
+  try {
+    mesh(arguments, input, next, stages, run);
+    if (run.guarantees_hold()) return;
+    missed = run.missed();
+    has_mesh = run.result.status != MeshStatus::budget_hit;
+  } catch (const PlcError& error) {
+    if (!next) throw;
+    missed = error.what();
+  }
+  if (!next) return;
+  std::optional<Plc> plc = input.build_next(how);
+  if (!plc && has_mesh) return;
+  if (!plc) throw PlcError(missed, {});
+  stages.print(how.repair.wrap_at_once
+                   ? fmt::format("wrapped: {}\n", missed)
+                   : fmt::format("repaired again, with --repair-tolerance {:.3g}: at {:.3g} {}\n",
+                                 how.repair.tolerance, arguments.complex.repair.tolerance, missed));
+  take_complex(arguments, *std::move(plc), input, stages, run);
+  mesh(arguments, input, std::nullopt, stages, run);
 }
 
 void write_report(const std::string& path, const MeshArguments& arguments, const MeshRun& run) {
@@ -189,8 +204,7 @@ ExitCode mesh_command(const MeshArguments& arguments) {
     ComplexInput input = read_inputs(arguments, stages);
     stages.begin("complex", 0.02, 0.08);
     take_complex(arguments, input.build(arguments.complex), input, stages, run);
-    mesh(arguments, input, !coarser_repair(arguments.complex.repair, run.repair), stages, run);
-    mesh_with_coarser_repair(arguments, input, stages, run);
+    mesh_with_repairs(arguments, input, stages, run);
     write_files(arguments, stages, run);
   }
   tell_of(arguments, run);

@@ -58,7 +58,7 @@ struct SoupPipelineResult : PipelineResult {
 };
 
 /// Mesh the solids that one or several soups bound, and certify the mesh against their complex. Where a
-/// guarantee is missed on a repaired complex, it is repaired once more (`coarser_repair`).
+/// guarantee is missed on a repaired complex, it is repaired once more (`next_repair`).
 /// `execution.progress` is called at the begin of each stage, too (`ProgressReport::begins`), and its
 /// fraction is that of all stages. Cancelled or out of time, the result has that status and no mesh. Throws
 /// PlcError for facets that are no complex and cannot be repaired, OptionError for options that contradict
@@ -69,6 +69,10 @@ SoupPipelineResult run_pipeline(std::span<const PolygonSoup> soups, const Pipeli
 /// The same for a complex that is there already.
 PipelineResult run_pipeline(const Plc& plc, const PipelineOptions& options = {},
                             const Execution& execution = {});
+
+/// The options for a complex that another repair is there for, should it miss a guarantee: with one seed, and
+/// where everything can be wrapped instead with as many vertices as sizes ask for even in awkward parts.
+PipelineOptions before_next_repair(PipelineOptions options, const RepairOptions& next, const Plc& plc);
 
 /// The surface distance tolerance that these options stand for on a complex of this diagonal, absolute.
 double distance_of(const PipelineOptions& options, double diagonal);

@@ -27,6 +27,7 @@ struct RepairOptions {
   double tolerance = 1e-5;  ///< relative to the bounding-box diagonal; features below it are noise
   double wrap_offset =
       5e-3;  ///< relative to the bounding-box diagonal; of the closed surface around everything
+  bool wrap_at_once = false;  ///< in `RepairMode::wrap`: even where the rest makes a solid
   /// Repair gives up beyond so much work, counted in pairs of facets near each other (some 0.2 microseconds
   /// each; to cut a pair that intersects counts 1000), so that it ends in the same place on every machine. In
   /// `RepairMode::wrap` a quarter of this counts.
@@ -111,10 +112,11 @@ RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcO
 RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOptions& options = {},
                                const RepairOptions& repair_options = {}, const Execution& execution = {});
 
-/// The options of another repair, three times as coarse, where refinement misses a guarantee on the complex
-/// of the first: it does not end in folds about as fine as the tolerance, which a repair may leave. None
-/// where nothing was repaired automatically or the tolerance would be more than 1% of the diagonal.
-std::optional<RepairOptions> coarser_repair(const RepairOptions& options, const RepairReport& report);
+/// The options of another repair where no mesh of the complex of the first one keeps every guarantee: three
+/// times as coarse, as refinement does not end in folds about as fine as the tolerance, which a repair may
+/// leave; in `RepairMode::wrap` a surface around everything. None where nothing was repaired, or wrapped, or
+/// the tolerance would be more than 1% of the diagonal.
+std::optional<RepairOptions> next_repair(const RepairOptions& options, const RepairReport& report);
 
 /// For people: a line for each kind of change with counts, sizes and places; empty if there was none.
 std::vector<std::string> describe(const RepairReport& report);

@@ -84,7 +84,7 @@ struct MeshCall {
   PipelineResult run;
 };
 
-void mesh_complex(MeshCall& call, bool last_repair, Watch& watch) {
+void mesh_complex(MeshCall& call, const std::optional<RepairOptions>& next, Watch& watch) {
   const Plc& plc = call.complex.plc;
   PipelineOptions options = call.options.pipeline;
   options.mesh.time_limit = 0;  // the watch looks at it, over all that the call does
@@ -93,7 +93,7 @@ void mesh_complex(MeshCall& call, bool last_repair, Watch& watch) {
   if (!call.options.size_field_json.empty())
     options.mesh.size_field = size_field_from_json(call.options.size_field_json, plc);
   if (call.complex.input->has_cad()) options.exact = call.complex.input->exact_geometry(plc);
-  if (!last_repair) options.seeds = 1;
+  if (next) options = before_next_repair(std::move(options), *next, plc);
   call.run = run_pipeline(plc, options, watch.execution());
 }
 
@@ -101,13 +101,28 @@ void mesh(MeshCall& call, Watch& watch) {
   Complex& complex = call.complex;
   build(call.inputs, call.options, watch, complex);
   cli::ComplexArguments how = call.options.complex();
-  mesh_complex(call, !coarser_repair(how.repair, complex.input->repaired()), watch);
-  if (!call.run.guarantees_hold())
-    if (std::optional<Plc> coarser = complex.input->build_coarser(how)) {
-      complex.plc = *std::move(coarser);
-      mesh_complex(call, true, watch);
-    }
+  const std::optional<RepairOptions> next = next_repair(how.repair, complex.input->repaired());
   MeshResult& result = call.run.result;
+  std::string missed;
+  bool has_mesh = false, go_on = next.has_value();
+  try {
+    mesh_complex(call, next, watch);
+    missed = call.run.missed();
+    has_mesh = result.status == MeshStatus::complete || result.status == MeshStatus::guarantee_missed;
+    go_on = next && !call.run.guarantees_hold() && (has_mesh || next->wrap_at_once);
+  } catch (const PlcError& error) {
+    if (!next) throw;
+    missed = error.what();
+  }
+  watch.stop_if_asked();
+  if (go_on) {
+    std::optional<Plc> plc = complex.input->build_next(how);
+    if (!plc && !has_mesh) throw PlcError(missed, {});
+    if (plc) {
+      complex.plc = *std::move(plc);
+      mesh_complex(call, std::nullopt, watch);
+    }
+  }
   if (result.status == MeshStatus::budget_hit) throw BudgetSpent(result.message);
   if (result.status == MeshStatus::cancelled) throw Cancelled(result.message);
   if (complex.input->has_cad()) result.mesh.group_names = GroupNames::cad;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <mutex>
 #include <optional>
@@ -55,7 +56,7 @@ class Deadline {
 class Pipeline {
  public:
   Pipeline(const PipelineOptions& options, const Execution& execution)
-      : options_(options), outer_(execution) {
+      : given_(options), options_(options), outer_(execution) {
     if (options.mesh.time_limit > 0) deadline_.emplace(options.mesh.time_limit, execution);
     inner_.cancel = deadline_ ? &deadline_->flag() : execution.cancel;
     if (execution.progress) inner_.progress = [this](const ProgressReport& report) { return go_on(report); };
@@ -63,20 +64,7 @@ class Pipeline {
 
   SoupPipelineResult run(std::span<const PolygonSoup> soups) {
     SoupPipelineResult all;
-    until_ended([&] {
-      begin("complex", 0, 0.06);
-      take(build_repaired_plc(soups, options_.complex, options_.repair, inner_), all);
-      const std::optional<RepairOptions> coarser = coarser_repair(options_.repair, all.repair);
-      mesh(all.plc, coarser ? 1 : options_.seeds);
-      if (made_.guarantees_hold() || !coarser) return;
-      SoupPipelineResult of_coarser;
-      const bool holds = holds_on_another_way([&] {
-        begin("complex", 0, 0.06);
-        take(build_repaired_plc(soups, options_.complex, *coarser, inner_), of_coarser);
-        mesh(of_coarser.plc, options_.seeds);
-      });
-      if (holds) all = std::move(of_coarser);
-    });
+    until_ended([&] { mesh_repaired(soups, all); });
     if (all.repair.repaired)
       made_.check.notes.push_back(fmt::format("the mesh was judged against the {} complex",
                                               all.repair.wrapped ? "wrapped" : "repaired"));
@@ -85,12 +73,50 @@ class Pipeline {
   }
 
   PipelineResult run(const Plc& plc) {
-    until_ended([&] { mesh(plc, options_.seeds); });
+    until_ended([&] { mesh(plc); });
     return std::move(made_);
   }
 
  private:
-  void take(RepairedPlc built, SoupPipelineResult& all) {
+  void mesh_repaired(std::span<const PolygonSoup> soups, SoupPipelineResult& all) {
+    build(soups, all);
+    const std::optional<RepairOptions> next = next_repair(given_.repair, all.repair);
+    if (!next) {
+      mesh(all.plc);
+      return;
+    }
+    options_ = before_next_repair(given_, *next, all.plc);
+    bool has_mesh = false;
+    try {
+      mesh(all.plc);
+      if (made_.guarantees_hold()) return;
+      has_mesh = true;
+    } catch (const Ended&) {
+      if (inner_.cancelled() || !next->wrap_at_once) throw;
+    } catch (const PlcError&) {
+      // what comes next may do
+    }
+    options_ = given_;
+    options_.repair = *next;
+    PipelineResult missed = std::exchange(made_, {});
+    SoupPipelineResult of_next;
+    bool better = !has_mesh;
+    try {
+      build(soups, of_next);
+      mesh(of_next.plc);
+      better = better || made_.guarantees_hold();
+    } catch (const PlcError&) {
+      if (!has_mesh) throw;
+    }
+    if (better)
+      all = std::move(of_next);
+    else
+      made_ = std::move(missed);
+  }
+
+  void build(std::span<const PolygonSoup> soups, SoupPipelineResult& all) {
+    begin("complex", 0, 0.06);
+    RepairedPlc built = build_repaired_plc(soups, options_.complex, options_.repair, inner_);
     all.repair = std::move(built.report);
     if (all.repair.cancelled) stop();
     all.plc = std::move(built.plc);
@@ -98,28 +124,24 @@ class Pipeline {
 
   /// Refinement that does not end at one place with the samples of one seed may well end with those of
   /// another.
-  void mesh(const Plc& plc, unsigned seeds) {
+  void mesh(const Plc& plc) {
     const std::uint64_t first = options_.mesh.seed;
     go_all_stages(plc, first);
-    const std::string missed = made_.missed();
-    for (std::uint64_t seed = first + 1; seed < first + seeds && !made_.guarantees_hold(); ++seed)
-      if (holds_on_another_way([&] { go_all_stages(plc, seed); }))
+    for (std::uint64_t seed = first + 1; seed < first + options_.seeds && !made_.guarantees_hold(); ++seed) {
+      PipelineResult missed = std::exchange(made_, {});
+      bool holds = false;
+      try {
+        go_all_stages(plc, seed);
+        holds = made_.guarantees_hold();
+      } catch (const PlcError&) {
+        // which is no better
+      }
+      if (holds)
         made_.check.notes.push_back(
-            fmt::format("meshed again, with seed {}: with seed {}, {}", seed, first, missed));
-  }
-
-  /// Does what misses a guarantee keep all of them when it is made in another way? Else it stays.
-  template <class Way>
-  bool holds_on_another_way(const Way& way) {
-    PipelineResult missed = std::exchange(made_, {});
-    try {
-      way();
-      if (made_.guarantees_hold()) return true;
-    } catch (const PlcError&) {
-      // no way
+            fmt::format("meshed again, with seed {}: with seed {}, {}", seed, first, missed.missed()));
+      else
+        made_ = std::move(missed);
     }
-    made_ = std::move(missed);
-    return false;
   }
 
   template <class Stages>
@@ -260,7 +282,8 @@ class Pipeline {
 
   bool out_of_time() const { return deadline_ && deadline_->passed(); }
 
-  const PipelineOptions& options_;
+  const PipelineOptions& given_;
+  PipelineOptions options_;  // of the attempt
   const Execution& outer_;
   Execution inner_;
   std::optional<Deadline> deadline_;
@@ -272,6 +295,22 @@ class Pipeline {
 };
 
 }  // namespace
+
+PipelineOptions before_next_repair(PipelineOptions options, const RepairOptions& next, const Plc& plc) {
+  constexpr double always = 3e5, per_cube_of_size = 20, sizes_per_diagonal = 20;
+  options.seeds = 1;
+  const MeshOptions& m = options.mesh;
+  const bool one_size =
+      !m.size_field && m.region_size.empty() && m.patch_size.empty() && m.curve_size.empty();
+  if (!next.wrap_at_once || !one_size) return options;
+  const double size = m.size > 0 ? m.size : plc.bounds.diagonal() / sizes_per_diagonal;
+  double vertices = always;
+  for (const Plc::Region& region : plc.regions)
+    vertices += per_cube_of_size * region.volume / std::pow(region.size > 0 ? region.size : size, 3);
+  if (vertices < 1e9 && (m.max_vertices == 0 || vertices < static_cast<double>(m.max_vertices)))
+    options.mesh.max_vertices = static_cast<std::size_t>(vertices);
+  return options;
+}
 
 std::string PipelineResult::missed() const {
   if (!result.message.empty() || check.findings.empty()) return result.message;

@@ -332,6 +332,10 @@ RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcO
 
 RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOptions& options,
                                const RepairOptions& repair_options, const Execution& execution) {
+  if (repair_options.mode == RepairMode::wrap && repair_options.wrap_at_once) {
+    if (auto wrapped = build_wrapped_plc(soups, options, repair_options)) return *std::move(wrapped);
+    throw PlcError("A closed surface around everything encloses nothing; try another wrap offset.", {});
+  }
   std::optional<PlcError> first;
   try {
     return remove_noise(build_plc(soups, options), soups, options, repair_options, execution);
@@ -364,12 +368,17 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
   throw PlcError(*first);
 }
 
-std::optional<RepairOptions> coarser_repair(const RepairOptions& options, const RepairReport& report) {
+std::optional<RepairOptions> next_repair(const RepairOptions& options, const RepairReport& report) {
   constexpr double factor = 3, coarsest = 1e-2;
-  if (!report.repaired || report.wrapped || factor * options.tolerance > coarsest) return std::nullopt;
-  RepairOptions coarser = options;
-  coarser.tolerance *= factor;
-  return coarser;
+  RepairOptions next = options;
+  if (report.wrapped) return std::nullopt;
+  if (options.mode == RepairMode::wrap) {
+    next.wrap_at_once = true;
+    return next;
+  }
+  next.tolerance *= factor;
+  if (!report.repaired || next.tolerance > coarsest) return std::nullopt;
+  return next;
 }
 
 }  // namespace collarmesh
