@@ -400,10 +400,20 @@ std::string extension_list(const std::string& path) {
   return extension.empty() ? "has no extension" : fmt::format("ends in '{}'", extension);
 }
 
+template <class SomeArguments>
+std::vector<std::string> all_inputs(const SomeArguments& a) {
+  std::vector<std::string> inputs = a.inputs;
+  if (!a.complex.names.empty()) inputs.push_back(a.complex.names);
+  if constexpr (requires { a.size_field; })
+    if (!a.size_field.empty()) inputs.push_back(a.size_field);
+  return inputs;
+}
+
 /// No output takes the place of an input, or of another output.
 template <class SomeArguments>
-void check_outputs(const SomeArguments& a, const std::string& output_format,
-                   std::vector<std::string> inputs) {
+void check_outputs(const SomeArguments& a) {
+  const std::string& output_format = a.output_format;
+  const std::vector<std::string> inputs = all_inputs(a);
   const std::vector<std::filesystem::path> written = files_written(a.output, output_format);
   const std::string in_the_way = overwritten(written, inputs, a.input_format);
   if (!in_the_way.empty())
@@ -418,17 +428,10 @@ void check_outputs(const SomeArguments& a, const std::string& output_format,
     throw CLI::ValidationError("--report", fmt::format("would overwrite {}; choose another", lost));
 }
 
-std::vector<std::string> all_inputs(const MeshArguments& a) {
-  std::vector<std::string> inputs = a.inputs;
-  for (const std::string& file : {a.size_field, a.complex.names})
-    if (!file.empty()) inputs.push_back(file);
-  return inputs;
-}
-
 /// What one option alone cannot tell.
 void check_run_arguments(const MeshArguments& a) {
   if (a.verbose && a.quiet) throw CLI::ValidationError("--quiet", "contradicts --verbose; use one of them");
-  check_outputs(a, a.output_format, all_inputs(a));
+  check_outputs(a);
   if (a.mesh.size > 0 && a.mesh.size_min > a.mesh.size)
     throw CLI::ValidationError(
         "--size-min", fmt::format("{} exceeds --size {}; make it smaller", a.mesh.size_min, a.mesh.size));
@@ -464,7 +467,7 @@ void check_repair_arguments(const RepairArguments& a) {
   if (a.output == "-" && a.json)
     throw CLI::ValidationError("--json", "has no place on standard output beside the file; use --report");
   check_standard_input(a);
-  check_outputs(a, a.output_format, a.inputs);
+  check_outputs(a);
 }
 
 void check_convert_arguments(const MeshArguments& a) {

@@ -80,6 +80,17 @@ class InputsAreKept(HostileTest):
         self.expect_mesh("sizes.vtu")
         self.refuses(self.box, "-o", self.folder / "sizes.vtu", "--size-field", self.folder / "sizes.vtu")
 
+    def test_names(self):
+        names = self.folder / "names.vtu"
+        names.write_text("{}")
+        self.refuses(self.box, "-o", names, "--names", names)
+        self.refuses("repair", self.box, "-o", self.folder / "names.vtu", "--format", "off", "--names", names)
+
+    def test_parts_of_a_mesh_in_several_files(self):
+        self.expect_mesh("part.xdmf")
+        self.assertTrue((self.folder / "part_faces.h5").exists())
+        self.refuses("convert", self.folder / "part.xdmf", "-o", self.folder / "part_faces.xdmf")
+
     def test_standard_input(self):
         with open(self.box) as box:
             run = subprocess.run([PROGRAM, "convert", "-", "--input-format", ".off", "-o", self.box], stdin=box,

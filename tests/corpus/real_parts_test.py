@@ -2,8 +2,8 @@
 
     real_parts_test.py PROGRAM [--every N]
 
-COLLARMESH_REAL names a folder of CAD files and surfaces, good and bad. Each N-th of them is meshed with the
-defaults. A file may be refused with a message or reach its time limit, but nothing may crash, no guarantee may be
+COLLARMESH_REAL names a folder of CAD files and surfaces, good and bad. Each N-th of them and those that once failed
+are meshed with the defaults. A file may be refused with a message or reach its time limit, but nothing may crash, no guarantee may be
 missed, `check` must agree, and most files must be meshed. Exit code 77 (skipped) without such a folder.
 """
 
@@ -19,12 +19,17 @@ from judging import Failed, run
 KINDS = {".step", ".stp", ".brep", ".brp", ".igs", ".iges", ".stl", ".obj", ".off", ".ply"}
 LARGEST = 600_000  # bytes
 SECONDS = 30
-MESHED = 0.6  # of the sample, at least; some are open sheets or need more time
+MESHED = 0.8  # of the sample, at least; some are open sheets or need more time
+# Parts of names. Refinement did not end beside a sheet outside of all regions, where a sample across a gap fell onto a
+# point of a curve, in folds as fine as the repair's tolerance; a ball was too large for the curved patch in it; a face
+# was made twice.
+ONCE_FAILED = ["gebco7510", "MS-X-BAR-ALU", "Wrist_Roll_SO101", "e3b91037__middle2", "Upside_Down_ERCP_ArmLong"]
 
 
 def sample(folder, every):
     files = sorted(f for f in pathlib.Path(folder).rglob("*") if f.suffix.lower() in KINDS)
-    return [f for f in files if f.stat().st_size < LARGEST][every // 2 :: every]
+    chosen = [f for f in files if f.stat().st_size < LARGEST][every // 2 :: every]
+    return chosen + [f for f in files if f not in chosen and any(name in f.name for name in ONCE_FAILED)]
 
 
 def outcome(program, path, folder):

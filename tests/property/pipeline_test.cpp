@@ -65,6 +65,25 @@ TEST(Pipeline, RepairsAndTellsIt) {
   EXPECT_THROW(run(open, strict), PlcError);
 }
 
+TEST(Pipeline, WrapsOnlyWhatTakesFarMoreVerticesThanItsSizesAskFor) {
+  const PolygonSoup soup = box();
+  const Plc plc = build_plc({&soup, 1});
+  PipelineOptions options = with_size(0.1);
+  RepairOptions coarser, wrap;
+  wrap.mode = RepairMode::wrap;
+  wrap.wrap_at_once = true;
+  EXPECT_EQ(before_next_repair(options, coarser, plc).mesh.max_vertices, 0U);
+  EXPECT_EQ(before_next_repair(options, coarser, plc).seeds, 1U);
+  const std::size_t budget = before_next_repair(options, wrap, plc).mesh.max_vertices;
+  EXPECT_GT(budget, 100 * run(soup, options).result.statistics.vertices_inserted);
+  EXPECT_LT(budget, 1'000'000U);
+  options.mesh.max_vertices = 1000;
+  EXPECT_EQ(before_next_repair(options, wrap, plc).mesh.max_vertices, 1000U);
+  options.mesh.max_vertices = 0;
+  options.mesh.patch_size[1] = 1e-4;  // which may well need more
+  EXPECT_EQ(before_next_repair(options, wrap, plc).mesh.max_vertices, 0U);
+}
+
 TEST(Pipeline, MovesOntoExactGeometry) {
   const PolygonSoup sphere = icosphere(1, 16);
   const std::span<const PolygonSoup> soups(&sphere, 1);

@@ -89,5 +89,37 @@ TEST(RepairBounds, OpenSheetsAreRefused) {
   EXPECT_THROW(build_repaired_plc({&sheet, 1}), PlcError);
 }
 
+TEST(RepairBounds, TheNextRepairIsCoarserOrWraps) {
+  RepairReport nothing, repaired, wrapped;
+  repaired.repaired = wrapped.repaired = wrapped.wrapped = true;
+  RepairOptions options;
+  const double tolerance = options.tolerance;
+  EXPECT_FALSE(next_repair(options, nothing).has_value());
+  EXPECT_FALSE(next_repair(options, wrapped).has_value());
+  ASSERT_TRUE(next_repair(options, repaired).has_value());
+  EXPECT_DOUBLE_EQ(next_repair(options, repaired)->tolerance, 3 * tolerance);
+  options.tolerance = 5e-3;
+  EXPECT_FALSE(next_repair(options, repaired).has_value()) << "that would be 1.5% of the diagonal";
+  options.mode = RepairMode::off;
+  EXPECT_FALSE(next_repair(options, nothing).has_value());
+  options.mode = RepairMode::wrap;
+  for (const RepairReport& report : {nothing, repaired}) {
+    ASSERT_TRUE(next_repair(options, report).has_value());
+    EXPECT_TRUE(next_repair(options, report)->wrap_at_once);
+  }
+  EXPECT_FALSE(next_repair(options, wrapped).has_value());
+}
+
+TEST(RepairBounds, WrapsAtOnce) {
+  const PolygonSoup box = testing::box();
+  RepairOptions options;
+  options.mode = RepairMode::wrap;
+  EXPECT_FALSE(build_repaired_plc({&box, 1}, {}, options).report.repaired);
+  options.wrap_at_once = true;
+  const RepairedPlc wrapped = build_repaired_plc({&box, 1}, {}, options);
+  EXPECT_TRUE(wrapped.report.wrapped);
+  EXPECT_GT(wrapped.plc.regions[1].volume, 1);
+}
+
 }  // namespace
 }  // namespace collarmesh

@@ -1,0 +1,96 @@
+// Sheets and fins outside of every region: no mesh has them, and nothing is refined for them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <random>
+
+#include "support/meshing.h"
+#include "support/shapes.h"
+
+namespace collarmesh {
+namespace {
+
+using namespace collarmesh::testing;
+
+constexpr Tag sheet_tag = 90;
+
+void add_triangle(PolygonSoup& soup, const Point& a, const Point& b, const Point& c) {
+  std::array<Index, 3> corners{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    corners[i] = static_cast<Index>(soup.points.size());
+    soup.points.push_back(std::array{a, b, c}[i]);
+  }
+  soup.add_facet(corners, sheet_tag);
+}
+
+bool tells_of_outside(const Plc& plc) {
+  return std::any_of(plc.warnings.begin(), plc.warnings.end(), [](const Plc::Warning& warning) {
+    return warning.message.find("outside of every region") != std::string::npos;
+  });
+}
+
+bool has_tag(const TetMesh& mesh, Tag tag) {
+  return std::find(mesh.face_tag.begin(), mesh.face_tag.end(), tag) != mesh.face_tag.end();
+}
+
+void expect_left_out(const PolygonSoup& soup) {
+  const Meshed meshed = mesh_of(soup, with_size(0.4));
+  EXPECT_EQ(faults(meshed), "");
+  EXPECT_TRUE(tells_of_outside(meshed.plc));
+  EXPECT_FALSE(has_tag(meshed.result.mesh, sheet_tag));
+  for (Tag side = 1; side <= 6; ++side) EXPECT_TRUE(has_tag(meshed.result.mesh, side)) << side;
+  EXPECT_LT(meshed.result.statistics.vertices_inserted, 3000U);
+}
+
+// Their corners are acute, and collars were made for them whose surface nobody resolved.
+TEST(FeaturesOutside, LooseTrianglesAreLeftOut) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> place(0, 1);
+  for (int trial = 0; trial < 40; ++trial) {
+    SCOPED_TRACE(trial);
+    PolygonSoup soup = box();
+    const double size = trial % 2 == 0 ? 0.05 : 0.3;
+    const Point at{1.4, place(random), place(random)};
+    const auto corner = [&] { return at + size * Vector{place(random), place(random), place(random)}; };
+    add_triangle(soup, corner(), corner(), corner());
+    expect_left_out(soup);
+  }
+}
+
+TEST(FeaturesOutside, FinsAreLeftOut) {
+  PolygonSoup on_an_edge = box();
+  add_triangle(on_an_edge, {1, 0, 1}, {1, 1, 1}, {1.5, 0.2, 1.5});
+  expect_left_out(on_an_edge);
+  PolygonSoup in_a_point = box();
+  add_triangle(in_a_point, {1, 1, 1}, {1.6, 1.5, 1.1}, {1.5, 1.6, 1.2});
+  expect_left_out(in_a_point);
+}
+
+TEST(FeaturesOutside, ThoseInsideStay) {
+  PolygonSoup soup = box();
+  add_triangle(soup, {0.3, 0.3, 0.4}, {0.7, 0.35, 0.5}, {0.4, 0.6, 0.45});
+  const Meshed meshed = mesh_of(soup, with_size(0.4));
+  EXPECT_EQ(faults(meshed), "");
+  EXPECT_FALSE(tells_of_outside(meshed.plc));
+  EXPECT_TRUE(has_tag(meshed.result.mesh, sheet_tag));
+}
+
+// The numbers of features are those of the whole complex, whose patches outside come first here.
+TEST(FeaturesOutside, NumbersOfFeaturesAreThoseOfTheComplex) {
+  PolygonSoup soup;
+  add_triangle(soup, {1.5, 0.2, 0.3}, {1.6, 0.2, 0.31}, {1.5, 0.3, 0.29});
+  const Meshed meshed = mesh_of(joined(soup, box()), with_size(0.4));
+  EXPECT_EQ(faults(meshed), "");
+  const TetMesh& mesh = meshed.result.mesh;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+    EXPECT_EQ(meshed.plc.patches[mesh.face_patch[f]].tag, mesh.face_tag[f]);
+  for (std::size_t e = 0; e < mesh.edges.size(); ++e)
+    EXPECT_EQ(meshed.plc.curves[mesh.edge_curve[e]].tag, mesh.edge_tag[e]);
+  for (std::size_t v = 0; v < mesh.points.size(); ++v)
+    if (mesh.features[v].dimension == 0)
+      EXPECT_EQ(meshed.plc.points[meshed.plc.vertices[mesh.features[v].feature].point], mesh.points[v]);
+}
+
+}  // namespace
+}  // namespace collarmesh
