@@ -106,7 +106,7 @@ void add_complex_options(CLI::App& app, ComplexArguments& a) {
   app.add_option(
          "--repair", a.repair.mode,
          "Facets that are no valid complex: auto repairs them, none makes them an error, wrap also puts a "
-         "closed surface around what cannot be repaired")
+         "closed surface around what cannot be repaired, or meshed afterwards")
       ->transform(CLI::CheckedTransformer(modes).description(""))
       ->default_str("auto")
       ->type_name("auto|none|wrap")
