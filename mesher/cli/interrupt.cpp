@@ -28,6 +28,7 @@ using Clock = std::chrono::steady_clock;
 
 std::atomic<bool> interrupted{false};
 std::atomic<int> signals{0};  // that the user sent
+std::atomic<bool> out_of_processor_time{false};
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
               "signal handlers need it");
 
@@ -41,6 +42,11 @@ extern "C" void on_interrupt(int number) {
   if (signals.fetch_add(1, std::memory_order_relaxed) < 2) return;
   std::signal(number, SIG_DFL);  // nothing else has helped
   std::raise(number);
+}
+
+extern "C" void on_processor_time(int) {
+  out_of_processor_time.store(true, std::memory_order_relaxed);
+  interrupted.store(true, std::memory_order_relaxed);
 }
 
 extern "C" void on_time(int) { interrupted.store(true, std::memory_order_relaxed); }
@@ -68,10 +74,16 @@ bool asked_to_stop() {
 Stopped reason_to_stop() {
   if (signals.load(std::memory_order_relaxed) > 0) return Cancelled();
   const std::lock_guard lock(deadline_mutex);
+  if (out_of_processor_time.load(std::memory_order_relaxed))
+    return {ExitCode::budget_hit,
+            fmt::format(
+                "the system's limit of CPU time is reached ({}); nothing was written; raise it (ulimit "
+                "-t), or --size for a coarser mesh; what is much finer than that, --repair wrap leaves out",
+                stage_now)};
   return {ExitCode::budget_hit,
           fmt::format(
               "the time limit of {} s is reached ({}); nothing was written; raise --time-limit, or --size "
-              "for a coarser mesh",
+              "for a coarser mesh; what is much finer than that, --repair wrap leaves out",
               time_limit, stage_now)};
 }
 
@@ -88,6 +100,7 @@ void install_interrupt_handlers() {
   for (const int number : {SIGHUP, SIGQUIT})  // nohup has them ignored
     if (sigaction(number, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
       sigaction(number, &action, nullptr);
+  std::signal(SIGXCPU, on_processor_time);
   // A file that grew too large and a pipe that nobody reads are write errors like others.
   for (const int number : {SIGXFSZ, SIGPIPE}) std::signal(number, SIG_IGN);
 }

@@ -625,7 +625,8 @@ std::size_t Refinement::bytes() const {
 
 bool Refinement::stopped() {
   constexpr const char* more =
-      "raise {} or size, or look at the input there if this is far more than expected";
+      "raise {} or size; if this is far more than expected, look at the input there, or wrap it (repair "
+      "wrap)";
   peak_bytes_ = std::max(peak_bytes_, bytes());
   if (execution_.cancelled() || !report_progress())
     stop_here(MeshStatus::cancelled, "the refinement was stopped", "start it again");
