@@ -2,32 +2,52 @@
 
 #include <fmt/format.h>
 
+#include <string>
 #include <utility>
+#include <vector>
+
+#include "collarmesh/error.h"
 
 namespace collarmesh::cli {
+
+namespace {
+
+/// Finds the repair that the mesh is one of. The report stays where it is one of none.
+void check_against_further(const TetMesh& mesh, ComplexInput& input, ComplexArguments how,
+                           const CheckOptions& options, const Execution& execution, CheckReport& report,
+                           RepairReport& repair) {
+  for (const RepairOptions& further : further_repairs(how.repair, repair)) {
+    how.repair = further;
+    try {
+      CheckReport other = check(mesh, input.build(how), options, execution);
+      if (other.cancelled || !other.passed()) continue;
+      report = std::move(other);
+    } catch (const PlcError&) {
+      continue;
+    } catch (const OptionError&) {  // of names that a surface around everything does not have
+      continue;
+    }
+    repair = input.repaired();
+    report.notes.push_back(
+        repair.wrapped
+            ? "the mesh is one of a surface around everything"
+            : fmt::format("the mesh is one of a repair with --repair-tolerance {:.3g}", further.tolerance));
+    return;
+  }
+}
+
+}  // namespace
 
 CheckReport check_against(const TetMesh& mesh, ComplexInput& input, ComplexArguments how,
                           const CheckOptions& options, const Execution& execution) {
   CheckReport report = check(mesh, input.build(how), options, execution);
-  std::vector<std::string> repairs = describe(input.repaired());
-  if (!report.passed()) {
-    const std::optional<Plc> next = input.build_next(how);
-    if (next) {
-      CheckReport against_next = check(mesh, *next, options, execution);
-      if (against_next.passed()) {
-        report = std::move(against_next);
-        repairs = describe(input.repaired());
-        report.notes.push_back(input.repaired().wrapped
-                                   ? "the mesh is one of a surface around everything"
-                                   : fmt::format("the mesh is one of a repair with --repair-tolerance {:.3g}",
-                                                 how.repair.tolerance));
-      }
-    }
-  }
-  if (!repairs.empty())
+  RepairReport repair = input.repaired();
+  if (!report.passed() && !report.cancelled)
+    check_against_further(mesh, input, std::move(how), options, execution, report, repair);
+  if (repair.repaired)
     report.notes.emplace_back(
         "the mesh was judged against the repaired complex, and that against the input:");
-  for (const std::string& repair : repairs) report.notes.push_back("the input was repaired: " + repair);
+  for (const std::string& line : describe(repair)) report.notes.push_back("the input was repaired: " + line);
   return report;
 }
 

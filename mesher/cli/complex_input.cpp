@@ -99,22 +99,6 @@ Plc ComplexInput::build(const ComplexArguments& options) {
   return plc;
 }
 
-std::optional<Plc> ComplexInput::build_next(ComplexArguments& options) {
-  const std::optional<RepairOptions> next = next_repair(options.repair, built_.repaired);
-  if (!next) return std::nullopt;
-  ComplexArguments how = options;
-  how.repair = *next;
-  const Built before = built_;
-  try {
-    Plc plc = build(how);
-    options = how;
-    return plc;
-  } catch (const PlcError&) {
-    built_ = before;
-    return std::nullopt;
-  }
-}
-
 /// The path of a file, or the text itself.
 void ComplexInput::name(const std::string& path, Plc& plc) {
   if (path.starts_with('{')) {

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,9 +49,6 @@ class ComplexInput {
   /// finer ones are tried first.
   /// Throws PlcError; with CAD faces the messages name them.
   Plc build(const ComplexArguments& options);
-  /// The complex of the repair after that of `options` (`next_repair`), with which the one built last was
-  /// made; changes `options` to it. None, and nothing changes, where there is no such repair or it fails.
-  std::optional<Plc> build_next(ComplexArguments& options);
   /// What was done to the facets of the complex built last.
   const RepairReport& repaired() const { return built_.repaired; }
 

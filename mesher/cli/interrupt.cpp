@@ -1,6 +1,7 @@
 #include "interrupt.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <sys/time.h>
 
 #include <algorithm>
@@ -101,6 +102,14 @@ void install_interrupt_handlers() {
     if (sigaction(number, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
       sigaction(number, &action, nullptr);
   std::signal(SIGXCPU, on_processor_time);
+  // `ulimit -t` sets both limits, and the signal of the hard one cannot be caught.
+  constexpr rlim_t to_end_within = 2;  // seconds of all threads
+  rlimit limit = {};
+  if (getrlimit(RLIMIT_CPU, &limit) == 0 && limit.rlim_max != RLIM_INFINITY &&
+      limit.rlim_max > to_end_within && limit.rlim_cur > limit.rlim_max - to_end_within) {
+    limit.rlim_cur = limit.rlim_max - to_end_within;
+    setrlimit(RLIMIT_CPU, &limit);
+  }
   // A file that grew too large and a pipe that nobody reads are write errors like others.
   for (const int number : {SIGXFSZ, SIGPIPE}) std::signal(number, SIG_IGN);
 }

@@ -60,6 +60,8 @@ PipelineOptions pipeline_options(const MeshArguments& a) {
   options.mesh = a.mesh;
   options.mesh.crease_angle = a.complex.crease_angle;
   options.mesh.time_limit = 0;  // one limit for everything, from reading to writing: the interrupt flag
+  options.complex = a.complex.plc;
+  options.repair = a.complex.repair;
   options.coarsen = a.coarsen;
   options.thin_angle = a.thin_angle;
   options.improve = a.improve;
@@ -76,19 +78,6 @@ ComplexInput read_inputs(const MeshArguments& arguments, Stages& stages) {
                       interruptible({arguments.input_format, distance, arguments.complex.overlap}));
 }
 
-void take_complex(const MeshArguments& arguments, Plc plc, const ComplexInput& input, Stages& stages,
-                  MeshRun& run) {
-  run.plc = std::move(plc);
-  run.notes = input.notes();
-  run.repair = input.repaired();
-  require_known_tags(arguments.mesh, run.plc);
-  run.summary = summarize(run.plc, arguments.complex.crease_angle);
-  run.warnings = option_warnings(arguments, run.plc);
-  std::string text = warnings_text(run.plc) + repair_text(run.repair, arguments.quiet);
-  for (const std::string& warning : run.warnings) text += fmt::format("warning: {}\n", warning);
-  stages.print(text);
-}
-
 /// For the message when the time is up.
 void note_where_it_stopped(const MeshResult& result) {
   const MeshStatistics& reached = result.statistics;
@@ -99,13 +88,43 @@ void note_where_it_stopped(const MeshResult& result) {
       p.z));
 }
 
-/// `next`: the repair that comes next should the mesh miss a guarantee.
-void mesh(const MeshArguments& arguments, const ComplexInput& input, const std::optional<RepairOptions>& next,
-          Stages& stages, MeshRun& run) {
-  PipelineOptions options = pipeline_options(arguments);
-  if (!arguments.size_field.empty()) options.mesh.size_field = read_size_field(arguments.size_field, run.plc);
-  if (input.has_cad()) options.exact = input.exact_geometry(run.plc);
-  if (next) options = before_next_repair(std::move(options), *next, run.plc);
+/// The complexes of the input files. What was done to make each is printed.
+class InputSource : public ComplexSource {
+ public:
+  /// All are kept by reference.
+  InputSource(const MeshArguments& arguments, ComplexInput& input, Stages& stages)
+      : arguments_(arguments), input_(input), stages_(stages) {}
+
+  RepairedPlc build(const RepairOptions& repair, const Execution&) override {
+    ComplexArguments how = arguments_.complex;
+    how.repair = repair;
+    if (repair.wrap_at_once)
+      stages_.print("wrapped: no mesh of the complex keeps every guarantee within its vertices\n");
+    else if (repair.tolerance != arguments_.complex.repair.tolerance)
+      stages_.print(fmt::format(
+          "repaired again, with --repair-tolerance {:.3g}: no mesh of the complex keeps every guarantee\n",
+          repair.tolerance));
+    RepairedPlc built{input_.build(how), input_.repaired(), {}};
+    stages_.print(warnings_text(built.plc) + repair_text(built.report, arguments_.quiet));
+    return built;
+  }
+
+  void adapt(const Plc& plc, PipelineOptions& options) override {
+    if (!arguments_.size_field.empty()) options.mesh.size_field = read_size_field(arguments_.size_field, plc);
+    if (input_.has_cad()) options.exact = input_.exact_geometry(plc);
+    std::string text;
+    for (const std::string& warning : option_warnings(arguments_, plc))
+      text += fmt::format("warning: {}\n", warning);
+    stages_.print(text);
+  }
+
+ private:
+  const MeshArguments& arguments_;
+  ComplexInput& input_;
+  Stages& stages_;
+};
+
+void mesh(const MeshArguments& arguments, ComplexInput& input, Stages& stages, MeshRun& run) {
   Execution execution;
   execution.cancel = &interrupt_flag();
   std::optional<CadWork> projecting;
@@ -117,43 +136,18 @@ void mesh(const MeshArguments& arguments, const ComplexInput& input, const std::
     stages.update(report);
     return true;
   };
-  static_cast<PipelineResult&>(run) = run_pipeline(run.plc, options, execution);
-  if (run.repair.repaired)
-    run.check.notes.push_back(fmt::format("the mesh was judged against the {} complex",
-                                          run.repair.wrapped ? "wrapped" : "repaired"));
+  InputSource source(arguments, input, stages);
+  static_cast<SoupPipelineResult&>(run) = run_pipeline(source, pipeline_options(arguments), execution);
   if (run.result.status == MeshStatus::cancelled) {
     if (run.times.stages().back().first == "refine") note_where_it_stopped(run.result);
     stop_if_interrupted();
   }
-  if (run.result.status == MeshStatus::budget_hit && !(next && next->wrap_at_once))
+  if (run.result.status == MeshStatus::budget_hit)
     throw Stopped(ExitCode::budget_hit, run.result.message + "; nothing was written");
   if (input.has_cad()) run.result.mesh.group_names = GroupNames::cad;
-}
-
-void mesh_with_repairs(const MeshArguments& arguments, ComplexInput& input, Stages& stages, MeshRun& run) {
-  ComplexArguments how = arguments.complex;
-  const std::optional<RepairOptions> next = next_repair(how.repair, run.repair);
-  std::string missed;
-  bool has_mesh = false;
-  try {
-    mesh(arguments, input, next, stages, run);
-    if (run.guarantees_hold()) return;
-    missed = run.missed();
-    has_mesh = run.result.status != MeshStatus::budget_hit;
-  } catch (const PlcError& error) {
-    if (!next) throw;
-    missed = error.what();
-  }
-  if (!next) return;
-  std::optional<Plc> plc = input.build_next(how);
-  if (!plc && has_mesh) return;
-  if (!plc) throw PlcError(missed, {});
-  stages.print(how.repair.wrap_at_once
-                   ? fmt::format("wrapped: {}\n", missed)
-                   : fmt::format("repaired again, with --repair-tolerance {:.3g}: at {:.3g} {}\n",
-                                 how.repair.tolerance, arguments.complex.repair.tolerance, missed));
-  take_complex(arguments, *std::move(plc), input, stages, run);
-  mesh(arguments, input, std::nullopt, stages, run);
+  run.notes = input.notes();
+  run.summary = summarize(run.plc, arguments.complex.crease_angle);
+  run.warnings = option_warnings(arguments, run.plc);
 }
 
 void write_report(const std::string& path, const MeshArguments& arguments, const MeshRun& run) {
@@ -202,9 +196,7 @@ ExitCode mesh_command(const MeshArguments& arguments) {
   {
     Stages stages(arguments.quiet ? ProgressStyle::none : arguments.progress, run.times);
     ComplexInput input = read_inputs(arguments, stages);
-    stages.begin("complex", 0.02, 0.08);
-    take_complex(arguments, input.build(arguments.complex), input, stages, run);
-    mesh_with_repairs(arguments, input, stages, run);
+    mesh(arguments, input, stages, run);
     write_files(arguments, stages, run);
   }
   tell_of(arguments, run);

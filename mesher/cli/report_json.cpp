@@ -297,7 +297,8 @@ Json repair_run_json(const RepairArguments& arguments, const Plc& plc, const Plc
 
 Json run_json(const MeshArguments& arguments, const MeshRun& run) {
   Json seconds = Json::object();
-  for (const auto& [stage, time] : run.times.stages()) seconds[stage] = time;
+  for (const auto& [stage, time] : run.times.stages())  // some come twice
+    seconds[stage] = seconds.value(stage, 0.0) + time;
   seconds["total"] = run.times.total();
   return {{"program", "collarmesh"},
           {"version", COLLARMESH_VERSION},

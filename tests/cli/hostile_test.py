@@ -236,12 +236,15 @@ class Signals(HostileTest):
                     self.assert_nothing_left()
 
     def test_limit_of_cpu_time(self):
-        run = subprocess.run([PROGRAM, self.box, "-o", self.out, "--size", "0.002"], capture_output=True, text=True,
-                             timeout=120, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (2, 60)))
-        self.assertEqual(run.returncode, 5, run.stderr)
-        self.assertIn("limit of CPU time is reached (stage: refine", run.stderr)
-        self.assertFalse(self.out.exists())
-        self.assert_nothing_left()
+        for soft, hard in ((2, 60), (4, 4)):
+            with self.subTest(soft=soft, hard=hard):
+                run = subprocess.run([PROGRAM, self.box, "-o", self.out, "--size", "0.002"], capture_output=True,
+                                     text=True, timeout=120,
+                                     preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (soft, hard)))
+                self.assertEqual(run.returncode, 5, run.stderr)
+                self.assertIn("limit of CPU time is reached (stage: refine", run.stderr)
+                self.assertFalse(self.out.exists())
+                self.assert_nothing_left()
 
     def test_while_writing(self):
         """The file from before is whole, or the new one is."""

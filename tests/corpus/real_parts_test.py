@@ -29,7 +29,12 @@ ONCE_FAILED = ["gebco7510", "MS-X-BAR-ALU", "Wrist_Roll_SO101", "e3b91037__middl
 def sample(folder, every):
     files = sorted(f for f in pathlib.Path(folder).rglob("*") if f.suffix.lower() in KINDS)
     chosen = [f for f in files if f.stat().st_size < LARGEST][every // 2 :: every]
-    return chosen + [f for f in files if f not in chosen and any(name in f.name for name in ONCE_FAILED)]
+    for name in ONCE_FAILED:
+        found = [f for f in files if name in f.name]
+        if not found:
+            print(f"{name}: not there")
+        chosen += [f for f in found if f not in chosen]
+    return chosen
 
 
 def outcome(program, path, folder):

@@ -26,7 +26,7 @@ void add_triangle(PolygonSoup& soup, const Point& a, const Point& b, const Point
 
 bool tells_of_outside(const Plc& plc) {
   return std::any_of(plc.warnings.begin(), plc.warnings.end(), [](const Plc::Warning& warning) {
-    return warning.message.find("outside of every region") != std::string::npos;
+    return warning.message.find("outside of every region is in no mesh") != std::string::npos;
   });
 }
 
@@ -87,9 +87,15 @@ TEST(FeaturesOutside, NumbersOfFeaturesAreThoseOfTheComplex) {
     EXPECT_EQ(meshed.plc.patches[mesh.face_patch[f]].tag, mesh.face_tag[f]);
   for (std::size_t e = 0; e < mesh.edges.size(); ++e)
     EXPECT_EQ(meshed.plc.curves[mesh.edge_curve[e]].tag, mesh.edge_tag[e]);
-  for (std::size_t v = 0; v < mesh.points.size(); ++v)
-    if (mesh.features[v].dimension == 0)
-      EXPECT_EQ(meshed.plc.points[meshed.plc.vertices[mesh.features[v].feature].point], mesh.points[v]);
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    const auto [dimension, feature] = mesh.features[v];
+    if (dimension == 0)
+      EXPECT_EQ(meshed.plc.points[meshed.plc.vertices[feature].point], mesh.points[v]);
+    else if (dimension == 2)
+      EXPECT_NEAR(
+          dot(mesh.points[v] - meshed.plc.patches[feature].origin, meshed.plc.patches[feature].normal), 0,
+          1e-12);
+  }
 }
 
 }  // namespace

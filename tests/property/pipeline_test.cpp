@@ -1,6 +1,7 @@
 // One call from facets to a certified mesh, and how it is stopped.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <set>
@@ -65,23 +66,119 @@ TEST(Pipeline, RepairsAndTellsIt) {
   EXPECT_THROW(run(open, strict), PlcError);
 }
 
-TEST(Pipeline, WrapsOnlyWhatTakesFarMoreVerticesThanItsSizesAskFor) {
-  const PolygonSoup soup = box();
-  const Plc plc = build_plc({&soup, 1});
-  PipelineOptions options = with_size(0.1);
-  RepairOptions coarser, wrap;
-  wrap.mode = RepairMode::wrap;
-  wrap.wrap_at_once = true;
-  EXPECT_EQ(before_next_repair(options, coarser, plc).mesh.max_vertices, 0U);
-  EXPECT_EQ(before_next_repair(options, coarser, plc).seeds, 1U);
-  const std::size_t budget = before_next_repair(options, wrap, plc).mesh.max_vertices;
-  EXPECT_GT(budget, 100 * run(soup, options).result.statistics.vertices_inserted);
-  EXPECT_LT(budget, 1'000'000U);
-  options.mesh.max_vertices = 1000;
-  EXPECT_EQ(before_next_repair(options, wrap, plc).mesh.max_vertices, 1000U);
-  options.mesh.max_vertices = 0;
-  options.mesh.patch_size[1] = 1e-4;  // which may well need more
-  EXPECT_EQ(before_next_repair(options, wrap, plc).mesh.max_vertices, 0U);
+/// Boxes that claim to have been repaired. But for the right one the tag of a patch changes when the mesh has
+/// it already, so that the certificate finds fault with that.
+class Boxes : public ComplexSource {
+ public:
+  RepairedPlc build(const RepairOptions& repair, const Execution&) override {
+    built.push_back(repair);
+    if (throws_after_first && built.size() > 1) throw PlcError("no complex", {});
+    const PolygonSoup soup = box();
+    RepairedPlc made{build_plc({&soup, 1}), {}, {}};
+    made.report.repaired = true;
+    made.report.wrapped = repair.wrap_at_once;
+    made.report.tolerance = repair.tolerance;
+    return made;
+  }
+  void adapt(const Plc& plc, PipelineOptions&) override {
+    ++adapted;
+    if (refuses_after_first && adapted > 1) throw OptionError("no such tag");
+    at_hand = const_cast<Plc*>(&plc);
+  }
+  SoupPipelineResult run(const PipelineOptions& options, const Execution& execution = {}) {
+    Execution spoiling = execution;
+    spoiling.progress = [&](const ProgressReport& report) {
+      if (report.begins && report.phase == "check" && built.size() != right) ++at_hand->patches[0].tag;
+      return !execution.progress || execution.progress(report);
+    };
+    return run_pipeline(*this, options, spoiling);
+  }
+
+  std::size_t right = 0;  // the number of the build that is right, from 1; 0: none
+  bool throws_after_first = false, refuses_after_first = false;
+  std::vector<RepairOptions> built;
+  unsigned adapted = 0;
+
+ private:
+  Plc* at_hand = nullptr;
+};
+
+bool tells(const PipelineResult& result, const std::string& what) {
+  return std::any_of(result.check.notes.begin(), result.check.notes.end(),
+                     [&](const std::string& note) { return note.find(what) != std::string::npos; });
+}
+
+TEST(Pipeline, RepairsFurtherWhereAGuaranteeIsMissed) {
+  Boxes boxes;
+  boxes.right = 2;
+  const SoupPipelineResult made = boxes.run(with_size(0.5));
+  EXPECT_TRUE(made.guarantees_hold());
+  ASSERT_EQ(boxes.built.size(), 2U);
+  EXPECT_DOUBLE_EQ(made.repair.tolerance, 3 * RepairOptions{}.tolerance);
+  EXPECT_TRUE(tells(made, "repaired with a tolerance of 3e-05"));
+}
+
+TEST(Pipeline, WrapsLast) {
+  Boxes boxes;
+  boxes.right = 3;
+  PipelineOptions options = with_size(0.5);
+  options.repair.mode = RepairMode::wrap;
+  const SoupPipelineResult made = boxes.run(options);
+  EXPECT_TRUE(made.guarantees_hold());
+  EXPECT_TRUE(made.repair.wrapped);
+  ASSERT_EQ(boxes.built.size(), 3U);
+  EXPECT_FALSE(boxes.built[1].wrap_at_once);
+  EXPECT_TRUE(tells(made, "wrapped, as of the complex before "));
+}
+
+TEST(Pipeline, TheFirstMeshStaysWhereNoOtherIsBetter) {
+  const auto expect_first = [](const SoupPipelineResult& made) {
+    EXPECT_EQ(made.result.status, MeshStatus::complete);
+    EXPECT_FALSE(made.guarantees_hold());
+    EXPECT_FALSE(made.result.mesh.tets.empty());
+    EXPECT_DOUBLE_EQ(made.repair.tolerance, RepairOptions{}.tolerance);
+    EXPECT_FALSE(tells(made, "seed"));
+  };
+  Boxes all_wrong;
+  expect_first(all_wrong.run(with_size(0.5)));
+  EXPECT_EQ(all_wrong.built.size(), 3U) << "the first one again, for another seed";
+  EXPECT_EQ(all_wrong.adapted, 3U);
+  Boxes refused;
+  refused.refuses_after_first = true;
+  expect_first(refused.run(with_size(0.5)));
+  Boxes thrown;
+  thrown.throws_after_first = true;
+  expect_first(thrown.run(with_size(0.5)));
+  Boxes many;
+  PipelineOptions options = with_size(0.5);
+  options.seeds = 5;
+  expect_first(many.run(options));
+  EXPECT_EQ(many.adapted, 6U);
+}
+
+TEST(Pipeline, IsCancelledBetweenRepairs) {
+  Boxes boxes;
+  PipelineOptions options = with_size(0.5);
+  options.repair.mode = RepairMode::wrap;
+  Execution execution;
+  std::size_t complexes = 0;
+  execution.progress = [&](const ProgressReport& report) {
+    return !(report.begins && report.phase == "complex" && ++complexes == 2);
+  };
+  const SoupPipelineResult made = boxes.run(options, execution);
+  EXPECT_EQ(made.result.status, MeshStatus::cancelled);
+  EXPECT_TRUE(made.result.mesh.tets.empty());
+  EXPECT_EQ(boxes.built.size(), 1U);
+}
+
+TEST(Pipeline, ATightBudgetIsNoReasonToWrap) {
+  Boxes boxes;
+  boxes.right = 1;
+  PipelineOptions options = with_size(0.05);
+  options.repair.mode = RepairMode::wrap;
+  options.mesh.max_vertices = 200;
+  EXPECT_EQ(boxes.run(options).result.status, MeshStatus::budget_hit);
+  EXPECT_EQ(boxes.built.size(), 1U);
 }
 
 TEST(Pipeline, MovesOntoExactGeometry) {

@@ -89,25 +89,26 @@ TEST(RepairBounds, OpenSheetsAreRefused) {
   EXPECT_THROW(build_repaired_plc({&sheet, 1}), PlcError);
 }
 
-TEST(RepairBounds, TheNextRepairIsCoarserOrWraps) {
+TEST(RepairBounds, FurtherRepairsAreCoarserAndThenWrap) {
   RepairReport nothing, repaired, wrapped;
   repaired.repaired = wrapped.repaired = wrapped.wrapped = true;
   RepairOptions options;
   const double tolerance = options.tolerance;
-  EXPECT_FALSE(next_repair(options, nothing).has_value());
-  EXPECT_FALSE(next_repair(options, wrapped).has_value());
-  ASSERT_TRUE(next_repair(options, repaired).has_value());
-  EXPECT_DOUBLE_EQ(next_repair(options, repaired)->tolerance, 3 * tolerance);
-  options.tolerance = 5e-3;
-  EXPECT_FALSE(next_repair(options, repaired).has_value()) << "that would be 1.5% of the diagonal";
-  options.mode = RepairMode::off;
-  EXPECT_FALSE(next_repair(options, nothing).has_value());
+  EXPECT_TRUE(further_repairs(options, nothing).empty());
+  EXPECT_TRUE(further_repairs(options, wrapped).empty());
+  ASSERT_EQ(further_repairs(options, repaired).size(), 1U);
+  EXPECT_DOUBLE_EQ(further_repairs(options, repaired)[0].tolerance, 3 * tolerance);
   options.mode = RepairMode::wrap;
-  for (const RepairReport& report : {nothing, repaired}) {
-    ASSERT_TRUE(next_repair(options, report).has_value());
-    EXPECT_TRUE(next_repair(options, report)->wrap_at_once);
-  }
-  EXPECT_FALSE(next_repair(options, wrapped).has_value());
+  ASSERT_EQ(further_repairs(options, nothing).size(), 1U);
+  EXPECT_TRUE(further_repairs(options, nothing)[0].wrap_at_once);
+  ASSERT_EQ(further_repairs(options, repaired).size(), 2U);
+  EXPECT_FALSE(further_repairs(options, repaired)[0].wrap_at_once);
+  EXPECT_TRUE(further_repairs(options, repaired)[1].wrap_at_once);
+  EXPECT_TRUE(further_repairs(options, wrapped).empty());
+  options.tolerance = 5e-3;  // three times that would be 1.5% of the diagonal
+  EXPECT_EQ(further_repairs(options, repaired).size(), 1U);
+  options.mode = RepairMode::off;
+  EXPECT_TRUE(further_repairs(options, repaired).empty());
 }
 
 TEST(RepairBounds, WrapsAtOnce) {

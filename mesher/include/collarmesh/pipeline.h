@@ -31,7 +31,9 @@ struct PipelineOptions {
   unsigned improve = 2;                             ///< level, 1 to 3; 0: leave the slivers
   double min_dihedral = 0;                          ///< degrees, in place of the level's; 0: the level's
   unsigned order = 1;                               ///< of the cells, 1 or 2
-  unsigned seeds = 2;    ///< so many are tried, from `mesh.seed` on, until every guarantee holds
+  /// So many are tried, from `mesh.seed` on, until every guarantee holds; at least 1. The first mesh stays
+  /// where none does.
+  unsigned seeds = 2;
   unsigned threads = 0;  ///< at most; 0: as many as there are cores
   /// What the facets approximate, as a CAD shape. The mesh is kept within tighter bounds first, so that its
   /// vertices can move onto this; may be empty.
@@ -57,22 +59,35 @@ struct SoupPipelineResult : PipelineResult {
   RepairReport repair;  ///< what was done to make it one
 };
 
-/// Mesh the solids that one or several soups bound, and certify the mesh against their complex. Where a
-/// guarantee is missed on a repaired complex, it is repaired once more (`next_repair`).
-/// `execution.progress` is called at the begin of each stage, too (`ProgressReport::begins`), and its
-/// fraction is that of all stages. Cancelled or out of time, the result has that status and no mesh. Throws
-/// PlcError for facets that are no complex and cannot be repaired, OptionError for options that contradict
-/// each other and for sizes of tags that the complex does not have.
+/// Where complexes to mesh come from, one for each repair that is tried.
+class ComplexSource {
+ public:
+  virtual ~ComplexSource() = default;
+  /// Throws PlcError. Where it was cancelled the report says so.
+  virtual RepairedPlc build(const RepairOptions& repair, const Execution& execution) = 0;
+  /// Set the options that depend on the complex built last: sizes by place, exact geometry. They may refer to
+  /// it. Throws OptionError.
+  virtual void adapt(const Plc& plc, PipelineOptions& options) = 0;
+};
+
+/// Mesh the solids of a complex, and certify the mesh against it. Where a guarantee is missed further repairs
+/// are tried (`further_repairs`), then further seeds; of meshes that miss one the first stays. What was tried
+/// is told in `check.notes`. In `RepairMode::wrap` a repaired complex that needs more than 300,000 vertices
+/// and 20 for each cube of the size in its regions is given up for the next repair, unless sizes but for
+/// `size` are given. `execution.progress` is called at the begin of each stage, too
+/// (`ProgressReport::begins`), and its fraction is that of all stages. Cancelled or out of time, the result
+/// has that status and no mesh. Throws PlcError for facets that are no complex and cannot be repaired,
+/// OptionError for options that contradict each other and for sizes of tags that the complex does not have.
+SoupPipelineResult run_pipeline(ComplexSource& source, const PipelineOptions& options = {},
+                                const Execution& execution = {});
+
+/// The same for the solids that one or several soups bound.
 SoupPipelineResult run_pipeline(std::span<const PolygonSoup> soups, const PipelineOptions& options = {},
                                 const Execution& execution = {});
 
-/// The same for a complex that is there already.
+/// The same for a complex that is there already, with further seeds only.
 PipelineResult run_pipeline(const Plc& plc, const PipelineOptions& options = {},
                             const Execution& execution = {});
-
-/// The options for a complex that another repair is there for, should it miss a guarantee: with one seed, and
-/// where everything can be wrapped instead with as many vertices as sizes ask for even in awkward parts.
-PipelineOptions before_next_repair(PipelineOptions options, const RepairOptions& next, const Plc& plc);
 
 /// The surface distance tolerance that these options stand for on a complex of this diagonal, absolute.
 double distance_of(const PipelineOptions& options, double diagonal);

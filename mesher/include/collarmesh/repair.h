@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,7 +18,8 @@ namespace collarmesh {
 enum class RepairMode {
   off,        ///< what is no valid complex is an error
   automatic,  ///< what is no valid complex is repaired
-  wrap        ///< automatic, and where that does not make a solid, a closed surface around everything
+  wrap  ///< automatic, and where that makes no solid, or none that can be meshed, a closed surface around
+        ///< everything
 };
 
 struct RepairOptions {
@@ -112,11 +112,10 @@ RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcO
 RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOptions& options = {},
                                const RepairOptions& repair_options = {}, const Execution& execution = {});
 
-/// The options of another repair where no mesh of the complex of the first one keeps every guarantee: three
-/// times as coarse, as refinement does not end in folds about as fine as the tolerance, which a repair may
-/// leave; in `RepairMode::wrap` a surface around everything. None where nothing was repaired, or wrapped, or
-/// the tolerance would be more than 1% of the diagonal.
-std::optional<RepairOptions> next_repair(const RepairOptions& options, const RepairReport& report);
+/// The repairs to try, one after the other, while no mesh of the complex keeps every guarantee. First one
+/// that is three times as coarse, where something was repaired: refinement does not end in folds about as
+/// fine as the tolerance, which a repair may leave. Then, in `RepairMode::wrap`, a surface around everything.
+std::vector<RepairOptions> further_repairs(const RepairOptions& options, const RepairReport& report);
 
 /// For people: a line for each kind of change with counts, sizes and places; empty if there was none.
 std::vector<std::string> describe(const RepairReport& report);

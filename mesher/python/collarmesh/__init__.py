@@ -147,7 +147,7 @@ def mesh(
     planar_tolerance: facets within this of one plane are one, relative to the diagonal; default 1e-6.
     weld: points closer than this are one, relative to the diagonal; default 1e-9.
     repair: "auto", "none" (what is no valid complex is an error) or "wrap" (a closed surface around what cannot be
-        repaired); repair_tolerance and wrap_offset are relative to the diagonal, defaults 1e-5 and 5e-3.
+        repaired, or meshed afterwards); repair_tolerance and wrap_offset are relative to the diagonal, defaults 1e-5 and 5e-3.
     overlap: what solids of a CAD file have in common: "first" or "region".
     crease_angle: features that meet below this angle form a crease, degrees, 0 to 90; default 60.
     names: names of patches, curves and regions, by number or by a point on them: the path of a JSON file, or its

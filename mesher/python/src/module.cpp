@@ -80,52 +80,45 @@ py::object parsed(const nlohmann::ordered_json& json) {
 struct MeshCall {
   Inputs inputs;
   Options options;
-  Complex complex;
-  PipelineResult run;
+  std::optional<cli::ComplexInput> input;
+  SoupPipelineResult run;
 };
 
-void mesh_complex(MeshCall& call, const std::optional<RepairOptions>& next, Watch& watch) {
-  const Plc& plc = call.complex.plc;
-  PipelineOptions options = call.options.pipeline;
-  options.mesh.time_limit = 0;  // the watch looks at it, over all that the call does
-  if (!call.options.size_field_file.empty())
-    options.mesh.size_field = read_size_field(call.options.size_field_file, plc);
-  if (!call.options.size_field_json.empty())
-    options.mesh.size_field = size_field_from_json(call.options.size_field_json, plc);
-  if (call.complex.input->has_cad()) options.exact = call.complex.input->exact_geometry(plc);
-  if (next) options = before_next_repair(std::move(options), *next, plc);
-  call.run = run_pipeline(plc, options, watch.execution());
-}
+/// The complexes of a call's inputs.
+class InputSource : public ComplexSource {
+ public:
+  /// All are kept by reference.
+  InputSource(const Options& options, cli::ComplexInput& input) : options_(options), input_(input) {}
+
+  RepairedPlc build(const RepairOptions& repair, const Execution&) override {
+    cli::ComplexArguments how = options_.complex();
+    how.repair = repair;
+    return {input_.build(how), input_.repaired(), {}};
+  }
+
+  void adapt(const Plc& plc, PipelineOptions& options) override {
+    if (!options_.size_field_file.empty())
+      options.mesh.size_field = read_size_field(options_.size_field_file, plc);
+    if (!options_.size_field_json.empty())
+      options.mesh.size_field = size_field_from_json(options_.size_field_json, plc);
+    if (input_.has_cad()) options.exact = input_.exact_geometry(plc);
+  }
+
+ private:
+  const Options& options_;
+  cli::ComplexInput& input_;
+};
 
 void mesh(MeshCall& call, Watch& watch) {
-  Complex& complex = call.complex;
-  build(call.inputs, call.options, watch, complex);
-  cli::ComplexArguments how = call.options.complex();
-  const std::optional<RepairOptions> next = next_repair(how.repair, complex.input->repaired());
+  call.input.emplace(read(call.inputs, call.options, watch));
+  PipelineOptions options = call.options.pipeline;
+  options.mesh.time_limit = 0;  // the watch looks at it, over all that the call does
+  InputSource source(call.options, *call.input);
+  call.run = run_pipeline(source, options, watch.execution());
   MeshResult& result = call.run.result;
-  std::string missed;
-  bool has_mesh = false, go_on = next.has_value();
-  try {
-    mesh_complex(call, next, watch);
-    missed = call.run.missed();
-    has_mesh = result.status == MeshStatus::complete || result.status == MeshStatus::guarantee_missed;
-    go_on = next && !call.run.guarantees_hold() && (has_mesh || next->wrap_at_once);
-  } catch (const PlcError& error) {
-    if (!next) throw;
-    missed = error.what();
-  }
-  watch.stop_if_asked();
-  if (go_on) {
-    std::optional<Plc> plc = complex.input->build_next(how);
-    if (!plc && !has_mesh) throw PlcError(missed, {});
-    if (plc) {
-      complex.plc = *std::move(plc);
-      mesh_complex(call, std::nullopt, watch);
-    }
-  }
   if (result.status == MeshStatus::budget_hit) throw BudgetSpent(result.message);
   if (result.status == MeshStatus::cancelled) throw Cancelled(result.message);
-  if (complex.input->has_cad()) result.mesh.group_names = GroupNames::cad;
+  if (call.input->has_cad()) result.mesh.group_names = GroupNames::cad;
 }
 
 py::dict mesh_of(const py::list& inputs, const py::dict& options, const py::object& progress) {
@@ -135,13 +128,12 @@ py::dict mesh_of(const py::list& inputs, const py::dict& options, const py::obje
   const double time_limit = call->options.pipeline.mesh.time_limit;
   run_watched([call](Watch& watch) { mesh(*call, watch); }, progress, time_limit);
   py::dict arrays = arrays_of(std::move(call->run.result.mesh));
-  const cli::ComplexInput& input = *call->complex.input;
   arrays["status_message"] = call->run.result.message;
   arrays["check"] = parsed(cli::check_json(call->run.check));
-  arrays["repairs"] = describe(input.repaired());
-  arrays["notes"] = input.notes();
+  arrays["repairs"] = describe(call->run.repair);
+  arrays["notes"] = call->input->notes();
   std::vector<std::string> warnings;
-  for (const Plc::Warning& warning : call->complex.plc.warnings) warnings.push_back(warning.message);
+  for (const Plc::Warning& warning : call->run.plc.warnings) warnings.push_back(warning.message);
   arrays["warnings"] = warnings;
   return arrays;
 }

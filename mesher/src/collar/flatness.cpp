@@ -75,7 +75,8 @@ double Flatness::off_spoke(Index patch, const Point& centre, const Point& end) c
   return largest;
 }
 
-// The same for edges to where the patch meets the sphere: where sides of its triangles do, or some of them.
+// The same for edges to where the patch meets the sphere: at most `most_spokes` points where sides of its
+// triangles leave the ball.
 double Flatness::off_arc(Index patch, const Point& centre, double radius) const {
   Box box;
   box.add(centre - radius * Vector{1, 1, 1});
@@ -91,7 +92,7 @@ double Flatness::off_arc(Index patch, const Point& centre, double radius) const 
     }
   });
   double largest = 0;
-  const std::size_t stride = ends.size() / most_spokes + 1;
+  const std::size_t stride = std::max<std::size_t>(1, (ends.size() + most_spokes - 1) / most_spokes);
   for (std::size_t i = 0; i < ends.size(); i += stride)
     largest = std::fmax(largest, off_spoke(patch, centre, ends[i]));
   return largest;

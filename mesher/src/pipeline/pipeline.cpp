@@ -7,7 +7,10 @@
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
+#include <cstdint>
+#include <exception>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <stop_token>
 #include <string_view>
@@ -53,18 +56,35 @@ class Deadline {
   std::jthread watcher_;
 };
 
+/// Of facets.
+class SoupSource : public ComplexSource {
+ public:
+  /// Both are kept by reference.
+  SoupSource(std::span<const PolygonSoup> soups, const PlcOptions& options)
+      : soups_(soups), options_(options) {}
+
+  RepairedPlc build(const RepairOptions& repair, const Execution& execution) override {
+    return build_repaired_plc(soups_, options_, repair, execution);
+  }
+  void adapt(const Plc&, PipelineOptions&) override {}
+
+ private:
+  std::span<const PolygonSoup> soups_;
+  const PlcOptions& options_;
+};
+
 class Pipeline {
  public:
-  Pipeline(const PipelineOptions& options, const Execution& execution)
-      : given_(options), options_(options), outer_(execution) {
+  Pipeline(const PipelineOptions& options, const Execution& execution) : given_(options), outer_(execution) {
     if (options.mesh.time_limit > 0) deadline_.emplace(options.mesh.time_limit, execution);
     inner_.cancel = deadline_ ? &deadline_->flag() : execution.cancel;
     if (execution.progress) inner_.progress = [this](const ProgressReport& report) { return go_on(report); };
   }
 
-  SoupPipelineResult run(std::span<const PolygonSoup> soups) {
+  SoupPipelineResult run(ComplexSource& source) {
+    source_ = &source;
     SoupPipelineResult all;
-    until_ended([&] { mesh_repaired(soups, all); });
+    until_ended([&] { try_repairs(all); });
     if (all.repair.repaired)
       made_.check.notes.push_back(fmt::format("the mesh was judged against the {} complex",
                                               all.repair.wrapped ? "wrapped" : "repaired"));
@@ -73,75 +93,132 @@ class Pipeline {
   }
 
   PipelineResult run(const Plc& plc) {
-    until_ended([&] { mesh(plc); });
+    until_ended([&] {
+      mesh(plc, given_.mesh.seed);
+      try_seeds(plc);
+    });
     return std::move(made_);
   }
 
  private:
-  void mesh_repaired(std::span<const PolygonSoup> soups, SoupPipelineResult& all) {
-    build(soups, all);
-    const std::optional<RepairOptions> next = next_repair(given_.repair, all.repair);
-    if (!next) {
-      mesh(all.plc);
-      return;
-    }
-    options_ = before_next_repair(given_, *next, all.plc);
-    bool has_mesh = false;
+  void try_repairs(SoupPipelineResult& all) {
+    build(given_.repair, all);
+    const std::vector<RepairOptions> further = further_repairs(given_.repair, all.repair);
+    most_vertices_ = vertices_before_wrap(all, further);
+    bool has_mesh = false, exploded = false;
+    std::exception_ptr error;
+    std::string missed;
     try {
-      mesh(all.plc);
+      mesh(all.plc, given_.mesh.seed);
       if (made_.guarantees_hold()) return;
       has_mesh = true;
+      missed = made_.missed();
     } catch (const Ended&) {
-      if (inner_.cancelled() || !next->wrap_at_once) throw;
-    } catch (const PlcError&) {
-      // what comes next may do
+      exploded = most_vertices_ > 0 && made_.result.status == MeshStatus::budget_hit && !out_of_time();
+      if (!exploded) throw;
+      missed = made_.result.message;
+    } catch (const PlcError& e) {
+      if (further.empty()) throw;
+      error = std::current_exception();
+      missed = e.what();
     }
-    options_ = given_;
-    options_.repair = *next;
-    PipelineResult missed = std::exchange(made_, {});
-    SoupPipelineResult of_next;
-    bool better = !has_mesh;
-    try {
-      build(soups, of_next);
-      mesh(of_next.plc);
-      better = better || made_.guarantees_hold();
-    } catch (const PlcError&) {
-      if (!has_mesh) throw;
+    most_vertices_ = 0;
+    RepairOptions current = given_.repair;
+    bool built_last = true;
+    for (const RepairOptions& repair : further) {
+      if (exploded && !repair.wrap_at_once) continue;
+      SoupPipelineResult other;
+      const bool better = find_better(has_mesh, [&] {
+        build(repair, other);
+        mesh(other.plc, given_.mesh.seed);
+      });
+      built_last = better;
+      if (!better) continue;
+      current = repair;
+      all.plc = std::move(other.plc);
+      all.repair = std::move(other.repair);
+      has_mesh = true;
+      made_.check.notes.push_back(all.repair.wrapped
+                                      ? fmt::format("wrapped, as of the complex before {}", missed)
+                                      : fmt::format("repaired with a tolerance of {:.3g}, as with {:.3g} {}",
+                                                    repair.tolerance, given_.repair.tolerance, missed));
+      if (made_.guarantees_hold()) return;
     }
-    if (better)
-      all = std::move(of_next);
-    else
-      made_ = std::move(missed);
+    if (!has_mesh && error) std::rethrow_exception(error);
+    if (!built_last) {
+      try {
+        build(current, all);  // its source is to know it again
+      } catch (const PlcError&) {
+        if (!has_mesh) throw;
+        return;
+      }
+    }
+    if (!has_mesh) mesh(all.plc, given_.mesh.seed);  // as far as the budgets allow
+    try_seeds(all.plc);
   }
 
-  void build(std::span<const PolygonSoup> soups, SoupPipelineResult& all) {
+  /// Refinement that does not end at one place with the samples of one seed may well end with those of
+  /// another.
+  void try_seeds(const Plc& plc) {
+    const std::uint64_t first = given_.mesh.seed;
+    for (std::uint64_t seed = first + 1; seed < first + given_.seeds && !made_.guarantees_hold(); ++seed) {
+      const std::string missed = made_.missed();
+      if (find_better(true, [&] { mesh(plc, seed); }))
+        made_.check.notes.push_back(fmt::format("made with seed {}, as with {} {}", seed, first, missed));
+    }
+  }
+
+  /// Make something in another way. What there is stays, unless it is no mesh or the other one keeps every
+  /// guarantee.
+  template <class Way>
+  bool find_better(bool has_mesh, const Way& way) {
+    PipelineResult kept = std::exchange(made_, {});
+    bool better = false;
+    const auto fails = [&] {
+      if (!has_mesh || made_.result.status == MeshStatus::cancelled) throw;
+    };
+    try {
+      way();
+      better = !has_mesh || made_.guarantees_hold();
+    } catch (const PlcError&) {
+      better = false;
+    } catch (const OptionError&) {  // the tags of sizes may be gone
+      better = false;
+    } catch (const Ended&) {
+      fails();
+    } catch (const std::bad_alloc&) {
+      fails();
+    }
+    if (!better) made_ = std::move(kept);
+    return better;
+  }
+
+  void build(const RepairOptions& repair, SoupPipelineResult& all) {
     begin("complex", 0, 0.06);
-    RepairedPlc built = build_repaired_plc(soups, options_.complex, options_.repair, inner_);
+    RepairedPlc built = source_->build(repair, inner_);
     all.repair = std::move(built.report);
     if (all.repair.cancelled) stop();
     all.plc = std::move(built.plc);
   }
 
-  /// Refinement that does not end at one place with the samples of one seed may well end with those of
-  /// another.
-  void mesh(const Plc& plc) {
-    const std::uint64_t first = options_.mesh.seed;
-    go_all_stages(plc, first);
-    for (std::uint64_t seed = first + 1; seed < first + options_.seeds && !made_.guarantees_hold(); ++seed) {
-      PipelineResult missed = std::exchange(made_, {});
-      bool holds = false;
-      try {
-        go_all_stages(plc, seed);
-        holds = made_.guarantees_hold();
-      } catch (const PlcError&) {
-        // which is no better
-      }
-      if (holds)
-        made_.check.notes.push_back(
-            fmt::format("meshed again, with seed {}: with seed {}, {}", seed, first, missed.missed()));
-      else
-        made_ = std::move(missed);
-    }
+  /// How many vertices a repaired complex may take where it can be wrapped instead; 0: any number.
+  std::size_t vertices_before_wrap(const SoupPipelineResult& all,
+                                   const std::vector<RepairOptions>& further) const {
+    constexpr double always = 3e5, per_cube_of_size = 20, sizes_per_diagonal = 20;
+    const MeshOptions &m = given_.mesh, defaults;
+    const bool one_size = !m.size_field && m.region_size.empty() && m.patch_size.empty() &&
+                          m.curve_size.empty() && m.elements_across_gap == defaults.elements_across_gap &&
+                          m.elements_per_circle == defaults.elements_per_circle &&
+                          m.vertex_ratio == defaults.vertex_ratio && m.distance == 0 &&
+                          m.radius_edge >= defaults.radius_edge;
+    if (further.empty() || !further.back().wrap_at_once || !all.repair.repaired || !one_size) return 0;
+    const double size = m.size > 0 ? m.size : all.plc.bounds.diagonal() / sizes_per_diagonal;
+    double vertices = always;
+    for (const Plc::Region& region : all.plc.regions)
+      vertices += per_cube_of_size * region.volume / std::pow(region.size > 0 ? region.size : size, 3);
+    const bool lowers =
+        vertices < 1e9 && (m.max_vertices == 0 || vertices < static_cast<double>(m.max_vertices));
+    return lowers ? static_cast<std::size_t>(vertices) : 0;
   }
 
   template <class Stages>
@@ -153,8 +230,11 @@ class Pipeline {
     }
   }
 
-  void go_all_stages(const Plc& plc, std::uint64_t seed) {
+  void mesh(const Plc& plc, std::uint64_t seed) {
     plc_ = &plc;
+    options_ = given_;
+    if (source_ != nullptr) source_->adapt(plc, options_);
+    if (most_vertices_ > 0) options_.mesh.max_vertices = most_vertices_;
     require_known_tags(options_.mesh, plc);
     if (options_.order != 1 && options_.order != 2) throw OptionError("order must be 1 or 2");
     bounds_ = bounds_of_refinement();
@@ -283,7 +363,9 @@ class Pipeline {
   bool out_of_time() const { return deadline_ && deadline_->passed(); }
 
   const PipelineOptions& given_;
-  PipelineOptions options_;  // of the attempt
+  PipelineOptions options_;          // for the complex at hand
+  ComplexSource* source_ = nullptr;  // unless there is one complex only
+  std::size_t most_vertices_ = 0;    // in place of the given budget; 0: that
   const Execution& outer_;
   Execution inner_;
   std::optional<Deadline> deadline_;
@@ -296,22 +378,6 @@ class Pipeline {
 
 }  // namespace
 
-PipelineOptions before_next_repair(PipelineOptions options, const RepairOptions& next, const Plc& plc) {
-  constexpr double always = 3e5, per_cube_of_size = 20, sizes_per_diagonal = 20;
-  options.seeds = 1;
-  const MeshOptions& m = options.mesh;
-  const bool one_size =
-      !m.size_field && m.region_size.empty() && m.patch_size.empty() && m.curve_size.empty();
-  if (!next.wrap_at_once || !one_size) return options;
-  const double size = m.size > 0 ? m.size : plc.bounds.diagonal() / sizes_per_diagonal;
-  double vertices = always;
-  for (const Plc::Region& region : plc.regions)
-    vertices += per_cube_of_size * region.volume / std::pow(region.size > 0 ? region.size : size, 3);
-  if (vertices < 1e9 && (m.max_vertices == 0 || vertices < static_cast<double>(m.max_vertices)))
-    options.mesh.max_vertices = static_cast<std::size_t>(vertices);
-  return options;
-}
-
 std::string PipelineResult::missed() const {
   if (!result.message.empty() || check.findings.empty()) return result.message;
   return check.findings.front().message;
@@ -323,9 +389,15 @@ double distance_of(const PipelineOptions& options, double diagonal) {
              : default_distance(options.mesh.size, diagonal, static_cast<int>(options.order));
 }
 
+SoupPipelineResult run_pipeline(ComplexSource& source, const PipelineOptions& options,
+                                const Execution& execution) {
+  return Pipeline(options, execution).run(source);
+}
+
 SoupPipelineResult run_pipeline(std::span<const PolygonSoup> soups, const PipelineOptions& options,
                                 const Execution& execution) {
-  return Pipeline(options, execution).run(soups);
+  SoupSource source(soups, options.complex);
+  return run_pipeline(source, options, execution);
 }
 
 PipelineResult run_pipeline(const Plc& plc, const PipelineOptions& options, const Execution& execution) {

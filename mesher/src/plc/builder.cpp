@@ -165,21 +165,25 @@ void warn_of_patches_outside(Plc& plc) {
   std::size_t count = 0;
   double area = 0;
   Point first;
+  Tag tag = 0;
   for (const Plc::Patch& patch : plc.patches) {
     if (patch.regions[0] != 0 || patch.regions[1] != 0) continue;
     for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
       const auto& v = plc.triangles[t].points;
       const Point &a = plc.points[v[0]], &b = plc.points[v[1]], &c = plc.points[v[2]];
-      if (count++ == 0) first = (a + b + c) / 3;
+      if (count++ == 0) {
+        first = (a + b + c) / 3;
+        tag = patch.tag;
+      }
       area += 0.5 * norm(cross(b - a, c - a));
     }
   }
   if (count == 0) return;
   plc.warnings.push_back(
       {fmt::format(
-           "{} triangles with an area of {:.3g} lie outside of every region, the first at {}: no mesh has "
-           "them. Close the surface there, or remove them.",
-           count, area, text(first)),
+           "What lies outside of every region is in no mesh: an area of {:.3g}, triangles: {}, the first one "
+           "at {} on a patch with tag {}. Close the surface there, or remove it.",
+           area, count, text(first), tag),
        first});
 }
 
@@ -236,9 +240,9 @@ Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options) {
     const double distance = options.weld * plc.bounds.diagonal();
     std::ranges::copy(lost_bodies(soups, plc, distance), std::back_inserter(plc.warnings));
   }
-  if (plc.regions.size() > 1) warn_of_patches_outside(plc);
   for (const PolygonSoup& soup : soups) plc.names.add(soup.tag_names);
   number_untagged(soups, plc);
+  if (plc.regions.size() > 1) warn_of_patches_outside(plc);
   find_near_touching(plc, options.weld * plc.bounds.diagonal(), faults);
   faults.raise();
   return plc;

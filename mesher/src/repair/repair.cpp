@@ -334,7 +334,7 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
                                const RepairOptions& repair_options, const Execution& execution) {
   if (repair_options.mode == RepairMode::wrap && repair_options.wrap_at_once) {
     if (auto wrapped = build_wrapped_plc(soups, options, repair_options)) return *std::move(wrapped);
-    throw PlcError("A closed surface around everything encloses nothing; try another wrap offset.", {});
+    throw PlcError("The closed surface around everything is no complex; try another wrap offset.", {});
   }
   std::optional<PlcError> first;
   try {
@@ -368,17 +368,19 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
   throw PlcError(*first);
 }
 
-std::optional<RepairOptions> next_repair(const RepairOptions& options, const RepairReport& report) {
+std::vector<RepairOptions> further_repairs(const RepairOptions& options, const RepairReport& report) {
   constexpr double factor = 3, coarsest = 1e-2;
-  RepairOptions next = options;
-  if (report.wrapped) return std::nullopt;
-  if (options.mode == RepairMode::wrap) {
-    next.wrap_at_once = true;
-    return next;
+  std::vector<RepairOptions> further;
+  if (options.mode == RepairMode::off || report.wrapped) return further;
+  if (report.repaired && factor * options.tolerance <= coarsest) {
+    further.push_back(options);
+    further.back().tolerance *= factor;
   }
-  next.tolerance *= factor;
-  if (!report.repaired || next.tolerance > coarsest) return std::nullopt;
-  return next;
+  if (options.mode == RepairMode::wrap) {
+    further.push_back(options);
+    further.back().wrap_at_once = true;
+  }
+  return further;
 }
 
 }  // namespace collarmesh
