@@ -3,8 +3,8 @@
     real_parts_test.py PROGRAM [--every N]
 
 COLLARMESH_REAL names a folder of CAD files and surfaces, good and bad. Each N-th of them and those that once failed
-are meshed with the defaults. A file may be refused with a message or reach its time limit, but nothing may crash, no guarantee may be
-missed, `check` must agree, and most files must be meshed. Exit code 77 (skipped) without such a folder.
+are meshed with the defaults. A file may be refused with a message or reach its time limit, but nothing may crash, no
+guarantee may be missed, `check` must agree, and most files must be meshed. Exit code 77 (skipped) without such a folder.
 """
 
 import argparse
