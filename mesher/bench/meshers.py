@@ -92,7 +92,7 @@ class TetGen:
         self.program, self.time_limit, self.quality, self.switches = program, time_limit, quality, switches
 
     def version(self) -> str:
-        return _debian_version("tetgen")
+        return debian_version("tetgen")
 
     def signature(self) -> str:
         return f"{self.version()} q{self.quality}{self.switches}"
@@ -116,7 +116,7 @@ class Gmsh:
         self.name = {"hxt": "Gmsh HXT", "del3d": "Gmsh Delaunay"}[algorithm]
 
     def version(self) -> str:
-        return _debian_version("gmsh")
+        return debian_version("gmsh")
 
     signature = version
 
@@ -150,7 +150,7 @@ class CgalMesh3:
         self.program, self.time_limit = program, time_limit
 
     def version(self) -> str:
-        return _debian_version("libcgal-dev")
+        return debian_version("libcgal-dev")
 
     signature = version
 
@@ -165,7 +165,7 @@ class CgalMesh3:
         return MeshRun(int(_number(r"(\d+) tets", measured.output)), measured.cpu, measured.cpu, measured.peak_bytes)
 
 
-def _debian_version(package: str) -> str:
+def debian_version(package: str) -> str:
     if shutil.which("dpkg-query") is None:
         return "unknown"
     query = subprocess.run(["dpkg-query", "-W", "-f", "${Version}", package], capture_output=True, text=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import resource
 import subprocess
 import threading
 import time
@@ -51,3 +52,25 @@ def run(command: list[str], folder: Path, time_limit: float, accepted: tuple[int
     lines = output.strip().splitlines()
     told = next((line for line in lines if "error" in line.lower()), lines[-1] if lines else "no output")
     raise ProgramFailed(f"exit code {process.returncode}: {' '.join(told.split())[:100]}")
+
+
+def run_limited(command: list[str], folder: Path, cpu_limit: int, memory_limit: int) -> Measured:
+    """Whatever the exit code is; negative: the signal that ended the program. The limits are CPU seconds and bytes of
+    address space; the program is killed, too, when it waits for ten times its CPU seconds."""
+    def limit() -> None:
+        resource.setrlimit(resource.RLIMIT_CPU, (cpu_limit, cpu_limit + 1))
+        resource.setrlimit(resource.RLIMIT_AS, (memory_limit, memory_limit))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+    log = folder / "output.txt"
+    begin = time.perf_counter()
+    with open(log, "wb") as out:
+        process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=out,
+                                   stderr=subprocess.STDOUT, preexec_fn=limit)
+    timer = threading.Timer(10 * cpu_limit, process.kill)
+    timer.start()
+    _, status, usage = os.wait4(process.pid, 0)
+    timer.cancel()
+    process.returncode = os.waitstatus_to_exitcode(status)
+    return Measured(usage.ru_utime + usage.ru_stime, time.perf_counter() - begin, usage.ru_maxrss * 1024,
+                    log.read_text(errors="replace"), process.returncode)
