@@ -89,12 +89,13 @@ TEST(FeaturesOutside, NumbersOfFeaturesAreThoseOfTheComplex) {
     EXPECT_EQ(meshed.plc.curves[mesh.edge_curve[e]].tag, mesh.edge_tag[e]);
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
     const auto [dimension, feature] = mesh.features[v];
-    if (dimension == 0)
+    if (dimension == 0) {
       EXPECT_EQ(meshed.plc.points[meshed.plc.vertices[feature].point], mesh.points[v]);
-    else if (dimension == 2)
-      EXPECT_NEAR(
-          dot(mesh.points[v] - meshed.plc.patches[feature].origin, meshed.plc.patches[feature].normal), 0,
-          1e-12);
+    }
+    if (dimension == 2) {
+      const Plc::Patch& patch = meshed.plc.patches[feature];
+      EXPECT_NEAR(dot(mesh.points[v] - patch.origin, patch.normal), 0, 1e-12);
+    }
   }
 }
 
