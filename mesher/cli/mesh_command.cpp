@@ -115,13 +115,15 @@ class InputSource : public ComplexSource {
     std::string text;
     for (const std::string& warning : option_warnings(arguments_, plc))
       text += fmt::format("warning: {}\n", warning);
-    stages_.print(text);
+    if (text != told_of_options_) stages_.print(text);
+    told_of_options_ = text;
   }
 
  private:
   const MeshArguments& arguments_;
   ComplexInput& input_;
   Stages& stages_;
+  std::string told_of_options_;  // once, however many meshes are tried
 };
 
 void mesh(const MeshArguments& arguments, ComplexInput& input, Stages& stages, MeshRun& run) {
