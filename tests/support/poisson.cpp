@@ -73,7 +73,7 @@ class PoissonProblem {
   }
 
   PoissonErrors solve(bool with_condition_number) {
-    if (count_ == 0) throw std::runtime_error("all nodes lie on the boundary");
+    if (count_ == 0) throw std::runtime_error("the values at all nodes are given");
     Eigen::ConjugateGradient<Matrix, Eigen::Lower | Eigen::Upper, Eigen::IncompleteCholesky<double>> solver(
         matrix_);
     solver.setTolerance(1e-12);
@@ -95,15 +95,18 @@ class PoissonProblem {
   }
 
   void number_unknowns() {
-    constexpr int unused = -2, boundary = -1;
+    constexpr int unused = -2, given = -1;
     unknown_.assign(mesh_.points.size(), unused);
     for (std::size_t t = 0; t < mesh_.tets.size(); ++t)
       for (const Index n : nodes(t)) unknown_[n] = 0;
+    const auto mark = [&](Index n) {
+      if (exact_.is_given(mesh_.points[n])) unknown_[n] = given;
+    };
     for (std::size_t f = 0; f < mesh_.faces.size(); ++f) {
       if (mesh_.face_regions[f][0] != 0 && mesh_.face_regions[f][1] != 0) continue;
-      for (const Index n : mesh_.faces[f]) unknown_[n] = boundary;
+      for (const Index n : mesh_.faces[f]) mark(n);
       if (mesh_.order() == 2)
-        for (const Index n : mesh_.face_mid_nodes[f]) unknown_[n] = boundary;
+        for (const Index n : mesh_.face_mid_nodes[f]) mark(n);
     }
     for (int& u : unknown_)
       if (u == 0) u = count_++;

@@ -12,6 +12,9 @@ struct Solution {
   std::function<double(const Point&)> value;
   std::function<Vector(const Point&)> gradient;
   std::function<double(const Point&)> load;  ///< f
+  /// Is the value given at this point of the boundary? By default it is on all of it; elsewhere the normal
+  /// derivative has to be zero.
+  std::function<bool(const Point&)> is_given = [](const Point&) { return true; };
 };
 
 struct PoissonErrors {
@@ -23,7 +26,7 @@ struct PoissonErrors {
 };
 
 /// Linear or, with mid-side nodes, isoparametric quadratic elements; the solution's values are given at
-/// the nodes on the boundary. The condition number is that of the extreme eigenvalues, by power and inverse
+/// the nodes on the boundary, or on its part where they are to be given. The condition number is that of the extreme eigenvalues, by power and inverse
 /// iteration. Throws std::runtime_error when there are no inner nodes or the matrix is not positive definite.
 PoissonErrors solve_poisson(const TetMesh& mesh, const Solution& exact, bool with_condition_number = false);
 
