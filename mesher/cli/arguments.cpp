@@ -232,7 +232,7 @@ void add_quality_options(CLI::App& app, MeshOptions& m) {
       ->group(group);
   add(app, "--distance LENGTH", m.distance,
       "Largest distance from smooth surfaces and curves, absolute, input units",
-      "1/20 of the size, at most 1/400 of the diagonal (1/1000 with --order 2)")
+      "1/10 of the size, at most 1/200 of the diagonal (1/500 with --order 2)")
       ->check(length)
       ->group(group);
   add(app, "--seed N", m.seed, "Of the pseudo-random offsets: same input, options and seed, same mesh")
@@ -363,7 +363,7 @@ CLI::App* add_check_command(CLI::App& app, CheckArguments& a) {
   add(*check, "--collar-angle DEGREES", a.check.collar_angle, "Bound on dihedral angles in collars, degrees")
       ->check(collar_angle);
   add(*check, "--distance LENGTH", a.check.distance,
-      "Largest distance from smooth surfaces and curves, absolute, input units", "1/400 of the diagonal")
+      "Largest distance from smooth surfaces and curves, absolute, input units", "1/200 of the diagonal")
       ->check(length);
   add(*check, "--findings N", a.check.findings_per_guarantee, "List at most this many per guarantee")
       ->check(count);

@@ -17,7 +17,7 @@ struct CheckOptions {
   /// Where a mesh tells which tets are thin only these may be, in memory as well as read from a file.
   double thin_angle = 8;
   double distance =
-      0;  ///< surface distance tolerance on smooth patches and curves, absolute; 0: 1/400 of the diagonal
+      0;  ///< surface distance tolerance on smooth patches and curves, absolute; 0: 1/200 of the diagonal
   double collar_angle = 150;  ///< largest dihedral angle in collars, degrees
   double crease_angle =
       60;  ///< degrees; features that meet below it are the creases that excuse a collar's cells

@@ -15,7 +15,7 @@ struct ImproveOptions {
   double radius_edge = 2;      ///< bound on circumradius / shortest edge that no new tet breaks
   double thin_angle = 0;       ///< degrees: thin tets may exceed that bound, see `coarsen`; 0: none may
   double thin_reserve = 0;     ///< as CoarsenOptions::reserve
-  double distance = 0;         ///< surface distance tolerance on smooth patches; 0: 1/400 of the diagonal
+  double distance = 0;         ///< surface distance tolerance on smooth patches; 0: 1/200 of the diagonal
   bool move_vertices = true;   ///< and take some out or in, not only change how they are connected
   bool keep_vertices = false;  ///< take none out or in: a coarsened mesh has as many as it needs
   unsigned passes = 3;         ///< at most, over what could not be helped before

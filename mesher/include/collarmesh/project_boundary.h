@@ -15,7 +15,7 @@ struct ProjectOptions {
   double collar_angle = 150;  ///< bound on dihedral angles in collars, degrees
   double tolerance = 1e-9;    ///< absolute: a vertex that stays and is nearer to its feature is no exception
   double reach =
-      0;  ///< absolute: vertices farther than this from their feature stay; 0: 1/400 of the diagonal
+      0;  ///< absolute: vertices farther than this from their feature stay; 0: 1/200 of the diagonal
 };
 
 struct ProjectReport {
