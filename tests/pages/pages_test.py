@@ -6,6 +6,7 @@ builds without a warning, so that no link leads nowhere; every option is on its 
     pages_test.py cpp SOURCES BUILD
     pages_test.py site SOURCES
     pages_test.py options SOURCES BUILD
+    pages_test.py gallery SOURCES BUILD
 
 A comment before a block tells what it needs and where it runs: <!-- needs dolfinx ccx --> are modules of Python and
 programs without which it is left out, <!-- in the sources --> runs it in a copy of them, in a fresh environment of
@@ -26,6 +27,8 @@ BLOCK = re.compile(r"^(?:<!-- ([^\n]*) -->\n)?```([^\n]*)\n(.*?)^```", re.M | re
 RUN = {"bash", "python"}
 KNOWN = RUN | {"cpp", "cmake", "text"}
 MOST_LINES = 10
+FREECAD = pathlib.Path("/usr/lib/freecad/lib")
+SMALLEST_PICTURE = 10_000  # bytes: an empty one is smaller
 # What a recipe says at its end.
 RECIPES = {
     "pip": ["Successfully installed collarmesh", r"largest temperature 0\.(49|50)"],
@@ -197,12 +200,29 @@ def options_told(sources, build):
         raise SystemExit(f"options.md does not tell of {missing}")
 
 
+def draw_gallery(sources, build):
+    """One script makes the pictures of the page, all of them and no others."""
+    if missing := Block("", "", needs=["vtk", "PIL", "xvfb-run", "ccx"]).missing() or not FREECAD.exists():
+        print(f"not installed: {missing}")
+        return 77
+    with tempfile.TemporaryDirectory() as folder:
+        environment = {**os.environ, "PATH": f"{build}/bin:{os.environ['PATH']}"}
+        subprocess.run(["xvfb-run", "-a", sys.executable, sources / "resources/gallery.py", "--into", folder], check=True,
+                       env=environment)
+        made = {path.name for path in pathlib.Path(folder).glob("*.png") if path.stat().st_size > SMALLEST_PICTURE}
+    shown = re.findall(r"!\[[^\]]+\]\(images/(\w+\.png)\)", (sources / "mesher/doc/gallery.md").read_text())
+    if len(shown) != 12 or set(shown) != made:
+        raise SystemExit(f"the page shows {sorted(shown)}, the script makes {sorted(made)}")
+    return 0
+
+
 def main():
     what, *rest = sys.argv[1:]
     if what in ("blocks", "recipe"):
         run = {"blocks": run_blocks, "recipe": run_recipe}[what]
         return run(rest[0], *(pathlib.Path(p).resolve() for p in rest[1:]))
-    return {"cpp": run_cpp, "site": build_site, "options": options_told}[what](*(pathlib.Path(p).resolve() for p in rest))
+    tests = {"cpp": run_cpp, "site": build_site, "options": options_told, "gallery": draw_gallery}
+    return tests[what](*(pathlib.Path(p).resolve() for p in rest))
 
 
 if __name__ == "__main__":
