@@ -3,8 +3,8 @@
 
     xvfb-run -a resources/gallery.py [--only NAME...] [--into FOLDER]
 
-Needs the program `collarmesh` on the PATH, python3-vtk9, python3-pil, freecad-python3 (which makes
-the CAD shape) and calculix-ccx (which makes the analysis).
+Needs the program `collarmesh` on the PATH, python3-vtk9, python3-pil and calculix-ccx (which makes the
+analysis).
 """
 
 import argparse
@@ -30,7 +30,6 @@ HUES = ((0.36, 0.56, 0.78), (0.93, 0.66, 0.32), (0.50, 0.72, 0.47), (0.80, 0.46,
         (0.40, 0.72, 0.74), (0.88, 0.80, 0.40), (0.72, 0.60, 0.50), (0.86, 0.60, 0.74), (0.58, 0.64, 0.70),
         (0.30, 0.62, 0.56), (0.95, 0.75, 0.62), (0.44, 0.44, 0.66), (0.70, 0.82, 0.60), (0.60, 0.32, 0.40))
 GREY = (0.86, 0.89, 0.93)
-FREECAD = "/usr/lib/freecad/lib"
 
 
 # Input
@@ -208,13 +207,6 @@ def names(path):
 
 
 def curved(path):
-    make = ("import sys; sys.path.append(sys.argv[1]); import FreeCAD, Part; V = FreeCAD.Vector; "
-            "s = Part.makeCylinder(20, 8).fuse(Part.makeCylinder(9, 26)).cut(Part.makeCylinder(5, 26)); "
-            "s = s.cut(Part.makeCylinder(2.5, 8, V(14, 0, 0))).cut(Part.makeCylinder(2.5, 8, V(-14, 0, 0))); "
-            "s = s.cut(Part.makeCylinder(2.5, 8, V(0, 14, 0))).cut(Part.makeCylinder(2.5, 8, V(0, -14, 0))); "
-            "e = [e for e in s.Edges if abs(e.Length - 56.5) < 0.1 and abs(e.CenterOfMass.z - 8) < 0.1]; "
-            "s.makeFillet(4, e).exportStep('flange.step')")
-    run(sys.executable, "-c", make, FREECAD)
     grid = mesh("flange.step", "--size", 4, "--order", 2)
     faces = kind(grid, vtk.VTK_QUADRATIC_TRIANGLE)
     actor = actor_of(subdivided(faces))

@@ -10,7 +10,7 @@ builds without a warning, so that no link leads nowhere; every option is on its 
 
 A comment before a block tells what it needs and where it runs: <!-- needs dolfinx ccx --> are modules of Python and
 programs without which it is left out, <!-- in the sources --> runs it in a copy of them, in a fresh environment of
-Python, which later blocks have, too. <!-- recipe: NAME; needs ... --> is a part of a recipe, which is a test of its own.
+Python, which later blocks have, too, <!-- in FreeCAD --> in FreeCAD with the add-on. <!-- recipe: NAME; needs ... --> is a part of a recipe, which is a test of its own.
 """
 
 import dataclasses
@@ -27,7 +27,6 @@ BLOCK = re.compile(r"^(?:<!-- ([^\n]*) -->\n)?```([^\n]*)\n(.*?)^```", re.M | re
 RUN = {"bash", "python"}
 KNOWN = RUN | {"cpp", "cmake", "text"}
 MOST_LINES = 10
-FREECAD = pathlib.Path("/usr/lib/freecad/lib")
 SMALLEST_PICTURE = 10_000  # bytes: an empty one is smaller
 # What a recipe says at its end.
 RECIPES = {
@@ -37,6 +36,13 @@ RECIPES = {
 }
 
 
+def installed(name, build):
+    """A program, a module of Python, or what the program of the build was built with."""
+    if name == "OpenCASCADE":
+        return (build / "lib/collarmesh/collarmesh_cad.so").exists()
+    return shutil.which(name) is not None or importlib.util.find_spec(name) is not None
+
+
 @dataclasses.dataclass
 class Block:
     language: str
@@ -44,12 +50,13 @@ class Block:
     recipe: str = ""
     needs: list = dataclasses.field(default_factory=list)
     in_sources: bool = False
+    in_freecad: bool = False
 
     def lines(self):
         return [line for line in self.code.splitlines() if line.strip()]
 
-    def missing(self):
-        return [name for name in self.needs if shutil.which(name) is None and importlib.util.find_spec(name) is None]
+    def missing(self, build):
+        return [name for name in self.needs if not installed(name, build)]
 
 
 def blocks(page):
@@ -63,6 +70,8 @@ def blocks(page):
                 block.needs = note.split()[1:]
             elif note == "in the sources":
                 block.in_sources = True
+            elif note == "in FreeCAD":
+                block.in_freecad = True
             else:
                 raise SystemExit(f"{page.name}: what is '{note}'?")
         found.append(block)
@@ -95,11 +104,24 @@ class Reader:
         return clone
 
     def run(self, page, block):
+        if block.in_freecad:
+            return self.run_in_freecad(page, block)
         where = self.make_clone() if block.in_sources else self.folder
         command = ["bash", "-euo", "pipefail", "-c"] if block.language == "bash" else [self.python, "-c"]
         run = subprocess.run([*command, block.code], cwd=where, env=self.environment, capture_output=True, text=True)
         if run.returncode != 0:
             raise SystemExit(f"{page}: {run.returncode}\n{block.code}\n{run.stdout[-5000:]}\n{run.stderr[-5000:]}")
+        print(block.code, run.stdout, sep="\n")
+        return run.stdout
+
+
+    def run_in_freecad(self, page, block):
+        script = self.folder / "macro.py"
+        script.write_text(block.code + "import os\nopen(os.environ['COLLARMESH_TEST_RESULT'], 'w').write('the macro has ended')\n")
+        run = subprocess.run([sys.executable, self.sources / "tests/freecad/run.py", self.build / "bin/collarmesh", script],
+                             cwd=self.folder, capture_output=True, text=True)
+        if run.returncode != 77 and "the macro has ended" not in run.stdout:
+            raise SystemExit(f"{page}:\n{block.code}\n{run.stdout}\n{run.stderr}")
         print(block.code, run.stdout, sep="\n")
         return run.stdout
 
@@ -110,7 +132,7 @@ def run_blocks(page, sources, build):
         for block in blocks(sources / "mesher/doc" / page):
             if block.language not in RUN or block.recipe:
                 continue
-            if missing := block.missing():
+            if missing := block.missing(build):
                 print(f"{missing} not installed: a block is left out")
                 continue
             reader.run(page, block)
@@ -125,7 +147,7 @@ def run_recipe(name, sources, build):
     lines = sum(len(block.lines()) for block in recipe)
     if lines > MOST_LINES:
         raise SystemExit(f"{name} has {lines} lines")
-    if missing := [need for block in recipe for need in block.missing()]:
+    if missing := [need for block in recipe for need in block.missing(build)]:
         print(f"{missing} not installed")
         return 77
     with tempfile.TemporaryDirectory(prefix="collarmesh-recipe-") as folder:
@@ -202,7 +224,7 @@ def options_told(sources, build):
 
 def draw_gallery(sources, build):
     """One script makes the pictures of the page, all of them and no others."""
-    if missing := Block("", "", needs=["vtk", "PIL", "xvfb-run", "ccx"]).missing() or not FREECAD.exists():
+    if missing := Block("", "", needs=["vtk", "PIL", "xvfb-run", "ccx", "OpenCASCADE"]).missing(build):
         print(f"not installed: {missing}")
         return 77
     with tempfile.TemporaryDirectory() as folder:
