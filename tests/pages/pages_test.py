@@ -7,6 +7,7 @@ builds without a warning, so that no link leads nowhere; every option is on its 
     pages_test.py site SOURCES
     pages_test.py options SOURCES BUILD
     pages_test.py gallery SOURCES BUILD
+    pages_test.py readme SOURCES BUILD
 
 A comment before a block tells what it needs and where it runs: <!-- needs dolfinx ccx --> are modules of Python and
 programs without which it is left out, <!-- in the sources --> runs it in a copy of them, in a fresh environment of
@@ -222,6 +223,21 @@ def options_told(sources, build):
         raise SystemExit(f"options.md does not tell of {missing}")
 
 
+def run_readme(sources, build):
+    """The commands of the README, but for the clone: that of its program is the one built."""
+    (block,) = blocks(sources / "README.md")
+    clone, *commands = block.lines()
+    if not clone.startswith("git clone") or not commands:
+        raise SystemExit("the README begins with something else than a clone")
+    with tempfile.TemporaryDirectory(prefix="collarmesh-page-") as folder:
+        reader = Reader(folder, sources, build)
+        (reader.folder / "resources").symlink_to(sources / "resources")
+        (reader.folder / "collarmesh").symlink_to(build / "bin/collarmesh")
+        reader.run("README.md", Block(block.language, "\n".join(commands)))
+        if not (reader.folder / "bracket.vtu").exists():
+            raise SystemExit("the README's commands make no mesh")
+
+
 def draw_gallery(sources, build):
     """One script makes the pictures of the page, all of them and no others."""
     if missing := Block("", "", needs=["vtk", "PIL", "xvfb-run", "ccx", "OpenCASCADE"]).missing(build):
@@ -243,7 +259,8 @@ def main():
     if what in ("blocks", "recipe"):
         run = {"blocks": run_blocks, "recipe": run_recipe}[what]
         return run(rest[0], *(pathlib.Path(p).resolve() for p in rest[1:]))
-    tests = {"cpp": run_cpp, "site": build_site, "options": options_told, "gallery": draw_gallery}
+    tests = {"cpp": run_cpp, "site": build_site, "options": options_told, "gallery": draw_gallery,
+             "readme": run_readme}
     return tests[what](*(pathlib.Path(p).resolve() for p in rest))
 
 
