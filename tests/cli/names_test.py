@@ -239,7 +239,7 @@ class Generated(ProgramTest):
     def test_completion_by_zsh(self):
         """A line is typed up to the tab, then the shell calls a function that tells its arguments."""
         self.write("_collarmesh", self.run_program("--generate", "zsh").stdout)
-        setup = ("PS1=; PS2=; fpath=(. $fpath); autoload -U compinit; compinit -u -D; setopt no_beep no_prompt_cr; "
+        setup = ("PS1=; PS2=; fpath=($PWD $fpath); autoload -U compinit; compinit -u -D; setopt no_beep no_prompt_cr; "
                  "collarmesh() { print -r -- \"<$*>\" }; print ready\n")
         for typed, completed in (("collarmesh --patch-s", "--patch-size"), ("collarmesh check --again", "check --against"),
                                  ("collarmesh conv", "convert"), ("collarmesh box.off --coarsen of", "box.off --coarsen off"),
