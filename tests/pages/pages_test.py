@@ -28,6 +28,7 @@ BLOCK = re.compile(r"^(?:<!-- ([^\n]*) -->\n)?```([^\n]*)\n(.*?)^```", re.M | re
 RUN = {"bash", "python"}
 KNOWN = RUN | {"cpp", "cmake", "text"}
 MOST_LINES = 10
+MODULES = {"OpenCASCADE": "collarmesh_cad.so", "HDF5": "collarmesh_hdf5.so"}
 SMALLEST_PICTURE = 10_000  # bytes: an empty one is smaller
 # What a recipe says at its end.
 RECIPES = {
@@ -39,8 +40,8 @@ RECIPES = {
 
 def installed(name, build):
     """A program, a module of Python, or what the program of the build was built with."""
-    if name == "OpenCASCADE":
-        return (build / "lib/collarmesh/collarmesh_cad.so").exists()
+    if name in MODULES:
+        return (build / "lib/collarmesh" / MODULES[name]).exists()
     return shutil.which(name) is not None or importlib.util.find_spec(name) is not None
 
 
