@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Meshes one CAD file or surface with Gmsh's HXT at a twentieth of its diagonal: gmsh_part.py INPUT OUT.mesh
+"""Meshes one CAD file or surface with Gmsh's HXT at a twentieth of its diagonal: gmsh_part.py INPUT OUT [ORDER]
 
 CAD files are opened by OpenCASCADE; a surface (.stl) is cut into patches at 40 degrees, parametrized and filled. Prints
 the volume of a CAD file's solids. Errors of Gmsh end the program with exit code 1."""
@@ -38,7 +38,7 @@ def diagonal() -> float:
     return math.dist(box[:3], box[3:])
 
 
-def mesh(path: str, out: str) -> None:
+def mesh(path: str, out: str, order: int) -> None:
     gmsh.option.setNumber("General.NumThreads", 1)
     gmsh.option.setNumber("Mesh.Algorithm3D", 10)   # HXT
     (open_cad if Path(path).suffix.lower() in cad_suffixes else open_surface)(path)
@@ -46,13 +46,14 @@ def mesh(path: str, out: str) -> None:
     gmsh.option.setNumber("Mesh.MeshSizeMin", size)
     gmsh.option.setNumber("Mesh.MeshSizeMax", size)
     gmsh.model.mesh.generate(3)
+    gmsh.model.mesh.setOrder(order)
     gmsh.write(out)
 
 
 def main() -> int:
     gmsh.initialize(["gmsh"])
     try:
-        mesh(sys.argv[1], sys.argv[2])
+        mesh(sys.argv[1], sys.argv[2], int(sys.argv[3]) if len(sys.argv) > 3 else 1)
     except Exception as error:   # the module raises plain ones
         print(f"error: {error}")
         return 1

@@ -168,6 +168,20 @@ def bad_shapes_are_told(obj, part):
     require("0.005 mm" in said and "Edge" in said and "(10, 0.0075, " in said, said)
 
 
+def overlaps_and_repairs_are_told(obj, part):
+    """What was done to the shape, and where, stands in the panel."""
+    box = Part.makeBox(10, 10, 10)
+    part.Shape = Part.makeCompound([box, Part.makeBox(10, 10, 10, FreeCAD.Vector(6, 0, 0))])
+    said = run_mesher("3 mm")
+    require("warning: the shape: Solid1 and Solid2 overlap around (8, 5, 5)" in said and "400" in said, said)
+    require("every guarantee holds" in said, said)
+    part.Shape = Part.Shell(box.Faces[:5])
+    said = run_mesher("3 mm")
+    require("warning: the shape was repaired: " in said and "hole" in said and "(" in said, said)
+    require("every guarantee holds" in said, said)
+    screenshot("freecad_repair.png")
+
+
 def nodes_off_their_faces_are_told(document):
     """With the face: the panel's summary has what the program reports."""
     ring = document.addObject("Part::Feature", "Ring")
@@ -255,6 +269,7 @@ def test():
     worst_elements_show(obj)
     cancel_keeps_the_mesh(obj)
     bad_shapes_are_told(obj, part)
+    overlaps_and_repairs_are_told(obj, part)
     FreeCADGui.ActiveDocument.resetEdit()
     nodes_off_their_faces_are_told(document)
     refinements_and_groups(document, obj, part)

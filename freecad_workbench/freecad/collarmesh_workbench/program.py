@@ -138,8 +138,12 @@ class Job:
         if isinstance(said, Progress):
             return said
         if said.strip():
-            self.messages.append(said)
+            self.messages.append(self._for_people(said))
         return None
+
+    def _for_people(self, text):
+        """Without the folder, which is gone when it is read."""
+        return text.replace(self.shape, "the shape").replace(self.folder.name + os.sep, "")
 
     def warnings(self):
         """What was said of the shape that the user should know, with places, one line each."""
@@ -149,13 +153,15 @@ class Job:
         """Raises MesherError unless there is a mesh."""
         if exit_code in (0, GUARANTEE_MISSED) and os.path.exists(self.mesh):
             return
-        said = "\n".join(self.messages).removeprefix("collarmesh: ").replace(self.shape, "the shape")
+        said = "\n".join(self.messages).removeprefix("collarmesh: ")
         raise MesherError(said or f"The mesher ended with exit code {exit_code} and without a word.")
 
     def report(self):
         """What the program measured (README.md, --report)."""
         with open(self._report, encoding="utf-8") as file:
-            return json.load(file)
+            report = json.load(file)
+        report["notes"] = [self._for_people(note) for note in report["notes"]]
+        return report
 
     def run(self, progress=None):
         """Run and wait; returns the exit code. `progress(Progress)` may return False to cancel.

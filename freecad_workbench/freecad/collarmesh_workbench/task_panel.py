@@ -128,7 +128,8 @@ class MeshTaskPanel:
                 self.bar.setValue(int(1000 * step.fraction))
                 self.bar.setFormat(f"{step.phase} %p%")
             elif line.strip():
-                self.say(as_warning(line.rstrip()) or line.rstrip())
+                said = self.job.messages[-1]
+                self.say(as_warning(said) or said)
 
     def _finished(self, exit_code, _status=None):
         self._read()
@@ -192,6 +193,7 @@ def summary(report):
     ]
     off = report["projection"]["exceptions"]
     lines += [f"warning: {each['message']}" for each in report["complex"]["warnings"]]
+    lines += [f"warning: {note}" for note in report["notes"]]
     if off:
         where = sorted({f"Face{e['face']}" if "face" in e else f"Edge{e['edge']}" for e in off})
         lines.append(f"{len(off)} boundary nodes stay off the exact shape, at {', '.join(where)}")

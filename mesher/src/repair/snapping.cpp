@@ -23,6 +23,7 @@ using namespace build;
 
 constexpr std::size_t most_rounds = 50;
 constexpr std::size_t most_places = 100;
+constexpr std::size_t few_crossings = 100;
 
 // What has not been looked at yet, in `Origin::facet`, which means nothing else here.
 constexpr Index unseen_by_corners = 1, unseen_by_overlay = 2, unseen = 3;
@@ -47,7 +48,8 @@ class Snapper {
         what_(what),
         work_(work),
         triangles_(draft, distance_limit, work),
-        grid_(draft.points, distance_limit) {}
+        grid_(draft.points, distance_limit),
+        crossing_points_(draft.points, distance_limit) {}
 
   SnapReport run(const std::vector<bool>& known) {
     find_pinned_points();
@@ -59,14 +61,15 @@ class Snapper {
     SnapReport report_before;
     if (!snap_all_corners()) return give_back(before, report_before);
     if (what_ != SnapWhat::all) return finish();
-    // Overlays make new corners. They end where each makes fewer of them.
+    // Overlays make new corners. They end where each makes fewer of them, or few.
     before = triangles_.compacted();
     report_before = report_;
-    for (std::size_t crossings = none;;) {
+    for (std::size_t crossings = none, overlays = 0;; ++overlays) {
       if (!overlay()) return finish();
       const std::size_t count = crossing_.size() + inside_.size();
       cancel_new_twins();
-      if (2 * count > crossings || !snap_all_corners()) return give_back(before, report_before);
+      if ((count > few_crossings && 2 * count > crossings) || overlays == most_rounds || !snap_all_corners())
+        return give_back(before, report_before);
       crossings = count;
     }
   }
@@ -371,7 +374,8 @@ class Snapper {
     return count;
   }
 
-  // Edges that arise are shorter than the one that is cut, or it is cut for the first time: so it ends.
+  // Edges that arise are shorter than the one that is cut, or it is cut for the first time since the last
+  // overlay: so it ends.
   bool may_cut(const NearEdge& near, std::span<const Index> sides) {
     const bool shorter = std::all_of(sides.begin(), sides.end(), [&](Index side) {
       const Index opposite = apex(draft_.triangles, side);
@@ -416,6 +420,8 @@ class Snapper {
   // They get each other's corners and edges.
   bool overlay() {
     clear();
+    cut_before_.clear();
+    first_of_overlay_ = static_cast<Index>(draft_.points.size());
     std::vector<std::pair<Index, Index>> pairs;
     triangles_.for_each_near_pair(take_unseen(unseen_by_overlay),
                                   [&](Index s, Index t) { pairs.emplace_back(s, t); });
@@ -426,8 +432,17 @@ class Snapper {
       find_crossings(s, t);
     }
     if (on_edge_.empty() && inside_.empty()) return false;
+    find_crossings_inside();
     apply();
     return true;
+  }
+
+  // Where edges of two other triangles cross each other on a third one, that gets the crossing, too.
+  void find_crossings_inside() {
+    for (const auto& [t, edges] : along_)
+      for (const Edge& edge : edges)
+        if (const auto found = on_edge_.find(edge); found != on_edge_.end())
+          for (const OnEdge& crossing : found->second) consider_inside(t, crossing.point);
   }
 
   // Those corners of s that t does not have.
@@ -508,12 +523,21 @@ class Snapper {
     const auto key = e < f ? std::pair{e, f} : std::pair{f, e};
     if (!crossing_.insert(key).second) return true;
     if (!crossed_before_.insert(key).second) return false;
-    const auto middle = static_cast<Index>(draft_.points.size());
-    draft_.points.push_back(0.5 * (on_e + on_f));
-    draft_.point_tags.push_back(0);
-    add_on_edge(e, {a, middle}, 0.5 * d);
-    add_on_edge(f, {b, middle}, 0.5 * d);
+    const Index point = crossing_at(0.5 * (on_e + on_f));
+    add_on_edge(e, {a, point}, distance(at(point), on_e));
+    add_on_edge(f, {b, point}, distance(at(point), on_f));
     return true;
+  }
+
+  // Where more than two edges meet, all get one point.
+  Index crossing_at(const Point& p) {
+    const Index known = crossing_points_.nearest(p, [&](Index q) { return q >= first_of_overlay_; });
+    if (known != none) return known;
+    const auto added = static_cast<Index>(draft_.points.size());
+    draft_.points.push_back(p);
+    draft_.point_tags.push_back(0);
+    crossing_points_.add(added);
+    return added;
   }
 
   // --- Cutting ---
@@ -677,7 +701,8 @@ class Snapper {
   std::vector<Index> touched_;                // corners of triangles that came or went
   std::vector<bool> pinned_;                  // by point: of a segment or loose
   std::vector<bool> in_grid_;                 // by point: apart from all others there
-  PointGrid grid_;
+  PointGrid grid_, crossing_points_;
+  Index first_of_overlay_ = 0;  // of the points that it makes
   std::set<Edge> cut_before_;
   std::map<Edge, std::vector<OnEdge>> on_edge_;
   std::map<Index, std::vector<Index>> inside_;  // by triangle
