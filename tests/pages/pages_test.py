@@ -191,7 +191,22 @@ def run_cpp(sources, build):
             raise SystemExit("the program wrote no mesh")
 
 
+def missing_files(sources):
+    """Files of the sources that pages name and that are not there."""
+    there = set()
+    for folder in ("cmake", "freecad_workbench", "mesher", "openmesh_io", "resources", "tests"):
+        there.update(str(path.relative_to(sources)) for path in (sources / folder).rglob("*") if path.is_file())
+    missing = []
+    for page in (sources / "mesher/doc").rglob("*.md"):
+        for name in re.findall(r"`((?:[\w.-]+/)*[\w-]+\.(?:cpp|h|py|sh|cmake))`", page.read_text()):
+            if not any(f"/{path}".endswith(f"/{name}") for path in there):
+                missing.append(f"{page.name}: {name}")
+    return missing
+
+
 def build_site(sources):
+    if missing := missing_files(sources):
+        raise SystemExit(f"pages name files that are not there: {missing}")
     if shutil.which("mkdocs") is None:
         print("mkdocs-material is not installed")
         return 77
