@@ -1,14 +1,17 @@
 # The FreeCAD add-on where FreeCAD looks for it, and a Debian package of everything (cpack).
 install(DIRECTORY freecad_workbench/ DESTINATION ${CMAKE_INSTALL_DATADIR}/freecad/Mod/collarmesh
   FILES_MATCHING PATTERN "*.py" PATTERN "*.svg" PATTERN "package.xml"
-  PATTERN "brep" EXCLUDE PATTERN "__pycache__" EXCLUDE)
+  PATTERN "brep" EXCLUDE PATTERN "bench" EXCLUDE PATTERN "__pycache__" EXCLUDE)
+
+# Whoever makes packages for others puts in their own name.
+set(COLLARMESH_MAINTAINER "The collarmesh maintainers <collarmesh@example.org>" CACHE STRING "of the Debian package")
 
 # What Debian asks for beside the files: who may copy it, and what changed.
 file(WRITE ${PROJECT_BINARY_DIR}/package/copyright "Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
 Upstream-Name: collarmesh
 
 Files: *
-Copyright: the maintainers of collarmesh
+Copyright: 2026 the collarmesh maintainers
 License: GPL-3+
  This program is free software: you can redistribute it and/or modify it under the terms of the GNU General Public
  License as published by the Free Software Foundation, either version 3 of the License, or (at your option) any
@@ -18,7 +21,7 @@ file(WRITE ${PROJECT_BINARY_DIR}/package/changelog.Debian "collarmesh (${PROJECT
 
   * See /usr/share/doc/collarmesh/changelog.gz.
 
- -- the maintainers of collarmesh <collarmesh@localhost>  Thu, 01 Jan 1970 00:00:00 +0000
+ -- ${COLLARMESH_MAINTAINER}  Thu, 01 Jan 1970 00:00:00 +0000
 ")
 foreach(pair ${PROJECT_BINARY_DIR}/package/changelog.Debian,changelog.Debian ${PROJECT_SOURCE_DIR}/CHANGELOG.md,changelog)
   string(REPLACE "," ";" pair ${pair})
@@ -32,12 +35,24 @@ install(FILES ${PROJECT_BINARY_DIR}/package/copyright DESTINATION ${CMAKE_INSTAL
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME collarmesh)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
-set(CPACK_PACKAGE_CONTACT "the maintainers of collarmesh <collarmesh@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "tetrahedral mesh generator for surfaces, CAD shapes and complexes")
+set(CPACK_PACKAGE_DESCRIPTION
+  "collarmesh fills a surface, a CAD shape or a piecewise-linear complex with
+tetrahedra for finite elements and finite volumes. The mesh conforms to every
+vertex, edge and face of the input and comes with a certificate.
+
+The package has the program, an add-on for FreeCAD, a Python module where it
+was built, and a C++ library to link with.")
+set(CPACK_PACKAGE_CONTACT ${COLLARMESH_MAINTAINER})
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS freecad)
+if(TARGET collarmesh_python)  # the module is for one version of Python
+  execute_process(COMMAND ${PYTHON_EXECUTABLE} -c "import sys; v = sys.version_info; \
+print(f'python3 (>= {v[0]}.{v[1]}~), python3 (<< {v[0]}.{v[1] + 1}), python3-numpy', end='')"
+    OUTPUT_VARIABLE CPACK_DEBIAN_PACKAGE_DEPENDS)
+endif()
 include(CPack)

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """Make the sample models in resources/models/ (always the same bytes).
 
-    make_models.py [FOLDER]
+    make_models.py [FOLDER]   (freecad-python3 makes the CAD shape)
 """
 
 import math
 import os
+import re
 import sys
 
 SEGMENTS = 48  # of a full circle
@@ -227,6 +228,29 @@ TWO_BOXES = """# Two boxes that share a face: regions 1 (2 x 1 x 1) and 2 (1 x 1
 """
 
 
+FREECAD = "/usr/lib/freecad/lib"
+
+
+def write_flange(path):
+    """A CAD shape: a flange with four holes and a fillet, by FreeCAD; millimetres."""
+    sys.path.append(FREECAD)
+    import FreeCAD
+    import Part
+
+    def cylinder(radius, height, x=0, y=0):
+        return Part.makeCylinder(radius, height, FreeCAD.Vector(x, y, 0))
+
+    shape = cylinder(20, 8).fuse(cylinder(9, 26)).cut(cylinder(5, 26))
+    for x, y in ((14, 0), (-14, 0), (0, 14), (0, -14)):
+        shape = shape.cut(cylinder(2.5, 8, x, y))
+    inner = [e for e in shape.Edges if abs(e.Length - 18 * math.pi) < 1e-6 and abs(e.CenterOfMass.z - 8) < 1e-6]
+    shape.makeFillet(2, inner).exportStep(path)
+    with open(path) as file:
+        text = re.sub(r"FILE_NAME\(.*?\);", "FILE_NAME('flange.step','',(''),(''),'','','');", file.read(), flags=re.S)
+    with open(path, "w") as file:
+        file.write(text)
+
+
 def main():
     folder = sys.argv[1] if len(sys.argv) > 1 else os.path.join(os.path.dirname(os.path.abspath(__file__)), "models")
     os.makedirs(folder, exist_ok=True)
@@ -234,6 +258,7 @@ def main():
         make().write_off(os.path.join(folder, make.__name__ + ".off"))
     with open(os.path.join(folder, "two_boxes.poly"), "w") as out:
         out.write(TWO_BOXES)
+    write_flange(os.path.join(folder, "flange.step"))
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@
 
 #include "cad_files.h"
 #include "collarmesh/io/tet_mesh_io.h"
+#include "completions.h"
 #include "console.h"
 #include "file_groups.h"
 #include "machine.h"
@@ -518,8 +519,8 @@ std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
   CLI::App* const convert_command = add_convert_command(app, convert.mesh);
   CLI::App* const repair_command = add_repair_command(app, repair);
   if (argc == 3 && argv[1] == std::string_view("--generate")) {  // when it is built; not for users
-    const bool man = argv[2] == std::string_view("man");
-    fmt::print("{}", man ? man_page(app, COLLARMESH_VERSION, footer) : bash_completion(app));
+    const std::string_view kind = argv[2];
+    fmt::print("{}", kind == "man" ? man_page(app, COLLARMESH_VERSION, footer) : completion(app, kind));
     return ExitCode::success;
   }
   if (const std::string mistaken = argc > 1 ? mistaken_command(argv[1]) : ""; !mistaken.empty()) {

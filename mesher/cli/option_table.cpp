@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <iterator>
 #include <string_view>
 #include <vector>
@@ -57,22 +56,6 @@ void add_options(std::string& text, const CLI::App& app, const char* heading) {
   }
 }
 
-/// "on|off" are words to choose from; a name in capitals is none.
-std::string words_of(const CLI::Option& option) {
-  std::string words = option.get_type_name();
-  if (words.find('|') == std::string::npos) return {};
-  std::replace(words.begin(), words.end(), '|', ' ');
-  return words;
-}
-
-std::string long_names(const CLI::App& app) {
-  std::string names;
-  for (const CLI::Option* option : app.get_options())
-    for (const std::string& name : option->get_lnames())
-      names += fmt::format("{}--{}", names.empty() ? "" : " ", name);
-  return names;
-}
-
 }  // namespace
 
 std::string man_page(const CLI::App& app, const std::string& version, const std::string& footer) {
@@ -93,28 +76,6 @@ std::string man_page(const CLI::App& app, const std::string& version, const std:
   }
   text += ".SH NOTES\n.nf\n" + roff(footer) + "\n.fi\n";
   return text;
-}
-
-std::string bash_completion(const CLI::App& app) {
-  std::string commands, options, words;
-  for (const CLI::App* sub : subcommands(app)) {
-    commands += (commands.empty() ? "" : " ") + sub->get_name();
-    options += fmt::format("    {}) options='{}' ;;\n", sub->get_name(), long_names(*sub));
-  }
-  for (const CLI::Option* option : app.get_options())
-    if (const std::string known = words_of(*option); !known.empty())
-      for (const std::string& name : option->get_lnames())
-        words +=
-            fmt::format("    --{}) COMPREPLY=($(compgen -W '{}' -- \"$word\")); return ;;\n", name, known);
-  return fmt::format(
-      "# bash completion for collarmesh\n_collarmesh() {{\n  local word=${{COMP_WORDS[COMP_CWORD]}} "
-      "before=${{COMP_WORDS[COMP_CWORD-1]}} options\n  COMPREPLY=()\n  case $before in\n{}  esac\n"
-      "  case ${{COMP_WORDS[1]}} in\n{}    *) options='{}' ;;\n  esac\n"
-      "  if [[ $word == -* ]]; then\n    COMPREPLY=($(compgen -W \"$options\" -- \"$word\"))\n  else\n"
-      "    COMPREPLY=($(compgen -f -- \"$word\"))\n"
-      "    if [ \"$COMP_CWORD\" -eq 1 ]; then COMPREPLY+=($(compgen -W '{}' -- \"$word\")); fi\n  fi\n}}\n"
-      "complete -o filenames -F _collarmesh collarmesh\n",
-      words, options, long_names(app), commands);
 }
 
 }  // namespace collarmesh::cli

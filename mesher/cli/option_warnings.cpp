@@ -11,7 +11,7 @@ namespace {
 
 // On nine shapes every refinement ended at 1.1, with two to four times the tets of 1.4, and none at 1.
 constexpr double proved_radius_edge = std::numbers::sqrt2;
-// The lowest bound that all of twelve shapes reached (doc/architecture.md).
+// The lowest bound that all of twelve shapes reached (doc/architecture/collars.md).
 constexpr double reached_collar_angle = 130;
 // Relative to the diagonal.
 constexpr double small_distance = 1e-5, large_planar_tolerance = 1e-3;

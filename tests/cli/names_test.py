@@ -2,7 +2,9 @@
 
 import json
 import os
+import pty
 import re
+import select
 import shutil
 import subprocess
 import unittest
@@ -215,6 +217,58 @@ class Generated(ProgramTest):
         self.assertEqual(self.complete("collarmesh", "check", "--again"), ["--against"])
         self.assertEqual(self.complete("collarmesh", "conv"), ["convert"])
         self.assertEqual(self.complete("collarmesh", "box.off", "--coarsen"), ["on", "off"])
+
+    @unittest.skipUnless(shutil.which("fish"), "fish is not installed")
+    def test_completion_by_fish(self):
+        path = self.write("collarmesh.fish", self.run_program("--generate", "fish").stdout)
+
+        def complete(line):
+            run = subprocess.run(["fish", "--no-config", "-c", f"source {path}; complete -C '{line}'"], capture_output=True,
+                                 text=True, cwd=self.folder, env={**os.environ, "HOME": str(self.folder)})
+            self.assertEqual((run.returncode, run.stderr), (0, ""))
+            return [line.split("\t")[0] for line in run.stdout.splitlines()]
+
+        self.assertEqual(complete("collarmesh --patch"), ["--patch-size"])
+        self.assertEqual(complete("collarmesh check --again"), ["--against"])
+        self.assertEqual(complete("collarmesh check --patch"), [])
+        self.assertEqual(complete("collarmesh conv"), ["convert"])
+        self.assertEqual(complete("collarmesh box.off --coarsen o"), ["off", "on"])
+        self.assertIn("box.off", complete("collarmesh bo"))
+
+    @unittest.skipUnless(shutil.which("zsh"), "zsh is not installed")
+    def test_completion_by_zsh(self):
+        """A line is typed up to the tab, then the shell calls a function that tells its arguments."""
+        self.write("_collarmesh", self.run_program("--generate", "zsh").stdout)
+        setup = ("PS1=; PS2=; fpath=($PWD $fpath); autoload -U compinit; compinit -u -D; setopt no_beep no_prompt_cr; "
+                 "collarmesh() { print -r -- \"<$*>\" }; print ready\n")
+        for typed, completed in (("collarmesh --patch-s", "--patch-size"), ("collarmesh check --again", "check --against"),
+                                 ("collarmesh conv", "convert"), ("collarmesh box.off --coarsen of", "box.off --coarsen off"),
+                                 ("collarmesh bo", "box.off")):
+            with self.subTest(typed=typed):
+                self.assertIn(f"<{completed}>", self.typed(["zsh", "-f", "-i"], setup, f"{typed}\t\n"))
+
+    def typed(self, shell, setup, keys):
+        """What an interactive shell shows when this is typed, up to the function's answer."""
+        master, slave = pty.openpty()
+        run = subprocess.Popen(shell, stdin=slave, stdout=slave, stderr=slave, cwd=self.folder, start_new_session=True,
+                               env={**os.environ, "HOME": str(self.folder), "TERM": "dumb"})
+        os.close(slave)
+        try:
+            shown = self.answer(master, setup, r"\nready")
+            return shown + self.answer(master, keys, r"<[^$]*>")
+        finally:
+            run.kill()
+            run.wait()
+            os.close(master)
+
+    def answer(self, terminal, keys, expected):
+        os.write(terminal, keys.encode())
+        shown = ""
+        while not re.search(expected, shown.replace("\r", "")):
+            if not select.select([terminal], [], [], 60)[0]:
+                self.fail(f"no answer to {keys!r}: {shown}")
+            shown += os.read(terminal, 4096).decode(errors="replace")
+        return shown
 
 
 if __name__ == "__main__":

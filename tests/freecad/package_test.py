@@ -35,7 +35,8 @@ def main():
         if list(pathlib.Path(build).glob("python/collarmesh/_core*.so")) and not list(usr.glob("lib/python3/*/collarmesh/_core*.so")):
             raise SystemExit("the package has no Python module")
         for file in ("share/doc/collarmesh/copyright", "share/doc/collarmesh/changelog.Debian.gz",
-                     "share/man/man1/collarmesh.1.gz", "share/bash-completion/completions/collarmesh"):
+                     "share/man/man1/collarmesh.1.gz", "share/bash-completion/completions/collarmesh",
+                     "share/zsh/vendor-completions/_collarmesh", "share/fish/vendor_completions.d/collarmesh.fish"):
             if not (usr / file).exists():
                 raise SystemExit(f"the package has no {file}")
         addon = usr / "share" / "freecad" / "Mod" / "collarmesh"

@@ -70,6 +70,8 @@ def by_vtk():
             writer.SetEncodeAppendedData(not raw)
             writer.SetCompressorTypeToNone()
             save(writer, reader, seed(f"vtk_{'raw' if raw else 'base64'}_{order}", "vtu"))
+            writer.SetCompressorTypeToLZ4()
+            save(writer, reader, seed(f"vtk_lz4_{'raw' if raw else 'base64'}_{order}", "vtu"))
 
 
 def save(writer, reader, path):

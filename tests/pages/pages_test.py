@@ -1,13 +1,20 @@
-#!/usr/bin/python3
 """The pages: every block of commands and code runs, in the order of its page, in a folder with the models; the site
 builds without a warning, so that no link leads nowhere; every option is on its page.
 
     pages_test.py blocks PAGE SOURCES BUILD
+    pages_test.py recipe NAME SOURCES BUILD
     pages_test.py cpp SOURCES BUILD
     pages_test.py site SOURCES
     pages_test.py options SOURCES BUILD
+    pages_test.py gallery SOURCES BUILD
+    pages_test.py readme SOURCES BUILD
+
+A comment before a block tells what it needs and where it runs: <!-- needs dolfinx ccx --> are modules of Python and
+programs without which it is left out, <!-- in the sources --> runs it in a copy of them, in a fresh environment of
+Python, which later blocks have, too, <!-- in FreeCAD --> in FreeCAD with the add-on. <!-- recipe: NAME; needs ... --> is a part of a recipe, which is a test of its own.
 """
 
+import dataclasses
 import importlib.util
 import os
 import pathlib
@@ -17,36 +24,143 @@ import subprocess
 import sys
 import tempfile
 
-BLOCK = re.compile(r"^```(\w*)([^\n]*)\n(.*?)^```", re.M | re.S)
+BLOCK = re.compile(r"^(?:<!-- ([^\n]*) -->\n)?```([^\n]*)\n(.*?)^```", re.M | re.S)
 RUN = {"bash", "python"}
 KNOWN = RUN | {"cpp", "cmake", "text"}
+MOST_LINES = 10
+MODULES = {"OpenCASCADE": "collarmesh_cad.so", "HDF5": "collarmesh_hdf5.so"}
+SMALLEST_PICTURE = 10_000  # bytes: an empty one is smaller
+# What a recipe says at its end.
+RECIPES = {
+    "pip": ["Successfully installed collarmesh", r"largest temperature 0\.(49|50)"],
+    "calculix": [r"displacements \(vx,vy,vz\) for set LOADED_NODES", r"\n +\d+ +-?\d\.\d+E-0\d "],
+    "openfoam": ["Mesh OK", r"\binlet\b", r"\boutlet\b", r"\bwalls\b", "cellZone air"],
+}
+
+
+def installed(name, build):
+    """A program, a module of Python, or what the program of the build was built with."""
+    if name in MODULES:
+        return (build / "lib/collarmesh" / MODULES[name]).exists()
+    return shutil.which(name) is not None or importlib.util.find_spec(name) is not None
+
+
+@dataclasses.dataclass
+class Block:
+    language: str
+    code: str
+    recipe: str = ""
+    needs: list = dataclasses.field(default_factory=list)
+    in_sources: bool = False
+    in_freecad: bool = False
+
+    def lines(self):
+        return [line for line in self.code.splitlines() if line.strip()]
+
+    def missing(self, build):
+        return [name for name in self.needs if not installed(name, build)]
 
 
 def blocks(page):
-    return [(language, words.split(), code) for language, words, code in BLOCK.findall(page.read_text())]
+    found = []
+    for notes, language, code in BLOCK.findall(page.read_text()):
+        block = Block(language, code)
+        for note in filter(None, notes.split("; ")):
+            if note.startswith("recipe: "):
+                block.recipe = note.removeprefix("recipe: ")
+            elif note.startswith("needs "):
+                block.needs = note.split()[1:]
+            elif note == "in the sources":
+                block.in_sources = True
+            elif note == "in FreeCAD":
+                block.in_freecad = True
+            else:
+                raise SystemExit(f"{page.name}: what is '{note}'?")
+        found.append(block)
+    unknown = [block.language for block in found if block.language not in KNOWN]
+    if unknown:
+        raise SystemExit(f"{page.name}: blocks of {unknown}, which nothing runs")
+    return found
+
+
+class Reader:
+    """Somebody who types what is on a page, in a folder with the models."""
+
+    def __init__(self, folder, sources, build):
+        self.folder = pathlib.Path(folder)
+        self.sources, self.build = sources, build
+        for model in (sources / "resources/models").iterdir():
+            shutil.copy(model, folder)
+        self.python = sys.executable
+        self.environment = {**os.environ, "PATH": f"{build}/bin:{os.environ['PATH']}", "PYTHONPATH": f"{build}/python"}
+
+    def make_clone(self):
+        """A copy of the sources; numpy, setuptools and pip are the system's, so that nothing is downloaded."""
+        clone, venv = self.folder / "clone", self.folder / "venv"
+        shutil.copytree(self.sources, clone, ignore=shutil.ignore_patterns("build", ".git", "*.egg-info"))
+        subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", venv], check=True)
+        self.python = str(venv / "bin/python")
+        self.environment["PATH"] = f"{venv}/bin:{self.environment['PATH']}"
+        self.environment.pop("PYTHONPATH")
+        self.environment.update(PIP_NO_INDEX="1", COLLARMESH_BUILD_DIR=str(self.build))
+        return clone
+
+    def run(self, page, block):
+        if block.in_freecad:
+            return self.run_in_freecad(page, block)
+        where = self.make_clone() if block.in_sources else self.folder
+        command = ["bash", "-euo", "pipefail", "-c"] if block.language == "bash" else [self.python, "-c"]
+        run = subprocess.run([*command, block.code], cwd=where, env=self.environment, capture_output=True, text=True)
+        if run.returncode != 0:
+            raise SystemExit(f"{page}: {run.returncode}\n{block.code}\n{run.stdout[-5000:]}\n{run.stderr[-5000:]}")
+        print(block.code, run.stdout, sep="\n")
+        return run.stdout
+
+
+    def run_in_freecad(self, page, block):
+        script = self.folder / "macro.py"
+        script.write_text(block.code + "import os\nopen(os.environ['COLLARMESH_TEST_RESULT'], 'w').write('the macro has ended')\n")
+        run = subprocess.run([sys.executable, self.sources / "tests/freecad/run.py", self.build / "bin/collarmesh", script],
+                             cwd=self.folder, capture_output=True, text=True)
+        if run.returncode != 77 and "the macro has ended" not in run.stdout:
+            raise SystemExit(f"{page}:\n{block.code}\n{run.stdout}\n{run.stderr}")
+        print(block.code, run.stdout, sep="\n")
+        return run.stdout
 
 
 def run_blocks(page, sources, build):
-    found = blocks(sources / "mesher/doc" / page)
-    unknown = [language for language, _, _ in found if language not in KNOWN]
-    if unknown:
-        raise SystemExit(f"{page}: blocks of {unknown}, which nothing runs")
     with tempfile.TemporaryDirectory(prefix="collarmesh-page-") as folder:
-        for model in (sources / "resources/models").iterdir():
-            shutil.copy(model, folder)
-        environment = {**os.environ, "PATH": f"{build}/bin:{os.environ['PATH']}", "PYTHONPATH": f"{build}/python"}
-        for language, words, code in found:
-            if language not in RUN:
+        reader = Reader(folder, sources, build)
+        for block in blocks(sources / "mesher/doc" / page):
+            if block.language not in RUN or block.recipe:
                 continue
-            missing = [module for module in words if importlib.util.find_spec(module) is None]
-            if missing:
+            if missing := block.missing(build):
                 print(f"{missing} not installed: a block is left out")
                 continue
-            command = ["bash", "-euo", "pipefail", "-c", code] if language == "bash" else [sys.executable, "-c", code]
-            run = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
-            if run.returncode != 0:
-                raise SystemExit(f"{page}: {run.returncode}\n{code}\n{run.stdout}\n{run.stderr}")
-            print(code, run.stdout, sep="\n")
+            reader.run(page, block)
+
+
+def run_recipe(name, sources, build):
+    """What stands on the page of solvers, in at most ten lines, from the program or the package to a solution."""
+    page = sources / "mesher/doc/solvers.md"
+    recipe = [block for block in blocks(page) if block.recipe == name]
+    if {block.recipe for block in blocks(page)} - {""} != set(RECIPES):
+        raise SystemExit("a recipe of the page has no test, or a test no recipe")
+    lines = sum(len(block.lines()) for block in recipe)
+    if lines > MOST_LINES:
+        raise SystemExit(f"{name} has {lines} lines")
+    if missing := [need for block in recipe for need in block.missing(build)]:
+        print(f"{missing} not installed")
+        return 77
+    with tempfile.TemporaryDirectory(prefix="collarmesh-recipe-") as folder:
+        reader = Reader(folder, sources, build)
+        if name == "calculix":  # as the page says: it comes from a model
+            reader.run(page.name, Block("bash", "collarmesh convert bracket.off -o bracket.stl && rm bracket.off"))
+        said = "".join(reader.run(page.name, block) for block in recipe)
+    for expected in RECIPES[name]:
+        if not re.search(expected, said):
+            raise SystemExit(f"{name} does not say {expected}")
+    return 0
 
 
 CMAKE = """cmake_minimum_required(VERSION 3.22)
@@ -60,10 +174,10 @@ def run_cpp(sources, build):
     with tempfile.TemporaryDirectory(prefix="collarmesh-page-") as folder:
         folder = pathlib.Path(folder)
         subprocess.run(["cmake", "--install", build, "--prefix", folder / "prefix"], check=True, stdout=subprocess.DEVNULL)
-        (link,) = [code for language, _, code in blocks(sources / "mesher/doc/cpp.md") if language == "cmake"]
+        (link,) = [block.code for block in blocks(sources / "mesher/doc/cpp.md") if block.language == "cmake"]
         text = CMAKE
         for page, target in (("cpp", "mesher"), ("openmesh", "openmesh_io")):
-            (code,) = [code for language, _, code in blocks(sources / f"mesher/doc/{page}.md") if language == "cpp"]
+            (code,) = [block.code for block in blocks(sources / f"mesher/doc/{page}.md") if block.language == "cpp"]
             (folder / f"{page}.cpp").write_text(code)
             text += f"add_executable({page} {page}.cpp)\n"
             text += link.replace("program", page).replace("::mesher", f"::{target}")
@@ -77,7 +191,22 @@ def run_cpp(sources, build):
             raise SystemExit("the program wrote no mesh")
 
 
+def missing_files(sources):
+    """Files of the sources that pages name and that are not there."""
+    there = set()
+    for folder in ("cmake", "freecad_workbench", "mesher", "openmesh_io", "resources", "tests"):
+        there.update(str(path.relative_to(sources)) for path in (sources / folder).rglob("*") if path.is_file())
+    missing = []
+    for page in (sources / "mesher/doc").rglob("*.md"):
+        for name in re.findall(r"`((?:[\w.-]+/)*[\w-]+\.(?:cpp|h|py|sh|cmake))`", page.read_text()):
+            if not any(f"/{path}".endswith(f"/{name}") for path in there):
+                missing.append(f"{page.name}: {name}")
+    return missing
+
+
 def build_site(sources):
+    if missing := missing_files(sources):
+        raise SystemExit(f"pages name files that are not there: {missing}")
     if shutil.which("mkdocs") is None:
         print("mkdocs-material is not installed")
         return 77
@@ -87,13 +216,17 @@ def build_site(sources):
         print(run.stdout, run.stderr)
         if run.returncode != 0:
             raise SystemExit("the site does not build")
-        pages = {page.name for page in pathlib.Path(folder).glob("*.html")}
-        told = {page.with_suffix(".html").name for page in (sources / "mesher/doc").glob("*.md")}
+        doc, site = sources / "mesher/doc", pathlib.Path(folder)
+        pages = {page.relative_to(site) for page in site.rglob("*.html")}
+        told = {page.relative_to(doc).with_suffix(".html") for page in doc.rglob("*.md")}
         if not told <= pages:
             raise SystemExit(f"pages are missing: {told - pages}")
-    for page in (sources / "README.md", sources / "CONTRIBUTING.md"):
+        unread = {str(page.relative_to(site)) for page in site.rglob("*.html") if re.search("<p>```", page.read_text())}
+        if unread:
+            raise SystemExit(f"blocks of code that the site does not show as such: {unread}")
+    for page in (sources / "README.md", sources / "CONTRIBUTING.md", sources / "mesher/bench/README.md"):
         for link in re.findall(r"\]\(([^)#]+)\)", page.read_text()):
-            if "://" not in link and not (sources / link).exists():
+            if "://" not in link and not (page.parent / link).exists():
                 raise SystemExit(f"{page.name}: {link} leads nowhere")
     return 0
 
@@ -106,11 +239,45 @@ def options_told(sources, build):
         raise SystemExit(f"options.md does not tell of {missing}")
 
 
+def run_readme(sources, build):
+    """The commands of the README, but for the clone: that of its program is the one built."""
+    (block,) = blocks(sources / "README.md")
+    clone, *commands = block.lines()
+    if not clone.startswith("git clone") or not commands:
+        raise SystemExit("the README begins with something else than a clone")
+    with tempfile.TemporaryDirectory(prefix="collarmesh-page-") as folder:
+        reader = Reader(folder, sources, build)
+        (reader.folder / "resources").symlink_to(sources / "resources")
+        (reader.folder / "collarmesh").symlink_to(build / "bin/collarmesh")
+        reader.run("README.md", Block(block.language, "\n".join(commands)))
+        if not (reader.folder / "bracket.vtu").exists():
+            raise SystemExit("the README's commands make no mesh")
+
+
+def draw_gallery(sources, build):
+    """One script makes the pictures of the page, all of them and no others."""
+    if missing := Block("", "", needs=["vtk", "PIL", "xvfb-run", "ccx", "OpenCASCADE"]).missing(build):
+        print(f"not installed: {missing}")
+        return 77
+    with tempfile.TemporaryDirectory() as folder:
+        environment = {**os.environ, "PATH": f"{build}/bin:{os.environ['PATH']}"}
+        subprocess.run(["xvfb-run", "-a", sys.executable, sources / "resources/gallery.py", "--into", folder], check=True,
+                       env=environment)
+        made = {path.name for path in pathlib.Path(folder).glob("*.png") if path.stat().st_size > SMALLEST_PICTURE}
+    shown = re.findall(r"!\[[^\]]+\]\(images/(\w+\.png)\)", (sources / "mesher/doc/gallery.md").read_text())
+    if len(shown) != 12 or set(shown) != made:
+        raise SystemExit(f"the page shows {sorted(shown)}, the script makes {sorted(made)}")
+    return 0
+
+
 def main():
     what, *rest = sys.argv[1:]
-    if what == "blocks":
-        return run_blocks(rest[0], *(pathlib.Path(p).resolve() for p in rest[1:]))
-    return {"cpp": run_cpp, "site": build_site, "options": options_told}[what](*(pathlib.Path(p).resolve() for p in rest))
+    if what in ("blocks", "recipe"):
+        run = {"blocks": run_blocks, "recipe": run_recipe}[what]
+        return run(rest[0], *(pathlib.Path(p).resolve() for p in rest[1:]))
+    tests = {"cpp": run_cpp, "site": build_site, "options": options_told, "gallery": draw_gallery,
+             "readme": run_readme}
+    return tests[what](*(pathlib.Path(p).resolve() for p in rest))
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ using testing::mesh_of;
 using testing::Meshed;
 using testing::with_size;
 
-// Cells, triangles and edges are split above these multiples of the target edge length (doc/architecture.md).
+// Cells, triangles and edges are split above these multiples of the target edge length (doc/architecture/refinement.md).
 constexpr double cell_radius_per_edge = 0.79;
 constexpr double triangle_radius_per_edge = 0.7;
 constexpr double edge_length_per_edge = 1.3;

@@ -1,4 +1,4 @@
-"""`pip install .` from a copy of the sources into a fresh environment, without network, and what it gives.
+"""`cmake --install` into a prefix, and `pip install .` from a copy of the sources into a fresh environment, without network, and what it gives.
 
     install_test.py SOURCES BUILD
 """
@@ -35,12 +35,27 @@ except collarmesh.ReadError as error:
 """
 
 
+def import_from_prefix(build, prefix):
+    """What `cmake --install` puts below a prefix is found where Debian's Python looks below /usr/local."""
+    for component in ("python", "modules"):
+        subprocess.run(["cmake", "--install", build, "--prefix", prefix, "--component", component], check=True,
+                       stdout=subprocess.DEVNULL)
+    where = prefix / f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/dist-packages"
+    use = f"import site; site.addsitedir('{where}'); import collarmesh; print(collarmesh.__file__)"
+    environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+    found = subprocess.run([sys.executable, "-c", use], check=True, capture_output=True, text=True, env=environment).stdout
+    if not found.startswith(str(prefix)):
+        raise SystemExit(f"the package was imported from {found}")
+
+
 def main():
     sources, build = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
     for needed in ("venv", "setuptools", "wheel", "pip"):
         if importlib.util.find_spec(needed) is None:
             print(f"{needed} is not installed")
             return 77
+    with tempfile.TemporaryDirectory(prefix="collarmesh-prefix-") as folder:
+        import_from_prefix(build, pathlib.Path(folder))
     with tempfile.TemporaryDirectory(prefix="collarmesh-pip-") as folder:
         folder = pathlib.Path(folder)
         copy = folder / "sources"

@@ -2,10 +2,12 @@
 
 import copy
 import gc
+import inspect
 import json
 import os
 import pathlib
 import pickle
+import re
 import signal
 import subprocess
 import sys
@@ -192,6 +194,30 @@ class Inputs(unittest.TestCase):
                 collarmesh.mesh(surface)
         mesh = collarmesh.mesh((points.tolist(), triangles.astype(numpy.uint32)), size=0.5)
         self.assertTrue(mesh.passed)
+
+
+class Signatures(unittest.TestCase):
+    def test_docstrings_tell_every_parameter(self):
+        """By themselves, or by that of `mesh` where they refer to it."""
+        for function in (collarmesh.mesh, collarmesh.check, collarmesh.info, collarmesh.convert, collarmesh.repair,
+                         collarmesh.read, collarmesh.Complex, collarmesh.Mesh.write):
+            text = inspect.getdoc(function)
+            if "collarmesh.mesh" in text:
+                text += inspect.getdoc(collarmesh.mesh)
+            for name in inspect.signature(function).parameters:
+                if name not in ("self", "options"):
+                    self.assertRegex(text, rf"\b{name}\b", function.__name__)
+
+    def test_options_are_those_of_the_command_line(self):
+        """But for what is about output and messages."""
+        program = pathlib.Path(collarmesh.__file__).parents[2] / "bin/collarmesh"
+        if not program.exists():
+            self.skipTest("the program was not built")
+        said = subprocess.run([program, "--help"], check=True, capture_output=True, text=True).stdout
+        others = {"help", "version", "against", "output", "format", "scale", "report", "verbose", "quiet"}
+        options = {name.replace("-", "_") for name in re.findall(r"--([a-z][a-z-]+)", said)} - others
+        self.assertGreater(len(options), 30)
+        self.assertLessEqual(options - set(inspect.signature(collarmesh.mesh).parameters), set())
 
 
 class Options(unittest.TestCase):

@@ -201,7 +201,7 @@ TEST(IoVtu, RefusesBadXml) {
   expect_refused(text.substr(0, text.size() / 2), "the XML is malformed");
   expect_refused(replaced(text, "UnstructuredGrid\"", "PolyData\""),
                  "line 2: expected the type UnstructuredGrid");
-  expect_refused(replaced(text, "byte_order", "compressor=\"vtkLZ4DataCompressor\" byte_order"),
+  expect_refused(replaced(text, "byte_order", "compressor=\"vtkLZMADataCompressor\" byte_order"),
                  "line 2: the compressor");
   expect_refused(replaced(text, "byte_order", "header_type=\"Int7\" byte_order"),
                  "line 2: expected the header type");

@@ -128,7 +128,7 @@ def mesh(
     size_field: sizes by place, never above `size`: the path of a .json, .vtu or .msh; a dict as in such a .json; a
         tuple (points, tets, values), a mesh with lengths on its points; or a callable of x, y, z that gives a length.
     elements_per_circle: finer where smooth faces curve: so many elements on a full circle.
-    elements_across_gap: finer in thin parts: so many elements between faces that look at each other.
+    elements_across_gap: finer in thin parts: so many elements between opposite faces.
     gradation: growth of size per unit length away from finer features.
     radius_edge: bound on circumradius / shortest edge of a tetrahedron that is not thin; default 2.
     vertex_ratio: bound on largest circumradius / shortest edge at a vertex, more than 2 sqrt 2.
@@ -158,7 +158,8 @@ def mesh(
     threads: at most, of improvement and certificate; 0: as many as there are cores. They change no result.
     progress: called with the stage and the fraction, 0 to 1, that is done of everything; False cancels.
 
-    Returns a `Mesh`; its `passed` tells whether every guarantee holds. Raises `Error`, see there.
+    Returns a `Mesh`; its `passed` says whether every guarantee holds. Raises the subclasses of `Error` that the
+    description of the package lists.
     """
     options = _given({name: value for name, value in locals().items() if name not in ("surfaces", "progress")})
     if names is not None:
@@ -173,7 +174,10 @@ def mesh(
 
 
 def read(path: Path, format: str = "") -> Mesh:
-    """Read a tetrahedral mesh; `format`, ".vtu", in place of the extension. Raises ReadError."""
+    """Read a tetrahedral mesh.
+
+    path: the file. format: an extension such as ".vtu", in place of the file's own. Raises ReadError.
+    """
     return Mesh(_core.read_mesh(os.fspath(path), format))
 
 
@@ -198,10 +202,14 @@ def check(
 ) -> Dict[str, Any]:
     """Certify a mesh, of this or another program, against the surfaces it was made of.
 
-    mesh: a `Mesh` or the path of one. against: as in `collarmesh.mesh`, and so are the options; `thin_angle` 0 asks
-    for radius_edge everywhere, `findings` is how many are listed of each kind, default 20.
+    mesh: a `Mesh` or the path of one.
+    against: the surfaces, as in `collarmesh.mesh`.
+    thin_angle: as in `collarmesh.mesh`; 0 asks for radius_edge everywhere.
+    distance: largest distance from smooth surfaces and curves; default 1/400 of the diagonal.
+    findings: how many violations of each kind are listed; default 20.
+    Other options: as in `collarmesh.mesh`. Give those with which the mesh was made.
 
-    Returns what `collarmesh check --json` prints: "passed", "findings", angles, volumes. Raises `Error`.
+    Returns a dict, as `collarmesh check --json` prints it: "passed", "findings", angles, volumes. Raises `Error`.
     """
     options = _given({name: value for name, value in locals().items() if name not in ("mesh", "against")})
     subject = mesh if isinstance(mesh, Mesh) else read(mesh)
@@ -219,9 +227,11 @@ def info(
     overlap: Optional[str] = None,
     crease_angle: Optional[float] = None,
 ) -> Dict[str, Any]:
-    """Say what surfaces are, numbers and names of patches, regions, creases, angles, or what a mesh is.
+    """Describe surfaces (patches with numbers and names, regions, creases, angles) or a mesh.
 
-    of: as in `collarmesh.mesh`, or one mesh. Returns what `collarmesh info --json` prints. Raises `Error`.
+    of: surfaces as in `collarmesh.mesh`, or one mesh. Options: as in `collarmesh.mesh`.
+
+    Returns a dict, as `collarmesh info --json` prints it. Raises `Error`.
     """
     options = _given({name: value for name, value in locals().items() if name != "of"})
     if len(of) == 1 and isinstance(of[0], Mesh):
@@ -266,10 +276,12 @@ def repair(
 ) -> Tuple[List[Surface], List[str]]:
     """The surfaces that would be meshed: repaired where they are no valid complex.
 
-    surfaces and options: as in `collarmesh.mesh`. output: a file to write them to, too.
+    surfaces, options: as in `collarmesh.mesh`.
+    output: a file to which they are written as well.
 
-    Returns a list of (points, triangles, tags), one for each surface, and what was done, in sentences with places.
-    Polygons of valid surfaces are cut into fans. Raises `Error`.
+    Returns a list of (points, triangles, tags), one for each surface, with the shapes of `collarmesh.mesh`, and a list
+    of what was done, in sentences with places. Polygons of valid surfaces are divided into fans of triangles. Raises
+    `Error`.
     """
     options = _given({name: value for name, value in locals().items() if name not in ("surfaces", "output")})
     messages: List[str] = []
@@ -289,8 +301,11 @@ def convert(
 ) -> None:
     """Convert surfaces, complexes and meshes into each other; a surface into a mesh by meshing it.
 
-    source: a surface as in `collarmesh.mesh`, a list of such, which become one, or a mesh. output: the file to write.
-    format, input_format: extensions in place of the files' own. Other options are those of `collarmesh.mesh`.
+    source: a surface as in `collarmesh.mesh`, a list of surfaces, which become one, or a mesh.
+    output: the file to write.
+    format, input_format: extensions in place of the files' own.
+    options: those of `collarmesh.mesh`.
+
     Raises `Error`.
     """
     target, kind, from_kind = os.fspath(output), format or "", input_format or ""

@@ -69,7 +69,7 @@ class Complex:
     holes: (h, 3), a point in each region that stays empty.
     regions: a sequence of (point, tag) or (point, tag, size): names the region around the point, where size is
         the target edge length there.
-    names: names of facet tags, {3: "inlet"}.
+    names: names of facet tags, {3: "inlet"}. name: of the complex, in messages.
 
     Raises OptionError for wrong shapes and for indices that are no integers or out of range.
     """

@@ -151,8 +151,9 @@ class Mesh:
         return f"{kinds[dimension]}{tag}"
 
     def write(self, path: Path, format: str = "", scale: float = 1) -> None:
-        """Write a file. Its extension tells the format (.vtu, .msh, .inp ...), or `format` does (".vtu").
+        """Write a file.
 
+        path: its extension gives the format (.vtu, .msh, .inp ...), unless `format` does (".vtu").
         scale: coordinates are multiplied by this, 0.001 for metres of millimetres. Raises WriteError.
         """
         arrays = self._arrays()

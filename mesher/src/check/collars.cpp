@@ -9,7 +9,7 @@ namespace collarmesh::checks {
 
 namespace {
 
-constexpr double gap_per_radius = 3;  // Definition 6
+constexpr double gap_per_radius = 3;  // paper, Procedure 4
 constexpr double slack = 1 - 1e-9;    // of distances, relative
 
 double to_segment(const Point& p, const Point& a, const Point& b) {

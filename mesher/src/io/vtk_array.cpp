@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "io/base64.h"
+#include "io/lz4_block.h"
 
 namespace collarmesh::io {
 
@@ -99,14 +100,23 @@ std::string decode_plain(Stored& stored, const VtkStorage& storage) {
 }
 
 void inflate_block(std::string_view packed, std::uint64_t size, std::string& bytes) {
-  if (size / vtk_largest_ratio > packed.size())
-    throw VtkArrayError{fmt::format("a block of {} compressed bytes cannot hold {}", packed.size(), size)};
   const std::size_t before = bytes.size();
   bytes.resize(before + size);
   uLongf got = size;
   const int status = uncompress(reinterpret_cast<Bytef*>(bytes.data() + before), &got,
                                 reinterpret_cast<const Bytef*>(packed.data()), packed.size());
   if (status != Z_OK || got != size) throw VtkArrayError{"a compressed block is damaged"};
+}
+
+void unpack_block(VtkCompression compression, std::string_view packed, std::uint64_t size,
+                  std::string& bytes) {
+  const bool lz4 = compression == VtkCompression::lz4;
+  if (size / (lz4 ? lz4_largest_ratio : vtk_largest_ratio) > packed.size())
+    throw VtkArrayError{fmt::format("a block of {} compressed bytes cannot hold {}", packed.size(), size)};
+  if (!lz4) return inflate_block(packed, size, bytes);
+  const std::optional<std::string> block = lz4_unpack(packed, size);
+  if (!block) throw VtkArrayError{"a compressed block is damaged"};
+  bytes += *block;
 }
 
 /// The number of blocks, their size, the size of the last one if it is smaller, the compressed
@@ -135,8 +145,8 @@ std::string decode_compressed(Stored& stored, const VtkStorage& storage) {
   std::size_t at = 0;
   for (std::size_t b = 0; b < blocks; ++b) {
     const std::uint64_t size = header_number(header, 3 + b, storage);
-    inflate_block(std::string_view(packed).substr(at, size),
-                  b + 1 == blocks && last_size != 0 ? last_size : block_size, bytes);
+    unpack_block(storage.compression, std::string_view(packed).substr(at, size),
+                 b + 1 == blocks && last_size != 0 ? last_size : block_size, bytes);
     at += size;
   }
   return bytes;
@@ -176,7 +186,8 @@ std::size_t vtk_size(VtkType type) {
 
 std::string decode_vtk_array(std::string_view text, bool base64, const VtkStorage& storage) {
   Stored stored(text, base64);
-  return storage.compressed ? decode_compressed(stored, storage) : decode_plain(stored, storage);
+  return storage.compression == VtkCompression::none ? decode_plain(stored, storage)
+                                                     : decode_compressed(stored, storage);
 }
 
 template <class To>

@@ -15,14 +15,16 @@ enum class VtkType { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64, unknown };
 VtkType vtk_type(std::string_view name);
 std::size_t vtk_size(VtkType type);
 
+enum class VtkCompression { none, zlib, lz4 };
+
 /// How the whole file stores arrays.
 struct VtkStorage {
   std::endian order = std::endian::little;
   std::size_t header_bytes = 4;  ///< of the numbers that describe blocks
-  bool compressed = false;
+  VtkCompression compression = VtkCompression::none;
 };
 
-/// zlib never packs better than 1 to this.
+/// zlib never packs better than 1 to this, LZ4 not even to a quarter of it.
 constexpr std::uint64_t vtk_largest_ratio = 1032;
 
 /// What is wrong with stored values: for the caller to add the file and the place.

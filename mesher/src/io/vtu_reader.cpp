@@ -1,5 +1,5 @@
 // Reads VTK's XML format for unstructured grids: arrays as text, inline or appended, base64 or raw,
-// compressed with zlib or not, with 32- or 64-bit headers; tetrahedra, triangles and lines.
+// compressed with zlib, with LZ4 or not, with 32- or 64-bit headers; tetrahedra, triangles and lines.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -114,10 +114,14 @@ class VtuFile {
       fail(root, fmt::format("expected the header type UInt32 or UInt64, found {}", quoted(header)));
     storage_.header_bytes = header == "UInt64" ? 8 : 4;
     const std::string_view compressor = root.attribute("compressor").value();
-    if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
-      fail(root, fmt::format("the compressor {} is not supported; save with vtkZLibDataCompressor or none",
+    if (compressor == "vtkZLibDataCompressor")
+      storage_.compression = VtkCompression::zlib;
+    else if (compressor == "vtkLZ4DataCompressor")
+      storage_.compression = VtkCompression::lz4;
+    else if (!compressor.empty())
+      fail(root, fmt::format("the compressor {} is not supported; save with vtkZLibDataCompressor, "
+                             "vtkLZ4DataCompressor or none",
                              quoted(compressor)));
-    storage_.compressed = !compressor.empty();
     if (std::string_view(root.attribute("byte_order").value()) == "BigEndian")
       storage_.order = std::endian::big;
   }
@@ -197,7 +201,7 @@ class VtuFile {
   /// Arrays of many pieces that share their bytes would fill the memory.
   void require_room(std::size_t decoded) const {
     decoded_ += decoded;
-    if (decoded_ > text_.size() * (storage_.compressed ? vtk_largest_ratio : 1))
+    if (decoded_ > text_.size() * (storage_.compression == VtkCompression::none ? 1 : vtk_largest_ratio))
       throw VtkArrayError{"together the arrays hold more bytes than the file; several share their bytes"};
   }
 

@@ -1,5 +1,5 @@
 // Sparse Voronoi Refinement: the work loop, destroy and force_insert (paper, Procedures 1 to 3;
-// what differs from the paper and why is in doc/architecture.md).
+// what differs from the paper and why is in doc/theory.md).
 #include "refine/refinement.h"
 
 #include <fmt/format.h>

@@ -10,7 +10,7 @@ namespace collarmesh {
 
 /// Turns the requested target edge lengths into bounds on circumradii.
 /// The factors are measured: with them the median edge of a unit box comes out at the target
-/// (doc/architecture.md).
+/// (doc/architecture/refinement.md).
 class Sizing {
  public:
   Sizing(const Plc& plc, const MeshOptions& options, const Frame& frame);

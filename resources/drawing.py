@@ -1,31 +1,12 @@
-#!/usr/bin/python3
-"""Picture of a tetrahedral mesh cut open: whole tets behind a plane, coloured by quality.
+"""How the pictures of meshes are drawn: pieces of grids, and actors of VTK for them."""
 
-    render_mesh.py MESH.vtu [PICTURE.png] [--normal X Y Z] [--at FRACTION] [--size W H]
-
-Without PICTURE.png it goes to resources/images/. Draws off screen with python3-vtk9; where that
-needs a display, run it under xvfb-run.
-"""
-
-import argparse
-import os
+from itertools import combinations
 
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
-TETRA = vtk.VTK_TETRA
-SOLID = (0.80, 0.84, 0.90)
-EDGES = (0.13, 0.16, 0.20)
-
-
-def read_tets(path):
-    """The tets of a .vtu file; its boundary triangles and curve edges are left out."""
-    reader = vtk.vtkXMLUnstructuredGridReader()
-    reader.SetFileName(path)
-    reader.Update()
-    grid = reader.GetOutput()
-    kinds = vtk_to_numpy(grid.GetCellTypesArray())
-    return extract(grid, (kinds == TETRA).nonzero()[0])
+SOLID, EDGES = (0.80, 0.84, 0.90), (0.13, 0.16, 0.20)
+STAR, BOOK, CREASE = (0.96, 0.62, 0.20), (0.22, 0.50, 0.76), (0.80, 0.08, 0.16)
 
 
 def extract(grid, cells):
@@ -149,40 +130,6 @@ def legend(colours):
     return bar
 
 
-def render(grid, normal, at, size, view):
-    whole = with_quality(grid)
-    offsets = centres(whole) @ normal
-    cut = offsets.min() + at * (offsets.max() - offsets.min())
-    kept = extract(whole, (offsets <= cut).nonzero()[0])
-    outside, inside = split_by_origin(kept, whole)
-    colours = palette()
-    renderer = vtk.vtkRenderer()
-    renderer.SetBackground(0.98, 0.98, 0.985)
-    renderer.AddActor(actor_of(outside))
-    renderer.AddActor(actor_of(inside, colours))
-    renderer.AddActor2D(legend(colours))
-    camera = renderer.GetActiveCamera()
-    camera.SetPosition(*view)
-    camera.SetFocalPoint(0, 0, 0)
-    camera.SetViewUp(0, 0, 1)
-    renderer.ResetCamera()
-    camera.Zoom(1.12)
-    for position, strength in (((-1, -2, 1.5), 0.55), ((2.5, -0.5, 1.5), 0.6)):
-        light = vtk.vtkLight()
-        light.SetLightTypeToSceneLight()
-        light.SetPosition(*position)
-        light.SetFocalPoint(0, 0, 0)
-        light.SetIntensity(strength)
-        renderer.AddLight(light)
-    window = vtk.vtkRenderWindow()
-    window.SetOffScreenRendering(True)
-    window.SetMultiSamples(8)
-    window.SetSize(*size)
-    window.AddRenderer(renderer)
-    window.Render()
-    return window
-
-
 def save(window, path):
     image = vtk.vtkWindowToImageFilter()
     image.SetInput(window)
@@ -193,21 +140,56 @@ def save(window, path):
     writer.Write()
 
 
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("mesh")
-    parser.add_argument("picture", nargs="?")
-    parser.add_argument("--normal", nargs=3, type=float, default=(0, -1, 0), help="of the cutting plane, to what is removed")
-    parser.add_argument("--at", type=float, default=0.74, help="where it cuts, 0 to 1 along the normal")
-    parser.add_argument("--view", nargs=3, type=float, default=(1.1, -1.9, 1.15), help="direction to the camera")
-    parser.add_argument("--size", nargs=2, type=int, default=(1200, 900))
-    arguments = parser.parse_args()
-    images = os.path.join(os.path.dirname(os.path.abspath(__file__)), "images")
-    name = os.path.splitext(os.path.basename(arguments.mesh))[0] + ".png"
-    path = arguments.picture or os.path.join(images, name)
-    save(render(read_tets(arguments.mesh), arguments.normal, arguments.at, arguments.size, arguments.view), path)
-    print(path)
+def array(grid, name):
+    return vtk_to_numpy(grid.GetCellData().GetArray(name))
 
 
-if __name__ == "__main__":
-    main()
+def corners(grid, cell):
+    return frozenset(grid.GetPoint(grid.GetCell(cell).GetPointId(k))
+                     for k in range(grid.GetCell(cell).GetNumberOfPoints()))
+
+
+def crease_edges(tets, edges):
+    """The curve edges whose tets are all books."""
+    around = {corners(edges, e): set() for e in range(edges.GetNumberOfCells())}
+    for cell, kind in enumerate(array(tets, "collar")):
+        for edge in combinations(corners(tets, cell), 2):
+            around.get(frozenset(edge), set()).add(kind)
+    return [e for e in range(edges.GetNumberOfCells()) if around[corners(edges, e)] == {2}]
+
+
+def shrunk(grid, factor):
+    shrink = vtk.vtkShrinkFilter()
+    shrink.SetInputData(grid)
+    shrink.SetShrinkFactor(factor)
+    shrink.Update()
+    return shrink.GetOutput()
+
+
+def tinted(grid, colour, opacity=1.0, width=1.6):
+    actor = actor_of(surface_of(grid))
+    look = actor.GetProperty()
+    look.SetColor(*colour)
+    look.SetOpacity(opacity)
+    look.SetLineWidth(width)
+    return actor
+
+
+def tubes(grid, radius):
+    surface = surface_of(grid)
+    joined = vtk.vtkStripper()
+    joined.SetInputData(surface)
+    joined.JoinContiguousSegmentsOn()
+    tube = vtk.vtkTubeFilter()
+    tube.SetInputConnection(joined.GetOutputPort())
+    tube.SetRadius(radius)
+    tube.SetNumberOfSides(24)
+    tube.CappingOn()
+    mapper = vtk.vtkPolyDataMapper()
+    mapper.SetInputConnection(tube.GetOutputPort())
+    mapper.ScalarVisibilityOff()
+    actor = vtk.vtkActor()
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetColor(*CREASE)
+    actor.GetProperty().SetAmbient(0.45)
+    return actor

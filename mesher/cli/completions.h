@@ -1,0 +1,14 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <string_view>
+
+/// Completions for shells, made of the table of options: subcommands, options, words that options take,
+/// files.
+namespace collarmesh::cli {
+
+/// For the shell bash, zsh or fish; empty for any other.
+std::string completion(const CLI::App& app, std::string_view shell);
+
+}  // namespace collarmesh::cli

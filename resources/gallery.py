@@ -1,0 +1,425 @@
+#!/usr/bin/python3
+"""The twelve pictures of the gallery, from input to PNG.
+
+    xvfb-run -a resources/gallery.py [--only NAME...] [--into FOLDER]
+
+Needs the program `collarmesh` on the PATH, python3-vtk9, python3-pil and calculix-ccx (which makes the
+analysis).
+"""
+
+import argparse
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+import vtk
+from PIL import Image
+from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+
+from drawing import (BOOK, STAR, actor_of, array, centres, crease_edges, extract, legend, palette, save, shrunk,
+                     split_by_origin, surface_of, tinted, tubes, with_quality)
+
+HERE = pathlib.Path(__file__).resolve().parent
+SIZE = (1040, 780)  # drawn twice as large as it is kept
+COLOURS = 160
+HUES = ((0.36, 0.56, 0.78), (0.93, 0.66, 0.32), (0.50, 0.72, 0.47), (0.80, 0.46, 0.46), (0.62, 0.53, 0.76),
+        (0.40, 0.72, 0.74), (0.88, 0.80, 0.40), (0.72, 0.60, 0.50), (0.86, 0.60, 0.74), (0.58, 0.64, 0.70),
+        (0.30, 0.62, 0.56), (0.95, 0.75, 0.62), (0.44, 0.44, 0.66), (0.70, 0.82, 0.60), (0.60, 0.32, 0.40))
+GREY = (0.86, 0.89, 0.93)
+
+
+# Input
+
+def run(*command):
+    subprocess.run([str(word) for word in command], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def mesh(source, *options):
+    """The grid that collarmesh makes: tets, boundary triangles and curve edges with their tags."""
+    run("collarmesh", source, "-o", "mesh.vtk", "--quiet", *options)
+    return read("mesh.vtk")
+
+
+def read(path):
+    reader = vtk.vtkUnstructuredGridReader()
+    reader.SetFileName(path)
+    reader.ReadAllScalarsOn()
+    reader.ReadAllFieldsOn()
+    reader.Update()
+    return reader.GetOutput()
+
+
+def write_off(path, points, faces):
+    lines = ["OFF", f"{len(points)} {len(faces)} 0"]
+    lines += [" ".join(f"{x:.9g}" for x in p) for p in points]
+    lines += [" ".join(map(str, (len(f), *f))) for f in faces]
+    pathlib.Path(path).write_text("\n".join(lines) + "\n")
+
+
+def box(low, high):
+    points = [[(low, high)[k >> axis & 1][axis] for axis in range(3)] for k in range(8)]
+    return points, [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+
+
+def joined(*parts):
+    points, faces = [], []
+    for part_points, part_faces in parts:
+        faces += [tuple(v + len(points) for v in face) for face in part_faces]
+        points += list(part_points)
+    return points, faces
+
+
+def tube(begin, end, radius, sides=24):
+    """A closed prism of many sides."""
+    begin, end = np.array(begin, float), np.array(end, float)
+    axis = (end - begin) / np.linalg.norm(end - begin)
+    u = np.cross(axis, (0.3, 0.5, 0.8))
+    u /= np.linalg.norm(u)
+    v = np.cross(axis, u)
+    turns = [radius * (np.cos(t) * u + np.sin(t) * v) for t in np.linspace(0, 2 * np.pi, sides, endpoint=False)]
+    points = [begin + t for t in turns] + [end + t for t in turns]
+    faces = [(k, (k + 1) % sides, sides + (k + 1) % sides, sides + k) for k in range(sides)]
+    return points, [tuple(reversed(range(sides))), tuple(range(sides, 2 * sides)), *faces]
+
+
+def sectors(path, count, height=1.2):
+    """Solids around an axis, which is their common edge."""
+    angles = np.linspace(0, 2 * np.pi, count, endpoint=False)
+    ring = [(np.cos(t), np.sin(t)) for t in angles]
+    points = [(0, 0, 0), (0, 0, height)] + [(x, y, z) for z in (0, height) for x, y in ring]
+    below, above = (lambda k: 2 + k % count), (lambda k: 2 + count + k % count)
+    facets = []
+    for k in range(count):
+        facets += [(0, below(k + 1), below(k)), (1, above(k), above(k + 1)),
+                   (below(k), below(k + 1), above(k + 1), above(k)), (0, below(k), above(k), 1)]
+    half = np.pi / count
+    inside = [(0.5 * np.cos(t + half), 0.5 * np.sin(t + half), height / 2) for t in angles]
+    lines = [f"{len(points)} 3 0 0"] + [f"{k} {x} {y} {z}" for k, (x, y, z) in enumerate(points)]
+    lines += [f"{len(facets)} 0"] + ["\n".join(("1", " ".join(map(str, (len(f), *f))))) for f in facets]
+    lines += ["0", str(count)] + [f"{k} {x} {y} {z} {k + 1}" for k, (x, y, z) in enumerate(inside)]
+    pathlib.Path(path).write_text("\n".join(lines) + "\n")
+
+
+# Scenes
+
+def kind(grid, vtk_type):
+    types = vtk_to_numpy(grid.GetCellTypesArray())
+    return extract(grid, (types == vtk_type).nonzero()[0])
+
+
+def tets(grid):
+    return kind(grid, vtk.VTK_TETRA)
+
+
+def behind(grid, normal, at):
+    """The cells behind a plane, at a share of the way along its normal."""
+    offsets = centres(grid) @ np.array(normal, float)
+    return offsets <= offsets.min() + at * (offsets.max() - offsets.min())
+
+
+def cut_open(grid, normal, at):
+    """Whole tets behind a plane; where it cuts them by their smallest dihedral angle."""
+    whole = with_quality(tets(grid))
+    outside, inside = split_by_origin(extract(whole, behind(whole, normal, at).nonzero()[0]), whole)
+    return [actor_of(outside), actor_of(inside, palette()), legend(palette())]
+
+
+def coloured(grid, values):
+    """A piece of its own colour for each value."""
+    actors = []
+    for k, value in enumerate(sorted(set(values))):
+        actors.append(tinted(extract(grid, (values == value).nonzero()[0]), HUES[k % len(HUES)], width=1.1))
+    return actors
+
+
+def surface(path, colour):
+    """The polygons of an .off file."""
+    words = pathlib.Path(path).read_text().split()
+    count, facets = int(words[1]), int(words[2])
+    points, polygons = vtk.vtkPoints(), vtk.vtkCellArray()
+    for k in range(count):
+        points.InsertNextPoint([float(x) for x in words[4 + 3 * k:7 + 3 * k]])
+    at = 4 + 3 * count
+    for _ in range(facets):
+        corners = int(words[at])
+        polygons.InsertNextCell(corners, [int(v) for v in words[at + 1:at + 1 + corners]])
+        at += 1 + corners
+    data = vtk.vtkPolyData()
+    data.SetPoints(points)
+    data.SetPolys(polygons)
+    actor = actor_of(data)
+    actor.GetProperty().SetColor(*colour)
+    return actor
+
+
+def scene(actors, view, zoom, place=(0, 0, 1, 1)):
+    renderer = vtk.vtkRenderer()
+    renderer.SetViewport(*place)
+    renderer.SetBackground(0.98, 0.98, 0.985)
+    for actor in actors:
+        renderer.AddActor2D(actor) if actor.IsA("vtkActor2D") else renderer.AddActor(actor)
+    camera = renderer.GetActiveCamera()
+    camera.SetPosition(*view)
+    camera.SetFocalPoint(0, 0, 0)
+    camera.SetViewUp(0, 0, 1)
+    renderer.ResetCamera()
+    camera.Zoom(zoom)
+    for position, strength in (((-1, -2, 1.5), 0.55), ((2.5, -0.5, 1.5), 0.6)):
+        light = vtk.vtkLight()
+        light.SetLightTypeToSceneLight()
+        light.SetPosition(*position)
+        light.SetFocalPoint(0, 0, 0)
+        light.SetIntensity(strength)
+        renderer.AddLight(light)
+    return renderer
+
+
+def picture(path, *renderers):
+    window = vtk.vtkRenderWindow()
+    window.SetOffScreenRendering(True)
+    window.SetMultiSamples(8)
+    window.SetSize(*SIZE)
+    for renderer in renderers:
+        window.AddRenderer(renderer)
+    window.Render()
+    save(window, "large.png")
+    image = Image.open("large.png").convert("RGB").resize((SIZE[0] // 2, SIZE[1] // 2), Image.LANCZOS)
+    image.quantize(COLOURS).save(path, optimize=True)
+
+
+FRONT = (1.1, -1.9, 1.15)
+LEFT, RIGHT = (0, 0, 0.5, 1), (0.5, 0, 1, 1)
+
+
+# Pictures
+
+def bracket(path):
+    picture(path, scene(cut_open(mesh("bracket.off", "--size", 4), (0, -1, 0), 0.74), FRONT, 1.12))
+
+
+def names(path):
+    faces = kind(mesh("bracket.off", "--size", 5), vtk.VTK_TRIANGLE)
+    picture(path, scene(coloured(faces, array(faces, "tag")), FRONT, 1.2))
+
+
+def curved(path):
+    grid = mesh("flange.step", "--size", 4, "--order", 2)
+    faces = kind(grid, vtk.VTK_QUADRATIC_TRIANGLE)
+    actor = actor_of(subdivided(faces))
+    actor.GetProperty().SetEdgeVisibility(False)
+    actor.GetProperty().SetInterpolationToGouraud()
+    picture(path, scene([actor, edges_of(faces)], (1.1, -1.5, 1.6), 1.25))
+
+
+def subdivided(faces):
+    """The curved triangles as small flat ones."""
+    filter_ = vtk.vtkDataSetSurfaceFilter()
+    filter_.SetInputData(faces)
+    filter_.SetNonlinearSubdivisionLevel(3)
+    filter_.Update()
+    normals = vtk.vtkPolyDataNormals()
+    normals.SetInputData(filter_.GetOutput())
+    normals.SetFeatureAngle(40)
+    normals.Update()
+    return normals.GetOutput()
+
+
+def edges_of(faces):
+    """The curved edges of curved triangles."""
+    lines, points = vtk.vtkCellArray(), vtk.vtkPoints()
+    for c in range(faces.GetNumberOfCells()):
+        corner = [np.array(faces.GetPoint(faces.GetCell(c).GetPointId(k))) for k in range(6)]
+        for a, b, m in ((0, 1, 3), (1, 2, 4), (2, 0, 5)):
+            t = np.linspace(0, 1, 9)[:, None]
+            curve = (1 - t) * (1 - 2 * t) * corner[a] + t * (2 * t - 1) * corner[b] + 4 * t * (1 - t) * corner[m]
+            first = [points.InsertNextPoint(p) for p in curve]
+            lines.InsertNextCell(len(first), first)
+    data = vtk.vtkPolyData()
+    data.SetPoints(points)
+    data.SetLines(lines)
+    actor = actor_of(data)
+    actor.GetProperty().SetColor(0.13, 0.16, 0.20)
+    actor.GetProperty().SetLineWidth(1.6)
+    return actor
+
+
+def field(path):
+    pathlib.Path("field.json").write_text(
+        '{"sources": [{"ball": {"centre": [1.5, 0.7, 1], "radius": 0.12}, "size": 0.035, "growth": 0.25}]}')
+    grid = mesh("box.off", "--size", 0.4, "--size-field", "field.json")
+    picture(path, scene(cut_open(grid, (0, -1, 0), 0.66), (0.5, -1.9, 1.0), 1.05))
+
+
+def tiny(path):
+    write_off("outer.off", *box((0, 0, 0), (1, 1, 1)))
+    points, faces = box((0.5, 0.49, 0.5), (0.51, 0.5, 0.51))
+    write_off("inner.off", points, [tuple(reversed(f)) for f in faces])
+    run("collarmesh", "outer.off", "inner.off", "-o", "mesh.vtk", "--quiet", "--size", 0.2, "--gradation", 0.4)
+    grid = read("mesh.vtk")
+    left, right = (scene(cut_open(grid, (0, -1, 0), 0.5)[:2], (0.4, -1.9, 0.8), 0.8, place) for place in (LEFT, RIGHT))
+    camera = right.GetActiveCamera()
+    camera.SetFocalPoint(0.505, 0.49, 0.505)
+    camera.SetPosition(0.505 + 0.4 * 0.1, 0.49 - 1.9 * 0.1, 0.505 + 0.8 * 0.1)
+    camera.SetClippingRange(0.01, 2)
+    picture(path, left, right)
+
+
+def regions(path):
+    sectors("sectors.poly", 5)
+    sizes = [word for tag, size in ((1, 0.3), (2, 0.15), (3, 0.3), (4, 0.08), (5, 0.3))
+             for word in ("--region-size", f"{tag}={size}")]
+    grid = tets(mesh("sectors.poly", "--gradation", 0.4, *sizes))
+    region = array(grid, "tag")
+    actors = []
+    for k, value in enumerate(sorted(set(region))):
+        actor = tinted(extract(grid, (region == value).nonzero()[0]), HUES[k], width=1.1)
+        turn = (2 * k + 1) * np.pi / 5
+        actor.SetPosition(0.12 * np.cos(turn), 0.12 * np.sin(turn), 0)
+        actors.append(actor)
+    picture(path, scene(actors, (0.5, -1.6, 1.5), 1.3))
+
+
+def collar(path):
+    sectors("sectors.poly", 8)
+    grid = mesh("sectors.poly", "--size", 0.17, "--coarsen", "off")
+    cells, edges = tets(grid), kind(grid, vtk.VTK_LINE)
+    marks, open_ = array(cells, "collar"), np.isin(array(cells, "region"), (5, 6, 7))
+    rest = (marks == 0) & behind(cells, (0, -1, 0), 0.5)
+    actors = [tinted(extract(cells, rest.nonzero()[0]), GREY, width=1.1)]
+    for mark, colour in ((1, STAR), (2, BOOK)):
+        actors.append(tinted(shrunk(extract(cells, ((marks == mark) & ~open_).nonzero()[0]), 0.94), colour))
+    actors.append(tubes(extract(edges, np.array(crease_edges(cells, edges))), 0.012))
+    picture(path, scene(actors, (0.12, -1.6, 0.8), 1.35))
+
+
+def fan(path):
+    """Sheets that meet in the axis of a cylinder, at 10 degrees each."""
+    sectors("fan.poly", 36, height=0.8)
+    grid = mesh("fan.poly", "--size", 0.12)
+    cells = tets(grid)
+    shown = ~np.isin(array(cells, "tag") % 36, range(24, 30))
+    part = extract(cells, shown.nonzero()[0])
+    picture(path, scene(coloured(part, array(part, "tag") % 2), (0.2, -1.6, 1.5), 1.35))
+
+
+def thin(path):
+    write_off("plate.off", *box((0, 0, 0), (60, 60, 1.5)))
+    pair = []
+    for coarsen, place in (("off", (0, 0.5, 1, 1)), ("on", (0, 0, 1, 0.5))):
+        grid = mesh("plate.off", "--size", 8, "--coarsen", coarsen)
+        pair.append(scene(cut_open(grid, (0, -1, 0), 1)[:1], (0.5, -1.6, 0.9), 1.9, place))
+    picture(path, *pair)
+
+
+def repair(path):
+    parts = [tube((-2, 0, 0), (2, 0, 0), 0.8), tube((0, -2, 0), (0, 2, 0), 0.8), tube((0, 0, -2), (0, 0, 2), 0.8)]
+    points, faces = joined(*parts)
+    write_off("broken.off", points, faces[:1] + faces[2:])      # one end is missing
+    before = scene([surface("broken.off", (0.90, 0.80, 0.72))], FRONT, 0.85, LEFT)
+    after = scene(cut_open(mesh("broken.off", "--size", 0.4), (0, -1, 0), 0.5)[:2], FRONT, 0.85, RIGHT)
+    picture(path, before, after)
+
+
+def wrap(path):
+    """Strips that touch nothing, as a drawing may have them."""
+    points, faces = [], []
+    for k in range(9):
+        turn = k * np.pi / 9
+        ring = [(np.cos(t) * np.cos(turn), np.cos(t) * np.sin(turn), np.sin(t))
+                for t in np.linspace(0, 2 * np.pi, 41)]
+        side = 0.11 * np.array((-np.sin(turn), np.cos(turn), 0))
+        base = len(points)
+        for p in ring:
+            points += [np.array(p) - side, np.array(p) + side]
+        faces += [(base + 2 * j, base + 2 * j + 1, base + 2 * j + 3, base + 2 * j + 2) for j in range(40)]
+    write_off("strips.off", points, faces)
+    before = scene([surface("strips.off", (0.90, 0.80, 0.72))], FRONT, 0.85, LEFT)
+    grid = mesh("strips.off", "--repair", "wrap", "--wrap-offset", 0.02, "--size", 0.2)
+    after = scene(cut_open(grid, (0, -1, 0), 0.5)[:2], FRONT, 0.85, RIGHT)
+    picture(path, before, after)
+
+
+DECK = """*INCLUDE, INPUT=bracket.inp
+*MATERIAL, NAME=STEEL
+*ELASTIC
+210000, 0.3
+*SOLID SECTION, ELSET=EALL, MATERIAL=STEEL
+*STEP
+*STATIC
+*BOUNDARY
+FIXED_NODES, 1, 3
+*DSLOAD
+LOADED, P, 2
+*NODE FILE
+U
+*END STEP
+"""
+
+
+def displacements(path):
+    """Of the nodes in CalculiX' result file, by their numbers."""
+    found, reading = {}, False
+    for line in pathlib.Path(path).read_text().splitlines():
+        if line.startswith(" -4"):
+            reading = "DISP" in line
+        elif reading and line.startswith(" -1"):
+            found[int(line[3:13])] = [float(line[13 + 12 * k:25 + 12 * k]) for k in range(3)]
+    return found
+
+
+def analysis(path):
+    pathlib.Path("names.json").write_text(
+        '{"patches": {"fixed": {"at": [5, 20, 60]}, "loaded": {"at": [80, 30, 5]}}}')
+    run("collarmesh", "bracket.off", "-o", "bracket.inp", "--size", 4, "--order", 2, "--names", "names.json", "--quiet")
+    pathlib.Path("job.inp").write_text(DECK)
+    run("ccx", "job")
+    run("collarmesh", "convert", "bracket.inp", "-o", "mesh.vtk", "--quiet")
+    grid, moved = read("mesh.vtk"), displacements("job.frd")
+    ways = np.array([moved[k + 1] for k in range(grid.GetNumberOfPoints())])
+    lengths = numpy_to_vtk(np.linalg.norm(ways, axis=1), deep=True)
+    lengths.SetName("displacement")
+    whole = vtk.vtkUnstructuredGrid()
+    whole.DeepCopy(grid)
+    whole.GetPoints().SetData(numpy_to_vtk(vtk_to_numpy(grid.GetPoints().GetData()) + 60 * ways, deep=True))
+    whole.GetPointData().SetScalars(lengths)
+    part = surface_of(kind(whole, vtk.VTK_QUADRATIC_TETRA))
+    colours = vtk.vtkColorTransferFunction()
+    largest = float(np.linalg.norm(ways, axis=1).max())
+    for share, rgb in ((0, (0.20, 0.40, 0.70)), (0.5, (0.75, 0.85, 0.72)), (1, (0.85, 0.30, 0.18))):
+        colours.AddRGBPoint(share * largest, *rgb)
+    actor = actor_of(part)
+    actor.GetMapper().SetLookupTable(colours)
+    actor.GetMapper().SetScalarModeToUsePointData()
+    actor.GetMapper().ScalarVisibilityOn()
+    actor.GetProperty().SetLineWidth(0.8)
+    picture(path, scene([actor], FRONT, 1.2))
+
+
+PICTURES = (bracket, names, curved, field, tiny, regions, collar, fan, thin, repair, wrap, analysis)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", nargs="*", help="pictures by name")
+    parser.add_argument("--into", type=pathlib.Path, default=HERE / "images")
+    arguments = parser.parse_args()
+    into = arguments.into.resolve()
+    for make in PICTURES:
+        if arguments.only and make.__name__ not in arguments.only:
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            for model in (HERE / "models").iterdir():
+                shutil.copy(model, folder)
+            os.chdir(folder)
+            path = into / f"{make.__name__}.png"
+            make(path)
+            os.chdir(HERE)
+        print(path, path.stat().st_size)
+
+
+if __name__ == "__main__":
+    main()
