@@ -205,7 +205,7 @@ def check(
     mesh: a `Mesh` or the path of one.
     against: the surfaces, as in `collarmesh.mesh`.
     thin_angle: as in `collarmesh.mesh`; 0 asks for radius_edge everywhere.
-    distance: largest distance from smooth surfaces and curves; default 1/400 of the diagonal.
+    distance: largest distance from smooth surfaces and curves; default 1/200 of the diagonal.
     findings: how many violations of each kind are listed; default 20.
     Other options: as in `collarmesh.mesh`. Give those with which the mesh was made.
 

@@ -23,7 +23,7 @@ using namespace build;
 
 constexpr std::size_t most_rounds = 50;
 constexpr std::size_t most_places = 100;
-constexpr std::size_t few_crossings = 100;
+constexpr std::size_t most_overlays = 10, few_crossings = 100;
 
 // What has not been looked at yet, in `Origin::facet`, which means nothing else here.
 constexpr Index unseen_by_corners = 1, unseen_by_overlay = 2, unseen = 3;
@@ -64,14 +64,15 @@ class Snapper {
     // Overlays make new corners. They end where each makes fewer of them, or few.
     before = triangles_.compacted();
     report_before = report_;
-    for (std::size_t crossings = none, overlays = 0;; ++overlays) {
+    std::size_t crossings = none;
+    for (std::size_t overlays = 0; overlays < most_overlays; ++overlays) {
       if (!overlay()) return finish();
       const std::size_t count = crossing_.size() + inside_.size();
       cancel_new_twins();
-      if ((count > few_crossings && 2 * count > crossings) || overlays == most_rounds || !snap_all_corners())
-        return give_back(before, report_before);
+      if ((count > few_crossings && 2 * count > crossings) || !snap_all_corners() || !settled_) break;
       crossings = count;
     }
+    return give_back(before, report_before);
   }
 
  private:
@@ -117,10 +118,12 @@ class Snapper {
 
   // Until nothing is near or many rounds are over; false where triangles grow and grow.
   bool snap_all_corners() {
+    settled_ = false;
     for (std::size_t round = 0; round < most_rounds; ++round) {
       const bool merged = merge_points(), snapped = snap_corners();
       if (grows_) return false;
-      if (!merged && !snapped) return true;
+      settled_ = !merged && !snapped;
+      if (settled_) return true;
       cancel_new_twins();
       if (triangles_.count() > most_triangles_) return false;
     }
@@ -694,7 +697,8 @@ class Snapper {
   Work& work_;
   SnapReport report_;
   std::size_t most_triangles_ = 0;
-  bool grows_ = false;  // beyond that
+  bool grows_ = false;    // beyond that
+  bool settled_ = false;  // no corner is near anything
   ChangingTriangles triangles_;
   std::array<std::vector<Index>, 2> unseen_;  // triangles, by corners and by overlay; some are gone
   std::vector<Index> added_;                  // triangles that may have become twins
