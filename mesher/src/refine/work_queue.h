@@ -35,7 +35,8 @@ class WorkQueue {
   };
 
   /// Balls are compared with this squared radius, the largest to be expected.
-  explicit WorkQueue(double largest_squared_radius) : largest_exponent_(std::ilogb(largest_squared_radius)) {}
+  explicit WorkQueue(double largest_squared_radius)
+      : largest_exponent_(std::ilogb(largest_squared_radius)) {}
 
   void push(Priority priority, double squared_radius, Entry entry) {
     const int below = largest_exponent_ - std::ilogb(std::max(squared_radius, 1e-300));
