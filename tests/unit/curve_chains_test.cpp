@@ -71,7 +71,9 @@ struct Curves : testing::KnownMesh {
   GradedSizes sizes{domain, mesh, surface};
   FacingSheets facing_sheets{domain, mesh, nodes, collars, surface};
   UnresolvedPoints points{mesh, 0.25, queue};
-  CurveChains chains{domain, mesh, collars, points, sizes, facing_sheets, random, outcome, queue};
+  OpenCreases open_creases;
+  CurveChains chains{domain, mesh,          collars, points,  open_creases,
+                     sizes,  facing_sheets, random,  outcome, queue};
 };
 
 Plc box() {
@@ -174,38 +176,44 @@ TEST(CurveChains, ABallAtTheFloorIsGivenUp) {
   EXPECT_TRUE(curves.outcome.given_up());
 }
 
-TEST(CurveChains, AWatchedChainTellsOnceThatItChanged) {
-  const PolygonSoup soup = testing::wedge(20, 1);
-  const Plc plc = build_plc({&soup, 1});
-  const auto creases = find_creases(plc, 60);
-  ASSERT_FALSE(creases.empty());
-  MeshOptions options = Curves::options(10);
-  options.collar_creation = CollarCreation::in_pass;
-  testing::KnownMesh known(plc, options);
-  known.collars = CollarSystem(plc, known.domain.points, creases);
-  Outcome outcome(known.domain.frame);
-  WorkQueue queue(100);
-  RandomOffsets random(0, known.collars);
-  GradedSizes sizes(known.domain, known.mesh, known.surface);
-  FacingSheets facing(known.domain, known.mesh, known.nodes, known.collars, known.surface);
-  UnresolvedPoints points(known.mesh, 0.25, queue);
-  CurveChains chains(known.domain, known.mesh, known.collars, points, sizes, facing, random, outcome, queue);
-  for (Index i = 0; i < plc.vertices.size(); ++i)
-    points.add(known.domain.points[plc.vertices[i].point], {0, i});
-  chains.start();
-  ASSERT_FALSE(chains.watched().empty());
-  EXPECT_FALSE(chains.any_touched());
-  const Index curve = chains.watched().begin()->first;
-  EXPECT_EQ(chains.watched().at(curve).pending, 1U);
-  chains.touch(curve);
-  chains.touch(curve);
-  EXPECT_EQ(chains.take_touched(), curve);
-  EXPECT_FALSE(chains.any_touched());
-  chains.touch(curve);
-  chains.drop(curve);
-  EXPECT_EQ(chains.take_touched(), none);
-  for (Index c = 0; c < plc.curves.size(); ++c)
-    EXPECT_EQ(chains.watched().contains(c), known.collars.is_crease_curve(c) && c != curve);
+TEST(OpenCreases, AreTouchedOnceUntilTheyAreTaken) {
+  OpenCreases creases;
+  for (const Index curve : {3U, 5U}) creases.open(curve);
+  EXPECT_FALSE(creases.any_touched());
+  creases.touch(4);  // not open
+  EXPECT_FALSE(creases.any_touched());
+  creases.touch(3);
+  creases.note_link(5, {7, 1});
+  creases.touch(5);
+  creases.touch(3);
+  EXPECT_EQ(creases.take_touched(), 5U);
+  creases.touch(5);
+  creases.close(5);
+  EXPECT_EQ(creases.take_touched(), none);
+  EXPECT_EQ(creases.take_touched(), 3U);
+  EXPECT_FALSE(creases.any_touched());
+  EXPECT_EQ(creases.curves(), std::vector<Index>{3});
+}
+
+TEST(OpenCreases, KnowTheirChains) {
+  OpenCreases creases;
+  creases.open(2);
+  creases.note_pending(2);
+  creases.note_pending(2);
+  creases.note_pending(1);
+  EXPECT_EQ(creases.chain(2).pending, 2U);
+  creases.note_started(2);
+  creases.note_link(2, {10, 0});
+  creases.note_link(2, {11, 4});
+  creases.note_end(2, 1, 30);
+  EXPECT_FALSE(creases.is_open(1));
+  const OpenCreases::Chain chain = creases.close(2);
+  EXPECT_EQ(chain.pending, 1U);
+  ASSERT_EQ(chain.links.size(), 2U);
+  EXPECT_EQ(chain.links[1].subsegment, 11U);
+  EXPECT_EQ(chain.links[1].stamp, 4U);
+  EXPECT_EQ(chain.ends, (std::array<Index, 2>{none, 30}));
+  EXPECT_FALSE(creases.is_open(2));
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace collarmesh {
 CollarCreator::CollarCreator(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes,
                              const GradedSizes& sizes, CollarSystem& collars, CollarCells& collar_cells,
                              RestrictedSurface& surface, UnresolvedPoints& points, CurveChains& curves,
-                             std::function<bool(std::size_t)> stopped)
+                             OpenCreases& open_creases, std::function<bool(std::size_t)> stopped)
     : domain_(domain),
       mesh_(mesh),
       nodes_(nodes),
@@ -20,6 +20,7 @@ CollarCreator::CollarCreator(const Domain& domain, const RefinedMesh& mesh, cons
       surface_(surface),
       points_(points),
       curves_(curves),
+      open_creases_(open_creases),
       stopped_(std::move(stopped)) {}
 
 void CollarCreator::start() {
@@ -64,7 +65,7 @@ GapExplorer& CollarCreator::gap_size() {
 void CollarCreator::cells_made(const ConflictZone& zone, Index vertex) {
   if (!placement_) return;
   for (const Index v : zone.vertices)
-    if (mesh_.feature(v).dimension == 1) curves_.touch(mesh_.feature(v).index);
+    if (mesh_.feature(v).dimension == 1) open_creases_.touch(mesh_.feature(v).index);
   create_if_isolated(vertex);
   for (const Index v : zone.vertices) create_if_isolated(v);
 }
@@ -95,10 +96,10 @@ void CollarCreator::create_at_vertex(Index vertex, Index near) {
 
 // Every cell that a subsegment crosses is that of one of its ends, as its protective ball is empty.
 void CollarCreator::create_on_isolated_curves() {
-  while (curves_.any_touched()) {
-    const Index curve = curves_.take_touched();
+  while (open_creases_.any_touched()) {
+    const Index curve = open_creases_.take_touched();
     if (curve == none) continue;
-    const CurveChains::Watched& chain = curves_.watched().at(curve);
+    const OpenCreases::Chain& chain = open_creases_.chain(curve);
     if (chain.pending > 0) continue;
     std::vector<CollarBall> at_ends;
     for (const Index end : domain_.plc.curves[curve].ends)
@@ -114,18 +115,17 @@ void CollarCreator::create_on_isolated_curves() {
 }
 
 bool CollarCreator::create_remaining() {
-  std::vector<Index> curves;
-  for (const auto& [curve, chain] : curves_.watched()) curves.push_back(curve);
+  std::vector<Index> curves = open_creases_.curves();
   std::sort(curves.begin(), curves.end());
   for (const Index curve : curves) create_on_curve(curve);
   return !curves.empty();
 }
 
 void CollarCreator::create_on_curve(Index curve) {
-  const CurveChains::Watched chain = curves_.drop(curve);
+  const OpenCreases::Chain chain = open_creases_.close(curve);
   isolated_.erase(curve);
   Index near = mesh_.last_vertex();
-  for (const CurveChains::Link& link : chain.links)
+  for (const ChainLink& link : chain.links)
     if (const Subsegment* s = curves_.find(link)) {
       near = s->ends[0];
       curves_.remove(link);

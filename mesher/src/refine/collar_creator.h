@@ -29,7 +29,7 @@ class CollarCreator {
   CollarCreator(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes,
                 const GradedSizes& sizes, CollarSystem& collars, CollarCells& collar_cells,
                 RestrictedSurface& surface, UnresolvedPoints& points, CurveChains& curves,
-                std::function<bool(std::size_t)> stopped);
+                OpenCreases& open_creases, std::function<bool(std::size_t)> stopped);
 
   /// Precondition: the vertices of the complex are the first unresolved points, in their order. Stays
   /// incomplete when it is stopped.
@@ -72,6 +72,7 @@ class CollarCreator {
   RestrictedSurface& surface_;
   UnresolvedPoints& points_;
   CurveChains& curves_;
+  OpenCreases& open_creases_;
   std::function<bool(std::size_t)> stopped_;
   std::unique_ptr<GapExplorer> gap_;                 // made when first asked for
   std::unique_ptr<CollarPlacement> placement_;       // in the pass only

@@ -21,7 +21,8 @@ class CollarReview {
   /// Inserts a point, unless that is impossible: then what stays poor is for the certificate to tell.
   using Insert = std::function<bool(const CollarPoint&)>;
 
-  /// All are kept by reference. `stopped` is asked now and then.
+  /// All are kept by reference. `stopped` is asked now and then. The first round tells the collars that no
+  /// more balls will come.
   CollarReview(const RefinedMesh& mesh, CollarSystem& collars, CollarCells& cells,
                const RestrictedSurface& surface, const CollarCreator& creator, CollarSurface& collar_surface,
                Outcome& outcome, std::function<bool()> stopped);

@@ -24,7 +24,7 @@ void CurveChains::add_chain(Index c) {
   const Plc::Curve& curve = domain_.plc.curves[c];
   if (collars_.is_crease_curve(c)) {
     if (domain_.options.collar_creation != CollarCreation::in_pass) return;  // covered by balls
-    watched_[c] = {};
+    open_creases_.open(c);
   }
   double from = 0, to = domain_.paths.length(c);
   const auto seed = [&](double parameter) { return points_.add(domain_.paths.point(c, parameter), {1, c}); };
@@ -54,7 +54,7 @@ void CurveChains::add_chain(Index c) {
     pending_.push_back({c, {chain[i].first, chain[i + 1].first}, {chain[i].second, chain[i + 1].second}});
     for (const Index point : pending_.back().points) waiting_for(point).push_back(index);
     guard(index, none);
-    if (const auto crease = watched_.find(c); crease != watched_.end()) ++crease->second.pending;
+    open_creases_.note_pending(c);
   }
 }
 
@@ -90,7 +90,7 @@ void CurveChains::point_resolved(Index point) {
     Pending& p = pending_[index];
     if (--p.missing > 0) continue;
     balls_.remove(p.ball);
-    if (const auto crease = watched_.find(p.curve); crease != watched_.end()) --crease->second.pending;
+    open_creases_.note_started(p.curve);
     const std::array<Index, 2> ends{points_[p.points[0]].vertex, points_[p.points[1]].vertex};
     add_subsegment(p.curve, ends, p.parameters, ends[0]);
   }
@@ -151,10 +151,7 @@ void CurveChains::add_subsegment(Index curve, std::array<Index, 2> ends, std::ar
   const Index ball =
       balls_.add(LocationObjects::Kind::subsegment, index, s.centre, s.squared_radius, nearest);
   subsegments_[index] = {s, ball, stamp, true};
-  if (const auto crease = watched_.find(curve); crease != watched_.end()) {
-    crease->second.links.push_back({index, stamp});
-    touch(curve);
-  }
+  open_creases_.note_link(curve, {index, stamp});
   const bool empty = nearest == ends[0] || nearest == ends[1] ||
                      squared_distance(s.centre, mesh_.point(nearest)) > s.squared_radius;
   if (!empty || too_coarse(s)) encroach(index);
@@ -299,14 +296,14 @@ void CurveChains::clip(Index c, bool at_start, Index near) {
   if (found == waiting.end()) return;
   const Index index = *found;
   waiting.erase(found);
-  const auto crease = watched_.find(c);
+  const bool is_open = open_creases_.is_open(c);
   double parameter = at_start ? b.radius : end - b.radius;
-  if (crease == watched_.end()) parameter = leaving_parameter(c, b, at_start);
+  if (!is_open) parameter = leaving_parameter(c, b, at_start);
   const Index point = points_.add(domain_.paths.point(c, parameter), {1, c}, near);
-  if (crease == watched_.end())
-    clipped_ends_.push_back({c, ball, point});
+  if (is_open)
+    open_creases_.note_end(c, side, point);
   else
-    crease->second.ends[side] = point;
+    clipped_ends_.push_back({c, ball, point});
   Pending& p = pending_[index];
   p.points[side] = point;
   p.parameters[side] = parameter;
@@ -316,28 +313,6 @@ void CurveChains::clip(Index c, bool at_start, Index near) {
   const LocationObjects::Object& guarding = balls_[p.ball];
   if (squared_distance(mesh_.point(guarding.vertex), guarding.centre) <= guarding.squared_radius)
     hurry_ends(p);
-}
-
-void CurveChains::touch(Index curve) {
-  const auto found = watched_.find(curve);
-  if (found == watched_.end() || found->second.touched) return;
-  found->second.touched = true;
-  touched_.push_back(curve);
-}
-
-Index CurveChains::take_touched() {
-  const Index curve = touched_.back();
-  touched_.pop_back();
-  const auto found = watched_.find(curve);
-  if (found == watched_.end()) return none;
-  found->second.touched = false;
-  return curve;
-}
-
-CurveChains::Watched CurveChains::drop(Index curve) {
-  Watched chain = std::move(watched_.at(curve));
-  watched_.erase(curve);
-  return chain;
 }
 
 std::size_t CurveChains::bytes() const { return balls_.bytes() + subsegments_.capacity() * sizeof(Chained); }

@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <span>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "refine/candidate.h"
 #include "refine/facing_sheets.h"
 #include "refine/graded_sizes.h"
+#include "refine/open_creases.h"
 #include "refine/outcome.h"
 #include "refine/random_offsets.h"
 #include "refine/subsegment.h"
@@ -28,19 +28,14 @@ namespace collarmesh {
 /// collar is covered by its subsegments and by those that wait; a subsegment whose ball holds a mesh vertex,
 /// or that is too coarse, is in the queue; each ball is found from the mesh vertex that is nearest to its
 /// centre. The loop tells of insertions and of resolved points, and splits; SurfaceCheck wants more;
-/// CollarCreator watches the chains of crease curves, clips them and in the end gives the curve a collar
-/// instead.
+/// CollarCreator clips chains, and in the end gives a crease its collar instead. It learns of the chains of
+/// creases through OpenCreases.
 class CurveChains {
  public:
-  /// A subsegment as long as the stamp is its own.
-  struct Link {
-    Index subsegment;
-    std::uint32_t stamp;
-  };
   /// A place where a subsegment is to be split.
   struct Split {
     Candidate candidate;  ///< start == none: a mesh vertex is there already, `vertex`
-    Link link;
+    ChainLink link;
     Subsegment piece;
     double parameter;
     Index vertex;  ///< nearest to the place
@@ -50,22 +45,15 @@ class CurveChains {
     Index curve, ball;
     Index point;  ///< unresolved
   };
-  /// The chain of a crease curve that has no collar yet.
-  struct Watched {
-    std::vector<Link> links;                ///< all there have been
-    std::size_t pending = 0;                ///< first subsegments that still wait
-    std::array<Index, 2> ends{none, none};  ///< unresolved points where it leaves the balls at its ends
-    bool touched = false;                   // it is in touched_
-  };
-
   /// All are kept by reference.
   CurveChains(const Domain& domain, const RefinedMesh& mesh, const CollarSystem& collars,
-              UnresolvedPoints& points, const GradedSizes& sizes, const FacingSheets& facing_sheets,
-              RandomOffsets& random, Outcome& outcome, WorkQueue& queue)
+              UnresolvedPoints& points, OpenCreases& open_creases, const GradedSizes& sizes,
+              const FacingSheets& facing_sheets, RandomOffsets& random, Outcome& outcome, WorkQueue& queue)
       : domain_(domain),
         mesh_(mesh),
         collars_(collars),
         points_(points),
+        open_creases_(open_creases),
         sizes_(sizes),
         facing_sheets_(facing_sheets),
         random_(random),
@@ -116,20 +104,11 @@ class CurveChains {
   // For collars that are created in the pass:
   /// A vertex of the complex has got its ball: a curve that ends there does so on the sphere.
   void clip(Index curve, bool at_start, Index near);
-  /// The crease curves without collars.
-  const std::unordered_map<Index, Watched>& watched() const { return watched_; }
-  /// What may make a watched curve isolated has changed. Nothing for other curves.
-  void touch(Index curve);
-  bool any_touched() const { return !touched_.empty(); }
-  /// The curve that was touched last, which is not touched any more; none if it has got a collar since.
-  Index take_touched();
   /// The subsegment of a link, if it is still there.
-  const Subsegment* find(const Link& link) const {
+  const Subsegment* find(const ChainLink& link) const {
     return is_there(link) ? &subsegments_[link.subsegment].piece : nullptr;
   }
-  /// Balls replace the chain. Returns what it was.
-  Watched drop(Index curve);
-  void remove(const Link& link) { remove_subsegment(link.subsegment); }
+  void remove(const ChainLink& link) { remove_subsegment(link.subsegment); }
 
   std::size_t bytes() const;
 
@@ -158,7 +137,7 @@ class CurveChains {
   void add_subsegment(Index curve, std::array<Index, 2> ends, std::array<double, 2> parameters, Index nearby);
   void remove_subsegment(Index subsegment);
   bool too_coarse(const Subsegment& s) const;
-  bool is_there(const Link& link) const {
+  bool is_there(const ChainLink& link) const {
     return subsegments_[link.subsegment].alive && subsegments_[link.subsegment].stamp == link.stamp;
   }
 
@@ -166,6 +145,7 @@ class CurveChains {
   const RefinedMesh& mesh_;
   const CollarSystem& collars_;
   UnresolvedPoints& points_;
+  OpenCreases& open_creases_;
   const GradedSizes& sizes_;
   const FacingSheets& facing_sheets_;
   RandomOffsets& random_;
@@ -177,8 +157,6 @@ class CurveChains {
   std::vector<Pending> pending_;
   std::vector<std::vector<Index>> waiting_;  // by unresolved point: first subsegments
   std::vector<ClippedEnd> clipped_ends_;
-  std::unordered_map<Index, Watched> watched_;  // by curve
-  std::vector<Index> touched_;                  // curves
 };
 
 }  // namespace collarmesh

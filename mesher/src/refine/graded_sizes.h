@@ -16,7 +16,8 @@ namespace collarmesh {
 ///
 /// A vertex takes the smallest size that its neighbours allow when it is inserted; what becomes smaller
 /// later is spread over the mesh when the queue has run empty. The parts that judge cells, triangles and
-/// subsegments ask; the loop tells of insertions and spreads.
+/// subsegments ask; TriangleQuality imposes what it finds on the surface; the loop tells of insertions and
+/// spreads.
 class GradedSizes {
  public:
   /// All are kept by reference.

@@ -16,6 +16,7 @@
 #include "refine/domain.h"
 #include "refine/facing_sheets.h"
 #include "refine/graded_sizes.h"
+#include "refine/open_creases.h"
 #include "refine/outcome.h"
 #include "refine/random_offsets.h"
 #include "refine/refined_mesh.h"
@@ -96,6 +97,7 @@ class Refinement {
   FacingSheets facing_sheets_;
   // What is to be done:
   UnresolvedPoints points_;
+  OpenCreases open_creases_;
   CurveChains curves_;
   TriangleQuality triangles_;
   CellQuality cells_;

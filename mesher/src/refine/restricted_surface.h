@@ -34,10 +34,11 @@ struct TriangleNotes {
 
 /// The restricted Delaunay triangulation of the mesh to the patches, and the regions of the cells.
 ///
-/// Invariants, between insertions: a face is marked, from both of its cells, when its dual edge crosses a
-/// patch, and then it has a record; the labels of two cells with an unmarked face between them are the same,
-/// those of a marked one what the crossings make of each other. The loop tells of insertions; the parts that
-/// judge triangles read records and write notes; SurfaceCheck gives flat cells outside.
+/// Invariants, between insertions: a cell has the region that its circumcentre lies in, as far as its
+/// coordinates are not rounded across the surface; a face is marked, from both of its cells, when its dual
+/// edge crosses a patch, and then it has a record. The loop tells of insertions; the parts that judge
+/// triangles read records and write notes; CollarCreator tells of new balls; SurfaceCheck gives flat cells
+/// outside.
 class RestrictedSurface {
  public:
   /// All are kept by reference. Labels the cells that the mesh has.
