@@ -136,14 +136,16 @@ TEST(CollarParts, RoundsEndWithACollarSurfaceThatCanBeStitched) {
   parts.resolve_all();
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> unit(-0.1, 1.1);
-  for (int k = 0; k < 400; ++k) {
-    const Point p{unit(random), 0.5 * unit(random), unit(random)};
-    const Index v = parts.mesh.nearest_vertex(p);
-    if (parts.collars.ball_containing(p) == none && distance(p, parts.mesh.point(v)) > 0.02)
-      parts.insert_and_tell(p, {3, none});
-  }
   std::size_t rounds = 0;
-  while (parts.review.check([&](const CollarPoint& p) { return parts.insert_on_collar(p); })) ++rounds;
+  for (int again = 0; again < 3; ++again) {  // what a round has found right may become poor
+    for (int k = 0; k < 200; ++k) {
+      const Point p{unit(random), 0.5 * unit(random), unit(random)};
+      const Index v = parts.mesh.nearest_vertex(p);
+      if (parts.collars.ball_containing(p) == none && distance(p, parts.mesh.point(v)) > 0.02)
+        parts.insert_and_tell(p, {3, none});
+    }
+    while (parts.review.check([&](const CollarPoint& p) { return parts.insert_on_collar(p); })) ++rounds;
+  }
   EXPECT_GT(rounds, 0U);
   EXPECT_FALSE(parts.outcome.given_up()) << parts.outcome.message();
   std::size_t inside = 0;

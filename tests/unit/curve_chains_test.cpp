@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
 #include <set>
 
 #include "support/plc_shapes.h"
@@ -123,6 +124,17 @@ TEST(CurveChains, AVertexInABallQueuesItsSubsegmentAndNoOther) {
   const Plc plc = box();
   Curves curves(plc, 10);
   curves.resolve_all();
+  EXPECT_EQ(curves.split_all(), 0U);
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> unit(-0.3, 1.3);
+  for (int k = 0; k < 500; ++k) {
+    const Point p{unit(random), unit(random), unit(random)};
+    bool in_ball = false;
+    curves.chains.visit([&](Index, const Subsegment& s) {
+      in_ball = in_ball || squared_distance(p, s.centre) < 1.01 * s.squared_radius;
+    });
+    if (!in_ball) curves.insert_and_tell(p);
+  }
   EXPECT_EQ(curves.split_all(), 0U);
   curves.insert_and_tell({0.5, 0.2, 0.1});
   std::size_t encroached = 0;

@@ -249,8 +249,12 @@ bool Refinement::check_collars() {
 }
 
 bool Refinement::stopped(std::size_t planned_vertices) {
-  return budget_.spent({mesh_.vertex_count(), mesh_.cell_count(), bytes() + planned_vertices * bytes_of_ball,
-                        planned_vertices, mesh_.point(mesh_.last_vertex()), sizes_.asked().expected_cells()});
+  return budget_.spent({.vertices = mesh_.vertex_count(),
+                        .cells = mesh_.cell_count(),
+                        .bytes = bytes() + planned_vertices * bytes_of_ball,
+                        .planned_vertices = planned_vertices,
+                        .last_vertex = mesh_.point(mesh_.last_vertex()),
+                        .expected_cells = sizes_.asked().expected_cells()});
 }
 
 std::size_t Refinement::bytes() const {
