@@ -148,6 +148,15 @@ TEST(CollarParts, RoundsEndWithACollarSurfaceThatCanBeStitched) {
   }
   EXPECT_GT(rounds, 0U);
   EXPECT_FALSE(parts.outcome.given_up()) << parts.outcome.message();
+  std::vector<Index> balls;
+  for (Index cell = 0; cell < parts.mesh.cell_capacity(); ++cell)
+    for (unsigned corner = 0; corner < 4 && parts.mesh.alive(cell); ++corner) {
+      const FaceId face = face_id(cell, corner), other = parts.mesh.opposite(face);
+      if (other == no_face || !parts.collar_surface.is_off(face)) continue;
+      parts.collars.balls_on_segment(parts.mesh.circumcentre(cell), parts.mesh.circumcentre(cell_of(other)),
+                                     balls);
+      EXPECT_TRUE(balls.empty());
+    }
   std::size_t inside = 0;
   for (CollarTriangle t : parts.collar_surface.triangles()) {
     if (parts.surface.region(cell_of(t.face)) == 0) continue;

@@ -104,6 +104,14 @@ TEST(CurveChains, WhatEncroachesAWaitingCurveBringsItsEndsIn) {
   Curves curves(plc, 10);
   const Point near = curves.points[plc.curves[0].ends[0]].point,
               far = curves.points[plc.curves[0].ends[1]].point;
+  // Away from it at first: its ball is found from ever nearer vertices.
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> unit(-0.3, 1.3);
+  for (int k = 0; k < 200; ++k) {
+    const Point p{unit(random), unit(random), unit(random)};
+    if (distance(p, 0.5 * (near + far)) > 0.5) curves.insert_and_tell(p);
+  }
+  curves.queue = WorkQueue(100);
   const Point intruder = near + 0.45 * (far - near);
   curves.find_zone(intruder);
   const Candidate candidate{intruder, 1, intruder, {3, none}, curves.zone.cells[0]};
