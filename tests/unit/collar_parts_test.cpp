@@ -139,10 +139,14 @@ TEST(CollarParts, RoundsEndWithACollarSurfaceThatCanBeStitched) {
   std::size_t rounds = 0;
   for (int again = 0; again < 3; ++again) {  // what a round has found right may become poor
     for (int k = 0; k < 200; ++k) {
-      const Point p{unit(random), 0.5 * unit(random), unit(random)};
+      const double share = k < 100 ? 1 : 0.2;  // of the wedge, from its edge
+      const Point p{share * unit(random), share * 0.5 * unit(random), unit(random)};
       const Index v = parts.mesh.nearest_vertex(p);
       if (parts.collars.ball_containing(p) == none && distance(p, parts.mesh.point(v)) > 0.02)
         parts.insert_and_tell(p, {3, none});
+      for (const Index cell : parts.zone.created)
+        for (unsigned corner = 0; corner < 4 && parts.mesh.alive(cell); ++corner)
+          EXPECT_FALSE(parts.collar_surface.is_off(face_id(cell, corner)));  // nobody has asked yet
     }
     while (parts.review.check([&](const CollarPoint& p) { return parts.insert_on_collar(p); })) ++rounds;
   }
