@@ -1,10 +1,8 @@
-// The collar surface is looked at in rounds when everything else is done (paper, section 4): what is poorly
-// represented is mended, then looked at again. A round judges the triangles around the cells that were
-// created since the one before, so that all rounds together cost what was created.
-#include <algorithm>
+#include "refine/collar_review.h"
 
-#include "delaunay/predicates.h"
-#include "refine/refinement.h"
+#include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace collarmesh {
 
@@ -23,7 +21,7 @@ void sort_and_make_unique(std::vector<Index>& values) {
 
 // The faces around an edge of a cell; all of them unless the edge lies on the hull.
 template <class Visit>
-void visit_faces_around(const Triangulation& mesh, Index cell, Index a, Index b, const Visit& visit) {
+void visit_faces_around(const RefinedMesh& mesh, Index cell, Index a, Index b, const Visit& visit) {
   const auto other_corner = [&](Index at, unsigned but) {
     const auto& v = mesh.corners(at);
     unsigned corner = 0;
@@ -42,67 +40,86 @@ void visit_faces_around(const Triangulation& mesh, Index cell, Index a, Index b,
 
 }  // namespace
 
-bool Refinement::check_collars() {
-  if (collars_.empty() || !message_.empty()) return false;
-  if (!collar_review_.started) start_review();
-  std::vector<Index> cells = touched_cells();
+CollarReview::CollarReview(const RefinedMesh& mesh, CollarSystem& collars, CollarCells& cells,
+                           const RestrictedSurface& surface, const CollarCreator& creator,
+                           CollarSurface& collar_surface, Outcome& outcome, std::function<bool()> stopped)
+    : mesh_(mesh),
+      collars_(collars),
+      cells_(cells),
+      surface_(surface),
+      creator_(creator),
+      collar_surface_(collar_surface),
+      outcome_(outcome),
+      stopped_(std::move(stopped)) {}
+
+void CollarReview::cells_made(const ConflictZone& zone) {
+  if (!started_) return;
+  touched_.resize(mesh_.cell_capacity(), 0);
+  for (const Index cell : zone.created) touched_[cell] = 0;
+  if (!cells_.any_near(zone)) return;
+  for (const Index cell : zone.created) touch(cell);
+}
+
+void CollarReview::feature_changed(Index vertex) {
+  if (!started_ || !cells_.near(vertex)) return;
+  mesh_.incident_cells(vertex, scratch_);
+  for (const Index cell : scratch_) touch(cell);
+}
+
+bool CollarReview::check(const Insert& insert) {
+  if (collars_.empty() || outcome_.given_up()) return false;
+  if (!started_) start();
+  std::vector<Index> cells = take_touched();
   take_in_flat_cells(cells);
   if (!judge_changed_triangles(cells)) return false;
   find_exposed_centres(cells);
-  bool found = surround_centres();
-  found |= mend_poor_triangles();
-  if (found && ++collar_rounds_ > most_rounds) {
-    give_up(mesh_.point(last_vertex()), "the collar surface did not settle; the last vertex is",
-            "raise collar-angle, or try a smaller size or another seed");
+  bool found = surround_centres(insert);
+  found |= mend_poor_triangles(insert);
+  if (found && ++rounds_ > most_rounds) {
+    outcome_.give_up(mesh_.point(mesh_.last_vertex()),
+                     "the collar surface did not settle; the last vertex is",
+                     "raise collar-angle, or try a smaller size or another seed");
     return false;
   }
   return found;
 }
 
 // Everything is new. Voronoi cells have become smaller: fewer vertices are near collars than when they came.
-void Refinement::start_review() {
-  collar_review_.started = true;
+void CollarReview::start() {
+  started_ = true;
   collars_.complete();
-  for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-    if (!vertices_[v].near_collar) continue;
-    mesh_.incident_cells(v, cells_scratch_);
-    double largest = 0;
-    for (const Index cell : cells_scratch_) largest = std::max(largest, mesh_.squared_radius(cell));
-    collars_.balls_meeting(mesh_.point(v), std::sqrt(largest), 1, nearby_balls_);
-    vertices_[v].near_collar = !nearby_balls_.empty();
-  }
+  cells_.forget_far_vertices();
   for (Index ball = 0; ball < collars_.balls().size(); ++ball)
-    if (ball_vertex(ball) != none) collar_review_.ball_at.emplace(ball_vertex(ball), ball);
+    if (creator_.vertex_of(ball) != none) ball_at_.emplace(creator_.vertex_of(ball), ball);
   for (Index v = 0; v < mesh_.vertex_count(); ++v)
-    if (on_crease(v))
+    if (collar_surface_.on_crease(v))
       if (const Index ball = collars_.ball_containing(mesh_.point(v)); ball != none)
-        collar_review_.ball_at.emplace(v, ball);
+        ball_at_.emplace(v, ball);
+  touched_.resize(mesh_.cell_capacity(), 0);
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
     if (!mesh_.alive(cell)) continue;
     const auto& v = mesh_.corners(cell);
-    if (std::any_of(v.begin(), v.end(), [&](Index i) { return vertices_[i].near_collar; })) touch(cell);
+    if (std::any_of(v.begin(), v.end(), [&](Index i) { return cells_.near(i); })) touch(cell);
   }
 }
 
-void Refinement::touch(Index cell) {
-  if (labels_[cell].touched) return;
-  labels_[cell].touched = true;
-  collar_review_.touched.push_back(cell);
+void CollarReview::touch(Index cell) {
+  if (std::exchange(touched_[cell], 1) == 0) touched_cells_.push_back(cell);
 }
 
 // Those that are still there. A cell that takes the place of one is touched itself.
-std::vector<Index> Refinement::touched_cells() {
+std::vector<Index> CollarReview::take_touched() {
   std::vector<Index> cells;
-  cells.swap(collar_review_.touched);
-  std::erase_if(cells, [&](Index cell) { return !mesh_.alive(cell) || !labels_[cell].touched; });
+  cells.swap(touched_cells_);
+  std::erase_if(cells, [&](Index cell) { return !mesh_.alive(cell) || touched_[cell] == 0; });
   sort_and_make_unique(cells);
-  for (const Index cell : cells) labels_[cell].touched = false;
+  for (const Index cell : cells) touched_[cell] = 0;
   return cells;
 }
 
 // Corner points of neighbouring circles on neighbouring sheets are cocircular: a flat cell of them
 // just outside the collar is given to it. Adds what is given to the cells.
-void Refinement::take_in_flat_cells(std::vector<Index>& cells) {
+void CollarReview::take_in_flat_cells(std::vector<Index>& cells) {
   std::vector<Index> candidates = cells;
   const auto add_neighbours = [&](Index cell) {
     for (unsigned corner = 0; corner < 4; ++corner)
@@ -110,13 +127,12 @@ void Refinement::take_in_flat_cells(std::vector<Index>& cells) {
         candidates.push_back(cell_of(other));
   };
   for (const Index cell : cells)
-    if (labels_[cell].in_collar) add_neighbours(cell);
+    if (cells_.inside(cell)) add_neighbours(cell);
   sort_and_make_unique(candidates);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Index cell = candidates[i], ball = ball_to_take_in(cell);
     if (ball == none) continue;
-    labels_[cell].in_collar = true;
-    taken_in_[cell] = {ball, mesh_.generation(cell)};
+    cells_.take_in(cell, ball);
     cells.push_back(cell);
     add_neighbours(cell);
   }
@@ -124,19 +140,19 @@ void Refinement::take_in_flat_cells(std::vector<Index>& cells) {
 }
 
 // The ball that a flat cell is given to, none when it stays outside.
-Index Refinement::ball_to_take_in(Index cell) {
-  if (labels_[cell].in_collar || labels_[cell].region == 0) return none;
+Index CollarReview::ball_to_take_in(Index cell) {
+  if (cells_.inside(cell) || surface_.region(cell) == 0) return none;
   const auto& v = mesh_.corners(cell);
   if (std::any_of(v.begin(), v.end(),
-                  [&](Index i) { return !vertices_[i].near_collar || vertices_[i].dimension == 3; }))
+                  [&](Index i) { return !cells_.near(i) || mesh_.feature(i).dimension == 3; }))
     return none;
   const Point &a = mesh_.point(v[0]), &b = mesh_.point(v[1]), &c = mesh_.point(v[2]), &d = mesh_.point(v[3]);
   const double longest = std::max({squared_distance(a, b), squared_distance(a, c), squared_distance(a, d)});
   if (std::fabs(six_volume(a, b, c, d)) > flat_volume * longest * std::sqrt(longest)) return none;
   for (unsigned corner = 0; corner < 4; ++corner) {
     const FaceId other = mesh_.opposite(face_id(cell, corner));
-    if (other == no_face || !labels_[cell_of(other)].in_collar) continue;
-    const auto t = collar_triangle(face_id(cell, corner));
+    if (other == no_face || !cells_.inside(cell_of(other))) continue;
+    const auto t = collar_surface_.triangle(face_id(cell, corner));
     if (!t) continue;
     const CollarBall& ball = collars_.balls()[t->ball];
     if (std::all_of(v.begin(), v.end(), [&](Index i) {
@@ -147,33 +163,26 @@ Index Refinement::ball_to_take_in(Index cell) {
   return none;
 }
 
-Index Refinement::taken_in_by(Index cell) const {
-  const auto taken = taken_in_.find(cell);
-  return taken != taken_in_.end() && taken->second.generation == mesh_.generation(cell) ? taken->second.ball
-                                                                                        : none;
-}
-
 // Judge the triangles of these cells, and those that share an edge with what these cells have replaced.
 // False when stopped.
-bool Refinement::judge_changed_triangles(const std::vector<Index>& cells) {
-  auto& triangles = collar_review_.triangles;
-  for (const Index cell : cells) labels_[cell].touched = true;
+bool CollarReview::judge_changed_triangles(const std::vector<Index>& cells) {
+  for (const Index cell : cells) touched_[cell] = 1;
   std::size_t looked_at = 0;
   std::vector<FaceId> changed, border;
   for (const Index cell : cells)
     for (unsigned corner = 0; corner < 4; ++corner) {
       const FaceId face = face_id(cell, corner), other = mesh_.opposite(face);
       if (other == no_face) continue;
-      if (!labels_[cell_of(other)].touched)
+      if (touched_[cell_of(other)] == 0)
         border.push_back(face);
       else if (cell_of(other) < cell)
         continue;
       for (const FaceId outer : {face, other}) {
-        auto t = collar_triangle(outer);
+        auto t = collar_surface_.triangle(outer);
         if (!t) continue;  // what was known of this face is not asked for any more
-        if (++looked_at % triangles_between_stops == 0 && stopped()) return false;
-        t->poor_alone = poorly_represented(*t) || bends(*t);
-        triangles.insert_or_assign(*t);
+        if (++looked_at % triangles_between_stops == 0 && stopped_()) return false;
+        t->poor_alone = collar_surface_.poor_alone(*t);
+        triangles_.insert_or_assign(*t);
         changed.push_back(outer);
       }
     }
@@ -184,31 +193,31 @@ bool Refinement::judge_changed_triangles(const std::vector<Index>& cells) {
         if (const CollarTriangle* t = known_triangle(around)) changed.push_back(t->face);
       });
   }
-  for (const Index cell : cells) labels_[cell].touched = false;
+  for (const Index cell : cells) touched_[cell] = 0;
   sort_and_make_unique(changed);
   for (const FaceId face : changed) {
-    CollarTriangle& t = *triangles.find(face, mesh_.generation(cell_of(face)));
+    CollarTriangle& t = *triangles_.find(face, mesh_.generation(cell_of(face)));
     const auto v = mesh_.face_vertices(face);
     t.poor = t.poor_alone || poor_edge(t, v[0], v[1]) || poor_edge(t, v[1], v[2]) || poor_edge(t, v[2], v[0]);
-    if (t.poor && labels_[cell_of(face)].region != 0) collar_review_.poor.push_back(face);
+    if (t.poor && surface_.region(cell_of(face)) != 0) poor_.push_back(face);
   }
   return true;
 }
 
 // The collar triangle of a face seen from either side, if it is one.
-const CollarTriangle* Refinement::known_triangle(FaceId face) const {
+const CollarTriangle* CollarReview::known_triangle(FaceId face) const {
   const FaceId other = mesh_.opposite(face);
   if (other == no_face) return nullptr;
-  const bool inside = labels_[cell_of(face)].in_collar, beyond = labels_[cell_of(other)].in_collar;
+  const bool inside = cells_.inside(cell_of(face)), beyond = cells_.inside(cell_of(other));
   if (inside && beyond) return nullptr;
   const FaceId outer = inside || (!beyond && cell_of(other) < cell_of(face)) ? other : face;
-  if (labels_[cell_of(outer)].off_collars >> corner_of(outer) & 1U) return nullptr;
-  return collar_review_.triangles.find(outer, mesh_.generation(cell_of(outer)));
+  if (collar_surface_.is_off(outer)) return nullptr;
+  return triangles_.find(outer, mesh_.generation(cell_of(outer)));
 }
 
 // What neighbours decide: every edge has two triangles, of one ball or of consecutive ones, and then
 // the book tet between their centres is not inverted and keeps the angle bound.
-bool Refinement::poor_edge(const CollarTriangle& t, Index a, Index b) const {
+bool CollarReview::poor_edge(const CollarTriangle& t, Index a, Index b) const {
   const CollarTriangle* neighbour = nullptr;
   std::size_t count = 0;
   visit_faces_around(mesh_, cell_of(t.face), a, b, [&](FaceId face) {
@@ -219,62 +228,67 @@ bool Refinement::poor_edge(const CollarTriangle& t, Index a, Index b) const {
   });
   if (count != 2) return true;
   if (t.ball == neighbour->ball)
-    return labels_[cell_of(t.face)].region != labels_[cell_of(neighbour->face)].region &&
-           spans_sheets(collars_.balls()[t.ball], a, b);
+    return surface_.region(cell_of(t.face)) != surface_.region(cell_of(neighbour->face)) &&
+           collar_surface_.spans_sheets(collars_.balls()[t.ball], a, b);
   return !collars_.consecutive(t.ball, neighbour->ball) ||
-         poor_book(t, *neighbour, {std::min(a, b), std::max(a, b)});
+         collar_surface_.poor_book(t, *neighbour, {std::min(a, b), std::max(a, b)});
 }
 
 // A centre, or another point of a crease, must not be a vertex of cells outside: their part of the sphere has
 // no points yet.
-void Refinement::find_exposed_centres(const std::vector<Index>& cells) {
+void CollarReview::find_exposed_centres(const std::vector<Index>& cells) {
   for (const Index cell : cells) {
-    if (labels_[cell].region == 0 || labels_[cell].in_collar) continue;
+    if (surface_.region(cell) == 0 || cells_.inside(cell)) continue;
     for (const Index v : mesh_.corners(cell)) {
-      if (!on_crease(v)) continue;
-      const auto ball = collar_review_.ball_at.find(v);
-      if (ball != collar_review_.ball_at.end()) collar_review_.exposed.push_back(v);
+      if (!collar_surface_.on_crease(v)) continue;
+      const auto ball = ball_at_.find(v);
+      if (ball != ball_at_.end()) exposed_.push_back(v);
     }
   }
-  sort_and_make_unique(collar_review_.exposed);
+  sort_and_make_unique(exposed_);
 }
 
 // False when nothing was inserted.
-bool Refinement::surround_centres() {
+bool CollarReview::mend(const CollarTriangle& t, const Insert& insert) {
+  const auto point = collar_surface_.repair(t);
+  return point && insert(*point);
+}
+
+bool CollarReview::surround_centres(const Insert& insert) {
   bool found = false;
-  std::erase_if(collar_review_.exposed, [&](Index vertex) {
-    const Index b = collar_review_.ball_at.at(vertex);
+  std::erase_if(exposed_, [&](Index vertex) {
+    const Index b = ball_at_.at(vertex);
     const CollarBall& ball = collars_.balls()[b];
-    mesh_.incident_cells(vertex, cells_scratch_);
-    const auto outside = std::find_if(cells_scratch_.begin(), cells_scratch_.end(), [&](Index cell) {
-      return labels_[cell].region != 0 && !labels_[cell].in_collar;
+    mesh_.incident_cells(vertex, scratch_);
+    const auto outside = std::find_if(scratch_.begin(), scratch_.end(), [&](Index cell) {
+      return surface_.region(cell) != 0 && !cells_.inside(cell);
     });
-    if (outside == cells_scratch_.end()) return true;
+    if (outside == scratch_.end()) return true;
     const auto& v = mesh_.corners(*outside);
     const auto corner = static_cast<unsigned>(std::find(v.begin(), v.end(), vertex) - v.begin());
     const Vector d = mesh_.circumcentre(*outside) - ball.centre;
-    found |= repair({face_id(*outside, corner), mesh_.generation(*outside), b,
-                     ball.centre + ball.radius / norm(d) * d, false});
+    found |= mend({face_id(*outside, corner), mesh_.generation(*outside), b,
+                   ball.centre + ball.radius / norm(d) * d, false},
+                  insert);
     return false;
   });
   return found;
 }
 
-// False when nothing was inserted.
-bool Refinement::mend_poor_triangles() {
+bool CollarReview::mend_poor_triangles(const Insert& insert) {
   bool found = false;
   std::vector<FaceId> poor;
-  poor.swap(collar_review_.poor);
+  poor.swap(poor_);
   sort_and_make_unique(poor);
   std::size_t looked_at = 0;
   for (const FaceId face : poor) {
-    if (++looked_at % triangles_between_stops == 0 && stopped()) return false;
+    if (++looked_at % triangles_between_stops == 0 && stopped_()) return false;
     const CollarTriangle* t = known_triangle(face);
     if (t == nullptr || t->face != face || !t->poor) continue;
     // What an earlier repair has changed is judged anew in the next round.
-    if (!labels_[cell_of(face)].touched && !labels_[cell_of(mesh_.opposite(face))].touched)
-      found |= repair(CollarTriangle(*t));
-    collar_review_.poor.push_back(face);
+    if (touched_[cell_of(face)] == 0 && touched_[cell_of(mesh_.opposite(face))] == 0)
+      found |= mend(CollarTriangle(*t), insert);
+    poor_.push_back(face);
   }
   return found;
 }

@@ -1,99 +1,126 @@
-// The result of the refinement as a TetMesh.
-#include <algorithm>
+#include "refine/extract.h"
 
-#include "refine/refinement.h"
+#include <utility>
 
 namespace collarmesh {
 
-TetMesh Refinement::extract() const {
-  TetMesh mesh;
-  std::vector<Index> number(mesh_.vertex_count(), none);
-  const auto vertex = [&](Index v) {
-    if (number[v] != none) return number[v];
-    number[v] = static_cast<Index>(mesh.points.size());
-    mesh.points.push_back(frame_.outside(mesh_.point(v)));
-    const MeshVertex& known = vertices_[v];
-    mesh.features.push_back({known.dimension, known.dimension == 3 ? none : known.feature});
-    return number[v];
-  };
-  for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
-    if (!mesh_.alive(cell) || labels_[cell].region == 0 || labels_[cell].in_collar) continue;
-    const auto& v = mesh_.corners(cell);
-    mesh.tets.push_back({vertex(v[0]), vertex(v[1]), vertex(v[2]), vertex(v[3])});
-    mesh.tet_region.push_back(labels_[cell].region);
-    mesh.tet_tag.push_back(plc_.regions[labels_[cell].region].tag);
-    mesh.tet_collar.push_back(0);
-    mesh.tet_crease.push_back(0);
-  }
-  for (const auto& tet : stitched_.tets) {
-    const auto& v = tet.corners;
-    mesh.tets.push_back({vertex(v[0]), vertex(v[1]), vertex(v[2]), vertex(v[3])});
-    mesh.tet_region.push_back(tet.region);
-    mesh.tet_tag.push_back(plc_.regions[tet.region].tag);
-    mesh.tet_collar.push_back(tet.collar);
-    mesh.tet_crease.push_back(tet.crease);
-  }
-  mesh.tet_thin.assign(mesh.tets.size(), 0);
-  for (const auto& face : stitched_.faces) {
-    const auto& v = face.corners;
-    mesh.faces.push_back({vertex(v[0]), vertex(v[1]), vertex(v[2])});
-    mesh.face_regions.push_back(face.regions);
-    mesh.face_patch.push_back(face.patch);
-    mesh.face_tag.push_back(plc_.patches[face.patch].tag);
-  }
-  for (const auto& edge : stitched_.edges) {
-    if (number[edge.corners[0]] == none || number[edge.corners[1]] == none) continue;
-    mesh.edges.push_back({number[edge.corners[0]], number[edge.corners[1]]});
-    mesh.edge_curve.push_back(edge.curve);
-    mesh.edge_tag.push_back(plc_.curves[edge.curve].tag);
-  }
-  for (Index ball = 0; ball < collars_.balls().size(); ++ball)
-    if (const Index v = ball_vertex(ball); v != none && number[v] != none)
-      mesh.collar_balls.push_back({number[v], collars_.balls()[ball].radius, mesh.points[number[v]]});
-  for (const FaceId face : marked_faces()) extract_face(face, number, mesh);
-  // The middle of a triangle may lie in the plane of its patch, but beside the patch.
-  std::vector<bool> on_surface(mesh.points.size(), false);
-  for (const auto& face : mesh.faces)
-    for (const Index v : face) on_surface[v] = true;
-  for (Index v = 0; v < mesh.features.size(); ++v)
-    if (mesh.features[v].dimension == 2 && !on_surface[v]) mesh.features[v] = {3, none};
-  for (const Subsegment& s : subsegments_) {
-    if (!s.alive || number[s.ends[0]] == none || number[s.ends[1]] == none) continue;
-    mesh.edges.push_back({number[s.ends[0]], number[s.ends[1]]});
-    mesh.edge_curve.push_back(s.curve);
-    mesh.edge_tag.push_back(plc_.curves[s.curve].tag);
-  }
-  mesh.names = plc_.names;
-  return mesh;
-}
+namespace {
 
-// Oriented so that the normal points from the first region to the second: as the patch is, except
-// that a boundary's solid comes first.
-void Refinement::extract_face(FaceId face, const std::vector<Index>& number, TetMesh& mesh) const {
-  if (labels_[cell_of(face)].in_collar || labels_[cell_of(mesh_.opposite(face))].in_collar) return;
-  const RestrictedTriangle& t = restricted(face);
-  const Plc::Patch& patch = plc_.patches[patch_of(t)];
-  // face_vertices is counterclockwise from outside its cell: the normal leaves that cell.
-  auto v = mesh_.face_vertices(face);
-  std::array<Index, 2> regions{labels_[cell_of(face)].region, labels_[cell_of(mesh_.opposite(face))].region};
-  if (regions[0] == 0 && regions[1] == 0) return;
-  bool reversed = regions[0] == 0;
-  if (regions[0] == regions[1]) {
-    const auto corners = hierarchy_.corners(t.triangle);
-    const Vector n = cross(corners[1] - corners[0], corners[2] - corners[0]);
-    const Vector m = cross(mesh_.point(v[1]) - mesh_.point(v[0]), mesh_.point(v[2]) - mesh_.point(v[0]));
-    reversed = dot(n, m) < 0;
-  } else if (regions[0] != 0 && regions[1] != 0) {
-    reversed = regions[0] != patch.regions[0];
+class Extraction {
+ public:
+  explicit Extraction(const Refined& refined)
+      : refined_(refined), plc_(refined.domain.plc), number_(refined.mesh.vertex_count(), none) {}
+
+  TetMesh run() {
+    add_cells();
+    add_stitched();
+    add_balls();
+    for (const FaceId face : refined_.surface.marked_faces()) add_face(face);
+    refined_.curves.visit([&](Index, const Subsegment& s) { add_edge(s.ends, s.curve); });
+    forget_features_off_the_surface();
+    mesh_.names = plc_.names;
+    return std::move(mesh_);
   }
-  if (reversed) {
-    std::swap(v[1], v[2]);
-    std::swap(regions[0], regions[1]);
+
+ private:
+  Index vertex(Index v) {
+    if (number_[v] != none) return number_[v];
+    number_[v] = static_cast<Index>(mesh_.points.size());
+    mesh_.points.push_back(refined_.domain.frame.outside(refined_.mesh.point(v)));
+    const Feature& f = refined_.mesh.feature(v);
+    mesh_.features.push_back({f.dimension, f.dimension == 3 ? none : f.index});
+    return number_[v];
   }
-  mesh.faces.push_back({number[v[0]], number[v[1]], number[v[2]]});
-  mesh.face_regions.push_back(regions);
-  mesh.face_patch.push_back(patch_of(t));
-  mesh.face_tag.push_back(patch.tag);
-}
+
+  void add_tet(const std::array<Index, 4>& v, Index region, std::uint8_t collar, Tag crease) {
+    mesh_.tets.push_back({vertex(v[0]), vertex(v[1]), vertex(v[2]), vertex(v[3])});
+    mesh_.tet_region.push_back(region);
+    mesh_.tet_tag.push_back(plc_.regions[region].tag);
+    mesh_.tet_collar.push_back(collar);
+    mesh_.tet_crease.push_back(crease);
+    mesh_.tet_thin.push_back(0);
+  }
+
+  void add_face(const std::array<Index, 3>& v, const std::array<Index, 2>& regions, Index patch) {
+    mesh_.faces.push_back({vertex(v[0]), vertex(v[1]), vertex(v[2])});
+    mesh_.face_regions.push_back(regions);
+    mesh_.face_patch.push_back(patch);
+    mesh_.face_tag.push_back(plc_.patches[patch].tag);
+  }
+
+  // An edge of no tet is none of the mesh.
+  void add_edge(const std::array<Index, 2>& ends, Index curve) {
+    if (number_[ends[0]] == none || number_[ends[1]] == none) return;
+    mesh_.edges.push_back({number_[ends[0]], number_[ends[1]]});
+    mesh_.edge_curve.push_back(curve);
+    mesh_.edge_tag.push_back(plc_.curves[curve].tag);
+  }
+
+  void add_cells() {
+    for (Index cell = 0; cell < refined_.mesh.cell_capacity(); ++cell)
+      if (refined_.mesh.alive(cell) && refined_.surface.region(cell) != 0 &&
+          !refined_.collar_cells.inside(cell))
+        add_tet(refined_.mesh.corners(cell), refined_.surface.region(cell), 0, 0);
+  }
+
+  void add_stitched() {
+    for (const auto& tet : refined_.stitched.tets) add_tet(tet.corners, tet.region, tet.collar, tet.crease);
+    for (const auto& face : refined_.stitched.faces) add_face(face.corners, face.regions, face.patch);
+    for (const auto& edge : refined_.stitched.edges) add_edge(edge.corners, edge.curve);
+  }
+
+  void add_balls() {
+    const auto& balls = refined_.collars.balls();
+    for (Index ball = 0; ball < balls.size(); ++ball)
+      if (const Index v = refined_.creator.vertex_of(ball); v != none && number_[v] != none)
+        mesh_.collar_balls.push_back({number_[v], balls[ball].radius, mesh_.points[number_[v]]});
+  }
+
+  // Oriented so that the normal points from the first region to the second: as the patch is, except
+  // that a boundary's solid comes first.
+  void add_face(FaceId face) {
+    const RefinedMesh& mesh = refined_.mesh;
+    const Index cell = cell_of(face), beyond = cell_of(mesh.opposite(face));
+    if (refined_.collar_cells.inside(cell) || refined_.collar_cells.inside(beyond)) return;
+    const RestrictedTriangle& t = refined_.surface.triangle(face);
+    const Index patch = refined_.surface.patch(face);
+    // face_vertices is counterclockwise from outside its cell: the normal leaves that cell.
+    auto v = mesh.face_vertices(face);
+    std::array<Index, 2> regions{refined_.surface.region(cell), refined_.surface.region(beyond)};
+    if (regions[0] == 0 && regions[1] == 0) return;
+    bool reversed = regions[0] == 0;
+    if (regions[0] == regions[1]) {
+      const auto corners = refined_.nodes.hierarchy().corners(t.triangle);
+      const Vector n = cross(corners[1] - corners[0], corners[2] - corners[0]);
+      const Vector m = cross(mesh.point(v[1]) - mesh.point(v[0]), mesh.point(v[2]) - mesh.point(v[0]));
+      reversed = dot(n, m) < 0;
+    } else if (regions[0] != 0 && regions[1] != 0) {
+      reversed = regions[0] != plc_.patches[patch].regions[0];
+    }
+    if (reversed) {
+      std::swap(v[1], v[2]);
+      std::swap(regions[0], regions[1]);
+    }
+    add_face(v, regions, patch);
+  }
+
+  // The middle of a triangle may lie in the plane of its patch, but beside the patch.
+  void forget_features_off_the_surface() {
+    std::vector<bool> on_surface(mesh_.points.size(), false);
+    for (const auto& face : mesh_.faces)
+      for (const Index v : face) on_surface[v] = true;
+    for (Index v = 0; v < mesh_.features.size(); ++v)
+      if (mesh_.features[v].dimension == 2 && !on_surface[v]) mesh_.features[v] = {3, none};
+  }
+
+  const Refined& refined_;
+  const Plc& plc_;
+  TetMesh mesh_;
+  std::vector<Index> number_;  // in the result, by mesh vertex; none if no tet has it
+};
+
+}  // namespace
+
+TetMesh extract(const Refined& refined) { return Extraction(refined).run(); }
 
 }  // namespace collarmesh

@@ -1,18 +1,14 @@
-// Sheets of the surface that face each other across a gap narrower than the elements around it. With samples
-// of its own each of them would encroach the other one until both are sampled as densely as the gap is
-// narrow. So what a vertex encroaches from across a gap is split beneath that vertex. Samples in such pairs
-// leave the balls of the other sheet's triangles and subsegments empty, whatever their size: what makes them
-// smaller is the quality of cells in a thin part. Outside the regions nobody wants that, so there the edge
-// between the vertices of a pair counts in no radius-edge ratio.
+#include "refine/facing_sheets.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "refine/refinement.h"
 
 namespace collarmesh {
 
 namespace {
 
+// Of a set of numbers: a node and its place in the table.
+constexpr std::size_t bytes_per_pair = 32;
 // Of the radius of the ball that is to be split. Where a gap is wider, samples are as dense as it is narrow
 // anyway.
 constexpr double widest_gap_per_radius = 0.9;
@@ -27,21 +23,20 @@ std::uint64_t pair_of(Index a, Index b) { return std::uint64_t{std::min(a, b)} <
 
 }  // namespace
 
-// For a restricted triangle with a vertex on another sheet: the point of its patch beneath that vertex.
-std::optional<Refinement::Candidate> Refinement::candidate_across_gap(FaceId face) {
-  const RestrictedTriangle& t = restricted(face);
+std::optional<Candidate> FacingSheets::candidate_across(FaceId face) {
+  const RestrictedTriangle& t = surface_.triangle(face);
   if (t.resolved_vertices) return std::nullopt;
-  const Index patch = patch_of(t);
+  const Index patch = surface_.patch(face);
   double squared_gap = widest_gap_per_radius * widest_gap_per_radius * t.squared_radius;
   Index across = none;
   Point beneath;
   for (const Index v : mesh_.face_vertices(face)) {
-    if (vertices_[v].dimension == 3 || on_patch(v, patch)) continue;
+    if (mesh_.feature(v).dimension == 3 || mesh_.on_patch(v, patch)) continue;
     const Point& p = mesh_.point(v);
     double squared = squared_gap;
-    const Index triangle = nearest_triangle(p, patch, squared);
+    const Index triangle = nodes_.nearest_triangle(p, patch, squared);
     if (triangle == none) continue;
-    const auto corners = hierarchy_.corners(triangle);
+    const auto corners = nodes_.hierarchy().corners(triangle);
     const Point q = nearest_point_on_triangle(p, corners[0], corners[1], corners[2]);
     const Vector n = cross(corners[1] - corners[0], corners[2] - corners[0]);
     const Vector normal = n / norm(n);
@@ -50,7 +45,7 @@ std::optional<Refinement::Candidate> Refinement::candidate_across_gap(FaceId fac
       continue;
     squared_gap = squared;
     across = v;
-    beneath = frame_.rounded(plc_.patches[patch].planar ? on_plane(patch, q) : q);
+    beneath = domain_.frame.rounded(domain_.plc.patches[patch].planar ? domain_.on_plane(patch, q) : q);
   }
   if (across == none) return std::nullopt;
   const Index start = mesh_.conflicting_cell_around(across, beneath);
@@ -59,76 +54,68 @@ std::optional<Refinement::Candidate> Refinement::candidate_across_gap(FaceId fac
   const double spacing = least_spacing_per_radius * least_spacing_per_radius * t.squared_radius;
   for (const Index v : zone_.vertices)
     if (v != across && squared_distance(beneath, mesh_.point(v)) < spacing) return std::nullopt;
-  return Candidate{beneath, t.squared_radius, beneath, 2, patch, start, across};
+  return Candidate{beneath, t.squared_radius, beneath, {2, patch}, start, across};
 }
 
-// Where on a subsegment the vertex is nearest that encroaches it from across a gap, if it does.
-std::optional<double> Refinement::parameter_across_gap(const Subsegment& s, Index vertex) const {
+std::optional<double> FacingSheets::parameter_across(const Subsegment& s, Index vertex) const {
   if (vertex == s.ends[0] || vertex == s.ends[1] || !apart(vertex, s.curve)) return std::nullopt;
   const Point& p = mesh_.point(vertex);
   if (squared_distance(p, s.centre) > s.squared_radius) return std::nullopt;
   const Vector along = mesh_.point(s.ends[1]) - mesh_.point(s.ends[0]);
   const double length = s.parameters[1] - s.parameters[0];
   double low = s.parameters[0] + least_part * length, high = s.parameters[1] - least_part * length;
-  const auto before = [&](double parameter) { return dot(paths_.point(s.curve, parameter) - p, along) < 0; };
+  const auto before = [&](double parameter) {
+    return dot(domain_.paths.point(s.curve, parameter) - p, along) < 0;
+  };
   if (!before(low) || before(high)) return std::nullopt;
   for (int step = 0; step < 50; ++step) {
     const double middle = 0.5 * (low + high);
     (before(middle) ? low : high) = middle;
   }
   const double widest = widest_gap_per_radius * widest_gap_per_radius * s.squared_radius;
-  if (squared_distance(paths_.point(s.curve, low), p) > widest) return std::nullopt;
+  if (squared_distance(domain_.paths.point(s.curve, low), p) > widest) return std::nullopt;
   return low;
-}
-
-// The triangle of a patch that is nearest to p within the distance, which becomes its own.
-Index Refinement::nearest_triangle(const Point& p, Index patch, double& within_squared) const {
-  Index nearest = none;
-  within_squared = hierarchy_.squared_distance_to(p, within_squared, &nearest, [&](Index triangle) {
-    return triangle < plc_.triangles.size() && plc_.triangles[triangle].patch == patch;
-  });
-  return nearest;
 }
 
 // Features that meet would bring each other's samples ever closer to where they do: sheets face each other
 // only where they are parallel, and no other features that have a point in common.
-bool Refinement::faces(Index vertex, Index patch, const Vector& normal) const {
-  const MeshVertex& v = vertices_[vertex];
+bool FacingSheets::faces(Index vertex, Index patch, const Vector& normal) const {
+  const Feature& v = mesh_.feature(vertex);
   if (v.dimension == 0) return true;
   if (v.dimension == 1) {
-    const auto& ends = plc_.curves[v.feature].ends;
+    const auto& ends = domain_.plc.curves[v.index].ends;
     return std::none_of(ends.begin(), ends.end(),
-                        [&](Index end) { return end != none && plc_.vertex_on_patch(end, patch); });
+                        [&](Index end) { return end != none && domain_.plc.vertex_on_patch(end, patch); });
   }
-  const Plc::Patch& other = plc_.patches[v.feature];
+  const Plc::Patch& other = domain_.plc.patches[v.index];
   if (other.planar) return std::fabs(dot(normal, other.normal)) > least_facing;
   double any = INFINITY;
-  const auto corners = hierarchy_.corners(nearest_triangle(mesh_.point(vertex), v.feature, any));
+  const auto corners = nodes_.hierarchy().corners(nodes_.nearest_triangle(mesh_.point(vertex), v.index, any));
   const Vector n = cross(corners[1] - corners[0], corners[2] - corners[0]);
   return std::fabs(dot(normal, n)) > least_facing * norm(n);
 }
 
 // Does a vertex lie on a feature that has no point in common with the curve?
-bool Refinement::apart(Index vertex, Index curve) const {
-  const MeshVertex& v = vertices_[vertex];
+bool FacingSheets::apart(Index vertex, Index curve) const {
+  const Feature& v = mesh_.feature(vertex);
   if (v.dimension == 3) return false;
   if (v.dimension == 0) return true;
-  if (v.feature == curve && v.dimension == 1) return false;
-  if (v.dimension == 2 && plc_.curve_on_patch(curve, v.feature)) return false;
-  const auto& ends = plc_.curves[curve].ends;
+  if (v.index == curve && v.dimension == 1) return false;
+  if (v.dimension == 2 && domain_.plc.curve_on_patch(curve, v.index)) return false;
+  const auto& ends = domain_.plc.curves[curve].ends;
   return std::none_of(ends.begin(), ends.end(), [&](Index end) {
     if (end == none) return false;
-    if (v.dimension == 2) return plc_.vertex_on_patch(end, v.feature);
-    const auto& others = plc_.curves[v.feature].ends;
+    if (v.dimension == 2) return domain_.plc.vertex_on_patch(end, v.index);
+    const auto& others = domain_.plc.curves[v.index].ends;
     return end == others[0] || end == others[1];
   });
 }
 
-void Refinement::note_pair(Index a, Index b) { pairs_.insert(pair_of(a, b)); }
+void FacingSheets::note_pair(Index a, Index b) { pairs_.insert(pair_of(a, b)); }
 
-// Is a cell within the radius-edge bound but for the edges between vertices of a pair?
-bool Refinement::fills_gap(Index cell, double bound) const {
-  if (pairs_.empty()) return false;
+std::size_t FacingSheets::bytes() const { return pairs_.size() * bytes_per_pair; }
+
+bool FacingSheets::within_bound(Index cell, double bound) const {
   const auto& v = mesh_.corners(cell);
   double shortest = INFINITY;
   for (unsigned i = 0; i < 4; ++i)

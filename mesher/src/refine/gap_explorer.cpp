@@ -2,46 +2,25 @@
 
 #include <algorithm>
 
+#include "refine/elements.h"
+
 namespace collarmesh {
 
 namespace {
 
 std::uint64_t segment_key(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32U | std::max(a, b); }
 
-template <class Visit>
-void visit_segments(const Plc::Curve& curve, const Visit& visit) {
-  for (std::size_t i = 0; i + 1 < curve.points.size(); ++i) visit(curve.points[i], curve.points[i + 1]);
-  if (curve.closed) visit(curve.points.back(), curve.points[0]);
-}
-
 }  // namespace
 
-std::vector<std::array<Index, 3>> elements_of(const Plc& plc) {
-  std::vector<std::array<Index, 3>> elements;
-  elements.reserve(plc.triangles.size());
-  for (const Plc::Triangle& t : plc.triangles) elements.push_back(t.points);
-  for (const Plc::Curve& curve : plc.curves)
-    if (curve.patches.empty())
-      visit_segments(curve, [&](Index a, Index b) { elements.push_back({a, b, b}); });
-  for (const Plc::Vertex& vertex : plc.vertices)
-    if (vertex.patches.empty() && vertex.curves.empty())
-      elements.push_back({vertex.point, vertex.point, vertex.point});
-  return elements;
-}
-
-GapExplorer::GapExplorer(const Plc& plc, std::span<const Point> points, Triangulation& mesh,
-                         const TriangleHierarchy& elements,
-                         std::function<std::span<const Index>(Index)> nodes_at)
-    : plc_(plc),
-      points_(points),
+GapExplorer::GapExplorer(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes)
+    : plc_(domain.plc),
+      points_(domain.points),
       mesh_(mesh),
-      elements_(elements),
-      nodes_at_(std::move(nodes_at)),
-      walk_(mesh),
-      vertex_at_(points.size(), none) {
-  for (Index v = 0; v < plc.vertices.size(); ++v) vertex_at_[plc.vertices[v].point] = v;
-  for (Index c = 0; c < plc.curves.size(); ++c)
-    visit_segments(plc.curves[c], [&](Index a, Index b) { curve_of_[segment_key(a, b)] = c; });
+      nodes_(nodes),
+      vertex_at_(domain.points.size(), none) {
+  for (Index v = 0; v < plc_.vertices.size(); ++v) vertex_at_[plc_.vertices[v].point] = v;
+  for (Index c = 0; c < plc_.curves.size(); ++c)
+    visit_segments(plc_.curves[c], [&](Index a, Index b) { curve_of_[segment_key(a, b)] = c; });
 }
 
 double GapExplorer::at_vertex(Index vertex, double bound) {
@@ -53,13 +32,13 @@ double GapExplorer::on_curve(Index curve, const Point& p, double bound) {
 }
 
 double GapExplorer::explore(const Feature& at, const Point& x, double bound) {
-  near_ = walk_.nearest(x, near_);
+  near_ = mesh_.nearest_vertex(x, near_);
   double squared = bound * bound;
   interviewed_.clear();
-  walk_.visit_ball(x, near_, squared, [&](Index vertex) {
+  mesh_.visit_ball(x, near_, squared, [&](Index vertex) {
     ++explored_;
     fresh_nodes_.clear();
-    for (const Index node : nodes_at_(vertex))
+    for (const Index node : nodes_.at(vertex))
       if (interviewed_.insert(node).second) fresh_nodes_.push_back(node);
     interview(fresh_nodes_, at, x, squared, [&](const Point& a, const Point& b, const Point& c) {
       squared = std::min(squared, squared_distance_to_triangle(x, a, b, c));
@@ -76,7 +55,7 @@ bool GapExplorer::isolated(const Feature& vertex_or_curve, Index cell, std::span
     });
   };
   double squared_bound = INFINITY;  // 0 when a witness has been found
-  interview(nodes_at_(cell), vertex_or_curve, mesh_.point(cell), squared_bound,
+  interview(nodes_.at(cell), vertex_or_curve, mesh_.point(cell), squared_bound,
             [&](const Point& a, const Point& b, const Point& c) {
               if (squared_bound == 0) return;
               cut_to_cell(cell, a, b, c);
@@ -110,8 +89,8 @@ template <class Witness>
 void GapExplorer::interview(std::span<const Index> nodes, const Feature& at, const Point& x,
                             const double& squared_bound, const Witness& witness) {
   const auto counts = [&](const Feature& feature) { return !contains(plc_, feature, at); };
-  elements_.visit_near(nodes, x, squared_bound, [&](Index element) {
-    const auto& e = elements_.points(element);
+  nodes_.hierarchy().visit_near(nodes, x, squared_bound, [&](Index element) {
+    const auto& e = nodes_.hierarchy().points(element);
     // What bounds a patch is no nearer than the patch.
     if (element < plc_.triangles.size() && counts({2, plc_.triangles[element].patch}))
       return witness(points_[e[0]], points_[e[1]], points_[e[2]]);

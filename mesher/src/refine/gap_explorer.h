@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <span>
 #include <unordered_map>
 #include <unordered_set>
@@ -8,23 +7,18 @@
 
 #include "collar/collar_system.h"
 #include "collar/gap_size.h"
-#include "location/triangle_hierarchy.h"
-#include "location/voronoi_walk.h"
+#include "refine/domain.h"
+#include "refine/refined_mesh.h"
+#include "refine/surface_nodes.h"
 
 namespace collarmesh {
-
-/// The corners of the elements of a complex: its triangles, then what no patch has as degenerate ones, the
-/// segments of curves and single vertices.
-std::vector<std::array<Index, 3>> elements_of(const Plc& plc);
 
 /// The gap size by exploring the mesh (paper, Procedure 4): from the Voronoi cell that contains the point
 /// breadth first, interviewing what meets the cells, until the ball of the nearest witness is explored.
 class GapExplorer final : public GapSize {
  public:
-  /// All are kept by reference. `nodes_at` gives the nodes of a hierarchy over elements_of(plc) that cover
-  /// what meets the Voronoi cell of a mesh vertex.
-  GapExplorer(const Plc& plc, std::span<const Point> points, Triangulation& mesh,
-              const TriangleHierarchy& elements, std::function<std::span<const Index>(Index)> nodes_at);
+  /// All are kept by reference.
+  GapExplorer(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes);
 
   /// The next query is near this mesh vertex: where its cell is looked for. Each query is near the next.
   void start_near(Index vertex) { near_ = vertex; }
@@ -53,10 +47,8 @@ class GapExplorer final : public GapSize {
 
   const Plc& plc_;
   std::span<const Point> points_;
-  Triangulation& mesh_;
-  const TriangleHierarchy& elements_;
-  std::function<std::span<const Index>(Index)> nodes_at_;
-  VoronoiWalk walk_;
+  const RefinedMesh& mesh_;
+  const SurfaceNodes& nodes_;
   std::vector<Index> vertex_at_;                       // by point
   std::unordered_map<std::uint64_t, Index> curve_of_;  // by the two points of a segment
   std::unordered_set<Index> interviewed_;              // nodes, in this exploration: large cells share them

@@ -1,10 +1,7 @@
-// Rip and stitch (paper, Procedure 5): the cells inside the collars are dropped;
-// each triangle of the collar surface makes a star tet with its ball's centre, each edge between
-// triangles of consecutive balls a book tet with the two centres.
+#include "refine/rip_and_stitch.h"
+
 #include <algorithm>
 #include <iterator>
-
-#include "refine/refinement.h"
 
 namespace collarmesh {
 
@@ -28,30 +25,31 @@ FaceUse face_use(const std::array<Index, 3>& face, Index region) {
 
 }  // namespace
 
-void Refinement::rip_and_stitch() {
+void RipAndStitch::stitch() {
   stitched_ = {};
   if (collars_.empty()) return;
-  const std::vector<CollarTriangle> triangles = collar_triangles();
+  const std::vector<CollarTriangle> triangles = collar_surface_.triangles();
   for (const CollarTriangle& t : triangles) {
-    const Index region = labels_[cell_of(t.face)].region;
+    const Index region = surface_.region(cell_of(t.face));
     if (region == 0 || t.several) continue;
     const auto v = mesh_.face_vertices(t.face);
-    stitched_.tets.push_back({{v[0], v[1], v[2], ball_vertex(t.ball)}, region, 1, crease_tag(t.ball)});
+    stitched_.tets.push_back({{v[0], v[1], v[2], creator_.vertex_of(t.ball)}, region, 1, crease_tag(t.ball)});
   }
   stitch_books(triangles);
   stitch_faces(triangles);
   for (const CollarLink& link : collars_.links())
-    stitched_.edges.push_back({{ball_vertex(link.balls[0]), ball_vertex(link.balls[1])}, link.curve});
-  for (const ClippedEnd& end : clipped_ends_)
-    stitched_.edges.push_back({{ball_vertex(end.ball), unresolved_[end.point].vertex}, end.curve});
+    stitched_.edges.push_back(
+        {{creator_.vertex_of(link.balls[0]), creator_.vertex_of(link.balls[1])}, link.curve});
+  for (const CurveChains::ClippedEnd& end : curves_.clipped_ends())
+    stitched_.edges.push_back({{creator_.vertex_of(end.ball), points_[end.point].vertex}, end.curve});
 }
 
-Tag Refinement::crease_tag(Index ball) const {
+Tag RipAndStitch::crease_tag(Index ball) const {
   const CollarBall& b = collars_.balls()[ball];
-  return b.dimension == 0 ? plc_.vertices[b.feature].tag : plc_.curves[b.feature].tag;
+  return b.dimension == 0 ? domain_.plc.vertices[b.feature].tag : domain_.plc.curves[b.feature].tag;
 }
 
-void Refinement::stitch_books(const std::vector<CollarTriangle>& triangles) {
+void RipAndStitch::stitch_books(const std::vector<CollarTriangle>& triangles) {
   std::vector<std::pair<std::array<Index, 2>, Index>> curve_between;  // sorted balls, curve; sorted
   for (const auto& [balls, curve, parameters] : collars_.links())
     curve_between.push_back({{std::min(balls[0], balls[1]), std::max(balls[0], balls[1])}, curve});
@@ -60,7 +58,7 @@ void Refinement::stitch_books(const std::vector<CollarTriangle>& triangles) {
     const std::array<Index, 2> balls{std::min(a, b), std::max(a, b)};
     const auto found =
         std::lower_bound(curve_between.begin(), curve_between.end(), std::pair{balls, Index{0}});
-    return plc_.curves[found->second].tag;
+    return domain_.plc.curves[found->second].tag;
   };
   struct Side {
     std::array<Index, 2> key;   // sorted edge
@@ -69,7 +67,7 @@ void Refinement::stitch_books(const std::vector<CollarTriangle>& triangles) {
   };
   std::vector<Side> sides;
   for (const CollarTriangle& t : triangles) {
-    const Index region = labels_[cell_of(t.face)].region;
+    const Index region = surface_.region(cell_of(t.face));
     if (region == 0 || t.several) continue;
     const auto v = mesh_.face_vertices(t.face);
     for (unsigned k = 0; k < 3; ++k) {
@@ -81,21 +79,22 @@ void Refinement::stitch_books(const std::vector<CollarTriangle>& triangles) {
   for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
     const Side &s = sides[i], &other = sides[i + 1];
     if (s.key != other.key || s.ball == other.ball) continue;
-    stitched_.tets.push_back({{s.edge[1], s.edge[0], ball_vertex(other.ball), ball_vertex(s.ball)},
-                              s.region,
-                              2,
-                              tag_between(s.ball, other.ball)});
+    stitched_.tets.push_back(
+        {{s.edge[1], s.edge[0], creator_.vertex_of(other.ball), creator_.vertex_of(s.ball)},
+         s.region,
+         2,
+         tag_between(s.ball, other.ball)});
   }
 }
 
 // Faces of the new tets that lie on patches: where two regions meet, or on a patch inside one.
-void Refinement::stitch_faces(const std::vector<CollarTriangle>& triangles) {
+void RipAndStitch::stitch_faces(const std::vector<CollarTriangle>& triangles) {
   std::vector<FaceUse> uses;
   for (const auto& tet : stitched_.tets)
     for (const auto& f : face_corners)
       uses.push_back(face_use({tet.corners[f[0]], tet.corners[f[1]], tet.corners[f[2]]}, tet.region));
   for (const CollarTriangle& t : triangles) {
-    const Index region = labels_[cell_of(t.face)].region;
+    const Index region = surface_.region(cell_of(t.face));
     if (region != 0 && !t.several) uses.push_back(face_use(mesh_.face_vertices(t.face), region));
   }
   std::stable_sort(uses.begin(), uses.end(),
@@ -113,7 +112,7 @@ void Refinement::stitch_faces(const std::vector<CollarTriangle>& triangles) {
     std::array<Index, 2> regions{uses[i].region, beyond};
     const bool reversed = regions[0] == regions[1]
                               ? against_patch(face, patch)
-                              : beyond != 0 && regions[0] != plc_.patches[patch].regions[0];
+                              : beyond != 0 && regions[0] != domain_.plc.patches[patch].regions[0];
     if (reversed) {
       std::swap(face[1], face[2]);
       std::swap(regions[0], regions[1]);
@@ -122,42 +121,40 @@ void Refinement::stitch_faces(const std::vector<CollarTriangle>& triangles) {
   }
 }
 
-Point Refinement::centroid(const std::array<Index, 3>& face) const {
+Point RipAndStitch::centroid(const std::array<Index, 3>& face) const {
   return (mesh_.point(face[0]) + mesh_.point(face[1]) + mesh_.point(face[2])) / 3;
 }
 
 // Does the face's normal point to the patch' back?
-bool Refinement::against_patch(const std::array<Index, 3>& face, Index patch) const {
-  Index nearest = none;
-  hierarchy_.squared_distance_to(centroid(face), INFINITY, &nearest, [&](Index triangle) {
-    return triangle < plc_.triangles.size() && plc_.triangles[triangle].patch == patch;
-  });
-  const auto t = hierarchy_.corners(nearest);
+bool RipAndStitch::against_patch(const std::array<Index, 3>& face, Index patch) const {
+  double any = INFINITY;
+  const Index nearest = nodes_.nearest_triangle(centroid(face), patch, any);
+  const auto t = nodes_.hierarchy().corners(nearest);
   const Point& a = mesh_.point(face[0]);
   return dot(cross(mesh_.point(face[1]) - a, mesh_.point(face[2]) - a), cross(t[1] - t[0], t[2] - t[0])) < 0;
 }
 
 // The patch that all three vertices lie on and that separates these regions, none if there is none.
 // Two curves that meet at a crease can bound two such patches: then the nearer one.
-Index Refinement::patch_between(const std::array<Index, 3>& corners, Index a, Index b) const {
+Index RipAndStitch::patch_between(const std::array<Index, 3>& corners, Index a, Index b) const {
   const auto separates = [&](Index patch) {
-    const auto& r = plc_.patches[patch].regions;
+    const auto& r = domain_.plc.patches[patch].regions;
     return ((r[0] == a && r[1] == b) || (r[0] == b && r[1] == a)) &&
-           std::all_of(corners.begin(), corners.end(), [&](Index v) { return on_patch(v, patch); });
+           std::all_of(corners.begin(), corners.end(), [&](Index v) { return mesh_.on_patch(v, patch); });
   };
   std::vector<Index> possible;
   for (const Index corner : corners) {
-    const MeshVertex& v = vertices_[corner];
+    const Feature& v = mesh_.feature(corner);
     if (v.dimension == 3) return none;
     if (v.dimension < 2) continue;
-    if (!separates(v.feature)) return none;
-    if (a != b || plc_.patches[v.feature].planar) return v.feature;
-    possible = {v.feature};
+    if (!separates(v.index)) return none;
+    if (a != b || domain_.plc.patches[v.index].planar) return v.index;
+    possible = {v.index};
   }
   if (possible.empty()) {
-    const MeshVertex& v = vertices_[corners[0]];
+    const Feature& v = mesh_.feature(corners[0]);
     const auto& patches =
-        v.dimension == 0 ? plc_.vertices[v.feature].patches : plc_.curves[v.feature].patches;
+        v.dimension == 0 ? domain_.plc.vertices[v.index].patches : domain_.plc.curves[v.index].patches;
     std::copy_if(patches.begin(), patches.end(), std::back_inserter(possible), separates);
   }
   if (possible.empty() || (possible.size() == 1 && a != b)) return possible.empty() ? none : possible[0];
@@ -171,13 +168,13 @@ Index Refinement::patch_between(const std::array<Index, 3>& corners, Index a, In
 }
 
 // Inside one region a face between vertices of a patch may lie beside it, or across a fold of it.
-bool Refinement::lies_on(const std::array<Index, 3>& face, Index patch) const {
+bool RipAndStitch::lies_on(const std::array<Index, 3>& face, Index patch) const {
   const auto is_near = [&](const Point& p, double most) {
     return squared_distance(p, collars_.features().nearest_point({2, patch}, p)) <= most * most;
   };
-  if (plc_.patches[patch].planar)
-    return is_near(centroid(face), std::max(plc_.planar_tolerance, 1e-9 * diagonal_));
-  if (!is_near(centroid(face), distance_)) return false;
+  if (domain_.plc.patches[patch].planar)
+    return is_near(centroid(face), std::max(domain_.plc.planar_tolerance, 1e-9 * domain_.diagonal));
+  if (!is_near(centroid(face), domain_.distance)) return false;
   for (unsigned k = 0; k < 3; ++k) {
     const Point &a = mesh_.point(face[k]), &b = mesh_.point(face[(k + 1) % 3]);
     if (!is_near(0.5 * (a + b), largest_sagitta * distance(a, b))) return false;

@@ -1,12 +1,9 @@
-// The topology of the surface as it is extracted, restricted and stitched triangles together: along its
-// curves each patch has as many triangles as the complex, elsewhere two at each edge; those at a vertex hang
-// together; and the vertices lie on their patches. Sheets of a smooth patch that are closer than the distance
-// tolerance miss that at first, because triangles may lead from one to the other: these are split.
+#include "refine/surface_topology.h"
+
 #include <algorithm>
 #include <tuple>
 
 #include "common/disjoint_sets.h"
-#include "refine/refinement.h"
 
 namespace collarmesh {
 
@@ -57,57 +54,57 @@ std::vector<Side> sorted_sides(const std::vector<SurfaceTriangle>& triangles) {
 }  // namespace
 
 // How many triangles of each of its patches a curve has at each of its segments.
-void Refinement::count_curve_sides() {
+void SurfaceTopology::count_curve_sides() {
   std::vector<CurveEdge> segments;  // the first one of each curve
-  segments.reserve(plc_.curves.size());
-  curve_sides_.reserve(plc_.curves.size());
-  for (Index c = 0; c < plc_.curves.size(); ++c) {
-    const auto& points = plc_.curves[c].points;
+  segments.reserve(domain_.plc.curves.size());
+  curve_sides_.reserve(domain_.plc.curves.size());
+  for (Index c = 0; c < domain_.plc.curves.size(); ++c) {
+    const auto& points = domain_.plc.curves[c].points;
     segments.push_back({sorted(points[0], points[1]), c});
-    curve_sides_.emplace_back(plc_.curves[c].patches.size(), 0);
+    curve_sides_.emplace_back(domain_.plc.curves[c].patches.size(), 0);
   }
   std::sort(segments.begin(), segments.end());
-  for (const Plc::Triangle& t : plc_.triangles)
+  for (const Plc::Triangle& t : domain_.plc.triangles)
     for (unsigned i = 0; i < 3; ++i) {
       const std::array<Index, 2> side = sorted(t.points[i], t.points[(i + 1) % 3]);
       const auto found = std::lower_bound(segments.begin(), segments.end(), CurveEdge{side, none});
       if (found == segments.end() || found->ends != side) continue;
-      const auto& patches = plc_.curves[found->curve].patches;
+      const auto& patches = domain_.plc.curves[found->curve].patches;
       const auto patch = std::lower_bound(patches.begin(), patches.end(), t.patch);
       if (patch != patches.end() && *patch == t.patch)
         ++curve_sides_[found->curve][static_cast<std::size_t>(patch - patches.begin())];
     }
 }
 
-std::size_t Refinement::sides_at(Index curve, Index patch) const {
-  const auto& patches = plc_.curves[curve].patches;
+std::size_t SurfaceTopology::sides_at(Index curve, Index patch) const {
+  const auto& patches = domain_.plc.curves[curve].patches;
   const auto found = std::lower_bound(patches.begin(), patches.end(), patch);
   return curve_sides_[curve][static_cast<std::size_t>(found - patches.begin())];
 }
 
-// Precondition: the collars are stitched. False when nothing was queued.
-bool Refinement::check_surface_topology() {
-  if (!message_.empty()) return false;
+bool SurfaceTopology::check() {
   if (curve_sides_.empty()) count_curve_sides();
   std::vector<SurfaceTriangle> triangles;
-  for (const FaceId face : marked_faces())
-    if (!labels_[cell_of(face)].in_collar && !labels_[cell_of(mesh_.opposite(face))].in_collar)
-      triangles.push_back({mesh_.face_vertices(face), patch_of(restricted(face)), face});
-  for (const auto& face : stitched_.faces) triangles.push_back({face.corners, face.patch, no_face});
+  for (const FaceId face : surface_.marked_faces())
+    if (!collar_cells_.inside(cell_of(face)) && !collar_cells_.inside(cell_of(mesh_.opposite(face))))
+      triangles.push_back({mesh_.face_vertices(face), surface_.patch(face), face});
+  for (const auto& face : stitching_.result().faces) triangles.push_back({face.corners, face.patch, no_face});
   std::vector<CurveEdge> curve_edges;
-  for (const Subsegment& s : subsegments_)
-    if (s.alive) curve_edges.push_back({sorted(s.ends[0], s.ends[1]), s.curve});
-  for (const auto& edge : stitched_.edges)
+  curves_.visit([&](Index, const Subsegment& s) {
+    curve_edges.push_back({sorted(s.ends[0], s.ends[1]), s.curve});
+  });
+  for (const auto& edge : stitching_.result().edges)
     curve_edges.push_back({sorted(edge.corners[0], edge.corners[1]), edge.curve});
   std::sort(curve_edges.begin(), curve_edges.end());
   const std::vector<Side> sides = sorted_sides(triangles);
   DisjointSets fans(3 * triangles.size());
   std::vector<Index> wrong_at(mesh_.vertex_count(), none);  // a patch that is wrong at the vertex
-  for (const Index v : stitched_.open)
-    wrong_at[v] = vertices_[v].dimension == 2 ? vertices_[v].feature : none;
+  for (const Index v : stitching_.result().open)
+    wrong_at[v] = mesh_.feature(v).dimension == 2 ? mesh_.feature(v).index : none;
   const auto expected = [&](const Side& side) -> std::size_t {
     const auto edge = std::lower_bound(curve_edges.begin(), curve_edges.end(), CurveEdge{side.ends, none});
-    if (edge == curve_edges.end() || edge->ends != side.ends || !plc_.curve_on_patch(edge->curve, side.patch))
+    if (edge == curve_edges.end() || edge->ends != side.ends ||
+        !domain_.plc.curve_on_patch(edge->curve, side.patch))
       return 2;
     return sides_at(edge->curve, side.patch);
   };
@@ -120,7 +117,8 @@ bool Refinement::check_surface_topology() {
   std::vector<std::array<Index, 3>> patch_fans;  // vertex, patch, fan
   for (Index corner = 0; corner < 3 * triangles.size(); ++corner) {
     const Index v = triangles[corner / 3].corners[corner % 3];
-    if (vertices_[v].dimension > 0) patch_fans.push_back({v, triangles[corner / 3].patch, fans.find(corner)});
+    if (mesh_.feature(v).dimension > 0)
+      patch_fans.push_back({v, triangles[corner / 3].patch, fans.find(corner)});
   }
   std::sort(patch_fans.begin(), patch_fans.end());
   for (std::size_t i = 1; i < patch_fans.size(); ++i) {
@@ -130,13 +128,13 @@ bool Refinement::check_surface_topology() {
   }
   bool found = false;
   for (const SurfaceTriangle& t : triangles) {
-    if (t.face == no_face || restricted(t.face).given_up) continue;
-    const auto is_wrong = [&](Index v) { return wrong_at[v] == t.patch || !on_patch(v, t.patch); };
+    if (t.face == no_face || surface_.notes(t.face).given_up) continue;
+    const auto is_wrong = [&](Index v) { return wrong_at[v] == t.patch || !mesh_.on_patch(v, t.patch); };
     if (std::none_of(t.corners.begin(), t.corners.end(), is_wrong)) continue;
-    refine_triangle(t.face);
+    triangles_.split(t.face);
     found = true;
   }
-  return found && another_surface_round();
+  return found && surface_check_.another_round();
 }
 
 }  // namespace collarmesh

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "collar/feature_hierarchy.h"
+#include "delaunay/triangulation.h"
+
+namespace collarmesh {
+
+/// A point about to be inserted to destroy a ball (paper, Procedure 2): made by the part that wants it,
+/// shown to the parts that it may encroach or warp to, inserted by the loop.
+struct Candidate {
+  Point point;
+  double squared_radius;  ///< of the ball that is destroyed
+  Point ball_centre;
+  Feature feature;      ///< that the point lies on; dimension 3: none
+  Index start;          ///< a cell in conflict with the point
+  Index across = none;  ///< the mesh vertex that it faces across a gap
+};
+
+}  // namespace collarmesh

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "delaunay/growing_array.h"
+#include "refine/candidate.h"
+#include "refine/collar_cells.h"
+#include "refine/facing_sheets.h"
+#include "refine/graded_sizes.h"
+#include "refine/random_offsets.h"
+#include "refine/restricted_surface.h"
+#include "refine/work_queue.h"
+
+namespace collarmesh {
+
+/// Which cells are to be destroyed: skinny ones, by their radius-edge ratio or because they are flat, and
+/// large ones.
+///
+/// State: with a vertex ratio, the shortest edge at every vertex. Invariant: after an insertion every new
+/// cell that is to be destroyed is in the queue, and so are older ones that have become so. The loop tells of
+/// insertions and takes candidates.
+class CellQuality {
+ public:
+  /// All are kept by reference.
+  CellQuality(const Domain& domain, const RefinedMesh& mesh, const CollarCells& collar_cells,
+              const RestrictedSurface& surface, const GradedSizes& sizes, const FacingSheets& facing_sheets,
+              RandomOffsets& random, WorkQueue& queue);
+
+  /// What destroys a cell, if anything can.
+  std::optional<Candidate> candidate(Index cell);
+  /// Is the entry of the queue that of a cell that is still there, outside the collars?
+  bool due(const WorkQueue::Entry& entry) const {
+    return mesh_.alive(entry.id, entry.stamp) && !collar_cells_.inside(entry.id);
+  }
+  /// Queue a cell again that is still there after something else was inserted in its place.
+  void queue_again(const WorkQueue::Item& item, double squared_radius);
+
+  /// Precondition: surface, collar cells and sizes know the new cells.
+  void cells_made(const ConflictZone& zone, Index vertex);
+  /// At the start, and when sizes have changed everywhere.
+  void judge_all();
+
+  std::size_t bytes() const { return shortest_edge_.bytes(); }
+
+ private:
+  void judge(Index cell);
+  bool flat(Index cell) const;
+  bool uneven_at_vertex(Index cell) const;
+  void note_edges(const ConflictZone& zone, Index vertex);
+
+  const Domain& domain_;
+  const RefinedMesh& mesh_;
+  const CollarCells& collar_cells_;
+  const RestrictedSurface& surface_;
+  const GradedSizes& sizes_;
+  const FacingSheets& facing_sheets_;
+  RandomOffsets& random_;
+  WorkQueue& queue_;
+  GrowingArray<double> shortest_edge_;  // by vertex; empty without a vertex ratio
+  std::vector<Index> cells_;            // scratch
+};
+
+}  // namespace collarmesh

@@ -1,0 +1,178 @@
+#include "refine/collar_creator.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "collarmesh/plc_builder.h"
+
+namespace collarmesh {
+
+CollarCreator::CollarCreator(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes,
+                             const GradedSizes& sizes, CollarSystem& collars, CollarCells& collar_cells,
+                             RestrictedSurface& surface, UnresolvedPoints& points, CurveChains& curves,
+                             OpenCreases& open_creases, std::function<bool(std::size_t)> stopped)
+    : domain_(domain),
+      mesh_(mesh),
+      nodes_(nodes),
+      sizes_(sizes),
+      collars_(collars),
+      collar_cells_(collar_cells),
+      surface_(surface),
+      points_(points),
+      curves_(curves),
+      open_creases_(open_creases),
+      stopped_(std::move(stopped)) {}
+
+void CollarCreator::start() {
+  CollarOptions options;
+  options.size = [this](const Feature& feature, const Point& p) { return target_size(feature, p); };
+  options.distance = domain_.distance;
+  options.seed = domain_.options.seed;
+  options.stopped = stopped_;
+  options.smallest_radius = domain_.floor;
+  options.outside = [this](const Point& p) { return domain_.frame.outside(p); };
+  const std::vector<Crease> creases = find_creases(domain_.plc, domain_.options.crease_angle);
+  if (creases.empty()) return;
+  if (domain_.options.collar_creation == CollarCreation::in_pass) {
+    collars_ = CollarSystem(domain_.plc, domain_.points, creases);
+    placement_ =
+        std::make_unique<CollarPlacement>(domain_.plc, domain_.points, gap_size(), options, collars_);
+    return;
+  }
+  collars_ = CollarSystem(domain_.plc, domain_.points, creases, options);
+  if (collars_.empty()) return;
+  for (Index v = 0; v < mesh_.vertex_count(); ++v) collar_cells_.note_near(v);
+  take_up_balls(none, {none, none});
+}
+
+// The smallest target edge length of what is at this place of a vertex or curve.
+double CollarCreator::target_size(const Feature& feature, const Point& p) const {
+  const Sizing& sizing = sizes_.asked();
+  if (feature.dimension == 1) return sizing.feature_size(1, feature.index, p);
+  double size = sizing.default_size(p);
+  for (const Index curve : domain_.plc.vertices[feature.index].curves)
+    size = std::min(size, sizing.feature_size(1, curve, p));
+  for (const Index patch : domain_.plc.vertices[feature.index].patches)
+    size = std::min(size, sizing.feature_size(2, patch, p));
+  return size;
+}
+
+GapExplorer& CollarCreator::gap_size() {
+  if (!gap_) gap_ = std::make_unique<GapExplorer>(domain_, mesh_, nodes_);
+  return *gap_;
+}
+
+void CollarCreator::cells_made(const ConflictZone& zone, Index vertex) {
+  if (!placement_) return;
+  for (const Index v : zone.vertices)
+    if (mesh_.feature(v).dimension == 1) open_creases_.touch(mesh_.feature(v).index);
+  create_if_isolated(vertex);
+  for (const Index v : zone.vertices) create_if_isolated(v);
+}
+
+// Does the cell hold one crease vertex that is not in the mesh, theta_0-medial and isolated (paper, appendix
+// A)?
+void CollarCreator::create_if_isolated(Index at) {
+  const Index only = points_.only_vertex_at(at);
+  if (only == none || !waits_for_ball(only)) return;
+  const Point p = points_[only].point;
+  double second = INFINITY;
+  mesh_.adjacent_vertices(at, scratch_);
+  for (const Index v : scratch_) second = std::min(second, squared_distance(p, mesh_.point(v)));
+  const double theta = domain_.options.theta, theta_0 = 2 * theta / (2 * theta + 1);
+  if (squared_distance(p, mesh_.point(at)) < theta_0 * theta_0 * second) return;
+  if (gap_size().isolated({0, only}, at)) create_at_vertex(only, at);
+}
+
+// The curves that end at the vertex do not reach beyond its ball's sphere any more.
+void CollarCreator::create_at_vertex(Index vertex, Index near) {
+  gap_size().start_near(near);
+  placement_->place_at_vertex(vertex);
+  for (const Index curve : domain_.plc.vertices[vertex].curves)
+    for (const bool at_start : {true, false})
+      if (domain_.plc.curves[curve].ends[at_start ? 0 : 1] == vertex) curves_.clip(curve, at_start, near);
+  take_up_balls(near, {none, none});
+}
+
+// Every cell that a subsegment crosses is that of one of its ends, as its protective ball is empty.
+void CollarCreator::create_on_isolated_curves() {
+  while (open_creases_.any_touched()) {
+    const Index curve = open_creases_.take_touched();
+    if (curve == none) continue;
+    const OpenCreases::Chain& chain = open_creases_.chain(curve);
+    if (chain.pending > 0) continue;
+    std::vector<CollarBall> at_ends;
+    for (const Index end : domain_.plc.curves[curve].ends)
+      if (end != none) at_ends.push_back(collars_.balls()[collars_.ball_at_vertex(end)]);
+    const auto is_isolated = [&](Index end) { return gap_size().isolated({1, curve}, end, at_ends); };
+    std::size_t& isolated = isolated_[curve];
+    for (; isolated < chain.links.size(); ++isolated) {
+      const Subsegment* s = curves_.find(chain.links[isolated]);
+      if (s != nullptr && !std::all_of(s->ends.begin(), s->ends.end(), is_isolated)) break;
+    }
+    if (isolated == chain.links.size()) create_on_curve(curve);
+  }
+}
+
+bool CollarCreator::create_remaining() {
+  std::vector<Index> curves = open_creases_.curves();
+  std::sort(curves.begin(), curves.end());
+  for (const Index curve : curves) create_on_curve(curve);
+  return !curves.empty();
+}
+
+void CollarCreator::create_on_curve(Index curve) {
+  const OpenCreases::Chain chain = open_creases_.close(curve);
+  isolated_.erase(curve);
+  Index near = mesh_.last_vertex();
+  for (const ChainLink& link : chain.links)
+    if (const Subsegment* s = curves_.find(link)) {
+      near = s->ends[0];
+      curves_.remove(link);
+    }
+  gap_size().start_near(near);
+  placement_->place_on_curve(curve);
+  take_up_balls(near, chain.ends);
+}
+
+// Of the balls placed last the first and the last one may have their centres among the unresolved points
+// already.
+void CollarCreator::take_up_balls(Index near, const std::array<Index, 2>& ends) {
+  const auto first = static_cast<Index>(ball_points_.size());
+  const auto count = static_cast<Index>(collars_.balls().size());
+  for (Index b = first; b < count; ++b) {
+    const CollarBall& ball = collars_.balls()[b];
+    Index point = ball.feature;
+    if (ball.dimension == 1) {
+      point = b == first ? ends[0] : b + 1 == count ? ends[1] : none;
+      if (point == none) point = points_.add(ball.centre, {1, ball.feature}, near);
+    }
+    ball_points_.push_back(point);
+    near = points_.vertex_near(point);
+    if (placement_) find_inside(ball, near);
+  }
+  for (; corners_taken_up_ < collars_.corners().size(); ++corners_taken_up_) {
+    const CornerPoint& corner = collars_.corners()[corners_taken_up_];
+    const bool planar = corner.dimension == 2 && domain_.plc.patches[corner.feature].planar;
+    points_.add(planar ? domain_.on_plane(corner.feature, corner.point) : corner.point,
+                {corner.dimension, corner.feature}, near);
+  }
+  if (observer_)
+    for (Index b = first; b < count; ++b) observer_(collars_.balls()[b]);
+}
+
+// The cells and restricted triangles that a new ball takes away from the refinement.
+void CollarCreator::find_inside(const CollarBall& ball, Index near) {
+  const double squared = ball.radius * ball.radius * (1 + 1e-9);
+  mesh_.visit_ball(ball.centre, mesh_.nearest_vertex(ball.centre, near), squared, [&](Index vertex) {
+    collar_cells_.note_near(vertex);
+    mesh_.incident_cells(vertex, scratch_);
+    for (const Index cell : scratch_) {
+      if (squared_distance(mesh_.circumcentre(cell), ball.centre) < ball.radius * ball.radius)
+        collar_cells_.note_inside(cell);
+      surface_.note_ball(cell, ball);
+    }
+  });
+}
+
+}  // namespace collarmesh

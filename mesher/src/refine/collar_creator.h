@@ -1,0 +1,86 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "collar/collar_placement.h"
+#include "refine/collar_cells.h"
+#include "refine/curve_chains.h"
+#include "refine/gap_explorer.h"
+#include "refine/graded_sizes.h"
+#include "refine/restricted_surface.h"
+#include "refine/unresolved_points.h"
+
+namespace collarmesh {
+
+/// Creates the collars: all of them before refinement, or each in the pass (paper, section 3.2 and Procedures
+/// 3 and 4): a vertex ball when the vertex is inserted or, still uninserted, isolated and medial; the balls
+/// along a crease curve, which is refined like other curves until then, when all cells that it crosses
+/// outside its ends' balls are isolated with respect to it.
+///
+/// Invariant: the centre of every ball and every corner point of the collars is an unresolved point or a mesh
+/// vertex. It alone adds balls to the system, and tells cells, surface and curves of them. The loop starts
+/// it, tells of insertions and says when; the parts that stitch ask for the vertices of balls.
+class CollarCreator {
+ public:
+  /// All are kept by reference. `stopped` is asked with how many vertices will come at least.
+  CollarCreator(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes,
+                const GradedSizes& sizes, CollarSystem& collars, CollarCells& collar_cells,
+                RestrictedSurface& surface, UnresolvedPoints& points, CurveChains& curves,
+                OpenCreases& open_creases, std::function<bool(std::size_t)> stopped);
+
+  /// Precondition: the vertices of the complex are the first unresolved points, in their order. Stays
+  /// incomplete when it is stopped.
+  void start();
+  /// The mesh vertex at a ball's centre; none as long as it is unresolved.
+  Index vertex_of(Index ball) const { return points_[ball_points_[ball]].vertex; }
+
+  // In the pass:
+  /// Is an unresolved point a vertex of the complex that is to get a ball?
+  bool waits_for_ball(Index point) const {
+    return placement_ && collars_.is_crease_vertex(point) && collars_.ball_at_vertex(point) == none;
+  }
+  /// Paper, Procedure 4. `near`: the mesh vertex whose cell contains the vertex.
+  void create_at_vertex(Index vertex, Index near);
+  /// Is any crease vertex or curve isolated now? Vertices get their balls at once.
+  void cells_made(const ConflictZone& zone, Index vertex);
+  /// The balls of curves that have become isolated.
+  void create_on_isolated_curves();
+  /// What refinement has come to an end without. False when there is nothing.
+  bool create_remaining();
+
+  /// The gap size as the mesh is now.
+  GapExplorer& gap_size();
+  /// For tests: called for every ball.
+  void observe(std::function<void(const CollarBall&)> observer) { observer_ = std::move(observer); }
+
+ private:
+  double target_size(const Feature& feature, const Point& p) const;
+  void create_if_isolated(Index at);
+  void create_on_curve(Index curve);
+  void take_up_balls(Index near, const std::array<Index, 2>& ends);
+  void find_inside(const CollarBall& ball, Index near);
+
+  const Domain& domain_;
+  const RefinedMesh& mesh_;
+  const SurfaceNodes& nodes_;
+  const GradedSizes& sizes_;
+  CollarSystem& collars_;
+  CollarCells& collar_cells_;
+  RestrictedSurface& surface_;
+  UnresolvedPoints& points_;
+  CurveChains& curves_;
+  OpenCreases& open_creases_;
+  std::function<bool(std::size_t)> stopped_;
+  std::unique_ptr<GapExplorer> gap_;                 // made when first asked for
+  std::unique_ptr<CollarPlacement> placement_;       // in the pass only
+  std::unordered_map<Index, std::size_t> isolated_;  // by curve: the first so many links of its chain are
+  std::vector<Index> ball_points_;                   // unresolved points at the balls' centres
+  std::size_t corners_taken_up_ = 0;
+  std::function<void(const CollarBall&)> observer_;
+  std::vector<Index> scratch_;
+};
+
+}  // namespace collarmesh

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "delaunay/growing_array.h"
+#include "refine/collar_creator.h"
+#include "refine/collar_triangles.h"
+
+namespace collarmesh {
+
+/// A point to be inserted on the collar surface.
+struct CollarPoint {
+  Point point;
+  Feature feature;  ///< that it lies on; dimension 3: none
+  Index nearby;     ///< a mesh vertex
+};
+
+/// The collar surface as a restricted Delaunay triangulation (paper, section 4): the triangles between cells
+/// inside the collars and outside, whether they represent the surface well enough to be stitched to the
+/// balls' centres, and the points that mend it where they do not, lower dimension first.
+///
+/// State: the faces whose dual edges are known to meet no ball. CollarReview asks which triangles are poor
+/// and when; RipAndStitch takes them all. The loop tells of insertions.
+class CollarSurface {
+ public:
+  /// All are kept by reference.
+  CollarSurface(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes,
+                const CollarSystem& collars, const CollarCells& cells, const RestrictedSurface& surface,
+                const CollarCreator& creator)
+      : domain_(domain),
+        mesh_(mesh),
+        nodes_(nodes),
+        collars_(collars),
+        cells_(cells),
+        surface_(surface),
+        creator_(creator) {}
+
+  std::vector<CollarTriangle> triangles();
+  /// The face seen from a cell outside, if its dual edge meets the collar surface.
+  std::optional<CollarTriangle> triangle(FaceId outer);
+  /// Is it known that the dual edge of a face meets no ball?
+  bool is_off(FaceId outer) const {
+    return cell_of(outer) < off_.size() && (off_[cell_of(outer)] >> corner_of(outer) & 1U) != 0;
+  }
+
+  /// Is a triangle poor whatever its neighbours are? Notes where it bends.
+  bool poor_alone(CollarTriangle& t) { return poorly_represented(t) || bends(t); }
+  /// Would the book tet between two triangles of consecutive balls be inverted, or its angle too large?
+  bool poor_book(const CollarTriangle& t, const CollarTriangle& u, const std::array<Index, 2>& edge) const;
+  /// An edge and the ball's centre make a face between two regions. Does it lead from one sheet of a smooth
+  /// patch to another? In balls smaller than the distance tolerance that does not tell.
+  bool spans_sheets(const CollarBall& ball, Index a, Index b) const;
+  /// The point that mends a triangle: its representation point, or the nearest point of an arc where a patch
+  /// through the ball's centre meets the sphere. Nothing when there is none.
+  std::optional<CollarPoint> repair(const CollarTriangle& t) const;
+
+  /// Does a mesh vertex lie on a crease?
+  bool on_crease(Index vertex) const;
+
+  void cells_made(const ConflictZone& zone);
+
+ private:
+  bool poorly_represented(const CollarTriangle& t);
+  bool bends(CollarTriangle& t) const;
+  bool far_from_patch(Index patch, const Point& p) const;
+  bool at_fold(std::span<const Index> corners) const;
+  std::optional<Point> arc_point(const CollarBall& ball, Index patch, const Point& near) const;
+  bool crosses_patch(const CollarBall& ball, Index a, Index b);
+  bool on_another_sheet(const CollarBall& ball, const Point& p, Index triangle) const;
+  std::span<const Index> patches_through(const CollarBall& ball) const;
+
+  const Domain& domain_;
+  const RefinedMesh& mesh_;
+  const SurfaceNodes& nodes_;
+  const CollarSystem& collars_;
+  const CollarCells& cells_;
+  const RestrictedSurface& surface_;
+  const CollarCreator& creator_;
+  GrowingArray<std::uint8_t> off_;  // by cell: bit i for the face opposite corner i; grows when asked
+  std::vector<Index> balls_;        // scratch
+  std::vector<TriangleHierarchy::Crossing> crossings_;  // scratch
+};
+
+}  // namespace collarmesh

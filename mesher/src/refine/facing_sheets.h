@@ -1,0 +1,54 @@
+#pragma once
+
+#include <optional>
+#include <unordered_set>
+
+#include "refine/candidate.h"
+#include "refine/restricted_surface.h"
+#include "refine/subsegment.h"
+
+namespace collarmesh {
+
+/// Sheets of the surface that face each other across a gap narrower than the elements around it. With samples
+/// of its own each of them would encroach the other one until both are sampled as densely as the gap is
+/// narrow. So what a vertex encroaches from across a gap is split beneath that vertex. Samples in such pairs
+/// leave the balls of the other sheet's triangles and subsegments empty, whatever their size: what makes them
+/// smaller is the quality of cells in a thin part. Outside the regions nobody wants that, so there the edge
+/// between the vertices of a pair counts in no radius-edge ratio.
+///
+/// State: the pairs. TriangleQuality and CurveChains ask what faces theirs, CellQuality whether a cell is to
+/// be spared; the loop notes pairs.
+class FacingSheets {
+ public:
+  /// All are kept by reference.
+  FacingSheets(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes,
+               const CollarSystem& collars, const RestrictedSurface& surface)
+      : domain_(domain), mesh_(mesh), nodes_(nodes), collars_(collars), surface_(surface) {}
+
+  /// For a restricted triangle with a vertex on another sheet: the point of its patch beneath that vertex.
+  std::optional<Candidate> candidate_across(FaceId face);
+  /// Where on a subsegment the vertex is nearest that encroaches it from across a gap, if it does.
+  std::optional<double> parameter_across(const Subsegment& s, Index vertex) const;
+
+  /// These vertices face each other; the second one may be about to come.
+  void note_pair(Index a, Index b);
+  /// Is a cell within the radius-edge bound but for the edges between vertices of a pair?
+  bool fills_gap(Index cell, double bound) const { return !pairs_.empty() && within_bound(cell, bound); }
+
+  std::size_t bytes() const;
+
+ private:
+  bool faces(Index vertex, Index patch, const Vector& normal) const;
+  bool apart(Index vertex, Index curve) const;
+  bool within_bound(Index cell, double bound) const;
+
+  const Domain& domain_;
+  const RefinedMesh& mesh_;
+  const SurfaceNodes& nodes_;
+  const CollarSystem& collars_;
+  const RestrictedSurface& surface_;
+  std::unordered_set<std::uint64_t> pairs_;  // of mesh vertices, as edges
+  ConflictZone zone_;                        // scratch
+};
+
+}  // namespace collarmesh

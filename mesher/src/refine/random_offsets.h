@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+
+#include "collar/collar_system.h"
+
+namespace collarmesh {
+
+/// Pseudo-random offsets of what is inserted: exact centres of cospherical input make flat cells whose
+/// refinement never ends. One sequence for the whole refinement: who asks when decides about the mesh.
+class RandomOffsets {
+ public:
+  /// The collars are kept by reference.
+  RandomOffsets(std::uint64_t seed, const CollarSystem& collars) : collars_(collars), state_(seed) {}
+
+  /// Each coordinate from -1 to 1.
+  Vector in_cube();
+  /// A vector in the cube of this half edge length, orthogonal to the normal unless that is zero, that does
+  /// not lead into a collar: between two sheets exact centres often lie on a third one. Zero when none was
+  /// found.
+  Vector outside_collars(const Point& from, double length, const Vector& normal);
+
+ private:
+  const CollarSystem& collars_;
+  std::uint64_t state_;
+};
+
+}  // namespace collarmesh

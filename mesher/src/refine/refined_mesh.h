@@ -1,0 +1,97 @@
+#pragma once
+
+#include <span>
+
+#include "collar/feature_hierarchy.h"
+#include "collarmesh/plc.h"
+#include "common/large_pages.h"
+#include "delaunay/triangulation.h"
+#include "location/voronoi_walk.h"
+
+namespace collarmesh {
+
+/// The Delaunay mesh and the features that its vertices lie on.
+///
+/// The loop alone inserts and says that a vertex lies on one feature more; all other parts read. Searching is
+/// reading, though it marks cells and vertices. `visit_ball` does not nest.
+/// Invariant: every vertex has a feature, of the lowest dimension that is known to hold it; dimension 3:
+/// none.
+class RefinedMesh {
+ public:
+  /// The corners of a box. The complex is kept by reference.
+  RefinedMesh(const Plc& plc, const Box& box);
+
+  const Triangulation& triangulation() const { return triangulation_; }
+
+  Index vertex_count() const { return triangulation_.vertex_count(); }
+  Index last_vertex() const { return triangulation_.vertex_count() - 1; }
+  const Point& point(Index vertex) const { return triangulation_.point(vertex); }
+  const Feature& feature(Index vertex) const { return features_[vertex]; }
+
+  Index cell_capacity() const { return triangulation_.cell_capacity(); }
+  Index cell_count() const { return triangulation_.cell_count(); }
+  bool alive(Index cell) const { return triangulation_.alive(cell); }
+  std::uint32_t generation(Index cell) const { return triangulation_.generation(cell); }
+  /// Is there still the cell that had this generation?
+  bool alive(Index cell, std::uint32_t generation) const {
+    return triangulation_.alive(cell) && triangulation_.generation(cell) == generation;
+  }
+  const std::array<Index, 4>& corners(Index cell) const { return triangulation_.corners(cell); }
+  FaceId opposite(FaceId face) const { return triangulation_.opposite(face); }
+  std::array<Index, 3> face_vertices(FaceId face) const { return triangulation_.face_vertices(face); }
+  const Point& circumcentre(Index cell) const { return triangulation_.circumcentre(cell); }
+  double squared_radius(Index cell) const { return triangulation_.squared_radius(cell); }
+  bool in_conflict(Index cell, const Point& p) const { return triangulation_.in_conflict(cell, p); }
+
+  /// Does a vertex lie on a patch, or on what bounds the patch?
+  bool on_patch(Index vertex, Index patch) const {
+    const Feature& f = features_[vertex];
+    if (f.dimension == 2) return f.index == patch;
+    if (f.dimension == 1) return plc_.curve_on_patch(f.index, patch);
+    return f.dimension == 0 && plc_.vertex_on_patch(f.index, patch);
+  }
+  /// Do all these vertices lie on one patch?
+  bool on_one_patch(std::span<const Index> vertices) const;
+
+  void incident_cells(Index vertex, std::vector<Index>& cells) const {
+    triangulation_.incident_cells(vertex, cells);
+  }
+  void adjacent_vertices(Index vertex, std::vector<Index>& adjacent) const {
+    triangulation_.adjacent_vertices(vertex, adjacent);
+  }
+  Index conflicting_cell_around(Index vertex, const Point& p) const {
+    return triangulation_.conflicting_cell_around(vertex, p);
+  }
+  void find_conflict_zone(const Point& p, Index start, ConflictZone& zone) const {
+    triangulation_.find_conflict_zone(p, start, zone);
+  }
+  /// The vertex whose Voronoi cell contains p. `near`: a vertex not far away, if one is known.
+  Index nearest_vertex(const Point& p, Index near = none) const;
+  /// As VoronoiWalk::visit_ball.
+  template <class Visit>
+  void visit_ball(const Point& x, Index nearest, const double& squared_radius, const Visit& visit) const {
+    walk_.visit_ball(x, nearest, squared_radius, visit);
+  }
+
+  /// For the loop: replace the zone's cells by those around its point.
+  Index insert(ConflictZone& zone, const Feature& feature) {
+    features_.push_back(feature);
+    return triangulation_.insert(zone);
+  }
+  /// A vertex is found to lie on this feature, too. False when the one that it has is no higher.
+  bool lower_feature(Index vertex, const Feature& feature) {
+    if (feature.dimension >= features_[vertex].dimension) return false;
+    features_[vertex] = feature;
+    return true;
+  }
+
+  std::size_t bytes() const { return triangulation_.bytes() + features_.capacity() * sizeof(Feature); }
+
+ private:
+  const Plc& plc_;
+  mutable Triangulation triangulation_;  // its marks
+  mutable VoronoiWalk walk_;
+  LargeVector<Feature> features_;
+};
+
+}  // namespace collarmesh

@@ -1,0 +1,332 @@
+// The restricted Delaunay triangulation of the mesh to each patch, and the region labels of the cells.
+#include "refine/restricted_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace collarmesh {
+
+namespace {
+
+constexpr Index unlabelled = none;
+
+}  // namespace
+
+RestrictedSurface::RestrictedSurface(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes,
+                                     const CollarCells& collar_cells)
+    : domain_(domain), mesh_(mesh), nodes_(nodes), collar_cells_(collar_cells) {
+  labels_.resize(mesh_.cell_capacity());
+  marks_.resize(mesh_.cell_capacity());
+  for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) label_from_outside(cell);
+}
+
+std::vector<FaceId> RestrictedSurface::marked_faces() const {
+  std::vector<FaceId> faces;
+  for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
+    if (!mesh_.alive(cell)) continue;
+    visit_marked(cell, [&](FaceId face) {
+      if (cell < cell_of(mesh_.opposite(face))) faces.push_back(face);
+    });
+  }
+  return faces;
+}
+
+// The box' corners lie outside every region.
+void RestrictedSurface::label_from_outside(Index cell) {
+  crossings_.clear();
+  if (!nodes_.hierarchy().empty()) nodes_.crossings(mesh_.point(0), mesh_.circumcentre(cell), crossings_);
+  labels_[cell].region = region_beyond(0);
+}
+
+// The region at the end of a segment that starts in `region` and has just been intersected
+// (crossings_). Each crossing leaves one region and enters another; the one that is entered once
+// more than left is where the segment ends, whatever the order of the crossings.
+Index RestrictedSurface::region_beyond(Index region) const {
+  if (crossings_.empty()) return region;
+  // The regions that a crossing leaves and enters.
+  const auto regions_at = [&](const TriangleHierarchy::Crossing& crossing) {
+    auto regions = domain_.plc.patches[domain_.plc.triangles[crossing.triangle].patch].regions;
+    if (crossing.direction < 0) std::swap(regions[0], regions[1]);
+    return regions;
+  };
+  if (crossings_.size() == 1) {
+    const auto [left, entered] = regions_at(crossings_[0]);
+    return left == region ? entered : region;
+  }
+  std::vector<std::pair<Index, int>> balance{{region, 1}};
+  const auto add = [&](Index r, int change) {
+    for (auto& [other, count] : balance)
+      if (other == r) {
+        count += change;
+        return;
+      }
+    balance.push_back({r, change});
+  };
+  for (const auto& crossing : crossings_) {
+    const auto [left, entered] = regions_at(crossing);
+    add(entered, 1);
+    add(left, -1);
+  }
+  for (const auto& [r, count] : balance)
+    if (count > 0) return r;
+  return region;
+}
+
+// Label one of the new cells from across the zone's border, best where no patch can be in between;
+// when the zone is the whole box, from the box' corner. Returns its index in the zone.
+std::size_t RestrictedSurface::first_label(const ConflictZone& zone) {
+  std::size_t seed = zone.created.size();
+  for (std::size_t i = 0; i < zone.created.size(); ++i) {
+    if (zone.outer[i] == no_face) continue;
+    seed = i;
+    if (nodes_.fewest(zone.outer[i]).empty()) break;
+  }
+  if (seed < zone.created.size()) {
+    const FaceId outer = zone.outer[seed];
+    nodes_.crossings_of_dual_edge(outer, crossings_);
+    labels_[zone.created[seed]].region = region_beyond(labels_[cell_of(outer)].region);
+    return seed;
+  }
+  label_from_outside(zone.created[0]);
+  return 0;
+}
+
+// Restricted triangles among the faces between the new cells: their dual edges are those of the new vertex'
+// Voronoi cell. What they cross is kept in crossed_faces_ and dual_crossings_.
+void RestrictedSurface::restrict_created_faces(const ConflictZone& zone, Index vertex) {
+  double largest = 0;
+  for (const Index cell : zone.created) largest = std::max(largest, mesh_.squared_radius(cell));
+  dual_edges_.start(mesh_.point(vertex), std::sqrt(largest));
+  faces_.clear();
+  for (Index i = 0; i < zone.created.size(); ++i) {
+    const Index cell = zone.created[i];
+    dual_edges_.add_point(mesh_.circumcentre(cell));
+    labels_[cell].region = i;  // until it is known
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      const FaceId face = face_id(cell, corner), other = mesh_.opposite(face);
+      if (mesh_.corners(cell)[corner] == vertex || other == no_face) continue;
+      const Index j = labels_[cell_of(other)].region;
+      if (j >= i) continue;  // its turn comes
+      dual_edges_.add_segment(i, j);
+      faces_.push_back(face);
+    }
+  }
+  for (const Index cell : zone.created) labels_[cell].region = unlabelled;
+  nodes_.hierarchy().crossings(dual_edges_, nodes_.at(vertex), dual_crossings_);
+  crossed_faces_.clear();
+  for (std::size_t from = 0, to = 0; from < dual_crossings_.size(); from = to) {
+    crossings_.clear();
+    const Index edge = dual_crossings_[from].segment;
+    for (; to < dual_crossings_.size() && dual_crossings_[to].segment == edge; ++to)
+      crossings_.push_back(dual_crossings_[to].crossing);
+    restrict_face(faces_[edge]);
+    crossed_faces_.push_back({faces_[edge], from, to});
+  }
+}
+
+// What the dual edge of a face between new cells crosses on the way out of the face's cell, in crossings_.
+void RestrictedSurface::recall_crossings(FaceId face) {
+  crossings_.clear();
+  if (!is_marked(face)) return;
+  const FaceId other = mesh_.opposite(face);
+  const auto crossed = std::find_if(crossed_faces_.begin(), crossed_faces_.end(),
+                                    [&](const CrossedFace& f) { return f.face == face || f.face == other; });
+  for (std::size_t i = crossed->first; i < crossed->end; ++i) {
+    auto [triangle, direction] = dual_crossings_[i].crossing;
+    crossings_.push_back({triangle, crossed->face == face ? direction : -direction});
+  }
+}
+
+// Labels of the new cells, and restricted triangles among the faces between them.
+void RestrictedSurface::label_created_cells(const ConflictZone& zone, Index vertex) {
+  for (const Index cell : zone.created) labels_[cell] = {.region = unlabelled};
+  if (nodes_.any_at(vertex)) restrict_created_faces(zone, vertex);
+  const std::size_t seed = first_label(zone);
+  const Index region = labels_[zone.created[seed]].region;
+  if (!nodes_.any_at(vertex)) {
+    for (const Index cell : zone.created) labels_[cell].region = region;
+    return;
+  }
+  cells_.assign(1, zone.created[seed]);
+  while (!cells_.empty()) {
+    const Index cell = cells_.back();
+    cells_.pop_back();
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      const FaceId face = face_id(cell, corner), other = mesh_.opposite(face);
+      if (mesh_.corners(cell)[corner] == vertex || other == no_face ||
+          labels_[cell_of(other)].region != unlabelled)
+        continue;
+      recall_crossings(face);
+      labels_[cell_of(other)].region = region_beyond(labels_[cell].region);
+      cells_.push_back(cell_of(other));
+    }
+  }
+}
+
+// A border face' dual edge has become shorter, so that it crosses what it crossed, or nothing. Does it
+// still cross the triangle that it alone crossed, from the one label to the other?
+bool RestrictedSurface::crosses_as_before(FaceId outer, FaceId face, Index vertex) {
+  const RestrictedTriangle& t = triangle(outer);
+  // Of a dual edge in the plane of its triangle x may be any point: it is gone when the new vertex has
+  // come into the surface gap ball.
+  if (t.several_sheets || squared_distance(mesh_.point(vertex), t.x) < t.squared_radius) return false;
+  const int direction = nodes_.hierarchy().crossing(mesh_.circumcentre(cell_of(outer)),
+                                                    mesh_.circumcentre(cell_of(face)), t.triangle);
+  if (direction == 0) return false;
+  crossings_.assign(1, {t.triangle, direction});
+  return region_beyond(labels_[cell_of(outer)].region) == labels_[cell_of(face)].region;
+}
+
+// What it alone crossed is beyond the end that is gone: the labels say so, unless the regions on both sides
+// of the patch are the same.
+bool RestrictedSurface::crosses_no_more(FaceId outer, FaceId face) const {
+  const RestrictedTriangle& t = triangle(outer);
+  const auto& regions = domain_.plc.patches[patch_of(t)].regions;
+  return !t.several_sheets && regions[0] != regions[1] &&
+         labels_[cell_of(outer)].region == labels_[cell_of(face)].region;
+}
+
+// The dual edges of the zone's border faces have become shorter, their ends are rounded anew: look
+// again at those that were marked and those whose labels say that they should be.
+void RestrictedSurface::mark_border_faces(const ConflictZone& zone, Index vertex) {
+  for (std::size_t i = 0; i < zone.border.size(); ++i) {
+    const FaceId outer = zone.outer[i];
+    if (outer == no_face) continue;
+    const Index created = zone.created[i];
+    const bool was_marked = is_marked(outer);
+    if (!was_marked && labels_[created].region == labels_[cell_of(outer)].region) continue;
+    const FaceId face = face_id(created, corner_of(zone.border[i]));
+    if (was_marked && crosses_as_before(outer, face, vertex)) {
+      mark(face, record_of(outer));
+      notes(face).judged = false;  // it may have been queued as the destroyed cell's face
+      continue;
+    }
+    const bool known = was_marked && crosses_no_more(outer, face);
+    if (was_marked) unmark(outer);
+    if (known) continue;
+    nodes_.crossings_of_dual_edge(face, crossings_);
+    if (!crossings_.empty()) restrict_face(face);
+  }
+}
+
+void RestrictedSurface::cells_vanish(const ConflictZone& zone) {
+  const auto has_marks = [&](Index cell) { return labels_[cell].marked != 0; };
+  if (std::none_of(zone.cells.begin(), zone.cells.end(), has_marks)) return;
+  // The record of a border face stays: the cell beyond has it, too.
+  for (const FaceId border : zone.border)
+    labels_[cell_of(border)].marked &= static_cast<std::uint8_t>(~(1U << corner_of(border)));
+  for (const Index cell : zone.cells)
+    visit_marked(cell, [&](FaceId face) {
+      const FaceId other = mesh_.opposite(face);
+      labels_[cell_of(other)].marked &= static_cast<std::uint8_t>(~(1U << corner_of(other)));
+      unmark(face);
+    });
+}
+
+void RestrictedSurface::cells_made(const ConflictZone& zone, Index vertex) {
+  labels_.resize(mesh_.cell_capacity());
+  marks_.resize(mesh_.cell_capacity());
+  label_created_cells(zone, vertex);
+  mark_border_faces(zone, vertex);
+}
+
+Index RestrictedSurface::new_record() {
+  if (free_records_.empty()) {
+    records_.emplace_back();
+    return static_cast<Index>(records_.size() - 1);
+  }
+  const Index record = free_records_.back();
+  free_records_.pop_back();
+  records_[record] = {};
+  return record;
+}
+
+void RestrictedSurface::mark(FaceId face, Index record) {
+  labels_[cell_of(face)].marked |= static_cast<std::uint8_t>(1U << corner_of(face));
+  marks_[cell_of(face)][corner_of(face)] = record;
+}
+
+// Drop the mark on this side; the record goes with it.
+void RestrictedSurface::unmark(FaceId face) {
+  labels_[cell_of(face)].marked &= static_cast<std::uint8_t>(~(1U << corner_of(face)));
+  free_records_.push_back(record_of(face));
+}
+
+// Precondition: crossings_ are those of its dual edge.
+void RestrictedSurface::restrict_face(FaceId face) {
+  const Index record = new_record();
+  mark(face, record);
+  mark(mesh_.opposite(face), record);
+  const auto v = mesh_.face_vertices(face);
+  const Point& corner = mesh_.point(v[0]);
+  RestrictedTriangle& t = records_[record].triangle;
+  t.several_sheets = crossings_.size() > 1;
+  t.squared_radius = -1;
+  for (const auto& crossing : crossings_) {
+    const Point x = crossing_point(face, crossing.triangle);
+    const double r2 = squared_distance(x, corner);
+    if (r2 <= t.squared_radius) continue;
+    t.x = x;
+    t.squared_radius = r2;
+    t.triangle = crossing.triangle;
+  }
+  const Index patch = patch_of(t);
+  t.resolved_vertices =
+      mesh_.on_patch(v[0], patch) && mesh_.on_patch(v[1], patch) && mesh_.on_patch(v[2], patch);
+  if (t.resolved_vertices && domain_.plc.patches[patch].planar && !t.several_sheets) {
+    // A needle's circumcentre is noise; the crossing is not.
+    const Point centre = circumcentre(face);
+    if (squared_distance(centre, t.x) < 0.01 * t.squared_radius) {
+      t.x = centre;
+      t.squared_radius = squared_distance(t.x, corner);
+    }
+  }
+  t.in_collar = collar_cells_.holds(v[0], t.x);
+}
+
+Point RestrictedSurface::crossing_point(FaceId face, Index triangle) const {
+  const Point& p = mesh_.circumcentre(cell_of(face));
+  const Point& q = mesh_.circumcentre(cell_of(mesh_.opposite(face)));
+  const auto t = nodes_.hierarchy().corners(triangle);
+  const Vector n = cross(t[1] - t[0], t[2] - t[0]);
+  const double hp = dot(p - t[0], n), hq = dot(q - t[0], n);
+  const double share = hp == hq ? 0.5 : std::clamp(hp / (hp - hq), 0.0, 1.0);
+  // A dual edge almost in the triangle's plane crosses it, but where is noise: not beside it.
+  return nearest_point_on_triangle(p + share * (q - p), t[0], t[1], t[2]);
+}
+
+Point RestrictedSurface::circumcentre(FaceId face) const {
+  const auto v = mesh_.face_vertices(face);
+  const Point& a = mesh_.point(v[0]);
+  const Vector u = mesh_.point(v[1]) - a, w = mesh_.point(v[2]) - a;
+  const Vector n = cross(u, w);
+  const double nn = squared_norm(n);
+  if (nn == 0) return crossing_point(face, triangle(face).triangle);
+  return a + (squared_norm(w) * cross(n, u) + squared_norm(u) * cross(w, n)) / (2 * nn);
+}
+
+void RestrictedSurface::note_ball(Index cell, const CollarBall& ball) {
+  visit_marked(cell, [&](FaceId face) {
+    RestrictedTriangle& t = records_[record_of(face)].triangle;
+    if (squared_distance(t.x, ball.centre) < ball.radius * ball.radius) t.in_collar = true;
+  });
+}
+
+void RestrictedSurface::give_outside(Index cell) {
+  Record boundary;
+  visit_marked(cell, [&](FaceId face) { boundary = record(face); });
+  labels_[cell].region = 0;
+  for (unsigned corner = 0; corner < 4; ++corner) {
+    const FaceId face = face_id(cell, corner), other = mesh_.opposite(face);
+    if (is_marked(face)) {
+      unmark(face);
+      labels_[cell_of(other)].marked &= static_cast<std::uint8_t>(~(1U << corner_of(other)));
+      continue;
+    }
+    records_.push_back(boundary);
+    mark(face, static_cast<Index>(records_.size() - 1));
+    mark(other, static_cast<Index>(records_.size() - 1));
+  }
+}
+
+}  // namespace collarmesh

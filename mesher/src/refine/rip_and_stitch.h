@@ -1,0 +1,79 @@
+#pragma once
+
+#include <vector>
+
+#include "refine/collar_surface.h"
+#include "refine/curve_chains.h"
+
+namespace collarmesh {
+
+/// What takes the place of the cells inside the collars, in mesh vertices.
+struct Stitched {
+  struct Tet {
+    std::array<Index, 4> corners;
+    Index region;
+    std::uint8_t collar;  ///< 1 star, 2 book
+    Tag crease;           ///< of the curve or vertex
+  };
+  struct Face {
+    std::array<Index, 3> corners;
+    std::array<Index, 2> regions;
+    Index patch;
+  };
+  struct Edge {
+    std::array<Index, 2> corners;
+    Index curve;
+  };
+  std::vector<Tet> tets;
+  std::vector<Face> faces;
+  std::vector<Edge> edges;
+  std::vector<Index> open;  ///< mesh vertices of faces between regions that lie on no patch between them
+};
+
+/// Rip and stitch (paper, Procedure 5): the cells inside the collars are dropped; each triangle of the collar
+/// surface makes a star tet with its ball's centre, each edge between triangles of consecutive balls a book
+/// tet with the two centres.
+///
+/// State: the result, of the mesh as it was when the loop asked last. SurfaceTopology and extraction read it.
+class RipAndStitch {
+ public:
+  /// All are kept by reference.
+  RipAndStitch(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes,
+               const CollarSystem& collars, const RestrictedSurface& surface, const UnresolvedPoints& points,
+               const CurveChains& curves, const CollarCreator& creator, CollarSurface& collar_surface)
+      : domain_(domain),
+        mesh_(mesh),
+        nodes_(nodes),
+        collars_(collars),
+        surface_(surface),
+        points_(points),
+        curves_(curves),
+        creator_(creator),
+        collar_surface_(collar_surface) {}
+
+  /// Precondition: every point is resolved, and the collar surface well represented.
+  void stitch();
+  const Stitched& result() const { return stitched_; }
+
+ private:
+  Tag crease_tag(Index ball) const;
+  void stitch_books(const std::vector<CollarTriangle>& triangles);
+  void stitch_faces(const std::vector<CollarTriangle>& triangles);
+  Index patch_between(const std::array<Index, 3>& corners, Index a, Index b) const;
+  bool lies_on(const std::array<Index, 3>& face, Index patch) const;
+  bool against_patch(const std::array<Index, 3>& face, Index patch) const;
+  Point centroid(const std::array<Index, 3>& face) const;
+
+  const Domain& domain_;
+  const RefinedMesh& mesh_;
+  const SurfaceNodes& nodes_;
+  const CollarSystem& collars_;
+  const RestrictedSurface& surface_;
+  const UnresolvedPoints& points_;
+  const CurveChains& curves_;
+  const CollarCreator& creator_;
+  CollarSurface& collar_surface_;
+  Stitched stitched_;
+};
+
+}  // namespace collarmesh

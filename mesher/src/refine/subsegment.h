@@ -1,0 +1,20 @@
+#pragma once
+
+#include <array>
+
+#include "collarmesh/geometry.h"
+
+namespace collarmesh {
+
+/// A piece of a curve between two mesh vertices that are consecutive on it, with its protective
+/// ball: centred where the curve meets the bisector plane of the ends.
+struct Subsegment {
+  Index curve;
+  std::array<Index, 2> ends;         ///< mesh vertices
+  std::array<double, 2> parameters;  ///< arc length along the curve
+  Point centre;
+  double centre_parameter;
+  double squared_radius;
+};
+
+}  // namespace collarmesh

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <vector>
+
+#include "refine/collar_cells.h"
+#include "refine/curve_chains.h"
+#include "refine/outcome.h"
+#include "refine/triangle_quality.h"
+#include "refine/unresolved_points.h"
+
+namespace collarmesh {
+
+/// Of some points, those that are far from each other: each next one is the farthest from all
+/// before. Cost: candidates times count.
+std::vector<Index> spread_points(std::span<const Index> candidates, const std::vector<Point>& points,
+                                 std::size_t count);
+
+/// Looks at the whole restricted surface when the queue has run empty: whether the triangles of each patch
+/// form a manifold that ends at the patch's curves, whether any part of a smooth patch was missed, and flat
+/// cells. What is wrong goes back into the queue.
+///
+/// State: which triangle each point of the smooth patches' tessellation was near to when last looked at, so
+/// that a round looks at what has changed; the number of rounds. The loop asks.
+class SurfaceCheck {
+ public:
+  /// All are kept by reference.
+  SurfaceCheck(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes,
+               const CollarSystem& collars, const CollarCells& collar_cells, RestrictedSurface& surface,
+               TriangleQuality& triangles, UnresolvedPoints& points, CurveChains& curves, Outcome& outcome)
+      : domain_(domain),
+        mesh_(mesh),
+        nodes_(nodes),
+        collars_(collars),
+        collar_cells_(collar_cells),
+        surface_(surface),
+        triangles_(triangles),
+        points_(points),
+        curves_(curves),
+        outcome_(outcome) {}
+
+  /// A closed patch has no border to start from: seed it.
+  void seed_closed_patches();
+  /// A round. False when nothing is wrong.
+  bool check();
+  /// Count a round in which something was found. False, and given up, after too many.
+  bool another_round();
+  /// Flat cells at the boundary of the domain go outside. Not before the end: refinement is over. False when
+  /// there are none.
+  bool relabel_flat_cells();
+
+ private:
+  /// A point of the complex on a smooth patch, with a triangle of the patch that it was near to.
+  struct TessellationPoint {
+    Index point;
+    FaceId near;
+    std::uint32_t generation;  // of the face's cell
+  };
+  std::vector<bool> vertices_at_collars() const;
+  bool check_patch_topology(const std::vector<FaceId>& faces);
+  bool refine_distant_triangles(const std::vector<FaceId>& faces);
+  void seed_missed_patch(Index patch);
+  void prepare_tessellation();
+  bool still_near(const TessellationPoint& p, Index patch) const;
+  bool resolve_distant_points(const std::vector<FaceId>& faces);
+  bool flat_on_patch(Index cell) const;
+  bool at_boundary(FaceId face) const;
+  bool check_flat_cells();
+
+  const Domain& domain_;
+  const RefinedMesh& mesh_;
+  const SurfaceNodes& nodes_;
+  const CollarSystem& collars_;
+  const CollarCells& collar_cells_;
+  RestrictedSurface& surface_;
+  TriangleQuality& triangles_;
+  UnresolvedPoints& points_;
+  CurveChains& curves_;
+  Outcome& outcome_;
+  std::vector<TessellationPoint> tessellation_;        // of all smooth patches, one after the other
+  std::vector<std::size_t> first_tessellation_point_;  // of each patch; empty before the first check
+  unsigned rounds_ = 0;
+};
+
+}  // namespace collarmesh

@@ -1,0 +1,161 @@
+#include "refine/triangle_quality.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace collarmesh {
+
+namespace {
+
+// The insertion of a centre is moved by a pseudo-random offset of this share of its ball's radius.
+constexpr double offset_per_radius = 0.1;
+// The cosine between a surface's normal and that of what it faces across a gap; of parts of the surface
+// that meet elsewhere only what is almost parallel counts, else the gap would close in a wedge.
+constexpr double least_facing = 0.5, least_facing_of_neighbours = 0.966;
+
+bool share(const std::vector<Index>& a, const std::vector<Index>& b) {  // sorted
+  for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
+    if (*i == *j) return true;
+    *i < *j ? ++i : ++j;
+  }
+  return false;
+}
+
+bool meet(const Plc::Patch& a, const Plc::Patch& b) {
+  return share(a.curves, b.curves) || share(a.vertices, b.vertices);
+}
+
+}  // namespace
+
+// A surface gap ball lies in the union of its two cells' balls, so the marked faces of the zone are
+// all that the candidate can encroach.
+FaceId TriangleQuality::encroached(const ConflictZone& zone, const Candidate& candidate) const {
+  FaceId best = no_face;
+  if (candidate.feature.dimension < 3) return best;
+  double deepest = 0;
+  for (const Index cell : zone.cells)
+    surface_.visit_marked(cell, [&](FaceId face) {
+      const RestrictedTriangle& t = surface_.triangle(face);
+      const double depth = t.squared_radius - squared_distance(candidate.point, t.x);
+      if (depth <= deepest || surface_.notes(face).given_up || t.in_collar) return;
+      best = face;
+      deepest = depth;
+    });
+  return best;
+}
+
+std::optional<Candidate> TriangleQuality::candidate(FaceId face) {
+  if (auto across = facing_sheets_.candidate_across(face)) return across;
+  const RestrictedTriangle& t = surface_.triangle(face);
+  const Index patch = surface_.patch(face);
+  Point p = t.x;
+  if (domain_.plc.patches[patch].planar && t.resolved_vertices) {
+    const auto v = mesh_.face_vertices(face);
+    const Vector n = cross(mesh_.point(v[1]) - mesh_.point(v[0]), mesh_.point(v[2]) - mesh_.point(v[0]));
+    if (squared_norm(n) > 0)
+      p = p + random_.outside_collars(p, offset_per_radius * std::sqrt(t.squared_radius / 3), n);
+  }
+  if (domain_.plc.patches[patch].planar) p = domain_.on_plane(patch, p);
+  p = domain_.frame.rounded(p);
+  const FaceId other = mesh_.opposite(face);
+  Index start = none;
+  if (mesh_.in_conflict(cell_of(face), p))
+    start = cell_of(face);
+  else if (other != no_face && mesh_.in_conflict(cell_of(other), p))
+    start = cell_of(other);
+  else
+    start = mesh_.conflicting_cell_around(mesh_.face_vertices(face)[0], p);
+  if (start == none) return std::nullopt;
+  return Candidate{p, t.squared_radius, t.x, {2, patch}, start};
+}
+
+bool TriangleQuality::due(const WorkQueue::Entry& entry) const {
+  const FaceId face = entry.id;
+  if (!mesh_.alive(cell_of(face), entry.stamp) || !surface_.is_marked(face)) return false;
+  const TriangleNotes& notes = surface_.notes(face);
+  return !notes.given_up && (!surface_.triangle(face).in_collar || notes.surface_needs_it);
+}
+
+void TriangleQuality::queue_again(const WorkQueue::Item& item, double squared_radius) {
+  if (mesh_.alive(cell_of(item.entry.id), item.entry.stamp) && surface_.is_marked(item.entry.id))
+    queue_.push(item.priority, squared_radius, item.entry);
+}
+
+void TriangleQuality::cells_made(const ConflictZone& zone) {
+  for (const Index cell : zone.created)
+    surface_.visit_marked(cell, [&](FaceId face) {
+      if (!surface_.notes(face).judged) judge(face);
+    });
+}
+
+void TriangleQuality::judge_all() {
+  for (const FaceId face : surface_.marked_faces())
+    if (!surface_.notes(face).given_up) judge(face);
+}
+
+void TriangleQuality::split(FaceId face) {
+  TriangleNotes& notes = surface_.notes(face);
+  if (notes.given_up) return;
+  notes.surface_needs_it = true;
+  queue_.push(WorkQueue::unresolved_triangles, surface_.triangle(face).squared_radius, entry(face));
+}
+
+void TriangleQuality::judge(FaceId face) {
+  surface_.notes(face).judged = true;
+  const RestrictedTriangle& t = surface_.triangle(face);
+  if (t.in_collar) return;
+  if (!t.resolved_vertices || t.several_sheets || too_far(face, t))
+    queue_.push(WorkQueue::unresolved_triangles, t.squared_radius, entry(face));
+  else if (too_large(face, t))
+    queue_.push(WorkQueue::large_triangles, t.squared_radius, entry(face));
+}
+
+bool TriangleQuality::too_large(FaceId face, const RestrictedTriangle& t) {
+  const Sizing& sizing = sizes_.asked();
+  const auto corners = mesh_.face_vertices(face);
+  double size = sizing.triangle_size(surface_.patch(face), t.triangle, t.x);
+  if (const double widest = sizing.widest_gap(size); widest > 0)
+    size = std::min(size, sizing.gap_size(gap_at(t, widest)));
+  const double reach = std::sqrt(t.squared_radius);
+  sizes_.impose(corners, size, reach);
+  size = std::min(size, sizes_.graded(corners, reach));
+  const double radius = Sizing::triangle_radius(size);
+  return t.squared_radius > radius * radius;
+}
+
+// How far is the surface that faces this one across a region, if not farther than `widest`?
+double TriangleQuality::gap_at(const RestrictedTriangle& t, double widest) {
+  const auto corners = nodes_.hierarchy().corners(t.triangle);
+  Vector normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  normal = normal / norm(normal);
+  const Plc& plc = domain_.plc;
+  const Index own = plc.triangles[t.triangle].patch;
+  const Plc::Patch& patch = plc.patches[own];
+  double gap = widest;
+  for (unsigned side = 0; side < 2; ++side) {
+    if (patch.regions[side] == 0) continue;
+    const Vector way = side == 0 ? -1 * normal : normal;
+    // Not from the plane of its own triangle: that would be one tie after the other.
+    nodes_.crossings(t.x + 1e-6 * widest * way, t.x + widest * way, crossings_);
+    for (const auto& [triangle, direction] : crossings_) {
+      const Index other = plc.triangles[triangle].patch;
+      const auto c = nodes_.hierarchy().corners(triangle);
+      const Vector n = cross(c[1] - c[0], c[2] - c[0]);
+      const double towards = dot(n, way);
+      const bool same = other == own;
+      if (same && dot(n, normal) > 0) continue;
+      const bool neighbours = same || meet(patch, plc.patches[other]);
+      if (std::fabs(towards) < (neighbours ? least_facing_of_neighbours : least_facing) * norm(n)) continue;
+      gap = std::min(gap, dot(c[0] - t.x, n) / towards);
+    }
+  }
+  return gap;
+}
+
+// On a smooth patch: is the triangle's circumcentre farther from the surface than the tolerance?
+bool TriangleQuality::too_far(FaceId face, const RestrictedTriangle& t) const {
+  if (domain_.plc.patches[surface_.patch(face)].planar) return false;
+  return squared_distance(surface_.circumcentre(face), t.x) > domain_.distance * domain_.distance;
+}
+
+}  // namespace collarmesh

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "refine/candidate.h"
+#include "refine/facing_sheets.h"
+#include "refine/graded_sizes.h"
+#include "refine/random_offsets.h"
+#include "refine/restricted_surface.h"
+#include "refine/work_queue.h"
+
+namespace collarmesh {
+
+/// Which restricted triangles are to be destroyed: unresolved ones, whose vertices lie elsewhere, whose dual
+/// edge crosses several sheets or whose circumcentre is too far from the surface; and large ones.
+///
+/// State: the notes of the restricted surface. Invariant: after an insertion every triangle of the new cells
+/// is judged, and those that are to be destroyed are in the queue. The loop tells of insertions and takes
+/// candidates; SurfaceCheck and SurfaceTopology ask for triangles that are to be split.
+class TriangleQuality {
+ public:
+  /// All are kept by reference.
+  TriangleQuality(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes,
+                  RestrictedSurface& surface, GradedSizes& sizes, FacingSheets& facing_sheets,
+                  RandomOffsets& random, WorkQueue& queue)
+      : domain_(domain),
+        mesh_(mesh),
+        nodes_(nodes),
+        surface_(surface),
+        sizes_(sizes),
+        facing_sheets_(facing_sheets),
+        random_(random),
+        queue_(queue) {}
+
+  /// Paper, Procedure 2: the triangle whose surface gap ball a candidate with this zone lies deepest in;
+  /// no_face when it encroaches none.
+  FaceId encroached(const ConflictZone& zone, const Candidate& candidate) const;
+  /// What destroys a triangle, if anything can.
+  std::optional<Candidate> candidate(FaceId face);
+  /// Is the entry of the queue that of a triangle that is to be destroyed?
+  bool due(const WorkQueue::Entry& entry) const;
+  /// Queue a triangle again that is still there after something else was inserted in its place.
+  void queue_again(const WorkQueue::Item& item, double squared_radius);
+  /// Nothing more is inserted to destroy a triangle.
+  void give_up(FaceId face) { surface_.notes(face).given_up = true; }
+
+  void cells_made(const ConflictZone& zone);
+  /// Sizes have changed everywhere.
+  void judge_all();
+  /// Queue a triangle that is to be split for the sake of its patch, unless it was given up: even one in a
+  /// collar.
+  void split(FaceId face);
+
+ private:
+  void judge(FaceId face);
+  bool too_large(FaceId face, const RestrictedTriangle& t);
+  double gap_at(const RestrictedTriangle& t, double widest);
+  bool too_far(FaceId face, const RestrictedTriangle& t) const;
+  WorkQueue::Entry entry(FaceId face) const { return {face, mesh_.generation(cell_of(face))}; }
+
+  const Domain& domain_;
+  const RefinedMesh& mesh_;
+  const SurfaceNodes& nodes_;
+  RestrictedSurface& surface_;
+  GradedSizes& sizes_;
+  FacingSheets& facing_sheets_;
+  RandomOffsets& random_;
+  WorkQueue& queue_;
+  std::vector<TriangleHierarchy::Crossing> crossings_;  // scratch
+};
+
+}  // namespace collarmesh

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <vector>
+
+#include "common/large_pages.h"
+#include "location/location_objects.h"
+#include "refine/candidate.h"
+#include "refine/refined_mesh.h"
+#include "refine/work_queue.h"
+
+namespace collarmesh {
+
+/// Points that the mesh must have and has not yet: vertices of the complex, seeds, corner points of collars.
+///
+/// Invariant: each of them is found from the mesh vertex that is nearest to it, and is in the queue with the
+/// ball around it that is empty. Any part may add one; the loop resolves them, when their turn has come or as
+/// what a candidate warps to.
+class UnresolvedPoints {
+ public:
+  struct Unresolved {
+    Point point;
+    Feature feature;
+    Index object = none;  // in objects_
+    Index vertex = none;  ///< the mesh vertex that it became
+  };
+
+  /// All are kept by reference. `theta`: how far to warp (paper, Procedure 2).
+  UnresolvedPoints(const RefinedMesh& mesh, double theta, WorkQueue& queue)
+      : mesh_(mesh), queue_(queue), theta_(theta) {}
+
+  /// `near`: a mesh vertex not far away, if one is known. Points are numbered in their order.
+  Index add(const Point& p, const Feature& feature, Index near = none);
+  const Unresolved& operator[](Index point) const { return points_[point]; }
+  std::size_t size() const { return points_.size(); }
+  bool resolved(Index point) const { return points_[point].vertex != none; }
+  /// The mesh vertex that a point became, or is nearest to it.
+  Index vertex_near(Index point) const {
+    const Unresolved& p = points_[point];
+    return p.vertex != none ? p.vertex : objects_[p.object].vertex;
+  }
+  /// Is a point due whose entry in the queue has this stamp? If not it is queued anew: the mesh has become
+  /// finer there since, and others have larger balls.
+  bool due(Index point, std::uint32_t stamp);
+  /// A point becomes this vertex, which may be about to come.
+  void resolve(Index point, Index vertex);
+
+  /// Paper, Procedure 2: what a candidate with this zone warps to, the point of lowest containment dimension
+  /// within theta r of the centre of the ball. None if there is none.
+  Index warp_target(const ConflictZone& zone, const Candidate& candidate) const;
+  /// The only point on a vertex of the complex that is found from this mesh vertex; none if there are
+  /// several.
+  Index only_vertex_at(Index mesh_vertex) const;
+
+  void cells_made(const ConflictZone& zone, Index vertex);
+
+  std::size_t bytes() const { return objects_.bytes() + points_.capacity() * sizeof(Unresolved); }
+
+ private:
+  void queue(Index point);
+  double squared_ball(const Unresolved& p) const {
+    return squared_distance(p.point, mesh_.point(objects_[p.object].vertex));
+  }
+
+  const RefinedMesh& mesh_;
+  WorkQueue& queue_;
+  double theta_;
+  LargeVector<Unresolved> points_;
+  LocationObjects objects_;
+};
+
+}  // namespace collarmesh

@@ -1,0 +1,268 @@
+// The parts that make collars and look at surfaces, with a test in place of the loop.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+#include "refine/collar_review.h"
+#include "refine/rip_and_stitch.h"
+#include "refine/surface_check.h"
+#include "refine/surface_topology.h"
+#include "support/plc_shapes.h"
+#include "support/refinement_parts.h"
+
+namespace collarmesh {
+namespace {
+
+struct Parts : testing::KnownMesh {
+  explicit Parts(const Plc& plc, const MeshOptions& options = {}) : KnownMesh(plc, options) {
+    for (Index i = 0; i < plc.vertices.size(); ++i) points.add(domain.points[plc.vertices[i].point], {0, i});
+    creator.start();
+    chains.start();
+  }
+
+  void insert_and_tell(const Point& p, const Feature& feature) {
+    const Index vertex = insert(p, feature);
+    points.cells_made(zone, vertex);
+    chains.cells_made(zone, vertex);
+    triangles.cells_made(zone);
+    collar_surface.cells_made(zone);
+    review.cells_made(zone);
+  }
+  void resolve_all() {
+    for (Index point = 0; point < points.size(); ++point) {
+      if (points.resolved(point)) continue;
+      const UnresolvedPoints::Unresolved p = points[point];
+      points.resolve(point, mesh.vertex_count());
+      insert_and_tell(p.point, p.feature);
+      chains.point_resolved(point);
+    }
+  }
+  bool insert_on_collar(const CollarPoint& p) {
+    const Index nearest = mesh.nearest_vertex(p.point, p.nearby);
+    if (distance(p.point, mesh.point(nearest)) < 1e-9 ||
+        mesh.conflicting_cell_around(nearest, p.point) == none)
+      return false;
+    insert_and_tell(p.point, p.feature);
+    return true;
+  }
+  std::set<Index> queued_triangles() {
+    std::set<Index> found;
+    for (WorkQueue::Item item; queue.pop(item);)
+      if (item.priority == WorkQueue::unresolved_triangles && triangles.due(item.entry))
+        found.insert(item.entry.id);
+    return found;
+  }
+
+  Outcome outcome{domain.frame};
+  WorkQueue queue{100};
+  RandomOffsets random{0, collars};
+  GradedSizes sizes{domain, mesh, surface};
+  FacingSheets facing_sheets{domain, mesh, nodes, collars, surface};
+  UnresolvedPoints points{mesh, 0.25, queue};
+  OpenCreases open_creases;
+  CurveChains chains{domain, mesh,          collars, points,  open_creases,
+                     sizes,  facing_sheets, random,  outcome, queue};
+  TriangleQuality triangles{domain, mesh, nodes, surface, sizes, facing_sheets, random, queue};
+  CollarCreator creator{domain,
+                        mesh,
+                        nodes,
+                        sizes,
+                        collars,
+                        collar_cells,
+                        surface,
+                        points,
+                        chains,
+                        open_creases,
+                        [](std::size_t) { return false; }};
+  CollarSurface collar_surface{domain, mesh, nodes, collars, collar_cells, surface, creator};
+  CollarReview review{mesh,    collars,        collar_cells, surface,
+                      creator, collar_surface, outcome,      [] { return false; }};
+  SurfaceCheck check{domain, mesh, nodes, collars, collar_cells, surface, triangles, points, chains, outcome};
+};
+
+Plc build(const PolygonSoup& soup) { return build_plc({&soup, 1}); }
+
+TEST(CollarParts, EveryBallHasItsCentreAndEveryCornerAPoint) {
+  const Plc plc = build(testing::wedge(25, 1));
+  Parts parts(plc);
+  ASSERT_FALSE(parts.collars.empty());
+  EXPECT_EQ(parts.creator.vertex_of(0), none);
+  parts.resolve_all();
+  for (Index ball = 0; ball < parts.collars.balls().size(); ++ball) {
+    const CollarBall& b = parts.collars.balls()[ball];
+    const Index v = parts.creator.vertex_of(ball);
+    ASSERT_NE(v, none);
+    EXPECT_EQ(parts.mesh.point(v), b.centre);
+    EXPECT_EQ(parts.mesh.feature(v), (Feature{b.dimension, b.feature}));
+    EXPECT_TRUE(parts.collar_surface.on_crease(v));
+  }
+  for (const CornerPoint& corner : parts.collars.corners()) {
+    const Index v = parts.mesh.nearest_vertex(corner.point);
+    EXPECT_NEAR(distance(parts.mesh.point(v), corner.point), 0, 1e-9);
+    EXPECT_LE(parts.mesh.feature(v).dimension, corner.dimension);
+  }
+}
+
+TEST(CollarParts, InThePassNoBallIsPlacedAtTheStart) {
+  const Plc plc = build(testing::wedge(25, 1));
+  MeshOptions options;
+  options.collar_creation = CollarCreation::in_pass;
+  Parts parts(plc, options);
+  EXPECT_TRUE(parts.collars.empty());
+  const std::vector<Index> open = parts.open_creases.curves();
+  ASSERT_FALSE(open.empty());
+  const Index end = plc.curves[open[0]].ends[0];
+  EXPECT_TRUE(parts.creator.waits_for_ball(end));
+  std::size_t observed = 0;
+  parts.creator.observe([&](const CollarBall& ball) {
+    EXPECT_EQ(ball.feature, end);
+    ++observed;
+  });
+  const Point p = parts.points[end].point;
+  parts.points.resolve(end, parts.mesh.vertex_count());
+  parts.insert_and_tell(p, {0, end});
+  parts.creator.create_at_vertex(end, parts.mesh.last_vertex());
+  EXPECT_EQ(observed, 1U);
+  EXPECT_FALSE(parts.creator.waits_for_ball(end));
+  EXPECT_NE(parts.open_creases.chain(open[0]).ends[0], none);  // it leaves the ball
+  EXPECT_TRUE(parts.collar_cells.near(parts.mesh.last_vertex()));
+}
+
+TEST(CollarParts, RoundsEndWithACollarSurfaceThatCanBeStitched) {
+  const Plc plc = build(testing::wedge(25, 1));
+  Parts parts(plc);
+  parts.resolve_all();
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> unit(-0.1, 1.1);
+  std::size_t rounds = 0;
+  for (int again = 0; again < 3; ++again) {  // what a round has found right may become poor
+    for (int k = 0; k < 200; ++k) {
+      const double share = k < 100 ? 1 : 0.2;  // of the wedge, from its edge
+      const Point p{share * unit(random), share * 0.5 * unit(random), unit(random)};
+      const Index v = parts.mesh.nearest_vertex(p);
+      if (parts.collars.ball_containing(p) == none && distance(p, parts.mesh.point(v)) > 0.02)
+        parts.insert_and_tell(p, {3, none});
+      for (const Index cell : parts.zone.created)
+        for (unsigned corner = 0; corner < 4 && parts.mesh.alive(cell); ++corner)
+          EXPECT_FALSE(parts.collar_surface.is_off(face_id(cell, corner)));  // nobody has asked yet
+    }
+    while (parts.review.check([&](const CollarPoint& p) { return parts.insert_on_collar(p); })) ++rounds;
+  }
+  EXPECT_GT(rounds, 0U);
+  EXPECT_FALSE(parts.outcome.given_up()) << parts.outcome.message();
+  std::vector<Index> balls;
+  for (Index cell = 0; cell < parts.mesh.cell_capacity(); ++cell)
+    for (unsigned corner = 0; corner < 4 && parts.mesh.alive(cell); ++corner) {
+      const FaceId face = face_id(cell, corner), other = parts.mesh.opposite(face);
+      if (other == no_face || !parts.collar_surface.is_off(face)) continue;
+      parts.collars.balls_on_segment(parts.mesh.circumcentre(cell), parts.mesh.circumcentre(cell_of(other)),
+                                     balls);
+      EXPECT_TRUE(balls.empty());
+    }
+  std::size_t inside = 0;
+  for (CollarTriangle t : parts.collar_surface.triangles()) {
+    if (parts.surface.region(cell_of(t.face)) == 0) continue;
+    ++inside;
+    EXPECT_FALSE(parts.collar_surface.poor_alone(t));
+    EXPECT_FALSE(t.several);
+    for (const Index v : parts.mesh.face_vertices(t.face)) EXPECT_FALSE(parts.collar_surface.on_crease(v));
+  }
+  EXPECT_GT(inside, 10U);
+  // What is asked again without an insertion is answered without one.
+  EXPECT_FALSE(parts.review.check([](const CollarPoint&) { return true; }));
+  RipAndStitch stitching(parts.domain, parts.mesh, parts.nodes, parts.collars, parts.surface, parts.points,
+                         parts.chains, parts.creator, parts.collar_surface);
+  stitching.stitch();
+  const auto& tets = stitching.result().tets;
+  EXPECT_EQ(static_cast<std::size_t>(
+                std::count_if(tets.begin(), tets.end(), [](const auto& tet) { return tet.collar == 1; })),
+            inside);
+  EXPECT_GT(tets.size(), inside);  // books
+  for (const auto& tet : tets) {
+    const auto& v = tet.corners;
+    EXPECT_GT(six_volume(parts.mesh.point(v[0]), parts.mesh.point(v[1]), parts.mesh.point(v[2]),
+                         parts.mesh.point(v[3])),
+              0);
+  }
+  EXPECT_EQ(stitching.result().edges.size(),
+            parts.collars.links().size() + parts.chains.clipped_ends().size());
+}
+
+TEST(CollarParts, WithoutCreasesThereIsNothingToReview) {
+  const Plc plc = build(testing::box({0, 0, 0}, {1, 1, 1}));
+  Parts parts(plc);
+  parts.resolve_all();
+  EXPECT_TRUE(parts.collars.empty());
+  EXPECT_FALSE(parts.review.check([](const CollarPoint&) { return true; }));
+  EXPECT_TRUE(parts.collar_surface.triangles().empty());
+}
+
+TEST(SurfaceParts, AClosedPatchIsSeededAndAMissedOneMore) {
+  const Plc plc = build(testing::sphere(6, 1, {0, 0, 0}));
+  Parts parts(plc);
+  ASSERT_EQ(plc.patches.size(), 1U);
+  EXPECT_EQ(parts.points.size(), 0U);
+  parts.check.seed_closed_patches();
+  const std::size_t seeds = parts.points.size();
+  EXPECT_GT(seeds, 3U);
+  for (Index point = 0; point < seeds; ++point) EXPECT_EQ(parts.points[point].feature, (Feature{2, 0}));
+  EXPECT_TRUE(parts.check.check());  // no triangle of it yet
+  EXPECT_GT(parts.points.size(), 2 * seeds);
+}
+
+TEST(SurfaceParts, WhatIsFarFromASmoothPatchIsSplitUntilNothingIs) {
+  const Plc plc = build(testing::sphere(12, 1, {0, 0, 0}));
+  MeshOptions options;
+  options.distance = 0.1;
+  Parts parts(plc, options);
+  parts.check.seed_closed_patches();
+  parts.resolve_all();
+  std::size_t rounds = 0;
+  while (parts.check.check() && ++rounds < 50) {
+    parts.resolve_all();
+    for (const FaceId face : parts.queued_triangles()) {
+      if (!parts.mesh.alive(cell_of(face)) || !parts.surface.is_marked(face)) continue;
+      const auto candidate = parts.triangles.candidate(face);
+      if (candidate) parts.insert_and_tell(candidate->point, candidate->feature);
+    }
+  }
+  EXPECT_GT(rounds, 0U);
+  EXPECT_LT(rounds, 50U);
+  for (const Point& p : parts.domain.points) {
+    double nearest = INFINITY;
+    for (const FaceId face : parts.surface.marked_faces()) {
+      const auto v = parts.mesh.face_vertices(face);
+      nearest =
+          std::min(nearest, squared_distance_to_triangle(p, parts.mesh.point(v[0]), parts.mesh.point(v[1]),
+                                                         parts.mesh.point(v[2])));
+    }
+    EXPECT_LE(std::sqrt(nearest), options.distance);
+  }
+}
+
+TEST(SurfaceParts, SpreadPointsAreFarFromEachOther) {
+  std::vector<Point> points;
+  std::vector<Index> all;
+  for (Index i = 0; i < 11; ++i) {
+    points.push_back({0.1 * i, 0, 0});
+    all.push_back(i);
+  }
+  EXPECT_EQ(spread_points(all, points, 3), (std::vector<Index>{0, 10, 5}));
+  EXPECT_EQ(spread_points(all, points, 20).size(), 11U);
+  EXPECT_EQ(spread_points(std::vector<Index>{4, 4, 4}, points, 2), std::vector<Index>{4});
+}
+
+TEST(SurfaceParts, RoundsAreBounded) {
+  const Plc plc = build(testing::box({0, 0, 0}, {1, 1, 1}));
+  Parts parts(plc);
+  std::size_t rounds = 0;
+  while (parts.check.another_round()) ASSERT_LT(++rounds, 1000U);
+  EXPECT_GT(rounds, 10U);
+  EXPECT_TRUE(parts.outcome.given_up());
+  EXPECT_FALSE(parts.check.check());
+}
+
+}  // namespace
+}  // namespace collarmesh

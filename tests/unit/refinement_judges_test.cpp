@@ -1,0 +1,334 @@
+// The parts of the refinement that judge and report: which cells and triangles are queued, target sizes,
+// which cells lie in collars, random offsets, the outcome and the budget.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <random>
+#include <set>
+
+#include "refine/budget.h"
+#include "refine/cell_quality.h"
+#include "refine/triangle_quality.h"
+#include "support/plc_shapes.h"
+#include "support/refinement_parts.h"
+
+namespace collarmesh {
+namespace {
+
+using testing::KnownMesh;
+
+Plc box() {
+  const PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  return build_plc({&soup, 1});
+}
+
+MeshOptions with_size(double size) {
+  MeshOptions options;
+  options.size = size;
+  return options;
+}
+
+/// All that judges cells and triangles.
+struct Judges : KnownMesh {
+  Judges(const Plc& plc, const MeshOptions& options) : KnownMesh(plc, options) { cells.judge_all(); }
+
+  void insert_and_tell(const Point& p, const Feature& feature = {3, none}) {
+    const Index vertex = insert(p, feature);
+    sizes.cells_made(zone, vertex);
+    triangles.cells_made(zone);
+    cells.cells_made(zone, vertex);
+  }
+  void insert_random(std::size_t count) {
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> unit(-0.2, 1.2);
+    for (std::size_t k = 0; k < count; ++k) insert_and_tell({unit(random), unit(random), unit(random)});
+  }
+  /// Cells and faces in the queue that are still to be destroyed, by their priority.
+  std::array<std::set<Index>, WorkQueue::priority_count> due() {
+    std::array<std::set<Index>, WorkQueue::priority_count> found;
+    for (WorkQueue::Item item; queue.pop(item);) {
+      const bool is_cell =
+          item.priority == WorkQueue::skinny_cells || item.priority == WorkQueue::large_cells;
+      if (is_cell ? cells.due(item.entry) : triangles.due(item.entry))
+        found[item.priority].insert(item.entry.id);
+    }
+    return found;
+  }
+
+  WorkQueue queue{100};
+  RandomOffsets offsets{0, collars};
+  GradedSizes sizes{domain, mesh, surface};
+  FacingSheets facing_sheets{domain, mesh, nodes, collars, surface};
+  TriangleQuality triangles{domain, mesh, nodes, surface, sizes, facing_sheets, offsets, queue};
+  CellQuality cells{domain, mesh, collar_cells, surface, sizes, facing_sheets, offsets, queue};
+};
+
+double radius_edge(const RefinedMesh& mesh, Index cell) {
+  double shortest = INFINITY;
+  for (const Index a : mesh.corners(cell))
+    for (const Index b : mesh.corners(cell))
+      if (a != b) shortest = std::min(shortest, squared_distance(mesh.point(a), mesh.point(b)));
+  return std::sqrt(mesh.squared_radius(cell) / shortest);
+}
+
+TEST(RefineCellQuality, QueuesSkinnyCellsAndLargeOnesInside) {
+  const Plc plc = box();
+  Judges judges(plc, with_size(0.3));
+  judges.insert_random(150);
+  const auto due = judges.due();
+  std::size_t skinny = 0, large = 0;
+  for (Index cell = 0; cell < judges.mesh.cell_capacity(); ++cell) {
+    if (!judges.mesh.alive(cell)) continue;
+    const Index region = judges.surface.region(cell);
+    const double bound =
+        region == 0 ? std::max(judges.domain.options.exterior_radius_edge, judges.domain.options.radius_edge)
+                    : judges.domain.options.radius_edge;
+    if (radius_edge(judges.mesh, cell) > bound) {
+      EXPECT_EQ(due[WorkQueue::skinny_cells].contains(cell),
+                judges.domain.in_box(judges.mesh.circumcentre(cell)));
+      ++skinny;
+    } else if (region != 0) {
+      const double most = judges.sizes.asked().cell_radius(region, judges.mesh.circumcentre(cell), INFINITY);
+      EXPECT_EQ(due[WorkQueue::large_cells].contains(cell), judges.mesh.squared_radius(cell) > most * most);
+      large += due[WorkQueue::large_cells].contains(cell);
+    } else {
+      EXPECT_FALSE(due[WorkQueue::large_cells].contains(cell));
+    }
+  }
+  EXPECT_GT(skinny, 0U);
+  EXPECT_GT(large, 0U);
+}
+
+TEST(RefineCellQuality, WithAVertexRatioOlderCellsAreQueuedWhenAnEdgeBecomesShort) {
+  const Plc plc = box();
+  MeshOptions options = with_size(10);
+  options.vertex_ratio = 3;
+  options.radius_edge = options.exterior_radius_edge = 100;
+  Judges judges(plc, options);
+  judges.insert_random(80);
+  judges.due();
+  const Point at = judges.mesh.point(40);
+  judges.insert_and_tell(at + Vector{1e-3, 2e-3, 1e-3});
+  const auto due = judges.due();
+  std::vector<bool> made(judges.mesh.cell_capacity(), false);
+  for (const Index cell : judges.zone.created) made[cell] = true;
+  std::vector<Index> around;
+  judges.mesh.incident_cells(40, around);
+  for (const Index cell : around)
+    if (judges.surface.region(cell) != 0 && !made[cell]) {
+      EXPECT_TRUE(due[WorkQueue::large_cells].contains(cell));
+    }
+}
+
+TEST(RefineCellQuality, ACandidateDestroysItsCell) {
+  const Plc plc = box();
+  Judges judges(plc, with_size(0.3));
+  judges.insert_random(60);
+  const auto due = judges.due();
+  for (const Index cell : due[WorkQueue::skinny_cells]) {
+    const auto candidate = judges.cells.candidate(cell);
+    if (!candidate) continue;
+    EXPECT_EQ(candidate->start, cell);
+    EXPECT_TRUE(judges.mesh.in_conflict(cell, candidate->point));
+    EXPECT_EQ(candidate->feature.dimension, 3);
+  }
+}
+
+TEST(RefineTriangleQuality, UnresolvedTrianglesAreQueuedUntilTheyAreGivenUp) {
+  const Plc plc = box();
+  Judges judges(plc, with_size(0.3));
+  judges.insert_random(60);  // none of these points is known to lie on a patch
+  const auto due = judges.due();
+  const auto faces = judges.surface.marked_faces();
+  ASSERT_GT(faces.size(), 20U);
+  for (const FaceId face : faces)
+    EXPECT_TRUE(due[WorkQueue::unresolved_triangles].contains(face) ||
+                due[WorkQueue::unresolved_triangles].contains(judges.mesh.opposite(face)));
+  const WorkQueue::Entry entry{faces[0], judges.mesh.generation(cell_of(faces[0]))};
+  EXPECT_TRUE(judges.triangles.due(entry));
+  judges.triangles.give_up(faces[0]);
+  EXPECT_FALSE(judges.triangles.due(entry));
+  judges.triangles.split(faces[0]);
+  EXPECT_TRUE(judges.due()[WorkQueue::unresolved_triangles].empty());
+  judges.triangles.split(faces[1]);
+  EXPECT_TRUE(judges.due()[WorkQueue::unresolved_triangles].contains(faces[1]));
+}
+
+TEST(RefineTriangleQuality, OnlyCellsYieldToTriangles) {
+  const Plc plc = box();
+  Judges judges(plc, with_size(0.3));
+  judges.insert_random(60);
+  const FaceId face = judges.surface.marked_faces()[5];
+  const RestrictedTriangle& t = judges.surface.triangle(face);
+  judges.find_zone(t.x);
+  Candidate candidate{t.x, 1, t.x, {3, none}, judges.zone.cells[0]};
+  const FaceId deepest = judges.triangles.encroached(judges.zone, candidate);
+  ASSERT_NE(deepest, no_face);
+  const RestrictedTriangle& found = judges.surface.triangle(deepest);
+  EXPECT_GE(found.squared_radius - squared_distance(found.x, t.x), t.squared_radius);
+  candidate.feature = {2, 0};
+  EXPECT_EQ(judges.triangles.encroached(judges.zone, candidate), no_face);
+}
+
+TEST(RefineFacingSheets, CellsBetweenPairsAreSparedByTheRestOfTheirEdges) {
+  const Plc plc = box();
+  Judges judges(plc, with_size(10));
+  const Index a = judges.mesh.vertex_count();
+  judges.insert_and_tell({0.5, 0.5, 0.5});
+  judges.insert_and_tell({0.5, 0.5, 0.501});
+  std::vector<Index> cells;
+  judges.mesh.incident_cells(a, cells);
+  const auto at_pair = std::find_if(cells.begin(), cells.end(), [&](Index cell) {
+    const auto& v = judges.mesh.corners(cell);
+    return std::count(v.begin(), v.end(), a) + std::count(v.begin(), v.end(), a + 1) == 2;
+  });
+  ASSERT_NE(at_pair, cells.end());
+  EXPECT_FALSE(judges.facing_sheets.fills_gap(*at_pair, 10));
+  judges.facing_sheets.note_pair(a + 1, a);
+  EXPECT_TRUE(judges.facing_sheets.fills_gap(*at_pair, 10));
+  EXPECT_FALSE(judges.facing_sheets.fills_gap(*at_pair, 1e-3));
+}
+
+TEST(RefineGradedSizes, SpreadUntilNoneGrowsFasterThanTheGradation) {
+  const Plc plc = box();
+  MeshOptions options = with_size(1);
+  options.gradation = 0.3;
+  Judges judges(plc, options);
+  judges.insert_random(100);
+  judges.sizes.impose(std::vector<Index>{50, 70}, 0.01, 0);
+  ASSERT_TRUE(judges.sizes.spread());
+  std::vector<Index> adjacent;
+  const auto size_at = [&](Index v) { return judges.sizes.graded(std::vector<Index>{v}, 0); };
+  EXPECT_EQ(size_at(50), 0.01);
+  for (Index v = 0; v < judges.mesh.vertex_count(); ++v) {
+    judges.mesh.adjacent_vertices(v, adjacent);
+    for (const Index u : adjacent)
+      EXPECT_LE(size_at(u),
+                (size_at(v) + 0.3 * distance(judges.mesh.point(u), judges.mesh.point(v))) * (1 + 1e-5));
+  }
+}
+
+TEST(RefineGradedSizes, WithoutGradationNothingIsImposed) {
+  const Plc plc = box();
+  Judges judges(plc, with_size(1));
+  judges.insert_random(10);
+  judges.sizes.impose(std::vector<Index>{8}, 0.01, 0);
+  EXPECT_EQ(judges.sizes.graded(std::vector<Index>{8}, 1), INFINITY);
+  EXPECT_FALSE(judges.sizes.spread());
+}
+
+TEST(RefineCollarCells, CellsAreInsideWhenABallHoldsTheirCircumcentre) {
+  const PolygonSoup soup = testing::wedge(30, 1);
+  const Plc plc = build_plc({&soup, 1});
+  KnownMesh known(plc);
+  CollarOptions options;
+  options.size = [](const Feature&, const Point&) { return 0.2; };
+  options.distance = 0.01;
+  known.collars = CollarSystem(plc, known.domain.points, find_creases(plc, 60), options);
+  ASSERT_FALSE(known.collars.empty());
+  for (Index v = 0; v < known.mesh.vertex_count(); ++v) known.collar_cells.note_near(v);
+  for (const CollarBall& ball : known.collars.balls()) known.insert(ball.centre);
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> unit(-0.1, 1.1);
+  for (int k = 0; k < 300; ++k) known.insert({unit(random), 0.4 * unit(random), unit(random)});
+  std::size_t inside = 0, near = 0;
+  const auto expect_all_right = [&] {
+    for (Index cell = 0; cell < known.mesh.cell_capacity(); ++cell) {
+      if (!known.mesh.alive(cell)) continue;
+      const bool held = known.collars.ball_containing(known.mesh.circumcentre(cell)) != none;
+      ASSERT_EQ(known.collar_cells.inside(cell), held);
+      inside += held;
+      for (const Index v : known.mesh.corners(cell))
+        if (held) EXPECT_TRUE(known.collar_cells.near(v));
+    }
+  };
+  const auto count_near = [&] {
+    std::size_t count = 0;
+    for (Index v = 0; v < known.mesh.vertex_count(); ++v) count += known.collar_cells.near(v);
+    return count;
+  };
+  expect_all_right();
+  EXPECT_GT(inside, 0U);
+  near = count_near();
+  known.collar_cells.forget_far_vertices();
+  expect_all_right();
+  EXPECT_LT(count_near(), near);
+}
+
+TEST(RefineCollarCells, ACellIsTakenInAsLongAsItLives) {
+  const Plc plc = box();
+  KnownMesh known(plc);
+  known.insert({0.5, 0.5, 0.5});
+  known.find_zone({0.4, 0.45, 0.5});
+  const Index cell = known.zone.cells[0];
+  EXPECT_EQ(known.collar_cells.taken_in_by(cell), none);
+  known.collar_cells.take_in(cell, 7);
+  EXPECT_TRUE(known.collar_cells.inside(cell));
+  EXPECT_EQ(known.collar_cells.taken_in_by(cell), 7U);
+  known.insert({0.4, 0.45, 0.5});
+  EXPECT_EQ(known.collar_cells.taken_in_by(cell), none);
+}
+
+TEST(RefineRandomOffsets, AreShortOrthogonalAndTheSameForASeed) {
+  const CollarSystem no_collars;
+  RandomOffsets offsets(7, no_collars), same(7, no_collars), other(8, no_collars);
+  const Vector normal{1, 2, 3};
+  bool differs = false;
+  for (int k = 0; k < 100; ++k) {
+    const Vector v = offsets.outside_collars({0, 0, 0}, 0.1, normal);
+    EXPECT_NEAR(dot(v, normal), 0, 1e-15);
+    EXPECT_LE(norm(v), 0.1 * std::sqrt(3.0));
+    EXPECT_EQ(v, same.outside_collars({0, 0, 0}, 0.1, normal));
+    differs = differs || !(v == other.outside_collars({0, 0, 0}, 0.1, normal));
+  }
+  EXPECT_TRUE(differs);
+}
+
+TEST(RefineOutcome, KeepsTheFirstMessageUnlessItIsStopped) {
+  const Frame frame;
+  Outcome outcome(frame);
+  EXPECT_FALSE(outcome.given_up());
+  outcome.give_up({1, 2, 3}, "a first thing", "do this");
+  outcome.give_up({4, 5, 6}, "a second thing", "do that");
+  EXPECT_EQ(outcome.message(), "a first thing near (1, 2, 3); do this");
+  EXPECT_EQ(outcome.status(), MeshStatus::complete);
+  outcome.stop(MeshStatus::budget_hit, {7, 8, 9}, "the end", "raise it");
+  EXPECT_TRUE(outcome.stopped());
+  EXPECT_EQ(outcome.status(), MeshStatus::budget_hit);
+  EXPECT_EQ(outcome.message(), "the end near (7, 8, 9); raise it");
+  EXPECT_EQ(outcome.where(), (Point{7, 8, 9}));
+}
+
+TEST(RefineBudget, CountsVerticesThatWillComeAndRemembersTheMostMemory) {
+  const Frame frame;
+  Outcome outcome(frame);
+  MeshOptions options;
+  options.max_vertices = 100;
+  const Execution execution;
+  Budget budget(options, execution, outcome);
+  EXPECT_FALSE(budget.spent({60, 300, 5000, 40, {}, 1000}));
+  EXPECT_FALSE(budget.spent({80, 300, 4000, 0, {}, 1000}));
+  EXPECT_EQ(budget.peak_bytes(), 5000U);
+  EXPECT_TRUE(budget.spent({60, 300, 4000, 41, {}, 1000}));
+  EXPECT_EQ(outcome.status(), MeshStatus::budget_hit);
+  EXPECT_NE(outcome.message().find("max-vertices"), std::string::npos);
+}
+
+TEST(RefineBudget, ProgressNeverGoesBackAndMayCancel) {
+  const Frame frame;
+  Outcome outcome(frame);
+  const MeshOptions options;
+  Execution execution;
+  std::vector<double> told;
+  execution.progress = [&](const ProgressReport& progress) {
+    told.push_back(progress.fraction);
+    return false;
+  };
+  Budget budget(options, execution, outcome);
+  EXPECT_TRUE(budget.spent({10, 500, 0, 0, {}, 1000}));
+  EXPECT_EQ(told, std::vector<double>{0.5});
+  EXPECT_EQ(outcome.status(), MeshStatus::cancelled);
+}
+
+}  // namespace
+}  // namespace collarmesh

@@ -1,0 +1,170 @@
+// What is known of cells and of faces: hierarchy nodes at vertices, regions, restricted triangles. After any
+// insertion it is what a search of everything would find.
+#include "refine/restricted_surface.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <random>
+#include <set>
+
+#include "support/plc_shapes.h"
+#include "support/refinement_parts.h"
+
+namespace collarmesh {
+namespace {
+
+using testing::KnownMesh;
+
+bool holds(const Point& min, const Point& max, const Point& p) {
+  return p.x > min.x && p.x < max.x && p.y > min.y && p.y < max.y && p.z > min.z && p.z < max.z;
+}
+
+/// Two boxes of different sizes that share a facet in part: regions 1 and 2.
+Plc two_boxes() {
+  const std::vector<PolygonSoup> soups{testing::box({0, 0, 0}, {1, 1, 1}),
+                                       testing::box({1, 0, 0}, {2, 1, 1})};
+  return build_plc(soups);
+}
+
+Index region_at(const Point& p) {
+  if (holds({0, 0, 0}, {1, 1, 1}, p)) return 1;
+  return holds({1, 0, 0}, {2, 1, 1}, p) ? 2 : 0;
+}
+
+class RandomPoints {
+ public:
+  explicit RandomPoints(std::uint64_t seed) : random_(seed) {}
+  /// Around the boxes, now and then on the faces x = 0, 1 and 2.
+  Point next(const Box& box) {
+    const Vector side = box.max - box.min;
+    Point p{box.min.x + side.x * share_(random_), box.min.y + side.y * share_(random_),
+            box.min.z + side.z * share_(random_)};
+    if (random_() % 3 == 0) p.x = static_cast<double>(random_() % 3);
+    return p;
+  }
+
+ private:
+  std::mt19937_64 random_;
+  std::uniform_real_distribution<double> share_{0.2, 0.8};
+};
+
+template <class Visit>
+void visit_faces(const RefinedMesh& mesh, const Visit& visit) {
+  for (Index cell = 0; cell < mesh.cell_capacity(); ++cell)
+    for (unsigned corner = 0; corner < 4 && mesh.alive(cell); ++corner)
+      if (mesh.opposite(face_id(cell, corner)) != no_face) visit(face_id(cell, corner));
+}
+
+TEST(RestrictedSurface, NodesOfAFaceCoverWhatItsDualEdgeCrosses) {
+  const Plc plc = two_boxes();
+  KnownMesh known(plc);
+  RandomPoints random(1);
+  std::vector<TriangleHierarchy::Crossing> found, all;
+  for (int k = 0; k < 150; ++k) {
+    known.insert(random.next(known.domain.box));
+    if (k % 10 != 0) continue;
+    visit_faces(known.mesh, [&](FaceId face) {
+      known.nodes.crossings_of_dual_edge(face, found);
+      known.nodes.crossings(known.mesh.circumcentre(cell_of(face)),
+                            known.mesh.circumcentre(cell_of(known.mesh.opposite(face))), all);
+      std::set<Index> expected, got;
+      for (const auto& crossing : all) expected.insert(crossing.triangle);
+      for (const auto& crossing : found) got.insert(crossing.triangle);
+      ASSERT_EQ(got, expected);
+    });
+  }
+}
+
+TEST(RestrictedSurface, CellsHaveTheRegionOfTheirCircumcentre) {
+  const Plc plc = two_boxes();
+  KnownMesh known(plc);
+  RandomPoints random(2);
+  for (int k = 0; k < 300; ++k) {
+    known.insert(random.next(known.domain.box));
+    for (const Index cell : known.zone.created)
+      ASSERT_EQ(known.surface.region(cell), region_at(known.mesh.circumcentre(cell))) << k;
+  }
+  for (Index cell = 0; cell < known.mesh.cell_capacity(); ++cell)
+    if (known.mesh.alive(cell))
+      EXPECT_EQ(known.surface.region(cell), region_at(known.mesh.circumcentre(cell)));
+}
+
+TEST(RestrictedSurface, AFaceIsMarkedFromBothSidesIfItsDualEdgeCrossesAPatch) {
+  const Plc plc = two_boxes();
+  KnownMesh known(plc);
+  RandomPoints random(3);
+  std::vector<TriangleHierarchy::Crossing> crossings;
+  for (int k = 0; k < 200; ++k) {
+    known.insert(random.next(known.domain.box));
+    if (k % 20 != 19) continue;
+    std::size_t marked = 0;
+    visit_faces(known.mesh, [&](FaceId face) {
+      const FaceId other = known.mesh.opposite(face);
+      known.nodes.crossings(known.mesh.circumcentre(cell_of(face)), known.mesh.circumcentre(cell_of(other)),
+                            crossings);
+      ASSERT_EQ(known.surface.is_marked(face), !crossings.empty());
+      ASSERT_EQ(known.surface.is_marked(face), known.surface.is_marked(other));
+      if (crossings.empty()) return;
+      ++marked;
+      const RestrictedTriangle& t = known.surface.triangle(face);
+      EXPECT_EQ(&t, &known.surface.triangle(other));
+      EXPECT_EQ(t.several_sheets, crossings.size() > 1);
+      EXPECT_NEAR(t.squared_radius,
+                  squared_distance(t.x, known.mesh.point(known.mesh.face_vertices(face)[0])), 1e-9);
+    });
+    EXPECT_EQ(known.surface.marked_faces().size(), marked / 2);
+  }
+}
+
+TEST(RestrictedSurface, NotesLastAsLongAsTheirTriangle) {
+  const Plc plc = two_boxes();
+  KnownMesh known(plc);
+  RandomPoints random(4);
+  for (int k = 0; k < 60; ++k) known.insert(random.next(known.domain.box));
+  for (const FaceId face : known.surface.marked_faces()) known.surface.notes(face) = {true, true, true, true};
+  // Into the middle of a marked face's gap ball: it goes, others stay as they are.
+  const FaceId face = known.surface.marked_faces()[0];
+  known.insert(known.surface.triangle(face).x, {2, known.surface.patch(face)});
+  std::size_t fresh = 0, kept = 0;
+  std::vector<bool> made(known.mesh.cell_capacity(), false);
+  for (const Index cell : known.zone.created) made[cell] = true;
+  for (const FaceId f : known.surface.marked_faces()) {
+    const TriangleNotes& notes = known.surface.notes(f);
+    if (made[cell_of(f)] && made[cell_of(known.mesh.opposite(f))]) {
+      EXPECT_FALSE(notes.given_up || notes.judged || notes.surface_needs_it || notes.known_near);
+      ++fresh;
+    } else if (!made[cell_of(f)] && !made[cell_of(known.mesh.opposite(f))]) {
+      EXPECT_TRUE(notes.given_up && notes.judged && notes.surface_needs_it && notes.known_near);
+      ++kept;
+    } else {
+      EXPECT_FALSE(notes.judged);  // on the border: another cell's face, to be queued anew
+    }
+  }
+  EXPECT_GT(fresh, 0U);
+  EXPECT_GT(kept, 0U);
+}
+
+TEST(RestrictedSurface, GivingACellOutsideTurnsTheMarksOfItsFaces) {
+  const Plc plc = two_boxes();
+  KnownMesh known(plc);
+  RandomPoints random(5);
+  for (int k = 0; k < 80; ++k) known.insert(random.next(known.domain.box));
+  const auto faces = known.surface.marked_faces();
+  const auto at = std::find_if(faces.begin(), faces.end(),
+                               [&](FaceId face) { return known.surface.region(cell_of(face)) == 1; });
+  ASSERT_NE(at, faces.end());
+  const Index cell = cell_of(*at), patch = known.surface.patch(*at);
+  const unsigned before = known.surface.marked(cell);
+  known.surface.give_outside(cell);
+  EXPECT_EQ(known.surface.region(cell), 0U);
+  EXPECT_EQ(known.surface.marked(cell), ~before & 0xfU);
+  known.surface.visit_marked(cell, [&](FaceId face) {
+    EXPECT_TRUE(known.surface.is_marked(known.mesh.opposite(face)));
+    if (std::popcount(before) == 1) EXPECT_EQ(known.surface.patch(face), patch);
+  });
+}
+
+}  // namespace
+}  // namespace collarmesh

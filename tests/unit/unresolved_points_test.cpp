@@ -1,0 +1,103 @@
+// Points that are not in the mesh yet: where they are found from, when they are due, what warps to them.
+#include "refine/unresolved_points.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace collarmesh {
+namespace {
+
+class UnresolvedPointsTest : public ::testing::Test {
+ protected:
+  static Box box() {
+    Box b;
+    b.add(Point{0, 0, 0});
+    b.add(Point{1, 1.1, 1.2});
+    return b;
+  }
+
+  void find_zone(const Point& p) {
+    mesh_.find_conflict_zone(p, mesh_.conflicting_cell_around(mesh_.nearest_vertex(p), p), zone_);
+  }
+  Index insert(const Point& p) {
+    find_zone(p);
+    const Index vertex = mesh_.insert(zone_, {3, none});
+    points_.cells_made(zone_, vertex);
+    return vertex;
+  }
+  /// What a candidate that destroys a ball of this radius would warp to.
+  Index target(const Point& centre, double radius, std::uint8_t dimension = 3) {
+    find_zone(centre);
+    return points_.warp_target(zone_, {centre, radius * radius, centre, {dimension, 0}, none});
+  }
+
+  Plc plc_;
+  WorkQueue queue_{1.0};
+  RefinedMesh mesh_{plc_, box()};
+  UnresolvedPoints points_{mesh_, 0.25, queue_};
+  ConflictZone zone_;
+};
+
+TEST_F(UnresolvedPointsTest, EachIsFoundFromTheNearestVertex) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> unit(0.01, 0.99);
+  const auto next = [&] { return Point{unit(random), unit(random), unit(random)}; };
+  for (int k = 0; k < 100; ++k) {
+    points_.add(next(), {2, 0});
+    insert(next());
+  }
+  for (Index point = 0; point < points_.size(); ++point)
+    EXPECT_EQ(points_.vertex_near(point), mesh_.nearest_vertex(points_[point].point));
+}
+
+TEST_F(UnresolvedPointsTest, OneIsDueWhenItsBallHasNotShrunk) {
+  insert({0.5, 0.5, 0.5});
+  const Index point = points_.add({0.5, 0.5, 0.9}, {0, 0});
+  WorkQueue::Item item;
+  ASSERT_TRUE(queue_.pop(item));
+  EXPECT_EQ(item.priority, WorkQueue::unresolved_points);
+  EXPECT_TRUE(points_.due(point, item.entry.stamp));
+  EXPECT_FALSE(queue_.pop(item));
+  insert({0.5, 0.5, 0.8});
+  EXPECT_FALSE(points_.due(point, item.entry.stamp));  // others come first now
+  ASSERT_TRUE(queue_.pop(item));
+  EXPECT_TRUE(points_.due(point, item.entry.stamp));
+  points_.resolve(point, 9);
+  EXPECT_TRUE(points_.resolved(point));
+  EXPECT_EQ(points_.vertex_near(point), 9U);
+  EXPECT_FALSE(points_.due(point, item.entry.stamp));
+}
+
+TEST_F(UnresolvedPointsTest, ACandidateWarpsToTheLowestDimensionWithinTheta) {
+  insert({0.5, 0.5, 0.5});
+  const Point centre{0.5, 0.5, 0.7};
+  EXPECT_EQ(target(centre, 0.2), none);
+  const Index on_patch = points_.add({0.5, 0.5, 0.71}, {2, 0});
+  EXPECT_EQ(target(centre, 0.2), on_patch);
+  EXPECT_EQ(target(centre, 0.2, 2), none);  // not to its own dimension
+  const Index on_curve = points_.add({0.5, 0.5, 0.74}, {1, 0});
+  EXPECT_EQ(target(centre, 0.2), on_curve);
+  EXPECT_EQ(target(centre, 0.2, 2), on_curve);
+  EXPECT_EQ(target(centre, 0.1), on_patch);  // 0.04 is farther than theta r
+  const Index nearer = points_.add({0.5, 0.5, 0.68}, {1, 1});
+  EXPECT_EQ(target(centre, 0.2), nearer);
+  points_.resolve(nearer, 0);
+  EXPECT_EQ(target(centre, 0.2), on_curve);
+}
+
+TEST_F(UnresolvedPointsTest, OfSeveralVerticesOfTheComplexInACellNoneIsTheOnlyOne) {
+  const Index v = insert({0.5, 0.5, 0.5});
+  EXPECT_EQ(points_.only_vertex_at(v), none);
+  points_.add({0.51, 0.5, 0.5}, {1, 0});
+  EXPECT_EQ(points_.only_vertex_at(v), none);
+  const Index first = points_.add({0.5, 0.52, 0.5}, {0, 0});
+  EXPECT_EQ(points_.only_vertex_at(v), first);
+  const Index second = points_.add({0.5, 0.5, 0.53}, {0, 1});
+  EXPECT_EQ(points_.only_vertex_at(v), none);
+  points_.resolve(second, v);
+  EXPECT_EQ(points_.only_vertex_at(v), first);
+}
+
+}  // namespace
+}  // namespace collarmesh
