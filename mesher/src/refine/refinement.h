@@ -31,7 +31,7 @@
 namespace collarmesh {
 
 /// Sparse Voronoi Refinement of a complex (paper, Procedures 1 to 3): the loop. It alone knows all parts, and
-/// inserts; what it knows of them is their order (doc/refinement_parts.md).
+/// inserts; what it knows of them is their order (doc/architecture/refinement_parts.md).
 class Refinement {
  public:
   Refinement(const Plc& plc, const MeshOptions& options, const Execution& execution);
