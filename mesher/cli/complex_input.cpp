@@ -135,7 +135,7 @@ Plc ComplexInput::build_unnamed(const ComplexArguments& options) {
     }
   }
   if (options.repair.mode == RepairMode::off) throw with_advice(*first, options.repair);
-  tessellate(1);
+  tessellate(2);  // fewer meet, and there is less to cut
   try {
     return build_repaired(options);
   } catch (const PlcError&) {
