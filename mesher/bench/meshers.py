@@ -159,7 +159,7 @@ class CgalMesh3:
         Surface(surface.name, surface.points, triangles).write_off(folder / "input.off")
 
     def mesh(self, surface: Surface, size: float, folder: Path) -> MeshRun:
-        distance = min(size, surface.diagonal / 20) / 20   # our default
+        distance = min(size, surface.diagonal / 20) / 10   # our default
         measured = run([str(self.program), "input.off", f"{size:.17g}", f"{distance:.17g}", self.mesh_file], folder,
                        self.time_limit)
         return MeshRun(int(_number(r"(\d+) tets", measured.output)), measured.cpu, measured.cpu, measured.peak_bytes)

@@ -233,7 +233,7 @@ void add_quality_options(CLI::App& app, MeshOptions& m) {
       ->group(group);
   add(app, "--distance LENGTH", m.distance,
       "Largest distance from smooth surfaces and curves, absolute, input units",
-      "1/10 of the size, at most 1/200 of the diagonal (1/500 with --order 2)")
+      "1/10 of the size, at most 1/200 of the diagonal (1/600 with --order 2)")
       ->check(length)
       ->group(group);
   add(app, "--seed N", m.seed, "Of the pseudo-random offsets: same input, options and seed, same mesh")

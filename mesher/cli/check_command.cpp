@@ -17,7 +17,8 @@ ExitCode check_command(const CheckArguments& arguments) {
   limit_memory(memory_of_the_machine() / 2);
   const TetMesh mesh = read_mesh(arguments.mesh);
   const auto distance = [&](double diagonal) {
-    return arguments.check.distance > 0 ? arguments.check.distance : default_distance(0, diagonal);
+    return arguments.check.distance > 0 ? arguments.check.distance
+                                        : default_distance(0, diagonal, mesh.order());
   };
   ComplexInput input(arguments.inputs, interruptible({{}, distance, arguments.complex.overlap}));
   CheckOptions options = arguments.check;

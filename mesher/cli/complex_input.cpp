@@ -116,6 +116,7 @@ void ComplexInput::name(const std::string& path, Plc& plc) {
 
 Plc ComplexInput::build_unnamed(const ComplexArguments& options) {
   if (cad_.empty() || options.repair.wrap_at_once) {
+    if (!cad_.empty()) tessellate(1);
     try {
       return build_repaired(options);
     } catch (const PlcError& error) {
@@ -135,7 +136,7 @@ Plc ComplexInput::build_unnamed(const ComplexArguments& options) {
     }
   }
   if (options.repair.mode == RepairMode::off) throw with_advice(*first, options.repair);
-  tessellate(2);  // fewer meet, and there is less to cut
+  tessellate(may_be_too_coarse(*first) ? 2 : 1);  // of finer ones fewer meet, and there is less to cut
   try {
     return build_repaired(options);
   } catch (const PlcError&) {

@@ -55,7 +55,8 @@ void expect_right(const acute::Shape& shape) {
   if (shape.feature_angle == 0) {
     EXPECT_NEAR(volume, shape.volume, 1e-11 * shape.volume);
   } else {
-    EXPECT_NEAR(volume, volume_of(meshed.plc), area_of(meshed.plc) * 1e-3 * meshed.plc.bounds.diagonal());
+    EXPECT_NEAR(volume, volume_of(meshed.plc),
+                area_of(meshed.plc) * default_distance(size, meshed.plc.bounds.diagonal()));
   }
 }
 
@@ -210,11 +211,13 @@ TEST(Collar, RimsAndSheetsThatComeBack) {
     for (const double apex_angle : {45.0, 30.0, 15.0}) expect_right(acute::drop_cone(angle, apex_angle));
 }
 
-// A dent in a side of a box, one of whose faces continues that side round a bend that is no feature: this smooth
-// patch passes through corner 8 in two sheets, and the balls there are smaller than the distance tolerance.
+// A dent in a side of a box, one of whose faces continues that side round a bend that is no feature: this
+// smooth patch passes through corner 8 in two sheets, and the balls there are smaller than the distance
+// tolerance.
 TEST(Collar, SheetsOfOnePatchAtACorner) {
   PolygonSoup soup;
-  soup.points = {{9, 0, -4},  {13, 0, -4}, {13, 0, 1}, {9, 0, 1}, {9, 2, -4}, {13, 2, -4}, {13, 2, 1}, {9, 2, 1},
+  soup.points = {{9, 0, -4},        {13, 0, -4},           {13, 0, 1},         {9, 0, 1},
+                 {9, 2, -4},        {13, 2, -4},           {13, 2, 1},         {9, 2, 1},
                  {11.4, 0, -1.442}, {11.3455, 0, -1.2646}, {10.5, 0, -1.4418}, {11.4, 0.143, -1.2439}};
   const auto facet = [&](const std::vector<Index>& corners) { soup.add_facet(corners); };
   soup.begin_facet();

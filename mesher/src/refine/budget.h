@@ -38,7 +38,7 @@ class Budget {
   Outcome& outcome_;
   std::chrono::steady_clock::time_point started_;
   std::size_t peak_bytes_ = 0;
-  double reported_ = -1, fraction_ = 0;  // progress: when it was last told, and the most that was
+  double reported_ = -1, fraction_ = 0;  // progress: seconds at the last report, largest fraction
 };
 
 }  // namespace collarmesh

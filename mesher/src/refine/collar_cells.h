@@ -12,8 +12,8 @@ namespace collarmesh {
 /// Which cells lie inside the collars, and which vertices are near them.
 ///
 /// Invariants: a cell is inside when its circumcentre lies in a ball, or when it was taken in; a vertex v is
-/// near when B(v, R_v), which holds the circumcentres of its cells, meets a ball. There may be more near
-/// ones, because cells become smaller, but never fewer. Cells inside are none of refinement's business: all
+/// near when B(v, R_v), which holds the circumcentres of its cells, meets a ball. The mark may be stale,
+/// because cells become smaller, but is never missing. Cells inside are none of refinement's business: all
 /// parts ask. The loop tells of insertions, CollarCreator of new balls, CollarReview takes in.
 class CollarCells {
  public:

@@ -48,7 +48,7 @@ class CollarCreator {
   void cells_made(const ConflictZone& zone, Index vertex);
   /// The balls of curves that have become isolated.
   void create_on_isolated_curves();
-  /// What refinement has come to an end without. False when there is nothing.
+  /// Creates the balls of all creases that have none yet. False when there are no such creases.
   bool create_remaining();
 
   /// The gap size as the mesh is now.

@@ -26,7 +26,7 @@ struct RestrictedTriangle {
 /// What is known of a restricted triangle to those who judge it, for as long as its record lasts. A new
 /// record knows nothing.
 struct TriangleNotes {
-  bool judged = false;            ///< since the cells at it are those of now (TriangleQuality)
+  bool judged = false;            ///< since its cells last changed (TriangleQuality)
   bool given_up = false;          ///< at the floor: no further insertion here (TriangleQuality)
   bool surface_needs_it = false;  ///< it is split although x may lie in a collar ball (TriangleQuality)
   bool known_near = false;  ///< no sample of it is farther from its patch than the tolerance (SurfaceCheck)

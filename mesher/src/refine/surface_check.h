@@ -17,7 +17,7 @@ std::vector<Index> spread_points(std::span<const Index> candidates, const std::v
 
 /// Looks at the whole restricted surface when the queue has run empty: whether the triangles of each patch
 /// form a manifold that ends at the patch's curves, whether any part of a smooth patch was missed, and flat
-/// cells. What is wrong goes back into the queue.
+/// cells. Every violation found is queued.
 ///
 /// State: which triangle each point of the smooth patches' tessellation was near to when last looked at, so
 /// that a round looks at what has changed; the number of rounds. The loop asks.

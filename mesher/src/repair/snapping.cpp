@@ -61,15 +61,18 @@ class Snapper {
     SnapReport report_before;
     if (!snap_all_corners()) return give_back(before, report_before);
     if (what_ != SnapWhat::all) return finish();
-    // Overlays make new corners. They end where each makes fewer of them, or few.
+    // Overlays make new corners. They are taken back where one makes many and more than half as many as the
+    // one before, where corners come and go, and where there are too many overlays.
     before = triangles_.compacted();
     report_before = report_;
     std::size_t crossings = none;
-    for (std::size_t overlays = 0; overlays < most_overlays; ++overlays) {
+    for (std::size_t overlays = 0;; ++overlays) {
       if (!overlay()) return finish();
       const std::size_t count = crossing_.size() + inside_.size();
       cancel_new_twins();
-      if ((count > few_crossings && 2 * count > crossings) || !snap_all_corners() || !settled_) break;
+      if (overlays == most_overlays || (count > few_crossings && 2 * count > crossings) ||
+          !snap_all_corners() || !settled_)
+        break;
       crossings = count;
     }
     return give_back(before, report_before);
@@ -442,10 +445,24 @@ class Snapper {
 
   // Where edges of two other triangles cross each other on a third one, that gets the crossing, too.
   void find_crossings_inside() {
-    for (const auto& [t, edges] : along_)
-      for (const Edge& edge : edges)
-        if (const auto found = on_edge_.find(edge); found != on_edge_.end())
-          for (const OnEdge& crossing : found->second) consider_inside(t, crossing.point);
+    for (auto& [t, edges] : along_) {
+      std::sort(edges.begin(), edges.end());
+      edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+      std::set<Index> on_sides;
+      for (unsigned i = 0; i < 3; ++i) {
+        const std::vector<Index> points = chain(draft_.triangles[t][i], draft_.triangles[t][(i + 1) % 3]);
+        on_sides.insert(points.begin(), points.end());
+      }
+      for (const Edge& edge : edges) {
+        const auto found = on_edge_.find(edge);
+        if (found == on_edge_.end()) continue;
+        for (const OnEdge& crossing : found->second) {
+          const auto inside = inside_.find(t);
+          work_.spend(1 + (inside == inside_.end() ? 0 : inside->second.size()));
+          if (on_sides.count(crossing.point) == 0) consider_inside(t, crossing.point);
+        }
+      }
+    }
   }
 
   // Those corners of s that t does not have.
@@ -524,17 +541,23 @@ class Snapper {
     for (const auto& [end, on] : {std::pair{e[0], on_f}, {e[1], on_f}, {f[0], on_e}, {f[1], on_e}})
       if (distance(at(end), on) <= limit_) return false;  // that end is near
     const auto key = e < f ? std::pair{e, f} : std::pair{f, e};
-    if (!crossing_.insert(key).second) return true;
+    if (crossing_.count(key) > 0) return true;
     if (!crossed_before_.insert(key).second) return false;
-    const Index point = crossing_at(0.5 * (on_e + on_f));
-    add_on_edge(e, {a, point}, distance(at(point), on_e));
-    add_on_edge(f, {b, point}, distance(at(point), on_f));
+    crossing_.insert(key);
+    const Index point = crossing_at(on_e, on_f);
+    for (const Edge& edge : {e, f}) {
+      const auto [moved, parameter] = nearest_on_segment(at(point), at(edge[0]), at(edge[1]));
+      add_on_edge(edge, {parameter, point}, moved);
+    }
     return true;
   }
 
   // Where more than two edges meet, all get one point.
-  Index crossing_at(const Point& p) {
-    const Index known = crossing_points_.nearest(p, [&](Index q) { return q >= first_of_overlay_; });
+  Index crossing_at(const Point& on_e, const Point& on_f) {
+    const Point p = 0.5 * (on_e + on_f);
+    const Index known = crossing_points_.nearest(p, [&](Index q) {
+      return q >= first_of_overlay_ && distance(at(q), on_e) <= limit_ && distance(at(q), on_f) <= limit_;
+    });
     if (known != none) return known;
     const auto added = static_cast<Index>(draft_.points.size());
     draft_.points.push_back(p);
@@ -698,7 +721,7 @@ class Snapper {
   SnapReport report_;
   std::size_t most_triangles_ = 0;
   bool grows_ = false;    // beyond that
-  bool settled_ = false;  // no corner is near anything
+  bool settled_ = false;  // nothing more is merged or cut
   ChangingTriangles triangles_;
   std::array<std::vector<Index>, 2> unseen_;  // triangles, by corners and by overlay; some are gone
   std::vector<Index> added_;                  // triangles that may have become twins
