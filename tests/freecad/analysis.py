@@ -83,10 +83,10 @@ class Analysis:
         load.Pressure = pressure
 
     def mesh(self, order, size, fine_size=0, place=None):
-        """By collarmesh, finer on the face at a place."""
+        """By collarmesh, finer on the face at a place; curved faces nearer than by default, for the stresses there."""
         finer = {int(name[4:]): fine_size for _, names in self.faces(place) for name in names} if place else {}
         self.mesh_object = collarmesh_workbench.mesh(
-            self.part, analysis=self.analysis, size=size, order=order, face_sizes=finer
+            self.part, analysis=self.analysis, size=size, order=order, distance=size / 20, face_sizes=finer
         )
 
     def mesh_by_gmsh(self, order, size, fine_size=0, place=None):
