@@ -47,16 +47,20 @@ def write_shapes(folder: Path) -> None:
 
 def mesh_by_gmsh(shape: Path, size: float, order: int, out: Path) -> None:
     gmsh.model.add("part")
-    gmsh.model.occ.importShapes(str(shape))
-    gmsh.model.occ.synchronize()
-    gmsh.option.setNumber("General.NumThreads", 1)
-    gmsh.option.setNumber("Mesh.Algorithm3D", 10)   # HXT
-    gmsh.option.setNumber("Mesh.MeshSizeMin", size)
-    gmsh.option.setNumber("Mesh.MeshSizeMax", size)
-    gmsh.model.mesh.generate(3)
-    gmsh.model.mesh.setOrder(order)
-    gmsh.write(str(out))
-    gmsh.model.remove()
+    try:
+        gmsh.model.occ.importShapes(str(shape))
+        gmsh.model.occ.synchronize()
+        gmsh.option.setNumber("General.NumThreads", 1)
+        gmsh.option.setNumber("Mesh.Algorithm3D", 10)   # HXT
+        gmsh.option.setNumber("Mesh.MeshSizeMin", size)
+        gmsh.option.setNumber("Mesh.MeshSizeMax", size)
+        gmsh.model.mesh.generate(3)
+        gmsh.model.mesh.setOrder(order)
+        gmsh.write(str(out))
+    except Exception as error:   # the module raises plain ones
+        raise ProgramFailed(str(error)) from error
+    finally:
+        gmsh.model.remove()
 
 
 def mesh_by_us(program: Path, shape: Path, size: float, order: int, out: Path, limit: float) -> None:
