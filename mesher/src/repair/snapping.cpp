@@ -21,7 +21,7 @@ namespace {
 
 using namespace build;
 
-constexpr std::size_t most_rounds = 50;
+constexpr std::size_t most_rounds = 50, most_rounds_after_overlay = 12;
 constexpr std::size_t most_places = 100;
 constexpr std::size_t most_overlays = 10, few_crossings = 100;
 
@@ -71,7 +71,7 @@ class Snapper {
       const std::size_t count = crossing_.size() + inside_.size();
       cancel_new_twins();
       if (overlays == most_overlays || (count > few_crossings && 2 * count > crossings) ||
-          !snap_all_corners() || !settled_)
+          !snap_all_corners(most_rounds_after_overlay) || !settled_)
         break;
       crossings = count;
     }
@@ -120,9 +120,9 @@ class Snapper {
   }
 
   // Until nothing is near or many rounds are over; false where triangles grow and grow.
-  bool snap_all_corners() {
+  bool snap_all_corners(std::size_t rounds = most_rounds) {
     settled_ = false;
-    for (std::size_t round = 0; round < most_rounds; ++round) {
+    for (std::size_t round = 0; round < rounds; ++round) {
       const bool merged = merge_points(), snapped = snap_corners();
       if (grows_) return false;
       settled_ = !merged && !snapped;
