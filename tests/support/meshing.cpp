@@ -69,6 +69,15 @@ MeshOptions with_size(double size, double time_limit) {
   return options;
 }
 
+MeshOptions with_near_surface(std::span<const PolygonSoup> soups, double size) {
+  Box bounds;
+  for (const PolygonSoup& soup : soups)
+    for (const Point& p : soup.points) bounds.add(p);
+  MeshOptions options = with_size(size);
+  options.distance = 0.5 * default_distance(size, bounds.diagonal());
+  return options;
+}
+
 std::vector<double> circumradii(const TetMesh& mesh) {
   std::vector<double> radii;
   for (const auto& t : mesh.tets) {

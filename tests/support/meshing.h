@@ -29,6 +29,8 @@ std::string faults(const Meshed& meshed);
 
 /// The options with this target edge length and a time budget, so that no test hangs.
 MeshOptions with_size(double size, double time_limit = 20);
+/// The same with half the default surface distance, for volumes of curved shapes.
+MeshOptions with_near_surface(std::span<const PolygonSoup> soups, double size);
 
 /// Circumradius of every tet.
 std::vector<double> circumradii(const TetMesh& mesh);
