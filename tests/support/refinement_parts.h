@@ -2,10 +2,18 @@
 
 #include "collarmesh/plc_builder.h"
 #include "refine/collar_cells.h"
+#include "refine/curve_chains.h"
 #include "refine/domain.h"
+#include "refine/facing_sheets.h"
+#include "refine/graded_sizes.h"
+#include "refine/open_creases.h"
+#include "refine/outcome.h"
+#include "refine/random_offsets.h"
 #include "refine/refined_mesh.h"
 #include "refine/restricted_surface.h"
 #include "refine/surface_nodes.h"
+#include "refine/unresolved_points.h"
+#include "refine/work_queue.h"
 
 /// Parts of the refinement without its loop: a test inserts what it likes and tells them in the loop's order.
 namespace collarmesh::testing {
@@ -40,6 +48,23 @@ struct KnownMesh {
   CollarCells collar_cells;
   RestrictedSurface surface;
   ConflictZone zone;
+};
+
+/// Beside that the curves and what they need, without a subsegment yet.
+struct KnownCurves : KnownMesh {
+  explicit KnownCurves(const Plc& plc, const MeshOptions& options = {}) : KnownMesh(plc, options) {
+    for (Index i = 0; i < plc.vertices.size(); ++i) points.add(domain.points[plc.vertices[i].point], {0, i});
+  }
+
+  Outcome outcome{domain.frame};
+  WorkQueue queue{100};
+  RandomOffsets random{0, collars};
+  GradedSizes sizes{domain, mesh, surface};
+  FacingSheets facing_sheets{domain, mesh, nodes, collars, surface};
+  UnresolvedPoints points{mesh, 0.25, queue};
+  OpenCreases open_creases;
+  CurveChains chains{domain, mesh,          collars, points,  open_creases,
+                     sizes,  facing_sheets, random,  outcome, queue};
 };
 
 }  // namespace collarmesh::testing

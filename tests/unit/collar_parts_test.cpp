@@ -15,9 +15,8 @@
 namespace collarmesh {
 namespace {
 
-struct Parts : testing::KnownMesh {
-  explicit Parts(const Plc& plc, const MeshOptions& options = {}) : KnownMesh(plc, options) {
-    for (Index i = 0; i < plc.vertices.size(); ++i) points.add(domain.points[plc.vertices[i].point], {0, i});
+struct Parts : testing::KnownCurves {
+  explicit Parts(const Plc& plc, const MeshOptions& options = {}) : KnownCurves(plc, options) {
     creator.start();
     chains.start();
   }
@@ -55,15 +54,6 @@ struct Parts : testing::KnownMesh {
     return found;
   }
 
-  Outcome outcome{domain.frame};
-  WorkQueue queue{100};
-  RandomOffsets random{0, collars};
-  GradedSizes sizes{domain, mesh, surface};
-  FacingSheets facing_sheets{domain, mesh, nodes, collars, surface};
-  UnresolvedPoints points{mesh, 0.25, queue};
-  OpenCreases open_creases;
-  CurveChains chains{domain, mesh,          collars, points,  open_creases,
-                     sizes,  facing_sheets, random,  outcome, queue};
   TriangleQuality triangles{domain, mesh, nodes, surface, sizes, facing_sheets, random, queue};
   CollarCreator creator{domain,
                         mesh,

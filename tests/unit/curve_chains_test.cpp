@@ -13,9 +13,8 @@ namespace collarmesh {
 namespace {
 
 /// Curves beside the parts they need; the test is the loop.
-struct Curves : testing::KnownMesh {
-  explicit Curves(const Plc& plc, double size) : KnownMesh(plc, options(size)) {
-    for (Index i = 0; i < plc.vertices.size(); ++i) points.add(domain.points[plc.vertices[i].point], {0, i});
+struct Curves : testing::KnownCurves {
+  explicit Curves(const Plc& plc, double size) : KnownCurves(plc, options(size)) {
     chains.start();
   }
   static MeshOptions options(double size) {
@@ -65,16 +64,6 @@ struct Curves : testing::KnownMesh {
       n += v != s.ends[0] && v != s.ends[1] && squared_distance(mesh.point(v), s.centre) < s.squared_radius;
     return n;
   }
-
-  Outcome outcome{domain.frame};
-  WorkQueue queue{100};
-  RandomOffsets random{0, collars};
-  GradedSizes sizes{domain, mesh, surface};
-  FacingSheets facing_sheets{domain, mesh, nodes, collars, surface};
-  UnresolvedPoints points{mesh, 0.25, queue};
-  OpenCreases open_creases;
-  CurveChains chains{domain, mesh,          collars, points,  open_creases,
-                     sizes,  facing_sheets, random,  outcome, queue};
 };
 
 Plc box() {

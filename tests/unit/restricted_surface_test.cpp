@@ -87,8 +87,9 @@ TEST(RestrictedSurface, CellsHaveTheRegionOfTheirCircumcentre) {
       ASSERT_EQ(known.surface.region(cell), region_at(known.mesh.circumcentre(cell))) << k;
   }
   for (Index cell = 0; cell < known.mesh.cell_capacity(); ++cell)
-    if (known.mesh.alive(cell))
+    if (known.mesh.alive(cell)) {
       EXPECT_EQ(known.surface.region(cell), region_at(known.mesh.circumcentre(cell)));
+    }
 }
 
 TEST(RestrictedSurface, AFaceIsMarkedFromBothSidesIfItsDualEdgeCrossesAPatch) {
@@ -162,7 +163,9 @@ TEST(RestrictedSurface, GivingACellOutsideTurnsTheMarksOfItsFaces) {
   EXPECT_EQ(known.surface.marked(cell), ~before & 0xfU);
   known.surface.visit_marked(cell, [&](FaceId face) {
     EXPECT_TRUE(known.surface.is_marked(known.mesh.opposite(face)));
-    if (std::popcount(before) == 1) EXPECT_EQ(known.surface.patch(face), patch);
+    if (std::popcount(before) == 1) {
+      EXPECT_EQ(known.surface.patch(face), patch);
+    }
   });
 }
 
