@@ -10,8 +10,10 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <unordered_map>
+#include <utility>
 
 #include "delaunay/predicates.h"
 #include "plc/cleanup.h"
@@ -467,6 +469,8 @@ class GrainSnapper {
 
   // A round was of no help: where snapping undoes what was cut, rounds without it help.
   void change() { pausing_ = !pausing_; }
+  /// Is anything left that rounds without it made?
+  bool resume() { return std::exchange(pausing_, false) && reach_ > 0; }
 
   void run() {
     if (pausing_ || !(reach_ > 0)) return;
@@ -523,6 +527,7 @@ ArrangementReport arrange(Draft& draft, double grain, Work* work) {
   constexpr std::size_t few = 1000;
   Settled settled;
   GrainSnapper snapper(draft, grain, work);
+  std::optional<Draft> clean_before;
   for (std::size_t fewest = none;; ++report.rounds) {
     unify_equal_points(draft);
     remove_collinear_triangles(draft);
@@ -534,6 +539,16 @@ ArrangementReport arrange(Draft& draft, double grain, Work* work) {
     if (report.rounds == 0) {
       report.intersecting_pairs = pairs.size();
       note_places(draft, simplices.list(), pairs, report.places);
+    }
+    // Corners that rounding left next to each other are one, if that spoils nothing.
+    if (report.clean && !clean_before && snapper.resume()) {
+      clean_before = draft;
+      snapper.run();
+      continue;
+    }
+    if (!report.clean && clean_before) {
+      draft = std::move(*clean_before);
+      report.clean = true;
     }
     // Rounding may make more of them than there were: it does not end then.
     if (report.clean || report.rounds == most_rounds || pairs.size() > 2 * fewest + few) return report;
