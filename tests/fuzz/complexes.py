@@ -40,11 +40,21 @@ def volume_of(points, faces):
     return six / 6
 
 
-class Complex:
-    """Points, facets and, where it is known, the sorted volumes of the regions."""
+def area_of(points, faces):
+    """An upper bound."""
+    return sum(math.dist(points[f[0]], points[f[i]]) * math.dist(points[f[i]], points[f[i + 1]])
+               for f in faces for i in range(1, len(f) - 1)) / 2
 
-    def __init__(self, points, faces, volumes, name):
+
+class Complex:
+    """Points, facets and, where it is known, the sorted volumes of the regions, but for what rounding of points changes."""
+
+    def __init__(self, points, faces, volumes, name, rounding=0.0):
         self.points, self.faces, self.volumes, self.name = list(points), list(faces), volumes, name
+        self.rounding = rounding
+
+    def changed(self, points, faces=None):
+        return Complex(points, self.faces if faces is None else faces, self.volumes, self.name, self.rounding)
 
     def off(self):
         lines = ["OFF", f"{len(self.points)} {len(self.faces)} 0"]
@@ -166,12 +176,12 @@ def rotated(made, random_):
     def turn(p):
         x, y, z = p[0] * ca - p[1] * sa, p[0] * sa + p[1] * ca, p[2]
         return x, y * cb - z * sb, y * sb + z * cb
-    return Complex([turn(p) for p in made.points], made.faces, made.volumes, made.name)
+    return made.changed([turn(p) for p in made.points])
 
 
 def moved(made, random_):
     d = [random_.choice([-64.0, 0.0, 1024.0]) for _ in range(3)]
-    return Complex([tuple(x + y for x, y in zip(p, d)) for p in made.points], made.faces, made.volumes, made.name)
+    return made.changed([tuple(x + y for x, y in zip(p, d)) for p in made.points])
 
 
 def permuted(made, random_):
@@ -181,13 +191,16 @@ def permuted(made, random_):
     faces = [tuple(place[i] for i in f) for f in made.faces]
     faces = [f[k:] + f[:k] for f in faces for k in [random_.randrange(len(f))]]
     random_.shuffle(faces)
-    return Complex([made.points[i] for i in order], faces, made.volumes, made.name)
+    return made.changed([made.points[i] for i in order], faces)
 
 
 def rounded(made, _):
     import struct
     single = lambda x: struct.unpack("f", struct.pack("f", x))[0]
-    return Complex([tuple(single(x) for x in p) for p in made.points], made.faces, made.volumes, made.name)
+    rounded_points = [tuple(single(x) for x in p) for p in made.points]
+    made = made.changed(rounded_points)
+    made.rounding = 2.0 ** -24 * max(math.hypot(*p) for p in rounded_points) * area_of(rounded_points, made.faces)
+    return made
 
 
 def some_turned(made, random_):
@@ -197,7 +210,7 @@ def some_turned(made, random_):
     faces = list(made.faces)
     for i in random_.sample(range(len(faces)), min(2, len(faces) // 4)):
         faces[i] = tuple(reversed(faces[i]))
-    return Complex(made.points, faces, made.volumes, made.name)
+    return made.changed(made.points, faces)
 
 
 CHANGES = [rotated, moved, permuted, rounded, some_turned]

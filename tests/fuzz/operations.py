@@ -1,6 +1,8 @@
 """Fuzzes the whole operation: meshes random complexes, changed ones and mutated files, and judges each run.
 
-    operations.py [--seconds N] [--seed S] [--kinds complexes,cad,files] [--keep FOLDER]
+    operations.py [--seconds N | --runs N] [--seed S] [--kinds complexes,cad,files] [--keep FOLDER]
+
+--runs counts those of each kind; step, iges and brep are kinds, too.
 
 A run is wrong when a signal ends it, with exit code 1, when it exceeds its limits by more than a tenth, or a second, when
 the volumes of the regions are not those known, or when it writes a mesh that `check` does not pass. Wrong ones are
@@ -11,7 +13,9 @@ mutate, beside those made here. The seed is that of the day unless it is given.
 import argparse
 import collections
 import datetime
+import itertools
 import json
+import math
 import os
 import pathlib
 import random
@@ -59,14 +63,14 @@ def mesh(folder, path, *options):
                  "--max-memory", f"{MEMORY_LIMIT}M", *options)
 
 
-def near(a, b, tolerance):
-    return len(a) == len(b) and all(abs(x - y) <= tolerance * max(abs(x), abs(y)) for x, y in zip(a, b))
+def near(a, b, tolerance, rounding):
+    return len(a) == len(b) and all(abs(x - y) <= tolerance * max(abs(x), abs(y)) + rounding for x, y in zip(a, b))
 
 
-def judge_volumes(folder, known, warned):
+def judge_volumes(folder, known, rounding, warned):
     report = json.loads((folder / "report.json").read_text())["check"]
     volumes = sorted(report["region_volumes"].values())
-    if known is None or warned or near(volumes, known, 1e-5):
+    if known is None or warned or near(volumes, known, 1e-5, rounding):
         return None
     return f"volumes {volumes} in place of {known}"
 
@@ -83,7 +87,7 @@ def try_complex(folder, seed):
     valid = made.volumes is not None
     fault = run.fault({0, 5} if valid else REFUSALS | {0})
     if fault is None and run.code == 0:
-        fault = judge_volumes(folder, made.volumes, "is lost" in run.text)
+        fault = judge_volumes(folder, made.volumes, made.rounding, "is lost" in run.text)
     if fault is None and run.code == 0 and random_.random() < 0.1 and "repaired" not in run.text:
         check = Trial(folder, "check", "out.vtu", "--against", path, *exact, *(["--thin-angle", "0"] if "off" in size else []))
         fault = check.fault({0}) and f"check: {check.fault({0})}"
@@ -92,9 +96,10 @@ def try_complex(folder, seed):
 
 def mutate(data, random_):
     data = bytearray(data)
+    numbers_only = random_.random() < 0.5  # most else is refused by the readers
     for _ in range(random_.choice([1, 1, 2, 5, 20])):
         at = random_.randrange(len(data))
-        kind = random_.randrange(5)
+        kind = 4 if numbers_only else random_.randrange(5)
         if kind == 0:
             data[at] = random_.randrange(256)
         elif kind == 1:
@@ -109,7 +114,7 @@ def mutate(data, random_):
                 data[random_.choice(digits)] = random_.randrange(48, 58)
         if not data:
             return b"x"
-    if random_.random() < 0.1:
+    if not numbers_only and random_.random() < 0.2:
         del data[random_.randrange(len(data)):]
     return bytes(data)
 
@@ -136,8 +141,12 @@ def try_file(folder, seed, files):
     return f"file {path.suffix}", run.code, run.fault(REFUSALS | {0, 7} if not is_mesh else REFUSALS | {0})
 
 
+CAD_KINDS = {"step": (".step", ".stp"), "iges": (".iges", ".igs"), "brep": (".brep", ".brp")}
+CAD_KINDS["cad"] = sum(CAD_KINDS.values(), ())
+
+
 def seeds_of_cad():
-    suffixes = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
+    suffixes = CAD_KINDS["cad"]
     files = [p for p in (SOURCES / "tests" / "cli" / "hostile").rglob("*") if p.suffix in suffixes]
     for real in (os.environ.get("COLLARMESH_REAL"), os.environ.get("COLLARMESH_CORPUS")):
         if real:
@@ -158,6 +167,7 @@ def seeds_of_files(folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seconds", type=float, default=120)
+    parser.add_argument("--runs", type=int, help="of each kind; instead of --seconds")
     parser.add_argument("--seed", type=int, default=int(datetime.date.today().strftime("%Y%m%d")) * 100000)
     parser.add_argument("--kinds", default="complexes,cad,files")
     parser.add_argument("--keep", type=pathlib.Path, default=pathlib.Path("found"))
@@ -166,14 +176,16 @@ def main():
     with tempfile.TemporaryDirectory(prefix="collarmesh-fuzz-") as name:
         folder = pathlib.Path(name)
         (folder / "seeds").mkdir()
-        cad = seeds_of_cad()
-        files = seeds_of_files(folder / "seeds") if "files" in options.kinds else []
-        trials = {"complexes": lambda place, seed: try_complex(place, seed),
-                  "cad": lambda place, seed: try_cad(place, seed, cad),
-                  "files": lambda place, seed: try_file(place, seed, files)}
-        kinds = [k for k in options.kinds.split(",") if k != "cad" or cad]
-        end, seed = time.monotonic() + options.seconds, options.seed
-        while time.monotonic() < end:
+        kinds = options.kinds.split(",")
+        files = seeds_of_files(folder / "seeds") if "files" in kinds else []
+        trials = {"complexes": try_complex, "files": lambda place, seed: try_file(place, seed, files)}
+        for kind in set(kinds) & set(CAD_KINDS):
+            seeds = [p for p in seeds_of_cad() if p.suffix.lower() in CAD_KINDS[kind]]
+            trials[kind] = lambda place, seed, seeds=seeds: try_cad(place, seed, seeds)
+        end = math.inf if options.runs else time.monotonic() + options.seconds
+        for seed in itertools.islice(itertools.count(options.seed), options.runs):
+            if time.monotonic() >= end:
+                break
             for kind in kinds:
                 place = folder / "trial"
                 place.mkdir()
@@ -184,7 +196,6 @@ def main():
                     print(f"{kind}, seed {seed}: {what}: {fault}", flush=True)
                     shutil.copytree(place, options.keep / f"{kind}-{seed}", dirs_exist_ok=True)
                 shutil.rmtree(place)
-            seed += 1
     table = collections.defaultdict(dict)
     for (what, code), count in outcomes.items():
         table[what][code] = count

@@ -148,21 +148,24 @@ class Coarsening {
     return report_.cancelled;
   }
 
-  // Onto the nearest neighbour that will do.
+  // Onto the nearest neighbour that will do. Lengths tell of most that it will not.
   void contract_vertex(Index vertex, bool repair) {
+    find_neighbours(vertex);
+    targets_.clear();
+    for (const Neighbour& n : neighbours_) {
+      if (!is_short(n.squared_relative_length)) break;
+      if (lengths_fit(vertex, n.vertex)) targets_.push_back(n.vertex);
+    }
+    if (targets_.empty()) return;
     rule_.set_mode(Mode::final);
     if (!operations_.begin_contractions(vertex)) return;
-    find_neighbours(vertex);
-    for (std::size_t i = 0; i < neighbours_.size() && is_short(neighbours_[i].squared_relative_length); ++i)
-      if (contract(vertex, neighbours_[i].vertex)) return;
+    for (const Index onto : targets_)
+      if (contract(onto)) return;
     if (!repair) return;
     const double floor = std::min(1.0, operations_.worst_at_vertex());
-    const auto neighbours = neighbours_;
-    for (const Neighbour& n : neighbours) {
-      if (!is_short(n.squared_relative_length)) return;
+    for (const Index onto : targets_) {
       rule_.set_mode(Mode::force);
-      if (!operations_.begin_contractions(vertex)) return;
-      if (contract_and_repair(vertex, n.vertex, floor)) return;
+      if (!operations_.begin_contractions(vertex) || contract_and_repair(onto, floor)) return;
     }
   }
 
@@ -171,7 +174,8 @@ class Coarsening {
     neighbours_.clear();
     ++stamp_;
     shortest_ = INFINITY;
-    for (const Index t : operations_.tets_at_vertex())
+    complex().star(vertex, star_);
+    for (const Index t : star_)
       for (const Index w : complex()[t].corners) {
         if (w == vertex || stamps_[w] == stamp_) continue;
         stamps_[w] = stamp_;
@@ -183,8 +187,7 @@ class Coarsening {
     std::sort(neighbours_.begin(), neighbours_.end());
   }
 
-  bool contract(Index vertex, Index onto) {
-    if (!lengths_fit(vertex, onto)) return false;
+  bool contract(Index onto) {
     Change change;
     operations_.contract_onto(onto, 0, 1, change);
     if (change.kind == Change::Kind::none) return false;
@@ -200,7 +203,7 @@ class Coarsening {
   bool lengths_fit(Index vertex, Index onto) {
     const auto& points = mesh().points;
     ++stamp_;
-    for (const Index t : operations_.tets_at_vertex()) {
+    for (const Index t : star_) {
       const auto& v = complex()[t].corners;
       if (std::find(v.begin(), v.end(), onto) == v.end()) continue;
       for (const Index w : v) stamps_[w] = stamp_;
@@ -215,9 +218,7 @@ class Coarsening {
     return true;
   }
 
-  bool contract_and_repair(Index vertex, Index onto, double floor) {
-    find_neighbours(vertex);
-    if (!lengths_fit(vertex, onto)) return false;
+  bool contract_and_repair(Index onto, double floor) {
     Change change;
     operations_.contract_onto(onto, repairable, -INFINITY, change);
     if (change.kind == Change::Kind::none) return false;
@@ -353,8 +354,10 @@ class Coarsening {
   std::uint32_t clock_ = 0;
   std::vector<Index> touched_;
   std::vector<double> qualities_;      // by tet, of those a trial changed
-  std::vector<Neighbour> neighbours_;  // of the vertex asked about last
+  std::vector<Index> star_;            // tets at the vertex asked about last
+  std::vector<Neighbour> neighbours_;  // of that vertex
   double shortest_ = 0;                // edge there
+  std::vector<Index> targets_;         // neighbours that it may go to by the lengths
   std::vector<std::uint32_t> stamps_;
   std::uint32_t stamp_ = 0;
   CoarsenReport report_;

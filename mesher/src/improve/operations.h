@@ -41,8 +41,7 @@ class Operations {
   /// The same contraction for the sake of fewer tets: the rule allows all new ones, and they are no worse
   /// than `least`; below `enough` no worse than the worst tet of the cavity, either.
   void contract_onto(Index onto, double least, double enough, Change& change);
-  /// The tets at the vertex that contractions were begun with.
-  const std::vector<Index>& tets_at_vertex() const { return cone_.tets; }
+  /// The quality of the worst tet at the vertex that contractions were begun with.
   double worst_at_vertex();
 
  private:

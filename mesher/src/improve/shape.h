@@ -40,7 +40,8 @@ inline double shape_quality(const Corners& p) {
 
 struct Circumsphere {
   double squared_radius;
-  double shortest_squared_edge;
+  double shortest_squared_edge, longest_squared_edge;
+  double six_volume;  ///< absolute
 };
 
 inline Circumsphere circumsphere(const Corners& p) {
@@ -49,8 +50,9 @@ inline Circumsphere circumsphere(const Corners& p) {
   const Vector vw = cross(v, w);
   const double det = dot(u, vw);
   const Vector centre = (uu * vw + vv * cross(w, u) + ww * cross(u, v)) / (2 * det);
-  return {squared_norm(centre), std::min({uu, vv, ww, squared_distance(p[1], p[2]),
-                                          squared_distance(p[1], p[3]), squared_distance(p[2], p[3])})};
+  const auto [shortest, longest] = std::minmax(
+      {uu, vv, ww, squared_distance(p[1], p[2]), squared_distance(p[1], p[3]), squared_distance(p[2], p[3])});
+  return {squared_norm(centre), shortest, longest, std::fabs(det)};
 }
 
 }  // namespace collarmesh::improvement

@@ -35,6 +35,7 @@ void drop(const Cell& lost, std::vector<Cell>& cells, std::vector<Of>&... of_cel
 
 TetComplex::TetComplex(TetMesh& mesh) : mesh_(mesh) {
   tets_.reserve(mesh.tets.size());
+  origin_.reserve(mesh.tets.size());
   vertex_tet_.assign(mesh.points.size(), none);
   for (Index t = 0; t < mesh.tets.size(); ++t) {
     tets_.push_back({mesh.tets[t],
@@ -116,13 +117,17 @@ std::array<Point, 4> TetComplex::corners(Index tet) const {
 
 // Stars are small: it is faster to look among the tets found than to mark them.
 void TetComplex::star(Index vertex, std::vector<Index>& found) const {
+  std::array<Index, 64> found_from{none};  // of the first ones: the tet on the way to each
   found.assign(1, vertex_tet_[vertex]);
   for (std::size_t i = 0; i < found.size(); ++i) {
+    const Index from = i < found_from.size() ? found_from[i] : none;
     const Tet& tet = tets_[found[i]];
     for (unsigned corner = 0; corner < 4; ++corner) {
       const Index next = tet.neighbours[corner];
-      if (tet.corners[corner] == vertex || next == none) continue;
-      if (std::find(found.begin(), found.end(), next) == found.end()) found.push_back(next);
+      if (tet.corners[corner] == vertex || next == none || next == from) continue;
+      if (std::find(found.begin(), found.end(), next) != found.end()) continue;
+      if (found.size() < found_from.size()) found_from[found.size()] = found[i];
+      found.push_back(next);
     }
   }
 }
@@ -414,7 +419,14 @@ void TetComplex::undo() {
 }
 
 void TetComplex::store() {
+  const auto alive = static_cast<std::size_t>(
+      std::count_if(tets_.begin(), tets_.end(), [](const Tet& tet) { return tet.alive; }));
   TetMesh stored;
+  stored.tets.reserve(alive);
+  stored.tet_region.reserve(alive);
+  stored.tet_tag.reserve(alive);
+  stored.tet_collar.reserve(alive);
+  stored.tet_crease.reserve(alive);
   for (Index t = 0; t < tets_.size(); ++t) {
     if (!tets_[t].alive) continue;
     stored.tets.push_back(tets_[t].corners);
