@@ -6,6 +6,7 @@
 #include <random>
 
 #include "support/meshing.h"
+#include "support/plc_shapes.h"
 #include "support/shapes.h"
 
 namespace collarmesh {
@@ -65,6 +66,18 @@ TEST(FeaturesOutside, FinsAreLeftOut) {
   PolygonSoup in_a_point = box();
   add_triangle(in_a_point, {1, 1, 1}, {1.6, 1.5, 1.1}, {1.5, 1.6, 1.2});
   expect_left_out(in_a_point);
+}
+
+// The balls of a crease need keep no distance from them.
+TEST(FeaturesOutside, CollarsAreNoSmallerForThem) {
+  const PolygonSoup alone = wedge(20, 1);
+  PolygonSoup soup = alone;
+  add_triangle(soup, {-0.02, 0, 0.3}, {-0.2, 0.1, 0.4}, {-0.3, 0, 0.6});
+  const Meshed meshed = mesh_of(soup, with_size(0.4)), without = mesh_of(alone, with_size(0.4));
+  EXPECT_EQ(faults(meshed), "");
+  EXPECT_TRUE(tells_of_outside(meshed.plc));
+  ASSERT_FALSE(meshed.result.mesh.collar_balls.empty());
+  EXPECT_EQ(meshed.result.mesh.collar_balls.size(), without.result.mesh.collar_balls.size());
 }
 
 TEST(FeaturesOutside, ThoseInsideStay) {

@@ -78,17 +78,20 @@ class CollarCheck {
     }
   }
 
+  // Of all features that the mesh has.
   void collect_elements() {
     for (Index v = 0; v < plc_.vertices.size(); ++v) {
       const Index p = plc_.vertices[v].point;
-      elements_.push_back({0, v, {p, p, p}});
+      if (!vertex_is_outside(subject_, v)) elements_.push_back({0, v, {p, p, p}});
     }
     for (Index c = 0; c < plc_.curves.size(); ++c) {
+      if (curve_is_outside(subject_, c)) continue;
       const auto& p = plc_.curves[c].points;
       for (std::size_t i = 0; i + 1 < p.size() + (plc_.curves[c].closed ? 1 : 0); ++i)
         elements_.push_back({1, c, {p[i], p[(i + 1) % p.size()], p[i]}});
     }
-    for (const Plc::Triangle& t : plc_.triangles) elements_.push_back({2, t.patch, t.points});
+    for (const Plc::Triangle& t : plc_.triangles)
+      if (!patch_is_outside(subject_, t.patch)) elements_.push_back({2, t.patch, t.points});
   }
 
   bool contains(const Element& element, const TetMesh::VertexFeature& v) const {
