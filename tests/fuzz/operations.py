@@ -183,10 +183,10 @@ def main():
             seeds = [p for p in seeds_of_cad() if p.suffix.lower() in CAD_KINDS[kind]]
             trials[kind] = lambda place, seed, seeds=seeds: try_cad(place, seed, seeds)
         end = math.inf if options.runs else time.monotonic() + options.seconds
-        for seed in itertools.islice(itertools.count(options.seed), options.runs):
+        for seed, kind in ((s, k) for s in itertools.islice(itertools.count(options.seed), options.runs) for k in kinds):
             if time.monotonic() >= end:
                 break
-            for kind in kinds:
+            try:
                 place = folder / "trial"
                 place.mkdir()
                 what, code, fault = trials[kind](place, seed)
@@ -196,6 +196,8 @@ def main():
                     print(f"{kind}, seed {seed}: {what}: {fault}", flush=True)
                     shutil.copytree(place, options.keep / f"{kind}-{seed}", dirs_exist_ok=True)
                 shutil.rmtree(place)
+            except KeyboardInterrupt:
+                break
     table = collections.defaultdict(dict)
     for (what, code), count in outcomes.items():
         table[what][code] = count
