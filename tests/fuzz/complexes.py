@@ -47,7 +47,8 @@ def area_of(points, faces):
 
 
 class Complex:
-    """Points, facets and, where it is known, the sorted volumes of the regions, but for what rounding of points changes."""
+    """Points, facets and, where they are known, the sorted volumes of the regions. `rounding` bounds what rounding the points
+    changes of one."""
 
     def __init__(self, points, faces, volumes, name, rounding=0.0):
         self.points, self.faces, self.volumes, self.name = list(points), list(faces), volumes, name
@@ -198,9 +199,10 @@ def rounded(made, _):
     import struct
     single = lambda x: struct.unpack("f", struct.pack("f", x))[0]
     rounded_points = [tuple(single(x) for x in p) for p in made.points]
-    made = made.changed(rounded_points)
-    made.rounding = 2.0 ** -24 * max(math.hypot(*p) for p in rounded_points) * area_of(rounded_points, made.faces)
-    return made
+    changed = made.changed(rounded_points)
+    moved_by = max(math.dist(p, q) for p, q in zip(made.points, rounded_points))
+    changed.rounding += moved_by * area_of(rounded_points, made.faces)
+    return changed
 
 
 def some_turned(made, random_):

@@ -2,7 +2,7 @@
 
     operations.py [--seconds N | --runs N] [--seed S] [--kinds complexes,cad,files] [--keep FOLDER]
 
---runs counts those of each kind; step, iges and brep are kinds, too.
+--runs is the number of runs of each kind; step, iges and brep are kinds, too.
 
 A run is wrong when a signal ends it, with exit code 1, when it exceeds its limits by more than a tenth, or a second, when
 the volumes of the regions are not those known, or when it writes a mesh that `check` does not pass. Wrong ones are
@@ -28,7 +28,7 @@ import time
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import complexes  # noqa: E402
 
-PROGRAM = os.environ["COLLARMESH_PROGRAM"]
+PROGRAM = os.path.abspath(shutil.which(os.environ["COLLARMESH_PROGRAM"]) or os.environ["COLLARMESH_PROGRAM"])
 SOURCES = pathlib.Path(__file__).resolve().parents[2]
 TIME_LIMIT, MEMORY_LIMIT = 15.0, 500
 REFUSALS = {2, 3, 4, 5, 8}
@@ -43,9 +43,11 @@ class Trial:
             process = subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=folder, stdout=results, stderr=messages)
             try:
                 process.wait(timeout=4 * time_limit)
-            except subprocess.TimeoutExpired:
+            except BaseException as stopped:
                 process.kill()
                 process.wait()
+                if not isinstance(stopped, subprocess.TimeoutExpired):
+                    raise
         self.seconds = time.monotonic() - begin
         self.code = process.returncode
         self.text = (folder / "stderr").read_text(errors="replace")
@@ -172,11 +174,13 @@ def main():
     parser.add_argument("--kinds", default="complexes,cad,files")
     parser.add_argument("--keep", type=pathlib.Path, default=pathlib.Path("found"))
     options = parser.parse_args()
-    outcomes, wrong = collections.Counter(), 0
+    outcomes, wrong, interrupted = collections.Counter(), 0, False
     with tempfile.TemporaryDirectory(prefix="collarmesh-fuzz-") as name:
         folder = pathlib.Path(name)
         (folder / "seeds").mkdir()
         kinds = options.kinds.split(",")
+        if unknown := set(kinds) - {"complexes", "files", *CAD_KINDS}:
+            parser.error(f"no such kinds: {', '.join(sorted(unknown))}")
         files = seeds_of_files(folder / "seeds") if "files" in kinds else []
         trials = {"complexes": try_complex, "files": lambda place, seed: try_file(place, seed, files)}
         for kind in set(kinds) & set(CAD_KINDS):
@@ -197,6 +201,7 @@ def main():
                     shutil.copytree(place, options.keep / f"{kind}-{seed}", dirs_exist_ok=True)
                 shutil.rmtree(place)
             except KeyboardInterrupt:
+                interrupted = True
                 break
     table = collections.defaultdict(dict)
     for (what, code), count in outcomes.items():
@@ -205,7 +210,7 @@ def main():
         told = ", ".join(f"exit {code}: {count}" for code, count in sorted(codes.items()))
         print(f"{what:18} {sum(codes.values()):6} runs; {told}")
     print(f"{sum(outcomes.values())} runs, {wrong} wrong")
-    return 1 if wrong else 0
+    return 130 if interrupted else 1 if wrong else 0
 
 
 if __name__ == "__main__":

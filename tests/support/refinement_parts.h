@@ -50,7 +50,7 @@ struct KnownMesh {
   ConflictZone zone;
 };
 
-/// Beside that the curves and what they need, without a subsegment yet.
+/// A KnownMesh with curves and the parts they need; no subsegments yet.
 struct KnownCurves : KnownMesh {
   explicit KnownCurves(const Plc& plc, const MeshOptions& options = {}) : KnownMesh(plc, options) {
     for (Index i = 0; i < plc.vertices.size(); ++i) points.add(domain.points[plc.vertices[i].point], {0, i});

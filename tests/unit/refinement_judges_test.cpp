@@ -238,8 +238,7 @@ TEST(RefineCollarCells, CellsAreInsideWhenABallHoldsTheirCircumcentre) {
       const bool held = known.collars.ball_containing(known.mesh.circumcentre(cell)) != none;
       ASSERT_EQ(known.collar_cells.inside(cell), held);
       inside += held;
-      for (const Index v : known.mesh.corners(cell))
-        EXPECT_TRUE(!held || known.collar_cells.near(v));
+      for (const Index v : known.mesh.corners(cell)) EXPECT_TRUE(!held || known.collar_cells.near(v));
     }
   };
   const auto count_near = [&] {

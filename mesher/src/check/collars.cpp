@@ -78,7 +78,7 @@ class CollarCheck {
     }
   }
 
-  // Of all features that the mesh has.
+  // Without features outside all regions: the mesh does not have them.
   void collect_elements() {
     for (Index v = 0; v < plc_.vertices.size(); ++v) {
       const Index p = plc_.vertices[v].point;

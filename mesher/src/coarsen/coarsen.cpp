@@ -148,7 +148,7 @@ class Coarsening {
     return report_.cancelled;
   }
 
-  // Onto the nearest neighbour that will do. Lengths tell of most that it will not.
+  // Onto the nearest neighbour that will do. Lengths rule out most neighbours, at less cost than the cone.
   void contract_vertex(Index vertex, bool repair) {
     find_neighbours(vertex);
     targets_.clear();
@@ -357,7 +357,7 @@ class Coarsening {
   std::vector<Index> star_;            // tets at the vertex asked about last
   std::vector<Neighbour> neighbours_;  // of that vertex
   double shortest_ = 0;                // edge there
-  std::vector<Index> targets_;         // neighbours that it may go to by the lengths
+  std::vector<Index> targets_;         // neighbours that the length rules allow
   std::vector<std::uint32_t> stamps_;
   std::uint32_t stamp_ = 0;
   CoarsenReport report_;

@@ -50,9 +50,10 @@ inline Circumsphere circumsphere(const Corners& p) {
   const Vector vw = cross(v, w);
   const double det = dot(u, vw);
   const Vector centre = (uu * vw + vv * cross(w, u) + ww * cross(u, v)) / (2 * det);
-  const auto [shortest, longest] = std::minmax(
-      {uu, vv, ww, squared_distance(p[1], p[2]), squared_distance(p[1], p[3]), squared_distance(p[2], p[3])});
-  return {squared_norm(centre), shortest, longest, std::fabs(det)};
+  const double bc = squared_distance(p[1], p[2]), bd = squared_distance(p[1], p[3]),
+               cd = squared_distance(p[2], p[3]);
+  return {squared_norm(centre), std::min({uu, vv, ww, bc, bd, cd}), std::max({uu, vv, ww, bc, bd, cd}),
+          std::fabs(det)};
 }
 
 }  // namespace collarmesh::improvement

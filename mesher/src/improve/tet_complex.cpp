@@ -117,7 +117,7 @@ std::array<Point, 4> TetComplex::corners(Index tet) const {
 
 // Stars are small: it is faster to look among the tets found than to mark them.
 void TetComplex::star(Index vertex, std::vector<Index>& found) const {
-  std::array<Index, 64> found_from{none};  // of the first ones: the tet on the way to each
+  std::array<Index, 64> found_from{none};  // by place in `found`: the tet from which
   found.assign(1, vertex_tet_[vertex]);
   for (std::size_t i = 0; i < found.size(); ++i) {
     const Index from = i < found_from.size() ? found_from[i] : none;

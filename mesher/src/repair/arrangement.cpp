@@ -469,7 +469,7 @@ class GrainSnapper {
 
   // A round was of no help: where snapping undoes what was cut, rounds without it help.
   void change() { pausing_ = !pausing_; }
-  /// Is anything left that rounds without it made?
+  /// Snap again from now on. False if it was not paused, or never snaps.
   bool resume() { return std::exchange(pausing_, false) && reach_ > 0; }
 
   void run() {
@@ -540,7 +540,7 @@ ArrangementReport arrange(Draft& draft, double grain, Work* work) {
       report.intersecting_pairs = pairs.size();
       note_places(draft, simplices.list(), pairs, report.places);
     }
-    // Corners that rounding left next to each other are one, if that spoils nothing.
+    // Snap what the rounds without snapping left; it is taken back if facets then intersect.
     if (report.clean && !clean_before && snapper.resume()) {
       clean_before = draft;
       snapper.run();

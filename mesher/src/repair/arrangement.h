@@ -20,7 +20,8 @@ struct ArrangementReport {
 /// Cut the triangles and segments of a draft along their intersections until they meet in common corners and
 /// edges only. Constructions are exact, then rounded, and corners that come within `grain` (absolute) of
 /// others or of edges become one with them, unless that undoes the cuts; what intersects by this is cut in
-/// further rounds. Triangles that cover each other become copies of one: all stay, as their orientations say
+/// further rounds. Where that undid the cuts it is tried once more in the end, and taken back if it does so
+/// again. Triangles that cover each other become copies of one: all stay, as their orientations say
 /// what is inside. Throws WorkStopped; the draft is then of no use. Pieces keep their triangle's origin, but
 /// for `Origin::facet`, which is renumbered. Cost: O(n log n) and for k intersecting pairs O(k log k) exact
 /// constructions, some 0.1 ms each.
