@@ -3,10 +3,9 @@
 //   FAULT_AT     the number of the call that fails, from 1; 0: none, they are counted only
 //   FAULT_LASTS  set: all calls after it fail, too
 //   FAULT_COUNT  a file that gets the number of calls at the end
-//   FAULT_FORKS  set: of the kind `new`, each call fails in turn in a child of its own that is forked there,
-//   until the
-//                program makes its second temporary folder; FAULT_COUNT gets calls tried and, as lines, wrong
-//                ends
+//   FAULT_FORKS  set: of the kind `new`, each call fails in turn in a child that is forked there, until the
+//                program makes its second temporary folder; FAULT_COUNT gets the number of calls tried and, as
+//                lines, the wrong ends
 // The kind `file` fails with no space on the device.
 #include <dlfcn.h>
 #include <fcntl.h>
