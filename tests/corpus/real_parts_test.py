@@ -18,7 +18,7 @@ from judging import Failed, run
 
 KINDS = {".step", ".stp", ".brep", ".brp", ".igs", ".iges", ".stl", ".obj", ".off", ".ply"}
 LARGEST = 600_000  # bytes
-SECONDS = 30
+SECONDS = 60
 MESHED = 0.8  # of the sample, at least; some are open sheets or need more time
 # Parts of names. Refinement did not end beside a sheet outside of all regions, where a sample across a gap fell onto a
 # point of a curve, in folds as fine as the repair's tolerance; a ball was too large for the curved patch in it; a face
