@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <numbers>
 #include <numeric>
 
 #include "support/meshing.h"
@@ -121,6 +122,34 @@ TEST(RepairHard, RegularPrismsTwistedByHalfATurn) {
       expect_in_time(fmt::format("twisted_prism({}, {})", k, degrees),
                      [&] { return wrong_volume(soup, sampled.volume, 4 * sampled.deviation); });
     }
+}
+
+// At one of their many crossings snapping does not settle, or cutting leaves corners that all but touch. What
+// two neighbours share is less than the lens of their spheres.
+TEST(RepairHard, ManySpheresOfALattice) {
+  Random random(22);
+  for (unsigned member = 0; member < members(1); ++member) {
+    constexpr int side = 6, count = side * side * side, pairs = 3 * side * side * (side - 1);
+    constexpr double spacing = 1.955, offset = 0.01;
+    std::vector<PolygonSoup> balls;
+    for (int i = 0; i < count; ++i) {
+      const Vector place{spacing * (i % side), spacing * (i / side % side), spacing * (i / side / side)};
+      balls.push_back(testing::translated(turned(testing::icosphere(1, 4), random),
+                                          place + offset * random_direction(random)));
+    }
+    const double height = 1 - 0.5 * (spacing - 2 * offset),
+                 lens = 2 * std::numbers::pi / 3 * height * height * (3 - height);
+    const PolygonSoup soup = joined(balls);
+    const double most = count * signed_volume(balls[0]), least = most - pairs * lens;
+    expect_in_time(fmt::format("member {}", member), [&]() -> std::string {
+      try {
+        const double volume = total_volume(build_repaired_plc({&soup, 1}).plc);
+        return least < volume && volume < most ? "" : fmt::format("volume {}", volume);
+      } catch (const Error& error) {
+        return error.what();
+      }
+    });
+  }
 }
 
 std::string wrong_regions(std::span<const PolygonSoup> soups,

@@ -149,8 +149,8 @@ void check_patches(const Subject& subject, CheckReport& report, Findings& findin
 /// Precondition: subject.match is filled in.
 std::vector<std::uint8_t> collar_cells(const Subject& subject, Findings& findings);
 
-/// The balls of the collars against the features that the mesh has and against each other (paper, Definitions 6 and 7).
-/// Nothing when the mesh does not tell them.
+/// The balls of the collars against the features that the mesh has and against each other (paper,
+/// Definitions 6 and 7). Nothing when the mesh does not tell them.
 void check_collars(const Subject& subject, Findings& findings);
 
 /// Give the faces and edges of a mesh of second order the mid-side nodes that tets have there.

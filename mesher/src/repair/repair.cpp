@@ -192,21 +192,30 @@ class Repairer {
     for (std::size_t round = 0; round < most_rounds; ++round) {
       const Draft clean = draft_;
       const RepairReport report_of_clean = report_;
-      const SnapReport snapped = snap_near_features(draft_, reach, SnapWhat::all, &work_);
+      const SnapReport snapped = collapse(reach);
       // Where cutting undoes much of what snapping does, more of both would not end.
-      const std::size_t changes = snapped.merged_points + snapped.cut_edges + snapped.cut_triangles;
-      if (!snapped.changed() || 2 * changes > changes_before) {
-        draft_ = clean;
-        return;
+      const bool goes_on = snapped.changed() && 2 * snapped.changes() <= changes_before;
+      if (goes_on) {
+        changes_before = snapped.changes();
+        if (cut_and_keep()) continue;
       }
-      changes_before = changes;
-      add_places(report_.collapsed, snapped.merged_points + snapped.cut_edges + snapped.cut_triangles,
-                 snapped.largest_distance, snapped.places);
-      if (cut_and_keep()) continue;
       draft_ = clean;
       report_ = report_of_clean;
+      if (!goes_on) break;
       reach *= 0.1;
     }
+    remove_near_contacts();
+  }
+
+  // Cutting leaves corners that all but touch other facets, and snapping keeps them all where it does not
+  // settle at one of many places. Within a small part of the tolerance there are few such places, and it
+  // settles.
+  void remove_near_contacts() {
+    Draft clean = draft_;
+    RepairReport report_of_clean = report_;
+    if (!collapse(grain * tolerance_).changed() || cut_and_keep()) return;
+    draft_ = std::move(clean);
+    report_ = std::move(report_of_clean);
   }
 
   // Where facets nearly coincide, rounding what cuts them makes ever more intersections: they are made to
@@ -218,12 +227,16 @@ class Repairer {
     for (const double share : {grain, 10 * grain, 100 * grain, 1.0}) {
       draft_ = before;
       report_ = report_before;
-      const SnapReport snapped = snap_near_features(draft_, share * tolerance_, SnapWhat::all, &work_);
-      add_places(report_.collapsed, snapped.merged_points + snapped.cut_edges + snapped.cut_triangles,
-                 snapped.largest_distance, snapped.places);
+      collapse(share * tolerance_);
       if (cut_and_keep()) return true;
     }
     return false;
+  }
+
+  SnapReport collapse(double reach) {
+    const SnapReport snapped = snap_near_features(draft_, reach, SnapWhat::all, &work_);
+    add_places(report_.collapsed, snapped.changes(), snapped.largest_distance, snapped.places);
+    return snapped;
   }
 
   bool cut_and_keep() {

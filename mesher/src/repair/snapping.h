@@ -17,7 +17,8 @@ struct SnapReport {
   double largest_distance = 0;          ///< absolute, of a corner from what it became part of
   std::vector<Point> places;            ///< some of them
 
-  bool changed() const { return merged_points + cut_edges + cut_triangles + cancelled_triangles > 0; }
+  std::size_t changes() const { return merged_points + cut_edges + cut_triangles; }
+  bool changed() const { return changes() + cancelled_triangles > 0; }
 };
 
 /// Which triangles take part.
