@@ -406,6 +406,21 @@ class Budgets(ProgramTest):
         os.mkfifo(endless)  # reading it never ends
         self.expect(5, endless, "-o", self.out, "--time-limit", "0.1", says=["time limit of 0.1 s .*stage: read"])
         self.expect(5, self.box, "-o", self.out, "--time-limit", "1e-6", says=["stage: start"])
+        begin = time.monotonic()
+        self.expect(0, self.box, "-o", self.out, "--size", "0.04", writes=True)
+        whole = time.monotonic() - begin
+        self.out.unlink()
+        for share in (0.1, 0.3, 0.5, 0.7, 0.9):
+            with self.subTest(share=share):
+                begin = time.monotonic()
+                run = self.run_program(self.box, "-o", self.out, "--size", "0.04", "--time-limit", share * whole)
+                self.assertIn(run.returncode, (0, 5), run.stderr)
+                self.assertEqual(self.out.exists(), run.returncode == 0)
+                if run.returncode == 5:  # else the machine had more time
+                    self.assertIn("time limit", run.stderr)
+                    self.assertLess(time.monotonic() - begin, 1.1 * share * whole + 2)
+                self.out.unlink(missing_ok=True)
+                self.assert_nothing_left()
 
 
 class Cancelling(ProgramTest):
@@ -430,6 +445,39 @@ class Cancelling(ProgramTest):
                 self.assertEqual(process.returncode, 6, messages)
                 self.assertIn("cancelled", messages)
                 self.assertFalse(self.out.exists())
+                self.assert_nothing_left()
+
+    def test_interrupt_ends_every_stage(self):
+        """As the time limit does: both set the same flag."""
+        command = [PROGRAM, str(self.box), "-o", str(self.out), "--size", "0.04", "--order", "2", "--progress", "json"]
+
+        def run(stop_at=None):
+            process = subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE, text=True)
+            self.addCleanup(process.kill)
+            stages, stopped = [], None
+            for line in process.stderr:
+                phase = json.loads(line).get("phase") if line.startswith("{") else None
+                if phase and phase not in stages:
+                    stages.append(phase)
+                    if phase == stop_at:
+                        process.send_signal(signal.SIGTERM)
+                        stopped = time.monotonic()
+            code = process.wait(timeout=60)
+            process.stderr.close()
+            return code, stages, time.monotonic() - stopped if stopped else 0
+
+        code, stages, _ = run()
+        self.assertEqual(code, 0)
+        self.assertLessEqual({"read", "complex", "refine", "coarsen", "improve", "second order", "check", "write"},
+                             set(stages))
+        self.out.unlink()
+        for stage in stages:
+            with self.subTest(stage=stage):
+                code, _, seconds = run(stage)
+                self.assertIn(code, (6, 0) if stage == stages[-1] else (6,))  # too late for the last one
+                self.assertLess(seconds, 2)  # a second, on a busy machine
+                self.assertEqual(self.out.exists(), code == 0)
+                self.out.unlink(missing_ok=True)
                 self.assert_nothing_left()
 
     def test_interrupt_at_any_time_leaves_no_half_file(self):

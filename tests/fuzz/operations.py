@@ -1,8 +1,10 @@
 """Fuzzes the whole operation: meshes random complexes, changed ones and mutated files, and judges each run.
 
     operations.py [--seconds N | --runs N] [--seed S] [--kinds complexes,cad,files] [--keep FOLDER]
+                  [--sanitized]
 
---runs is the number of runs of each kind; step, iges and brep are kinds, too.
+--runs is the number of runs of each kind; step, iges and brep are kinds, too. --sanitized is for programs with a
+sanitizer: no memory budget, as the sanitizer's memory would count, and ten times the time.
 
 A run is wrong when a signal ends it, with exit code 1, when it exceeds its limits by more than a tenth, or a second, when
 the volumes of the regions are not those known, or when it writes a mesh that `check` does not pass. Wrong ones are
@@ -30,19 +32,19 @@ import complexes  # noqa: E402
 
 PROGRAM = os.path.abspath(shutil.which(os.environ["COLLARMESH_PROGRAM"]) or os.environ["COLLARMESH_PROGRAM"])
 SOURCES = pathlib.Path(__file__).resolve().parents[2]
-TIME_LIMIT, MEMORY_LIMIT = 15.0, 500
+TIME_LIMIT, MEMORY_BUDGET = 15.0, ["--max-memory", "500M"]
 REFUSALS = {2, 3, 4, 5, 8}
 
 
 class Trial:
     """One run of the program under limits."""
 
-    def __init__(self, folder, *arguments, time_limit=TIME_LIMIT):
+    def __init__(self, folder, *arguments):
         begin = time.monotonic()
         with open(folder / "stderr", "w+b") as messages, open(folder / "stdout", "w+b") as results:
             process = subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=folder, stdout=results, stderr=messages)
             try:
-                process.wait(timeout=4 * time_limit)
+                process.wait(timeout=4 * TIME_LIMIT)
             except BaseException as stopped:
                 process.kill()
                 process.wait()
@@ -62,7 +64,7 @@ class Trial:
 
 def mesh(folder, path, *options):
     return Trial(folder, path, "-o", "out.vtu", "--report", "report.json", "-q", "--time-limit", TIME_LIMIT,
-                 "--max-memory", f"{MEMORY_LIMIT}M", *options)
+                 *MEMORY_BUDGET, *options)
 
 
 def near(a, b, tolerance, rounding):
@@ -173,7 +175,11 @@ def main():
     parser.add_argument("--seed", type=int, default=int(datetime.date.today().strftime("%Y%m%d")) * 100000)
     parser.add_argument("--kinds", default="complexes,cad,files")
     parser.add_argument("--keep", type=pathlib.Path, default=pathlib.Path("found"))
+    parser.add_argument("--sanitized", action="store_true")
     options = parser.parse_args()
+    if options.sanitized:
+        global TIME_LIMIT, MEMORY_BUDGET
+        TIME_LIMIT, MEMORY_BUDGET = 10 * TIME_LIMIT, []
     outcomes, wrong, interrupted = collections.Counter(), 0, False
     with tempfile.TemporaryDirectory(prefix="collarmesh-fuzz-") as name:
         folder = pathlib.Path(name)

@@ -1,8 +1,6 @@
 // The certificate: each guarantee recomputed from the mesh and the complex alone.
 #include "collarmesh/check.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +8,7 @@
 
 #include "check/subject.h"
 #include "collarmesh/mesher.h"
+#include "common/parallel_for.h"
 #include "thread_limit.h"
 
 namespace collarmesh {
@@ -91,7 +90,7 @@ void judge(Subject subject, CheckReport& report, Findings& findings, const Execu
       check_second_order};
   std::array<CheckReport, groups.size()> parts;
   ThreadLimit(subject.options.threads).run([&] {
-    tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t i) {
+    parallel_for(groups.size(), [&](std::size_t i) {
       if (execution.cancelled()) return;
       Findings own(parts[i], subject.options.findings_per_guarantee);
       groups[i](subject, parts[i], own);

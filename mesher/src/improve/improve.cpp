@@ -1,7 +1,6 @@
 #include "collarmesh/improve.h"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <chrono>
 #include <numbers>
@@ -9,6 +8,7 @@
 
 #include "collarmesh/error.h"
 #include "collarmesh/mesher.h"
+#include "common/parallel_for.h"
 #include "improve/operations.h"
 #include "thread_limit.h"
 
@@ -115,8 +115,8 @@ class Improvement {
         return;
       }
       proposals_.assign(batch_.size(), {});
-      tbb::parallel_for(std::size_t{0}, batch_.size(),
-                        [&](std::size_t i) { proposals_[i] = propose(operations_.local(), batch_[i].tet); });
+      parallel_for(batch_.size(),
+                   [&](std::size_t i) { proposals_[i] = propose(operations_.local(), batch_[i].tet); });
       ++batch_number_;
       changed_in_.resize(complex().size(), 0);
       for (std::size_t i = 0; i < batch_.size(); ++i) {
