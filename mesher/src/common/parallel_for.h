@@ -5,25 +5,28 @@
 #include <cstddef>
 
 #ifdef __SANITIZE_THREAD__
-#include <sanitizer/tsan_interface.h>
+#include <tbb/task_arena.h>
+
+#include <atomic>
+#include <thread>
+#include <vector>
 #endif
 
 namespace collarmesh {
 
 /// `work(i)` for all i below `count`, by the threads of the arena that runs the caller. Returns when all are
-/// done. ThreadSanitizer is told that what was before the loop happens before each `work(i)` and each of these
-/// before what comes after it: TBB's library is not built with it, so its own synchronization is not seen.
+/// done.
 template <class Work>
 void parallel_for(std::size_t count, const Work& work) {
 #ifdef __SANITIZE_THREAD__
-  char begin = 0, end = 0;
-  __tsan_release(&begin);
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-    __tsan_acquire(&begin);
-    work(i);
-    __tsan_release(&end);
-  });
-  __tsan_acquire(&end);
+  // ThreadSanitizer does not see how TBB's library, which is not built with it, orders what threads do.
+  std::atomic<std::size_t> next{0};
+  const auto take_turns = [&] {
+    for (std::size_t i = next++; i < count; i = next++) work(i);
+  };
+  std::vector<std::jthread> others;
+  for (int t = 1; t < tbb::this_task_arena::max_concurrency(); ++t) others.emplace_back(take_turns);
+  take_turns();
 #else
   tbb::parallel_for(std::size_t{0}, count, work);
 #endif

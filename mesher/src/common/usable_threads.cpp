@@ -2,7 +2,6 @@
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <latch>
@@ -11,6 +10,8 @@
 #include <system_error>
 #include <thread>
 #include <vector>
+
+#include "common/parallel_for.h"
 
 namespace collarmesh {
 
@@ -32,10 +33,10 @@ int count_threads(int most) {
 
 /// TBB makes its threads when there is work.
 bool tbb_has_its_threads(int threads) {
-  constexpr int pieces = 256;
+  constexpr std::size_t pieces = 256;
   try {
     tbb::task_arena arena(threads);
-    arena.execute([] { tbb::parallel_for(0, pieces, [](int) { std::this_thread::yield(); }); });
+    arena.execute([] { parallel_for(pieces, [](std::size_t) { std::this_thread::yield(); }); });
   } catch (const std::runtime_error&) {
     return false;
   }

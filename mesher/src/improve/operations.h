@@ -64,12 +64,14 @@ class Operations {
     std::vector<std::array<Index, 3>> hull;  ///< make positive tets with the apex
     std::vector<Index> hull_tet;             ///< where each of these comes from
     std::vector<Index> faces;
+    double agreement = NAN;                 ///< of the faces with their patches; not known yet: NaN
     std::vector<std::array<Index, 2>> rim;  ///< make faces with the apex
     std::vector<Index> rim_face;
 
     void clear() {
       tets.clear(), hull.clear(), hull_tet.clear(), faces.clear(), rim.clear(), rim_face.clear();
       worst = INFINITY;
+      agreement = NAN;
     }
   };
 

@@ -143,7 +143,8 @@ double SmoothSurfaces::worst_agreement(std::span<const Index> faces) const {
   return worst;
 }
 
-bool SmoothSurfaces::fit(std::span<const Index> old, std::span<const Face> created) const {
+bool SmoothSurfaces::fit(std::span<const Index> old, std::span<const Face> created,
+                         double& agreement_of_old) const {
   double least = 1;
   std::vector<Index> near(created.size(), none);  // a triangle near the centre of each
   const auto is_planar = [&](const Face& face) {
@@ -156,7 +157,9 @@ bool SmoothSurfaces::fit(std::span<const Index> old, std::span<const Face> creat
     near[i] = triangle_near(patch, centre(corners), same ? near[i - 1] : none);
     if (near[i] == none) return false;
     least = std::min(least, agreement(patch, corners, near[i]));
-    if (least < enough_agreement && least < worst_agreement(old)) return false;
+    if (least >= enough_agreement) continue;
+    if (std::isnan(agreement_of_old)) agreement_of_old = worst_agreement(old);
+    if (least < agreement_of_old) return false;
   }
   std::vector<Vector> normals;
   normals.reserve(created.size());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -42,8 +43,13 @@ class SmoothSurfaces {
     Index patch;
   };
   /// Could these take the place of the mesh' faces `old`, turned like the patch as far as they are now?
-  /// Faces on planar patches count for nothing.
-  bool fit(std::span<const Index> old, std::span<const Face> created) const;
+  /// Faces on planar patches count for nothing. How well the old ones are turned is computed where it is NaN,
+  /// for a caller who asks about the same ones again.
+  bool fit(std::span<const Index> old, std::span<const Face> created, double& agreement_of_old) const;
+  bool fit(std::span<const Index> old, std::span<const Face> created) const {
+    double agreement_of_old = NAN;
+    return fit(old, created, agreement_of_old);
+  }
   /// Before the mesh' faces are replaced or moved: take the points of the patches from these,
   void take_samples(std::span<const Index> faces);
   /// and after it, give them to those that `fit`.

@@ -122,7 +122,7 @@ bool Operations::surfaces_allow(const Point& apex) {
   for (std::size_t i = 0; i < cone_.rim.size(); ++i)
     faces_.push_back({{apex, mesh_.points[cone_.rim[i][0]], mesh_.points[cone_.rim[i][1]]},
                       mesh_.face_patch[cone_.rim_face[i]]});
-  return surfaces_.fit(cone_.faces, faces_);
+  return surfaces_.fit(cone_.faces, faces_, cone_.agreement);
 }
 
 // Cones over hull and rim take the place of the tets and faces.
