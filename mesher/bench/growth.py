@@ -3,6 +3,7 @@
 
 creases: grids of wedges and of fans, and a comb, ever more of them.
 spread: a small wedge above a large one, ever smaller.
+curves: a cube with ever shorter edges along its own, or along a segment across it, and nowhere else.
 Prints Markdown tables; with --plot FOLDER it draws them too (matplotlib)."""
 
 from __future__ import annotations
@@ -62,6 +63,47 @@ def spread_series(program: Path) -> list[Series]:
             for angle in (90, 20)]
 
 
+@dataclass
+class Cube:
+    """The unit cube; with a segment across it, oblique to its sides, on request."""
+    title: str
+    segment: bool
+    suffix = ".poly"
+    files = ("input.poly",)
+    feature_angle = 0
+
+    def curves(self) -> range:
+        return range(13, 14) if self.segment else range(1, 13)
+
+    def write(self, stem: Path) -> None:
+        corners = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+        facets = [(1, 2, 3, 4), (5, 6, 7, 8), (1, 2, 6, 5), (2, 3, 7, 6), (3, 4, 8, 7), (4, 1, 5, 8)]
+        if self.segment:
+            corners += [(0.21, 0.32, 0.17), (0.83, 0.71, 0.76)]
+            facets += [(9, 10)]
+        lines = [f"{len(corners)} 3 0 0", *(f"{i} {x} {y} {z}" for i, (x, y, z) in enumerate(corners, 1)),
+                 f"{len(facets)} 0", *(f"1\n{len(f)} {' '.join(map(str, f))}" for f in facets), "0", "0", ""]
+        stem.with_suffix(self.suffix).write_text("\n".join(lines))
+
+
+def curve_table(program: Path, time_limit: float, folder: Path) -> str:
+    rows = []
+    for cube in (Cube("the cube's edges", False), Cube("a segment across it", True)):
+        before = None
+        for k in range(6, 13):
+            sizes = [f"{curve}={2.0 ** -k}" for curve in cube.curves()]
+            mesher = Collarmesh(program, time_limit, ["--coarsen", "off", *(w for one in sizes for w in ("--curve-size", one))])
+            folder.mkdir(parents=True, exist_ok=True)
+            mesher.prepare(cube, folder)
+            run = mesher.mesh(cube, size, folder)
+            refine = run.stages["refine"]
+            growth = "" if before is None else f"{exponent(before.tets, before.stages['refine'], run.tets, refine):.2f}"
+            rows.append([cube.title, f"1/{2 ** k}", tets_text(run), seconds(refine), growth,
+                         f"{1e6 * refine / run.tets:.2f}", f"{run.structure_bytes / run.tets:.0f}"])
+            before = run
+    return table(["curves", "their edges", "tets", "refine s", "exponent", "us/tet", "bytes/tet"], rows)
+
+
 def crease_table(series: list[Series]) -> str:
     rows = []
     for one in series:
@@ -93,7 +135,7 @@ def spread_table(series: list[Series]) -> str:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     root = Path(__file__).resolve().parents[2]
-    parser.add_argument("what", nargs="*", default=["creases", "spread"], help="creases, spread")
+    parser.add_argument("what", nargs="*", default=["creases", "spread", "curves"], help="creases, spread, curves")
     parser.add_argument("--build", type=Path, default=root / "build" / "bench")
     parser.add_argument("--largest", type=int, default=100000, help="number of crease segments")
     parser.add_argument("--time-limit", type=float, default=3600)
@@ -121,6 +163,8 @@ def main() -> int:
         print(spread_table(series))
         if options.plot:
             plot_spread(series, options.plot / "spread.svg")
+    if "curves" in options.what:
+        print(curve_table(mesher.program, options.time_limit, folder / "curves"))
     return 0
 
 

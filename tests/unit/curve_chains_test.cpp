@@ -47,7 +47,9 @@ struct Curves : testing::KnownCurves {
   std::size_t split_all() {
     std::size_t splits = 0;
     for (WorkQueue::Item item; queue.pop(item);) {
-      if (item.priority != WorkQueue::encroached_subsegments || !chains.due(item.entry)) continue;
+      const bool splits_one = item.priority == WorkQueue::encroached_subsegments ||
+                              item.priority == WorkQueue::coarse_subsegments;
+      if (!splits_one || !chains.due(item.entry)) continue;
       const auto split = chains.split_of(item.entry.id);
       if (!split || split->candidate.start == none) return none;
       chains.remove(*split);
@@ -161,6 +163,17 @@ TEST(CurveChains, SplittingEndsWithEmptyBallsAndFineSubsegments) {
   });
   for (const double length : covered) EXPECT_NEAR(length, 1, 1e-9);
   EXPECT_FALSE(curves.outcome.given_up());
+}
+
+TEST(CurveChains, CoarseOnesComeAfterQuality) {
+  const Plc plc = box();
+  Curves curves(plc, 0.2);
+  curves.resolve_all();
+  std::set<unsigned> priorities;
+  for (WorkQueue::Item item; curves.queue.pop(item);) priorities.insert(item.priority);
+  EXPECT_TRUE(priorities.contains(WorkQueue::coarse_subsegments));
+  EXPECT_FALSE(priorities.contains(WorkQueue::encroached_subsegments));
+  EXPECT_GT(WorkQueue::coarse_subsegments, WorkQueue::skinny_cells);
 }
 
 TEST(CurveChains, ABallAtTheFloorIsGivenUp) {

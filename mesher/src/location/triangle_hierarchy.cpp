@@ -29,7 +29,9 @@ int passes(const Point& p, const Point& q, const Point& a, const Point& b) {
   return sign != 0 ? sign : predicates::cross_product_sign_exact(p, q, a, b);
 }
 
+// Segments and points are triangles whose last two corners are the same.
 int crossing_direction(const Point& p, const Point& q, const std::array<Point, 3>& t) {
+  if (t[1] == t[2]) return 0;
   const int to = side(t[0], t[1], t[2], q);
   if (to == 0 || side(t[0], t[1], t[2], p) == to) return 0;
   const int first = passes(p, q, t[0], t[1]);

@@ -154,7 +154,10 @@ void CurveChains::add_subsegment(Index curve, std::array<Index, 2> ends, std::ar
   open_creases_.note_link(curve, {index, stamp});
   const bool empty = nearest == ends[0] || nearest == ends[1] ||
                      squared_distance(s.centre, mesh_.point(nearest)) > s.squared_radius;
-  if (!empty || too_coarse(s)) encroach(index);
+  if (!empty)
+    encroach(index);
+  else if (too_coarse(s))
+    queue(WorkQueue::coarse_subsegments, index);
 }
 
 void CurveChains::remove_subsegment(Index subsegment) {
@@ -165,9 +168,11 @@ void CurveChains::remove_subsegment(Index subsegment) {
   free_subsegments_.push_back(subsegment);
 }
 
-void CurveChains::encroach(Index subsegment) {
+void CurveChains::encroach(Index subsegment) { queue(WorkQueue::encroached_subsegments, subsegment); }
+
+void CurveChains::queue(WorkQueue::Priority priority, Index subsegment) {
   const Chained& s = subsegments_[subsegment];
-  queue_.push(WorkQueue::encroached_subsegments, s.piece.squared_radius, {subsegment, s.stamp});
+  queue_.push(priority, s.piece.squared_radius, {subsegment, s.stamp});
 }
 
 bool CurveChains::too_coarse(const Subsegment& s) const {
@@ -195,7 +200,7 @@ bool CurveChains::too_coarse(const Subsegment& s) const {
 
 void CurveChains::judge_all() {
   for (Index s = 0; s < subsegments_.size(); ++s)
-    if (subsegments_[s].alive && too_coarse(subsegments_[s].piece)) encroach(s);
+    if (subsegments_[s].alive && too_coarse(subsegments_[s].piece)) queue(WorkQueue::coarse_subsegments, s);
 }
 
 Index CurveChains::encroached(const ConflictZone& zone, const Candidate& candidate) const {

@@ -136,6 +136,7 @@ class CurveChains {
   double bisecting_parameter(Index curve, const Point& a, const Point& b, double from, double to) const;
   void add_subsegment(Index curve, std::array<Index, 2> ends, std::array<double, 2> parameters, Index nearby);
   void remove_subsegment(Index subsegment);
+  void queue(WorkQueue::Priority priority, Index subsegment);
   bool too_coarse(const Subsegment& s) const;
   bool is_there(const ChainLink& link) const {
     return subsegments_[link.subsegment].alive && subsegments_[link.subsegment].stamp == link.stamp;

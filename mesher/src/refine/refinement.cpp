@@ -95,6 +95,7 @@ void Refinement::process(const WorkQueue::Item& item) {
   const auto [id, stamp] = item.entry;
   switch (item.priority) {
     case WorkQueue::encroached_subsegments:
+    case WorkQueue::coarse_subsegments:
       if (curves_.due(item.entry)) destroy_subsegment(id);
       break;
     case WorkQueue::ends_of_encroached_subsegments:

@@ -20,6 +20,7 @@ class WorkQueue {
     ends_of_encroached_subsegments,  ///< unresolved ends of a curve's first subsegments
     skinny_cells,
     unresolved_points,
+    coarse_subsegments,
     unresolved_triangles,
     large_triangles,
     large_cells,
