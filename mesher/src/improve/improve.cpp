@@ -134,7 +134,8 @@ class Improvement {
             !execution_.progress({"improve", 0, complex().mesh().points.size(), complex().size()}));
   }
 
-  // The first that helps of: an edge removed, a corner moved, an edge contracted, a vertex inserted.
+  // The first that helps of: an edge removed, a corner moved, an edge contracted, a vertex inserted. Where the
+  // number of vertices is to stay, only tets beyond the largest angle of thin ones change it.
   Change propose(Operations& operations, Index tet) const {
     Change change;
     for (unsigned i = 0; i < 4; ++i)
@@ -143,7 +144,7 @@ class Improvement {
     const auto found = [&] { return change.kind != Change::Kind::none; };
     if (found() || !move_vertices_) return change;
     for (const Index v : corners) operations.move_vertex(v, change);
-    if (found() || keep_vertices_) return change;
+    if (found() || (keep_vertices_ && !rule_.is_blunt(quality(tet)))) return change;
     for (const Index v : corners)
       for (const Index w : corners)
         if (v != w) operations.contract_edge(v, w, change);

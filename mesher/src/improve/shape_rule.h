@@ -60,6 +60,9 @@ class SliverRule final : public ShapeRule {
     return bound_.holds(p) || (thin_ != nullptr && thin_->contains(p, corners));
   }
 
+  /// Is a tet of this quality, where tets may be thin, one of those with a larger angle?
+  bool is_blunt(double quality) const { return thin_ != nullptr && quality < beyond; }
+
  private:
   static constexpr double beyond = 1e-3;
 
