@@ -133,7 +133,7 @@ void add_complex_options(CLI::App& app, ComplexArguments& a) {
   app.add_option(
          "--names", a.names,
          "Names of patches, curves and regions, by number or by a point on them, for formats with names")
-      ->type_name("FILE.json")
+      ->type_name("FILE")
       ->group(group);
   add(app, "--crease-angle DEGREES", a.crease_angle,
       "Features that meet below this angle form a crease, degrees")
@@ -233,7 +233,7 @@ void add_quality_options(CLI::App& app, MeshOptions& m) {
       ->group(group);
   add(app, "--distance LENGTH", m.distance,
       "Largest distance from smooth surfaces and curves, absolute, input units",
-      "1/10 of the size, at most 1/200 of the diagonal (1/600 with --order 2)")
+      "1/10 of the size, at most 1/200 of the diagonal (1/550 with --order 2)")
       ->check(length)
       ->group(group);
   add(app, "--seed N", m.seed, "Of the pseudo-random offsets: same input, options and seed, same mesh")
@@ -294,7 +294,7 @@ void add_run_options(CLI::App& app, MeshArguments& a) {
   add(app, "--scale FACTOR", a.scale,
       "Coordinates are multiplied by this when they are written, 0.001 for m of mm")
       ->check(number_in(1e-100, 1e100, "a positive number"));
-  add_report_option(app, a.report, "Write what was measured as JSON");
+  add_report_option(app, a.report, "Write what was measured, as JSON, or as a page to look at (.html)");
   const auto set_progress = [&a](const std::string& word) {
     a.progress = word == "json"   ? ProgressStyle::json
                  : word == "none" ? ProgressStyle::none

@@ -11,6 +11,7 @@
 #include "complex_input.h"
 #include "console.h"
 #include "conversion_report.h"
+#include "html_report.h"
 #include "interrupt.h"
 #include "option_warnings.h"
 #include "out_of_memory.h"
@@ -154,7 +155,8 @@ void mesh(const MeshArguments& arguments, ComplexInput& input, Stages& stages, M
 
 void write_report(const std::string& path, const MeshArguments& arguments, const MeshRun& run) {
   std::ofstream file(path);
-  file << json_text(run_json(arguments, run), 1) << '\n';
+  const nlohmann::ordered_json report = run_json(arguments, run);
+  file << (is_html(arguments.report) ? html_report(report, run.result.mesh) : json_text(report, 1) + '\n');
   file.close();
   if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path));
 }

@@ -410,17 +410,17 @@ class Budgets(ProgramTest):
         self.expect(0, self.box, "-o", self.out, "--size", "0.04", writes=True)
         whole = time.monotonic() - begin
         self.out.unlink()
-        for share in (0.1, 0.3, 0.5, 0.7, 0.9):
-            with self.subTest(share=share):
-                begin = time.monotonic()
-                run = self.run_program(self.box, "-o", self.out, "--size", "0.04", "--time-limit", share * whole)
-                self.assertIn(run.returncode, (0, 5), run.stderr)
-                self.assertEqual(self.out.exists(), run.returncode == 0)
-                if run.returncode == 5:  # else the machine had more time
-                    self.assertIn("time limit", run.stderr)
-                    self.assertLess(time.monotonic() - begin, 1.1 * share * whole + 2)
-                self.out.unlink(missing_ok=True)
-                self.assert_nothing_left()
+        codes = set()
+        for share in (0.1, 0.2, 0.3, 0.5, 0.7):
+            run = self.run_program(self.box, "-o", self.out, "--size", "0.04", "--time-limit", share * whole)
+            codes.add(run.returncode)
+            self.assertIn(run.returncode, (0, 5), run.stderr)  # 0: it was faster this time
+            self.assertEqual(self.out.exists(), run.returncode == 0)
+            if run.returncode == 5:
+                self.assertRegex(run.stderr, "time limit of .*stage: ")
+            self.out.unlink(missing_ok=True)
+            self.assert_nothing_left()
+        self.assertIn(5, codes)
 
 
 class Cancelling(ProgramTest):
@@ -448,34 +448,36 @@ class Cancelling(ProgramTest):
                 self.assert_nothing_left()
 
     def test_interrupt_ends_every_stage(self):
-        """As the time limit does: both set the same flag."""
-        command = [PROGRAM, str(self.box), "-o", str(self.out), "--size", "0.04", "--order", "2", "--progress", "json"]
+        """As the time limit does: both set the same flag. A stage that does not see it goes on to the next one."""
+        command = [PROGRAM, str(self.box), "-o", str(self.out), "--size", "0.03", "--order", "2", "--progress", "json"]
 
-        def run(stop_at=None):
+        def stages(stop_at=None):
             process = subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE, text=True)
             self.addCleanup(process.kill)
-            stages, stopped = [], None
+            begun = []
             for line in process.stderr:
                 phase = json.loads(line).get("phase") if line.startswith("{") else None
-                if phase and phase not in stages:
-                    stages.append(phase)
+                if phase and phase not in begun:
+                    begun.append(phase)
                     if phase == stop_at:
                         process.send_signal(signal.SIGTERM)
-                        stopped = time.monotonic()
-            code = process.wait(timeout=60)
+            code = process.wait(timeout=120)
             process.stderr.close()
-            return code, stages, time.monotonic() - stopped if stopped else 0
+            return code, begun
 
-        code, stages, _ = run()
+        code, every = stages()
         self.assertEqual(code, 0)
-        self.assertLessEqual({"read", "complex", "refine", "coarsen", "improve", "second order", "check", "write"},
-                             set(stages))
         self.out.unlink()
-        for stage in stages:
+        for stage in ("refine", "coarsen", "improve", "check"):  # each takes a while
             with self.subTest(stage=stage):
-                code, _, seconds = run(stage)
-                self.assertIn(code, (6, 0) if stage == stages[-1] else (6,))  # too late for the last one
-                self.assertLess(seconds, 2)  # a second, on a busy machine
+                code, begun = stages(stage)
+                self.assertEqual((code, begun[-1]), (6, stage))
+                self.assertFalse(self.out.exists())
+                self.assert_nothing_left()
+        for stage in set(every) - {"refine", "coarsen", "improve", "check"}:
+            with self.subTest(stage=stage):
+                code, _ = stages(stage)
+                self.assertIn(code, (0, 6))  # it may be too late
                 self.assertEqual(self.out.exists(), code == 0)
                 self.out.unlink(missing_ok=True)
                 self.assert_nothing_left()

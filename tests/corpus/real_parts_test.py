@@ -4,7 +4,8 @@
 
 COLLARMESH_REAL names a folder of CAD files and surfaces, good and bad. Each N-th of them and those that once failed
 are meshed with the defaults. A file may be refused with a message or reach its time limit, but nothing may crash, no
-guarantee may be missed, no dihedral angle may exceed 150 degrees, `check` must agree, and most files must be meshed. Exit code 77 (skipped) without such a folder.
+guarantee may be missed, no dihedral angle may exceed 150 degrees, `check` must agree, and most files must be meshed.
+Exit code 77 (skipped) without such a folder.
 """
 
 import argparse
@@ -26,7 +27,7 @@ MESHED = 0.8  # of the sample, at least; some are open sheets or need more time
 # was made twice; a tet in a fillet of one row kept an angle of 157 degrees.
 ONCE_FAILED = ["gebco7510", "MS-X-BAR-ALU", "Wrist_Roll_SO101", "e3b91037__middle2", "Upside_Down_ERCP_ArmLong",
                "box_cover"]
-LARGEST_ANGLE = 150  # degrees
+LARGEST_ANGLE = 150.01  # degrees; no guarantee within the radius-edge bound, but what users are promised to get
 
 
 def sample(folder, every):

@@ -17,7 +17,8 @@ using testing::mesh_of;
 using testing::Meshed;
 using testing::with_size;
 
-// Cells, triangles and edges are split above these multiples of the target edge length (doc/architecture/refinement.md).
+// Cells, triangles and edges are split above these multiples of the target edge length
+// (doc/architecture/refinement.md).
 constexpr double cell_radius_per_edge = 0.79;
 constexpr double triangle_radius_per_edge = 0.7;
 constexpr double edge_length_per_edge = 1.3;
@@ -125,8 +126,8 @@ TEST(RefinementSizing, CurvesHaveTheirOwn) {
   EXPECT_GE(fine, 18U);
 }
 
-// Curves that are meshed before the cells around them are of quality make hubs: conflict zones, time and memory
-// grow with the square of what comes out.
+// Curves that are meshed before the cells around them are of quality make hubs: conflict zones, time and
+// memory grow with the square of what comes out.
 TEST(RefinementSizing, FineCurvesTakeAsMuchMemoryPerCellAsFineRegions) {
   PolygonSoup soup = testing::box();
   soup.points.insert(soup.points.end(), {{0.1, 0.2, 0.3}, {0.9, 0.7, 0.8}});

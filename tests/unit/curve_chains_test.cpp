@@ -14,9 +14,7 @@ namespace {
 
 /// Curves beside the parts they need; the test is the loop.
 struct Curves : testing::KnownCurves {
-  explicit Curves(const Plc& plc, double size) : KnownCurves(plc, options(size)) {
-    chains.start();
-  }
+  explicit Curves(const Plc& plc, double size) : KnownCurves(plc, options(size)) { chains.start(); }
   static MeshOptions options(double size) {
     MeshOptions o;
     o.size = size;
@@ -173,7 +171,7 @@ TEST(CurveChains, CoarseOnesComeAfterQuality) {
   for (WorkQueue::Item item; curves.queue.pop(item);) priorities.insert(item.priority);
   EXPECT_TRUE(priorities.contains(WorkQueue::coarse_subsegments));
   EXPECT_FALSE(priorities.contains(WorkQueue::encroached_subsegments));
-  EXPECT_GT(WorkQueue::coarse_subsegments, WorkQueue::skinny_cells);
+  static_assert(WorkQueue::coarse_subsegments > WorkQueue::skinny_cells);
 }
 
 TEST(CurveChains, ABallAtTheFloorIsGivenUp) {

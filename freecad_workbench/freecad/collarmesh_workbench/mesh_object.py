@@ -18,7 +18,7 @@ PROPERTIES = (
     ("App::PropertyInteger", "ElementsAcrossGap", "elements_across_gap", SIZES, "Elements across thin parts; 0: any"),
     ("App::PropertyFloat", "Gradation", "gradation", SIZES, "Growth of size per unit length away from finer ones; 0: any"),
     ("App::PropertyLength", "SurfaceDistance", "distance", FEATURES,
-     "Largest distance of faces and edges of the mesh from the shape; 0: 1/10 of the size, at most 1/200 of the diagonal (2nd order: 1/600)"),
+     "Largest distance of faces and edges of the mesh from the shape; 0: 1/10 of the size, at most 1/200 of the diagonal (2nd order: 1/550)"),
     ("App::PropertyAngle", "CreaseAngle", "crease_angle", FEATURES, "Edges and faces that meet below it get a collar"),
     ("App::PropertyAngle", "CollarAngle", "collar_angle", FEATURES, "Bound on dihedral angles in collars"),
     ("App::PropertyFloat", "PlanarTolerance", "planar_tolerance", FEATURES,

@@ -57,7 +57,7 @@ struct MeshOptions {
 /// its default, as in MeshOptions), at most 1/200 of the diagonal. So a circle of about its radius gets some
 /// eight edges of the target length: the chord error is that of edges of the length asked for, and small
 /// curves may be rougher than large ones, but see MeshOptions::edges_per_hole. For cells of second order at
-/// most 1/600 of the diagonal: they are judged by their corners' triangles, which would else be too coarse
+/// most 1/550 of the diagonal: they are judged by their corners' triangles, which would else be too coarse
 /// to curve without inverting elements. Absolute.
 double default_distance(double size, double diagonal, int order = 1);
 

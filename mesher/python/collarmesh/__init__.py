@@ -141,7 +141,7 @@ def mesh(
     collar_creation: "up-front" or "in-pass".
     theta: warp to input within this times a gap ball's radius, 0 to below 0.45; default 0.3.
     distance: largest distance from smooth surfaces and curves; default 1/10 of the size, at most 1/200 of the
-        diagonal (1/600 for order 2).
+        diagonal (1/550 for order 2).
     seed: of the pseudo-random offsets: same input, options and seed, same mesh.
     feature_angle: edges that deviate more than this from flat are kept, degrees; default 30.
     planar_tolerance: facets within this of one plane are one, relative to the diagonal; default 1e-6.

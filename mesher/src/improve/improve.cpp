@@ -31,7 +31,8 @@ class Improvement {
  public:
   Improvement(TetMesh& mesh, const Plc& plc, const ImproveOptions& options, const Execution& execution)
       : workpiece_(mesh, plc,
-                   options.distance > 0 ? options.distance : default_distance(0, plc.bounds.diagonal())),
+                   options.distance > 0 ? options.distance : default_distance(0, plc.bounds.diagonal()),
+                   options.edges_per_hole),
         thin_(plc, mesh, options.thin_angle, options.thin_reserve),
         rule_(options.radius_edge, options.thin_angle > 0 ? &thin_ : nullptr),
         operations_([this] { return Operations(workpiece_, rule_); }),
@@ -134,8 +135,8 @@ class Improvement {
             !execution_.progress({"improve", 0, complex().mesh().points.size(), complex().size()}));
   }
 
-  // The first that helps of: an edge removed, a corner moved, an edge contracted, a vertex inserted. Where the
-  // number of vertices is to stay, only tets beyond the largest angle of thin ones change it.
+  // The first that helps of: an edge removed, a corner moved, an edge contracted, a vertex inserted. Where
+  // the number of vertices is to stay, only tets beyond the largest angle of thin ones change it.
   Change propose(Operations& operations, Index tet) const {
     Change change;
     for (unsigned i = 0; i < 4; ++i)
@@ -169,7 +170,10 @@ class Improvement {
       case Change::Kind::edge_removal: ++report_.edge_removals; break;
       case Change::Kind::boundary_flip: ++report_.boundary_flips; break;
       case Change::Kind::move: ++report_.moved_vertices; break;
-      case Change::Kind::contraction: ++report_.contracted_edges; break;
+      case Change::Kind::contraction:
+        if (!workpiece_.may_contract(change)) return;  // another one took the curve's last edge to spare
+        ++report_.contracted_edges;
+        break;
       case Change::Kind::insertion:
         if (report_.inserted_vertices >= report_.candidates) return;
         ++report_.inserted_vertices;

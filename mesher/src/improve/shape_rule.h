@@ -60,7 +60,8 @@ class SliverRule final : public ShapeRule {
     return bound_.holds(p) || (thin_ != nullptr && thin_->contains(p, corners));
   }
 
-  /// Is a tet of this quality, where tets may be thin, one of those with a larger angle?
+  /// Has a tet of this quality an angle above the largest of thin ones, or none above 0.06 degrees? False
+  /// where no tet may be thin.
   bool is_blunt(double quality) const { return thin_ != nullptr && quality < beyond; }
 
  private:

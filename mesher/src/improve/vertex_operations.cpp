@@ -299,6 +299,7 @@ void Operations::contract_onto(Index onto, double least, double enough, Change& 
   std::swap(cone_, remaining_);
   const bool fits = surfaces_allow(place);
   std::swap(cone_, remaining_);
+  cone_.agreement = remaining_.agreement;  // of the same faces
   if (!fits) return;
   change = {};
   change.kind = Change::Kind::contraction;

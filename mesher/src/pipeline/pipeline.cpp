@@ -287,6 +287,7 @@ class Pipeline {
     if (made_.coarsening) {
       options.thin_angle = options_.thin_angle;
       options.thin_reserve = reserve();
+      options.edges_per_hole = bounds_.edges_per_hole;
       options.keep_vertices = true;
     }
     if (options_.min_dihedral > 0) options.min_dihedral = options_.min_dihedral;

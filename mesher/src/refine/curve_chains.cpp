@@ -154,7 +154,7 @@ void CurveChains::add_subsegment(Index curve, std::array<Index, 2> ends, std::ar
   open_creases_.note_link(curve, {index, stamp});
   const bool empty = nearest == ends[0] || nearest == ends[1] ||
                      squared_distance(s.centre, mesh_.point(nearest)) > s.squared_radius;
-  if (!empty)
+  if (!empty || turns_too_far(s))
     encroach(index);
   else if (too_coarse(s))
     queue(WorkQueue::coarse_subsegments, index);
@@ -182,19 +182,30 @@ bool CurveChains::too_coarse(const Subsegment& s) const {
                                                 domain_.paths.segment(s.curve, s.parameters[1]), s.centre);
   const double length =
       Sizing::subsegment_length(std::min(size, sizes_.graded(s.ends, 0.5 * distance(a, b))));
-  const double chord = squared_distance(a, b);
-  if (chord > length * length) return true;
+  return squared_distance(a, b) > length * length || leaves_chord(s, domain_.distance);
+}
+
+// Its ball may not hold all of it.
+bool CurveChains::turns_too_far(const Subsegment& s) const {
+  if (collars_.is_crease_curve(s.curve)) return false;
+  return leaves_chord(s,
+                      largest_sagitta_per_chord * distance(mesh_.point(s.ends[0]), mesh_.point(s.ends[1])));
+}
+
+// By more than this?
+bool CurveChains::leaves_chord(const Subsegment& s, double sagitta) const {
   if (domain_.plc.curves[s.curve].straight) return false;
-  const double sagitta = std::min(domain_.distance, largest_sagitta_per_chord * std::sqrt(chord));
-  const auto leaves_chord = [&](const Point& p) {
+  const Point a = mesh_.point(s.ends[0]), b = mesh_.point(s.ends[1]);
+  const double chord = squared_distance(a, b);
+  const auto leaves = [&](const Point& p) {
     const double t = chord > 0 ? std::clamp(dot(p - a, b - a) / chord, 0.0, 1.0) : 0.0;
     return squared_distance(p, a + t * (b - a)) > sagitta * sagitta;
   };
   const auto& lengths = domain_.paths.lengths(s.curve);
   const auto first = std::upper_bound(lengths.begin(), lengths.end(), s.parameters[0]);
   const auto last = std::lower_bound(first, lengths.end(), s.parameters[1]);
-  return leaves_chord(s.centre) || std::any_of(first, last, [&](double parameter) {
-           return leaves_chord(domain_.paths.point(s.curve, parameter));
+  return leaves(s.centre) || std::any_of(first, last, [&](double parameter) {
+           return leaves(domain_.paths.point(s.curve, parameter));
          });
 }
 
@@ -266,8 +277,8 @@ void CurveChains::add_pieces(const Split& split, Index vertex) {
   add_subsegment(s.curve, {vertex, s.ends[1]}, {split.parameter, s.parameters[1]}, vertex);
 }
 
-void CurveChains::queue_again(const Split& split) {
-  if (is_there(split.link)) encroach(split.link.subsegment);
+void CurveChains::queue_again(const Split& split, WorkQueue::Priority priority) {
+  if (is_there(split.link)) queue(priority, split.link.subsegment);
 }
 
 void CurveChains::cells_made(const ConflictZone& zone, Index vertex) {

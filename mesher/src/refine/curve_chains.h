@@ -83,14 +83,14 @@ class CurveChains {
   /// Does the mesh vertex at the place split the subsegment? Not if it is one of its ends.
   bool can_join(const Split& split) const;
   /// Queue a subsegment again that is still there after something else was inserted.
-  void queue_again(const Split& split);
+  void queue_again(const Split& split, WorkQueue::Priority priority);
 
   /// An unresolved point has become a mesh vertex: first subsegments that waited for it may start.
   void point_resolved(Index point);
   void cells_made(const ConflictZone& zone, Index vertex);
   /// Sizes have changed everywhere.
   void judge_all();
-  /// Split a subsegment when its turn comes.
+  /// Split a subsegment when its turn comes, before skinny cells.
   void encroach(Index subsegment);
 
   /// Visit all subsegments: their numbers and what they are.
@@ -138,6 +138,8 @@ class CurveChains {
   void remove_subsegment(Index subsegment);
   void queue(WorkQueue::Priority priority, Index subsegment);
   bool too_coarse(const Subsegment& s) const;
+  bool turns_too_far(const Subsegment& s) const;
+  bool leaves_chord(const Subsegment& s, double sagitta) const;
   bool is_there(const ChainLink& link) const {
     return subsegments_[link.subsegment].alive && subsegments_[link.subsegment].stamp == link.stamp;
   }

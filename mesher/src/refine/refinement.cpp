@@ -96,7 +96,7 @@ void Refinement::process(const WorkQueue::Item& item) {
   switch (item.priority) {
     case WorkQueue::encroached_subsegments:
     case WorkQueue::coarse_subsegments:
-      if (curves_.due(item.entry)) destroy_subsegment(id);
+      if (curves_.due(item.entry)) destroy_subsegment(id, item.priority);
       break;
     case WorkQueue::ends_of_encroached_subsegments:
       if (!points_.resolved(id)) insert_point(id);
@@ -162,18 +162,18 @@ bool Refinement::destroy(Candidate candidate) {
 
 bool Refinement::destroy_ball(Index ball, const Point& intruder) {
   if (const Index subsegment = curves_.subsegment_of(ball); subsegment != none)
-    return destroy_subsegment(subsegment);
+    return destroy_subsegment(subsegment, WorkQueue::encroached_subsegments);
   insert_point(curves_.end_to_resolve(ball, intruder));
   return true;
 }
 
-bool Refinement::destroy_subsegment(Index subsegment) {
+bool Refinement::destroy_subsegment(Index subsegment, WorkQueue::Priority priority) {
   const auto split = curves_.split_of(subsegment);
   if (!split) return false;
   const Candidate& candidate = split->candidate;
   if (candidate.start == none) {  // a vertex is there already: it joins the curve
     if (!curves_.can_join(*split)) return false;
-    mesh_.lower_feature(split->vertex, candidate.feature);
+    if (mesh_.lower_feature(split->vertex, candidate.feature)) collar_review_.feature_changed(split->vertex);
     curves_.remove(*split);
     curves_.add_pieces(*split, split->vertex);
     return true;
@@ -182,7 +182,7 @@ bool Refinement::destroy_subsegment(Index subsegment) {
   if (const Index point = points_.warp_target(zone_, candidate); point != none) {
     ++warps_;
     insert_point(point);
-    curves_.queue_again(*split);
+    curves_.queue_again(*split, priority);
     return true;
   }
   curves_.remove(*split);

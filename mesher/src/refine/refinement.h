@@ -63,7 +63,7 @@ class Refinement {
   void process(const WorkQueue::Item& item);
   void destroy_cell(const WorkQueue::Item& item);
   void destroy_triangle(const WorkQueue::Item& item);
-  bool destroy_subsegment(Index subsegment);
+  bool destroy_subsegment(Index subsegment, WorkQueue::Priority priority);
   bool destroy_ball(Index ball, const Point& intruder);
   /// Paper, Procedure 2. False when nothing could be inserted.
   bool destroy(Candidate candidate);

@@ -19,8 +19,8 @@ class WorkQueue {
     encroached_subsegments,
     ends_of_encroached_subsegments,  ///< unresolved ends of a curve's first subsegments
     skinny_cells,
-    unresolved_points,
     coarse_subsegments,
+    unresolved_points,
     unresolved_triangles,
     large_triangles,
     large_cells,

@@ -204,18 +204,23 @@ class Repairer {
       if (!goes_on) break;
       reach *= 0.1;
     }
-    remove_near_contacts();
+    if (!encloses_nothing_) remove_near_contacts();
   }
 
-  // Cutting leaves corners that all but touch other facets, and snapping keeps them all where it does not
-  // settle at one of many places. Within a small part of the tolerance there are few such places, and it
-  // settles.
+  // Cutting leaves corners that all but touch other facets. Snapping is taken back as a whole where one of
+  // many places does not settle, and then leaves them all. Within a small part of the tolerance there are few
+  // such places, and it settles.
   void remove_near_contacts() {
     Draft clean = draft_;
     RepairReport report_of_clean = report_;
-    if (!collapse(grain * tolerance_).changed() || cut_and_keep()) return;
+    try {
+      if (!collapse(grain * tolerance_).changed() || cut_and_keep()) return;
+    } catch (const WorkStopped& stopped) {
+      if (stopped.cancelled) throw;  // else the repair is as good as it was
+    }
     draft_ = std::move(clean);
     report_ = std::move(report_of_clean);
+    encloses_nothing_ = false;
   }
 
   // Where facets nearly coincide, rounding what cuts them makes ever more intersections: they are made to

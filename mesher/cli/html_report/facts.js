@@ -1,0 +1,130 @@
+// What was asked for, made, found and repaired, from the JSON of the run.
+'use strict';
+
+function element(tag, attributes = {}, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes))
+    name.startsWith('on') ? made.addEventListener(name.slice(2), value) : made.setAttribute(name, value);
+  made.append(...children);
+  return made;
+}
+
+function number(value) {
+  if (value === null || value === undefined) return '–';
+  return Number.isInteger(value) ? value.toLocaleString('en') : String(Number(value.toPrecision(4)));
+}
+
+function table(rows) {
+  return element('table', {}, ...rows.map(([name, value]) =>
+    element('tr', {}, element('th', {}, name), element('td', {}, value))));
+}
+
+function place(where, show) {
+  const text = `(${where.map(number).join(', ')})`;
+  return element('a', { class: 'place', onclick: () => show(where) }, text);
+}
+
+// The certificate's names, by what they guarantee.
+const guarantees = [
+  ['Conformity: corners, edges and faces of the input are in the mesh',
+    ['conforming', 'watertight', 'curve_cover', 'curve_distance', 'patch_area', 'patch_border', 'patch_distance', 'patch_manifold',
+      'patch_orientation', 'patch_plane', 'vertex_feature', 'vertex_present', 'listed_edges', 'listed_faces']],
+  ['Regions: volumes are those of the input', ['region_volume', 'region_tag', 'positive_volume', 'distinct_tets']],
+  ['Tags: faces and edges know where they are from', ['curve_tag', 'patch_tag', 'patch_regions', 'face_regions']],
+  ['Shape: circumradius over shortest edge is bounded', ['radius_edge']],
+  ['Thin tetrahedra have no small or large angle', ['thin_angles']],
+  ['Collars have no large angle',
+    ['collar_cells', 'collar_centre', 'collar_dihedral', 'collar_disjoint', 'collar_gap']],
+  ['Second order: no element is inverted', ['mid_nodes', 'mid_node_distance', 'positive_jacobian']],
+];
+
+function guaranteeList(report, show) {
+  const findings = report.check.findings, known = new Set(guarantees.flatMap(([, names]) => names));
+  const lines = guarantees.filter(([, names]) => report.options.order === 2 || !names.includes('mid_nodes'))
+    .map(([text, names]) => [text, findings.filter(f => names.includes(f.guarantee))]);
+  const others = findings.filter(f => !known.has(f.guarantee));
+  if (others.length > 0) lines.push(['The file is sound', others]);
+  return element('ul', { class: 'plain' }, ...lines.map(([text, broken]) =>
+    element('li', { class: broken.length > 0 ? 'bad' : 'good' }, (broken.length > 0 ? '✗ ' : '✓ ') + text,
+      element('ul', {}, ...broken.slice(0, 50).map(f => element('li', {}, f.message + ' ', place(f.where, show)))))));
+}
+
+function histogram(title, { bin_width: width, tets: counts }, unit) {
+  const svg = 'http://www.w3.org/2000/svg', w = 420, h = 90, left = 4, bar = (w - 2 * left) / counts.length;
+  const draw = (tag, attributes, text = '') => {
+    const made = document.createElementNS(svg, tag);
+    for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+    made.textContent = text;
+    return made;
+  };
+  const chart = draw('svg', { viewBox: `0 0 ${w} ${h + 16}`, role: 'img', 'aria-label': title });
+  const most = Math.max(1, ...counts);
+  counts.forEach((count, i) => {
+    // A single element is seen, too.
+    const height = count > 0 ? Math.max(1.5, h * count / most) : 0;
+    const last = i + 1 === counts.length && unit === '';
+    const rect = draw('rect', { x: left + i * bar, y: h - height, width: bar - 1, height, fill: '#4c86c6' });
+    rect.append(draw('title', {}, `${number(i * width)}${last ? ' and more' : `–${number((i + 1) * width)}`}${unit}: ${number(count)}`));
+    chart.append(rect);
+    if (i % 3 === 0) chart.append(draw('text', { x: left + i * bar, y: h + 13 }, `${number(i * width)}${unit}`));
+  });
+  return element('div', {}, element('h2', {}, title), chart);
+}
+
+function repairs(report, show) {
+  const repair = report.repair;
+  if (!repair || !repair.repaired) return [];
+  const lines = repair.messages.map(message => element('li', {}, message));
+  for (const [name, text] of [['cut', 'cut'], ['collapsed', 'collapsed'], ['stitched', 'stitched'], ['merged', 'merged'],
+    ['repeated', 'repeated'], ['turned', 'turned']]) {
+    const where = repair[name].where;
+    if (where.length === 0) continue;
+    const places = where.slice(0, 8).flatMap(p => [' ', place(p, show)]);
+    lines.push(element('li', {}, `places ${text}:`, ...places));
+  }
+  for (const hole of repair.filled) lines.push(element('li', {}, `hole filled, tag ${hole.tag}: `, place(hole.where, show)));
+  return [element('h2', {}, 'Repaired'), element('ul', {}, ...lines)];
+}
+
+function worst(shown, show) {
+  const line = ({ tet, smallest, largest, where }) => element('li', {},
+    `${number(smallest)}° to ${number(largest)}° at `,
+    element('a', { class: 'place', onclick: () => show(where, tet) }, `(${where.map(number).join(', ')})`));
+  return [element('h2', {}, 'Worst elements'), element('ul', {}, ...shown.worst.map(line))];
+}
+
+function describe(report, shown, show) {
+  const { mesh, check, complex, options } = report, name = report.inputs.map(path => path.split('/').pop()).join(', ');
+  document.title = `${name}: mesh report`;
+  document.getElementById('title').textContent = name;
+  const verdict = document.getElementById('verdict');
+  verdict.className = report.guarantees_hold ? 'good' : 'bad';
+  verdict.textContent = report.guarantees_hold ? 'Every guarantee holds' :
+    `A guarantee is missed: ${number(check.findings_total)} findings`;
+  const diagonal = complex.diagonal, size = options.size ?? diagonal / 20;
+  const changed = ['region_size', 'patch_size', 'curve_size'].flatMap(kind =>
+    Object.entries(options[kind]).map(([tag, value]) => [`Size of ${kind.split('_')[0]} ${tag}`, number(value)]));
+  const regions = complex.regions.map(r => [`Region ${(r.name || String(r.tag)).split('/').pop()}: volume`, number(mesh.region_volumes[r.region])]);
+  const warnings = [...report.warnings, ...complex.warnings.map(w => w.message), ...report.notes, ...check.notes];
+  document.getElementById('facts').append(
+    element('h2', {}, 'Asked for'),
+    table([['Size', number(size) + (options.size ? '' : ' (a twentieth of the diagonal)')], ...changed,
+      ['Order of the elements', options.order], ['Coarsening', options.coarsen ? 'on' : 'off'],
+      ['Improvement', options.improve === 0 ? 'off' : `level ${options.improve}`]]),
+    element('h2', {}, 'Made'),
+    table([['Tetrahedra', number(mesh.tets)], ['Nodes', number(mesh.points)], ['Boundary triangles', number(mesh.faces)],
+      ['Median edge', `${number(check.median_edge)} (${number(check.median_edge / size)} of the size)`],
+      ['Dihedral angles', `${number(mesh.min_dihedral)}° to ${number(mesh.max_dihedral)}°`],
+      ['Circumradius / shortest edge', `at most ${number(mesh.max_radius_edge)}`],
+      ['Thin, in collars', `${number(check.thin_tets)}, ${number(check.collar_tets)}`],
+      ['Farthest from smooth surfaces', number(check.max_surface_distance)], ...regions,
+      ['Seconds', Object.entries(report.seconds).map(([stage, s]) => `${stage} ${Number(s.toPrecision(2))}`).join(', ')],
+      ['Written to', report.output]]),
+    element('h2', {}, 'Guarantees'), guaranteeList(report, show),
+    ...(warnings.length > 0 ? [element('h2', {}, 'Warnings and notes'),
+      element('ul', {}, ...warnings.slice(0, 50).map(text => element('li', {}, text)))] : []),
+    ...repairs(report, show), ...worst(shown, show),
+    histogram('Smallest dihedral angle of each tetrahedron', mesh.histograms.min_dihedral, '°'),
+    histogram('Largest dihedral angle', mesh.histograms.max_dihedral, '°'),
+    histogram('Circumradius / shortest edge', mesh.histograms.radius_edge, ''));
+}

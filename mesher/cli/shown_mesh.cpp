@@ -1,0 +1,112 @@
+#include "shown_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+
+namespace collarmesh::cli {
+
+namespace {
+
+constexpr std::size_t listed = 10;  // by each measure
+
+/// The tets with a face among the mesh' faces.
+std::vector<bool> tets_at_faces(const TetMesh& mesh) {
+  std::vector<std::array<Index, 3>> faces(mesh.faces);
+  for (auto& face : faces) std::sort(face.begin(), face.end());
+  std::sort(faces.begin(), faces.end());
+  std::vector<bool> on_face(mesh.points.size(), false);
+  for (const auto& face : faces)
+    for (const Index p : face) on_face[p] = true;
+  std::vector<bool> found(mesh.tets.size(), false);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    for (std::size_t apex = 0; apex < 4 && !found[t]; ++apex) {
+      std::array<Index, 3> face;
+      for (std::size_t i = 0, k = 0; i < 4; ++i)
+        if (i != apex) face[k++] = mesh.tets[t][i];
+      if (!std::all_of(face.begin(), face.end(), [&](Index p) { return on_face[p]; })) continue;
+      std::sort(face.begin(), face.end());
+      found[t] = std::binary_search(faces.begin(), faces.end(), face);
+    }
+  return found;
+}
+
+bool meets_middle_plane(const TetMesh& mesh, const std::array<Index, 4>& tet, const Point& centre) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto [low, high] = std::minmax({mesh.points[tet[0]][axis], mesh.points[tet[1]][axis],
+                                          mesh.points[tet[2]][axis], mesh.points[tet[3]][axis]});
+    if (low <= centre[axis] && centre[axis] <= high) return true;
+  }
+  return false;
+}
+
+/// Tets of the mesh: those with the smallest and those with the largest dihedral angles.
+std::vector<Index> worst_tets(const std::vector<TetQuality>& qualities) {
+  std::vector<Index> order(qualities.size()), worst;
+  std::iota(order.begin(), order.end(), 0);
+  const std::size_t count = std::min(listed, order.size());
+  const auto add_first = [&](const auto& is_worse) {
+    std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(),
+                      is_worse);
+    for (std::size_t i = 0; i < count; ++i)
+      if (std::find(worst.begin(), worst.end(), order[i]) == worst.end()) worst.push_back(order[i]);
+  };
+  add_first([&](Index a, Index b) {
+    return std::pair(qualities[a].min_dihedral, a) < std::pair(qualities[b].min_dihedral, b);
+  });
+  add_first([&](Index a, Index b) {
+    return std::pair(-qualities[a].max_dihedral, a) < std::pair(-qualities[b].max_dihedral, b);
+  });
+  return worst;
+}
+
+}  // namespace
+
+ShownMesh shown_mesh(const TetMesh& mesh, std::size_t most) {
+  ShownMesh shown;
+  Box box;
+  for (const Point& p : mesh.points) box.add(p);
+  if (mesh.tets.empty()) return shown;
+  shown.centre = 0.5 * (box.min + box.max);
+  std::vector<TetQuality> qualities;
+  qualities.reserve(mesh.tets.size());
+  for (const auto& t : mesh.tets)
+    qualities.push_back(measure(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]));
+  const std::vector<Index> worst = worst_tets(qualities);
+  shown.complete = mesh.tets.size() <= most;
+  std::vector<bool> is_shown(mesh.tets.size(), true);
+  if (!shown.complete) {
+    is_shown = tets_at_faces(mesh);
+    for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+      if (meets_middle_plane(mesh, mesh.tets[t], shown.centre)) is_shown[t] = true;
+    for (const Index t : worst) is_shown[t] = true;
+  }
+  std::vector<std::uint32_t> point_number(mesh.points.size(), none);
+  std::vector<Index> tet_number(mesh.tets.size(), none);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    if (!is_shown[t]) continue;
+    tet_number[t] = static_cast<Index>(shown.marks.size());
+    for (const Index p : mesh.tets[t]) {
+      if (point_number[p] == none) {
+        point_number[p] = static_cast<std::uint32_t>(shown.points.size() / 3);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          shown.points.push_back(static_cast<float>(mesh.points[p][axis] - shown.centre[axis]));
+      }
+      shown.tets.push_back(point_number[p]);
+    }
+    constexpr Index largest = std::numeric_limits<std::uint16_t>::max();
+    shown.region.push_back(static_cast<std::uint16_t>(std::min(largest, mesh.tet_region[t])));
+    const bool collar = !mesh.tet_collar.empty() && mesh.tet_collar[t] != 0,
+               thin = !mesh.tet_thin.empty() && mesh.tet_thin[t] != 0;
+    shown.marks.push_back(static_cast<std::uint8_t>((collar ? 1 : 0) + (thin ? 2 : 0)));
+  }
+  for (const Index t : worst) {
+    Point centre{0, 0, 0};
+    for (const Index p : mesh.tets[t]) centre = centre + 0.25 * (mesh.points[p] - Point{0, 0, 0});
+    shown.worst.push_back({tet_number[t], qualities[t].min_dihedral, qualities[t].max_dihedral, centre});
+  }
+  return shown;
+}
+
+}  // namespace collarmesh::cli

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "collarmesh/tet_mesh.h"
+
+namespace collarmesh::cli {
+
+/// What a page shows of a mesh.
+struct ShownMesh {
+  struct WorstTet {
+    Index tet;                 ///< of those shown
+    double smallest, largest;  ///< dihedral angles, degrees
+    Point where;               ///< its centre
+  };
+
+  bool complete = true;               ///< all tets are there
+  Point centre;                       ///< of the bounding box
+  std::vector<float> points;          ///< three numbers for each, relative to the centre
+  std::vector<std::uint32_t> tets;    ///< four corners for each
+  std::vector<std::uint16_t> region;  ///< of each
+  std::vector<std::uint8_t> marks;    ///< of each: 1 in a collar, 2 thin
+  std::vector<WorstTet> worst;        ///< by their smallest angles, then by their largest
+};
+
+/// All tets up to `most`; of more those with a face on the boundary or an interface, those that meet the
+/// planes through the centre, and the worst. Cost: linear.
+ShownMesh shown_mesh(const TetMesh& mesh, std::size_t most = 100000);
+
+}  // namespace collarmesh::cli

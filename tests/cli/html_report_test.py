@@ -1,0 +1,149 @@
+"""Reports as HTML: what they hold, and what a browser makes of them.
+
+Run by ctest with COLLARMESH_PROGRAM set. The browser is chromium, without a window; its tests are skipped where there is none.
+"""
+
+import base64
+import html.parser
+import json
+import os
+import pathlib
+import re
+import shutil
+import struct
+import subprocess
+import tempfile
+import unittest
+import zlib
+
+PROGRAM = os.environ["COLLARMESH_PROGRAM"]
+MODELS = pathlib.Path(__file__).resolve().parents[2] / "resources" / "models"
+CHROMIUM = shutil.which("chromium")
+
+
+class Page(html.parser.HTMLParser):
+    """The scripts with an id, and what the page would load."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.scripts, self.loads, self.open = {}, [], None
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        attributes = dict(attributes)
+        self.loads += [attributes[name] for name in ("src", "href") if name in attributes]
+        if tag == "script":
+            self.open = attributes.get("id")
+
+    def handle_endtag(self, tag):
+        if tag == "script":
+            self.open = None
+
+    def handle_data(self, data):
+        if self.open:
+            self.scripts[self.open] = self.scripts.get(self.open, "") + data
+
+
+class ReportTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def report(self, part, *options, name="report.html"):
+        path = self.folder / name
+        run = subprocess.run([PROGRAM, part, "-o", self.folder / "mesh.vtu", "--report", path, "-q", *options],
+                             capture_output=True, text=True, timeout=300)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return path
+
+
+class Contents(ReportTest):
+    def test_the_tets_are_those_of_the_mesh(self):
+        page = Page(self.report(MODELS / "two_boxes.poly", "--order", "2").read_text())
+        self.assertEqual(page.loads, [])
+        report, shown = (json.loads(page.scripts[name]) for name in ("report", "shown"))
+        data = zlib.decompress(base64.b64decode(page.scripts["data"]))
+        points, tets = shown["points"], shown["tets"]
+        self.assertTrue(shown["complete"])
+        self.assertEqual(tets, report["mesh"]["tets"])
+        self.assertEqual(len(data), 12 * points + 19 * tets)
+        place = [struct.unpack_from("<3f", data, 12 * p) for p in range(points)]
+        corners = [struct.unpack_from("<4I", data, 12 * points + 16 * t) for t in range(tets)]
+        region = struct.unpack_from(f"<{tets}H", data, 12 * points + 16 * tets)
+
+        def six_volume(tet):
+            a, b, c, d = (place[p] for p in tet)
+            u, v, w = ([x - y for x, y in zip(q, a)] for q in (b, c, d))
+            return (u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2])
+                    + u[2] * (v[0] * w[1] - v[1] * w[0]))
+
+        for number, volume in report["check"]["region_volumes"].items():
+            made = sum(six_volume(t) for t, r in zip(corners, region) if r == int(number)) / 6
+            self.assertAlmostEqual(made, volume, delta=1e-4 * volume)
+        angles = [w["smallest"] for w in shown["worst"]]
+        self.assertAlmostEqual(min(angles), report["mesh"]["min_dihedral"], places=9)
+
+    def test_json_stays_json(self):
+        json.loads(self.report(MODELS / "bracket.off", name="report.json").read_text())
+
+    def test_names_do_not_end_scripts(self):
+        part = self.folder / "a</script><b>.off"
+        part.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(MODELS / "box.off", part)
+        page = Page(self.report(part, "--size", "1").read_text())
+        self.assertEqual(json.loads(page.scripts["report"])["inputs"], [str(part)])
+
+    def test_large_meshes_are_shown_by_their_surface_and_cuts(self):
+        path = self.report(MODELS / "box.off", "--size", "0.06")
+        page = Page(path.read_text())
+        report, shown = (json.loads(page.scripts[name]) for name in ("report", "shown"))
+        self.assertFalse(shown["complete"])
+        self.assertGreater(report["mesh"]["tets"], 100000)
+        self.assertLess(shown["tets"], report["mesh"]["tets"])
+        self.assertLess(path.stat().st_size, 3e6 + 20 * 4 * shown["tets"])
+
+
+@unittest.skipUnless(CHROMIUM, "chromium is not installed")
+class InABrowser(ReportTest):
+    def look(self, path, link=""):
+        """The attributes of the page's body after it was opened, and the picture's bytes."""
+        picture = self.folder / "picture.png"
+        common = [CHROMIUM, "--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
+                  "--enable-unsafe-swiftshader", "--window-size=1000,800", "--virtual-time-budget=20000",
+                  f"--user-data-dir={self.folder / 'profile'}"]
+        address = f"{path.as_uri()}{link}"
+        dom = subprocess.run([*common, "--dump-dom", address], capture_output=True, text=True, timeout=120).stdout
+        subprocess.run([*common, f"--screenshot={picture}", address], capture_output=True, timeout=120)
+        attributes = dict(re.findall(r'data-(\w+)="([^"]*)"', re.search(r"<body[^>]*>", dom).group()))
+        self.assertNotIn("error", attributes, dom[-2000:])
+        self.assertEqual(attributes.get("ready"), "yes")
+        return attributes, dom, picture.read_bytes()
+
+    def test_it_opens_turns_cuts_and_marks(self):
+        path = self.report(MODELS / "bracket.off")
+        report = json.loads(Page(path.read_text()).scripts["report"])
+        whole, dom, picture = self.look(path)
+        self.assertEqual(int(whole["triangles"]), report["mesh"]["faces"])
+        self.assertIn("Every guarantee holds", dom)
+        cut, _, picture_of_cut = self.look(path, "#cut=x,0.5&colour=region")
+        self.assertNotEqual(cut["triangles"], whole["triangles"])
+        self.assertNotEqual(picture, picture_of_cut)
+        _, _, turned = self.look(path, "#turn=60")
+        self.assertNotEqual(picture, turned)
+        marked, dom, _ = self.look(path, "#worst=0")
+        self.assertEqual(marked["marked"], "6")  # the edges of a tet
+        self.assertIn("dihedral angles", dom)
+
+    def test_findings_and_repairs_are_listed(self):
+        part = self.folder / "two.off"
+        points = [(x + s, y, z) for s in (0, 0.5) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+        box = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+        facets = [[v + 8 * k for v in f] for k in (0, 1) for f in box]
+        part.write_text("\n".join(["OFF", f"{len(points)} {len(facets)} 0", *(" ".join(map(str, p)) for p in points),
+                                   *(" ".join(map(str, [4, *f])) for f in facets), ""]))
+        _, dom, _ = self.look(self.report(part))
+        self.assertIn("Repaired", dom)
+
+
+if __name__ == "__main__":
+    unittest.main()
