@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""The twelve pictures of the gallery, from input to PNG.
+"""The twelve pictures of the gallery and that of a report, from input to PNG.
 
     xvfb-run -a resources/gallery.py [--only NAME...] [--into FOLDER]
 
-Needs the program `collarmesh` on the PATH, python3-vtk9, python3-pil and calculix-ccx (which makes the
-analysis).
+Needs the program `collarmesh` on the PATH, python3-vtk9, python3-pil, calculix-ccx (which makes the analysis) and
+chromium (which shows the report).
 """
 
 import argparse
@@ -399,7 +399,16 @@ def analysis(path):
     picture(path, scene([actor], FRONT, 1.2))
 
 
-PICTURES = (bracket, names, curved, field, tiny, regions, collar, fan, thin, repair, wrap, analysis)
+def report(path):
+    page = pathlib.Path("report.html").resolve()
+    mesh("bracket.off", "--size", 5, "--report", page)
+    run("chromium", "--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
+        "--enable-unsafe-swiftshader", "--hide-scrollbars", "--window-size=1400,1000", "--virtual-time-budget=20000",
+        f"--screenshot={path}", f"{page.as_uri()}#cut=x,0.5&turn=15")
+    Image.open(path).convert("RGB").save(path, optimize=True)  # the legend has colours that hardly anything else has
+
+
+PICTURES = (bracket, names, curved, field, tiny, regions, collar, fan, thin, repair, wrap, analysis, report)
 
 
 def main():

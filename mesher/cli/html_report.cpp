@@ -9,7 +9,6 @@
 
 #include "console.h"
 #include "html_report_page.h"
-#include "shown_mesh.h"
 
 namespace collarmesh::cli {
 
@@ -70,8 +69,7 @@ Json shown_json(const ShownMesh& shown) {
 
 }  // namespace
 
-std::string html_report(const Json& report, const TetMesh& mesh) {
-  const ShownMesh shown = shown_mesh(mesh);
+std::string html_report(const Json& report, const ShownMesh& shown) {
   std::string data;
   append(data, shown.points);
   append(data, shown.tets);

@@ -153,16 +153,20 @@ void mesh(const MeshArguments& arguments, ComplexInput& input, Stages& stages, M
   run.warnings = option_warnings(arguments, run.plc);
 }
 
-void write_report(const std::string& path, const MeshArguments& arguments, const MeshRun& run) {
+/// `shown`: where it is to be a page.
+void write_report(const std::string& path, const MeshArguments& arguments, const MeshRun& run,
+                  const std::optional<ShownMesh>& shown) {
   std::ofstream file(path);
   const nlohmann::ordered_json report = run_json(arguments, run);
-  file << (is_html(arguments.report) ? html_report(report, run.result.mesh) : json_text(report, 1) + '\n');
+  file << (shown ? html_report(report, *shown) : json_text(report, 1) + '\n');
   file.close();
   if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path));
 }
 
 void write_files(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   stages.begin("write", 0.93, 1, run.result.mesh.tets.size());
+  std::optional<ShownMesh> shown;  // reports are in the input's unit
+  if (is_html(arguments.report)) shown = shown_mesh(run.result.mesh);
   scale(run.result.mesh.points, arguments.scale);
   StagedFile mesh(arguments.output);
   mesh.write(
@@ -171,7 +175,7 @@ void write_files(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   std::optional<StagedFile> report;
   if (!arguments.report.empty()) {
     report.emplace(arguments.report);
-    report->write([&](const std::string& path) { write_report(path, arguments, run); });
+    report->write([&](const std::string& path) { write_report(path, arguments, run, shown); });
   }
   StagedFile::commit({&mesh, report ? &*report : nullptr});
 }

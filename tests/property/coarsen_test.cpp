@@ -33,7 +33,8 @@ struct Shape {
 PolygonSoup plate() { return box({0, 0, 0}, {100, 100, 1}); }
 
 std::vector<Shape> thin_shapes() {
-  // Over twelve seeds the plate's last share is 0 to 6%, 2% in the mean, and the two boxes have 682 to 723 tets.
+  // Over twelve seeds the plate's last share is 0 to 6%, 2% in the mean, and the two boxes have 682 to 723
+  // tets.
   return {{"plate", {plate()}, 10, 0, 8, 1270, 0.07},
           {"plate with a hole", {scaled(plate_with_hole(1, 32), 1)}, 1.5, 30, 8, 135, 0.05},
           {"sphere in a sphere", {icosphere(1, 12), icosphere(0.95, 12)}, 0.3, 30, 8, 5900},

@@ -87,7 +87,7 @@ class View {
     this.box = new THREE.Box3().setFromArray(mesh.points);
     this.diagonal = this.box.getSize(new THREE.Vector3()).length();
     this.scene = new THREE.Scene();
-    this.camera = new THREE.PerspectiveCamera(35, 1, this.diagonal / 1000, this.diagonal * 20);
+    this.camera = new THREE.PerspectiveCamera(35, 1);
     this.scene.add(this.camera, new THREE.AmbientLight(0xffffff, 0.55));
     const lamp = new THREE.DirectionalLight(0xffffff, 0.6);
     lamp.position.set(0.4, 0.7, 1);
@@ -186,7 +186,7 @@ class View {
   show(where, tet = null) {
     const at = new THREE.Vector3(...where.map((x, i) => x - this.shown.centre[i]));
     const lines = [];
-    let reach = this.diagonal / 40;
+    let reach = this.diagonal / 100;
     if (tet !== null) {
       const p = cornersOf(this.mesh, tet);
       for (const [i, j] of edgeCorners) lines.push(...p[i].toArray(), ...p[j].toArray());
@@ -202,7 +202,7 @@ class View {
     this.mark.geometry.computeBoundingSphere();
     const direction = this.camera.position.clone().sub(this.controls.target).normalize();
     this.controls.target.copy(at);
-    this.camera.position.copy(at).addScaledVector(direction, Math.max(12 * reach, this.diagonal / 8));
+    this.camera.position.copy(at).addScaledVector(direction, 12 * reach);
     this.controls.update();
     document.body.dataset.marked = lines.length / 6;
     this.draw();
@@ -235,9 +235,14 @@ class View {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
     this.draw();
   }
 
-  draw() { this.renderer.render(this.scene, this.camera); }
+  draw() {
+    const distance = this.camera.position.distanceTo(this.controls.target);
+    this.camera.near = distance / 200;
+    this.camera.far = distance + 2 * this.diagonal;
+    this.camera.updateProjectionMatrix();
+    this.renderer.render(this.scene, this.camera);
+  }
 }
