@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <numeric>
 #include <optional>
 
 #include "collarmesh/error.h"
@@ -54,12 +56,17 @@ void write_soup(const MeshArguments& a, const std::vector<PolygonSoup>& soups) {
   tell_unless_quiet(a, merged.told);
 }
 
-/// The boundary and interface triangles of a mesh with their tags.
+/// The boundary and interface triangles of a mesh with their tags, in the order of these: formats without
+/// tags have patches numbered as they come.
 PolygonSoup surface_of(const TetMesh& mesh, const std::string& name) {
   PolygonSoup soup;
   soup.name = name;
   soup.points = mesh.points;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) soup.add_facet(mesh.faces[f], mesh.face_tag[f]);
+  std::vector<std::size_t> order(mesh.faces.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return mesh.face_tag[a] < mesh.face_tag[b]; });
+  for (const std::size_t f : order) soup.add_facet(mesh.faces[f], mesh.face_tag[f]);
   for (std::size_t e = 0; e < mesh.edges.size(); ++e)
     soup.segments.push_back({mesh.edges[e][0], mesh.edges[e][1], mesh.edge_tag[e]});
   if (mesh.faces.empty())

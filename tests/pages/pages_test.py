@@ -255,8 +255,8 @@ def run_readme(sources, build):
 
 
 def draw_gallery(sources, build):
-    """One script makes the pictures of the page, all of them and no others."""
-    if missing := Block("", "", needs=["vtk", "PIL", "xvfb-run", "ccx", "OpenCASCADE"]).missing(build):
+    """One script makes the pictures of the page and that of reports, all of them and no others."""
+    if missing := Block("", "", needs=["vtk", "PIL", "xvfb-run", "ccx", "chromium", "OpenCASCADE"]).missing(build):
         print(f"not installed: {missing}")
         return 77
     with tempfile.TemporaryDirectory() as folder:
@@ -265,7 +265,7 @@ def draw_gallery(sources, build):
                        env=environment)
         made = {path.name for path in pathlib.Path(folder).glob("*.png") if path.stat().st_size > SMALLEST_PICTURE}
     shown = re.findall(r"!\[[^\]]+\]\(images/(\w+\.png)\)", (sources / "mesher/doc/gallery.md").read_text())
-    if len(shown) != 12 or set(shown) != made:
+    if len(shown) != 12 or {*shown, "report.png"} != made:
         raise SystemExit(f"the page shows {sorted(shown)}, the script makes {sorted(made)}")
     return 0
 
