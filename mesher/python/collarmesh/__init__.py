@@ -18,6 +18,8 @@ are no valid complex and cannot be repaired, BudgetError when vertices, memory o
 import os
 from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
+import numpy
+
 from . import _core
 from ._core import (
     BudgetError,
@@ -318,7 +320,8 @@ def convert(
         if not to_surface:
             found.write(target, kind)
             return
-        source = (found.points, found.faces, found.face_tag)
+        by_tag = numpy.argsort(found.face_tag, kind="stable")  # formats without tags number patches as they come
+        source = (found.points, found.faces[by_tag], found.face_tag[by_tag])
     surfaces: Sequence[Any] = source if isinstance(source, list) else [source]
     if to_surface:
         given = _given({"format": format, "input_format": input_format, **options})
