@@ -239,7 +239,7 @@ class Repairer {
   }
 
   SnapReport collapse(double reach) {
-    const SnapReport snapped = snap_near_features(draft_, reach, SnapWhat::all, &work_);
+    SnapReport snapped = snap_near_features(draft_, reach, SnapWhat::all, &work_);
     add_places(report_.collapsed, snapped.changes(), snapped.largest_distance, snapped.places);
     return snapped;
   }
