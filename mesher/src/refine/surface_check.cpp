@@ -12,6 +12,8 @@ namespace collarmesh {
 namespace {
 
 constexpr unsigned most_rounds = 60;
+// Six volumes over the longest edge cubed: what rounding makes of none.
+constexpr double rounded_volume = 1e-13;
 constexpr std::size_t seeds_per_closed_patch = 4, seeds_per_missed_patch = 8;
 
 // An edge of a patch's triangle, or of a curve that bounds the patch.
@@ -268,14 +270,27 @@ bool SurfaceCheck::flat_on_patch(Index cell) const {
   const auto& corners = mesh_.corners(cell);
   if (std::any_of(corners.begin(), corners.end(), [&](Index v) { return mesh_.feature(v).dimension == 3; }))
     return false;
+  const bool without_volume = has_no_volume(cell);
   bool found = false;
   surface_.visit_marked(cell, [&](FaceId face) {
     const Index patch = surface_.patch(face);
     found = found ||
-            (domain_.plc.patches[patch].planar &&
+            ((domain_.plc.patches[patch].planar || without_volume) &&
              std::all_of(corners.begin(), corners.end(), [&](Index v) { return mesh_.on_patch(v, patch); }));
   });
   return found;
+}
+
+// But for rounding: samples that face each other on two curves of a smooth patch make rectangles. Then two of
+// its faces lie on the patch.
+bool SurfaceCheck::has_no_volume(Index cell) const {
+  if (std::popcount(surface_.marked(cell)) != 2) return false;
+  const auto& v = mesh_.corners(cell);
+  const Point &a = mesh_.point(v[0]), &b = mesh_.point(v[1]), &c = mesh_.point(v[2]), &d = mesh_.point(v[3]);
+  const double longest =
+      std::sqrt(std::max({squared_distance(a, b), squared_distance(a, c), squared_distance(a, d),
+                          squared_distance(b, c), squared_distance(b, d), squared_distance(c, d)}));
+  return std::fabs(six_volume(a, b, c, d)) <= rounded_volume * longest * longest * longest;
 }
 
 // Of the domain: one region beside the face is outside.

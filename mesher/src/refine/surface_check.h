@@ -63,6 +63,7 @@ class SurfaceCheck {
   bool still_near(const TessellationPoint& p, Index patch) const;
   bool resolve_distant_points(const std::vector<FaceId>& faces);
   bool flat_on_patch(Index cell) const;
+  bool has_no_volume(Index cell) const;
   bool at_boundary(FaceId face) const;
   bool check_flat_cells();
 
