@@ -204,7 +204,7 @@ class Pipeline {
   /// How many vertices a repaired complex may take where it can be wrapped instead; 0: any number.
   std::size_t vertices_before_wrap(const SoupPipelineResult& all,
                                    const std::vector<RepairOptions>& further) const {
-    constexpr double always = 3e5, per_cube_of_size = 20, sizes_per_diagonal = 20;
+    constexpr double always = 2e5, per_cube_of_size = 20, sizes_per_diagonal = 20;
     const MeshOptions &m = given_.mesh, defaults;
     const bool one_size = !m.size_field && m.region_size.empty() && m.patch_size.empty() &&
                           m.curve_size.empty() && m.elements_across_gap == defaults.elements_across_gap &&
