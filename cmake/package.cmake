@@ -16,6 +16,21 @@ License: GPL-3+
  This program is free software: you can redistribute it and/or modify it under the terms of the GNU General Public
  License as published by the Free Software Foundation, either version 3 of the License, or (at your option) any
  later version. On Debian systems its text is in /usr/share/common-licenses/GPL-3.
+
+Files: usr/bin/collarmesh
+Copyright: 2026 the collarmesh maintainers
+ 2010-2019 the authors of three.js, which is part of reports as HTML
+License: GPL-3+ and Expat
+ The program is under the GPL as above. For three.js: Permission is hereby granted, free of charge, to any person
+ obtaining a copy of this software and associated documentation files (the \"Software\"), to deal in the Software
+ without restriction, including without limitation the rights to use, copy, modify, merge, publish, distribute,
+ sublicense, and/or sell copies of the Software, and to permit persons to whom the Software is furnished to do so,
+ subject to the following conditions: The above copyright notice and this permission notice shall be included in all
+ copies or substantial portions of the Software. THE SOFTWARE IS PROVIDED \"AS IS\", WITHOUT WARRANTY OF ANY KIND,
+ EXPRESS OR IMPLIED, INCLUDING BUT NOT LIMITED TO THE WARRANTIES OF MERCHANTABILITY, FITNESS FOR A PARTICULAR PURPOSE
+ AND NONINFRINGEMENT. IN NO EVENT SHALL THE AUTHORS OR COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER
+ LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM, OUT OF OR IN CONNECTION WITH THE
+ SOFTWARE OR THE USE OR OTHER DEALINGS IN THE SOFTWARE.
 ")
 file(WRITE ${PROJECT_BINARY_DIR}/package/changelog.Debian "collarmesh (${PROJECT_VERSION}) unstable; urgency=low
 
