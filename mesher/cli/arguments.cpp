@@ -133,7 +133,7 @@ void add_complex_options(CLI::App& app, ComplexArguments& a) {
   app.add_option(
          "--names", a.names,
          "Names of patches, curves and regions, by number or by a point on them, for formats with names")
-      ->type_name("FILE")
+      ->type_name("FILE.json")
       ->group(group);
   add(app, "--crease-angle DEGREES", a.crease_angle,
       "Features that meet below this angle form a crease, degrees")
@@ -275,7 +275,7 @@ bool is_meshing_group(const std::string& group) {
 }
 
 void add_report_option(CLI::App& app, std::string& report, const std::string& text) {
-  app.add_option("--report", report, text)->type_name("FILE.json");
+  app.add_option("--report", report, text)->type_name("FILE");
 }
 
 void add_quiet_flag(CLI::App& app, bool& quiet) {

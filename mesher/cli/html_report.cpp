@@ -2,10 +2,12 @@
 
 #include <zlib.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <filesystem>
-#include <span>
 #include <stdexcept>
 #include <string_view>
+#include <vector>
 
 #include "console.h"
 #include "html_report_page.h"

@@ -372,6 +372,18 @@ TEST(Snapping, LeavesLittleNear) {
   EXPECT_LE(5 * after, before) << before << " near before";
 }
 
+// Nothing is near before, and hardly ever is something made so.
+TEST(Snapping, BringsNothingNear) {
+  Random random(7);
+  unsigned spoiled = 0;
+  for (unsigned member = 0; member < members(20); ++member) {
+    Draft draft = arranged_spheres(random);
+    snap_near_features(draft, 1e-5);
+    spoiled += near_corners(draft, 0.99e-5) > 0 ? 1 : 0;
+  }
+  EXPECT_LE(20 * spoiled, members(20));
+}
+
 TEST(Snapping, CancelsTwins) {
   const PolygonSoup ball = testing::icosphere(1, 2);
   Draft draft = draft_of(joined(std::array{ball, testing::inverted(ball), ball}));

@@ -10,7 +10,7 @@ function follow(link, view, shown) {
     set('axis', axis);
     if (position && shown.complete) set('position', position);
   }
-  view.rebuild();
+  if (wishes.has('colour') || wishes.has('cut')) view.rebuild();
   if (wishes.has('turn')) view.turn(Number(wishes.get('turn')));
   const worst = shown.worst[Number(wishes.get('worst') ?? -1)];
   if (worst) view.show(worst.where, worst.tet);
