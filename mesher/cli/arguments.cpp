@@ -16,6 +16,7 @@
 #include "completions.h"
 #include "console.h"
 #include "file_groups.h"
+#include "html_report.h"
 #include "machine.h"
 #include "option_table.h"
 #include "option_values.h"
@@ -467,6 +468,8 @@ void check_repair_arguments(const RepairArguments& a) {
                                                        extension_list(a.output), list(surface_formats())));
   if (a.output == "-" && a.json)
     throw CLI::ValidationError("--json", "has no place on standard output beside the file; use --report");
+  if (is_html(a.report))
+    throw CLI::ValidationError("--report", "is JSON here; pages (.html) are made of meshes");
   check_standard_input(a);
   check_outputs(a);
 }

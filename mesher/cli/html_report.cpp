@@ -2,8 +2,6 @@
 
 #include <zlib.h>
 
-#include <algorithm>
-#include <cstdint>
 #include <filesystem>
 #include <stdexcept>
 #include <string_view>
@@ -11,6 +9,7 @@
 
 #include "console.h"
 #include "html_report_page.h"
+#include "io/base64.h"
 
 namespace collarmesh::cli {
 
@@ -32,20 +31,6 @@ std::string compressed(const std::string& bytes) {
   if (status != Z_OK) throw std::runtime_error("the mesh cannot be compressed for the report");
   packed.resize(size);
   return packed;
-}
-
-std::string base64(const std::string& bytes) {
-  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t group = 0;
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? digits[group >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
 }
 
 /// Nothing in it ends the script that it is in.
@@ -87,7 +72,7 @@ std::string html_report(const Json& report, const ShownMesh& shown) {
   };
   fill("<!--report-->", json_in_page(report));
   fill("<!--shown-->", json_in_page(shown_json(shown)));
-  fill("<!--data-->", base64(compressed(data)));
+  fill("<!--data-->", io::base64_encode(compressed(data)));
   return page.append(rest);
 }
 

@@ -86,6 +86,12 @@ class Contents(ReportTest):
     def test_json_stays_json(self):
         json.loads(self.report(MODELS / "bracket.off", name="report.json").read_text())
 
+    def test_repair_has_no_pages(self):
+        run = subprocess.run([PROGRAM, "repair", MODELS / "box.off", "-o", self.folder / "box.off", "--report",
+                              self.folder / "box.html"], capture_output=True, text=True, timeout=60)
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertIn("is JSON here", run.stderr)
+
     def test_names_do_not_end_scripts(self):
         part = self.folder / "a</script><b>.off"
         part.parent.mkdir(parents=True, exist_ok=True)
