@@ -1,6 +1,7 @@
 // VTK's XML format for unstructured grids: appended arrays, compressed in blocks, base64. Headers
 // are UInt64. See "VTK File Formats" (VTK User's Guide) and vtkXMLDataReader. What the arrays are:
 // vtk_grid.h. The cells are the tets; faces and edges are in FieldData.
+#include <tbb/task_arena.h>
 #include <zlib.h>
 
 #include <bit>
@@ -91,7 +92,8 @@ std::string encoded(const DataArray& array, std::span<const std::string> blocks)
 
 /// Make the text of all arrays.
 void encode(std::span<Section> sections) {
-  usable_threads();  // TBB has no more than these from now on
+  if (tbb::this_task_arena::max_concurrency() > 1)
+    usable_threads();  // TBB has no more than these from now on
   std::vector<DataArray*> arrays;
   std::vector<std::size_t> first{0};  // block of each array, and the end
   std::vector<std::string_view> bytes;
