@@ -142,8 +142,7 @@ void add_complex_options(CLI::App& app, ComplexArguments& a) {
       ->group(group);
 }
 
-void add_size_options(CLI::App& app, MeshArguments& a) {
-  MeshOptions& m = a.mesh;
+void add_size_options(CLI::App& app, MeshOptions& m, std::string& size_field) {
   const std::string& group = size_group;
   add(app, "--size LENGTH", m.size, "Everywhere", "1/20 of the diagonal")->check(length)->group(group);
   add(app, "--size-min LENGTH", m.size_min, "Never ask for less than this", "none")
@@ -153,7 +152,7 @@ void add_size_options(CLI::App& app, MeshArguments& a) {
       ->group(group);
   add_tag_values(app, "--patch-size", m.patch_size, "On the patches with this tag; repeatable")->group(group);
   add_tag_values(app, "--curve-size", m.curve_size, "On the curves with this tag; repeatable")->group(group);
-  app.add_option("--size-field", a.size_field,
+  app.add_option("--size-field", size_field,
                  "Sizes by place: .json (balls, boxes, distances from features), or .vtu or .msh with a "
                  "scalar on its points")
       ->type_name("FILE")
@@ -199,12 +198,20 @@ void add_improvement_options(CLI::App& app, MeshArguments& a) {
       ->group(group);
 }
 
-void add_order_option(CLI::App& app, MeshArguments& a) {
-  add(app, "--order ORDER", a.order,
+void add_order_option(CLI::App& app, unsigned& order) {
+  add(app, "--order ORDER", order,
       "Of the cells: 1 straight with nodes at the corners, 2 with a node amid every edge, curved on smooth "
       "surfaces")
       ->check(one_of({"1", "2"}))
       ->group(elements_group);
+}
+
+void add_distance_option(CLI::App& app, MeshOptions& m) {
+  add(app, "--distance LENGTH", m.distance,
+      "Largest distance from smooth surfaces and curves, absolute, input units",
+      "1/10 of the size, at most 1/200 of the diagonal (1/550 with --order 2)")
+      ->check(length)
+      ->group(quality_group);
 }
 
 void add_quality_options(CLI::App& app, MeshOptions& m) {
@@ -232,11 +239,7 @@ void add_quality_options(CLI::App& app, MeshOptions& m) {
   add(app, "--theta THETA", m.theta, "Warp to input within this times a gap ball's radius; 0: never")
       ->check(number_in(0, 0.449, "a number from 0 to below 0.45"))
       ->group(group);
-  add(app, "--distance LENGTH", m.distance,
-      "Largest distance from smooth surfaces and curves, absolute, input units",
-      "1/10 of the size, at most 1/200 of the diagonal (1/550 with --order 2)")
-      ->check(length)
-      ->group(group);
+  add_distance_option(app, m);
   add(app, "--seed N", m.seed, "Of the pseudo-random offsets: same input, options and seed, same mesh")
       ->check(count)
       ->group(group);
@@ -284,11 +287,11 @@ void add_quiet_flag(CLI::App& app, bool& quiet) {
 }
 
 void add_run_options(CLI::App& app, MeshArguments& a) {
-  add_size_options(app, a);
+  add_size_options(app, a.mesh, a.size_field);
   add_quality_options(app, a.mesh);
   add_coarsening_options(app, a);
   add_improvement_options(app, a);
-  add_order_option(app, a);
+  add_order_option(app, a.order);
   add_complex_options(app, a.complex);
   add_budget_options(app, a.mesh);
   add_threads_option(app, a.threads, "Of improvement and certificate, at most");
@@ -382,6 +385,20 @@ CLI::App* add_info_command(CLI::App& app, InfoArguments& a) {
   add_complex_options(*info, a.complex);
   add(*info, "--time-limit SECONDS", a.time_limit, "For everything", "none")->check(seconds);
   info->add_flag("--json", a.json, "Print JSON");
+  CLI::Option* const predict =
+      info->add_option("--predict", a.predicted_sizes,
+                       "Estimate the tetrahedra and seconds that meshes of these sizes take, without making "
+                       "them; 0: the default size")
+          ->delimiter(',')
+          ->allow_extra_args(false)
+          ->check(length)
+          ->type_name("LENGTH,...");
+  const auto others = info->get_options();
+  add_size_options(*info, a.mesh, a.size_field);
+  add_distance_option(*info, a.mesh);
+  add_order_option(*info, a.order);
+  for (CLI::Option* option : info->get_options())
+    if (std::find(others.begin(), others.end(), option) == others.end()) option->needs(predict);
   return info;
 }
 

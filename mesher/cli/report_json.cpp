@@ -295,6 +295,13 @@ Json repair_run_json(const RepairArguments& arguments, const Plc& plc, const Plc
           {"repair", repair_json(report)}, {"complex", complex_json(plc, summary)}};
 }
 
+Json predictions_json(const std::vector<Prediction>& predictions) {
+  Json list = Json::array();
+  for (const Prediction& p : predictions)
+    list.push_back({{"size", p.size}, {"tets", std::llround(p.tets)}, {"seconds", p.seconds}});
+  return list;
+}
+
 Json run_json(const MeshArguments& arguments, const MeshRun& run) {
   Json seconds = Json::object();
   for (const auto& [stage, time] : run.times.stages())  // some come twice

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "conversion_report.h"
@@ -110,6 +111,14 @@ std::string complex_text(const Plc& plc, const PlcSummary& s) {
   append_regions(text, plc);
   append_patches(text, plc);
   append_creases(text, plc, s.creases);
+  return text;
+}
+
+std::string predictions_text(const std::vector<Prediction>& predictions) {
+  if (predictions.empty()) return {};
+  std::string text = fmt::format("estimates:\n  {:>10}  {:>12}  {:>8}\n", "size", "tets", "seconds");
+  for (const Prediction& p : predictions)
+    fmt::format_to(Out(text), "  {:>10.4g}  {:>12}  {:>8.2g}\n", p.size, std::llround(p.tets), p.seconds);
   return text;
 }
 
