@@ -62,11 +62,12 @@ struct CheckArguments {
 struct InfoArguments {
   std::vector<std::string> inputs;
   ComplexArguments complex;
-  std::vector<double> predicted_sizes;  ///< 0: the size in `mesh`, or its default; empty: nothing is predicted
-  MeshOptions mesh;                     ///< its sizes and its distance
-  std::string size_field;               ///< path, empty: none
-  unsigned order = 1;                   ///< of the cells, 1 or 2
-  double time_limit = 0;  ///< seconds; 0: none
+  std::vector<double>
+      predicted_sizes;     ///< 0: the size in `mesh`, or its default; empty: nothing is predicted
+  MeshOptions mesh;        ///< its sizes and its distance
+  std::string size_field;  ///< path, empty: none
+  unsigned order = 1;      ///< of the cells, 1 or 2
+  double time_limit = 0;   ///< seconds; 0: none
   bool json = false;
 };
 

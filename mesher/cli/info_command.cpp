@@ -45,18 +45,14 @@ Plc build_any(ComplexInput& input, ComplexArguments options) {
 /// `read`: seconds that reading and building the complex took, as they will again.
 std::vector<Prediction> predictions(const InfoArguments& arguments, const ComplexInput& input, const Plc& plc,
                                     double read) {
+  if (arguments.predicted_sizes.empty()) return {};
   PipelineOptions options;
   options.mesh = arguments.mesh;
   options.order = arguments.order;
   if (!arguments.size_field.empty()) options.mesh.size_field = read_size_field(arguments.size_field, plc);
-  if (input.has_cad()) options.exact = input.exact_geometry(plc);
-  std::vector<Prediction> result;
-  for (const double size : arguments.predicted_sizes) {
-    options.mesh.size = size > 0 ? size : arguments.mesh.size;
-    stop_if_interrupted();
-    result.push_back(predict(plc, options));
-    result.back().seconds += read;
-  }
+  stop_if_interrupted();
+  std::vector<Prediction> result = predict(plc, options, arguments.predicted_sizes);
+  for (Prediction& prediction : result) prediction.seconds += read;
   return result;
 }
 

@@ -49,8 +49,7 @@ double GradedSize::at(const Point& p, double largest) const {
   if (nodes_.empty()) return size;
   const auto lowest = [&](Index node) {
     const Node& n = nodes_[node];
-    return n.least >= size ? n.least
-                           : n.least + growth_ * std::sqrt(squared_distance_to_box(p, n.box));
+    return n.least >= size ? n.least : n.least + growth_ * std::sqrt(squared_distance_to_box(p, n.box));
   };
   // Of halves: as deep as there are bits in an index.
   std::array<std::pair<Index, double>, 8 * sizeof(Index) + 2> stack;
@@ -64,8 +63,7 @@ double GradedSize::at(const Point& p, double largest) const {
       const auto& [a, b, c] = sources_[i].corners;
       const double far = size - sources_[i].size;
       if (far <= 0) continue;
-      size = std::min(size, sources_[i].size +
-                                growth_ * std::sqrt(squared_distance_to_triangle(p, a, b, c)));
+      size = std::min(size, sources_[i].size + growth_ * std::sqrt(squared_distance_to_triangle(p, a, b, c)));
     }
     if (n.count > 0) continue;
     const std::pair<Index, double> left{node + 1, lowest(node + 1)}, right{n.first, lowest(n.first)};

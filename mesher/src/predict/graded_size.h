@@ -27,8 +27,8 @@ class GradedSize {
  private:
   struct Node {
     Box box;
-    double least;         // size below
-    Index first, count;   // sources; count 0: the children are the next node and `first`
+    double least;        // size below
+    Index first, count;  // sources; count 0: the children are the next node and `first`
   };
   static constexpr Index leaf_size = 4;
 

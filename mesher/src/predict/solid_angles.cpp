@@ -41,8 +41,8 @@ class Wheel {
       if (edge(a, b) != edge(from_, to_)) continue;
       const Vector w = plc_.points[apex] - plc_.points[from_];
       // The normal of a triangle along the axis points the way that angles grow.
-      spokes_.push_back({std::atan2(dot(w, v_), dot(w, u_)),
-                         plc_.patches[triangle.patch].regions[a == from_ ? 1 : 0]});
+      spokes_.push_back(
+          {std::atan2(dot(w, v_), dot(w, u_)), plc_.patches[triangle.patch].regions[a == from_ ? 1 : 0]});
     }
   }
 
