@@ -43,8 +43,7 @@ Plc build_any(ComplexInput& input, ComplexArguments options) {
 }
 
 /// `read`: seconds that reading and building the complex took, as they will again.
-std::vector<Prediction> predictions(const InfoArguments& arguments, const ComplexInput& input, const Plc& plc,
-                                    double read) {
+std::vector<Prediction> predictions(const InfoArguments& arguments, const Plc& plc, double read) {
   if (arguments.predicted_sizes.empty()) return {};
   PipelineOptions options;
   options.mesh = arguments.mesh;
@@ -63,7 +62,7 @@ void print_complex(const InfoArguments& arguments) {
   const Plc plc = build_any(input, arguments.complex);
   stop_if_interrupted();
   const double read = std::chrono::duration<double>(Clock::now() - begin).count();
-  const std::vector<Prediction> predicted = predictions(arguments, input, plc, read);
+  const std::vector<Prediction> predicted = predictions(arguments, plc, read);
   const PlcSummary summary = summarize(plc, arguments.complex.crease_angle);
   if (arguments.json) {
     nlohmann::ordered_json json{{"complex", complex_json(plc, summary)},

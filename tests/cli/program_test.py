@@ -740,6 +740,53 @@ class Reports(ProgramTest):
         self.assertAlmostEqual(sum(mesh["region_volumes"].values()), 1, places=12)
         self.assertIn("tets", self.expect(0, "info", self.out, writes=True).stdout)
 
+    def predictions(self, *arguments):
+        return json.loads(self.expect(0, "info", *arguments, "--json").stdout)["predictions"]
+
+    def test_predictions_are_near_the_meshes(self):
+        predicted = self.predictions(self.box, "--predict", "0.2,0.1,0")
+        self.assertEqual([p["size"] for p in predicted[:2]], [0.2, 0.1])
+        self.assertAlmostEqual(predicted[2]["size"], math.sqrt(3) / 20)
+        self.assertTrue(all(p["seconds"] > 0 for p in predicted))
+        for p in predicted[:2]:
+            report = self.folder / "report.json"
+            self.run_program(self.box, "-o", self.out, "--size", p["size"], "--report", report)
+            made = json.loads(report.read_text())["mesh"]["tets"]
+            self.assertLess(abs(p["tets"] - made), 0.25 * made, p)
+
+    def test_predictions_heed_the_options_of_sizes(self):
+        def tets(*options):
+            return self.predictions(self.box, "--predict", "0.2", *options)[0]["tets"]
+
+        plain = tets()
+        field = self.write("field.json", '{"sources": [{"ball": {"centre": [0, 0, 0], "radius": 0.3}, "size": 0.05}]}')
+        for finer in (("--patch-size", "1=0.05"), ("--curve-size", "1=0.02"), ("--region-size", "1=0.1"),
+                      ("--size-field", field)):
+            self.assertGreater(tets(*finer), 1.2 * plain, finer)
+        self.assertGreater(tets("--patch-size", "1=0.05", "--gradation", "0.1"), 1.5 * tets("--patch-size", "1=0.05"))
+        self.assertEqual(self.predictions(self.box, "--size", "0.5", "--predict", "0")[0]["size"], 0.5)
+        sphere = MODELS / "sphere.off"
+        straight, curved = (self.predictions(sphere, "--predict", "0", "--order", order)[0]["tets"] for order in "12")
+        self.assertGreater(curved, straight)
+
+    def test_predictions_as_text(self):
+        told = self.expect(0, "info", self.box, "--predict", "0.5,0.25").stdout
+        rows = re.findall(r"^ +(0\.\d+) +(\d+) +[\d.e-]+$", told, re.M)
+        self.assertEqual([size for size, _ in rows], ["0.5", "0.25"])
+        self.assertGreater(int(rows[1][1]), int(rows[0][1]))
+        self.assertNotIn("estimates", self.expect(0, "info", self.box).stdout)
+        self.assertNotIn("predictions", self.expect(0, "info", self.box, "--json").stdout)
+
+    def test_what_cannot_be_predicted(self):
+        self.expect(2, "info", self.box, "--predict=-1", says=["--predict", "-1", "a length"])
+        self.expect(2, "info", self.box, "--predict", "1,much", says=["--predict", "much", "a length"])
+        self.expect(2, "info", self.box, "--predict", "nan", says=["--predict", "nan"])
+        self.expect(2, "info", self.box, "--size", "1", says=["--size", "--predict"])
+        self.expect(2, "info", self.box, "--predict", "0.1", "--size-min", "0.2", says=["size-min 0.2", "0.1"])
+        self.expect(2, "info", self.box, "--predict", "1", "--patch-size", "99=1", says=["99", "the tags are 1, 2"])
+        self.expect(0, self.box, "-o", self.out, "--size", "0.5", writes=True)
+        self.expect(2, "info", self.out, "--predict", "1", writes=True, says=["--predict", "is a mesh already"])
+
 
 class Reproducibility(ProgramTest):
     def test_same_bytes(self):

@@ -10,7 +10,7 @@ struct Model {
   double edge = 1.08;          ///< length of an edge on a curve
   double area = 0.65;          ///< of a patch to a vertex
   double volume = 0.61;        ///< of a region to a vertex
-  double growth = 1.2;         ///< of edges per unit length, away from small ones
+  double growth = 1.4;         ///< of edges per unit length, away from small ones
   double chord = 1.15;         ///< the share of the distance tolerance that chords are off
   double aspect = 3;           ///< the largest ratio of edges along and across a curved patch
   double wall = 8.7;           ///< the largest ratio of edges to the width of a wall
