@@ -760,14 +760,17 @@ class Reports(ProgramTest):
 
         plain = tets()
         field = self.write("field.json", '{"sources": [{"ball": {"centre": [0, 0, 0], "radius": 0.3}, "size": 0.05}]}')
-        for finer in (("--patch-size", "1=0.05"), ("--curve-size", "1=0.02"), ("--region-size", "1=0.1"),
+        for finer in (("--patch-size", "1=0.05"), ("--curve-size", "1=0.01"), ("--region-size", "1=0.1"),
                       ("--size-field", field)):
             self.assertGreater(tets(*finer), 1.2 * plain, finer)
         self.assertGreater(tets("--patch-size", "1=0.05", "--gradation", "0.1"), 1.5 * tets("--patch-size", "1=0.05"))
         self.assertEqual(self.predictions(self.box, "--size", "0.5", "--predict", "0")[0]["size"], 0.5)
         sphere = MODELS / "sphere.off"
-        straight, curved = (self.predictions(sphere, "--predict", "0", "--order", order)[0]["tets"] for order in "12")
-        self.assertGreater(curved, straight)
+        coarse = 3 * self.predictions(sphere, "--predict", "0")[0]["size"]
+        straight, curved = (self.predictions(sphere, "--predict", coarse, "--order", order)[0]["tets"] for order in "12")
+        self.assertGreater(curved, straight)  # near enough to the sphere to be curved
+        near = self.predictions(sphere, "--predict", coarse, "--distance", coarse / 500)[0]["tets"]
+        self.assertGreater(near, curved)
 
     def test_predictions_as_text(self):
         told = self.expect(0, "info", self.box, "--predict", "0.5,0.25").stdout
