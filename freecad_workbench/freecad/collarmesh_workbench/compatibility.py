@@ -1,5 +1,7 @@
 """Where FreeCAD's versions differ."""
 
+import contextlib
+
 import FreeCAD
 import ObjectsFem
 
@@ -45,6 +47,21 @@ def make_refinement(document, mesh_object):
 
 def make_group(document, mesh_object):
     return ObjectsFem.makeMeshGroup(document, mesh_object)
+
+
+@contextlib.contextmanager
+def transaction(document, name):
+    """One step of undo, part of the one that is open if there is one; an exception takes it back."""
+    if document.HasPendingTransaction:
+        yield
+        return
+    document.openTransaction(name)
+    try:
+        yield
+    except BaseException:
+        document.abortTransaction()
+        raise
+    document.commitTransaction()
 
 
 def has_gui():

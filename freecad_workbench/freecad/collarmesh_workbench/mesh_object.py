@@ -5,8 +5,9 @@ import re
 import Fem
 import FreeCAD
 
-from . import compatibility, groups, preferences
+from . import compatibility, groups, inputs, preferences, size_objects, up_to_date
 from .program import GUARANTEE_MISSED, Job, MesherError, Settings
+from .translations import mark, translate
 
 # Names that macros for FreeCAD's Gmsh object use as well come first. Lines: type, name, field of Settings, group in
 # the property editor, text.
@@ -55,6 +56,10 @@ class MeshProxy(compatibility.Stateless):
     def onDocumentRestored(self, obj):
         add_properties(obj)
 
+    def execute(self, obj):
+        """FreeCAD recomputes the object: its mesh stays, and is marked if it is out of date."""
+        up_to_date.show(obj)
+
 
 def is_ours(obj):
     return getattr(getattr(obj, "Proxy", None), "Type", "") == MeshProxy.Type
@@ -80,9 +85,11 @@ def add_properties(obj):
                         "None: refuse them; Wrap: where repair fails, mesh a closed surface around everything")
         obj.Repair = list(REPAIRS)
         obj.Repair = "Automatic"
-    for name, text in (("MeshRegionList", "Finer parts of the mesh"), ("MeshGroupList", "Groups of the mesh")):
+    for name, text in (("MeshRegionList", "Finer parts of the mesh"), ("MeshGroupList", "Groups of the mesh"),
+                       (size_objects.PROPERTY, "Sizes in spheres, boxes and cylinders and near faces and edges")):  # fmt: skip
         if name not in have:
             obj.addProperty("App::PropertyLinkList", name, "Base", text)
+    up_to_date.add_properties(obj)
 
 
 def make(document, part=None, name="FEMMeshCollarmesh"):
@@ -107,6 +114,7 @@ def settings_of(obj):
     settings = Settings(order=ORDERS.index(obj.ElementOrder) + 1, repair=REPAIRS[obj.Repair], **values)
     for region in obj.MeshRegionList:
         add_refinement(region, compatibility.meshed_object(obj), settings)
+    settings.size_field = size_objects.field_of(obj)
     return settings
 
 
@@ -136,29 +144,34 @@ def add_refinement(region, part, settings):
             sizes[int(number)] = min(size, sizes.get(int(number), size))
 
 
-def shape_to_mesh(obj):
-    """The shape of the object's part. Raises MesherError."""
+def part_to_mesh(obj):
+    """The object that is to be meshed. Raises MesherError."""
     part = compatibility.meshed_object(obj)
     if part is None:
         raise MesherError(f"{obj.Label}: no object is chosen to be meshed.")
-    shape = part.Shape
-    if shape.isNull():
-        raise MesherError(f"{part.Label} has no shape; recompute it.")
-    return shape
+    return part
 
 
-def start(obj, program=""):
-    """A Job with the shape written, to be run. Raises MesherError."""
-    shape = shape_to_mesh(obj)
-    settings = settings_of(obj)
-    job = Job(settings, program or preferences.program(), preferences.threads())
-    job.messages += tiny_edges(shape, settings.size)
-    shape.exportBrep(job.shape)
+def start(obj, program="", settings=None):
+    """A Job with the shape written, to be run; `settings` in place of the object's own. Raises MesherError."""
+    part = part_to_mesh(obj)
+    state = up_to_date.state_of(obj)
+    settings = settings or settings_of(obj)
+    job = Job(settings, program or preferences.program(), preferences.threads(), inputs.file_name(part))
+    try:
+        inputs.write(part, job.shape)
+    except Exception:
+        job.__exit__()
+        raise
+    job.messages += tiny_edges(inputs.shape_of(part), settings.size)
+    job.state = state
     return job
 
 
 def tiny_edges(shape, size):
     """Warnings, one for each edge much shorter than the target edge length (mm; 0: the default)."""
+    if shape.isNull():
+        return []
     size = size or shape.BoundBox.DiagonalLength / 20
     return [
         f"warning: Edge{number} at ({place.x:.6g}, {place.y:.6g}, {place.z:.6g}) is only {edge.Length:.3g} mm long, the "
@@ -176,7 +189,10 @@ def finish(obj, job, exit_code=0):
     if fem_mesh.VolumeCount == 0:
         raise MesherError("The mesher wrote a mesh without elements; please report it with the shape.")
     groups.add_groups(obj, fem_mesh)
-    obj.FemMesh = fem_mesh
+    with compatibility.transaction(obj.Document, translate("collarmesh", "Mesh by collarmesh")):
+        obj.FemMesh = fem_mesh
+        up_to_date.remember(obj, job.state)
+    up_to_date.show(obj)
     report = job.report()
     said = job.messages if exit_code == GUARANTEE_MISSED else [*job.warnings(), *report["notes"]]
     if said:
@@ -204,8 +220,7 @@ def mesh(shape_or_object, document, analysis, name, settings):
         obj = make(document, part, name)
         added.append(obj)
         apply_settings(obj, settings)
-        with Job(settings, preferences.program(), preferences.threads()) as job:
-            shape_to_mesh(obj).exportBrep(job.shape)
+        with start(obj, settings=settings) as job:
             finish(obj, job, job.run())
     except Exception:
         for each in reversed(added):
@@ -217,3 +232,4 @@ def mesh(shape_or_object, document, analysis, name, settings):
 
 
 groups.observe()
+up_to_date.observe()

@@ -6,3 +6,9 @@ import FreeCAD
 def translate(context, text):
     """`text` in the language that FreeCAD shows; the context of all texts of this add-on is "collarmesh"."""
     return FreeCAD.Qt.translate(context, text)
+
+
+def mark(_context, text):
+    """`text` as it is, but with an entry in the files: FreeCAD shows its translation by itself, as that of a
+    property's documentation (context "App::Property")."""
+    return text
