@@ -5,7 +5,8 @@ import os
 import FreeCAD
 import FreeCADGui
 
-from . import compatibility, mesh_object
+from . import compatibility, inputs, mesh_object, size_objects
+from .size_view import icon_of
 from .view_provider import ICON
 
 MESH_COMMAND = "Collarmesh_MeshFromShape"
@@ -20,8 +21,7 @@ def selected(condition):
 
 
 def selected_part():
-    # From FreeCAD 1.0 on mesh objects have a `Shape`, too: a link.
-    return selected(lambda each: hasattr(getattr(each, "Shape", None), "exportBrep"))
+    return selected(lambda each: inputs.can_be_meshed(each) and size_objects.kind_of(each) is None)
 
 
 class Command:
@@ -85,7 +85,73 @@ class Group(Refinement):
         return compatibility.make_group(document, obj)
 
 
-COMMANDS = {MESH_COMMAND: MeshFromShape, REFINEMENT_COMMAND: Refinement, GROUP_COMMAND: Group}
+class Size(Command):
+    """A size by place, for the mesh that is selected, or that of the selected part, or the only one there is."""
+
+    kind = ""
+
+    def target(self):
+        ours = [each for each in FreeCAD.ActiveDocument.Objects if mesh_object.is_ours(each)]
+        chosen = FreeCADGui.Selection.getSelection()
+        found = [each for each in ours if each in chosen or compatibility.meshed_object(each) in chosen]
+        found = found or ([] if chosen else ours)
+        return found[0] if len(found) == 1 else None
+
+    def create(self, _document, obj):
+        picked = [
+            (each.Object, (name,))
+            for each in FreeCADGui.Selection.getSelectionEx()
+            for name in each.SubElementNames
+            if each.Object is compatibility.meshed_object(obj) and name.startswith(("Face", "Edge"))
+        ]
+        size = size_objects.make(obj, self.kind)
+        if picked and self.kind == "Distance":
+            size.References = picked
+        elif picked:
+            bounds = FreeCAD.BoundBox()
+            for part, (name,) in picked:
+                bounds.add(inputs.shape_of(part).getElement(name).BoundBox)
+            size.Placement.Base = bounds.Center - size.Proxy.middle(size)
+        return size
+
+
+class SizeSphere(Size):
+    kind = "Sphere"
+    icon = icon_of(kind)
+    menu_text = "Size in a sphere"
+    tool_tip = "Ask for a smaller size in a sphere, which can be dragged in the 3D view; select faces to put it there"
+
+
+class SizeBox(Size):
+    kind = "Box"
+    icon = icon_of(kind)
+    menu_text = "Size in a box"
+    tool_tip = "Ask for a smaller size in a box, which can be dragged and turned in the 3D view"
+
+
+class SizeCylinder(Size):
+    kind = "Cylinder"
+    icon = icon_of(kind)
+    menu_text = "Size in a cylinder"
+    tool_tip = "Ask for a smaller size in a cylinder, which can be dragged and turned in the 3D view"
+
+
+class SizeDistance(Size):
+    kind = "Distance"
+    icon = icon_of(kind)
+    menu_text = "Size near faces and edges"
+    tool_tip = "Ask for a smaller size within a distance from the selected faces and edges"
+
+
+COMMANDS = {
+    MESH_COMMAND: MeshFromShape,
+    REFINEMENT_COMMAND: Refinement,
+    "Collarmesh_SizeSphere": SizeSphere,
+    "Collarmesh_SizeBox": SizeBox,
+    "Collarmesh_SizeCylinder": SizeCylinder,
+    "Collarmesh_SizeDistance": SizeDistance,
+    GROUP_COMMAND: Group,
+}
 
 
 def register():

@@ -1,6 +1,7 @@
 """Where FreeCAD's versions differ."""
 
 import contextlib
+import importlib
 
 import FreeCAD
 import ObjectsFem
@@ -39,6 +40,18 @@ def meshed_object(mesh_object):
     return getattr(mesh_object, shape_property(mesh_object))
 
 
+REFINEMENT_LISTS = ("MeshRegionList", "MeshRefinementList")  # later versions have the second name
+
+
+def refinements_of(mesh_object):
+    return next((getattr(mesh_object, name) for name in REFINEMENT_LISTS if name in mesh_object.PropertiesList), [])
+
+
+def set_refinements(mesh_object, refinements):
+    name = next(name for name in REFINEMENT_LISTS if name in mesh_object.PropertiesList)
+    setattr(mesh_object, name, refinements)
+
+
 def make_refinement(document, mesh_object):
     """FreeCAD's object for a size on sub-shapes; later versions call it a refinement."""
     make = getattr(ObjectsFem, "makeMeshRegion", None) or ObjectsFem.makeMeshRefinement
@@ -62,6 +75,27 @@ def transaction(document, name):
         document.abortTransaction()
         raise
     document.commitTransaction()
+
+
+def extend_context_menus(fill):
+    """`fill(menu, object)` adds entries to the context menus of FreeCAD's own mesh objects. Their view providers are
+    classes in Python; Netgen's is one from FreeCAD 1.0 on, before it has no menu of its own."""
+    for module, name in (("view_mesh_gmsh", "VPMeshGmsh"), ("view_mesh_netgen", "VPMeshNetgen")):
+        try:
+            provider = getattr(importlib.import_module("femviewprovider." + module), name)
+        except (ImportError, AttributeError):
+            continue
+        _extend(provider, fill)
+
+
+def _extend(provider, fill):
+    before = getattr(provider, "setupContextMenu", None)
+
+    def setup_context_menu(self, view, menu):
+        fill(menu, view.Object)
+        return before(self, view, menu) if before else None
+
+    provider.setupContextMenu = setup_context_menu
 
 
 def has_gui():

@@ -8,6 +8,10 @@ from .commands import COMMANDS, GROUP_COMMAND, MESH_COMMAND, REFINEMENT_COMMAND
 BESIDE = {
     MESH_COMMAND: "FEM_MeshGmshFromShape",
     REFINEMENT_COMMAND: "FEM_MeshRegion",
+    "Collarmesh_SizeSphere": REFINEMENT_COMMAND,
+    "Collarmesh_SizeBox": "Collarmesh_SizeSphere",
+    "Collarmesh_SizeCylinder": "Collarmesh_SizeBox",
+    "Collarmesh_SizeDistance": "Collarmesh_SizeCylinder",
     GROUP_COMMAND: "FEM_MeshGroup",
 }
 

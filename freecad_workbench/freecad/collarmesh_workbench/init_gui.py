@@ -2,8 +2,9 @@
 
 import FreeCADGui
 
-from . import commands, fem_buttons, preferences
+from . import commands, fem_buttons, mesh_menu, preferences
 
 commands.register()
 fem_buttons.install()
+mesh_menu.install()
 FreeCADGui.addPreferencePage(preferences.Page, "FEM")

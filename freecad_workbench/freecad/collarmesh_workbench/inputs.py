@@ -28,6 +28,11 @@ def shape_of(part):
     return Part.Shape() if part.isDerivedFrom("Mesh::Feature") else Part.getShape(part)
 
 
+def bounds_of(part):
+    mesh = triangles_of(part)
+    return mesh.BoundBox if mesh is not None else shape_of(part).BoundBox
+
+
 def can_be_meshed(obj):
     """Is it worth a try? What is no closed solid is refused with its places when it is meshed."""
     if obj.isDerivedFrom("Fem::FemMeshObject") or obj.isDerivedFrom("App::DocumentObjectGroup"):

@@ -5,7 +5,7 @@ import re
 import Fem
 import FreeCAD
 
-from . import compatibility, groups, inputs, preferences, size_objects, up_to_date
+from . import compatibility, groups, inputs, mesh_undo, preferences, size_objects, up_to_date
 from .program import GUARANTEE_MISSED, Job, MesherError, Settings
 from .translations import mark, translate
 
@@ -90,6 +90,7 @@ def add_properties(obj):
         if name not in have:
             obj.addProperty("App::PropertyLinkList", name, "Base", text)
     up_to_date.add_properties(obj)
+    mesh_undo.add_properties(obj)
 
 
 def make(document, part=None, name="FEMMeshCollarmesh"):
@@ -190,7 +191,7 @@ def finish(obj, job, exit_code=0):
         raise MesherError("The mesher wrote a mesh without elements; please report it with the shape.")
     groups.add_groups(obj, fem_mesh)
     with compatibility.transaction(obj.Document, translate("collarmesh", "Mesh by collarmesh")):
-        obj.FemMesh = fem_mesh
+        mesh_undo.replace(obj, fem_mesh)
         up_to_date.remember(obj, job.state)
     up_to_date.show(obj)
     report = job.report()
@@ -232,4 +233,4 @@ def mesh(shape_or_object, document, analysis, name, settings):
 
 
 groups.observe()
-up_to_date.observe()
+mesh_undo.observe()

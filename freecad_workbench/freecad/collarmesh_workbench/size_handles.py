@@ -2,8 +2,10 @@
 
 import FreeCAD
 from pivy import coin
+from PySide import QtCore
 
 SHARE = 0.12  # of the object's diagonal: a handle's length
+EVERY = 20  # ms
 LEAST = 1e-3  # of the object's diagonal: no length gets smaller by dragging
 AXES = {"X": FreeCAD.Vector(1, 0, 0), "Y": FreeCAD.Vector(0, 1, 0), "Z": FreeCAD.Vector(0, 0, 1)}
 
@@ -18,7 +20,8 @@ def rods_of(kind):
 
 
 class Handle:
-    """A dragger of Coin at a place, of a length in mm. `dragged(translation)` is called with millimetres."""
+    """A dragger of Coin at a place, as large as `scale` mm. `dragged(vector)` is called with how far it was dragged since
+    the mouse was pressed, in mm."""
 
     def __init__(self, dragger, dragged):
         self.node = coin.SoSeparator()
@@ -26,52 +29,101 @@ class Handle:
         self.dragger = dragger
         self.dragged = dragged
         self.scale = 1
+        self.was_at = FreeCAD.Vector()
         self.node.addChild(self.transform)
         self.node.addChild(dragger)
-        dragger.addMotionCallback(self._moved, None)
 
     def put(self, place, rotation, scale):
         """Back to no translation, there."""
         self.scale = scale
+        self.was_at = FreeCAD.Vector()
         self.transform.translation = tuple(place)
         self.transform.rotation = coin.SbRotation(*rotation.Q)
         self.transform.scaleFactor = (scale, scale, scale)
         self.dragger.translation = (0, 0, 0)
 
-    def _moved(self, _data, _dragger):
-        self.dragged(FreeCAD.Vector(*self.dragger.translation.getValue().getValue()) * self.scale)
+    def is_held(self):
+        return bool(self.dragger.isActive.getValue())
+
+    def is_at(self):
+        return FreeCAD.Vector(*self.dragger.translation.getValue().getValue())
+
+    def look(self):
+        """Call `dragged` if the handle was moved."""
+        if self.is_at() != self.was_at:
+            self.was_at = self.is_at()
+            self.dragged(self.was_at * self.scale)
 
 
 class Handles:
-    """All handles of an object, in a node of the scene. A drag changes the object's properties at once; `changed()` is
-    called after each step."""
+    """All handles of an object, in its node of the scene, until `remove`. A drag changes the object's properties at
+    once; `changed()` is called after each step.
+
+    A timer looks where the handles are: the callbacks of pivy's draggers end FreeCAD (pivy 0.6 runs them without
+    Python's lock)."""
 
     def __init__(self, obj, kind, changed):
         self.object = obj
         self.changed = changed
-        self.node = coin.SoSeparator()
+        self.node = coin.SoAnnotation()  # in front of everything
         self.node.setName("collarmesh_size_handles")
         self.handles = []
+        self._hidden_from_mouse = []
+        self._held = None
         self._at_start = None
-        centre = Handle(coin.SoDragPointDragger(), self._move)
-        self._add(centre, "Placement")
+        self._add(Handle(coin.SoDragPointDragger(), self._move), "Placement")
         for length, axis in rods_of(kind):
             self._add(Handle(coin.SoTranslate1Dragger(), lambda by, name=length: self._stretch(name, by)), length, axis)
         self.place()
+        obj.ViewObject.RootNode.insertChild(self.node, 0)  # before the object's placement
+        self._hide_others_from_mouse()
+        self._timer = QtCore.QTimer()
+        self._timer.timeout.connect(self._look)
+        self._timer.start(EVERY)
+
+    def _hide_others_from_mouse(self):
+        """Handles inside of a part can be dragged."""
+        for each in self.object.Document.Objects:
+            root = getattr(each.ViewObject, "RootNode", None)
+            if root is not None and each is not self.object:
+                style = coin.SoPickStyle()
+                style.style = coin.SoPickStyle.UNPICKABLE
+                root.insertChild(style, 0)
+                self._hidden_from_mouse.append((root, style))
+        style = coin.SoPickStyle()
+        style.style = coin.SoPickStyle.UNPICKABLE
+        root = self.object.ViewObject.RootNode
+        root.insertChild(style, 1)  # behind the handles
+        self._hidden_from_mouse.append((root, style))
+
+    def remove(self):
+        self._timer.stop()
+        for root, style in self._hidden_from_mouse:
+            root.removeChild(style)
+        self.object.ViewObject.RootNode.removeChild(self.node)
 
     def _add(self, handle, name, axis=""):
         handle.name, handle.axis = name, axis
-        handle.dragger.addStartCallback(self._started, None)
-        handle.dragger.addFinishCallback(self._finished, None)
         self.handles.append(handle)
         self.node.addChild(handle.node)
 
+    def _look(self):
+        held = next((handle for handle in self.handles if handle.is_held() or handle.is_at() != handle.was_at), None)
+        if held is not None and self._held is None:
+            lengths = {handle.name: getattr(self.object, handle.name).Value for handle in self.handles if handle.axis}
+            self._at_start = self.object.Placement.copy(), lengths
+        if held is not None or self._held is not None:
+            (held or self._held).look()
+        if held is None and self._held is not None:
+            self.place()
+        self._held = held
+
     def place(self, but=None):
-        """Put the handles where the object is; `but`: the one that is being dragged."""
+        """Put the handles where the object is; `but`: the name of the one that is being dragged."""
         placement = self.object.Placement
         scale = SHARE * max(self.object.Shape.BoundBox.DiagonalLength, 1e-6)
         for handle in self.handles:
-            if handle is but:
+            if handle.name == but:
                 continue
             if not handle.axis:
                 handle.put(placement.multVec(self._middle()), FreeCAD.Rotation(), scale)
@@ -92,31 +144,17 @@ class Handles:
         across = FreeCAD.Vector(*(0 if AXES[handle.axis][i] else middle[i] for i in range(3)))
         return across + along
 
-    def _started(self, _data, dragger):
-        self._dragging = next(handle for handle in self.handles if handle.dragger == dragger)
-        self._at_start = self.object.Placement.copy(), {
-            handle.name: getattr(self.object, handle.name).Value for handle in self.handles if handle.axis
-        }
-
-    def _finished(self, _data, _dragger):
-        self._at_start = self._dragging = None
-        self.place()
-
     def _move(self, by):
-        if self._at_start is None:
-            return
         placement, _ = self._at_start
         self.object.Placement = FreeCAD.Placement(placement.Base + by, placement.Rotation)
-        self._update()
+        self._update("Placement")
 
     def _stretch(self, name, by):
-        if self._at_start is None:
-            return
         least = LEAST * self.object.Shape.BoundBox.DiagonalLength
         setattr(self.object, name, max(least, self._at_start[1][name] + by.x))
-        self._update()
+        self._update(name)
 
-    def _update(self):
+    def _update(self, name):
         self.object.recompute()
-        self.place(but=self._dragging)
+        self.place(but=name)
         self.changed()

@@ -41,7 +41,7 @@ class Size(compatibility.Stateless):
 
     def place(self, obj, part):
         """A first size and place, in the middle of a part."""
-        bounds = bounds_of(part)
+        bounds = inputs.bounds_of(part)
         extent = DEFAULT_SHARE * bounds.DiagonalLength
         for name, share, _ in self.lengths:
             setattr(obj, name, share * extent)
@@ -176,11 +176,6 @@ def is_seam(shape, edge):
     return edge.Degenerated or any(edge.isSeam(face) for face in shape.Faces if any(edge.isSame(e) for e in face.Edges))
 
 
-def bounds_of(part):
-    mesh = inputs.triangles_of(part)
-    return mesh.BoundBox if mesh is not None else inputs.shape_of(part).BoundBox
-
-
 KINDS = {"Sphere": Sphere, "Box": Box, "Cylinder": Cylinder, "Distance": Distance}
 PROPERTY = "MeshSizeList"  # of a mesh object
 
@@ -201,7 +196,7 @@ def make(mesh_object, kind, size=0, name=""):
     part = compatibility.meshed_object(mesh_object)
     if part is not None:
         proxy.place(obj, part)
-        size = size or (mesh_object.CharacteristicLengthMax.Value or bounds_of(part).DiagonalLength / 20) / 4
+        size = size or (mesh_object.CharacteristicLengthMax.Value or inputs.bounds_of(part).DiagonalLength / 20) / 4
     obj.Size = size
     setattr(mesh_object, PROPERTY, [*getattr(mesh_object, PROPERTY), obj])
     if compatibility.has_gui():

@@ -5,7 +5,6 @@ import dataclasses
 import json
 import math
 
-import FreeCAD
 import numpy
 
 from . import compatibility, inputs
@@ -133,24 +132,3 @@ def show(obj):
     proxy = getattr(getattr(obj, "ViewObject", None), "Proxy", None)
     if hasattr(proxy, "show_out_of_date"):
         proxy.show_out_of_date(is_out_of_date(obj))
-
-
-class Observer:
-    """After undo and redo nothing is recomputed."""
-
-    def slotUndoDocument(self, document):
-        self._show(document)
-
-    def slotRedoDocument(self, document):
-        self._show(document)
-
-    def _show(self, document):
-        from .mesh_object import is_ours
-
-        for each in document.Objects:
-            if is_ours(each):
-                show(each)
-
-
-def observe():
-    FreeCAD.addDocumentObserver(Observer())

@@ -1,6 +1,6 @@
 // Reads the universal file format of I-DEAS (.unv): nodes (2411, 781), elements (2412, 780) and groups
 // (2467 and its forerunners). Tags are groups: of our names what they say, else their order in the
-// file; without groups they are the materials.
+// file; without groups they are the materials. Names other than patch_7 are kept.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -184,6 +184,8 @@ class UnvReader {
       Element& element = elements_[found];
       element.tagged = true;
       element.tag = tags.find(element.dimension, names_[group]);
+      if (names_[group] != group_name(GroupNames::complex, element.dimension, element.tag))
+        mesh_.names.set(element.dimension, element.tag, names_[group]);
     }
     bool by_material = true;
     for (const Element& element : elements_) {
