@@ -106,25 +106,45 @@ def handles_change_the_sphere(sphere):
 
 def the_centre_moves(sphere):
     centre, radius = sphere.Placement.Base, sphere.Radius.Value
-    drag(centre, centre + FreeCAD.Vector(6, -5, 0))
-    w.require((sphere.Placement.Base - centre - FreeCAD.Vector(6, -5, 0)).Length < 1, f"it is dragged to {sphere.Placement.Base}")
+    arrow = FreeCAD.Vector(2, 0, 0)
+    drag(centre + arrow, centre + arrow + FreeCAD.Vector(6, 0, 0))
+    w.require((sphere.Placement.Base - centre - FreeCAD.Vector(6, 0, 0)).Length < 0.5, f"it is dragged to {sphere.Placement.Base}")
+    centre, arrow = sphere.Placement.Base, FreeCAD.Vector(0, 2, 0)
+    drag(centre + arrow, centre + arrow + FreeCAD.Vector(0, -5, 0))
+    w.require((sphere.Placement.Base - centre - FreeCAD.Vector(0, -5, 0)).Length < 0.5, f"it is dragged to {sphere.Placement.Base}")
     w.require(sphere.Radius.Value == radius, "its radius stays")
     w.require(abs(w.child("size_x").property("rawValue") - sphere.Placement.Base.x) < 0.01, "the field follows")
 
 
-def cancel_and_undo(document, sphere, before):
+def cancel_and_undo(document, obj):
+    """Creation and first edit are one step, later edits are others."""
+    name = obj.MeshSizeList[0].Name
     press(QtGui.QDialogButtonBox.Cancel)
-    w.require(sphere.Radius.Value == before and sphere.Size.Value == 1, f"cancel takes all back: {sphere.Radius}")
-    w.require(sphere.ViewObject.RootNode.getByName("collarmesh_size_handles") is None, "the handles are gone")
-    FreeCADGui.ActiveDocument.setEdit(sphere.Name)
-    enter("Radius", "6 mm")
-    enter("Size", "0.7 mm")
+    w.require(document.getObject(name) is None and obj.MeshSizeList == [], "cancel takes the new sphere back")
+    FreeCADGui.Selection.addSelection(obj)
+    w.click_command("Collarmesh_SizeSphere")
+    w.wait_until(lambda: w.find("size_panel") is not None, "the panel of the sphere")
+    enter("Radius", "3 mm")
     press(QtGui.QDialogButtonBox.Ok)
-    w.require(sphere.Radius.Value == 6, "OK keeps it")
+    (sphere,) = obj.MeshSizeList
+    w.require(sphere.Radius.Value == 3, "OK keeps it")
+    for button, radius in ((QtGui.QDialogButtonBox.Cancel, 3), (QtGui.QDialogButtonBox.Ok, 6)):
+        w.wait_until(lambda: FreeCADGui.ActiveDocument.getInEdit() is None, "the end of the edit")
+        sphere.ViewObject.doubleClicked()
+        w.wait_until(lambda: w.find("size_panel") is not None, "the panel after a double click", 5)
+        enter("Radius", "6 mm")
+        press(button)
+        w.require(sphere.Radius.Value == radius, f"{sphere.Radius} in place of {radius}")
+        w.require(sphere.ViewObject.RootNode.getByName("collarmesh_size_handles") is None, "the handles are gone")
     document.undo()
-    w.require(sphere.Radius.Value == before and sphere.Size.Value == 1, "one step of undo")
+    w.require(sphere.Radius.Value == 3, "undo of the edit")
+    document.undo()
+    w.require(obj.MeshSizeList == [], "undo of the creation")
     document.redo()
-    w.require(sphere.Radius.Value == 6 and sphere.Size.Value == 0.7, "redo")
+    document.redo()
+    (sphere,) = obj.MeshSizeList
+    w.require(sphere.Radius.Value == 6, "redo of both")
+    w.require(size_objects.kind_of(sphere) == "Sphere", "it is a sphere again")
 
 
 def a_box_and_a_cylinder(document, part):
@@ -216,13 +236,12 @@ def test():
     obj.CharacteristicLengthMax = 4
     document.recompute()
     sphere = a_sphere_by_its_button(document, obj)
-    radius = sphere.Radius.Value
     fields_change_the_sphere(sphere)
     handles_change_the_sphere(sphere)
     the_centre_moves(sphere)
     view().viewIsometric()
     w.screenshot("freecad_size_handles.png")
-    cancel_and_undo(document, sphere, radius)
+    cancel_and_undo(document, obj)
     box = a_box_and_a_cylinder(document, part)
     transform_by_freecad(box)
     distance_of_selected_faces(document, obj, part)

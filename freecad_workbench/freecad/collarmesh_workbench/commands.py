@@ -4,6 +4,7 @@ import os
 
 import FreeCAD
 import FreeCADGui
+from PySide import QtCore
 
 from . import compatibility, inputs, mesh_object, size_objects
 from .size_view import icon_of
@@ -28,6 +29,7 @@ class Command:
     """A button; `create` makes an object for what is selected, which is then edited in its panel."""
 
     icon, menu_text, tool_tip = "", "", ""
+    panel_commits = False  # creation and first edit are one step of undo, which "Cancel" of the panel takes back
 
     def GetResources(self):
         return {"Pixmap": self.icon, "MenuText": self.menu_text, "ToolTip": self.tool_tip}
@@ -40,7 +42,8 @@ class Command:
         document = target.Document
         document.openTransaction(self.menu_text)
         obj = self.create(document, target)
-        document.commitTransaction()
+        if not self.panel_commits:
+            document.commitTransaction()
         document.recompute()
         FreeCADGui.Selection.clearSelection()
         FreeCADGui.getDocument(document.Name).setEdit(obj.Name)
@@ -89,6 +92,11 @@ class Size(Command):
     """A size by place, for the mesh that is selected, or that of the selected part, or the only one there is."""
 
     kind = ""
+    panel_commits = True
+
+    def Activated(self):
+        # FreeCAD ends its transactions with the command, so this waits until that has ended.
+        QtCore.QTimer.singleShot(0, super().Activated)
 
     def target(self):
         ours = [each for each in FreeCAD.ActiveDocument.Objects if mesh_object.is_ours(each)]

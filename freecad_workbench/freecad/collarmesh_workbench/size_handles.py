@@ -1,10 +1,10 @@
-"""Handles of a sphere, box or cylinder in the 3D view: one moves it, the others change its lengths."""
+"""Handles of a sphere, box or cylinder in the 3D view: those in its middle move it, the others change its lengths."""
 
 import FreeCAD
 from pivy import coin
 from PySide import QtCore
 
-SHARE = 0.12  # of the object's diagonal: a handle's length
+SHARE = 0.1  # of the object's diagonal: half a handle's length
 EVERY = 20  # ms
 LEAST = 1e-3  # of the object's diagonal: no length gets smaller by dragging
 AXES = {"X": FreeCAD.Vector(1, 0, 0), "Y": FreeCAD.Vector(0, 1, 0), "Z": FreeCAD.Vector(0, 0, 1)}
@@ -20,23 +20,28 @@ def rods_of(kind):
 
 
 class Handle:
-    """A dragger of Coin at a place, as large as `scale` mm. `dragged(vector)` is called with how far it was dragged since
-    the mouse was pressed, in mm."""
+    """An arrow that is dragged along an axis of the object. `name`: of a length, or of the axis for an arrow that moves
+    the object. `dragged(distance)` is called with how far it was dragged since the mouse was pressed, in mm."""
 
-    def __init__(self, dragger, dragged):
-        self.node = coin.SoSeparator()
-        self.transform = coin.SoTransform()
-        self.dragger = dragger
+    def __init__(self, name, axis, dragged):
+        self.name = name
+        self.axis = axis
         self.dragged = dragged
         self.scale = 1
-        self.was_at = FreeCAD.Vector()
+        self.was_at = 0.0
+        self.node = coin.SoSeparator()
+        self.transform = coin.SoTransform()
+        self.dragger = coin.SoTranslate1Dragger()
         self.node.addChild(self.transform)
-        self.node.addChild(dragger)
+        self.node.addChild(self.dragger)
+
+    def moves(self):
+        return self.name == self.axis
 
     def put(self, place, rotation, scale):
-        """Back to no translation, there."""
+        """Back to no translation, there. `scale`: half its length, mm."""
         self.scale = scale
-        self.was_at = FreeCAD.Vector()
+        self.was_at = 0.0
         self.transform.translation = tuple(place)
         self.transform.rotation = coin.SbRotation(*rotation.Q)
         self.transform.scaleFactor = (scale, scale, scale)
@@ -46,7 +51,7 @@ class Handle:
         return bool(self.dragger.isActive.getValue())
 
     def is_at(self):
-        return FreeCAD.Vector(*self.dragger.translation.getValue().getValue())
+        return self.dragger.translation.getValue()[0]
 
     def look(self):
         """Call `dragged` if the handle was moved."""
@@ -71,9 +76,10 @@ class Handles:
         self._hidden_from_mouse = []
         self._held = None
         self._at_start = None
-        self._add(Handle(coin.SoDragPointDragger(), self._move), "Placement")
+        for axis in AXES:
+            self._add(axis, axis, lambda by, axis=axis: self._move(axis, by))
         for length, axis in rods_of(kind):
-            self._add(Handle(coin.SoTranslate1Dragger(), lambda by, name=length: self._stretch(name, by)), length, axis)
+            self._add(length, axis, lambda by, name=length: self._stretch(name, by))
         self.place()
         obj.ViewObject.RootNode.insertChild(self.node, 0)  # before the object's placement
         self._hide_others_from_mouse()
@@ -102,15 +108,15 @@ class Handles:
             root.removeChild(style)
         self.object.ViewObject.RootNode.removeChild(self.node)
 
-    def _add(self, handle, name, axis=""):
-        handle.name, handle.axis = name, axis
+    def _add(self, name, axis, dragged):
+        handle = Handle(name, axis, dragged)
         self.handles.append(handle)
         self.node.addChild(handle.node)
 
     def _look(self):
         held = next((handle for handle in self.handles if handle.is_held() or handle.is_at() != handle.was_at), None)
         if held is not None and self._held is None:
-            lengths = {handle.name: getattr(self.object, handle.name).Value for handle in self.handles if handle.axis}
+            lengths = {handle.name: getattr(self.object, handle.name).Value for handle in self.handles if not handle.moves()}
             self._at_start = self.object.Placement.copy(), lengths
         if held is not None or self._held is not None:
             (held or self._held).look()
@@ -125,12 +131,9 @@ class Handles:
         for handle in self.handles:
             if handle.name == but:
                 continue
-            if not handle.axis:
-                handle.put(placement.multVec(self._middle()), FreeCAD.Rotation(), scale)
-                continue
-            axis = AXES[handle.axis]
-            turn = placement.Rotation.multiply(FreeCAD.Rotation(AXES["X"], axis))
-            handle.put(placement.multVec(self._end(handle)), turn, scale)
+            turn = placement.Rotation.multiply(FreeCAD.Rotation(AXES["X"], AXES[handle.axis]))
+            place = self._middle() if handle.moves() else self._end(handle)
+            handle.put(placement.multVec(place), turn, scale)
 
     def _middle(self):
         return self.object.Proxy.middle(self.object)
@@ -144,14 +147,15 @@ class Handles:
         across = FreeCAD.Vector(*(0 if AXES[handle.axis][i] else middle[i] for i in range(3)))
         return across + along
 
-    def _move(self, by):
+    def _move(self, axis, by):
         placement, _ = self._at_start
-        self.object.Placement = FreeCAD.Placement(placement.Base + by, placement.Rotation)
-        self._update("Placement")
+        base = placement.Base + placement.Rotation.multVec(AXES[axis] * by)
+        self.object.Placement = FreeCAD.Placement(base, placement.Rotation)
+        self._update(axis)
 
     def _stretch(self, name, by):
         least = LEAST * self.object.Shape.BoundBox.DiagonalLength
-        setattr(self.object, name, max(least, self._at_start[1][name] + by.x))
+        setattr(self.object, name, max(least, self._at_start[1][name] + by))
         self._update(name)
 
     def _update(self, name):

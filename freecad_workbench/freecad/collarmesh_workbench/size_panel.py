@@ -32,14 +32,15 @@ def titles():
 
 
 class SizePanel:
-    """All changes are one step of undo; "Cancel" takes them back."""
+    """All changes are one step of undo, with the creation of a new object; "Cancel" takes them back."""
 
     def __init__(self, obj):
         self.object = obj
         self.kind = size_objects.kind_of(obj)
         self.handles = None
         self.filling = False
-        obj.Document.openTransaction(titles()[self.kind])
+        if not obj.Document.HasPendingTransaction:
+            obj.Document.openTransaction(titles()[self.kind])
         self.form = QtGui.QWidget()
         self.form.setObjectName("collarmesh_size_panel")
         self.form.setWindowTitle(titles()[self.kind])
@@ -187,7 +188,8 @@ class SizePanel:
 
     def reject(self):
         document = self.object.Document
-        document.abortTransaction()
+        self.close()
+        document.abortTransaction()  # a new object is gone then; the end of the edit would commit
         FreeCADGui.getDocument(document.Name).resetEdit()
         document.recompute()
         return True
