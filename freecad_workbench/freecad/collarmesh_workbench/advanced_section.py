@@ -4,7 +4,8 @@ import dataclasses
 
 from PySide import QtCore, QtGui
 
-from . import mesh_object, quantity_field
+from . import mesh_object
+from .quantity_field import QuantityField
 from .translations import translate
 
 MOST = 1000000
@@ -25,6 +26,7 @@ class Row:
 def sections():
     """Headings and their rows."""
     any_number = translate("collarmesh", "any")
+    any_growth = translate("collarmesh", "as the sizes ask for")
     default = translate("collarmesh", "default")
     improvement = (translate("collarmesh", "none"), translate("collarmesh", "quick"), translate("collarmesh", "good"),
                    translate("collarmesh", "best"))  # fmt: skip
@@ -41,7 +43,7 @@ def sections():
                 tip=translate("collarmesh", "Curved faces get so many elements on a full circle; 0: any number")),
             Row("ElementsAcrossGap", translate("collarmesh", "Elements across gaps"), zero=any_number,
                 tip=translate("collarmesh", "Thin places of the shape get so many elements across; 0: any number")),
-            Row("Gradation", translate("collarmesh", "Growth of the size"), zero=any_number,
+            Row("Gradation", translate("collarmesh", "Growth of the size"), zero=any_growth,
                 tip=translate("collarmesh", "How much the size grows by unit of length away from finer places; 0: any")),
         )),
         (translate("collarmesh", "Shape"), (
@@ -97,6 +99,7 @@ class AdvancedSection(QtGui.QWidget):
         self.body = QtGui.QWidget()
         rows = QtGui.QFormLayout(self.body)
         rows.setContentsMargins(12, 0, 0, 0)
+        rows.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
         for heading, properties in sections():
             label = QtGui.QLabel(f"<b>{heading}</b>")
             rows.addRow(label)
@@ -154,10 +157,9 @@ class AdvancedSection(QtGui.QWidget):
         if row.choices:
             return self._combo(row, value)
         if row.unit:
-            field = quantity_field.make(row.unit)
-            quantity_field.show(field, value, row.unit)
-            field.textChanged.connect(self.changed)
-            return field, lambda: quantity_field.quantity_in(field, row.unit)
+            field = QuantityField(row.unit, value)
+            field.widget.textChanged.connect(self.changed)
+            return field.widget, field.value
         if isinstance(value, bool):
             box = QtGui.QCheckBox()
             box.setChecked(value)
@@ -170,19 +172,28 @@ class AdvancedSection(QtGui.QWidget):
             number.setValue(value)
             number.valueChanged.connect(self.changed)
             return number, number.value
-        text = QtGui.QLineEdit(f"{value:g}")
+        text = QtGui.QLineEdit("" if value == 0 and row.zero else f"{value:.12g}")
         text.setPlaceholderText(row.zero)
         text.textChanged.connect(self.changed)
         return text, lambda: _number(text)
 
     def _combo(self, row, value):
-        combo = QtGui.QComboBox()
+        combo = narrow_combo()
         words = row.choices if isinstance(row.choices, dict) else dict(enumerate(row.choices))
         for word, text in words.items():
             combo.addItem(text, word)
         combo.setCurrentIndex(list(words).index(value) if value in words else 0)
         combo.currentIndexChanged.connect(self.changed)
         return combo, combo.currentData
+
+
+def narrow_combo():
+    """One that may be narrower than its texts."""
+    combo = QtGui.QComboBox()
+    combo.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
+    combo.setMinimumContentsLength(6)
+    combo.setSizePolicy(QtGui.QSizePolicy.Expanding, QtGui.QSizePolicy.Fixed)
+    return combo
 
 
 def _number(field):

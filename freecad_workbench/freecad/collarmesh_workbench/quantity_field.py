@@ -4,28 +4,45 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 
+from .translations import translate
 
-def make(unit):
-    """A QLineEdit for a quantity in "mm" or "deg"; a plain one where FreeCAD has none of its own."""
-    field = FreeCADGui.UiLoader().createWidget("Gui::InputField") or QtGui.QLineEdit()
-    field.setProperty("unit", unit)
-    field.setMinimumWidth(60)
-    return field
+_loader = FreeCADGui.UiLoader()  # Python forgets the widgets of one that is gone
+ROUNDING = 1e-3  # relative: what FreeCAD's number of decimals may change in what is shown
 
 
-def quantity_in(field, unit):
-    """The number in `unit` that the field holds. Raises ValueError."""
-    text = field.text().replace(QtCore.QLocale().decimalPoint(), ".")
-    try:
-        quantity = FreeCAD.Units.Quantity(text)
-        wanted = FreeCAD.Units.Quantity(1, FreeCAD.Units.Quantity(f"1 {unit}").Unit)
-    except (ValueError, OSError) as error:
-        raise ValueError(f"'{field.text()}' is no value: {error}") from error
-    if quantity.Unit not in (wanted.Unit, FreeCAD.Units.Unit()):
-        raise ValueError(f"'{field.text()}' is not in {unit}")
-    return quantity.Value
+class QuantityField:
+    """A quantity in "mm" or "deg" in a QLineEdit, `widget`: a plain one where FreeCAD has none of its own."""
+
+    def __init__(self, unit, value):
+        """`value` in `unit`."""
+        self.unit = unit
+        self.widget = _loader.createWidget("Gui::InputField") or QtGui.QLineEdit()
+        self.widget.setProperty("unit", unit)
+        self.widget.setMinimumWidth(60)
+        self.show(value)
+
+    def show(self, value):
+        text = FreeCAD.Units.Quantity(f"{value!r} {self.unit}").UserString
+        if abs(_parse(text).Value - value) > ROUNDING * abs(value):
+            text = f"{value:.6g} {self.unit}"
+        self._shown = value
+        self.widget.setText(text)
+        self._text = self.widget.text()
+
+    def value(self):
+        """In `unit`, exactly what was shown where nobody has edited it. Raises ValueError."""
+        if self.widget.text() == self._text:
+            return self._shown
+        try:
+            quantity = _parse(self.widget.text())
+        except (ValueError, OSError) as error:
+            raise ValueError(translate("collarmesh", "'{text}' is no value: {error}").format(
+                text=self.widget.text(), error=error)) from error  # fmt: skip
+        if quantity.Unit not in (_parse(f"1 {self.unit}").Unit, FreeCAD.Units.Unit()):
+            raise ValueError(translate("collarmesh", "'{text}' is not in {unit}").format(
+                text=self.widget.text(), unit=self.unit))  # fmt: skip
+        return quantity.Value
 
 
-def show(field, value, unit):
-    """Put a number in `unit` into the field."""
-    field.setText(FreeCAD.Units.Quantity(f"{value!r} {unit}").UserString)
+def _parse(text):
+    return FreeCAD.Units.Quantity(text.replace(QtCore.QLocale().decimalPoint(), "."))

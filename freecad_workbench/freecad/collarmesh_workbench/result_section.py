@@ -61,7 +61,7 @@ def counts_text(report):
     angles = translate("collarmesh", "dihedral angles from {smallest}° to {largest}°, in {time}")
     return (counts.format(tets=_exact(mesh["tets"]), nodes=_exact(nodes), faces=_exact(mesh["faces"])) + "<br>"
             + angles.format(smallest=f"{mesh['min_dihedral']:.1f}", largest=f"{mesh['max_dihedral']:.1f}",
-                            time=duration_text(report["seconds"]["total"])))  # fmt: skip
+                            time=_escaped(duration_text(report["seconds"]["total"]))))  # fmt: skip
 
 
 def guarantees_text(report):

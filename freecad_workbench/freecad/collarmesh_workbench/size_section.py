@@ -2,7 +2,8 @@
 
 from PySide import QtCore, QtGui
 
-from . import quantity_field, size_presets
+from . import size_presets
+from .quantity_field import QuantityField
 from .translations import translate
 
 NAME, SIZE, ELEMENTS, TIME = range(4)
@@ -18,25 +19,24 @@ class SizeSection(QtGui.QWidget):
         super().__init__()
         self.presets = size_presets.presets(diagonal)
         self.table = self._table()
-        self.field = quantity_field.make("mm")
-        self.field.setObjectName("collarmesh_CharacteristicLengthMax")
-        self.field.setToolTip(translate("collarmesh", "Length that the edges of the elements are to have"))
+        if size == 0 and diagonal > 0:
+            size = self.presets[len(self.presets) // 2][1]
+        self.field = QuantityField("mm", size)
+        self.field.widget.setObjectName("collarmesh_CharacteristicLengthMax")
+        self.field.widget.setToolTip(translate("collarmesh", "Length that the edges of the elements are to have"))
         row = QtGui.QFormLayout()
-        row.addRow(translate("collarmesh", "Size of the elements"), self.field)
+        row.addRow(translate("collarmesh", "Size of the elements"), self.field.widget)
         layout = QtGui.QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.table)
         layout.addLayout(row)
-        if size == 0 and diagonal > 0:
-            size = self.presets[len(self.presets) // 2][1]
-        quantity_field.show(self.field, size, "mm")
         self._mark_row()
         self.table.currentItemChanged.connect(self._take_preset)
-        self.field.textChanged.connect(self._edited)
+        self.field.widget.textChanged.connect(self._edited)
 
     def size(self):
         """In mm. Raises ValueError."""
-        return quantity_field.quantity_in(self.field, "mm")
+        return self.field.value()
 
     def sizes(self):
         """Those of the table, in mm."""
@@ -44,11 +44,12 @@ class SizeSection(QtGui.QWidget):
 
     def show_predictions(self, predictions):
         """{size: (tetrahedra, seconds)}; what is not there is not told."""
-        sizes = [size for _, size in self.presets] + [self._size_or_zero()]
+        sizes = [size for _, size in self.presets]
+        sizes.append(self._size_or_zero() if self._size_or_zero() not in sizes else 0)
         for row, size in enumerate(sizes):
             item = self.table.topLevelItem(row)
             tets, seconds = predictions.get(size, (None, None))
-            item.setText(ELEMENTS, "" if tets is None else "≈ " + size_presets.count_text(tets))
+            item.setText(ELEMENTS, "" if tets is None else size_presets.count_text(tets))
             item.setText(TIME, "" if tets is None else size_presets.duration_text(seconds))
 
     def _table(self):
@@ -56,7 +57,7 @@ class SizeSection(QtGui.QWidget):
         table.setObjectName("collarmesh_presets")
         table.setRootIsDecorated(False)
         table.setHeaderLabels([translate("collarmesh", "Mesh"), translate("collarmesh", "Size"),
-                               translate("collarmesh", "Elements"), translate("collarmesh", "Time")])  # fmt: skip
+                               translate("collarmesh", "≈ elements"), translate("collarmesh", "≈ time")])  # fmt: skip
         table.setToolTip(translate("collarmesh", "Choose a size; how many elements it makes and how long that takes "
                                                  "is estimated for this shape"))  # fmt: skip
         for name, size in self.presets:
@@ -98,10 +99,10 @@ class SizeSection(QtGui.QWidget):
     def _take_preset(self, item, _previous):
         size = item.data(NAME, QtCore.Qt.UserRole) if item is not None else None
         if size:
-            quantity_field.show(self.field, size, "mm")
+            self.field.show(size)
         elif item is not None:
-            self.field.setFocus()
-            self.field.selectAll()
+            self.field.widget.setFocus()
+            self.field.widget.selectAll()
 
     def _edited(self):
         self._mark_row()

@@ -7,7 +7,7 @@ import FreeCADGui
 from PySide import QtCore, QtGui
 
 from . import compatibility, extent, meshing_process, mesh_object, places, worst_elements
-from .advanced_section import AdvancedSection
+from .advanced_section import AdvancedSection, narrow_combo
 from .places_list import PlacesList
 from .prediction import Predictions
 from .program import MesherError
@@ -16,6 +16,8 @@ from .run_section import RunSection
 from .size_section import SizeSection
 from .translations import translate
 from .view_marks import ViewMarks
+
+WIDTH = 400  # pixels
 
 
 class MeshTaskPanel:
@@ -39,6 +41,7 @@ class MeshTaskPanel:
             self._show_outcome(meshing_process.outcome_of(obj))
         self.form.destroyed.connect(self.dismiss)
         FreeCAD.addDocumentObserver(self)
+        QtCore.QTimer.singleShot(0, self._widen)
 
     def _build(self):
         self.form = QtGui.QWidget()
@@ -46,7 +49,7 @@ class MeshTaskPanel:
         self.form.setWindowTitle(translate("collarmesh", "Mesh by collarmesh"))
         self.form.setWindowIcon(QtGui.QIcon(self.object.ViewObject.Proxy.getIcon()))
         self.size = SizeSection(self.object.CharacteristicLengthMax.Value, extent.diagonal(compatibility.meshed_object(self.object)))
-        self.order = QtGui.QComboBox()
+        self.order = narrow_combo()
         self.order.setObjectName("collarmesh_ElementOrder")
         self.order.addItems([translate("collarmesh", "first (straight, 4 nodes)"),
                              translate("collarmesh", "second (curved, 10 nodes)")])  # fmt: skip
@@ -74,6 +77,13 @@ class MeshTaskPanel:
         layout.addStretch()
         self.list.hide()
         self.report_button.hide()
+
+    def _widen(self):
+        """FreeCAD shows what fits into its dock; make room for all of the panel once."""
+        window = FreeCADGui.getMainWindow()
+        for dock in window.findChildren(QtGui.QDockWidget):
+            if dock.isAncestorOf(self.form) and not dock.isFloating() and dock.width() < WIDTH:
+                window.resizeDocks([dock], [WIDTH], QtCore.Qt.Horizontal)
 
     def _store(self):
         """The fields into the properties. Raises MesherError."""

@@ -8,7 +8,7 @@ from . import compatibility, extent
 
 NAME = "collarmesh_marks"
 TRANSPARENCY = 80  # percent, of the mesh as long as something in it is marked
-AROUND = 0.04  # of the diagonal: how far around a point is to be seen
+AROUND = 0.08  # of the diagonal: how far around a point is to be seen, at least
 
 
 class ViewMarks:
@@ -47,13 +47,13 @@ class ViewMarks:
                 part.ViewObject.Visibility = visible
 
     def _make_room(self, part, part_too):
-        """The mesh becomes transparent; the part shows where sub-shapes of it are selected."""
+        """The mesh becomes transparent; the part shows where sub-shapes of it are selected, and only there."""
         view = self.object.ViewObject
         FreeCADGui.Selection.clearSelection()
         self._before = part, part.ViewObject.Visibility if part else False, view.Transparency
         view.Transparency = TRANSPARENCY
-        if part_too and part is not None:
-            part.ViewObject.Visibility = True
+        if part is not None:
+            part.ViewObject.Visibility = part_too
 
     def _mark(self, points, tetrahedra):
         from pivy import coin
@@ -62,7 +62,7 @@ class ViewMarks:
         self._node.setName(NAME)
         colour = coin.SoMaterial()
         colour.diffuseColor = (0.9, 0.1, 0.1)
-        colour.emissiveColor = (0.5, 0, 0)
+        colour.emissiveColor = (0.25, 0, 0)
         self._node.addChild(colour)
         if len(tetrahedra):
             self._node.addChild(_faces(coin, tetrahedra))
@@ -82,7 +82,7 @@ class ViewMarks:
             if of_subshape.isValid():
                 box.add(of_subshape)
         if box.isValid():
-            move_camera(self.object, box.Center, max(box.DiagonalLength / 2, AROUND * extent.diagonal(part)))
+            move_camera(self.object, box.Center, max(box.DiagonalLength, AROUND * extent.diagonal(part)))
 
 
 def move_camera(obj, centre, radius):
@@ -96,25 +96,34 @@ def move_camera(obj, centre, radius):
     direction = camera.orientation.getValue().multVec(coin.SbVec3f(0, 0, -1))
     distance = camera.focalDistance.getValue()
     if camera.isOfType(coin.SoOrthographicCamera.getClassTypeId()):
-        camera.height.setValue(2.5 * radius)
+        camera.height.setValue(2 * radius)
     else:
-        distance = 2.5 * radius / numpy.tan(camera.heightAngle.getValue() / 2)
+        distance = radius / numpy.tan(camera.heightAngle.getValue() / 2)
         camera.focalDistance.setValue(distance)
     camera.position.setValue(coin.SbVec3f(*centre) - direction * float(distance))
 
 
 def _faces(coin, tetrahedra):
-    group = coin.SoGroup()
+    group = coin.SoSeparator()
     points = coin.SoCoordinate3()
     points.point.setValues(0, 4 * len(tetrahedra), tetrahedra.reshape(-1, 3).tolist())
     faces = coin.SoIndexedFaceSet()
     indices = []
+    lines, ends = coin.SoIndexedLineSet(), []
     for first in range(0, 4 * len(tetrahedra), 4):
         for a, b, c in ((0, 1, 2), (0, 1, 3), (0, 2, 3), (1, 2, 3)):
             indices += [first + a, first + b, first + c, -1]
+            ends += [first + a, first + b, first + c, first + a, -1]
     faces.coordIndex.setValues(0, len(indices), indices)
-    group.addChild(points)
-    group.addChild(faces)
+    lines.coordIndex.setValues(0, len(ends), ends)
+    hints = coin.SoShapeHints()
+    hints.vertexOrdering = coin.SoShapeHints.COUNTERCLOCKWISE  # lit from both sides
+    hints.shapeType = coin.SoShapeHints.UNKNOWN_SHAPE_TYPE
+    black, style = coin.SoBaseColor(), coin.SoDrawStyle()
+    black.rgb = (0, 0, 0)
+    style.lineWidth = 2
+    for each in (hints, points, faces, black, style, lines):
+        group.addChild(each)
     return group
 
 

@@ -3,6 +3,7 @@
 import numpy
 
 from . import places
+from .translations import translate
 
 
 def tetrahedra(fem_mesh):
@@ -43,5 +44,6 @@ def as_places(fem_mesh):
     """The worst tetrahedra as Places."""
     if fem_mesh.VolumeCount == 0:
         return []
-    return [places.Place(places.WORST, f"{angle:.2f}°: {number}", (), (), corners[None])
+    text = translate("collarmesh", "{angle}° in element {number}")
+    return [places.Place(places.WORST, text.format(angle=f"{angle:.1f}", number=number), (), (), corners[None])
             for number, angle, corners in zip(*worst(fem_mesh))]  # fmt: skip
