@@ -29,6 +29,7 @@ class Outcome:
     cancelled: bool = False
     page: str = ""  # path of the report for people
     part_changed: bool = False  # while it was meshed
+    warnings: tuple = ()  # of the shape, from before the run
 
 
 def _key(obj):
@@ -62,14 +63,15 @@ class MeshingProcess(QtCore.QObject):
         self.part = compatibility.meshed_object(obj)
         self.job = mesh_object.start(obj)
         self.job.add_page()
+        self.warnings = tuple(self.job.warnings())
         self.progress = None
-        self.part_changed = self._cancelled = False
+        self.part_changed = self._cancelled = self._abandoned = False
         self.clock = QtCore.QElapsedTimer()
         self.clock.start()
         self._process = QtCore.QProcess()
         self._process.setReadChannel(QtCore.QProcess.StandardError)
         self._process.readyReadStandardError.connect(self._read)
-        self._process.finished.connect(self._finished)
+        self._process.finished.connect(lambda exit_code, *_: self._finished(exit_code))
         self._process.setStandardInputFile(QtCore.QProcess.nullDevice())
         self._process.start(self.job.command[0], self.job.command[1:])
         if not self._process.waitForStarted():
@@ -83,8 +85,7 @@ class MeshingProcess(QtCore.QObject):
 
     def abandon(self):
         """End at once, without an outcome: there is nothing any more that could have it."""
-        self._process.finished.disconnect(self._finished)
-        self._process.readyReadStandardError.disconnect(self._read)
+        self._abandoned = True
         self._process.kill()
         self._process.waitForFinished(3000)
         self.job.folder.cleanup()
@@ -100,7 +101,9 @@ class MeshingProcess(QtCore.QObject):
                 self.progress = step
                 self.advanced.emit(step)
 
-    def _finished(self, exit_code, _status=None):
+    def _finished(self, exit_code):
+        if self._abandoned:
+            return
         self._read()
         self.job.folder.program_is(None)
         key = _key(self.object)
@@ -127,7 +130,7 @@ class MeshingProcess(QtCore.QObject):
         except OSError as error:
             FreeCAD.Console.PrintWarning(f"collarmesh: {error}\n")
             page = ""
-        return Outcome(report=report, page=page, part_changed=self.part_changed)
+        return Outcome(report=report, page=page, part_changed=self.part_changed, warnings=self.warnings)
 
 
 def _tell(obj, outcome):

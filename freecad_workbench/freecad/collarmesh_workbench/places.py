@@ -33,9 +33,12 @@ def in_error(message):
     return [told(PROBLEM, line) for line in message.splitlines() if line.strip()]
 
 
-def in_report(report):
-    """Of a run with a mesh, each message once."""
+def in_report(report, warnings=()):
+    """Of a run with a mesh, each message once; `warnings` that are not in the report."""
     places = [told(PROBLEM, each["message"], [each["where"]]) for each in report["check"]["findings"]]
+    if report["message"] and not report["guarantees_hold"]:
+        places.insert(0, told(PROBLEM, report["message"]))
+    places += [told(WARNING, text.removeprefix("warning: ")) for text in warnings]
     places += [told(WARNING, each["message"], [each["where"]]) for each in report["complex"]["warnings"]]
     places += [told(WARNING, text) for text in (*report["warnings"], *report["notes"])]
     places += _repairs(report["repair"])

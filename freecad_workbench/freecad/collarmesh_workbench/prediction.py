@@ -8,6 +8,9 @@ from . import mesh_object
 from .program import MesherError
 
 WAIT = 400  # milliseconds after the last change
+COUNTING = {"--size-min", "--elements-per-circle", "--elements-across-gap", "--gradation", "--region-size", "--patch-size",
+            "--curve-size", "--distance", "--order", "--planar-tolerance", "--weld", "--repair",
+            "--repair-tolerance", "--crease-angle"}  # fmt: skip
 
 
 class Predictions(QtCore.QObject):
@@ -41,11 +44,11 @@ class Predictions(QtCore.QObject):
             self._job = None
 
     def _stop(self):
-        if self._process is not None:
-            self._process.finished.disconnect(self._finished)
-            self._process.kill()
-            self._process.waitForFinished(1000)
-            self._process = None
+        process, self._process = self._process, None
+        if process is not None:
+            process.kill()
+            process.waitForFinished(1000)
+            process.deleteLater()
 
     def _missing(self):
         arguments, sizes = self._question
@@ -63,25 +66,26 @@ class Predictions(QtCore.QObject):
             return
         program, shape = self._job.command[:2]
         sizes = ",".join(map(repr, missing))
-        self._process = QtCore.QProcess(self)
-        self._process.setStandardInputFile(QtCore.QProcess.nullDevice())
-        self._process.setStandardErrorFile(QtCore.QProcess.nullDevice())
-        self._process.finished.connect(self._finished)
-        self._process.start(program, ["info", shape, *self._question[0], *self._size_field(), "--predict", sizes, "--json"])
-        if self._process.waitForStarted():
-            self._job.folder.program_is(self._process.processId())
+        self._process = process = QtCore.QProcess(self)
+        process.setStandardInputFile(QtCore.QProcess.nullDevice())
+        process.setStandardErrorFile(QtCore.QProcess.nullDevice())
+        process.finished.connect(lambda exit_code, *_: self._finished(process, exit_code))
+        process.start(program, ["info", shape, *self._question[0], *self._size_field(), "--predict", sizes, "--json"])
+        if process.waitForStarted():
+            self._job.folder.program_is(process.processId())
 
     def _size_field(self):
         command = self._job.command
         return command[at : at + 2] if (at := _position(command, "--size-field")) >= 0 else []
 
-    def _finished(self, exit_code, _status=None):
-        answer = bytes(self._process.readAllStandardOutput())
-        self._process.deleteLater()
+    def _finished(self, process, exit_code):
+        if process is not self._process:  # its answer is no longer asked for
+            return
         self._process = None
         self._job.folder.program_is(None)
         if exit_code == 0:
-            self._learn(answer)
+            self._learn(bytes(process.readAllStandardOutput()))
+        process.deleteLater()
         self._tell()
 
     def _learn(self, answer):
@@ -98,11 +102,10 @@ class Predictions(QtCore.QObject):
 
 
 def _arguments(settings):
-    """Those of the command line but for the size, which is asked about."""
+    """Those of the command line that the number of elements depends on, but for the size, which is asked about."""
     arguments = settings.arguments()
-    if (at := _position(arguments, "--size")) >= 0:
-        del arguments[at : at + 2]
-    return arguments
+    pairs = zip(arguments[::2], arguments[1::2])
+    return [word for pair in pairs if pair[0] in COUNTING for word in pair]
 
 
 def _position(words, word):

@@ -1,25 +1,26 @@
-"""Fields for numbers with a unit: FreeCAD's own, which know units and expressions."""
+"""Fields for numbers with a unit: "2.5 mm", "1/8 in", "(3 + 4) mm".
+
+FreeCAD's own Gui::InputField is not for panels made in Python: of one that is gone a wrapper may stay (seen in 0.20.2),
+which FEM's panels are then given for theirs, and fail."""
 
 import FreeCAD
-import FreeCADGui
 from PySide import QtCore, QtGui
 
 from .translations import translate
 
-_loader = FreeCADGui.UiLoader()  # Python forgets the widgets of one that is gone
 ROUNDING = 1e-3  # relative: what FreeCAD's number of decimals may change in what is shown
 
 
 class QuantityField:
-    """A quantity in "mm" or "deg" in a QLineEdit, `widget`: a plain one where FreeCAD has none of its own."""
+    """A quantity in "mm" or "deg" in a QLineEdit, `widget`; text that is none is red."""
 
     def __init__(self, unit, value):
         """`value` in `unit`."""
         self.unit = unit
-        self.widget = _loader.createWidget("Gui::InputField") or QtGui.QLineEdit()
-        self.widget.setProperty("unit", unit)
+        self.widget = QtGui.QLineEdit()
         self.widget.setMinimumWidth(60)
         self.show(value)
+        self.widget.textChanged.connect(self._colour)
 
     def show(self, value):
         text = FreeCAD.Units.Quantity(f"{value!r} {self.unit}").UserString
@@ -42,6 +43,13 @@ class QuantityField:
             raise ValueError(translate("collarmesh", "'{text}' is not in {unit}").format(
                 text=self.widget.text(), unit=self.unit))  # fmt: skip
         return quantity.Value
+
+    def _colour(self, _text):
+        try:
+            self.value()
+            self.widget.setStyleSheet("")
+        except ValueError:
+            self.widget.setStyleSheet("color: #c83c3c")
 
 
 def _parse(text):

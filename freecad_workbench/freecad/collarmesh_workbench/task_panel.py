@@ -162,7 +162,7 @@ class MeshTaskPanel:
             self.result.show_outcome(outcome)
             found = places.in_error(outcome.error) + found
             if outcome.report is not None:
-                found = places.in_report(outcome.report) + found
+                found = places.in_report(outcome.report, outcome.warnings) + found
             self.report_button.setVisible(bool(outcome.page))
         self.list.fill(found)
 
