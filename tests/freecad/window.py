@@ -92,7 +92,7 @@ def run_mesher(size):
 
 def open_panel(obj):
     FreeCADGui.getDocument(obj.Document.Name).setEdit(obj.Name)
-    wait_until(lambda: find("run") is not None, "the panel")
+    wait_until(lambda: find("run") is not None and find("run").isVisible(), "the panel")
 
 
 def close_panel():

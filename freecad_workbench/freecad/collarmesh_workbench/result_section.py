@@ -56,10 +56,9 @@ class ResultSection(QtGui.QWidget):
 def counts_text(report):
     """What was made, for people."""
     mesh = report["mesh"]
-    nodes = mesh["points"] + (report["second_order"] or {}).get("nodes", 0)
     counts = translate("collarmesh", "<b>{tets}</b> tetrahedra, <b>{nodes}</b> nodes, <b>{faces}</b> faces on the boundary")
     angles = translate("collarmesh", "dihedral angles from {smallest}° to {largest}°, in {time}")
-    return (counts.format(tets=_exact(mesh["tets"]), nodes=_exact(nodes), faces=_exact(mesh["faces"])) + "<br>"
+    return (counts.format(tets=_exact(mesh["tets"]), nodes=_exact(mesh["points"]), faces=_exact(mesh["faces"])) + "<br>"
             + angles.format(smallest=f"{mesh['min_dihedral']:.1f}", largest=f"{mesh['max_dihedral']:.1f}",
                             time=_escaped(duration_text(report["seconds"]["total"]))))  # fmt: skip
 
