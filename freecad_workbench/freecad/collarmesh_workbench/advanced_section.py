@@ -187,6 +187,17 @@ class AdvancedSection(QtGui.QWidget):
         return combo, combo.currentData
 
 
+def in_panel_words(text):
+    """A message of the program, with the names of the panel's fields in place of options."""
+    labels = {row.name: row.text for _, rows in sections() for row in rows}
+    labels["CharacteristicLengthMax"] = translate("collarmesh", "Size of the elements")
+    words = {"--" + field.replace("_", "-"): labels[name] for _, name, field, *_ in mesh_object.PROPERTIES if name in labels}
+    words["--repair wrap"] = f"{labels['Repair']}: {translate('collarmesh', 'wrap where it fails')}"
+    for option in sorted(words, key=len, reverse=True):
+        text = text.replace(option, f"“{words[option]}”")
+    return text
+
+
 def narrow_combo():
     """One that may be narrower than its texts."""
     combo = QtGui.QComboBox()

@@ -5,6 +5,7 @@ its document is closed and when FreeCAD ends."""
 
 import contextlib
 import dataclasses
+import filecmp
 import os
 
 import FreeCAD
@@ -65,7 +66,7 @@ class MeshingProcess(QtCore.QObject):
         self.job.add_page()
         self.warnings = tuple(self.job.warnings())
         self.progress = None
-        self.part_changed = self._cancelled = self._abandoned = False
+        self._touched = self._cancelled = self._abandoned = False
         self.clock = QtCore.QElapsedTimer()
         self.clock.start()
         self._process = QtCore.QProcess()
@@ -90,6 +91,9 @@ class MeshingProcess(QtCore.QObject):
         self._process.waitForFinished(3000)
         self.job.folder.cleanup()
         self.ended.emit()
+
+    def part_is_touched(self):
+        self._touched = True
 
     def seconds(self):
         return self.clock.elapsed() / 1000
@@ -123,6 +127,7 @@ class MeshingProcess(QtCore.QObject):
             report = mesh_object.finish(self.object, self.job, exit_code)
         except MesherError as error:
             return Outcome(error=str(error))
+        part_changed = self._part_changed()
         self.object.Document.recompute()
         page = os.path.join(self.object.Document.TransientDir, f"{self.object.Name}_report.html")
         try:
@@ -130,7 +135,19 @@ class MeshingProcess(QtCore.QObject):
         except OSError as error:
             FreeCAD.Console.PrintWarning(f"collarmesh: {error}\n")
             page = ""
-        return Outcome(report=report, page=page, part_changed=self.part_changed, warnings=self.warnings)
+        return Outcome(report=report, page=page, part_changed=part_changed, warnings=self.warnings)
+
+    def _part_changed(self):
+        """Is the part another one than the one that was meshed? A part that is recomputed may be the same again."""
+        if not self._touched:
+            return False
+        try:
+            now = mesh_object.start(self.object)
+        except MesherError:
+            return True
+        same = filecmp.cmp(now.shape, self.job.shape, shallow=False)
+        now.folder.cleanup()
+        return not same
 
 
 def _tell(obj, outcome):
@@ -146,7 +163,7 @@ class _Observer:
         if name in WHAT_IS_MESHED:
             for run in _runs.values():
                 if run.part is changed:
-                    run.part_changed = True
+                    run.part_is_touched()
 
     def slotDeletedObject(self, deleted):
         _forget(lambda key: key == _key(deleted))

@@ -21,6 +21,7 @@ class PlacesList(QtGui.QTreeWidget):
         self.setIndentation(12)
         self.setUniformRowHeights(False)
         self.setMinimumHeight(170)
+        self.setItemDelegate(_Wrapped(self))
         self.setToolTip(translate("collarmesh", "Click to see the place"))
         self.itemClicked.connect(self._pick)
         self.currentItemChanged.connect(self._moved)
@@ -33,7 +34,8 @@ class PlacesList(QtGui.QTreeWidget):
         for kind, heading, colour in _kinds():
             of_kind = [place for place in found if place.kind == kind]
             if of_kind:
-                self._add(heading.format(count=len(of_kind)), colour, of_kind)
+                top = self._add(heading.format(count=len(of_kind)), colour, of_kind)
+                top.setExpanded(kind != places.WORST or len(of_kind) == len(found))
         self._filling = False
         self.setVisible(bool(found))
 
@@ -51,7 +53,7 @@ class PlacesList(QtGui.QTreeWidget):
         if len(of_kind) > MOST:
             more = QtGui.QTreeWidgetItem(top, [translate("collarmesh", "and {count} more").format(count=len(of_kind) - MOST)])
             more.setData(0, QtCore.Qt.UserRole, of_kind[MOST:])
-        top.setExpanded(of_kind[0].kind != places.WORST)
+        return top
 
     def pick_first(self, kind):
         """As if the first row of the kind were clicked."""
@@ -61,12 +63,27 @@ class PlacesList(QtGui.QTreeWidget):
                 top.setExpanded(True)
                 self.setCurrentItem(top.child(0))
 
+    def resizeEvent(self, event):
+        super().resizeEvent(event)
+        self.scheduleDelayedItemsLayout()
+
     def _moved(self, item, _previous):
         if item is not None and not self._filling:
             self._pick(item)
 
     def _pick(self, item, _column=0):
         self.picked.emit(item.data(0, QtCore.Qt.UserRole))
+
+
+class _Wrapped(QtGui.QStyledItemDelegate):
+    """Rows as high as their texts need."""
+
+    def sizeHint(self, option, index):
+        tree = self.parent()
+        levels = 2 if index.parent().isValid() else 1
+        width = tree.viewport().width() - levels * tree.indentation() - 8
+        box = option.fontMetrics.boundingRect(QtCore.QRect(0, 0, width, 10000), QtCore.Qt.TextWordWrap, index.data())
+        return QtCore.QSize(box.width(), max(box.height(), option.fontMetrics.height()) + 3)
 
 
 def _kinds():

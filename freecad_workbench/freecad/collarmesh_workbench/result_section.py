@@ -37,7 +37,7 @@ class ResultSection(QtGui.QWidget):
         if outcome.cancelled:
             self.say(translate("collarmesh", "Cancelled; the mesh is the one from before."), CARE)
         elif outcome.report is None:
-            self.say(translate("collarmesh", "No mesh is made. {error}").format(error=outcome.error), BAD)
+            self.say(translate("collarmesh", "No mesh is made; the list says why."), BAD)
         else:
             self._show_report(outcome.report)
             if outcome.part_changed:
@@ -56,7 +56,7 @@ class ResultSection(QtGui.QWidget):
 def counts_text(report):
     """What was made, for people."""
     mesh = report["mesh"]
-    counts = translate("collarmesh", "<b>{tets}</b> tetrahedra, <b>{nodes}</b> nodes, <b>{faces}</b> faces on the boundary")
+    counts = translate("collarmesh", "<b>{tets}</b> tetrahedra, <b>{nodes}</b> nodes, <b>{faces}</b> faces")
     angles = translate("collarmesh", "dihedral angles from {smallest}° to {largest}°, in {time}")
     return (counts.format(tets=_exact(mesh["tets"]), nodes=_exact(mesh["points"]), faces=_exact(mesh["faces"])) + "<br>"
             + angles.format(smallest=f"{mesh['min_dihedral']:.1f}", largest=f"{mesh['max_dihedral']:.1f}",

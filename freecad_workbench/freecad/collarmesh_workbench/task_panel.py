@@ -7,7 +7,7 @@ import FreeCADGui
 from PySide import QtCore, QtGui
 
 from . import compatibility, extent, meshing_process, mesh_object, places, worst_elements
-from .advanced_section import AdvancedSection, narrow_combo
+from .advanced_section import AdvancedSection, in_panel_words, narrow_combo
 from .places_list import PlacesList
 from .prediction import Predictions
 from .program import MesherError
@@ -160,7 +160,7 @@ class MeshTaskPanel:
         found = worst_elements.as_places(self.object.FemMesh)
         if outcome is not None:
             self.result.show_outcome(outcome)
-            found = places.in_error(outcome.error) + found
+            found = places.in_error(in_panel_words(outcome.error)) + found
             if outcome.report is not None:
                 found = places.in_report(outcome.report, outcome.warnings) + found
             self.report_button.setVisible(bool(outcome.page))

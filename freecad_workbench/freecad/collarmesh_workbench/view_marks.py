@@ -8,7 +8,7 @@ from . import compatibility, extent
 
 NAME = "collarmesh_marks"
 TRANSPARENCY = 80  # percent, of the mesh as long as something in it is marked
-AROUND = 0.08  # of the diagonal: how far around a point is to be seen, at least
+AROUND = 0.15  # of the diagonal: how far around a point is to be seen, at least
 
 
 class ViewMarks:
@@ -128,11 +128,15 @@ def _faces(coin, tetrahedra):
 
 
 def _markers(coin, points):
-    group = coin.SoGroup()
+    """Red dots with a white rim."""
+    group = coin.SoSeparator()
     places = coin.SoCoordinate3()
     places.point.setValues(0, len(points), [list(map(float, point)) for point in points])
-    markers = coin.SoMarkerSet()
-    markers.markerIndex = coin.SoMarkerSet.CIRCLE_FILLED_9_9
     group.addChild(places)
-    group.addChild(markers)
+    for pixels, rgb in ((16, (1, 1, 1)), (11, (0.9, 0.1, 0.1))):
+        colour, style = coin.SoBaseColor(), coin.SoDrawStyle()
+        colour.rgb = rgb
+        style.pointSize = pixels
+        for each in (colour, style, coin.SoPointSet()):
+            group.addChild(each)
     return group
