@@ -52,11 +52,12 @@ def action(command):
 
 def enter(name, text):
     """Type into a field of the panel."""
-    field = w.child("size_" + name)
-    edit = field.findChild(QtGui.QLineEdit)
-    edit.setText(text)
-    QtGui.QApplication.sendEvent(field, QtGui.QFocusEvent(QtCore.QEvent.FocusOut))
+    w.child("size_" + name).setText(text)
     w.pause(50)
+
+
+def shown(name):
+    return FreeCAD.Units.Quantity(w.child("size_" + name).text()).Value
 
 
 def press(button):
@@ -100,7 +101,7 @@ def handles_change_the_sphere(sphere):
     centre = sphere.Placement.Base
     drag(centre + FreeCAD.Vector(5, 0, 0), centre + FreeCAD.Vector(9, 0, 0))
     w.require(abs(sphere.Radius.Value - 9) < 0.5, f"the radius is dragged to {sphere.Radius}")
-    w.require(abs(w.child("size_Radius").property("rawValue") - sphere.Radius.Value) < 0.01, "the field follows")
+    w.require(abs(shown("Radius") - sphere.Radius.Value) < 0.01, "the field follows")
     w.require((sphere.Placement.Base - centre).Length < 1e-9, "it stays where it is")
 
 
@@ -113,7 +114,7 @@ def the_centre_moves(sphere):
     drag(centre + arrow, centre + arrow + FreeCAD.Vector(0, -5, 0))
     w.require((sphere.Placement.Base - centre - FreeCAD.Vector(0, -5, 0)).Length < 0.5, f"it is dragged to {sphere.Placement.Base}")
     w.require(sphere.Radius.Value == radius, "its radius stays")
-    w.require(abs(w.child("size_x").property("rawValue") - sphere.Placement.Base.x) < 0.01, "the field follows")
+    w.require(abs(shown("x") - sphere.Placement.Base.x) < 0.01, "the field follows")
 
 
 def cancel_and_undo(document, obj):

@@ -1,9 +1,12 @@
 """The panel of a size object: how fine, how fast it grows, where. What is entered or dragged shows at once."""
 
+import contextlib
+
 import FreeCADGui
 from PySide import QtCore, QtGui
 
 from . import size_objects
+from .quantity_field import QuantityField
 from .translations import translate
 
 AXES = ("x", "y", "z")
@@ -66,19 +69,18 @@ class SizePanel:
         self.fill()
 
     def _add_length(self, name, text, store):
-        field = FreeCADGui.UiLoader().createWidget("Gui::QuantitySpinBox")
-        field.setObjectName("collarmesh_size_" + name)
-        field.setProperty("unit", "mm")
-        field.setKeyboardTracking(False)
-        field.setMinimumWidth(70)
+        field = QuantityField("mm", 0.0)
+        field.widget.setObjectName("collarmesh_size_" + name)
         if name in self.object.PropertiesList:
-            field.setToolTip(translate("App::Property", self.object.getDocumentationOfProperty(name)))
-            field.setProperty("minimum", 0.0)
-        else:
-            field.setProperty("minimum", -1e12)
-        QtCore.QObject.connect(field, QtCore.SIGNAL("valueChanged(double)"), lambda value: self._changed(store, value))
-        self.rows.addRow(text, field)
+            field.widget.setToolTip(translate("App::Property", self.object.getDocumentationOfProperty(name)))
+        field.widget.textChanged.connect(lambda _text: self._typed(field, store))
+        self.rows.addRow(text, field.widget)
         self.fields[name] = field
+
+    def _typed(self, field, store):
+        """Values that make no sense are red and not stored."""
+        with contextlib.suppress(ValueError):
+            self._changed(store, field.value())
 
     def _add_growth(self):
         field = QtGui.QDoubleSpinBox()
@@ -127,11 +129,11 @@ class SizePanel:
         self.filling = True
         for name, field in self.fields.items():
             if name in AXES:
-                field.setProperty("rawValue", self.object.Placement.Base[AXES.index(name)])
+                field.show(self.object.Placement.Base[AXES.index(name)])
             elif name == "Growth":
                 field.setValue(self.object.Growth)
             else:
-                field.setProperty("rawValue", getattr(self.object, name).Value)
+                field.show(getattr(self.object, name).Value)
         if self.kind == "Distance":
             self.list.clear()
             self.list.addItems([f"{linked.Label}: {name}" for linked, name in size_objects.references(self.object)])
