@@ -227,6 +227,22 @@ def the_mesh_has_the_sizes(obj):
     w.require(obj.FemMesh.VolumeCount > 3 * without, f"{obj.FemMesh.VolumeCount} tets with sizes, {without} without")
 
 
+def a_picture_of_all(document, obj, part):
+    part.ViewObject.Visibility = False
+    document.SizeSphere.Placement.Base = FreeCAD.Vector(8, 24, 5)
+    document.SizeBox.Placement.Base = FreeCAD.Vector(28, 1, 2)
+    document.recompute()
+    mesh_object.remesh(obj)
+    obj.ViewObject.Transparency = 40
+    view().viewIsometric()
+    for tree in w.window.findChildren(QtGui.QTreeWidget):
+        tree.expandAll()
+    for dock in w.window.findChildren(QtGui.QDockWidget):
+        if dock.windowTitle() == "Report view":
+            dock.hide()
+    w.screenshot("freecad_sizes.png")
+
+
 def test():
     document = FreeCAD.newDocument("sizes")
     part = document.addObject("Part::Feature", "Plate")
@@ -247,9 +263,7 @@ def test():
     transform_by_freecad(box)
     distance_of_selected_faces(document, obj, part)
     the_mesh_has_the_sizes(obj)
-    part.ViewObject.Visibility = False
-    view().viewIsometric()
-    w.screenshot("freecad_sizes.png")
+    a_picture_of_all(document, obj, part)
 
 
 w.run_test(test)

@@ -132,7 +132,8 @@ class Distance(Size):
         """It is where its faces and edges are."""
 
     def execute(self, obj):
-        obj.Shape = Part.Compound([inputs.shape_of(linked).getElement(name) for linked, name in references(obj) if name])
+        shapes = [inputs.shape_of(linked).getElement(name) for linked, name in references(obj) if name]
+        obj.Shape = Part.Compound(shapes) if shapes else Part.Shape()
 
     def sources(self, obj, part):
         self.check(obj, part)

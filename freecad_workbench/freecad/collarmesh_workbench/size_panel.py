@@ -10,6 +10,7 @@ from .quantity_field import QuantityField
 from .translations import translate
 
 AXES = ("x", "y", "z")
+WIDTH = 340  # pixels
 
 
 def texts():
@@ -67,6 +68,14 @@ class SizePanel:
             self._add_hint(layout)
             self._add_handles()
         self.fill()
+        QtCore.QTimer.singleShot(0, self._widen)
+
+    def _widen(self):
+        """FreeCAD shows what fits into its dock; make room for all of the panel."""
+        window = FreeCADGui.getMainWindow()
+        for dock in window.findChildren(QtGui.QDockWidget):
+            if dock.isAncestorOf(self.form) and not dock.isFloating() and dock.width() < WIDTH:
+                window.resizeDocks([dock], [WIDTH], QtCore.Qt.Horizontal)
 
     def _add_length(self, name, text, store):
         field = QuantityField("mm", 0.0)
