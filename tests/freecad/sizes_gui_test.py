@@ -28,8 +28,22 @@ def on_screen(place):
     return QtCore.QPoint(round(x * scale), round((height - 1 - y) * scale))
 
 
-def drag(start, end, steps=8):
-    """With the left button, from place to place."""
+def wait_for_camera():
+    """It moves for a while after a change of the view."""
+    seen = []
+    while len(seen) < 4 or seen[-1] != seen[-4]:
+        seen.append((on_screen(FreeCAD.Vector()), on_screen(FreeCAD.Vector(1, 2, 3)), view().getSize()))
+        w.pause(100)
+
+
+def drag(obj, name, by, steps=8):
+    """A handle's head with the left button; `name`: of a length, or of the axis along which it moves the object."""
+    wait_for_camera()
+    handle = next(each for each in obj.ViewObject.Proxy.panel.handles.handles if each.name == name)
+    turn = FreeCAD.Rotation(*handle.transform.rotation.getValue().getValue())
+    start = FreeCAD.Vector(*handle.transform.translation.getValue().getValue())
+    start += turn.multVec(FreeCAD.Vector(0.85 * handle.scale, 0, 0))
+    end = start + by
     target = view().graphicsView().viewport()
     points = [start + (end - start) * (i / steps) for i in range(steps + 1)]
     kinds = [QtCore.QEvent.MouseMove, QtCore.QEvent.MouseButtonPress] + [QtCore.QEvent.MouseMove] * steps
@@ -97,9 +111,8 @@ def fields_change_the_sphere(sphere):
 def handles_change_the_sphere(sphere):
     view().viewTop()
     FreeCADGui.SendMsgToActiveView("ViewFit")
-    w.pause(300)
     centre = sphere.Placement.Base
-    drag(centre + FreeCAD.Vector(5, 0, 0), centre + FreeCAD.Vector(9, 0, 0))
+    drag(sphere, "Radius", FreeCAD.Vector(4, 0, 0))
     w.require(abs(sphere.Radius.Value - 9) < 0.5, f"the radius is dragged to {sphere.Radius}")
     w.require(abs(shown("Radius") - sphere.Radius.Value) < 0.01, "the field follows")
     w.require((sphere.Placement.Base - centre).Length < 1e-9, "it stays where it is")
@@ -107,11 +120,10 @@ def handles_change_the_sphere(sphere):
 
 def the_centre_moves(sphere):
     centre, radius = sphere.Placement.Base, sphere.Radius.Value
-    arrow = FreeCAD.Vector(2, 0, 0)
-    drag(centre + arrow, centre + arrow + FreeCAD.Vector(6, 0, 0))
+    drag(sphere, "X", FreeCAD.Vector(6, 0, 0))
     w.require((sphere.Placement.Base - centre - FreeCAD.Vector(6, 0, 0)).Length < 0.5, f"it is dragged to {sphere.Placement.Base}")
-    centre, arrow = sphere.Placement.Base, FreeCAD.Vector(0, 2, 0)
-    drag(centre + arrow, centre + arrow + FreeCAD.Vector(0, -5, 0))
+    centre = sphere.Placement.Base
+    drag(sphere, "Y", FreeCAD.Vector(0, -5, 0))
     w.require((sphere.Placement.Base - centre - FreeCAD.Vector(0, -5, 0)).Length < 0.5, f"it is dragged to {sphere.Placement.Base}")
     w.require(sphere.Radius.Value == radius, "its radius stays")
     w.require(abs(shown("x") - sphere.Placement.Base.x) < 0.01, "the field follows")
@@ -158,10 +170,9 @@ def a_box_and_a_cylinder(document, part):
         enter(name, text)
     view().viewTop()
     FreeCADGui.SendMsgToActiveView("ViewFit")
-    w.pause(300)
-    drag(FreeCAD.Vector(32, 8, 2), FreeCAD.Vector(32, 12, 2))
+    drag(box, "Width", FreeCAD.Vector(0, 4, 0))
     w.require(abs(box.Width.Value - 10) < 0.5 and box.Length.Value == 8, f"the width is dragged to {box.Width}")
-    drag(FreeCAD.Vector(36, 7, 2), FreeCAD.Vector(38, 7, 2))
+    drag(box, "Length", FreeCAD.Vector(2, 0, 0))
     w.require(abs(box.Length.Value - 10) < 0.5, f"the length is dragged to {box.Length}")
     press(QtGui.QDialogButtonBox.Ok)
     FreeCADGui.Selection.addSelection(part, "Edge1")
@@ -172,10 +183,8 @@ def a_box_and_a_cylinder(document, part):
     w.require((cylinder.Shape.BoundBox.Center - edge).Length < 0.1, "it is at the edge that was selected")
     view().viewFront()
     FreeCADGui.SendMsgToActiveView("ViewFit")
-    w.pause(300)
     height = cylinder.Height.Value
-    top = cylinder.Placement.multVec(FreeCAD.Vector(0, 0, height))
-    drag(top, top + FreeCAD.Vector(0, 0, 3))
+    drag(cylinder, "Height", FreeCAD.Vector(0, 0, 3))
     w.require(abs(cylinder.Height.Value - height - 3) < 0.5, f"the height is dragged from {height} to {cylinder.Height}")
     press(QtGui.QDialogButtonBox.Ok)
     return box

@@ -1,10 +1,13 @@
 """Handles of a sphere, box or cylinder in the 3D view: those in its middle move it, the others change its lengths."""
 
 import FreeCAD
+import FreeCADGui
 from pivy import coin
 from PySide import QtCore
 
 SHARE = 0.1  # of the object's diagonal: half a handle's length
+SHARE_OF_VIEW = 0.025  # of what the view shows: the least half length
+THICK = 1.3  # times as thick as Coin's arrows
 EVERY = 20  # ms
 LEAST = 1e-3  # of the object's diagonal: no length gets smaller by dragging
 AXES = {"X": FreeCAD.Vector(1, 0, 0), "Y": FreeCAD.Vector(0, 1, 0), "Z": FreeCAD.Vector(0, 0, 1)}
@@ -44,7 +47,7 @@ class Handle:
         self.was_at = 0.0
         self.transform.translation = tuple(place)
         self.transform.rotation = coin.SbRotation(*rotation.Q)
-        self.transform.scaleFactor = (scale, scale, scale)
+        self.transform.scaleFactor = (scale, THICK * scale, THICK * scale)
         self.dragger.translation = (0, 0, 0)
 
     def is_held(self):
@@ -76,6 +79,7 @@ class Handles:
         self._hidden_from_mouse = []
         self._held = None
         self._at_start = None
+        self._height = 0  # of the view when the handles were put
         for axis in AXES:
             self._add(axis, axis, lambda by, axis=axis: self._move(axis, by))
         for length, axis in rods_of(kind):
@@ -120,20 +124,31 @@ class Handles:
             self._at_start = self.object.Placement.copy(), lengths
         if held is not None or self._held is not None:
             (held or self._held).look()
-        if held is None and self._held is not None:
+        if held is None and (self._held is not None or self._shown_height() != self._height):
             self.place()
         self._held = held
 
     def place(self, but=None):
         """Put the handles where the object is; `but`: the name of the one that is being dragged."""
         placement = self.object.Placement
-        scale = SHARE * max(self.object.Shape.BoundBox.DiagonalLength, 1e-6)
+        self._height = self._shown_height()
+        scale = max(SHARE * self.object.Shape.BoundBox.DiagonalLength, SHARE_OF_VIEW * self._height)
         for handle in self.handles:
             if handle.name == but:
                 continue
             turn = placement.Rotation.multiply(FreeCAD.Rotation(AXES["X"], AXES[handle.axis]))
             place = self._middle() if handle.moves() else self._end(handle)
             handle.put(placement.multVec(place), turn, scale)
+
+    def _shown_height(self):
+        """Of the view at the object, in mm."""
+        view = FreeCADGui.getDocument(self.object.Document.Name).ActiveView
+        if not hasattr(view, "getCameraNode"):
+            return 0
+        camera = view.getCameraNode()
+        if hasattr(camera, "heightAngle"):
+            return camera.focalDistance.getValue() * camera.heightAngle.getValue()
+        return camera.height.getValue()
 
     def _middle(self):
         return self.object.Proxy.middle(self.object)
