@@ -81,7 +81,7 @@ class _Wrapped(QtGui.QStyledItemDelegate):
     def sizeHint(self, option, index):
         tree = self.parent()
         levels = 2 if index.parent().isValid() else 1
-        width = tree.viewport().width() - levels * tree.indentation() - 8
+        width = tree.viewport().width() - levels * tree.indentation() - 14
         box = option.fontMetrics.boundingRect(QtCore.QRect(0, 0, width, 10000), QtCore.Qt.TextWordWrap, index.data())
         return QtCore.QSize(box.width(), max(box.height(), option.fontMetrics.height()) + 3)
 
