@@ -10,7 +10,7 @@ import ObjectsFem
 import Part
 from femmesh import gmshtools
 from freecad import collarmesh_workbench
-from freecad.collarmesh_workbench import compatibility, mesh_file, mesh_object, size_objects, take_over, up_to_date
+from freecad.collarmesh_workbench import compatibility, mesh_file, mesh_object, size_objects, statistics_dialog, take_over, up_to_date
 from freecad.collarmesh_workbench.program import MesherError
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -221,6 +221,9 @@ class Files(WithPart):
         self.assertEqual((found["tets"], found["points"]), (self.obj.FemMesh.VolumeCount, self.obj.FemMesh.NodeCount))
         self.assertAlmostEqual(sum(found["region_volumes"].values()) / self.part.Shape.Volume, 1, delta=0.01)
         self.assertGreater(found["min_dihedral"], 5)
+        page = statistics_dialog.page(self.obj)
+        for word in (str(found["tets"]), str(self.obj.FemMesh.NodeCount), "Face7", "Solid1"):
+            self.assertIn(word, page)
 
 
 run_in_freecad.run(TakeOver, TwoMeshes, Files)

@@ -50,12 +50,13 @@ def bars(histogram):
 
 def show(mesh_object, parent):
     """Opens the window and returns it. Raises MesherError."""
+    text = page(mesh_object)
     dialog = QtGui.QDialog(parent)
     dialog.setObjectName("collarmesh_statistics")
     dialog.setWindowTitle(translate("collarmesh", "Statistics of {label}").format(label=mesh_object.Label))
     dialog.resize(460, 620)
     browser = QtGui.QTextBrowser(dialog)
-    browser.setHtml(page(mesh_object))
+    browser.setHtml(text)
     buttons = QtGui.QDialogButtonBox(QtGui.QDialogButtonBox.Close, parent=dialog)
     buttons.rejected.connect(dialog.reject)
     layout = QtGui.QVBoxLayout(dialog)

@@ -101,10 +101,21 @@ class UnvReader {
       if (old) scan_.integer("a material");
       scan_.integer("a colour");
       const Index nodes = scan_.count("the number of nodes", 2);
-      if (unv_is_beam(static_cast<int>(type))) scan_.skip_line();
-      if (unv_is_beam(static_cast<int>(type))) scan_.skip_line();
+      if (unv_is_beam(static_cast<int>(type)) || (type == unv_rod && words_on_next_line() == 3)) {
+        scan_.skip_line();
+        scan_.skip_line();
+      }
       read_element(number, type, nodes, material);
     }
+  }
+
+  /// SALOME and FreeCAD write the beams' record for rods, too, of three numbers; rods have two nodes.
+  std::size_t words_on_next_line() const {
+    TextScanner ahead = scan_;
+    ahead.skip_line();
+    std::size_t words = 0;
+    for (; !ahead.at_line_end(); ++words) ahead.word("a number");
+    return words;
   }
 
   void read_element(std::int64_t number, std::int64_t type, Index count, std::int64_t material) {
