@@ -47,5 +47,10 @@ def make_group(document, mesh_object):
     return ObjectsFem.makeMeshGroup(document, mesh_object)
 
 
+def as_number(button):
+    """Standard buttons of panels as FreeCAD wants them; PySide6 (FreeCAD 1.x) has them as an enumeration."""
+    return button.value if hasattr(button, "value") else int(button)
+
+
 def has_gui():
     return bool(FreeCAD.GuiUp)
