@@ -4,7 +4,7 @@ import dataclasses
 
 from PySide import QtCore, QtGui
 
-from . import mesh_object
+from . import mesh_object, preferences
 from .quantity_field import QuantityField
 from .translations import translate
 
@@ -28,8 +28,6 @@ def sections():
     any_number = translate("collarmesh", "any")
     any_growth = translate("collarmesh", "as the sizes ask for")
     default = translate("collarmesh", "default")
-    improvement = (translate("collarmesh", "none"), translate("collarmesh", "quick"), translate("collarmesh", "good"),
-                   translate("collarmesh", "best"))  # fmt: skip
     repair = {
         "Automatic": translate("collarmesh", "automatic"),
         "None": translate("collarmesh", "none, refuse"),
@@ -62,7 +60,7 @@ def sections():
             Row("RepairTolerance", translate("collarmesh", "Tolerance of repair"), zero=default),
         )),
         (translate("collarmesh", "Quality"), (
-            Row("ImproveLevel", translate("collarmesh", "Improvement"), choices=improvement,
+            Row("ImproveLevel", translate("collarmesh", "Improvement"), choices=preferences.improve_levels(),
                 tip=translate("collarmesh", "How much time goes into removing flat elements")),
             Row("MinDihedralAngle", translate("collarmesh", "Improve below this angle"), "deg",
                 tip=translate("collarmesh", "Elements with smaller dihedral angles are improved; 0: 15, 20 or 30 "

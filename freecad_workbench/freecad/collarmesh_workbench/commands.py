@@ -8,6 +8,7 @@ from PySide import QtCore
 
 from . import compatibility, inputs, mesh_object, size_objects
 from .size_view import icon_of
+from .translations import mark, translate
 from .view_provider import ICON
 
 MESH_COMMAND = "Collarmesh_MeshFromShape"
@@ -32,7 +33,15 @@ class Command:
     panel_commits = False  # creation and first edit are one step of undo, which "Cancel" of the panel takes back
 
     def GetResources(self):
-        return {"Pixmap": self.icon, "MenuText": self.menu_text, "ToolTip": self.tool_tip}
+        return {"Pixmap": self.icon, "MenuText": self.text(), "ToolTip": self.tip()}
+
+    @classmethod
+    def text(cls):
+        return translate("collarmesh", cls.menu_text)
+
+    @classmethod
+    def tip(cls):
+        return translate("collarmesh", cls.tool_tip)
 
     def IsActive(self):
         return FreeCAD.ActiveDocument is not None and self.target() is not None
@@ -40,7 +49,7 @@ class Command:
     def Activated(self):
         target = self.target()
         document = target.Document
-        document.openTransaction(self.menu_text)
+        document.openTransaction(self.text())
         obj = self.create(document, target)
         if not self.panel_commits:
             document.commitTransaction()
@@ -51,8 +60,8 @@ class Command:
 
 class MeshFromShape(Command):
     icon = ICON
-    menu_text = "FEM mesh from shape by collarmesh"
-    tool_tip = "Make a tetrahedral mesh of the selected solid, certified, with groups for its faces"
+    menu_text = mark("collarmesh", "FEM mesh from shape by collarmesh")
+    tool_tip = mark("collarmesh", "Make a tetrahedral mesh of the selected solid, certified, with groups for its faces")
 
     def target(self):
         return selected_part()
@@ -69,8 +78,8 @@ class MeshFromShape(Command):
 
 class Refinement(Command):
     icon = os.path.join(os.path.dirname(ICON), "refinement.svg")
-    menu_text = "Refinement of a collarmesh mesh"
-    tool_tip = "Ask for a smaller size on faces, edges or solids in the selected collarmesh mesh"
+    menu_text = mark("collarmesh", "Refinement of a collarmesh mesh")
+    tool_tip = mark("collarmesh", "Ask for a smaller size on faces, edges or solids in the selected collarmesh mesh")
 
     def target(self):
         return selected(mesh_object.is_ours)
@@ -81,8 +90,8 @@ class Refinement(Command):
 
 class Group(Refinement):
     icon = os.path.join(os.path.dirname(ICON), "group.svg")
-    menu_text = "Group of a collarmesh mesh"
-    tool_tip = "Name the elements on faces, edges or solids in the selected collarmesh mesh"
+    menu_text = mark("collarmesh", "Group of a collarmesh mesh")
+    tool_tip = mark("collarmesh", "Name the elements on faces, edges or solids in the selected collarmesh mesh")
 
     def create(self, document, obj):
         return compatibility.make_group(document, obj)
@@ -126,29 +135,29 @@ class Size(Command):
 class SizeSphere(Size):
     kind = "Sphere"
     icon = icon_of(kind)
-    menu_text = "Size in a sphere"
-    tool_tip = "Ask for a smaller size in a sphere, which can be dragged in the 3D view; select faces to put it there"
+    menu_text = mark("collarmesh", "Size in a sphere")
+    tool_tip = mark("collarmesh", "Ask for a smaller size in a sphere, which can be dragged in the 3D view; select faces to put it there")
 
 
 class SizeBox(Size):
     kind = "Box"
     icon = icon_of(kind)
-    menu_text = "Size in a box"
-    tool_tip = "Ask for a smaller size in a box, which can be dragged and turned in the 3D view"
+    menu_text = mark("collarmesh", "Size in a box")
+    tool_tip = mark("collarmesh", "Ask for a smaller size in a box, which can be dragged and turned in the 3D view")
 
 
 class SizeCylinder(Size):
     kind = "Cylinder"
     icon = icon_of(kind)
-    menu_text = "Size in a cylinder"
-    tool_tip = "Ask for a smaller size in a cylinder, which can be dragged and turned in the 3D view"
+    menu_text = mark("collarmesh", "Size in a cylinder")
+    tool_tip = mark("collarmesh", "Ask for a smaller size in a cylinder, which can be dragged and turned in the 3D view")
 
 
 class SizeDistance(Size):
     kind = "Distance"
     icon = icon_of(kind)
-    menu_text = "Size near faces and edges"
-    tool_tip = "Ask for a smaller size within a distance from the selected faces and edges"
+    menu_text = mark("collarmesh", "Size near faces and edges")
+    tool_tip = mark("collarmesh", "Ask for a smaller size within a distance from the selected faces and edges")
 
 
 COMMANDS = {

@@ -98,5 +98,10 @@ def _extend(provider, fill):
     provider.setupContextMenu = setup_context_menu
 
 
+def as_number(button):
+    """Standard buttons of panels as FreeCAD wants them; PySide6 (FreeCAD 1.x) has them as an enumeration."""
+    return button.value if hasattr(button, "value") else int(button)
+
+
 def has_gui():
     return bool(FreeCAD.GuiUp)

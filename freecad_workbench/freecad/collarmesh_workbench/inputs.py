@@ -4,6 +4,7 @@ import numpy
 import Part
 
 from .program import MesherError
+from .translations import translate
 
 REST = "Rest"  # the group of the triangles that are in no segment
 
@@ -51,10 +52,10 @@ def write(part, path):
     if mesh is None:
         shape = shape_of(part)
         if shape.isNull():
-            raise MesherError(f"{part.Label} has no shape; recompute it.")
+            raise MesherError(translate("collarmesh", "{label} has no shape; recompute it.").format(label=part.Label))
         shape.exportBrep(path)
     elif mesh.CountFacets == 0:
-        raise MesherError(f"{part.Label} has no triangles.")
+        raise MesherError(translate("collarmesh", "{label} has no triangles.").format(label=part.Label))
     else:
         write_triangles(mesh, path)
 

@@ -7,6 +7,7 @@ put in place then."""
 import FreeCAD
 
 from . import groups
+from .translations import doc
 
 NUMBER = "MeshNumber"
 KEPT = 20  # as many steps of undo as FreeCAD has by default
@@ -16,7 +17,7 @@ _kept = {}  # by document and object: {number: mesh}
 
 def add_properties(obj):
     if NUMBER not in obj.PropertiesList:
-        obj.addProperty("App::PropertyInteger", NUMBER, "Base", "Which of its meshes the object has", 4 + 16)
+        obj.addProperty("App::PropertyInteger", NUMBER, "Base", doc("Which of its meshes the object has"), 4 + 16)
 
 
 def replace(obj, fem_mesh):

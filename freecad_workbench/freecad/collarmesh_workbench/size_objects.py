@@ -7,7 +7,7 @@ import Part
 
 from . import compatibility, inputs
 from .program import MesherError
-from .translations import mark
+from .translations import doc, translate
 
 GROWTH = 0.3
 DEFAULT_SHARE = 0.1  # of the part's diagonal: a new sphere's radius
@@ -30,8 +30,8 @@ class Size(compatibility.Stateless):
         have = obj.PropertiesList
         own = [("App::PropertyLength", name, text) for name, _, text in self.lengths]
         for kind, name, text in (
-            ("App::PropertyLength", "Size", mark("App::Property", "Target edge length inside")),
-            ("App::PropertyFloat", "Growth", mark("App::Property", "Growth of size per unit length away from there")),
+            ("App::PropertyLength", "Size", doc("Target edge length inside")),
+            ("App::PropertyFloat", "Growth", doc("Growth of size per unit length away from there")),
             *own,
         ):
             if name not in have:
@@ -54,15 +54,17 @@ class Size(compatibility.Stateless):
         """What the program's size field has for it: a list of sources. Raises MesherError."""
         for name in ("Size", *(name for name, _, _ in self.lengths)):
             if getattr(obj, name).Value <= 0:
-                raise MesherError(f"{obj.Label}: {name} is {getattr(obj, name).UserString}, but must be positive.")
+                text = translate("collarmesh", "{label}: {property} is {value}, but must be positive.")
+                raise MesherError(text.format(label=obj.Label, property=name, value=getattr(obj, name).UserString))
         if obj.Growth < 0:
-            raise MesherError(f"{obj.Label}: Growth is {obj.Growth:g}, but sizes grow by 0 or more.")
+            text = translate("collarmesh", "{label}: Growth is {value}, but sizes grow by 0 or more.")
+            raise MesherError(text.format(label=obj.Label, value=f"{obj.Growth:g}"))
         return [{"size": obj.Size.Value, "growth": obj.Growth, **body} for body in self.bodies(obj)]
 
 
 class Sphere(Size):
     Type = "Fem::CollarmeshSizeSphere"
-    lengths = (("Radius", 1, mark("App::Property", "Radius of the sphere")),)
+    lengths = (("Radius", 1, doc("Radius of the sphere")),)
 
     def execute(self, obj):
         obj.Shape = Part.makeSphere(max(obj.Radius.Value, 1e-6))
@@ -74,9 +76,9 @@ class Sphere(Size):
 class Box(Size):
     Type = "Fem::CollarmeshSizeBox"
     lengths = (
-        ("Length", 2, mark("App::Property", "Length of the box along its x axis")),
-        ("Width", 2, mark("App::Property", "Width of the box along its y axis")),
-        ("Height", 2, mark("App::Property", "Height of the box along its z axis")),
+        ("Length", 2, doc("Length of the box along its x axis")),
+        ("Width", 2, doc("Width of the box along its y axis")),
+        ("Height", 2, doc("Height of the box along its z axis")),
     )
 
     def execute(self, obj):
@@ -98,8 +100,8 @@ class Box(Size):
 class Cylinder(Size):
     Type = "Fem::CollarmeshSizeCylinder"
     lengths = (
-        ("Radius", 1, mark("App::Property", "Radius of the cylinder")),
-        ("Height", 2, mark("App::Property", "Height of the cylinder along its z axis")),
+        ("Radius", 1, doc("Radius of the cylinder")),
+        ("Height", 2, doc("Height of the cylinder along its z axis")),
     )
 
     def execute(self, obj):
@@ -123,9 +125,9 @@ class Distance(Size):
         super().add_properties(obj)
         if "References" not in obj.PropertiesList:
             obj.addProperty("App::PropertyLinkSubList", "References", "Size",
-                            mark("App::Property", "Faces and edges near which the size holds"))  # fmt: skip
+                            doc("Faces and edges near which the size holds"))  # fmt: skip
             obj.addProperty("App::PropertyLength", "Within", "Size",
-                            mark("App::Property", "The size holds up to this distance and grows beyond"))  # fmt: skip
+                            doc("The size holds up to this distance and grows beyond"))  # fmt: skip
             obj.setEditorMode("Placement", 2)
 
     def place(self, obj, part):
@@ -142,17 +144,22 @@ class Distance(Size):
     def check(self, obj, part):
         shape = inputs.shape_of(part)
         for linked, name in references(obj):
-            if linked is not part:
-                raise MesherError(f"{obj.Label} refers to {linked.Label}, but {part.Label} is meshed; choose its faces and edges.")
             kind, number = kind_and_number(name)
-            if kind not in self.TAGS:
-                raise MesherError(f"{obj.Label}: {name or 'the whole object'} is no face and no edge.")
-            if number > len(getattr(shape, kind + "s")):
-                raise MesherError(f"{obj.Label}: {part.Label} has no {name} any more; choose its faces and edges again.")
-            if kind == "Edge" and is_seam(shape, shape.Edges[number - 1]):
-                raise MesherError(f"{obj.Label}: {name} is the seam of a face, which the mesh does not have; choose the face.")
+            wrong = ""
+            if linked is not part:
+                wrong = translate("collarmesh", "{label} refers to {other}, but {part} is meshed; choose its faces and edges.")
+            elif kind not in self.TAGS:
+                wrong = translate("collarmesh", "{label}: {name} is no face and no edge.")
+            elif number > len(getattr(shape, kind + "s")):
+                wrong = translate("collarmesh", "{label}: {part} has no {name} any more; choose its faces and edges again.")
+            elif kind == "Edge" and is_seam(shape, shape.Edges[number - 1]):
+                wrong = translate("collarmesh", "{label}: {name} is the seam of a face, which the mesh does not have; choose the face.")
+            if wrong:
+                whole = translate("collarmesh", "the whole object")
+                raise MesherError(wrong.format(label=obj.Label, other=linked.Label, part=part.Label, name=name or whole))
         if not references(obj):
-            raise MesherError(f"{obj.Label} has no faces and edges; choose some, or delete it.")
+            wrong = translate("collarmesh", "{label} has no faces and edges; choose some, or delete it.")
+            raise MesherError(wrong.format(label=obj.Label))
 
     def bodies(self, obj):
         tags = {}

@@ -5,7 +5,7 @@ import contextlib
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import size_objects
+from . import compatibility, size_objects
 from .quantity_field import QuantityField
 from .translations import translate
 
@@ -188,7 +188,7 @@ class SizePanel:
             self.handles = None
 
     def getStandardButtons(self):
-        return int(QtGui.QDialogButtonBox.Ok | QtGui.QDialogButtonBox.Cancel)
+        return compatibility.as_number(QtGui.QDialogButtonBox.Ok | QtGui.QDialogButtonBox.Cancel)
 
     def accept(self):
         document = self.object.Document

@@ -7,7 +7,7 @@ import ObjectsFem
 
 from . import compatibility, inputs, mesh_object, size_objects, up_to_date
 from .program import MesherError
-from .translations import translate
+from .translations import doc, translate
 
 # Netgen's names for how fast sizes grow and how many elements there are along a radius of curvature.
 FINENESS = {"VeryCoarse": (0.7, 1), "Coarse": (0.5, 1.5), "Moderate": (0.3, 2), "Fine": (0.2, 3), "VeryFine": (0.1, 5)}
@@ -94,7 +94,7 @@ def hand_over(old):
         new.MeshGroupList = old.MeshGroupList
         sizes = getattr(old, size_objects.PROPERTY)
         if sizes:  # Gmsh does not heed them, but they are there when the mesh is taken over again
-            new.addProperty("App::PropertyLinkList", size_objects.PROPERTY, "Base", "Sizes of collarmesh", 4)
+            new.addProperty("App::PropertyLinkList", size_objects.PROPERTY, "Base", doc("Sizes of collarmesh"), 4)
             setattr(new, size_objects.PROPERTY, sizes)
             names = ", ".join(each.Label for each in sizes)
             notes.append(translate("collarmesh", "Gmsh does not heed these sizes: {names}").format(names=names))

@@ -172,7 +172,7 @@ class MeshTaskPanel:
             self.result.say(translate("collarmesh", "No program shows pages; the report is {path}").format(path=page), BAD)
 
     def getStandardButtons(self):
-        return int(QtGui.QDialogButtonBox.Close)
+        return compatibility.as_number(QtGui.QDialogButtonBox.Close)
 
     def reject(self):
         self.dismiss()

@@ -9,6 +9,10 @@ def translate(context, text):
 
 
 def mark(_context, text):
-    """`text` as it is, but with an entry in the files: FreeCAD shows its translation by itself, as that of a
-    property's documentation (context "App::Property")."""
+    """`text` as it is, but with an entry in the files: it is translated where it is shown."""
+    return text
+
+
+def doc(text):
+    """A property's documentation, which FreeCAD translates where it shows it (context "App::Property")."""
     return text

@@ -9,6 +9,7 @@ import numpy
 
 from . import compatibility, inputs
 from .program import MesherError, Settings
+from .translations import doc, translate
 
 SHAPE, SETTINGS = "MeshedShape", "MeshedSettings"
 MARKS = 8  # numbers that stand for a shape
@@ -27,8 +28,8 @@ class State:
 
 def add_properties(obj):
     hidden = 4 + 16  # and of no consequence for a recompute
-    for kind, name, text in (("App::PropertyFloatList", SHAPE, "What shape the mesh was made of"),
-                             ("App::PropertyString", SETTINGS, "With what settings it was made")):  # fmt: skip
+    for kind, name, text in (("App::PropertyFloatList", SHAPE, doc("What shape the mesh was made of")),
+                             ("App::PropertyString", SETTINGS, doc("With what settings it was made"))):  # fmt: skip
         if name not in obj.PropertiesList:
             obj.addProperty(kind, name, "Base", text, hidden)
 
@@ -105,7 +106,7 @@ def state_of(obj):
 
     part = compatibility.meshed_object(obj)
     if part is None:
-        raise MesherError(f"{obj.Label}: no object is chosen to be meshed.")
+        raise MesherError(translate("collarmesh", "{label}: no object is chosen to be meshed.").format(label=obj.Label))
     groups = [[group.Name, [[linked.Name, list(names)] for linked, names in group.References]] for group in obj.MeshGroupList]
     return State(shape_numbers(part), settings_text(mesh_object.settings_of(obj), groups))
 
