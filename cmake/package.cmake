@@ -1,6 +1,6 @@
 # The FreeCAD add-on where FreeCAD looks for it, and a Debian package of everything (cpack).
 install(DIRECTORY freecad_workbench/ DESTINATION ${CMAKE_INSTALL_DATADIR}/freecad/Mod/collarmesh
-  FILES_MATCHING PATTERN "*.py" PATTERN "*.svg" PATTERN "package.xml"
+  FILES_MATCHING PATTERN "*.py" PATTERN "*.svg" PATTERN "*.qm" PATTERN "package.xml"
   PATTERN "brep" EXCLUDE PATTERN "bench" EXCLUDE PATTERN "__pycache__" EXCLUDE)
 
 # Whoever makes packages for others puts in their own name.

@@ -20,21 +20,26 @@ OF_PROPERTIES = "App::Property"  # where FreeCAD looks up what it shows of prope
 
 
 def texts(folder=SOURCES):
-    """{(context, text)} of all calls; ValueError for a text that is no constant."""
+    """{(context, text)} of all sources but the one that defines the functions."""
+    paths = [path for path in sorted(folder.glob("*.py")) if path.name != "translations.py"]
+    return set().union(*(texts_in(path.read_text(encoding="utf-8"), path.name) for path in paths))
+
+
+def texts_in(source, name=""):
+    """{(context, text)} of a source; ValueError for a text that is no constant."""
     found = set()
-    for path in sorted(folder.glob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            name = getattr(getattr(node, "func", None), "id", "")
-            if path.name == "translations.py" or name not in ("translate", "mark", "doc"):
-                continue
-            words = [each.value if isinstance(each, ast.Constant) else None for each in node.args]
-            if name == "doc":
-                words.insert(0, OF_PROPERTIES)
-            if name == "translate" and isinstance(node.args[1], MARKED_ELSEWHERE):
-                continue
-            if None in words:
-                raise ValueError(f"{path.name}:{node.lineno}: {name} needs constants")
-            found.add(tuple(words))
+    for node in ast.walk(ast.parse(source)):
+        function = getattr(getattr(node, "func", None), "id", "")
+        if function not in ("translate", "mark", "doc"):
+            continue
+        if function == "translate" and isinstance(node.args[1], MARKED_ELSEWHERE):
+            continue
+        words = [each.value if isinstance(each, ast.Constant) else None for each in node.args]
+        if function == "doc":
+            words.insert(0, OF_PROPERTIES)
+        if None in words:
+            raise ValueError(f"{name}:{node.lineno}: {function} needs constants")
+        found.add(tuple(words))
     return found
 
 

@@ -2,8 +2,9 @@
 
 import FreeCADGui
 
-from . import commands, fem_buttons, mesh_menu, preferences
+from . import commands, fem_buttons, mesh_menu, preferences, translations
 
+translations.load()  # before there are texts
 commands.register()
 fem_buttons.install()
 mesh_menu.install()

@@ -1,6 +1,18 @@
 """Texts in the user's language, through Qt's files."""
 
+import pathlib
+
 import FreeCAD
+
+FOLDER = pathlib.Path(__file__).resolve().parents[2] / "translations"
+
+
+def load():
+    """Show the files' language in FreeCAD's window; texts that are asked for before are English."""
+    import FreeCADGui
+
+    FreeCADGui.addLanguagePath(str(FOLDER))
+    FreeCADGui.updateLocale()
 
 
 def translate(context, text):
