@@ -755,6 +755,10 @@
       <translation>größter Winkel</translation>
     </message>
     <message>
+      <source>loading the mesh</source>
+      <translation>Netz wird geladen</translation>
+    </message>
+    <message>
       <source>none</source>
       <translation>keine</translation>
     </message>
@@ -885,6 +889,10 @@
     <message>
       <source>{object}: the mesh is made</source>
       <translation>{object}: das Netz ist fertig</translation>
+    </message>
+    <message>
+      <source>{smallest}° to {largest}° in element {number}</source>
+      <translation>{smallest}° bis {largest}° in Element {number}</translation>
     </message>
     <message>
       <source>{tets} elements so far</source>

@@ -14,6 +14,12 @@ PICTURES = os.environ.get("COLLARMESH_TEST_ARGUMENT", "")  # a folder for screen
 window = FreeCADGui.getMainWindow()
 WIDE = (0, 0, 2600, 1000)  # enough for all buttons of FEM
 window.setGeometry(*WIDE)
+if PICTURES:  # on white
+    view_settings = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/View")
+    for name in ("Gradient", "RadialGradient"):
+        view_settings.SetBool(name, False)
+    view_settings.SetBool("Simple", True)
+    view_settings.SetUnsigned("BackgroundColor", 0xFFFFFFFF)
 
 
 def require(condition, what):

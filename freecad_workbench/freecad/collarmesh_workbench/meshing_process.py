@@ -13,7 +13,7 @@ import FreeCADGui
 from PySide import QtCore, QtGui
 
 from . import compatibility, mesh_object
-from .program import MesherError
+from .program import MesherError, Progress
 from .translations import translate
 
 WHAT_IS_MESHED = ("Shape", "Placement", "Mesh", "LinkPlacement")  # properties of parts
@@ -110,6 +110,13 @@ class MeshingProcess(QtCore.QObject):
             return
         self._read()
         self.job.folder.program_is(None)
+        self.progress = Progress("load", 1, self.progress.tets if self.progress else 0)
+        self.advanced.emit(self.progress)
+        QtCore.QTimer.singleShot(20, lambda: self._end(exit_code))  # after the window shows that
+
+    def _end(self, exit_code):
+        if self._abandoned:
+            return
         key = _key(self.object)
         try:
             _outcomes[key] = self._outcome(exit_code)

@@ -3,9 +3,8 @@
 from PySide import QtCore, QtGui
 
 from .size_presets import duration_text
+from .time_left import TimeLeft
 from .translations import translate
-
-LEAST_SECONDS, LEAST_FRACTION = 2, 0.15  # before these, time and fraction say nothing about the rest
 
 
 class RunSection(QtGui.QWidget):
@@ -51,6 +50,7 @@ class RunSection(QtGui.QWidget):
         self.cancel.setEnabled(True)
         self.bar.setValue(0)
         self.bar.setFormat("%p%")
+        self._time_left = TimeLeft()
         self.left.setText("")
         self.bar.show()
         self.left.show()
@@ -59,22 +59,13 @@ class RunSection(QtGui.QWidget):
         """`seconds` since the start; `predicted`: how long all of it was said to take, None: unknown."""
         self.bar.setValue(int(1000 * progress.fraction))
         self.bar.setFormat(phase_text(progress.phase) + " %p%")
-        left = seconds_left(seconds, progress.fraction, predicted)
+        left = self._time_left.seconds(seconds, progress.fraction, predicted)
         words = []
         if progress.tets:
             words.append(translate("collarmesh", "{tets} elements so far").format(tets=f"{progress.tets:,}".replace(",", "\u202f")))
         if left is not None:
             words.append(translate("collarmesh", "about {time} left").format(time=duration_text(left)))
         self.left.setText(", ".join(words))
-
-
-def seconds_left(seconds, fraction, predicted=None):
-    """None where nobody can know."""
-    if seconds >= LEAST_SECONDS and fraction >= LEAST_FRACTION:
-        return seconds * (1 - fraction) / fraction
-    if predicted is not None and predicted > seconds:
-        return predicted - seconds
-    return None
 
 
 def phase_text(phase):
@@ -90,4 +81,5 @@ def phase_text(phase):
         "second order": translate("collarmesh", "second order"),
         "check": translate("collarmesh", "checking"),
         "write": translate("collarmesh", "writing"),
+        "load": translate("collarmesh", "loading the mesh"),
     }.get(phase, phase)

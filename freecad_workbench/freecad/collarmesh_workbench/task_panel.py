@@ -157,12 +157,14 @@ class MeshTaskPanel:
 
     def _show_outcome(self, outcome):
         """None: of a mesh that was there before the document was opened nothing but its worst elements is known."""
-        found = worst_elements.as_places(self.object.FemMesh)
-        if outcome is not None:
+        if outcome is None:
+            found = worst_elements.in_mesh(self.object.FemMesh)
+        else:
             self.result.show_outcome(outcome)
-            found = places.in_error(in_panel_words(outcome.error)) + found
+            found = places.in_error(in_panel_words(outcome.error))
             if outcome.report is not None:
-                found = places.in_report(outcome.report, outcome.warnings) + found
+                found += places.in_report(outcome.report, outcome.warnings)
+                found += worst_elements.in_report(self.object.FemMesh, outcome.report)
             self.report_button.setVisible(bool(outcome.page))
         self.list.fill(found)
 

@@ -1,4 +1,4 @@
-"""The tetrahedra with the smallest dihedral angles."""
+"""The tetrahedra with the smallest and largest dihedral angles."""
 
 import numpy
 
@@ -40,9 +40,21 @@ def worst(fem_mesh, count=20):
     return numbers[order], angles[order], corners[order]
 
 
-def as_places(fem_mesh):
-    """The worst tetrahedra as Places."""
-    if fem_mesh.VolumeCount == 0:
+MOST = 100000  # elements, of which FreeCAD's mesh is asked for the worst ones: it takes a second
+
+
+def in_report(fem_mesh, report):
+    """The worst tetrahedra of a run as Places."""
+    numbers = fem_mesh.Volumes
+    text = translate("collarmesh", "{smallest}° to {largest}° in element {number}")
+    return [places.Place(places.WORST, text.format(smallest=f"{each['smallest']:.1f}", largest=f"{each['largest']:.1f}",
+                                                   number=numbers[each["tet"]]),
+                         (), (), numpy.array([each["corners"]])) for each in report.get("worst", ())]  # fmt: skip
+
+
+def in_mesh(fem_mesh):
+    """The worst tetrahedra of a mesh of which there is no report, unless it is large."""
+    if not 0 < fem_mesh.VolumeCount <= MOST:
         return []
     text = translate("collarmesh", "{angle}° in element {number}")
     return [places.Place(places.WORST, text.format(angle=f"{angle:.1f}", number=number), (), (), corners[None])
