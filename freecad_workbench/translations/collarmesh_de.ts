@@ -327,6 +327,10 @@
       <translation>Fein</translation>
     </message>
     <message>
+      <source>Fineness</source>
+      <translation>Feinheit</translation>
+    </message>
+    <message>
       <source>FreeCAD's Gmsh cannot mesh triangle meshes.</source>
       <translation>Gmsh kann in FreeCAD keine Dreiecksnetze vernetzen.</translation>
     </message>

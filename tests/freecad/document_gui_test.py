@@ -55,11 +55,8 @@ def menu_of(label, choose=None, picture=""):
         if menu is None:
             QtCore.QTimer.singleShot(100, look)
             return
-        if picture:
-            w.pause(200)
-            image = QtGui.QApplication.primaryScreen().grabWindow(0)
-            if w.PICTURES:
-                image.copy(0, 0, 900, 760).save(os.path.join(w.PICTURES, picture))
+        if picture and w.PICTURES:
+            menu.grab().save(os.path.join(w.PICTURES, picture))
         texts.extend(action.text() for action in menu.actions())
         entry = next((action for action in menu.actions() if action.objectName() == f"collarmesh_{choose}"), None)
         if entry is not None:

@@ -56,7 +56,7 @@ class SizeSection(QtGui.QWidget):
         table = QtGui.QTreeWidget()
         table.setObjectName("collarmesh_presets")
         table.setRootIsDecorated(False)
-        table.setHeaderLabels([translate("collarmesh", "Mesh"), translate("collarmesh", "Size"),
+        table.setHeaderLabels([translate("collarmesh", "Fineness"), translate("collarmesh", "Size"),
                                translate("collarmesh", "≈ elements"), translate("collarmesh", "≈ time")])  # fmt: skip
         table.setToolTip(translate("collarmesh", "Choose a size; how many elements it makes and how long that takes "
                                                  "is estimated for this shape"))  # fmt: skip
