@@ -8,8 +8,8 @@ from . import mesh_object
 from .program import MesherError
 
 WAIT = 400  # milliseconds after the last change
-COUNTING = {"--size-min", "--elements-per-circle", "--elements-across-gap", "--gradation", "--region-size", "--patch-size",
-            "--curve-size", "--distance", "--order", "--planar-tolerance", "--weld", "--repair",
+COUNTING = {"--size-min", "--elements-per-circle", "--elements-across-gap", "--gradation", "--region-size",
+            "--patch-size", "--curve-size", "--distance", "--order", "--planar-tolerance", "--weld", "--repair",
             "--repair-tolerance", "--crease-angle"}  # fmt: skip
 
 

@@ -56,8 +56,9 @@ class SizeSection(QtGui.QWidget):
         table = QtGui.QTreeWidget()
         table.setObjectName("collarmesh_presets")
         table.setRootIsDecorated(False)
-        table.setHeaderLabels([translate("collarmesh", "Mesh"), translate("collarmesh", "Size"),
-                               translate("collarmesh", "≈ elements"), translate("collarmesh", "≈ time")])  # fmt: skip
+        headings = (translate("collarmesh", "Mesh"), translate("collarmesh", "Size"),
+                    translate("collarmesh", "≈ elements"), translate("collarmesh", "≈ time"))  # fmt: skip
+        table.setHeaderLabels(headings)
         table.setToolTip(translate("collarmesh", "Choose a size; how many elements it makes and how long that takes "
                                                  "is estimated for this shape"))  # fmt: skip
         for name, size in self.presets:

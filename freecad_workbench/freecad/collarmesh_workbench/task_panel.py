@@ -48,7 +48,8 @@ class MeshTaskPanel:
         self.form.setObjectName("collarmesh_panel")
         self.form.setWindowTitle(translate("collarmesh", "Mesh by collarmesh"))
         self.form.setWindowIcon(QtGui.QIcon(self.object.ViewObject.Proxy.getIcon()))
-        self.size = SizeSection(self.object.CharacteristicLengthMax.Value, extent.diagonal(compatibility.meshed_object(self.object)))
+        diagonal = extent.diagonal(compatibility.meshed_object(self.object))
+        self.size = SizeSection(self.object.CharacteristicLengthMax.Value, diagonal)
         self.order = narrow_combo()
         self.order.setObjectName("collarmesh_ElementOrder")
         self.order.addItems([translate("collarmesh", "first (straight, 4 nodes)"),
@@ -65,7 +66,8 @@ class MeshTaskPanel:
         self.list.picked.connect(self.marks.show)
         self.report_button = QtGui.QPushButton(translate("collarmesh", "Report"))
         self.report_button.setObjectName("collarmesh_report")
-        self.report_button.setToolTip(translate("collarmesh", "Open a page with all measurements and a view of the mesh"))
+        tip = translate("collarmesh", "Open a page with all measurements and a view of the mesh")
+        self.report_button.setToolTip(tip)
         self.report_button.clicked.connect(self.open_report)
         row = QtGui.QFormLayout()
         row.addRow(translate("collarmesh", "Order of the elements"), self.order)
@@ -171,14 +173,15 @@ class MeshTaskPanel:
     def open_report(self):
         page = meshing_process.outcome_of(self.object).page
         if not QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(page)):
-            self.result.say(translate("collarmesh", "No program shows pages; the report is {path}").format(path=page), BAD)
+            text = translate("collarmesh", "No program shows pages; the report is {path}")
+            self.result.say(text.format(path=page), BAD)
 
     def getStandardButtons(self):
         return compatibility.as_number(QtGui.QDialogButtonBox.Close)
 
     def reject(self):
         self.dismiss()
-        FreeCADGui.ActiveDocument.resetEdit()
+        FreeCADGui.getDocument(self.object.Document.Name).resetEdit()
         return True
 
     def dismiss(self, *_):
