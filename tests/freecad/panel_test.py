@@ -51,7 +51,8 @@ def table():
 
 
 def number_in(text):
-    return int("".join(filter(str.isdigit, text)))
+    """0 where there is none yet."""
+    return int("".join(filter(str.isdigit, text)) or 0)
 
 
 def marks_of(obj):
@@ -84,7 +85,7 @@ def elements_are_told_before_meshing():
     """The program's numbers stand beside the presets, follow other settings, and are about those that come."""
     document, part, obj = new_part(plate())
     open_panel(obj)
-    wait_until(lambda: table()[0][2] != "", "the numbers of elements")
+    wait_until(lambda: number_in(table()[4][2]), "the numbers of elements")
     counts = [number_in(row[2]) for row in table()[:5]]
     require(counts == sorted(counts) and counts[0] < counts[-1], f"finer has more: {table()}")
     require(all(row[3] for row in table()[:5]), f"times: {table()}")
@@ -96,14 +97,14 @@ def elements_are_told_before_meshing():
     require(child("CharacteristicLengthMax").text() == "5.00 mm", "a preset sets the size")
     child("CharacteristicLengthMax").setText("3 mm")
     require(child("presets").currentItem().text(0) == "Custom", "another size is a custom one")
-    wait_until(lambda: table()[5][2] != "", "the number for the custom size")
+    wait_until(lambda: number_in(table()[5][2]), "the number for the custom size")
     require(table()[5][1] == "3 mm" and counts[1] < number_in(table()[5][2]) < counts[2], f"{table()}")
     child("MeshSizeFromCurvature").setValue(60)
-    wait_until(lambda: table()[1][2] and number_in(table()[1][2]) > counts[1], "more elements on circles")
+    wait_until(lambda: number_in(table()[1][2]) > counts[1], "more elements on circles")
     child("MeshSizeFromCurvature").setValue(0)
-    wait_until(lambda: table()[1][2] and number_in(table()[1][2]) == counts[1], "the numbers from before")
+    wait_until(lambda: number_in(table()[1][2]) == counts[1], "the numbers from before")
     part.Shape = Part.makeBox(40, 30, 10)
-    wait_until(lambda: table()[2][2] and number_in(table()[2][2]) > 1.3 * counts[2], "the numbers of another shape")
+    wait_until(lambda: number_in(table()[2][2]) > 1.3 * counts[2], "the numbers of another shape")
     close(document)
 
 
@@ -220,6 +221,11 @@ def the_worst_elements_show():
     require(faces.coordIndex.getNum() == len(worst) * 16 and len(worst) >= 10, "all are marked")
     close_panel()
     require(marks_of(obj) is None and obj.ViewObject.Transparency == 0 and part.ViewObject.Visibility, "as before")
+    open_panel(obj)
+    child("places").pick_first(places.WORST)
+    require(marks_of(obj) is not None, "what the last run found is still there")
+    FreeCADGui.ActiveDocument.resetEdit()  # as when another object is edited
+    wait_until(lambda: marks_of(obj) is None and find("run") is None, "the end of panel and marks")
     close(document)
 
 

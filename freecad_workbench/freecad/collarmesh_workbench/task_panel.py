@@ -31,6 +31,7 @@ class MeshTaskPanel:
         self._build()
         self.predictions = Predictions(obj)
         self.predictions.made.connect(self._show_predictions)
+        self.predictions.partly_made.connect(self._show_some_predictions)
         self.size.changed.connect(self._ask)
         self.advanced.changed.connect(self._ask)
         self.order.currentIndexChanged.connect(self._ask)
@@ -108,11 +109,14 @@ class MeshTaskPanel:
             return
         self.advanced.apply_to(settings)
         settings.order = self.order.currentIndex() + 1
-        self.predictions.ask(settings, self.size.sizes())
+        self._show_predictions(self.predictions.ask(settings, self.size.sizes()), "…")
 
-    def _show_predictions(self, predictions):
-        self.known = predictions
-        self.size.show_predictions(predictions)
+    def _show_some_predictions(self, known):
+        self._show_predictions(known, "…")
+
+    def _show_predictions(self, known, missing=""):
+        self.known = known
+        self.size.show_predictions(known, missing)
 
     def start(self):
         if self.run is not None:
@@ -133,6 +137,7 @@ class MeshTaskPanel:
 
     def _follow(self, run):
         self.run = run
+        self.predictions.pause()
         self.run_section.begin()
         run.advanced.connect(self._advance)
         run.ended.connect(self._ended)
@@ -149,6 +154,7 @@ class MeshTaskPanel:
     def _ended(self):
         self._let_go()
         self.run_section.rest()
+        self._ask()
         self._show_outcome(meshing_process.outcome_of(self.object))
 
     def _let_go(self):
