@@ -359,6 +359,10 @@
       <translation>Wachstum der Größe</translation>
     </message>
     <message>
+      <source>Growth of the size by unit of length away from finer places; 0: any</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
       <source>Hand over to Gmsh</source>
       <translation>An Gmsh übergeben</translation>
     </message>
@@ -377,10 +381,6 @@
     <message>
       <source>How many threads the program may use; they change no result</source>
       <translation>Wie viele Threads das Programm benutzen darf; am Ergebnis ändern sie nichts</translation>
-    </message>
-    <message>
-      <source>How much the size grows by unit of length away from finer places; 0: any</source>
-      <translation>Wie sehr die Größe je Längeneinheit wächst, von feineren Stellen weg; 0: beliebig</translation>
     </message>
     <message>
       <source>How much time goes into removing flat elements</source>

@@ -60,7 +60,8 @@ def is_running(process_id):
 
 
 def children(process_id):
-    return [int(each) for task in pathlib.Path(f"/proc/{process_id}/task").glob("*/children") for each in task.read_text().split()]
+    lists = [task.read_text() for task in pathlib.Path(f"/proc/{process_id}/task").glob("*/children")]
+    return [int(each) for text in lists for each in text.split()]
 
 
 def wait_until(condition, what, seconds=60):
@@ -81,7 +82,8 @@ def ends_cleanly(program, by_its_button):
         screen = subprocess.Popen(run.command(script, gui=True), stdin=subprocess.DEVNULL, env=variables,
                                   start_new_session=True)  # fmt: skip
         try:
-            wait_until(lambda: screen.poll() is not None or (result.exists() and result.read_text().endswith("]")), "a run")
+            begun = lambda: result.exists() and result.read_text().endswith("]")  # noqa: E731
+            wait_until(lambda: screen.poll() is not None or begun(), "a run")
             freecad, mesher, folder = json.loads(result.read_text())
             workers = children(mesher) if is_running(mesher) else []
             if not by_its_button:

@@ -15,11 +15,12 @@ import numpy
 import Part
 from PySide import QtCore, QtGui
 
-from freecad.collarmesh_workbench import angle_chart, guarantees, mesh_object, meshing_process, places, view_marks, worst_elements
+from freecad.collarmesh_workbench import (angle_chart, guarantees, mesh_object, meshing_process, places,
+                                          view_marks, worst_elements)  # fmt: skip
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from window import (child, click_at, click_item, close_panel, find, open_panel, pause, plate, require, rows,  # noqa: E402
-                    run_mesher, run_test, said, screenshot, wait_until)  # fmt: skip
+from window import (child, click_at, click_item, close_panel, find, open_panel, pause, plate, require,  # noqa: E402
+                    rows, run_mesher, run_test, said, screenshot, wait_until)  # fmt: skip
 
 PROGRAM = os.environ["COLLARMESH_PROGRAM"]
 LONG = "0.15 mm"  # a size for which the plate takes much longer than any test
@@ -50,7 +51,8 @@ def table():
 
 
 def number_in(text):
-    return int("".join(filter(str.isdigit, text)))
+    """0 where there is none yet."""
+    return int("".join(filter(str.isdigit, text)) or 0)
 
 
 def marks_of(obj):
@@ -73,7 +75,8 @@ def is_running(process_id):
 def stand_in(folder, text):
     """A program that starts with these lines of Python and then becomes the mesher."""
     path = pathlib.Path(folder, "program")
-    path.write_text(f"#!/usr/bin/python3\nimport os, sys\n{text}\nos.execv({PROGRAM!r}, [{PROGRAM!r}] + sys.argv[1:])\n")
+    become = f"os.execv({PROGRAM!r}, [{PROGRAM!r}] + sys.argv[1:])"
+    path.write_text(f"#!/usr/bin/python3\nimport os, sys\n{text}\n{become}\n")
     path.chmod(path.stat().st_mode | stat.S_IXUSR)
     return str(path)
 
@@ -82,25 +85,26 @@ def elements_are_told_before_meshing():
     """The program's numbers stand beside the presets, follow other settings, and are about those that come."""
     document, part, obj = new_part(plate())
     open_panel(obj)
-    wait_until(lambda: table()[0][2] != "", "the numbers of elements")
+    wait_until(lambda: number_in(table()[4][2]), "the numbers of elements")
     counts = [number_in(row[2]) for row in table()[:5]]
     require(counts == sorted(counts) and counts[0] < counts[-1], f"finer has more: {table()}")
     require(all(row[3] for row in table()[:5]), f"times: {table()}")
-    require(child("presets").currentItem().text(0) == "Medium" and table()[2][1] == "2.5 mm", f"a new mesh is medium: {table()}")
+    require(child("presets").currentItem().text(0) == "Medium", "a new mesh is medium")
+    require(table()[2][1] == "2.5 mm", f"{table()}")
     require(table()[5] == ["Custom", "", "", ""], f"{table()[5]}")
     screenshot("freecad_presets.png")
     click_item(child("presets").topLevelItem(1))
     require(child("CharacteristicLengthMax").text() == "5.00 mm", "a preset sets the size")
     child("CharacteristicLengthMax").setText("3 mm")
     require(child("presets").currentItem().text(0) == "Custom", "another size is a custom one")
-    wait_until(lambda: table()[5][2] != "", "the number for the custom size")
+    wait_until(lambda: number_in(table()[5][2]), "the number for the custom size")
     require(table()[5][1] == "3 mm" and counts[1] < number_in(table()[5][2]) < counts[2], f"{table()}")
     child("MeshSizeFromCurvature").setValue(60)
-    wait_until(lambda: table()[1][2] and number_in(table()[1][2]) > counts[1], "more elements on circles")
+    wait_until(lambda: number_in(table()[1][2]) > counts[1], "more elements on circles")
     child("MeshSizeFromCurvature").setValue(0)
-    wait_until(lambda: table()[1][2] and number_in(table()[1][2]) == counts[1], "the numbers from before")
+    wait_until(lambda: number_in(table()[1][2]) == counts[1], "the numbers from before")
     part.Shape = Part.makeBox(40, 30, 10)
-    wait_until(lambda: table()[2][2] and number_in(table()[2][2]) > 1.3 * counts[2], "the numbers of another shape")
+    wait_until(lambda: number_in(table()[2][2]) > 1.3 * counts[2], "the numbers of another shape")
     close(document)
 
 
@@ -135,8 +139,8 @@ def advanced_settings_reach_the_program():
     screenshot("freecad_advanced.png", size=(1200, 1000))
     run_mesher("4 mm")
     options = meshing_process.outcome_of(obj).report["options"]
-    wanted = {"size": 4, "elements_per_circle": 24, "distance": 0.0508, "improve": 3, "coarsen": False, "repair": "wrap",
-              "order": 2, "crease_angle": 60, "radius_edge": 2}  # fmt: skip
+    wanted = {"size": 4, "elements_per_circle": 24, "distance": 0.0508, "improve": 3, "coarsen": False,
+              "repair": "wrap", "order": 2, "crease_angle": 60, "radius_edge": 2}  # fmt: skip
     require({name: options[name] for name in wanted} == wanted, f"{options}")
     require((obj.ImproveLevel, obj.Repair, obj.ElementOrder) == (3, "Wrap", "2nd"), "the object has them")
     require(len(obj.FemMesh.getElementNodes(obj.FemMesh.Volumes[0])) == 10, "second order")
@@ -169,7 +173,8 @@ def the_result_is_told():
         require(f"{count:,}".replace(",", "\u202f") in child("counts").text(), f"{count}: {child('counts').text()}")
     chart = child("chart")
     require(all(sum(counts) == fem_mesh.VolumeCount for _, _, counts in chart.series), "all elements are in the chart")
-    require("✗" not in child("guarantees").text() and child("guarantees").text().count("✓") == 6, child("guarantees").text())
+    lines = child("guarantees").text()
+    require("✗" not in lines and lines.count("✓") == 6, lines)
     part.ViewObject.Visibility = False
     screenshot("freecad_panel.png", size=(1200, 1000))
     x, y = int(chart._x(chart.extremes[0])), int(chart._frame().bottom())
@@ -178,13 +183,15 @@ def the_result_is_told():
     require(angle_chart.WORST in colours, f"the worst element is marked: {colours}")
     report = json.loads(json.dumps(report))
     report["guarantees_hold"] = False
-    report["check"]["findings"] = [{"guarantee": "radius_edge", "message": "Tetrahedron 7 is bad.", "where": [1, 2, 3], "ids": []}]
+    finding = {"guarantee": "radius_edge", "message": "Tetrahedron 7 is bad.", "where": [1, 2, 3], "ids": []}
+    report["check"]["findings"] = [finding]
     broken = [text for text, messages in guarantees.guarantees(report) if messages]
     require(broken == ["Circumradius / shortest edge is bounded"], f"{broken}")
     meshing_process._outcomes[meshing_process._key(obj)] = meshing_process.Outcome(report=report)
     close_panel()
     open_panel(obj)
-    require("A guarantee is missed" in said() and said().count("✗") == 1 and "Tetrahedron 7 is bad." in said(), said())
+    told = said()
+    require("A guarantee is missed" in told and told.count("✗") == 1 and "Tetrahedron 7 is bad." in told, told)
     close(document)
 
 
@@ -214,6 +221,11 @@ def the_worst_elements_show():
     require(faces.coordIndex.getNum() == len(worst) * 16 and len(worst) >= 10, "all are marked")
     close_panel()
     require(marks_of(obj) is None and obj.ViewObject.Transparency == 0 and part.ViewObject.Visibility, "as before")
+    open_panel(obj)
+    child("places").pick_first(places.WORST)
+    require(marks_of(obj) is not None, "what the last run found is still there")
+    FreeCADGui.ActiveDocument.resetEdit()  # as when another object is edited
+    wait_until(lambda: marks_of(obj) is None and find("run") is None, "the end of panel and marks")
     close(document)
 
 
@@ -272,7 +284,8 @@ def nodes_off_their_faces_are_listed():
     (node,) = rows(child("places"))["Nodes off their face (1)"]
     require(node.text(0) == "Face1: 0.01 mm", node.text(0))
     click_item(node)
-    require([each.SubElementNames for each in FreeCADGui.Selection.getSelectionEx()] == [("Face1",)], "the face is selected")
+    selected = [each.SubElementNames for each in FreeCADGui.Selection.getSelectionEx()]
+    require(selected == [("Face1",)], f"the face is selected: {selected}")
     close(document)
 
 

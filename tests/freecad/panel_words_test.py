@@ -1,11 +1,12 @@
 """What the panel makes of reports, messages and progress, without the window. Run by run.py."""
 
+import enum
 import os
 import subprocess
 import sys
 import unittest
 
-from freecad.collarmesh_workbench import places, size_presets, time_left, work_folder
+from freecad.collarmesh_workbench import compatibility, places, size_presets, time_left, work_folder
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import run_in_freecad  # noqa: E402
@@ -54,6 +55,15 @@ class Words(unittest.TestCase):
             folder.cleanup()
             self.assertEqual(program.wait(), -9)
         self.assertFalse(os.path.exists(folder.name))
+
+    def test_buttons_of_all_versions(self):
+        """FreeCAD 0.20 to 0.21 have numbers, 1.x has enumerations."""
+
+        class Button(enum.Flag):
+            CLOSE = 0x00200000
+
+        self.assertEqual(compatibility.as_number(Button.CLOSE), 0x00200000)
+        self.assertEqual(compatibility.as_number(0x00200000), 0x00200000)
 
 
 run_in_freecad.run(Words)

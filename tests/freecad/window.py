@@ -84,8 +84,9 @@ def rows(tree):
 def said():
     """All that the panel tells of the last run."""
     shown = [child(name).text() for name in ("message", "counts", "guarantees") if child(name).isVisible()]
-    listed = [text for heading, items in rows(child("places")).items() for text in (heading, *(i.text(0) for i in items))]
-    return "\n".join(shown + listed)
+    for heading, items in rows(child("places")).items():
+        shown += [heading, *(item.text(0) for item in items)]
+    return "\n".join(shown)
 
 
 def run_mesher(size):

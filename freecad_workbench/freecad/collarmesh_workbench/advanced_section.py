@@ -42,7 +42,7 @@ def sections():
             Row("ElementsAcrossGap", translate("collarmesh", "Elements across gaps"), zero=any_number,
                 tip=translate("collarmesh", "Thin places of the shape get so many elements across; 0: any number")),
             Row("Gradation", translate("collarmesh", "Growth of the size"), zero=any_growth,
-                tip=translate("collarmesh", "How much the size grows by unit of length away from finer places; 0: any")),
+                tip=translate("collarmesh", "Growth of the size by unit of length away from finer places; 0: any")),
         )),
         (translate("collarmesh", "Shape"), (
             Row("SurfaceDistance", translate("collarmesh", "Largest distance from the shape"), "mm",
@@ -53,7 +53,8 @@ def sections():
             Row("CollarAngle", translate("collarmesh", "Largest angle in collars"), "deg",
                 tip=translate("collarmesh", "Bound on dihedral angles in collars")),
             Row("PlanarTolerance", translate("collarmesh", "Tolerance of planes"), zero=default,
-                tip=translate("collarmesh", "Faces this near to a plane are planar, relative to the diagonal; 0: 1e-6")),
+                tip=translate("collarmesh", "Faces this near to a plane are planar, "
+                                            "relative to the diagonal; 0: 1e-6")),
             Row("WeldTolerance", translate("collarmesh", "Tolerance of points"), zero=default,
                 tip=translate("collarmesh", "Points closer than this are one, relative to the diagonal; 0: 1e-9")),
             Row("Repair", translate("collarmesh", "Repair of the shape"), choices=repair),
@@ -189,8 +190,10 @@ def in_panel_words(text):
     """A message of the program, with the names of the panel's fields in place of options."""
     labels = {row.name: row.text for _, rows in sections() for row in rows}
     labels["CharacteristicLengthMax"] = translate("collarmesh", "Size of the elements")
-    words = {"--" + field.replace("_", "-"): labels[name] for _, name, field, *_ in mesh_object.PROPERTIES if name in labels}
+    fields = {name: field for _, name, field, *_ in mesh_object.PROPERTIES}
+    words = {"--" + fields[name].replace("_", "-"): text for name, text in labels.items() if name in fields}
     words["--repair wrap"] = f"{labels['Repair']}: {translate('collarmesh', 'wrap where it fails')}"
+    words["--repair"] = labels["Repair"]
     for option in sorted(words, key=len, reverse=True):
         text = text.replace(option, f"“{words[option]}”")
     return text

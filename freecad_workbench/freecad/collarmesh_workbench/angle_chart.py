@@ -49,8 +49,8 @@ class AngleChart(QtGui.QWidget):
     def _mark(self):
         """The triangle that marks the worst tetrahedron, by its smallest angle."""
         x, bottom = self._x(self.extremes[0]), self._frame().bottom()
-        corners = [QtCore.QPointF(x, bottom - 1), QtCore.QPointF(x - 5, bottom - 12), QtCore.QPointF(x + 5, bottom - 12)]
-        return QtGui.QPolygonF(corners)
+        corners = ((x, bottom - 1), (x - 5, bottom - 12), (x + 5, bottom - 12))
+        return QtGui.QPolygonF([QtCore.QPointF(*corner) for corner in corners])
 
     def paintEvent(self, _event):
         painter = QtGui.QPainter(self)
@@ -65,7 +65,8 @@ class AngleChart(QtGui.QWidget):
                     continue
                 height = max(2, frame.height() * count / most)  # a single element is seen, too
                 left = frame.left() + bin_number * width + i * width / 2
-                painter.fillRect(QtCore.QRectF(left, frame.bottom() - height, width / 2 - 0.5, height), QtGui.QColor(colour))
+                bar = QtCore.QRectF(left, frame.bottom() - height, width / 2 - 0.5, height)
+                painter.fillRect(bar, QtGui.QColor(colour))
         painter.setPen(ink)
         painter.drawLine(frame.bottomLeft(), frame.bottomRight())
         self._draw_scale(painter, frame)
@@ -84,7 +85,7 @@ class AngleChart(QtGui.QWidget):
                 place, along = QtCore.QRectF(frame.left(), place.top(), 50, line), QtCore.Qt.AlignLeft
             elif angle == STRAIGHT:
                 place, along = QtCore.QRectF(frame.right() - 50, place.top(), 50, line), QtCore.Qt.AlignRight
-            painter.drawLine(QtCore.QPointF(self._x(angle), frame.bottom()), QtCore.QPointF(self._x(angle), frame.bottom() + 3))
+            painter.drawLine(QtCore.QLineF(self._x(angle), frame.bottom(), self._x(angle), frame.bottom() + 3))
             painter.drawText(place, along, f"{angle}°")
 
     def _draw_legend(self, painter, frame):

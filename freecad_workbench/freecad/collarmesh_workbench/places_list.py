@@ -51,7 +51,8 @@ class PlacesList(QtGui.QTreeWidget):
             row.setToolTip(0, place.text)
             row.setData(0, QtCore.Qt.UserRole, [place])
         if len(of_kind) > MOST:
-            more = QtGui.QTreeWidgetItem(top, [translate("collarmesh", "and {count} more").format(count=len(of_kind) - MOST)])
+            text = translate("collarmesh", "and {count} more").format(count=len(of_kind) - MOST)
+            more = QtGui.QTreeWidgetItem(top, [text])
             more.setData(0, QtCore.Qt.UserRole, of_kind[MOST:])
         return top
 

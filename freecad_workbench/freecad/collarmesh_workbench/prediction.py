@@ -8,8 +8,8 @@ from . import mesh_object
 from .program import MesherError
 
 WAIT = 400  # milliseconds after the last change
-COUNTING = {"--size-min", "--elements-per-circle", "--elements-across-gap", "--gradation", "--region-size", "--patch-size",
-            "--curve-size", "--distance", "--order", "--planar-tolerance", "--weld", "--repair",
+COUNTING = {"--size-min", "--elements-per-circle", "--elements-across-gap", "--gradation", "--region-size",
+            "--patch-size", "--curve-size", "--distance", "--order", "--planar-tolerance", "--weld", "--repair",
             "--repair-tolerance", "--crease-angle"}  # fmt: skip
 
 
@@ -17,6 +17,7 @@ class Predictions(QtCore.QObject):
     """Asks in a process of its own, a moment after the last `ask`. Where the program does not know, nothing is told."""
 
     made = QtCore.Signal(object)  # {asked size in mm: (number of tetrahedra, seconds)}
+    partly_made = QtCore.Signal(object)  # the same, while the others are asked for: each may take seconds
 
     def __init__(self, obj, parent=None):
         super().__init__(parent)
@@ -29,15 +30,21 @@ class Predictions(QtCore.QObject):
         self._timer.timeout.connect(self._begin)
 
     def ask(self, settings, sizes):
-        """For the Settings with each of these sizes (mm)."""
-        self._question = tuple(_arguments(settings)), tuple(sorted(set(sizes)))
-        self._stop()
+        """For the Settings with each of these sizes (mm), the first ones first; returns the answers that are known
+        already."""
+        self._question = tuple(_arguments(settings)), tuple(dict.fromkeys(sizes))
+        self.pause()
         self._timer.start()
+        return self._answers()
+
+    def pause(self):
+        """Until the next `ask`: the processor is for something else."""
+        self._timer.stop()
+        self._stop()
 
     def forget(self):
         """The shape has changed."""
-        self._timer.stop()
-        self._stop()
+        self.pause()
         self._known = {}
         if self._job is not None:
             self._job.folder.cleanup()
@@ -65,12 +72,11 @@ class Predictions(QtCore.QObject):
             self._tell()
             return
         program, shape = self._job.command[:2]
-        sizes = ",".join(map(repr, missing))
         self._process = process = QtCore.QProcess(self)
         process.setStandardInputFile(QtCore.QProcess.nullDevice())
         process.setStandardErrorFile(QtCore.QProcess.nullDevice())
         process.finished.connect(lambda exit_code, *_: self._finished(process, exit_code))
-        process.start(program, ["info", shape, *self._question[0], *self._size_field(), "--predict", sizes, "--json"])
+        process.start(program, ["info", shape, *self._question[0], *self._size_field(), "--predict", repr(missing[0]), "--json"])
         if process.waitForStarted():
             self._job.folder.program_is(process.processId())
 
@@ -83,22 +89,29 @@ class Predictions(QtCore.QObject):
             return
         self._process = None
         self._job.folder.program_is(None)
-        if exit_code == 0:
-            self._learn(bytes(process.readAllStandardOutput()))
+        learned = exit_code == 0 and self._learn(bytes(process.readAllStandardOutput()))
         process.deleteLater()
-        self._tell()
+        if learned and self._missing():
+            self.partly_made.emit(self._answers())
+            self._begin()
+        else:
+            self._tell()
 
     def _learn(self, answer):
+        """False where the program does not know."""
         try:
-            found = json.loads(answer)["predictions"]
-            for size, each in zip(self._missing(), found):
-                self._known[self._question[0], size] = each["tets"], each["seconds"]
-        except (ValueError, KeyError, TypeError):
-            pass
+            found = json.loads(answer)["predictions"][0]
+            self._known[self._question[0], self._missing()[0]] = found["tets"], found["seconds"]
+        except (ValueError, KeyError, TypeError, IndexError):
+            return False
+        return True
+
+    def _answers(self):
+        arguments, sizes = self._question
+        return {size: self._known[arguments, size] for size in sizes if (arguments, size) in self._known}
 
     def _tell(self):
-        arguments, sizes = self._question
-        self.made.emit({size: self._known[arguments, size] for size in sizes if (arguments, size) in self._known})
+        self.made.emit(self._answers())
 
 
 def _arguments(settings):

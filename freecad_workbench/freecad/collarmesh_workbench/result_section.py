@@ -41,8 +41,9 @@ class ResultSection(QtGui.QWidget):
         else:
             self._show_report(outcome.report)
             if outcome.part_changed:
-                self.say(translate("collarmesh", "The part was changed while it was meshed: this is the mesh of the part "
-                                                 "as it was before. Mesh it again."), CARE)  # fmt: skip
+                text = translate("collarmesh", "The part was changed while it was meshed: this is the mesh of the part as "
+                                               "it was before. Mesh it again.")  # fmt: skip
+                self.say(text, CARE)
 
     def _show_report(self, report):
         mesh = report["mesh"]
@@ -60,7 +61,11 @@ def counts_text(report):
     angles = translate("collarmesh", "dihedral angles from {smallest}° to {largest}°, in {time}")
     return (counts.format(tets=_exact(mesh["tets"]), nodes=_exact(mesh["points"]), faces=_exact(mesh["faces"])) + "<br>"
             + angles.format(smallest=f"{mesh['min_dihedral']:.1f}", largest=f"{mesh['max_dihedral']:.1f}",
-                            time=_escaped(duration_text(report["seconds"]["total"]))))  # fmt: skip
+                            time=_time(report["seconds"]["total"])))  # fmt: skip
+
+
+def _time(seconds):
+    return translate("collarmesh", "{n} s").format(n=f"{seconds:.1f}") if seconds < 10 else duration_text(seconds)
 
 
 def guarantees_text(report):

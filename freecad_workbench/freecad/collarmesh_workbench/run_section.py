@@ -62,7 +62,8 @@ class RunSection(QtGui.QWidget):
         left = self._time_left.seconds(seconds, progress.fraction, predicted)
         words = []
         if progress.tets:
-            words.append(translate("collarmesh", "{tets} elements so far").format(tets=f"{progress.tets:,}".replace(",", "\u202f")))
+            tets = f"{progress.tets:,}".replace(",", "\u202f")
+            words.append(translate("collarmesh", "{tets} elements so far").format(tets=tets))
         if left is not None:
             words.append(translate("collarmesh", "about {time} left").format(time=duration_text(left)))
         self.left.setText(", ".join(words))

@@ -39,25 +39,30 @@ class SizeSection(QtGui.QWidget):
         return self.field.value()
 
     def sizes(self):
-        """Those of the table, in mm."""
-        return [size for _, size in self.presets if size > 0] + [size for size in (self._size_or_zero(),) if size > 0]
+        """Those of the table, in mm, the chosen one first."""
+        return [size for size in (self._size_or_zero(), *(size for _, size in self.presets)) if size > 0]
 
-    def show_predictions(self, predictions):
-        """{size: (tetrahedra, seconds)}; what is not there is not told."""
+    def show_predictions(self, predictions, missing=""):
+        """{size: (tetrahedra, seconds)}; `missing` stands for what is not there."""
         sizes = [size for _, size in self.presets]
         sizes.append(self._size_or_zero() if self._size_or_zero() not in sizes else 0)
         for row, size in enumerate(sizes):
             item = self.table.topLevelItem(row)
-            tets, seconds = predictions.get(size, (None, None))
-            item.setText(ELEMENTS, "" if tets is None else size_presets.count_text(tets))
-            item.setText(TIME, "" if tets is None else size_presets.duration_text(seconds))
+            if size in predictions:
+                tets, seconds = predictions[size]
+                item.setText(ELEMENTS, size_presets.count_text(tets))
+                item.setText(TIME, size_presets.duration_text(seconds))
+            else:
+                item.setText(ELEMENTS, missing if size > 0 else "")
+                item.setText(TIME, "")
 
     def _table(self):
         table = QtGui.QTreeWidget()
         table.setObjectName("collarmesh_presets")
         table.setRootIsDecorated(False)
-        table.setHeaderLabels([translate("collarmesh", "Fineness"), translate("collarmesh", "Size"),
-                               translate("collarmesh", "≈ elements"), translate("collarmesh", "≈ time")])  # fmt: skip
+        headings = (translate("collarmesh", "Fineness"), translate("collarmesh", "Size"),
+                    translate("collarmesh", "≈ elements"), translate("collarmesh", "≈ time"))  # fmt: skip
+        table.setHeaderLabels(headings)
         table.setToolTip(translate("collarmesh", "Choose a size; how many elements it makes and how long that takes "
                                                  "is estimated for this shape"))  # fmt: skip
         for name, size in self.presets:

@@ -31,6 +31,7 @@ class MeshTaskPanel:
         self._build()
         self.predictions = Predictions(obj)
         self.predictions.made.connect(self._show_predictions)
+        self.predictions.partly_made.connect(self._show_some_predictions)
         self.size.changed.connect(self._ask)
         self.advanced.changed.connect(self._ask)
         self.order.currentIndexChanged.connect(self._ask)
@@ -48,7 +49,8 @@ class MeshTaskPanel:
         self.form.setObjectName("collarmesh_panel")
         self.form.setWindowTitle(translate("collarmesh", "Mesh by collarmesh"))
         self.form.setWindowIcon(QtGui.QIcon(self.object.ViewObject.Proxy.getIcon()))
-        self.size = SizeSection(self.object.CharacteristicLengthMax.Value, extent.diagonal(compatibility.meshed_object(self.object)))
+        diagonal = extent.diagonal(compatibility.meshed_object(self.object))
+        self.size = SizeSection(self.object.CharacteristicLengthMax.Value, diagonal)
         self.order = narrow_combo()
         self.order.setObjectName("collarmesh_ElementOrder")
         self.order.addItems([translate("collarmesh", "first (straight, 4 nodes)"),
@@ -65,7 +67,8 @@ class MeshTaskPanel:
         self.list.picked.connect(self.marks.show)
         self.report_button = QtGui.QPushButton(translate("collarmesh", "Report"))
         self.report_button.setObjectName("collarmesh_report")
-        self.report_button.setToolTip(translate("collarmesh", "Open a page with all measurements and a view of the mesh"))
+        tip = translate("collarmesh", "Open a page with all measurements and a view of the mesh")
+        self.report_button.setToolTip(tip)
         self.report_button.clicked.connect(self.open_report)
         row = QtGui.QFormLayout()
         row.addRow(translate("collarmesh", "Order of the elements"), self.order)
@@ -106,11 +109,14 @@ class MeshTaskPanel:
             return
         self.advanced.apply_to(settings)
         settings.order = self.order.currentIndex() + 1
-        self.predictions.ask(settings, self.size.sizes())
+        self._show_predictions(self.predictions.ask(settings, self.size.sizes()), "…")
 
-    def _show_predictions(self, predictions):
-        self.known = predictions
-        self.size.show_predictions(predictions)
+    def _show_some_predictions(self, known):
+        self._show_predictions(known, "…")
+
+    def _show_predictions(self, known, missing=""):
+        self.known = known
+        self.size.show_predictions(known, missing)
 
     def start(self):
         if self.run is not None:
@@ -131,6 +137,7 @@ class MeshTaskPanel:
 
     def _follow(self, run):
         self.run = run
+        self.predictions.pause()
         self.run_section.begin()
         run.advanced.connect(self._advance)
         run.ended.connect(self._ended)
@@ -147,6 +154,7 @@ class MeshTaskPanel:
     def _ended(self):
         self._let_go()
         self.run_section.rest()
+        self._ask()
         self._show_outcome(meshing_process.outcome_of(self.object))
 
     def _let_go(self):
@@ -171,14 +179,15 @@ class MeshTaskPanel:
     def open_report(self):
         page = meshing_process.outcome_of(self.object).page
         if not QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(page)):
-            self.result.say(translate("collarmesh", "No program shows pages; the report is {path}").format(path=page), BAD)
+            text = translate("collarmesh", "No program shows pages; the report is {path}")
+            self.result.say(text.format(path=page), BAD)
 
     def getStandardButtons(self):
         return compatibility.as_number(QtGui.QDialogButtonBox.Close)
 
     def reject(self):
         self.dismiss()
-        FreeCADGui.ActiveDocument.resetEdit()
+        FreeCADGui.getDocument(self.object.Document.Name).resetEdit()
         return True
 
     def dismiss(self, *_):
