@@ -88,7 +88,9 @@ def main():
             write(path, {key: have.get(key) for key in texts()}, path.stem.removeprefix("collarmesh_"))
             lrelease = shutil.which("lrelease") or shutil.which("lrelease-qt5")
             if lrelease is None:
-                sys.exit("lrelease is not installed (Debian: qttools5-dev-tools); the .qm files are as before")
+                sys.exit(
+                    "lrelease is not installed (Debian: qttools5-dev-tools); the .qm files are as before"
+                )
             subprocess.run([lrelease, "-silent", path], check=True)
         untranslated, _ = missing(path)
         for context, text in untranslated:

@@ -58,7 +58,9 @@ def menu_of(label, choose=None, picture=""):
         if picture and w.PICTURES:
             menu.grab().save(os.path.join(w.PICTURES, picture))
         texts.extend(action.text() for action in menu.actions())
-        entry = next((action for action in menu.actions() if action.objectName() == f"collarmesh_{choose}"), None)
+        entry = next(
+            (action for action in menu.actions() if action.objectName() == f"collarmesh_{choose}"), None
+        )
         if entry is not None:
             entry.trigger()
         menu.close()
@@ -125,7 +127,14 @@ def statistics_and_export(obj):
         path = os.path.join(folder, "plate.inp")
 
         def enter_name():
-            dialog = next((each for each in QtGui.QApplication.topLevelWidgets() if isinstance(each, QtGui.QFileDialog)), None)
+            dialog = next(
+                (
+                    each
+                    for each in QtGui.QApplication.topLevelWidgets()
+                    if isinstance(each, QtGui.QFileDialog)
+                ),
+                None,
+            )
             if dialog is None:
                 QtCore.QTimer.singleShot(100, enter_name)
                 return

@@ -16,9 +16,13 @@ from freecad.collarmesh_workbench.program import MesherError  # noqa: E402
 
 def texts_of(widget):
     """All that it shows."""
-    found = [each.text() for kind in (QtGui.QLabel, QtGui.QAbstractButton) for each in widget.findChildren(kind)]
+    found = [
+        each.text() for kind in (QtGui.QLabel, QtGui.QAbstractButton) for each in widget.findChildren(kind)
+    ]
     found += [each.title() for each in widget.findChildren(QtGui.QGroupBox)]
-    return found + [each.itemText(i) for each in widget.findChildren(QtGui.QComboBox) for i in range(each.count())]
+    return found + [
+        each.itemText(i) for each in widget.findChildren(QtGui.QComboBox) for i in range(each.count())
+    ]
 
 
 def actions():
@@ -50,7 +54,10 @@ def test():
         mesh_object.remesh(obj)
         w.require(False, "a size without faces is refused")
     except MesherError as error:
-        w.require(str(error) == "SizeDistance hat keine Flächen und Kanten; wählen Sie welche oder löschen Sie es.", str(error))
+        w.require(
+            str(error) == "SizeDistance hat keine Flächen und Kanten; wählen Sie welche oder löschen Sie es.",
+            str(error),
+        )
     document.removeObject(size.Name)
     sphere = size_objects.make(obj, "Sphere", 1)
     document.recompute()

@@ -60,7 +60,9 @@ class WithDocument(unittest.TestCase):
         self.assertAlmostEqual(volume(fem_mesh), size[0] * size[1] * size[2], places=4)
         box = fem_mesh.BoundBox
         self.assertLess(FreeCAD.Vector(box.XMin, box.YMin, box.ZMin).distanceToPoint(at), 1e-6)
-        self.assertEqual({name for name in groups(fem_mesh) if name.startswith("Face")}, {f"Face{i}" for i in range(1, 7)})
+        self.assertEqual(
+            {name for name in groups(fem_mesh) if name.startswith("Face")}, {f"Face{i}" for i in range(1, 7)}
+        )
 
 
 class Shapes(WithDocument):
@@ -144,7 +146,9 @@ class Triangles(WithDocument):
         part.Placement.Base = MOVED
         expected = {}
         for number in range(2):
-            expected[f"Segment{number + 1}"] = sum(part.Mesh.Facets[i].Area for i in part.Mesh.getSegment(number))
+            expected[f"Segment{number + 1}"] = sum(
+                part.Mesh.Facets[i].Area for i in part.Mesh.getSegment(number)
+            )
         expected["Rest"] = part.Mesh.Area - sum(expected.values())
         obj = collarmesh_workbench.mesh(part, size=1)
         found = groups(obj.FemMesh)
@@ -303,7 +307,11 @@ class OutOfDate(WithDocument):
 
     def test_numbers_of_real_parts_are_kept_by_files(self):
         """FreeCAD writes 16 digits and OpenCASCADE normalizes what it reads."""
-        shapes = [Part.makeTorus(10, 3), Part.makeCone(3, 1, 7), Part.makeSphere(3).fuse(Part.makeBox(4, 4, 4))]
+        shapes = [
+            Part.makeTorus(10, 3),
+            Part.makeCone(3, 1, 7),
+            Part.makeSphere(3).fuse(Part.makeBox(4, 4, 4)),
+        ]
         before = {}
         for i, shape in enumerate(shapes):
             shape.rotate(FreeCAD.Vector(), FreeCAD.Vector(1, 2, 3), 17)

@@ -61,7 +61,11 @@ def drag(obj, name, by, steps=8):
 
 def action(command):
     """Is a command in a toolbar?"""
-    return any(each.objectName() == command for bar in w.window.findChildren(QtGui.QToolBar) for each in bar.actions())
+    return any(
+        each.objectName() == command
+        for bar in w.window.findChildren(QtGui.QToolBar)
+        for each in bar.actions()
+    )
 
 
 def enter(name, text):
@@ -76,7 +80,11 @@ def shown(name):
 
 def press(button):
     """A button below the panel."""
-    box = next(each for each in w.window.findChildren(QtGui.QDialogButtonBox) if each.isVisible() and each.button(button))
+    box = next(
+        each
+        for each in w.window.findChildren(QtGui.QDialogButtonBox)
+        if each.isVisible() and each.button(button)
+    )
     box.button(button).click()
     w.wait_until(lambda: w.find("size_panel") is None, "the panel's end")
 
@@ -121,10 +129,16 @@ def handles_change_the_sphere(sphere):
 def the_centre_moves(sphere):
     centre, radius = sphere.Placement.Base, sphere.Radius.Value
     drag(sphere, "X", FreeCAD.Vector(6, 0, 0))
-    w.require((sphere.Placement.Base - centre - FreeCAD.Vector(6, 0, 0)).Length < 0.5, f"it is dragged to {sphere.Placement.Base}")
+    w.require(
+        (sphere.Placement.Base - centre - FreeCAD.Vector(6, 0, 0)).Length < 0.5,
+        f"it is dragged to {sphere.Placement.Base}",
+    )
     centre = sphere.Placement.Base
     drag(sphere, "Y", FreeCAD.Vector(0, -5, 0))
-    w.require((sphere.Placement.Base - centre - FreeCAD.Vector(0, -5, 0)).Length < 0.5, f"it is dragged to {sphere.Placement.Base}")
+    w.require(
+        (sphere.Placement.Base - centre - FreeCAD.Vector(0, -5, 0)).Length < 0.5,
+        f"it is dragged to {sphere.Placement.Base}",
+    )
     w.require(sphere.Radius.Value == radius, "its radius stays")
     w.require(abs(shown("x") - sphere.Placement.Base.x) < 0.01, "the field follows")
 
@@ -148,7 +162,9 @@ def cancel_and_undo(document, obj):
         enter("Radius", "6 mm")
         press(button)
         w.require(sphere.Radius.Value == radius, f"{sphere.Radius} in place of {radius}")
-        w.require(sphere.ViewObject.RootNode.getByName("collarmesh_size_handles") is None, "the handles are gone")
+        w.require(
+            sphere.ViewObject.RootNode.getByName("collarmesh_size_handles") is None, "the handles are gone"
+        )
     document.undo()
     w.require(sphere.Radius.Value == 3, "undo of the edit")
     document.undo()
@@ -166,12 +182,21 @@ def a_box_and_a_cylinder(document, part):
     w.click_command("Collarmesh_SizeBox")
     w.wait_until(lambda: w.find("size_panel") is not None, "the panel of the box")
     box = document.getObject("SizeBox")
-    for name, text in (("Length", "8 mm"), ("Width", "6 mm"), ("Height", "4 mm"), ("x", "28 mm"), ("y", "2 mm"), ("z", "0 mm")):
+    for name, text in (
+        ("Length", "8 mm"),
+        ("Width", "6 mm"),
+        ("Height", "4 mm"),
+        ("x", "28 mm"),
+        ("y", "2 mm"),
+        ("z", "0 mm"),
+    ):
         enter(name, text)
     view().viewTop()
     FreeCADGui.SendMsgToActiveView("ViewFit")
     drag(box, "Width", FreeCAD.Vector(0, 4, 0))
-    w.require(abs(box.Width.Value - 10) < 0.5 and box.Length.Value == 8, f"the width is dragged to {box.Width}")
+    w.require(
+        abs(box.Width.Value - 10) < 0.5 and box.Length.Value == 8, f"the width is dragged to {box.Width}"
+    )
     drag(box, "Length", FreeCAD.Vector(2, 0, 0))
     w.require(abs(box.Length.Value - 10) < 0.5, f"the length is dragged to {box.Length}")
     press(QtGui.QDialogButtonBox.Ok)
@@ -185,7 +210,10 @@ def a_box_and_a_cylinder(document, part):
     FreeCADGui.SendMsgToActiveView("ViewFit")
     height = cylinder.Height.Value
     drag(cylinder, "Height", FreeCAD.Vector(0, 0, 3))
-    w.require(abs(cylinder.Height.Value - height - 3) < 0.5, f"the height is dragged from {height} to {cylinder.Height}")
+    w.require(
+        abs(cylinder.Height.Value - height - 3) < 0.5,
+        f"the height is dragged from {height} to {cylinder.Height}",
+    )
     press(QtGui.QDialogButtonBox.Ok)
     return box
 
@@ -212,12 +240,17 @@ def distance_of_selected_faces(document, obj, part):
     FreeCADGui.Selection.clearSelection()
     FreeCADGui.Selection.addSelection(part, "Edge1")
     w.child("size_add").click()
-    w.require([name for _, name in size_objects.references(distance)] == [f"Face{hole}", "Edge1"], "an edge is added")
+    w.require(
+        [name for _, name in size_objects.references(distance)] == [f"Face{hole}", "Edge1"],
+        "an edge is added",
+    )
     listed = w.child("size_references")
     w.require(listed.item(1).text() == "Plate: Edge1", listed.item(1).text())
     listed.item(1).setSelected(True)
     w.child("size_remove").click()
-    w.require([name for _, name in size_objects.references(distance)] == [f"Face{hole}"], "the edge is removed")
+    w.require(
+        [name for _, name in size_objects.references(distance)] == [f"Face{hole}"], "the edge is removed"
+    )
     enter("Size", "0.5 mm")
     enter("Within", "1 mm")
     press(QtGui.QDialogButtonBox.Ok)
@@ -233,7 +266,9 @@ def the_mesh_has_the_sizes(obj):
     without = obj.FemMesh.VolumeCount
     obj.MeshSizeList = sizes
     mesh_object.remesh(obj)
-    w.require(obj.FemMesh.VolumeCount > 3 * without, f"{obj.FemMesh.VolumeCount} tets with sizes, {without} without")
+    w.require(
+        obj.FemMesh.VolumeCount > 3 * without, f"{obj.FemMesh.VolumeCount} tets with sizes, {without} without"
+    )
 
 
 def a_picture_of_all(document, obj, part):

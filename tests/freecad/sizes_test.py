@@ -77,14 +77,14 @@ class Sizes(unittest.TestCase):
         turn = FreeCAD.Rotation(FreeCAD.Vector(0, 0, 1), 45)
         size.Placement.Rotation = turn
         back = numpy.array(turn.inverted().toMatrix().A).reshape(4, 4)[:3, :3]
-        self.require_size(
-            lambda p: inside((p - (4, 10, 10)) @ back.T + (4, 10, 10)), lambda p: p[:, 0] > 34
-        )
+        self.require_size(lambda p: inside((p - (4, 10, 10)) @ back.T + (4, 10, 10)), lambda p: p[:, 0] > 34)
 
     def test_cylinder_across(self):
         size = size_objects.make(self.obj, "Cylinder", SIZE)
         size.Radius, size.Height = 3, 20
-        size.Placement = FreeCAD.Placement(FreeCAD.Vector(8, 5, 10), FreeCAD.Rotation(FreeCAD.Vector(1, 0, 0), -90))
+        size.Placement = FreeCAD.Placement(
+            FreeCAD.Vector(8, 5, 10), FreeCAD.Rotation(FreeCAD.Vector(1, 0, 0), -90)
+        )
         self.require_size(
             lambda p: (numpy.hypot(p[:, 0] - 8, p[:, 2] - 10) < 3) & (p[:, 1] > 5) & (p[:, 1] < 25),
             lambda p: p[:, 0] > 32,

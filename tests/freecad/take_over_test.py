@@ -10,7 +10,15 @@ import ObjectsFem
 import Part
 from femmesh import gmshtools
 from freecad import collarmesh_workbench
-from freecad.collarmesh_workbench import compatibility, mesh_file, mesh_object, size_objects, statistics_dialog, take_over, up_to_date
+from freecad.collarmesh_workbench import (
+    compatibility,
+    mesh_file,
+    mesh_object,
+    size_objects,
+    statistics_dialog,
+    take_over,
+    up_to_date,
+)
 from freecad.collarmesh_workbench.program import MesherError
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -104,7 +112,9 @@ class TakeOver(WithPart):
         self.assertEqual(take_over.mesher_of(gmsh), "Gmsh")
         self.assertEqual((gmsh.CharacteristicLengthMax.Value, gmsh.CharacteristicLengthMin.Value), (4, 0.5))
         self.assertEqual((gmsh.MeshSizeFromCurvature, gmsh.ElementOrder), (16, "2nd"))
-        self.assertEqual((gmsh.Part, gmsh.MeshRegionList, gmsh.MeshGroupList), (self.part, [refinement], [group]))
+        self.assertEqual(
+            (gmsh.Part, gmsh.MeshRegionList, gmsh.MeshGroupList), (self.part, [refinement], [group])
+        )
         self.assertEqual(gmsh.FemMesh.VolumeCount, count)
         self.assertIn(gmsh, self.analysis.Group)
         self.assertFalse(gmshtools.GmshTools(gmsh).create_mesh())
@@ -172,7 +182,9 @@ class TwoMeshes(WithPart):
         """Each has its own sizes, state and undo."""
         material = ObjectsFem.makeMaterialSolid(self.document, "Steel")
         self.analysis.addObject(material)
-        first, second = (collarmesh_workbench.mesh(self.part, analysis=self.analysis, size=size) for size in (6, 4))
+        first, second = (
+            collarmesh_workbench.mesh(self.part, analysis=self.analysis, size=size) for size in (6, 4)
+        )
         size_objects.make(second, "Sphere", 1)
         self.assertEqual(first.MeshSizeList, [])
         self.document.recompute()
@@ -218,7 +230,9 @@ class Files(WithPart):
 
     def test_statistics(self):
         found = mesh_file.statistics(self.obj)
-        self.assertEqual((found["tets"], found["points"]), (self.obj.FemMesh.VolumeCount, self.obj.FemMesh.NodeCount))
+        self.assertEqual(
+            (found["tets"], found["points"]), (self.obj.FemMesh.VolumeCount, self.obj.FemMesh.NodeCount)
+        )
         self.assertAlmostEqual(sum(found["region_volumes"].values()) / self.part.Shape.Volume, 1, delta=0.01)
         self.assertGreater(found["min_dihedral"], 5)
         page = statistics_dialog.page(self.obj)

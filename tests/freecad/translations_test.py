@@ -31,7 +31,9 @@ class Translations(unittest.TestCase):
         for path in FILES:
             untranslated, without_text = update.missing(path)
             self.assertEqual(untranslated, [], f"{path.name}: translate these (translations/update.py)")
-            self.assertEqual(without_text, [], f"{path.name}: no source has these any more (translations/update.py)")
+            self.assertEqual(
+                without_text, [], f"{path.name}: no source has these any more (translations/update.py)"
+            )
 
     def test_fields_are_kept(self):
         for path in FILES:
@@ -44,13 +46,17 @@ class Translations(unittest.TestCase):
             translator = QtCore.QTranslator()
             self.assertTrue(translator.load(str(path.with_suffix(".qm"))), path)
             for (context, text), translation in update.read(path).items():
-                self.assertEqual(translator.translate(context, text), translation, "run translations/update.py")
+                self.assertEqual(
+                    translator.translate(context, text), translation, "run translations/update.py"
+                )
 
     def test_texts_that_are_no_constants_are_refused(self):
         with self.assertRaises(ValueError):
             update.texts_in('translate("collarmesh", f"{x} mm")')
         self.assertEqual(update.texts_in('translate("collarmesh", each.title)'), set())
-        self.assertEqual(update.texts_in('doc("A" "B"); mark("c", "d")'), {("App::Property", "AB"), ("c", "d")})
+        self.assertEqual(
+            update.texts_in('doc("A" "B"); mark("c", "d")'), {("App::Property", "AB"), ("c", "d")}
+        )
 
 
 run_in_freecad.run(Translations)

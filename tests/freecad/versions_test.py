@@ -56,7 +56,9 @@ class Versions(unittest.TestCase):
         gmsh.addProperty("App::PropertyLinkList", "MeshRefinementList")
         self.assertEqual(compatibility.refinements_of(gmsh), [])
         compatibility.set_refinements(gmsh, [self.part])
-        self.assertEqual((gmsh.MeshRefinementList, compatibility.refinements_of(gmsh)), ([self.part], [self.part]))
+        self.assertEqual(
+            (gmsh.MeshRefinementList, compatibility.refinements_of(gmsh)), ([self.part], [self.part])
+        )
 
     def test_hand_over_to_gmsh_of_freecad_1(self):
         def make(document, name):
@@ -103,7 +105,9 @@ class Versions(unittest.TestCase):
             self.assertEqual(seen, expected)
 
     def test_missing_view_providers_are_no_error(self):
-        with mock.patch.dict(sys.modules, {"femviewprovider.view_mesh_gmsh": None, "femviewprovider.view_mesh_netgen": None}):
+        with mock.patch.dict(
+            sys.modules, {"femviewprovider.view_mesh_gmsh": None, "femviewprovider.view_mesh_netgen": None}
+        ):
             compatibility.extend_context_menus(None)
 
     def test_transactions(self):

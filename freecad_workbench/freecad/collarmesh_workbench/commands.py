@@ -30,7 +30,9 @@ class Command:
     """A button; `create` makes an object for what is selected, which is then edited in its panel."""
 
     icon, menu_text, tool_tip = "", "", ""
-    panel_commits = False  # creation and first edit are one step of undo, which "Cancel" of the panel takes back
+    panel_commits = (
+        False  # creation and first edit are one step of undo, which "Cancel" of the panel takes back
+    )
 
     def GetResources(self):
         return {"Pixmap": self.icon, "MenuText": self.text(), "ToolTip": self.tip()}
@@ -61,7 +63,9 @@ class Command:
 class MeshFromShape(Command):
     icon = ICON
     menu_text = mark("collarmesh", "FEM mesh from shape by collarmesh")
-    tool_tip = mark("collarmesh", "Make a tetrahedral mesh of the selected solid, certified, with groups for its faces")
+    tool_tip = mark(
+        "collarmesh", "Make a tetrahedral mesh of the selected solid, certified, with groups for its faces"
+    )
 
     def target(self):
         return selected_part()
@@ -79,7 +83,9 @@ class MeshFromShape(Command):
 class Refinement(Command):
     icon = os.path.join(os.path.dirname(ICON), "refinement.svg")
     menu_text = mark("collarmesh", "Refinement of a collarmesh mesh")
-    tool_tip = mark("collarmesh", "Ask for a smaller size on faces, edges or solids in the selected collarmesh mesh")
+    tool_tip = mark(
+        "collarmesh", "Ask for a smaller size on faces, edges or solids in the selected collarmesh mesh"
+    )
 
     def target(self):
         return selected(mesh_object.is_ours)
@@ -91,7 +97,9 @@ class Refinement(Command):
 class Group(Refinement):
     icon = os.path.join(os.path.dirname(ICON), "group.svg")
     menu_text = mark("collarmesh", "Group of a collarmesh mesh")
-    tool_tip = mark("collarmesh", "Name the elements on faces, edges or solids in the selected collarmesh mesh")
+    tool_tip = mark(
+        "collarmesh", "Name the elements on faces, edges or solids in the selected collarmesh mesh"
+    )
 
     def create(self, document, obj):
         return compatibility.make_group(document, obj)
@@ -136,28 +144,37 @@ class SizeSphere(Size):
     kind = "Sphere"
     icon = icon_of(kind)
     menu_text = mark("collarmesh", "Size in a sphere")
-    tool_tip = mark("collarmesh", "Ask for a smaller size in a sphere, which can be dragged in the 3D view; select faces to put it there")
+    tool_tip = mark(
+        "collarmesh",
+        "Ask for a smaller size in a sphere, which can be dragged in the 3D view; select faces to put it there",
+    )
 
 
 class SizeBox(Size):
     kind = "Box"
     icon = icon_of(kind)
     menu_text = mark("collarmesh", "Size in a box")
-    tool_tip = mark("collarmesh", "Ask for a smaller size in a box, which can be dragged and turned in the 3D view")
+    tool_tip = mark(
+        "collarmesh", "Ask for a smaller size in a box, which can be dragged and turned in the 3D view"
+    )
 
 
 class SizeCylinder(Size):
     kind = "Cylinder"
     icon = icon_of(kind)
     menu_text = mark("collarmesh", "Size in a cylinder")
-    tool_tip = mark("collarmesh", "Ask for a smaller size in a cylinder, which can be dragged and turned in the 3D view")
+    tool_tip = mark(
+        "collarmesh", "Ask for a smaller size in a cylinder, which can be dragged and turned in the 3D view"
+    )
 
 
 class SizeDistance(Size):
     kind = "Distance"
     icon = icon_of(kind)
     menu_text = mark("collarmesh", "Size near faces and edges")
-    tool_tip = mark("collarmesh", "Ask for a smaller size within a distance from the selected faces and edges")
+    tool_tip = mark(
+        "collarmesh", "Ask for a smaller size within a distance from the selected faces and edges"
+    )
 
 
 COMMANDS = {

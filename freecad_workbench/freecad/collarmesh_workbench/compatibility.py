@@ -44,7 +44,9 @@ REFINEMENT_LISTS = ("MeshRegionList", "MeshRefinementList")  # later versions ha
 
 
 def refinements_of(mesh_object):
-    return next((getattr(mesh_object, name) for name in REFINEMENT_LISTS if name in mesh_object.PropertiesList), [])
+    return next(
+        (getattr(mesh_object, name) for name in REFINEMENT_LISTS if name in mesh_object.PropertiesList), []
+    )
 
 
 def set_refinements(mesh_object, refinements):

@@ -29,10 +29,17 @@ def _run(mesh_object, arguments):
     with tempfile.TemporaryDirectory(prefix="collarmesh-") as folder:
         path = os.path.join(folder, "mesh.unv")
         mesh_object.FemMesh.write(path)
-        command = [find_program(preferences.program()), *(path if each == "MESH" else each for each in arguments)]
-        result = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace")
+        command = [
+            find_program(preferences.program()),
+            *(path if each == "MESH" else each for each in arguments),
+        ]
+        result = subprocess.run(
+            command, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace"
+        )
         if result.returncode != 0:
-            raise MesherError(result.stderr.replace(path, mesh_object.Label).strip().removeprefix("collarmesh: "))
+            raise MesherError(
+                result.stderr.replace(path, mesh_object.Label).strip().removeprefix("collarmesh: ")
+            )
         return result.stdout
 
 

@@ -69,7 +69,9 @@ def mesh_again(obj):
 def export(obj):
     QtGui.QApplication.restoreOverrideCursor()
     title = translate("collarmesh", "Export mesh")
-    path, chosen = QtGui.QFileDialog.getSaveFileName(FreeCADGui.getMainWindow(), title, obj.Label, mesh_file.filters())
+    path, chosen = QtGui.QFileDialog.getSaveFileName(
+        FreeCADGui.getMainWindow(), title, obj.Label, mesh_file.filters()
+    )
     QtGui.QApplication.setOverrideCursor(QtCore.Qt.WaitCursor)
     if path:
         if "." not in path.rsplit("/", 1)[-1]:

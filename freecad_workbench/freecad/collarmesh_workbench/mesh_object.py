@@ -13,31 +13,130 @@ from .translations import doc, translate
 # the property editor, text.
 SIZES, FEATURES, QUALITY, RUN = "Sizes", "Features", "Quality", "Run"
 PROPERTIES = (
-    ("App::PropertyLength", "CharacteristicLengthMax", "size", SIZES, doc("Target edge length; 0: 1/20 of the diagonal")),
-    ("App::PropertyLength", "CharacteristicLengthMin", "size_min", SIZES, doc("Never ask for less than this; 0: none")),
-    ("App::PropertyInteger", "MeshSizeFromCurvature", "elements_per_circle", SIZES, doc("Elements on a full circle; 0: any")),
-    ("App::PropertyInteger", "ElementsAcrossGap", "elements_across_gap", SIZES, doc("Elements across thin parts; 0: any")),
-    ("App::PropertyFloat", "Gradation", "gradation", SIZES, doc("Growth of size per unit length away from finer ones; 0: any")),
-    ("App::PropertyLength", "SurfaceDistance", "distance", FEATURES,
-     doc("Largest distance of faces and edges of the mesh from the shape; 0: 1/10 of the size, at most 1/200 of the diagonal (2nd order: 1/550)")),
-    ("App::PropertyAngle", "CreaseAngle", "crease_angle", FEATURES, doc("Edges and faces that meet below it get a collar")),
-    ("App::PropertyAngle", "CollarAngle", "collar_angle", FEATURES, doc("Bound on dihedral angles in collars")),
-    ("App::PropertyFloat", "PlanarTolerance", "planar_tolerance", FEATURES,
-     doc("Faces this near to a plane are planar, relative to the diagonal; 0: 1e-6")),
-    ("App::PropertyFloat", "WeldTolerance", "weld", FEATURES,
-     doc("Points closer than this are one, relative to the diagonal; 0: 1e-9")),
-    ("App::PropertyFloat", "RepairTolerance", "repair_tolerance", FEATURES,
-     doc("Where the shape has to be repaired, features below this are noise, relative to the diagonal; 0: 1e-5")),
-    ("App::PropertyBool", "Coarsen", "coarsen", QUALITY,
-     doc("As few elements as the sizes ask for, thin ones in thin places; else the bound on circumradius / shortest edge "
-     "holds everywhere outside collars")),
-    ("App::PropertyFloat", "RadiusEdgeRatio", "radius_edge", QUALITY, doc("Bound on circumradius / shortest edge")),
-    ("App::PropertyInteger", "ImproveLevel", "improve", QUALITY, doc("Removal of slivers: 0 none, 1 quick, 2 good, 3 best")),
-    ("App::PropertyAngle", "MinDihedralAngle", "min_dihedral", QUALITY,
-     doc("Improve elements with smaller dihedral angles; 0: 15, 20 or 30 degrees by the level of improvement")),
-    ("App::PropertyInteger", "Seed", "seed", RUN, doc("Another number gives another mesh of the same quality")),
+    (
+        "App::PropertyLength",
+        "CharacteristicLengthMax",
+        "size",
+        SIZES,
+        doc("Target edge length; 0: 1/20 of the diagonal"),
+    ),
+    (
+        "App::PropertyLength",
+        "CharacteristicLengthMin",
+        "size_min",
+        SIZES,
+        doc("Never ask for less than this; 0: none"),
+    ),
+    (
+        "App::PropertyInteger",
+        "MeshSizeFromCurvature",
+        "elements_per_circle",
+        SIZES,
+        doc("Elements on a full circle; 0: any"),
+    ),
+    (
+        "App::PropertyInteger",
+        "ElementsAcrossGap",
+        "elements_across_gap",
+        SIZES,
+        doc("Elements across thin parts; 0: any"),
+    ),
+    (
+        "App::PropertyFloat",
+        "Gradation",
+        "gradation",
+        SIZES,
+        doc("Growth of size per unit length away from finer ones; 0: any"),
+    ),
+    (
+        "App::PropertyLength",
+        "SurfaceDistance",
+        "distance",
+        FEATURES,
+        doc(
+            "Largest distance of faces and edges of the mesh from the shape; 0: 1/10 of the size, at most 1/200 of "
+            "the diagonal (2nd order: 1/550)"
+        ),
+    ),
+    (
+        "App::PropertyAngle",
+        "CreaseAngle",
+        "crease_angle",
+        FEATURES,
+        doc("Edges and faces that meet below it get a collar"),
+    ),
+    (
+        "App::PropertyAngle",
+        "CollarAngle",
+        "collar_angle",
+        FEATURES,
+        doc("Bound on dihedral angles in collars"),
+    ),
+    (
+        "App::PropertyFloat",
+        "PlanarTolerance",
+        "planar_tolerance",
+        FEATURES,
+        doc("Faces this near to a plane are planar, relative to the diagonal; 0: 1e-6"),
+    ),
+    (
+        "App::PropertyFloat",
+        "WeldTolerance",
+        "weld",
+        FEATURES,
+        doc("Points closer than this are one, relative to the diagonal; 0: 1e-9"),
+    ),
+    (
+        "App::PropertyFloat",
+        "RepairTolerance",
+        "repair_tolerance",
+        FEATURES,
+        doc(
+            "Where the shape has to be repaired, features below this are noise, relative to the diagonal; 0: 1e-5"
+        ),
+    ),
+    (
+        "App::PropertyBool",
+        "Coarsen",
+        "coarsen",
+        QUALITY,
+        doc(
+            "As few elements as the sizes ask for, thin ones in thin places; else the bound on circumradius / shortest edge "
+            "holds everywhere outside collars"
+        ),
+    ),
+    (
+        "App::PropertyFloat",
+        "RadiusEdgeRatio",
+        "radius_edge",
+        QUALITY,
+        doc("Bound on circumradius / shortest edge"),
+    ),
+    (
+        "App::PropertyInteger",
+        "ImproveLevel",
+        "improve",
+        QUALITY,
+        doc("Removal of slivers: 0 none, 1 quick, 2 good, 3 best"),
+    ),
+    (
+        "App::PropertyAngle",
+        "MinDihedralAngle",
+        "min_dihedral",
+        QUALITY,
+        doc(
+            "Improve elements with smaller dihedral angles; 0: 15, 20 or 30 degrees by the level of improvement"
+        ),
+    ),
+    (
+        "App::PropertyInteger",
+        "Seed",
+        "seed",
+        RUN,
+        doc("Another number gives another mesh of the same quality"),
+    ),
     ("App::PropertyFloat", "TimeLimit", "time_limit", RUN, doc("Give up after so many seconds; 0: never")),
-)  # fmt: skip
+)
 ORDERS = ["1st", "2nd"]
 REPAIRS = {"Automatic": "auto", "None": "none", "Wrap": "wrap"}  # the program's words
 TINY = 0.01  # of the target edge length: edges that hardly anybody means
@@ -80,9 +179,16 @@ def add_properties(obj):
         obj.ElementOrder = ORDERS
         obj.ElementOrder = ORDERS[preferences.second_order()]
     if "Repair" not in have:
-        obj.addProperty("App::PropertyEnumeration", "Repair", FEATURES,
-                        doc("What to do with triangles of the shape that intersect or leave holes. Automatic: "
-                             "repair them; None: refuse them; Wrap: where repair fails, mesh a closed surface around everything"))  # fmt: skip
+        obj.addProperty(
+            "App::PropertyEnumeration",
+            "Repair",
+            FEATURES,
+            doc(
+                "What to do with triangles of the shape that intersect or leave holes. Automatic: "
+                "repair them; None: refuse them; Wrap: where repair fails, mesh a closed surface "
+                "around everything"
+            ),
+        )
         obj.Repair = list(REPAIRS)
         obj.Repair = "Automatic"
     for name, text in (
@@ -138,9 +244,9 @@ def add_refinement(region, part, settings):
     for linked, names in region.References:
         if part is not None and linked is not part:
             raise MesherError(
-                translate("collarmesh", "{label} refers to {other}, but {part} is meshed; choose its sub-shapes.").format(
-                    label=region.Label, other=linked.Label, part=part.Label
-                )
+                translate(
+                    "collarmesh", "{label} refers to {other}, but {part} is meshed; choose its sub-shapes."
+                ).format(label=region.Label, other=linked.Label, part=part.Label)
             )
         for name in (names,) if isinstance(names, str) else names:
             kind, number = re.fullmatch(r"([A-Za-z]*)(\d*)", name).groups()
@@ -158,7 +264,9 @@ def part_to_mesh(obj):
     """The object that is to be meshed. Raises MesherError."""
     part = compatibility.meshed_object(obj)
     if part is None:
-        raise MesherError(translate("collarmesh", "{label}: no object is chosen to be meshed.").format(label=obj.Label))
+        raise MesherError(
+            translate("collarmesh", "{label}: no object is chosen to be meshed.").format(label=obj.Label)
+        )
     return part
 
 
@@ -183,10 +291,18 @@ def tiny_edges(shape, size):
     if shape.isNull():
         return []
     size = size or shape.BoundBox.DiagonalLength / 20
+    text = translate(
+        "collarmesh",
+        "{edge} at {place} is only {length} mm long, the mesh becomes very fine there: remove the edge if it is not "
+        "meant (Part: Defeaturing)",
+    )
     return [
-        "warning: " + translate("collarmesh", "{edge} at {place} is only {length} mm long, the mesh becomes very fine there: "
-                                "remove the edge if it is not meant (Part: Defeaturing)").format(
-            edge=f"Edge{number}", place=f"({place.x:.6g}, {place.y:.6g}, {place.z:.6g})", length=f"{edge.Length:.3g}")  # fmt: skip
+        "warning: "
+        + text.format(
+            edge=f"Edge{number}",
+            place=f"({place.x:.6g}, {place.y:.6g}, {place.z:.6g})",
+            length=f"{edge.Length:.3g}",
+        )
         for number, edge in enumerate(shape.Edges, 1)
         if not edge.Degenerated and edge.Length < TINY * size
         for place in [edge.CenterOfMass]
@@ -198,7 +314,11 @@ def finish(obj, job, exit_code=0):
     job.require_success(exit_code)
     fem_mesh = Fem.read(job.mesh)
     if fem_mesh.VolumeCount == 0:
-        raise MesherError(translate("collarmesh", "The mesher wrote a mesh without elements; please report it with the shape."))
+        raise MesherError(
+            translate(
+                "collarmesh", "The mesher wrote a mesh without elements; please report it with the shape."
+            )
+        )
     groups.add_groups(obj, fem_mesh)
     with compatibility.transaction(obj.Document, translate("collarmesh", "Mesh by collarmesh")):
         mesh_undo.replace(obj, fem_mesh)

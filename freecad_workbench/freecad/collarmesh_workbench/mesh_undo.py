@@ -17,7 +17,9 @@ _kept = {}  # by document and object: {number: mesh}
 
 def add_properties(obj):
     if NUMBER not in obj.PropertiesList:
-        obj.addProperty("App::PropertyInteger", NUMBER, "Base", doc("Which of its meshes the object has"), 4 + 16)
+        obj.addProperty(
+            "App::PropertyInteger", NUMBER, "Base", doc("Which of its meshes the object has"), 4 + 16
+        )
 
 
 def replace(obj, fem_mesh):
@@ -41,7 +43,10 @@ def replace(obj, fem_mesh):
 
 def same(first, second):
     """Is it the same mesh? Groups do not count."""
-    if any(getattr(first, each) != getattr(second, each) for each in ("NodeCount", "EdgeCount", "FaceCount", "VolumeCount")):
+    if any(
+        getattr(first, each) != getattr(second, each)
+        for each in ("NodeCount", "EdgeCount", "FaceCount", "VolumeCount")
+    ):
         return False
     numbers = range(1, first.NodeCount + 1, max(1, first.NodeCount // 100))
     try:

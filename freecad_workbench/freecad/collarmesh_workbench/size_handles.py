@@ -24,7 +24,8 @@ def rods_of(kind):
 
 class Handle:
     """An arrow that is dragged along an axis of the object. `name`: of a length, or of the axis for an arrow that moves
-    the object. `dragged(distance)` is called with how far it was dragged since the mouse was pressed, in mm."""
+    the object. `dragged(distance)` is called with how far it was dragged since the mouse was pressed, in mm.
+    """
 
     def __init__(self, name, axis, dragged):
         self.name = name
@@ -118,9 +119,15 @@ class Handles:
         self.node.addChild(handle.node)
 
     def _look(self):
-        held = next((handle for handle in self.handles if handle.is_held() or handle.is_at() != handle.was_at), None)
+        held = next(
+            (handle for handle in self.handles if handle.is_held() or handle.is_at() != handle.was_at), None
+        )
         if held is not None and self._held is None:
-            lengths = {handle.name: getattr(self.object, handle.name).Value for handle in self.handles if not handle.moves()}
+            lengths = {
+                handle.name: getattr(self.object, handle.name).Value
+                for handle in self.handles
+                if not handle.moves()
+            }
             self._at_start = self.object.Placement.copy(), lengths
         if held is not None or self._held is not None:
             (held or self._held).look()

@@ -55,7 +55,9 @@ class Size(compatibility.Stateless):
         for name in ("Size", *(name for name, _, _ in self.lengths)):
             if getattr(obj, name).Value <= 0:
                 text = translate("collarmesh", "{label}: {property} is {value}, but must be positive.")
-                raise MesherError(text.format(label=obj.Label, property=name, value=getattr(obj, name).UserString))
+                raise MesherError(
+                    text.format(label=obj.Label, property=name, value=getattr(obj, name).UserString)
+                )
         if obj.Growth < 0:
             text = translate("collarmesh", "{label}: Growth is {value}, but sizes grow by 0 or more.")
             raise MesherError(text.format(label=obj.Label, value=f"{obj.Growth:g}"))
@@ -119,7 +121,10 @@ class Distance(Size):
     """Near faces and edges of the meshed object."""
 
     Type = "Fem::CollarmeshSizeDistance"
-    TAGS = {"Face": "patches", "Edge": "curves"}  # in the program's size field: their tags are FreeCAD's numbers
+    TAGS = {
+        "Face": "patches",
+        "Edge": "curves",
+    }  # in the program's size field: their tags are FreeCAD's numbers
 
     def add_properties(self, obj):
         super().add_properties(obj)
@@ -147,16 +152,26 @@ class Distance(Size):
             kind, number = kind_and_number(name)
             wrong = ""
             if linked is not part:
-                wrong = translate("collarmesh", "{label} refers to {other}, but {part} is meshed; choose its faces and edges.")
+                wrong = translate(
+                    "collarmesh",
+                    "{label} refers to {other}, but {part} is meshed; choose its faces and edges.",
+                )
             elif kind not in self.TAGS:
                 wrong = translate("collarmesh", "{label}: {name} is no face and no edge.")
             elif number > len(getattr(shape, kind + "s")):
-                wrong = translate("collarmesh", "{label}: {part} has no {name} any more; choose its faces and edges again.")
+                wrong = translate(
+                    "collarmesh", "{label}: {part} has no {name} any more; choose its faces and edges again."
+                )
             elif kind == "Edge" and is_seam(shape, shape.Edges[number - 1]):
-                wrong = translate("collarmesh", "{label}: {name} is the seam of a face, which the mesh does not have; choose the face.")
+                wrong = translate(
+                    "collarmesh",
+                    "{label}: {name} is the seam of a face, which the mesh does not have; choose the face.",
+                )
             if wrong:
                 whole = translate("collarmesh", "the whole object")
-                raise MesherError(wrong.format(label=obj.Label, other=linked.Label, part=part.Label, name=name or whole))
+                raise MesherError(
+                    wrong.format(label=obj.Label, other=linked.Label, part=part.Label, name=name or whole)
+                )
         if not references(obj):
             wrong = translate("collarmesh", "{label} has no faces and edges; choose some, or delete it.")
             raise MesherError(wrong.format(label=obj.Label))
@@ -171,7 +186,11 @@ class Distance(Size):
 
 def references(obj):
     """[(object, name of a face or edge)]"""
-    return [(linked, name) for linked, names in obj.References for name in ((names,) if isinstance(names, str) else names)]
+    return [
+        (linked, name)
+        for linked, names in obj.References
+        for name in ((names,) if isinstance(names, str) else names)
+    ]
 
 
 def kind_and_number(name):
@@ -181,7 +200,9 @@ def kind_and_number(name):
 
 
 def is_seam(shape, edge):
-    return edge.Degenerated or any(edge.isSeam(face) for face in shape.Faces if any(edge.isSame(e) for e in face.Edges))
+    return edge.Degenerated or any(
+        edge.isSeam(face) for face in shape.Faces if any(edge.isSame(e) for e in face.Edges)
+    )
 
 
 KINDS = {"Sphere": Sphere, "Box": Box, "Cylinder": Cylinder, "Distance": Distance}
@@ -197,14 +218,18 @@ def kind_of(obj):
 def make(mesh_object, kind, size=0, name=""):
     """A new size object of a mesh object, in the middle of its part.
 
-    `kind`: Sphere, Box, Cylinder or Distance; `size`: target edge length, mm; 0: a quarter of the mesh's own."""
+    `kind`: Sphere, Box, Cylinder or Distance; `size`: target edge length, mm; 0: a quarter of the mesh's own.
+    """
     document = mesh_object.Document
     obj = document.addObject("Part::FeaturePython", name or f"Size{kind}")
     proxy = KINDS[kind](obj)
     part = compatibility.meshed_object(mesh_object)
     if part is not None:
         proxy.place(obj, part)
-        size = size or (mesh_object.CharacteristicLengthMax.Value or inputs.bounds_of(part).DiagonalLength / 20) / 4
+        size = (
+            size
+            or (mesh_object.CharacteristicLengthMax.Value or inputs.bounds_of(part).DiagonalLength / 20) / 4
+        )
     obj.Size = size
     setattr(mesh_object, PROPERTY, [*getattr(mesh_object, PROPERTY), obj])
     if compatibility.has_gui():

@@ -99,7 +99,9 @@ class SizePanel:
         field.setKeyboardTracking(False)
         field.setSuffix(translate("collarmesh", " mm per mm"))
         field.setToolTip(translate("App::Property", self.object.getDocumentationOfProperty("Growth")))
-        field.valueChanged.connect(lambda value: self._changed(lambda v: setattr(self.object, "Growth", v), value))
+        field.valueChanged.connect(
+            lambda value: self._changed(lambda v: setattr(self.object, "Growth", v), value)
+        )
         self.rows.addRow(texts()["Growth"], field)
         self.fields["Growth"] = field
 
@@ -108,7 +110,9 @@ class SizePanel:
         self.list.setObjectName("collarmesh_size_references")
         self.list.setMaximumHeight(140)
         self.list.setSelectionMode(QtGui.QAbstractItemView.ExtendedSelection)
-        layout.addWidget(QtGui.QLabel(translate("collarmesh", "Select faces and edges in the 3D view, then add them:")))
+        layout.addWidget(
+            QtGui.QLabel(translate("collarmesh", "Select faces and edges in the 3D view, then add them:"))
+        )
         layout.addWidget(self.list)
         row = QtGui.QHBoxLayout()
         layout.addLayout(row)
@@ -145,7 +149,9 @@ class SizePanel:
                 field.show(getattr(self.object, name).Value)
         if self.kind == "Distance":
             self.list.clear()
-            self.list.addItems([f"{linked.Label}: {name}" for linked, name in size_objects.references(self.object)])
+            self.list.addItems(
+                [f"{linked.Label}: {name}" for linked, name in size_objects.references(self.object)]
+            )
         self.filling = False
 
     def _changed(self, store, value):
@@ -174,7 +180,9 @@ class SizePanel:
 
     def remove_marked(self):
         marked = {index.row() for index in self.list.selectedIndexes()}
-        self._set_references([each for i, each in enumerate(size_objects.references(self.object)) if i not in marked])
+        self._set_references(
+            [each for i, each in enumerate(size_objects.references(self.object)) if i not in marked]
+        )
 
     def _set_references(self, found):
         self.object.References = [(linked, (name,)) for linked, name in found]

@@ -25,7 +25,9 @@ def page(mesh_object):
         (translate("collarmesh", "Smallest dihedral angle"), f"{mesh['min_dihedral']:.1f}°"),
         (translate("collarmesh", "Largest dihedral angle"), f"{mesh['max_dihedral']:.1f}°"),
     ]
-    text = "<table cellspacing='4'>" + "".join(f"<tr><td>{name}</td><td align='right'><b>{value}</b></td></tr>" for name, value in rows)
+    text = "<table cellspacing='4'>" + "".join(
+        f"<tr><td>{name}</td><td align='right'><b>{value}</b></td></tr>" for name, value in rows
+    )
     text += f"</table><h4>{translate('collarmesh', 'Smallest dihedral angle of each tetrahedron')}</h4>"
     text += bars(mesh["histograms"]["min_dihedral"])
     names = sorted(groups.named(fem_mesh).items(), key=lambda group: group[1])

@@ -10,10 +10,21 @@ from .program import MesherError
 from .translations import doc, translate
 
 # Netgen's names for how fast sizes grow and how many elements there are along a radius of curvature.
-FINENESS = {"VeryCoarse": (0.7, 1), "Coarse": (0.5, 1.5), "Moderate": (0.3, 2), "Fine": (0.2, 3), "VeryFine": (0.1, 5)}
+FINENESS = {
+    "VeryCoarse": (0.7, 1),
+    "Coarse": (0.5, 1.5),
+    "Moderate": (0.3, 2),
+    "Fine": (0.2, 3),
+    "VeryFine": (0.1, 5),
+}
 COMMON = ("CharacteristicLengthMax", "CharacteristicLengthMin", "MeshSizeFromCurvature", "ElementOrder")
 # Gmsh's settings without a counterpart of ours: the property, and the value that means it is not used.
-ONLY_GMSH = (("RecombineAll", False), ("Recombine3DAll", False), ("MeshBoundaryLayerList", []), ("SecondOrderLinear", False))
+ONLY_GMSH = (
+    ("RecombineAll", False),
+    ("Recombine3DAll", False),
+    ("MeshBoundaryLayerList", []),
+    ("SecondOrderLinear", False),
+)
 
 
 def can_be_taken_over(obj):
@@ -35,7 +46,9 @@ def take_over(old):
     Raises MesherError."""
     mesher = mesher_of(old)
     if not mesher:
-        raise MesherError(translate("collarmesh", "{label} is no mesh of Gmsh or Netgen.").format(label=old.Label))
+        raise MesherError(
+            translate("collarmesh", "{label} is no mesh of Gmsh or Netgen.").format(label=old.Label)
+        )
     document = old.Document
     with compatibility.transaction(document, translate("collarmesh", "Take over by collarmesh")):
         new = mesh_object.make(document, compatibility.meshed_object(old))
@@ -45,7 +58,9 @@ def take_over(old):
         setattr(new, size_objects.PROPERTY, getattr(old, size_objects.PROPERTY, []))
         replace(old, new)
         if new.FemMesh.NodeCount:
-            up_to_date.remember(new, up_to_date.State([], mesher))  # its mesh is not of our making: out of date
+            up_to_date.remember(
+                new, up_to_date.State([], mesher)
+            )  # its mesh is not of our making: out of date
             up_to_date.show(new)
     return new, notes
 
@@ -55,7 +70,11 @@ def take_gmsh(old, new):
         if name in old.PropertiesList:
             setattr(new, name, getattr(old, name))
     lost = [name for name, unused in ONLY_GMSH if getattr(old, name, unused) != unused]
-    notes = [translate("collarmesh", "Settings of Gmsh that collarmesh does not have: {names}").format(names=", ".join(lost))]
+    notes = [
+        translate("collarmesh", "Settings of Gmsh that collarmesh does not have: {names}").format(
+            names=", ".join(lost)
+        )
+    ]
     return notes if lost else []
 
 
@@ -94,10 +113,14 @@ def hand_over(old):
         new.MeshGroupList = old.MeshGroupList
         sizes = getattr(old, size_objects.PROPERTY)
         if sizes:  # Gmsh does not heed them, but they are there when the mesh is taken over again
-            new.addProperty("App::PropertyLinkList", size_objects.PROPERTY, "Base", doc("Sizes of collarmesh"), 4)
+            new.addProperty(
+                "App::PropertyLinkList", size_objects.PROPERTY, "Base", doc("Sizes of collarmesh"), 4
+            )
             setattr(new, size_objects.PROPERTY, sizes)
             names = ", ".join(each.Label for each in sizes)
-            notes.append(translate("collarmesh", "Gmsh does not heed these sizes: {names}").format(names=names))
+            notes.append(
+                translate("collarmesh", "Gmsh does not heed these sizes: {names}").format(names=names)
+            )
         if inputs.triangles_of(compatibility.meshed_object(old) or old) is not None:
             notes.append(translate("collarmesh", "FreeCAD's Gmsh cannot mesh triangle meshes."))
         replace(old, new)

@@ -80,7 +80,9 @@ def same_shape(first, second):
 
 def settings_text(settings, groups):
     """`groups`: for each group object its name and sub-shapes."""
-    values = {name: value for name, value in dataclasses.asdict(settings).items() if name not in WITHOUT_EFFECT}
+    values = {
+        name: value for name, value in dataclasses.asdict(settings).items() if name not in WITHOUT_EFFECT
+    }
     return json.dumps({**values, "groups": groups}, sort_keys=True)
 
 
@@ -106,8 +108,13 @@ def state_of(obj):
 
     part = compatibility.meshed_object(obj)
     if part is None:
-        raise MesherError(translate("collarmesh", "{label}: no object is chosen to be meshed.").format(label=obj.Label))
-    groups = [[group.Name, [[linked.Name, list(names)] for linked, names in group.References]] for group in obj.MeshGroupList]
+        raise MesherError(
+            translate("collarmesh", "{label}: no object is chosen to be meshed.").format(label=obj.Label)
+        )
+    groups = [
+        [group.Name, [[linked.Name, list(names)] for linked, names in group.References]]
+        for group in obj.MeshGroupList
+    ]
     return State(shape_numbers(part), settings_text(mesh_object.settings_of(obj), groups))
 
 
