@@ -360,7 +360,7 @@
     </message>
     <message>
       <source>Growth of the size by unit of length away from finer places; 0: any</source>
-      <translation type="unfinished" />
+      <translation>Wachstum der Größe je Längeneinheit, von feineren Stellen weg; 0: beliebig</translation>
     </message>
     <message>
       <source>Hand over to Gmsh</source>
