@@ -279,6 +279,10 @@
       <translation>Kanten und Flächen, die sich unter einem kleineren Winkel treffen, bekommen einen Kragen</translation>
     </message>
     <message>
+      <source>Edit mesh</source>
+      <translation>Netz bearbeiten</translation>
+    </message>
+    <message>
       <source>Element size</source>
       <translation>Elementgröße</translation>
     </message>

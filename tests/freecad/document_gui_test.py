@@ -106,7 +106,7 @@ def mesh_again_by_the_menu(document, part, obj):
     part.Radius = 8
     document.recompute()
     entries = menu_of(obj.Label, "mesh_again", "freecad_menu.png")
-    for text in ("Mesh again", "Export mesh...", "Statistics...", "Hand over to Gmsh"):
+    for text in ("Edit mesh", "Mesh again", "Export mesh...", "Statistics...", "Hand over to Gmsh"):
         w.require(text in entries, f"{text} is not in {entries}")
     w.wait_until(lambda: w.find("run") is not None, "the panel")
     w.wait_until(lambda: not up_to_date.is_out_of_date(obj) and w.child("run").isEnabled(), "the new mesh")
@@ -121,7 +121,8 @@ def statistics_and_export(obj):
     text = w.find("statistics").findChild(QtGui.QTextBrowser).toPlainText()
     for word in (str(obj.FemMesh.VolumeCount), str(obj.FemMesh.NodeCount), "Face7", "Solid1"):
         w.require(word in text, f"{word} is not in {text}")
-    w.screenshot("freecad_statistics.png", fit=False, size=(1100, 800))
+    if w.PICTURES:
+        w.find("statistics").grab().save(os.path.join(w.PICTURES, "freecad_statistics.png"))
     w.find("statistics").close()
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "plate.inp")

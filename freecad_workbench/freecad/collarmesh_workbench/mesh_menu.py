@@ -13,6 +13,7 @@ def fill(menu, obj):
     """Of one of our mesh objects."""
     has_mesh = obj.FemMesh.VolumeCount > 0
     for name, text, action, enabled in (
+        ("edit", translate("collarmesh", "Edit mesh"), edit, True),  # as a double click does
         ("mesh_again", translate("collarmesh", "Mesh again"), mesh_again, True),
         ("export", translate("collarmesh", "Export mesh..."), export, has_mesh),
         ("statistics", translate("collarmesh", "Statistics..."), statistics, has_mesh),
@@ -55,12 +56,17 @@ def say(text):
     box.show()
 
 
-def mesh_again(obj):
-    """Open the panel and start."""
+def edit(obj):
+    """Open the panel."""
     document = FreeCADGui.getDocument(obj.Document.Name)
     if document.getInEdit():
         document.resetEdit()
     document.setEdit(obj.Name)
+
+
+def mesh_again(obj):
+    """Open the panel and start."""
+    edit(obj)
     panel = obj.ViewObject.Proxy.panel
     if panel is not None:
         panel.start()
