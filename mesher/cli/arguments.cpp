@@ -153,9 +153,10 @@ void add_size_options(CLI::App& app, MeshArguments& a) {
       ->group(group);
   add_tag_values(app, "--patch-size", m.patch_size, "On the patches with this tag; repeatable")->group(group);
   add_tag_values(app, "--curve-size", m.curve_size, "On the curves with this tag; repeatable")->group(group);
-  app.add_option("--size-field", a.size_field,
-                 "Sizes by place: .json (balls, boxes, cylinders, distances from features), or .vtu or .msh with a "
-                 "scalar on its points")
+  app.add_option(
+         "--size-field", a.size_field,
+         "Sizes by place: .json (balls, boxes, cylinders, distances from features), or .vtu or .msh with a "
+         "scalar on its points")
       ->type_name("FILE")
       ->group(group);
   add(app, "--elements-per-circle N", m.elements_per_circle,
