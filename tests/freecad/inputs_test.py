@@ -117,6 +117,15 @@ class Shapes(WithDocument):
             self.document.recompute()
             self.assertTrue(up_to_date.is_out_of_date(obj))
 
+    def test_what_the_button_takes(self):
+        box = self.add("Part::Box", "Box")
+        taken = [box, self.add("App::Link", "Link", LinkedObject=box), self.document.addObject("App::Part", "Container"),
+                 self.document.addObject("PartDesign::Body", "Body"), self.document.addObject("Mesh::Feature", "Mesh")]  # fmt: skip
+        refused = [self.document.addObject("App::DocumentObjectGroup", "Folder"), mesh_object.make(self.document, box),
+                   ObjectsFem.makeMeshGmsh(self.document), self.document.addObject("App::Link", "Dangling")]  # fmt: skip
+        for obj in taken + refused:
+            self.assertEqual(inputs.can_be_meshed(obj), obj in taken, obj.Name)
+
     def test_what_cannot_be_meshed_is_told(self):
         empty = self.document.addObject("Mesh::Feature", "Empty")
         with self.assertRaisesRegex(MesherError, "Empty has no triangles"):

@@ -4,6 +4,7 @@ import os
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 import FreeCAD
 import ObjectsFem
@@ -14,6 +15,7 @@ from freecad.collarmesh_workbench import (
     compatibility,
     mesh_file,
     mesh_object,
+    mesh_undo,
     size_objects,
     statistics_dialog,
     take_over,
@@ -205,6 +207,44 @@ class TwoMeshes(WithPart):
         mesh_object.remesh(second)
 
 
+class Undo(WithPart):
+    def test_many_meshings(self):
+        """More than are kept: the last ones can be undone, those before stay as they are."""
+        obj = mesh_object.make(self.document, self.part)
+        counts = []
+        with mock.patch.object(mesh_undo, "KEPT", 3):
+            for size in (8, 6, 5, 4, 3):
+                obj.CharacteristicLengthMax = size
+                mesh_object.remesh(obj)
+                counts.append(obj.FemMesh.VolumeCount)
+        self.assertEqual(counts, sorted(set(counts)))
+        for count in counts[-2:-4:-1]:
+            self.document.undo()
+            self.assertEqual(obj.FemMesh.VolumeCount, count)
+        for count in counts[-2:]:
+            self.document.redo()
+            self.assertEqual(obj.FemMesh.VolumeCount, count)
+        with mock.patch.object(mesh_undo, "NODES", 1):
+            mesh_object.remesh(obj)
+        self.document.undo()
+        self.assertEqual(obj.FemMesh.VolumeCount, counts[-1])
+
+    def test_a_mesh_after_undo_starts_anew(self):
+        obj = mesh_object.make(self.document, self.part)
+        for size in (8, 6):
+            obj.CharacteristicLengthMax = size
+            mesh_object.remesh(obj)
+        first, counts = obj.MeshNumber, [obj.FemMesh.VolumeCount]
+        self.document.undo()
+        obj.CharacteristicLengthMax = 4
+        mesh_object.remesh(obj)
+        counts.append(obj.FemMesh.VolumeCount)
+        self.assertEqual(obj.MeshNumber, first)
+        self.document.undo()
+        self.document.redo()
+        self.assertEqual(obj.FemMesh.VolumeCount, counts[1])
+
+
 class Files(WithPart):
     def setUp(self):
         super().setUp()
@@ -240,4 +280,4 @@ class Files(WithPart):
             self.assertIn(word, page)
 
 
-run_in_freecad.run(TakeOver, TwoMeshes, Files)
+run_in_freecad.run(TakeOver, TwoMeshes, Undo, Files)

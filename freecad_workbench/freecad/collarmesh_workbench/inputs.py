@@ -6,6 +6,7 @@ import Part
 from .program import MesherError
 from .translations import translate
 
+KINDS = ("Part::Feature", "App::Part", "App::LinkGroup", "Mesh::Feature")
 REST = "Rest"  # the group of the triangles that are in no segment
 
 
@@ -35,10 +36,9 @@ def bounds_of(part):
 
 
 def can_be_meshed(obj):
-    """Is it worth a try? What is no closed solid is refused with its places when it is meshed."""
-    if obj.isDerivedFrom("Fem::FemMeshObject") or obj.isDerivedFrom("App::DocumentObjectGroup"):
-        return False
-    return triangles_of(obj) is not None or hasattr(getattr(obj, "Shape", None), "exportBrep")
+    """Is it worth a try? Asked often, so kinds decide; what is no closed solid is refused when it is meshed."""
+    linked = obj.getLinkedObject(True)
+    return linked is not None and any(linked.isDerivedFrom(kind) for kind in KINDS)
 
 
 def file_name(part):

@@ -11,6 +11,7 @@ from .translations import doc
 
 NUMBER = "MeshNumber"
 KEPT = 20  # as many steps of undo as FreeCAD has by default
+NODES = 4_000_000  # in all that is kept of an object, but the last two meshes are kept in any case
 
 _kept = {}  # by document and object: {number: mesh}
 
@@ -35,8 +36,8 @@ def replace(obj, fem_mesh):
         meshes[before] = obj.FemMesh.copy()
     number = before + 1
     meshes[number] = fem_mesh
-    for old in sorted(meshes)[:-KEPT]:
-        del meshes[old]
+    while len(meshes) > 2 and (len(meshes) > KEPT or sum(each.NodeCount for each in meshes.values()) > NODES):
+        del meshes[min(meshes)]
     obj.FemMesh = fem_mesh
     setattr(obj, NUMBER, number)
 
