@@ -427,6 +427,10 @@
       <translation>Ein geprüftes Tetraedernetz des ausgewählten Körpers machen, mit Gruppen für seine Flächen</translation>
     </message>
     <message>
+      <source>Make the selected mesh of Gmsh or Netgen one of collarmesh, with its sizes and groups</source>
+      <translation>Das ausgewählte Netz von Gmsh oder Netgen zu einem von collarmesh machen, mit seinen Größen und Gruppen</translation>
+    </message>
+    <message>
       <source>Median edge length</source>
       <translation>Median der Kantenlängen</translation>
     </message>

@@ -166,6 +166,22 @@ def gmsh_and_back(document, part, obj):
     document.removeObject(next(each for each in document.Objects if each.Label == "FromGmsh").Name)
 
 
+def netgen_by_its_button(document, part):
+    """Its object has no context menu in Python in this FreeCAD."""
+    old = ObjectsFem.makeMeshNetgen(document, "FromNetgen")
+    old.Shape = part
+    document.recompute()
+    FreeCADGui.Selection.clearSelection()
+    FreeCADGui.Selection.addSelection(old)
+    w.click_command("Collarmesh_TakeOver")
+    w.wait_until(lambda: document.getObject("FromNetgen") is None, "the take over")
+    new = next(each for each in document.Objects if each.Label == "FromNetgen")
+    w.require(mesh_object.is_ours(new), "it is ours")
+    document.undo()
+    w.require(document.getObject("FromNetgen") is not None, "undo of that")
+    document.removeObject("FromNetgen")
+
+
 def undo_of_a_meshing_in_the_panel(document, obj):
     count = obj.FemMesh.VolumeCount
     w.open_panel(obj)
@@ -238,6 +254,7 @@ def test():
     mesh_again_by_the_menu(document, cylinder, obj)
     statistics_and_export(obj)
     gmsh_and_back(document, part, obj)
+    netgen_by_its_button(document, part)
     undo_of_a_meshing_in_the_panel(document, obj)
     undo_of_the_creation_while_meshing(document, part)
     triangles_by_the_button(document)

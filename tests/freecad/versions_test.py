@@ -118,6 +118,14 @@ class Versions(unittest.TestCase):
                 self.part.Label = "B"
         self.document.undo()
         self.assertEqual(self.part.Label, "Part")
+        self.document.openTransaction("of a script that does not end it")
+        self.part.Label = "D"
+        with compatibility.transaction(self.document, "next"):
+            self.part.Label = "E"
+        self.document.undo()
+        self.assertEqual(self.part.Label, "D")
+        self.document.undo()
+        self.assertEqual(self.part.Label, "Part")
         with self.assertRaises(KeyError), compatibility.transaction(self.document, "fails"):
             self.part.Label = "C"
             raise KeyError

@@ -6,7 +6,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore
 
-from . import compatibility, inputs, mesh_object, size_objects
+from . import compatibility, inputs, mesh_menu, mesh_object, size_objects, take_over
 from .size_view import icon_of
 from .translations import mark, translate
 from .view_provider import ICON
@@ -177,6 +177,21 @@ class SizeDistance(Size):
     )
 
 
+class TakeOver(Command):
+    """For Netgen's objects, too, which have no context menu of their own before FreeCAD 1.0."""
+
+    icon = os.path.join(os.path.dirname(ICON), "take_over.svg")
+    menu_text = mark("collarmesh", "Take over by collarmesh")
+    tool_tip = mark("collarmesh", "Make the selected mesh of Gmsh or Netgen one of collarmesh, with its sizes and groups")
+
+    def target(self):
+        return selected(take_over.can_be_taken_over)
+
+    def Activated(self):
+        target = self.target()
+        QtCore.QTimer.singleShot(0, lambda: mesh_menu.take(target))  # see Size
+
+
 COMMANDS = {
     MESH_COMMAND: MeshFromShape,
     REFINEMENT_COMMAND: Refinement,
@@ -185,6 +200,7 @@ COMMANDS = {
     "Collarmesh_SizeCylinder": SizeCylinder,
     "Collarmesh_SizeDistance": SizeDistance,
     GROUP_COMMAND: Group,
+    "Collarmesh_TakeOver": TakeOver,
 }
 
 

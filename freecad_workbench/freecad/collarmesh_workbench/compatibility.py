@@ -64,19 +64,29 @@ def make_group(document, mesh_object):
     return ObjectsFem.makeMeshGroup(document, mesh_object)
 
 
+_in_transaction = set()  # names of documents
+
+
 @contextlib.contextmanager
 def transaction(document, name):
-    """One step of undo, part of the one that is open if there is one; an exception takes it back."""
-    if document.HasPendingTransaction:
+    """One step of undo; an exception takes it back. One within another is part of that. FreeCAD's own that is still
+    open ends before: scripts and deletions leave theirs open."""
+    if document.Name in _in_transaction:
         yield
         return
+    if document.HasPendingTransaction:
+        document.commitTransaction()
     document.openTransaction(name)
+    _in_transaction.add(document.Name)
     try:
         yield
     except BaseException:
         document.abortTransaction()
         raise
-    document.commitTransaction()
+    else:
+        document.commitTransaction()
+    finally:
+        _in_transaction.discard(document.Name)
 
 
 def extend_context_menus(fill):

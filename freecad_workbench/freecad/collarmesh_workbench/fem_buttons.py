@@ -13,6 +13,7 @@ BESIDE = {
     "Collarmesh_SizeCylinder": "Collarmesh_SizeBox",
     "Collarmesh_SizeDistance": "Collarmesh_SizeCylinder",
     GROUP_COMMAND: "FEM_MeshGroup",
+    "Collarmesh_TakeOver": GROUP_COMMAND,
 }
 
 
