@@ -17,7 +17,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 TESTS = HERE.parent / "tests" / "freecad"
 PAGE = ("freecad_panel", "freecad_worst_elements", "freecad_message", "freecad_advanced")
 LARGEST = 200000  # bytes of a picture
-STEP = (624, 468)
+STEP = (500, 327)
+BARS = 100  # pixels at the top of FreeCAD's window, the same in all pictures
 GAP = 8
 
 
@@ -40,7 +41,8 @@ def strip(folder):
     width, height = STEP
     whole = Image.new("RGB", (3 * width + 2 * GAP, 2 * height + GAP), "white")
     for i in range(6):
-        step = Image.open(folder / f"step{i + 1}.png").convert("RGB").resize(STEP, Image.Resampling.LANCZOS)
+        step = Image.open(folder / f"step{i + 1}.png").convert("RGB")
+        step = step.crop((0, BARS, *step.size)).resize(STEP, Image.Resampling.LANCZOS)
         whole.paste(step, ((i % 3) * (width + GAP), (i // 3) * (height + GAP)))
     return whole
 
