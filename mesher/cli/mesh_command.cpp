@@ -21,6 +21,7 @@
 #include "scale.h"
 #include "staged_file.h"
 #include "supervisor.h"
+#include "thread_limit.h"
 
 namespace collarmesh::cli {
 
@@ -172,8 +173,11 @@ void write_files(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
     shown = shown_mesh(run.result.mesh, run.worst);
   scale(run.result.mesh.points, arguments.scale);
   StagedFile mesh(arguments.output);
-  mesh.write(
-      [&](const std::string& path) { io::write_tet_mesh(path, run.result.mesh, arguments.output_format); });
+  mesh.write([&](const std::string& path) {
+    ThreadLimit(arguments.threads).run([&] {
+      io::write_tet_mesh(path, run.result.mesh, arguments.output_format);
+    });
+  });
   run.times.end();
   std::vector<StagedFile*> files{&mesh};
   std::deque<StagedFile> reports;

@@ -2,7 +2,7 @@
 //   FAULT_KIND   new, file, thread or process: what is counted, see below
 //   FAULT_AT     the number of the call that fails, from 1; 0: none, they are counted only
 //   FAULT_LASTS  set: all calls after it fail, too
-//   FAULT_COUNT  a file that gets the number of calls at the end
+//   FAULT_COUNT  a file that gets the number of calls at the end, and how many of them were before writing
 //   FAULT_FORKS  set: of the kind `new`, each call fails in turn in a child that is forked there, until the
 //                program makes its second temporary folder; FAULT_COUNT gets the number of calls tried and, as
 //                lines, the wrong ends
@@ -41,6 +41,7 @@ Plan& plan() {
 std::atomic<long> calls{0};
 std::atomic<long> wrong{0};
 std::atomic<int> folders{0};
+std::atomic<long> before_writing{0};  // calls until the program makes its second temporary folder
 
 void write_number(int file, const char* what, long number) {
   char text[64];
@@ -92,6 +93,7 @@ struct Report {
     inside = true;
     const int file = open(plan().count_file, O_WRONLY | O_CREAT | O_APPEND, 0644);
     write_number(file, "calls ", calls.load());
+    write_number(file, "before_writing ", before_writing.load());
     close(file);
   }
 } report;
@@ -145,7 +147,7 @@ extern "C" {
 
 char* mkdtemp(char* name) {
   static const auto real = next(mkdtemp, "mkdtemp");
-  folders.fetch_add(1);
+  if (folders.fetch_add(1) == 1) before_writing.store(calls.load());
   if (fails("file")) return no_space(), nullptr;
   return real(name);
 }

@@ -43,12 +43,19 @@ class FaultsTest(unittest.TestCase):
                              capture_output=True, text=True, timeout=7200 if ALL else 600)
         return run.returncode, run.stderr
 
-    def calls(self, name, kind):
+    def counts(self, name, kind):
+        """Calls of the process that writes, by word of faults.cpp."""
         code, messages = self.run_with(name, kind=kind, at=0)
         if "cannot be loaded" in messages or code == 2:
             self.skipTest("built without this format")
         self.assertEqual(code, 0, messages)
-        return max(int(line.split()[1]) for line in self.count.read_text().splitlines())
+        most = {}
+        for word, number in map(str.split, self.count.read_text().splitlines()):
+            most[word] = max(int(number), most.get(word, 0))
+        return most
+
+    def calls(self, name, kind):
+        return self.counts(name, kind)["calls"]
 
     def assert_whole(self, name, code, context):
         """The files are all new after success and all old else; nothing is left beside them."""
@@ -101,16 +108,18 @@ class Memory(FaultsTest):
                 first = 1 if ALL else max(1, total - 9000)
                 code, messages = self.run_with(name, kind="new", at=first, forks=1)
                 self.assertEqual(code, 0, messages[-2000:])
-                wrong = [line for line in self.count.read_text().splitlines() if not line.startswith("calls")]
+                wrong = [line for line in self.count.read_text().splitlines() if not line.startswith(("calls", "before"))]
                 self.assertEqual(wrong, [])
                 self.assert_whole(name, 0, messages[-2000:])
 
     def test_allocations(self):
         """In runs of their own, those of writing above all."""
         for name in self.runs:
-            total = self.calls(name, "new")
-            last = range(max(1, total - 800), total + 1, 1 if ALL else 67)
-            sample = sorted({*range(1, total, max(1, total // (200 if ALL else 6))), *last})
+            counts = self.counts(name, "new")
+            total, before = counts["calls"], counts["before_writing"]
+            self.assertTrue(0 < before < total, counts)
+            writing = range(before, total + 1, 1 if ALL else max(1, (total - before) // 12))
+            sample = sorted({*range(1, total, max(1, total // (200 if ALL else 6))), *writing})
             for at in sample:
                 with self.subTest(name=name, at=at):
                     code, messages = self.run_with(name, kind="new", at=at)

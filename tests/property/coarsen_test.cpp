@@ -138,6 +138,21 @@ TEST(Coarsen, IsDeterministic) {
   expect_same(first.meshed.result.mesh, second.meshed.result.mesh);
 }
 
+// Proposals that several threads make and one thread alone come to the same.
+TEST(Coarsen, ThreadsChangeNothing) {
+  for (const Shape& shape : thin_shapes()) {
+    SCOPED_TRACE(shape.name);
+    const MeshOptions options = with_size(shape.size);
+    const Meshed made = mesh_of(shape.soups, options, shape.feature_angle);
+    TetMesh alone = made.result.mesh;
+    const CoarsenReport report = coarsen(alone, made.plc, options, {.threads = 1});
+    EXPECT_GT(report.contracted_edges, 0U);
+    TetMesh together = made.result.mesh;
+    coarsen(together, made.plc, options, {.threads = 4});
+    expect_same(alone, together);
+  }
+}
+
 // The median edge of what is coarse is about the size; nothing but features is far shorter.
 TEST(Coarsen, EdgesAreAsLongAsAskedFor) {
   const auto [meshed, report] = coarsened({"plate", {plate()}, 10, 0, 8, 1270});

@@ -17,6 +17,7 @@ struct CoarsenOptions {
   /// The share of both bounds on the angles of thin tets, counted from 0 and from 180 degrees, that is kept
   /// free for what moves vertices afterwards, as `project_boundary` does; 0 to 0.5.
   double reserve = 0;
+  unsigned threads = 0;  ///< 0: as many as there are cores; any number makes the same mesh
 };
 
 struct CoarsenReport {

@@ -1,12 +1,16 @@
 #include "collarmesh/coarsen.h"
 
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <chrono>
 
-#include "coarsen/coarsening_rule.h"
+#include "coarsen/proposals.h"
 #include "coarsen/target_sizes.h"
 #include "collarmesh/error.h"
-#include "improve/operations.h"
+#include "common/parallel_for.h"
+#include "thread_limit.h"
 
 namespace collarmesh {
 
@@ -14,18 +18,14 @@ namespace coarsening {
 namespace {
 
 using improvement::Change;
-using improvement::Operations;
 using improvement::TetComplex;
 using improvement::ThinShape;
 using improvement::Workpiece;
 using Mode = CoarseningRule::Mode;
 
-// Edges below this times the target length are contracted.
-constexpr double contracted_below = 0.8;
 constexpr unsigned plain_passes = 4, repair_passes = 6, rounds = 3;
-// A contraction that makes nothing worse than this may be repaired, in so many steps. Hardly a step mends two
-// tets, so what has more tets to mend than steps left is given up.
-constexpr double repairable = 0.15;
+// Steps that may repair a contraction. Hardly a step mends two tets, so what has more tets to mend than steps
+// left is given up.
 constexpr unsigned most_repairs = 16;
 // Tets below this quality are improved between the passes.
 constexpr double improved_below = 1.3;
@@ -33,7 +33,13 @@ constexpr unsigned most_sweeps = 8;
 // A pass, or a round of them, that removes a smaller share of the tets is the last.
 constexpr double least_share = 0.005;
 constexpr std::size_t steps_between_reports = 4096;
+// Proposals are made for so many items at once, or for this share of them: few of all, so that they hardly
+// meet.
+constexpr std::size_t most_proposals = 1024, items_per_proposal = 16;
 
+/// Contracts and improves, the most promising item first. What is to be done at the next items is proposed by
+/// several threads at once and done one after the other; where anything that a proposal depends on has
+/// changed meanwhile, it is made again. So the result is the one that a single thread makes.
 class Coarsening {
  public:
   Coarsening(TetMesh& mesh, const Plc& plc, const MeshOptions& made_with, const CoarsenOptions& options,
@@ -46,10 +52,10 @@ class Coarsening {
         sizes_(target_sizes(mesh, plc, sizes_asked_for(made_with))),
         thin_(plc, mesh, options.thin_angle, options.reserve),
         rule_(thin_, made_with.radius_edge, sizes_),
-        operations_(workpiece_, rule_),
+        proposer_(workpiece_, thin_, radius_edge_, sizes_),
+        proposers_([this] { return Proposer(workpiece_, thin_, radius_edge_, sizes_); }),
         execution_(execution),
-        changed_(mesh.points.size(), 0),
-        stamps_(mesh.points.size(), 0) {}
+        changed_(mesh.points.size(), 0) {}
 
   // Holes stay round all the same.
   static MeshOptions sizes_asked_for(MeshOptions options) {
@@ -78,17 +84,6 @@ class Coarsening {
   }
 
  private:
-  struct Neighbour {
-    double squared_relative_length;
-    Index vertex;
-
-    friend bool operator<(const Neighbour& x, const Neighbour& y) {
-      return x.squared_relative_length != y.squared_relative_length
-                 ? x.squared_relative_length < y.squared_relative_length
-                 : x.vertex < y.vertex;
-    }
-  };
-
   const TetComplex& complex() const { return workpiece_.complex; }
   const TetMesh& mesh() const { return workpiece_.complex.mesh(); }
   double quality(Index tet) const { return rule_.quality(complex().corners(tet), complex()[tet].corners); }
@@ -96,13 +91,33 @@ class Coarsening {
   double squared_relative_length(Index a, Index b) const {
     return rule_.squared_relative_length(squared_distance(mesh().points[a], mesh().points[b]), a, b);
   }
-  static bool is_short(double squared_relative_length) {
-    return squared_relative_length < contracted_below * contracted_below;
+
+  // Makes a proposal for each item, and uses it. False when stopped.
+  template <class Proposal, class Item, class Make, class UpToDate, class Use>
+  bool for_each(const std::vector<Item>& items, const Make& make, const UpToDate& up_to_date,
+                const Use& use) {
+    const bool alone = tbb::this_task_arena::max_concurrency() == 1;
+    const std::size_t at_once =
+        alone ? 1 : std::clamp<std::size_t>(items.size() / items_per_proposal, 1, most_proposals);
+    std::vector<Proposal> proposals(at_once);
+    for (std::size_t first = 0; first < items.size(); first += at_once) {
+      const std::size_t count = std::min(at_once, items.size() - first);
+      const std::uint32_t begun = ++clock_;
+      if (!alone)
+        parallel_for(count, [&](std::size_t i) { make(proposers_.local(), items[first + i], proposals[i]); });
+      for (std::size_t i = 0; i < count; ++i) {
+        if (stopped(first + i + 1)) return false;
+        if (alone || !up_to_date(items[first + i], proposals[i], begun))
+          make(proposer_, items[first + i], proposals[i]);
+        use(items[first + i], proposals[i]);
+      }
+    }
+    return true;
   }
 
   // The vertices with a short edge, those with the shortest one first, where something has changed since they
   // were asked last.
-  std::vector<Neighbour> find_candidates(std::uint32_t changed_since) const {
+  std::vector<Index> find_candidates(std::uint32_t changed_since) const {
     std::vector<double> shortest(mesh().points.size(), INFINITY);
     for (Index t = 0; t < complex().size(); ++t) {
       if (!complex()[t].alive) continue;
@@ -114,26 +129,36 @@ class Coarsening {
           shortest[v[j]] = std::min(shortest[v[j]], length);
         }
     }
-    std::vector<Neighbour> candidates;
+    std::vector<Index> candidates;
     for (Index v = 0; v < shortest.size(); ++v)
       if (is_short(shortest[v]) && mesh().features[v].dimension > 0 && changed_[v] >= changed_since)
-        candidates.push_back({shortest[v], v});
-    std::sort(candidates.begin(), candidates.end());
+        candidates.push_back(v);
+    std::sort(candidates.begin(), candidates.end(), [&](Index v, Index w) {
+      return shortest[v] != shortest[w] ? shortest[v] < shortest[w] : v < w;
+    });
     return candidates;
   }
 
   // Every vertex once. Is another pass worthwhile?
   bool contract_all(bool repair) {
     std::uint32_t& since = last_pass_[repair ? 1 : 0];
-    const auto candidates = find_candidates(since);
+    const std::vector<Index> candidates = find_candidates(since);
     since = ++clock_;
     const std::size_t before = tets_;
-    std::size_t steps = 0;
-    for (const Neighbour& candidate : candidates) {
-      if (stopped(++steps)) return false;
-      if (complex().in_use(candidate.vertex)) contract_vertex(candidate.vertex, repair);
-    }
-    return worthwhile(before);
+    return for_each<VertexProposal>(
+               candidates,
+               [&](Proposer& proposer, Index v, VertexProposal& found) {
+                 found = {};
+                 if (complex().in_use(v)) proposer.contractions(v, repair, found);
+               },
+               [&](Index v, const VertexProposal& found, std::uint32_t begun) {
+                 return changed_[v] < begun &&
+                        std::all_of(found.targets.begin(), found.targets.end(),
+                                    [&](Index onto) { return changed_[onto] < begun; }) &&
+                        (found.change.kind == Change::Kind::none || workpiece_.may_contract(found.change));
+               },
+               [&](Index, VertexProposal& found) { contract(found); }) &&
+           worthwhile(before);
   }
 
   bool worthwhile(std::size_t before) const {
@@ -148,85 +173,24 @@ class Coarsening {
     return report_.cancelled;
   }
 
-  // Onto the nearest neighbour that will do. Lengths rule out most neighbours, at less cost than the cone.
-  void contract_vertex(Index vertex, bool repair) {
-    find_neighbours(vertex);
-    targets_.clear();
-    for (const Neighbour& n : neighbours_) {
-      if (!is_short(n.squared_relative_length)) break;
-      if (lengths_fit(vertex, n.vertex)) targets_.push_back(n.vertex);
+  void contract(VertexProposal& found) {
+    if (found.change.kind != Change::Kind::none) {
+      forget_touched();
+      apply(std::move(found.change));
+      settle();
+      ++report_.contracted_edges;
+      return;
     }
-    if (targets_.empty()) return;
-    rule_.set_mode(Mode::final);
-    if (!operations_.begin_contractions(vertex)) return;
-    for (const Index onto : targets_)
-      if (contract(onto)) return;
-    if (!repair) return;
-    const double floor = std::min(1.0, operations_.worst_at_vertex());
-    for (const Index onto : targets_) {
-      rule_.set_mode(Mode::force);
-      if (!operations_.begin_contractions(vertex) || contract_and_repair(onto, floor)) return;
-    }
+    for (Change& change : found.to_repair)
+      if (contract_and_repair(std::move(change), found.floor)) return;
   }
 
-  // The nearest by the size first.
-  void find_neighbours(Index vertex) {
-    neighbours_.clear();
-    ++stamp_;
-    shortest_ = INFINITY;
-    complex().star(vertex, star_);
-    for (const Index t : star_)
-      for (const Index w : complex()[t].corners) {
-        if (w == vertex || stamps_[w] == stamp_) continue;
-        stamps_[w] = stamp_;
-        const double squared = squared_distance(mesh().points[vertex], mesh().points[w]);
-        shortest_ = std::min(shortest_, squared);
-        neighbours_.push_back({rule_.squared_relative_length(squared, vertex, w), w});
-      }
-    shortest_ = std::sqrt(shortest_);
-    std::sort(neighbours_.begin(), neighbours_.end());
-  }
-
-  bool contract(Index onto) {
-    Change change;
-    operations_.contract_onto(onto, 0, 1, change);
-    if (change.kind == Change::Kind::none) return false;
-    touched_.clear();
-    apply(std::move(change));
-    settle();
-    ++report_.contracted_edges;
-    return true;
-  }
-
-  // Of the edges that a contraction makes. None may be longer than what is wanted, unless it takes the
-  // place of one as long, or shorter than what there is around.
-  bool lengths_fit(Index vertex, Index onto) {
-    const auto& points = mesh().points;
-    ++stamp_;
-    for (const Index t : star_) {
-      const auto& v = complex()[t].corners;
-      if (std::find(v.begin(), v.end(), onto) == v.end()) continue;
-      for (const Index w : v) stamps_[w] = stamp_;
-    }
-    for (const Neighbour& n : neighbours_) {
-      if (stamps_[n.vertex] == stamp_) continue;
-      const double after = squared_distance(points[onto], points[n.vertex]);
-      if (after < shortest_ * shortest_) return false;
-      const double before = squared_distance(points[vertex], points[n.vertex]);
-      if (!rule_.allows_edge(onto, n.vertex, after, before)) return false;
-    }
-    return true;
-  }
-
-  bool contract_and_repair(Index onto, double floor) {
-    Change change;
-    operations_.contract_onto(onto, repairable, -INFINITY, change);
-    if (change.kind == Change::Kind::none) return false;
+  bool contract_and_repair(Change change, double floor) {
     workpiece_.begin_trial();
-    touched_.clear();
+    forget_touched();
     const std::size_t before = tets_;
-    apply(std::move(change));
     rule_.set_mode(Mode::trial);
+    apply_on_trial(std::move(change));
     for (unsigned step = 0;; ++step) {
       const auto [count, worst] = tets_to_mend(floor);
       if (count == 0) {
@@ -236,7 +200,10 @@ class Coarsening {
         ++report_.repaired;
         return true;
       }
-      if (step + count > most_repairs + 1 || !improve_tet(worst)) break;
+      if (step + count > most_repairs + 1) break;
+      change = proposer_.improvement_of(worst, Mode::trial);
+      if (change.kind == Change::Kind::none) break;
+      apply_on_trial(std::move(change));
     }
     workpiece_.undo();
     tets_ = before;
@@ -263,44 +230,40 @@ class Coarsening {
     return found;
   }
 
-  // By the first that helps of: an edge removed, a corner moved.
-  bool improve_tet(Index tet) {
-    const auto corners = complex()[tet].corners;
-    Change change;
-    const auto found = [&] { return change.kind != Change::Kind::none; };
-    for (unsigned i = 0; i < 4; ++i)
-      for (unsigned j = i + 1; j < 4; ++j) operations_.remove_edge(tet, i, j, change);
-    for (unsigned i = 0; i < 4 && !found(); ++i) operations_.move_vertex(corners[i], change);
-    if (!found()) return false;
-    apply(std::move(change));
-    return true;
-  }
-
   // Until nothing more helps, so that asking again finds the mesh as it is.
   void improve_all() {
-    rule_.set_mode(Mode::final);
     for (unsigned sweep = 0; sweep < most_sweeps && improve_once(); ++sweep) {
     }
   }
 
   bool improve_once() {
-    std::vector<std::pair<double, Index>> poor;
+    rule_.set_mode(Mode::final);
+    using Poor = std::pair<double, Index>;
+    std::vector<Poor> poor;
     for (Index t = 0; t < complex().size(); ++t)
       if (complex()[t].alive && changed_since(t, last_sweep_))
         if (const double q = quality(t); q < improved_below) poor.emplace_back(q, t);
     std::sort(poor.begin(), poor.end());
     last_sweep_ = ++clock_;
     bool any = false;
-    std::size_t steps = 0;
-    for (const auto& [q, t] : poor) {
-      if (stopped(++steps)) return false;
-      if (!complex()[t].alive || quality(t) != q) continue;
-      touched_.clear();
-      if (!improve_tet(t)) continue;
-      settle();
-      any = true;
-    }
-    return any;
+    for_each<Change>(
+        poor,
+        [&](Proposer& proposer, const Poor& item, Change& change) {
+          const auto& [q, t] = item;
+          change = {};
+          if (complex()[t].alive && quality(t) == q) change = proposer.improvement_of(t, Mode::final);
+        },
+        [&](const Poor& item, const Change&, std::uint32_t begun) {
+          return complex()[item.second].alive && !changed_since(item.second, begun);
+        },
+        [&](const Poor&, Change& change) {
+          if (change.kind == Change::Kind::none) return;
+          forget_touched();
+          apply(std::move(change));
+          settle();
+          any = true;
+        });
+    return any && !report_.cancelled;
   }
 
   bool changed_since(Index tet, std::uint32_t when) const {
@@ -308,20 +271,31 @@ class Coarsening {
     return std::any_of(v.begin(), v.end(), [&](Index w) { return changed_[w] >= when; });
   }
 
-  void apply(Change change) {
+  const std::vector<Index>& apply(Change change) {
     tets_ -= change.replacement.old.size();
     tets_ += change.replacement.created.size();
+    for (const Index t :
+         change.replacement.old) {  // a corner may be in no tet that changes but in one that goes
+      const auto& v = complex()[t].corners;
+      touched_vertices_.insert(touched_vertices_.end(), v.begin(), v.end());
+    }
     const auto& changed = workpiece_.apply(std::move(change));
     touched_.insert(touched_.end(), changed.begin(), changed.end());
-    if (rule_.mode() == Mode::final) return;
+    return changed;
+  }
+
+  void apply_on_trial(Change change) {
+    const auto& changed = apply(std::move(change));
     if (qualities_.size() < complex().size()) qualities_.resize(complex().size());
-    rule_.set_mode(Mode::trial);
     for (const Index t : changed) qualities_[t] = quality(t);
   }
+
+  void forget_touched() { touched_.clear(), touched_vertices_.clear(); }
 
   // What was changed stays.
   void settle() {
     ++clock_;
+    for (const Index v : touched_vertices_) changed_[v] = clock_;
     for (const Index t : touched_)
       if (complex()[t].alive)
         for (const Index v : complex()[t].corners) changed_[v] = clock_;
@@ -345,21 +319,17 @@ class Coarsening {
   std::vector<double> sizes_;
   ThinShape thin_;
   CoarseningRule rule_;
-  Operations operations_;
+  Proposer proposer_;  // of the thread that does it
+  tbb::enumerable_thread_specific<Proposer> proposers_;
   const Execution& execution_;
   std::size_t tets_ = 0;
   std::vector<std::uint32_t> changed_;            // by vertex: when the tets at it did
   std::array<std::uint32_t, 2> last_pass_{0, 0};  // when it began, without and with repair
   std::uint32_t last_sweep_ = 0;                  // of improvement
   std::uint32_t clock_ = 0;
-  std::vector<Index> touched_;
-  std::vector<double> qualities_;      // by tet, of those a trial changed
-  std::vector<Index> star_;            // tets at the vertex asked about last
-  std::vector<Neighbour> neighbours_;  // of that vertex
-  double shortest_ = 0;                // edge there
-  std::vector<Index> targets_;         // neighbours that the length rules allow
-  std::vector<std::uint32_t> stamps_;
-  std::uint32_t stamp_ = 0;
+  std::vector<Index> touched_;           // tets that were made or changed
+  std::vector<Index> touched_vertices_;  // of tets that went
+  std::vector<double> qualities_;        // by tet, of those a trial changed
   CoarsenReport report_;
 };
 
@@ -372,7 +342,10 @@ CoarsenReport coarsen(TetMesh& mesh, const Plc& plc, const MeshOptions& made_wit
     throw OptionError("the smallest angle of thin tetrahedra must be above 0 and at most 30 degrees");
   if (!(options.reserve >= 0 && options.reserve <= 0.5))
     throw OptionError("the reserve of angles must be from 0 to 0.5");
-  return coarsening::Coarsening(mesh, plc, made_with, options, execution).run();
+  coarsening::Coarsening coarsening(mesh, plc, made_with, options, execution);
+  CoarsenReport report;
+  ThreadLimit(options.threads).run([&] { report = coarsening.run(); });
+  return report;
 }
 
 }  // namespace collarmesh

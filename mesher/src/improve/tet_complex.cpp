@@ -57,42 +57,53 @@ TetComplex::TetComplex(TetMesh& mesh) : mesh_(mesh) {
 
 // Faces are matched in the list of their first vertex.
 void TetComplex::link_all() {
+  struct Side {
+    std::uint64_t other_corners;  // the two larger ones
+    Index cell;                   // a tet, or one of the mesh' faces
+    std::uint32_t corner;         // opposite it; 4: of a face
+  };
+  constexpr std::uint32_t of_face = 4;
   std::vector<std::size_t> first(mesh_.points.size() + 1, 0);
-  const auto for_all_faces = [&](auto&& act) {
+  const auto for_all_sides = [&](auto&& act) {
+    const auto visit = [&](const std::array<Index, 3>& corners, Index cell, std::uint32_t corner) {
+      const auto key = sorted(corners);
+      act(key[0], Side{std::uint64_t{key[1]} << 32 | key[2], cell, corner});
+    };
     for (Index t = 0; t < tets_.size(); ++t)
       for (unsigned corner = 0; corner < 4; ++corner)
-        act(OpenFace{sorted(face_corners(tets_[t].corners, corner)), t, corner, none});
-    for (Index f = 0; f < mesh_.faces.size(); ++f) act(OpenFace{sorted(mesh_.faces[f]), none, 0, f});
+        visit(face_corners(tets_[t].corners, corner), t, corner);
+    for (Index f = 0; f < mesh_.faces.size(); ++f) visit(mesh_.faces[f], f, of_face);
   };
-  for_all_faces([&](const OpenFace& face) { ++first[face.key[0] + 1]; });
+  for (const Tet& tet : tets_) {  // the smallest corner is that of three sides, the next one of the fourth
+    auto v = tet.corners;
+    std::partial_sort(v.begin(), v.begin() + 2, v.end());
+    first[v[0] + 1] += 3;
+    ++first[v[1] + 1];
+  }
+  for (const auto& v : mesh_.faces) ++first[std::min({v[0], v[1], v[2]}) + 1];
   for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
-  std::vector<OpenFace> faces(first.back());
+  std::vector<Side> sides(first.back());
   std::vector<std::size_t> next(first.begin(), first.end() - 1);
-  for_all_faces([&](const OpenFace& face) { faces[next[face.key[0]]++] = face; });
+  for_all_sides([&](Index smallest, const Side& side) { sides[next[smallest]++] = side; });
   for (std::size_t v = 0; v + 1 < first.size(); ++v) {
-    const auto begin = faces.begin() + static_cast<std::ptrdiff_t>(first[v]),
-               end = faces.begin() + static_cast<std::ptrdiff_t>(first[v + 1]);
-    std::sort(begin, end, [](const OpenFace& a, const OpenFace& b) {
-      return std::pair(a.key[1], a.key[2]) < std::pair(b.key[1], b.key[2]);
-    });
-    for (auto at = begin; at != end;) {
-      auto last = at;
-      while (last != end && last->key == at->key) ++last;
+    const auto all = std::span(sides).subspan(first[v], first[v + 1] - first[v]);
+    std::sort(all.begin(), all.end(),
+              [](const Side& a, const Side& b) { return a.other_corners < b.other_corners; });
+    for (std::size_t i = 0, j = 0; i < all.size(); i = j) {
       Index face = none;
-      std::array<const OpenFace*, 2> sides{nullptr, nullptr};
-      for (auto i = at; i != last; ++i) {
-        if (i->tet == none)
-          face = i->face;
+      std::array<const Side*, 2> of_tets{nullptr, nullptr};
+      for (; j < all.size() && all[j].other_corners == all[i].other_corners; ++j) {
+        if (all[j].corner == of_face)
+          face = all[j].cell;
         else
-          (sides[0] == nullptr ? sides[0] : sides[1]) = &*i;
+          (of_tets[0] == nullptr ? of_tets[0] : of_tets[1]) = &all[j];
       }
       for (unsigned s = 0; s < 2; ++s) {
-        if (sides[s] == nullptr) continue;
-        Tet& tet = tets_[sides[s]->tet];
-        tet.faces[sides[s]->corner] = face;
-        tet.neighbours[sides[s]->corner] = sides[1 - s] == nullptr ? none : sides[1 - s]->tet;
+        if (of_tets[s] == nullptr) continue;
+        Tet& tet = tets_[of_tets[s]->cell];
+        tet.faces[of_tets[s]->corner] = face;
+        tet.neighbours[of_tets[s]->corner] = of_tets[1 - s] == nullptr ? none : of_tets[1 - s]->cell;
       }
-      at = last;
     }
   }
 }

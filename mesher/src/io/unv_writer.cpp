@@ -77,9 +77,13 @@ class ElementWriter {
     for (const auto& [key, members] : groups_) {
       out_ << fmt::format("{:10}{:10}{:10}{:10}{:10}{:10}{:10}{:10}\n{}\n", ++number, 0, 0, 0, 0, 0, 0,
                           members.size(), group_name(mesh_, key.first, key.second, "-"));
-      for (std::size_t i = 0; i < members.size(); ++i)
-        out_ << fmt::format("{:10}{:10}{:10}{:10}{}", unv_group_element, members[i], 0, 0,
-                            i % 2 == 1 || i + 1 == members.size() ? "\n" : "");
+      for (std::size_t i = 0; i < members.size(); ++i) {
+        line_.clear();
+        fmt::format_to(std::back_inserter(line_), "{:10}{:10}{:10}{:10}", unv_group_element, members[i], 0,
+                       0);
+        if (i % 2 == 1 || i + 1 == members.size()) line_ += '\n';
+        out_ << line_;
+      }
     }
     end_dataset(out_);
   }

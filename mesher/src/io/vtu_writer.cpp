@@ -1,6 +1,7 @@
 // VTK's XML format for unstructured grids: appended arrays, compressed in blocks, base64. Headers
 // are UInt64. See "VTK File Formats" (VTK User's Guide) and vtkXMLDataReader. What the arrays are:
 // vtk_grid.h. The cells are the tets; faces and edges are in FieldData.
+#include <tbb/task_arena.h>
 #include <zlib.h>
 
 #include <bit>
@@ -8,8 +9,11 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "collarmesh/usable_threads.h"
+#include "common/parallel_for.h"
 #include "io/base64.h"
 #include "io/file_writer.h"
 #include "io/tet_mesh_formats.h"
@@ -34,73 +38,89 @@ constexpr std::string_view type_name<float> = "Float32";
 template <>
 constexpr std::string_view type_name<double> = "Float64";
 
-/// One array, compressed: the header (number of blocks, their size, size of the last one if it is
-/// smaller, compressed sizes) and the blocks.
+/// One array as it is written: the header (number of blocks, their size, size of the last one if it is
+/// smaller, compressed sizes) and the compressed blocks, in base64.
 struct DataArray {
-  std::string name;
-  std::string_view type;
-  std::size_t values = 0;
-  int components = 1;
-  std::vector<std::uint64_t> header;
-  std::string blocks;
+  const VtkArray* array;
+  std::string_view type, bytes;
+  std::size_t values;
+  std::string text;
 
-  std::string_view header_bytes() const {
-    return {reinterpret_cast<const char*>(header.data()), header.size() * sizeof(std::uint64_t)};
+  explicit DataArray(const VtkArray& from) : array(&from) {
+    std::visit(
+        [this](const auto& all) {
+          using T = typename std::decay_t<decltype(all)>::value_type;
+          type = type_name<T>;
+          bytes = {reinterpret_cast<const char*>(all.data()), all.size() * sizeof(T)};
+          values = all.size();
+        },
+        from.values);
   }
-  std::size_t encoded_size() const { return base64_size(header_bytes().size()) + base64_size(blocks.size()); }
+  std::size_t blocks() const { return (bytes.size() + block_bytes - 1) / block_bytes; }
 };
-
-void append_compressed(std::string_view block, DataArray& array) {
-  const std::size_t before = array.blocks.size();
-  uLongf size = compressBound(block.size());
-  array.blocks.resize(before + size);
-  if (compress2(reinterpret_cast<Bytef*>(array.blocks.data() + before), &size,
-                reinterpret_cast<const Bytef*>(block.data()), block.size(), Z_BEST_SPEED) != Z_OK)
-    throw std::bad_alloc();  // the only way it fails with a buffer of that size
-  array.blocks.resize(before + size);
-  array.header.push_back(size);
-}
-
-DataArray compressed(const VtkArray& array) {
-  return std::visit(
-      [&](const auto& values) {
-        using T = typename std::decay_t<decltype(values)>::value_type;
-        const std::string_view bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
-        const std::size_t count = (bytes.size() + block_bytes - 1) / block_bytes;
-        DataArray result{array.name,
-                         type_name<T>,
-                         values.size(),
-                         array.components,
-                         {count, block_bytes, bytes.size() % block_bytes},
-                         {}};
-        for (std::size_t at = 0; at < bytes.size(); at += block_bytes)
-          append_compressed(bytes.substr(at, block_bytes), result);
-        return result;
-      },
-      array.values);
-}
 
 /// The arrays of one part of the file.
 struct Section {
   std::string_view name;
   std::vector<DataArray> arrays;
+
+  Section(std::string_view its_name, std::span<const VtkArray> of)
+      : name(its_name), arrays(of.begin(), of.end()) {}
 };
 
-Section compressed(std::string_view name, const std::vector<VtkArray>& arrays) {
-  Section section{name, {}};
-  for (const VtkArray& array : arrays) section.arrays.push_back(compressed(array));
-  return section;
+std::string compressed(std::string_view block) {
+  uLongf size = compressBound(block.size());
+  std::string result(size, '\0');
+  if (compress2(reinterpret_cast<Bytef*>(result.data()), &size, reinterpret_cast<const Bytef*>(block.data()),
+                block.size(), Z_BEST_SPEED) != Z_OK)
+    throw std::bad_alloc();  // the only way it fails with a buffer of that size
+  result.resize(size);
+  return result;
+}
+
+std::string encoded(const DataArray& array, std::span<const std::string> blocks) {
+  std::vector<std::uint64_t> header{blocks.size(), block_bytes, array.bytes.size() % block_bytes};
+  std::string joined;
+  for (const std::string& block : blocks) {
+    header.push_back(block.size());
+    joined += block;
+  }
+  return base64_encode(
+             {reinterpret_cast<const char*>(header.data()), header.size() * sizeof(std::uint64_t)}) +
+         base64_encode(joined);
+}
+
+/// Make the text of all arrays.
+void encode(std::span<Section> sections) {
+  if (tbb::this_task_arena::max_concurrency() > 1)
+    usable_threads();  // TBB has no more than these from now on
+  std::vector<DataArray*> arrays;
+  std::vector<std::size_t> first{0};  // block of each array, and the end
+  std::vector<std::string_view> bytes;
+  for (Section& section : sections)
+    for (DataArray& array : section.arrays) {
+      arrays.push_back(&array);
+      for (std::size_t i = 0; i < array.blocks(); ++i)
+        bytes.push_back(array.bytes.substr(i * block_bytes, block_bytes));
+      first.push_back(bytes.size());
+    }
+  std::vector<std::string> blocks(bytes.size());
+  parallel_for(blocks.size(), [&](std::size_t i) { blocks[i] = compressed(bytes[i]); });
+  parallel_for(arrays.size(), [&](std::size_t i) {
+    arrays[i]->text = encoded(*arrays[i], std::span(blocks).subspan(first[i], first[i + 1] - first[i]));
+  });
 }
 
 void write_section(FileWriter& out, const Section& section, std::size_t& offset) {
   out << "      <" << section.name << ">\n";
   for (const DataArray& array : section.arrays) {
-    out << "        <DataArray type=\"" << array.type << "\" Name=\"" << array.name << '"';
+    const int components = array.array->components;
+    out << "        <DataArray type=\"" << array.type << "\" Name=\"" << array.array->name << '"';
     // meshio gives arrays with the attribute a second dimension.
-    if (array.components > 1) out << " NumberOfComponents=\"" << array.components << '"';
+    if (components > 1) out << " NumberOfComponents=\"" << components << '"';
     if (section.name == "FieldData") out << " NumberOfTuples=\"" << array.values << '"';
     out << " format=\"appended\" offset=\"" << offset << "\"/>\n";
-    offset += array.encoded_size();
+    offset += array.text.size();
   }
   out << "      </" << section.name << ">\n";
 }
@@ -111,10 +131,15 @@ void write_vtu(const std::string& path, const TetMesh& mesh) {
   static_assert(std::endian::native == std::endian::little);
   FileWriter out(path);
   VtkGrid grid = make_vtk_grid(mesh);
-  const Section sections[] = {
-      compressed("FieldData", take_boundary(mesh, grid)), compressed("Points", {grid.points}),
-      compressed("Cells", {grid.connectivity, grid.offsets, grid.types}),
-      compressed("PointData", grid.point_data), compressed("CellData", grid.cell_data)};
+  const std::vector<VtkArray> boundary = take_boundary(mesh, grid);
+  const std::vector<VtkArray> cells{std::move(grid.connectivity), std::move(grid.offsets),
+                                    std::move(grid.types)};
+  Section sections[] = {{"FieldData", boundary},
+                        {"Points", {&grid.points, 1}},
+                        {"Cells", cells},
+                        {"PointData", grid.point_data},
+                        {"CellData", grid.cell_data}};
+  encode(sections);
   out << "<?xml version=\"1.0\"?>\n"
          "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
          "header_type=\"UInt64\" "
@@ -126,8 +151,7 @@ void write_vtu(const std::string& path, const TetMesh& mesh) {
   for (const Section& section : std::span(sections).subspan(1)) write_section(out, section, offset);
   out << "    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"base64\">\n   _";
   for (const Section& section : sections)
-    for (const DataArray& array : section.arrays)
-      out << base64_encode(array.header_bytes()) << base64_encode(array.blocks);
+    for (const DataArray& array : section.arrays) out << array.text;
   out << "\n  </AppendedData>\n</VTKFile>\n";
   out.commit();
 }

@@ -272,8 +272,9 @@ class Pipeline {
   void coarsen_elements() {
     if (!options_.coarsen || made_.result.status != MeshStatus::complete) return;
     begin("coarsen", 0.6, 0.7);
-    made_.coarsening = coarsen(made_.result.mesh, *plc_, bounds_,
-                               {.thin_angle = options_.thin_angle, .reserve = reserve()}, inner_);
+    made_.coarsening = coarsen(
+        made_.result.mesh, *plc_, bounds_,
+        {.thin_angle = options_.thin_angle, .reserve = reserve(), .threads = options_.threads}, inner_);
     if (made_.coarsening->cancelled) stop();
   }
 

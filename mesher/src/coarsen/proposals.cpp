@@ -1,0 +1,103 @@
+#include "coarsen/proposals.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace collarmesh::coarsening {
+
+using improvement::Change;
+
+namespace {
+
+// A contraction that makes nothing worse than this may be repaired.
+constexpr double repairable = 0.15;
+
+bool contains(const auto& range, Index v) { return std::find(range.begin(), range.end(), v) != range.end(); }
+
+}  // namespace
+
+Proposer::Proposer(const improvement::Workpiece& workpiece, const improvement::ThinShape& thin,
+                   double radius_edge, std::span<const double> sizes)
+    : workpiece_(workpiece),
+      rule_(thin, radius_edge, sizes),
+      operations_(workpiece, rule_),
+      stamps_(workpiece.complex.mesh().points.size(), 0) {}
+
+// Lengths rule out most neighbours, at less cost than the cone.
+void Proposer::contractions(Index vertex, bool repairs, VertexProposal& found) {
+  found = {};
+  find_neighbours(vertex);
+  for (const Neighbour& n : neighbours_) {
+    if (!is_short(n.squared_relative_length)) break;
+    if (lengths_fit(vertex, n.vertex)) found.targets.push_back(n.vertex);
+  }
+  if (found.targets.empty()) return;
+  rule_.set_mode(Mode::final);
+  if (!operations_.begin_contractions(vertex)) return;
+  for (const Index onto : found.targets) {
+    operations_.contract_onto(onto, 0, 1, found.change);
+    if (found.change.kind != Change::Kind::none) return;
+  }
+  if (!repairs) return;
+  found.floor = std::min(1.0, operations_.worst_at_vertex());
+  rule_.set_mode(Mode::force);
+  if (!operations_.begin_contractions(vertex)) return;
+  for (const Index onto : found.targets) {
+    Change change;
+    operations_.contract_onto(onto, repairable, -INFINITY, change);
+    if (change.kind != Change::Kind::none) found.to_repair.push_back(std::move(change));
+  }
+}
+
+Change Proposer::improvement_of(Index tet, Mode mode) {
+  rule_.set_mode(mode);
+  const auto corners = complex()[tet].corners;
+  Change change;
+  for (unsigned i = 0; i < 4; ++i)
+    for (unsigned j = i + 1; j < 4; ++j) operations_.remove_edge(tet, i, j, change);
+  for (unsigned i = 0; i < 4 && change.kind == Change::Kind::none; ++i)
+    operations_.move_vertex(corners[i], change);
+  return change;
+}
+
+bool Proposer::is_new(Index vertex) {
+  if (stamps_[vertex] == stamp_) return false;
+  stamps_[vertex] = stamp_;
+  return true;
+}
+
+void Proposer::find_neighbours(Index vertex) {
+  neighbours_.clear();
+  ++stamp_;
+  stamps_[vertex] = stamp_;
+  shortest_ = INFINITY;
+  complex().star(vertex, star_);
+  for (const Index t : star_)
+    for (const Index w : complex()[t].corners) {
+      if (!is_new(w)) continue;
+      const double squared = squared_distance(points()[vertex], points()[w]);
+      shortest_ = std::min(shortest_, squared);
+      neighbours_.push_back({rule_.squared_relative_length(squared, vertex, w), w});
+    }
+  shortest_ = std::sqrt(shortest_);
+  std::sort(neighbours_.begin(), neighbours_.end());
+}
+
+// Of the edges that a contraction makes. None may be longer than what is wanted, unless it takes the place of
+// one as long, or shorter than what there is around.
+bool Proposer::lengths_fit(Index vertex, Index onto) {
+  ++stamp_;
+  for (const Index t : star_) {
+    const auto& v = complex()[t].corners;
+    if (!contains(v, onto)) continue;
+    for (const Index w : v) stamps_[w] = stamp_;
+  }
+  return std::all_of(neighbours_.begin(), neighbours_.end(), [&](const Neighbour& n) {
+    if (stamps_[n.vertex] == stamp_) return true;
+    const double after = squared_distance(points()[onto], points()[n.vertex]);
+    return after >= shortest_ * shortest_ &&
+           rule_.allows_edge(onto, n.vertex, after, squared_distance(points()[vertex], points()[n.vertex]));
+  });
+}
+
+}  // namespace collarmesh::coarsening

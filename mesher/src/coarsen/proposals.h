@@ -1,0 +1,68 @@
+#pragma once
+
+#include <vector>
+
+#include "coarsen/coarsening_rule.h"
+#include "improve/operations.h"
+
+namespace collarmesh::coarsening {
+
+/// The contractions of one vertex that the lengths of edges allow, as the mesh is.
+struct VertexProposal {
+  std::vector<Index> targets;  ///< neighbours onto which lengths allow it, the nearest by the size first
+  improvement::Change change;  ///< onto the first of them that shapes allow, too; else none
+  std::vector<improvement::Change> to_repair;  ///< onto each of them, with tets that have to be improved
+  double floor = 0;                            ///< no tet may get worse than this by repairs
+};
+
+/// Finds what can be done, and does nothing. Each thread has its own.
+class Proposer {
+ public:
+  using Mode = CoarseningRule::Mode;
+
+  /// All but the number are kept by reference; the last three are those of the rule.
+  Proposer(const improvement::Workpiece& workpiece, const improvement::ThinShape& thin, double radius_edge,
+           std::span<const double> sizes);
+  Proposer(const Proposer&) = delete;
+  Proposer& operator=(const Proposer&) = delete;
+
+  /// Contractions of a vertex; those to repair, too, where there is no other.
+  void contractions(Index vertex, bool repairs, VertexProposal& found);
+  /// The first that makes a tet better of: an edge removed, a corner moved.
+  improvement::Change improvement_of(Index tet, Mode mode);
+
+ private:
+  struct Neighbour {
+    double squared_relative_length;
+    Index vertex;
+
+    friend bool operator<(const Neighbour& x, const Neighbour& y) {
+      return x.squared_relative_length != y.squared_relative_length
+                 ? x.squared_relative_length < y.squared_relative_length
+                 : x.vertex < y.vertex;
+    }
+  };
+
+  const improvement::TetComplex& complex() const { return workpiece_.complex; }
+  const std::vector<Point>& points() const { return complex().mesh().points; }
+  void find_neighbours(Index vertex);
+  bool lengths_fit(Index vertex, Index onto);
+  bool is_new(Index vertex);
+
+  const improvement::Workpiece& workpiece_;
+  CoarseningRule rule_;
+  improvement::Operations operations_;
+  std::vector<Index> star_;            // tets at the vertex asked about last
+  std::vector<Neighbour> neighbours_;  // of that vertex, the nearest by the size first
+  double shortest_ = 0;                // edge there
+  std::vector<std::uint32_t> stamps_;  // by vertex
+  std::uint32_t stamp_ = 0;
+};
+
+/// Edges below this times the target length are contracted.
+constexpr double contracted_below = 0.8;
+constexpr bool is_short(double squared_relative_length) {
+  return squared_relative_length < contracted_below * contracted_below;
+}
+
+}  // namespace collarmesh::coarsening
