@@ -20,8 +20,9 @@ PAGE = {  # by the test that makes them
     "sizes_gui_test.py": ("freecad_size_handles", "freecad_sizes"),
     "document_gui_test.py": ("freecad_out_of_date", "freecad_menu", "freecad_statistics"),
 }
-COLOURS = 128
-STEP = (624, 468)
+LARGEST = 200000  # bytes of a picture
+STEP = (500, 327)
+BARS = 100  # pixels at the top of FreeCAD's window, the same in all pictures
 GAP = 8
 
 
@@ -30,7 +31,12 @@ def take(program, script, folder):
 
 
 def save(picture, path):
-    picture.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE).save(path, optimize=True)
+    """With as many colours as fit."""
+    for colours in (256, 192, 128, 96, 64):
+        few = picture.convert("RGB").quantize(colours, kmeans=2, dither=Image.Dither.NONE)
+        few.save(path, optimize=True)
+        if path.stat().st_size < LARGEST:
+            break
     print(path, path.stat().st_size)
 
 
@@ -39,7 +45,8 @@ def strip(folder):
     width, height = STEP
     whole = Image.new("RGB", (3 * width + 2 * GAP, 2 * height + GAP), "white")
     for i in range(6):
-        step = Image.open(folder / f"step{i + 1}.png").convert("RGB").resize(STEP, Image.Resampling.LANCZOS)
+        step = Image.open(folder / f"step{i + 1}.png").convert("RGB")
+        step = step.crop((0, BARS, *step.size)).resize(STEP, Image.Resampling.LANCZOS)
         whole.paste(step, ((i % 3) * (width + GAP), (i // 3) * (height + GAP)))
     return whole
 

@@ -81,6 +81,11 @@ def rows(tree):
     return {top.text(0): [top.child(i) for i in range(top.childCount())] for top in tops}
 
 
+def column_of(tree, column):
+    """The texts of the rows at the top."""
+    return [tree.topLevelItem(i).text(column) for i in range(tree.topLevelItemCount())]
+
+
 def said():
     """All that the panel tells of the last run."""
     shown = [child(name).text() for name in ("message", "counts", "guarantees") if child(name).isVisible()]
@@ -114,6 +119,8 @@ def screenshot(name, fit=True, size=(1200, 900)):
     """A picture of the window, made small for it; `fit`: with all of the document in view."""
     if not PICTURES:
         return
+    if find("presets") is not None and child("run").isEnabled():
+        wait_until(lambda: "…" not in "".join(column_of(child("presets"), 2)), "the numbers of elements")
     window.setGeometry(0, 0, *size)
     for _ in range(2):
         pause(400)

@@ -21,6 +21,7 @@ class PlacesList(QtGui.QTreeWidget):
         self.setIndentation(12)
         self.setUniformRowHeights(False)
         self.setMinimumHeight(170)
+        self.setVerticalScrollMode(QtGui.QAbstractItemView.ScrollPerPixel)
         self.setItemDelegate(_Wrapped(self))
         self.setToolTip(translate("collarmesh", "Click to see the place"))
         self.itemClicked.connect(self._pick)
@@ -82,7 +83,8 @@ class _Wrapped(QtGui.QStyledItemDelegate):
     def sizeHint(self, option, index):
         tree = self.parent()
         levels = 2 if index.parent().isValid() else 1
-        width = tree.viewport().width() - levels * tree.indentation() - 14
+        around = 2 * tree.frameWidth() + tree.verticalScrollBar().sizeHint().width() + 10
+        width = tree.width() - levels * tree.indentation() - around
         box = option.fontMetrics.boundingRect(QtCore.QRect(0, 0, width, 10000), QtCore.Qt.TextWordWrap, index.data())
         return QtCore.QSize(box.width(), max(box.height(), option.fontMetrics.height()) + 3)
 

@@ -48,12 +48,12 @@ class SizeSection(QtGui.QWidget):
         sizes.append(self._size_or_zero() if self._size_or_zero() not in sizes else 0)
         for row, size in enumerate(sizes):
             item = self.table.topLevelItem(row)
-            if size in predictions:
-                tets, seconds = predictions[size]
+            tets, seconds = predictions.get(size, (0, 0))
+            if tets > 0:
                 item.setText(ELEMENTS, size_presets.count_text(tets))
                 item.setText(TIME, size_presets.duration_text(seconds))
             else:
-                item.setText(ELEMENTS, missing if size > 0 else "")
+                item.setText(ELEMENTS, missing if size > 0 and size not in predictions else "")
                 item.setText(TIME, "")
 
     def _table(self):
