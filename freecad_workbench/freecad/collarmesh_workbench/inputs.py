@@ -30,11 +30,6 @@ def shape_of(part):
     return Part.Shape() if part.isDerivedFrom("Mesh::Feature") else Part.getShape(part)
 
 
-def bounds_of(part):
-    mesh = triangles_of(part)
-    return mesh.BoundBox if mesh is not None else shape_of(part).BoundBox
-
-
 def can_be_meshed(obj):
     """Is it worth a try? Asked often, so kinds decide; what is no closed solid is refused when it is meshed."""
     linked = obj.getLinkedObject(True)

@@ -5,7 +5,7 @@ import re
 import FreeCAD
 import Part
 
-from . import compatibility, inputs
+from . import compatibility, extent, inputs
 from .program import MesherError
 from .translations import doc, translate
 
@@ -41,10 +41,10 @@ class Size(compatibility.Stateless):
 
     def place(self, obj, part):
         """A first size and place, in the middle of a part."""
-        bounds = inputs.bounds_of(part)
-        extent = DEFAULT_SHARE * bounds.DiagonalLength
+        bounds = extent.bounding_box(part)
+        length = DEFAULT_SHARE * bounds.DiagonalLength
         for name, share, _ in self.lengths:
-            setattr(obj, name, share * extent)
+            setattr(obj, name, share * length)
         obj.Placement.Base = bounds.Center - self.middle(obj)
 
     def middle(self, _obj):
@@ -228,7 +228,7 @@ def make(mesh_object, kind, size=0, name=""):
         proxy.place(obj, part)
         size = (
             size
-            or (mesh_object.CharacteristicLengthMax.Value or inputs.bounds_of(part).DiagonalLength / 20) / 4
+            or (mesh_object.CharacteristicLengthMax.Value or extent.bounding_box(part).DiagonalLength / 20) / 4
         )
     obj.Size = size
     setattr(mesh_object, PROPERTY, [*getattr(mesh_object, PROPERTY), obj])

@@ -5,7 +5,7 @@ import math
 
 import ObjectsFem
 
-from . import compatibility, inputs, mesh_object, size_objects, up_to_date
+from . import compatibility, extent, inputs, mesh_object, size_objects, up_to_date
 from .program import MesherError
 from .translations import doc, translate
 
@@ -81,7 +81,7 @@ def take_gmsh(old, new):
 def take_netgen(old, new):
     part = compatibility.meshed_object(new)
     largest = value_of(old, "MaxSize")
-    if part is None or largest < inputs.bounds_of(part).DiagonalLength:
+    if part is None or largest < extent.bounding_box(part).DiagonalLength:
         new.CharacteristicLengthMax = largest
     new.CharacteristicLengthMin = value_of(old, "MinSize")
     new.ElementOrder = mesh_object.ORDERS[bool(getattr(old, "SecondOrder", False))]
