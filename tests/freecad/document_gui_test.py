@@ -77,29 +77,26 @@ def menu_of(label, choose=None, picture=""):
 
 def a_changed_shape_marks_its_mesh(document, part, obj):
     show_model()
+    w.pause(500)  # icons are drawn a moment later
     fresh = icon_of(obj.Label)
     count = obj.FemMesh.VolumeCount
     part.Radius = 7
     document.recompute()
-    w.pause(200)
-    w.require(icon_of(obj.Label) != fresh, "the icon in the tree shows it")
+    w.wait_until(lambda: icon_of(obj.Label) != fresh, "the icon in the tree shows it", 10)
     w.require(obj.ViewObject.Proxy.getIcon() == view_provider.OUT_OF_DATE_ICON, "by the mark")
     w.require(obj.FemMesh.VolumeCount == count, "nothing is meshed by a recompute")
     FreeCADGui.ActiveDocument.ActiveView.viewIsometric()
     w.screenshot("freecad_out_of_date.png", size=(900, 600))
     part.Radius = 6
     document.recompute()
-    w.pause(200)
-    w.require(icon_of(obj.Label) == fresh, "the mark goes when the shape is as before")
+    w.wait_until(lambda: icon_of(obj.Label) == fresh, "the mark goes when the shape is as before", 10)
     document.openTransaction("Radius")
     part.Radius = 7
     document.recompute()
     document.commitTransaction()
-    w.pause(200)
-    w.require(icon_of(obj.Label) != fresh, "the mark again")
+    w.wait_until(lambda: icon_of(obj.Label) != fresh, "the mark again", 10)
     document.undo()
-    w.pause(200)
-    w.require(icon_of(obj.Label) == fresh, "the mark goes by undo, too")
+    w.wait_until(lambda: icon_of(obj.Label) == fresh, "the mark goes by undo, too", 10)
 
 
 def mesh_again_by_the_menu(document, part, obj):
