@@ -152,9 +152,10 @@ void add_size_options(CLI::App& app, MeshOptions& m, std::string& size_field) {
       ->group(group);
   add_tag_values(app, "--patch-size", m.patch_size, "On the patches with this tag; repeatable")->group(group);
   add_tag_values(app, "--curve-size", m.curve_size, "On the curves with this tag; repeatable")->group(group);
-  app.add_option("--size-field", size_field,
-                 "Sizes by place: .json (balls, boxes, distances from features), or .vtu or .msh with a "
-                 "scalar on its points")
+  app.add_option(
+         "--size-field", size_field,
+         "Sizes by place: .json (balls, boxes, cylinders, distances from features), or .vtu or .msh with a "
+         "scalar on its points")
       ->type_name("FILE")
       ->group(group);
   add(app, "--elements-per-circle N", m.elements_per_circle,
@@ -278,10 +279,6 @@ bool is_meshing_group(const std::string& group) {
   return group == size_group || group == quality_group || group == elements_group;
 }
 
-void add_report_option(CLI::App& app, std::string& report, const std::string& text) {
-  app.add_option("--report", report, text)->type_name("FILE");
-}
-
 void add_quiet_flag(CLI::App& app, bool& quiet) {
   app.add_flag("-q,--quiet", quiet, "Say nothing unless something is wrong");
 }
@@ -298,7 +295,11 @@ void add_run_options(CLI::App& app, MeshArguments& a) {
   add(app, "--scale FACTOR", a.scale,
       "Coordinates are multiplied by this when they are written, 0.001 for m of mm")
       ->check(number_in(1e-100, 1e100, "a positive number"));
-  add_report_option(app, a.report, "Write what was measured, as JSON, or as a page to look at (.html)");
+  app.add_option("--report", a.reports,
+                 "Write what was measured, as JSON, or as a page to look at (.html); may be given for each")
+      ->type_name("FILE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   const auto set_progress = [&a](const std::string& word) {
     a.progress = word == "json"   ? ProgressStyle::json
                  : word == "none" ? ProgressStyle::none
@@ -407,7 +408,7 @@ CLI::App* add_repair_command(CLI::App& app, RepairArguments& a) {
       "repair", "Write the facets that would be meshed: repaired where they are no valid complex");
   add_conversion_files(*repair, a, "Surfaces, complexes and CAD shapes, which become one");
   add_complex_options(*repair, a.complex);
-  add_report_option(*repair, a.report, "Write what was repaired as JSON");
+  repair->add_option("--report", a.report, "Write what was repaired as JSON")->type_name("FILE");
   add(*repair, "--time-limit SECONDS", a.time_limit, "For everything", "none")->check(seconds);
   repair->add_flag("--json", a.json, "Print what was repaired as JSON");
   add_quiet_flag(*repair, a.quiet);
@@ -428,6 +429,12 @@ std::vector<std::string> all_inputs(const SomeArguments& a) {
   return inputs;
 }
 
+const std::vector<std::string>& reports_of(const MeshArguments& a) { return a.reports; }
+
+std::vector<std::string> reports_of(const RepairArguments& a) {
+  return a.report.empty() ? std::vector<std::string>{} : std::vector{a.report};
+}
+
 /// No output takes the place of an input, or of another output.
 template <class SomeArguments>
 void check_outputs(const SomeArguments& a) {
@@ -439,12 +446,17 @@ void check_outputs(const SomeArguments& a) {
     throw CLI::ValidationError(
         "--output",
         fmt::format("'{}' would overwrite {}; choose another name or folder", a.output, in_the_way));
-  if (a.report.empty()) return;
-  if (overwritten(written, {a.report}, {}).size() > 0)
-    throw CLI::ValidationError("--report", "names a file of --output; choose another");
-  const std::string lost = overwritten({a.report}, inputs, a.input_format);
-  if (!lost.empty())
-    throw CLI::ValidationError("--report", fmt::format("would overwrite {}; choose another", lost));
+  std::vector<std::string> others;
+  for (const std::string& report : reports_of(a)) {
+    if (!overwritten(written, {report}, {}).empty())
+      throw CLI::ValidationError("--report", "names a file of --output; choose another");
+    if (!overwritten({report}, others, {}).empty())
+      throw CLI::ValidationError("--report", fmt::format("names {} twice; choose another", report));
+    const std::string lost = overwritten({report}, inputs, a.input_format);
+    if (!lost.empty())
+      throw CLI::ValidationError("--report", fmt::format("would overwrite {}; choose another", lost));
+    others.push_back(report);
+  }
 }
 
 /// What one option alone cannot tell.

@@ -41,7 +41,7 @@ struct MeshArguments {
   double scale = 1;                                 ///< of the coordinates that are written
   std::string input_format, output_format;          ///< extensions with their dot; empty: those of the files
   unsigned threads = 0;                             ///< at most; 0: as many as there are cores
-  std::string report;                               ///< path, empty: none
+  std::vector<std::string> reports;                 ///< paths
   ProgressStyle progress = ProgressStyle::automatic;
   bool verbose = false;
   bool quiet = false;

@@ -44,7 +44,7 @@ std::string json_in_page(const Json& json) {
 Json shown_json(const ShownMesh& shown) {
   const auto place = [](const Point& p) { return Json::array({p.x, p.y, p.z}); };
   Json worst = Json::array();
-  for (const ShownMesh::WorstTet& w : shown.worst)
+  for (const ShownMesh::ShownWorst& w : shown.worst)
     worst.push_back(
         {{"tet", w.tet}, {"smallest", w.smallest}, {"largest", w.largest}, {"where", place(w.where)}});
   return {{"complete", shown.complete},

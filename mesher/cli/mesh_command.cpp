@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <deque>
 #include <fstream>
 #include <optional>
 
@@ -154,20 +155,22 @@ void mesh(const MeshArguments& arguments, ComplexInput& input, Stages& stages, M
   run.warnings = option_warnings(arguments, run.plc);
 }
 
-/// `shown`: where it is to be a page.
+/// `shown`: for pages.
 void write_report(const std::string& path, const MeshArguments& arguments, const MeshRun& run,
                   const std::optional<ShownMesh>& shown) {
   std::ofstream file(path);
   const nlohmann::ordered_json report = run_json(arguments, run);
-  file << (shown ? html_report(report, *shown) : json_text(report, 1) + '\n');
+  file << (is_html(path) ? html_report(report, *shown) : json_text(report, 1) + '\n');
   file.close();
   if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path));
 }
 
 void write_files(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   stages.begin("write", 0.93, 1, run.result.mesh.tets.size());
+  if (!arguments.reports.empty()) run.worst = worst_tets(run.result.mesh);
   std::optional<ShownMesh> shown;  // reports are in the input's unit
-  if (is_html(arguments.report)) shown = shown_mesh(run.result.mesh);
+  if (std::any_of(arguments.reports.begin(), arguments.reports.end(), is_html))
+    shown = shown_mesh(run.result.mesh, run.worst);
   scale(run.result.mesh.points, arguments.scale);
   StagedFile mesh(arguments.output);
   mesh.write([&](const std::string& path) {
@@ -176,12 +179,14 @@ void write_files(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
     });
   });
   run.times.end();
-  std::optional<StagedFile> report;
-  if (!arguments.report.empty()) {
-    report.emplace(arguments.report);
-    report->write([&](const std::string& path) { write_report(path, arguments, run, shown); });
+  std::vector<StagedFile*> files{&mesh};
+  std::deque<StagedFile> reports;
+  for (const std::string& target : arguments.reports) {
+    reports.emplace_back(target).write(
+        [&](const std::string& path) { write_report(path, arguments, run, shown); });
+    files.push_back(&reports.back());
   }
-  StagedFile::commit({&mesh, report ? &*report : nullptr});
+  StagedFile::commit(files);
 }
 
 void tell_of(const MeshArguments& arguments, const MeshRun& run) {
@@ -203,7 +208,7 @@ ExitCode mesh_command(const MeshArguments& arguments) {
   set_time_limit(arguments.mesh.time_limit);
   limit_memory(arguments.mesh.max_memory);
   require_writable(arguments.output, arguments.output_format);
-  if (!arguments.report.empty()) require_writable(arguments.report);
+  for (const std::string& report : arguments.reports) require_writable(report);
   MeshRun run;
   {
     Stages stages(arguments.quiet ? ProgressStyle::none : arguments.progress, run.times);

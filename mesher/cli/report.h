@@ -10,6 +10,7 @@
 #include "collarmesh/plc_builder.h"
 #include "collarmesh/predict.h"
 #include "stage_times.h"
+#include "worst_tets.h"
 
 namespace collarmesh::cli {
 
@@ -18,6 +19,7 @@ struct MeshRun : SoupPipelineResult {
   PlcSummary summary;
   std::vector<std::string> warnings;  ///< of options; those of the input are in the complex
   std::vector<std::string> notes;     ///< on CAD shapes, a line each
+  std::vector<WorstTet> worst;
   StageTimes times;
 };
 

@@ -175,6 +175,17 @@ Json second_order_json(const SecondOrderReport& r) {
           {"seconds", r.seconds}};
 }
 
+Json worst_json(const std::vector<WorstTet>& worst) {
+  Json list = Json::array();
+  for (const WorstTet& w : worst) {
+    Json corners = Json::array();
+    for (const Point& p : w.corners) corners.push_back(point_json(p));
+    list.push_back(
+        {{"tet", w.tet}, {"smallest", w.smallest}, {"largest", w.largest}, {"corners", std::move(corners)}});
+  }
+  return list;
+}
+
 }  // namespace
 
 Json complex_json(const Plc& plc, const PlcSummary& s) {
@@ -319,6 +330,7 @@ Json run_json(const MeshArguments& arguments, const MeshRun& run) {
           {"repair", repair_json(run.repair)},
           {"complex", complex_json(run.plc, run.summary)},
           {"mesh", measures_json(run.result.mesh, run.check.measures)},
+          {"worst", worst_json(run.worst)},
           {"check", check_json(run.check)},
           {"statistics", statistics_json(run.result.statistics)},
           {"notes", run.notes},

@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <numeric>
 
 namespace collarmesh::cli {
 
 namespace {
-
-constexpr std::size_t listed = 10;  // by each measure
 
 /// The tets with a face among the mesh' faces.
 std::vector<bool> tets_at_faces(const TetMesh& mesh) {
@@ -41,46 +38,21 @@ bool meets_middle_plane(const TetMesh& mesh, const std::array<Index, 4>& tet, co
   return false;
 }
 
-/// Tets of the mesh: those with the smallest and those with the largest dihedral angles.
-std::vector<Index> worst_tets(const std::vector<TetQuality>& qualities) {
-  std::vector<Index> order(qualities.size()), worst;
-  std::iota(order.begin(), order.end(), 0);
-  const std::size_t count = std::min(listed, order.size());
-  const auto add_first = [&](const auto& is_worse) {
-    std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(),
-                      is_worse);
-    for (std::size_t i = 0; i < count; ++i)
-      if (std::find(worst.begin(), worst.end(), order[i]) == worst.end()) worst.push_back(order[i]);
-  };
-  add_first([&](Index a, Index b) {
-    return std::pair(qualities[a].min_dihedral, a) < std::pair(qualities[b].min_dihedral, b);
-  });
-  add_first([&](Index a, Index b) {
-    return std::pair(-qualities[a].max_dihedral, a) < std::pair(-qualities[b].max_dihedral, b);
-  });
-  return worst;
-}
-
 }  // namespace
 
-ShownMesh shown_mesh(const TetMesh& mesh, std::size_t most) {
+ShownMesh shown_mesh(const TetMesh& mesh, const std::vector<WorstTet>& worst, std::size_t most) {
   ShownMesh shown;
   Box box;
   for (const Point& p : mesh.points) box.add(p);
   if (mesh.tets.empty()) return shown;
   shown.centre = 0.5 * (box.min + box.max);
-  std::vector<TetQuality> qualities;
-  qualities.reserve(mesh.tets.size());
-  for (const auto& t : mesh.tets)
-    qualities.push_back(measure(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]));
-  const std::vector<Index> worst = worst_tets(qualities);
   shown.complete = mesh.tets.size() <= most;
   std::vector<bool> is_shown(mesh.tets.size(), true);
   if (!shown.complete) {
     is_shown = tets_at_faces(mesh);
     for (std::size_t t = 0; t < mesh.tets.size(); ++t)
       if (meets_middle_plane(mesh, mesh.tets[t], shown.centre)) is_shown[t] = true;
-    for (const Index t : worst) is_shown[t] = true;
+    for (const WorstTet& w : worst) is_shown[w.tet] = true;
   }
   std::vector<std::uint32_t> point_number(mesh.points.size(), none);
   std::vector<Index> tet_number(mesh.tets.size(), none);
@@ -101,10 +73,10 @@ ShownMesh shown_mesh(const TetMesh& mesh, std::size_t most) {
                thin = !mesh.tet_thin.empty() && mesh.tet_thin[t] != 0;
     shown.marks.push_back(static_cast<std::uint8_t>((collar ? 1 : 0) + (thin ? 2 : 0)));
   }
-  for (const Index t : worst) {
+  for (const WorstTet& w : worst) {
     Point centre{0, 0, 0};
-    for (const Index p : mesh.tets[t]) centre = centre + 0.25 * (mesh.points[p] - Point{0, 0, 0});
-    shown.worst.push_back({tet_number[t], qualities[t].min_dihedral, qualities[t].max_dihedral, centre});
+    for (const Point& p : w.corners) centre = centre + 0.25 * (p - Point{0, 0, 0});
+    shown.worst.push_back({tet_number[w.tet], w.smallest, w.largest, centre});
   }
   return shown;
 }

@@ -4,12 +4,13 @@
 #include <vector>
 
 #include "collarmesh/tet_mesh.h"
+#include "worst_tets.h"
 
 namespace collarmesh::cli {
 
 /// What a page shows of a mesh.
 struct ShownMesh {
-  struct WorstTet {
+  struct ShownWorst {
     Index tet;                 ///< of those shown
     double smallest, largest;  ///< dihedral angles, degrees
     Point where;               ///< its centre
@@ -21,11 +22,11 @@ struct ShownMesh {
   std::vector<std::uint32_t> tets;    ///< four corners for each
   std::vector<std::uint16_t> region;  ///< of each
   std::vector<std::uint8_t> marks;    ///< of each: 1 in a collar, 2 thin
-  std::vector<WorstTet> worst;        ///< by their smallest angles, then by their largest
+  std::vector<ShownWorst> worst;      ///< as given
 };
 
 /// All tets up to `most`; of more those with a face on the boundary or an interface, those that meet the
 /// planes through the centre, and the worst. Cost: linear.
-ShownMesh shown_mesh(const TetMesh& mesh, std::size_t most = 100000);
+ShownMesh shown_mesh(const TetMesh& mesh, const std::vector<WorstTet>& worst, std::size_t most = 100000);
 
 }  // namespace collarmesh::cli

@@ -240,7 +240,7 @@ void StagedFile::copy_to_standard_output() const {
   if (std::fflush(stdout) != 0) fail();
 }
 
-void StagedFile::commit(std::initializer_list<StagedFile*> files) {
+void StagedFile::commit(const std::vector<StagedFile*>& files) {
   const StagedLock lock;
   stop_if_interrupted();
   std::vector<Move> all;

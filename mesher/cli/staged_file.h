@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -28,7 +27,7 @@ class StagedFile {
 
   /// Flush files to the disk and move them to their places: all of them, or none, with what was there before
   /// left as it was. Throws WriteError, or Cancelled when the user asked to stop before.
-  static void commit(std::initializer_list<StagedFile*> files);
+  static void commit(const std::vector<StagedFile*>& files);
 
  private:
   struct Move {

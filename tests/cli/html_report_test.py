@@ -86,6 +86,11 @@ class Contents(ReportTest):
     def test_json_stays_json(self):
         json.loads(self.report(MODELS / "bracket.off", name="report.json").read_text())
 
+    def test_both_at_once(self):
+        path = self.report(MODELS / "bracket.off", "--report", self.folder / "both.json", name="both.html")
+        report = json.loads((self.folder / "both.json").read_text())
+        self.assertEqual(json.loads(Page(path.read_text()).scripts["report"]), report)
+
     def test_repair_has_no_pages(self):
         run = subprocess.run([PROGRAM, "repair", MODELS / "box.off", "-o", self.folder / "box.off", "--report",
                               self.folder / "box.html"], capture_output=True, text=True, timeout=60)

@@ -125,6 +125,10 @@ class Usage(ProgramTest):
         self.expect(2, self.box, "-o", self.out, "--size", "0.1", "--size-min", "0.2", says=["size-min"])
         self.expect(2, self.box, "-o", self.out, "--vertex-ratio", "2", says=["vertex-ratio"])
         self.expect(2, self.box, "-o", self.out, "--report", self.out, says=["report"])
+        twice = ("--report", "report.json", "--report", "report.json")
+        self.expect(2, self.box, "-o", self.out, *twice, says=["report.json twice"])
+        over = ("--report", "report.json", "--report", self.box)
+        self.expect(2, self.box, "-o", self.out, *over, says=["would overwrite"])
 
     def test_unknown_output_format_is_told_before_reading(self):
         self.expect(2, "no_such_file.off", "-o", "mesh.xyz", says=["xyz", r"\.vtu"])

@@ -14,29 +14,43 @@ import subprocess
 import sys
 import tempfile
 
+SOURCES = pathlib.Path(__file__).resolve().parents[2] / "freecad_workbench"
 
-def main():
-    program, script = (path and str(pathlib.Path(path).resolve()) for path in sys.argv[1:3])
-    addon = pathlib.Path(__file__).resolve().parents[2] / "freecad_workbench"
-    if "--addon" in sys.argv:
-        addon = pathlib.Path(sys.argv[sys.argv.index("--addon") + 1]).resolve()
-    gui = "--gui" in sys.argv
+
+def command(script, gui):
+    """What runs a script in FreeCAD, None where that is not installed."""
     names = ("freecad", "FreeCAD") if gui else ("freecadcmd", "FreeCADCmd")
     freecad = next(filter(None, map(shutil.which, names)), None)
     if freecad is None or (gui and shutil.which("xvfb-run") is None):
+        return None
+    screen = ["xvfb-run", "-a", "-s", "-screen 0 2600x1000x24"] if gui else []
+    return [*screen, freecad, str(script)]
+
+
+def environment(home, program, addon=SOURCES):
+    """A FreeCAD with this folder as home, and the add-on in it."""
+    mods = pathlib.Path(home) / "Mod"
+    mods.mkdir()
+    (mods / "collarmesh").symlink_to(addon)
+    return dict(os.environ, FREECAD_USER_HOME=home, FREECAD_USER_DATA=home, COLLARMESH_PROGRAM=program,
+                COLLARMESH_TEST_RESULT=str(pathlib.Path(home) / "result"),
+                QTWEBENGINE_DISABLE_SANDBOX="1")  # else the start page ends FreeCAD when run by root; fmt: skip
+
+
+def main():
+    program, script = (path and str(pathlib.Path(path).resolve()) for path in sys.argv[1:3])
+    addon = SOURCES
+    if "--addon" in sys.argv:
+        addon = pathlib.Path(sys.argv[sys.argv.index("--addon") + 1]).resolve()
+    words = command(script, "--gui" in sys.argv)
+    if words is None:
         print("FreeCAD or xvfb-run is not installed")
         return 77
-    screen = ["xvfb-run", "-a", "-s", "-screen 0 2600x1000x24"] if gui else []
     with tempfile.TemporaryDirectory(prefix="collarmesh-freecad-") as home:
-        mods = pathlib.Path(home) / "Mod"
-        mods.mkdir()
-        (mods / "collarmesh").symlink_to(addon)
-        environment = dict(os.environ, FREECAD_USER_HOME=home, FREECAD_USER_DATA=home, COLLARMESH_PROGRAM=program)
-        environment["QTWEBENGINE_DISABLE_SANDBOX"] = "1"  # else the start page ends FreeCAD when run by root
-        environment["COLLARMESH_TEST_ARGUMENT"] = sys.argv[-1] if "--" in sys.argv else ""
-        result = pathlib.Path(home) / "result"
-        environment["COLLARMESH_TEST_RESULT"] = str(result)
-        code = subprocess.run([*screen, freecad, script], stdin=subprocess.DEVNULL, env=environment, timeout=500).returncode
+        variables = environment(home, program, addon)
+        variables["COLLARMESH_TEST_ARGUMENT"] = sys.argv[-1] if "--" in sys.argv else ""
+        code = subprocess.run(words, stdin=subprocess.DEVNULL, env=variables, timeout=500).returncode
+        result = pathlib.Path(variables["COLLARMESH_TEST_RESULT"])
         if result.exists():
             print(result.read_text())
         return code

@@ -2,7 +2,7 @@
 
 import FreeCAD
 
-IMPROVE_LEVELS = ("none", "quick", "good", "best")
+from .translations import translate
 
 
 def _stored():
@@ -23,6 +23,12 @@ def improve_level():
     return _stored().GetInt("ImproveLevel", 2)
 
 
+def improve_levels():
+    """Texts by level."""
+    return (translate("collarmesh", "none"), translate("collarmesh", "quick"), translate("collarmesh", "good"),
+            translate("collarmesh", "best"))  # fmt: skip
+
+
 def second_order():
     return _stored().GetBool("SecondOrder", False)
 
@@ -38,7 +44,7 @@ class Page:
         self.form.setWindowTitle("collarmesh")
         self.program = QtGui.QLineEdit()
         self.program.setObjectName("collarmesh_preferences_program")
-        self.program.setPlaceholderText("found by itself")
+        self.program.setPlaceholderText(translate("collarmesh", "found by itself"))
         browse = QtGui.QPushButton("...")
         browse.clicked.connect(self._browse)
         path = QtGui.QHBoxLayout()
@@ -47,23 +53,24 @@ class Page:
         self.threads = QtGui.QSpinBox()
         self.threads.setObjectName("collarmesh_preferences_threads")
         self.threads.setRange(0, 1024)
-        self.threads.setSpecialValueText("as many as cores")
-        self.threads.setToolTip("How many threads the program may use; they change no result")
+        self.threads.setSpecialValueText(translate("collarmesh", "as many as cores"))
+        self.threads.setToolTip(translate("collarmesh", "How many threads the program may use; they change no result"))
         self.improve = QtGui.QComboBox()
         self.improve.setObjectName("collarmesh_preferences_improve")
-        self.improve.addItems(IMPROVE_LEVELS)
-        self.second_order = QtGui.QCheckBox("second order")
+        self.improve.addItems(improve_levels())
+        self.second_order = QtGui.QCheckBox(translate("collarmesh", "second order"))
         self.second_order.setObjectName("collarmesh_preferences_second_order")
         rows = QtGui.QFormLayout(self.form)
-        rows.addRow("Program collarmesh", path)
-        rows.addRow("Threads", self.threads)
-        rows.addRow("Improvement of new meshes", self.improve)
-        rows.addRow("Elements of new meshes", self.second_order)
+        rows.addRow(translate("collarmesh", "Program collarmesh"), path)
+        rows.addRow(translate("collarmesh", "Threads"), self.threads)
+        rows.addRow(translate("collarmesh", "Improvement of new meshes"), self.improve)
+        rows.addRow(translate("collarmesh", "Elements of new meshes"), self.second_order)
 
     def _browse(self):
         from PySide import QtGui
 
-        chosen = QtGui.QFileDialog.getOpenFileName(self.form, "The program collarmesh", self.program.text())[0]
+        title = translate("collarmesh", "The program collarmesh")
+        chosen = QtGui.QFileDialog.getOpenFileName(self.form, title, self.program.text())[0]
         if chosen:
             self.program.setText(chosen)
 

@@ -6,7 +6,8 @@ import os
 import pathlib
 import shutil
 import subprocess
-import tempfile
+
+from .work_folder import WorkFolder
 
 GUARANTEE_MISSED = 7  # the exit code with which a mesh is written all the same
 
@@ -46,6 +47,7 @@ class Settings:
     solid_sizes: dict = dataclasses.field(default_factory=dict)
     face_sizes: dict = dataclasses.field(default_factory=dict)
     edge_sizes: dict = dataclasses.field(default_factory=dict)
+    size_field: dict = None  # sizes by place: sources, as mesher/doc/sizes.md has them
 
     def arguments(self):
         """Arguments of the command line."""
@@ -116,14 +118,19 @@ def as_warning(line):
 class Job:
     """One run: a folder with the shape, the mesh and the report, which is removed at the end."""
 
-    def __init__(self, settings, program="", threads=0):
-        """`threads`: how many the program may use, 0: as many as there are cores."""
-        self.folder = tempfile.TemporaryDirectory(prefix="collarmesh-")
-        self.shape = os.path.join(self.folder.name, "shape.brep")
+    def __init__(self, settings, program="", threads=0, input_name="shape.brep"):
+        """`threads`: how many the program may use, 0: as many as there are cores; `input_name`: of the file that the
+        caller writes to `self.shape`."""
+        self.folder = WorkFolder()
+        self.shape = os.path.join(self.folder.name, input_name)
         self.mesh = os.path.join(self.folder.name, "mesh.unv")
         self._report = os.path.join(self.folder.name, "report.json")
         self.command = [find_program(program), self.shape, "-o", self.mesh, "--report", self._report,
                         "--progress", "json", "--threads", str(threads), *settings.arguments()]  # fmt: skip
+        if settings.size_field:
+            path = os.path.join(self.folder.name, "sizes.json")
+            pathlib.Path(path).write_text(json.dumps(settings.size_field), encoding="utf-8")
+            self.command += ["--size-field", path]
         self.messages = []
 
     def __enter__(self):
@@ -163,15 +170,29 @@ class Job:
         report["notes"] = [self._for_people(note) for note in report["notes"]]
         return report
 
+    def add_page(self):
+        """Make the report for people, too."""
+        self._page = os.path.join(self.folder.name, "report.html")
+        self.command += ["--report", self._page]
+
+    def move_page(self, path, name):
+        """That report to a place where it stays. `name`: what it calls the shape."""
+        with open(self._page, encoding="utf-8") as page:
+            text = page.read().replace(self.shape, name).replace(self.folder.name + os.sep, "")
+        with open(path, "w", encoding="utf-8") as moved:
+            moved.write(text)
+
     def run(self, progress=None):
         """Run and wait; returns the exit code. `progress(Progress)` may return False to cancel.
         Raises MesherError."""
         with subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                               stderr=subprocess.PIPE, text=True, errors="replace") as process:  # fmt: skip
+            self.folder.program_is(process.pid)
             for line in process.stderr:
                 step = self.heard(line)
                 if step and progress and progress(step) is False:
                     process.kill()
                     raise Cancelled("The mesher was cancelled.")
+        self.folder.program_is(None)
         self.require_success(process.returncode)
         return process.returncode

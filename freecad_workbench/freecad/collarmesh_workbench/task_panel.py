@@ -1,216 +1,216 @@
-"""The panel in which a mesh is made: sizes, progress, cancel, messages and a summary."""
+"""The panel in which a mesh is made: what is asked for, the run, and what came."""
+
+import contextlib
 
 import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import mesh_object, worst_elements
-from .program import MesherError, as_warning
+from . import compatibility, extent, meshing_process, mesh_object, places, worst_elements
+from .advanced_section import AdvancedSection, in_panel_words, narrow_combo
+from .places_list import PlacesList
+from .prediction import Predictions
+from .program import MesherError
+from .result_section import BAD, ResultSection
+from .run_section import RunSection
+from .size_section import SizeSection
+from .translations import translate
+from .view_marks import ViewMarks
 
-FIELDS = (
-    ("CharacteristicLengthMax", "Size"),
-    ("CharacteristicLengthMin", "Least size"),
-    ("MeshSizeFromCurvature", "Per circle"),
-    ("ElementsAcrossGap", "Across gaps"),
-    ("SurfaceDistance", "Distance"),
-    ("RadiusEdgeRatio", "Radius-edge"),
-    ("CreaseAngle", "Crease angle"),
-    ("CollarAngle", "Collar angle"),
-    ("ImproveLevel", "Improvement"),
-)
+WIDTH = 400  # pixels
 
 
 class MeshTaskPanel:
-    """Runs the mesher as a process of its own, so that FreeCAD stays alive and a run can be cancelled. The
-    object's mesh is replaced when a run has ended well, and only then."""
+    """Shows the run of its object, which goes on when the panel is closed."""
 
     def __init__(self, obj):
         self.object = obj
-        self.job = None
-        self.process = None
-        self.highlight = None
+        self.run = None
+        self.known = {}  # predictions
+        self.marks = ViewMarks(obj)
+        self._build()
+        self.predictions = Predictions(obj)
+        self.predictions.made.connect(self._show_predictions)
+        self.predictions.partly_made.connect(self._show_some_predictions)
+        self.size.changed.connect(self._ask)
+        self.advanced.changed.connect(self._ask)
+        self.order.currentIndexChanged.connect(self._ask)
+        self._ask()
+        if meshing_process.run_of(obj) is not None:
+            self._follow(meshing_process.run_of(obj))
+        else:
+            self._show_outcome(meshing_process.outcome_of(obj))
+        self.form.destroyed.connect(self.dismiss)
+        FreeCAD.addDocumentObserver(self)
+        QtCore.QTimer.singleShot(0, self._widen)
+
+    def _build(self):
         self.form = QtGui.QWidget()
         self.form.setObjectName("collarmesh_panel")
-        self.form.setWindowTitle("Mesh by collarmesh")
-        self.form.setWindowIcon(QtGui.QIcon(obj.ViewObject.Proxy.getIcon()))
-        rows = QtGui.QFormLayout()
-        self.fields = {name: self._field(rows, name, text) for name, text in FIELDS}
-        self.order = QtGui.QComboBox()
+        self.form.setWindowTitle(translate("collarmesh", "Mesh by collarmesh"))
+        self.form.setWindowIcon(QtGui.QIcon(self.object.ViewObject.Proxy.getIcon()))
+        diagonal = extent.diagonal(compatibility.meshed_object(self.object))
+        self.size = SizeSection(self.object.CharacteristicLengthMax.Value, diagonal)
+        self.order = narrow_combo()
         self.order.setObjectName("collarmesh_ElementOrder")
-        self.order.addItems(mesh_object.ORDERS)
-        self.order.setCurrentIndex(mesh_object.ORDERS.index(obj.ElementOrder))
-        rows.addRow("Order", self.order)
-        self.run_button = QtGui.QPushButton("Mesh")
-        self.run_button.setObjectName("collarmesh_run")
-        self.run_button.clicked.connect(self.start)
-        self.cancel_button = QtGui.QPushButton("Cancel")
-        self.cancel_button.setObjectName("collarmesh_cancel")
-        self.cancel_button.setEnabled(False)
-        self.cancel_button.clicked.connect(self.cancel)
-        self.bar = QtGui.QProgressBar()
-        self.bar.setObjectName("collarmesh_progress")
-        self.bar.setRange(0, 1000)
-        self.log = QtGui.QPlainTextEdit()
-        self.log.setObjectName("collarmesh_log")
-        self.log.setReadOnly(True)
-        self.worst_box = QtGui.QCheckBox("Show the worst elements")
-        self.worst_box.setObjectName("collarmesh_worst")
-        self.worst_box.toggled.connect(self.show_worst)
-        buttons = QtGui.QHBoxLayout()
-        buttons.addWidget(self.run_button)
-        buttons.addWidget(self.cancel_button)
+        self.order.addItems([translate("collarmesh", "first (straight, 4 nodes)"),
+                             translate("collarmesh", "second (curved, 10 nodes)")])  # fmt: skip
+        self.order.setCurrentIndex(mesh_object.ORDERS.index(self.object.ElementOrder))
+        self.order.setToolTip(translate("collarmesh", "Second order: nodes amid edges, on the exact faces"))
+        self.advanced = AdvancedSection(self.object)
+        self.run_section = RunSection()
+        self.run_section.run_clicked.connect(self.start)
+        self.run_section.cancel_clicked.connect(self.cancel)
+        self.result = ResultSection()
+        self.result.chart.worst_clicked.connect(lambda: self.list.pick_first(places.WORST))
+        self.list = PlacesList()
+        self.list.picked.connect(self.marks.show)
+        self.report_button = QtGui.QPushButton(translate("collarmesh", "Report"))
+        self.report_button.setObjectName("collarmesh_report")
+        tip = translate("collarmesh", "Open a page with all measurements and a view of the mesh")
+        self.report_button.setToolTip(tip)
+        self.report_button.clicked.connect(self.open_report)
+        row = QtGui.QFormLayout()
+        row.addRow(translate("collarmesh", "Order of the elements"), self.order)
         layout = QtGui.QVBoxLayout(self.form)
-        layout.addLayout(rows)
-        layout.addLayout(buttons)
-        layout.addWidget(self.bar)
-        layout.addWidget(self.log)
-        layout.addWidget(self.worst_box)
+        layout.addWidget(self.size)
+        layout.addLayout(row)
+        for widget in (self.advanced, self.run_section, self.result, self.list, self.report_button):
+            layout.addWidget(widget)
+        layout.addStretch()
+        self.list.hide()
+        self.report_button.hide()
 
-    def _field(self, rows, name, text):
-        value = getattr(self.object, name)
-        field = QtGui.QLineEdit(getattr(value, "UserString", str(value)))
-        field.setObjectName("collarmesh_" + name)
-        field.setToolTip(self.object.getDocumentationOfProperty(name))
-        field.setMinimumWidth(60)
-        rows.addRow(text, field)
-        return field
+    def _widen(self):
+        """FreeCAD shows what fits into its dock; make room for all of the panel once."""
+        window = FreeCADGui.getMainWindow()
+        for dock in window.findChildren(QtGui.QDockWidget):
+            if dock.isAncestorOf(self.form) and not dock.isFloating() and dock.width() < WIDTH:
+                window.resizeDocks([dock], [WIDTH], QtCore.Qt.Horizontal)
 
     def _store(self):
         """The fields into the properties. Raises MesherError."""
-        self.object.ElementOrder = self.order.currentText()
-        for name, field in self.fields.items():
-            current = getattr(self.object, name)
-            try:
-                if hasattr(current, "Value"):
-                    setattr(self.object, name, FreeCAD.Units.Quantity(field.text()))
-                else:
-                    setattr(self.object, name, type(current)(field.text()))
-            except (ValueError, OSError, TypeError) as error:
-                raise MesherError(f"{name}: '{field.text()}' is no value for it ({error}).") from error
+        try:
+            size = self.size.size()
+            self.advanced.store()
+        except ValueError as error:
+            raise MesherError(str(error)) from error
+        if size != self.object.CharacteristicLengthMax.Value:
+            self.object.CharacteristicLengthMax = size
+        order = mesh_object.ORDERS[self.order.currentIndex()]
+        if order != self.object.ElementOrder:
+            self.object.ElementOrder = order
+
+    def _ask(self, *_):
+        """What the sizes will make with what is in the fields."""
+        try:
+            settings = mesh_object.settings_of(self.object)
+        except MesherError:
+            return
+        self.advanced.apply_to(settings)
+        settings.order = self.order.currentIndex() + 1
+        self._show_predictions(self.predictions.ask(settings, self.size.sizes()), "…")
+
+    def _show_some_predictions(self, known):
+        self._show_predictions(known, "…")
+
+    def _show_predictions(self, known, missing=""):
+        self.known = known
+        self.size.show_predictions(known, missing)
 
     def start(self):
-        if self.process is not None:
+        if self.run is not None:
             return
-        self.log.clear()
-        self.worst_box.setChecked(False)
-        self.bar.setValue(0)
+        self.marks.clear()
+        self.list.fill([])
+        self.result.clear()
+        self.report_button.hide()
         try:
             self._store()
-            self.job = mesh_object.start(self.object)
+            self._follow(meshing_process.start(self.object))
         except MesherError as error:
-            self.say(str(error))
-            return
-        for warning in self.job.messages:
-            self.say(warning)
-        self.process = QtCore.QProcess()
-        self.process.setReadChannel(QtCore.QProcess.StandardError)
-        self.process.readyReadStandardError.connect(self._read)
-        self.process.finished.connect(self._finished)
-        self.process.setStandardInputFile(QtCore.QProcess.nullDevice())
-        self.run_button.setEnabled(False)
-        self.cancel_button.setEnabled(True)
-        self.cancelled = False
-        self.process.start(self.job.command[0], self.job.command[1:])
-        if not self.process.waitForStarted():
-            self.say(f"{self.job.command[0]} cannot be started: {self.process.errorString()}")
-            self._end()
+            self._show_outcome(meshing_process.Outcome(error=str(error)))
 
     def cancel(self):
-        if self.process is not None:
-            self.cancelled = True
-            self.process.kill()
+        if self.run is not None:
+            self.run.cancel()
 
-    def _read(self):
-        while self.process is not None and self.process.canReadLine():
-            line = bytes(self.process.readLine()).decode(errors="replace")
-            step = self.job.heard(line)
-            if step:
-                self.bar.setValue(int(1000 * step.fraction))
-                self.bar.setFormat(f"{step.phase} %p%")
-            elif line.strip():
-                said = self.job.messages[-1]
-                self.say(as_warning(said) or said)
+    def _follow(self, run):
+        self.run = run
+        self.predictions.pause()
+        self.run_section.begin()
+        run.advanced.connect(self._advance)
+        run.ended.connect(self._ended)
+        if run.progress is not None:
+            self._advance(run.progress)
 
-    def _finished(self, exit_code, _status=None):
-        self._read()
+    def _advance(self, progress):
         try:
-            if self.cancelled:
-                self.say("Cancelled; the mesh is the one from before.")
-            else:
-                report = mesh_object.finish(self.object, self.job, exit_code)
-                self.bar.setValue(1000)
-                self.bar.setFormat("done")
-                self.say(summary(report))
-                self.object.Document.recompute()
-        except MesherError as error:
-            self.log.clear()
-            self.say(str(error))
-            self.bar.setFormat("failed")
-        finally:
-            self._end()
+            predicted = self.known.get(self.size.size(), (0, None))[1]
+        except ValueError:
+            predicted = None
+        self.run_section.advance(progress, self.run.seconds(), predicted)
 
-    def _end(self):
-        self.job.__exit__()
-        self.job = None
-        process, self.process = self.process, None
-        process.deleteLater()
-        self.run_button.setEnabled(True)
-        self.cancel_button.setEnabled(False)
+    def _ended(self):
+        self._let_go()
+        self.run_section.rest()
+        self._ask()
+        self._show_outcome(meshing_process.outcome_of(self.object))
 
-    def show_worst(self, shown):
-        """Mark the tetrahedra with the smallest dihedral angles in the view, and say where they are."""
-        if self.highlight is not None:
-            self.highlight.remove()
-            self.highlight = None
-        if not shown or self.object.FemMesh.VolumeCount == 0:
-            return
-        numbers, angles, corners = worst_elements.worst(self.object.FemMesh)
-        self.highlight = worst_elements.Highlight(self.object.ViewObject, corners)
-        x, y, z = corners[0].mean(axis=0)
-        self.say(f"The {len(numbers)} worst elements are red: dihedral angles from {angles[0]:.1f} (element {numbers[0]} "
-                 f"at ({x:.3g}, {y:.3g}, {z:.3g})) to {angles[-1]:.1f} degrees")  # fmt: skip
+    def _let_go(self):
+        run, self.run = self.run, None
+        if run is not None:
+            run.advanced.disconnect(self._advance)
+            run.ended.disconnect(self._ended)
 
-    def say(self, text):
-        self.log.appendPlainText(text)
+    def _show_outcome(self, outcome):
+        """None: of a mesh that was there before the document was opened nothing but its worst elements is known."""
+        if outcome is None:
+            found = worst_elements.in_mesh(self.object.FemMesh)
+        else:
+            self.result.show_outcome(outcome)
+            found = places.in_error(in_panel_words(outcome.error))
+            if outcome.report is not None:
+                found += places.in_report(outcome.report, outcome.warnings)
+                found += worst_elements.in_report(self.object.FemMesh, outcome.report)
+            self.report_button.setVisible(bool(outcome.page))
+        self.list.fill(found)
+
+    def open_report(self):
+        page = meshing_process.outcome_of(self.object).page
+        if not QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(page)):
+            text = translate("collarmesh", "No program shows pages; the report is {path}")
+            self.result.say(text.format(path=page), BAD)
 
     def getStandardButtons(self):
-        return int(QtGui.QDialogButtonBox.Close)
+        return compatibility.as_number(QtGui.QDialogButtonBox.Close)
 
     def reject(self):
-        self.cancel()
-        self.worst_box.setChecked(False)
-        FreeCADGui.ActiveDocument.resetEdit()
+        self.dismiss()
+        FreeCADGui.getDocument(self.object.Document.Name).resetEdit()
         return True
 
+    def dismiss(self, *_):
+        """The panel goes; what it showed in the view goes with it."""
+        with contextlib.suppress(ValueError):
+            FreeCAD.removeDocumentObserver(self)
+        self._let_go()
+        self.predictions.forget()
+        with contextlib.suppress(ReferenceError, RuntimeError):  # the object may be gone
+            self.marks.clear()
 
-def summary(report):
-    """A few lines on a mesh."""
-    mesh = report["mesh"]
-    lines = [
-        f"{mesh['tets']} tetrahedra, {mesh['points']} nodes",
-        f"dihedral angles {mesh['min_dihedral']:.1f} to {mesh['max_dihedral']:.1f} degrees",
-        histogram(mesh["histograms"]["min_dihedral"]),
-    ]
-    off = report["projection"]["exceptions"]
-    lines += [f"warning: {each['message']}" for each in report["complex"]["warnings"]]
-    lines += [f"warning: {note}" for note in report["notes"]]
-    if off:
-        where = sorted({f"Face{e['face']}" if "face" in e else f"Edge{e['edge']}" for e in off})
-        lines.append(f"{len(off)} boundary nodes stay off the exact shape, at {', '.join(where)}")
-    straightened = (report["second_order"] or {}).get("straightened", ())
-    if straightened:
-        where = sorted({f"{('Edge', 'Face')[node['dimension'] - 1]}{node['tag']}" for node in straightened})
-        lines.append(f"{len(straightened)} nodes amid edges stay off the exact shape, at {', '.join(where)}")
-    lines.append("every guarantee holds" if report["guarantees_hold"] else "a guarantee is missed, see above")
-    return "\n".join(lines)
+    def slotChangedObject(self, changed, name):
+        if name in meshing_process.WHAT_IS_MESHED and changed is compatibility.meshed_object(self.object):
+            self.predictions.forget()
+            self._ask()
 
+    def slotDeletedObject(self, deleted):
+        if deleted is self.object:
+            self.dismiss()
+            FreeCADGui.Control.closeDialog()
 
-def histogram(counts):
-    """Smallest dihedral angles, a line of text for each bin that is not empty."""
-    total = max(1, sum(counts["tets"]))
-    width = counts["bin_width"]
-    return "\n".join(
-        f"  {i * width:3d} to {(i + 1) * width:3d}: {100 * n / total:5.1f}% " + "#" * round(20 * n / total)
-        for i, n in enumerate(counts["tets"])
-        if n
-    )
+    def slotDeletedDocument(self, document):
+        if document is self.object.Document:
+            self.dismiss()
+            FreeCADGui.Control.closeDialog()
+

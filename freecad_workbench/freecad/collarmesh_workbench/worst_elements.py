@@ -1,14 +1,20 @@
-"""The tetrahedra with the smallest dihedral angles, and how they are shown in the 3D view."""
+"""The tetrahedra with the smallest and largest dihedral angles."""
 
 import numpy
+
+from . import places
+from .translations import translate
 
 
 def tetrahedra(fem_mesh):
     """Element numbers, shape (n,), and their corners, shape (n, 4, 3), in mm."""
     numbers = [n for n in fem_mesh.Volumes if len(fem_mesh.getElementNodes(n)) in (4, 10)]
-    places = {node: tuple(place) for node, place in fem_mesh.Nodes.items()}
-    corners = [[places[node] for node in fem_mesh.getElementNodes(n)[:4]] for n in numbers]
-    return numpy.array(numbers, dtype=int), numpy.array(corners, dtype=float).reshape(-1, 4, 3)
+    nodes = fem_mesh.Nodes
+    node_numbers, places_of_nodes = numpy.array(list(nodes)), numpy.array([tuple(p) for p in nodes.values()])
+    row = numpy.zeros(node_numbers.max(initial=0) + 1, dtype=int)
+    row[node_numbers] = numpy.arange(len(node_numbers))
+    corners = numpy.array([fem_mesh.getElementNodes(n)[:4] for n in numbers], dtype=int).reshape(-1, 4)
+    return numpy.array(numbers, dtype=int), places_of_nodes[row[corners]]
 
 
 def smallest_dihedral_angles(corners):
@@ -34,32 +40,22 @@ def worst(fem_mesh, count=20):
     return numbers[order], angles[order], corners[order]
 
 
-class Highlight:
-    """Tetrahedra in red, over a mesh that is made transparent for as long."""
+MOST = 100000  # elements, of which FreeCAD's mesh is asked for the worst ones: it takes a second
 
-    def __init__(self, view, corners):
-        from pivy import coin
 
-        self.view = view
-        self.transparency = view.Transparency
-        view.Transparency = 85
-        self.node = coin.SoSeparator()
-        self.node.setName("collarmesh_worst_elements")
-        colour = coin.SoMaterial()
-        colour.diffuseColor = (0.9, 0.1, 0.1)
-        colour.emissiveColor = (0.5, 0, 0)
-        points = coin.SoCoordinate3()
-        points.point.setValues(0, corners.size // 3, corners.reshape(-1, 3).tolist())
-        faces = coin.SoIndexedFaceSet()
-        indices = []
-        for first in range(0, corners.size // 3, 4):
-            for a, b, c in ((0, 1, 2), (0, 1, 3), (0, 2, 3), (1, 2, 3)):
-                indices += [first + a, first + b, first + c, -1]
-        faces.coordIndex.setValues(0, len(indices), indices)
-        for each in (colour, points, faces):
-            self.node.addChild(each)
-        view.RootNode.addChild(self.node)
+def in_report(fem_mesh, report):
+    """The worst tetrahedra of a run as Places."""
+    numbers = fem_mesh.Volumes
+    text = translate("collarmesh", "{smallest}° to {largest}° in element {number}")
+    return [places.Place(places.WORST, text.format(smallest=f"{each['smallest']:.1f}", largest=f"{each['largest']:.1f}",
+                                                   number=numbers[each["tet"]]),
+                         (), (), numpy.array([each["corners"]])) for each in report.get("worst", ())]  # fmt: skip
 
-    def remove(self):
-        self.view.RootNode.removeChild(self.node)
-        self.view.Transparency = self.transparency
+
+def in_mesh(fem_mesh):
+    """The worst tetrahedra of a mesh of which there is no report, unless it is large."""
+    if not 0 < fem_mesh.VolumeCount <= MOST:
+        return []
+    text = translate("collarmesh", "{angle}° in element {number}")
+    return [places.Place(places.WORST, text.format(angle=f"{angle:.1f}", number=number), (), (), corners[None])
+            for number, angle, corners in zip(*worst(fem_mesh))]  # fmt: skip

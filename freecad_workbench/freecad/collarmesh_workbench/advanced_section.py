@@ -1,0 +1,213 @@
+"""The part of the panel that is folded at first: everything but size and order."""
+
+import dataclasses
+
+from PySide import QtCore, QtGui
+
+from . import mesh_object, preferences
+from .quantity_field import QuantityField
+from .translations import translate
+
+MOST = 1000000
+
+
+@dataclasses.dataclass
+class Row:
+    """A property of the mesh object, and how it is asked for."""
+
+    name: str  # of the property
+    text: str
+    unit: str = ""  # "mm" or "deg"
+    zero: str = ""  # what 0 stands for
+    choices: tuple = ()  # texts by value: numbers from 0, or the property's own words
+    tip: str = ""  # empty: the property's text
+
+
+def sections():
+    """Headings and their rows."""
+    any_number = translate("collarmesh", "any")
+    any_growth = translate("collarmesh", "as the sizes ask for")
+    default = translate("collarmesh", "default")
+    repair = {
+        "Automatic": translate("collarmesh", "automatic"),
+        "None": translate("collarmesh", "none, refuse"),
+        "Wrap": translate("collarmesh", "wrap where it fails"),
+    }
+    return (
+        (translate("collarmesh", "Sizes"), (
+            Row("CharacteristicLengthMin", translate("collarmesh", "Smallest size"), "mm",
+                tip=translate("collarmesh", "Never ask for smaller elements than this; 0: no limit")),
+            Row("MeshSizeFromCurvature", translate("collarmesh", "Elements on a full circle"), zero=any_number,
+                tip=translate("collarmesh", "Curved faces get so many elements on a full circle; 0: any number")),
+            Row("ElementsAcrossGap", translate("collarmesh", "Elements across gaps"), zero=any_number,
+                tip=translate("collarmesh", "Thin places of the shape get so many elements across; 0: any number")),
+            Row("Gradation", translate("collarmesh", "Growth of the size"), zero=any_growth,
+                tip=translate("collarmesh", "Growth of the size by unit of length away from finer places; 0: any")),
+        )),
+        (translate("collarmesh", "Shape"), (
+            Row("SurfaceDistance", translate("collarmesh", "Largest distance from the shape"), "mm",
+                tip=translate("collarmesh", "How far faces and edges of elements may be from curved faces; 0: a tenth "
+                                            "of the size, at most 1/200 of the diagonal (second order: 1/550)")),
+            Row("CreaseAngle", translate("collarmesh", "Sharp below this angle"), "deg",
+                tip=translate("collarmesh", "Edges and faces that meet at less than this get a collar")),
+            Row("CollarAngle", translate("collarmesh", "Largest angle in collars"), "deg",
+                tip=translate("collarmesh", "Bound on dihedral angles in collars")),
+            Row("PlanarTolerance", translate("collarmesh", "Tolerance of planes"), zero=default,
+                tip=translate("collarmesh", "Faces this near to a plane are planar, "
+                                            "relative to the diagonal; 0: 1e-6")),
+            Row("WeldTolerance", translate("collarmesh", "Tolerance of points"), zero=default,
+                tip=translate("collarmesh", "Points closer than this are one, relative to the diagonal; 0: 1e-9")),
+            Row("Repair", translate("collarmesh", "Repair of the shape"), choices=repair),
+            Row("RepairTolerance", translate("collarmesh", "Tolerance of repair"), zero=default),
+        )),
+        (translate("collarmesh", "Quality"), (
+            Row("ImproveLevel", translate("collarmesh", "Improvement"), choices=preferences.improve_levels(),
+                tip=translate("collarmesh", "How much time goes into removing flat elements")),
+            Row("MinDihedralAngle", translate("collarmesh", "Improve below this angle"), "deg",
+                tip=translate("collarmesh", "Elements with smaller dihedral angles are improved; 0: 15, 20 or 30 "
+                                            "degrees by the level of improvement")),
+            Row("Coarsen", translate("collarmesh", "As few elements as the sizes ask for")),
+            Row("RadiusEdgeRatio", translate("collarmesh", "Circumradius / shortest edge"),
+                tip=translate("collarmesh", "The bound that the elements keep; at least 2 always ends")),
+        )),
+        (translate("collarmesh", "Run"), (
+            Row("Seed", translate("collarmesh", "Seed"),
+                tip=translate("collarmesh", "Another number gives another mesh of the same quality")),
+            Row("TimeLimit", translate("collarmesh", "Time limit in seconds"), zero=translate("collarmesh", "none"),
+                tip=translate("collarmesh", "Give up after so many seconds; 0: never")),
+        )),
+    )  # fmt: skip
+
+
+class AdvancedSection(QtGui.QWidget):
+    """Fields for the properties. `changed` is emitted when one is edited."""
+
+    changed = QtCore.Signal()
+
+    def __init__(self, obj):
+        super().__init__()
+        self.object = obj
+        self._readers = {}
+        self.fold = QtGui.QToolButton()
+        self.fold.setObjectName("collarmesh_advanced")
+        self.fold.setText(translate("collarmesh", "Advanced"))
+        self.fold.setToolButtonStyle(QtCore.Qt.ToolButtonTextBesideIcon)
+        self.fold.setAutoRaise(True)
+        self.fold.setCheckable(True)
+        self.fold.toggled.connect(self._unfold)
+        self.body = QtGui.QWidget()
+        rows = QtGui.QFormLayout(self.body)
+        rows.setContentsMargins(12, 0, 0, 0)
+        rows.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
+        for heading, properties in sections():
+            label = QtGui.QLabel(f"<b>{heading}</b>")
+            rows.addRow(label)
+            for row in properties:
+                if row.name in obj.PropertiesList:
+                    self._add(rows, row)
+        layout = QtGui.QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.fold)
+        layout.addWidget(self.body)
+        self._unfold(False)
+
+    def store(self):
+        """Into the object's properties. Raises ValueError, which names the field."""
+        for name, (text, read) in self._readers.items():
+            try:
+                value = read()
+            except ValueError as error:
+                raise ValueError(f"{text}: {error}") from error
+            if value != self._value(name):
+                setattr(self.object, name, value)
+
+    def apply_to(self, settings):
+        """Into Settings, as far as they can be read."""
+        for _, name, field, *_ in mesh_object.PROPERTIES:
+            if name in self._readers:
+                try:
+                    setattr(settings, field, self._readers[name][1]())
+                except ValueError:
+                    pass
+
+    def _unfold(self, shown):
+        self.fold.setArrowType(QtCore.Qt.DownArrow if shown else QtCore.Qt.RightArrow)
+        self.body.setVisible(shown)
+
+    def _value(self, name):
+        value = getattr(self.object, name)
+        return getattr(value, "Value", value)
+
+    def _add(self, rows, row):
+        widget, read = self._widget(row)
+        widget.setObjectName("collarmesh_" + row.name)
+        widget.setToolTip(row.tip or self.object.getDocumentationOfProperty(row.name))
+        self._readers[row.name] = row.text, read
+        if isinstance(widget, QtGui.QCheckBox):
+            widget.setText(row.text)
+            rows.addRow(widget)
+            return
+        rows.addRow(row.text, widget)
+        rows.labelForField(widget).setToolTip(widget.toolTip())
+
+    def _widget(self, row):
+        """The widget, and what reads its value."""
+        value = self._value(row.name)
+        if row.choices:
+            return self._combo(row, value)
+        if row.unit:
+            field = QuantityField(row.unit, value)
+            field.widget.textChanged.connect(self.changed)
+            return field.widget, field.value
+        if isinstance(value, bool):
+            box = QtGui.QCheckBox()
+            box.setChecked(value)
+            box.toggled.connect(self.changed)
+            return box, box.isChecked
+        if isinstance(value, int):
+            number = QtGui.QSpinBox()
+            number.setRange(0, MOST)
+            number.setSpecialValueText(row.zero)
+            number.setValue(value)
+            number.valueChanged.connect(self.changed)
+            return number, number.value
+        text = QtGui.QLineEdit("" if value == 0 and row.zero else f"{value:.12g}")
+        text.setPlaceholderText(row.zero)
+        text.textChanged.connect(self.changed)
+        return text, lambda: _number(text)
+
+    def _combo(self, row, value):
+        combo = narrow_combo()
+        words = row.choices if isinstance(row.choices, dict) else dict(enumerate(row.choices))
+        for word, text in words.items():
+            combo.addItem(text, word)
+        combo.setCurrentIndex(list(words).index(value) if value in words else 0)
+        combo.currentIndexChanged.connect(self.changed)
+        return combo, combo.currentData
+
+
+def in_panel_words(text):
+    """A message of the program, with the names of the panel's fields in place of options."""
+    labels = {row.name: row.text for _, rows in sections() for row in rows}
+    labels["CharacteristicLengthMax"] = translate("collarmesh", "Size of the elements")
+    fields = {name: field for _, name, field, *_ in mesh_object.PROPERTIES}
+    words = {"--" + fields[name].replace("_", "-"): text for name, text in labels.items() if name in fields}
+    words["--repair wrap"] = f"{labels['Repair']}: {translate('collarmesh', 'wrap where it fails')}"
+    words["--repair"] = labels["Repair"]
+    for option in sorted(words, key=len, reverse=True):
+        text = text.replace(option, f"“{words[option]}”")
+    return text
+
+
+def narrow_combo():
+    """One that may be narrower than its texts."""
+    combo = QtGui.QComboBox()
+    combo.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
+    combo.setMinimumContentsLength(6)
+    combo.setSizePolicy(QtGui.QSizePolicy.Expanding, QtGui.QSizePolicy.Fixed)
+    return combo
+
+
+def _number(field):
+    text = field.text().strip().replace(QtCore.QLocale().decimalPoint(), ".")
+    return float(text) if text else 0.0

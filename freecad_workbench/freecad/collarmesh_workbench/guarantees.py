@@ -1,0 +1,37 @@
+"""The guarantees of a mesh, in words, from the report of a run."""
+
+from .translations import translate
+
+
+def guarantees(report):
+    """[(text, messages of what breaks it)], none of which is the good case."""
+    groups = _groups()
+    if report["options"]["order"] != 2:
+        groups = groups[:-1]
+    findings = report["check"]["findings"]
+    known = {name for _, names in groups for name in names}
+    lines = [(text, [f["message"] for f in findings if f["guarantee"] in names]) for text, names in groups]
+    others = [f["message"] for f in findings if f["guarantee"] not in known]
+    if others:
+        lines.append((translate("collarmesh", "The mesh is sound"), others))
+    return lines
+
+
+def _groups():
+    """The certificate's names, by what they guarantee."""
+    return [
+        (translate("collarmesh", "The mesh fills the shape: every face, edge and corner is kept"),
+         ("conforming", "watertight", "curve_cover", "curve_distance", "patch_area", "patch_border", "patch_distance",
+          "patch_manifold", "patch_orientation", "patch_plane", "vertex_feature", "vertex_present", "listed_edges",
+          "listed_faces")),
+        (translate("collarmesh", "Each solid has its volume, no element is inverted"),
+         ("region_volume", "region_tag", "positive_volume", "distinct_tets")),
+        (translate("collarmesh", "Elements know their faces and edges"),
+         ("curve_tag", "patch_tag", "patch_regions", "face_regions")),
+        (translate("collarmesh", "Circumradius / shortest edge is bounded"), ("radius_edge",)),
+        (translate("collarmesh", "Thin elements have no small or large angle"), ("thin_angles",)),
+        (translate("collarmesh", "Collars have no large angle"),
+         ("collar_cells", "collar_centre", "collar_dihedral", "collar_disjoint", "collar_gap")),
+        (translate("collarmesh", "Curved elements are not inverted"),
+         ("mid_nodes", "mid_node_distance", "positive_jacobian")),
+    ]  # fmt: skip

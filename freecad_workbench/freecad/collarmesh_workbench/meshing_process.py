@@ -1,0 +1,195 @@
+"""Runs of the mesher beside FreeCAD's window: one process for each mesh object, whether its panel is open or not.
+
+An object's mesh is replaced when a run has ended well, and only then. A run is killed when its object is deleted, when
+its document is closed and when FreeCAD ends."""
+
+import contextlib
+import dataclasses
+import filecmp
+import os
+
+import FreeCAD
+import FreeCADGui
+from PySide import QtCore, QtGui
+
+from . import compatibility, mesh_object
+from .program import MesherError, Progress
+from .translations import translate
+
+WHAT_IS_MESHED = ("Shape", "Placement", "Mesh", "LinkPlacement")  # properties of parts
+_runs = {}  # that are under way, by (document, object)
+_outcomes = {}  # of the last runs
+
+
+@dataclasses.dataclass
+class Outcome:
+    """How a run ended."""
+
+    report: dict = None  # None: without a mesh
+    error: str = ""
+    cancelled: bool = False
+    page: str = ""  # path of the report for people
+    part_changed: bool = False  # while it was meshed
+    warnings: tuple = ()  # of the shape, from before the run
+
+
+def _key(obj):
+    return obj.Document.Name, obj.Name
+
+
+def run_of(obj):
+    """The run that is under way, else None."""
+    return _runs.get(_key(obj))
+
+
+def outcome_of(obj):
+    """The outcome of the object's last run since its document was opened, else None."""
+    return _outcomes.get(_key(obj))
+
+
+def start(obj):
+    """Begin a run. Raises MesherError."""
+    if run_of(obj) is None:
+        _runs[_key(obj)] = MeshingProcess(obj)
+    return run_of(obj)
+
+
+class MeshingProcess(QtCore.QObject):
+    advanced = QtCore.Signal(object)  # a Progress
+    ended = QtCore.Signal()  # there is an outcome
+
+    def __init__(self, obj):
+        super().__init__()
+        self.object = obj
+        self.part = compatibility.meshed_object(obj)
+        self.job = mesh_object.start(obj)
+        self.job.add_page()
+        self.warnings = tuple(self.job.warnings())
+        self.progress = None
+        self._touched = self._cancelled = self._abandoned = False
+        self.clock = QtCore.QElapsedTimer()
+        self.clock.start()
+        self._process = QtCore.QProcess()
+        self._process.setReadChannel(QtCore.QProcess.StandardError)
+        self._process.readyReadStandardError.connect(self._read)
+        self._process.finished.connect(lambda exit_code, *_: self._finished(exit_code))
+        self._process.setStandardInputFile(QtCore.QProcess.nullDevice())
+        self._process.start(self.job.command[0], self.job.command[1:])
+        if not self._process.waitForStarted():
+            self.job.folder.cleanup()
+            raise MesherError(f"{self.job.command[0]} cannot be started: {self._process.errorString()}")
+        self.job.folder.program_is(self._process.processId())
+
+    def cancel(self):
+        self._cancelled = True
+        self._process.kill()
+
+    def abandon(self):
+        """End at once, without an outcome: there is nothing any more that could have it."""
+        self._abandoned = True
+        self._process.kill()
+        self._process.waitForFinished(3000)
+        self.job.folder.cleanup()
+        self.ended.emit()
+
+    def part_is_touched(self):
+        self._touched = True
+
+    def seconds(self):
+        return self.clock.elapsed() / 1000
+
+    def _read(self):
+        while self._process.canReadLine():
+            step = self.job.heard(bytes(self._process.readLine()).decode(errors="replace"))
+            if step:
+                self.progress = step
+                self.advanced.emit(step)
+
+    def _finished(self, exit_code):
+        if self._abandoned:
+            return
+        self._read()
+        self.job.folder.program_is(None)
+        self.progress = Progress("load", 1, self.progress.tets if self.progress else 0)
+        self.advanced.emit(self.progress)
+        QtCore.QTimer.singleShot(20, lambda: self._end(exit_code))  # after the window shows that
+
+    def _end(self, exit_code):
+        if self._abandoned:
+            return
+        key = _key(self.object)
+        try:
+            _outcomes[key] = self._outcome(exit_code)
+        finally:
+            del _runs[key]
+            self.job.folder.cleanup()
+            self._process.deleteLater()
+        _tell(self.object, _outcomes[key])
+        self.ended.emit()
+
+    def _outcome(self, exit_code):
+        if self._cancelled:
+            return Outcome(cancelled=True)
+        try:
+            report = mesh_object.finish(self.object, self.job, exit_code)
+        except MesherError as error:
+            return Outcome(error=str(error))
+        part_changed = self._part_changed()
+        self.object.Document.recompute()
+        page = os.path.join(self.object.Document.TransientDir, f"{self.object.Name}_report.html")
+        try:
+            self.job.move_page(page, self.part.Label)
+        except OSError as error:
+            FreeCAD.Console.PrintWarning(f"collarmesh: {error}\n")
+            page = ""
+        return Outcome(report=report, page=page, part_changed=part_changed, warnings=self.warnings)
+
+    def _part_changed(self):
+        """Is the part another one than the one that was meshed? A part that is recomputed may be the same again."""
+        if not self._touched:
+            return False
+        try:
+            now = mesh_object.start(self.object)
+        except MesherError:
+            return True
+        same = filecmp.cmp(now.shape, self.job.shape, shallow=False)
+        now.folder.cleanup()
+        return not same
+
+
+def _tell(obj, outcome):
+    """In the status bar, for those whose panel is closed."""
+    text = translate("collarmesh", "{object}: the mesh is made")
+    if outcome.report is None:
+        text = translate("collarmesh", "{object}: no new mesh is made")
+    FreeCADGui.getMainWindow().statusBar().showMessage(text.format(object=obj.Label), 10000)
+
+
+class _Observer:
+    def slotChangedObject(self, changed, name):
+        if name in WHAT_IS_MESHED:
+            for run in _runs.values():
+                if run.part is changed:
+                    run.part_is_touched()
+
+    def slotDeletedObject(self, deleted):
+        _forget(lambda key: key == _key(deleted))
+
+    def slotDeletedDocument(self, document):
+        _forget(lambda key: key[0] == document.Name)
+
+
+def _forget(condition):
+    for key in [key for key in _runs if condition(key)]:
+        _runs.pop(key).abandon()
+    for key in [key for key in _outcomes if condition(key)]:
+        del _outcomes[key]
+
+
+def _abandon_all():
+    with contextlib.suppress(RuntimeError):  # Qt's objects may be gone
+        _forget(lambda _key: True)
+
+
+FreeCAD.addDocumentObserver(_Observer())
+QtGui.QApplication.instance().aboutToQuit.connect(_abandon_all)

@@ -1,0 +1,63 @@
+"""What a run has found, by place: problems, warnings, repairs, nodes off their faces. Knows nothing of the window."""
+
+import dataclasses
+import re
+
+PROBLEM, WARNING, REPAIR, OFF_FACE, WORST = "problem", "warning", "repair", "off_face", "worst"
+
+_NUMBER = r"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?"
+_POINT = re.compile(rf"\(({_NUMBER}), ({_NUMBER}), ({_NUMBER})\)")
+_SUBSHAPE = re.compile(r"\b(?:Solid|Face|Edge|Vertex)[1-9]\d*\b")
+_SHAPE_BY_DIMENSION = ("Vertex", "Edge", "Face")
+
+
+@dataclasses.dataclass
+class Place:
+    """Something to tell, and where it is: at points (mm), on sub-shapes like Face7, or in a tetrahedron."""
+
+    kind: str
+    text: str
+    points: tuple = ()
+    subshapes: tuple = ()
+    tetrahedra: object = None  # an array of corners, shape (n, 4, 3)
+
+
+def told(kind, text, points=()):
+    """A message, with the places that stand in it."""
+    found = tuple(tuple(map(float, numbers)) for numbers in _POINT.findall(text))
+    return Place(kind, text, found or tuple(map(tuple, points)), tuple(dict.fromkeys(_SUBSHAPE.findall(text))))
+
+
+def in_error(message):
+    """Of a run without a mesh: a Place for each line."""
+    return [told(PROBLEM, line) for line in message.splitlines() if line.strip()]
+
+
+def in_report(report, warnings=()):
+    """Of a run with a mesh, each message once; `warnings` that are not in the report."""
+    places = [told(PROBLEM, each["message"], [each["where"]]) for each in report["check"]["findings"]]
+    if report["message"] and not report["guarantees_hold"]:
+        places.insert(0, told(PROBLEM, report["message"]))
+    places += [told(WARNING, text.removeprefix("warning: ")) for text in warnings]
+    places += [told(WARNING, each["message"], [each["where"]]) for each in report["complex"]["warnings"]]
+    places += [told(WARNING, text) for text in (*report["warnings"], *report["notes"])]
+    places += _repairs(report["repair"])
+    places += _nodes_off_their_faces(report)
+    return list({(place.kind, place.text): place for place in places}.values())
+
+
+def _repairs(repair):
+    if not repair["repaired"]:
+        return []
+    return [told(REPAIR, message) for message in repair["messages"]]
+
+
+def _nodes_off_their_faces(report):
+    off = []
+    for each in (report["projection"] or {}).get("exceptions", ()):
+        name = f"Face{each['face']}" if "face" in each else f"Edge{each['edge']}"
+        off.append((name, each["where"], each["distance"]))
+    for each in (report["second_order"] or {}).get("straightened", ()):
+        off.append((f"{_SHAPE_BY_DIMENSION[each['dimension']]}{each['tag']}", each["where"], each["distance"]))
+    return [Place(OFF_FACE, f"{name}: {distance:.3g} mm" if distance is not None else name, (tuple(where),), (name,))
+            for name, where, distance in off]  # fmt: skip

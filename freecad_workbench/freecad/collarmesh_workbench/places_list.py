@@ -1,0 +1,111 @@
+"""The list of places: a heading for each kind, below it what was found."""
+
+from PySide import QtCore, QtGui
+
+from . import places
+from .translations import translate
+
+MOST = 200  # rows of a kind
+
+
+class PlacesList(QtGui.QTreeWidget):
+    """A click, or the arrow keys, emit `picked` with the Places of the row: one, or all of a heading."""
+
+    picked = QtCore.Signal(object)
+
+    def __init__(self):
+        super().__init__()
+        self.setObjectName("collarmesh_places")
+        self.setHeaderHidden(True)
+        self.setWordWrap(True)
+        self.setIndentation(12)
+        self.setUniformRowHeights(False)
+        self.setMinimumHeight(170)
+        self.setVerticalScrollMode(QtGui.QAbstractItemView.ScrollPerPixel)
+        self.setItemDelegate(_Wrapped(self))
+        self.setToolTip(translate("collarmesh", "Click to see the place"))
+        self.itemClicked.connect(self._pick)
+        self.currentItemChanged.connect(self._moved)
+        self._filling = False
+
+    def fill(self, found):
+        """Show these Places, in the order of their kinds."""
+        self._filling = True
+        self.clear()
+        for kind, heading, colour in _kinds():
+            of_kind = [place for place in found if place.kind == kind]
+            if of_kind:
+                top = self._add(heading.format(count=len(of_kind)), colour, of_kind)
+                top.setExpanded(kind != places.WORST or len(of_kind) == len(found))
+        self._filling = False
+        self.setVisible(bool(found))
+
+    def _add(self, heading, colour, of_kind):
+        top = QtGui.QTreeWidgetItem(self, [heading])
+        top.setIcon(0, _dot(colour))
+        font = top.font(0)
+        font.setBold(True)
+        top.setFont(0, font)
+        top.setData(0, QtCore.Qt.UserRole, of_kind)
+        for place in of_kind[:MOST]:
+            row = QtGui.QTreeWidgetItem(top, [place.text])
+            row.setToolTip(0, place.text)
+            row.setData(0, QtCore.Qt.UserRole, [place])
+        if len(of_kind) > MOST:
+            text = translate("collarmesh", "and {count} more").format(count=len(of_kind) - MOST)
+            more = QtGui.QTreeWidgetItem(top, [text])
+            more.setData(0, QtCore.Qt.UserRole, of_kind[MOST:])
+        return top
+
+    def pick_first(self, kind):
+        """As if the first row of the kind were clicked."""
+        for i in range(self.topLevelItemCount()):
+            top = self.topLevelItem(i)
+            if top.data(0, QtCore.Qt.UserRole)[0].kind == kind:
+                top.setExpanded(True)
+                self.setCurrentItem(top.child(0))
+
+    def resizeEvent(self, event):
+        super().resizeEvent(event)
+        self.scheduleDelayedItemsLayout()
+
+    def _moved(self, item, _previous):
+        if item is not None and not self._filling:
+            self._pick(item)
+
+    def _pick(self, item, _column=0):
+        self.picked.emit(item.data(0, QtCore.Qt.UserRole))
+
+
+class _Wrapped(QtGui.QStyledItemDelegate):
+    """Rows as high as their texts need."""
+
+    def sizeHint(self, option, index):
+        tree = self.parent()
+        levels = 2 if index.parent().isValid() else 1
+        around = 2 * tree.frameWidth() + tree.verticalScrollBar().sizeHint().width() + 10
+        width = tree.width() - levels * tree.indentation() - around
+        box = option.fontMetrics.boundingRect(QtCore.QRect(0, 0, width, 10000), QtCore.Qt.TextWordWrap, index.data())
+        return QtCore.QSize(box.width(), max(box.height(), option.fontMetrics.height()) + 3)
+
+
+def _kinds():
+    return (
+        (places.PROBLEM, translate("collarmesh", "Problems ({count})"), "#c83c3c"),
+        (places.WARNING, translate("collarmesh", "Warnings ({count})"), "#e0a040"),
+        (places.REPAIR, translate("collarmesh", "Repaired ({count})"), "#4c86c6"),
+        (places.OFF_FACE, translate("collarmesh", "Nodes off their face ({count})"), "#e0a040"),
+        (places.WORST, translate("collarmesh", "Worst elements ({count})"), "#909090"),
+    )
+
+
+def _dot(colour):
+    picture = QtGui.QPixmap(12, 12)
+    picture.fill(QtCore.Qt.transparent)
+    painter = QtGui.QPainter(picture)
+    painter.setRenderHint(QtGui.QPainter.Antialiasing)
+    painter.setPen(QtCore.Qt.NoPen)
+    painter.setBrush(QtGui.QColor(colour))
+    painter.drawEllipse(1, 1, 10, 10)
+    painter.end()
+    return QtGui.QIcon(picture)

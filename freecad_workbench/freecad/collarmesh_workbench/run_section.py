@@ -1,0 +1,86 @@
+"""The part of the panel that starts and cancels runs, and tells how far they are."""
+
+from PySide import QtCore, QtGui
+
+from .size_presets import duration_text
+from .time_left import TimeLeft
+from .translations import translate
+
+
+class RunSection(QtGui.QWidget):
+    """Emits `run_clicked` and `cancel_clicked`."""
+
+    run_clicked = QtCore.Signal()
+    cancel_clicked = QtCore.Signal()
+
+    def __init__(self):
+        super().__init__()
+        self.run = QtGui.QPushButton(translate("collarmesh", "Mesh"))
+        self.run.setObjectName("collarmesh_run")
+        self.run.setDefault(True)
+        self.run.clicked.connect(self.run_clicked)
+        self.cancel = QtGui.QPushButton(translate("collarmesh", "Cancel"))
+        self.cancel.setObjectName("collarmesh_cancel")
+        self.cancel.setToolTip(translate("collarmesh", "End the run; the mesh stays as it is"))
+        self.cancel.clicked.connect(self.cancel_clicked)
+        self.bar = QtGui.QProgressBar()
+        self.bar.setObjectName("collarmesh_progress")
+        self.bar.setRange(0, 1000)
+        self.left = QtGui.QLabel()
+        self.left.setObjectName("collarmesh_left")
+        buttons = QtGui.QHBoxLayout()
+        buttons.addWidget(self.run)
+        buttons.addWidget(self.cancel)
+        layout = QtGui.QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addLayout(buttons)
+        layout.addWidget(self.bar)
+        layout.addWidget(self.left)
+        self.rest()
+
+    def rest(self):
+        """No run is under way."""
+        self.run.setEnabled(True)
+        self.cancel.setEnabled(False)
+        self.bar.hide()
+        self.left.hide()
+
+    def begin(self):
+        self.run.setEnabled(False)
+        self.cancel.setEnabled(True)
+        self.bar.setValue(0)
+        self.bar.setFormat("%p%")
+        self._time_left = TimeLeft()
+        self.left.setText("")
+        self.bar.show()
+        self.left.show()
+
+    def advance(self, progress, seconds, predicted=None):
+        """`seconds` since the start; `predicted`: how long all of it was said to take, None: unknown."""
+        self.bar.setValue(int(1000 * progress.fraction))
+        self.bar.setFormat(phase_text(progress.phase) + " %p%")
+        left = self._time_left.seconds(seconds, progress.fraction, predicted)
+        words = []
+        if progress.tets:
+            tets = f"{progress.tets:,}".replace(",", "\u202f")
+            words.append(translate("collarmesh", "{tets} elements so far").format(tets=tets))
+        if left is not None:
+            words.append(translate("collarmesh", "about {time} left").format(time=duration_text(left)))
+        self.left.setText(", ".join(words))
+
+
+def phase_text(phase):
+    """The program's word for a stage, in words for people."""
+    return {
+        "read": translate("collarmesh", "reading the shape"),
+        "repair": translate("collarmesh", "repairing"),
+        "complex": translate("collarmesh", "faces and edges"),
+        "refine": translate("collarmesh", "filling with elements"),
+        "coarsen": translate("collarmesh", "coarsening"),
+        "improve": translate("collarmesh", "improving"),
+        "project": translate("collarmesh", "onto the exact faces"),
+        "second order": translate("collarmesh", "second order"),
+        "check": translate("collarmesh", "checking"),
+        "write": translate("collarmesh", "writing"),
+        "load": translate("collarmesh", "loading the mesh"),
+    }.get(phase, phase)

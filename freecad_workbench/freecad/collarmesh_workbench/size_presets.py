@@ -1,0 +1,40 @@
+"""Sizes to choose from: named ones that fit the shape, from very coarse to very fine."""
+
+import math
+
+from .translations import translate
+
+DEFAULT_PART_OF_DIAGONAL = 1 / 20  # the program's, which is the medium one
+
+
+def presets(diagonal):
+    """Names and target edge lengths for a shape with a bounding box of this diagonal (mm)."""
+    names = (
+        (translate("collarmesh", "Very coarse"), 4),
+        (translate("collarmesh", "Coarse"), 2),
+        (translate("collarmesh", "Medium"), 1),
+        (translate("collarmesh", "Fine"), 1 / 2),
+        (translate("collarmesh", "Very fine"), 1 / 4),
+    )
+    return [(name, rounded(factor * diagonal * DEFAULT_PART_OF_DIAGONAL)) for name, factor in names]
+
+
+def rounded(length, digits=2):
+    """To this many digits that count."""
+    return round(length, digits - 1 - math.floor(math.log10(length))) if length > 0 else 0
+
+
+def count_text(count):
+    """A number of elements, rounded, as people read it: 12 000."""
+    return f"{int(rounded(count)):,}".replace(",", "\u202f")
+
+
+def duration_text(seconds):
+    """A duration, rounded."""
+    if seconds < 1:
+        return translate("collarmesh", "< 1 s")
+    if seconds < 100:
+        return translate("collarmesh", "{n} s").format(n=round(seconds))
+    if seconds < 6000:
+        return translate("collarmesh", "{n} min").format(n=round(seconds / 60))
+    return translate("collarmesh", "{n} h").format(n=round(seconds / 3600, 1))

@@ -1,0 +1,114 @@
+"""The first part of the panel: how large the elements are to be, and how many that makes."""
+
+from PySide import QtCore, QtGui
+
+from . import size_presets
+from .quantity_field import QuantityField
+from .translations import translate
+
+NAME, SIZE, ELEMENTS, TIME = range(4)
+
+
+class SizeSection(QtGui.QWidget):
+    """A table of presets with what each will make, and a field. `changed` is emitted when another size is chosen."""
+
+    changed = QtCore.Signal()
+
+    def __init__(self, size, diagonal):
+        """`size` in mm, 0: the default one; `diagonal` of the shape's bounding box."""
+        super().__init__()
+        self.presets = size_presets.presets(diagonal)
+        self.table = self._table()
+        if size == 0 and diagonal > 0:
+            size = self.presets[len(self.presets) // 2][1]
+        self.field = QuantityField("mm", size)
+        self.field.widget.setObjectName("collarmesh_CharacteristicLengthMax")
+        self.field.widget.setToolTip(translate("collarmesh", "Length that the edges of the elements are to have"))
+        row = QtGui.QFormLayout()
+        row.addRow(translate("collarmesh", "Size of the elements"), self.field.widget)
+        layout = QtGui.QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.table)
+        layout.addLayout(row)
+        self._mark_row()
+        self.table.currentItemChanged.connect(self._take_preset)
+        self.field.widget.textChanged.connect(self._edited)
+
+    def size(self):
+        """In mm. Raises ValueError."""
+        return self.field.value()
+
+    def sizes(self):
+        """Those of the table, in mm, the chosen one first."""
+        return [size for size in (self._size_or_zero(), *(size for _, size in self.presets)) if size > 0]
+
+    def show_predictions(self, predictions, missing=""):
+        """{size: (tetrahedra, seconds)}; `missing` stands for what is not there."""
+        sizes = [size for _, size in self.presets]
+        sizes.append(self._size_or_zero() if self._size_or_zero() not in sizes else 0)
+        for row, size in enumerate(sizes):
+            item = self.table.topLevelItem(row)
+            tets, seconds = predictions.get(size, (0, 0))
+            if tets > 0:
+                item.setText(ELEMENTS, size_presets.count_text(tets))
+                item.setText(TIME, size_presets.duration_text(seconds))
+            else:
+                item.setText(ELEMENTS, missing if size > 0 and size not in predictions else "")
+                item.setText(TIME, "")
+
+    def _table(self):
+        table = QtGui.QTreeWidget()
+        table.setObjectName("collarmesh_presets")
+        table.setRootIsDecorated(False)
+        headings = (translate("collarmesh", "Fineness"), translate("collarmesh", "Size"),
+                    translate("collarmesh", "≈ elements"), translate("collarmesh", "≈ time"))  # fmt: skip
+        table.setHeaderLabels(headings)
+        table.setToolTip(translate("collarmesh", "Choose a size; how many elements it makes and how long that takes "
+                                                 "is estimated for this shape"))  # fmt: skip
+        for name, size in self.presets:
+            item = QtGui.QTreeWidgetItem(table, [name, f"{size:g} mm" if size else "", "", ""])
+            item.setData(NAME, QtCore.Qt.UserRole, size)
+        QtGui.QTreeWidgetItem(table, [translate("collarmesh", "Custom"), "", "", ""])
+        for row in range(table.topLevelItemCount()):
+            for column in (SIZE, ELEMENTS, TIME):
+                table.topLevelItem(row).setTextAlignment(column, QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter)
+        header = table.header()
+        header.setStretchLastSection(False)
+        for column in range(4):
+            header.setSectionResizeMode(column, QtGui.QHeaderView.ResizeToContents)
+        header.setSectionResizeMode(NAME, QtGui.QHeaderView.Stretch)
+        rows = table.topLevelItemCount()
+        table.setFixedHeight(header.sizeHint().height() + rows * table.sizeHintForRow(0) + 2 * table.frameWidth() + 2)
+        table.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarAlwaysOff)
+        return table
+
+    def _custom_row(self):
+        return self.table.topLevelItem(self.table.topLevelItemCount() - 1)
+
+    def _size_or_zero(self):
+        try:
+            return self.size()
+        except ValueError:
+            return 0
+
+    def _mark_row(self):
+        """The row of the size in the field."""
+        size = self._size_or_zero()
+        sizes = [preset for _, preset in self.presets]
+        number = sizes.index(size) if size in sizes else len(sizes)
+        self._custom_row().setText(SIZE, f"{size:g} mm" if size > 0 and size not in sizes else "")
+        self.table.blockSignals(True)
+        self.table.setCurrentItem(self.table.topLevelItem(number))
+        self.table.blockSignals(False)
+
+    def _take_preset(self, item, _previous):
+        size = item.data(NAME, QtCore.Qt.UserRole) if item is not None else None
+        if size:
+            self.field.show(size)
+        elif item is not None:
+            self.field.widget.setFocus()
+            self.field.widget.selectAll()
+
+    def _edited(self):
+        self._mark_row()
+        self.changed.emit()

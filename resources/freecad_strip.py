@@ -1,0 +1,112 @@
+"""Six pictures in FreeCAD's window, from a part to its stresses. Run by freecad_pictures.py."""
+
+import os
+import pathlib
+import sys
+import tempfile
+
+import FemGui
+import FreeCAD
+import FreeCADGui
+import ObjectsFem
+import Part
+from femtools import ccxtools
+
+from freecad.collarmesh_workbench.commands import MESH_COMMAND
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "tests" / "freecad"))
+from window import (child, click_command, click_item, close_panel, find, require, rows, run_test,  # noqa: E402
+                    screenshot, wait_until)  # fmt: skip
+
+SIZE = (1040, 780)  # of the window
+
+
+def bracket():
+    """An L with a rounded corner and a hole in each leg."""
+    corners = [(0, 0, 0), (50, 0, 0), (50, 0, 8), (8, 0, 8), (8, 0, 45), (0, 0, 45), (0, 0, 0)]
+    shape = Part.Face(Part.makePolygon([FreeCAD.Vector(*p) for p in corners])).extrude(FreeCAD.Vector(0, 30, 0))
+    inner = [e for e in shape.Edges if all(abs(v.X - 8) + abs(v.Z - 8) < 1e-9 for v in e.Vertexes)]
+    shape = shape.makeFillet(6, inner)
+    shape = shape.cut(Part.makeCylinder(6, 10, FreeCAD.Vector(34, 15, -1)))
+    return shape.cut(Part.makeCylinder(6, 10, FreeCAD.Vector(-1, 15, 32), FreeCAD.Vector(1, 0, 0)))
+
+
+def face_at(shape, *place):
+    vertex = Part.Vertex(*place)
+    distances = [face.distToShape(vertex)[0] for face in shape.Faces]
+    return f"Face{distances.index(min(distances)) + 1}"
+
+
+def numbers_are_there():
+    return any(map(str.isdigit, child("presets").topLevelItem(2).text(2)))
+
+
+def solve(analysis, solver):
+    """CalculiX; returns what shows the stresses."""
+    with tempfile.TemporaryDirectory() as folder:
+        tools = ccxtools.FemToolsCcx(analysis, solver)
+        tools.update_objects()
+        tools.setup_working_dir(folder)
+        tools.setup_ccx()
+        require(not tools.check_prerequisites(), tools.check_prerequisites())
+        tools.purge_results()
+        tools.write_inp_file()
+        require(tools.ccx_run() == 0, "CalculiX failed")
+        tools.load_results()
+    result = next(each for each in analysis.Group if each.isDerivedFrom("Fem::FemResultObject"))
+    return ObjectsFem.makePostVtkResult(analysis.Document, result)
+
+
+def test():
+    FreeCADGui.activateWorkbench("FemWorkbench")
+    document = FreeCAD.newDocument("Bracket")
+    part = document.addObject("Part::Feature", "Bracket")
+    part.Shape = bracket()
+    part.ViewObject.ShapeColor = (0.6, 0.72, 0.85)
+    analysis = ObjectsFem.makeAnalysis(document, "Analysis")
+    FemGui.setActiveAnalysis(analysis)
+    solver = analysis.addObject(ObjectsFem.makeSolverCalculixCcxTools(document))[0]
+    material = analysis.addObject(ObjectsFem.makeMaterialSolid(document, "Steel"))[0]
+    material.Material = {"Name": "Steel", "YoungsModulus": "210000 MPa", "PoissonRatio": "0.3"}
+    document.recompute()
+    view = FreeCADGui.ActiveDocument.ActiveView
+    view.viewIsometric()
+    screenshot("step1.png", size=SIZE)
+    FreeCADGui.Selection.addSelection(part)
+    click_command(MESH_COMMAND)
+    wait_until(lambda: find("run") is not None and find("run").isVisible(), "the panel")
+    wait_until(numbers_are_there, "the numbers of elements")
+    for number in (3, 2):  # fine, medium
+        click_item(child("presets").topLevelItem(number))
+    child("ElementOrder").setCurrentIndex(1)
+    wait_until(numbers_are_there, "the numbers of elements")
+    screenshot("step2.png", size=SIZE)
+    child("run").click()
+    wait_until(lambda: child("run").isEnabled(), "the mesh")
+    part.ViewObject.Visibility = False
+    screenshot("step3.png", size=SIZE)
+    worst = next(items for heading, items in rows(child("places")).items() if heading.startswith("Worst"))
+    worst[0].parent().setExpanded(True)
+    click_item(worst[0])
+    screenshot("step4.png", fit=False, size=SIZE)
+    close_panel()
+    fixed = analysis.addObject(ObjectsFem.makeConstraintFixed(document, "Fixed"))[0]
+    fixed.References = [(part, face_at(part.Shape, 0, 15, 10))]
+    force = analysis.addObject(ObjectsFem.makeConstraintForce(document, "Force"))[0]
+    force.References = [(part, face_at(part.Shape, 50, 15, 4))]
+    force.Force = 500
+    force.Direction = (part, [face_at(part.Shape, 25, 1, 0)])
+    document.recompute()
+    screenshot("step5.png", size=SIZE)
+    stresses = solve(analysis, solver)
+    for each in document.Objects:
+        if hasattr(each, "ViewObject") and each is not stresses:
+            each.ViewObject.Visibility = False
+    stresses.ViewObject.Visibility = True
+    stresses.ViewObject.DisplayMode = "Surface"
+    stresses.ViewObject.Field = "von Mises Stress"
+    screenshot("step6.png", size=SIZE)
+
+
+if os.environ.get("COLLARMESH_TEST_ARGUMENT"):
+    run_test(test)

@@ -1,0 +1,418 @@
+"""The panel of a mesh: what a person sees and clicks, one function for each. Run by run.py --gui.
+
+The argument may be a folder for screenshots."""
+
+import json
+import os
+import pathlib
+import stat
+import sys
+import tempfile
+
+import FreeCAD
+import FreeCADGui
+import numpy
+import Part
+from PySide import QtCore, QtGui
+
+from freecad.collarmesh_workbench import (angle_chart, guarantees, mesh_object, meshing_process, places,
+                                          view_marks, worst_elements)  # fmt: skip
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from window import (child, click_at, click_item, close_panel, find, open_panel, pause, plate, require,  # noqa: E402
+                    rows, run_mesher, run_test, said, screenshot, wait_until)  # fmt: skip
+
+PROGRAM = os.environ["COLLARMESH_PROGRAM"]
+LONG = "0.15 mm"  # a size for which the plate takes much longer than any test
+
+
+def new_part(shape, label="Plate"):
+    """A document with a part and its empty mesh object."""
+    document = FreeCAD.newDocument(label)
+    part = document.addObject("Part::Feature", label)
+    part.Shape = shape
+    obj = mesh_object.make(document, part)
+    document.recompute()
+    FreeCADGui.ActiveDocument.ActiveView.viewIsometric()
+    FreeCADGui.SendMsgToActiveView("ViewFit")
+    return document, part, obj
+
+
+def close(document):
+    if find("run") is not None:
+        close_panel()
+    FreeCAD.closeDocument(document.Name)
+
+
+def table():
+    """The rows of the presets, as texts."""
+    presets = child("presets")
+    return [[presets.topLevelItem(i).text(column) for column in range(4)] for i in range(presets.topLevelItemCount())]
+
+
+def number_in(text):
+    """0 where there is none yet."""
+    return int("".join(filter(str.isdigit, text)) or 0)
+
+
+def marks_of(obj):
+    return obj.ViewObject.RootNode.getByName(view_marks.NAME)
+
+
+def collarmesh_folders():
+    return set(pathlib.Path(tempfile.gettempdir()).glob("collarmesh-????????"))
+
+
+def is_running(process_id):
+    """Also false for one that has ended and that nobody has asked about yet."""
+    try:
+        state = pathlib.Path(f"/proc/{process_id}/stat").read_text().rsplit(")", 1)[1].split()[0]
+    except OSError:
+        return False
+    return state != "Z"
+
+
+def stand_in(folder, text):
+    """A program that starts with these lines of Python and then becomes the mesher."""
+    path = pathlib.Path(folder, "program")
+    become = f"os.execv({PROGRAM!r}, [{PROGRAM!r}] + sys.argv[1:])"
+    path.write_text(f"#!/usr/bin/python3\nimport os, sys\n{text}\n{become}\n")
+    path.chmod(path.stat().st_mode | stat.S_IXUSR)
+    return str(path)
+
+
+def elements_are_told_before_meshing():
+    """The program's numbers stand beside the presets, follow other settings, and are about those that come."""
+    document, part, obj = new_part(plate())
+    open_panel(obj)
+    wait_until(lambda: number_in(table()[4][2]), "the numbers of elements")
+    counts = [number_in(row[2]) for row in table()[:5]]
+    require(counts == sorted(counts) and counts[0] < counts[-1], f"finer has more: {table()}")
+    require(all(row[3] for row in table()[:5]), f"times: {table()}")
+    require(child("presets").currentItem().text(0) == "Medium", "a new mesh is medium")
+    require(table()[2][1] == "2.5 mm", f"{table()}")
+    require(table()[5] == ["Custom", "", "", ""], f"{table()[5]}")
+    screenshot("freecad_presets.png")
+    click_item(child("presets").topLevelItem(1))
+    require(child("CharacteristicLengthMax").text() == "5.00 mm", "a preset sets the size")
+    child("CharacteristicLengthMax").setText("3 mm")
+    require(child("presets").currentItem().text(0) == "Custom", "another size is a custom one")
+    wait_until(lambda: number_in(table()[5][2]), "the number for the custom size")
+    require(table()[5][1] == "3 mm" and counts[1] < number_in(table()[5][2]) < counts[2], f"{table()}")
+    child("MeshSizeFromCurvature").setValue(60)
+    wait_until(lambda: number_in(table()[1][2]) > counts[1], "more elements on circles")
+    child("MeshSizeFromCurvature").setValue(0)
+    wait_until(lambda: number_in(table()[1][2]) == counts[1], "the numbers from before")
+    part.Shape = Part.makeBox(40, 30, 10)
+    wait_until(lambda: number_in(table()[2][2]) > 1.3 * counts[2], "the numbers of another shape")
+    close(document)
+
+
+def an_older_program_tells_no_numbers():
+    document, _, obj = new_part(plate())
+    with tempfile.TemporaryDirectory() as folder:
+        os.environ["COLLARMESH_PROGRAM"] = stand_in(folder, "if '--predict' in sys.argv: sys.exit(2)")
+        open_panel(obj)
+        pause(1500)
+        require([row[2:] for row in table()] == 6 * [["", ""]], f"{table()}")
+        require("Every guarantee holds" in run_mesher("4 mm"), "and meshes")
+        os.environ["COLLARMESH_PROGRAM"] = PROGRAM
+    close(document)
+
+
+def advanced_settings_reach_the_program():
+    """What is clicked and typed, with units, is what is asked for."""
+    document, _, obj = new_part(plate())
+    open_panel(obj)
+    require(not child("MeshSizeFromCurvature").isVisible(), "folded at first")
+    child("advanced").click()
+    require(child("MeshSizeFromCurvature").isVisible(), "unfolded")
+    for name in ("CharacteristicLengthMax", "ElementOrder", "presets", *obj.PropertiesList):
+        if find(name) is not None:
+            require(find(name).toolTip(), f"{name} has a tool tip")
+    child("MeshSizeFromCurvature").setValue(24)
+    child("SurfaceDistance").setText("0.002 in")
+    child("ImproveLevel").setCurrentIndex(child("ImproveLevel").findText("best"))
+    child("Coarsen").setChecked(False)
+    child("Repair").setCurrentIndex(child("Repair").findText("wrap where it fails"))
+    child("ElementOrder").setCurrentIndex(1)
+    screenshot("freecad_advanced.png", size=(1200, 1000))
+    run_mesher("4 mm")
+    options = meshing_process.outcome_of(obj).report["options"]
+    wanted = {"size": 4, "elements_per_circle": 24, "distance": 0.0508, "improve": 3, "coarsen": False,
+              "repair": "wrap", "order": 2, "crease_angle": 60, "radius_edge": 2}  # fmt: skip
+    require({name: options[name] for name in wanted} == wanted, f"{options}")
+    require((obj.ImproveLevel, obj.Repair, obj.ElementOrder) == (3, "Wrap", "2nd"), "the object has them")
+    require(len(obj.FemMesh.getElementNodes(obj.FemMesh.Volumes[0])) == 10, "second order")
+    require(f"{obj.FemMesh.NodeCount:,}".replace(",", "\u202f") in child("counts").text(), child("counts").text())
+    child("CharacteristicLengthMin").setText("3 kg")
+    told = run_mesher("4 mm")
+    require("Smallest size" in told and "3 kg" in told, told)
+    close(document)
+
+
+def tiny_sizes_are_shown():
+    """FreeCAD writes two decimals."""
+    document, _, obj = new_part(Part.makeBox(0.01, 0.01, 0.01))
+    obj.CharacteristicLengthMax = 0.00123456789
+    open_panel(obj)
+    require(child("CharacteristicLengthMax").text() == "0.00123457 mm", child("CharacteristicLengthMax").text())
+    child("run").click()
+    wait_until(lambda: child("run").isEnabled(), "the end of the run")
+    require(obj.CharacteristicLengthMax.Value == 0.00123456789, "what nobody has edited stays as it is")
+    close(document)
+
+
+def the_result_is_told():
+    """Counts are those of the mesh, the chart holds all elements, a guarantee that is missed is red."""
+    document, part, obj = new_part(plate())
+    open_panel(obj)
+    run_mesher("2 mm")
+    report, fem_mesh = meshing_process.outcome_of(obj).report, obj.FemMesh
+    for count in (fem_mesh.VolumeCount, fem_mesh.NodeCount, fem_mesh.FaceCount):
+        require(f"{count:,}".replace(",", "\u202f") in child("counts").text(), f"{count}: {child('counts').text()}")
+    chart = child("chart")
+    require(all(sum(counts) == fem_mesh.VolumeCount for _, _, counts in chart.series), "all elements are in the chart")
+    lines = child("guarantees").text()
+    require("✗" not in lines and lines.count("✓") == 6, lines)
+    part.ViewObject.Visibility = False
+    screenshot("freecad_panel.png", size=(1200, 1000))
+    x, y = int(chart._x(chart.extremes[0])), int(chart._frame().bottom())
+    picture = chart.grab().toImage()
+    colours = {picture.pixelColor(x + i, y - j).name() for i in range(-3, 4) for j in range(2, 12)}
+    require(angle_chart.WORST in colours, f"the worst element is marked: {colours}")
+    report = json.loads(json.dumps(report))
+    report["guarantees_hold"] = False
+    finding = {"guarantee": "radius_edge", "message": "Tetrahedron 7 is bad.", "where": [1, 2, 3], "ids": []}
+    report["check"]["findings"] = [finding]
+    broken = [text for text, messages in guarantees.guarantees(report) if messages]
+    require(broken == ["Circumradius / shortest edge is bounded"], f"{broken}")
+    meshing_process._outcomes[meshing_process._key(obj)] = meshing_process.Outcome(report=report)
+    close_panel()
+    open_panel(obj)
+    told = said()
+    require("A guarantee is missed" in told and told.count("✗") == 1 and "Tetrahedron 7 is bad." in told, told)
+    close(document)
+
+
+def the_worst_elements_show():
+    """A click on the chart's mark, on a row and on the heading."""
+    document, part, obj = new_part(plate())
+    open_panel(obj)
+    run_mesher("2 mm")
+    require(marks_of(obj) is None, "nothing is marked at first")
+    view = FreeCADGui.ActiveDocument.ActiveView
+    before = view.getCamera()
+    chart = child("chart")
+    click_at(chart, QtCore.QPoint(int(chart._x(chart.extremes[0])), int(chart._frame().bottom()) - 8))
+    require(marks_of(obj) is not None and view.getCamera() != before, "the worst element is marked and looked at")
+    require(obj.ViewObject.Transparency > 50 and not part.ViewObject.Visibility, "it can be seen")
+    screenshot("freecad_worst_elements.png", fit=False, size=(1200, 1000))
+    report = meshing_process.outcome_of(obj).report
+    worst = next(items for heading, items in rows(child("places")).items() if heading.startswith("Worst elements"))
+    smallest, rest = worst[0].text(0).split("° to ")
+    number = int(rest.split()[-1])
+    require(abs(float(smallest) - report["mesh"]["min_dihedral"]) < 0.1, worst[0].text(0))
+    corners = numpy.array([[obj.FemMesh.getNodeById(n) for n in obj.FemMesh.getElementNodes(number)]], dtype=float)
+    (angle,) = worst_elements.smallest_dihedral_angles(corners)
+    require(abs(angle - report["mesh"]["min_dihedral"]) < 1e-6, f"element {number} has {angle} degrees")
+    click_item(worst[0].parent())
+    faces = marks_of(obj).getChild(1).getChild(2)
+    require(faces.coordIndex.getNum() == len(worst) * 16 and len(worst) >= 10, "all are marked")
+    close_panel()
+    require(marks_of(obj) is None and obj.ViewObject.Transparency == 0 and part.ViewObject.Visibility, "as before")
+    open_panel(obj)
+    child("places").pick_first(places.WORST)
+    require(marks_of(obj) is not None, "what the last run found is still there")
+    FreeCADGui.ActiveDocument.resetEdit()  # as when another object is edited
+    wait_until(lambda: marks_of(obj) is None and find("run") is None, "the end of panel and marks")
+    close(document)
+
+
+def problems_select_their_places():
+    """A click on a message selects the edges and faces that it names, and looks at them."""
+    document, part, obj = new_part(Part.Shell(Part.makeBox(10, 10, 10).Faces[:1]), "Sheet")
+    open_panel(obj)
+    told = run_mesher("2 mm")
+    require("No mesh is made" in told and "Edge" in told, told)
+    require("“Tolerance of repair”" in told and "--" not in told, f"the panel's names: {told}")
+    problem = next(item for items in rows(child("places")).values() for item in items if "Edge" in item.text(0))
+    before = FreeCADGui.ActiveDocument.ActiveView.getCamera()
+    click_item(problem)
+    selected = {name for each in FreeCADGui.Selection.getSelectionEx() for name in each.SubElementNames}
+    named = set(places.told(places.PROBLEM, problem.text(0)).subshapes)
+    require(selected == named and any(name.startswith("Edge") for name in named), f"{selected} of {named}")
+    require(FreeCADGui.ActiveDocument.ActiveView.getCamera() != before, "the camera moves")
+    screenshot("freecad_message.png", fit=False)
+    close_panel()
+    require(not FreeCADGui.Selection.getSelectionEx(), "nothing stays selected")
+    close(document)
+
+
+def notes_and_repairs_are_told_once():
+    box = Part.makeBox(10, 10, 10)
+    overlapping = Part.makeCompound([box, Part.makeBox(10, 10, 10, FreeCAD.Vector(6, 0, 0))])
+    document, part, obj = new_part(overlapping, "Blocks")
+    open_panel(obj)
+    told = run_mesher("3 mm")
+    require(told.count("Solid1 and Solid2 overlap around (8, 5, 5)") == 1, told)
+    require("Every guarantee holds" in told and "Warnings (1)" in told and "changed while" not in told, told)
+    part.Shape = Part.Shell(box.Faces[:5])
+    told = run_mesher("3 mm")
+    require(told.count("a hole of 4 edges around (5, 5, 10)") == 1 and "Repaired (" in told, told)
+    require("changed while" not in told, told)
+    hole = rows(child("places"))[next(text for text in rows(child("places")) if text.startswith("Repaired"))][0]
+    click_item(hole)
+    point = marks_of(obj).getChild(1).getChild(0).point.getValues()[0].getValue()
+    require(tuple(point) == (5, 5, 10), f"the hole is marked: {point}")
+    screenshot("freecad_repair.png", fit=False)
+    close(document)
+
+
+def nodes_off_their_faces_are_listed():
+    """As the program reports them: with their faces, which a click selects."""
+    document, part, obj = new_part(Part.makeTorus(10, 3), "Ring")
+    obj.CharacteristicLengthMax, obj.ElementOrder = 2.7, "2nd"
+    open_panel(obj)
+    run_mesher("2.7 mm")
+    outcome = meshing_process.outcome_of(obj)
+    off = len(outcome.report["second_order"]["straightened"])
+    require((f"Nodes off their face ({off})" in said()) == bool(off), said())
+    outcome.report["second_order"]["straightened"] = [{"dimension": 2, "tag": 1, "where": [13, 0, 0], "distance": 0.01}]
+    close_panel()
+    open_panel(obj)
+    (node,) = rows(child("places"))["Nodes off their face (1)"]
+    require(node.text(0) == "Face1: 0.01 mm", node.text(0))
+    click_item(node)
+    selected = [each.SubElementNames for each in FreeCADGui.Selection.getSelectionEx()]
+    require(selected == [("Face1",)], f"the face is selected: {selected}")
+    close(document)
+
+
+def cancel_tells_and_time_left_shows():
+    document, _, obj = new_part(plate())
+    open_panel(obj)
+    run_mesher("3 mm")
+    count, left = obj.FemMesh.VolumeCount, child("left")
+    child("CharacteristicLengthMax").setText(LONG)
+    child("run").click()
+    require(not child("run").isEnabled() and child("progress").isVisible(), "a run is under way")
+    require("left" not in left.text(), "at the start nobody knows")
+    wait_until(lambda: "left" in left.text() and "elements so far" in left.text(), "the time left")
+    screenshot("freecad_progress.png", size=(1200, 1000))
+    child("cancel").click()
+    wait_until(lambda: child("run").isEnabled(), "the end")
+    require("Cancelled" in said() and obj.FemMesh.VolumeCount == count, said())
+    close(document)
+
+
+def a_closed_panel_lets_the_run_go_on():
+    """Two documents, two runs at once; a panel that is opened again shows its run."""
+    first, _, one = new_part(plate(), "First")
+    second, _, other = new_part(plate(), "Second")
+    open_panel(one)
+    child("CharacteristicLengthMax").setText("0.5 mm")
+    child("run").click()
+    close_panel()
+    open_panel(other)
+    child("CharacteristicLengthMax").setText("0.6 mm")
+    child("run").click()
+    require(len(meshing_process._runs) == 2, "two runs")
+    close_panel()
+    open_panel(one)
+    require(meshing_process.run_of(one) is None or not child("run").isEnabled(), "the panel shows its run")
+    wait_until(lambda: not meshing_process._runs, "both runs", 120)
+    require("Every guarantee holds" in said(), said())
+    require(one.FemMesh.VolumeCount > other.FemMesh.VolumeCount > 10000, "both meshes are there")
+    close(first)
+    close(second)
+
+
+def a_part_changed_while_meshing_is_told():
+    document, part, obj = new_part(plate())
+    open_panel(obj)
+    child("CharacteristicLengthMax").setText("0.6 mm")
+    child("run").click()
+    part.Shape = Part.makeBox(40, 30, 5)
+    wait_until(lambda: child("run").isEnabled(), "the end of the run")
+    require("changed while it was meshed" in said(), said())
+    require("changed while" not in run_mesher("3 mm"), said())
+    close(document)
+
+
+def documents_and_objects_go_while_meshing():
+    """The program is killed, its folder is removed, FreeCAD goes on; with the panel open and closed."""
+    for panel_open in (True, False):
+        for what in ("document", "object"):
+            document, _, obj = new_part(plate())
+            before = collarmesh_folders()
+            open_panel(obj)
+            child("CharacteristicLengthMax").setText(LONG)
+            child("run").click()
+            run = meshing_process.run_of(obj)
+            wait_until(lambda: run.progress is not None, "the first progress")
+            process_id, folder = run._process.processId(), pathlib.Path(run.job.folder.name)
+            require(is_running(process_id) and folder.exists(), "it runs")
+            if not panel_open:
+                close_panel()
+            if what == "document":
+                FreeCAD.closeDocument(document.Name)
+            else:
+                document.removeObject(obj.Name)
+            wait_until(lambda: not is_running(process_id) and not folder.exists(), f"the end with the {what}")
+            wait_until(lambda: find("run") is None, "the panel's end")
+            require(not meshing_process._runs, "no run")
+            if what == "object":
+                FreeCAD.closeDocument(document.Name)
+            wait_until(lambda: not collarmesh_folders() - before, f"no folder stays: {collarmesh_folders() - before}")
+
+
+def the_report_opens():
+    """The button opens a page that is still there, and that names the part instead of temporary files."""
+    opened = []
+
+    class Opener(QtCore.QObject):
+        @QtCore.Slot(QtCore.QUrl)
+        def open(self, url):
+            opened.append(url.toLocalFile())
+
+    opener = Opener()
+    QtGui.QDesktopServices.setUrlHandler("file", opener, "open")
+    document, _, obj = new_part(plate(), "Bracket")
+    open_panel(obj)
+    require(not child("report").isVisible(), "there is no report yet")
+    run_mesher("3 mm")
+    child("report").click()
+    QtGui.QDesktopServices.unsetUrlHandler("file")
+    require(len(opened) == 1, f"{opened}")
+    page = pathlib.Path(opened[0]).read_text(encoding="utf-8")
+    require("<html" in page and '"Bracket"' in page and "/collarmesh-" not in page, "the page is for people")
+    close(document)
+    require(not pathlib.Path(opened[0]).exists(), "it goes with the document")
+
+
+def test():
+    FreeCADGui.activateWorkbench("FemWorkbench")
+    only = os.environ.get("COLLARMESH_TEST_ONLY", "")
+    for each in (
+        elements_are_told_before_meshing,
+        an_older_program_tells_no_numbers,
+        advanced_settings_reach_the_program,
+        tiny_sizes_are_shown,
+        the_result_is_told,
+        the_worst_elements_show,
+        problems_select_their_places,
+        notes_and_repairs_are_told_once,
+        nodes_off_their_faces_are_listed,
+        cancel_tells_and_time_left_shows,
+        a_closed_panel_lets_the_run_go_on,
+        a_part_changed_while_meshing_is_told,
+        documents_and_objects_go_while_meshing,
+        the_report_opens,
+    ):
+        if only in each.__name__:
+            print(each.__name__, flush=True)
+            each()
+
+
+run_test(test)

@@ -1,0 +1,155 @@
+"""What tests do in FreeCAD's window: find widgets, click them, wait, look. For scripts run by run.py --gui."""
+
+import os
+import pathlib
+import sys
+import traceback
+
+import FreeCAD
+import FreeCADGui
+import Part
+from PySide import QtCore, QtGui
+
+PICTURES = os.environ.get("COLLARMESH_TEST_ARGUMENT", "")  # a folder for screenshots
+window = FreeCADGui.getMainWindow()
+WIDE = (0, 0, 2600, 1000)  # enough for all buttons of FEM
+window.setGeometry(*WIDE)
+if PICTURES:  # on white
+    view_settings = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/View")
+    for name in ("Gradient", "RadialGradient"):
+        view_settings.SetBool(name, False)
+    view_settings.SetBool("Simple", True)
+    view_settings.SetUnsigned("BackgroundColor", 0xFFFFFFFF)
+
+
+def require(condition, what):
+    if not condition:
+        raise AssertionError(what)
+
+
+def find(name):
+    """A widget of ours, None where there is none."""
+    return window.findChild(QtGui.QWidget, "collarmesh_" + name)
+
+
+def child(name):
+    require(find(name) is not None, f"no widget {name}")
+    return find(name)
+
+
+def wait_until(condition, what, seconds=60):
+    """Lets FreeCAD go on until the condition holds."""
+    clock = QtCore.QElapsedTimer()
+    clock.start()
+    while not condition():
+        QtGui.QApplication.processEvents(QtCore.QEventLoop.AllEvents, 20)
+        require(clock.elapsed() < 1000 * seconds, f"waited too long for {what}")
+
+
+def pause(milliseconds):
+    clock = QtCore.QElapsedTimer()
+    clock.start()
+    wait_until(lambda: clock.elapsed() > milliseconds, "the time")
+
+
+def click_at(widget, place):
+    """The left button of the mouse at a QPoint of the widget."""
+    for kind, buttons in ((QtCore.QEvent.MouseButtonPress, QtCore.Qt.LeftButton),
+                          (QtCore.QEvent.MouseButtonRelease, QtCore.Qt.NoButton)):  # fmt: skip
+        event = QtGui.QMouseEvent(kind, QtCore.QPointF(place), QtCore.Qt.LeftButton, buttons, QtCore.Qt.NoModifier)
+        QtGui.QApplication.sendEvent(widget, event)
+    QtGui.QApplication.processEvents()
+
+
+def click_item(item):
+    """A row of a tree."""
+    tree = item.treeWidget()
+    tree.scrollToItem(item)
+    QtGui.QApplication.processEvents()
+    click_at(tree.viewport(), tree.visualItemRect(item).center())
+
+
+def click_command(command):
+    """The command's button in the toolbar."""
+    next(button for bar in window.findChildren(QtGui.QToolBar) for button in bar.findChildren(QtGui.QToolButton)
+         if button.defaultAction() is not None and button.defaultAction().objectName() == command).click()  # fmt: skip
+
+
+def rows(tree):
+    """All rows of a tree with one level of headings: {heading: [item]}."""
+    tops = [tree.topLevelItem(i) for i in range(tree.topLevelItemCount())]
+    return {top.text(0): [top.child(i) for i in range(top.childCount())] for top in tops}
+
+
+def column_of(tree, column):
+    """The texts of the rows at the top."""
+    return [tree.topLevelItem(i).text(column) for i in range(tree.topLevelItemCount())]
+
+
+def said():
+    """All that the panel tells of the last run."""
+    shown = [child(name).text() for name in ("message", "counts", "guarantees") if child(name).isVisible()]
+    for heading, items in rows(child("places")).items():
+        shown += [heading, *(item.text(0) for item in items)]
+    return "\n".join(shown)
+
+
+def run_mesher(size):
+    """Enter a size, click "Mesh" and wait for the end; returns what the panel tells."""
+    child("CharacteristicLengthMax").setText(size)
+    child("run").click()
+    wait_until(lambda: child("run").isEnabled(), "the end of the run")
+    return said()
+
+
+def open_panel(obj):
+    FreeCADGui.getDocument(obj.Document.Name).setEdit(obj.Name)
+    wait_until(lambda: find("run") is not None and find("run").isVisible(), "the panel")
+
+
+def close_panel():
+    """Its button."""
+    buttons = [each for box in window.findChildren(QtGui.QDialogButtonBox) for each in box.buttons() if box.isVisible()]
+    require(len(buttons) == 1, f"{len(buttons)} buttons below the panel")
+    buttons[0].click()
+    wait_until(lambda: find("run") is None, "the panel's end")
+
+
+def screenshot(name, fit=True, size=(1200, 900)):
+    """A picture of the window, made small for it; `fit`: with all of the document in view."""
+    if not PICTURES:
+        return
+    if find("presets") is not None and child("run").isEnabled():
+        wait_until(lambda: "…" not in "".join(column_of(child("presets"), 2)), "the numbers of elements")
+    window.setGeometry(0, 0, *size)
+    for _ in range(2):
+        pause(400)
+        if fit:
+            FreeCADGui.SendMsgToActiveView("ViewFit")
+    pause(400)
+    QtGui.QApplication.primaryScreen().grabWindow(0).copy(0, 0, *size).save(os.path.join(PICTURES, name))
+    window.setGeometry(*WIDE)
+
+
+def plate():
+    return Part.makeBox(40, 30, 5).cut(Part.makeCylinder(6, 7, FreeCAD.Vector(20, 15, -1)))
+
+
+def run_test(test):
+    """A moment after FreeCAD has started; ends FreeCAD with the verdict."""
+
+    errors = []
+    sys.excepthook = lambda *error: errors.append("".join(traceback.format_exception(*error)))  # in Qt's slots, too
+
+    def main():
+        try:
+            test()
+            require(not errors, errors and errors[0])
+            verdict = "passed"
+        except BaseException:
+            verdict = traceback.format_exc()
+        pathlib.Path(os.environ["COLLARMESH_TEST_RESULT"]).write_text(verdict, encoding="utf-8")
+        sys.stdout.flush()
+        os._exit(0 if verdict == "passed" else 1)
+
+    QtCore.QTimer.singleShot(1500, main)
