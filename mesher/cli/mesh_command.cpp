@@ -6,8 +6,10 @@
 #include <fstream>
 #include <optional>
 
+#include "cell_decomposition.h"
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
+#include "collarmesh/partition.h"
 #include "complex_input.h"
 #include "console.h"
 #include "conversion_report.h"
@@ -69,6 +71,7 @@ PipelineOptions pipeline_options(const MeshArguments& a) {
   options.improve = a.improve;
   options.min_dihedral = a.min_dihedral;
   options.order = a.order;
+  options.partitions = a.partitions;
   options.threads = a.threads;
   return options;
 }
@@ -172,7 +175,7 @@ void write_files(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   StagedFile mesh(arguments.output);
   mesh.write([&](const std::string& path) {
     ThreadLimit(arguments.threads).run([&] {
-      io::write_tet_mesh(path, run.result.mesh, arguments.output_format);
+      io::write_tet_mesh(path, run.result.mesh, arguments.output_format, arguments.ghost_cells);
     });
   });
   run.times.end();
@@ -181,7 +184,12 @@ void write_files(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
     report.emplace(arguments.report);
     report->write([&](const std::string& path) { write_report(path, arguments, run, shown); });
   }
-  StagedFile::commit({&mesh, report ? &*report : nullptr});
+  std::optional<StagedFile> decomposition;
+  if (!arguments.cell_decomposition.empty()) {
+    decomposition.emplace(arguments.cell_decomposition);
+    decomposition->write([&](const std::string& path) { write_cell_decomposition(path, run.result.mesh); });
+  }
+  StagedFile::commit({&mesh, report ? &*report : nullptr, decomposition ? &*decomposition : nullptr});
 }
 
 void tell_of(const MeshArguments& arguments, const MeshRun& run) {
@@ -204,6 +212,8 @@ ExitCode mesh_command(const MeshArguments& arguments) {
   limit_memory(arguments.mesh.max_memory);
   require_writable(arguments.output, arguments.output_format);
   if (!arguments.report.empty()) require_writable(arguments.report);
+  if (!arguments.cell_decomposition.empty()) require_writable(arguments.cell_decomposition);
+  if (arguments.partitions > 0) require_partitioner();  // before long work
   MeshRun run;
   {
     Stages stages(arguments.quiet ? ProgressStyle::none : arguments.progress, run.times);

@@ -6,6 +6,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "io/cell_partitions.h"
+
 namespace collarmesh::io {
 
 namespace {
@@ -171,7 +173,45 @@ void find_physicals(MshEntities& result) {
   }
 }
 
+/// Parts in the order of their entities and partitions, numbered past the entities.
+template <class Cells>
+void divide(const TetMesh& mesh, const Cells& cells, std::size_t dimension,
+            const std::vector<MshEntity>& whole, const std::vector<Index>& whole_of_cell,
+            const std::vector<Index>& partitions, std::vector<Index>& part_of_cell, MshParts& result) {
+  std::map<std::pair<Index, Index>, Index> parts;
+  for (std::size_t i = 0; i < cells.size(); ++i) parts.try_emplace({whole_of_cell[i], partitions[i]}, 0);
+  int number = 0;
+  for (const MshEntity& entity : whole) number = std::max(number, entity.number);
+  std::vector<MshEntity>& entities = result.entities.of_dimension[dimension];
+  for (auto& [key, part] : parts) {
+    const MshEntity& parent = whole[key.first];
+    part = static_cast<Index>(entities.size());
+    MshEntity entity;
+    entity.number = ++number;
+    entity.tag = parent.tag;
+    entity.physical = parent.physical;
+    entities.push_back(entity);
+    result.of_dimension[dimension].push_back({parent.number, key.second});
+  }
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    part_of_cell.push_back(parts.at({whole_of_cell[i], partitions[i]}));
+    for (const Index v : cells[i]) entities[part_of_cell.back()].box.add(mesh.points[v]);
+  }
+}
+
 }  // namespace
+
+MshParts divide_entities(const TetMesh& mesh, const MshEntities& whole) {
+  MshParts result;
+  result.numbers = partition_numbers(mesh);
+  result.partitions = std::size_t{result.numbers.back()} + 1;
+  MshEntities& parts = result.entities;
+  const auto& lists = whole.of_dimension;
+  divide(mesh, mesh.tets, 3, lists[3], whole.of_tet, mesh.tet_partition, parts.of_tet, result);
+  divide(mesh, mesh.faces, 2, lists[2], whole.of_face, partitions_of_faces(mesh), parts.of_face, result);
+  divide(mesh, mesh.edges, 1, lists[1], whole.of_edge, partitions_of_edges(mesh), parts.of_edge, result);
+  return result;
+}
 
 MshEntities find_entities(const TetMesh& mesh) {
   MshEntities result;
