@@ -436,7 +436,7 @@ void check_second_output(const char* option, const std::string& file,
                          const std::vector<std::filesystem::path>& written,
                          const std::vector<std::string>& inputs, const std::string& input_format) {
   if (file.empty()) return;
-  if (overwritten(written, {file}, {}).size() > 0)
+  if (!overwritten(written, {file}, {}).empty())
     throw CLI::ValidationError(option, "names a file of --output; choose another");
   const std::string lost = overwritten({file}, inputs, input_format);
   if (!lost.empty())

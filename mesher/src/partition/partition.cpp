@@ -81,8 +81,9 @@ void partition(TetMesh& mesh, unsigned partitions) {
   if (partitions > 1) {
     const DualGraph graph = dual_graph(mesh);
     if (!by_scotch(graph, partitions, imbalance, partition_of.data()))
-      throw OptionError(
-          fmt::format("Scotch cannot make {} partitions of {} tets; ask for fewer", partitions, tets));
+      throw OptionError(fmt::format(
+          "Scotch cannot make {} partitions of {} tets; its memory may be spent, or ask for fewer",
+          partitions, tets));
     const std::size_t mean = (tets + partitions - 1) / partitions;
     const auto tolerated = static_cast<std::size_t>((1 + imbalance) * static_cast<double>(tets) / partitions);
     level_partitions(graph, partitions, std::max(mean, tolerated), partition_of);
