@@ -17,6 +17,7 @@ from pathlib import Path
 import meshio
 import numpy as np
 
+from processes import pin_to_core
 from tables import machine, si, table
 
 sources = Path(__file__).resolve().parents[2]
@@ -75,20 +76,18 @@ def by_scotch(graph: Path, partitions: int, tets: int) -> np.ndarray:
     return found
 
 
-def by_gmsh(mesh: Path, partitions: int, tets: int) -> np.ndarray:
-    """Of the tetrahedra of a .msh2 file, which are its last elements, in their order."""
+def by_gmsh(mesh: Path, partitions: int) -> tuple[np.ndarray, np.ndarray]:
+    """The tetrahedra in Gmsh's own order: corners, (m, 4), and partitions, (m,)."""
     out = mesh.with_name("by_gmsh.msh")
-    run("gmsh", mesh, "-part", partitions, "-setnumber", "Mesh.PartitionCreateTopology", 0, "-save_all", "-format", "msh22", "-o", out)
-    text = out.read_text()
-    numbers, found = [], []
-    for line in text.split("$Elements\n", 1)[1].split("$EndElements", 1)[0].splitlines()[1:]:
+    run("gmsh", mesh, "-0", "-part", partitions, "-setnumber", "Mesh.PartitionCreateTopology", 0, "-save_all", "-format", "msh22", "-o", out)
+    corners, found = [], []
+    for line in out.read_text().split("$Elements\n", 1)[1].split("$EndElements", 1)[0].splitlines()[1:]:
         words = line.split()
         if words[1] == "4":
-            assert int(words[2]) >= 4 and words[5] == "1", line
-            numbers.append(int(words[0]))
+            assert int(words[2]) == 4 and words[5] == "1", line
             found.append(int(words[6]) - 1)
-    assert len(found) == tets, (len(found), tets)
-    return np.array(found)[np.argsort(numbers, kind="stable")]
+            corners.append([int(word) for word in words[7:]])
+    return np.array(corners), np.array(found)
 
 
 def judged(partition: np.ndarray, pairs: np.ndarray, partitions: int) -> tuple[int, float]:
@@ -109,6 +108,7 @@ def main() -> None:
     missing = [name for name in ("scotch_gpart", "gmsh") if shutil.which(name) is None]
     if missing:
         raise SystemExit(f"{missing} not installed")
+    pin_to_core(None)
     program = arguments.program.resolve()
     print(f"scotch {debian_version('scotch')}, gmsh {debian_version('gmsh')}; {machine(program.parents[1])}\n")
     rows, worst = [], {"scotch_gpart": 0.0, "Gmsh": 0.0}
@@ -126,9 +126,11 @@ def main() -> None:
                 run(program, "convert", place / "mesh.vtu", "-o", place / "divided.vtu", "--partitions", partitions)
                 seconds = time.perf_counter() - begin
                 found = {"collarmesh": tetrahedra(place / "divided.vtu")[1],
-                         "scotch_gpart": by_scotch(place / "mesh.grf", partitions, len(tets)),
-                         "Gmsh": by_gmsh(place / "mesh.msh", partitions, len(tets))}
+                         "scotch_gpart": by_scotch(place / "mesh.grf", partitions, len(tets))}
                 cuts = {peer: judged(partition, pairs, partitions) for peer, partition in found.items()}
+                gmsh_tets, partition = by_gmsh(place / "mesh.msh", partitions)
+                assert len(gmsh_tets) == len(tets)
+                cuts["Gmsh"] = judged(partition, pairs_with_a_face(gmsh_tets), partitions)
                 ours = cuts["collarmesh"][0]
                 for peer in worst:
                     worst[peer] = max(worst[peer], ours / cuts[peer][0])

@@ -204,7 +204,9 @@ void read_nodes(Values values, Contents& contents) {
   contents.nodes.reserve(total);
   for (Index b = 0; b < blocks; ++b) {
     const std::size_t dimension = read_dimension(values);
-    const int entity = values.integer("the number of an entity");
+    const int number = values.integer("the number of an entity");
+    const auto part = contents.partition_entities[dimension].find(number);
+    const int entity = part == contents.partition_entities[dimension].end() ? number : part->second.parent;
     const int parametric = values.integer("the flag for parametric nodes");
     const Index n = values.count("the number of nodes of a block", 4);
     const std::size_t first = contents.nodes.size();

@@ -2,7 +2,8 @@
 // a volume per region, a surface per patch, a curve per curve, a point per vertex. A physical group
 // holds what has one tag. Cells are numbered in the order tets, faces, edges; $ElementData "collar" and
 // "crease" is given for all of them in the order of the file, as meshio needs it.
-// Of a partitioned mesh the cells of an entity are divided among its parts, an entity for each partition.
+// Of a partitioned mesh the cells and nodes of an entity are divided among its parts, an entity for each
+// partition: Gmsh keeps nothing else when it writes such a mesh again.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -67,7 +68,7 @@ void write_entities(FileWriter& out, const MshEntities& entities) {
   out << "$EndEntities\n";
 }
 
-/// Partitions count from 1. The nodes stay with the whole entities.
+/// Partitions count from 1.
 void write_partition_entities(FileWriter& out, const MshParts& parts,
                               const std::vector<int>& ghost_entities) {
   out << "$PartitionedEntities\n" << parts.partitions << '\n' << ghost_entities.size() << '\n';
@@ -236,7 +237,7 @@ void write(const std::string& path, const TetMesh& mesh, bool with_ghosts) {
   write_physical_names(out, mesh, entities);
   write_entities(out, entities);
   if (parts) write_partition_entities(out, *parts, with_ghosts ? ghost_volumes(*parts) : std::vector<int>());
-  write_nodes(out, mesh, entities);
+  write_nodes(out, mesh, holders);
   write_elements(out, mesh, holders, groups);
   if (parts && with_ghosts) write_ghost_elements(out, mesh, *parts);
   write_data(out, "collar", mesh.tet_collar, groups);

@@ -15,7 +15,7 @@ struct DualGraph {
 };
 
 /// Gives each tet a partition; false where Scotch fails.
-using ScotchPartition = bool (*)(const DualGraph& graph, unsigned partitions, double imbalance,
+using ScotchPartition = bool (*)(const DualGraph& graph, unsigned partitions, double imbalance, int seed,
                                  GraphIndex* partition_of);
 
 }  // namespace collarmesh

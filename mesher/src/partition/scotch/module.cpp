@@ -31,9 +31,9 @@ struct Work {
   Work(const Work&) = delete;
   Work& operator=(const Work&) = delete;
 
-  /// One thread and one seed, so that the result is the same everywhere.
-  bool make_repeatable() {
-    SCOTCH_contextRandomSeed(&context, 1);
+  /// One thread and this seed, so that the result is the same everywhere.
+  bool make_repeatable(int seed) {
+    SCOTCH_contextRandomSeed(&context, seed);
     return SCOTCH_contextOptionSetNum(&context, SCOTCH_OPTIONNUMDETERMINISTIC, 1) == 0 &&
            SCOTCH_contextOptionSetNum(&context, SCOTCH_OPTIONNUMRANDOMFIXEDSEED, 1) == 0 &&
            SCOTCH_contextThreadSpawn(&context, 1, nullptr) == 0;
@@ -43,12 +43,12 @@ struct Work {
 }  // namespace
 
 extern "C" __attribute__((visibility("default"))) bool collarmesh_scotch_partition(
-    const collarmesh::DualGraph& graph, unsigned partitions, double imbalance,
+    const collarmesh::DualGraph& graph, unsigned partitions, double imbalance, int seed,
     collarmesh::GraphIndex* partition_of) {
   Work work;
   const auto cells = static_cast<SCOTCH_Num>(graph.starts.size() - 1);
   const auto parts = static_cast<SCOTCH_Num>(partitions);
-  return work.make_repeatable() &&
+  return work.make_repeatable(seed) &&
          SCOTCH_graphBuild(&work.graph, 0, cells, graph.starts.data(), nullptr, nullptr, nullptr,
                            graph.starts.back(), graph.neighbours.data(), nullptr) == 0 &&
          SCOTCH_contextBindGraph(&work.context, &work.graph, &work.bound) == 0 &&
