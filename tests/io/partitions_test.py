@@ -39,7 +39,8 @@ class Divided:
     def __init__(self, folder, program, models, order=1):
         self.folder, self.program = folder, program
         self.name = folder / f"divided{order}.vtu"
-        run(folder, program, models / "two_boxes.poly", "-o", self.name, "--size", "0.4", "--order", order, "--partitions", PARTITIONS)
+        run(folder, program, models / "two_boxes.poly", "-o", self.name, "--size", "0.4", "--order", order,
+            "--partitions", PARTITIONS)
         self.info = json.loads(run(folder, program, "info", self.name, "--json"))["mesh"]
         assert self.info["partitions"]["count"] == PARTITIONS
 
@@ -126,7 +127,8 @@ def with_gmsh(folder, program, models):
     before = json.loads(run(folder, program, "info", whole, "--json"))["mesh"]
     for form in ("msh41", "msh22"):
         for binary in ((), ("-bin",)):
-            run(folder, "gmsh", whole, "-0", "-part", "3", "-part_ghosts", "-save_all", *binary, "-format", form, "-o", "gmsh.msh")
+            run(folder, "gmsh", whole, "-0", "-part", "3", "-part_ghosts", "-save_all", *binary, "-format", form,
+                "-o", "gmsh.msh")
             info = json.loads(run(folder, program, "info", "gmsh.msh", "--json"))["mesh"]
             assert info["partitions"]["count"] == 3, (form, binary, info["partitions"])
             assert (info["tets"], info["faces"]) == (before["tets"], before["faces"]), (form, binary)
@@ -218,12 +220,10 @@ def with_meshio(folder, program, models):
             found = meshio.read(mesh.convert(f"by_meshio.{extension}")).cell_data_dict["partition"][kind]
             assert np.array_equal(np.ravel(found).astype(int), partition), (extension, order)
             print(f".{extension} of order {order}: {np.bincount(partition)}")
-        for extension in ("msh", "msh2"):
-            path = mesh.convert(f"by_meshio.{extension}")
-            shutil.copy(path, folder / "by_meshio_copy.msh")
-            blocks = [block.data for block in meshio.read(folder / "by_meshio_copy.msh").cells if block.type == kind]
-            assert sum(map(len, blocks)) == len(partition), (extension, order)
-            print(f".{extension} of order {order}: read")
+        # Partitioned files of Gmsh's format 4.1 meshio 5 does not read, of Gmsh neither.
+        path = mesh.convert("by_meshio.msh", "--format", "msh2")
+        assert len(meshio.read(path).cells_dict[kind]) == len(partition), order
+        print(f".msh2 of order {order}: read")
 
 
 FOAM = "FoamFile {{ version 2.0; format ascii; class dictionary; object {}; }}\n"

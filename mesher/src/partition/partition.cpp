@@ -78,7 +78,7 @@ std::size_t cut_of(const DualGraph& graph, const std::vector<GraphIndex>& partit
 /// Of small meshes, where luck matters most and time least, the best of some seeds.
 std::vector<GraphIndex> best_by_scotch(ScotchPartition by_scotch, const DualGraph& graph,
                                        unsigned partitions) {
-  constexpr std::size_t small = 200'000;
+  constexpr std::size_t small = 50'000;
   const std::size_t tets = graph.starts.size() - 1;
   std::vector<GraphIndex> best, partition_of(tets);
   std::size_t least = std::numeric_limits<std::size_t>::max();

@@ -31,9 +31,12 @@ struct Work {
   Work(const Work&) = delete;
   Work& operator=(const Work&) = delete;
 
-  /// One thread and this seed, so that the result is the same everywhere.
+  /// One thread, and numbers of its own from this seed, so that the result is the same everywhere: by default
+  /// all contexts draw from one sequence.
   bool make_repeatable(int seed) {
+    if (SCOTCH_contextRandomClone(&context) != 0) return false;
     SCOTCH_contextRandomSeed(&context, seed);
+    SCOTCH_contextRandomReset(&context);
     return SCOTCH_contextOptionSetNum(&context, SCOTCH_OPTIONNUMDETERMINISTIC, 1) == 0 &&
            SCOTCH_contextOptionSetNum(&context, SCOTCH_OPTIONNUMRANDOMFIXEDSEED, 1) == 0 &&
            SCOTCH_contextThreadSpawn(&context, 1, nullptr) == 0;
