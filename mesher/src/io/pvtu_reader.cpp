@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <pugixml.hpp>
+#include <set>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -39,10 +40,13 @@ std::vector<std::string> files_of_pieces(const std::string& path) {
   const pugi::xml_node grid = document.child("VTKFile").child("PUnstructuredGrid");
   if (!grid) throw ReadError(path + ": expected a VTKFile with a PUnstructuredGrid");
   std::vector<std::string> files;
+  std::set<std::string> known;
   for (const pugi::xml_node& piece : grid.children("Piece")) {
     const std::string source = piece.attribute("Source").value();
     if (source.empty()) throw ReadError(path + ": a Piece has no Source");
-    files.push_back((fs::path(path).parent_path() / source).string());
+    std::string file = (fs::path(path).parent_path() / source).string();
+    if (!known.insert(file).second) throw ReadError(fmt::format("{}: two pieces are {}", path, source));
+    files.push_back(std::move(file));
   }
   return files;
 }
