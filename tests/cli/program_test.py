@@ -985,6 +985,14 @@ class Partitions(ProgramTest):
         self.assertEqual(run.returncode, 2, run.stderr)
         self.assertIn("would overwrite", run.stderr)
         self.assertEqual((self.folder / "a_0.vtu").read_bytes(), before)
+        self.assertEqual(self.run_program(self.box, "-o", "b.pvtu", "--size", "0.3", "--partitions", "2").returncode, 0)
+        run = self.run_program("convert", "b.pvtu", "-o", "b_1.vtu")
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertIn("b_1.vtu, a file of the input b.pvtu", run.stderr)
+        for option in ("--cell-decomposition", "--report"):
+            run = self.run_program(self.box, "-o", "c.vtu", "--partitions", "2", option, "c.vtu")
+            self.assertEqual(run.returncode, 2, run.stderr)
+            self.assertIn(f"{option}: names a file of --output", run.stderr)
 
     def test_pieces_that_do_not_fit_together(self):
         self.assertEqual(self.run_program(self.box, "-o", "a.pvtu", "--size", "0.3", "--partitions", "3").returncode, 0)
@@ -1023,6 +1031,9 @@ class Partitions(ProgramTest):
                     says=[r"partitions is 900000, but the mesh has \d+ tets; ask for 1 to \d+"])
         self.expect(2, self.box, "-o", self.out, "--ghost-cells", says=[r"--ghost-cells: \.vtu has no place.*\.pvtu \.msh"])
         self.expect(2, self.box, "-o", "a.msh", "--ghost-cells", says=["say how many with --partitions"])
+        self.expect(2, self.box, "-o", self.out, "--cell-decomposition", "list", says=["say how many with --partitions"])
+        self.expect(8, self.box, "-o", self.out, "--partitions", "2", "--cell-decomposition", "missing/list",
+                    says=["missing does not exist"])
         self.assertEqual(self.run_program("convert", self.box, "-o", "-", "--format", "pvtu", "--partitions", "2").returncode, 2)
         self.expect(0, self.box, "-o", self.out, "--size", "0.5", writes=True)
         run = self.run_program("convert", self.out, "-o", "a.msh", "--ghost-cells")
