@@ -6,6 +6,7 @@
 
 #include "arguments.h"
 #include "collarmesh/check.h"
+#include "collarmesh/partition.h"
 #include "collarmesh/pipeline.h"
 #include "collarmesh/plc_builder.h"
 #include "collarmesh/predict.h"
@@ -43,6 +44,8 @@ std::string repair_text(const RepairReport& report, bool quiet = false);
 std::string complex_text(const Plc& plc, const PlcSummary& summary);
 /// A table; empty where nothing was predicted.
 std::string predictions_text(const std::vector<Prediction>& predictions);
+/// Empty for a mesh that is not partitioned.
+std::string partitions_text(const PartitionMeasures& measures);
 std::string mesh_text(const TetMesh& mesh, const MeshMeasures& measures);
 std::string findings_text(const CheckReport& report, std::size_t listed);
 std::string check_text(const CheckReport& report);
