@@ -871,6 +871,10 @@
       <translation>{label}: {name} ist keine Fläche und keine Kante.</translation>
     </message>
     <message>
+      <source>{label}: {name} is none of the mesh's own, it coincides with one of another solid; choose that one.</source>
+      <translation>{label}: {name} hat das Netz nicht als eigene, sie fällt mit einer eines anderen Körpers zusammen; wählen Sie jene.</translation>
+    </message>
+    <message>
       <source>{label}: {name} is the seam of a face, which the mesh does not have; choose the face.</source>
       <translation>{label}: {name} ist die Naht einer Fläche, die das Netz nicht hat; wählen Sie die Fläche.</translation>
     </message>

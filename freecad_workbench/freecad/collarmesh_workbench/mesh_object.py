@@ -283,6 +283,8 @@ def start(obj, program="", settings=None):
         raise
     job.messages += tiny_edges(inputs.shape_of(part), settings.size)
     job.state = state
+    labels = [label for label, _ in size_objects.sources_of(obj)]
+    job.explain = lambda text: size_objects.with_labels(text, labels)
     return job
 
 

@@ -132,6 +132,7 @@ class Job:
             pathlib.Path(path).write_text(json.dumps(settings.size_field), encoding="utf-8")
             self.command += ["--size-field", path]
         self.messages = []
+        self.explain = lambda text: text  # what the program says, in the caller's terms
 
     def __enter__(self):
         return self
@@ -161,7 +162,7 @@ class Job:
         if exit_code in (0, GUARANTEE_MISSED) and os.path.exists(self.mesh):
             return
         said = "\n".join(self.messages).removeprefix("collarmesh: ")
-        raise MesherError(said or f"The mesher ended with exit code {exit_code} and without a word.")
+        raise MesherError(self.explain(said) or f"The mesher ended with exit code {exit_code} and without a word.")
 
     def report(self):
         """What the program measured (README.md, --report)."""

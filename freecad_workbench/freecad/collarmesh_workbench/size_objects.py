@@ -228,7 +228,8 @@ def make(mesh_object, kind, size=0, name=""):
         proxy.place(obj, part)
         size = (
             size
-            or (mesh_object.CharacteristicLengthMax.Value or extent.bounding_box(part).DiagonalLength / 20) / 4
+            or (mesh_object.CharacteristicLengthMax.Value or extent.bounding_box(part).DiagonalLength / 20)
+            / 4
         )
     obj.Size = size
     setattr(mesh_object, PROPERTY, [*getattr(mesh_object, PROPERTY), obj])
@@ -240,8 +241,33 @@ def make(mesh_object, kind, size=0, name=""):
     return obj
 
 
+def sources_of(mesh_object):
+    """What the size objects of a mesh object ask for: [(label, source of the program's size field)]. Raises
+    MesherError."""
+    part = compatibility.meshed_object(mesh_object)
+    objects = getattr(mesh_object, PROPERTY)
+    return [(obj.Label, source) for obj in objects for source in obj.Proxy.sources(obj, part)]
+
+
 def field_of(mesh_object):
     """The program's size field for a mesh object's size objects; None without any. Raises MesherError."""
-    part = compatibility.meshed_object(mesh_object)
-    found = [source for obj in getattr(mesh_object, PROPERTY) for source in obj.Proxy.sources(obj, part)]
+    found = [source for _, source in sources_of(mesh_object)]
     return {"sources": found} if found else None
+
+
+def with_labels(message, labels):
+    """What the program says of its size field, in terms of the objects. `labels`: of the sources."""
+    match = re.search(
+        r"\S*: size field: sources\[(\d+)\](?:\.(patches|curves): no \w+ have the tag (\d+))?", message
+    )
+    if not match:
+        return message
+    label = labels[int(match[1])]
+    if not match[2]:
+        return message.replace(match[0], label)
+    text = translate(
+        "collarmesh",
+        "{label}: {name} is none of the mesh's own, it coincides with one of another solid; choose that one.",
+    )
+    kind = next(kind for kind, tags in Distance.TAGS.items() if tags == match[2])
+    return text.format(label=label, name=f"{kind}{match[3]}")
