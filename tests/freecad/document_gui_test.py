@@ -229,6 +229,24 @@ def triangles_by_the_button(document):
     w.close_panel()
 
 
+def the_mark_is_there_after_reopening(document, part, obj):
+    part.Radius = 5
+    document.recompute()
+    w.require(up_to_date.is_out_of_date(obj), "it is out of date")
+    name = obj.Name
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "plate.FCStd")
+        document.saveAs(path)
+        FreeCAD.closeDocument(document.Name)
+        document = FreeCAD.openDocument(path)
+    obj = document.getObject(name)
+    w.pause(300)
+    w.require(obj.ViewObject.Proxy.getIcon() == view_provider.OUT_OF_DATE_ICON, "the mark after reopening")
+    document.getObject("Hole").Radius = 8
+    document.recompute()
+    w.require(obj.ViewObject.Proxy.getIcon() == view_provider.ICON, "and it goes")
+
+
 def test():
     document = FreeCAD.newDocument("document")
     document.UndoMode = 1
@@ -255,6 +273,7 @@ def test():
     undo_of_a_meshing_in_the_panel(document, obj)
     undo_of_the_creation_while_meshing(document, part)
     triangles_by_the_button(document)
+    the_mark_is_there_after_reopening(document, cylinder, obj)
 
 
 w.run_test(test)
