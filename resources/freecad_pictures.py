@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The pictures of the FreeCAD page: the panel, as its tests see it, and a strip from a part to its stresses.
+"""The pictures of the FreeCAD page: the window, as its tests see it, and a strip from a part to its stresses.
 
     resources/freecad_pictures.py PROGRAM [FOLDER]
 
@@ -15,7 +15,11 @@ from PIL import Image
 
 HERE = pathlib.Path(__file__).resolve().parent
 TESTS = HERE.parent / "tests" / "freecad"
-PAGE = ("freecad_panel", "freecad_worst_elements", "freecad_message", "freecad_advanced")
+PAGE = {  # by the test that makes them
+    "panel_test.py": ("freecad_panel", "freecad_worst_elements", "freecad_message", "freecad_advanced"),
+    "sizes_gui_test.py": ("freecad_size_handles", "freecad_sizes"),
+    "document_gui_test.py": ("freecad_out_of_date", "freecad_menu", "freecad_statistics"),
+}
 LARGEST = 200000  # bytes of a picture
 STEP = (500, 327)
 BARS = 100  # pixels at the top of FreeCAD's window, the same in all pictures
@@ -54,9 +58,10 @@ def main():
         folder = pathlib.Path(name)
         take(program, HERE / "freecad_strip.py", folder)
         save(strip(folder), into / "freecad_strip.png")
-        take(program, TESTS / "panel_test.py", folder)
-        for picture in PAGE:
-            save(Image.open(folder / f"{picture}.png"), into / f"{picture}.png")
+        for test, pictures in PAGE.items():
+            take(program, TESTS / test, folder)
+            for picture in pictures:
+                save(Image.open(folder / f"{picture}.png"), into / f"{picture}.png")
 
 
 if __name__ == "__main__":

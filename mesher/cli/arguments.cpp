@@ -15,6 +15,7 @@
 #include "collarmesh/io/tet_mesh_io.h"
 #include "completions.h"
 #include "console.h"
+#include "conversion_report.h"
 #include "file_groups.h"
 #include "html_report.h"
 #include "machine.h"
@@ -54,6 +55,7 @@ const CLI::Validator angle = number_in(0, 180, "an angle from 0 to 180 degrees")
 const std::string size_group = "Size (target edge lengths, absolute, input units)";
 const std::string quality_group = "Quality";
 const std::string elements_group = "Elements";
+const std::string partitions_group = "Partitions (for programs that run on many ranks)";
 
 const CLI::Validator collar_angle = number_in(100, 175, "an angle from 100 to 175 degrees");
 const CLI::Validator thin_angle = number_in(0.1, 30, "an angle from 0.1 to 30 degrees");
@@ -142,8 +144,7 @@ void add_complex_options(CLI::App& app, ComplexArguments& a) {
       ->group(group);
 }
 
-void add_size_options(CLI::App& app, MeshArguments& a) {
-  MeshOptions& m = a.mesh;
+void add_size_options(CLI::App& app, MeshOptions& m, std::string& size_field) {
   const std::string& group = size_group;
   add(app, "--size LENGTH", m.size, "Everywhere", "1/20 of the diagonal")->check(length)->group(group);
   add(app, "--size-min LENGTH", m.size_min, "Never ask for less than this", "none")
@@ -153,9 +154,10 @@ void add_size_options(CLI::App& app, MeshArguments& a) {
       ->group(group);
   add_tag_values(app, "--patch-size", m.patch_size, "On the patches with this tag; repeatable")->group(group);
   add_tag_values(app, "--curve-size", m.curve_size, "On the curves with this tag; repeatable")->group(group);
-  app.add_option("--size-field", a.size_field,
-                 "Sizes by place: .json (balls, boxes, distances from features), or .vtu or .msh with a "
-                 "scalar on its points")
+  app.add_option(
+         "--size-field", size_field,
+         "Sizes by place: .json (balls, boxes, cylinders, distances from features), or .vtu or .msh with a "
+         "scalar on its points")
       ->type_name("FILE")
       ->group(group);
   add(app, "--elements-per-circle N", m.elements_per_circle,
@@ -199,12 +201,37 @@ void add_improvement_options(CLI::App& app, MeshArguments& a) {
       ->group(group);
 }
 
-void add_order_option(CLI::App& app, MeshArguments& a) {
-  add(app, "--order ORDER", a.order,
+void add_order_option(CLI::App& app, unsigned& order) {
+  add(app, "--order ORDER", order,
       "Of the cells: 1 straight with nodes at the corners, 2 with a node amid every edge, curved on smooth "
       "surfaces")
       ->check(one_of({"1", "2"}))
       ->group(elements_group);
+}
+
+void add_distance_option(CLI::App& app, MeshOptions& m) {
+  add(app, "--distance LENGTH", m.distance,
+      "Largest distance from smooth surfaces and curves, absolute, input units",
+      "1/10 of the size, at most 1/200 of the diagonal (1/550 with --order 2)")
+      ->check(length)
+      ->group(quality_group);
+}
+
+void add_partition_options(CLI::App& app, MeshArguments& a) {
+  add(app, "--partitions N", a.partitions,
+      "Divide the tetrahedra among so many ranks, evenly and with few shared faces", "not divided")
+      ->check(number_in(1, 1e6, "a number of partitions from 1 to 1000000"))
+      ->check(count)
+      ->group(partitions_group);
+  app.add_flag_callback(
+         "--ghost-cells", [&a] { a.ghost_cells = io::GhostCells::one_layer; },
+         "With each partition the tetrahedra of others that share a vertex with it; " +
+             list(io::formats_with_ghost_cells()))
+      ->group(partitions_group);
+  app.add_option("--cell-decomposition", a.cell_decomposition,
+                 "Also write the partition of each tetrahedron as a list that OpenFOAM's decomposePar reads")
+      ->type_name("FILE")
+      ->group(partitions_group);
 }
 
 void add_quality_options(CLI::App& app, MeshOptions& m) {
@@ -232,11 +259,7 @@ void add_quality_options(CLI::App& app, MeshOptions& m) {
   add(app, "--theta THETA", m.theta, "Warp to input within this times a gap ball's radius; 0: never")
       ->check(number_in(0, 0.449, "a number from 0 to below 0.45"))
       ->group(group);
-  add(app, "--distance LENGTH", m.distance,
-      "Largest distance from smooth surfaces and curves, absolute, input units",
-      "1/10 of the size, at most 1/200 of the diagonal (1/550 with --order 2)")
-      ->check(length)
-      ->group(group);
+  add_distance_option(app, m);
   add(app, "--seed N", m.seed, "Of the pseudo-random offsets: same input, options and seed, same mesh")
       ->check(count)
       ->group(group);
@@ -280,11 +303,12 @@ void add_quiet_flag(CLI::App& app, bool& quiet) {
 }
 
 void add_run_options(CLI::App& app, MeshArguments& a) {
-  add_size_options(app, a);
+  add_size_options(app, a.mesh, a.size_field);
   add_quality_options(app, a.mesh);
   add_coarsening_options(app, a);
   add_improvement_options(app, a);
-  add_order_option(app, a);
+  add_order_option(app, a.order);
+  add_partition_options(app, a);
   add_complex_options(app, a.complex);
   add_budget_options(app, a.mesh);
   add_threads_option(app, a.threads, "Of improvement and certificate, at most");
@@ -382,6 +406,20 @@ CLI::App* add_info_command(CLI::App& app, InfoArguments& a) {
   add_complex_options(*info, a.complex);
   add(*info, "--time-limit SECONDS", a.time_limit, "For everything", "none")->check(seconds);
   info->add_flag("--json", a.json, "Print JSON");
+  CLI::Option* const predict =
+      info->add_option("--predict", a.predicted_sizes,
+                       "Estimate the tetrahedra and seconds that meshes of these sizes take, without making "
+                       "them; 0: the default size")
+          ->delimiter(',')
+          ->allow_extra_args(false)
+          ->check(length)
+          ->type_name("LENGTH,...");
+  const auto others = info->get_options();
+  add_size_options(*info, a.mesh, a.size_field);
+  add_distance_option(*info, a.mesh);
+  add_order_option(*info, a.order);
+  for (CLI::Option* option : info->get_options())
+    if (std::find(others.begin(), others.end(), option) == others.end()) option->needs(predict);
   return info;
 }
 
@@ -417,6 +455,18 @@ std::vector<std::string> reports_of(const RepairArguments& a) {
   return a.report.empty() ? std::vector<std::string>{} : std::vector{a.report};
 }
 
+/// Of a run that writes a mesh, a file beside it.
+void check_second_output(const char* option, const std::string& file,
+                         const std::vector<std::filesystem::path>& written,
+                         const std::vector<std::string>& inputs, const std::string& input_format) {
+  if (file.empty()) return;
+  if (!overwritten(written, {file}, {}).empty())
+    throw CLI::ValidationError(option, "names a file of --output; choose another");
+  const std::string lost = overwritten({file}, inputs, input_format);
+  if (!lost.empty())
+    throw CLI::ValidationError(option, fmt::format("would overwrite {}; choose another", lost));
+}
+
 /// No output takes the place of an input, or of another output.
 template <class SomeArguments>
 void check_outputs(const SomeArguments& a) {
@@ -430,15 +480,39 @@ void check_outputs(const SomeArguments& a) {
         fmt::format("'{}' would overwrite {}; choose another name or folder", a.output, in_the_way));
   std::vector<std::string> others;
   for (const std::string& report : reports_of(a)) {
-    if (!overwritten(written, {report}, {}).empty())
-      throw CLI::ValidationError("--report", "names a file of --output; choose another");
+    check_second_output("--report", report, written, inputs, a.input_format);
     if (!overwritten({report}, others, {}).empty())
       throw CLI::ValidationError("--report", fmt::format("names {} twice; choose another", report));
-    const std::string lost = overwritten({report}, inputs, a.input_format);
-    if (!lost.empty())
-      throw CLI::ValidationError("--report", fmt::format("would overwrite {}; choose another", lost));
     others.push_back(report);
   }
+  if constexpr (requires { a.cell_decomposition; }) {
+    check_second_output("--cell-decomposition", a.cell_decomposition, written, inputs, a.input_format);
+    if (!a.cell_decomposition.empty() && !overwritten({a.cell_decomposition}, others, {}).empty())
+      throw CLI::ValidationError("--cell-decomposition", "names the file of --report; choose another");
+  }
+}
+
+bool is_among(const std::string& path, const std::string& format, const std::vector<std::string>& formats) {
+  return std::find(formats.begin(), formats.end(), format_of(path, format)) != formats.end();
+}
+
+/// Partitions are for formats that keep them. `from_mesh`: one that may be partitioned already.
+void check_partitions(const MeshArguments& a, bool from_mesh) {
+  if (a.partitions > 0 && !is_among(a.output, a.output_format, io::formats_with_partitions()))
+    throw CLI::ValidationError("--partitions", fmt::format("{} has no place for partitions; use {}",
+                                                           format_of(a.output, a.output_format),
+                                                           list(io::formats_with_partitions())));
+  if (!a.cell_decomposition.empty() && !io::is_tet_mesh_format(a.output, a.output_format))
+    throw CLI::ValidationError("--cell-decomposition", "is of a mesh, but the output is a surface");
+  if (!a.cell_decomposition.empty() && a.partitions == 0 && !from_mesh)
+    throw CLI::ValidationError("--cell-decomposition", "is of partitions; say how many with --partitions");
+  if (a.ghost_cells == io::GhostCells::none) return;
+  if (!is_among(a.output, a.output_format, io::formats_with_ghost_cells()))
+    throw CLI::ValidationError("--ghost-cells", fmt::format("{} has no place for ghost cells; use {}",
+                                                            format_of(a.output, a.output_format),
+                                                            list(io::formats_with_ghost_cells())));
+  if (a.partitions == 0 && !from_mesh)
+    throw CLI::ValidationError("--ghost-cells", "is of partitions; say how many with --partitions");
 }
 
 /// What one option alone cannot tell.
@@ -462,6 +536,7 @@ void check_mesh_arguments(const MeshArguments& a) {
   if (!io::is_tet_mesh_format(a.output, a.output_format))
     throw CLI::ValidationError("--output", fmt::format("'{}' {}; use {}", a.output, extension_list(a.output),
                                                        list(io::written_tet_mesh_formats())));
+  check_partitions(a, false);
   check_run_arguments(a);
 }
 
@@ -490,7 +565,9 @@ void check_convert_arguments(const MeshArguments& a) {
     throw CLI::ValidationError("--output", fmt::format("'{}' {}; use {}, or name one with --format", a.output,
                                                        extension_list(a.output), known_formats()));
   check_standard_input(a);
-  if (a.output == "-" && (a.output_format == ".ele" || a.output_format == ".xdmf"))
+  check_partitions(a, io::is_tet_mesh_format(a.inputs.front(), a.input_format));
+  if (a.output == "-" &&
+      (a.output_format == ".ele" || a.output_format == ".xdmf" || a.output_format == ".pvtu"))
     throw CLI::ValidationError("--format", "is of several files, which standard output cannot take");
   check_run_arguments(a);
 }

@@ -8,6 +8,7 @@
 #include "collarmesh/check.h"
 #include "collarmesh/coarsen.h"
 #include "collarmesh/improve.h"
+#include "collarmesh/io/tet_mesh_io.h"
 #include "collarmesh/mesher.h"
 #include "collarmesh/plc_builder.h"
 #include "collarmesh/repair.h"
@@ -37,11 +38,14 @@ struct MeshArguments {
   double thin_angle = CoarsenOptions{}.thin_angle;  ///< degrees, where it coarsens
   unsigned improve = 2;                             ///< level; 0: leave the elements as they are
   unsigned order = 1;                               ///< of the cells, 1 or 2
-  double min_dihedral = 0;                          ///< degrees, in place of the level's; 0: the level's
-  double scale = 1;                                 ///< of the coordinates that are written
-  std::string input_format, output_format;          ///< extensions with their dot; empty: those of the files
-  unsigned threads = 0;                             ///< at most; 0: as many as there are cores
-  std::vector<std::string> reports;                 ///< paths
+  unsigned partitions = 0;                          ///< the tets are divided among so many; 0: they are not
+  io::GhostCells ghost_cells = io::GhostCells::none;
+  std::string cell_decomposition;           ///< path of OpenFOAM's list of partitions, empty: none
+  double min_dihedral = 0;                  ///< degrees, in place of the level's; 0: the level's
+  double scale = 1;                         ///< of the coordinates that are written
+  std::string input_format, output_format;  ///< extensions with their dot; empty: those of the files
+  unsigned threads = 0;                     ///< at most; 0: as many as there are cores
+  std::vector<std::string> reports;         ///< paths
   ProgressStyle progress = ProgressStyle::automatic;
   bool verbose = false;
   bool quiet = false;
@@ -62,7 +66,12 @@ struct CheckArguments {
 struct InfoArguments {
   std::vector<std::string> inputs;
   ComplexArguments complex;
-  double time_limit = 0;  ///< seconds; 0: none
+  std::vector<double>
+      predicted_sizes;     ///< 0: the size in `mesh`, or its default; empty: nothing is predicted
+  MeshOptions mesh;        ///< its sizes and its distance
+  std::string size_field;  ///< path, empty: none
+  unsigned order = 1;      ///< of the cells, 1 or 2
+  double time_limit = 0;   ///< seconds; 0: none
   bool json = false;
 };
 

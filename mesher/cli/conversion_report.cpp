@@ -1,5 +1,8 @@
 #include "conversion_report.h"
 
+#include "collarmesh/io/tet_mesh_io.h"
+#include "collarmesh/partition.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,6 +31,7 @@ struct MeshKept {
        loose_triangles = true;
 };
 constexpr std::array meshes{MeshKept{".vtu", true, true},
+                            MeshKept{".pvtu", true, true},
                             MeshKept{".vtk", true, true},
                             MeshKept{".msh", true, true},
                             MeshKept{".msh2", false, false},
@@ -88,6 +92,9 @@ std::vector<std::string> lost_by(const std::string& format, const TetMesh& mesh)
   std::vector<std::string> losses;
   add(losses, kept->collar, count_tags(mesh.tet_collar), "collar marks of tets");
   add(losses, kept->collar, count_tags(mesh.tet_thin), "marks of thin tets");
+  const std::vector<std::string> partitioned = io::formats_with_partitions();
+  add(losses, std::find(partitioned.begin(), partitioned.end(), format) != partitioned.end(),
+      measure_partitions(mesh).partitions, "partitions");
   add(losses, kept->features, mesh.features.size(), "features of points");
   add(losses, kept->edges, mesh.edges.size(), "edges on curves (node sets are kept)");
   const auto loose =

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <functional>
 #include <numeric>
 #include <optional>
 
+#include "cell_decomposition.h"
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
+#include "collarmesh/partition.h"
 #include "complex_input.h"
 #include "console.h"
 #include "conversion_report.h"
@@ -31,13 +32,6 @@ void tell_unless_quiet(const MeshArguments& a, const std::string& text) {
   if (!a.quiet) tell_text(text);
 }
 
-void write(const MeshArguments& a, const std::function<void(const std::string&)>& write_file) {
-  stop_if_interrupted();
-  StagedFile file(a.output);
-  file.write(write_file);
-  StagedFile::commit({&file});
-}
-
 void scale_soup(PolygonSoup& soup, double factor) {
   scale(soup.points, factor);
   scale(soup.hole_points, factor);
@@ -52,7 +46,10 @@ void scale_soup(PolygonSoup& soup, double factor) {
 void write_soup(const MeshArguments& a, const std::vector<PolygonSoup>& soups) {
   MergedSoup merged = merge_for_output(soups, a.output, a.output_format, a.complex.plc);
   scale_soup(merged.soup, a.scale);
-  write(a, [&](const std::string& path) { write_surface(path, merged.soup, a.output_format); });
+  stop_if_interrupted();
+  StagedFile file(a.output);
+  file.write([&](const std::string& path) { write_surface(path, merged.soup, a.output_format); });
+  StagedFile::commit({&file});
   tell_unless_quiet(a, merged.told);
 }
 
@@ -74,6 +71,17 @@ PolygonSoup surface_of(const TetMesh& mesh, const std::string& name) {
   return soup;
 }
 
+/// As asked for, or as it was.
+void divide(const MeshArguments& a, TetMesh& mesh) {
+  if (a.partitions > 0) partition(mesh, a.partitions);
+  const char* const option = a.ghost_cells != io::GhostCells::none ? "--ghost-cells"
+                             : !a.cell_decomposition.empty()       ? "--cell-decomposition"
+                                                                   : nullptr;
+  if (option != nullptr && mesh.tet_partition.empty())
+    throw OptionError(
+        fmt::format("{}: {} is not partitioned; say how with --partitions", option, a.inputs.front()));
+}
+
 void convert_mesh(const MeshArguments& a, TetMesh& mesh) {
   if (a.inputs.size() > 1)
     throw OptionError(
@@ -83,8 +91,18 @@ void convert_mesh(const MeshArguments& a, TetMesh& mesh) {
     return;
   }
   scale(mesh.points, a.scale);
-  write(a, [&](const std::string& path) { io::write_tet_mesh(path, mesh, a.output_format); });
-  tell_unless_quiet(a, tet_mesh_text(a.output, mesh));
+  divide(a, mesh);
+  stop_if_interrupted();
+  StagedFile file(a.output);
+  file.write(
+      [&](const std::string& path) { io::write_tet_mesh(path, mesh, a.output_format, a.ghost_cells); });
+  std::optional<StagedFile> decomposition;
+  if (!a.cell_decomposition.empty()) {
+    decomposition.emplace(a.cell_decomposition);
+    decomposition->write([&](const std::string& path) { write_cell_decomposition(path, mesh); });
+  }
+  StagedFile::commit({&file, decomposition ? &*decomposition : nullptr});
+  tell_unless_quiet(a, tet_mesh_text(a.output, mesh) + partitions_text(measure_partitions(mesh)));
   tell_unless_quiet(a, losses_text(lost_by(format_of(a.output, a.output_format), mesh)));
 }
 
@@ -101,6 +119,7 @@ ExitCode convert_command(const ConvertArguments& arguments) {
   set_time_limit(a.mesh.time_limit);
   limit_memory(a.mesh.max_memory);
   require_writable(a.output, a.output_format);
+  if (!a.cell_decomposition.empty()) require_writable(a.cell_decomposition);
   const bool to_surface = is_surface_format(a.output, a.output_format);
   std::optional<TetMesh> mesh = read_mesh_if_there(a.inputs.front(), a.input_format);
   const bool from_mesh = mesh.has_value();

@@ -33,6 +33,22 @@ std::vector<fs::path> parts_of_xdmf(const fs::path& path) {
   return files;
 }
 
+/// With the pieces that are there: how many there will be is not known.
+std::vector<fs::path> pieces_of_pvtu(const fs::path& path) {
+  std::vector<fs::path> files{path};
+  const std::string first = path.stem().string() + "_";
+  std::error_code error;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const fs::path& file = entry->path();
+    const std::string stem = file.stem().string();
+    if (file.extension() == ".vtu" && stem.starts_with(first) && stem.size() > first.size() &&
+        stem.find_first_not_of("0123456789", first.size()) == std::string::npos)
+      files.push_back(path.parent_path() / file.filename());
+  }
+  return files;
+}
+
 }  // namespace
 
 std::vector<fs::path> files_written(const fs::path& path, const std::string& format) {
@@ -40,6 +56,7 @@ std::vector<fs::path> files_written(const fs::path& path, const std::string& for
   if (path == "-") return {};
   if (extension == ".ele") return with_siblings(path, {".ele", ".node", ".face", ".edge"});
   if (extension == ".xdmf") return parts_of_xdmf(path);
+  if (extension == ".pvtu") return pieces_of_pvtu(path);
   return {path};
 }
 
@@ -48,6 +65,7 @@ std::vector<fs::path> files_read(const fs::path& path, const std::string& format
   const std::string extension = extension_of(path, format);
   if (extension == ".ele") return with_siblings(path, {".node", ".face", ".edge"});
   if (extension == ".xdmf") return parts_of_xdmf(path);
+  if (extension == ".pvtu") return pieces_of_pvtu(path);
   if (extension == ".poly" || extension == ".smesh") return with_siblings(path, {".node"});
   return {path};
 }

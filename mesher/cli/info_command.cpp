@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+
 #include "collarmesh/error.h"
+#include "collarmesh/predict.h"
 #include "complex_input.h"
 #include "console.h"
 #include "input_files.h"
@@ -39,17 +42,37 @@ Plc build_any(ComplexInput& input, ComplexArguments options) {
   }
 }
 
+/// `read`: seconds that reading and building the complex took, as they will again.
+std::vector<Prediction> predictions(const InfoArguments& arguments, const Plc& plc, double read) {
+  if (arguments.predicted_sizes.empty()) return {};
+  PipelineOptions options;
+  options.mesh = arguments.mesh;
+  options.order = arguments.order;
+  if (!arguments.size_field.empty()) options.mesh.size_field = read_size_field(arguments.size_field, plc);
+  stop_if_interrupted();
+  std::vector<Prediction> result = predict(plc, options, arguments.predicted_sizes);
+  for (Prediction& prediction : result) prediction.seconds += read;
+  return result;
+}
+
 void print_complex(const InfoArguments& arguments) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin = Clock::now();
   ComplexInput input(arguments.inputs, interruptible({.format = {}, .overlap = arguments.complex.overlap}));
   const Plc plc = build_any(input, arguments.complex);
   stop_if_interrupted();
+  const double read = std::chrono::duration<double>(Clock::now() - begin).count();
+  const std::vector<Prediction> predicted = predictions(arguments, plc, read);
   const PlcSummary summary = summarize(plc, arguments.complex.crease_angle);
-  if (arguments.json)
-    print_result(
-        json_text({{"complex", complex_json(plc, summary)}, {"repair", repair_json(input.repaired())}}, 1) +
-        "\n");
-  else
-    print_result(repair_text(input.repaired()) + complex_text(plc, summary) + warnings_text(plc));
+  if (arguments.json) {
+    nlohmann::ordered_json json{{"complex", complex_json(plc, summary)},
+                                {"repair", repair_json(input.repaired())}};
+    if (!predicted.empty()) json["predictions"] = predictions_json(predicted);
+    print_result(json_text(json, 1) + "\n");
+  } else {
+    print_result(repair_text(input.repaired()) + complex_text(plc, summary) + predictions_text(predicted) +
+                 warnings_text(plc));
+  }
 }
 
 }  // namespace
@@ -61,6 +84,9 @@ ExitCode info_command(const InfoArguments& arguments) {
   const std::optional<TetMesh> mesh = read_mesh_if_there(first);
   if (!mesh)
     print_complex(arguments);
+  else if (!arguments.predicted_sizes.empty())
+    throw OptionError(
+        fmt::format("--predict: {} is a mesh already; name the surface or CAD file to be meshed", first));
   else if (arguments.inputs.size() == 1)
     print_mesh(*mesh, arguments.json);
   else

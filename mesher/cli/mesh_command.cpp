@@ -7,8 +7,10 @@
 #include <fstream>
 #include <optional>
 
+#include "cell_decomposition.h"
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
+#include "collarmesh/partition.h"
 #include "complex_input.h"
 #include "console.h"
 #include "conversion_report.h"
@@ -70,6 +72,7 @@ PipelineOptions pipeline_options(const MeshArguments& a) {
   options.improve = a.improve;
   options.min_dihedral = a.min_dihedral;
   options.order = a.order;
+  options.partitions = a.partitions;
   options.threads = a.threads;
   return options;
 }
@@ -175,7 +178,7 @@ void write_files(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   StagedFile mesh(arguments.output);
   mesh.write([&](const std::string& path) {
     ThreadLimit(arguments.threads).run([&] {
-      io::write_tet_mesh(path, run.result.mesh, arguments.output_format);
+      io::write_tet_mesh(path, run.result.mesh, arguments.output_format, arguments.ghost_cells);
     });
   });
   run.times.end();
@@ -185,6 +188,12 @@ void write_files(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
     reports.emplace_back(target).write(
         [&](const std::string& path) { write_report(path, arguments, run, shown); });
     files.push_back(&reports.back());
+  }
+  std::optional<StagedFile> decomposition;
+  if (!arguments.cell_decomposition.empty()) {
+    decomposition.emplace(arguments.cell_decomposition);
+    decomposition->write([&](const std::string& path) { write_cell_decomposition(path, run.result.mesh); });
+    files.push_back(&*decomposition);
   }
   StagedFile::commit(files);
 }
@@ -209,6 +218,8 @@ ExitCode mesh_command(const MeshArguments& arguments) {
   limit_memory(arguments.mesh.max_memory);
   require_writable(arguments.output, arguments.output_format);
   for (const std::string& report : arguments.reports) require_writable(report);
+  if (!arguments.cell_decomposition.empty()) require_writable(arguments.cell_decomposition);
+  if (arguments.partitions > 0) require_partitioner();  // before long work
   MeshRun run;
   {
     Stages stages(arguments.quiet ? ProgressStyle::none : arguments.progress, run.times);

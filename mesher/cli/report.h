@@ -6,8 +6,10 @@
 
 #include "arguments.h"
 #include "collarmesh/check.h"
+#include "collarmesh/partition.h"
 #include "collarmesh/pipeline.h"
 #include "collarmesh/plc_builder.h"
+#include "collarmesh/predict.h"
 #include "stage_times.h"
 #include "worst_tets.h"
 
@@ -27,6 +29,7 @@ nlohmann::ordered_json complex_json(const Plc& plc, const PlcSummary& summary);
 nlohmann::ordered_json measures_json(const TetMesh& mesh, const MeshMeasures& measures);
 nlohmann::ordered_json check_json(const CheckReport& report);
 nlohmann::ordered_json repair_json(const RepairReport& report);
+nlohmann::ordered_json predictions_json(const std::vector<Prediction>& predictions);
 nlohmann::ordered_json run_json(const MeshArguments& arguments, const MeshRun& run);
 /// Of `collarmesh repair`.
 nlohmann::ordered_json repair_run_json(const RepairArguments& arguments, const Plc& plc,
@@ -39,6 +42,10 @@ std::string warnings_text(const Plc& plc);
 /// by more than the tolerance.
 std::string repair_text(const RepairReport& report, bool quiet = false);
 std::string complex_text(const Plc& plc, const PlcSummary& summary);
+/// A table; empty where nothing was predicted.
+std::string predictions_text(const std::vector<Prediction>& predictions);
+/// Empty for a mesh that is not partitioned.
+std::string partitions_text(const PartitionMeasures& measures);
 std::string mesh_text(const TetMesh& mesh, const MeshMeasures& measures);
 std::string findings_text(const CheckReport& report, std::size_t listed);
 std::string check_text(const CheckReport& report);

@@ -108,6 +108,7 @@ Json options_json(const MeshArguments& a) {
           {"improve", a.improve},
           {"min_dihedral", or_null(a.min_dihedral)},
           {"order", a.order},
+          {"partitions", or_null(a.partitions)},
           {"seed", m.seed},
           {"threads", a.threads},
           {"max_vertices", or_null(m.max_vertices)},
@@ -186,6 +187,16 @@ Json worst_json(const std::vector<WorstTet>& worst) {
   return list;
 }
 
+/// Null for a mesh that is not partitioned.
+Json partitions_json(const PartitionMeasures& m) {
+  if (m.partitions == 0) return nullptr;
+  return {{"count", m.partitions},
+          {"smallest", m.smallest},
+          {"largest", m.largest},
+          {"imbalance", m.imbalance},
+          {"cut_faces", m.cut_faces}};
+}
+
 }  // namespace
 
 Json complex_json(const Plc& plc, const PlcSummary& s) {
@@ -243,6 +254,7 @@ Json measures_json(const TetMesh& mesh, const MeshMeasures& m) {
           {"max_thin_radius_edge", number_json(m.max_thin_radius_edge)},
           {"max_collar_radius_edge", number_json(m.max_collar_radius_edge)},
           {"region_volumes", by_number(m.region_volumes)},
+          {"partitions", partitions_json(measure_partitions(mesh))},
           {"histograms",
            {{"min_dihedral", {{"bin_width", 10}, {"tets", m.min_dihedrals}}},
             {"max_dihedral", {{"bin_width", 10}, {"tets", m.max_dihedrals}}},
@@ -304,6 +316,13 @@ Json repair_run_json(const RepairArguments& arguments, const Plc& plc, const Plc
   return {{"program", "collarmesh"},       {"version", COLLARMESH_VERSION},
           {"inputs", arguments.inputs},    {"output", arguments.output},
           {"repair", repair_json(report)}, {"complex", complex_json(plc, summary)}};
+}
+
+Json predictions_json(const std::vector<Prediction>& predictions) {
+  Json list = Json::array();
+  for (const Prediction& p : predictions)
+    list.push_back({{"size", p.size}, {"tets", std::llround(p.tets)}, {"seconds", p.seconds}});
+  return list;
 }
 
 Json run_json(const MeshArguments& arguments, const MeshRun& run) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "conversion_report.h"
@@ -113,6 +114,21 @@ std::string complex_text(const Plc& plc, const PlcSummary& s) {
   return text;
 }
 
+std::string predictions_text(const std::vector<Prediction>& predictions) {
+  if (predictions.empty()) return {};
+  std::string text = fmt::format("estimates:\n  {:>10}  {:>12}  {:>8}\n", "size", "tets", "seconds");
+  for (const Prediction& p : predictions)
+    fmt::format_to(Out(text), "  {:>10.4g}  {:>12}  {:>8.2g}\n", p.size, std::llround(p.tets), p.seconds);
+  return text;
+}
+
+std::string partitions_text(const PartitionMeasures& m) {
+  if (m.partitions == 0) return {};
+  return fmt::format("  {} partition{}: {} to {} tets (largest {:.2f} % above the mean), {} faces cut\n",
+                     m.partitions, m.partitions == 1 ? "" : "s", m.smallest, m.largest, 100 * m.imbalance,
+                     m.cut_faces);
+}
+
 std::string mesh_text(const TetMesh& mesh, const MeshMeasures& m) {
   std::string text;
   fmt::format_to(Out(text), "{} tets, {} points, {} boundary and interface triangles, {} curve edges\n",
@@ -126,7 +142,7 @@ std::string mesh_text(const TetMesh& mesh, const MeshMeasures& m) {
     if (++line > listed) break;
     fmt::format_to(Out(text), "  region {}: volume {:.10g}\n", region, volume);
   }
-  return text;
+  return text + partitions_text(measure_partitions(mesh));
 }
 
 std::string findings_text(const CheckReport& r, std::size_t most) {

@@ -297,7 +297,8 @@ class Libraries(HostileTest):
             self.plant(name)
         self.plant("collarmesh_cad.so")
         self.plant("collarmesh_hdf5.so")
-        for arguments in ((self.box, "-o", self.out), (self.box, "-o", "a.med"), ("info", "missing.step")):
+        self.plant("collarmesh_scotch.so")
+        for arguments in ((self.box, "-o", self.out), (self.box, "-o", "a.med"), (self.box, "-o", "a.vtu", "--partitions", "2"), ("info", "missing.step")):
             run = self.run_program(*arguments)
             self.assertNotIn("PLANTED", run.stderr)
         step = self.write("part.step", "ISO-10303-21;\nEND-ISO-10303-21;\n")

@@ -744,6 +744,56 @@ class Reports(ProgramTest):
         self.assertAlmostEqual(sum(mesh["region_volumes"].values()), 1, places=12)
         self.assertIn("tets", self.expect(0, "info", self.out, writes=True).stdout)
 
+    def predictions(self, *arguments):
+        return json.loads(self.expect(0, "info", *arguments, "--json").stdout)["predictions"]
+
+    def test_predictions_are_near_the_meshes(self):
+        predicted = self.predictions(self.box, "--predict", "0.2,0.1,0")
+        self.assertEqual([p["size"] for p in predicted[:2]], [0.2, 0.1])
+        self.assertAlmostEqual(predicted[2]["size"], math.sqrt(3) / 20)
+        self.assertTrue(all(p["seconds"] > 0 for p in predicted))
+        for p in predicted[:2]:
+            report = self.folder / "report.json"
+            self.run_program(self.box, "-o", self.out, "--size", p["size"], "--report", report)
+            made = json.loads(report.read_text())["mesh"]["tets"]
+            self.assertLess(abs(p["tets"] - made), 0.25 * made, p)
+
+    def test_predictions_heed_the_options_of_sizes(self):
+        def tets(*options):
+            return self.predictions(self.box, "--predict", "0.2", *options)[0]["tets"]
+
+        plain = tets()
+        field = self.write("field.json", '{"sources": [{"ball": {"centre": [0, 0, 0], "radius": 0.3}, "size": 0.05}]}')
+        for finer in (("--patch-size", "1=0.05"), ("--curve-size", "1=0.01"), ("--region-size", "1=0.1"),
+                      ("--size-field", field)):
+            self.assertGreater(tets(*finer), 1.2 * plain, finer)
+        self.assertGreater(tets("--patch-size", "1=0.05", "--gradation", "0.1"), 1.5 * tets("--patch-size", "1=0.05"))
+        self.assertEqual(self.predictions(self.box, "--size", "0.5", "--predict", "0")[0]["size"], 0.5)
+        sphere = MODELS / "sphere.off"
+        coarse = 3 * self.predictions(sphere, "--predict", "0")[0]["size"]
+        straight, curved = (self.predictions(sphere, "--predict", coarse, "--order", order)[0]["tets"] for order in "12")
+        self.assertGreater(curved, straight)  # near enough to the sphere to be curved
+        near = self.predictions(sphere, "--predict", coarse, "--distance", coarse / 500)[0]["tets"]
+        self.assertGreater(near, curved)
+
+    def test_predictions_as_text(self):
+        told = self.expect(0, "info", self.box, "--predict", "0.5,0.25").stdout
+        rows = re.findall(r"^ +(0\.\d+) +(\d+) +[\d.e-]+$", told, re.M)
+        self.assertEqual([size for size, _ in rows], ["0.5", "0.25"])
+        self.assertGreater(int(rows[1][1]), int(rows[0][1]))
+        self.assertNotIn("estimates", self.expect(0, "info", self.box).stdout)
+        self.assertNotIn("predictions", self.expect(0, "info", self.box, "--json").stdout)
+
+    def test_what_cannot_be_predicted(self):
+        self.expect(2, "info", self.box, "--predict=-1", says=["--predict", "-1", "a length"])
+        self.expect(2, "info", self.box, "--predict", "1,much", says=["--predict", "much", "a length"])
+        self.expect(2, "info", self.box, "--predict", "nan", says=["--predict", "nan"])
+        self.expect(2, "info", self.box, "--size", "1", says=["--size", "--predict"])
+        self.expect(2, "info", self.box, "--predict", "0.1", "--size-min", "0.2", says=["size-min 0.2", "0.1"])
+        self.expect(2, "info", self.box, "--predict", "1", "--patch-size", "99=1", says=["99", "the tags are 1, 2"])
+        self.expect(0, self.box, "-o", self.out, "--size", "0.5", writes=True)
+        self.expect(2, "info", self.out, "--predict", "1", writes=True, says=["--predict", "is a mesh already"])
+
 
 class Reproducibility(ProgramTest):
     def test_same_bytes(self):
@@ -871,6 +921,181 @@ class Convert(ProgramTest):
         self.convert(2, self.box, "-o", "a.dat", "--format", "dat", says=["'.dat' is not known"])
         self.convert(3, "missing.off", "-o", "a.stl", says=["no such file"])
         self.convert(8, self.box, "-o", "missing/a.stl", says=["does not exist"])
+
+
+HAS_SCOTCH = (pathlib.Path(PROGRAM).parents[1] / "lib/collarmesh/collarmesh_scotch.so").exists()
+
+
+class Partitions(ProgramTest):
+    """--partitions and --ghost-cells, in meshing and converting."""
+
+    formats = ["vtu", "pvtu", "vtk", "msh", "msh2"] + (
+        ["xdmf", "med"] if (pathlib.Path(PROGRAM).parents[1] / "lib/collarmesh/collarmesh_hdf5.so").exists() else [])
+
+    def setUp(self):
+        super().setUp()
+        if not HAS_SCOTCH:
+            self.expect(2, self.box, "-o", self.out, "--partitions", "2", says=["libscotch-dev"])
+            self.skipTest("built without Scotch")
+
+    def partitions(self, path):
+        run = self.run_program("info", path, "--json")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return json.loads(run.stdout)["mesh"]["partitions"]
+
+    def test_a_mesh_is_divided_evenly(self):
+        for model, partitions in (("bracket.off", 4), ("two_boxes.poly", 7)):
+            with self.subTest(model=model):
+                self.out.unlink(missing_ok=True)
+                report = self.folder / "report.json"
+                run = self.expect(0, MODELS / model, "-o", self.out, "--partitions", partitions, "--report", report, writes=True)
+                self.assertRegex(run.stderr + run.stdout, rf"{partitions} partitions: \d+ to \d+ tets .*, \d+ faces cut")
+                found = self.partitions(self.out)
+                self.assertEqual(found["count"], partitions)
+                self.assertLessEqual(found["imbalance"], 0.03)
+                self.assertGreater(found["cut_faces"], 0)
+                told = json.loads(report.read_text())
+                self.assertEqual(told["mesh"]["partitions"], found)
+                self.assertEqual(told["options"]["partitions"], partitions)
+                checked = self.run_program("check", self.out, "--against", MODELS / model)
+                self.assertEqual(checked.returncode, 0, checked.stdout)
+
+    def test_the_mesh_itself_is_the_same(self):
+        meshes = []
+        for extra in ((), ("--partitions", "3")):
+            self.expect(0, MODELS / "two_boxes.poly", "-o", self.out, *extra, writes=True)
+            self.assertEqual(self.run_program("convert", self.out, "-o", "a.mesh").returncode, 0)
+            meshes.append((self.folder / "a.mesh").read_bytes())
+            self.out.unlink()
+        self.assertEqual(*meshes)
+
+    def test_threads_change_nothing(self):
+        files = []
+        for threads in (1, 2, 8):
+            self.out.unlink(missing_ok=True)
+            self.expect(0, self.box, "-o", self.out, "--size", "0.1", "--partitions", "5", "--threads", threads, writes=True)
+            files.append(self.out.read_bytes())
+        self.assertEqual(len(set(files)), 1)
+
+    def test_every_format_that_holds_them(self):
+        for order in (1, 2):
+            self.assertEqual(self.run_program(self.box, "-o", "a.vtu", "--size", "0.2", "--partitions", "6", "--order", order).returncode, 0)
+            first = self.partitions("a.vtu")
+            for extension in self.formats:
+                with self.subTest(order=order, extension=extension):
+                    run = self.run_program("convert", "a.vtu", "-o", f"b.{extension}")
+                    self.assertEqual(run.returncode, 0, run.stderr)
+                    self.assertNotRegex(run.stderr, "no place for: .*partitions")
+                    self.assertEqual(self.partitions(f"b.{extension}"), first)
+                    checked = self.run_program("check", f"b.{extension}", "--against", self.box)
+                    self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+                    divided = self.run_program(self.box, "-o", f"c.{extension}", "--size", "0.2", "--partitions", "6", "--order", order)
+                    self.assertEqual(divided.returncode, 0, divided.stderr)
+                    self.assertEqual(self.partitions(f"c.{extension}"), first)
+        for extension in ("mesh", "inp", "unv", "ele"):
+            with self.subTest(extension=extension):
+                run = self.run_program("convert", "a.vtu", "-o", f"b.{extension}")
+                self.assertEqual(run.returncode, 0, run.stderr)
+                self.assertRegex(run.stderr, "no place for: .*6 partitions")
+                self.assertIsNone(self.partitions(f"b.{extension}"))
+                for arguments in ((self.box, "-o"), ("convert", "a.vtu", "-o")):
+                    run = self.run_program(*arguments, f"d.{extension}", "--partitions", "2")
+                    self.assertEqual(run.returncode, 2)
+                    self.assertRegex(run.stderr, rf"--partitions: \.{extension} has no place for partitions; use .*\.msh")
+                    self.assertFalse((self.folder / f"d.{extension}").exists())
+
+    def test_convert_divides_anew(self):
+        self.expect(0, self.box, "-o", self.out, "--size", "0.2", "--partitions", "6", writes=True)
+        for partitions in (1, 2, 9):
+            run = self.run_program("convert", self.out, "-o", "b.msh", "--partitions", partitions)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            self.assertRegex(run.stderr, rf" {partitions} partitions?: ")
+            self.assertEqual(self.partitions("b.msh")["count"], partitions)
+
+    def test_pieces_appear_together(self):
+        run = self.run_program(self.box, "-o", "a.pvtu", "--size", "0.3", "--partitions", "3")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(sorted(p.name for p in self.folder.glob("a*")), ["a.pvtu", "a_0.vtu", "a_1.vtu", "a_2.vtu"])
+        self.assertEqual(self.partitions("a.pvtu")["count"], 3)
+        before = {p: p.read_bytes() for p in self.folder.glob("a*")}
+        (self.folder / "a_1.vtu").unlink()
+        (self.folder / "a_1.vtu").mkdir()
+        run = self.run_program(self.box, "-o", "a.pvtu", "--size", "0.2", "--partitions", "3")
+        self.assertEqual(run.returncode, 8, run.stderr)
+        self.assertIn("a_1.vtu", run.stderr)
+        for path, data in before.items():
+            if path.name != "a_1.vtu":
+                self.assertEqual(path.read_bytes(), data)
+        self.assert_nothing_left()
+        (self.folder / "a_1.vtu").rmdir()
+        run = self.run_program("info", "a.pvtu")
+        self.assertEqual(run.returncode, 3)
+        self.assertIn("a_1.vtu", run.stderr)
+
+    def test_pieces_do_not_replace_the_input(self):
+        self.assertEqual(self.run_program(self.box, "-o", "a_0.vtu", "--size", "0.3").returncode, 0)
+        before = (self.folder / "a_0.vtu").read_bytes()
+        run = self.run_program("convert", "a_0.vtu", "-o", "a.pvtu", "--partitions", "2")
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertIn("would overwrite", run.stderr)
+        self.assertEqual((self.folder / "a_0.vtu").read_bytes(), before)
+        self.assertEqual(self.run_program(self.box, "-o", "b.pvtu", "--size", "0.3", "--partitions", "2").returncode, 0)
+        run = self.run_program("convert", "b.pvtu", "-o", "b_1.vtu")
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertIn("b_1.vtu, a file of the input b.pvtu", run.stderr)
+        for option in ("--cell-decomposition", "--report"):
+            run = self.run_program(self.box, "-o", "c.vtu", "--partitions", "2", option, "c.vtu")
+            self.assertEqual(run.returncode, 2, run.stderr)
+            self.assertIn(f"{option}: names a file of --output", run.stderr)
+
+    def test_pieces_that_do_not_fit_together(self):
+        self.assertEqual(self.run_program(self.box, "-o", "a.pvtu", "--size", "0.3", "--partitions", "3").returncode, 0)
+        shutil.copy(self.folder / "a_0.vtu", self.folder / "a_1.vtu")
+        run = self.run_program("info", "a.pvtu")
+        self.assertEqual(run.returncode, 3)
+        self.assertRegex(run.stderr, r"a_1\.vtu: cell \d+ is in another place")
+        listed = (self.folder / "a.pvtu").read_text()
+        self.write("a.pvtu", listed.replace("a_1.vtu", "a_0.vtu"))
+        run = self.run_program("info", "a.pvtu")
+        self.assertEqual(run.returncode, 3)
+        self.assertIn("two pieces are a_0.vtu", run.stderr)
+        self.write("a.pvtu", listed)
+        self.assertEqual(self.run_program(self.box, "-o", "a_1.vtu", "--size", "0.3").returncode, 0)
+        run = self.run_program("info", "a.pvtu")
+        self.assertEqual(run.returncode, 3)
+        self.assertRegex(run.stderr, r"a_1\.vtu: expected an array 'GlobalPointIds'")
+
+    def test_ghost_cells(self):
+        self.expect(0, self.box, "-o", self.out, "--size", "0.2", "--partitions", "4", writes=True)
+        wanted = self.partitions(self.out)
+        for extension in ("msh", "pvtu"):
+            with self.subTest(extension=extension):
+                self.assertEqual(self.run_program("convert", self.out, "-o", f"a.{extension}", "--ghost-cells").returncode, 0)
+                self.assertEqual(self.partitions(f"a.{extension}"), wanted)
+                run = self.run_program(self.box, "-o", f"b.{extension}", "--size", "0.2", "--partitions", "4", "--ghost-cells")
+                self.assertEqual(run.returncode, 0, run.stderr)
+                self.assertEqual(self.partitions(f"b.{extension}"), wanted)
+        self.assertIn("$GhostElements", (self.folder / "a.msh").read_text())
+
+    def test_mistakes(self):
+        for value in ("0", "-1", "1.5", "many", "1e3", "1000001", "99999999999999999999"):
+            self.expect(2, self.box, "-o", self.out, "--partitions", value,
+                        says=[r"--partitions: '.*' is not a (number of partitions from 1 to 1000000|whole number)"])
+        self.expect(2, self.box, "-o", self.out, "--size", "0.5", "--partitions", "900000",
+                    says=[r"partitions is 900000, but the mesh has \d+ tets; ask for 1 to \d+"])
+        self.expect(2, self.box, "-o", self.out, "--ghost-cells", says=[r"--ghost-cells: \.vtu has no place.*\.pvtu \.msh"])
+        self.expect(2, self.box, "-o", "a.msh", "--ghost-cells", says=["say how many with --partitions"])
+        self.expect(2, self.box, "-o", self.out, "--cell-decomposition", "list", says=["say how many with --partitions"])
+        self.expect(8, self.box, "-o", self.out, "--partitions", "2", "--cell-decomposition", "missing/list",
+                    says=["missing does not exist"])
+        self.assertEqual(self.run_program("convert", self.box, "-o", "-", "--format", "pvtu", "--partitions", "2").returncode, 2)
+        self.expect(0, self.box, "-o", self.out, "--size", "0.5", writes=True)
+        run = self.run_program("convert", self.out, "-o", "a.msh", "--ghost-cells")
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("is not partitioned", run.stderr)
+        run = self.run_program("convert", self.out, "-o", "a.off", "--partitions", "2")
+        self.assertEqual(run.returncode, 2)
+        self.assertIn(".off has no place for partitions", run.stderr)
 
 
 if __name__ == "__main__":

@@ -28,7 +28,7 @@ BLOCK = re.compile(r"^(?:<!-- ([^\n]*) -->\n)?```([^\n]*)\n(.*?)^```", re.M | re
 RUN = {"bash", "python"}
 KNOWN = RUN | {"cpp", "cmake", "text"}
 MOST_LINES = 10
-MODULES = {"OpenCASCADE": "collarmesh_cad.so", "HDF5": "collarmesh_hdf5.so"}
+MODULES = {"OpenCASCADE": "collarmesh_cad.so", "HDF5": "collarmesh_hdf5.so", "Scotch": "collarmesh_scotch.so"}
 SMALLEST_PICTURE = 10_000  # bytes: an empty one is smaller
 # What a recipe says at its end.
 RECIPES = {

@@ -200,7 +200,7 @@ class Signatures(unittest.TestCase):
     def test_docstrings_tell_every_parameter(self):
         """By themselves, or by that of `mesh` where they refer to it."""
         for function in (collarmesh.mesh, collarmesh.check, collarmesh.info, collarmesh.convert, collarmesh.repair,
-                         collarmesh.read, collarmesh.Complex, collarmesh.Mesh.write):
+                         collarmesh.read, collarmesh.Complex, collarmesh.Mesh.write, collarmesh.Mesh.partitioned):
             text = inspect.getdoc(function)
             if "collarmesh.mesh" in text:
                 text += inspect.getdoc(collarmesh.mesh)
@@ -214,7 +214,8 @@ class Signatures(unittest.TestCase):
         if not program.exists():
             self.skipTest("the program was not built")
         said = subprocess.run([program, "--help"], check=True, capture_output=True, text=True).stdout
-        others = {"help", "version", "against", "output", "format", "scale", "report", "verbose", "quiet"}
+        others = {"help", "version", "against", "output", "format", "scale", "report", "verbose", "quiet", "ghost_cells",
+                  "cell_decomposition"}
         options = {name.replace("-", "_") for name in re.findall(r"--([a-z][a-z-]+)", said)} - others
         self.assertGreater(len(options), 30)
         self.assertLessEqual(options - set(inspect.signature(collarmesh.mesh).parameters), set())
@@ -336,6 +337,44 @@ class Meshes(unittest.TestCase):
         report = collarmesh.check(self.mesh, box((0, 0, 0), (1, 1, 1.1)))
         self.assertFalse(report["passed"])
         self.assertTrue(report["findings"])
+
+    def test_partitions(self):
+        if not list(pathlib.Path(collarmesh.__file__).parents[2].glob("lib*/collarmesh/collarmesh_scotch.so")):
+            with self.assertRaisesRegex(collarmesh.OptionError, "libscotch-dev"):
+                self.mesh.partitioned(2)
+            self.skipTest("built without Scotch")
+        self.assertEqual(len(self.mesh.tet_partition), 0)
+        self.assertIsNone(self.mesh.info()["mesh"]["partitions"])
+        divided = self.mesh.partitioned(4)
+        sizes = numpy.bincount(divided.tet_partition)
+        self.assertEqual(len(sizes), 4)
+        self.assertLessEqual(sizes.max(), max(1.03 * sizes.mean(), numpy.ceil(sizes.mean())))
+        found = divided.info()["mesh"]["partitions"]
+        self.assertEqual((found["count"], found["smallest"], found["largest"]), (4, sizes.min(), sizes.max()))
+        numpy.testing.assert_array_equal(divided.tets, self.mesh.tets)
+        self.assertEqual(divided.report, self.mesh.report)
+        made = collarmesh.mesh(box((0, 0, 0), (1, 1, 1)), size=0.4, partitions=4)
+        numpy.testing.assert_array_equal(made.tet_partition, divided.tet_partition)
+        self.assertEqual(pickle.loads(pickle.dumps(divided)).info(), divided.info())
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            for extension in (".vtu", ".msh", ".pvtu"):
+                for ghosts in (False,) if extension == ".vtu" else (False, True):
+                    divided.write(folder / f"box{extension}", ghost_cells=ghosts)
+                    other = collarmesh.read(folder / f"box{extension}")
+                    self.assertEqual(other.info()["mesh"]["partitions"], found)
+            collarmesh.convert(folder / "box.vtu", folder / "three.msh", partitions=3, ghost_cells=True)
+            self.assertEqual(collarmesh.info(folder / "three.msh")["mesh"]["partitions"]["count"], 3)
+            with self.assertRaisesRegex(collarmesh.WriteError, "no place for ghost cells"):
+                divided.write(folder / "ghosts.vtu", ghost_cells=True)
+            with self.assertRaisesRegex(collarmesh.OptionError, "not partitioned"):
+                self.mesh.write(folder / "ghosts.msh", ghost_cells=True)
+        for partitions in (0, -1, 1.5, True, "4", len(self.mesh.tets) + 1, 2**40):
+            with self.assertRaises(collarmesh.OptionError, msg=partitions):
+                self.mesh.partitioned(partitions)
+        for partitions in (0, -1, 1.5, "4", 10**6):
+            with self.assertRaises(collarmesh.OptionError, msg=partitions):
+                collarmesh.mesh(box((0, 0, 0), (1, 1, 1)), size=0.6, partitions=partitions)
 
     def test_convert_and_repair(self):
         points, triangles, tags = box((0, 0, 0), (1, 1, 1))

@@ -15,6 +15,7 @@ inline void expect_same(const TetMesh& a, const TetMesh& b) {
   EXPECT_EQ(a.tet_collar, b.tet_collar);
   EXPECT_EQ(a.tet_crease, b.tet_crease);
   EXPECT_EQ(a.tet_thin, b.tet_thin);
+  EXPECT_EQ(a.tet_partition, b.tet_partition);
   EXPECT_EQ(a.faces, b.faces);
   EXPECT_EQ(a.face_regions, b.face_regions);
   EXPECT_EQ(a.face_patch, b.face_patch);

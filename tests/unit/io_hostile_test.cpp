@@ -227,6 +227,25 @@ std::string sample_file(const std::string& name, const TetMesh& mesh) {
   return folder.read(name);
 }
 
+/// I-DEAS has two lines for a rod; SALOME and FreeCAD write three, as for a beam.
+TEST(IoUnv, RodsWithAndWithoutTheRecordOfBeams) {
+  const TetMesh mesh = sample_mesh(1);
+  const std::string record = "         0         1         1\n", beam = "        21", rod = "        11";
+  std::string text = sample_file("a.unv", mesh);
+  std::size_t rods = 0;
+  for (std::size_t at = text.find("\n" + record); at != std::string::npos;
+       at = text.find("\n" + record, at + 1), ++rods) {
+    const std::size_t line = text.rfind('\n', at - 1) + 1;
+    ASSERT_EQ(text.substr(line + 10, 10), beam);
+    text.replace(line + 10, 10, rod);
+  }
+  ASSERT_EQ(rods, mesh.edges.size());
+  EXPECT_EQ(read("a.unv", text).edges, mesh.edges);
+  for (std::size_t at = text.find(record); at != std::string::npos; at = text.find(record))
+    text.erase(at, record.size());
+  EXPECT_EQ(read("a.unv", text).edges, mesh.edges);
+}
+
 TEST(IoUnv, RefusesBadFiles) {
   const std::string unv = sample_file("a.unv", sample_mesh(1));
   expect_refused("a.unv", "", "line 1: expected -1");

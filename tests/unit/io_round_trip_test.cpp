@@ -52,6 +52,13 @@ TetMesh with_one_tag(TetMesh mesh) {
   return mesh;
 }
 
+/// Divided anyhow; some numbers of partitions are of none.
+TetMesh partitioned(TetMesh mesh) {
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    mesh.tet_partition.push_back(static_cast<Index>(t * t % 5 + (t > mesh.tets.size() / 2 ? 7 : 1)));
+  return mesh;
+}
+
 std::vector<NamedMesh> small_meshes() {
   return {{"one tet", one_tet()},
           {"two regions, mixed tags", sample_mesh(1)},
@@ -60,29 +67,37 @@ std::vector<NamedMesh> small_meshes() {
           {"two regions of one tag", with_one_tag(sample_mesh(2))},
           {"one tet of second order", second_order(one_tet())},
           {"second order", second_order(sample_mesh(2))},
+          {"one tet in a partition", partitioned(one_tet())},
+          {"partitions", partitioned(sample_mesh(2))},
+          {"partitions, features unknown", partitioned(without_features(sample_mesh(2)))},
+          {"partitions of second order", partitioned(second_order(sample_mesh(2)))},
           {"second order, features unknown", second_order(without_features(sample_mesh(1)))}};
 }
 
 /// What a format has a place for, besides points, cells and the tags of faces.
 struct Format {
   const char* extension;
-  bool all_digits = true, regions = true, tet_tags = true, edges = true, collar = false, features = false;
+  bool all_digits = true, regions = true, tet_tags = true, edges = true, collar = false, features = false,
+       partitions = false;
 };
 
-const std::vector<Format> always_there{{.extension = ".vtu", .collar = true, .features = true},
-                                       {.extension = ".vtk", .collar = true, .features = true},
-                                       {.extension = ".msh", .collar = true, .features = true},
-                                       {.extension = ".mesh", .tet_tags = false},
-                                       {.extension = ".inp", .all_digits = false, .edges = false},
-                                       {.extension = ".unv"},
-                                       {.extension = ".msh2", .regions = false},
-                                       {.extension = ".ele", .regions = false}};
+const std::vector<Format> always_there{
+    {.extension = ".vtu", .collar = true, .features = true, .partitions = true},
+    {.extension = ".pvtu", .collar = true, .features = true, .partitions = true},
+    {.extension = ".vtk", .collar = true, .features = true, .partitions = true},
+    {.extension = ".msh", .collar = true, .features = true, .partitions = true},
+    {.extension = ".mesh", .tet_tags = false},
+    {.extension = ".inp", .all_digits = false, .edges = false},
+    {.extension = ".unv"},
+    {.extension = ".msh2", .regions = false, .partitions = true},
+    {.extension = ".ele", .regions = false}};
 
 /// With those that need HDF5.
 std::vector<Format> formats_built_in() {
   std::vector<Format> all = always_there;
-  for (const Format& format : std::vector<Format>{{.extension = ".xdmf", .collar = true, .features = true},
-                                                  {.extension = ".med", .regions = false}})
+  for (const Format& format :
+       std::vector<Format>{{.extension = ".xdmf", .collar = true, .features = true, .partitions = true},
+                           {.extension = ".med", .regions = false, .partitions = true}})
     if (io::is_tet_mesh_format(std::string("a") + format.extension)) all.push_back(format);
   return all;
 }
@@ -114,6 +129,7 @@ TetMesh as_kept(TetMesh mesh, const Format& format) {
     mesh.tet_thin.clear();
   }
   if (!format.features) mesh = without_features(std::move(mesh));
+  if (!format.partitions) mesh.tet_partition.clear();
   if (!format.edges) {
     mesh.edges.clear();
     mesh.edge_tag.clear();
@@ -155,6 +171,7 @@ TetMesh canonical(TetMesh mesh) {
   permute(mesh.tet_collar, tets);
   permute(mesh.tet_crease, tets);
   permute(mesh.tet_thin, tets);
+  permute(mesh.tet_partition, tets);
   permute(mesh.tet_mid_nodes, tets);
   permute(mesh.tets, tets);
   permute(mesh.face_regions, faces);
@@ -188,6 +205,23 @@ TEST(IoRoundTrip, EveryFormatOnEverySmallMesh) {
       }
       expect_same(canonical(std::move(read)), canonical(std::move(wanted)));
     }
+}
+
+TEST(IoRoundTrip, PartitionsWithGhostCells) {
+  for (const std::string& format : io::formats_with_ghost_cells())
+    for (const TetMesh& mesh : {partitioned(sample_mesh(2)), partitioned(second_order(sample_mesh(2)))}) {
+      SCOPED_TRACE(format);
+      const TemporaryFolder folder;
+      io::write_tet_mesh(folder.file("a" + format), mesh, {}, io::GhostCells::one_layer);
+      expect_same(canonical(io::read_tet_mesh(folder.file("a" + format))), canonical(mesh));
+    }
+}
+
+TEST(IoRoundTrip, FormatsSayWhetherTheyHoldPartitions) {
+  const std::vector<std::string> partitions = io::formats_with_partitions();
+  for (const Format& format : formats)
+    EXPECT_EQ(std::count(partitions.begin(), partitions.end(), format.extension), format.partitions ? 1 : 0)
+        << format.extension;
 }
 
 TEST(IoRoundTrip, CoversEveryFormat) {

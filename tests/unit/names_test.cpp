@@ -190,6 +190,24 @@ TEST(Names, AreInWhatIsWritten) {
   EXPECT_EQ(std::set<Tag>(mesh.face_tag.begin(), mesh.face_tag.end()).size(), 6U);
 }
 
+TEST(Names, OfUnvAreKept) {
+  const TemporaryFolder folder;
+  Plc plc = plc_of(untagged(box()));
+  name_features(R"({"patches": {"Inlet 1": 1}, "curves": {"rim": 1}, "regions": {"steel": 1}})", plc);
+  TetMesh mesh = run_pipeline(plc).result.mesh;
+  io::write_tet_mesh(folder.file("a.unv"), mesh);
+  const TetMesh again = io::read_tet_mesh(folder.file("a.unv"));
+  for (std::size_t dimension = 1; dimension < 4; ++dimension)
+    EXPECT_EQ(again.names.of(dimension), mesh.names.of(dimension)) << dimension;
+  EXPECT_EQ(again.face_tag, mesh.face_tag);
+  mesh.names = {};
+  mesh.group_names = GroupNames::cad;  // as FreeCAD writes what it got from us
+  io::write_tet_mesh(folder.file("b.unv"), mesh);
+  io::write_tet_mesh(folder.file("b.msh"), io::read_tet_mesh(folder.file("b.unv")));
+  for (const char* word : {"\"Face6\"", "\"Edge12\"", "\"Solid1\""})
+    EXPECT_NE(folder.read("b.msh").find(word), std::string::npos) << word;
+}
+
 TEST(Names, OfMsh2HaveNumbersOfTheirOwn) {
   const TemporaryFolder folder;
   const Plc plc = plc_of(untagged(box()));

@@ -37,6 +37,46 @@ TEST(SizeFieldJson, TakesTheSmallestOfItsSources) {
   EXPECT_DOUBLE_EQ(field({5.5, 6, 9}), 0.2 + 0.3 * 1);
 }
 
+TEST(SizeFieldJson, CylindersAndTurnedBoxes) {
+  const SizeField cylinder_field = size_field_from_json(
+      R"({"sources": [{"cylinder": {"from": [1, 0, 0], "to": [1, 4, 0], "radius": 2}, "size": 0.1, "growth": 0.5}]})",
+      cylinder());
+  EXPECT_DOUBLE_EQ(cylinder_field({1, 2, 0}), 0.1);                  // on the axis
+  EXPECT_DOUBLE_EQ(cylinder_field({2, 3, 1}), 0.1);                  // inside
+  EXPECT_DOUBLE_EQ(cylinder_field({1, 2, 5}), 0.1 + 0.5 * 3);        // beside
+  EXPECT_DOUBLE_EQ(cylinder_field({1, -2, 1}), 0.1 + 0.5 * 2);       // below
+  EXPECT_DOUBLE_EQ(cylinder_field({1, 6, 0}), 0.1 + 0.5 * 2);        // above
+  EXPECT_NEAR(cylinder_field({1 + 5, 8, 0}), 0.1 + 0.5 * 5, 1e-12);  // past the rim: 3, 4, 5
+
+  const SizeField straight = size_field_from_json(
+      R"({"sources": [{"box": {"min": [1, 2, 3], "max": [3, 3, 7]}, "size": 0.1}]})", cylinder());
+  const SizeField same = size_field_from_json(
+      R"({"sources": [{"box": {"corner": [1, 2, 3], "edges": [[0, 0, 4], [2, 0, 0], [0, 1, 0]]}, "size": 0.1}]})",
+      cylinder());
+  const SizeField turned = size_field_from_json(
+      R"({"sources": [{"box": {"corner": [0, 0, 0], "edges": [[3, 3, 0], [-1, 1, 0], [0, 0, 1]]}, "size": 0.1,
+                       "growth": 1}]})",
+      cylinder());
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> around(-2, 9);
+  for (int i = 0; i < 200; ++i) {
+    const Point p{around(random), around(random), around(random)};
+    EXPECT_NEAR(same(p), straight(p), 1e-12);
+  }
+  EXPECT_DOUBLE_EQ(turned({2, 2, 0.5}), 0.1);
+  EXPECT_NEAR(turned({4, 4, 0.5}), 0.1 + std::numbers::sqrt2, 1e-12);
+  EXPECT_NEAR(turned({2, 0, 0.5}), 0.1 + std::numbers::sqrt2, 1e-12);
+  EXPECT_NEAR(turned({1.5, 1.5, 3}), 0.1 + 2, 1e-12);
+}
+
+TEST(SizeFieldJson, HoldsWithinADistance) {
+  const SizeField field = size_field_from_json(
+      R"({"sources": [{"ball": {"centre": [0, 0, 0], "radius": 1}, "size": 0.1, "growth": 0.5, "within": 2}]})",
+      cylinder());
+  EXPECT_DOUBLE_EQ(field({0, 0, 3}), 0.1);
+  EXPECT_DOUBLE_EQ(field({0, 0, 5}), 0.1 + 0.5 * 2);
+}
+
 TEST(SizeFieldJson, GrowsAwayFromFeatures) {
   Plc plc = cylinder();
   Tag tag = 10;
@@ -77,6 +117,18 @@ TEST(SizeFieldJson, SaysWhatIsWrongAndWhere) {
       {R"({"sources": [{"ball": {"centre": [0, 0, 0], "radius": -1}, "size": 1}]})", "'radius' is -1"},
       {R"({"sources": [{"ball": {"centre": [0, 0, 0]}, "size": 1}]})", "'radius' is missing"},
       {R"({"sources": [{"box": {"min": [1, 0, 0], "max": [0, 1, 1]}, "size": 1}]})", "'min' exceeds 'max'"},
+      {R"({"sources": [{"box": {"corner": [0, 0, 0], "edges": [[1, 0, 0], [1, 1, 0], [0, 0, 1]]}, "size": 1}]})",
+       "sources[0].box: edges 0 and 1 are not at right angles"},
+      {R"({"sources": [{"box": {"corner": [0, 0, 0], "edges": [[1, 0, 0], [0, 1, 0]]}, "size": 1}]})",
+       "sources[0].box: expected 'edges'"},
+      {R"({"sources": [{"box": {"corner": [0, 0, 0], "edges": [[1, 0, 0], [0, 0, 0], [0, 0, 1]]}, "size": 1}]})",
+       "sources[0].box: an edge has no length"},
+      {R"({"sources": [{"cylinder": {"from": [0, 0, 1], "to": [0, 0, 1], "radius": 1}, "size": 1}]})",
+       "sources[0].cylinder: 'from' and 'to' are the same point"},
+      {R"({"sources": [{"cylinder": {"from": [0, 0, 1], "to": [0, 0, 2]}, "size": 1}]})",
+       "'radius' is missing"},
+      {R"({"sources": [{"ball": {}, "cylinder": {}, "size": 1}]})", "expected one of ball, box, cylinder"},
+      {R"({"sources": [{"patches": [1], "size": 1, "within": -1}]})", "'within' is -1"},
       {R"({"sources": [{"curves": [99], "size": 1}]})", "no curves have the tag 99"},
       {R"({"sources": [{"patches": ["a"], "size": 1}]})", "is no tag"},
       {R"({"sources": [{"curves": [], "size": 1}]})", "expected a list of tags"}};

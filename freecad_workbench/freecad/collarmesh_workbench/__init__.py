@@ -24,4 +24,30 @@ def mesh(shape_or_object, document=None, analysis=None, name="FEMMeshCollarmesh"
     return mesh_object.mesh(shape_or_object, document, analysis, name, Settings(**options))
 
 
-__all__ = ["MesherError", "Settings", "find_program", "mesh"]
+def add_size(mesh_object, kind, size=0):
+    """Ask for another size in a part of a mesh, and return the object for it, whose properties say where.
+
+    `kind`: Sphere, Box, Cylinder (in the middle of the part at first) or Distance (from the faces and edges in its
+    `References`, up to `Within`). `size`: target edge length, mm; 0: a quarter of the mesh's own. It takes effect
+    when the mesh is made again."""
+    from . import size_objects
+
+    return size_objects.make(mesh_object, kind, size)
+
+
+def remesh(mesh_object):
+    """Make the mesh of a mesh object anew and wait; returns the program's report. Raises MesherError, with what is
+    wrong and where; the object keeps its mesh then."""
+    from . import mesh_object as objects
+
+    return objects.remesh(mesh_object)
+
+
+def meshed_object(mesh_object):
+    """The object that a mesh object meshes; the property for it is called differently in FreeCAD's versions."""
+    from . import compatibility
+
+    return compatibility.meshed_object(mesh_object)
+
+
+__all__ = ["MesherError", "Settings", "add_size", "find_program", "mesh", "meshed_object", "remesh"]

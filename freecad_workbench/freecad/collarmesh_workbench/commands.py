@@ -4,8 +4,11 @@ import os
 
 import FreeCAD
 import FreeCADGui
+from PySide import QtCore
 
-from . import compatibility, mesh_object
+from . import compatibility, inputs, mesh_menu, mesh_object, size_objects, take_over
+from .size_view import icon_of
+from .translations import mark, translate
 from .view_provider import ICON
 
 MESH_COMMAND = "Collarmesh_MeshFromShape"
@@ -20,17 +23,27 @@ def selected(condition):
 
 
 def selected_part():
-    # From FreeCAD 1.0 on mesh objects have a `Shape`, too: a link.
-    return selected(lambda each: hasattr(getattr(each, "Shape", None), "exportBrep"))
+    return selected(lambda each: inputs.can_be_meshed(each) and size_objects.kind_of(each) is None)
 
 
 class Command:
     """A button; `create` makes an object for what is selected, which is then edited in its panel."""
 
     icon, menu_text, tool_tip = "", "", ""
+    panel_commits = (
+        False  # creation and first edit are one step of undo, which "Cancel" of the panel takes back
+    )
 
     def GetResources(self):
-        return {"Pixmap": self.icon, "MenuText": self.menu_text, "ToolTip": self.tool_tip}
+        return {"Pixmap": self.icon, "MenuText": self.text(), "ToolTip": self.tip()}
+
+    @classmethod
+    def text(cls):
+        return translate("collarmesh", cls.menu_text)
+
+    @classmethod
+    def tip(cls):
+        return translate("collarmesh", cls.tool_tip)
 
     def IsActive(self):
         return FreeCAD.ActiveDocument is not None and self.target() is not None
@@ -38,9 +51,10 @@ class Command:
     def Activated(self):
         target = self.target()
         document = target.Document
-        document.openTransaction(self.menu_text)
+        document.openTransaction(self.text())
         obj = self.create(document, target)
-        document.commitTransaction()
+        if not self.panel_commits:
+            document.commitTransaction()
         document.recompute()
         FreeCADGui.Selection.clearSelection()
         FreeCADGui.getDocument(document.Name).setEdit(obj.Name)
@@ -48,8 +62,10 @@ class Command:
 
 class MeshFromShape(Command):
     icon = ICON
-    menu_text = "FEM mesh from shape by collarmesh"
-    tool_tip = "Make a tetrahedral mesh of the selected solid, certified, with groups for its faces"
+    menu_text = mark("collarmesh", "FEM mesh from shape by collarmesh")
+    tool_tip = mark(
+        "collarmesh", "Make a tetrahedral mesh of the selected solid, certified, with groups for its faces"
+    )
 
     def target(self):
         return selected_part()
@@ -66,8 +82,10 @@ class MeshFromShape(Command):
 
 class Refinement(Command):
     icon = os.path.join(os.path.dirname(ICON), "refinement.svg")
-    menu_text = "Refinement of a collarmesh mesh"
-    tool_tip = "Ask for a smaller size on faces, edges or solids in the selected collarmesh mesh"
+    menu_text = mark("collarmesh", "Refinement of a collarmesh mesh")
+    tool_tip = mark(
+        "collarmesh", "Ask for a smaller size on faces, edges or solids in the selected collarmesh mesh"
+    )
 
     def target(self):
         return selected(mesh_object.is_ours)
@@ -78,14 +96,112 @@ class Refinement(Command):
 
 class Group(Refinement):
     icon = os.path.join(os.path.dirname(ICON), "group.svg")
-    menu_text = "Group of a collarmesh mesh"
-    tool_tip = "Name the elements on faces, edges or solids in the selected collarmesh mesh"
+    menu_text = mark("collarmesh", "Group of a collarmesh mesh")
+    tool_tip = mark(
+        "collarmesh", "Name the elements on faces, edges or solids in the selected collarmesh mesh"
+    )
 
     def create(self, document, obj):
         return compatibility.make_group(document, obj)
 
 
-COMMANDS = {MESH_COMMAND: MeshFromShape, REFINEMENT_COMMAND: Refinement, GROUP_COMMAND: Group}
+class Size(Command):
+    """A size by place, for the mesh that is selected, or that of the selected part, or the only one there is."""
+
+    kind = ""
+    panel_commits = True
+
+    def Activated(self):
+        # FreeCAD ends its transactions with the command, so this waits until that has ended.
+        QtCore.QTimer.singleShot(0, super().Activated)
+
+    def target(self):
+        ours = [each for each in FreeCAD.ActiveDocument.Objects if mesh_object.is_ours(each)]
+        chosen = FreeCADGui.Selection.getSelection()
+        found = [each for each in ours if each in chosen or compatibility.meshed_object(each) in chosen]
+        found = found or ([] if chosen else ours)
+        return found[0] if len(found) == 1 else None
+
+    def create(self, _document, obj):
+        picked = [
+            (each.Object, (name,))
+            for each in FreeCADGui.Selection.getSelectionEx()
+            for name in each.SubElementNames
+            if each.Object is compatibility.meshed_object(obj) and name.startswith(("Face", "Edge"))
+        ]
+        size = size_objects.make(obj, self.kind)
+        if picked and self.kind == "Distance":
+            size.References = picked
+        elif picked:
+            bounds = FreeCAD.BoundBox()
+            for part, (name,) in picked:
+                bounds.add(inputs.shape_of(part).getElement(name).BoundBox)
+            size.Placement.Base = bounds.Center - size.Proxy.middle(size)
+        return size
+
+
+class SizeSphere(Size):
+    kind = "Sphere"
+    icon = icon_of(kind)
+    menu_text = mark("collarmesh", "Size in a sphere")
+    tool_tip = mark(
+        "collarmesh",
+        "Ask for a smaller size in a sphere, which can be dragged in the 3D view; select faces to put it there",
+    )
+
+
+class SizeBox(Size):
+    kind = "Box"
+    icon = icon_of(kind)
+    menu_text = mark("collarmesh", "Size in a box")
+    tool_tip = mark(
+        "collarmesh", "Ask for a smaller size in a box, which can be dragged and turned in the 3D view"
+    )
+
+
+class SizeCylinder(Size):
+    kind = "Cylinder"
+    icon = icon_of(kind)
+    menu_text = mark("collarmesh", "Size in a cylinder")
+    tool_tip = mark(
+        "collarmesh", "Ask for a smaller size in a cylinder, which can be dragged and turned in the 3D view"
+    )
+
+
+class SizeDistance(Size):
+    kind = "Distance"
+    icon = icon_of(kind)
+    menu_text = mark("collarmesh", "Size near faces and edges")
+    tool_tip = mark(
+        "collarmesh", "Ask for a smaller size within a distance from the selected faces and edges"
+    )
+
+
+class TakeOver(Command):
+    """For Netgen's objects, too, which have no context menu of their own before FreeCAD 1.0."""
+
+    icon = os.path.join(os.path.dirname(ICON), "take_over.svg")
+    menu_text = mark("collarmesh", "Take over by collarmesh")
+    tool_tip = mark("collarmesh", "Make the selected mesh of Gmsh or Netgen one of collarmesh, with its sizes and groups")
+
+    def target(self):
+        return selected(take_over.can_be_taken_over)
+
+    def Activated(self):
+        target = self.target()
+        QtCore.QTimer.singleShot(0, lambda: mesh_menu.take(target))  # see Size
+
+
+COMMANDS = {
+    MESH_COMMAND: MeshFromShape,
+    REFINEMENT_COMMAND: Refinement,
+    "Collarmesh_SizeSphere": SizeSphere,
+    "Collarmesh_SizeBox": SizeBox,
+    "Collarmesh_SizeCylinder": SizeCylinder,
+    "Collarmesh_SizeDistance": SizeDistance,
+    GROUP_COMMAND: Group,
+    "Collarmesh_TakeOver": TakeOver,
+}
 
 
 def register():

@@ -1,5 +1,8 @@
 """Where FreeCAD's versions differ."""
 
+import contextlib
+import importlib
+
 import FreeCAD
 import ObjectsFem
 
@@ -37,6 +40,20 @@ def meshed_object(mesh_object):
     return getattr(mesh_object, shape_property(mesh_object))
 
 
+REFINEMENT_LISTS = ("MeshRegionList", "MeshRefinementList")  # later versions have the second name
+
+
+def refinements_of(mesh_object):
+    return next(
+        (getattr(mesh_object, name) for name in REFINEMENT_LISTS if name in mesh_object.PropertiesList), []
+    )
+
+
+def set_refinements(mesh_object, refinements):
+    name = next(name for name in REFINEMENT_LISTS if name in mesh_object.PropertiesList)
+    setattr(mesh_object, name, refinements)
+
+
 def make_refinement(document, mesh_object):
     """FreeCAD's object for a size on sub-shapes; later versions call it a refinement."""
     make = getattr(ObjectsFem, "makeMeshRegion", None) or ObjectsFem.makeMeshRefinement
@@ -45,6 +62,52 @@ def make_refinement(document, mesh_object):
 
 def make_group(document, mesh_object):
     return ObjectsFem.makeMeshGroup(document, mesh_object)
+
+
+_in_transaction = set()  # names of documents
+
+
+@contextlib.contextmanager
+def transaction(document, name):
+    """One step of undo; an exception takes it back. One within another is part of that. FreeCAD's own that is still
+    open ends before: scripts and deletions leave theirs open."""
+    if document.Name in _in_transaction:
+        yield
+        return
+    if document.HasPendingTransaction:
+        document.commitTransaction()
+    document.openTransaction(name)
+    _in_transaction.add(document.Name)
+    try:
+        yield
+    except BaseException:
+        document.abortTransaction()
+        raise
+    else:
+        document.commitTransaction()
+    finally:
+        _in_transaction.discard(document.Name)
+
+
+def extend_context_menus(fill):
+    """`fill(menu, object)` adds entries to the context menus of FreeCAD's own mesh objects. Their view providers are
+    classes in Python; Netgen's is one from FreeCAD 1.0 on, before it has no menu of its own."""
+    for module, name in (("view_mesh_gmsh", "VPMeshGmsh"), ("view_mesh_netgen", "VPMeshNetgen")):
+        try:
+            provider = getattr(importlib.import_module("femviewprovider." + module), name)
+        except (ImportError, AttributeError):
+            continue
+        _extend(provider, fill)
+
+
+def _extend(provider, fill):
+    before = getattr(provider, "setupContextMenu", None)
+
+    def setup_context_menu(self, view, menu):
+        fill(menu, view.Object)
+        return before(self, view, menu) if before else None
+
+    provider.setupContextMenu = setup_context_menu
 
 
 def as_number(button):

@@ -3,15 +3,18 @@
 import FreeCAD
 import Part
 
+from . import inputs
+
 
 def bounding_box(part):
     """Of a shape or of a mesh of triangles; not valid where there is none."""
     if part is None:
         return FreeCAD.BoundBox()
-    shape = getattr(part, "Shape", None)
-    if hasattr(shape, "exportBrep"):
-        return FreeCAD.BoundBox() if shape.isNull() else shape.BoundBox
-    return part.Mesh.BoundBox if hasattr(part, "Mesh") else Part.getShape(part).BoundBox
+    mesh = inputs.triangles_of(part)
+    if mesh is not None:
+        return mesh.BoundBox
+    shape = inputs.shape_of(part)
+    return FreeCAD.BoundBox() if shape.isNull() else shape.BoundBox
 
 
 def box_of_subshape(part, name):

@@ -8,18 +8,30 @@ from .commands import COMMANDS, GROUP_COMMAND, MESH_COMMAND, REFINEMENT_COMMAND
 BESIDE = {
     MESH_COMMAND: "FEM_MeshGmshFromShape",
     REFINEMENT_COMMAND: "FEM_MeshRegion",
+    "Collarmesh_SizeSphere": REFINEMENT_COMMAND,
+    "Collarmesh_SizeBox": "Collarmesh_SizeSphere",
+    "Collarmesh_SizeCylinder": "Collarmesh_SizeBox",
+    "Collarmesh_SizeDistance": "Collarmesh_SizeCylinder",
     GROUP_COMMAND: "FEM_MeshGroup",
+    "Collarmesh_TakeOver": GROUP_COMMAND,
 }
+
+
+def freecads_place(command):
+    """FreeCAD's own command that one of ours is put beside, directly or behind others of ours."""
+    place = BESIDE[command]
+    return freecads_place(place) if place in BESIDE else place
 
 
 class Manipulator:
     """FreeCAD 1.0 and later ask it when a workbench builds its bars."""
 
     def modifyToolBars(self):
-        return [{"insert": command, "toolItem": place} for command, place in BESIDE.items()]
+        return [{"insert": command, "toolItem": freecads_place(command)} for command in BESIDE]
 
     def modifyMenuBar(self):
-        return [{"insert": command, "menuItem": place, "after": ""} for command, place in BESIDE.items()]
+        # Each one goes right after its place, so the last one comes first.
+        return [{"insert": command, "menuItem": freecads_place(command), "after": ""} for command in reversed(BESIDE)]
 
 
 class Inserter(QtCore.QObject):
@@ -33,9 +45,9 @@ class Inserter(QtCore.QObject):
         self.later()
 
     def _action(self, name, command):
-        action = QtGui.QAction(QtGui.QIcon(command.icon), command.menu_text, self)
+        action = QtGui.QAction(QtGui.QIcon(command.icon), command.text(), self)
         action.setObjectName(name)
-        action.setToolTip(command.tool_tip)
+        action.setToolTip(command.tip())
         action.triggered.connect(lambda: FreeCADGui.runCommand(name))
         return action
 

@@ -8,7 +8,7 @@ on the exact faces."""
 import FreeCAD
 from femmesh import meshtools
 
-from . import compatibility
+from . import compatibility, inputs
 
 KINDS = {"Solid": "Volume", "Face": "Face", "Edge": "Edge"}
 
@@ -34,24 +34,26 @@ def elements_of(fem_mesh, part, subshapes):
     groups, kind, elements = named(fem_mesh), "", set()
     for name in subshapes:
         kind = next((value for key, value in KINDS.items() if name.startswith(key)), "")
-        if kind == "Volume" or (kind and len(part.Shape.Solids) == 1 and name in groups):
+        if kind == "Volume" or (kind and len(inputs.shape_of(part).Solids) == 1 and name in groups):
             elements.update(fem_mesh.getGroupElements(groups[name]) if name in groups else ())
         elif kind == "Face":
-            elements.update(fem_mesh.getFacesByFace(part.Shape.getElement(name)))
+            elements.update(fem_mesh.getFacesByFace(inputs.shape_of(part).getElement(name)))
         elif kind == "Edge":
-            elements.update(fem_mesh.getEdgesByEdge(part.Shape.getElement(name)))
+            elements.update(fem_mesh.getEdgesByEdge(inputs.shape_of(part).getElement(name)))
     return kind, sorted(elements)
 
 
 def wanted(mesh_object, fem_mesh):
     """What groups the mesh must have besides those of sub-shapes: [(name, kind, elements)]."""
     part = compatibility.meshed_object(mesh_object)
+    if inputs.triangles_of(part) is not None:  # its segments are groups already
+        return []
     references = {}
     for group in mesh_object.MeshGroupList:
         references.update(meshtools.get_mesh_group_elements(group, part))
     analysis = analysis_of(mesh_object)
     materials = materials_of(analysis)
-    if len(part.Shape.Solids) > 1 and materials:
+    if len(inputs.shape_of(part).Solids) > 1 and materials:
         of_analysis = meshtools.get_analysis_group_elements(analysis, part)
         references.update({each.Name: of_analysis.get(each.Name, ()) for each in materials})
     groups = []

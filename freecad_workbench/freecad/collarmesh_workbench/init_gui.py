@@ -2,8 +2,10 @@
 
 import FreeCADGui
 
-from . import commands, fem_buttons, preferences
+from . import commands, fem_buttons, mesh_menu, preferences, translations
 
+translations.load()  # before there are texts
 commands.register()
 fem_buttons.install()
+mesh_menu.install()
 FreeCADGui.addPreferencePage(preferences.Page, "FEM")

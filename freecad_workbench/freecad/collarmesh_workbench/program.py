@@ -47,6 +47,7 @@ class Settings:
     solid_sizes: dict = dataclasses.field(default_factory=dict)
     face_sizes: dict = dataclasses.field(default_factory=dict)
     edge_sizes: dict = dataclasses.field(default_factory=dict)
+    size_field: dict = None  # sizes by place: sources, as mesher/doc/sizes.md has them
 
     def arguments(self):
         """Arguments of the command line."""
@@ -117,14 +118,19 @@ def as_warning(line):
 class Job:
     """One run: a folder with the shape, the mesh and the report, which is removed at the end."""
 
-    def __init__(self, settings, program="", threads=0):
-        """`threads`: how many the program may use, 0: as many as there are cores."""
+    def __init__(self, settings, program="", threads=0, input_name="shape.brep"):
+        """`threads`: how many the program may use, 0: as many as there are cores; `input_name`: of the file that the
+        caller writes to `self.shape`."""
         self.folder = WorkFolder()
-        self.shape = os.path.join(self.folder.name, "shape.brep")
+        self.shape = os.path.join(self.folder.name, input_name)
         self.mesh = os.path.join(self.folder.name, "mesh.unv")
         self._report = os.path.join(self.folder.name, "report.json")
         self.command = [find_program(program), self.shape, "-o", self.mesh, "--report", self._report,
                         "--progress", "json", "--threads", str(threads), *settings.arguments()]  # fmt: skip
+        if settings.size_field:
+            path = os.path.join(self.folder.name, "sizes.json")
+            pathlib.Path(path).write_text(json.dumps(settings.size_field), encoding="utf-8")
+            self.command += ["--size-field", path]
         self.messages = []
 
     def __enter__(self):

@@ -60,7 +60,7 @@ class SizeSection(QtGui.QWidget):
         table = QtGui.QTreeWidget()
         table.setObjectName("collarmesh_presets")
         table.setRootIsDecorated(False)
-        headings = (translate("collarmesh", "Mesh"), translate("collarmesh", "Size"),
+        headings = (translate("collarmesh", "Fineness"), translate("collarmesh", "Size"),
                     translate("collarmesh", "≈ elements"), translate("collarmesh", "≈ time"))  # fmt: skip
         table.setHeaderLabels(headings)
         table.setToolTip(translate("collarmesh", "Choose a size; how many elements it makes and how long that takes "

@@ -4,12 +4,16 @@ import os
 
 import FreeCADGui
 
-from . import compatibility
+from . import compatibility, mesh_menu, size_objects, up_to_date
 
 ICON = os.path.join(os.path.dirname(__file__), "icons", "collarmesh.svg")
+OUT_OF_DATE_ICON = os.path.join(os.path.dirname(__file__), "icons", "collarmesh_out_of_date.svg")
 
 
 class MeshViewProvider(compatibility.Stateless):
+    out_of_date = False
+    panel = None  # while it is open
+
     def __init__(self, view):
         view.Proxy = self
 
@@ -18,10 +22,23 @@ class MeshViewProvider(compatibility.Stateless):
         self.Object = view.Object
 
     def getIcon(self):
-        return ICON
+        return OUT_OF_DATE_ICON if self.out_of_date else ICON
+
+    def finishRestoring(self):
+        up_to_date.show(self.Object)
+
+    def show_out_of_date(self, out_of_date):
+        """Mark the object in the tree, or take the mark away."""
+        if out_of_date != self.out_of_date:
+            self.out_of_date = out_of_date
+            self.ViewObject.signalChangeIcon()
 
     def claimChildren(self):
-        return [*self.Object.MeshRegionList, *self.Object.MeshGroupList]
+        sizes = getattr(self.Object, size_objects.PROPERTY, [])
+        return [*self.Object.MeshRegionList, *sizes, *self.Object.MeshGroupList]
+
+    def setupContextMenu(self, _view, menu):
+        mesh_menu.fill(menu, self.Object)
 
     def setEdit(self, view, mode=0):
         from .task_panel import MeshTaskPanel
@@ -29,10 +46,12 @@ class MeshViewProvider(compatibility.Stateless):
         if mode != 0:
             return None
         view.show()
-        FreeCADGui.Control.showDialog(MeshTaskPanel(view.Object))
+        self.panel = MeshTaskPanel(view.Object)
+        FreeCADGui.Control.showDialog(self.panel)
         return True
 
     def unsetEdit(self, _view, _mode=0):
+        self.panel = None
         FreeCADGui.Control.closeDialog()
         return True
 

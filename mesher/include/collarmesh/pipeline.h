@@ -34,7 +34,8 @@ struct PipelineOptions {
   /// So many are tried, from `mesh.seed` on, until every guarantee holds; at least 1. The first mesh stays
   /// where none does.
   unsigned seeds = 2;
-  unsigned threads = 0;  ///< at most; 0: as many as there are cores
+  unsigned partitions = 0;  ///< the tets are divided among so many ranks (see `partition`); 0: they are not
+  unsigned threads = 0;     ///< at most; 0: as many as there are cores
   /// What the facets approximate, as a CAD shape. The mesh is kept within tighter bounds first, so that its
   /// vertices can move onto this; may be empty.
   ExactGeometry exact;

@@ -15,14 +15,16 @@ using SizeField = std::function<double(const Point&)>;
 /// field of target edge lengths on its points). Throws ReadError or OptionError.
 SizeField read_size_field(const std::string& path, const Plc& plc);
 
-/// The smallest of what some sources ask for: `size` at the source and inside it, growing by `growth` (0.3
-/// unless given) per unit length away from it.
+/// The smallest of what some sources ask for: `size` at the source, inside it and `within` a distance of it
+/// (0 unless given), growing by `growth` (0.3 unless given) per unit length beyond.
 ///
 ///     {"size": 2, "sources": [
 ///       {"ball": {"centre": [0, 0, 0], "radius": 1}, "size": 0.1, "growth": 0.2},
 ///       {"box": {"min": [0, 0, 0], "max": [1, 1, 1]}, "size": 0.1},
+///       {"box": {"corner": [0, 0, 0], "edges": [[1, 1, 0], [-1, 1, 0], [0, 0, 1]]}, "size": 0.1},
+///       {"cylinder": {"from": [0, 0, 0], "to": [0, 0, 2], "radius": 1}, "size": 0.1},
 ///       {"curves": [3, 4], "size": 0.05},
-///       {"patches": [2], "size": 0.05}]}
+///       {"patches": [2], "size": 0.05, "within": 0.5}]}
 ///
 /// `size` outside the list holds everywhere; without it sources are all there is. Curves and patches are
 /// named by their tags. Throws OptionError, with the place in the text.

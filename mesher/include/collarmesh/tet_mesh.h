@@ -36,6 +36,8 @@ struct TetMesh {
   /// 1: one that exceeds the radius-edge bound as a thin tet may (see `coarsen`), else 0; empty: not known.
   std::vector<std::uint8_t> tet_thin;
   std::vector<Tag> tet_crease;  ///< in collars the tag of the crease, a curve or vertex; 0 outside
+  /// The rank that a solver gives it to, from 0 (see `partition`); empty: not partitioned.
+  std::vector<Index> tet_partition;
 
   /// Boundary, interface and internal-facet triangles; the normal (b-a) x (c-a) points from
   /// face_regions[0] to face_regions[1]. A boundary triangle has its solid in [0] and 0 in [1].

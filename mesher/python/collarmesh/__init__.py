@@ -97,6 +97,7 @@ def mesh(
     improve: Optional[int] = None,
     min_dihedral: Optional[float] = None,
     order: Optional[int] = None,
+    partitions: Optional[int] = None,
     collar_angle: Optional[float] = None,
     collar_creation: Optional[str] = None,
     theta: Optional[float] = None,
@@ -139,6 +140,7 @@ def mesh(
     improve: removal of slivers, 0 none to 3 best; default 2.
     min_dihedral: improve tetrahedra with smaller dihedral angles, degrees, in place of the level's.
     order: 1 or 2, ten nodes to a tetrahedron.
+    partitions: divide the tetrahedra among so many ranks, `Mesh.tet_partition`; None: they are not divided.
     collar_angle: bound on dihedral angles in collars, degrees, 100 to 175; default 150.
     collar_creation: "up-front" or "in-pass".
     theta: warp to input within this times a gap ball's radius, 0 to below 0.45; default 0.3.
@@ -299,6 +301,8 @@ def convert(
     *,
     format: Optional[str] = None,
     input_format: Optional[str] = None,
+    partitions: Optional[int] = None,
+    ghost_cells: bool = False,
     **options: Any,
 ) -> None:
     """Convert surfaces, complexes and meshes into each other; a surface into a mesh by meshing it.
@@ -306,6 +310,7 @@ def convert(
     source: a surface as in `collarmesh.mesh`, a list of surfaces, which become one, or a mesh.
     output: the file to write.
     format, input_format: extensions in place of the files' own.
+    partitions: divide the tetrahedra among so many ranks. ghost_cells: as in `Mesh.write`.
     options: those of `collarmesh.mesh`.
 
     Raises `Error`.
@@ -318,7 +323,8 @@ def convert(
         found = None if arrays is None else Mesh(arrays)
     if found is not None:
         if not to_surface:
-            found.write(target, kind)
+            divided = found if partitions is None else found.partitioned(partitions)
+            divided.write(target, kind, ghost_cells=ghost_cells)
             return
         by_tag = numpy.argsort(found.face_tag, kind="stable")  # formats without tags number patches as they come
         source = (found.points, found.faces[by_tag], found.face_tag[by_tag])
@@ -327,4 +333,5 @@ def convert(
         given = _given({"format": format, "input_format": input_format, **options})
         _core.convert_surfaces(inputs(surfaces), target, given)
     else:
-        mesh(*surfaces, input_format=input_format, **options).write(target, kind)
+        made = mesh(*surfaces, input_format=input_format, partitions=partitions, **options)
+        made.write(target, kind, ghost_cells=ghost_cells)

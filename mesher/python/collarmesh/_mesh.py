@@ -16,6 +16,7 @@ _ARRAYS = {
     "tet_collar": (numpy.uint8, 1),
     "tet_thin": (numpy.uint8, 1),
     "tet_crease": (numpy.int64, 1),
+    "tet_partition": (numpy.int64, 1),
     "tet_mid_nodes": (numpy.int64, 6),
     "faces": (numpy.int64, 3),
     "face_regions": (numpy.int64, 2),
@@ -42,6 +43,7 @@ class Mesh:
     tet_region: (m,), numbers of regions, from 1; tet_tag: (m,), the tags of these.
     tet_collar: (m,), 0 outside of collars, 1 star, 2 book; tet_crease: (m,), the tag of its crease there.
     tet_thin: (m,), 1 for thin tetrahedra, which exceed radius_edge; (0,) where that is not known.
+    tet_partition: (m,), the rank that each tetrahedron is given to, from 0; (0,) for a mesh that is not partitioned.
     faces: (k, 3), triangles on boundaries, interfaces and internal facets.
     face_regions: (k, 2), regions behind and before the triangle; 0: none.
     face_tag: (k,), tags of the surfaces' triangles, or numbers of patches where these had none.
@@ -60,6 +62,7 @@ class Mesh:
     tet_collar: Array
     tet_thin: Array
     tet_crease: Array
+    tet_partition: Array
     tet_mid_nodes: Array
     faces: Array
     face_regions: Array
@@ -150,16 +153,31 @@ class Mesh:
         kinds = ("Vertex", "Edge", "Face", "Solid") if self._cad_names else ("vertex_", "curve_", "patch_", "region_")
         return f"{kinds[dimension]}{tag}"
 
-    def write(self, path: Path, format: str = "", scale: float = 1) -> None:
+    def partitioned(self, partitions: int) -> "Mesh":
+        """The same mesh with its tetrahedra divided among so many ranks, evenly and with few shared faces.
+
+        partitions: 1 to the number of tetrahedra. Raises OptionError for others, and where Scotch, which divides
+        them, is not there.
+        """
+        if isinstance(partitions, bool) or not isinstance(partitions, (int, numpy.integer)) or partitions < 1:
+            raise _core.OptionError(f"partitions must be a whole number of at least 1, not {partitions!r}")
+        if partitions > len(self.tets):
+            raise _core.OptionError(f"partitions is {partitions}, but the mesh has {len(self.tets)} tets")
+        state = self.__getstate__()
+        return Mesh({**state, "tet_partition": _core.partition(state, int(partitions))})
+
+    def write(self, path: Path, format: str = "", scale: float = 1, ghost_cells: bool = False) -> None:
         """Write a file.
 
         path: its extension gives the format (.vtu, .msh, .inp ...), unless `format` does (".vtu").
-        scale: coordinates are multiplied by this, 0.001 for metres of millimetres. Raises WriteError.
+        scale: coordinates are multiplied by this, 0.001 for metres of millimetres.
+        ghost_cells: with each partition the tetrahedra of others that share a vertex with it; .msh, .pvtu.
+        Raises WriteError.
         """
         arrays = self._arrays()
         if scale != 1:
             arrays["points"] = scale * self.points
-        _core.write_mesh(arrays, os.fspath(path), format)
+        _core.write_mesh(arrays, os.fspath(path), format, ghost_cells)
 
     def info(self) -> Dict[str, Any]:
         """Counts, angles, volumes and histograms, as `collarmesh info --json` prints them."""

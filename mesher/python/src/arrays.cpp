@@ -185,6 +185,7 @@ TetMesh tet_mesh_of(const py::dict& arrays) {
   mesh.tet_collar = numbers<std::uint8_t>(arrays, "tet_collar");
   mesh.tet_thin = numbers<std::uint8_t>(arrays, "tet_thin");
   mesh.tet_crease = numbers<Tag>(arrays, "tet_crease");
+  mesh.tet_partition = numbers<Index>(arrays, "tet_partition");
   mesh.faces = rows<3>(arrays, "faces", n);
   const auto regions = numbers<Index>(arrays, "face_regions");
   for (std::size_t i = 0; i + 1 < regions.size(); i += 2)
@@ -205,6 +206,8 @@ TetMesh tet_mesh_of(const py::dict& arrays) {
   return mesh;
 }
 
+py::array partition_array(const TetMesh& mesh) { return index_array(mesh.tet_partition); }
+
 py::dict arrays_of(TetMesh mesh) {
   py::dict arrays;
   arrays["points"] = point_array(mesh.points);
@@ -214,6 +217,7 @@ py::dict arrays_of(TetMesh mesh) {
   arrays["tet_collar"] = owned(std::move(mesh.tet_collar), 1);
   arrays["tet_thin"] = owned(std::move(mesh.tet_thin), 1);
   arrays["tet_crease"] = owned(std::move(mesh.tet_crease), 1);
+  arrays["tet_partition"] = index_array(mesh.tet_partition);
   arrays["tet_mid_nodes"] = index_array(mesh.tet_mid_nodes);
   arrays["faces"] = index_array(mesh.faces);
   arrays["face_regions"] = index_array(mesh.face_regions);

@@ -20,5 +20,7 @@ pybind11::dict arrays_of(const PolygonSoup& soup);
 /// dict of dimension to a dict of tag to name, and `cad_names`.
 TetMesh tet_mesh_of(const pybind11::dict& arrays);
 pybind11::dict arrays_of(TetMesh mesh);
+/// `TetMesh::tet_partition` alone.
+pybind11::array partition_array(const TetMesh& mesh);
 
 }  // namespace collarmesh::python

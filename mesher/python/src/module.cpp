@@ -14,6 +14,7 @@
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
 #include "collarmesh/mesh_measures.h"
+#include "collarmesh/partition.h"
 #include "collarmesh/pipeline.h"
 #include "complex_input.h"
 #include "input_files.h"
@@ -246,9 +247,21 @@ py::object read_mesh_if_there(const std::string& path, const std::string& format
   return arrays_of(std::move(**mesh));
 }
 
-void write_mesh(const py::dict& arrays, const std::string& path, const std::string& format) {
+void write_mesh(const py::dict& arrays, const std::string& path, const std::string& format,
+                bool ghost_cells) {
   const auto mesh = std::make_shared<TetMesh>(tet_mesh_of(arrays));
-  run_watched([mesh, path, format](Watch&) { io::write_tet_mesh(path, *mesh, format); }, py::none(), 0);
+  if (ghost_cells && mesh->tet_partition.empty())
+    throw OptionError("ghost_cells: the mesh is not partitioned; see Mesh.partitioned");
+  const auto ghosts = ghost_cells ? io::GhostCells::one_layer : io::GhostCells::none;
+  run_watched([mesh, path, format, ghosts](Watch&) { io::write_tet_mesh(path, *mesh, format, ghosts); },
+              py::none(), 0);
+}
+
+/// The partition of each tet.
+py::array partition_mesh(const py::dict& arrays, unsigned partitions) {
+  const auto mesh = std::make_shared<TetMesh>(tet_mesh_of(arrays));
+  run_watched([mesh, partitions](Watch&) { partition(*mesh, partitions); }, py::none(), 0);
+  return partition_array(*mesh);
 }
 
 }  // namespace
@@ -272,6 +285,7 @@ PYBIND11_MODULE(_core, module) {
   module.def("read_mesh", &read_mesh);
   module.def("read_mesh_if_there", &read_mesh_if_there);
   module.def("write_mesh", &write_mesh);
+  module.def("partition", &partition_mesh);
   module.def("is_surface_format", [](const std::string& path, const std::string& format) {
     return cli::is_surface_format(path, format);
   });

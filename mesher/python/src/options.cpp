@@ -122,8 +122,11 @@ void take_quality(const Reader& from, PipelineOptions& p) {
   from.count("improve", p.improve);
   from.number_in("min_dihedral", p.min_dihedral, 0, 60);
   from.count("order", p.order);
+  from.count("partitions", p.partitions);
   from.count("threads", p.threads);
   if (p.improve > 3) throw OptionError(fmt::format("improve is {}; it must be from 0 to 3", p.improve));
+  if (from.has("partitions") && p.partitions == 0)
+    throw OptionError("partitions is 0; it must be at least 1, or None for a mesh that is not divided");
   if (p.order != 1 && p.order != 2) throw OptionError(fmt::format("order is {}; it must be 1 or 2", p.order));
 }
 

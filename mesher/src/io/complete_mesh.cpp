@@ -128,6 +128,7 @@ void complete_mesh(const std::string& path, TetMesh& mesh) {
   mesh.tet_tag.resize(mesh.tets.size(), 0);
   mesh.tet_collar.resize(mesh.tets.size(), 0);
   mesh.tet_crease.resize(mesh.tets.size(), 0);
+  if (mesh.tet_partition.size() != mesh.tets.size()) mesh.tet_partition.clear();
   if (!has_region_numbers(mesh)) number_regions(mesh);
   mesh.face_tag.resize(mesh.faces.size(), 0);
   mesh.face_patch.resize(mesh.faces.size(), none);

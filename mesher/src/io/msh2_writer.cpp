@@ -1,6 +1,7 @@
 // Gmsh's format 2.2 as text, which OpenFOAM's gmshToFoam, SU2's and other converters read. Physical groups
 // are numbered through all dimensions, as gmshToFoam knows one list of names: faces keep their tags where
 // Gmsh takes them, then regions and curves get what is free.
+// Partitions, from 1, are tags of elements behind these and the entity.
 #include <array>
 #include <limits>
 #include <map>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "io/cell_nodes.h"
+#include "io/cell_partitions.h"
 #include "io/file_writer.h"
 #include "io/label_names.h"
 #include "io/msh_format.h"
@@ -72,18 +74,28 @@ void write_msh2(const std::string& path, const TetMesh& mesh) {
   }
   out << "$EndNodes\n$Elements\n" << mesh.tets.size() + mesh.faces.size() + mesh.edges.size() << '\n';
   std::size_t number = 0;
-  const auto write = [&](const GmshType& type, Tag tag, std::size_t elementary, const CellNodes& nodes) {
-    out << ++number << ' ' << type.number << " 2 " << numbers[type.dimension].at(tag) << ' ' << elementary;
+  const bool partitioned = !mesh.tet_partition.empty();
+  const std::vector<Index> none_given;
+  const std::vector<Index> of_faces = partitioned ? partitions_of_faces(mesh) : none_given,
+                           of_edges = partitioned ? partitions_of_edges(mesh) : none_given;
+  const auto write = [&](const GmshType& type, Tag tag, std::size_t elementary,
+                         const std::vector<Index>& partition, std::size_t i, const CellNodes& nodes) {
+    out << ++number << ' ' << type.number << (partitioned ? " 4 " : " 2 ") << numbers[type.dimension].at(tag)
+        << ' ' << elementary;
+    if (partitioned) out << " 1 " << partition[i] + 1;  // how many, which ones
     for (const Index v : nodes.in_order({type.order.data(), type.nodes})) out << ' ' << std::size_t{v} + 1;
     out << '\n';
   };
   const std::size_t second = mesh.order() == 2 ? 1 : 0;
   for (std::size_t i = 0; i < mesh.edges.size(); ++i)
-    write(gmsh_types[second], mesh.edge_tag[i], entity(mesh.edge_curve[i]), nodes_of_edge(mesh, i));
+    write(gmsh_types[second], mesh.edge_tag[i], entity(mesh.edge_curve[i]), of_edges, i,
+          nodes_of_edge(mesh, i));
   for (std::size_t i = 0; i < mesh.faces.size(); ++i)
-    write(gmsh_types[2 + second], mesh.face_tag[i], entity(mesh.face_patch[i]), nodes_of_face(mesh, i));
+    write(gmsh_types[2 + second], mesh.face_tag[i], entity(mesh.face_patch[i]), of_faces, i,
+          nodes_of_face(mesh, i));
   for (std::size_t i = 0; i < mesh.tets.size(); ++i)
-    write(gmsh_types[4 + second], mesh.tet_tag[i], mesh.tet_region[i], nodes_of_tet(mesh, i));
+    write(gmsh_types[4 + second], mesh.tet_tag[i], mesh.tet_region[i], mesh.tet_partition, i,
+          nodes_of_tet(mesh, i));
   out << "$EndElements\n";
   out.commit();
 }

@@ -6,6 +6,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "io/cell_partitions.h"
+
 namespace collarmesh::io {
 
 namespace {
@@ -171,7 +173,75 @@ void find_physicals(MshEntities& result) {
   }
 }
 
+/// Parts in the order of their entities and partitions, numbered past the entities.
+class Divider {
+ public:
+  Divider(const TetMesh& mesh, const MshEntities& whole, MshParts& result)
+      : mesh_(mesh), whole_(whole), points_(partitions_of_points(mesh)), result_(result) {
+    result.entities.of_point.resize(mesh.points.size());
+  }
+
+  template <class Cells>
+  void divide(std::uint8_t dimension, const Cells& cells, const std::vector<Index>& whole_of_cell,
+              const std::vector<Index>& partitions, std::vector<Index>& part_of_cell) {
+    std::map<std::pair<Index, Index>, Index> parts;
+    for (std::size_t i = 0; i < cells.size(); ++i) parts.try_emplace({whole_of_cell[i], partitions[i]}, 0);
+    for (std::size_t v = 0; v < points_.size(); ++v)
+      if (whole_.of_point[v].dimension == dimension)
+        parts.try_emplace({whole_.of_point[v].entity, points_[v]}, 0);
+    add(dimension, parts);
+    std::vector<MshEntity>& entities = result_.entities.of_dimension[dimension];
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      part_of_cell.push_back(parts.at({whole_of_cell[i], partitions[i]}));
+      for (const Index v : cells[i]) entities[part_of_cell.back()].box.add(mesh_.points[v]);
+    }
+    for (std::size_t v = 0; v < points_.size(); ++v)
+      if (whole_.of_point[v].dimension == dimension) {
+        const Index part = parts.at({whole_.of_point[v].entity, points_[v]});
+        result_.entities.of_point[v] = {dimension, part};
+        entities[part].box.add(mesh_.points[v]);
+      }
+  }
+
+ private:
+  /// Entities for these parts, whose places among them are filled in.
+  void add(std::size_t dimension, std::map<std::pair<Index, Index>, Index>& parts) {
+    int number = 0;
+    for (const MshEntity& entity : whole_.of_dimension[dimension]) number = std::max(number, entity.number);
+    std::vector<MshEntity>& entities = result_.entities.of_dimension[dimension];
+    for (auto& [key, part] : parts) {
+      const MshEntity& parent = whole_.of_dimension[dimension][key.first];
+      part = static_cast<Index>(entities.size());
+      MshEntity entity;
+      entity.number = ++number;
+      entity.tag = parent.tag;
+      entity.physical = parent.physical;
+      entities.push_back(entity);
+      result_.of_dimension[dimension].push_back({parent.number, key.second});
+    }
+  }
+
+  const TetMesh& mesh_;
+  const MshEntities& whole_;
+  std::vector<Index> points_;  // their partitions
+  MshParts& result_;
+};
+
 }  // namespace
+
+MshParts divide_entities(const TetMesh& mesh, const MshEntities& whole) {
+  MshParts result;
+  result.numbers = partition_numbers(mesh);
+  result.partitions = std::size_t{result.numbers.back()} + 1;
+  MshEntities& parts = result.entities;
+  Divider divider(mesh, whole, result);
+  divider.divide(3, mesh.tets, whole.of_tet, mesh.tet_partition, parts.of_tet);
+  divider.divide(2, mesh.faces, whole.of_face, partitions_of_faces(mesh), parts.of_face);
+  divider.divide(1, mesh.edges, whole.of_edge, partitions_of_edges(mesh), parts.of_edge);
+  std::vector<Index> no_cells;
+  divider.divide(0, std::vector<std::array<Index, 1>>(), {}, {}, no_cells);
+  return result;
+}
 
 MshEntities find_entities(const TetMesh& mesh) {
   MshEntities result;

@@ -33,4 +33,19 @@ struct MshEntities {
 
 MshEntities find_entities(const TetMesh& mesh);
 
+/// The entities of a partitioned mesh divided: for each that has cells or points, and each partition of
+/// these, one. Points are of the lowest partition around.
+struct MshParts {
+  struct Part {
+    int parent = 0;  ///< number of the whole entity
+    Index partition = 0;
+  };
+  MshEntities entities;                           ///< physicals is empty
+  std::array<std::vector<Part>, 4> of_dimension;  ///< beside entities.of_dimension
+  std::vector<Index> numbers;                     ///< of the partitions that have tets, ascending
+  std::size_t partitions = 0;                     ///< of which these are
+};
+
+MshParts divide_entities(const TetMesh& mesh, const MshEntities& whole);
+
 }  // namespace collarmesh::io

@@ -1,5 +1,6 @@
 // Reads Gmsh's formats 4.1 and 2 (text and binary) and 4.0 (text): tetrahedra, triangles and lines of
-// first and second order. Tags are physical groups, or entities where there is none.
+// first and second order. Tags are physical groups, or entities where there is none. Of partitioned files
+// ghost elements are not read, nor what lies between partitions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,13 +35,22 @@ struct Cell {
   CellNodes nodes;  ///< positions in Contents::nodes
   int entity = 0;
   Tag tag = 0;
+  Index partition = none;
+};
+
+/// A part of an entity, in one or between several partitions; the first of these.
+struct PartitionEntity {
+  std::size_t parent_dimension = 0;
+  int parent = 0;
+  Index partition = none;
 };
 
 struct Contents {
-  std::vector<Node> nodes;                                             ///< in the order of their numbers
-  bool dense = false;                                                  ///< are the numbers 1, 2, ...?
-  std::array<std::vector<Cell>, 4> cells;                              ///< by dimension
-  std::array<std::map<int, Tag>, 4> physical_of_entity;                ///< the first one
+  std::vector<Node> nodes;                               ///< in the order of their numbers
+  bool dense = false;                                    ///< are the numbers 1, 2, ...?
+  std::array<std::vector<Cell>, 4> cells;                ///< by dimension
+  std::array<std::map<int, Tag>, 4> physical_of_entity;  ///< the first one
+  std::array<std::map<int, PartitionEntity>, 4> partition_entities;
   std::array<std::map<Tag, Tag>, 4> tag_of_physical;                   ///< where its name says so
   std::vector<std::pair<std::uint64_t, double>> collar, crease, thin;  ///< cell number and value
   TagNames names;                                                      ///< of physical groups, but ours
@@ -53,6 +63,8 @@ Tag tag_of_physical(const Contents& contents, std::size_t dimension, Tag physica
 }
 
 Tag tag_of_entity(const Contents& contents, std::size_t dimension, int entity) {
+  const auto part = contents.partition_entities[dimension].find(entity);
+  if (part != contents.partition_entities[dimension].end()) entity = part->second.parent;
   const auto found = contents.physical_of_entity[dimension].find(entity);
   return found == contents.physical_of_entity[dimension].end()
              ? entity
@@ -134,6 +146,37 @@ void read_physical_names(MshText values, Contents& contents) {
   }
 }
 
+template <class Values>
+void read_partition_entities(Values values, Contents& contents) {
+  values.number("the number of partitions");
+  const Index ghosts = values.count("the number of ghost entities", 2);
+  for (Index i = 0; i < ghosts; ++i) {
+    values.integer("a ghost entity");
+    values.integer("the partition of a ghost entity");
+  }
+  std::array<Index, 4> counts;
+  for (Index& count : counts) count = values.count("the number of partition entities", 6);
+  for (std::size_t dimension = 0; dimension < 4; ++dimension)
+    for (Index i = 0; i < counts[dimension]; ++i) {
+      const int number = values.integer("the number of a partition entity");
+      PartitionEntity entity;
+      entity.parent_dimension = read_dimension(values);
+      entity.parent = values.integer("the number of a parent entity");
+      const Index partitions = values.count("the number of partitions of an entity", 1);
+      for (Index k = 0; k < partitions; ++k) {
+        const int partition = values.integer("a partition");
+        if (partition < 1) values.fail(fmt::format("a partition is {}; they are counted from 1", partition));
+        if (k == 0) entity.partition = static_cast<Index>(partition) - 1;
+      }
+      for (int k = 0; k < (dimension == 0 ? 3 : 6); ++k) values.real("the box of an entity");
+      const Index physicals = values.count("the number of physical groups", 1);
+      for (Index k = 0; k < physicals; ++k) values.integer("a physical group");
+      const Index boundary = dimension == 0 ? 0 : values.count("the number of bounding entities", 1);
+      for (Index k = 0; k < boundary; ++k) values.integer("a bounding entity");
+      contents.partition_entities[dimension].insert_or_assign(number, entity);
+    }
+}
+
 /// `point_numbers`: a point has 3 coordinates, in 4.0 a box of 6.
 template <class Values>
 void read_entities(Values values, int point_numbers, Contents& contents) {
@@ -161,7 +204,9 @@ void read_nodes(Values values, Contents& contents) {
   contents.nodes.reserve(total);
   for (Index b = 0; b < blocks; ++b) {
     const std::size_t dimension = read_dimension(values);
-    const int entity = values.integer("the number of an entity");
+    const int number = values.integer("the number of an entity");
+    const auto part = contents.partition_entities[dimension].find(number);
+    const int entity = part == contents.partition_entities[dimension].end() ? number : part->second.parent;
     const int parametric = values.integer("the flag for parametric nodes");
     const Index n = values.count("the number of nodes of a block", 4);
     const std::size_t first = contents.nodes.size();
@@ -181,10 +226,20 @@ void read_nodes(Values values, Contents& contents) {
 template <class Values>
 void read_cells_of_block(Values& values, const GmshType& type, int entity, Tag tag, Index count,
                          Contents& contents) {
+  Cell cell;
+  cell.entity = entity;
+  cell.tag = tag;
+  bool between_partitions = false;  // made by Gmsh, and nothing of the mesh
+  const auto& parts = contents.partition_entities[type.dimension];
+  if (const auto part = parts.find(entity); part != parts.end()) {
+    cell.entity = part->second.parent;
+    cell.partition = part->second.partition;
+    between_partitions = part->second.parent_dimension != type.dimension;
+  }
   for (Index i = 0; i < count; ++i) {
-    Cell cell{values.number("the number of an element"), {}, entity, tag};
+    cell.number = values.number("the number of an element");
     cell.nodes = read_cell_nodes(values, contents, type);
-    if (type.dimension > 0) contents.cells[type.dimension].push_back(cell);
+    if (type.dimension > 0 && !between_partitions) contents.cells[type.dimension].push_back(cell);
   }
 }
 
@@ -267,6 +322,7 @@ void read_element_2(Values& values, const GmshType& type, std::uint64_t number, 
     const int tag = values.integer("a tag of an element");
     if (k == 0) physical = std::abs(Tag{tag});
     if (k == 1) cell.entity = tag;
+    if (k == 3 && tag > 0) cell.partition = static_cast<Index>(tag) - 1;  // k == 2: how many there are
   }
   cell.nodes = read_cell_nodes(values, contents, type);
   if (type.dimension == 0) return;
@@ -395,6 +451,8 @@ void read_section(const std::string& path, const MshSection& section, const Form
     read_entities(MshText(path, section), 6, contents);
   else if (section.name == "Entities" && format.version > 4)
     with_any([&](auto values) { read_entities(values, 3, contents); });
+  else if (section.name == "PartitionedEntities" && format.version > 4)
+    with_any([&](auto values) { read_partition_entities(values, contents); });
   else if (section.name == "Nodes" && format.version < 4)
     with_old_values(path, section, format, [&](auto values) { read_nodes_2(values, contents); });
   else if (section.name == "Nodes" && format.version == 4.0)
@@ -421,6 +479,17 @@ void add_cells(const std::vector<Cell>& cells, Add add, std::vector<Tag>& tags, 
 }
 
 Index feature_of(int entity) { return static_cast<Index>(entity) - 1; }
+
+/// Where all tets have one.
+void add_partitions(const std::vector<Cell>& tets, TetMesh& mesh) {
+  for (const Cell& cell : tets) {
+    if (cell.partition == none) {
+      mesh.tet_partition.clear();
+      return;
+    }
+    mesh.tet_partition.push_back(cell.partition);
+  }
+}
 
 void add_features(const Contents& contents, TetMesh& mesh) {
   for (const Cell& cell : contents.cells[3]) mesh.tet_region.push_back(static_cast<Index>(cell.entity));
@@ -457,6 +526,7 @@ TetMesh make_mesh(const std::string& path, Contents& contents) {
   constexpr double most = 0x1p52;  // that doubles hold
   add_data(contents.crease, -most, most, contents.cells[3], mesh.tet_crease);
   if (!contents.thin.empty()) add_data(contents.thin, 0, 1, contents.cells[3], mesh.tet_thin);
+  add_partitions(contents.cells[3], mesh);
   mesh.names = contents.names;
   complete_mesh(path, mesh);
   return mesh;

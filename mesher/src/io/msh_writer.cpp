@@ -2,12 +2,21 @@
 // a volume per region, a surface per patch, a curve per curve, a point per vertex. A physical group
 // holds what has one tag. Cells are numbered in the order tets, faces, edges; $ElementData "collar" and
 // "crease" is given for all of them in the order of the file, as meshio needs it.
+// Of a partitioned mesh the cells and nodes of an entity are divided among its parts, an entity for each
+// partition: Gmsh keeps nothing else when it writes such a mesh again.
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "io/cell_nodes.h"
+#include "io/cell_partitions.h"
 #include "io/file_writer.h"
 #include "io/label_names.h"
 #include "io/msh_entities.h"
@@ -30,8 +39,10 @@ void write_physical_names(FileWriter& out, const TetMesh& mesh, const MshEntitie
 
 void write_point(FileWriter& out, const Point& p) { out << p.x << ' ' << p.y << ' ' << p.z; }
 
-void write_entity(FileWriter& out, const MshEntity& entity, std::size_t dimension) {
-  out << entity.number << ' ';
+/// `part`: text behind its number.
+void write_entity(FileWriter& out, const MshEntity& entity, std::size_t dimension,
+                  const std::string& part = {}) {
+  out << entity.number << ' ' << part;
   write_point(out, entity.box.min);
   if (dimension > 0) {
     out << ' ';
@@ -55,6 +66,44 @@ void write_entities(FileWriter& out, const MshEntities& entities) {
   for (std::size_t dimension = 0; dimension < 4; ++dimension)
     for (const MshEntity& entity : entities.of_dimension[dimension]) write_entity(out, entity, dimension);
   out << "$EndEntities\n";
+}
+
+/// Partitions count from 1.
+void write_partition_entities(FileWriter& out, const MshParts& parts,
+                              const std::vector<int>& ghost_entities) {
+  out << "$PartitionedEntities\n" << parts.partitions << '\n' << ghost_entities.size() << '\n';
+  for (std::size_t i = 0; i < ghost_entities.size(); ++i)
+    out << ghost_entities[i] << ' ' << parts.numbers[i] + 1 << '\n';
+  for (std::size_t dimension = 0; dimension < 4; ++dimension)
+    out << parts.entities.of_dimension[dimension].size() << (dimension < 3 ? ' ' : '\n');
+  for (std::size_t dimension = 0; dimension < 4; ++dimension)
+    for (std::size_t e = 0; e < parts.entities.of_dimension[dimension].size(); ++e) {
+      const MshParts::Part& part = parts.of_dimension[dimension][e];
+      write_entity(out, parts.entities.of_dimension[dimension][e], dimension,
+                   fmt::format("{} {} 1 {} ", dimension, part.parent, part.partition + 1));
+    }
+  out << "$EndPartitionedEntities\n";
+}
+
+/// The tets of others that partitions are to know.
+void write_ghost_elements(FileWriter& out, const TetMesh& mesh, const MshParts& parts) {
+  std::vector<std::pair<Index, Index>> ghosts;  // a tet and a partition it is a ghost of
+  const std::vector<std::vector<Index>> tets = ghost_tets(mesh);
+  for (std::size_t k = 0; k < tets.size(); ++k)
+    for (const Index t : tets[k]) ghosts.emplace_back(t, parts.numbers[k]);
+  std::sort(ghosts.begin(), ghosts.end());
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < ghosts.size(); ++i)
+    count += i == 0 || ghosts[i].first != ghosts[i - 1].first ? 1 : 0;
+  out << "$GhostElements\n" << count << '\n';
+  for (std::size_t i = 0, end = 0; i < ghosts.size(); i = end) {
+    const Index t = ghosts[i].first;
+    while (end < ghosts.size() && ghosts[end].first == t) ++end;
+    out << std::size_t{t} + 1 << ' ' << mesh.tet_partition[t] + 1 << ' ' << end - i;
+    for (std::size_t k = i; k < end; ++k) out << ' ' << ghosts[k].second + 1;
+    out << '\n';
+  }
+  out << "$EndGhostElements\n";
 }
 
 /// What is in each entity of one dimension, in the order of the mesh.
@@ -166,23 +215,40 @@ void write_data(FileWriter& out, std::string_view name, const std::vector<T>& va
   out << "$EndElementData\n";
 }
 
-}  // namespace
+/// Numbers for volumes that Gmsh fills with the ghosts of each partition.
+std::vector<int> ghost_volumes(const MshParts& parts) {
+  int number = 0;
+  for (const MshEntity& volume : parts.entities.of_dimension[3]) number = std::max(number, volume.number);
+  std::vector<int> numbers;
+  for (std::size_t i = 0; i < parts.numbers.size(); ++i) numbers.push_back(++number);
+  return numbers;
+}
 
-void write_msh(const std::string& path, const TetMesh& mesh) {
+void write(const std::string& path, const TetMesh& mesh, bool with_ghosts) {
   FileWriter out(path);
   const MshEntities entities = find_entities(mesh);
-  const CellGroups groups(mesh, entities);
+  std::optional<MshParts> parts;
+  if (!mesh.tet_partition.empty()) parts = divide_entities(mesh, entities);
+  const MshEntities& holders = parts ? parts->entities : entities;  // of the cells
+  const CellGroups groups(mesh, holders);
   out << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\nWritten by collarmesh.\n";
   if (entities.numbers_are_features) out << msh_numbers_are_features << '\n';
   out << "$EndComments\n";
   write_physical_names(out, mesh, entities);
   write_entities(out, entities);
-  write_nodes(out, mesh, entities);
-  write_elements(out, mesh, entities, groups);
+  if (parts) write_partition_entities(out, *parts, with_ghosts ? ghost_volumes(*parts) : std::vector<int>());
+  write_nodes(out, mesh, holders);
+  write_elements(out, mesh, holders, groups);
+  if (parts && with_ghosts) write_ghost_elements(out, mesh, *parts);
   write_data(out, "collar", mesh.tet_collar, groups);
   write_data(out, "crease", mesh.tet_crease, groups);
   if (!mesh.tet_thin.empty()) write_data(out, "thin", mesh.tet_thin, groups);
   out.commit();
 }
+
+}  // namespace
+
+void write_msh(const std::string& path, const TetMesh& mesh) { write(path, mesh, false); }
+void write_msh_with_ghost_cells(const std::string& path, const TetMesh& mesh) { write(path, mesh, true); }
 
 }  // namespace collarmesh::io

@@ -10,8 +10,12 @@
 namespace collarmesh::io {
 
 void write_vtu(const std::string& path, const TetMesh& mesh);
+void write_pvtu(const std::string& path, const TetMesh& mesh);
 void write_vtk(const std::string& path, const TetMesh& mesh);
 void write_msh(const std::string& path, const TetMesh& mesh);
+// With the tets around each partition:
+void write_pvtu_with_ghost_cells(const std::string& path, const TetMesh& mesh);
+void write_msh_with_ghost_cells(const std::string& path, const TetMesh& mesh);
 void write_msh2(const std::string& path, const TetMesh& mesh);
 void write_medit(const std::string& path, const TetMesh& mesh);
 void write_abaqus(const std::string& path, const TetMesh& mesh);
@@ -25,6 +29,7 @@ TetMesh read_xdmf(const std::string& path);
 TetMesh read_med(const std::string& path);
 
 TetMesh read_vtu(const std::string& path);
+TetMesh read_pvtu(const std::string& path);
 TetMesh read_vtk(const std::string& path);
 TetMesh read_msh(const std::string& path);
 TetMesh read_medit(const std::string& path);

@@ -19,19 +19,25 @@ struct TetMeshFormat {
   std::string_view extension;
   void (*write)(const std::string& path, const TetMesh& mesh);
   TetMesh (*read)(const std::string& path);  ///< null: not read
+  bool partitions = false;                   ///< has a place for them
+  void (*write_with_ghost_cells)(const std::string& path, const TetMesh& mesh) = nullptr;
 };
 
 constexpr std::array tet_mesh_formats{
-    TetMeshFormat{".vtu", write_vtu, read_vtu},       TetMeshFormat{".vtk", write_vtk, read_vtk},
-    TetMeshFormat{".msh", write_msh, read_msh},       TetMeshFormat{".msh2", write_msh2, read_msh},
+    TetMeshFormat{".vtu", write_vtu, read_vtu, true},
+    TetMeshFormat{".pvtu", write_pvtu, read_pvtu, true, write_pvtu_with_ghost_cells},
+    TetMeshFormat{".vtk", write_vtk, read_vtk, true},
+    TetMeshFormat{".msh", write_msh, read_msh, true, write_msh_with_ghost_cells},
+    TetMeshFormat{".msh2", write_msh2, read_msh, true},
     TetMeshFormat{".mesh", write_medit, read_medit},
-    TetMeshFormat{".inp", write_abaqus, read_abaqus}, TetMeshFormat{".unv", write_unv, read_unv},
+    TetMeshFormat{".inp", write_abaqus, read_abaqus},
+    TetMeshFormat{".unv", write_unv, read_unv},
     TetMeshFormat{".ele", write_tetgen, read_tetgen},
 #ifdef COLLARMESH_XDMF
-    TetMeshFormat{".xdmf", write_xdmf, read_xdmf},
+    TetMeshFormat{".xdmf", write_xdmf, read_xdmf, true},
 #endif
 #ifdef COLLARMESH_MED
-    TetMeshFormat{".med", write_med, read_med},
+    TetMeshFormat{".med", write_med, read_med, true},
 #endif
 };
 
@@ -55,10 +61,15 @@ std::vector<std::string> extensions(bool (*wanted)(const TetMeshFormat&)) {
 
 }  // namespace
 
-void write_tet_mesh(const std::string& path, const TetMesh& mesh, std::string_view format) {
+void write_tet_mesh(const std::string& path, const TetMesh& mesh, std::string_view format,
+                    GhostCells ghost_cells) {
   const TetMeshFormat* found = find_format(path, format);
   if (found == nullptr) throw WriteError(unknown(path, written_tet_mesh_formats()));
-  found->write(path, mesh);
+  const bool with_ghosts = ghost_cells == GhostCells::one_layer;
+  if (with_ghosts && found->write_with_ghost_cells == nullptr)
+    throw WriteError(
+        fmt::format("{}: {} has no place for ghost cells; write .msh or .pvtu", path, found->extension));
+  (with_ghosts ? found->write_with_ghost_cells : found->write)(path, mesh);
 }
 
 TetMesh read_tet_mesh(const std::string& path, std::string_view format) {
@@ -69,6 +80,14 @@ TetMesh read_tet_mesh(const std::string& path, std::string_view format) {
 
 std::vector<std::string> written_tet_mesh_formats() {
   return extensions([](const TetMeshFormat&) { return true; });
+}
+
+std::vector<std::string> formats_with_partitions() {
+  return extensions([](const TetMeshFormat& format) { return format.partitions; });
+}
+
+std::vector<std::string> formats_with_ghost_cells() {
+  return extensions([](const TetMeshFormat& format) { return format.write_with_ghost_cells != nullptr; });
 }
 
 std::vector<std::string> read_tet_mesh_formats() {

@@ -28,6 +28,7 @@ constexpr std::array<UnvType, 12> unv_types{{{111, 3, 4, {0, 1, 2, 3}},
                                              {24, 1, 3, {0, 2, 1}},
                                              {11, 1, 2, {0, 1}},
                                              {22, 1, 3, {0, 2, 1}}}};
+constexpr int unv_rod = 11;
 /// Beams have a record more.
 constexpr bool unv_is_beam(int type) { return type == 21 || type == 22 || type == 24; }
 

@@ -1,6 +1,6 @@
 // Reads the universal file format of I-DEAS (.unv): nodes (2411, 781), elements (2412, 780) and groups
 // (2467 and its forerunners). Tags are groups: of our names what they say, else their order in the
-// file; without groups they are the materials.
+// file; without groups they are the materials. Names other than patch_7 are kept.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -101,10 +101,21 @@ class UnvReader {
       if (old) scan_.integer("a material");
       scan_.integer("a colour");
       const Index nodes = scan_.count("the number of nodes", 2);
-      if (unv_is_beam(static_cast<int>(type))) scan_.skip_line();
-      if (unv_is_beam(static_cast<int>(type))) scan_.skip_line();
+      if (unv_is_beam(static_cast<int>(type)) || (type == unv_rod && words_on_next_line() == 3)) {
+        scan_.skip_line();
+        scan_.skip_line();
+      }
       read_element(number, type, nodes, material);
     }
+  }
+
+  /// SALOME and FreeCAD write the beams' record for rods, too, of three numbers; rods have two nodes.
+  std::size_t words_on_next_line() const {
+    TextScanner ahead = scan_;
+    ahead.skip_line();
+    std::size_t words = 0;
+    for (; !ahead.at_line_end(); ++words) ahead.word("a number");
+    return words;
   }
 
   void read_element(std::int64_t number, std::int64_t type, Index count, std::int64_t material) {
@@ -184,6 +195,8 @@ class UnvReader {
       Element& element = elements_[found];
       element.tagged = true;
       element.tag = tags.find(element.dimension, names_[group]);
+      if (names_[group] != group_name(GroupNames::complex, element.dimension, element.tag))
+        mesh_.names.set(element.dimension, element.tag, names_[group]);
     }
     bool by_material = true;
     for (const Element& element : elements_) {

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "io/cell_nodes.h"
+#include "io/cell_partitions.h"
 #include "io/complete_mesh.h"
 
 namespace collarmesh::io {
@@ -98,9 +99,15 @@ void add_labels(const TetMesh& mesh, std::vector<VtkArray>& arrays) {
                                   mesh, [&](std::size_t i) { return mesh.tet_collar[i]; }, zero, zero)});
   arrays.push_back({"crease", per_cell<std::int64_t>(
                                   mesh, [&](std::size_t i) { return mesh.tet_crease[i]; }, zero, zero)});
-  if (mesh.tet_thin.empty()) return;
-  arrays.push_back({"thin", per_cell<std::uint8_t>(
-                                mesh, [&](std::size_t i) { return mesh.tet_thin[i]; }, zero, zero)});
+  if (!mesh.tet_thin.empty())
+    arrays.push_back({"thin", per_cell<std::uint8_t>(
+                                  mesh, [&](std::size_t i) { return mesh.tet_thin[i]; }, zero, zero)});
+  if (mesh.tet_partition.empty()) return;
+  const std::vector<Index> faces = partitions_of_faces(mesh), edges = partitions_of_edges(mesh);
+  arrays.push_back(
+      {"partition", per_cell<std::int32_t>(
+                        mesh, [&](std::size_t i) { return mesh.tet_partition[i]; },
+                        [&](std::size_t i) { return faces[i]; }, [&](std::size_t i) { return edges[i]; })});
 }
 
 /// Programs that read the file do not all take infinity.
@@ -223,6 +230,10 @@ void add_read_labels(const VtkPiece& piece, const CellKinds& kinds, TetMesh& mes
   pick(find({"collar"}), kinds.tets, mesh.tet_collar);
   pick(find({"crease"}), kinds.tets, mesh.tet_crease);
   pick(find({"thin"}), kinds.tets, mesh.tet_thin);
+  const auto& partitions = find({"partition"});
+  if (std::all_of(partitions.begin(), partitions.end(),
+                  [](std::int64_t p) { return p >= 0 && p < most_partitions; }))
+    pick(partitions, kinds.tets, mesh.tet_partition);
   const auto& features = find({"feature"});
   pick(features, kinds.faces, mesh.face_patch);
   pick(features, kinds.edges, mesh.edge_curve);
@@ -319,6 +330,7 @@ void complete_vtk_mesh(const std::string& path, TetMesh& mesh) {
   drop_partial(mesh.tet_collar, mesh.tets.size());
   drop_partial(mesh.tet_crease, mesh.tets.size());
   drop_partial(mesh.tet_thin, mesh.tets.size());
+  drop_partial(mesh.tet_partition, mesh.tets.size());
   drop_partial(mesh.face_tag, mesh.faces.size());
   drop_partial(mesh.face_patch, mesh.faces.size());
   drop_partial(mesh.face_regions, mesh.faces.size());

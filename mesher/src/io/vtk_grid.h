@@ -28,6 +28,7 @@ struct VtkArray {
 ///   feature                   index of the patch or curve in the complex; -1: unknown or a tet
 ///   collar, crease            TetMesh::tet_collar, TetMesh::tet_crease; 0 for faces and edges
 ///   thin                      TetMesh::tet_thin, if there is any; 0 for faces and edges
+///   partition                 TetMesh::tet_partition, if there is any; of faces and edges: cell_partitions.h
 ///   radius_edge, min_dihedral, max_dihedral   of tets; 0 for faces and edges
 /// Point arrays, if features are known: feature_dimension, feature.
 struct VtkGrid {
@@ -38,6 +39,10 @@ struct VtkGrid {
 };
 VtkGrid make_vtk_grid(const TetMesh& mesh);
 
+/// Of pieces of a mesh: numbers of points and cells in the whole, and marks of those that another piece owns.
+constexpr std::string_view vtk_point_ids = "GlobalPointIds", vtk_cell_ids = "GlobalCellIds",
+                           vtk_ghosts = "vtkGhostType";
+
 /// Leave the tets as cells and give the other cells as data of the whole grid: views that cut or select cells
 /// are then of the volume alone. Arrays: `boundary_` and the name of what they continue, and `boundary_of`,
 /// how many points and tets there are, so that a reader knows that nobody changed these. Cell arrays that say
@@ -45,8 +50,13 @@ VtkGrid make_vtk_grid(const TetMesh& mesh);
 std::vector<VtkArray> take_boundary(const TetMesh& mesh, VtkGrid& grid);
 constexpr std::string_view vtk_boundary_prefix = "boundary_";
 /// The arrays that continue those of cells.
-constexpr std::array<std::string_view, 5> vtk_boundary_arrays{"tag", "region", "region_back", "region_front",
-                                                              "feature"};
+constexpr std::array<std::string_view, 6> vtk_boundary_arrays{"tag",          "region",  "region_back",
+                                                              "region_front", "feature", vtk_cell_ids};
+
+/// A grid as a .vtu file, which takes the arrays of its cells. Arrays of those names are marked as numbers.
+/// Throws WriteError.
+std::string_view vtu_type(const VtkArray& array);  ///< what such files call the type of the values
+void write_vtu_grid(const std::string& path, VtkGrid& grid, const std::vector<VtkArray>& field_data);
 
 /// A part of a file that is being read.
 struct VtkPiece {
@@ -57,10 +67,13 @@ struct VtkPiece {
 };
 
 /// Arrays that say something about a mesh: ours, and the names that meshio and Gmsh give to labels.
-constexpr std::array<std::string_view, 2> vtk_point_arrays{"feature_dimension", "feature"};
-constexpr std::array<std::string_view, 11> vtk_cell_arrays{
-    "tag",          "gmsh:physical", "medit:ref", "CellEntityIds", "region", "region_back",
-    "region_front", "feature",       "collar",    "crease",        "thin"};
+constexpr std::array<std::string_view, 3> vtk_point_arrays{"feature_dimension", "feature", vtk_point_ids};
+constexpr std::array<std::string_view, 14> vtk_cell_arrays{
+    "tag",     "gmsh:physical", "medit:ref", "CellEntityIds", "region",    "region_back", "region_front",
+    "feature", "collar",        "crease",    "thin",          "partition", vtk_cell_ids,  vtk_ghosts};
+
+/// The pieces of a .vtu file, each with the faces and edges beside its cells. Throws ReadError.
+std::vector<VtkPiece> read_vtu_pieces(const std::string& path);
 
 /// What is wrong with a piece: for the caller to add the file and the place.
 struct VtkPieceError {

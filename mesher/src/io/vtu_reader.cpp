@@ -244,7 +244,7 @@ class PieceReader {
         file.fail(piece, fmt::format("{} is not 0; save the triangles alone", other));
   }
 
-  void read(TetMesh& mesh) const {
+  VtkPiece take() const {
     VtkPiece piece;
     read_points(piece);
     const pugi::xml_node cells = piece_.child(polygons_ ? "Polys" : "Cells");
@@ -258,6 +258,11 @@ class PieceReader {
     read_arrays(piece_.child("PointData"), vtk_point_arrays, point_count_, piece.point_data);
     read_arrays(piece_.child("CellData"), vtk_cell_arrays, cell_count_, piece.cell_data);
     if (!polygons_) append_boundary(piece);
+    return piece;
+  }
+
+  void read(TetMesh& mesh) const {
+    const VtkPiece piece = take();
     try {
       add_vtk_piece(piece, mesh);
     } catch (const VtkPieceError& error) {
@@ -353,6 +358,15 @@ TetMesh read_grid(const std::string& path, bool needs_tets) {
 }  // namespace
 
 TetMesh read_vtu(const std::string& path) { return read_grid(path, true); }
+
+std::vector<VtkPiece> read_vtu_pieces(const std::string& path) {
+  const VtuFile file(path);
+  std::vector<VtkPiece> pieces;
+  for (const pugi::xml_node& piece : file.grid().children("Piece"))
+    pieces.push_back(PieceReader(file, piece).take());
+  return pieces;
+}
+
 TetMesh read_vtu_cells(const std::string& path) { return read_grid(path, false); }
 
 // Polygons of three corners and tags by cell, as ParaView saves surfaces.

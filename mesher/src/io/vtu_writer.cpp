@@ -112,7 +112,11 @@ void encode(std::span<Section> sections) {
 }
 
 void write_section(FileWriter& out, const Section& section, std::size_t& offset) {
-  out << "      <" << section.name << ">\n";
+  out << "      <" << section.name;
+  for (const DataArray& array : section.arrays)
+    if (const std::string& name = array.array->name; name == vtk_point_ids || name == vtk_cell_ids)
+      out << " GlobalIds=\"" << name << '"';
+  out << ">\n";
   for (const DataArray& array : section.arrays) {
     const int components = array.array->components;
     out << "        <DataArray type=\"" << array.type << "\" Name=\"" << array.array->name << '"';
@@ -128,13 +132,23 @@ void write_section(FileWriter& out, const Section& section, std::size_t& offset)
 }  // namespace
 
 void write_vtu(const std::string& path, const TetMesh& mesh) {
-  static_assert(std::endian::native == std::endian::little);
-  FileWriter out(path);
   VtkGrid grid = make_vtk_grid(mesh);
   const std::vector<VtkArray> boundary = take_boundary(mesh, grid);
+  write_vtu_grid(path, grid, boundary);
+}
+
+std::string_view vtu_type(const VtkArray& array) {
+  return std::visit(
+      [](const auto& values) { return type_name<typename std::decay_t<decltype(values)>::value_type>; },
+      array.values);
+}
+
+void write_vtu_grid(const std::string& path, VtkGrid& grid, const std::vector<VtkArray>& field_data) {
+  static_assert(std::endian::native == std::endian::little);
+  FileWriter out(path);
   const std::vector<VtkArray> cells{std::move(grid.connectivity), std::move(grid.offsets),
                                     std::move(grid.types)};
-  Section sections[] = {{"FieldData", boundary},
+  Section sections[] = {{"FieldData", field_data},
                         {"Points", {&grid.points, 1}},
                         {"Cells", cells},
                         {"PointData", grid.point_data},

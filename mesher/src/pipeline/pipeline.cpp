@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "collarmesh/error.h"
+#include "collarmesh/partition.h"
 
 namespace collarmesh {
 
@@ -76,6 +77,7 @@ class SoupSource : public ComplexSource {
 class Pipeline {
  public:
   Pipeline(const PipelineOptions& options, const Execution& execution) : given_(options), outer_(execution) {
+    if (options.partitions > 0) require_partitioner();
     if (options.mesh.time_limit > 0) deadline_.emplace(options.mesh.time_limit, execution);
     inner_.cancel = deadline_ ? &deadline_->flag() : execution.cancel;
     if (execution.progress) inner_.progress = [this](const ProgressReport& report) { return go_on(report); };
@@ -84,7 +86,10 @@ class Pipeline {
   SoupPipelineResult run(ComplexSource& source) {
     source_ = &source;
     SoupPipelineResult all;
-    until_ended([&] { try_repairs(all); });
+    until_ended([&] {
+      try_repairs(all);
+      divide();
+    });
     if (all.repair.repaired)
       made_.check.notes.push_back(fmt::format("the mesh was judged against the {} complex",
                                               all.repair.wrapped ? "wrapped" : "repaired"));
@@ -96,6 +101,7 @@ class Pipeline {
     until_ended([&] {
       mesh(plc, given_.mesh.seed);
       try_seeds(plc);
+      divide();
     });
     return std::move(made_);
   }
@@ -315,7 +321,7 @@ class Pipeline {
   }
 
   void certify() {
-    begin("check", 0.86, 1);
+    begin("check", 0.86, given_.partitions > 0 ? 0.96 : 1);
     CheckOptions options;
     options.radius_edge = options_.mesh.radius_edge;
     options.distance = distance();
@@ -324,6 +330,14 @@ class Pipeline {
     options.crease_angle = options_.mesh.crease_angle;
     options.threads = options_.threads;
     made_.check = check(made_.result.mesh, *plc_, options, inner_);
+    stop_if_asked();
+  }
+
+  /// Once, of the mesh that stays.
+  void divide() {
+    if (given_.partitions == 0) return;
+    begin("partition", 0.96, 1);
+    partition(made_.result.mesh, given_.partitions);
     stop_if_asked();
   }
 

@@ -21,7 +21,9 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double default_growth = 0.3;
-constexpr int deepest = 16;  // levels of JSON; some would exhaust the stack
+constexpr double right_angle = 1e-6;  // largest cosine
+constexpr int deepest = 16;           // levels of JSON; some would exhaust the stack
+const std::array<std::string, 5> kinds{"ball", "box", "cylinder", "curves", "patches"};
 
 [[noreturn]] void fail(const std::string& place, const std::string& message) {
   throw OptionError(fmt::format("size field: {}: {}", place, message));
@@ -68,12 +70,57 @@ Distance distance_from_ball(const Json& ball, const std::string& place) {
   return [=](const Point& p) { return std::max(distance(p, centre) - radius, 0.0); };
 }
 
+// In a frame of its own: a corner and three edges from there, at right angles.
+Distance distance_from_turned_box(const Json& box, const std::string& place) {
+  allow_only(box, place, {"corner", "edges"});
+  const Point corner = point(box, place, "corner");
+  const bool fits = box.contains("edges") && box.at("edges").is_array() && box.at("edges").size() == 3;
+  if (!fits) fail(place, "expected 'edges': three vectors [x, y, z]");
+  std::array<Point, 3> axes;
+  std::array<double, 3> lengths{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Json edge{{"edge", box.at("edges")[i]}};
+    axes[i] = point(edge, fmt::format("{}.edges[{}]", place, i), "edge");
+    lengths[i] = norm(axes[i]);
+    if (!(lengths[i] > 0)) fail(place, "an edge has no length");
+    axes[i] = axes[i] / lengths[i];
+  }
+  for (std::size_t i = 0; i < 3; ++i)
+    if (std::abs(dot(axes[i], axes[(i + 1) % 3])) > right_angle)
+      fail(place, fmt::format("edges {} and {} are not at right angles", i, (i + 1) % 3));
+  return [=](const Point& p) {
+    double sum = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double along = dot(p - corner, axes[i]);
+      const double outside = std::max({-along, along - lengths[i], 0.0});
+      sum += outside * outside;
+    }
+    return std::sqrt(sum);
+  };
+}
+
 Distance distance_from_box(const Json& box, const std::string& place) {
+  if (box.contains("corner") || box.contains("edges")) return distance_from_turned_box(box, place);
   allow_only(box, place, {"min", "max"});
   const Box b{point(box, place, "min"), point(box, place, "max")};
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (b.min[axis] > b.max[axis]) fail(place, "'min' exceeds 'max'");
   return [=](const Point& p) { return std::sqrt(squared_distance_to_box(p, b)); };
+}
+
+Distance distance_from_cylinder(const Json& cylinder, const std::string& place) {
+  allow_only(cylinder, place, {"from", "to", "radius"});
+  const Point from = point(cylinder, place, "from");
+  const double radius = number(cylinder, place, "radius", 0);
+  const Point axis = point(cylinder, place, "to") - from;
+  const double height = norm(axis);
+  if (!(height > 0)) fail(place, "'from' and 'to' are the same point");
+  const Point direction = axis / height;
+  return [=](const Point& p) {
+    const double along = dot(p - from, direction);
+    const double sideways = std::max(norm(p - from - along * direction) - radius, 0.0);
+    return std::hypot(sideways, std::max({-along, along - height, 0.0}));
+  };
 }
 
 // Of the features with these tags; a curve's segments are triangles without an area.
@@ -103,6 +150,7 @@ Distance distance_from_features(const Json& tags, const std::string& place, cons
 Distance distance_of(const Json& source, const std::string& place, const Plc& plc) {
   if (source.contains("ball")) return distance_from_ball(source.at("ball"), place + ".ball");
   if (source.contains("box")) return distance_from_box(source.at("box"), place + ".box");
+  if (source.contains("cylinder")) return distance_from_cylinder(source.at("cylinder"), place + ".cylinder");
   if (source.contains("curves"))
     return distance_from_features(source.at("curves"), place + ".curves", "curves", plc, plc.curves,
                                   [](const Plc::Curve& curve, auto& triangles) {
@@ -116,12 +164,12 @@ Distance distance_of(const Json& source, const std::string& place, const Plc& pl
                                     for (Index i = 0; i < patch.triangle_count; ++i)
                                       triangles.push_back(plc.triangles[patch.first_triangle + i].points);
                                   });
-  fail(place, "expected one of ball, box, curves, patches");
+  fail(place, fmt::format("expected one of {}", fmt::join(kinds, ", ")));
 }
 
 struct Source {
   Distance distance;
-  double size, growth;
+  double size, growth, within;
 };
 
 }  // namespace
@@ -148,19 +196,22 @@ SizeField size_field_from_json(const std::string& text, const Plc& plc) {
   if (!list.is_array()) fail("sources", "expected a list");
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string place = fmt::format("sources[{}]", i);
-    const auto shapes = {"ball", "box", "curves", "patches"};
-    if (std::count_if(shapes.begin(), shapes.end(), [&](const char* s) { return list[i].contains(s); }) > 1)
-      fail(place, "expected one of ball, box, curves, patches; make several sources of it");
-    allow_only(list[i], place, {"ball", "box", "curves", "patches", "size", "growth"});
+    if (std::count_if(kinds.begin(), kinds.end(), [&](const auto& kind) { return list[i].contains(kind); }) >
+        1)
+      fail(place, fmt::format("expected one of {}; make several sources of it", fmt::join(kinds, ", ")));
+    std::vector<std::string> keys(kinds.begin(), kinds.end());
+    keys.insert(keys.end(), {"size", "growth", "within"});
+    allow_only(list[i], place, keys);
     const double growth = list[i].contains("growth") ? number(list[i], place, "growth", 0) : default_growth;
-    sources.push_back({distance_of(list[i], place, plc), positive(list[i], place, "size"), growth});
+    const double within = list[i].contains("within") ? number(list[i], place, "within", 0) : 0;
+    sources.push_back({distance_of(list[i], place, plc), positive(list[i], place, "size"), growth, within});
   }
   if (sources.empty() && everywhere == INFINITY)
     fail("the top", "it asks for no size; give 'size' or 'sources'");
   return [=](const Point& p) {
     double size = everywhere;
     for (const Source& source : sources)
-      size = std::min(size, source.size + source.growth * source.distance(p));
+      size = std::min(size, source.size + source.growth * std::max(source.distance(p) - source.within, 0.0));
     return size;
   };
 }

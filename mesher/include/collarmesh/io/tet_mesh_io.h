@@ -8,22 +8,30 @@
 
 namespace collarmesh::io {
 
+/// Whether each partition of a file comes with the tets of others that share a vertex with it.
+enum class GhostCells { none, one_layer };
+
 /// Write a mesh by the extension of `path`, or as `format` (an extension with its dot, lower case) says.
 /// Each file is written under another name and renamed: a reader never sees half a file. Formats keep
 /// what they have a place for; what that is their sources say (src/io/*_writer.cpp).
-/// Throws WriteError.
-void write_tet_mesh(const std::string& path, const TetMesh& mesh, std::string_view format = {});
+/// Throws WriteError, also for ghost cells where the format has no place for them.
+void write_tet_mesh(const std::string& path, const TetMesh& mesh, std::string_view format = {},
+                    GhostCells ghost_cells = GhostCells::none);
 
 /// Read what `write_tet_mesh` writes and, as far as they carry tetrahedra, triangles and lines of first
 /// or second order, other programs' files of these formats.
 /// Throws ReadError (path, line or byte).
 TetMesh read_tet_mesh(const std::string& path, std::string_view format = {});
 
-/// The extensions: .vtu (VTK), .vtk (its legacy format), .msh (Gmsh; 4.1 is written), .mesh (Medit), .inp
-/// (Abaqus, CalculiX), .unv (I-DEAS), .ele (TetGen, with .node, .face and .edge beside it); written where they are
-/// built in: .xdmf (XDMF 3, with .h5 beside it), .med (SALOME).
+/// The extensions: .vtu (VTK), .pvtu (the same, with a .vtu beside it for each partition), .vtk (its legacy
+/// format), .msh (Gmsh; 4.1 is written), .mesh (Medit), .inp (Abaqus, CalculiX), .unv (I-DEAS), .ele (TetGen,
+/// with .node, .face and .edge beside it); written where they are built in: .xdmf (XDMF 3, with .h5 beside
+/// it), .med (SALOME).
 std::vector<std::string> written_tet_mesh_formats();
 std::vector<std::string> read_tet_mesh_formats();
+/// Those of them that have a place for partitions, and for ghost cells around each.
+std::vector<std::string> formats_with_partitions();
+std::vector<std::string> formats_with_ghost_cells();
 
 /// Does `write_tet_mesh` know this extension or format?
 bool is_tet_mesh_format(const std::string& path, std::string_view format = {});

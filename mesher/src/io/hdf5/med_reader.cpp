@@ -9,11 +9,14 @@
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "collarmesh/error.h"
 #include "io/cell_nodes.h"
+#include "io/cell_partitions.h"
 #include "io/complete_mesh.h"
+#include "io/hdf5/med_format.h"
 #include "io/label_names.h"
 #include "io/tet_mesh_formats.h"
 
@@ -49,6 +52,7 @@ class MedReader {
     read_cells(MED_SEG2, 1, std::span(as_is).first(2), add_edge, mesh_.edge_tag);
     read_cells(MED_SEG3, 1, std::span(as_is).first(3), add_edge, mesh_.edge_tag);
     if (mesh_.tets.empty()) fail("expected tetrahedra, found none");
+    read_partitions(mesh_.order() == 2 ? MED_TETRA10 : MED_TETRA4);
     complete_mesh(path_, mesh_);
     return std::move(mesh_);
   }
@@ -139,6 +143,33 @@ class MedReader {
       }
       add(cell, mesh_);
       tags.push_back(tag_of(dimension, families[i]));
+    }
+  }
+
+  /// Of ours: the field of that name on this mesh, with a whole number for each tetrahedron.
+  void read_partitions(med_geometry_type type) {
+    const med_int fields = MEDnField(file_);
+    for (int i = 1; i <= static_cast<int>(fields); ++i) {
+      const med_int components = MEDfieldnComponent(file_, i);
+      if (components != 1) continue;
+      std::array<char, MED_NAME_SIZE + 1> name{}, mesh{};
+      std::array<char, MED_SNAME_SIZE + 1> component{}, unit{}, time_unit{};
+      med_bool local = MED_FALSE;
+      med_field_type kind = MED_FLOAT64;
+      med_int steps = 0;
+      if (MEDfieldInfo(file_, i, name.data(), mesh.data(), &local, &kind, component.data(), unit.data(),
+                       time_unit.data(), &steps) < 0 ||
+          name.data() != std::string_view(med_partition_field) || name_ != mesh.data() || kind != MED_INT)
+        continue;
+      std::vector<med_int> values(mesh_.tets.size());
+      if (MEDfieldnValue(file_, name.data(), MED_NO_DT, MED_NO_IT, MED_CELL, type) !=
+              static_cast<med_int>(values.size()) ||
+          MEDfieldValueRd(file_, name.data(), MED_NO_DT, MED_NO_IT, MED_CELL, type, MED_FULL_INTERLACE,
+                          MED_ALL_CONSTITUENT, reinterpret_cast<unsigned char*>(values.data())) < 0)
+        continue;
+      if (std::all_of(values.begin(), values.end(),
+                      [](med_int p) { return p >= 0 && static_cast<std::int64_t>(p) < most_partitions; }))
+        mesh_.tet_partition.assign(values.begin(), values.end());
     }
   }
 

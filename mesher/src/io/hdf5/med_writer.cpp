@@ -1,5 +1,6 @@
 // SALOME's format MED (.med) with its library: one unstructured mesh, named as the file, of tetrahedra,
-// triangles and segments. A family for each tag, in a group named as in label_names.h.
+// triangles and segments. A family for each tag, in a group named as in label_names.h. Partitions are the
+// whole numbers of a field on the tetrahedra.
 #include <fmt/format.h>
 #include <med.h>
 
@@ -12,6 +13,8 @@
 #include <vector>
 
 #include "io/cell_nodes.h"
+#include "io/cell_partitions.h"
+#include "io/hdf5/med_format.h"
 #include "io/label_names.h"
 #include "io/tet_mesh_formats.h"
 #include "io/unfinished_file.h"
@@ -78,6 +81,20 @@ class MedFile {
                                         families.data()));
   }
 
+  void create_partitions() const {
+    const std::string component = padded(med_partition_field, MED_SNAME_SIZE), unit(MED_SNAME_SIZE, '\0');
+    require(MEDfieldCr(file_, med_partition_field, MED_INT, 1, component.c_str(), unit.c_str(), "",
+                       name_.c_str()));
+  }
+
+  void write_partitions(const std::vector<Index>& partitions, med_geometry_type type) const {
+    if (partitions.empty()) return;
+    const std::vector<med_int> values(partitions.begin(), partitions.end());
+    require(MEDfieldValueWr(file_, med_partition_field, MED_NO_DT, MED_NO_IT, 0, MED_CELL, type,
+                            MED_FULL_INTERLACE, MED_ALL_CONSTITUENT, static_cast<med_int>(values.size()),
+                            reinterpret_cast<const unsigned char*>(values.data())));
+  }
+
   void commit() {
     require(MEDfileClose(std::exchange(file_, -1)));
     target_.commit();
@@ -121,6 +138,13 @@ void write_med(const std::string& path, const TetMesh& mesh) {
     file.write_cells(mesh, 3, MED_TETRA4, mesh.tet_tag, med_tet_order, nodes_of_tet);
     file.write_cells(mesh, 2, MED_TRIA3, mesh.face_tag, {}, nodes_of_face);
     file.write_cells(mesh, 1, MED_SEG2, mesh.edge_tag, {}, nodes_of_edge);
+  }
+  if (!mesh.tet_partition.empty()) {  // of all cells: meshio reads no fields of some
+    const bool second = mesh.order() == 2;
+    file.create_partitions();
+    file.write_partitions(mesh.tet_partition, second ? MED_TETRA10 : MED_TETRA4);
+    file.write_partitions(partitions_of_faces(mesh), second ? MED_TRIA6 : MED_TRIA3);
+    file.write_partitions(partitions_of_edges(mesh), second ? MED_SEG3 : MED_SEG2);
   }
   file.commit();
 }

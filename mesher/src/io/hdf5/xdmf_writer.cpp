@@ -99,19 +99,20 @@ std::array<Cells, 3> cells_by_dimension(const TetMesh& mesh) {
                 0,
                 tets,
                 nodes_of_all(mesh, tets, nodes_of_tet),
-                {"tag", "region", "collar", "crease", "thin", "radius_edge", "min_dihedral", "max_dihedral"}},
+                {"tag", "region", "collar", "crease", "thin", "partition", "radius_edge", "min_dihedral",
+                 "max_dihedral"}},
           Cells{"faces",
                 second ? "Triangle_6" : "Triangle",
                 tets,
                 faces,
                 nodes_of_all(mesh, faces, nodes_of_face),
-                {"tag", "region_back", "region_front", "feature"}},
+                {"tag", "region_back", "region_front", "feature", "partition"}},
           Cells{"edges",
                 second ? "Edge_3" : "Polyline",
                 tets + faces,
                 edges,
                 nodes_of_all(mesh, edges, nodes_of_edge),
-                {"tag", "feature"}}};
+                {"tag", "feature", "partition"}}};
 }
 
 /// A file and the one with its values, which dolfinx wants to have the same name.

@@ -1,0 +1,54 @@
+"""A mesh of a mesh object in the program's formats, and what the program says of it."""
+
+import json
+import os
+import subprocess
+import tempfile
+
+from . import preferences
+from .program import MesherError, find_program
+from .translations import translate
+
+# FreeCAD's own export writes some of them, too, but not all, and loses groups of faces in .inp.
+FORMATS = (
+    ("VTK, ParaView", ".vtu"), ("VTK", ".vtk"), ("Gmsh", ".msh"), ("Gmsh 2.2", ".msh2"), ("Abaqus, CalculiX", ".inp"),
+    ("I-DEAS, SALOME", ".unv"), ("Medit", ".mesh"), ("TetGen", ".ele"), ("STL", ".stl"), ("OBJ", ".obj"), ("PLY", ".ply"),
+    ("OFF", ".off"),
+)  # fmt: skip
+
+
+def filters():
+    """For a file dialog."""
+    return ";;".join(f"{name} (*{extension})" for name, extension in FORMATS)
+
+
+def _run(mesh_object, arguments):
+    """The program's standard output; `MESH` among the arguments is the object's mesh. Raises MesherError."""
+    if mesh_object.FemMesh.VolumeCount == 0:
+        raise MesherError(translate("collarmesh", "{label} has no mesh yet.").format(label=mesh_object.Label))
+    with tempfile.TemporaryDirectory(prefix="collarmesh-") as folder:
+        path = os.path.join(folder, "mesh.unv")
+        mesh_object.FemMesh.write(path)
+        command = [
+            find_program(preferences.program()),
+            *(path if each == "MESH" else each for each in arguments),
+        ]
+        result = subprocess.run(
+            command, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace"
+        )
+        if result.returncode != 0:
+            raise MesherError(
+                result.stderr.replace(path, mesh_object.Label).strip().removeprefix("collarmesh: ")
+            )
+        return result.stdout
+
+
+def export(mesh_object, path):
+    """Write the object's mesh, with its groups by sub-shapes and their names where the format has a place for them.
+    The format is that of the path's extension. Raises MesherError."""
+    _run(mesh_object, ["convert", "MESH", "-o", path, "--quiet"])
+
+
+def statistics(mesh_object):
+    """What the program measures: points, tets, angles, histograms (`collarmesh info --json`). Raises MesherError."""
+    return json.loads(_run(mesh_object, ["info", "MESH", "--json"]))["mesh"]

@@ -1,0 +1,110 @@
+"""What the context menus of mesh objects offer, ours and those of FreeCAD's meshers."""
+
+import FreeCAD
+import FreeCADGui
+from PySide import QtCore, QtGui
+
+from . import compatibility, mesh_file, statistics_dialog, take_over
+from .program import MesherError
+from .translations import translate
+
+
+def fill(menu, obj):
+    """Of one of our mesh objects."""
+    has_mesh = obj.FemMesh.VolumeCount > 0
+    for name, text, action, enabled in (
+        ("edit", translate("collarmesh", "Edit mesh"), edit, True),  # as a double click does
+        ("mesh_again", translate("collarmesh", "Mesh again"), mesh_again, True),
+        ("export", translate("collarmesh", "Export mesh..."), export, has_mesh),
+        ("statistics", translate("collarmesh", "Statistics..."), statistics, has_mesh),
+        ("hand_over", translate("collarmesh", "Hand over to Gmsh"), hand_over, True),
+    ):
+        _add(menu, name, text, action, obj).setEnabled(enabled)
+
+
+def fill_for_others(menu, obj):
+    """Of a mesh object of Gmsh or Netgen."""
+    _add(menu, "take_over", translate("collarmesh", "Take over by collarmesh"), take, obj)
+
+
+def _add(menu, name, text, action, obj):
+    entry = menu.addAction(text)
+    entry.setObjectName("collarmesh_" + name)
+    # Later, when the menu is closed: the object of the menu may be removed.
+    entry.triggered.connect(lambda: QtCore.QTimer.singleShot(0, lambda: _run(action, obj)))
+    return entry
+
+
+def _run(action, obj):
+    QtGui.QApplication.setOverrideCursor(QtCore.Qt.WaitCursor)
+    try:
+        action(obj)
+    except MesherError as error:
+        say(str(error))
+    finally:
+        QtGui.QApplication.restoreOverrideCursor()
+
+
+def say(text):
+    """A message that waits for nobody."""
+    FreeCAD.Console.PrintWarning(f"collarmesh: {text}\n")
+    box = QtGui.QMessageBox(QtGui.QMessageBox.Information, "collarmesh", text, QtGui.QMessageBox.Ok,
+                            FreeCADGui.getMainWindow())  # fmt: skip
+    box.setObjectName("collarmesh_message")
+    box.setAttribute(QtCore.Qt.WA_DeleteOnClose)
+    box.setModal(False)
+    box.show()
+
+
+def edit(obj):
+    """Open the panel."""
+    document = FreeCADGui.getDocument(obj.Document.Name)
+    if document.getInEdit():
+        document.resetEdit()
+    document.setEdit(obj.Name)
+
+
+def mesh_again(obj):
+    """Open the panel and start."""
+    edit(obj)
+    panel = obj.ViewObject.Proxy.panel
+    if panel is not None:
+        panel.start()
+
+
+def export(obj):
+    QtGui.QApplication.restoreOverrideCursor()
+    title = translate("collarmesh", "Export mesh")
+    path, chosen = QtGui.QFileDialog.getSaveFileName(
+        FreeCADGui.getMainWindow(), title, obj.Label, mesh_file.filters()
+    )
+    QtGui.QApplication.setOverrideCursor(QtCore.Qt.WaitCursor)
+    if path:
+        if "." not in path.rsplit("/", 1)[-1]:
+            path += chosen[chosen.index("*") + 1 : chosen.index(")")]
+        mesh_file.export(obj, path)
+
+
+def statistics(obj):
+    statistics_dialog.show(obj, FreeCADGui.getMainWindow())
+
+
+def take(obj):
+    _replaced(take_over.take_over(obj))
+
+
+def hand_over(obj):
+    _replaced(take_over.hand_over(obj))
+
+
+def _replaced(result):
+    obj, notes = result
+    FreeCADGui.Selection.clearSelection()
+    FreeCADGui.Selection.addSelection(obj)
+    if notes:
+        say("\n".join(notes))
+
+
+def install():
+    """Into the context menus of FreeCAD's own mesh objects."""
+    compatibility.extend_context_menus(fill_for_others)

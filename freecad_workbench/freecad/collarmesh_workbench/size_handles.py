@@ -1,0 +1,186 @@
+"""Handles of a sphere, box or cylinder in the 3D view: those in its middle move it, the others change its lengths."""
+
+import FreeCAD
+import FreeCADGui
+from pivy import coin
+from PySide import QtCore
+
+SHARE = 0.1  # of the object's diagonal: half a handle's length
+SHARE_OF_VIEW = 0.025  # of what the view shows: the least half length
+THICK = 1.3  # times as thick as Coin's arrows
+EVERY = 20  # ms
+LEAST = 1e-3  # of the object's diagonal: no length gets smaller by dragging
+AXES = {"X": FreeCAD.Vector(1, 0, 0), "Y": FreeCAD.Vector(0, 1, 0), "Z": FreeCAD.Vector(0, 0, 1)}
+
+
+def rods_of(kind):
+    """What each length's handle slides along: (name of the length, axis in the object's frame)."""
+    return {
+        "Sphere": (("Radius", "X"),),
+        "Box": (("Length", "X"), ("Width", "Y"), ("Height", "Z")),
+        "Cylinder": (("Radius", "X"), ("Height", "Z")),
+    }.get(kind, ())
+
+
+class Handle:
+    """An arrow that is dragged along an axis of the object. `name`: of a length, or of the axis for an arrow that moves
+    the object. `dragged(distance)` is called with how far it was dragged since the mouse was pressed, in mm.
+    """
+
+    def __init__(self, name, axis, dragged):
+        self.name = name
+        self.axis = axis
+        self.dragged = dragged
+        self.scale = 1
+        self.was_at = 0.0
+        self.node = coin.SoSeparator()
+        self.transform = coin.SoTransform()
+        self.dragger = coin.SoTranslate1Dragger()
+        self.node.addChild(self.transform)
+        self.node.addChild(self.dragger)
+
+    def moves(self):
+        return self.name == self.axis
+
+    def put(self, place, rotation, scale):
+        """Back to no translation, there. `scale`: half its length, mm."""
+        self.scale = scale
+        self.was_at = 0.0
+        self.transform.translation = tuple(place)
+        self.transform.rotation = coin.SbRotation(*rotation.Q)
+        self.transform.scaleFactor = (scale, THICK * scale, THICK * scale)
+        self.dragger.translation = (0, 0, 0)
+
+    def is_held(self):
+        return bool(self.dragger.isActive.getValue())
+
+    def is_at(self):
+        return self.dragger.translation.getValue()[0]
+
+    def look(self):
+        """Call `dragged` if the handle was moved."""
+        if self.is_at() != self.was_at:
+            self.was_at = self.is_at()
+            self.dragged(self.was_at * self.scale)
+
+
+class Handles:
+    """All handles of an object, in its node of the scene, until `remove`. A drag changes the object's properties at
+    once; `changed()` is called after each step.
+
+    A timer looks where the handles are: the callbacks of pivy's draggers end FreeCAD (pivy 0.6 runs them without
+    Python's lock)."""
+
+    def __init__(self, obj, kind, changed):
+        self.object = obj
+        self.changed = changed
+        self.node = coin.SoAnnotation()  # in front of everything
+        self.node.setName("collarmesh_size_handles")
+        self.handles = []
+        self._hidden_from_mouse = []
+        self._held = None
+        self._at_start = None
+        self._height = 0  # of the view when the handles were put
+        for axis in AXES:
+            self._add(axis, axis, lambda by, axis=axis: self._move(axis, by))
+        for length, axis in rods_of(kind):
+            self._add(length, axis, lambda by, name=length: self._stretch(name, by))
+        self.place()
+        obj.ViewObject.RootNode.insertChild(self.node, 0)  # before the object's placement
+        self._hide_others_from_mouse()
+        self._timer = QtCore.QTimer()
+        self._timer.timeout.connect(self._look)
+        self._timer.start(EVERY)
+
+    def _hide_others_from_mouse(self):
+        """Handles inside of a part can be dragged."""
+        for each in self.object.Document.Objects:
+            root = getattr(each.ViewObject, "RootNode", None)
+            if root is not None and each is not self.object:
+                style = coin.SoPickStyle()
+                style.style = coin.SoPickStyle.UNPICKABLE
+                root.insertChild(style, 0)
+                self._hidden_from_mouse.append((root, style))
+        style = coin.SoPickStyle()
+        style.style = coin.SoPickStyle.UNPICKABLE
+        root = self.object.ViewObject.RootNode
+        root.insertChild(style, 1)  # behind the handles
+        self._hidden_from_mouse.append((root, style))
+
+    def remove(self):
+        self._timer.stop()
+        for root, style in self._hidden_from_mouse:
+            root.removeChild(style)
+        self.object.ViewObject.RootNode.removeChild(self.node)
+
+    def _add(self, name, axis, dragged):
+        handle = Handle(name, axis, dragged)
+        self.handles.append(handle)
+        self.node.addChild(handle.node)
+
+    def _look(self):
+        held = next(
+            (handle for handle in self.handles if handle.is_held() or handle.is_at() != handle.was_at), None
+        )
+        if held is not None and self._held is None:
+            lengths = {
+                handle.name: getattr(self.object, handle.name).Value
+                for handle in self.handles
+                if not handle.moves()
+            }
+            self._at_start = self.object.Placement.copy(), lengths
+        if held is not None or self._held is not None:
+            (held or self._held).look()
+        if held is None and (self._held is not None or self._shown_height() != self._height):
+            self.place()
+        self._held = held
+
+    def place(self, but=None):
+        """Put the handles where the object is; `but`: the name of the one that is being dragged."""
+        placement = self.object.Placement
+        self._height = self._shown_height()
+        scale = max(SHARE * self.object.Shape.BoundBox.DiagonalLength, SHARE_OF_VIEW * self._height)
+        for handle in self.handles:
+            if handle.name == but:
+                continue
+            turn = placement.Rotation.multiply(FreeCAD.Rotation(AXES["X"], AXES[handle.axis]))
+            place = self._middle() if handle.moves() else self._end(handle)
+            handle.put(placement.multVec(place), turn, scale)
+
+    def _shown_height(self):
+        """Of the view at the object, in mm."""
+        view = FreeCADGui.getDocument(self.object.Document.Name).ActiveView
+        if not hasattr(view, "getCameraNode"):
+            return 0
+        camera = view.getCameraNode()
+        if hasattr(camera, "heightAngle"):
+            return camera.focalDistance.getValue() * camera.heightAngle.getValue()
+        return camera.height.getValue()
+
+    def _middle(self):
+        return self.object.Proxy.middle(self.object)
+
+    def _end(self, handle):
+        """Where a length ends, in the object's frame."""
+        along = AXES[handle.axis] * getattr(self.object, handle.name).Value
+        middle = self._middle()
+        if handle.name == "Radius":
+            return middle + along
+        across = FreeCAD.Vector(*(0 if AXES[handle.axis][i] else middle[i] for i in range(3)))
+        return across + along
+
+    def _move(self, axis, by):
+        placement, _ = self._at_start
+        base = placement.Base + placement.Rotation.multVec(AXES[axis] * by)
+        self.object.Placement = FreeCAD.Placement(base, placement.Rotation)
+        self._update(axis)
+
+    def _stretch(self, name, by):
+        least = LEAST * self.object.Shape.BoundBox.DiagonalLength
+        setattr(self.object, name, max(least, self._at_start[1][name] + by))
+        self._update(name)
+
+    def _update(self, name):
+        self.object.recompute()
+        self.place(but=name)
+        self.changed()

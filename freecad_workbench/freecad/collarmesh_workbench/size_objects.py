@@ -1,0 +1,247 @@
+"""Sizes as objects of the document: in a sphere, a box or a cylinder, and near faces and edges. Works without the GUI."""
+
+import re
+
+import FreeCAD
+import Part
+
+from . import compatibility, extent, inputs
+from .program import MesherError
+from .translations import doc, translate
+
+GROWTH = 0.3
+DEFAULT_SHARE = 0.1  # of the part's diagonal: a new sphere's radius
+TURNED = 1e-9  # rad
+
+
+class Size(compatibility.Stateless):
+    """What all of them have: the size that holds inside, and how it grows outside."""
+
+    lengths = ()  # of the body: name, share of a new one, text
+
+    def __init__(self, obj):
+        obj.Proxy = self
+        self.add_properties(obj)
+
+    def onDocumentRestored(self, obj):
+        self.add_properties(obj)
+
+    def add_properties(self, obj):
+        have = obj.PropertiesList
+        own = [("App::PropertyLength", name, text) for name, _, text in self.lengths]
+        for kind, name, text in (
+            ("App::PropertyLength", "Size", doc("Target edge length inside")),
+            ("App::PropertyFloat", "Growth", doc("Growth of size per unit length away from there")),
+            *own,
+        ):
+            if name not in have:
+                obj.addProperty(kind, name, "Size", text)
+                if name == "Growth":
+                    obj.Growth = GROWTH
+
+    def place(self, obj, part):
+        """A first size and place, in the middle of a part."""
+        bounds = extent.bounding_box(part)
+        length = DEFAULT_SHARE * bounds.DiagonalLength
+        for name, share, _ in self.lengths:
+            setattr(obj, name, share * length)
+        obj.Placement.Base = bounds.Center - self.middle(obj)
+
+    def middle(self, _obj):
+        return FreeCAD.Vector()
+
+    def sources(self, obj, _part):
+        """What the program's size field has for it: a list of sources. Raises MesherError."""
+        for name in ("Size", *(name for name, _, _ in self.lengths)):
+            if getattr(obj, name).Value <= 0:
+                text = translate("collarmesh", "{label}: {property} is {value}, but must be positive.")
+                raise MesherError(
+                    text.format(label=obj.Label, property=name, value=getattr(obj, name).UserString)
+                )
+        if obj.Growth < 0:
+            text = translate("collarmesh", "{label}: Growth is {value}, but sizes grow by 0 or more.")
+            raise MesherError(text.format(label=obj.Label, value=f"{obj.Growth:g}"))
+        return [{"size": obj.Size.Value, "growth": obj.Growth, **body} for body in self.bodies(obj)]
+
+
+class Sphere(Size):
+    Type = "Fem::CollarmeshSizeSphere"
+    lengths = (("Radius", 1, doc("Radius of the sphere")),)
+
+    def execute(self, obj):
+        obj.Shape = Part.makeSphere(max(obj.Radius.Value, 1e-6))
+
+    def bodies(self, obj):
+        return [{"ball": {"centre": list(obj.Placement.Base), "radius": obj.Radius.Value}}]
+
+
+class Box(Size):
+    Type = "Fem::CollarmeshSizeBox"
+    lengths = (
+        ("Length", 2, doc("Length of the box along its x axis")),
+        ("Width", 2, doc("Width of the box along its y axis")),
+        ("Height", 2, doc("Height of the box along its z axis")),
+    )
+
+    def execute(self, obj):
+        obj.Shape = Part.makeBox(*(max(getattr(obj, name).Value, 1e-6) for name, _, _ in self.lengths))
+
+    def middle(self, obj):
+        return FreeCAD.Vector(obj.Length.Value, obj.Width.Value, obj.Height.Value) / 2
+
+    def bodies(self, obj):
+        corner = obj.Placement.Base
+        lengths = [getattr(obj, name).Value for name, _, _ in self.lengths]
+        if abs(obj.Placement.Rotation.Angle) < TURNED:
+            return [{"box": {"min": list(corner), "max": list(corner + FreeCAD.Vector(*lengths))}}]
+        axes = (FreeCAD.Vector(1, 0, 0), FreeCAD.Vector(0, 1, 0), FreeCAD.Vector(0, 0, 1))
+        edges = [list(obj.Placement.Rotation.multVec(axis * length)) for axis, length in zip(axes, lengths)]
+        return [{"box": {"corner": list(corner), "edges": edges}}]
+
+
+class Cylinder(Size):
+    Type = "Fem::CollarmeshSizeCylinder"
+    lengths = (
+        ("Radius", 1, doc("Radius of the cylinder")),
+        ("Height", 2, doc("Height of the cylinder along its z axis")),
+    )
+
+    def execute(self, obj):
+        obj.Shape = Part.makeCylinder(max(obj.Radius.Value, 1e-6), max(obj.Height.Value, 1e-6))
+
+    def middle(self, obj):
+        return FreeCAD.Vector(0, 0, obj.Height.Value / 2)
+
+    def bodies(self, obj):
+        top = obj.Placement.multVec(FreeCAD.Vector(0, 0, obj.Height.Value))
+        return [{"cylinder": {"from": list(obj.Placement.Base), "to": list(top), "radius": obj.Radius.Value}}]
+
+
+class Distance(Size):
+    """Near faces and edges of the meshed object."""
+
+    Type = "Fem::CollarmeshSizeDistance"
+    TAGS = {
+        "Face": "patches",
+        "Edge": "curves",
+    }  # in the program's size field: their tags are FreeCAD's numbers
+
+    def add_properties(self, obj):
+        super().add_properties(obj)
+        if "References" not in obj.PropertiesList:
+            obj.addProperty("App::PropertyLinkSubList", "References", "Size",
+                            doc("Faces and edges near which the size holds"))  # fmt: skip
+            obj.addProperty("App::PropertyLength", "Within", "Size",
+                            doc("The size holds up to this distance and grows beyond"))  # fmt: skip
+            obj.setEditorMode("Placement", 2)
+
+    def place(self, obj, part):
+        """It is where its faces and edges are."""
+
+    def execute(self, obj):
+        shapes = [inputs.shape_of(linked).getElement(name) for linked, name in references(obj) if name]
+        obj.Shape = Part.Compound(shapes) if shapes else Part.Shape()
+
+    def sources(self, obj, part):
+        self.check(obj, part)
+        return super().sources(obj, part)
+
+    def check(self, obj, part):
+        shape = inputs.shape_of(part)
+        for linked, name in references(obj):
+            kind, number = kind_and_number(name)
+            wrong = ""
+            if linked is not part:
+                wrong = translate(
+                    "collarmesh",
+                    "{label} refers to {other}, but {part} is meshed; choose its faces and edges.",
+                )
+            elif kind not in self.TAGS:
+                wrong = translate("collarmesh", "{label}: {name} is no face and no edge.")
+            elif number > len(getattr(shape, kind + "s")):
+                wrong = translate(
+                    "collarmesh", "{label}: {part} has no {name} any more; choose its faces and edges again."
+                )
+            elif kind == "Edge" and is_seam(shape, shape.Edges[number - 1]):
+                wrong = translate(
+                    "collarmesh",
+                    "{label}: {name} is the seam of a face, which the mesh does not have; choose the face.",
+                )
+            if wrong:
+                whole = translate("collarmesh", "the whole object")
+                raise MesherError(
+                    wrong.format(label=obj.Label, other=linked.Label, part=part.Label, name=name or whole)
+                )
+        if not references(obj):
+            wrong = translate("collarmesh", "{label} has no faces and edges; choose some, or delete it.")
+            raise MesherError(wrong.format(label=obj.Label))
+
+    def bodies(self, obj):
+        tags = {}
+        for _linked, name in references(obj):
+            kind, number = kind_and_number(name)
+            tags.setdefault(self.TAGS[kind], []).append(number)
+        return [{kind: numbers, "within": obj.Within.Value} for kind, numbers in tags.items()]
+
+
+def references(obj):
+    """[(object, name of a face or edge)]"""
+    return [
+        (linked, name)
+        for linked, names in obj.References
+        for name in ((names,) if isinstance(names, str) else names)
+    ]
+
+
+def kind_and_number(name):
+    """("Face", 7) for Face7, ("", 0) for what is no sub-shape."""
+    match = re.fullmatch(r"([A-Za-z]+)([1-9]\d*)", name)
+    return (match[1], int(match[2])) if match else ("", 0)
+
+
+def is_seam(shape, edge):
+    return edge.Degenerated or any(
+        edge.isSeam(face) for face in shape.Faces if any(edge.isSame(e) for e in face.Edges)
+    )
+
+
+KINDS = {"Sphere": Sphere, "Box": Box, "Cylinder": Cylinder, "Distance": Distance}
+PROPERTY = "MeshSizeList"  # of a mesh object
+
+
+def kind_of(obj):
+    """A key of KINDS; None for other objects."""
+    of_proxy = getattr(getattr(obj, "Proxy", None), "Type", "")
+    return next((kind for kind, proxy in KINDS.items() if proxy.Type == of_proxy), None)
+
+
+def make(mesh_object, kind, size=0, name=""):
+    """A new size object of a mesh object, in the middle of its part.
+
+    `kind`: Sphere, Box, Cylinder or Distance; `size`: target edge length, mm; 0: a quarter of the mesh's own.
+    """
+    document = mesh_object.Document
+    obj = document.addObject("Part::FeaturePython", name or f"Size{kind}")
+    proxy = KINDS[kind](obj)
+    part = compatibility.meshed_object(mesh_object)
+    if part is not None:
+        proxy.place(obj, part)
+        size = (
+            size
+            or (mesh_object.CharacteristicLengthMax.Value or extent.bounding_box(part).DiagonalLength / 20) / 4
+        )
+    obj.Size = size
+    setattr(mesh_object, PROPERTY, [*getattr(mesh_object, PROPERTY), obj])
+    if compatibility.has_gui():
+        from .size_view import SizeViewProvider
+
+        SizeViewProvider(obj.ViewObject)
+    obj.recompute()
+    return obj
+
+
+def field_of(mesh_object):
+    """The program's size field for a mesh object's size objects; None without any. Raises MesherError."""
+    part = compatibility.meshed_object(mesh_object)
+    found = [source for obj in getattr(mesh_object, PROPERTY) for source in obj.Proxy.sources(obj, part)]
+    return {"sources": found} if found else None

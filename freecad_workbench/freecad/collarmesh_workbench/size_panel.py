@@ -1,0 +1,214 @@
+"""The panel of a size object: how fine, how fast it grows, where. What is entered or dragged shows at once."""
+
+import contextlib
+
+import FreeCADGui
+from PySide import QtCore, QtGui
+
+from . import compatibility, size_objects
+from .quantity_field import QuantityField
+from .translations import translate
+
+AXES = ("x", "y", "z")
+WIDTH = 340  # pixels
+
+
+def texts():
+    """What the properties are called in the panel."""
+    return {
+        "Size": translate("collarmesh", "Element size"),
+        "Growth": translate("collarmesh", "Growth away from it"),
+        "Radius": translate("collarmesh", "Radius"),
+        "Length": translate("collarmesh", "Length"),
+        "Width": translate("collarmesh", "Width"),
+        "Height": translate("collarmesh", "Height"),
+        "Within": translate("collarmesh", "Holds within"),
+    }
+
+
+def titles():
+    return {
+        "Sphere": translate("collarmesh", "Size in a sphere"),
+        "Box": translate("collarmesh", "Size in a box"),
+        "Cylinder": translate("collarmesh", "Size in a cylinder"),
+        "Distance": translate("collarmesh", "Size near faces and edges"),
+    }
+
+
+class SizePanel:
+    """All changes are one step of undo, with the creation of a new object; "Cancel" takes them back."""
+
+    def __init__(self, obj):
+        self.object = obj
+        self.kind = size_objects.kind_of(obj)
+        self.handles = None
+        self.filling = False
+        if not obj.Document.HasPendingTransaction:
+            obj.Document.openTransaction(titles()[self.kind])
+        self.form = QtGui.QWidget()
+        self.form.setObjectName("collarmesh_size_panel")
+        self.form.setWindowTitle(titles()[self.kind])
+        self.form.setWindowIcon(QtGui.QIcon(obj.ViewObject.Proxy.getIcon()))
+        layout = QtGui.QVBoxLayout(self.form)
+        self.rows = QtGui.QFormLayout()
+        layout.addLayout(self.rows)
+        self.fields = {}
+        lengths = [name for name, _, _ in obj.Proxy.lengths]
+        if self.kind == "Distance":
+            lengths.append("Within")
+        for name in ("Size", *lengths):
+            self._add_length(name, texts()[name], lambda value, name=name: setattr(obj, name, value))
+        self._add_growth()
+        if self.kind == "Distance":
+            self._add_references(layout)
+        else:
+            for i, axis in enumerate(AXES):
+                text = translate("collarmesh", "Position {axis}").format(axis=axis)
+                self._add_length(axis, text, lambda value, i=i: self._put(i, value))
+            self._add_hint(layout)
+            self._add_handles()
+        self.fill()
+        QtCore.QTimer.singleShot(0, self._widen)
+
+    def _widen(self):
+        """FreeCAD shows what fits into its dock; make room for all of the panel."""
+        window = FreeCADGui.getMainWindow()
+        for dock in window.findChildren(QtGui.QDockWidget):
+            if dock.isAncestorOf(self.form) and not dock.isFloating() and dock.width() < WIDTH:
+                window.resizeDocks([dock], [WIDTH], QtCore.Qt.Horizontal)
+
+    def _add_length(self, name, text, store):
+        field = QuantityField("mm", 0.0)
+        field.widget.setObjectName("collarmesh_size_" + name)
+        if name in self.object.PropertiesList:
+            field.widget.setToolTip(translate("App::Property", self.object.getDocumentationOfProperty(name)))
+        field.widget.textChanged.connect(lambda _text: self._typed(field, store))
+        self.rows.addRow(text, field.widget)
+        self.fields[name] = field
+
+    def _typed(self, field, store):
+        """Values that make no sense are red and not stored."""
+        with contextlib.suppress(ValueError):
+            self._changed(store, field.value())
+
+    def _add_growth(self):
+        field = QtGui.QDoubleSpinBox()
+        field.setObjectName("collarmesh_size_Growth")
+        field.setRange(0, 10)
+        field.setSingleStep(0.05)
+        field.setKeyboardTracking(False)
+        field.setSuffix(translate("collarmesh", " mm per mm"))
+        field.setToolTip(translate("App::Property", self.object.getDocumentationOfProperty("Growth")))
+        field.valueChanged.connect(
+            lambda value: self._changed(lambda v: setattr(self.object, "Growth", v), value)
+        )
+        self.rows.addRow(texts()["Growth"], field)
+        self.fields["Growth"] = field
+
+    def _add_references(self, layout):
+        self.list = QtGui.QListWidget()
+        self.list.setObjectName("collarmesh_size_references")
+        self.list.setMaximumHeight(140)
+        self.list.setSelectionMode(QtGui.QAbstractItemView.ExtendedSelection)
+        layout.addWidget(
+            QtGui.QLabel(translate("collarmesh", "Select faces and edges in the 3D view, then add them:"))
+        )
+        layout.addWidget(self.list)
+        row = QtGui.QHBoxLayout()
+        layout.addLayout(row)
+        for name, text, action in (
+            ("add", translate("collarmesh", "Add the selected"), self.add_selected),
+            ("remove", translate("collarmesh", "Remove"), self.remove_marked),
+        ):
+            button = QtGui.QPushButton(text)
+            button.setObjectName("collarmesh_size_" + name)
+            button.clicked.connect(action)
+            row.addWidget(button)
+
+    def _add_hint(self, layout):
+        hint = QtGui.QLabel(translate("collarmesh", "Drag the handles in the 3D view. To turn it, close this panel and choose "
+                                      "Transform in its context menu."))  # fmt: skip
+        hint.setWordWrap(True)
+        layout.addWidget(hint)
+
+    def _add_handles(self):
+        from .size_handles import Handles
+
+        self.object.recompute()
+        self.handles = Handles(self.object, self.kind, self.fill)
+
+    def fill(self):
+        """The object's values into the fields."""
+        self.filling = True
+        for name, field in self.fields.items():
+            if name in AXES:
+                field.show(self.object.Placement.Base[AXES.index(name)])
+            elif name == "Growth":
+                field.setValue(self.object.Growth)
+            else:
+                field.show(getattr(self.object, name).Value)
+        if self.kind == "Distance":
+            self.list.clear()
+            self.list.addItems(
+                [f"{linked.Label}: {name}" for linked, name in size_objects.references(self.object)]
+            )
+        self.filling = False
+
+    def _changed(self, store, value):
+        if self.filling:
+            return
+        store(value)
+        self.object.recompute()
+        if self.handles:
+            self.handles.place()
+
+    def _put(self, axis, value):
+        placement = self.object.Placement
+        base = placement.Base
+        base[axis] = value
+        placement.Base = base
+        self.object.Placement = placement
+
+    def add_selected(self):
+        """The faces and edges that are selected in the 3D view."""
+        found = size_objects.references(self.object)
+        for each in FreeCADGui.Selection.getSelectionEx(self.object.Document.Name):
+            for name in each.SubElementNames:
+                if name.startswith(("Face", "Edge")) and (each.Object, name) not in found:
+                    found.append((each.Object, name))
+        self._set_references(found)
+
+    def remove_marked(self):
+        marked = {index.row() for index in self.list.selectedIndexes()}
+        self._set_references(
+            [each for i, each in enumerate(size_objects.references(self.object)) if i not in marked]
+        )
+
+    def _set_references(self, found):
+        self.object.References = [(linked, (name,)) for linked, name in found]
+        self.object.recompute()
+        self.fill()
+
+    def close(self):
+        """Leave nothing in the 3D view."""
+        if self.handles:
+            self.handles.remove()
+            self.handles = None
+
+    def getStandardButtons(self):
+        return compatibility.as_number(QtGui.QDialogButtonBox.Ok | QtGui.QDialogButtonBox.Cancel)
+
+    def accept(self):
+        document = self.object.Document
+        document.commitTransaction()
+        FreeCADGui.getDocument(document.Name).resetEdit()
+        document.recompute()
+        return True
+
+    def reject(self):
+        document = self.object.Document
+        self.close()
+        document.abortTransaction()  # a new object is gone then; the end of the edit would commit
+        FreeCADGui.getDocument(document.Name).resetEdit()
+        document.recompute()
+        return True

@@ -1,0 +1,56 @@
+"""How size objects look: translucent in the 3D view, and with handles to drag while their panel is open."""
+
+import os
+
+import FreeCADGui
+
+from . import compatibility, size_objects
+
+ICONS = os.path.join(os.path.dirname(__file__), "icons")
+COLOUR = (0.91, 0.35, 0.05)
+TRANSPARENCY = 75
+
+
+def icon_of(kind):
+    return os.path.join(ICONS, f"size_{kind.lower()}.svg")
+
+
+class SizeViewProvider(compatibility.Stateless):
+    def __init__(self, view):
+        view.Proxy = self
+        view.ShapeColor = view.LineColor = COLOUR
+        view.Transparency = TRANSPARENCY
+        view.LineWidth = 1.5
+        if size_objects.kind_of(view.Object) == "Distance":
+            view.LineWidth = 4
+        view.Selectable = False  # what is inside must stay within reach of the mouse
+
+    def attach(self, view):
+        self.ViewObject = view
+        self.Object = view.Object
+
+    def getIcon(self):
+        return icon_of(size_objects.kind_of(self.Object))
+
+    def setEdit(self, view, mode=0):
+        from .size_panel import SizePanel
+
+        if mode != 0:
+            return None  # FreeCAD's own dragger, by "Transform" in the context menu
+        view.show()
+        self.panel = SizePanel(view.Object)
+        FreeCADGui.Control.showDialog(self.panel)
+        return True
+
+    def unsetEdit(self, _view, mode=0):
+        if mode != 0:
+            return None
+        self.panel.close()
+        FreeCADGui.Control.closeDialog()
+        return True
+
+    def doubleClicked(self, view):
+        document = FreeCADGui.getDocument(view.Object.Document)
+        if not document.getInEdit():
+            document.setEdit(view.Object.Name)
+        return True

@@ -1,0 +1,144 @@
+"""A mesh object of Gmsh or Netgen becomes one of ours, and ours one of Gmsh: with sizes, refinements, groups, mesh and
+place in the analysis. Works without the GUI."""
+
+import math
+
+import ObjectsFem
+
+from . import compatibility, extent, inputs, mesh_object, size_objects, up_to_date
+from .program import MesherError
+from .translations import doc, translate
+
+# Netgen's names for how fast sizes grow and how many elements there are along a radius of curvature.
+FINENESS = {
+    "VeryCoarse": (0.7, 1),
+    "Coarse": (0.5, 1.5),
+    "Moderate": (0.3, 2),
+    "Fine": (0.2, 3),
+    "VeryFine": (0.1, 5),
+}
+COMMON = ("CharacteristicLengthMax", "CharacteristicLengthMin", "MeshSizeFromCurvature", "ElementOrder")
+# Gmsh's settings without a counterpart of ours: the property, and the value that means it is not used.
+ONLY_GMSH = (
+    ("RecombineAll", False),
+    ("Recombine3DAll", False),
+    ("MeshBoundaryLayerList", []),
+    ("SecondOrderLinear", False),
+)
+
+
+def can_be_taken_over(obj):
+    return mesher_of(obj) in ("Gmsh", "Netgen")
+
+
+def mesher_of(obj):
+    """Gmsh, Netgen, or "" for other objects."""
+    of_proxy = getattr(getattr(obj, "Proxy", None), "Type", "")
+    if of_proxy == "Fem::FemMeshGmsh":
+        return "Gmsh"
+    if of_proxy == "Fem::FemMeshNetgen" or obj.TypeId == "Fem::FemMeshShapeNetgenObject":
+        return "Netgen"
+    return ""
+
+
+def take_over(old):
+    """Our object in place of one of Gmsh or Netgen: (the new object, what got lost, for people). One step of undo.
+    Raises MesherError."""
+    mesher = mesher_of(old)
+    if not mesher:
+        raise MesherError(
+            translate("collarmesh", "{label} is no mesh of Gmsh or Netgen.").format(label=old.Label)
+        )
+    document = old.Document
+    with compatibility.transaction(document, translate("collarmesh", "Take over by collarmesh")):
+        new = mesh_object.make(document, compatibility.meshed_object(old))
+        notes = (take_gmsh if mesher == "Gmsh" else take_netgen)(old, new)
+        new.MeshRegionList = compatibility.refinements_of(old)
+        new.MeshGroupList = getattr(old, "MeshGroupList", [])
+        setattr(new, size_objects.PROPERTY, getattr(old, size_objects.PROPERTY, []))
+        replace(old, new)
+        if new.FemMesh.NodeCount:
+            up_to_date.remember(
+                new, up_to_date.State([], mesher)
+            )  # its mesh is not of our making: out of date
+            up_to_date.show(new)
+    return new, notes
+
+
+def take_gmsh(old, new):
+    for name in COMMON:
+        if name in old.PropertiesList:
+            setattr(new, name, getattr(old, name))
+    lost = [name for name, unused in ONLY_GMSH if getattr(old, name, unused) != unused]
+    notes = [
+        translate("collarmesh", "Settings of Gmsh that collarmesh does not have: {names}").format(
+            names=", ".join(lost)
+        )
+    ]
+    return notes if lost else []
+
+
+def take_netgen(old, new):
+    part = compatibility.meshed_object(new)
+    largest = value_of(old, "MaxSize")
+    if part is None or largest < extent.bounding_box(part).DiagonalLength:
+        new.CharacteristicLengthMax = largest
+    new.CharacteristicLengthMin = value_of(old, "MinSize")
+    new.ElementOrder = mesh_object.ORDERS[bool(getattr(old, "SecondOrder", False))]
+    radius = value_of(old, "NbSegsPerRadius") or value_of(old, "CurvatureSafety")
+    growth, along_radius = FINENESS.get(getattr(old, "Fineness", ""), (value_of(old, "GrowthRate"), radius))
+    new.Gradation = growth
+    new.MeshSizeFromCurvature = round(2 * math.pi * along_radius)
+    return []
+
+
+def value_of(obj, name):
+    value = getattr(obj, name, 0)
+    return getattr(value, "Value", value)
+
+
+def hand_over(old):
+    """Gmsh's object in place of ours: (the new object, what got lost, for people). One step of undo."""
+    document = old.Document
+    notes = []
+    with compatibility.transaction(document, translate("collarmesh", "Hand over to Gmsh")):
+        new = ObjectsFem.makeMeshGmsh(document, "FEMMeshGmsh")
+        setattr(new, compatibility.shape_property(new), compatibility.meshed_object(old))
+        for name in COMMON:
+            if name in new.PropertiesList:
+                setattr(new, name, getattr(old, name))
+        if "SecondOrderLinear" in new.PropertiesList:
+            new.SecondOrderLinear = False
+        compatibility.set_refinements(new, old.MeshRegionList)
+        new.MeshGroupList = old.MeshGroupList
+        sizes = getattr(old, size_objects.PROPERTY)
+        if sizes:  # Gmsh does not heed them, but they are there when the mesh is taken over again
+            new.addProperty(
+                "App::PropertyLinkList", size_objects.PROPERTY, "Base", doc("Sizes of collarmesh"), 4
+            )
+            setattr(new, size_objects.PROPERTY, sizes)
+            names = ", ".join(each.Label for each in sizes)
+            notes.append(
+                translate("collarmesh", "Gmsh does not heed these sizes: {names}").format(names=names)
+            )
+        if inputs.triangles_of(compatibility.meshed_object(old) or old) is not None:
+            notes.append(translate("collarmesh", "FreeCAD's Gmsh cannot mesh triangle meshes."))
+        replace(old, new)
+    return new, notes
+
+
+def replace(old, new):
+    """`new` takes the mesh, the label and the place in analyses and groups of `old`, which is removed."""
+    new.FemMesh = old.FemMesh
+    for holder in old.InList:
+        if "Group" in holder.PropertiesList and old in holder.Group:
+            holder.Group = [new if each is old else each for each in holder.Group]
+    if "ViewObject" in dir(old) and old.ViewObject is not None and new.ViewObject is not None:
+        new.ViewObject.Visibility = old.ViewObject.Visibility
+    label = old.Label
+    # Removed objects of some kinds take with them what they list.
+    for name in ("MeshRegionList", "MeshRefinementList", "MeshGroupList", size_objects.PROPERTY):
+        if name in old.PropertiesList:
+            setattr(old, name, [])
+    old.Document.removeObject(old.Name)
+    new.Label = label

@@ -1,0 +1,142 @@
+"""Does a mesh still belong to its shape, its sizes and its settings? A mesh object remembers in hidden properties what
+its mesh was made of. Nothing here makes a mesh: that happens on request only."""
+
+import dataclasses
+import json
+import math
+
+import numpy
+
+from . import compatibility, inputs
+from .program import MesherError, Settings
+from .translations import doc, translate
+
+SHAPE, SETTINGS = "MeshedShape", "MeshedSettings"
+MARKS = 8  # numbers that stand for a shape
+SAME_PLACE = 1e-9  # relative to the largest coordinate; files of FreeCAD keep 16 digits
+DIGITS = 10  # of a setting
+WITHOUT_EFFECT = ("time_limit",)
+
+
+@dataclasses.dataclass
+class State:
+    """What a mesh is made of: numbers that stand for the shape, and the settings as text."""
+
+    shape: list
+    settings: str
+
+
+def add_properties(obj):
+    hidden = 4 + 16  # and of no consequence for a recompute
+    for kind, name, text in (("App::PropertyFloatList", SHAPE, doc("What shape the mesh was made of")),
+                             ("App::PropertyString", SETTINGS, doc("With what settings it was made"))):  # fmt: skip
+        if name not in obj.PropertiesList:
+            obj.addProperty(kind, name, "Base", text, hidden)
+
+
+def shape_numbers(part):
+    """Numbers that change with the shape of an object, or with the numbers of its faces and edges."""
+    mesh = inputs.triangles_of(part)
+    if mesh is not None:
+        points, triangles = mesh.Topology
+        return marks(numpy.array([tuple(p) for p in points]), numpy.array(triangles), inputs.segments(mesh))
+    shape = inputs.shape_of(part)
+    counts = [len(each) for each in (shape.Solids, shape.Faces, shape.Edges, shape.Vertexes)]
+    return marks(numpy.array([tuple(p) for p in sample(shape)]), numpy.array(counts))
+
+
+def sample(shape):
+    """Points on every vertex, edge and face."""
+    for vertex in shape.Vertexes:
+        yield vertex.Point
+    inside = (0.11, 0.5, 0.83)  # shares of the parameters' range, not symmetric
+    for edge in shape.Edges:
+        if not edge.Degenerated:
+            first, last = edge.ParameterRange
+            yield from (edge.valueAt(first + share * (last - first)) for share in inside)
+    for face in shape.Faces:
+        u0, u1, v0, v1 = face.ParameterRange
+        yield from (face.valueAt(u0 + s * (u1 - u0), v0 + t * (v1 - v0)) for s in inside for t in inside)
+
+
+def marks(points, *numbers):
+    """Sums of all coordinates and numbers with weights that depend on their places; the last one is the largest
+    coordinate, which says how exact they are."""
+    sums = numpy.zeros(MARKS)
+    frequencies = numpy.sqrt(numpy.arange(2, 2 + MARKS))
+    for values in (points, *numbers):
+        flat = numpy.ravel(values).astype(float)
+        places = numpy.arange(1, len(flat) + 1)
+        sums += [math.fsum(flat * numpy.cos(frequency * places)) for frequency in frequencies]
+    return [*sums.tolist(), float(numpy.abs(points).max(initial=0)), float(len(points))]
+
+
+def same_shape(first, second):
+    if len(first) != len(second) or first[-1] != second[-1]:
+        return False
+    tolerance = SAME_PLACE * max(first[-2], second[-2]) * math.sqrt(first[-1])
+    return all(abs(a - b) <= tolerance for a, b in zip(first[:-1], second[:-1]))
+
+
+def settings_text(settings, groups):
+    """`groups`: for each group object its name and sub-shapes."""
+    values = {
+        name: value for name, value in dataclasses.asdict(settings).items() if name not in WITHOUT_EFFECT
+    }
+    return json.dumps({**values, "groups": groups}, sort_keys=True)
+
+
+def same_settings(first, second):
+    """Settings that only one of them knows have their default in the other one, which is of an older version."""
+    if not (first.startswith("{") and second.startswith("{")):
+        return first == second
+    defaults = json.loads(settings_text(Settings(), []))
+    return rounded({**defaults, **json.loads(first)}) == rounded({**defaults, **json.loads(second)})
+
+
+def rounded(value):
+    if isinstance(value, dict):
+        return {key: rounded(each) for key, each in value.items()}
+    if isinstance(value, list):
+        return [rounded(each) for each in value]
+    return float(f"{value:.{DIGITS}g}") if isinstance(value, float) else value
+
+
+def state_of(obj):
+    """What a mesh of the object would be made of now. Raises MesherError."""
+    from . import mesh_object
+
+    part = compatibility.meshed_object(obj)
+    if part is None:
+        raise MesherError(
+            translate("collarmesh", "{label}: no object is chosen to be meshed.").format(label=obj.Label)
+        )
+    groups = [
+        [group.Name, [[linked.Name, list(names)] for linked, names in group.References]]
+        for group in obj.MeshGroupList
+    ]
+    return State(shape_numbers(part), settings_text(mesh_object.settings_of(obj), groups))
+
+
+def remember(obj, state):
+    setattr(obj, SHAPE, state.shape)
+    setattr(obj, SETTINGS, state.settings)
+
+
+def is_out_of_date(obj):
+    """Was the mesh made of something else than what is there now? False without a mesh."""
+    made_with = getattr(obj, SETTINGS, "")
+    if not made_with or obj.FemMesh.NodeCount == 0:
+        return False
+    try:
+        now = state_of(obj)
+    except Exception:  # of OpenCASCADE's, too: what cannot be looked at cannot be meshed
+        return True
+    return not (same_settings(made_with, now.settings) and same_shape(list(getattr(obj, SHAPE)), now.shape))
+
+
+def show(obj):
+    """Mark the object in the tree if it is out of date."""
+    proxy = getattr(getattr(obj, "ViewObject", None), "Proxy", None)
+    if hasattr(proxy, "show_out_of_date"):
+        proxy.show_out_of_date(is_out_of_date(obj))

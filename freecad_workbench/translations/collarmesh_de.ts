@@ -1,0 +1,922 @@
+<?xml version="1.0" encoding="utf-8"?>
+<!DOCTYPE TS>
+<TS version="2.1" language="de" sourcelanguage="en">
+  <context>
+    <name>App::Property</name>
+    <message>
+      <source>Another number gives another mesh of the same quality</source>
+      <translation>Eine andere Zahl ergibt ein anderes Netz gleicher Güte</translation>
+    </message>
+    <message>
+      <source>As few elements as the sizes ask for, thin ones in thin places; else the bound on circumradius / shortest edge holds everywhere outside collars</source>
+      <translation>So wenige Elemente, wie die Größen verlangen, dünne an dünnen Stellen; sonst gilt die Schranke für Umkugelradius / kürzeste Kante überall außerhalb der Kragen</translation>
+    </message>
+    <message>
+      <source>Bound on circumradius / shortest edge</source>
+      <translation>Schranke für Umkugelradius / kürzeste Kante</translation>
+    </message>
+    <message>
+      <source>Bound on dihedral angles in collars</source>
+      <translation>Schranke für Diederwinkel in Kragen</translation>
+    </message>
+    <message>
+      <source>Edges and faces that meet below it get a collar</source>
+      <translation>Kanten und Flächen, die sich unter einem kleineren Winkel treffen, bekommen einen Kragen</translation>
+    </message>
+    <message>
+      <source>Elements across thin parts; 0: any</source>
+      <translation>Elemente quer durch dünne Teile; 0: beliebig viele</translation>
+    </message>
+    <message>
+      <source>Elements on a full circle; 0: any</source>
+      <translation>Elemente auf einem vollen Kreis; 0: beliebig viele</translation>
+    </message>
+    <message>
+      <source>Faces and edges near which the size holds</source>
+      <translation>Flächen und Kanten, in deren Nähe die Größe gilt</translation>
+    </message>
+    <message>
+      <source>Faces this near to a plane are planar, relative to the diagonal; 0: 1e-6</source>
+      <translation>So nah an einer Ebene gilt eine Fläche als eben, relativ zur Diagonale; 0: 1e-6</translation>
+    </message>
+    <message>
+      <source>Finer parts of the mesh</source>
+      <translation>Feinere Teile des Netzes</translation>
+    </message>
+    <message>
+      <source>Give up after so many seconds; 0: never</source>
+      <translation>Nach so vielen Sekunden aufgeben; 0: nie</translation>
+    </message>
+    <message>
+      <source>Groups of the mesh</source>
+      <translation>Gruppen des Netzes</translation>
+    </message>
+    <message>
+      <source>Growth of size per unit length away from finer ones; 0: any</source>
+      <translation>Wachstum der Größe je Längeneinheit, von feineren Stellen weg; 0: beliebig</translation>
+    </message>
+    <message>
+      <source>Growth of size per unit length away from there</source>
+      <translation>Wachstum der Größe je Längeneinheit, von dort weg</translation>
+    </message>
+    <message>
+      <source>Height of the box along its z axis</source>
+      <translation>Höhe des Quaders entlang seiner z-Achse</translation>
+    </message>
+    <message>
+      <source>Height of the cylinder along its z axis</source>
+      <translation>Höhe des Zylinders entlang seiner z-Achse</translation>
+    </message>
+    <message>
+      <source>Improve elements with smaller dihedral angles; 0: 15, 20 or 30 degrees by the level of improvement</source>
+      <translation>Elemente mit kleineren Diederwinkeln verbessern; 0: 15, 20 oder 30 Grad je nach Stufe der Verbesserung</translation>
+    </message>
+    <message>
+      <source>Largest distance of faces and edges of the mesh from the shape; 0: 1/10 of the size, at most 1/200 of the diagonal (2nd order: 1/550)</source>
+      <translation>Größter Abstand der Flächen und Kanten des Netzes von der Form; 0: 1/10 der Größe, höchstens 1/200 der Diagonale (2. Ordnung: 1/550)</translation>
+    </message>
+    <message>
+      <source>Length of the box along its x axis</source>
+      <translation>Länge des Quaders entlang seiner x-Achse</translation>
+    </message>
+    <message>
+      <source>Never ask for less than this; 0: none</source>
+      <translation>Nie weniger als dies verlangen; 0: keine Grenze</translation>
+    </message>
+    <message>
+      <source>Order of the elements</source>
+      <translation>Ordnung der Elemente</translation>
+    </message>
+    <message>
+      <source>Points closer than this are one, relative to the diagonal; 0: 1e-9</source>
+      <translation>Punkte, die näher beieinander liegen, sind einer, relativ zur Diagonale; 0: 1e-9</translation>
+    </message>
+    <message>
+      <source>Radius of the cylinder</source>
+      <translation>Radius des Zylinders</translation>
+    </message>
+    <message>
+      <source>Radius of the sphere</source>
+      <translation>Radius der Kugel</translation>
+    </message>
+    <message>
+      <source>Removal of slivers: 0 none, 1 quick, 2 good, 3 best</source>
+      <translation>Entfernen flacher Elemente: 0 keines, 1 schnell, 2 gut, 3 am besten</translation>
+    </message>
+    <message>
+      <source>Sizes in spheres, boxes and cylinders and near faces and edges</source>
+      <translation>Größen in Kugeln, Quadern und Zylindern und nahe Flächen und Kanten</translation>
+    </message>
+    <message>
+      <source>Sizes of collarmesh</source>
+      <translation>Größen von collarmesh</translation>
+    </message>
+    <message>
+      <source>Target edge length inside</source>
+      <translation>Angestrebte Kantenlänge darin</translation>
+    </message>
+    <message>
+      <source>Target edge length; 0: 1/20 of the diagonal</source>
+      <translation>Angestrebte Kantenlänge; 0: 1/20 der Diagonale</translation>
+    </message>
+    <message>
+      <source>The object whose shape is meshed</source>
+      <translation>Das Objekt, dessen Form vernetzt wird</translation>
+    </message>
+    <message>
+      <source>The size holds up to this distance and grows beyond</source>
+      <translation>Die Größe gilt bis zu diesem Abstand und wächst jenseits davon</translation>
+    </message>
+    <message>
+      <source>What shape the mesh was made of</source>
+      <translation>Aus welcher Form das Netz gemacht ist</translation>
+    </message>
+    <message>
+      <source>What to do with triangles of the shape that intersect or leave holes. Automatic: repair them; None: refuse them; Wrap: where repair fails, mesh a closed surface around everything</source>
+      <translation>Was mit Dreiecken der Form geschieht, die sich schneiden oder Löcher lassen. Automatic: reparieren; None: ablehnen; Wrap: wo die Reparatur scheitert, eine geschlossene Hülle um alles vernetzen</translation>
+    </message>
+    <message>
+      <source>Where the shape has to be repaired, features below this are noise, relative to the diagonal; 0: 1e-5</source>
+      <translation>Wo die Form repariert werden muss, sind kleinere Merkmale Rauschen, relativ zur Diagonale; 0: 1e-5</translation>
+    </message>
+    <message>
+      <source>Which of its meshes the object has</source>
+      <translation>Welches seiner Netze das Objekt hat</translation>
+    </message>
+    <message>
+      <source>Width of the box along its y axis</source>
+      <translation>Breite des Quaders entlang seiner y-Achse</translation>
+    </message>
+    <message>
+      <source>With what settings it was made</source>
+      <translation>Mit welchen Einstellungen es gemacht ist</translation>
+    </message>
+  </context>
+  <context>
+    <name>collarmesh</name>
+    <message>
+      <source> mm per mm</source>
+      <translation> mm je mm</translation>
+    </message>
+    <message>
+      <source>'{text}' is no value: {error}</source>
+      <translation>„{text}“ ist kein Wert: {error}</translation>
+    </message>
+    <message>
+      <source>'{text}' is not in {unit}</source>
+      <translation>„{text}“ ist nicht in {unit}</translation>
+    </message>
+    <message>
+      <source>&lt; 1 s</source>
+      <translation>&lt; 1 s</translation>
+    </message>
+    <message>
+      <source>&lt;b&gt;A guarantee is missed&lt;/b&gt;</source>
+      <translation>&lt;b&gt;Eine Zusage ist verfehlt&lt;/b&gt;</translation>
+    </message>
+    <message>
+      <source>&lt;b&gt;Every guarantee holds&lt;/b&gt;</source>
+      <translation>&lt;b&gt;Alle Zusagen sind eingehalten&lt;/b&gt;</translation>
+    </message>
+    <message>
+      <source>&lt;b&gt;{tets}&lt;/b&gt; tetrahedra, &lt;b&gt;{nodes}&lt;/b&gt; nodes, &lt;b&gt;{faces}&lt;/b&gt; faces</source>
+      <translation>&lt;b&gt;{tets}&lt;/b&gt; Tetraeder, &lt;b&gt;{nodes}&lt;/b&gt; Knoten, &lt;b&gt;{faces}&lt;/b&gt; Flächen</translation>
+    </message>
+    <message>
+      <source>Add the selected</source>
+      <translation>Ausgewählte hinzufügen</translation>
+    </message>
+    <message>
+      <source>Advanced</source>
+      <translation>Erweitert</translation>
+    </message>
+    <message>
+      <source>Another number gives another mesh of the same quality</source>
+      <translation>Eine andere Zahl ergibt ein anderes Netz gleicher Güte</translation>
+    </message>
+    <message>
+      <source>As few elements as the sizes ask for</source>
+      <translation>So wenige Elemente, wie die Größen verlangen</translation>
+    </message>
+    <message>
+      <source>Ask for a smaller size in a box, which can be dragged and turned in the 3D view</source>
+      <translation>Eine kleinere Größe in einem Quader verlangen, der sich in der 3D-Ansicht ziehen und drehen lässt</translation>
+    </message>
+    <message>
+      <source>Ask for a smaller size in a cylinder, which can be dragged and turned in the 3D view</source>
+      <translation>Eine kleinere Größe in einem Zylinder verlangen, der sich in der 3D-Ansicht ziehen und drehen lässt</translation>
+    </message>
+    <message>
+      <source>Ask for a smaller size in a sphere, which can be dragged in the 3D view; select faces to put it there</source>
+      <translation>Eine kleinere Größe in einer Kugel verlangen, die sich in der 3D-Ansicht ziehen lässt; an ausgewählte Flächen wird sie gesetzt</translation>
+    </message>
+    <message>
+      <source>Ask for a smaller size on faces, edges or solids in the selected collarmesh mesh</source>
+      <translation>Eine kleinere Größe auf Flächen, Kanten oder Körpern im ausgewählten Netz von collarmesh verlangen</translation>
+    </message>
+    <message>
+      <source>Ask for a smaller size within a distance from the selected faces and edges</source>
+      <translation>Eine kleinere Größe bis zu einem Abstand von den ausgewählten Flächen und Kanten verlangen</translation>
+    </message>
+    <message>
+      <source>Bound on dihedral angles in collars</source>
+      <translation>Schranke für Diederwinkel in Kragen</translation>
+    </message>
+    <message>
+      <source>Cancel</source>
+      <translation>Abbrechen</translation>
+    </message>
+    <message>
+      <source>Cancelled; the mesh is the one from before.</source>
+      <translation>Abgebrochen; das Netz ist das von vorher.</translation>
+    </message>
+    <message>
+      <source>Choose a size; how many elements it makes and how long that takes is estimated for this shape</source>
+      <translation>Wählen Sie eine Größe; wie viele Elemente sie ergibt und wie lange das dauert, ist für diese Form geschätzt</translation>
+    </message>
+    <message>
+      <source>Circumradius / shortest edge</source>
+      <translation>Umkugelradius / kürzeste Kante</translation>
+    </message>
+    <message>
+      <source>Circumradius / shortest edge is bounded</source>
+      <translation>Umkugelradius / kürzeste Kante ist beschränkt</translation>
+    </message>
+    <message>
+      <source>Click to see the place</source>
+      <translation>Klicken zeigt die Stelle</translation>
+    </message>
+    <message>
+      <source>Coarse</source>
+      <translation>Grob</translation>
+    </message>
+    <message>
+      <source>Collars have no large angle</source>
+      <translation>Kragen haben keine großen Winkel</translation>
+    </message>
+    <message>
+      <source>Curved elements are not inverted</source>
+      <translation>Gekrümmte Elemente sind nicht umgestülpt</translation>
+    </message>
+    <message>
+      <source>Curved faces get so many elements on a full circle; 0: any number</source>
+      <translation>Gekrümmte Flächen bekommen so viele Elemente auf einem vollen Kreis; 0: beliebig viele</translation>
+    </message>
+    <message>
+      <source>Custom</source>
+      <translation>Eigene</translation>
+    </message>
+    <message>
+      <source>Drag the handles in the 3D view. To turn it, close this panel and choose Transform in its context menu.</source>
+      <translation>Ziehen Sie an den Griffen in der 3D-Ansicht. Zum Drehen schließen Sie dieses Fenster und wählen Transformieren im Kontextmenü.</translation>
+    </message>
+    <message>
+      <source>Each solid has its volume, no element is inverted</source>
+      <translation>Jeder Körper hat sein Volumen, kein Element ist umgestülpt</translation>
+    </message>
+    <message>
+      <source>Edges and faces that meet at less than this get a collar</source>
+      <translation>Kanten und Flächen, die sich unter einem kleineren Winkel treffen, bekommen einen Kragen</translation>
+    </message>
+    <message>
+      <source>Edit mesh</source>
+      <translation>Netz bearbeiten</translation>
+    </message>
+    <message>
+      <source>Element size</source>
+      <translation>Elementgröße</translation>
+    </message>
+    <message>
+      <source>Elements across gaps</source>
+      <translation>Elemente quer durch Dünnes</translation>
+    </message>
+    <message>
+      <source>Elements know their faces and edges</source>
+      <translation>Elemente kennen ihre Flächen und Kanten</translation>
+    </message>
+    <message>
+      <source>Elements of new meshes</source>
+      <translation>Elemente neuer Netze</translation>
+    </message>
+    <message>
+      <source>Elements on a full circle</source>
+      <translation>Elemente auf einem vollen Kreis</translation>
+    </message>
+    <message>
+      <source>Elements with smaller dihedral angles are improved; 0: 15, 20 or 30 degrees by the level of improvement</source>
+      <translation>Elemente mit kleineren Diederwinkeln werden verbessert; 0: 15, 20 oder 30 Grad je nach Stufe der Verbesserung</translation>
+    </message>
+    <message>
+      <source>End the run; the mesh stays as it is</source>
+      <translation>Den Lauf beenden; das Netz bleibt, wie es ist</translation>
+    </message>
+    <message>
+      <source>Export mesh</source>
+      <translation>Netz exportieren</translation>
+    </message>
+    <message>
+      <source>Export mesh...</source>
+      <translation>Netz exportieren...</translation>
+    </message>
+    <message>
+      <source>FEM mesh from shape by collarmesh</source>
+      <translation>FEM-Netz aus einer Form mit collarmesh</translation>
+    </message>
+    <message>
+      <source>Faces this near to a plane are planar, relative to the diagonal; 0: 1e-6</source>
+      <translation>So nah an einer Ebene gilt eine Fläche als eben, relativ zur Diagonale; 0: 1e-6</translation>
+    </message>
+    <message>
+      <source>Fine</source>
+      <translation>Fein</translation>
+    </message>
+    <message>
+      <source>Fineness</source>
+      <translation>Feinheit</translation>
+    </message>
+    <message>
+      <source>FreeCAD's Gmsh cannot mesh triangle meshes.</source>
+      <translation>Gmsh kann in FreeCAD keine Dreiecksnetze vernetzen.</translation>
+    </message>
+    <message>
+      <source>Give up after so many seconds; 0: never</source>
+      <translation>Nach so vielen Sekunden aufgeben; 0: nie</translation>
+    </message>
+    <message>
+      <source>Gmsh does not heed these sizes: {names}</source>
+      <translation>Gmsh beachtet diese Größen nicht: {names}</translation>
+    </message>
+    <message>
+      <source>Group of a collarmesh mesh</source>
+      <translation>Gruppe eines Netzes von collarmesh</translation>
+    </message>
+    <message>
+      <source>Groups</source>
+      <translation>Gruppen</translation>
+    </message>
+    <message>
+      <source>Growth away from it</source>
+      <translation>Wachstum davon weg</translation>
+    </message>
+    <message>
+      <source>Growth of the size</source>
+      <translation>Wachstum der Größe</translation>
+    </message>
+    <message>
+      <source>Growth of the size by unit of length away from finer places; 0: any</source>
+      <translation>Wachstum der Größe je Längeneinheit, von feineren Stellen weg; 0: beliebig</translation>
+    </message>
+    <message>
+      <source>Hand over to Gmsh</source>
+      <translation>An Gmsh übergeben</translation>
+    </message>
+    <message>
+      <source>Height</source>
+      <translation>Höhe</translation>
+    </message>
+    <message>
+      <source>Holds within</source>
+      <translation>Gilt bis zum Abstand</translation>
+    </message>
+    <message>
+      <source>How far faces and edges of elements may be from curved faces; 0: a tenth of the size, at most 1/200 of the diagonal (second order: 1/550)</source>
+      <translation>Wie weit Flächen und Kanten der Elemente von gekrümmten Flächen abweichen dürfen; 0: ein Zehntel der Größe, höchstens 1/200 der Diagonale (zweite Ordnung: 1/550)</translation>
+    </message>
+    <message>
+      <source>How many threads the program may use; they change no result</source>
+      <translation>Wie viele Threads das Programm benutzen darf; am Ergebnis ändern sie nichts</translation>
+    </message>
+    <message>
+      <source>How much time goes into removing flat elements</source>
+      <translation>Wie viel Zeit ins Entfernen flacher Elemente geht</translation>
+    </message>
+    <message>
+      <source>Improve below this angle</source>
+      <translation>Unter diesem Winkel verbessern</translation>
+    </message>
+    <message>
+      <source>Improvement</source>
+      <translation>Verbesserung</translation>
+    </message>
+    <message>
+      <source>Improvement of new meshes</source>
+      <translation>Verbesserung neuer Netze</translation>
+    </message>
+    <message>
+      <source>Largest angle in collars</source>
+      <translation>Größter Winkel in Kragen</translation>
+    </message>
+    <message>
+      <source>Largest dihedral angle</source>
+      <translation>Größter Diederwinkel</translation>
+    </message>
+    <message>
+      <source>Largest distance from the shape</source>
+      <translation>Größter Abstand von der Form</translation>
+    </message>
+    <message>
+      <source>Length</source>
+      <translation>Länge</translation>
+    </message>
+    <message>
+      <source>Length that the edges of the elements are to have</source>
+      <translation>Länge, die die Kanten der Elemente haben sollen</translation>
+    </message>
+    <message>
+      <source>Make a tetrahedral mesh of the selected solid, certified, with groups for its faces</source>
+      <translation>Ein geprüftes Tetraedernetz des ausgewählten Körpers machen, mit Gruppen für seine Flächen</translation>
+    </message>
+    <message>
+      <source>Make the selected mesh of Gmsh or Netgen one of collarmesh, with its sizes and groups</source>
+      <translation>Das ausgewählte Netz von Gmsh oder Netgen zu einem von collarmesh machen, mit seinen Größen und Gruppen</translation>
+    </message>
+    <message>
+      <source>Median edge length</source>
+      <translation>Median der Kantenlängen</translation>
+    </message>
+    <message>
+      <source>Medium</source>
+      <translation>Mittel</translation>
+    </message>
+    <message>
+      <source>Mesh</source>
+      <translation>Vernetzen</translation>
+    </message>
+    <message>
+      <source>Mesh again</source>
+      <translation>Neu vernetzen</translation>
+    </message>
+    <message>
+      <source>Mesh by collarmesh</source>
+      <translation>Netz von collarmesh</translation>
+    </message>
+    <message>
+      <source>Name the elements on faces, edges or solids in the selected collarmesh mesh</source>
+      <translation>Die Elemente auf Flächen, Kanten oder in Körpern im ausgewählten Netz von collarmesh benennen</translation>
+    </message>
+    <message>
+      <source>Never ask for smaller elements than this; 0: no limit</source>
+      <translation>Nie kleinere Elemente verlangen; 0: keine Grenze</translation>
+    </message>
+    <message>
+      <source>No mesh is made; the list says why.</source>
+      <translation>Es ist kein Netz entstanden; die Liste sagt, warum.</translation>
+    </message>
+    <message>
+      <source>No program shows pages; the report is {path}</source>
+      <translation>Kein Programm zeigt Seiten an; der Bericht ist {path}</translation>
+    </message>
+    <message>
+      <source>Nodes</source>
+      <translation>Knoten</translation>
+    </message>
+    <message>
+      <source>Nodes off their face ({count})</source>
+      <translation>Knoten neben ihrer Fläche ({count})</translation>
+    </message>
+    <message>
+      <source>Open a page with all measurements and a view of the mesh</source>
+      <translation>Eine Seite mit allen Messwerten und einer Ansicht des Netzes öffnen</translation>
+    </message>
+    <message>
+      <source>Order of the elements</source>
+      <translation>Ordnung der Elemente</translation>
+    </message>
+    <message>
+      <source>Points closer than this are one, relative to the diagonal; 0: 1e-9</source>
+      <translation>Punkte, die näher beieinander liegen, sind einer, relativ zur Diagonale; 0: 1e-9</translation>
+    </message>
+    <message>
+      <source>Position {axis}</source>
+      <translation>Position {axis}</translation>
+    </message>
+    <message>
+      <source>Problems ({count})</source>
+      <translation>Probleme ({count})</translation>
+    </message>
+    <message>
+      <source>Program collarmesh</source>
+      <translation>Programm collarmesh</translation>
+    </message>
+    <message>
+      <source>Quality</source>
+      <translation>Güte</translation>
+    </message>
+    <message>
+      <source>Radius</source>
+      <translation>Radius</translation>
+    </message>
+    <message>
+      <source>Refinement of a collarmesh mesh</source>
+      <translation>Verfeinerung eines Netzes von collarmesh</translation>
+    </message>
+    <message>
+      <source>Remove</source>
+      <translation>Entfernen</translation>
+    </message>
+    <message>
+      <source>Repair of the shape</source>
+      <translation>Reparatur der Form</translation>
+    </message>
+    <message>
+      <source>Repaired ({count})</source>
+      <translation>Repariert ({count})</translation>
+    </message>
+    <message>
+      <source>Report</source>
+      <translation>Bericht</translation>
+    </message>
+    <message>
+      <source>Run</source>
+      <translation>Lauf</translation>
+    </message>
+    <message>
+      <source>Second order: nodes amid edges, on the exact faces</source>
+      <translation>Zweite Ordnung: Knoten mitten auf den Kanten, auf den exakten Flächen</translation>
+    </message>
+    <message>
+      <source>Seed</source>
+      <translation>Startzahl</translation>
+    </message>
+    <message>
+      <source>Select faces and edges in the 3D view, then add them:</source>
+      <translation>Flächen und Kanten in der 3D-Ansicht auswählen, dann hinzufügen:</translation>
+    </message>
+    <message>
+      <source>Settings of Gmsh that collarmesh does not have: {names}</source>
+      <translation>Einstellungen von Gmsh, die collarmesh nicht hat: {names}</translation>
+    </message>
+    <message>
+      <source>Shape</source>
+      <translation>Form</translation>
+    </message>
+    <message>
+      <source>Sharp below this angle</source>
+      <translation>Spitz unter diesem Winkel</translation>
+    </message>
+    <message>
+      <source>Size</source>
+      <translation>Größe</translation>
+    </message>
+    <message>
+      <source>Size in a box</source>
+      <translation>Größe in einem Quader</translation>
+    </message>
+    <message>
+      <source>Size in a cylinder</source>
+      <translation>Größe in einem Zylinder</translation>
+    </message>
+    <message>
+      <source>Size in a sphere</source>
+      <translation>Größe in einer Kugel</translation>
+    </message>
+    <message>
+      <source>Size near faces and edges</source>
+      <translation>Größe nahe Flächen und Kanten</translation>
+    </message>
+    <message>
+      <source>Size of the elements</source>
+      <translation>Größe der Elemente</translation>
+    </message>
+    <message>
+      <source>Sizes</source>
+      <translation>Größen</translation>
+    </message>
+    <message>
+      <source>Smallest dihedral angle</source>
+      <translation>Kleinster Diederwinkel</translation>
+    </message>
+    <message>
+      <source>Smallest dihedral angle of each tetrahedron</source>
+      <translation>Kleinster Diederwinkel jedes Tetraeders</translation>
+    </message>
+    <message>
+      <source>Smallest size</source>
+      <translation>Kleinste Größe</translation>
+    </message>
+    <message>
+      <source>Statistics of {label}</source>
+      <translation>Statistik von {label}</translation>
+    </message>
+    <message>
+      <source>Statistics...</source>
+      <translation>Statistik...</translation>
+    </message>
+    <message>
+      <source>Take over by collarmesh</source>
+      <translation>Mit collarmesh übernehmen</translation>
+    </message>
+    <message>
+      <source>Tetrahedra</source>
+      <translation>Tetraeder</translation>
+    </message>
+    <message>
+      <source>The bound that the elements keep; at least 2 always ends</source>
+      <translation>Die Schranke, die die Elemente einhalten; ab 2 endet der Lauf immer</translation>
+    </message>
+    <message>
+      <source>The mesh fills the shape: every face, edge and corner is kept</source>
+      <translation>Das Netz füllt die Form: jede Fläche, Kante und Ecke ist erhalten</translation>
+    </message>
+    <message>
+      <source>The mesh is sound</source>
+      <translation>Das Netz ist fehlerfrei</translation>
+    </message>
+    <message>
+      <source>The mesher wrote a mesh without elements; please report it with the shape.</source>
+      <translation>Der Vernetzer hat ein Netz ohne Elemente geschrieben; bitte melden Sie das mit der Form.</translation>
+    </message>
+    <message>
+      <source>The part was changed while it was meshed: this is the mesh of the part as it was before. Mesh it again.</source>
+      <translation>Das Teil wurde während des Vernetzens geändert: dies ist das Netz des Teils, wie es vorher war. Vernetzen Sie es neu.</translation>
+    </message>
+    <message>
+      <source>The program collarmesh</source>
+      <translation>Das Programm collarmesh</translation>
+    </message>
+    <message>
+      <source>The worst tetrahedron: {angle}°. Click to see it.</source>
+      <translation>Das schlechteste Tetraeder: {angle}°. Klicken zeigt es.</translation>
+    </message>
+    <message>
+      <source>Thin elements have no small or large angle</source>
+      <translation>Dünne Elemente haben keine kleinen oder großen Winkel</translation>
+    </message>
+    <message>
+      <source>Thin places of the shape get so many elements across; 0: any number</source>
+      <translation>Dünne Stellen der Form bekommen so viele Elemente quer hindurch; 0: beliebig viele</translation>
+    </message>
+    <message>
+      <source>Threads</source>
+      <translation>Threads</translation>
+    </message>
+    <message>
+      <source>Time limit in seconds</source>
+      <translation>Zeitgrenze in Sekunden</translation>
+    </message>
+    <message>
+      <source>Tolerance of planes</source>
+      <translation>Toleranz von Ebenen</translation>
+    </message>
+    <message>
+      <source>Tolerance of points</source>
+      <translation>Toleranz von Punkten</translation>
+    </message>
+    <message>
+      <source>Tolerance of repair</source>
+      <translation>Toleranz der Reparatur</translation>
+    </message>
+    <message>
+      <source>Triangles on faces</source>
+      <translation>Dreiecke auf Flächen</translation>
+    </message>
+    <message>
+      <source>Very coarse</source>
+      <translation>Sehr grob</translation>
+    </message>
+    <message>
+      <source>Very fine</source>
+      <translation>Sehr fein</translation>
+    </message>
+    <message>
+      <source>Volume</source>
+      <translation>Volumen</translation>
+    </message>
+    <message>
+      <source>Warnings ({count})</source>
+      <translation>Warnungen ({count})</translation>
+    </message>
+    <message>
+      <source>Width</source>
+      <translation>Breite</translation>
+    </message>
+    <message>
+      <source>Worst elements ({count})</source>
+      <translation>Schlechteste Elemente ({count})</translation>
+    </message>
+    <message>
+      <source>about {time} left</source>
+      <translation>noch etwa {time}</translation>
+    </message>
+    <message>
+      <source>and {count} more</source>
+      <translation>und {count} weitere</translation>
+    </message>
+    <message>
+      <source>any</source>
+      <translation>beliebig</translation>
+    </message>
+    <message>
+      <source>as many as cores</source>
+      <translation>so viele wie Kerne</translation>
+    </message>
+    <message>
+      <source>as the sizes ask for</source>
+      <translation>wie die Größen verlangen</translation>
+    </message>
+    <message>
+      <source>automatic</source>
+      <translation>automatisch</translation>
+    </message>
+    <message>
+      <source>best</source>
+      <translation>am besten</translation>
+    </message>
+    <message>
+      <source>checking</source>
+      <translation>wird geprüft</translation>
+    </message>
+    <message>
+      <source>coarsening</source>
+      <translation>wird vergröbert</translation>
+    </message>
+    <message>
+      <source>default</source>
+      <translation>Vorgabe</translation>
+    </message>
+    <message>
+      <source>dihedral angles from {smallest}° to {largest}°, in {time}</source>
+      <translation>Diederwinkel von {smallest}° bis {largest}°, in {time}</translation>
+    </message>
+    <message>
+      <source>faces and edges</source>
+      <translation>Flächen und Kanten</translation>
+    </message>
+    <message>
+      <source>filling with elements</source>
+      <translation>wird mit Elementen gefüllt</translation>
+    </message>
+    <message>
+      <source>first (straight, 4 nodes)</source>
+      <translation>erste (gerade, 4 Knoten)</translation>
+    </message>
+    <message>
+      <source>found by itself</source>
+      <translation>wird von selbst gefunden</translation>
+    </message>
+    <message>
+      <source>good</source>
+      <translation>gut</translation>
+    </message>
+    <message>
+      <source>improving</source>
+      <translation>wird verbessert</translation>
+    </message>
+    <message>
+      <source>largest angle</source>
+      <translation>größter Winkel</translation>
+    </message>
+    <message>
+      <source>loading the mesh</source>
+      <translation>Netz wird geladen</translation>
+    </message>
+    <message>
+      <source>none</source>
+      <translation>keine</translation>
+    </message>
+    <message>
+      <source>none, refuse</source>
+      <translation>keine, ablehnen</translation>
+    </message>
+    <message>
+      <source>onto the exact faces</source>
+      <translation>auf die exakten Flächen</translation>
+    </message>
+    <message>
+      <source>quick</source>
+      <translation>schnell</translation>
+    </message>
+    <message>
+      <source>reading the shape</source>
+      <translation>Form wird gelesen</translation>
+    </message>
+    <message>
+      <source>repairing</source>
+      <translation>wird repariert</translation>
+    </message>
+    <message>
+      <source>second (curved, 10 nodes)</source>
+      <translation>zweite (gekrümmt, 10 Knoten)</translation>
+    </message>
+    <message>
+      <source>second order</source>
+      <translation>zweite Ordnung</translation>
+    </message>
+    <message>
+      <source>smallest angle</source>
+      <translation>kleinster Winkel</translation>
+    </message>
+    <message>
+      <source>the whole object</source>
+      <translation>das ganze Objekt</translation>
+    </message>
+    <message>
+      <source>wrap where it fails</source>
+      <translation>umhüllen, wo sie scheitert</translation>
+    </message>
+    <message>
+      <source>writing</source>
+      <translation>wird geschrieben</translation>
+    </message>
+    <message>
+      <source>{angle}° in element {number}</source>
+      <translation>{angle}° in Element {number}</translation>
+    </message>
+    <message>
+      <source>{edge} at {place} is only {length} mm long, the mesh becomes very fine there: remove the edge if it is not meant (Part: Defeaturing)</source>
+      <translation>{edge} bei {place} ist nur {length} mm lang, dort wird das Netz sehr fein: entfernen Sie die Kante, wenn sie nicht gewollt ist (Part: Formmerkmal entfernen)</translation>
+    </message>
+    <message>
+      <source>{label} has no faces and edges; choose some, or delete it.</source>
+      <translation>{label} hat keine Flächen und Kanten; wählen Sie welche oder löschen Sie es.</translation>
+    </message>
+    <message>
+      <source>{label} has no mesh yet.</source>
+      <translation>{label} hat noch kein Netz.</translation>
+    </message>
+    <message>
+      <source>{label} has no shape; recompute it.</source>
+      <translation>{label} hat keine Form; berechnen Sie es neu.</translation>
+    </message>
+    <message>
+      <source>{label} has no triangles.</source>
+      <translation>{label} hat keine Dreiecke.</translation>
+    </message>
+    <message>
+      <source>{label} is no mesh of Gmsh or Netgen.</source>
+      <translation>{label} ist kein Netz von Gmsh oder Netgen.</translation>
+    </message>
+    <message>
+      <source>{label} refers to {other}, but {part} is meshed; choose its faces and edges.</source>
+      <translation>{label} verweist auf {other}, vernetzt wird aber {part}; wählen Sie dessen Flächen und Kanten.</translation>
+    </message>
+    <message>
+      <source>{label} refers to {other}, but {part} is meshed; choose its sub-shapes.</source>
+      <translation>{label} verweist auf {other}, vernetzt wird aber {part}; wählen Sie dessen Teilformen.</translation>
+    </message>
+    <message>
+      <source>{label}: Growth is {value}, but sizes grow by 0 or more.</source>
+      <translation>{label}: Growth ist {value}, aber Größen wachsen um 0 oder mehr.</translation>
+    </message>
+    <message>
+      <source>{label}: no object is chosen to be meshed.</source>
+      <translation>{label}: es ist kein Objekt zum Vernetzen gewählt.</translation>
+    </message>
+    <message>
+      <source>{label}: {name} cannot have a size of its own.</source>
+      <translation>{label}: {name} kann keine eigene Größe haben.</translation>
+    </message>
+    <message>
+      <source>{label}: {name} is no face and no edge.</source>
+      <translation>{label}: {name} ist keine Fläche und keine Kante.</translation>
+    </message>
+    <message>
+      <source>{label}: {name} is the seam of a face, which the mesh does not have; choose the face.</source>
+      <translation>{label}: {name} ist die Naht einer Fläche, die das Netz nicht hat; wählen Sie die Fläche.</translation>
+    </message>
+    <message>
+      <source>{label}: {part} has no {name} any more; choose its faces and edges again.</source>
+      <translation>{label}: {part} hat keine {name} mehr; wählen Sie die Flächen und Kanten neu.</translation>
+    </message>
+    <message>
+      <source>{label}: {property} is {value}, but must be positive.</source>
+      <translation>{label}: {property} ist {value}, muss aber positiv sein.</translation>
+    </message>
+    <message>
+      <source>{n} h</source>
+      <translation>{n} h</translation>
+    </message>
+    <message>
+      <source>{n} min</source>
+      <translation>{n} min</translation>
+    </message>
+    <message>
+      <source>{n} s</source>
+      <translation>{n} s</translation>
+    </message>
+    <message>
+      <source>{object}: no new mesh is made</source>
+      <translation>{object}: es ist kein neues Netz entstanden</translation>
+    </message>
+    <message>
+      <source>{object}: the mesh is made</source>
+      <translation>{object}: das Netz ist fertig</translation>
+    </message>
+    <message>
+      <source>{smallest}° to {largest}° in element {number}</source>
+      <translation>{smallest}° bis {largest}° in Element {number}</translation>
+    </message>
+    <message>
+      <source>{tets} elements so far</source>
+      <translation>bisher {tets} Elemente</translation>
+    </message>
+    <message>
+      <source>≈ elements</source>
+      <translation>≈ Elemente</translation>
+    </message>
+    <message>
+      <source>≈ time</source>
+      <translation>≈ Zeit</translation>
+    </message>
+  </context>
+</TS>

@@ -1,0 +1,175 @@
+// VTK's XML format for unstructured grids in pieces, put together by the numbers that points and cells have
+// in the whole mesh. Ghost cells are left out, as another piece has them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <pugixml.hpp>
+#include <set>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "collarmesh/error.h"
+#include "io/file_bytes.h"
+#include "io/tet_mesh_formats.h"
+#include "io/vtk_grid.h"
+
+namespace collarmesh::io {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A piece, and the file it is of.
+struct NamedPiece {
+  std::string path;
+  VtkPiece piece;
+  std::vector<std::int64_t> point_of;  ///< the place of each of its points in the whole mesh
+};
+
+std::vector<std::string> files_of_pieces(const std::string& path) {
+  const std::string text = read_bytes(path);
+  pugi::xml_document document;
+  const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size());
+  if (!parsed)
+    throw ReadError(
+        fmt::format("{}: byte {}: the XML is malformed: {}", path, parsed.offset, parsed.description()));
+  const pugi::xml_node grid = document.child("VTKFile").child("PUnstructuredGrid");
+  if (!grid) throw ReadError(path + ": expected a VTKFile with a PUnstructuredGrid");
+  std::vector<std::string> files;
+  std::set<std::string> known;
+  for (const pugi::xml_node& piece : grid.children("Piece")) {
+    const std::string source = piece.attribute("Source").value();
+    if (source.empty()) throw ReadError(path + ": a Piece has no Source");
+    std::string file = (fs::path(path).parent_path() / source).string();
+    if (!known.insert(file).second) throw ReadError(fmt::format("{}: two pieces are {}", path, source));
+    files.push_back(std::move(file));
+  }
+  return files;
+}
+
+const std::vector<std::int64_t>& numbers(const NamedPiece& named, const VtkPiece::Arrays& arrays,
+                                         std::string_view name, std::size_t count) {
+  static const std::vector<std::int64_t> nothing;
+  const auto found = arrays.find(name);
+  if (found != arrays.end() && found->second.size() == count) return found->second;
+  if (count == 0) return nothing;
+  throw ReadError(fmt::format(
+      "{}: expected an array '{}', by which the pieces are put together; save numbers of points and "
+      "cells with them, or use the pieces one by one",
+      named.path, name));
+}
+
+/// Points of several pieces that have one number become one.
+void join_points(std::vector<NamedPiece>& pieces, VtkPiece& whole) {
+  struct Place {
+    std::int64_t number;
+    std::size_t piece, point;
+  };
+  std::vector<Place> places;
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    const VtkPiece& piece = pieces[k].piece;
+    const auto& ids = numbers(pieces[k], piece.point_data, vtk_point_ids, piece.points.size());
+    for (std::size_t i = 0; i < ids.size(); ++i) places.push_back({ids[i], k, i});
+    pieces[k].point_of.resize(piece.points.size());
+  }
+  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+    return std::tie(a.number, a.piece, a.point) < std::tie(b.number, b.piece, b.point);
+  });
+  std::vector<Place> kept;
+  for (const Place& place : places) {
+    const Point& p = pieces[place.piece].piece.points[place.point];
+    if (kept.empty() || kept.back().number != place.number) {
+      kept.push_back(place);
+      whole.points.push_back(p);
+    } else if (p != whole.points.back()) {
+      throw ReadError(fmt::format("{}: point {} is at ({}, {}, {}), but in another piece at ({}, {}, {})",
+                                  pieces[place.piece].path, place.number, p.x, p.y, p.z,
+                                  whole.points.back().x, whole.points.back().y, whole.points.back().z));
+    }
+    pieces[place.piece].point_of[place.point] = static_cast<std::int64_t>(whole.points.size()) - 1;
+  }
+  for (const std::string_view name : vtk_point_arrays) {
+    const bool everywhere = std::all_of(pieces.begin(), pieces.end(), [&](const NamedPiece& each) {
+      return each.piece.point_data.count(name) > 0;
+    });
+    if (!everywhere || name == vtk_point_ids) continue;
+    auto& values = whole.point_data[std::string(name)];
+    for (const Place& place : kept)
+      values.push_back(pieces[place.piece].piece.point_data.find(name)->second[place.point]);
+  }
+}
+
+/// In the order of their numbers.
+void join_cells(const std::vector<NamedPiece>& pieces, VtkPiece& whole) {
+  struct Place {
+    std::int64_t number;
+    std::size_t piece, cell;
+  };
+  std::vector<Place> places;
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    const VtkPiece& piece = pieces[k].piece;
+    const auto& ids = numbers(pieces[k], piece.cell_data, vtk_cell_ids, piece.types.size());
+    const auto ghosts = piece.cell_data.find(vtk_ghosts);
+    for (std::size_t i = 0; i < ids.size(); ++i)
+      if (ghosts == piece.cell_data.end() || ghosts->second[i] == 0) places.push_back({ids[i], k, i});
+  }
+  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+    return std::tie(a.number, a.piece, a.cell) < std::tie(b.number, b.piece, b.cell);
+  });
+  for (std::size_t i = 1; i < places.size(); ++i)
+    if (places[i].number == places[i - 1].number)
+      throw ReadError(fmt::format("{}: cell {} is in another place, too, and in none of them a ghost",
+                                  pieces[places[i].piece].path, places[i].number));
+  for (const Place& place : places) {
+    const auto& [path, piece, point_of] = pieces[place.piece];
+    const auto size = static_cast<std::int64_t>(piece.connectivity.size());
+    const std::int64_t begin = place.cell == 0 ? 0 : piece.ends[place.cell - 1], end = piece.ends[place.cell];
+    if (begin < 0 || end < begin || end > size)
+      throw ReadError(fmt::format("{}: cell {} has the corners {} to {}, but there are {}", path, place.cell,
+                                  begin, end, size));
+    for (std::int64_t at = begin; at < end; ++at) {
+      const std::int64_t corner = piece.connectivity[static_cast<std::size_t>(at)];
+      if (corner < 0 || corner >= static_cast<std::int64_t>(point_of.size()))
+        throw ReadError(fmt::format("{}: cell {} has the corner {}, but there are {} points", path,
+                                    place.cell, corner, point_of.size()));
+      whole.connectivity.push_back(point_of[static_cast<std::size_t>(corner)]);
+    }
+    whole.ends.push_back(static_cast<std::int64_t>(whole.connectivity.size()));
+    whole.types.push_back(piece.types[place.cell]);
+  }
+  for (const std::string_view name : vtk_cell_arrays) {
+    const bool everywhere = std::all_of(pieces.begin(), pieces.end(), [&](const NamedPiece& each) {
+      return each.piece.cell_data.count(name) > 0;
+    });
+    if (!everywhere || name == vtk_cell_ids || name == vtk_ghosts) continue;
+    auto& values = whole.cell_data[std::string(name)];
+    for (const Place& place : places)
+      values.push_back(pieces[place.piece].piece.cell_data.find(name)->second[place.cell]);
+  }
+}
+
+}  // namespace
+
+TetMesh read_pvtu(const std::string& path) {
+  std::vector<NamedPiece> pieces;
+  for (const std::string& file : files_of_pieces(path))
+    for (VtkPiece& piece : read_vtu_pieces(file)) pieces.push_back({file, std::move(piece), {}});
+  VtkPiece whole;
+  join_points(pieces, whole);
+  join_cells(pieces, whole);
+  TetMesh mesh;
+  try {
+    add_vtk_piece(whole, mesh);
+  } catch (const VtkPieceError& error) {
+    throw ReadError(fmt::format("{}: {}", path, error.message));
+  }
+  if (mesh.tets.empty()) throw ReadError(path + ": expected tetrahedra, found none");
+  complete_vtk_mesh(path, mesh);
+  return mesh;
+}
+
+}  // namespace collarmesh::io

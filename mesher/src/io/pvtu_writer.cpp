@@ -1,0 +1,237 @@
+// VTK's XML format for unstructured grids in pieces: NAME.pvtu names a .vtu file for each partition,
+// NAME_0.vtu and so on. Points and cells have their numbers in the whole mesh. Ghost cells, and points that
+// another piece owns, are marked as VTK marks them (vtkDataSetAttributes: DUPLICATECELL, DUPLICATEPOINT).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "io/cell_nodes.h"
+#include "io/cell_partitions.h"
+#include "io/file_writer.h"
+#include "io/tet_mesh_formats.h"
+#include "io/vtk_grid.h"
+
+namespace collarmesh::io {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint8_t duplicate = 1;
+
+/// What of a mesh is in one piece; ghosts are among the tets, behind its own.
+struct Members {
+  std::vector<Index> tets, faces, edges, points;
+  std::size_t own_tets = 0;
+};
+
+/// The members by partition, all but the points.
+std::vector<Members> members_by_partition(const TetMesh& mesh, const std::vector<Index>& numbers,
+                                          bool with_ghosts) {
+  std::vector<Members> members(numbers.size());
+  const auto of = [&](Index partition) -> Members& {
+    return members[static_cast<std::size_t>(std::lower_bound(numbers.begin(), numbers.end(), partition) -
+                                            numbers.begin())];
+  };
+  const std::vector<Index> faces = partitions_of_faces(mesh), edges = partitions_of_edges(mesh);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    of(mesh.tet_partition[t]).tets.push_back(static_cast<Index>(t));
+  for (std::size_t f = 0; f < faces.size(); ++f) of(faces[f]).faces.push_back(static_cast<Index>(f));
+  for (std::size_t e = 0; e < edges.size(); ++e) of(edges[e]).edges.push_back(static_cast<Index>(e));
+  for (Members& each : members) each.own_tets = each.tets.size();
+  if (!with_ghosts) return members;
+  const std::vector<std::vector<Index>> ghosts = ghost_tets(mesh);
+  for (std::size_t k = 0; k < members.size(); ++k)
+    members[k].tets.insert(members[k].tets.end(), ghosts[k].begin(), ghosts[k].end());
+  return members;
+}
+
+template <class T>
+std::vector<T> picked(const std::vector<T>& values, const std::vector<Index>& which) {
+  std::vector<T> result;
+  if (values.empty()) return result;
+  result.reserve(which.size());
+  for (const Index i : which) result.push_back(values[i]);
+  return result;
+}
+
+/// Cuts pieces out of a mesh.
+class Cutter {
+ public:
+  explicit Cutter(const TetMesh& mesh) : mesh_(mesh), local_(mesh.points.size(), none) {}
+
+  /// The points of these cells, ascending; of the first piece those that no cell has, too.
+  void find_points(Members& members, bool first) const {
+    std::vector<Index>& points = members.points;
+    const auto add = [&](const CellNodes& nodes) { points.insert(points.end(), nodes.begin(), nodes.end()); };
+    for (const Index t : members.tets) add(nodes_of_tet(mesh_, t));
+    for (const Index f : members.faces) add(nodes_of_face(mesh_, f));
+    for (const Index e : members.edges) add(nodes_of_edge(mesh_, e));
+    if (first) add_loose_points(points);
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+  }
+
+  TetMesh cut(const Members& members) {
+    for (std::size_t i = 0; i < members.points.size(); ++i) local_[members.points[i]] = static_cast<Index>(i);
+    TetMesh part;
+    part.points = picked(mesh_.points, members.points);
+    part.features = picked(mesh_.features, members.points);
+    part.tets = numbered(picked(mesh_.tets, members.tets));
+    part.tet_mid_nodes = numbered(picked(mesh_.tet_mid_nodes, members.tets));
+    part.tet_region = picked(mesh_.tet_region, members.tets);
+    part.tet_tag = picked(mesh_.tet_tag, members.tets);
+    part.tet_collar = picked(mesh_.tet_collar, members.tets);
+    part.tet_crease = picked(mesh_.tet_crease, members.tets);
+    part.tet_thin = picked(mesh_.tet_thin, members.tets);
+    part.tet_partition = picked(mesh_.tet_partition, members.tets);
+    part.faces = numbered(picked(mesh_.faces, members.faces));
+    part.face_mid_nodes = numbered(picked(mesh_.face_mid_nodes, members.faces));
+    part.face_regions = picked(mesh_.face_regions, members.faces);
+    part.face_patch = picked(mesh_.face_patch, members.faces);
+    part.face_tag = picked(mesh_.face_tag, members.faces);
+    part.edges = numbered(picked(mesh_.edges, members.edges));
+    for (const Index node : picked(mesh_.edge_mid_nodes, members.edges))
+      part.edge_mid_nodes.push_back(local_[node]);
+    part.edge_curve = picked(mesh_.edge_curve, members.edges);
+    part.edge_tag = picked(mesh_.edge_tag, members.edges);
+    return part;
+  }
+
+ private:
+  template <std::size_t n>
+  std::vector<std::array<Index, n>> numbered(std::vector<std::array<Index, n>> cells) const {
+    for (auto& cell : cells)
+      for (Index& v : cell) v = local_[v];
+    return cells;
+  }
+
+  void add_loose_points(std::vector<Index>& points) const {
+    std::vector<bool> used(mesh_.points.size(), false);
+    const auto mark = [&](const CellNodes& nodes) {
+      for (const Index v : nodes) used[v] = true;
+    };
+    for (std::size_t t = 0; t < mesh_.tets.size(); ++t) mark(nodes_of_tet(mesh_, t));
+    for (std::size_t f = 0; f < mesh_.faces.size(); ++f) mark(nodes_of_face(mesh_, f));
+    for (std::size_t e = 0; e < mesh_.edges.size(); ++e) mark(nodes_of_edge(mesh_, e));
+    for (std::size_t v = 0; v < used.size(); ++v)
+      if (!used[v]) points.push_back(static_cast<Index>(v));
+  }
+
+  const TetMesh& mesh_;
+  std::vector<Index> local_;  // of the points of the piece that is cut
+};
+
+/// Numbers of cells: tets, then faces, then edges.
+VtkArray cell_ids(const TetMesh& mesh, const Members& members) {
+  std::vector<std::int64_t> ids;
+  const auto add = [&](const std::vector<Index>& cells, std::size_t first) {
+    for (const Index cell : cells) ids.push_back(static_cast<std::int64_t>(first + cell));
+  };
+  add(members.tets, 0);
+  add(members.faces, mesh.tets.size());
+  add(members.edges, mesh.tets.size() + mesh.faces.size());
+  return {std::string(vtk_cell_ids), std::move(ids)};
+}
+
+void add_ghost_marks(const Members& members, Index number, const std::vector<Index>& partition_of_point,
+                     VtkGrid& grid) {
+  std::vector<std::uint8_t> cells(grid.cell_count, 0), points;
+  std::fill(cells.begin() + static_cast<std::ptrdiff_t>(members.own_tets),
+            cells.begin() + static_cast<std::ptrdiff_t>(members.tets.size()), duplicate);
+  for (const Index v : members.points) points.push_back(partition_of_point[v] == number ? 0 : duplicate);
+  grid.cell_data.push_back({std::string(vtk_ghosts), std::move(cells)});
+  grid.point_data.push_back({std::string(vtk_ghosts), std::move(points)});
+}
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) switch (c) {
+      case '&': result += "&amp;"; break;
+      case '<': result += "&lt;"; break;
+      case '"': result += "&quot;"; break;
+      default: result += c;
+    }
+  return result;
+}
+
+void declare(FileWriter& out, std::string_view section, std::span<const VtkArray> arrays) {
+  out << "    <P" << section;
+  for (const VtkArray& array : arrays)
+    if (array.name == vtk_point_ids || array.name == vtk_cell_ids)
+      out << " GlobalIds=\"" << array.name << '"';
+  out << ">\n";
+  for (const VtkArray& array : arrays) {
+    out << "      <PDataArray type=\"" << vtu_type(array) << "\" Name=\"" << array.name << '"';
+    if (array.components > 1) out << " NumberOfComponents=\"" << array.components << '"';
+    out << "/>\n";
+  }
+  out << "    </P" << section << ">\n";
+}
+
+/// `like`: one of the pieces, all of which have the same arrays.
+void write_list(const std::string& path, const VtkGrid& like, const std::vector<std::string>& pieces,
+                bool with_ghosts) {
+  FileWriter out(path);
+  out << "<?xml version=\"1.0\"?>\n"
+         "<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+         "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n  <PUnstructuredGrid GhostLevel=\""
+      << (with_ghosts ? 1 : 0) << "\">\n";
+  declare(out, "PointData", like.point_data);
+  declare(out, "CellData", like.cell_data);
+  declare(out, "Points", {&like.points, 1});
+  for (const std::string& piece : pieces) out << "    <Piece Source=\"" << escaped(piece) << "\"/>\n";
+  out << "  </PUnstructuredGrid>\n</VTKFile>\n";
+  out.commit();
+}
+
+/// `told`: the partitions are the mesh' own, and are written.
+void write_pieces(const std::string& path, const TetMesh& mesh, bool told, bool with_ghosts) {
+  const std::vector<Index> numbers = partition_numbers(mesh), owners = partitions_of_points(mesh);
+  std::vector<Members> members = members_by_partition(mesh, numbers, with_ghosts);
+  Cutter cutter(mesh);
+  VtkGrid grid;
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    cutter.find_points(members[k], k == 0);
+    TetMesh part = cutter.cut(members[k]);
+    if (!told) part.tet_partition.clear();
+    grid = make_vtk_grid(part);
+    grid.point_data.push_back(
+        {std::string(vtk_point_ids),
+         std::vector<std::int64_t>(members[k].points.begin(), members[k].points.end())});
+    grid.cell_data.push_back(cell_ids(mesh, members[k]));
+    if (with_ghosts) add_ghost_marks(members[k], numbers[k], owners, grid);
+    const std::vector<VtkArray> boundary = take_boundary(part, grid);
+    names.push_back(fmt::format("{}_{}.vtu", fs::path(path).stem().string(), numbers[k]));
+    write_vtu_grid((fs::path(path).parent_path() / names.back()).string(), grid, boundary);
+    members[k] = {};
+  }
+  write_list(path, grid, names, with_ghosts);  // last: who sees it sees the pieces, too
+}
+
+/// What is not partitioned is one piece.
+void write(const std::string& path, const TetMesh& mesh, bool with_ghosts) {
+  if (!mesh.tet_partition.empty()) {
+    write_pieces(path, mesh, true, with_ghosts);
+    return;
+  }
+  TetMesh whole = mesh;
+  whole.tet_partition.assign(mesh.tets.size(), 0);
+  write_pieces(path, whole, false, with_ghosts);
+}
+
+}  // namespace
+
+void write_pvtu(const std::string& path, const TetMesh& mesh) { write(path, mesh, false); }
+void write_pvtu_with_ghost_cells(const std::string& path, const TetMesh& mesh) { write(path, mesh, true); }
+
+}  // namespace collarmesh::io

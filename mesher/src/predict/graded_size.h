@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "collarmesh/geometry.h"
+
+namespace collarmesh::prediction {
+
+/// Small edges make what is near them small: the edge length at any point is the least of what some sources
+/// ask for, which grows by so much per unit length away from them.
+class GradedSize {
+ public:
+  /// A point, segment or triangle (corners may be equal) with its edge length.
+  struct Source {
+    std::array<Point, 3> corners;
+    double size;
+  };
+
+  /// Cost: O(n log n).
+  GradedSize(std::vector<Source> sources, double growth);
+
+  double growth() const { return growth_; }
+  /// At most `largest`.
+  double at(const Point& p, double largest) const;
+
+ private:
+  struct Node {
+    Box box;
+    double least;        // size below
+    Index first, count;  // sources; count 0: the children are the next node and `first`
+  };
+  static constexpr Index leaf_size = 4;
+
+  Index build(Index first, Index last);
+
+  double growth_;
+  std::vector<Source> sources_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace collarmesh::prediction

@@ -1,0 +1,60 @@
+#include "collarmesh/predict.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "collarmesh/error.h"
+#include "predict/vertex_counts.h"
+
+namespace collarmesh {
+
+namespace {
+
+constexpr double sizes_per_diagonal = 20;  // of the default size
+
+// Most of the time goes with the tets there are before coarsening; fitted (bench/predicted_elements.py).
+double seconds_for(double refined_tets, unsigned order) {
+  constexpr double of_one = 4.6e-6, power = 1.19, of_second_order = 1.3;
+  return of_one * std::pow(refined_tets, power) * (order == 2 ? of_second_order : 1);
+}
+
+void validate(const PipelineOptions& options, std::span<const double> sizes, const Plc& plc) {
+  if (!options.coarsen) throw OptionError("only meshes that are coarsened can be predicted");
+  if (options.order != 1 && options.order != 2) throw OptionError("order must be 1 or 2");
+  require_known_tags(options.mesh, plc);
+  for (const double size : sizes) {
+    if (!(size >= 0) || !std::isfinite(size))
+      throw OptionError(fmt::format("a size of {} cannot be predicted; 0 stands for the default", size));
+    if (size > 0 && options.mesh.size_min > size)
+      throw OptionError(
+          fmt::format("size-min {} exceeds the size {}; make it smaller", options.mesh.size_min, size));
+  }
+}
+
+}  // namespace
+
+std::vector<Prediction> predict(const Plc& plc, const PipelineOptions& options,
+                                std::span<const double> sizes) {
+  validate(options, sizes, plc);
+  const double diagonal = plc.bounds.diagonal();
+  const bool is_empty = plc.regions.size() < 2;
+  const prediction::Shape shape(plc);
+  std::vector<Prediction> predictions;
+  for (const double given : sizes) {
+    PipelineOptions of_size = options;
+    if (given > 0) of_size.mesh.size = given;
+    MeshOptions& mesh = of_size.mesh;
+    mesh.distance = distance_of(of_size, diagonal);
+    Prediction& made = predictions.emplace_back();
+    made.size = mesh.size > 0 ? mesh.size : diagonal / sizes_per_diagonal;
+    if (is_empty) continue;
+    made.tets = std::max(1.0, prediction::count_vertices(shape, mesh).tets);
+    const auto refined = prediction::count_vertices(shape, mesh, prediction::model_of_refinement());
+    made.seconds = seconds_for(refined.tets, options.order);
+  }
+  return predictions;
+}
+
+}  // namespace collarmesh

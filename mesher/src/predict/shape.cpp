@@ -1,0 +1,124 @@
+#include "predict/shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace collarmesh::prediction {
+
+namespace {
+
+// Cosines, as where gaps are measured (coarsen/gap_widths.cpp).
+constexpr double least_facing = 0.5, least_facing_of_neighbours = 0.966;
+
+std::vector<std::array<Index, 3>> triangles_of(const Plc& plc) {
+  std::vector<std::array<Index, 3>> triangles;
+  for (const Plc::Triangle& triangle : plc.triangles) triangles.push_back(triangle.points);
+  return triangles;
+}
+
+std::vector<DistanceTree::Triangle> corners_of(const Plc& plc) {
+  std::vector<DistanceTree::Triangle> corners;
+  for (const auto& [a, b, c] : triangles_of(plc))
+    corners.push_back({plc.points[a], plc.points[b], plc.points[c]});
+  return corners;
+}
+
+}  // namespace
+
+Shape::Shape(const Plc& plc)
+    : plc_(plc),
+      radii_(curvature_sizes(plc, 2 * std::numbers::pi)),  // an element for each radian
+      angles_(solid_angles(plc)),
+      surface_(plc.points, triangles_of(plc)),
+      tree_(corners_of(plc)),
+      locator_(plc) {
+  for (const Plc::Patch& patch : plc.patches) borders_.push_back(border_of(patch));
+}
+
+std::array<Point, 3> Shape::corners(Index triangle) const {
+  const auto& [a, b, c] = plc_.triangles[triangle].points;
+  return {plc_.points[a], plc_.points[b], plc_.points[c]};
+}
+
+std::size_t Shape::segment_count(Index curve) const {
+  return plc_.curves[curve].points.size() - (plc_.curves[curve].closed ? 0 : 1);
+}
+
+std::array<Point, 2> Shape::segment(Index curve, std::size_t number) const {
+  const auto& points = plc_.curves[curve].points;
+  return {plc_.points[points[number]], plc_.points[points[(number + 1) % points.size()]]};
+}
+
+double Shape::distance_to_border(const Point& p, Index patch) const {
+  return std::sqrt(borders_[patch].segments->squared_distance_to(p));
+}
+
+double Shape::strip_width(const Point& p, Index curve, const Vector& along, double widest) const {
+  double squared = widest * widest;
+  for (const Index patch : plc_.curves[curve].patches) {
+    const Border& border = borders_[patch];
+    squared = border.segments->squared_distance_to(p, squared, nullptr, [&](Index i) {
+      const Index other = border.curve[i];
+      if (other == curve) return false;
+      const auto [a, b, same] = border.segments->corners(i);
+      const double least = curves_meet(curve, other) ? least_facing_of_neighbours : least_facing;
+      return std::fabs(dot(along, b - a)) > least * norm(along) * norm(b - a);
+    });
+  }
+  return std::sqrt(squared);
+}
+
+double Shape::wall_width(const Point& p, Index triangle, double widest) const {
+  const Index patch = plc_.triangles[triangle].patch;
+  const auto [a, b, c] = corners(triangle);
+  const Vector normal = cross(b - a, c - a);
+  if (!(norm(normal) > 0)) return widest;
+  double width = widest;
+  std::vector<TriangleHierarchy::Crossing> crossings;
+  for (unsigned side = 0; side < 2; ++side) {
+    if (plc_.patches[patch].regions[side] == 0) continue;
+    const Vector way = (side == 0 ? -1 : 1) / norm(normal) * normal;
+    const Index root = surface_.root();
+    // Not from the plane of its own triangle: that would be one tie after the other.
+    surface_.crossings(p + 1e-6 * widest * way, p + widest * way, {&root, 1}, crossings);
+    for (const auto& [other, direction] : crossings) {
+      if (other == triangle || patches_meet(patch, plc_.triangles[other].patch)) continue;
+      const auto [d, e, f] = corners(other);
+      const Vector n = cross(e - d, f - d);
+      if (std::fabs(dot(n, way)) < least_facing * norm(n)) continue;
+      width = std::min(width, dot(d - p, n) / dot(n, way));
+    }
+  }
+  return std::max(width, 0.0);
+}
+
+Shape::Border Shape::border_of(const Plc::Patch& patch) const {
+  Border border;
+  std::vector<std::array<Index, 3>> segments;
+  for (const Index curve : patch.curves) {
+    const auto& points = plc_.curves[curve].points;
+    for (std::size_t i = 0; i < segment_count(curve); ++i) {
+      const Index next = points[(i + 1) % points.size()];
+      segments.push_back({points[i], next, next});
+      border.curve.push_back(curve);
+    }
+  }
+  border.segments = std::make_unique<TriangleHierarchy>(plc_.points, std::move(segments));
+  return border;
+}
+
+bool Shape::curves_meet(Index curve, Index other) const {
+  const auto &a = plc_.curves[curve].ends, &b = plc_.curves[other].ends;
+  return std::any_of(a.begin(), a.end(), [&](Index v) { return v != none && (v == b[0] || v == b[1]); });
+}
+
+// In a curve: between them the region is a wedge, not a wall.
+bool Shape::patches_meet(Index patch, Index other) const {
+  if (patch == other) return false;
+  const auto &a = plc_.patches[patch].curves, &b = plc_.patches[other].curves;
+  return std::any_of(a.begin(), a.end(), [&](Index c) { return std::binary_search(b.begin(), b.end(), c); });
+}
+
+}  // namespace collarmesh::prediction

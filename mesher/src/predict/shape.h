@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "check/region_locator.h"
+#include "collarmesh/plc.h"
+#include "common/distance_tree.h"
+#include "location/triangle_hierarchy.h"
+#include "predict/solid_angles.h"
+#include "refine/curvature.h"
+
+namespace collarmesh::prediction {
+
+/// What there is to know about a complex for predictions of any size: how strongly it curves, how wide it is
+/// and how far away its features are.
+class Shape {
+ public:
+  /// Kept by reference. Cost: near linear.
+  explicit Shape(const Plc& plc);
+
+  const Plc& plc() const { return plc_; }
+  const SolidAngles& angles() const { return angles_; }
+
+  std::array<Point, 3> corners(Index triangle) const;
+  std::size_t segment_count(Index curve) const;
+  std::array<Point, 2> segment(Index curve, std::size_t number) const;
+
+  /// Radii of curvature; infinite where there is none.
+  double radius_of_triangle(Index triangle) const { return radii_.triangle[triangle]; }
+  double radius_of_segment(Index curve, std::size_t number) const {
+    return radii_.curve_segment[curve].empty() ? INFINITY : radii_.curve_segment[curve][number];
+  }
+
+  /// From a point on a patch to its curves; infinite where it has none.
+  double distance_to_border(const Point& p, Index patch) const;
+  /// From a point on a curve to another one that runs along it on a common patch, at most `widest`.
+  double strip_width(const Point& p, Index curve, const Vector& along, double widest) const;
+  /// From a point on a triangle across a region to a patch that faces it and does not meet it; at most
+  /// `widest`.
+  double wall_width(const Point& p, Index triangle, double widest) const;
+  double distance_to_surface(const Point& p) const { return tree_.nearest(p).distance; }
+  /// Precondition: the point is not on the surface.
+  Index region_at(const Point& p) const { return locator_.region_at(p); }
+
+ private:
+  /// The segments of a patch's curves.
+  struct Border {
+    std::unique_ptr<TriangleHierarchy> segments;
+    std::vector<Index> curve;  // of each
+  };
+
+  Border border_of(const Plc::Patch& patch) const;
+  bool curves_meet(Index curve, Index other) const;
+  bool patches_meet(Index patch, Index other) const;
+
+  const Plc& plc_;
+  CurvatureSizes radii_;
+  SolidAngles angles_;
+  TriangleHierarchy surface_;
+  DistanceTree tree_;
+  checks::RegionLocator locator_;
+  std::vector<Border> borders_;  // by patch
+};
+
+}  // namespace collarmesh::prediction

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "collarmesh/mesher.h"
+#include "predict/shape.h"
+
+namespace collarmesh::prediction {
+
+/// What the predictions were fitted to (bench/predicted_elements.py). Lengths are in target edge lengths.
+struct Model {
+  double edge = 1.08;          ///< length of an edge on a curve
+  double area = 0.65;          ///< of a patch to a vertex
+  double volume = 0.61;        ///< of a region to a vertex
+  double growth = 1.4;         ///< of edges per unit length, away from small ones
+  double chord = 1.15;         ///< the share of the distance tolerance that chords are off
+  double aspect = 3;           ///< the largest ratio of edges along and across a curved patch
+  double wall = 8.7;           ///< the largest ratio of edges to the width of a wall
+  double strip = 9;            ///< the same of edges on curves to the width of a strip of surface
+  double border_from = 0.4;    ///< no vertex on a patch is nearer to its border
+  double border_to = 0.8;      ///< vertices on a patch are as dense beyond as far away from the border
+  double depth_from = 0.3;     ///< the same inside regions
+  double depth_to = 0.75;      ///< the same inside regions
+  double tets_per_vertex = 6;  ///< that is inside; 24 tets meet there and have four corners each
+};
+
+/// The mesh before it is coarsened: bounds on radius-edge ratios make tets as small as walls and strips.
+inline Model model_of_refinement() {
+  Model model;
+  model.wall = model.strip = 1.2;
+  model.growth = 0.8;
+  return model;
+}
+
+/// Of the mesh that will be.
+struct VertexCounts {
+  double on_vertices = 0, on_curves = 0, on_patches = 0, inside = 0;
+  double tets = 0;  ///< by the share of the directions around each vertex that lead into regions
+};
+
+/// `options.distance` is that of the mesh, not 0. Cost: grows with the mesh, up to a bound.
+VertexCounts count_vertices(const Shape& shape, const MeshOptions& options, const Model& model = {});
+
+}  // namespace collarmesh::prediction

@@ -1,0 +1,260 @@
+"""Mesh objects in FreeCAD's tree: the mark of those out of date, context menus, take over, export, statistics, undo.
+Run by run.py --gui."""
+
+import os
+import sys
+import tempfile
+
+import FreeCAD
+import FreeCADGui
+import Mesh
+import ObjectsFem
+from PySide import QtCore, QtGui
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import window as w  # noqa: E402
+from freecad.collarmesh_workbench import mesh_object, take_over, up_to_date, view_provider  # noqa: E402
+from freecad.collarmesh_workbench.commands import MESH_COMMAND  # noqa: E402
+
+
+def tree_item(label):
+    """Of the object with a label, in FreeCAD's tree."""
+    found = [item for tree in w.window.findChildren(QtGui.QTreeWidget) if tree.isVisible()
+             for item in tree.findItems(label, QtCore.Qt.MatchExactly | QtCore.Qt.MatchRecursive, 0)]  # fmt: skip
+    w.require(len(found) == 1, f"{len(found)} times {label} in the tree")
+    return found[0]
+
+
+def icon_of(label):
+    """The pixels of its icon in the tree."""
+    image = tree_item(label).icon(0).pixmap(32, 32).toImage()
+    return [image.pixel(x, y) for x in range(image.width()) for y in range(image.height())]
+
+
+def show_model():
+    """The tab with the tree."""
+    tree = next(iter(w.window.findChildren(QtGui.QTreeWidget)))
+    for tabs in w.window.findChildren(QtGui.QTabWidget):
+        for i in range(tabs.count()):
+            if tabs.widget(i).isAncestorOf(tree):
+                tabs.setCurrentIndex(i)
+    for each in w.window.findChildren(QtGui.QTreeWidget):
+        each.expandAll()
+    w.pause(200)
+
+
+def menu_of(label, choose=None, picture=""):
+    """Open the context menu of an object in the tree; the texts in it. `choose`: the entry to click."""
+    show_model()
+    item = tree_item(label)
+    w.click_item(item)
+    texts = []
+
+    def look():
+        menu = QtGui.QApplication.activePopupWidget()
+        if menu is None:
+            QtCore.QTimer.singleShot(100, look)
+            return
+        if picture and w.PICTURES:
+            menu.grab().save(os.path.join(w.PICTURES, picture))
+        texts.extend(action.text() for action in menu.actions())
+        entry = next(
+            (action for action in menu.actions() if action.objectName() == f"collarmesh_{choose}"), None
+        )
+        if entry is not None:
+            entry.trigger()
+        menu.close()
+
+    QtCore.QTimer.singleShot(100, look)
+    tree = item.treeWidget()
+    place = tree.visualItemRect(item).center()
+    event = QtGui.QContextMenuEvent(QtGui.QContextMenuEvent.Mouse, place, tree.viewport().mapToGlobal(place))
+    QtGui.QApplication.sendEvent(tree.viewport(), event)
+    w.wait_until(lambda: texts, "the menu")
+    w.pause(300)
+    return texts
+
+
+def a_changed_shape_marks_its_mesh(document, part, obj):
+    show_model()
+    w.pause(500)  # icons are drawn a moment later
+    fresh = icon_of(obj.Label)
+    count = obj.FemMesh.VolumeCount
+    part.Radius = 7
+    document.recompute()
+    w.wait_until(lambda: icon_of(obj.Label) != fresh, "the icon in the tree shows it", 10)
+    w.require(obj.ViewObject.Proxy.getIcon() == view_provider.OUT_OF_DATE_ICON, "by the mark")
+    w.require(obj.FemMesh.VolumeCount == count, "nothing is meshed by a recompute")
+    FreeCADGui.ActiveDocument.ActiveView.viewIsometric()
+    w.screenshot("freecad_out_of_date.png", size=(900, 600))
+    part.Radius = 6
+    document.recompute()
+    w.wait_until(lambda: icon_of(obj.Label) == fresh, "the mark goes when the shape is as before", 10)
+    document.openTransaction("Radius")
+    part.Radius = 7
+    document.recompute()
+    document.commitTransaction()
+    w.wait_until(lambda: icon_of(obj.Label) != fresh, "the mark again", 10)
+    document.undo()
+    w.wait_until(lambda: icon_of(obj.Label) == fresh, "the mark goes by undo, too", 10)
+
+
+def mesh_again_by_the_menu(document, part, obj):
+    part.Radius = 8
+    document.recompute()
+    entries = menu_of(obj.Label, "mesh_again", "freecad_menu.png")
+    for text in ("Edit mesh", "Mesh again", "Export mesh...", "Statistics...", "Hand over to Gmsh"):
+        w.require(text in entries, f"{text} is not in {entries}")
+    w.wait_until(lambda: w.find("run") is not None, "the panel")
+    w.wait_until(lambda: not up_to_date.is_out_of_date(obj) and w.child("run").isEnabled(), "the new mesh")
+    w.require(obj.FemMesh.VolumeCount > 100, "it has elements")
+    w.require(obj.ViewObject.Proxy.getIcon() == view_provider.ICON, "the mark is gone")
+    w.close_panel()
+
+
+def statistics_and_export(obj):
+    menu_of(obj.Label, "statistics")
+    w.wait_until(lambda: w.find("statistics") is not None, "the statistics")
+    text = w.find("statistics").findChild(QtGui.QTextBrowser).toPlainText()
+    for word in (str(obj.FemMesh.VolumeCount), str(obj.FemMesh.NodeCount), "Face7", "Solid1"):
+        w.require(word in text, f"{word} is not in {text}")
+    if w.PICTURES:
+        w.find("statistics").grab().save(os.path.join(w.PICTURES, "freecad_statistics.png"))
+    w.find("statistics").close()
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "plate.inp")
+
+        def enter_name():
+            dialog = next(
+                (
+                    each
+                    for each in QtGui.QApplication.topLevelWidgets()
+                    if isinstance(each, QtGui.QFileDialog)
+                ),
+                None,
+            )
+            if dialog is None:
+                QtCore.QTimer.singleShot(100, enter_name)
+                return
+            dialog.findChild(QtGui.QLineEdit).setText(path)
+            dialog.accept()
+
+        QtCore.QTimer.singleShot(300, enter_name)
+        menu_of(obj.Label, "export")
+        w.wait_until(lambda: os.path.exists(path), "the file")
+        w.pause(300)
+        with open(path, encoding="utf-8") as file:
+            w.require("NAME=FACE1," in file.read(), "faces have their names")
+
+
+def gmsh_and_back(document, part, obj):
+    old = ObjectsFem.makeMeshGmsh(document, "FromGmsh")
+    old.Part = part
+    document.recompute()
+    w.require("Take over by collarmesh" not in menu_of(obj.Label), "ours need not be taken over")
+    w.require("Take over by collarmesh" in menu_of("FromGmsh", "take_over"), "the entry in Gmsh's menu")
+    w.wait_until(lambda: document.getObject("FromGmsh") is None, "the take over")
+    new = next(each for each in document.Objects if each.Label == "FromGmsh")
+    w.require(mesh_object.is_ours(new), "it is ours")
+    menu_of("FromGmsh", "hand_over")
+    w.wait_until(lambda: any(take_over.mesher_of(each) for each in document.Objects), "the way back")
+    document.undo()
+    w.require(not any(take_over.mesher_of(each) for each in document.Objects), "undo of that")
+    document.removeObject(next(each for each in document.Objects if each.Label == "FromGmsh").Name)
+
+
+def netgen_by_its_button(document, part):
+    """Its object has no context menu in Python in this FreeCAD."""
+    old = ObjectsFem.makeMeshNetgen(document, "FromNetgen")
+    old.Shape = part
+    document.recompute()
+    FreeCADGui.Selection.clearSelection()
+    FreeCADGui.Selection.addSelection(old)
+    w.click_command("Collarmesh_TakeOver")
+    w.wait_until(lambda: document.getObject("FromNetgen") is None, "the take over")
+    new = next(each for each in document.Objects if each.Label == "FromNetgen")
+    w.require(mesh_object.is_ours(new), "it is ours")
+    document.undo()
+    w.require(document.getObject("FromNetgen") is not None, "undo of that")
+    document.removeObject("FromNetgen")
+
+
+def undo_of_a_meshing_in_the_panel(document, obj):
+    count = obj.FemMesh.VolumeCount
+    w.open_panel(obj)
+    w.run_mesher("2.5 mm")
+    w.close_panel()
+    made = obj.FemMesh.VolumeCount
+    w.require(made != count, "another mesh")
+    for _ in range(3):  # the size and what the run changed may be steps of their own
+        if obj.FemMesh.VolumeCount != count:
+            document.undo()
+    w.require(obj.FemMesh.VolumeCount == count, f"{obj.FemMesh.VolumeCount} in place of {count} after undo")
+    for _ in range(3):
+        if obj.FemMesh.VolumeCount != made:
+            document.redo()
+    w.require(obj.FemMesh.VolumeCount == made, "redo")
+
+
+def undo_of_the_creation_while_meshing(document, part):
+    """Takes the object away under the run."""
+    before = len(document.Objects)
+    FreeCADGui.Selection.clearSelection()
+    FreeCADGui.Selection.addSelection(part)
+    w.click_command(MESH_COMMAND)
+    w.wait_until(lambda: w.find("run") is not None, "the panel")
+    w.child("CharacteristicLengthMax").setText("0.2 mm")
+    w.child("run").click()
+    w.wait_until(lambda: w.child("progress").value() > 0, "the run")
+    name = document.Objects[-1].Name
+    while document.getObject(name) is not None:
+        w.require(document.UndoCount > 0, "the creation can be undone")
+        document.undo()
+        w.pause(50)
+    w.pause(1000)
+    w.require(len(document.Objects) == before, "it is gone")
+
+
+def triangles_by_the_button(document):
+    triangles = document.addObject("Mesh::Feature", "Triangles")
+    triangles.Mesh = Mesh.createSphere(5, 30)
+    document.recompute()
+    FreeCADGui.Selection.clearSelection()
+    FreeCADGui.Selection.addSelection(triangles)
+    w.click_command(MESH_COMMAND)
+    w.wait_until(lambda: w.find("run") is not None, "the panel")
+    obj = document.Objects[-1]
+    said = w.run_mesher("2 mm")
+    w.require(obj.FemMesh.VolumeCount > 50, said)
+    w.close_panel()
+
+
+def test():
+    document = FreeCAD.newDocument("document")
+    document.UndoMode = 1
+    box = document.addObject("Part::Box", "Box")
+    box.Length, box.Width, box.Height = 40, 30, 5
+    cylinder = document.addObject("Part::Cylinder", "Hole")
+    cylinder.Radius, cylinder.Height = 6, 10
+    cylinder.Placement.Base = FreeCAD.Vector(20, 15, -1)
+    part = document.addObject("Part::Cut", "Plate")
+    part.Base, part.Tool = box, cylinder
+    document.recompute()
+    FreeCADGui.activateWorkbench("FemWorkbench")
+    obj = mesh_object.make(document, part)
+    obj.CharacteristicLengthMax = 4
+    mesh_object.remesh(obj)
+    document.recompute()
+    part.ViewObject.Visibility = False
+    w.pause(500)
+    a_changed_shape_marks_its_mesh(document, cylinder, obj)
+    mesh_again_by_the_menu(document, cylinder, obj)
+    statistics_and_export(obj)
+    gmsh_and_back(document, part, obj)
+    netgen_by_its_button(document, part)
+    undo_of_a_meshing_in_the_panel(document, obj)
+    undo_of_the_creation_while_meshing(document, part)
+    triangles_by_the_button(document)
+
+
+w.run_test(test)

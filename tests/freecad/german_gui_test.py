@@ -1,0 +1,73 @@
+"""FreeCAD in German: menus, panels, messages and properties of the add-on are German. Run by run.py --gui with LC_ALL
+set to de_DE."""
+
+import os
+import sys
+
+import FreeCAD
+import FreeCADGui
+from PySide import QtGui
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import window as w  # noqa: E402
+from freecad.collarmesh_workbench import mesh_object, size_objects  # noqa: E402
+from freecad.collarmesh_workbench.program import MesherError  # noqa: E402
+
+
+def texts_of(widget):
+    """All that it shows."""
+    found = [
+        each.text() for kind in (QtGui.QLabel, QtGui.QAbstractButton) for each in widget.findChildren(kind)
+    ]
+    found += [each.title() for each in widget.findChildren(QtGui.QGroupBox)]
+    return found + [
+        each.itemText(i) for each in widget.findChildren(QtGui.QComboBox) for i in range(each.count())
+    ]
+
+
+def actions():
+    """{command: (text, tool tip)} of ours in the toolbars."""
+    return {action.objectName(): (action.text(), action.toolTip()) for bar in w.window.findChildren(QtGui.QToolBar)
+            for action in bar.actions() if action.objectName().startswith("Collarmesh")}  # fmt: skip
+
+
+def test():
+    document = FreeCAD.newDocument("german")
+    part = document.addObject("Part::Feature", "Platte")
+    part.Shape = w.plate()
+    document.recompute()
+    FreeCADGui.activateWorkbench("FemWorkbench")
+    w.wait_until(lambda: "Collarmesh_SizeSphere" in actions(), "the buttons")
+    w.require(actions()["Collarmesh_SizeSphere"][0] == "Größe in einer Kugel", f"{actions()}")
+    w.require("Kugel verlangen" in actions()["Collarmesh_SizeSphere"][1], f"{actions()}")
+    obj = mesh_object.make(document, part)
+    w.open_panel(obj)
+    texts = texts_of(w.child("panel"))
+    for word in ("Vernetzen", "Abbrechen", "zweite (gekrümmt, 10 Knoten)", "Ordnung der Elemente"):
+        w.require(word in texts, f"{word} is not in {texts}")
+    w.screenshot("freecad_german.png")
+    said = w.run_mesher("4 mm")
+    w.require("Alle Zusagen sind eingehalten" in said and "Tetraeder" in said, said)
+    w.close_panel()
+    size = size_objects.make(obj, "Distance", 1)
+    try:
+        mesh_object.remesh(obj)
+        w.require(False, "a size without faces is refused")
+    except MesherError as error:
+        w.require(
+            str(error) == "SizeDistance hat keine Flächen und Kanten; wählen Sie welche oder löschen Sie es.",
+            str(error),
+        )
+    document.removeObject(size.Name)
+    sphere = size_objects.make(obj, "Sphere", 1)
+    document.recompute()
+    sphere.ViewObject.doubleClicked()
+    w.wait_until(lambda: w.find("size_panel") is not None, "the panel of the sphere")
+    w.require("Wachstum davon weg" in texts_of(w.child("size_panel")), f"{texts_of(w.child('size_panel'))}")
+    w.require(w.child("size_Radius").toolTip() == "Radius der Kugel", w.child("size_Radius").toolTip())
+    w.child("size_Radius").setText("3,5 mm")
+    w.pause(50)
+    w.require(sphere.Radius.Value == 3.5, f"a German number: {sphere.Radius}")
+
+
+w.run_test(test)

@@ -1,0 +1,135 @@
+"""What differs in FreeCAD 0.21 and 1.x, with stand-ins for what those have. Run by run.py."""
+
+import os
+import sys
+import types
+import unittest
+from unittest import mock
+
+import FreeCAD
+import ObjectsFem
+import Part
+from freecad.collarmesh_workbench import compatibility, mesh_object, size_objects, take_over, up_to_date
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import run_in_freecad  # noqa: E402
+
+
+class Versions(unittest.TestCase):
+    def setUp(self):
+        self.document = FreeCAD.newDocument("test")
+        self.part = self.document.addObject("Part::Feature", "Part")
+        self.part.Shape = Part.makeBox(10, 8, 6)
+
+    def tearDown(self):
+        FreeCAD.closeDocument(self.document.Name)
+
+    def base_of_freecad_1(self, document, name):
+        """Its mesh objects link the part by `Shape`, and regions are called refinements."""
+        obj = document.addObject("Fem::FemMeshObjectPython", name)
+        obj.addProperty("App::PropertyLink", "Shape", "FEM Mesh")
+        return obj
+
+    def test_the_part_is_linked_by_shape(self):
+        with mock.patch.object(compatibility, "add_mesh_object", self.base_of_freecad_1):
+            obj = mesh_object.make(self.document, self.part)
+        self.assertNotIn("Part", obj.PropertiesList)
+        self.assertEqual((obj.Shape, compatibility.meshed_object(obj)), (self.part, self.part))
+        obj.CharacteristicLengthMax = 3
+        size_objects.make(obj, "Sphere", 1)
+        mesh_object.remesh(obj)
+        self.assertGreater(obj.FemMesh.VolumeCount, 50)
+        self.assertFalse(up_to_date.is_out_of_date(obj))
+        self.part.Shape = Part.makeBox(10, 8, 7)
+        self.assertTrue(up_to_date.is_out_of_date(obj))
+
+    def test_refinements(self):
+        """The function of FreeCAD 1.x, where it is the only one."""
+        obj = mesh_object.make(self.document, self.part)
+        later = types.SimpleNamespace(makeMeshRefinement=ObjectsFem.makeMeshRegion)
+        with mock.patch.object(compatibility, "ObjectsFem", later):
+            refinement = compatibility.make_refinement(self.document, obj)
+        self.assertEqual(obj.MeshRegionList, [refinement])
+
+    def test_lists_of_refinements(self):
+        gmsh = self.document.addObject("Fem::FemMeshObjectPython", "Gmsh")
+        gmsh.addProperty("App::PropertyLinkList", "MeshRefinementList")
+        self.assertEqual(compatibility.refinements_of(gmsh), [])
+        compatibility.set_refinements(gmsh, [self.part])
+        self.assertEqual(
+            (gmsh.MeshRefinementList, compatibility.refinements_of(gmsh)), ([self.part], [self.part])
+        )
+
+    def test_hand_over_to_gmsh_of_freecad_1(self):
+        def make(document, name):
+            obj = self.base_of_freecad_1(document, name)
+            obj.addProperty("App::PropertyLength", "CharacteristicLengthMax")
+            obj.addProperty("App::PropertyLinkList", "MeshRefinementList")
+            obj.addProperty("App::PropertyLinkList", "MeshGroupList")
+            return obj
+
+        obj = mesh_object.make(self.document, self.part)
+        obj.CharacteristicLengthMax = 3
+        refinement = ObjectsFem.makeMeshRegion(self.document, obj, 1)
+        with mock.patch.object(take_over, "ObjectsFem", types.SimpleNamespace(makeMeshGmsh=make)):
+            gmsh, _ = take_over.hand_over(obj)
+        self.assertEqual((gmsh.Shape, gmsh.MeshRefinementList), (self.part, [refinement]))
+        self.assertEqual(gmsh.CharacteristicLengthMax.Value, 3)
+
+    def test_proxies_save_nothing(self):
+        """0.20 asks by the first pair, later versions by the second."""
+        proxy = mesh_object.make(self.document, self.part).Proxy
+        self.assertEqual((proxy.__getstate__(), proxy.dumps()), (None, None))
+        self.assertEqual((proxy.__setstate__(None), proxy.loads(None)), (None, None))
+
+    def test_context_menus_of_other_meshers(self):
+        """Netgen's view provider is in Python from FreeCAD 1.0 on; one that has a menu keeps it."""
+        seen = []
+
+        class VPMeshNetgen:
+            def setupContextMenu(self, view, menu):
+                seen.append("its own")
+
+        class VPMeshGmsh:
+            pass
+
+        modules = {
+            "femviewprovider.view_mesh_gmsh": types.SimpleNamespace(VPMeshGmsh=VPMeshGmsh),
+            "femviewprovider.view_mesh_netgen": types.SimpleNamespace(VPMeshNetgen=VPMeshNetgen),
+        }
+        with mock.patch.dict(sys.modules, modules):
+            compatibility.extend_context_menus(lambda menu, obj: seen.append(obj))
+        for provider, expected in ((VPMeshGmsh, [self.part]), (VPMeshNetgen, [self.part, "its own"])):
+            seen.clear()
+            provider().setupContextMenu(types.SimpleNamespace(Object=self.part), None)
+            self.assertEqual(seen, expected)
+
+    def test_missing_view_providers_are_no_error(self):
+        with mock.patch.dict(
+            sys.modules, {"femviewprovider.view_mesh_gmsh": None, "femviewprovider.view_mesh_netgen": None}
+        ):
+            compatibility.extend_context_menus(None)
+
+    def test_transactions(self):
+        self.document.UndoMode = 1
+        with compatibility.transaction(self.document, "outer"):
+            self.part.Label = "A"
+            with compatibility.transaction(self.document, "inner"):
+                self.part.Label = "B"
+        self.document.undo()
+        self.assertEqual(self.part.Label, "Part")
+        self.document.openTransaction("of a script that does not end it")
+        self.part.Label = "D"
+        with compatibility.transaction(self.document, "next"):
+            self.part.Label = "E"
+        self.document.undo()
+        self.assertEqual(self.part.Label, "D")
+        self.document.undo()
+        self.assertEqual(self.part.Label, "Part")
+        with self.assertRaises(KeyError), compatibility.transaction(self.document, "fails"):
+            self.part.Label = "C"
+            raise KeyError
+        self.assertEqual(self.part.Label, "Part")
+
+
+run_in_freecad.run(Versions)
