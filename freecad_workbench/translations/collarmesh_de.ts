@@ -631,6 +631,10 @@
       <translation>Das Teil wurde während des Vernetzens geändert: dies ist das Netz des Teils, wie es vorher war. Vernetzen Sie es neu.</translation>
     </message>
     <message>
+      <source>The part was deleted while it was meshed.</source>
+      <translation>Das Teil wurde während des Vernetzens gelöscht.</translation>
+    </message>
+    <message>
       <source>The program collarmesh</source>
       <translation>Das Programm collarmesh</translation>
     </message>

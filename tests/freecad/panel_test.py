@@ -337,6 +337,14 @@ def a_part_changed_while_meshing_is_told():
     wait_until(lambda: child("run").isEnabled(), "the end of the run")
     require("changed while it was meshed" in said(), said())
     require("changed while" not in run_mesher("3 mm"), said())
+    count = obj.FemMesh.VolumeCount
+    child("CharacteristicLengthMax").setText("0.6 mm")
+    child("run").click()
+    document.removeObject(part.Name)
+    wait_until(lambda: child("run").isEnabled(), "the end of the run")
+    require("deleted while it was meshed" in said() and obj.FemMesh.VolumeCount == count, said())
+    told = run_mesher("3 mm")
+    require("no object is chosen" in told, told)
     close(document)
 
 

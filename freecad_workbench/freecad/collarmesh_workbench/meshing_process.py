@@ -7,6 +7,7 @@ import contextlib
 import dataclasses
 import filecmp
 import os
+import traceback
 
 import FreeCAD
 import FreeCADGui
@@ -62,6 +63,7 @@ class MeshingProcess(QtCore.QObject):
         super().__init__()
         self.object = obj
         self.part = compatibility.meshed_object(obj)
+        self.label = self.part.Label if self.part else ""
         self.job = mesh_object.start(obj)
         self.job.add_page()
         self.warnings = tuple(self.job.warnings())
@@ -120,16 +122,20 @@ class MeshingProcess(QtCore.QObject):
         key = _key(self.object)
         try:
             _outcomes[key] = self._outcome(exit_code)
-        finally:
-            del _runs[key]
-            self.job.folder.cleanup()
-            self._process.deleteLater()
+        except Exception as error:  # of FreeCAD: the panel goes on
+            FreeCAD.Console.PrintError(traceback.format_exc())
+            _outcomes[key] = Outcome(error=f"{type(error).__name__}: {error}")
+        del _runs[key]
+        self.job.folder.cleanup()
+        self._process.deleteLater()
         _tell(self.object, _outcomes[key])
         self.ended.emit()
 
     def _outcome(self, exit_code):
         if self._cancelled:
             return Outcome(cancelled=True)
+        if compatibility.meshed_object(self.object) is None:
+            return Outcome(error=translate("collarmesh", "The part was deleted while it was meshed."))
         try:
             report = mesh_object.finish(self.object, self.job, exit_code)
         except MesherError as error:
@@ -138,7 +144,7 @@ class MeshingProcess(QtCore.QObject):
         self.object.Document.recompute()
         page = os.path.join(self.object.Document.TransientDir, f"{self.object.Name}_report.html")
         try:
-            self.job.move_page(page, self.part.Label)
+            self.job.move_page(page, self.label)
         except OSError as error:
             FreeCAD.Console.PrintWarning(f"collarmesh: {error}\n")
             page = ""
