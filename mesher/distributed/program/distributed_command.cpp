@@ -203,8 +203,8 @@ Coarse make_coarse(const DistributedArguments& arguments) {
 std::string text_of(const LevelReport& level, unsigned number) {
   std::string text = fmt::format("level {}: {} tets in {:.2f} s; {} vertices on smooth or exact features", number,
                                  level.tets, level.seconds, level.on_features);
-  if (level.spoilt > 0 || level.moved_inside > 0)
-    text += fmt::format(", {} tets spoilt, {} moves made room", level.spoilt, level.moved_inside);
+  if (level.spoilt > 0 || level.made_room > 0)
+    text += fmt::format(", {} tets spoilt, {} moves made room", level.spoilt, level.made_room);
   if (level.drawn_back > 0)
     text += fmt::format(", {} vertices stay off, by at most {:.3g}", level.drawn_back, level.farthest_off);
   return text + '\n';
@@ -274,7 +274,7 @@ struct Report {
                                 {"seconds", level.seconds},
                                 {"on_features", level.on_features},
                                 {"spoilt", level.spoilt},
-                                {"moved_inside", level.moved_inside},
+                                {"made_room", level.made_room},
                                 {"drawn_back", level.drawn_back},
                                 {"farthest_off", level.farthest_off}});
     if (order)

@@ -1,6 +1,6 @@
 // The vertices of a refined mesh onto the shape. Whatever is decided about a vertex depends on all tets around it,
-// which may be on several ranks, by minima and maxima only: these are the same in any order, so the mesh is the
-// same on any number of ranks, bit by bit.
+// which may be on several ranks, by minima, maxima and sums of whole numbers only: these are the same in any order,
+// so the mesh is the same on any number of ranks, bit by bit.
 #include "placement.h"
 
 #include <algorithm>
@@ -26,15 +26,24 @@ constexpr std::array<double, 4> shares{1, 0.5, 0.25, 0};
 constexpr double longest_way = 2;
 // The cosine between an edge of a curve and itself before.
 constexpr double least_course = 0.5;
-// A tet that is spoilt may end with angles so many degrees beyond the bounds, but no nearer than half way to 0 or
-// 180 degrees.
-constexpr double tolerated = 8;
+// Angles so many degrees beyond the bounds are a last resort.
+constexpr double tolerated = 10;
+// A tet may stay that keeps so much of the way from there to the bounds.
+constexpr double least_score = 0.2;
+// Of a flat tet; inverted ones have less.
+constexpr double flat_score = -100;
+// Of the squares of what tets lack whole numbers are made, relative to this. Doubles add them without rounding.
+constexpr double unit_of_lack = 0x1p-20;
 // Room is made in so many sweeps at most; a vertex tries steps of these shares of its shortest edge.
-constexpr unsigned most_sweeps = 40;
+constexpr unsigned most_sweeps = 60;
 constexpr std::array<double, 3> steps{0.3, 0.1, 0.03};
 constexpr std::size_t places = 2 + 6 * steps.size();  // that a vertex tries, beside its own
 // A move that gains less is not worth it.
 constexpr double least_gain = 1e-3;
+// A way off a plane or a straight curve that is shorter than this, relative to the shortest edge, is none.
+constexpr double no_way = 1e-6;
+// So often vertices that were drawn back are tried again.
+constexpr unsigned retries = 2;
 
 std::uint64_t mixed(std::uint64_t h) {  // the finalizer of MurmurHash3
   h ^= h >> 33U;
@@ -51,6 +60,7 @@ class Placement {
         communicator_(PetscObjectComm(reinterpret_cast<PetscObject>(dm))),
         shape_(shape),
         wanted_(wanted),
+        on_shape_(shape),
         vertices_(dm, 0) {}
 
   LevelReport run() {
@@ -74,6 +84,8 @@ class Placement {
       if (all_reduce(communicator_, std::int64_t{!changed.empty()}, MPI_MAX) == 0) break;
       look_at.insert(look_at.end(), changed.begin(), changed.end());
       sort_out(look_at);
+    }
+    for (unsigned k = 0; k < retries && try_again(k); ++k) {
     }
     agree(communicator_, [&] { set_points(dm_, mesh_->points); });
     return report(spoilt);
@@ -111,10 +123,9 @@ class Placement {
   // The owners ask for all.
   void find_places() {
     targets_ = origins_;
-    OnShape on_shape(shape_);
     for (std::size_t v = 0; v < features_.size(); ++v)
-      if (vertices_.owned(v) && on_shape.has_places(features_[v]))
-        targets_[v] = on_shape.place(features_[v], origins_[v]);
+      if (vertices_.owned(v) && on_shape_.has_places(features_[v]))
+        targets_[v] = on_shape_.place(features_[v], origins_[v]);
   }
 
   void share_places() {
@@ -137,6 +148,10 @@ class Placement {
       if (!std::isfinite(squared_norm(targets_[v]))) targets_[v] = origins_[v];
       const double way = squared_distance(targets_[v], origins_[v]);
       has_way_[v] = way > 0;
+      if (is_flat(v) && way <= no_way * no_way * shortest[v]) {
+        origins_[v] = mesh_->points[v] = targets_[v];
+        has_way_[v] = false;
+      }
       if (way > longest_way * longest_way * shortest[v]) back_[v] = shares.size() - 1;
     }
   }
@@ -148,33 +163,63 @@ class Placement {
   double way_of(std::size_t v) const {
     return has_way_[v] ? shares[back_[v]] * distance(targets_[v], origins_[v]) : 0;
   }
-  bool is_free(std::size_t v) const { return features_[v].dimension == 3 && !frozen_[v]; }
+
+  bool is_flat(std::size_t v) const {
+    const auto& [dimension, feature] = features_[v];
+    if (feature == none) return false;
+    if (dimension == 1) return shape_.plc.curves[feature].straight;
+    return dimension == 2 && shape_.plc.patches[feature].planar;
+  }
+  /// Where a vertex comes to that is to go by a displacement and stays on its feature.
+  Point displaced(Index v, const Vector& displacement) {
+    const Point& p = mesh_->points[v];
+    const auto& [dimension, feature] = features_[v];
+    if (dimension == 3) return p + displacement;
+    if (!is_flat(v)) return on_shape_.place(features_[v], p + displacement);
+    if (dimension == 2) {
+      const Vector& normal = shape_.plc.patches[feature].normal;
+      return p + displacement - dot(displacement, normal) * normal;
+    }
+    const std::vector<Index>& chain = shape_.plc.curves[feature].points;
+    const Vector chord = shape_.plc.points[chain.back()] - shape_.plc.points[chain.front()];
+    return p + dot(displacement, chord) / squared_norm(chord) * chord;
+  }
+  /// May it move? Those on features slide along these, but not before they are there.
+  bool is_free(std::size_t v) const {
+    if (frozen_[v]) return false;
+    const auto& [dimension, feature] = features_[v];
+    if (dimension == 3) return true;
+    return feature != none && dimension > 0 && (is_flat(v) ? !has_way_[v] : back_[v] == 0);
+  }
 
   double least(Index tet) const { return wanted_.least[in_collar_[tet] ? 1 : 0]; }
   double most(Index tet) const { return wanted_.most[in_collar_[tet] ? 1 : 0]; }
 
-  /// 1 for a tet within the bounds of angles, not positive for one that is flat or inverted.
-  double score(Index tet, const Corners& p) const { return score(p, least(tet), most(tet)); }
-  static double score(const Corners& p, double least, double most) {
+  /// 1 for a tet within the bounds of angles, 0 at the last resort.
+  double score(Index tet, const Corners& p) const {
     const double six = six_volume(p[0], p[1], p[2], p[3]);
     if (!(six > 0)) {
       double longest = 0;
       for (unsigned i = 0; i < 4; ++i)
         for (unsigned j = i + 1; j < 4; ++j) longest = std::max(longest, squared_distance(p[i], p[j]));
-      return longest > 0 ? six / (longest * std::sqrt(longest)) : -1;
+      return flat_score + (longest > 0 ? six / (longest * std::sqrt(longest)) : -1);
     }
     const ExtremeAngles angles = extreme_angles(p);
-    return std::min({1.0, angles.least / least, (180 - angles.most) / (180 - most)});
+    return 1 + std::min({0.0, angles.least - least(tet), most(tet) - angles.most}) / tolerated;
+  }
+  /// The square of what it lacks to 1, a whole number.
+  double lack(Index tet, const Corners& p) const {
+    const double missing = 1 - score(tet, p);
+    return std::nearbyint(missing * missing / unit_of_lack);
   }
 
   bool acceptable(Index tet) const {
     const Corners p = mesh_->corners(tet);
     if (predicates::orientation(p[0], p[1], p[2], p[3]) <= 0) return false;
-    const double floor = std::max(least(tet) - tolerated, 0.5 * least(tet)),
-                 roof = std::min(most(tet) + tolerated, 0.5 * (most(tet) + 180));
-    if (score(p, floor, roof) >= 1) return true;
+    const double now = score(tet, p);
+    if (now >= least_score) return true;
     const auto& [a, b, c, d] = mesh_->tets[tet];
-    return score(tet, p) >= score(tet, {origins_[a], origins_[b], origins_[c], origins_[d]});
+    return now >= score(tet, {origins_[a], origins_[b], origins_[c], origins_[d]});
   }
 
   bool on_course(const std::array<Index, 2>& edge) const {
@@ -183,7 +228,7 @@ class Placement {
     return dot(then, now) > least_course * norm(then) * norm(now);
   }
 
-  /// Move vertices inside regions to where the worst tet around them is better. Returns the tets that it looked
+  /// Move vertices, inside regions and along their features, to where the tets around them lack less. Returns the tets that it looked
   /// at.
   std::vector<Index> relax(std::vector<Index> tets) {
     for (unsigned sweep = 0; sweep < most_sweeps; ++sweep) {
@@ -212,8 +257,7 @@ class Placement {
     return h;
   }
 
-  /// Vertices that may gain, no two of one tet: of two the one with the greater number, made of its place. The
-  /// same on all ranks that have the vertex.
+  /// Vertices that may gain, no two of one tet.
   std::vector<Index> independent_vertices(const std::vector<Index>& tets, unsigned sweep) const {
     std::vector<PetscInt> wishes(mesh_->points.size(), 0);
     for (const Index t : tets) {
@@ -222,6 +266,12 @@ class Placement {
         if (is_free(v) && fresh_[v] != 0) wishes[v] = 1;
     }
     vertices_.combine(wishes, MPI_MAX);
+    return independent(wishes, sweep);
+  }
+
+  /// Of two vertices of one tet the one with the greater number, made of its place. The same on all ranks that
+  /// have the vertex, if the wishes are.
+  std::vector<Index> independent(const std::vector<PetscInt>& wishes, unsigned sweep) const {
     std::vector<Index> vertices;
     std::vector<PetscInt> yields(mesh_->points.size(), 0);
     for (Index v = 0; v < wishes.size(); ++v) {
@@ -237,10 +287,11 @@ class Placement {
     return vertices;
   }
 
-  /// Combine values of some vertices, `width` each, by minima over the ranks.
-  void combine(const std::vector<Index>& vertices, std::vector<PetscReal>& values, std::size_t width) const {
+  /// Combine values of some vertices, `width` each, over the ranks.
+  void combine(const std::vector<Index>& vertices, std::vector<PetscReal>& values, MPI_Op operation,
+               std::size_t width) const {
     const std::vector<std::size_t>& shared = vertices_.shared();
-    std::vector<PetscReal> of_shared(shared.size() * width, INFINITY);
+    std::vector<PetscReal> of_shared(shared.size() * width, 0);
     const auto for_each_shared = [&](const auto& visit) {  // both lists ascend
       std::size_t i = 0;
       for (std::size_t k = 0; k < shared.size(); ++k) {
@@ -250,74 +301,87 @@ class Placement {
       }
     };
     for_each_shared([](PetscReal& there, const PetscReal& here) { there = here; });
-    vertices_.combine_shared(of_shared, MPI_MIN, width);
+    vertices_.combine_shared(of_shared, operation, width);
     for_each_shared([](const PetscReal& there, PetscReal& here) { here = there; });
   }
 
-  double score_around(Index vertex, const Point& place, double enough) const {
-    double worst = 1;
+  /// What the tets around a vertex lack in sum, or a part of it that is not below `enough`.
+  double lack_around(Index vertex, const Point& place, double enough) const {
+    double sum = 0;
     for (const Index t : tets_at_[vertex]) {
       Corners p = mesh_->corners(t);
       for (unsigned i = 0; i < 4; ++i)
         if (mesh_->tets[t][i] == vertex) p[i] = place;
-      worst = std::min(worst, score(t, p));
-      if (worst <= enough) break;
+      sum += lack(t, p);
+      if (sum >= enough) break;
     }
-    return worst;
+    return sum;
   }
 
   std::vector<Index> move(const std::vector<Index>& movers) {
-    // How it is, the shortest edge, and the box of the neighbours, its upper corner negative.
-    constexpr std::size_t facts = 8;
-    std::vector<PetscReal> known(facts * movers.size(), INFINITY);
+    // The shortest edge, and the box of the neighbours, its upper corner negative.
+    constexpr std::size_t facts = 7;
+    std::vector<PetscReal> known(facts * movers.size(), INFINITY), before, after(places * movers.size());
     for (std::size_t i = 0; i < movers.size(); ++i) {
       PetscReal* own = &known[facts * i];
       const Index v = movers[i];
-      own[0] = score_around(v, mesh_->points[v], -INFINITY);
+      before.push_back(lack_around(v, mesh_->points[v], INFINITY));
       for (const Index t : tets_at_[v])
         for (const Index w : mesh_->tets[t]) {
           if (w == v) continue;
           const Point& p = mesh_->points[w];
-          own[1] = std::min(own[1], distance(p, mesh_->points[v]));
+          own[0] = std::min(own[0], distance(p, mesh_->points[v]));
           for (std::size_t axis = 0; axis < 3; ++axis) {
-            own[2 + axis] = std::min(own[2 + axis], p[axis]);
-            own[5 + axis] = std::min(own[5 + axis], -p[axis]);
+            own[1 + axis] = std::min(own[1 + axis], p[axis]);
+            own[4 + axis] = std::min(own[4 + axis], -p[axis]);
           }
         }
     }
-    combine(movers, known, facts);
-    std::vector<PetscReal> scores(places * movers.size());
-    for (std::size_t i = 0; i < movers.size(); ++i) {
-      const auto tried = places_of(movers[i], &known[facts * i]);
+    combine(movers, known, MPI_MIN, facts);
+    combine(movers, before, MPI_SUM, 1);
+    std::vector<PetscReal> tried;
+    tried.reserve(3 * places * movers.size());
+    agree(communicator_, [&] {
+      for (std::size_t i = 0; i < movers.size(); ++i) {
+        if (vertices_.owned(movers[i]))
+          for (const Point& p : places_of(movers[i], &known[facts * i])) tried.insert(tried.end(), {p.x, p.y, p.z});
+        tried.resize(3 * places * (i + 1), 0);
+      }
+    });
+    combine(movers, tried, MPI_REPLACE, 3 * places);
+    const auto place = [&](std::size_t i, std::size_t k) {
+      const PetscReal* at = &tried[3 * (places * i + k)];
+      return Point{at[0], at[1], at[2]};
+    };
+    for (std::size_t i = 0; i < movers.size(); ++i)
       for (std::size_t k = 0; k < places; ++k)
-        scores[places * i + k] = score_around(movers[i], tried[k], known[facts * i]);
-    }
-    combine(movers, scores, places);
+        after[places * i + k] = lack_around(movers[i], place(i, k), before[i]);
+    combine(movers, after, MPI_SUM, places);
     std::vector<Index> moved;
     for (std::size_t i = 0; i < movers.size(); ++i) {
-      const auto first = scores.begin() + static_cast<std::ptrdiff_t>(places * i);
-      const auto best = std::max_element(first, first + static_cast<std::ptrdiff_t>(places));
-      const double before = known[facts * i];
-      if (!(*best > before + least_gain * std::max(std::fabs(before), least_gain))) continue;
+      const auto first = after.begin() + static_cast<std::ptrdiff_t>(places * i);
+      const auto best = std::min_element(first, first + static_cast<std::ptrdiff_t>(places));
+      if (!(*best < (1 - least_gain) * before[i])) continue;
       const Index v = movers[i];
-      mesh_->points[v] = places_of(v, &known[facts * i])[static_cast<std::size_t>(best - first)];
+      mesh_->points[v] = place(i, static_cast<std::size_t>(best - first));
+      if (has_way_[v]) targets_[v] = mesh_->points[v];
       moved.push_back(v);
       if (vertices_.owned(v)) ++moves_;
     }
     return moved;
   }
 
-  std::array<Point, places> places_of(Index vertex, const PetscReal* known) const {
+  std::array<Point, places> places_of(Index vertex, const PetscReal* known) {
     const Point& p = mesh_->points[vertex];
-    const Point centre{0.5 * (known[2] - known[5]), 0.5 * (known[3] - known[6]), 0.5 * (known[4] - known[7])};
-    std::array<Point, places> tried{centre, 0.5 * (p + centre)};
+    const Point centre{0.5 * (known[1] - known[4]), 0.5 * (known[2] - known[5]), 0.5 * (known[3] - known[6])};
+    std::array<Point, places> tried{displaced(vertex, centre - p), displaced(vertex, 0.5 * (centre - p))};
     std::size_t k = 2;
     for (const double step : steps)
       for (std::size_t axis = 0; axis < 3; ++axis)
         for (const double sign : {1.0, -1.0}) {
-          Point q = p;
-          q[axis] += sign * step * known[1];
-          tried[k++] = q;
+          Vector displacement{0, 0, 0};
+          displacement[axis] = sign * step * known[0];
+          tried[k++] = displaced(vertex, displacement);
         }
     return tried;
   }
@@ -336,7 +400,7 @@ class Placement {
     for (const Index t : tets) {
       if (acceptable(t) || mark_longest(mesh_->tets[t])) continue;
       for (const Index v : mesh_->tets[t])
-        if (features_[v].dimension == 3 && mesh_->points[v] != origins_[v]) marks[v] = 1;
+        if (!has_way_[v] && mesh_->points[v] != origins_[v]) marks[v] = 1;
     }
     for (const auto& edge : curve_edges_)
       if (!on_course(edge)) mark_longest(edge);
@@ -345,9 +409,9 @@ class Placement {
     std::vector<PetscInt> touched(mesh_->points.size(), 0);
     for (std::size_t v = 0; v < marks.size(); ++v) {
       if (marks[v] == 0) continue;
-      if (features_[v].dimension == 3) {
+      frozen_[v] = true;
+      if (!has_way_[v]) {
         mesh_->points[v] = origins_[v];
-        frozen_[v] = true;
       } else {
         ++back_[v];
         mesh_->points[v] = place_of(v);
@@ -364,11 +428,47 @@ class Placement {
     return around;
   }
 
+  /// Vertices that were drawn back may have room by now. False when none has.
+  bool try_again(unsigned sweep) {
+    std::vector<PetscInt> wishes(mesh_->points.size(), 0);
+    for (std::size_t v = 0; v < wishes.size(); ++v) wishes[v] = has_way_[v] && back_[v] > 0 ? 1 : 0;
+    const std::vector<Index> vertices = independent(wishes, sweep);
+    const CellsAtVertices curve_edges_at(curve_edges_, mesh_->points.size());
+    constexpr std::size_t width = shares.size() - 1;
+    std::vector<PetscReal> fits(width * vertices.size(), 0);
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      const Index v = vertices[i];
+      const std::uint8_t back = back_[v];
+      for (back_[v] = 0; back_[v] < back; ++back_[v]) {
+        mesh_->points[v] = place_of(v);
+        const auto tets = tets_at_[v];
+        const auto edges = curve_edges_at[v];
+        fits[width * i + back_[v]] =
+            std::all_of(tets.begin(), tets.end(), [&](Index t) { return acceptable(t); }) &&
+                    std::all_of(edges.begin(), edges.end(),
+                                [&](Index e) { return on_course(curve_edges_[e]); })
+                ? 1
+                : 0;
+      }
+      mesh_->points[v] = place_of(v);
+    }
+    combine(vertices, fits, MPI_MIN, width);
+    std::int64_t any = 0;
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+      for (std::uint8_t back = 0; back < back_[vertices[i]]; ++back)
+        if (fits[width * i + back] > 0) {
+          back_[vertices[i]] = back;
+          mesh_->points[vertices[i]] = place_of(vertices[i]);
+          any = 1;
+        }
+    return all_reduce(communicator_, any, MPI_MAX) > 0;
+  }
+
   LevelReport report(std::int64_t spoilt) const {
     LevelReport r;
     r.tets = static_cast<std::int64_t>(mesh_->tets.size());
     r.spoilt = spoilt;
-    r.moved_inside = moves_;
+    r.made_room = moves_;
     for (std::size_t v = 0; v < features_.size(); ++v) {
       if (!vertices_.owned(v) || !has_way_[v]) continue;
       ++r.on_features;
@@ -376,7 +476,7 @@ class Placement {
       ++r.drawn_back;
       r.farthest_off = std::max(r.farthest_off, (1 - shares[back_[v]]) * distance(targets_[v], origins_[v]));
     }
-    for (std::int64_t* sum : {&r.tets, &r.on_features, &r.spoilt, &r.moved_inside, &r.drawn_back})
+    for (std::int64_t* sum : {&r.tets, &r.on_features, &r.spoilt, &r.made_room, &r.drawn_back})
       *sum = all_reduce(communicator_, *sum, MPI_SUM);
     r.farthest_off = all_reduce(communicator_, r.farthest_off, MPI_MAX);
     return r;
@@ -386,6 +486,7 @@ class Placement {
   MPI_Comm communicator_;
   const Shape& shape_;
   const AngleBounds& wanted_;
+  OnShape on_shape_;
   SharedPoints vertices_;
   std::optional<LocalMesh> mesh_;
   std::vector<TetMesh::VertexFeature> features_;  // of vertices

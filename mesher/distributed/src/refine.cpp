@@ -16,6 +16,12 @@ namespace {
 
 /// PETSc cuts the octahedron in the middle of a tet between the middles of the edges 01 and 23 of its corners.
 /// Turned by these arrangements, which keep the last corner, the tet has other edges there.
+///
+/// It numbers the corners of the eight tets so that their own diagonals are those of Bey's rule (Tetrahedral grid
+/// refinement, 1995): the four in the octahedron are cut next between the middle of this diagonal and of the edge
+/// opposite, the others like the tet they are similar to. By that rule the tets within one have three shapes at
+/// most, at any level, and the first level has all of them. So the choice is made there, once: the best
+/// diagonal at each level makes ever new shapes, and worse ones.
 constexpr std::array<PetscInt, 3> arrangements{0, 1, 2};
 
 /// How good the four tets around the diagonal between the edges ij and kl are: the smaller of their least angle and
@@ -58,7 +64,7 @@ LevelReport ParallelMesh::refine(const Shape& shape) {
   const auto start = std::chrono::steady_clock::now();
   agree(communicator_, [&] {
     if (order_ != 1) throw OptionError("meshes of second order are not refined; raise the order afterwards");
-    choose_diagonals(dm_);
+    if (levels_++ == 0) choose_diagonals(dm_);
     for (const char* name : {"patch", "curve"}) call(DMRemoveLabel(dm_, name, nullptr));
   });
   DM refined = nullptr;

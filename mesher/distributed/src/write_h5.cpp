@@ -142,8 +142,14 @@ class ValueFile {
   ValueFile& operator=(const ValueFile&) = delete;
 
   void write(DM dm) {
+    // In older layouts only vertices have coordinates.
+    const char* const option = "-dm_plex_view_hdf5_storage_version";
+    PetscBool given = PETSC_FALSE;
+    call(PetscOptionsHasName(nullptr, nullptr, option, &given));
+    if (given == PETSC_FALSE) call(PetscOptionsSetValue(nullptr, option, "2.0.0"));
     call(PetscViewerPushFormat(viewer_, PETSC_VIEWER_HDF5_PETSC));
     call(DMView(dm, viewer_));
+    if (given == PETSC_FALSE) call(PetscOptionsClearValue(nullptr, option));
     call(PetscViewerPopFormat(viewer_));
   }
   /// Returns how many rows there are on all ranks.
@@ -209,40 +215,41 @@ fs::path xdmf_of(const fs::path& path, const Cells& cells) {
 void ParallelMesh::write_h5(const std::string& path) const {
   const PetscMessages messages;
   Grid grid = GridMaker(dm_, order_).make();
-  const std::string file = fs::path(path).filename().string();
-  ValueFile values(communicator_, path);
-  values.write(dm_);
-  const std::string group = "/xdmf";
-  const std::int64_t points = values.write(group, "points", grid.points, 3);
-  const std::string geometry =
-      data_item(file, group + "/points", "Float", sizeof(PetscReal), points, 3);
-  std::array<std::string, 3> texts;
-  for (std::size_t d = 0; d < 3; ++d) {
-    Cells& cells = grid.cells[d];
-    const std::string own = fmt::format("{}/{}", group, cells.name);
-    const std::int64_t count = values.write(own, "topology", cells.nodes, cells.nodes_per_cell);
-    std::string& text = texts[d];
-    text = fmt::format(
+  std::string geometry;
+  for (Cells& cells : grid.cells) {
+    const bool first = cells.name == "mesh";
+    const auto own_count = static_cast<std::int64_t>(cells.nodes.size() / cells.nodes_per_cell);
+    const std::int64_t count = all_reduce(communicator_, own_count, MPI_SUM);
+    if (count == 0) continue;
+    const fs::path xdmf = xdmf_of(path, cells);
+    const fs::path h5 = first ? fs::path(path) : fs::path(xdmf).replace_extension(".h5");
+    const std::string file = h5.filename().string();
+    ValueFile values(communicator_, h5.string());
+    if (first) {
+      values.write(dm_);
+      geometry = data_item(file, "/xdmf/points", "Float", sizeof(PetscReal),
+                           values.write("/xdmf", "points", grid.points, 3), 3);
+    }
+    const std::string group = fmt::format("/xdmf/{}", cells.name);
+    values.write(group, "topology", cells.nodes, cells.nodes_per_cell);
+    std::string text = fmt::format(
         "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n<Grid Name=\"{}\" GridType=\"Uniform\">\n"
         "<Topology TopologyType=\"{}\" NumberOfElements=\"{}\" NodesPerElement=\"{}\">\n{}</Topology>\n"
         "<Geometry GeometryType=\"XYZ\">\n{}</Geometry>\n",
         cells.name, cells.topology, count, cells.nodes_per_cell,
-        data_item(file, own + "/topology", "Int", sizeof(PetscInt), count, cells.nodes_per_cell), geometry);
+        data_item(file, group + "/topology", "Int", sizeof(PetscInt), count, cells.nodes_per_cell), geometry);
     for (const auto& [name, array] : cells.arrays) {
-      values.write(own, std::string(name), array, 1);
+      values.write(group, std::string(name), array, 1);
       text += fmt::format("<Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Cell\">\n{}</Attribute>\n",
                           name,
-                          data_item(file, fmt::format("{}/{}", own, name), "Int", sizeof(PetscInt), count, 1));
+                          data_item(file, fmt::format("{}/{}", group, name), "Int", sizeof(PetscInt), count, 1));
     }
-    text += "</Grid>\n</Domain>\n</Xdmf>\n";
-    if (count == 0) text.clear();
+    values.close();
+    agree(communicator_, [&] {
+      if (Ranks(communicator_).rank == 0) write_text(xdmf, text + "</Grid>\n</Domain>\n</Xdmf>\n");
+    });
+    cells = {};
   }
-  values.close();
-  agree(communicator_, [&] {
-    if (Ranks(communicator_).rank != 0) return;
-    for (std::size_t d = 0; d < 3; ++d)
-      if (!texts[d].empty()) write_text(xdmf_of(path, grid.cells[d]), texts[d]);
-  });
 }
 
 }  // namespace collarmesh::distributed

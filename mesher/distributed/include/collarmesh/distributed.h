@@ -37,7 +37,7 @@ struct LevelReport {
   std::int64_t tets = 0;          ///< after it
   std::int64_t on_features = 0;   ///< vertices with a place on a smooth or exact feature
   std::int64_t spoilt = 0;        ///< tets that this spoilt
-  std::int64_t moved_inside = 0;  ///< moves of vertices inside regions that made room
+  std::int64_t made_room = 0;     ///< moves of vertices inside regions, in planes and along straight curves
   std::int64_t drawn_back = 0;    ///< vertices that did not go all the way
   double farthest_off = 0;        ///< of those from their places, absolute
   double seconds = 0;             ///< of the slowest rank
@@ -86,9 +86,9 @@ class ParallelMesh {
   ParallelMesh(const ParallelMesh&) = delete;
   ParallelMesh& operator=(const ParallelMesh&) = delete;
 
-  /// Cut every tet into eight, the octahedron within at the diagonal that makes the best angles, and put the vertices on features
-  /// onto the shape. Where that spoils tets, vertices inside regions make room; where that does not help, those
-  /// on features are drawn back. Precondition: first order.
+  /// Cut every tet into eight, by Bey's rule, first at the diagonal that makes the best angles, and put the vertices on features
+  /// onto the shape. Where that spoils tets, vertices inside regions and on what is flat make room; where that
+  /// does not help, those on smooth or exact features are drawn back. Precondition: first order.
   LevelReport refine(const Shape& shape);
 
   /// Put a node amid every edge, on the shape where the edge is on a feature, so that every tet stays valid
@@ -101,8 +101,9 @@ class ParallelMesh {
   /// Multiply all coordinates.
   void scale(double factor);
 
-  /// Write NAME.h5 for PETSc (`DMPlexTopologyLoad` and so on, format PETSC_VIEWER_HDF5_PETSC, name `mesh`), with
-  /// the arrays of NAME.xdmf (tets), NAME_faces.xdmf and NAME_edges.xdmf, which are written beside it.
+  /// Write NAME.h5 for PETSc (`DMPlexTopologyLoad` and so on, format PETSC_VIEWER_HDF5_PETSC, name `mesh`), which
+  /// also has the arrays of NAME.xdmf (tets). That, NAME_faces.xdmf and NAME_edges.xdmf, with an .h5 of their own
+  /// each, are written beside it.
   void write_h5(const std::string& path) const;
   /// Write NAME.pvtu and a piece NAME_RANK.vtu by each rank.
   void write_pvtu(const std::string& path) const;
@@ -119,6 +120,7 @@ class ParallelMesh {
   MPI_Comm communicator_;
   DM dm_ = nullptr;
   int order_ = 1;
+  unsigned levels_ = 0;
   AngleBounds coarse_angles_;
   std::string partitioner_;
   std::map<Tag, Index> regions_;  // the first region of each tag
