@@ -121,7 +121,7 @@ void label_tets(DM dm, const TetMesh& mesh) {
 
 }  // namespace
 
-ParallelMesh::ParallelMesh(MPI_Comm communicator, const TetMesh& mesh, const Plc& plc)
+ParallelMesh::ParallelMesh(MPI_Comm communicator, const TetMesh& mesh, const Plc& plc, double collar_angle)
     : communicator_(communicator) {
   const PetscMessages messages;
   const Ranks ranks(communicator);
@@ -131,6 +131,7 @@ ParallelMesh::ParallelMesh(MPI_Comm communicator, const TetMesh& mesh, const Plc
     if (ranks.rank == 0) {
       require_labels(mesh, plc);
       coarse_angles_ = angles_of(mesh);
+      if (double& most = coarse_angles_.most[1]; most > 0) most = std::max(most, collar_angle);
     }
   });
   MPI_Bcast(coarse_angles_.least.data(), 2, MPI_DOUBLE, 0, communicator);

@@ -33,11 +33,13 @@ constexpr double least_score = 0.2;
 // Of a flat tet; inverted ones have less.
 constexpr double flat_score = -100;
 // Of the squares of what tets lack whole numbers are made, relative to this. Doubles add them without rounding.
-constexpr double unit_of_lack = 0x1p-20;
+constexpr double unit_of_lack = 0x1p-16;
 // Room is made in so many sweeps at most; a vertex tries steps of these shares of its shortest edge.
 constexpr unsigned most_sweeps = 60;
 constexpr std::array<double, 3> steps{0.3, 0.1, 0.03};
 constexpr std::size_t places = 2 + 6 * steps.size();  // that a vertex tries, beside its own
+// In each sweep in other directions. So often a vertex tries in vain, unless something around it changes.
+constexpr std::uint8_t tries = 4;
 // A move that gains less is not worth it.
 constexpr double least_gain = 1e-3;
 // A way off a plane or a straight curve that is shorter than this, relative to the shortest edge, is none.
@@ -51,6 +53,15 @@ std::uint64_t mixed(std::uint64_t h) {  // the finalizer of MurmurHash3
   h ^= h >> 33U;
   h *= 0xc4ceb9fe1a85ec53ULL;
   return h ^ (h >> 33U);
+}
+
+/// Three directions at right angles.
+std::array<Vector, 3> frame_of(unsigned sweep) {
+  if (sweep == 0) return {Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}};
+  const double s = sweep;
+  const Vector a{std::cos(2.4 * s), std::sin(2.4 * s), std::cos(1.7 * s)}, b{std::sin(s), std::cos(1.3 * s), 0.6};
+  const Vector u = a / norm(a), w = cross(u, b) / norm(cross(u, b));
+  return {u, cross(w, u), w};
 }
 
 class Placement {
@@ -116,7 +127,7 @@ class Placement {
     const std::size_t n = mesh_->points.size();
     back_.assign(n, 0);
     frozen_.assign(n, false);
-    fresh_.assign(n, 1);
+    fresh_.assign(n, tries);
     has_way_.assign(n, false);
   }
 
@@ -210,7 +221,7 @@ class Placement {
   /// The square of what it lacks to 1, a whole number.
   double lack(Index tet, const Corners& p) const {
     const double missing = 1 - score(tet, p);
-    return std::nearbyint(missing * missing / unit_of_lack);
+    return std::nearbyint(missing * missing * missing * missing / unit_of_lack);
   }
 
   bool acceptable(Index tet) const {
@@ -234,7 +245,7 @@ class Placement {
     for (unsigned sweep = 0; sweep < most_sweeps; ++sweep) {
       const std::vector<Index> movers = independent_vertices(tets, sweep);
       if (all_reduce(communicator_, std::int64_t{!movers.empty()}, MPI_MAX) == 0) break;
-      const std::vector<Index> moved = move(movers);
+      const std::vector<Index> moved = move(movers, frame_of(sweep));
       std::vector<PetscInt> touched(mesh_->points.size(), 0);
       for (const Index v : moved)
         for (const Index t : tets_at_[v]) {
@@ -242,9 +253,9 @@ class Placement {
           for (const Index w : mesh_->tets[t]) touched[w] = 1;
         }
       vertices_.combine(touched, MPI_MAX);
-      for (const Index v : movers) fresh_[v] = 0;
+      for (const Index v : movers) --fresh_[v];
       for (std::size_t v = 0; v < touched.size(); ++v)
-        if (touched[v] > 0) fresh_[v] = 1;
+        if (touched[v] > 0) fresh_[v] = tries;
       sort_out(tets);
     }
     return tets;
@@ -318,7 +329,7 @@ class Placement {
     return sum;
   }
 
-  std::vector<Index> move(const std::vector<Index>& movers) {
+  std::vector<Index> move(const std::vector<Index>& movers, const std::array<Vector, 3>& frame) {
     // The shortest edge, and the box of the neighbours, its upper corner negative.
     constexpr std::size_t facts = 7;
     std::vector<PetscReal> known(facts * movers.size(), INFINITY), before, after(places * movers.size());
@@ -344,7 +355,7 @@ class Placement {
     agree(communicator_, [&] {
       for (std::size_t i = 0; i < movers.size(); ++i) {
         if (vertices_.owned(movers[i]))
-          for (const Point& p : places_of(movers[i], &known[facts * i])) tried.insert(tried.end(), {p.x, p.y, p.z});
+          for (const Point& p : places_of(movers[i], &known[facts * i], frame)) tried.insert(tried.end(), {p.x, p.y, p.z});
         tried.resize(3 * places * (i + 1), 0);
       }
     });
@@ -371,18 +382,15 @@ class Placement {
     return moved;
   }
 
-  std::array<Point, places> places_of(Index vertex, const PetscReal* known) {
+  std::array<Point, places> places_of(Index vertex, const PetscReal* known, const std::array<Vector, 3>& frame) {
     const Point& p = mesh_->points[vertex];
     const Point centre{0.5 * (known[1] - known[4]), 0.5 * (known[2] - known[5]), 0.5 * (known[3] - known[6])};
     std::array<Point, places> tried{displaced(vertex, centre - p), displaced(vertex, 0.5 * (centre - p))};
     std::size_t k = 2;
     for (const double step : steps)
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        for (const double sign : {1.0, -1.0}) {
-          Vector displacement{0, 0, 0};
-          displacement[axis] = sign * step * known[0];
-          tried[k++] = displaced(vertex, displacement);
-        }
+      for (const Vector& direction : frame)
+        for (const double sign : {1.0, -1.0})
+          tried[k++] = displaced(vertex, sign * step * known[0] * direction);
     return tried;
   }
 
@@ -423,7 +431,7 @@ class Placement {
     }
     vertices_.combine(touched, MPI_MAX);
     for (std::size_t v = 0; v < touched.size(); ++v)
-      if (touched[v] > 0) fresh_[v] = 1;
+      if (touched[v] > 0) fresh_[v] = tries;
     sort_out(around);
     return around;
   }
@@ -496,7 +504,7 @@ class Placement {
   std::vector<Point> origins_, targets_;
   std::vector<std::uint8_t> back_;  // in shares
   std::vector<bool> has_way_, frozen_;
-  std::vector<std::uint8_t> fresh_;  // something around has changed since it was tried
+  std::vector<std::uint8_t> fresh_;  // how often it may try unless something around changes
   std::int64_t moves_ = 0;
 };
 

@@ -80,8 +80,8 @@ struct Certificate {
 class ParallelMesh {
  public:
   /// Distribute a mesh that rank 0 has; others pass an empty one. Tags must fit PETSc's integers. PTScotch
-  /// partitions where PETSc has it.
-  ParallelMesh(MPI_Comm communicator, const TetMesh& mesh, const Plc& plc);
+  /// partitions where PETSc has it. `collar_angle` is the bound that angles in collars have kept, degrees.
+  ParallelMesh(MPI_Comm communicator, const TetMesh& mesh, const Plc& plc, double collar_angle = 150);
   ~ParallelMesh();
   ParallelMesh(const ParallelMesh&) = delete;
   ParallelMesh& operator=(const ParallelMesh&) = delete;
@@ -111,7 +111,7 @@ class ParallelMesh {
   DM dm() const { return dm_; }
   MPI_Comm communicator() const { return communicator_; }
   int order() const { return order_; }
-  /// Of the mesh that was distributed.
+  /// Of the mesh that was distributed, in collars up to the bound that was given.
   const AngleBounds& coarse_angles() const { return coarse_angles_; }
   /// PETSc's name of it.
   const std::string& partitioner() const { return partitioner_; }
