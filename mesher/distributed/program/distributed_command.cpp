@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -24,7 +25,7 @@
 #include "mesh_command.h"
 #include "out_of_memory.h"
 #include "program.h"
-#include "src/calls.h"
+#include "calls.h"
 #include "staged_file.h"
 
 namespace collarmesh::distributed {
@@ -323,6 +324,14 @@ void write_report(const std::string& path, const Report& report) {
   if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path));
 }
 
+/// A message that names the places of files in one folder, for another folder.
+std::string with_name(std::string message, const std::filesystem::path& from, const std::filesystem::path& to) {
+  const std::string folder = from.string() + "/", target = to.empty() ? "" : to.string() + "/";
+  for (std::size_t at = message.find(folder); at != std::string::npos; at = message.find(folder, at + target.size()))
+    message.replace(at, folder.size(), target);
+  return message;
+}
+
 /// Under temporary names first, in a folder of rank 0's, which moves them to their places when all ranks are done.
 void write_files(const DistributedArguments& arguments, const ParallelMesh& mesh, Report& report) {
   const bool first = Ranks(MPI_COMM_WORLD).rank == 0;
@@ -338,9 +347,11 @@ void write_files(const DistributedArguments& arguments, const ParallelMesh& mesh
   try {
     writes_pieces(arguments) ? mesh.write_pvtu(place) : mesh.write_h5(place);
   } catch (const PetscFailure& failure) {
-    staged.reset();
     end_all(ExitCode::cannot_write,
             fmt::format("{}: cannot be written ({}); is the disk full?", arguments.mesh.output, failure.what()));
+  } catch (const WriteError& error) {  // of all ranks, with the temporary name
+    const std::filesystem::path target = arguments.mesh.output;
+    throw WriteError(with_name(error.what(), std::filesystem::path(place).parent_path(), target.parent_path()));
   }
   report.write_seconds = timer.seconds();
   report.peak_bytes = gather(peak_bytes());
@@ -406,10 +417,10 @@ ExitCode mesh_distributed(const DistributedArguments& arguments) {
 }  // namespace
 
 ExitCode run(int argc, char** argv) {
+  cli::install_interrupt_handlers();
   const Session session;
   if (Ranks(MPI_COMM_WORLD).rank != 0) cli::be_silent();
   return cli::guarded([&] {
-    cli::install_interrupt_handlers();
     try {
       require_equal_command_lines(argc, argv);
       const std::variant<DistributedArguments, ExitCode> parsed = parse(argc, argv);

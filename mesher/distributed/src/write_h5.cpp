@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <petscviewerhdf5.h>
 
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <string_view>
@@ -135,9 +136,13 @@ class GridMaker {
 class ValueFile {
  public:
   ValueFile(MPI_Comm communicator, const std::string& path) : communicator_(communicator) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are ours to tell
     call(PetscViewerHDF5Open(communicator, path.c_str(), FILE_MODE_WRITE, &viewer_));
   }
-  ~ValueFile() { PetscViewerDestroy(&viewer_); }
+  ~ValueFile() {
+    // Closing is collective, and after an error there may be nobody to close with.
+    if (std::uncaught_exceptions() == 0) PetscViewerDestroy(&viewer_);
+  }
   ValueFile(const ValueFile&) = delete;
   ValueFile& operator=(const ValueFile&) = delete;
 
@@ -204,6 +209,23 @@ void write_text(const fs::path& path, const std::string& text) {
   if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path.string()));
 }
 
+/// A disk that is full is better told before than in the middle of it.
+void require_space(DM dm, const fs::path& path) {
+  constexpr double bytes_per_tet = 150;  // at least
+  const MPI_Comm communicator = PetscObjectComm(reinterpret_cast<PetscObject>(dm));
+  PetscInt first = 0, end = 0;
+  call(DMPlexGetHeightStratum(dm, 0, &first, &end));
+  const double needed =
+      bytes_per_tet * static_cast<double>(all_reduce(communicator, std::int64_t{end - first}, MPI_SUM));
+  agree(communicator, [&] {
+    std::error_code unknown;
+    const fs::space_info space = fs::space(path.parent_path().empty() ? "." : path.parent_path(), unknown);
+    if (Ranks(communicator).rank == 0 && !unknown && static_cast<double>(space.available) < needed)
+      throw WriteError(fmt::format("{}: takes about {:.3g} GB, the disk has {:.3g} GB left", path.string(),
+                                   needed / 1e9, static_cast<double>(space.available) / 1e9));
+  });
+}
+
 /// NAME.xdmf for the tets, NAME_faces.xdmf and NAME_edges.xdmf for the others.
 fs::path xdmf_of(const fs::path& path, const Cells& cells) {
   const std::string suffix = cells.name == "mesh" ? "" : fmt::format("_{}", cells.name);
@@ -214,6 +236,7 @@ fs::path xdmf_of(const fs::path& path, const Cells& cells) {
 
 void ParallelMesh::write_h5(const std::string& path) const {
   const PetscMessages messages;
+  require_space(dm_, path);
   Grid grid = GridMaker(dm_, order_).make();
   std::string geometry;
   for (Cells& cells : grid.cells) {
