@@ -134,7 +134,7 @@ class DistributedTest(unittest.TestCase):
         return mesh, report
 
     def assert_sound(self, mesh, report):
-        """What the certificate says is true of the files."""
+        """What the certificate says is true of the files. `coarse_angles` has the mesher's bound for the greatest in collars."""
         volumes = mesh.volumes()
         self.assertGreater(volumes.min(), 0)
         for tag, volume in report["region_volumes"].items():

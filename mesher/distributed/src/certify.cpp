@@ -26,8 +26,8 @@ namespace {
 
 using checks::At;
 
-/// Quadrature of the tetrahedron, exact for cubic polynomials: barycentric coordinates and weights that sum
-/// to 1 (Keast, Moderate-degree tetrahedral quadrature formulas, 1986, rule 1 of degree 3).
+/// Quadrature of the tetrahedron, exact for cubic polynomials, as the Jacobian is one: barycentric coordinates
+/// and weights that sum to 1.
 struct QuadraturePoint {
   std::array<double, 4> at;
   double weight;
