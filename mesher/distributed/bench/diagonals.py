@@ -1,7 +1,7 @@
-"""python3 diagonals.py MESH.h5...: dihedral angles of straight refinement by the rule for the diagonal; no vertex moves.
+"""python3 diagonals.py MESH.h5...: dihedral angles of straight refinement by the rule for the diagonal.
 
-The meshes are of collarmesh-mpi with --levels 0. Printed are the extreme angles outside collars and, where there are some, in
-collars: of the coarse mesh | after one | after two levels.
+No vertex moves. The meshes are of collarmesh-mpi with --levels 0. Printed are the extreme angles outside
+collars and, where there are some, in collars: of the coarse mesh | after one | after two levels.
 """
 
 import itertools
@@ -20,7 +20,8 @@ def dihedrals(tets):
         k, m = (x for x in range(4) if x not in (i, j))
         edge = tets[:, j] - tets[:, i]
         u, v = (numpy.cross(edge, tets[:, x] - tets[:, i]) for x in (k, m))
-        found.append(numpy.arctan2(numpy.linalg.norm(numpy.cross(u, v), axis=1), numpy.einsum("ij,ij->i", u, v)))
+        sine = numpy.linalg.norm(numpy.cross(u, v), axis=1)
+        found.append(numpy.arctan2(sine, numpy.einsum("ij,ij->i", u, v)))
     return numpy.degrees(numpy.array(found))
 
 
@@ -58,7 +59,8 @@ for path in sys.argv[1:]:
         tets, collar, told = coarse, in_collar, []
         for level in range(3):
             angles = dihedrals(tets)
-            told.append(" ".join(f"{angles[:, kind].min():.2f}-{angles[:, kind].max():.2f}" for kind in (~collar, collar)
-                                 if kind.any()))
-            tets, collar = children(arranged(tets, rule, level)).reshape(-1, 4, 3), numpy.repeat(collar, 8)
+            kinds = [angles[:, kind] for kind in (~collar, collar) if kind.any()]
+            told.append(" ".join(f"{kind.min():.2f}-{kind.max():.2f}" for kind in kinds))
+            tets = children(arranged(tets, rule, level)).reshape(-1, 4, 3)
+            collar = numpy.repeat(collar, 8)
         print(f"{path} ({len(coarse)} tets), {rule}: {' | '.join(told)}", flush=True)

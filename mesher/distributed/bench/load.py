@@ -1,4 +1,4 @@
-"""mpirun -n P python3 load.py MESH.h5: load a mesh of collarmesh-mpi, distribute it and say what each rank has."""
+"""mpirun -n P python3 load.py MESH.h5: load a mesh of collarmesh-mpi and say what each rank has of it."""
 
 import sys
 

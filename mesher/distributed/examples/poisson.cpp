@@ -1,7 +1,7 @@
 // From a part to a solution, in memory: mpirun -n 2 poisson part.off [SIZE [LEVELS]]
 //
-// Solves -div grad u = f with linear elements on the coarse mesh and after each level of refinement; u is given on
-// all patches, so that the error is known. It falls by four with each level.
+// Solves -div grad u = f with linear elements on the coarse mesh and after each level of refinement; u is
+// given on all patches, so that the error is known. It falls by four with each level.
 #include <collarmesh/distributed.h>
 #include <collarmesh/io/soup_io.h>
 #include <collarmesh/mesher.h>
@@ -38,8 +38,8 @@ class Poisson {
     PetscSection section = nullptr;
     const PetscInt unknowns[] = {1, 0, 0, 0}, components[] = {1};  // by dimension of the points
     PetscCallAbort(PETSC_COMM_WORLD, DMSetNumFields(dm_, 1));
-    PetscCallAbort(PETSC_COMM_WORLD, DMPlexCreateSection(dm_, nullptr, components, unknowns, 0, nullptr, nullptr,
-                                                         nullptr, nullptr, &section));
+    PetscCallAbort(PETSC_COMM_WORLD, DMPlexCreateSection(dm_, nullptr, components, unknowns, 0, nullptr,
+                                                         nullptr, nullptr, nullptr, &section));
     PetscCallAbort(PETSC_COMM_WORLD, DMSetLocalSection(dm_, section));
     PetscCallAbort(PETSC_COMM_WORLD, PetscSectionDestroy(&section));
     PetscCallAbort(PETSC_COMM_WORLD, DMPlexGetDepthStratum(dm_, 0, &first_vertex_, nullptr));
@@ -138,7 +138,8 @@ class Poisson {
       quadrature(tet, [&](const Point& at, const std::array<double, 4>& shape, double weight) {
         for (std::size_t k = 0; k < 4; ++k) force[k] += weight * shape[k] * source(at, scale_);
       });
-      PetscCallAbort(PETSC_COMM_WORLD, DMPlexMatSetClosure(dm_, nullptr, nullptr, matrix, t, stiffness.data(), ADD_VALUES));
+      PetscCallAbort(PETSC_COMM_WORLD,
+                     DMPlexMatSetClosure(dm_, nullptr, nullptr, matrix, t, stiffness.data(), ADD_VALUES));
       PetscCallAbort(PETSC_COMM_WORLD, DMPlexVecSetClosure(dm_, nullptr, local, t, force.data(), ADD_VALUES));
     });
     PetscCallAbort(PETSC_COMM_WORLD, MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
@@ -171,10 +172,12 @@ class Poisson {
           PetscCallAbort(PETSC_COMM_WORLD, PetscSectionGetOffset(global, closure[2 * k], &row));
           if (row < 0) row = -row - 1;  // another rank's
           rows.push_back(row);
-          PetscCallAbort(PETSC_COMM_WORLD,
-                         VecSetValue(solution, row, exact(point(values, closure[2 * k]), scale_), INSERT_VALUES));
+          PetscCallAbort(
+              PETSC_COMM_WORLD,
+              VecSetValue(solution, row, exact(point(values, closure[2 * k]), scale_), INSERT_VALUES));
         }
-        PetscCallAbort(PETSC_COMM_WORLD, DMPlexRestoreTransitiveClosure(dm_, face, PETSC_TRUE, &count, &closure));
+        PetscCallAbort(PETSC_COMM_WORLD,
+                       DMPlexRestoreTransitiveClosure(dm_, face, PETSC_TRUE, &count, &closure));
       });
       PetscCallAbort(PETSC_COMM_WORLD, ISDestroy(&faces));
     });
@@ -182,8 +185,8 @@ class Poisson {
     PetscCallAbort(PETSC_COMM_WORLD, ISDestroy(&tags));
     PetscCallAbort(PETSC_COMM_WORLD, VecAssemblyBegin(solution));
     PetscCallAbort(PETSC_COMM_WORLD, VecAssemblyEnd(solution));
-    PetscCallAbort(PETSC_COMM_WORLD, MatZeroRowsColumns(matrix, static_cast<PetscInt>(rows.size()), rows.data(), 1,
-                                                        solution, load));
+    PetscCallAbort(PETSC_COMM_WORLD, MatZeroRowsColumns(matrix, static_cast<PetscInt>(rows.size()),
+                                                        rows.data(), 1, solution, load));
   }
 
   template <class Visit>
@@ -234,7 +237,8 @@ void run(const std::string& path, double size, int levels) {
   collarmesh::TetMesh coarse;
   if (rank == 0) coarse = collarmesh::run_pipeline(plc, options).result.mesh;
   const double scale = 0.5 * plc.bounds.diagonal();
-  const collarmesh::distributed::Shape shape{plc, {}, collarmesh::distance_of(options, plc.bounds.diagonal())};
+  const collarmesh::distributed::Shape shape{
+      plc, {}, collarmesh::distance_of(options, plc.bounds.diagonal())};
   collarmesh::distributed::ParallelMesh mesh(PETSC_COMM_WORLD, coarse, plc);
   for (int level = 0; level <= levels; ++level) {
     if (level > 0) mesh.refine(shape);

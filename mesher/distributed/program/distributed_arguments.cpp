@@ -43,16 +43,20 @@ bool writes_pieces(const DistributedArguments& arguments) {
 std::variant<DistributedArguments, cli::ExitCode> parse(int argc, const char* const* argv) {
   DistributedArguments arguments;
   CLI::App app(
-      "collarmesh-mpi: a certified coarse mesh, distributed, refined and projected onto its shape on all ranks",
+      "collarmesh-mpi: a certified coarse mesh, distributed, refined and projected onto its shape on all "
+      "ranks",
       "collarmesh-mpi");
   app.set_version_flag("--version", "collarmesh-mpi " COLLARMESH_VERSION);
   app.footer(footer);
-  app.add_option("INPUT", arguments.mesh.inputs, "Surfaces, complexes and CAD shapes; several are one complex")
+  app.add_option("INPUT", arguments.mesh.inputs,
+                 "Surfaces, complexes and CAD shapes; several are one complex")
       ->type_name("FILE");
-  app.add_option("-o,--output", arguments.mesh.output,
-                 "The mesh to write: .h5 (PETSc's DMPlex, with .xdmf beside it) or .pvtu (with a piece of each rank)")
+  app.add_option(
+         "-o,--output", arguments.mesh.output,
+         "The mesh to write: .h5 (PETSc's DMPlex, with .xdmf beside it) or .pvtu (with a piece of each rank)")
       ->type_name("FILE");
-  app.add_option("--levels", arguments.levels, "How often every tetrahedron of the coarse mesh is cut into eight")
+  app.add_option("--levels", arguments.levels,
+                 "How often every tetrahedron of the coarse mesh is cut into eight")
       ->check(cli::number_in(0, 12, "a number of levels from 0 to 12"))
       ->check(cli::whole_number())
       ->capture_default_str()

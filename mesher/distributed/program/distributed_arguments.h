@@ -12,8 +12,8 @@ struct DistributedArguments {
   double slack = 10;  ///< degrees that angles may exceed those of the coarse mesh by
 };
 
-/// Understand a command line. When there is nothing to run (help, version, a mistake) the text has been printed
-/// and the exit code is returned instead.
+/// Understand a command line. When there is nothing to run (help, version, a mistake) the text has been
+/// printed and the exit code is returned instead.
 std::variant<DistributedArguments, cli::ExitCode> parse(int argc, const char* const* argv);
 
 /// Is it .pvtu and pieces that are to be written? Else it is .h5.

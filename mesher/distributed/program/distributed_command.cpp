@@ -15,6 +15,7 @@
 #include <thread>
 #include <type_traits>
 
+#include "calls.h"
 #include "collarmesh/distributed.h"
 #include "complex_input.h"
 #include "console.h"
@@ -25,7 +26,6 @@
 #include "mesh_command.h"
 #include "out_of_memory.h"
 #include "program.h"
-#include "calls.h"
 #include "staged_file.h"
 
 namespace collarmesh::distributed {
@@ -61,8 +61,8 @@ class Session {
   std::_Exit(static_cast<int>(code));
 }
 
-/// Work that is not collective and may end the program: when it does on one rank it does on all, and the first
-/// of them tells why.
+/// Work that is not collective and may end the program: when it does on one rank it does on all, and the
+/// first of them tells why.
 void together(const std::function<void()>& work) {
   std::exception_ptr thrown;
   std::optional<cli::Stopped> stopped;
@@ -95,10 +95,8 @@ class Hash {
     for (std::size_t i = 0; i < count; ++i) value_ = (value_ ^ byte[i]) * 0x100000001b3ULL;
   }
   template <class T>
-    requires std::is_trivially_copyable_v<T>
-  void add(const std::vector<T>& values) {
-    add(values.data(), values.size() * sizeof(T));
-  }
+  requires std::is_trivially_copyable_v<T>
+  void add(const std::vector<T>& values) { add(values.data(), values.size() * sizeof(T)); }
   std::uint64_t value() const { return value_; }
 
  private:
@@ -127,7 +125,8 @@ void require_equal_command_lines(int argc, const char* const* argv) {
   Hash hash;
   for (int i = 1; i < argc; ++i) hash.add(argv[i], std::strlen(argv[i]) + 1);
   if (const int other = first_that_differs(hash.value()); other >= 0)
-    throw OptionError(fmt::format("{} has other options than rank 0; start all ranks with the same", host_of(other)));
+    throw OptionError(
+        fmt::format("{} has other options than rank 0; start all ranks with the same", host_of(other)));
 }
 
 void require_equal_files(const DistributedArguments& arguments) {
@@ -143,8 +142,8 @@ void require_equal_files(const DistributedArguments& arguments) {
         hash.add(block.data(), static_cast<std::size_t>(file.gcount()));
     });
     if (const int other = first_that_differs(hash.value()); other >= 0)
-      throw ReadError(fmt::format("{}: is another file on {} than on rank 0; put the same on all machines", path,
-                                  host_of(other)));
+      throw ReadError(fmt::format("{}: is another file on {} than on rank 0; put the same on all machines",
+                                  path, host_of(other)));
   }
 }
 
@@ -196,14 +195,14 @@ Coarse make_coarse(const DistributedArguments& arguments) {
     coarse.made.run.plc = coarse.made.input->build(how);
   });
   if (const int other = first_that_differs(fingerprint(coarse.made.run.plc)); other >= 0)
-    throw std::runtime_error(
-        fmt::format("{} makes another complex of the input than rank 0; are the programs the same?", host_of(other)));
+    throw std::runtime_error(fmt::format(
+        "{} makes another complex of the input than rank 0; are the programs the same?", host_of(other)));
   return coarse;
 }
 
 std::string text_of(const LevelReport& level, unsigned number) {
-  std::string text = fmt::format("level {}: {} tets in {:.2f} s; {} vertices on smooth or exact features", number,
-                                 level.tets, level.seconds, level.on_features);
+  std::string text = fmt::format("level {}: {} tets in {:.2f} s; {} vertices on smooth or exact features",
+                                 number, level.tets, level.seconds, level.on_features);
   if (level.spoilt > 0 || level.made_room > 0)
     text += fmt::format(", {} tets spoilt, {} moves made room", level.spoilt, level.made_room);
   if (level.drawn_back > 0)
@@ -213,7 +212,8 @@ std::string text_of(const LevelReport& level, unsigned number) {
 
 std::string angles_text(const AngleBounds& angles) {
   std::string text = fmt::format("{:.4g} to {:.4g} degrees", angles.least[0], angles.most[0]);
-  if (angles.most[1] > 0) text += fmt::format(", in collars {:.4g} to {:.4g}", angles.least[1], angles.most[1]);
+  if (angles.most[1] > 0)
+    text += fmt::format(", in collars {:.4g} to {:.4g}", angles.least[1], angles.most[1]);
   return text;
 }
 
@@ -263,7 +263,8 @@ struct Report {
     json["vertices"] = certificate.vertices;
     json["tets_of_ranks"] = certificate.tets_of_ranks;
     json["peak_bytes_of_ranks"] = peak_bytes;
-    json["fingerprint"] = fmt::format("{:016x}{:016x}", certificate.fingerprint[0], certificate.fingerprint[1]);
+    json["fingerprint"] =
+        fmt::format("{:016x}{:016x}", certificate.fingerprint[0], certificate.fingerprint[1]);
     json["coarse_angles"] = json_of(coarse);
     json["angles"] = json_of(certificate.angles);
     json["largest_distance"] = certificate.largest_distance;
@@ -325,14 +326,17 @@ void write_report(const std::string& path, const Report& report) {
 }
 
 /// A message that names the places of files in one folder, for another folder.
-std::string with_name(std::string message, const std::filesystem::path& from, const std::filesystem::path& to) {
+std::string with_name(std::string message, const std::filesystem::path& from,
+                      const std::filesystem::path& to) {
   const std::string folder = from.string() + "/", target = to.empty() ? "" : to.string() + "/";
-  for (std::size_t at = message.find(folder); at != std::string::npos; at = message.find(folder, at + target.size()))
+  for (std::size_t at = message.find(folder); at != std::string::npos;
+       at = message.find(folder, at + target.size()))
     message.replace(at, folder.size(), target);
   return message;
 }
 
-/// Under temporary names first, in a folder of rank 0's, which moves them to their places when all ranks are done.
+/// Under temporary names first, in a folder of rank 0's, which moves them to their places when all ranks are
+/// done.
 void write_files(const DistributedArguments& arguments, const ParallelMesh& mesh, Report& report) {
   const bool first = Ranks(MPI_COMM_WORLD).rank == 0;
   const Timer timer;
@@ -347,11 +351,12 @@ void write_files(const DistributedArguments& arguments, const ParallelMesh& mesh
   try {
     writes_pieces(arguments) ? mesh.write_pvtu(place) : mesh.write_h5(place);
   } catch (const PetscFailure& failure) {
-    end_all(ExitCode::cannot_write,
-            fmt::format("{}: cannot be written ({}); is the disk full?", arguments.mesh.output, failure.what()));
+    end_all(ExitCode::cannot_write, fmt::format("{}: cannot be written ({}); is the disk full?",
+                                                arguments.mesh.output, failure.what()));
   } catch (const WriteError& error) {  // of all ranks, with the temporary name
     const std::filesystem::path target = arguments.mesh.output;
-    throw WriteError(with_name(error.what(), std::filesystem::path(place).parent_path(), target.parent_path()));
+    throw WriteError(
+        with_name(error.what(), std::filesystem::path(place).parent_path(), target.parent_path()));
   }
   report.write_seconds = timer.seconds();
   report.peak_bytes = gather(peak_bytes());
@@ -400,8 +405,10 @@ ExitCode mesh_distributed(const DistributedArguments& arguments) {
   stop();
   if (arguments.mesh.order == 2) report.order = mesh.raise_order(shape);
   if (report.order && !arguments.mesh.quiet)
-    tell("second order: {} nodes, {} of them off the middles of their edges; {} went back, by at most {:.3g}\n",
-         report.order->nodes, report.order->curved, report.order->straightened, report.order->farthest_off);
+    tell(
+        "second order: {} nodes, {} of them off the middles of their edges; {} went back, by at most "
+        "{:.3g}\n",
+        report.order->nodes, report.order->curved, report.order->straightened, report.order->farthest_off);
   stop();
   const Timer timer;
   report.certificate = mesh.certify(shape, arguments.slack);
@@ -409,7 +416,8 @@ ExitCode mesh_distributed(const DistributedArguments& arguments) {
   mesh.scale(arguments.mesh.scale);
   stop();
   write_files(arguments, mesh, report);
-  for (const Finding& finding : report.certificate.findings) tell("{}: {}\n", finding.guarantee, finding.message);
+  for (const Finding& finding : report.certificate.findings)
+    tell("{}: {}\n", finding.guarantee, finding.message);
   if (!arguments.mesh.quiet) tell("{}", text_of(report.certificate, report.coarse));
   return report.certificate.passed() && holds != 0 ? ExitCode::success : ExitCode::guarantee_missed;
 }

@@ -87,8 +87,9 @@ PetscMessages::~PetscMessages() { PetscPopErrorHandler(); }
 void fail(PetscErrorCode code) {
   const char* text = nullptr;
   if (first_message.empty()) PetscErrorMessage(code, &text, nullptr);
-  throw PetscFailure(fmt::format(
-      "PETSc: {}", text != nullptr ? text : first_message.empty() ? "unknown error" : first_message));
+  throw PetscFailure(fmt::format("PETSc: {}", text != nullptr         ? text
+                                              : first_message.empty() ? "unknown error"
+                                                                      : first_message));
 }
 
 void agree(MPI_Comm communicator, const std::function<void()>& work) {

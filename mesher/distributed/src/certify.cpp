@@ -1,5 +1,5 @@
-// The certificate: each guarantee recomputed from the DMPlex and the complex alone. Each rank judges its cells, and
-// of what ranks share the one that owns it.
+// The certificate: each guarantee recomputed from the DMPlex and the complex alone. Each rank judges its
+// cells, and of what ranks share the one that owns it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,8 +26,8 @@ namespace {
 
 using checks::At;
 
-/// Quadrature of the tetrahedron, exact for cubic polynomials, as the Jacobian is one: barycentric coordinates
-/// and weights that sum to 1.
+/// Quadrature of the tetrahedron, exact for cubic polynomials, as the Jacobian is one: barycentric
+/// coordinates and weights that sum to 1.
 struct QuadraturePoint {
   std::array<double, 4> at;
   double weight;
@@ -58,7 +58,8 @@ double volume_of(const CurvedTet& nodes) {
 }
 
 /// At the middle of each side of a face of second order, with nodes amid ab, bc, ca: the cross product of the
-/// derivatives of its map, over 6. Their sum is the integral of the normal, that of their lengths about the area.
+/// derivatives of its map, over 6. Their sum is the integral of the normal, that of their lengths about the
+/// area.
 std::array<Vector, 3> normals_of(const std::array<Point, 3>& corners, const std::array<Point, 3>& mid) {
   std::array<Vector, 3> normals;
   for (std::size_t side = 0; side < 3; ++side) {
@@ -142,8 +143,8 @@ struct Expected {
   std::map<Tag, double> volumes, volume_room;
 
  private:
-  // What is moved by d becomes longer or larger by no more than d times what it turns by (Steiner's formula), to
-  // first order, and by what its ends move. Turned polygons turn as much as what they approximate.
+  // What is moved by d becomes longer or larger by no more than d times what it turns by (Steiner's formula),
+  // to first order, and by what its ends move. Turned polygons turn as much as what they approximate.
   void measure_curves(const Plc& plc) {
     for (Index c = 0; c < plc.curves.size(); ++c) {
       const Plc::Curve& curve = plc.curves[c];
@@ -165,7 +166,8 @@ struct Expected {
   void measure_patches(const Plc& plc) {
     areas.assign(plc.patches.size(), 0);
     area_room.assign(plc.patches.size(), 0);
-    std::map<std::array<Index, 2>, std::pair<double, Vector>> sides;  // of one patch: length, normal of the first
+    std::map<std::array<Index, 2>, std::pair<double, Vector>>
+        sides;  // of one patch: length, normal of the first
     for (Index p = 0; p < plc.patches.size(); ++p) {
       const Plc::Patch& patch = plc.patches[p];
       double turn = 0;
@@ -302,8 +304,8 @@ class Certification {
       }
       double volume = six_volume(p[0], p[1], p[2], p[3]) / 6;
       if (order_ == 2) {
-        const CurvedTet nodes = curved(
-            p, edges_->of_tet(first_tet_ + static_cast<PetscInt>(t), mesh_->tets[t]), nodes_);
+        const CurvedTet nodes =
+            curved(p, edges_->of_tet(first_tet_ + static_cast<PetscInt>(t), mesh_->tets[t]), nodes_);
         volume = volume_of(nodes);
         if (!jacobian_exceeds(nodes))
           find("positive_jacobian", "A tet at {} has a Jacobian that is not positive everywhere in it.",
@@ -313,7 +315,8 @@ class Certification {
       check_angles(t, p, centre);
       std::array<std::uint64_t, 4> corners;
       for (std::size_t k = 0; k < 4; ++k) corners[k] = Fingerprint::of(p[k]);
-      fingerprint_.add(corners, mixed(static_cast<std::uint64_t>(tag)) + static_cast<std::uint64_t>(collars_[t] + 1));
+      fingerprint_.add(corners,
+                       mixed(static_cast<std::uint64_t>(tag)) + static_cast<std::uint64_t>(collars_[t] + 1));
     }
   }
 
@@ -377,7 +380,8 @@ class Certification {
       ++certificate_.faces;
       check_regions(f, patch, centre);
       measure_face(face, corners, p, patch);
-      fingerprint_.add(std::array{Fingerprint::of(p[0]), Fingerprint::of(p[1]), Fingerprint::of(p[2])}, patch);
+      fingerprint_.add(std::array{Fingerprint::of(p[0]), Fingerprint::of(p[1]), Fingerprint::of(p[2])},
+                       patch);
     }
   }
 
@@ -387,7 +391,8 @@ class Certification {
     const PetscInt least = tets_of_[f] == 1 ? -1 : least_region_[f];
     if (least == wanted.first && most_region_[f] == wanted.second) return;
     find("face_regions",
-         "A face at {} on patch {} (tag {}) lies between the regions {} and {}, the patch between {} and {} (-1 "
+         "A face at {} on patch {} (tag {}) lies between the regions {} and {}, the patch between {} and {} "
+         "(-1 "
          "is outside).",
          At{centre}, patch, plc_.patches[patch].tag, least, most_region_[f], wanted.first, wanted.second);
   }
@@ -412,8 +417,7 @@ class Certification {
       if (!shared_edges_.owned(e)) continue;
       const auto& [a, b] = edges_->ends(e);
       const std::array ends{Fingerprint::of(mesh_->points[a]), Fingerprint::of(mesh_->points[b])};
-      if (order_ == 2)
-        fingerprint_.add(ends, Fingerprint::of(nodes_[e]));
+      if (order_ == 2) fingerprint_.add(ends, Fingerprint::of(nodes_[e]));
       const auto [dimension, curve] = decoded(edge_codes_[e]);
       if (dimension != 1 || curve == none) continue;
       ++certificate_.edges;
@@ -429,11 +433,13 @@ class Certification {
       const TetMesh::VertexFeature feature = decoded(code);
       if (feature.dimension != 1 && feature.dimension != 2) return;
       const bool on_curve = feature.dimension == 1;
-      const double allowed = on_curve ? expected_->curve_off[feature.feature] : expected_->patch_off[feature.feature];
+      const double allowed =
+          on_curve ? expected_->curve_off[feature.feature] : expected_->patch_off[feature.feature];
       const bool planar = !on_curve && plc_.patches[feature.feature].planar;
-      const double off = planar ? std::fabs(dot(p - plc_.patches[feature.feature].origin,
-                                                plc_.patches[feature.feature].normal))
-                                : on_shape.distance_to_complex(feature, p);
+      const double off =
+          planar
+              ? std::fabs(dot(p - plc_.patches[feature.feature].origin, plc_.patches[feature.feature].normal))
+              : on_shape.distance_to_complex(feature, p);
       if (on_shape.is_smooth(feature))
         certificate_.largest_distance = std::max(certificate_.largest_distance, off);
       if (!(off <= allowed))
@@ -559,13 +565,15 @@ class Certification {
   /// All findings, on all ranks.
   void gather() {
     std::string own;
-    for (const Finding& finding : certificate_.findings) own += finding.guarantee + '\t' + finding.message + '\n';
+    for (const Finding& finding : certificate_.findings)
+      own += finding.guarantee + '\t' + finding.message + '\n';
     const int size = static_cast<int>(own.size());
     std::vector<int> sizes(static_cast<std::size_t>(ranks_.count)), begins(sizes.size());
     MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, communicator_);
     std::exclusive_scan(sizes.begin(), sizes.end(), begins.begin(), 0);
     std::string all(static_cast<std::size_t>(begins.back() + sizes.back()), ' ');
-    MPI_Allgatherv(own.data(), size, MPI_CHAR, all.data(), sizes.data(), begins.data(), MPI_CHAR, communicator_);
+    MPI_Allgatherv(own.data(), size, MPI_CHAR, all.data(), sizes.data(), begins.data(), MPI_CHAR,
+                   communicator_);
     certificate_.findings.clear();
     for (std::size_t at = 0; at < all.size();) {
       const std::size_t tab = all.find('\t', at), end = all.find('\n', at);

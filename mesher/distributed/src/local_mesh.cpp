@@ -15,8 +15,7 @@ std::array<Index, n> closure_vertices(DM dm, PetscInt point, PetscInt first_vert
   call(DMPlexGetTransitiveClosure(dm, point, PETSC_TRUE, &count, &closure));
   std::array<Index, n> vertices;
   for (std::size_t k = 0; k < n; ++k)  // they are the last ones
-    vertices[k] =
-        static_cast<Index>(closure[2 * (static_cast<std::size_t>(count) - n + k)] - first_vertex);
+    vertices[k] = static_cast<Index>(closure[2 * (static_cast<std::size_t>(count) - n + k)] - first_vertex);
   call(DMPlexRestoreTransitiveClosure(dm, point, PETSC_TRUE, &count, &closure));
   return vertices;
 }

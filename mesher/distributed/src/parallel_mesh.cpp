@@ -26,9 +26,8 @@ void require_labels(const TetMesh& mesh, const Plc& plc) {
   constexpr Tag most = std::numeric_limits<PetscInt>::max();
   const auto require = [&](const char* what, Tag tag) {
     if (tag < 0 || tag > most)
-      throw OptionError(
-          fmt::format("the tag {} of a {} is no label of PETSc, which go from 0 to {}; renumber it", tag, what,
-                      most));
+      throw OptionError(fmt::format(
+          "the tag {} of a {} is no label of PETSc, which go from 0 to {}; renumber it", tag, what, most));
   };
   for (const Plc::Region& region : plc.regions) require("region", region.tag);
   for (const Plc::Patch& patch : plc.patches) require("patch", patch.tag);
@@ -62,8 +61,8 @@ DM create(MPI_Comm communicator, const TetMesh& mesh) {
   for (const Point& p : mesh.points) coordinates.insert(coordinates.end(), {p.x, p.y, p.z});
   DM dm = nullptr;
   call(DMPlexCreateFromCellListPetsc(communicator, 3, static_cast<PetscInt>(mesh.tets.size()),
-                                     static_cast<PetscInt>(mesh.points.size()), 4, PETSC_TRUE, cells.data(), 3,
-                                     coordinates.data(), &dm));
+                                     static_cast<PetscInt>(mesh.points.size()), 4, PETSC_TRUE, cells.data(),
+                                     3, coordinates.data(), &dm));
   return dm;
 }
 

@@ -1,6 +1,6 @@
-// The vertices of a refined mesh onto the shape. Whatever is decided about a vertex depends on all tets around it,
-// which may be on several ranks, by minima, maxima and sums of whole numbers only: these are the same in any order,
-// so the mesh is the same on any number of ranks, bit by bit.
+// The vertices of a refined mesh onto the shape. Whatever is decided about a vertex depends on all tets
+// around it, which may be on several ranks, by minima, maxima and sums of whole numbers only: these are the
+// same in any order, so the mesh is the same on any number of ranks, bit by bit.
 #include "placement.h"
 
 #include <algorithm>
@@ -32,7 +32,8 @@ constexpr double tolerated = 10;
 constexpr double least_score = 0.2;
 // Of a flat tet; inverted ones have less.
 constexpr double flat_score = -100;
-// Of the squares of what tets lack whole numbers are made, relative to this. Doubles add them without rounding.
+// Of the squares of what tets lack whole numbers are made, relative to this. Doubles add them without
+// rounding.
 constexpr double unit_of_lack = 0x1p-16;
 // Room is made in so many sweeps at most; a vertex tries steps of these shares of its shortest edge.
 constexpr unsigned most_sweeps = 60;
@@ -59,7 +60,8 @@ std::uint64_t mixed(std::uint64_t h) {  // the finalizer of MurmurHash3
 std::array<Vector, 3> frame_of(unsigned sweep) {
   if (sweep == 0) return {Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}};
   const double s = sweep;
-  const Vector a{std::cos(2.4 * s), std::sin(2.4 * s), std::cos(1.7 * s)}, b{std::sin(s), std::cos(1.3 * s), 0.6};
+  const Vector a{std::cos(2.4 * s), std::sin(2.4 * s), std::cos(1.7 * s)},
+      b{std::sin(s), std::cos(1.3 * s), 0.6};
   const Vector u = a / norm(a), w = cross(u, b) / norm(cross(u, b));
   return {u, cross(w, u), w};
 }
@@ -110,8 +112,7 @@ class Placement {
 
   void read_labels() {
     PetscInt first = 0, end = 0;
-    for (const PetscInt code :
-         label_values(dm_, feature_label, vertices_.first(), mesh_->points.size()))
+    for (const PetscInt code : label_values(dm_, feature_label, vertices_.first(), mesh_->points.size()))
       features_.push_back(decoded(code));
     call(DMPlexGetHeightStratum(dm_, 0, &first, &end));
     for (const PetscInt kind : label_values(dm_, "collar", first, mesh_->tets.size()))
@@ -142,7 +143,8 @@ class Placement {
   void share_places() {
     const std::vector<std::size_t>& shared = vertices_.shared();
     std::vector<PetscReal> values;
-    for (const std::size_t v : shared) values.insert(values.end(), {targets_[v].x, targets_[v].y, targets_[v].z});
+    for (const std::size_t v : shared)
+      values.insert(values.end(), {targets_[v].x, targets_[v].y, targets_[v].z});
     vertices_.combine_shared(values, MPI_REPLACE, 3);
     for (std::size_t k = 0; k < shared.size(); ++k)
       targets_[shared[k]] = {values[3 * k], values[3 * k + 1], values[3 * k + 2]};
@@ -239,8 +241,8 @@ class Placement {
     return dot(then, now) > least_course * norm(then) * norm(now);
   }
 
-  /// Move vertices, inside regions and along their features, to where the tets around them lack less. Returns the tets that it looked
-  /// at.
+  /// Move vertices, inside regions and along their features, to where the tets around them lack less. Returns
+  /// the tets that it looked at.
   std::vector<Index> relax(std::vector<Index> tets) {
     for (unsigned sweep = 0; sweep < most_sweeps; ++sweep) {
       const std::vector<Index> movers = independent_vertices(tets, sweep);
@@ -280,8 +282,8 @@ class Placement {
     return independent(wishes, sweep);
   }
 
-  /// Of two vertices of one tet the one with the greater number, made of its place. The same on all ranks that
-  /// have the vertex, if the wishes are.
+  /// Of two vertices of one tet the one with the greater number, made of its place. The same on all ranks
+  /// that have the vertex, if the wishes are.
   std::vector<Index> independent(const std::vector<PetscInt>& wishes, unsigned sweep) const {
     std::vector<Index> vertices;
     std::vector<PetscInt> yields(mesh_->points.size(), 0);
@@ -355,7 +357,8 @@ class Placement {
     agree(communicator_, [&] {
       for (std::size_t i = 0; i < movers.size(); ++i) {
         if (vertices_.owned(movers[i]))
-          for (const Point& p : places_of(movers[i], &known[facts * i], frame)) tried.insert(tried.end(), {p.x, p.y, p.z});
+          for (const Point& p : places_of(movers[i], &known[facts * i], frame))
+            tried.insert(tried.end(), {p.x, p.y, p.z});
         tried.resize(3 * places * (i + 1), 0);
       }
     });
@@ -382,7 +385,8 @@ class Placement {
     return moved;
   }
 
-  std::array<Point, places> places_of(Index vertex, const PetscReal* known, const std::array<Vector, 3>& frame) {
+  std::array<Point, places> places_of(Index vertex, const PetscReal* known,
+                                      const std::array<Vector, 3>& frame) {
     const Point& p = mesh_->points[vertex];
     const Point centre{0.5 * (known[1] - known[4]), 0.5 * (known[2] - known[5]), 0.5 * (known[3] - known[6])};
     std::array<Point, places> tried{displaced(vertex, centre - p), displaced(vertex, 0.5 * (centre - p))};

@@ -92,14 +92,16 @@ class Curving {
 
   void share_ways() {
     std::vector<PetscReal> values;
-    for (const std::size_t e : shared_.shared()) values.insert(values.end(), {ways_[e].x, ways_[e].y, ways_[e].z});
+    for (const std::size_t e : shared_.shared())
+      values.insert(values.end(), {ways_[e].x, ways_[e].y, ways_[e].z});
     shared_.combine_shared(values, MPI_REPLACE, 3);
     for (std::size_t k = 0; k < shared_.shared().size(); ++k)
       ways_[shared_.shared()[k]] = {values[3 * k], values[3 * k + 1], values[3 * k + 2]};
     for (std::size_t e = 0; e < ways_.size(); ++e) {
       const auto& [a, b] = edges_.ends(e);
       if (!std::isfinite(squared_norm(ways_[e]))) ways_[e] = {};
-      if (norm(ways_[e]) > farthest * distance(mesh_.points[a], mesh_.points[b])) back_[e] = shares.size() - 1;
+      if (norm(ways_[e]) > farthest * distance(mesh_.points[a], mesh_.points[b]))
+        back_[e] = shares.size() - 1;
     }
   }
 

@@ -14,18 +14,18 @@ namespace collarmesh::distributed {
 
 namespace {
 
-/// PETSc cuts the octahedron in the middle of a tet between the middles of the edges 01 and 23 of its corners.
-/// Turned by these arrangements, which keep the last corner, the tet has other edges there.
+/// PETSc cuts the octahedron in the middle of a tet between the middles of the edges 01 and 23 of its
+/// corners. Turned by these arrangements, which keep the last corner, the tet has other edges there.
 ///
-/// It numbers the corners of the eight tets so that their own diagonals are those of Bey's rule (Tetrahedral grid
-/// refinement, 1995): the four in the octahedron are cut next between the middle of this diagonal and of the edge
-/// opposite, the others like the tet they are similar to. By that rule the tets within one have three shapes at
-/// most, at any level, and the first level has all of them. So the choice is made there, once: the best
-/// diagonal at each level makes ever new shapes, and worse ones.
+/// It numbers the corners of the eight tets so that their own diagonals are those of Bey's rule (Tetrahedral
+/// grid refinement, 1995): the four in the octahedron are cut next between the middle of this diagonal and of
+/// the edge opposite, the others like the tet they are similar to. By that rule the tets within one have
+/// three shapes at most, at any level, and the first level has all of them. So the choice is made there,
+/// once: the best diagonal at each level makes ever new shapes, and worse ones.
 constexpr std::array<PetscInt, 3> arrangements{0, 1, 2};
 
-/// How good the four tets around the diagonal between the edges ij and kl are: the smaller of their least angle and
-/// of what their greatest lacks to 180 degrees.
+/// How good the four tets around the diagonal between the edges ij and kl are: the smaller of their least
+/// angle and of what their greatest lacks to 180 degrees.
 double goodness(const Corners& p, std::size_t i, std::size_t j, std::size_t k, std::size_t l) {
   const auto middle = [&](std::size_t a, std::size_t b) { return 0.5 * (p[a] + p[b]); };
   const Point from = middle(i, j), to = middle(k, l);
@@ -49,8 +49,8 @@ void choose_diagonals(DM dm) {
       const Corners p{a, b, c, d};  // in PETSc's order
       const std::array<double, 3> found{goodness(p, 0, 1, 2, 3), goodness(p, 1, 2, 0, 3),
                                         goodness(p, 2, 0, 1, 3)};
-      turned.push_back(arrangements[static_cast<std::size_t>(
-          std::max_element(found.begin(), found.end()) - found.begin())]);
+      turned.push_back(arrangements[static_cast<std::size_t>(std::max_element(found.begin(), found.end()) -
+                                                             found.begin())]);
     }
   }
   for (std::size_t t = 0; t < turned.size(); ++t)

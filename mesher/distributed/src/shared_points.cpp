@@ -39,7 +39,8 @@ MPI_Datatype basic_type() {
 
 }  // namespace
 
-SharedPoints::SharedPoints(DM dm, PetscInt depth) : communicator_(PetscObjectComm(reinterpret_cast<PetscObject>(dm))) {
+SharedPoints::SharedPoints(DM dm, PetscInt depth)
+    : communicator_(PetscObjectComm(reinterpret_cast<PetscObject>(dm))) {
   PetscInt end = 0;
   call(DMPlexGetDepthStratum(dm, depth, &first_, &end));
   owned_.assign(static_cast<std::size_t>(end - first_), true);

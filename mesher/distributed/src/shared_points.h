@@ -9,8 +9,8 @@
 
 namespace collarmesh::distributed {
 
-/// The points of one depth of a DMPlex (0 vertices, 1 edges, 2 faces, 3 tets), numbered from 0 on each rank, and
-/// those among them that other ranks have, too. Values of these are combined by minima, maxima or sums of
+/// The points of one depth of a DMPlex (0 vertices, 1 edges, 2 faces, 3 tets), numbered from 0 on each rank,
+/// and those among them that other ranks have, too. Values of these are combined by minima, maxima or sums of
 /// integers, which are the same in any order.
 class SharedPoints {
  public:

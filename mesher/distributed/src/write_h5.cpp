@@ -1,5 +1,5 @@
-// NAME.h5: the DMPlex as PETSc stores it, and the arrays of uniform grids of XDMF 3 (www.xdmf.org, "XDMF Model and
-// Format"), one grid in a file, which is what dolfinx and meshio read.
+// NAME.h5: the DMPlex as PETSc stores it, and the arrays of uniform grids of XDMF 3 (www.xdmf.org, "XDMF
+// Model and Format"), one grid in a file, which is what dolfinx and meshio read.
 #include <fmt/format.h>
 #include <petscviewerhdf5.h>
 
@@ -37,7 +37,13 @@ struct Grid {
 class GridMaker {
  public:
   GridMaker(DM dm, int order)
-      : dm_(dm), order_(order), mesh_(dm), edges_(dm), vertices_(dm, 0), shared_edges_(dm, 1), faces_(dm, 2) {}
+      : dm_(dm),
+        order_(order),
+        mesh_(dm),
+        edges_(dm),
+        vertices_(dm, 0),
+        shared_edges_(dm, 1),
+        faces_(dm, 2) {}
 
   /// Collective.
   Grid make() {
@@ -63,7 +69,8 @@ class GridMaker {
   /// Each rank's vertices, then its nodes amid edges, then the next rank's.
   void number_nodes() {
     const MPI_Comm communicator = PetscObjectComm(reinterpret_cast<PetscObject>(dm_));
-    const auto own = static_cast<PetscInt>(vertices_.owned_count() + (order_ == 2 ? shared_edges_.owned_count() : 0));
+    const auto own =
+        static_cast<PetscInt>(vertices_.owned_count() + (order_ == 2 ? shared_edges_.owned_count() : 0));
     PetscInt next = 0;
     MPI_Exscan(&own, &next, 1, MPIU_INT, MPI_SUM, communicator);
     if (Ranks(communicator).rank == 0) next = 0;
@@ -95,7 +102,8 @@ class GridMaker {
                 cells);
     std::vector<PetscInt> collars = label_values(dm_, "collar", first, mesh_.tets.size());
     for (PetscInt& kind : collars) kind = std::max(kind, 0);
-    cells.arrays = {{"tag", label_values(dm_, "region", first, mesh_.tets.size())}, {"collar", std::move(collars)}};
+    cells.arrays = {{"tag", label_values(dm_, "region", first, mesh_.tets.size())},
+                    {"collar", std::move(collars)}};
   }
 
   void add_faces(Cells& cells) const {
@@ -114,7 +122,8 @@ class GridMaker {
 
   void add_edges(Cells& cells) const {
     cells = {"edges", order_ == 2 ? "Edge_3" : "Polyline", order_ == 2 ? 3U : 2U, {}, {}};
-    const std::vector<PetscInt> tags = label_values(dm_, "curve", shared_edges_.first(), shared_edges_.size());
+    const std::vector<PetscInt> tags =
+        label_values(dm_, "curve", shared_edges_.first(), shared_edges_.size());
     std::vector<PetscInt> own;
     for (std::size_t e = 0; e < tags.size(); ++e) {
       if (tags[e] < 0 || !shared_edges_.owned(e)) continue;
@@ -161,8 +170,8 @@ class ValueFile {
   std::int64_t write(const std::string& group, const std::string& name, const std::vector<PetscInt>& values,
                      std::size_t columns) {
     IS set = nullptr;
-    call(ISCreateGeneral(communicator_, static_cast<PetscInt>(values.size()), values.data(), PETSC_USE_POINTER,
-                         &set));
+    call(ISCreateGeneral(communicator_, static_cast<PetscInt>(values.size()), values.data(),
+                         PETSC_USE_POINTER, &set));
     call(ISSetBlockSize(set, static_cast<PetscInt>(columns)));
     write_object(group, name, set, [&] { return ISView(set, viewer_); });
     call(ISDestroy(&set));
@@ -195,11 +204,11 @@ class ValueFile {
   PetscViewer viewer_ = nullptr;
 };
 
-std::string data_item(const std::string& file, const std::string& path, std::string_view type, std::size_t bytes,
-                      std::int64_t rows, std::size_t columns) {
+std::string data_item(const std::string& file, const std::string& path, std::string_view type,
+                      std::size_t bytes, std::int64_t rows, std::size_t columns) {
   return fmt::format(
-      "<DataItem Format=\"HDF\" NumberType=\"{}\" Precision=\"{}\" Dimensions=\"{} {}\">{}:{}</DataItem>\n", type,
-      bytes, rows, columns, file, path);
+      "<DataItem Format=\"HDF\" NumberType=\"{}\" Precision=\"{}\" Dimensions=\"{} {}\">{}:{}</DataItem>\n",
+      type, bytes, rows, columns, file, path);
 }
 
 void write_text(const fs::path& path, const std::string& text) {
@@ -263,9 +272,9 @@ void ParallelMesh::write_h5(const std::string& path) const {
         data_item(file, group + "/topology", "Int", sizeof(PetscInt), count, cells.nodes_per_cell), geometry);
     for (const auto& [name, array] : cells.arrays) {
       values.write(group, std::string(name), array, 1);
-      text += fmt::format("<Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Cell\">\n{}</Attribute>\n",
-                          name,
-                          data_item(file, fmt::format("{}/{}", group, name), "Int", sizeof(PetscInt), count, 1));
+      text += fmt::format(
+          "<Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Cell\">\n{}</Attribute>\n", name,
+          data_item(file, fmt::format("{}/{}", group, name), "Int", sizeof(PetscInt), count, 1));
     }
     values.close();
     agree(communicator_, [&] {
