@@ -28,7 +28,8 @@ BLOCK = re.compile(r"^(?:<!-- ([^\n]*) -->\n)?```([^\n]*)\n(.*?)^```", re.M | re
 RUN = {"bash", "python"}
 KNOWN = RUN | {"cpp", "cmake", "text"}
 MOST_LINES = 10
-MODULES = {"OpenCASCADE": "collarmesh_cad.so", "HDF5": "collarmesh_hdf5.so", "Scotch": "collarmesh_scotch.so"}
+PARTS = {"OpenCASCADE": "lib/collarmesh/collarmesh_cad.so", "HDF5": "lib/collarmesh/collarmesh_hdf5.so",
+         "Scotch": "lib/collarmesh/collarmesh_scotch.so", "MPI": "bin/collarmesh-mpi"}
 SMALLEST_PICTURE = 10_000  # bytes: an empty one is smaller
 # What a recipe says at its end.
 RECIPES = {

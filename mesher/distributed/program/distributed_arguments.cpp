@@ -29,8 +29,12 @@ void check(const DistributedArguments& a) {
   if (const std::string extension = extension_of(a.mesh.output); extension != ".h5" && extension != ".pvtu")
     throw CLI::ValidationError("--output",
                                fmt::format("'{}' ends in '{}'; use .h5 or .pvtu", a.mesh.output, extension));
-  if (cli::is_html(a.mesh.report))
-    throw CLI::ValidationError("--report", "is JSON here; pages (.html) are made by collarmesh");
+  for (const std::string& report : a.mesh.reports)
+    if (cli::is_html(report))
+      throw CLI::ValidationError("--report", "is JSON here; pages (.html) are made by collarmesh");
+  if (a.mesh.reports.size() > 1) throw CLI::ValidationError("--report", "is given twice; use it once");
+  if (a.mesh.partitions > 0 || !a.mesh.cell_decomposition.empty())
+    throw CLI::ValidationError("--partitions", "is for collarmesh; here each rank has a part of its own");
   cli::check_run_arguments(a.mesh);
 }
 

@@ -362,8 +362,8 @@ void write_files(const DistributedArguments& arguments, const ParallelMesh& mesh
   report.peak_bytes = gather(peak_bytes());
   together([&] {
     if (!first) return;
-    if (!arguments.mesh.report.empty()) {
-      staged_report.emplace(arguments.mesh.report);
+    if (!arguments.mesh.reports.empty()) {
+      staged_report.emplace(arguments.mesh.reports.front());
       staged_report->write([&](const std::string& path) { write_report(path, report); });
     }
     cli::StagedFile::commit({&*staged, staged_report ? &*staged_report : nullptr});
@@ -372,7 +372,7 @@ void write_files(const DistributedArguments& arguments, const ParallelMesh& mesh
 
 void require_places(const DistributedArguments& arguments) {
   cli::require_writable(arguments.mesh.output);
-  if (!arguments.mesh.report.empty()) cli::require_writable(arguments.mesh.report);
+  for (const std::string& report : arguments.mesh.reports) cli::require_writable(report);
 }
 
 ExitCode mesh_distributed(const DistributedArguments& arguments) {
