@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdint>
+#include <limits>
 
 #include "angles.h"
 #include "calls.h"
@@ -62,8 +64,16 @@ void choose_diagonals(DM dm) {
 LevelReport ParallelMesh::refine(const Shape& shape) {
   const PetscMessages messages;
   const auto start = std::chrono::steady_clock::now();
+  PetscInt first = 0, end = 0;
+  call(DMPlexGetHeightStratum(dm_, 0, &first, &end));
+  // A tet comes with two faces, more than an edge and a fifth of a vertex; numbers count those of all ranks.
+  const std::int64_t points = 8 * 9 * all_reduce(communicator_, std::int64_t{end - first}, MPI_SUM) / 2;
   agree(communicator_, [&] {
     if (order_ != 1) throw OptionError("meshes of second order are not refined; raise the order afterwards");
+    if (points > std::numeric_limits<PetscInt>::max())
+      throw OptionError(
+          "the refined mesh has more points than PETSc's integers can count; use fewer levels, or a "
+          "PETSc with integers of 64 bits");
     if (levels_++ == 0) choose_diagonals(dm_);
     for (const char* name : {"patch", "curve"}) call(DMRemoveLabel(dm_, name, nullptr));
   });

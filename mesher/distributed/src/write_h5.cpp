@@ -6,6 +6,7 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <string_view>
 
 #include "calls.h"
@@ -226,7 +227,15 @@ void require_space(DM dm, const fs::path& path) {
   call(DMPlexGetHeightStratum(dm, 0, &first, &end));
   const double needed =
       bytes_per_tet * static_cast<double>(all_reduce(communicator, std::int64_t{end - first}, MPI_SUM));
+  // The file has the faces, edges and ends of all points in one array, some 12.5 for a tet.
+  const bool countable =
+      needed / bytes_per_tet * 13 < static_cast<double>(std::numeric_limits<PetscInt>::max());
   agree(communicator, [&] {
+    if (!countable)
+      throw WriteError(
+          fmt::format("{}: has more entries than PETSc's integers can count; write .pvtu, or use a PETSc "
+                      "with integers of 64 bits",
+                      path.string()));
     std::error_code unknown;
     const fs::space_info space = fs::space(path.parent_path().empty() ? "." : path.parent_path(), unknown);
     if (Ranks(communicator).rank == 0 && !unknown && static_cast<double>(space.available) < needed)
