@@ -302,6 +302,8 @@ void add_quiet_flag(CLI::App& app, bool& quiet) {
   app.add_flag("-q,--quiet", quiet, "Say nothing unless something is wrong");
 }
 
+}  // namespace
+
 void add_run_options(CLI::App& app, MeshArguments& a) {
   add_size_options(app, a.mesh, a.size_field);
   add_quality_options(app, a.mesh);
@@ -333,6 +335,8 @@ void add_run_options(CLI::App& app, MeshArguments& a) {
   app.add_flag("-v,--verbose", a.verbose, "Say more: time per stage, statistics");
   add_quiet_flag(app, a.quiet);
 }
+
+namespace {
 
 void add_output_format(CLI::App& app, std::string& format, const std::string& when) {
   app.add_option("--format", format, "Of the output, an extension such as vtu or msh2" + when)
@@ -515,7 +519,8 @@ void check_partitions(const MeshArguments& a, bool from_mesh) {
     throw CLI::ValidationError("--ghost-cells", "is of partitions; say how many with --partitions");
 }
 
-/// What one option alone cannot tell.
+}  // namespace
+
 void check_run_arguments(const MeshArguments& a) {
   if (a.verbose && a.quiet) throw CLI::ValidationError("--quiet", "contradicts --verbose; use one of them");
   check_outputs(a);
@@ -525,6 +530,8 @@ void check_run_arguments(const MeshArguments& a) {
   if (a.mesh.vertex_ratio != 0 && a.mesh.vertex_ratio <= 2 * std::sqrt(2.0))
     throw CLI::ValidationError("--vertex-ratio", "must exceed 2 sqrt 2 = 2.83 (the proved bound)");
 }
+
+namespace {
 
 void check_mesh_arguments(const MeshArguments& a) {
   if (a.inputs.empty()) throw CLI::RequiredError("INPUT, a file to mesh,");

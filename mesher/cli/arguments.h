@@ -14,6 +14,10 @@
 #include "collarmesh/repair.h"
 #include "exit_code.h"
 
+namespace CLI {
+class App;
+}
+
 namespace collarmesh::cli {
 
 enum class ProgressStyle { automatic, json, none };
@@ -97,6 +101,11 @@ struct RepairArguments {
 
 using Arguments =
     std::variant<MeshArguments, CheckArguments, InfoArguments, ConvertArguments, RepairArguments>;
+
+/// The options of meshing, all but the files, for another program that meshes; and what one of them alone
+/// cannot tell, which throws CLI::ValidationError.
+void add_run_options(CLI::App& app, MeshArguments& arguments);
+void check_run_arguments(const MeshArguments& arguments);
 
 /// Understand a command line. When there is nothing to run (help, version, a mistake) the text has
 /// been printed and the exit code is returned instead.

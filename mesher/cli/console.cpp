@@ -20,12 +20,20 @@ void replace_closed_streams() {
   }
 }
 
+namespace {
+bool silent = false;
+}
+
+void be_silent() { silent = true; }
+
 void tell_text(const std::string& text) noexcept {
+  if (silent) return;
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
 }
 
 void print_result(const std::string& text) {
+  if (silent) return;
   errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
     throw WriteError(fmt::format("standard output: cannot be written ({})",

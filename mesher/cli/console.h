@@ -13,6 +13,9 @@ namespace collarmesh::cli {
 /// its number: messages would be written into it. Reading from and writing to the stream still fail.
 void replace_closed_streams();
 
+/// From now on this process says nothing: of several that do the same work another one does.
+void be_silent();
+
 /// Messages, to standard error. What cannot be written is lost: a run does not fail for its messages.
 void tell_text(const std::string& text) noexcept;
 template <class... Values>

@@ -77,13 +77,6 @@ PipelineOptions pipeline_options(const MeshArguments& a) {
   return options;
 }
 
-ComplexInput read_inputs(const MeshArguments& arguments, Stages& stages) {
-  stages.begin("read", 0, 0.02);
-  const auto distance = [&](double diagonal) { return distance_of(pipeline_options(arguments), diagonal); };
-  return ComplexInput(arguments.inputs,
-                      interruptible({arguments.input_format, distance, arguments.complex.overlap}));
-}
-
 /// For the message when the time is up.
 void note_where_it_stopped(const MeshResult& result) {
   const MeshStatistics& reached = result.statistics;
@@ -111,6 +104,7 @@ class InputSource : public ComplexSource {
           "repaired again, with --repair-tolerance {:.3g}: no mesh of the complex keeps every guarantee\n",
           repair.tolerance));
     RepairedPlc built{input_.build(how), input_.repaired(), {}};
+    built_with_ = repair;
     stages_.print(warnings_text(built.plc) + repair_text(built.report, arguments_.quiet));
     return built;
   }
@@ -125,14 +119,18 @@ class InputSource : public ComplexSource {
     told_of_options_ = text;
   }
 
+  const RepairOptions& built_with() const { return built_with_; }
+
  private:
   const MeshArguments& arguments_;
   ComplexInput& input_;
   Stages& stages_;
+  RepairOptions built_with_;
   std::string told_of_options_;  // once, however many meshes are tried
 };
 
-void mesh(const MeshArguments& arguments, ComplexInput& input, Stages& stages, MeshRun& run) {
+/// Returns how the complex was repaired.
+RepairOptions mesh(const MeshArguments& arguments, ComplexInput& input, Stages& stages, MeshRun& run) {
   Execution execution;
   execution.cancel = &interrupt_flag();
   std::optional<CadWork> projecting;
@@ -156,6 +154,11 @@ void mesh(const MeshArguments& arguments, ComplexInput& input, Stages& stages, M
   run.notes = input.notes();
   run.summary = summarize(run.plc, arguments.complex.crease_angle);
   run.warnings = option_warnings(arguments, run.plc);
+  return source.built_with();
+}
+
+ProgressStyle progress_of(const MeshArguments& arguments) {
+  return arguments.quiet ? ProgressStyle::none : arguments.progress;
 }
 
 /// `shown`: for pages.
@@ -198,6 +201,8 @@ void write_files(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   StagedFile::commit(files);
 }
 
+}  // namespace
+
 void tell_of(const MeshArguments& arguments, const MeshRun& run) {
   if (run.result.status == MeshStatus::guarantee_missed)
     tell("collarmesh: a guarantee is missed: {}\n", run.result.message);
@@ -211,7 +216,20 @@ void tell_of(const MeshArguments& arguments, const MeshRun& run) {
     tell("{}", losses_text(lost_by(format_of(arguments.output, arguments.output_format), run.result.mesh)));
 }
 
-}  // namespace
+std::unique_ptr<ComplexInput> read_inputs(const MeshArguments& arguments) {
+  const auto distance = [&](double diagonal) { return distance_of(pipeline_options(arguments), diagonal); };
+  return std::make_unique<ComplexInput>(
+      arguments.inputs, interruptible({arguments.input_format, distance, arguments.complex.overlap}));
+}
+
+MadeMesh make_mesh(const MeshArguments& arguments) {
+  MadeMesh made;
+  Stages stages(progress_of(arguments), made.run.times);
+  stages.begin("read", 0, 0.02);
+  made.input = read_inputs(arguments);
+  made.repair = mesh(arguments, *made.input, stages, made.run);
+  return made;
+}
 
 ExitCode mesh_command(const MeshArguments& arguments) {
   set_time_limit(arguments.mesh.time_limit);
@@ -222,9 +240,10 @@ ExitCode mesh_command(const MeshArguments& arguments) {
   if (arguments.partitions > 0) require_partitioner();  // before long work
   MeshRun run;
   {
-    Stages stages(arguments.quiet ? ProgressStyle::none : arguments.progress, run.times);
-    ComplexInput input = read_inputs(arguments, stages);
-    mesh(arguments, input, stages, run);
+    Stages stages(progress_of(arguments), run.times);
+    stages.begin("read", 0, 0.02);
+    const std::unique_ptr<ComplexInput> input = read_inputs(arguments);
+    mesh(arguments, *input, stages, run);
     write_files(arguments, stages, run);
   }
   tell_of(arguments, run);

@@ -28,7 +28,8 @@ BLOCK = re.compile(r"^(?:<!-- ([^\n]*) -->\n)?```([^\n]*)\n(.*?)^```", re.M | re
 RUN = {"bash", "python"}
 KNOWN = RUN | {"cpp", "cmake", "text"}
 MOST_LINES = 10
-MODULES = {"OpenCASCADE": "collarmesh_cad.so", "HDF5": "collarmesh_hdf5.so", "Scotch": "collarmesh_scotch.so"}
+PARTS = {"OpenCASCADE": "lib/collarmesh/collarmesh_cad.so", "HDF5": "lib/collarmesh/collarmesh_hdf5.so",
+         "Scotch": "lib/collarmesh/collarmesh_scotch.so", "MPI": "bin/collarmesh-mpi"}
 SMALLEST_PICTURE = 10_000  # bytes: an empty one is smaller
 # What a recipe says at its end.
 RECIPES = {
@@ -40,8 +41,8 @@ RECIPES = {
 
 def installed(name, build):
     """A program, a module of Python, or what the program of the build was built with."""
-    if name in MODULES:
-        return (build / "lib/collarmesh" / MODULES[name]).exists()
+    if name in PARTS:
+        return (build / PARTS[name]).exists()
     return shutil.which(name) is not None or importlib.util.find_spec(name) is not None
 
 
@@ -92,7 +93,9 @@ class Reader:
         for model in (sources / "resources/models").iterdir():
             shutil.copy(model, folder)
         self.python = sys.executable
-        self.environment = {**os.environ, "PATH": f"{build}/bin:{os.environ['PATH']}", "PYTHONPATH": f"{build}/python"}
+        self.environment = {**os.environ, "PATH": f"{build}/bin:{os.environ['PATH']}", "PYTHONPATH": f"{build}/python",
+                            "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",  # in containers
+                            "OMPI_MCA_rmaps_base_oversubscribe": "1"}
 
     def make_clone(self):
         """A copy of the sources; numpy, setuptools and pip are the system's, so that nothing is downloaded."""

@@ -1,0 +1,443 @@
+#include "distributed_command.h"
+
+#include <fmt/format.h>
+#include <petscsys.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+#include <type_traits>
+
+#include "calls.h"
+#include "collarmesh/distributed.h"
+#include "complex_input.h"
+#include "console.h"
+#include "distributed_arguments.h"
+#include "file_groups.h"
+#include "input_files.h"
+#include "interrupt.h"
+#include "mesh_command.h"
+#include "out_of_memory.h"
+#include "program.h"
+#include "staged_file.h"
+
+namespace collarmesh::distributed {
+
+namespace {
+
+using cli::ExitCode;
+using cli::tell;
+
+/// MPI and PETSc for as long as it lives.
+class Session {
+ public:
+  Session() {
+    PetscOptionsSetValue(nullptr, "-no_signal_handler", "true");  // the program has its own
+    PetscInitializeNoArguments();
+  }
+  ~Session() { PetscFinalize(); }
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+};
+
+/// Ranks are out of step: one of them says why and ends all.
+[[noreturn]] void end_all(ExitCode code, const std::string& message) {
+  const Ranks ranks(MPI_COMM_WORLD);
+  // Of several that fail at once the first one speaks: it ends the others before they do.
+  std::this_thread::sleep_for(std::chrono::milliseconds(200) * ranks.rank);
+  cli::abandon_staged_files();
+  const std::string text = fmt::format("collarmesh: {}\n", message);
+  if (write(STDERR_FILENO, text.data(), text.size()) < 0) {
+    // There is nobody to tell.
+  }
+  MPI_Abort(MPI_COMM_WORLD, static_cast<int>(code));
+  std::_Exit(static_cast<int>(code));
+}
+
+/// Work that is not collective and may end the program: when it does on one rank it does on all, and the
+/// first of them tells why.
+void together(const std::function<void()>& work) {
+  std::exception_ptr thrown;
+  std::optional<cli::Stopped> stopped;
+  agree(MPI_COMM_WORLD, [&] {
+    try {
+      work();
+    } catch (const cli::Stopped& reason) {
+      stopped = reason;
+    }
+  });
+  const Ranks ranks(MPI_COMM_WORLD);
+  int first = stopped ? ranks.rank : ranks.count;
+  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+  if (first == ranks.count) return;
+  int code = stopped ? static_cast<int>(stopped->code) : 0;
+  MPI_Bcast(&code, 1, MPI_INT, first, MPI_COMM_WORLD);
+  std::string message = stopped ? stopped->what() : "";
+  int length = static_cast<int>(message.size());
+  MPI_Bcast(&length, 1, MPI_INT, first, MPI_COMM_WORLD);
+  message.resize(static_cast<std::size_t>(length));
+  MPI_Bcast(message.data(), length, MPI_CHAR, first, MPI_COMM_WORLD);
+  throw cli::Stopped(static_cast<ExitCode>(code), message);
+}
+
+/// FNV-1a.
+class Hash {
+ public:
+  void add(const void* bytes, std::size_t count) {
+    const auto* byte = static_cast<const unsigned char*>(bytes);
+    for (std::size_t i = 0; i < count; ++i) value_ = (value_ ^ byte[i]) * 0x100000001b3ULL;
+  }
+  template <class T>
+  requires std::is_trivially_copyable_v<T>
+  void add(const std::vector<T>& values) { add(values.data(), values.size() * sizeof(T)); }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325ULL;
+};
+
+/// The first rank whose value is not that of rank 0; -1 where there is none.
+int first_that_differs(std::uint64_t value) {
+  const Ranks ranks(MPI_COMM_WORLD);
+  std::uint64_t of_first = value;
+  MPI_Bcast(&of_first, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD);
+  int first = value == of_first ? ranks.count : ranks.rank;
+  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+  return first == ranks.count ? -1 : first;
+}
+
+std::string host_of(int rank) {
+  std::array<char, MPI_MAX_PROCESSOR_NAME + 1> name{};
+  int length = 0;
+  MPI_Get_processor_name(name.data(), &length);
+  MPI_Bcast(name.data(), static_cast<int>(name.size()), MPI_CHAR, rank, MPI_COMM_WORLD);
+  return fmt::format("rank {} ({})", rank, name.data());
+}
+
+void require_equal_command_lines(int argc, const char* const* argv) {
+  Hash hash;
+  for (int i = 1; i < argc; ++i) hash.add(argv[i], std::strlen(argv[i]) + 1);
+  if (const int other = first_that_differs(hash.value()); other >= 0)
+    throw OptionError(
+        fmt::format("{} has other options than rank 0; start all ranks with the same", host_of(other)));
+}
+
+void require_equal_files(const DistributedArguments& arguments) {
+  std::vector<std::string> paths = arguments.mesh.inputs;
+  for (const std::string& path : {arguments.mesh.complex.names, arguments.mesh.size_field})
+    if (!path.empty() && !path.starts_with('{')) paths.push_back(path);
+  for (const std::string& path : paths) {
+    Hash hash;
+    together([&] {
+      std::ifstream file(cli::existing_file(path), std::ios::binary);
+      std::vector<char> block(1 << 16);
+      while (file.read(block.data(), static_cast<std::streamsize>(block.size())), file.gcount() > 0)
+        hash.add(block.data(), static_cast<std::size_t>(file.gcount()));
+    });
+    if (const int other = first_that_differs(hash.value()); other >= 0)
+      throw ReadError(fmt::format("{}: is another file on {} than on rank 0; put the same on all machines",
+                                  path, host_of(other)));
+  }
+}
+
+std::uint64_t fingerprint(const Plc& plc) {
+  Hash hash;
+  hash.add(plc.points);
+  hash.add(plc.triangles);
+  for (const Plc::Curve& curve : plc.curves) {
+    hash.add(curve.points);
+    hash.add(&curve.tag, sizeof curve.tag);
+  }
+  for (const Plc::Patch& patch : plc.patches) {
+    hash.add(&patch.tag, sizeof patch.tag);
+    hash.add(patch.regions.data(), sizeof patch.regions);
+  }
+  return hash.value();
+}
+
+/// What every rank knows of the input, and what rank 0 made of it.
+struct Coarse {
+  cli::MadeMesh made;  ///< of others than rank 0 only the input and the complex
+  Shape shape() const {
+    PipelineOptions options;
+    options.mesh = mesh_options;
+    const Plc& plc = made.run.plc;
+    return {plc, made.input->has_cad() ? made.input->exact_geometry(plc) : ExactGeometry{},
+            distance_of(options, plc.bounds.diagonal())};
+  }
+  MeshOptions mesh_options;
+};
+
+/// Rank 0 makes the mesh, the others the complex that it was made of.
+Coarse make_coarse(const DistributedArguments& arguments) {
+  const Ranks ranks(MPI_COMM_WORLD);
+  Coarse coarse;
+  cli::MeshArguments first_order = arguments.mesh;
+  first_order.order = 1;
+  coarse.mesh_options = first_order.mesh;
+  together([&] {
+    if (ranks.rank == 0) coarse.made = cli::make_mesh(first_order);
+  });
+  static_assert(std::is_trivially_copyable_v<RepairOptions>);
+  MPI_Bcast(&coarse.made.repair, sizeof(RepairOptions), MPI_BYTE, 0, MPI_COMM_WORLD);
+  together([&] {
+    if (ranks.rank == 0) return;
+    coarse.made.input = cli::read_inputs(first_order);
+    cli::ComplexArguments how = first_order.complex;
+    how.repair = coarse.made.repair;
+    coarse.made.run.plc = coarse.made.input->build(how);
+  });
+  if (const int other = first_that_differs(fingerprint(coarse.made.run.plc)); other >= 0)
+    throw std::runtime_error(fmt::format(
+        "{} makes another complex of the input than rank 0; are the programs the same?", host_of(other)));
+  return coarse;
+}
+
+std::string text_of(const LevelReport& level, unsigned number) {
+  std::string text = fmt::format("level {}: {} tets in {:.2f} s; {} vertices on smooth or exact features",
+                                 number, level.tets, level.seconds, level.on_features);
+  if (level.spoilt > 0 || level.made_room > 0)
+    text += fmt::format(", {} tets spoilt, {} moves made room", level.spoilt, level.made_room);
+  if (level.drawn_back > 0)
+    text += fmt::format(", {} vertices stay off, by at most {:.3g}", level.drawn_back, level.farthest_off);
+  return text + '\n';
+}
+
+std::string angles_text(const AngleBounds& angles) {
+  std::string text = fmt::format("{:.4g} to {:.4g} degrees", angles.least[0], angles.most[0]);
+  if (angles.most[1] > 0)
+    text += fmt::format(", in collars {:.4g} to {:.4g}", angles.least[1], angles.most[1]);
+  return text;
+}
+
+std::string text_of(const Certificate& c, const AngleBounds& coarse) {
+  return fmt::format(
+      "mesh: {} tets, {} vertices, {} faces on patches, {} edges on curves\n"
+      "dihedral angles: {} (coarse: {})\n"
+      "fingerprint: {:016x}{:016x}\n"
+      "{}\n",
+      c.tets, c.vertices, c.faces, c.edges, angles_text(c.angles), angles_text(coarse), c.fingerprint[0],
+      c.fingerprint[1],
+      c.passed() ? std::string("certificate: every guarantee holds")
+                 : fmt::format("certificate: {} findings", c.findings_total));
+}
+
+nlohmann::ordered_json json_of(const AngleBounds& a) {
+  nlohmann::ordered_json json{{"min_dihedral", a.least[0]}, {"max_dihedral", a.most[0]}};
+  if (a.most[1] > 0) {
+    json["min_collar_dihedral"] = a.least[1];
+    json["max_collar_dihedral"] = a.most[1];
+  }
+  return json;
+}
+
+template <class Map>
+nlohmann::ordered_json json_by_tag(const Map& values) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const auto& [tag, value] : values) json[std::to_string(tag)] = value;
+  return json;
+}
+
+/// Everything a run found out.
+struct Report {
+  std::vector<LevelReport> levels;
+  std::optional<OrderReport> order;
+  Certificate certificate;
+  AngleBounds coarse;
+  std::string partitioner;
+  double certify_seconds = 0, write_seconds = 0;
+  std::vector<double> peak_bytes;  ///< by rank
+
+  nlohmann::ordered_json json() const {
+    nlohmann::ordered_json json;
+    json["ranks"] = certificate.tets_of_ranks.size();
+    json["partitioner"] = partitioner;
+    json["tets"] = certificate.tets;
+    json["vertices"] = certificate.vertices;
+    json["tets_of_ranks"] = certificate.tets_of_ranks;
+    json["peak_bytes_of_ranks"] = peak_bytes;
+    json["fingerprint"] =
+        fmt::format("{:016x}{:016x}", certificate.fingerprint[0], certificate.fingerprint[1]);
+    json["coarse_angles"] = json_of(coarse);
+    json["angles"] = json_of(certificate.angles);
+    json["largest_distance"] = certificate.largest_distance;
+    json["region_volumes"] = json_by_tag(certificate.region_volumes);
+    json["patch_areas"] = json_by_tag(certificate.patch_areas);
+    json["curve_lengths"] = json_by_tag(certificate.curve_lengths);
+    for (const LevelReport& level : levels)
+      json["levels"].push_back({{"tets", level.tets},
+                                {"seconds", level.seconds},
+                                {"on_features", level.on_features},
+                                {"spoilt", level.spoilt},
+                                {"made_room", level.made_room},
+                                {"drawn_back", level.drawn_back},
+                                {"farthest_off", level.farthest_off}});
+    if (order)
+      json["second_order"] = {{"nodes", order->nodes},
+                              {"curved", order->curved},
+                              {"straightened", order->straightened},
+                              {"farthest_off", order->farthest_off}};
+    json["certify_seconds"] = certify_seconds;
+    json["write_seconds"] = write_seconds;
+    json["guarantees_hold"] = certificate.passed();
+    json["findings_total"] = certificate.findings_total;
+    json["findings"] = nlohmann::ordered_json::array();
+    for (const Finding& finding : certificate.findings)
+      json["findings"].push_back({{"guarantee", finding.guarantee}, {"message", finding.message}});
+    return json;
+  }
+};
+
+std::vector<double> gather(double value) {
+  std::vector<double> values(static_cast<std::size_t>(Ranks(MPI_COMM_WORLD).count));
+  MPI_Gather(&value, 1, MPI_DOUBLE, values.data(), 1, MPI_DOUBLE, 0, MPI_COMM_WORLD);
+  return values;
+}
+
+double peak_bytes() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("VmHWM:")) return 1024 * std::stod(line.substr(6));
+  return 0;
+}
+
+class Timer {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+void write_report(const std::string& path, const Report& report) {
+  std::ofstream file(path);
+  file << cli::json_text(report.json(), 1) << '\n';
+  file.close();
+  if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path));
+}
+
+/// A message that names the places of files in one folder, for another folder.
+std::string with_name(std::string message, const std::filesystem::path& from,
+                      const std::filesystem::path& to) {
+  const std::string folder = from.string() + "/", target = to.empty() ? "" : to.string() + "/";
+  for (std::size_t at = message.find(folder); at != std::string::npos;
+       at = message.find(folder, at + target.size()))
+    message.replace(at, folder.size(), target);
+  return message;
+}
+
+/// Under temporary names first, in a folder of rank 0's, which moves them to their places when all ranks are
+/// done.
+void write_files(const DistributedArguments& arguments, const ParallelMesh& mesh, Report& report) {
+  const bool first = Ranks(MPI_COMM_WORLD).rank == 0;
+  const Timer timer;
+  std::optional<cli::StagedFile> staged, staged_report;
+  std::string place;
+  together([&] {
+    if (!first) return;
+    staged.emplace(arguments.mesh.output);
+    staged->write([&](const std::string& path) { place = path; });
+  });
+  place = broadcast(MPI_COMM_WORLD, place);
+  try {
+    writes_pieces(arguments) ? mesh.write_pvtu(place) : mesh.write_h5(place);
+  } catch (const PetscFailure& failure) {
+    end_all(ExitCode::cannot_write, fmt::format("{}: cannot be written ({}); is the disk full?",
+                                                arguments.mesh.output, failure.what()));
+  } catch (const WriteError& error) {  // of all ranks, with the temporary name
+    const std::filesystem::path target = arguments.mesh.output;
+    throw WriteError(
+        with_name(error.what(), std::filesystem::path(place).parent_path(), target.parent_path()));
+  }
+  report.write_seconds = timer.seconds();
+  report.peak_bytes = gather(peak_bytes());
+  together([&] {
+    if (!first) return;
+    if (!arguments.mesh.reports.empty()) {
+      staged_report.emplace(arguments.mesh.reports.front());
+      staged_report->write([&](const std::string& path) { write_report(path, report); });
+    }
+    cli::StagedFile::commit({&*staged, staged_report ? &*staged_report : nullptr});
+  });
+}
+
+void require_places(const DistributedArguments& arguments) {
+  cli::require_writable(arguments.mesh.output);
+  for (const std::string& report : arguments.mesh.reports) cli::require_writable(report);
+}
+
+ExitCode mesh_distributed(const DistributedArguments& arguments) {
+  const Ranks ranks(MPI_COMM_WORLD);
+  cli::set_time_limit(arguments.mesh.mesh.time_limit);
+  cli::limit_memory(arguments.mesh.mesh.max_memory);
+  together([&] {
+    if (ranks.rank == 0) require_places(arguments);
+  });
+  require_equal_files(arguments);
+  Coarse coarse = make_coarse(arguments);
+  const auto stop = [] { together([] { cli::stop_if_interrupted(); }); };
+  if (!arguments.mesh.quiet && ranks.rank == 0)
+    tell("coarse mesh: {} tets; {}\n", coarse.made.run.result.mesh.tets.size(),
+         coarse.made.run.guarantees_hold() ? "every guarantee holds" : coarse.made.run.missed());
+  int holds = coarse.made.run.guarantees_hold() ? 1 : 0;
+  MPI_Bcast(&holds, 1, MPI_INT, 0, MPI_COMM_WORLD);
+  const Shape shape = coarse.shape();
+  ParallelMesh mesh(MPI_COMM_WORLD, coarse.made.run.result.mesh, coarse.made.run.plc,
+                    arguments.mesh.mesh.collar_angle);
+  coarse.made.run.result.mesh = {};
+  Report report;
+  report.coarse = mesh.coarse_angles();
+  report.partitioner = mesh.partitioner();
+  for (unsigned level = 0; level < arguments.levels; ++level) {
+    stop();
+    report.levels.push_back(mesh.refine(shape));
+    if (!arguments.mesh.quiet) tell("{}", text_of(report.levels.back(), level + 1));
+  }
+  stop();
+  if (arguments.mesh.order == 2) report.order = mesh.raise_order(shape);
+  if (report.order && !arguments.mesh.quiet)
+    tell(
+        "second order: {} nodes, {} of them off the middles of their edges; {} went back, by at most "
+        "{:.3g}\n",
+        report.order->nodes, report.order->curved, report.order->straightened, report.order->farthest_off);
+  stop();
+  const Timer timer;
+  report.certificate = mesh.certify(shape, arguments.slack);
+  report.certify_seconds = timer.seconds();
+  mesh.scale(arguments.mesh.scale);
+  stop();
+  write_files(arguments, mesh, report);
+  for (const Finding& finding : report.certificate.findings)
+    tell("{}: {}\n", finding.guarantee, finding.message);
+  if (!arguments.mesh.quiet) tell("{}", text_of(report.certificate, report.coarse));
+  return report.certificate.passed() && holds != 0 ? ExitCode::success : ExitCode::guarantee_missed;
+}
+
+}  // namespace
+
+ExitCode run(int argc, char** argv) {
+  cli::install_interrupt_handlers();
+  const Session session;
+  if (Ranks(MPI_COMM_WORLD).rank != 0) cli::be_silent();
+  return cli::guarded([&] {
+    try {
+      require_equal_command_lines(argc, argv);
+      const std::variant<DistributedArguments, ExitCode> parsed = parse(argc, argv);
+      if (const ExitCode* code = std::get_if<ExitCode>(&parsed)) return *code;
+      return mesh_distributed(std::get<DistributedArguments>(parsed));
+    } catch (const PetscFailure& failure) {
+      end_all(ExitCode::internal_error, failure.what());
+    }
+  });
+}
+
+}  // namespace collarmesh::distributed

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <petscsys.h>
+
+#include <cstdint>
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+#include "collarmesh/error.h"
+
+/// Errors of PETSc and MPI, and errors that concern all ranks.
+namespace collarmesh::distributed {
+
+/// A call of PETSc failed. Ranks may be out of step then: the program can only end.
+struct PetscFailure : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// What PETSc said about its first error, as one line; it prints nothing while one of these lives.
+class PetscMessages {
+ public:
+  PetscMessages();
+  ~PetscMessages();
+  PetscMessages(const PetscMessages&) = delete;
+  PetscMessages& operator=(const PetscMessages&) = delete;
+};
+
+/// Throws PetscFailure with what PETSc said.
+[[noreturn]] void fail(PetscErrorCode code);
+inline void call(PetscErrorCode code) {
+  if (code != 0) fail(code);
+}
+
+/// Work of each rank that is not collective. When it throws on one rank, all ranks throw the exception of the
+/// first that failed: of its class among those of collarmesh/error.h, or std::bad_alloc, with its message.
+/// Waiting for others takes no processor time.
+void agree(MPI_Comm communicator, const std::function<void()>& work);
+
+/// A rank and the number of them.
+struct Ranks {
+  explicit Ranks(MPI_Comm communicator) {
+    MPI_Comm_rank(communicator, &rank);
+    MPI_Comm_size(communicator, &count);
+  }
+  int rank = 0, count = 1;
+};
+
+/// The values of rank 0.
+std::string broadcast(MPI_Comm communicator, std::string text);
+
+double all_reduce(MPI_Comm communicator, double value, MPI_Op operation);
+std::int64_t all_reduce(MPI_Comm communicator, std::int64_t value, MPI_Op operation);
+std::uint64_t all_reduce(MPI_Comm communicator, std::uint64_t value, MPI_Op operation);
+
+}  // namespace collarmesh::distributed

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <petscdmplex.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "collarmesh/geometry.h"
+#include "collarmesh/tet_mesh.h"
+
+namespace collarmesh::distributed {
+
+using Corners = std::array<Point, 4>;
+
+/// The label `feature`: see ParallelMesh.
+inline constexpr const char* feature_label = "feature";
+inline PetscInt encoded(const TetMesh::VertexFeature& feature) {
+  // All vertices of the complex in one: their places tell which they are.
+  return feature.dimension == 0 ? 0 : static_cast<PetscInt>(4 * feature.feature + feature.dimension);
+}
+inline TetMesh::VertexFeature decoded(PetscInt code) {
+  if (code < 0) return {3, none};
+  return {static_cast<std::uint8_t>(code % 4), code == 0 ? none : static_cast<Index>(code / 4)};
+}
+
+/// The values of a label at the points from `first` on; -1 where there is none.
+std::vector<PetscInt> label_values(DM dm, const char* name, PetscInt first, std::size_t count);
+
+/// The tets of a rank and their vertices, numbered from 0 as in the DMPlex.
+struct LocalMesh {
+  /// Reads corners and coordinates; first order.
+  explicit LocalMesh(DM dm);
+
+  Corners corners(std::size_t tet) const {
+    const auto& t = tets[tet];
+    return {points[t[0]], points[t[1]], points[t[2]], points[t[3]]};
+  }
+
+  std::vector<Point> points;
+  /// Positively oriented, as in TetMesh, where the DMPlex says so.
+  std::vector<std::array<Index, 4>> tets;
+};
+
+/// Make `points` the coordinates of the DMPlex' vertices.
+void set_points(DM dm, const std::vector<Point>& points);
+
+/// The corners of a tet in the order of PETSc, whose tets are mirror images of ours, from `first_vertex` on.
+std::array<Index, 4> corners_of(DM dm, PetscInt tet, PetscInt first_vertex);
+/// Those of a face and of an edge.
+std::array<Index, 3> corners_of_face(DM dm, PetscInt face, PetscInt first_vertex);
+std::array<Index, 2> ends_of_edge(DM dm, PetscInt edge, PetscInt first_vertex);
+
+}  // namespace collarmesh::distributed

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "collarmesh/distributed.h"
+#include "common/flat_features.h"
+#include "second_order/nearest_on_features.h"
+
+namespace collarmesh::distributed {
+
+/// Asks a shape where nodes on curves and patches belong. Keeps it by reference.
+class OnShape {
+ public:
+  explicit OnShape(const Shape& shape)
+      : plc_(shape.plc),
+        nearest_(shape.plc),
+        flat_(shape.plc),
+        exact_(shape.exact ? flat_.limit(shape.exact) : ExactGeometry{}) {}
+  OnShape(const OnShape&) = delete;
+  OnShape& operator=(const OnShape&) = delete;
+
+  bool is_smooth(const TetMesh::VertexFeature& feature) const {
+    return feature.dimension == 1   ? !plc_.curves[feature.feature].straight
+           : feature.dimension == 2 ? !plc_.patches[feature.feature].planar
+                                    : false;
+  }
+  /// May nodes on this feature belong off their chords?
+  bool has_places(const TetMesh::VertexFeature& feature) const {
+    const bool on_feature = feature.dimension == 1 || feature.dimension == 2;
+    return on_feature && feature.feature != none && (exact_ || is_smooth(feature));
+  }
+  /// Precondition: has_places(feature).
+  Point place(const TetMesh::VertexFeature& feature, const Point& p) {
+    if (exact_)
+      if (const auto place = exact_(feature.dimension, feature.feature, p)) return *place;
+    return is_smooth(feature) ? nearest_.nearest(feature, p) : p;
+  }
+  /// To the complex' own polyline or triangles.
+  double distance_to_complex(const TetMesh::VertexFeature& feature, const Point& p) {
+    return distance(nearest_.nearest(feature, p), p);
+  }
+
+ private:
+  const Plc& plc_;
+  second_order::NearestOnFeatures nearest_;
+  FlatFeatures flat_;
+  ExactGeometry exact_;
+};
+
+}  // namespace collarmesh::distributed

@@ -1,0 +1,97 @@
+// One level: every tet into eight.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <limits>
+
+#include "angles.h"
+#include "calls.h"
+#include "collarmesh/distributed.h"
+#include "labels.h"
+#include "local_mesh.h"
+#include "placement.h"
+
+namespace collarmesh::distributed {
+
+namespace {
+
+/// PETSc cuts the octahedron in the middle of a tet between the middles of the edges 01 and 23 of its
+/// corners. Turned by these arrangements, which keep the last corner, the tet has other edges there.
+///
+/// It numbers the corners of the eight tets so that their own diagonals are those of Bey's rule (Tetrahedral
+/// grid refinement, 1995): the four in the octahedron are cut next between the middle of this diagonal and of
+/// the edge opposite, the others like the tet they are similar to. By that rule the tets within one have
+/// three shapes at most, at any level, and the first level has all of them. So the choice is made there,
+/// once: the best diagonal at each level makes ever new shapes, and worse ones.
+constexpr std::array<PetscInt, 3> arrangements{0, 1, 2};
+
+/// How good the four tets around the diagonal between the edges ij and kl are: the smaller of their least
+/// angle and of what their greatest lacks to 180 degrees.
+double goodness(const Corners& p, std::size_t i, std::size_t j, std::size_t k, std::size_t l) {
+  const auto middle = [&](std::size_t a, std::size_t b) { return 0.5 * (p[a] + p[b]); };
+  const Point from = middle(i, j), to = middle(k, l);
+  const std::array<Point, 4> around{middle(i, k), middle(k, j), middle(j, l), middle(l, i)};
+  double worst = 180;
+  for (std::size_t n = 0; n < 4; ++n) {
+    const ExtremeAngles angles = extreme_angles({from, to, around[n], around[(n + 1) % 4]});
+    worst = std::min({worst, angles.least, 180 - angles.most});
+  }
+  return worst;
+}
+
+void choose_diagonals(DM dm) {
+  PetscInt first = 0, end = 0;
+  call(DMPlexGetHeightStratum(dm, 0, &first, &end));
+  std::vector<PetscInt> turned;
+  {
+    const LocalMesh mesh(dm);
+    for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+      const auto [a, c, b, d] = mesh.corners(t);
+      const Corners p{a, b, c, d};  // in PETSc's order
+      const std::array<double, 3> found{goodness(p, 0, 1, 2, 3), goodness(p, 1, 2, 0, 3),
+                                        goodness(p, 2, 0, 1, 3)};
+      turned.push_back(arrangements[static_cast<std::size_t>(std::max_element(found.begin(), found.end()) -
+                                                             found.begin())]);
+    }
+  }
+  for (std::size_t t = 0; t < turned.size(); ++t)
+    if (turned[t] != 0) call(DMPlexOrientPoint(dm, first + static_cast<PetscInt>(t), turned[t]));
+}
+
+}  // namespace
+
+LevelReport ParallelMesh::refine(const Shape& shape) {
+  const PetscMessages messages;
+  const auto start = std::chrono::steady_clock::now();
+  PetscInt first = 0, end = 0;
+  call(DMPlexGetHeightStratum(dm_, 0, &first, &end));
+  // A tet comes with two faces, more than an edge and a fifth of a vertex; numbers count those of all ranks.
+  const std::int64_t points = 8 * 9 * all_reduce(communicator_, std::int64_t{end - first}, MPI_SUM) / 2;
+  agree(communicator_, [&] {
+    if (order_ != 1) throw OptionError("meshes of second order are not refined; raise the order afterwards");
+    if (points > std::numeric_limits<PetscInt>::max())
+      throw OptionError(
+          "the refined mesh has more points than PETSc's integers can count; use fewer levels, or a "
+          "PETSc with integers of 64 bits");
+    if (levels_++ == 0) choose_diagonals(dm_);
+    for (const char* name : {"patch", "curve"}) call(DMRemoveLabel(dm_, name, nullptr));
+  });
+  DM refined = nullptr;
+  call(DMPlexSetRefinementUniform(dm_, PETSC_TRUE));
+  call(DMRefine(dm_, communicator_, &refined));
+  call(DMDestroy(&dm_));
+  dm_ = refined;
+  call(PetscObjectSetName(reinterpret_cast<PetscObject>(dm_), "mesh"));
+  agree(communicator_, [&] {
+    keep_depth(dm_, "region", 3);
+    keep_depth(dm_, "collar", 3);
+    label_patches_and_curves(dm_, shape.plc);
+  });
+  LevelReport report = place(dm_, shape, coarse_angles_);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  report.seconds = all_reduce(communicator_, taken.count(), MPI_MAX);
+  return report;
+}
+
+}  // namespace collarmesh::distributed

@@ -1,0 +1,296 @@
+// NAME.h5: the DMPlex as PETSc stores it, and the arrays of uniform grids of XDMF 3 (www.xdmf.org, "XDMF
+// Model and Format"), one grid in a file, which is what dolfinx and meshio read.
+#include <fmt/format.h>
+#include <petscviewerhdf5.h>
+
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <string_view>
+
+#include "calls.h"
+#include "collarmesh/distributed.h"
+#include "local_mesh.h"
+#include "mid_nodes.h"
+#include "shared_points.h"
+
+namespace collarmesh::distributed {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The cells of one dimension that this rank owns, with global numbers.
+struct Cells {
+  std::string_view name;      ///< of the grid, and of its group in the HDF5 file
+  std::string_view topology;  ///< XDMF's name of the kind of cells
+  std::size_t nodes_per_cell = 0;
+  std::vector<PetscInt> nodes;
+  std::vector<std::pair<std::string_view, std::vector<PetscInt>>> arrays;
+};
+
+struct Grid {
+  std::vector<PetscReal> points;  ///< of this rank's own nodes, in the order of their numbers
+  std::array<Cells, 3> cells;     ///< tets, faces, edges
+};
+
+class GridMaker {
+ public:
+  GridMaker(DM dm, int order)
+      : dm_(dm),
+        order_(order),
+        mesh_(dm),
+        edges_(dm),
+        vertices_(dm, 0),
+        shared_edges_(dm, 1),
+        faces_(dm, 2) {}
+
+  /// Collective.
+  Grid make() {
+    number_nodes();
+    Grid grid;
+    for (std::size_t v = 0; v < mesh_.points.size(); ++v)
+      if (vertices_.owned(v)) add_point(mesh_.points[v], grid.points);
+    add_tets(grid.cells[0]);
+    add_faces(grid.cells[1]);
+    add_edges(grid.cells[2]);
+    if (order_ == 1) return grid;
+    const std::vector<Point> nodes = edges_.nodes();
+    for (std::size_t e = 0; e < nodes.size(); ++e)
+      if (shared_edges_.owned(e)) add_point(nodes[e], grid.points);
+    return grid;
+  }
+
+ private:
+  static void add_point(const Point& p, std::vector<PetscReal>& points) {
+    points.insert(points.end(), {p.x, p.y, p.z});
+  }
+
+  /// Each rank's vertices, then its nodes amid edges, then the next rank's.
+  void number_nodes() {
+    const MPI_Comm communicator = PetscObjectComm(reinterpret_cast<PetscObject>(dm_));
+    const auto own =
+        static_cast<PetscInt>(vertices_.owned_count() + (order_ == 2 ? shared_edges_.owned_count() : 0));
+    PetscInt next = 0;
+    MPI_Exscan(&own, &next, 1, MPIU_INT, MPI_SUM, communicator);
+    if (Ranks(communicator).rank == 0) next = 0;
+    number(vertices_, next, numbers_);
+    if (order_ == 2) number(shared_edges_, next, edge_numbers_);
+  }
+  static void number(const SharedPoints& points, PetscInt& next, std::vector<PetscInt>& numbers) {
+    numbers.assign(points.size(), 0);
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      if (points.owned(i)) numbers[i] = next++;
+    points.combine(numbers, MPI_REPLACE);
+  }
+
+  template <std::size_t n, std::size_t m>
+  void add_nodes(const std::array<Index, n>& corners, const std::array<Index, m>& edges, Cells& cells) const {
+    for (const Index v : corners) cells.nodes.push_back(numbers_[v]);
+    if (order_ == 2)
+      for (const Index e : edges) cells.nodes.push_back(edge_numbers_[e]);
+  }
+
+  void add_tets(Cells& cells) const {
+    cells = {"mesh", order_ == 2 ? "Tetrahedron_10" : "Tetrahedron", order_ == 2 ? 10U : 4U, {}, {}};
+    PetscInt first = 0;
+    call(DMPlexGetHeightStratum(dm_, 0, &first, nullptr));
+    for (std::size_t t = 0; t < mesh_.tets.size(); ++t)
+      add_nodes(mesh_.tets[t],
+                order_ == 2 ? edges_.of_tet(first + static_cast<PetscInt>(t), mesh_.tets[t])
+                            : std::array<Index, 6>{},
+                cells);
+    std::vector<PetscInt> collars = label_values(dm_, "collar", first, mesh_.tets.size());
+    for (PetscInt& kind : collars) kind = std::max(kind, 0);
+    cells.arrays = {{"tag", label_values(dm_, "region", first, mesh_.tets.size())},
+                    {"collar", std::move(collars)}};
+  }
+
+  void add_faces(Cells& cells) const {
+    cells = {"faces", order_ == 2 ? "Triangle_6" : "Triangle", order_ == 2 ? 6U : 3U, {}, {}};
+    const std::vector<PetscInt> tags = label_values(dm_, "patch", faces_.first(), faces_.size());
+    std::vector<PetscInt> own;
+    for (std::size_t f = 0; f < tags.size(); ++f) {
+      if (tags[f] < 0 || !faces_.owned(f)) continue;
+      const PetscInt face = faces_.first() + static_cast<PetscInt>(f);
+      const std::array<Index, 3> corners = corners_of_face(dm_, face, vertices_.first());
+      add_nodes(corners, order_ == 2 ? edges_.of_face(face, corners) : std::array<Index, 3>{}, cells);
+      own.push_back(tags[f]);
+    }
+    cells.arrays = {{"tag", std::move(own)}};
+  }
+
+  void add_edges(Cells& cells) const {
+    cells = {"edges", order_ == 2 ? "Edge_3" : "Polyline", order_ == 2 ? 3U : 2U, {}, {}};
+    const std::vector<PetscInt> tags =
+        label_values(dm_, "curve", shared_edges_.first(), shared_edges_.size());
+    std::vector<PetscInt> own;
+    for (std::size_t e = 0; e < tags.size(); ++e) {
+      if (tags[e] < 0 || !shared_edges_.owned(e)) continue;
+      add_nodes(edges_.ends(e), std::array{static_cast<Index>(e)}, cells);
+      own.push_back(tags[e]);
+    }
+    cells.arrays = {{"tag", std::move(own)}};
+  }
+
+  DM dm_;
+  int order_;
+  LocalMesh mesh_;
+  Edges edges_;
+  SharedPoints vertices_, shared_edges_, faces_;
+  std::vector<PetscInt> numbers_, edge_numbers_;
+};
+
+/// An HDF5 file that all ranks write.
+class ValueFile {
+ public:
+  ValueFile(MPI_Comm communicator, const std::string& path) : communicator_(communicator) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are ours to tell
+    call(PetscViewerHDF5Open(communicator, path.c_str(), FILE_MODE_WRITE, &viewer_));
+  }
+  ~ValueFile() {
+    // Closing is collective, and after an error there may be nobody to close with.
+    if (std::uncaught_exceptions() == 0) PetscViewerDestroy(&viewer_);
+  }
+  ValueFile(const ValueFile&) = delete;
+  ValueFile& operator=(const ValueFile&) = delete;
+
+  void write(DM dm) {
+    // In older layouts only vertices have coordinates.
+    const char* const option = "-dm_plex_view_hdf5_storage_version";
+    PetscBool given = PETSC_FALSE;
+    call(PetscOptionsHasName(nullptr, nullptr, option, &given));
+    if (given == PETSC_FALSE) call(PetscOptionsSetValue(nullptr, option, "2.0.0"));
+    call(PetscViewerPushFormat(viewer_, PETSC_VIEWER_HDF5_PETSC));
+    call(DMView(dm, viewer_));
+    if (given == PETSC_FALSE) call(PetscOptionsClearValue(nullptr, option));
+    call(PetscViewerPopFormat(viewer_));
+  }
+  /// Returns how many rows there are on all ranks.
+  std::int64_t write(const std::string& group, const std::string& name, const std::vector<PetscInt>& values,
+                     std::size_t columns) {
+    IS set = nullptr;
+    call(ISCreateGeneral(communicator_, static_cast<PetscInt>(values.size()), values.data(),
+                         PETSC_USE_POINTER, &set));
+    call(ISSetBlockSize(set, static_cast<PetscInt>(columns)));
+    write_object(group, name, set, [&] { return ISView(set, viewer_); });
+    call(ISDestroy(&set));
+    return rows(values.size(), columns);
+  }
+  std::int64_t write(const std::string& group, const std::string& name, const std::vector<PetscReal>& values,
+                     std::size_t columns) {
+    Vec set = nullptr;
+    call(VecCreateMPIWithArray(communicator_, static_cast<PetscInt>(columns),
+                               static_cast<PetscInt>(values.size()), PETSC_DECIDE, values.data(), &set));
+    write_object(group, name, set, [&] { return VecView(set, viewer_); });
+    call(VecDestroy(&set));
+    return rows(values.size(), columns);
+  }
+  void close() { call(PetscViewerDestroy(&viewer_)); }
+
+ private:
+  template <class Object, class View>
+  void write_object(const std::string& group, const std::string& name, Object object, const View& view) {
+    call(PetscObjectSetName(reinterpret_cast<PetscObject>(object), name.c_str()));
+    call(PetscViewerHDF5PushGroup(viewer_, group.c_str()));
+    call(view());
+    call(PetscViewerHDF5PopGroup(viewer_));
+  }
+  std::int64_t rows(std::size_t values, std::size_t columns) const {
+    return all_reduce(communicator_, static_cast<std::int64_t>(values / columns), MPI_SUM);
+  }
+
+  MPI_Comm communicator_;
+  PetscViewer viewer_ = nullptr;
+};
+
+std::string data_item(const std::string& file, const std::string& path, std::string_view type,
+                      std::size_t bytes, std::int64_t rows, std::size_t columns) {
+  return fmt::format(
+      "<DataItem Format=\"HDF\" NumberType=\"{}\" Precision=\"{}\" Dimensions=\"{} {}\">{}:{}</DataItem>\n",
+      type, bytes, rows, columns, file, path);
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+  std::ofstream file(path);
+  file << text;
+  file.close();
+  if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path.string()));
+}
+
+/// A disk that is full is better told before than in the middle of it.
+void require_space(DM dm, const fs::path& path) {
+  constexpr double bytes_per_tet = 150;  // at least
+  const MPI_Comm communicator = PetscObjectComm(reinterpret_cast<PetscObject>(dm));
+  PetscInt first = 0, end = 0;
+  call(DMPlexGetHeightStratum(dm, 0, &first, &end));
+  const double needed =
+      bytes_per_tet * static_cast<double>(all_reduce(communicator, std::int64_t{end - first}, MPI_SUM));
+  // The file has the faces, edges and ends of all points in one array, some 12.5 for a tet.
+  const bool countable =
+      needed / bytes_per_tet * 13 < static_cast<double>(std::numeric_limits<PetscInt>::max());
+  agree(communicator, [&] {
+    if (!countable)
+      throw WriteError(
+          fmt::format("{}: has more entries than PETSc's integers can count; write .pvtu, or use a PETSc "
+                      "with integers of 64 bits",
+                      path.string()));
+    std::error_code unknown;
+    const fs::space_info space = fs::space(path.parent_path().empty() ? "." : path.parent_path(), unknown);
+    if (Ranks(communicator).rank == 0 && !unknown && static_cast<double>(space.available) < needed)
+      throw WriteError(fmt::format("{}: takes about {:.3g} GB, the disk has {:.3g} GB left", path.string(),
+                                   needed / 1e9, static_cast<double>(space.available) / 1e9));
+  });
+}
+
+/// NAME.xdmf for the tets, NAME_faces.xdmf and NAME_edges.xdmf for the others.
+fs::path xdmf_of(const fs::path& path, const Cells& cells) {
+  const std::string suffix = cells.name == "mesh" ? "" : fmt::format("_{}", cells.name);
+  return path.parent_path() / fmt::format("{}{}.xdmf", path.stem().string(), suffix);
+}
+
+}  // namespace
+
+void ParallelMesh::write_h5(const std::string& path) const {
+  const PetscMessages messages;
+  require_space(dm_, path);
+  Grid grid = GridMaker(dm_, order_).make();
+  std::string geometry;
+  for (Cells& cells : grid.cells) {
+    const bool first = cells.name == "mesh";
+    const auto own_count = static_cast<std::int64_t>(cells.nodes.size() / cells.nodes_per_cell);
+    const std::int64_t count = all_reduce(communicator_, own_count, MPI_SUM);
+    if (count == 0) continue;
+    const fs::path xdmf = xdmf_of(path, cells);
+    const fs::path h5 = first ? fs::path(path) : fs::path(xdmf).replace_extension(".h5");
+    const std::string file = h5.filename().string();
+    ValueFile values(communicator_, h5.string());
+    if (first) {
+      values.write(dm_);
+      geometry = data_item(file, "/xdmf/points", "Float", sizeof(PetscReal),
+                           values.write("/xdmf", "points", grid.points, 3), 3);
+    }
+    const std::string group = fmt::format("/xdmf/{}", cells.name);
+    values.write(group, "topology", cells.nodes, cells.nodes_per_cell);
+    std::string text = fmt::format(
+        "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n<Grid Name=\"{}\" GridType=\"Uniform\">\n"
+        "<Topology TopologyType=\"{}\" NumberOfElements=\"{}\" NodesPerElement=\"{}\">\n{}</Topology>\n"
+        "<Geometry GeometryType=\"XYZ\">\n{}</Geometry>\n",
+        cells.name, cells.topology, count, cells.nodes_per_cell,
+        data_item(file, group + "/topology", "Int", sizeof(PetscInt), count, cells.nodes_per_cell), geometry);
+    for (const auto& [name, array] : cells.arrays) {
+      values.write(group, std::string(name), array, 1);
+      text += fmt::format(
+          "<Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Cell\">\n{}</Attribute>\n", name,
+          data_item(file, fmt::format("{}/{}", group, name), "Int", sizeof(PetscInt), count, 1));
+    }
+    values.close();
+    agree(communicator_, [&] {
+      if (Ranks(communicator_).rank == 0) write_text(xdmf, text + "</Grid>\n</Domain>\n</Xdmf>\n");
+    });
+    cells = {};
+  }
+}
+
+}  // namespace collarmesh::distributed
