@@ -313,7 +313,7 @@ void add_run_options(CLI::App& app, MeshArguments& a) {
   add_partition_options(app, a);
   add_complex_options(app, a.complex);
   add_budget_options(app, a.mesh);
-  add_threads_option(app, a.threads, "Of improvement and certificate, at most");
+  add_threads_option(app, a.threads, "Of coarsening, improvement, certificate and writing, at most");
   add(app, "--scale FACTOR", a.scale,
       "Coordinates are multiplied by this when they are written, 0.001 for m of mm")
       ->check(number_in(1e-100, 1e100, "a positive number"));

@@ -23,6 +23,7 @@
 #include "soup_output.h"
 #include "staged_file.h"
 #include "surface_files.h"
+#include "thread_limit.h"
 
 namespace collarmesh::cli {
 
@@ -94,8 +95,9 @@ void convert_mesh(const MeshArguments& a, TetMesh& mesh) {
   divide(a, mesh);
   stop_if_interrupted();
   StagedFile file(a.output);
-  file.write(
-      [&](const std::string& path) { io::write_tet_mesh(path, mesh, a.output_format, a.ghost_cells); });
+  file.write([&](const std::string& path) {
+    ThreadLimit(a.threads).run([&] { io::write_tet_mesh(path, mesh, a.output_format, a.ghost_cells); });
+  });
   std::optional<StagedFile> decomposition;
   if (!a.cell_decomposition.empty()) {
     decomposition.emplace(a.cell_decomposition);

@@ -148,14 +148,18 @@ class Coarsening {
     return for_each<VertexProposal>(
                candidates,
                [&](Proposer& proposer, Index v, VertexProposal& found) {
-                 found = {};
-                 if (complex().in_use(v)) proposer.contractions(v, repair, found);
+                 if (complex().in_use(v))
+                   proposer.contractions(v, repair, found);
+                 else
+                   found = {};
                },
                [&](Index v, const VertexProposal& found, std::uint32_t begun) {
                  return changed_[v] < begun &&
                         std::all_of(found.targets.begin(), found.targets.end(),
                                     [&](Index onto) { return changed_[onto] < begun; }) &&
-                        (found.change.kind == Change::Kind::none || workpiece_.may_contract(found.change));
+                        may_still_be_made(found.change) &&
+                        std::all_of(found.to_repair.begin(), found.to_repair.end(),
+                                    [&](const Change& change) { return may_still_be_made(change); });
                },
                [&](Index, VertexProposal& found) { contract(found); }) &&
            worthwhile(before);
@@ -171,6 +175,10 @@ class Coarsening {
         !execution_.progress({"coarsen", 0, 0, tets_}))
       report_.cancelled = true;
     return report_.cancelled;
+  }
+
+  bool may_still_be_made(const Change& contraction) const {
+    return contraction.kind == Change::Kind::none || workpiece_.may_contract(contraction);
   }
 
   void contract(VertexProposal& found) {
@@ -253,8 +261,9 @@ class Coarsening {
           change = {};
           if (complex()[t].alive && quality(t) == q) change = proposer.improvement_of(t, Mode::final);
         },
-        [&](const Poor& item, const Change&, std::uint32_t begun) {
-          return complex()[item.second].alive && !changed_since(item.second, begun);
+        [&](const Poor& item, const Change& change, std::uint32_t begun) {
+          const auto untouched = [&](Index t) { return complex()[t].alive && !changed_since(t, begun); };
+          return untouched(item.second) && std::all_of(change.read.begin(), change.read.end(), untouched);
         },
         [&](const Poor&, Change& change) {
           if (change.kind == Change::Kind::none) return;
@@ -274,8 +283,8 @@ class Coarsening {
   const std::vector<Index>& apply(Change change) {
     tets_ -= change.replacement.old.size();
     tets_ += change.replacement.created.size();
-    for (const Index t :
-         change.replacement.old) {  // a corner may be in no tet that changes but in one that goes
+    // A corner of a tet that goes may be in none of the new ones.
+    for (const Index t : change.replacement.old) {
       const auto& v = complex()[t].corners;
       touched_vertices_.insert(touched_vertices_.end(), v.begin(), v.end());
     }
@@ -290,7 +299,10 @@ class Coarsening {
     for (const Index t : changed) qualities_[t] = quality(t);
   }
 
-  void forget_touched() { touched_.clear(), touched_vertices_.clear(); }
+  void forget_touched() {
+    touched_.clear();
+    touched_vertices_.clear();
+  }
 
   // What was changed stays.
   void settle() {

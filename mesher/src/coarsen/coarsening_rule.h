@@ -51,7 +51,6 @@ class CoarseningRule final : public improvement::ShapeRule {
 
   bool keeps_guarantee(const Corners& p, double quality) const { return quality >= 1 || bound_.holds(p); }
 
-  Mode mode() const { return mode_; }
   void set_mode(Mode mode) { mode_ = mode; }
   /// Squared length of an edge by the target there.
   double squared_relative_length(double squared_length, Index a, Index b) const {

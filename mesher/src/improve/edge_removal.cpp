@@ -134,8 +134,12 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change) 
   }
   made.replacement.old = ring_.tets;
   made.kind = kept.empty() ? Change::Kind::edge_removal : Change::Kind::boundary_flip;
-  if (!kept.empty() && !may_turn(made)) return;
-  change = std::move(made);
+  made.read.swap(change.read);
+  const bool accepted = kept.empty() || may_turn(made);
+  if (!accepted)
+    change.read.swap(made.read);
+  else
+    change = std::move(made);
 }
 
 // May a sliver with two faces at the edge ab go to their other side, whose tets must be there?
@@ -162,7 +166,8 @@ bool Operations::may_turn(Change& change) {
     if (count < 2 &&
         std::find(turned[1].corners.begin(), turned[1].corners.end(), v) != turned[1].corners.end())
       shared[count++] = v;
-  complex_.star(shared[0], change.read);
+  complex_.star(shared[0], star_);
+  change.read.insert(change.read.end(), star_.begin(), star_.end());
   if (complex_.on_faces(shared[0], shared[1])) return false;
   const Index patch = mesh_.face_patch[turned[0].like];
   if (plc_.patches[patch].planar) return true;  // the tets' volumes have told

@@ -240,6 +240,8 @@ void Operations::move_vertex(Index vertex, Change& change) {
       std::tie(place, after) = best_place(p, vertex, *where, cone_.worst);
   }
   if (after <= wanted) return;
+  std::vector<Index> read = std::move(change.read);
+  read.insert(read.end(), cone_.tets.begin(), cone_.tets.end());
   change = {};
   change.kind = Change::Kind::move;
   change.quality = after;
@@ -247,7 +249,7 @@ void Operations::move_vertex(Index vertex, Change& change) {
   change.place = place;
   change.way = way;
   change.replacement.old_faces = cone_.faces;
-  change.read = cone_.tets;
+  change.read = std::move(read);
 }
 
 void Operations::split_edge(Index a, Index b, double least, Change& change) {

@@ -18,7 +18,7 @@ struct Change {
   Kind kind = Kind::none;
   double quality = 0;                   ///< of the worst new tet
   TetComplex::Replacement replacement;  ///< of a move the faces only
-  std::vector<Index> read;              ///< tets that it depends on besides the replaced ones
+  std::vector<Index> read;              ///< tets that it, or that nothing is done, depends on besides those
   Index vertex = none;                  ///< that is moved, or that goes
   Point place{};                        ///< of the moved or inserted vertex
   double way = 0;                       ///< that a vertex on a curve slides

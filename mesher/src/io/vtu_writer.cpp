@@ -92,8 +92,8 @@ std::string encoded(const DataArray& array, std::span<const std::string> blocks)
 
 /// Make the text of all arrays.
 void encode(std::span<Section> sections) {
-  if (tbb::this_task_arena::max_concurrency() > 1)
-    usable_threads();  // TBB has no more than these from now on
+  // Counting the threads that there can be keeps TBB to them.
+  if (tbb::this_task_arena::max_concurrency() > 1) static_cast<void>(usable_threads());
   std::vector<DataArray*> arrays;
   std::vector<std::size_t> first{0};  // block of each array, and the end
   std::vector<std::string_view> bytes;
