@@ -460,13 +460,12 @@ std::vector<std::string> reports_of(const RepairArguments& a) {
 }
 
 /// Of a run that writes a mesh, a file beside it.
-void check_second_output(const char* option, const std::string& file,
-                         const std::vector<std::filesystem::path>& written,
-                         const std::vector<std::string>& inputs, const std::string& input_format) {
+template <class SomeArguments>
+void check_second_output(const char* option, const std::string& file, const SomeArguments& a) {
   if (file.empty()) return;
-  if (!overwritten(written, {file}, {}).empty())
+  if (may_write(a.output, a.output_format, file))
     throw CLI::ValidationError(option, "names a file of --output; choose another");
-  const std::string lost = overwritten({file}, inputs, input_format);
+  const std::string lost = overwritten({file}, all_inputs(a), a.input_format);
   if (!lost.empty())
     throw CLI::ValidationError(option, fmt::format("would overwrite {}; choose another", lost));
 }
@@ -474,23 +473,21 @@ void check_second_output(const char* option, const std::string& file,
 /// No output takes the place of an input, or of another output.
 template <class SomeArguments>
 void check_outputs(const SomeArguments& a) {
-  const std::string& output_format = a.output_format;
-  const std::vector<std::string> inputs = all_inputs(a);
-  const std::vector<std::filesystem::path> written = files_written(a.output, output_format);
-  const std::string in_the_way = overwritten(written, inputs, a.input_format);
+  const std::string in_the_way =
+      overwritten(files_written(a.output, a.output_format), all_inputs(a), a.input_format);
   if (!in_the_way.empty())
     throw CLI::ValidationError(
         "--output",
         fmt::format("'{}' would overwrite {}; choose another name or folder", a.output, in_the_way));
   std::vector<std::string> others;
   for (const std::string& report : reports_of(a)) {
-    check_second_output("--report", report, written, inputs, a.input_format);
+    check_second_output("--report", report, a);
     if (!overwritten({report}, others, {}).empty())
       throw CLI::ValidationError("--report", fmt::format("names {} twice; choose another", report));
     others.push_back(report);
   }
   if constexpr (requires { a.cell_decomposition; }) {
-    check_second_output("--cell-decomposition", a.cell_decomposition, written, inputs, a.input_format);
+    check_second_output("--cell-decomposition", a.cell_decomposition, a);
     if (!a.cell_decomposition.empty() && !overwritten({a.cell_decomposition}, others, {}).empty())
       throw CLI::ValidationError("--cell-decomposition", "names the file of --report; choose another");
   }

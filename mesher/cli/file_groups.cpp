@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <initializer_list>
 #include <system_error>
+
+#include "collarmesh/error.h"
+#include "io/tet_mesh_formats.h"
 
 namespace collarmesh::cli {
 
@@ -33,18 +37,31 @@ std::vector<fs::path> parts_of_xdmf(const fs::path& path) {
   return files;
 }
 
+/// Does this file have the name of a piece that is written with the .pvtu?
+bool is_named_as_piece(const fs::path& file, const fs::path& pvtu) {
+  const std::string first = pvtu.stem().string() + "_", stem = file.stem().string();
+  return file.extension() == ".vtu" && stem.starts_with(first) && stem.size() > first.size() &&
+         stem.find_first_not_of("0123456789", first.size()) == std::string::npos;
+}
+
 /// With the pieces that are there: how many there will be is not known.
-std::vector<fs::path> pieces_of_pvtu(const fs::path& path) {
+std::vector<fs::path> written_with_pvtu(const fs::path& path) {
   std::vector<fs::path> files{path};
-  const std::string first = path.stem().string() + "_";
   std::error_code error;
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    const fs::path& file = entry->path();
-    const std::string stem = file.stem().string();
-    if (file.extension() == ".vtu" && stem.starts_with(first) && stem.size() > first.size() &&
-        stem.find_first_not_of("0123456789", first.size()) == std::string::npos)
-      files.push_back(path.parent_path() / file.filename());
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (is_named_as_piece(entry->path(), path))
+      files.push_back(path.parent_path() / entry->path().filename());
+  return files;
+}
+
+/// With the pieces, whatever their names: those that other programs write have others.
+std::vector<fs::path> read_with_pvtu(const fs::path& path) {
+  std::vector<fs::path> files{path};
+  try {
+    for (std::string& piece : io::pieces_of_pvtu(path.string())) files.emplace_back(std::move(piece));
+  } catch (const ReadError&) {
+    // Whoever reads it says what is wrong.
   }
   return files;
 }
@@ -56,8 +73,16 @@ std::vector<fs::path> files_written(const fs::path& path, const std::string& for
   if (path == "-") return {};
   if (extension == ".ele") return with_siblings(path, {".ele", ".node", ".face", ".edge"});
   if (extension == ".xdmf") return parts_of_xdmf(path);
-  if (extension == ".pvtu") return pieces_of_pvtu(path);
+  if (extension == ".pvtu") return written_with_pvtu(path);
   return {path};
+}
+
+bool may_write(const fs::path& path, const std::string& format, const fs::path& file) {
+  const std::vector<fs::path> written = files_written(path, format);
+  return std::any_of(written.begin(), written.end(),
+                     [&](const fs::path& each) { return same_file(each, file); }) ||
+         (extension_of(path, format) == ".pvtu" && is_named_as_piece(file, path) &&
+          same_file(path.parent_path() / file.filename(), file));
 }
 
 std::vector<fs::path> files_read(const fs::path& path, const std::string& format) {
@@ -65,7 +90,7 @@ std::vector<fs::path> files_read(const fs::path& path, const std::string& format
   const std::string extension = extension_of(path, format);
   if (extension == ".ele") return with_siblings(path, {".node", ".face", ".edge"});
   if (extension == ".xdmf") return parts_of_xdmf(path);
-  if (extension == ".pvtu") return pieces_of_pvtu(path);
+  if (extension == ".pvtu") return read_with_pvtu(path);
   if (extension == ".poly" || extension == ".smesh") return with_siblings(path, {".node"});
   return {path};
 }
@@ -73,7 +98,8 @@ std::vector<fs::path> files_read(const fs::path& path, const std::string& format
 bool same_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error) && !error) return fs::is_regular_file(a, error);
-  return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error);
+  // A relative path of which nothing exists would stay relative.
+  return fs::weakly_canonical(fs::absolute(a), error) == fs::weakly_canonical(fs::absolute(b), error);
 }
 
 std::string overwritten(const std::vector<fs::path>& written, const std::vector<std::string>& inputs,

@@ -7,9 +7,13 @@
 namespace collarmesh::cli {
 
 /// The files that writing `path` makes: it and those that the format (its extension, or `format`) puts beside
-/// it.
+/// it; of the pieces of a .pvtu those that are there already.
 std::vector<std::filesystem::path> files_written(const std::filesystem::path& path,
                                                  const std::string& format = {});
+
+/// May writing `path` make this file, too? Pieces of a .pvtu need not be there yet.
+bool may_write(const std::filesystem::path& path, const std::string& format,
+               const std::filesystem::path& file);
 
 /// The files that reading `path` may read; "-" is what standard input is.
 std::vector<std::filesystem::path> files_read(const std::filesystem::path& path,

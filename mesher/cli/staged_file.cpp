@@ -247,7 +247,12 @@ void StagedFile::commit(const std::vector<StagedFile*>& files) {
   for (const StagedFile* file : files)
     if (file != nullptr && file->target_ != standard_output)
       for (Move& move : file->moves()) all.push_back(std::move(move));
+  std::set<fs::path> places;
   for (const Move& move : all) {
+    std::error_code error;
+    if (!places.insert(fs::weakly_canonical(folder_of(move.to), error) / move.to.filename()).second)
+      throw WriteError(
+          fmt::format("{}: two outputs would be this file; choose another name", move.to.string()));
     require_place(move.to);
     if (!move.kept.empty()) keep_mode_and_owner(move.to, move.from);
     flush(move.from, move.to);

@@ -26,7 +26,8 @@ class StagedFile {
   void write(const std::function<void(const std::string& path)>& write);
 
   /// Flush files to the disk and move them to their places: all of them, or none, with what was there before
-  /// left as it was. Throws WriteError, or Cancelled when the user asked to stop before.
+  /// left as it was. Throws WriteError, also where two would have one place, or Cancelled when the user asked
+  /// to stop before.
   static void commit(const std::vector<StagedFile*>& files);
 
  private:

@@ -30,27 +30,6 @@ struct NamedPiece {
   std::vector<std::int64_t> point_of;  ///< the place of each of its points in the whole mesh
 };
 
-std::vector<std::string> files_of_pieces(const std::string& path) {
-  const std::string text = read_bytes(path);
-  pugi::xml_document document;
-  const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size());
-  if (!parsed)
-    throw ReadError(
-        fmt::format("{}: byte {}: the XML is malformed: {}", path, parsed.offset, parsed.description()));
-  const pugi::xml_node grid = document.child("VTKFile").child("PUnstructuredGrid");
-  if (!grid) throw ReadError(path + ": expected a VTKFile with a PUnstructuredGrid");
-  std::vector<std::string> files;
-  std::set<std::string> known;
-  for (const pugi::xml_node& piece : grid.children("Piece")) {
-    const std::string source = piece.attribute("Source").value();
-    if (source.empty()) throw ReadError(path + ": a Piece has no Source");
-    std::string file = (fs::path(path).parent_path() / source).string();
-    if (!known.insert(file).second) throw ReadError(fmt::format("{}: two pieces are {}", path, source));
-    files.push_back(std::move(file));
-  }
-  return files;
-}
-
 const std::vector<std::int64_t>& numbers(const NamedPiece& named, const VtkPiece::Arrays& arrays,
                                          std::string_view name, std::size_t count) {
   static const std::vector<std::int64_t> nothing;
@@ -154,9 +133,30 @@ void join_cells(const std::vector<NamedPiece>& pieces, VtkPiece& whole) {
 
 }  // namespace
 
+std::vector<std::string> pieces_of_pvtu(const std::string& path) {
+  const std::string text = read_bytes(path);
+  pugi::xml_document document;
+  const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size());
+  if (!parsed)
+    throw ReadError(
+        fmt::format("{}: byte {}: the XML is malformed: {}", path, parsed.offset, parsed.description()));
+  const pugi::xml_node grid = document.child("VTKFile").child("PUnstructuredGrid");
+  if (!grid) throw ReadError(path + ": expected a VTKFile with a PUnstructuredGrid");
+  std::vector<std::string> files;
+  std::set<std::string> known;
+  for (const pugi::xml_node& piece : grid.children("Piece")) {
+    const std::string source = piece.attribute("Source").value();
+    if (source.empty()) throw ReadError(path + ": a Piece has no Source");
+    std::string file = (fs::path(path).parent_path() / source).string();
+    if (!known.insert(file).second) throw ReadError(fmt::format("{}: two pieces are {}", path, source));
+    files.push_back(std::move(file));
+  }
+  return files;
+}
+
 TetMesh read_pvtu(const std::string& path) {
   std::vector<NamedPiece> pieces;
-  for (const std::string& file : files_of_pieces(path))
+  for (const std::string& file : pieces_of_pvtu(path))
     for (VtkPiece& piece : read_vtu_pieces(file)) pieces.push_back({file, std::move(piece), {}});
   VtkPiece whole;
   join_points(pieces, whole);

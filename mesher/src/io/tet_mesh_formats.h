@@ -30,6 +30,8 @@ TetMesh read_med(const std::string& path);
 
 TetMesh read_vtu(const std::string& path);
 TetMesh read_pvtu(const std::string& path);
+/// The files that a .pvtu names, one for each piece.
+std::vector<std::string> pieces_of_pvtu(const std::string& path);
 TetMesh read_vtk(const std::string& path);
 TetMesh read_msh(const std::string& path);
 TetMesh read_medit(const std::string& path);
