@@ -197,6 +197,12 @@ Json partitions_json(const PartitionMeasures& m) {
           {"cut_faces", m.cut_faces}};
 }
 
+/// Estimates may exceed every integer.
+Json whole_json(double value) {
+  constexpr double exact = 9007199254740992;  // 2^53
+  return std::fabs(value) <= exact ? Json(std::llround(value)) : number_json(value);
+}
+
 }  // namespace
 
 Json complex_json(const Plc& plc, const PlcSummary& s) {
@@ -321,7 +327,7 @@ Json repair_run_json(const RepairArguments& arguments, const Plc& plc, const Plc
 Json predictions_json(const std::vector<Prediction>& predictions) {
   Json list = Json::array();
   for (const Prediction& p : predictions)
-    list.push_back({{"size", p.size}, {"tets", std::llround(p.tets)}, {"seconds", p.seconds}});
+    list.push_back({{"size", p.size}, {"tets", whole_json(p.tets)}, {"seconds", number_json(p.seconds)}});
   return list;
 }
 

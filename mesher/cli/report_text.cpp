@@ -75,6 +75,11 @@ void append_patches(std::string& text, const Plc& plc) {
     fmt::format_to(Out(text), "  ... and {} more patches (--json lists all)\n", patches.size() - listed);
 }
 
+/// Digits are of no use beyond those of a double.
+std::string count_text(double count) {
+  return count < 1e12 ? fmt::format("{:.0f}", count) : fmt::format("{:.3g}", count);
+}
+
 }  // namespace
 
 std::string warnings_text(const Plc& plc) {
@@ -118,7 +123,7 @@ std::string predictions_text(const std::vector<Prediction>& predictions) {
   if (predictions.empty()) return {};
   std::string text = fmt::format("estimates:\n  {:>10}  {:>12}  {:>8}\n", "size", "tets", "seconds");
   for (const Prediction& p : predictions)
-    fmt::format_to(Out(text), "  {:>10.4g}  {:>12}  {:>8.2g}\n", p.size, std::llround(p.tets), p.seconds);
+    fmt::format_to(Out(text), "  {:>10.4g}  {:>12}  {:>8.2g}\n", p.size, count_text(p.tets), p.seconds);
   return text;
 }
 

@@ -118,6 +118,14 @@ TEST(Predict, VerySmallSizes) {
   EXPECT_NEAR(std::log10(finer / fine), 3, 0.1);
 }
 
+// So is that on the curves of finely faceted shapes: one piece of a curve for each edge would be 2e8 of them.
+TEST(Predict, VerySmallSizesOnManySegments) {
+  const Plc plc = plc_of(testing::cylinder(1, 1, 10'000));
+  const double fine = predicted(plc, with_size(1e-6)), finer = predicted(plc, with_size(1e-7));
+  EXPECT_NEAR(std::log10(finer / fine), 3, 0.1);
+  EXPECT_NEAR(fine * std::pow(1e-6, 3) / (std::numbers::pi * 6 / 0.61), 1, 0.1);  // as dense as inside
+}
+
 TEST(Predict, Refuses) {
   const Plc plc = plc_of(box());
   EXPECT_THROW(predict(plc, {}, std::array{-1.0}), OptionError);
@@ -125,6 +133,10 @@ TEST(Predict, Refuses) {
   PipelineOptions options;
   options.mesh.size_min = 0.2;
   EXPECT_THROW(predict(plc, options, std::array{0.1}), OptionError);
+  EXPECT_NO_THROW(predict(plc, options, std::array{0.0}));
+  options.mesh.size = 0.1;
+  EXPECT_THROW(predict(plc, options, std::array{0.0}), OptionError);
+  EXPECT_NO_THROW(predict(plc, options, std::array{0.3}));
   options = {};
   options.mesh.patch_size[99] = 1;
   EXPECT_THROW(predict(plc, options, std::array{0.0}), OptionError);

@@ -27,9 +27,10 @@ void validate(const PipelineOptions& options, std::span<const double> sizes, con
   for (const double size : sizes) {
     if (!(size >= 0) || !std::isfinite(size))
       throw OptionError(fmt::format("a size of {} cannot be predicted; 0 stands for the default", size));
-    if (size > 0 && options.mesh.size_min > size)
+    const double used = size > 0 ? size : options.mesh.size;
+    if (used > 0 && options.mesh.size_min > used)
       throw OptionError(
-          fmt::format("size-min {} exceeds the size {}; make it smaller", options.mesh.size_min, size));
+          fmt::format("size-min {} exceeds the size {}; make it smaller", options.mesh.size_min, used));
   }
 }
 
@@ -50,9 +51,9 @@ std::vector<Prediction> predict(const Plc& plc, const PipelineOptions& options,
     Prediction& made = predictions.emplace_back();
     made.size = mesh.size > 0 ? mesh.size : diagonal / sizes_per_diagonal;
     if (is_empty) continue;
-    made.tets = std::max(1.0, prediction::count_vertices(shape, mesh).tets);
-    const auto refined = prediction::count_vertices(shape, mesh, prediction::model_of_refinement());
-    made.seconds = seconds_for(refined.tets, options.order);
+    made.tets = std::max(1.0, prediction::count_tets(shape, mesh));
+    const double refined = prediction::count_tets(shape, mesh, prediction::model_of_refinement());
+    made.seconds = seconds_for(refined, options.order);
   }
   return predictions;
 }

@@ -16,7 +16,7 @@ namespace {
 
 // Where there would be more, what is left is judged as it is.
 constexpr std::size_t most_pieces = 40000, most_cubes = 80000;
-constexpr double most_pieces_of_segment = 1000;
+constexpr double most_pieces_of_segment = 1000, most_pieces_of_curves = 40000;  // beyond one for each segment
 constexpr double least_share = 0.002;  // of the size: what walls and strips make of it at most
 
 /// From 0 to 1 between two bounds.
@@ -33,12 +33,12 @@ class Counter {
         pieces_(pieces_of_curves()),
         sizes_(sources(), growth()) {}
 
-  VertexCounts run() {
-    for (const double share : shape_.angles().of_vertex) add(counts_.on_vertices, 1, share);
+  double run() {
+    for (const double share : shape_.angles().of_vertex) add(1, share);
     for (Index c = 0; c < plc_.curves.size(); ++c) count_on_curve(c);
     count_on_patches();
     count_inside();
-    return counts_;
+    return tets_;
   }
 
  private:
@@ -59,9 +59,9 @@ class Counter {
     Index region = none;
   };
 
-  void add(double& count, double vertices, double share) {
-    count += vertices;
-    counts_.tets += model_.tets_per_vertex * share * vertices;
+  void add(double vertices, double share) {
+    if (vertices > 0)  // else it may be 0 times infinity
+      tets_ += model_.tets_per_vertex * share * vertices;
   }
 
   double growth() const {
@@ -93,13 +93,25 @@ class Counter {
                : size;
   }
 
+  /// Pieces as long as half an edge, of very fine meshes longer ones.
+  static double pieces_wanted(double length, double size) {
+    return std::clamp(std::ceil(2 * length / size), 1.0, most_pieces_of_segment);
+  }
+
   std::vector<std::vector<CurvePiece>> pieces_of_curves() const {
+    double wanted = 0;
+    for (Index c = 0; c < plc_.curves.size(); ++c)
+      for (std::size_t i = 0; i < shape_.segment_count(c); ++i) {
+        const auto [a, b] = shape_.segment(c, i);
+        wanted += pieces_wanted(distance(a, b), size_of_segment(c, i));
+      }
+    const double share = std::min(1.0, most_pieces_of_curves / wanted);
     std::vector<std::vector<CurvePiece>> all(plc_.curves.size());
     for (Index c = 0; c < plc_.curves.size(); ++c)
       for (std::size_t i = 0; i < shape_.segment_count(c); ++i) {
         const auto [a, b] = shape_.segment(c, i);
         const double size = size_of_segment(c, i);
-        const double count = std::clamp(std::ceil(2 * distance(a, b) / size), 1.0, most_pieces_of_segment);
+        const double count = std::ceil(share * pieces_wanted(distance(a, b), size));
         Point from = a;
         for (double k = 1; k <= count; ++k) {
           const Point to = a + k / count * (b - a);
@@ -142,7 +154,7 @@ class Counter {
     for (const auto& [a, b, size] : pieces_[c])
       edges += distance(a, b) / (model_.edge * sizes_.at(0.5 * (a + b), size));
     const bool has_vertex = !plc_.curves[c].closed;
-    add(counts_.on_curves, whole(c, edges) - (has_vertex ? 1 : 0), shape_.angles().of_curve[c]);
+    add(whole(c, edges) - (has_vertex ? 1 : 0), shape_.angles().of_curve[c]);
   }
 
   /// Triangles are cut in two until one size will do for each piece.
@@ -171,8 +183,7 @@ class Counter {
       }
       const double across = std::min(size, size_across(piece.triangle, p));
       const double per_vertex = model_.area * across * std::min(size, model_.aspect * across);
-      add(counts_.on_patches,
-          ramp(to_border / size, model_.border_from, model_.border_to) * area / per_vertex,
+      add(ramp(to_border / size, model_.border_from, model_.border_to) * area / per_vertex,
           shape_.angles().of_patch[patch]);
     }
   }
@@ -228,8 +239,7 @@ class Counter {
         continue;
       }
       if (cube.region == none) continue;
-      add(counts_.inside,
-          ramp(depth / size, model_.depth_from, model_.depth_to) * std::pow(2 * cube.half / size, 3) /
+      add(ramp(depth / size, model_.depth_from, model_.depth_to) * std::pow(2 * cube.half / size, 3) /
               model_.volume,
           1);
     }
@@ -258,12 +268,12 @@ class Counter {
   Sizing sizing_;
   std::vector<std::vector<CurvePiece>> pieces_;  // by curve
   GradedSize sizes_;
-  VertexCounts counts_;
+  double tets_ = 0;
 };
 
 }  // namespace
 
-VertexCounts count_vertices(const Shape& shape, const MeshOptions& options, const Model& model) {
+double count_tets(const Shape& shape, const MeshOptions& options, const Model& model) {
   return Counter(shape, options, model).run();
 }
 

@@ -30,13 +30,9 @@ inline Model model_of_refinement() {
   return model;
 }
 
-/// Of the mesh that will be.
-struct VertexCounts {
-  double on_vertices = 0, on_curves = 0, on_patches = 0, inside = 0;
-  double tets = 0;  ///< by the share of the directions around each vertex that lead into regions
-};
-
-/// `options.distance` is that of the mesh, not 0. Cost: grows with the mesh, up to a bound.
-VertexCounts count_vertices(const Shape& shape, const MeshOptions& options, const Model& model = {});
+/// The tets of the mesh that will be: by its vertices, and the share of the directions around each that lead
+/// into regions. `options.distance` is that of the mesh, not 0. Infinite where a double cannot hold it. Cost:
+/// grows with the mesh, up to a bound that is linear in the complex.
+double count_tets(const Shape& shape, const MeshOptions& options, const Model& model = {});
 
 }  // namespace collarmesh::prediction
