@@ -62,9 +62,14 @@ Tag tag_of_physical(const Contents& contents, std::size_t dimension, Tag physica
   return named != contents.tag_of_physical[dimension].end() ? named->second : physical;
 }
 
-Tag tag_of_entity(const Contents& contents, std::size_t dimension, int entity) {
+/// That of which it is a part, or itself.
+int whole_entity(const Contents& contents, std::size_t dimension, int entity) {
   const auto part = contents.partition_entities[dimension].find(entity);
-  if (part != contents.partition_entities[dimension].end()) entity = part->second.parent;
+  return part == contents.partition_entities[dimension].end() ? entity : part->second.parent;
+}
+
+Tag tag_of_entity(const Contents& contents, std::size_t dimension, int entity) {
+  entity = whole_entity(contents, dimension, entity);
   const auto found = contents.physical_of_entity[dimension].find(entity);
   return found == contents.physical_of_entity[dimension].end()
              ? entity
@@ -146,8 +151,9 @@ void read_physical_names(MshText values, Contents& contents) {
   }
 }
 
+/// `point_numbers`: a point has 3 coordinates, in 4.0 a box of 6.
 template <class Values>
-void read_partition_entities(Values values, Contents& contents) {
+void read_partition_entities(Values values, int point_numbers, Contents& contents) {
   values.number("the number of partitions");
   const Index ghosts = values.count("the number of ghost entities", 2);
   for (Index i = 0; i < ghosts; ++i) {
@@ -168,7 +174,7 @@ void read_partition_entities(Values values, Contents& contents) {
         if (partition < 1) values.fail(fmt::format("a partition is {}; they are counted from 1", partition));
         if (k == 0) entity.partition = static_cast<Index>(partition) - 1;
       }
-      for (int k = 0; k < (dimension == 0 ? 3 : 6); ++k) values.real("the box of an entity");
+      for (int k = 0; k < (dimension == 0 ? point_numbers : 6); ++k) values.real("the box of an entity");
       const Index physicals = values.count("the number of physical groups", 1);
       for (Index k = 0; k < physicals; ++k) values.integer("a physical group");
       const Index boundary = dimension == 0 ? 0 : values.count("the number of bounding entities", 1);
@@ -177,7 +183,7 @@ void read_partition_entities(Values values, Contents& contents) {
     }
 }
 
-/// `point_numbers`: a point has 3 coordinates, in 4.0 a box of 6.
+/// As above.
 template <class Values>
 void read_entities(Values values, int point_numbers, Contents& contents) {
   std::array<Index, 4> counts;
@@ -204,9 +210,7 @@ void read_nodes(Values values, Contents& contents) {
   contents.nodes.reserve(total);
   for (Index b = 0; b < blocks; ++b) {
     const std::size_t dimension = read_dimension(values);
-    const int number = values.integer("the number of an entity");
-    const auto part = contents.partition_entities[dimension].find(number);
-    const int entity = part == contents.partition_entities[dimension].end() ? number : part->second.parent;
+    const int entity = whole_entity(contents, dimension, values.integer("the number of an entity"));
     const int parametric = values.integer("the flag for parametric nodes");
     const Index n = values.count("the number of nodes of a block", 4);
     const std::size_t first = contents.nodes.size();
@@ -268,8 +272,9 @@ void read_nodes_40(MshText values, Contents& contents) {
   const Index total = values.count("the number of nodes", 4);
   contents.nodes.reserve(total);
   for (Index b = 0; b < blocks; ++b) {
-    const int entity = values.integer("the number of an entity");
+    const int number = values.integer("the number of an entity");
     const std::size_t dimension = read_dimension(values);
+    const int entity = whole_entity(contents, dimension, number);
     const int parametric = values.integer("the flag for parametric nodes");
     const Index n = values.count("the number of nodes of a block", 4);
     for (Index i = 0; i < n; ++i) {
@@ -451,8 +456,10 @@ void read_section(const std::string& path, const MshSection& section, const Form
     read_entities(MshText(path, section), 6, contents);
   else if (section.name == "Entities" && format.version > 4)
     with_any([&](auto values) { read_entities(values, 3, contents); });
+  else if (section.name == "PartitionedEntities" && format.version == 4.0)
+    read_partition_entities(MshText(path, section), 6, contents);
   else if (section.name == "PartitionedEntities" && format.version > 4)
-    with_any([&](auto values) { read_partition_entities(values, contents); });
+    with_any([&](auto values) { read_partition_entities(values, 3, contents); });
   else if (section.name == "Nodes" && format.version < 4)
     with_old_values(path, section, format, [&](auto values) { read_nodes_2(values, contents); });
   else if (section.name == "Nodes" && format.version == 4.0)
