@@ -310,6 +310,14 @@ class Meshes(unittest.TestCase):
         for name in ("tets", "faces", "edges", "face_regions", "tet_region", "tet_mid_nodes"):
             self.assertEqual(getattr(self.mesh, name).dtype, numpy.int64, name)
 
+    def test_pickles_of_versions_without_partitions(self):
+        state = self.mesh.__getstate__()
+        del state["tet_partition"]
+        old = collarmesh.Mesh.__new__(collarmesh.Mesh)
+        old.__setstate__(state)
+        self.assertEqual(len(old.tet_partition), 0)
+        self.assertEqual(old.info(), self.mesh.info())
+
     def test_pickle_and_copy(self):
         for other in (pickle.loads(pickle.dumps(self.mesh)), copy.deepcopy(self.mesh)):
             numpy.testing.assert_array_equal(other.tets, self.mesh.tets)
@@ -369,12 +377,31 @@ class Meshes(unittest.TestCase):
                 divided.write(folder / "ghosts.vtu", ghost_cells=True)
             with self.assertRaisesRegex(collarmesh.OptionError, "not partitioned"):
                 self.mesh.write(folder / "ghosts.msh", ghost_cells=True)
+            self.check_mistakes_of_converting(folder)
         for partitions in (0, -1, 1.5, True, "4", len(self.mesh.tets) + 1, 2**40):
             with self.assertRaises(collarmesh.OptionError, msg=partitions):
                 self.mesh.partitioned(partitions)
         for partitions in (0, -1, 1.5, "4", 10**6):
             with self.assertRaises(collarmesh.OptionError, msg=partitions):
                 collarmesh.mesh(box((0, 0, 0), (1, 1, 1)), size=0.6, partitions=partitions)
+
+    def check_mistakes_of_converting(self, folder):
+        """Told before anything is meshed or read."""
+        surface = box((0, 0, 0), (1, 1, 1))
+        for source in (surface, folder / "missing.vtu"):
+            for output, options, message in (
+                    ("a.off", {"partitions": 2}, r"partitions: \.off has no place for partitions; use \.vtu"),
+                    ("a.inp", {"partitions": 2}, r"partitions: \.inp has no place for partitions; use \.vtu"),
+                    ("a.off", {"ghost_cells": True}, r"\.off has no place for ghost cells; use \.pvtu \.msh"),
+                    ("a.VTU", {"partitions": 2, "ghost_cells": True}, r"\.vtu has no place for ghost cells"),
+                    ("a.msh", {"partitions": 2, "format": ".inp"}, r"\.inp has no place for partitions")):
+                with self.assertRaisesRegex(collarmesh.OptionError, message):
+                    collarmesh.convert(source, folder / output, **options)
+                self.assertFalse((folder / output).exists())
+        stages = []
+        with self.assertRaisesRegex(collarmesh.OptionError, "ghost_cells: .*say how many"):
+            collarmesh.convert(surface, folder / "a.msh", ghost_cells=True, progress=lambda *at: stages.append(at))
+        self.assertEqual(stages, [])
 
     def test_convert_and_repair(self):
         points, triangles, tags = box((0, 0, 0), (1, 1, 1))

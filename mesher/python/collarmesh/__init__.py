@@ -295,6 +295,11 @@ def repair(
     return [_triangles(soup) for soup in soups], messages
 
 
+def _require_place(extension: str, option: str, what: str, formats: List[str]) -> None:
+    if extension not in formats:
+        raise OptionError(f"{option}: {extension or 'the output'} has no place for {what}; use {' '.join(formats)}")
+
+
 def convert(
     source: Union[Input, Mesh, Sequence[Input]],
     output: Path,
@@ -313,9 +318,14 @@ def convert(
     partitions: divide the tetrahedra among so many ranks. ghost_cells: as in `Mesh.write`.
     options: those of `collarmesh.mesh`.
 
-    Raises `Error`.
+    Raises `Error`; OptionError also where the output has no place for partitions or ghost cells.
     """
     target, kind, from_kind = os.fspath(output), format or "", input_format or ""
+    extension = kind or os.path.splitext(target)[1].lower()
+    if partitions is not None:
+        _require_place(extension, "partitions", "partitions", _core.formats_with_partitions())
+    if ghost_cells:
+        _require_place(extension, "ghost_cells", "ghost cells", _core.formats_with_ghost_cells())
     to_surface = _core.is_surface_format(target, kind)
     found = source if isinstance(source, Mesh) else None
     if isinstance(source, (str, os.PathLike)):
@@ -333,5 +343,7 @@ def convert(
         given = _given({"format": format, "input_format": input_format, **options})
         _core.convert_surfaces(inputs(surfaces), target, given)
     else:
+        if ghost_cells and partitions is None:
+            raise OptionError("ghost_cells: is of partitions; say how many with partitions")
         made = mesh(*surfaces, input_format=input_format, partitions=partitions, **options)
         made.write(target, kind, ghost_cells=ghost_cells)

@@ -30,7 +30,8 @@ _ARRAYS = {
     "feature_dimension": (numpy.uint8, 1),
     "feature": (numpy.int64, 1),
 }
-# The places of our nodes amid edges in meshio's and VTK's cells of second order: corners, then ab, bc, ca, ad, bd, cd.
+# The places of our nodes amid edges in meshio's and VTK's cells of second order: corners, then ab, bc, ca,
+# ad, bd, cd.
 _MESHIO_CELLS = {1: ("tetra", "triangle", "line"), 2: ("tetra10", "triangle6", "line3")}
 _VTK_CELLS = {1: 10, 2: 24}
 
@@ -43,7 +44,8 @@ class Mesh:
     tet_region: (m,), numbers of regions, from 1; tet_tag: (m,), the tags of these.
     tet_collar: (m,), 0 outside of collars, 1 star, 2 book; tet_crease: (m,), the tag of its crease there.
     tet_thin: (m,), 1 for thin tetrahedra, which exceed radius_edge; (0,) where that is not known.
-    tet_partition: (m,), the rank that each tetrahedron is given to, from 0; (0,) for a mesh that is not partitioned.
+    tet_partition: (m,), the rank that each tetrahedron is given to, from 0; (0,) where the mesh is not
+        partitioned.
     faces: (k, 3), triangles on boundaries, interfaces and internal facets.
     face_regions: (k, 2), regions behind and before the triangle; 0: none.
     face_tag: (k,), tags of the surfaces' triangles, or numbers of patches where these had none.
@@ -85,8 +87,9 @@ class Mesh:
         return {**self._arrays(), "check": self._check, **self._said}
 
     def __setstate__(self, state: Dict[str, Any]) -> None:
+        arrays = {"tet_partition": numpy.empty(0, dtype=numpy.int64), **state}  # earlier versions had none
         for name in _ARRAYS:
-            array = state[name]
+            array = arrays[name]
             array.setflags(write=False)  # pickle gives arrays that can be written to
             setattr(self, name, array)
         self.names = state["names"]
@@ -150,19 +153,21 @@ class Mesh:
         given = self.names.get(dimension, {}).get(tag)
         if given is not None:
             return given
-        kinds = ("Vertex", "Edge", "Face", "Solid") if self._cad_names else ("vertex_", "curve_", "patch_", "region_")
+        ours = ("vertex_", "curve_", "patch_", "region_")
+        kinds = ("Vertex", "Edge", "Face", "Solid") if self._cad_names else ours
         return f"{kinds[dimension]}{tag}"
 
     def partitioned(self, partitions: int) -> "Mesh":
         """The same mesh with its tetrahedra divided among so many ranks, evenly and with few shared faces.
 
-        partitions: 1 to the number of tetrahedra. Raises OptionError for others, and where Scotch, which divides
-        them, is not there.
+        partitions: 1 to the number of tetrahedra. Raises OptionError for others, and where Scotch, which
+        divides them, is not there.
         """
-        if isinstance(partitions, bool) or not isinstance(partitions, (int, numpy.integer)) or partitions < 1:
-            raise _core.OptionError(f"partitions must be a whole number of at least 1, not {partitions!r}")
-        if partitions > len(self.tets):
-            raise _core.OptionError(f"partitions is {partitions}, but the mesh has {len(self.tets)} tets")
+        whole = isinstance(partitions, (int, numpy.integer)) and not isinstance(partitions, bool)
+        if not whole or not 1 <= partitions <= len(self.tets):
+            raise _core.OptionError(
+                f"partitions must be a whole number from 1 to {len(self.tets)}, as many as there are "
+                f"tetrahedra, not {partitions!r}")
         state = self.__getstate__()
         return Mesh({**state, "tet_partition": _core.partition(state, int(partitions))})
 
@@ -172,7 +177,8 @@ class Mesh:
         path: its extension gives the format (.vtu, .msh, .inp ...), unless `format` does (".vtu").
         scale: coordinates are multiplied by this, 0.001 for metres of millimetres.
         ghost_cells: with each partition the tetrahedra of others that share a vertex with it; .msh, .pvtu.
-        Raises WriteError.
+        Raises WriteError, also for ghost cells in other formats; OptionError for those of a mesh that is not
+        partitioned.
         """
         arrays = self._arrays()
         if scale != 1:
@@ -233,7 +239,8 @@ class Mesh:
             axes = matplotlib.pyplot.figure().add_subplot(projection="3d")
         tags, colour = numpy.unique(self.face_tag, return_inverse=True)
         colours = matplotlib.pyplot.get_cmap("tab20")(colour % 20)
-        axes.add_collection3d(Poly3DCollection(self.points[self.faces], facecolors=colours, edgecolors="k", linewidths=0.2))
+        triangles = self.points[self.faces]
+        axes.add_collection3d(Poly3DCollection(triangles, facecolors=colours, edgecolors="k", linewidths=0.2))
         low, high = self.points.min(axis=0), self.points.max(axis=0)
         axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
         axes.set_box_aspect(numpy.maximum(high - low, 1e-6 * (high - low).max()))

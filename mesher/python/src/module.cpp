@@ -286,6 +286,8 @@ PYBIND11_MODULE(_core, module) {
   module.def("read_mesh_if_there", &read_mesh_if_there);
   module.def("write_mesh", &write_mesh);
   module.def("partition", &partition_mesh);
+  module.def("formats_with_partitions", &io::formats_with_partitions);
+  module.def("formats_with_ghost_cells", &io::formats_with_ghost_cells);
   module.def("is_surface_format", [](const std::string& path, const std::string& format) {
     return cli::is_surface_format(path, format);
   });
