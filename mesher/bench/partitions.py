@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""How evenly and with how few cut faces `--partitions` divides meshes, beside Scotch's own program (scotch_gpart with its
-defaults, Debian's package scotch; the median of five runs, which all differ) and Gmsh's METIS (gmsh -part). All divide the same mesh. Cut faces and sizes are counted
-here, by the corners of the tetrahedra.
+"""How evenly and with how few cut faces `--partitions` divides meshes, beside Scotch's own program (scotch_gpart
+with its defaults, Debian's package scotch; the median of five runs, which all differ) and Gmsh's METIS
+(gmsh -part). All divide the same mesh. Cut faces and sizes are counted here, by the corners of the tetrahedra.
 
     partitions.py [--program build/release/bin/collarmesh]"""
 
@@ -92,7 +92,8 @@ def judged(partition: np.ndarray, pairs: np.ndarray, partitions: int) -> tuple[i
     """Cut faces, and by how much the largest exceeds the mean."""
     sizes = np.bincount(partition, minlength=partitions)
     assert len(sizes) == partitions and partition.min() >= 0
-    return int((partition[pairs[:, 0]] != partition[pairs[:, 1]]).sum()), sizes.max() * partitions / len(partition) - 1
+    cut = int((partition[pairs[:, 0]] != partition[pairs[:, 1]]).sum())
+    return cut, sizes.max() * partitions / len(partition) - 1
 
 
 def debian_version(package: str) -> str:
@@ -100,7 +101,8 @@ def debian_version(package: str) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", type=Path, default=sources / "build/release/bin/collarmesh")
     arguments = parser.parse_args()
     missing = [name for name in ("scotch_gpart", "gmsh") if shutil.which(name) is None]
@@ -119,8 +121,10 @@ def main() -> None:
             pairs = pairs_with_a_face(tets)
             write_graph(place / "mesh.grf", len(tets), pairs)
             for partitions in partition_counts:
-                run(program, "convert", place / "mesh.vtu", "-o", place / "divided.vtu", "--partitions", partitions)
-                runs = [judged(by_scotch(place / "mesh.grf", partitions, len(tets)), pairs, partitions) for _ in range(5)]
+                run(program, "convert", place / "mesh.vtu", "-o", place / "divided.vtu",
+                    "--partitions", partitions)
+                runs = [judged(by_scotch(place / "mesh.grf", partitions, len(tets)), pairs, partitions)
+                        for _ in range(5)]
                 cuts = {"collarmesh": judged(tetrahedra(place / "divided.vtu")[1], pairs, partitions),
                         "scotch_gpart": sorted(runs)[2]}
                 gmsh_tets, partition = by_gmsh(place / "mesh.msh", partitions)
@@ -132,8 +136,8 @@ def main() -> None:
                 rows.append([name, si(len(tets)), str(partitions)]
                             + [f"{cut} ({100 * uneven:.1f} %)" for cut, uneven in cuts.values()]
                             + [f"{ours / cuts['scotch_gpart'][0]:.2f}", f"{ours / cuts['Gmsh'][0]:.2f}"])
-    print(table(["mesh", "tets", "partitions", "collarmesh: cut faces (imbalance)", "scotch_gpart", "Gmsh's METIS",
-                 "to scotch_gpart", "to Gmsh's"], rows))
+    print(table(["mesh", "tets", "partitions", "collarmesh: cut faces (imbalance)", "scotch_gpart",
+                 "Gmsh's METIS", "to scotch_gpart", "to Gmsh's"], rows))
     print("\nat most " + ", ".join(f"{ratio:.3f} times {peer}'s" for peer, ratio in worst.items()))
 
 

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""How near the predictions of `collarmesh info --predict` are to the meshes: tets and seconds over CAD files and
-surfaces, at the default size and at shares of it, with elements of both orders.
+"""How near the predictions of `collarmesh info --predict` are to the meshes: tets and seconds over CAD files
+and surfaces, at the default size and at shares of it, with elements of both orders.
 
-Every fourth of the files that are meshed with the defaults, in alphabetical order, was used to fit the constants
-(src/predict/vertex_counts.h); the tables tell those and the others apart. --out keeps the meshes' counts, and a mesh
-that it holds is not made again; predictions always are. Seconds of meshes are those of CPU time."""
+Every fourth of the files that are meshed with the defaults, in alphabetical order, was used to fit the
+constants (src/predict/vertex_counts.h); the tables tell those and the others apart. --out keeps the meshes'
+counts, and a mesh that it holds is not made again; predictions always are. Seconds of meshes are those of CPU
+time."""
 
 from __future__ import annotations
 
@@ -76,8 +77,8 @@ def append_row(out: Path, row: Made) -> None:
 def mesh(path: Path, order: int, share: float, default: float | None, folder: Path, options) -> Made:
     report = folder / "report.json"
     report.unlink(missing_ok=True)
-    command = [str(options.program), str(path), "-o", "mesh.vtu", "--report", report.name, "--progress", "none", "-q",
-               "--threads", "1", "--order", str(order)]
+    command = [str(options.program), str(path), "-o", "mesh.vtu", "--report", report.name,
+               "--progress", "none", "-q", "--threads", "1", "--order", str(order)]
     if default is not None:
         command += ["--size", repr(default * share)]
     run = run_limited(command, folder, options.limit, memory)
@@ -105,7 +106,8 @@ def line(order: str, share: str, which: str, pairs: list[Pair]) -> list[str]:
     return [order, share, which, str(len(pairs)), f"{statistics.median(ratios):.2f}",
             *(f"{np.percentile(ratios, percent):.2f}" for percent in (10, 90)),
             f"{100 * sum(pair.is_near() for pair in pairs) / len(pairs):.0f}%",
-            f"{statistics.median(times):.2f}", *(f"{np.percentile(times, percent):.2f}" for percent in (10, 90))]
+            f"{statistics.median(times):.2f}",
+            *(f"{np.percentile(times, percent):.2f}" for percent in (10, 90))]
 
 
 def tables(pairs: list[Pair]) -> str:
@@ -118,23 +120,27 @@ def tables(pairs: list[Pair]) -> str:
                     lines.append(line(str(order), f"{share:g}", "fitted" if fitted else "others", some))
     judged = [pair for pair in pairs if not pair.fitted]
     lines.append(line("all", "all", "others", judged))
-    worst = sorted((pair for pair in judged if not pair.is_near()), key=lambda pair: -abs(np.log(pair.ratio())))
+    worst = sorted((pair for pair in judged if not pair.is_near()),
+                   key=lambda pair: -abs(np.log(pair.ratio())))
     return "\n\n".join([
         table(["order", "size / default", "files", "number", "tets predicted / made, median", "10%", "90%",
                f"within a factor of {near:g}", "seconds predicted / made, median", "10%", "90%"], lines),
         table(["file", "order", "size / default", "tets made", "predicted"],
-              [[pair.made.file, str(pair.made.order), f"{pair.made.share:g}", str(pair.made.tets), f"{pair.tets:.0f}"]
+              [[pair.made.file, str(pair.made.order), f"{pair.made.share:g}", str(pair.made.tets),
+                f"{pair.tets:.0f}"]
                for pair in worst])])
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     root = Path(__file__).resolve().parents[2]
     parser.add_argument("folders", type=Path, nargs="+", metavar="FOLDER")
     parser.add_argument("--build", type=Path, default=root / "build" / "bench")
     parser.add_argument("--program", type=Path, help="collarmesh (default: of the build)")
     parser.add_argument("--orders", type=int, nargs="+", default=[1, 2])
-    parser.add_argument("--shares", type=float, nargs="+", default=[1, 2, 0.5], help="of the default size; 1 is first")
+    parser.add_argument("--shares", type=float, nargs="+", default=[1, 2, 0.5],
+                        help="of the default size; 1 is first")
     parser.add_argument("--limit", type=int, default=65, help="CPU seconds for one run of the program")
     parser.add_argument("--out", type=Path, default=Path("predicted_elements.tsv"))
     parser.add_argument("--only-predict", action="store_true", help="make no mesh that --out does not hold")
@@ -175,8 +181,8 @@ def main() -> int:
                 pairs += [Pair(row, p["tets"], p["seconds"], fitted) for row, p in zip(rows, predicted)]
     print(f"{about}. {Collarmesh(options.program, 0).version()}.\n")
     print(tables(pairs))
-    print(f"\nCPU seconds for one prediction beyond reading the part: median {seconds(statistics.median(costs))}, "
-          f"90% {seconds(float(np.percentile(costs, 90)))}, most {seconds(max(costs))}.")
+    print("\nCPU seconds for one prediction beyond reading the part: "
+          f"median {seconds(statistics.median(costs))}, 90% {seconds(float(np.percentile(costs, 90)))}, most {seconds(max(costs))}.")
     return 0
 
 
