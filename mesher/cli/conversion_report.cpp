@@ -1,14 +1,14 @@
 #include "conversion_report.h"
 
-#include "collarmesh/io/tet_mesh_io.h"
-#include "collarmesh/partition.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
 #include <string_view>
+
+#include "collarmesh/io/tet_mesh_io.h"
+#include "collarmesh/partition.h"
 
 namespace collarmesh::cli {
 

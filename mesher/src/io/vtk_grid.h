@@ -53,9 +53,10 @@ constexpr std::string_view vtk_boundary_prefix = "boundary_";
 constexpr std::array<std::string_view, 6> vtk_boundary_arrays{"tag",          "region",  "region_back",
                                                               "region_front", "feature", vtk_cell_ids};
 
-/// A grid as a .vtu file, which takes the arrays of its cells. Arrays of those names are marked as numbers.
-/// Throws WriteError.
-std::string_view vtu_type(const VtkArray& array);  ///< what such files call the type of the values
+/// What .vtu files call the type of the values: "Float64".
+std::string_view vtu_type(const VtkArray& array);
+/// Write a grid as a .vtu file. Its connectivity, offsets and types are moved out. Arrays that are called
+/// `vtk_point_ids` or `vtk_cell_ids` become the grid's GlobalIds. Throws WriteError.
 void write_vtu_grid(const std::string& path, VtkGrid& grid, const std::vector<VtkArray>& field_data);
 
 /// A part of a file that is being read.
