@@ -763,11 +763,13 @@ class Reports(ProgramTest):
             return self.predictions(self.box, "--predict", "0.2", *options)[0]["tets"]
 
         plain = tets()
-        field = self.write("field.json", '{"sources": [{"ball": {"centre": [0, 0, 0], "radius": 0.3}, "size": 0.05}]}')
+        ball = {"centre": [0, 0, 0], "radius": 0.3}
+        field = self.write("field.json", json.dumps({"sources": [{"ball": ball, "size": 0.05}]}))
         for finer in (("--patch-size", "1=0.05"), ("--curve-size", "1=0.01"), ("--region-size", "1=0.1"),
                       ("--size-field", field)):
             self.assertGreater(tets(*finer), 1.2 * plain, finer)
-        self.assertGreater(tets("--patch-size", "1=0.05", "--gradation", "0.1"), 1.5 * tets("--patch-size", "1=0.05"))
+        fine_side = ("--patch-size", "1=0.05")
+        self.assertGreater(tets(*fine_side, "--gradation", "0.1"), 1.5 * tets(*fine_side))
         self.assertEqual(self.predictions(self.box, "--size", "0.5", "--predict", "0")[0]["size"], 0.5)
         sphere = MODELS / "sphere.off"
         coarse = 3 * self.predictions(sphere, "--predict", "0")[0]["size"]
@@ -784,15 +786,33 @@ class Reports(ProgramTest):
         self.assertNotIn("estimates", self.expect(0, "info", self.box).stdout)
         self.assertNotIn("predictions", self.expect(0, "info", self.box, "--json").stdout)
 
+    def test_predictions_beyond_every_integer(self):
+        sizes = "1e-8,1e-14,1e-120"
+        told = self.predictions(self.box, "--predict", sizes)
+        for fine, size in zip(told, (1e-8, 1e-14)):
+            self.assertAlmostEqual(math.log10(fine["tets"] * size**3), 1, delta=0.5)
+        self.assertIsNone(told[2]["tets"])  # more than a double holds
+        text = self.expect(0, "info", self.box, "--predict", sizes).stdout
+        rows = re.findall(r"^ +([\de.-]+) +(\S+) +\S+$", text, re.M)
+        for (_, tets), p in zip(rows, told[:2]):
+            self.assertAlmostEqual(float(tets) / p["tets"], 1, delta=0.01)
+        self.assertEqual(rows[2], ("1e-120", "inf"))
+
     def test_what_cannot_be_predicted(self):
         self.expect(2, "info", self.box, "--predict=-1", says=["--predict", "-1", "a length"])
         self.expect(2, "info", self.box, "--predict", "1,much", says=["--predict", "much", "a length"])
         self.expect(2, "info", self.box, "--predict", "nan", says=["--predict", "nan"])
         self.expect(2, "info", self.box, "--size", "1", says=["--size", "--predict"])
-        self.expect(2, "info", self.box, "--predict", "0.1", "--size-min", "0.2", says=["size-min 0.2", "0.1"])
-        self.expect(2, "info", self.box, "--predict", "1", "--patch-size", "99=1", says=["99", "the tags are 1, 2"])
+        smaller = ("--predict", "0.1", "--size-min", "0.2")
+        self.expect(2, "info", self.box, *smaller, says=["size-min 0.2", "0.1"])
+        of_size = ("--size", "0.1", "--size-min", "0.2", "--predict", "0")
+        self.expect(2, "info", self.box, *of_size, says=["size-min 0.2", "0.1"])
+        self.expect(0, "info", self.box, "--size-min", "0.2", "--predict", "0")
+        of_unknown = ("--predict", "1", "--patch-size", "99=1")
+        self.expect(2, "info", self.box, *of_unknown, says=["99", "the tags are 1, 2"])
         self.expect(0, self.box, "-o", self.out, "--size", "0.5", writes=True)
-        self.expect(2, "info", self.out, "--predict", "1", writes=True, says=["--predict", "is a mesh already"])
+        told = self.expect(2, "info", self.out, "--predict", "1", writes=True).stderr
+        self.assertRegex(told, "--predict.*is a mesh already")
 
 
 class Reproducibility(ProgramTest):
@@ -923,14 +943,15 @@ class Convert(ProgramTest):
         self.convert(8, self.box, "-o", "missing/a.stl", says=["does not exist"])
 
 
-HAS_SCOTCH = (pathlib.Path(PROGRAM).parents[1] / "lib/collarmesh/collarmesh_scotch.so").exists()
+MODULES = pathlib.Path(PROGRAM).parents[1] / "lib" / "collarmesh"
+HAS_SCOTCH = (MODULES / "collarmesh_scotch.so").exists()
+HAS_HDF5 = (MODULES / "collarmesh_hdf5.so").exists()
 
 
 class Partitions(ProgramTest):
     """--partitions and --ghost-cells, in meshing and converting."""
 
-    formats = ["vtu", "pvtu", "vtk", "msh", "msh2"] + (
-        ["xdmf", "med"] if (pathlib.Path(PROGRAM).parents[1] / "lib/collarmesh/collarmesh_hdf5.so").exists() else [])
+    formats = ["vtu", "pvtu", "vtk", "msh", "msh2"] + (["xdmf", "med"] if HAS_HDF5 else [])
 
     def setUp(self):
         super().setUp()
@@ -943,13 +964,19 @@ class Partitions(ProgramTest):
         self.assertEqual(run.returncode, 0, run.stderr)
         return json.loads(run.stdout)["mesh"]["partitions"]
 
+    def divide(self, output, partitions, *options):
+        return self.run_program(
+            self.box, "-o", output, "--size", "0.3", "--partitions", partitions, *options)
+
     def test_a_mesh_is_divided_evenly(self):
         for model, partitions in (("bracket.off", 4), ("two_boxes.poly", 7)):
             with self.subTest(model=model):
                 self.out.unlink(missing_ok=True)
                 report = self.folder / "report.json"
-                run = self.expect(0, MODELS / model, "-o", self.out, "--partitions", partitions, "--report", report, writes=True)
-                self.assertRegex(run.stderr + run.stdout, rf"{partitions} partitions: \d+ to \d+ tets .*, \d+ faces cut")
+                options = ("-o", self.out, "--partitions", partitions, "--report", report)
+                run = self.expect(0, MODELS / model, *options, writes=True)
+                self.assertRegex(run.stderr + run.stdout,
+                                 rf"{partitions} partitions: \d+ to \d+ tets .*, \d+ faces cut")
                 found = self.partitions(self.out)
                 self.assertEqual(found["count"], partitions)
                 self.assertLessEqual(found["imbalance"], 0.03)
@@ -973,13 +1000,15 @@ class Partitions(ProgramTest):
         files = []
         for threads in (1, 2, 8):
             self.out.unlink(missing_ok=True)
-            self.expect(0, self.box, "-o", self.out, "--size", "0.1", "--partitions", "5", "--threads", threads, writes=True)
+            options = ("--size", "0.1", "--partitions", "5", "--threads", threads)
+            self.expect(0, self.box, "-o", self.out, *options, writes=True)
             files.append(self.out.read_bytes())
         self.assertEqual(len(set(files)), 1)
 
     def test_every_format_that_holds_them(self):
         for order in (1, 2):
-            self.assertEqual(self.run_program(self.box, "-o", "a.vtu", "--size", "0.2", "--partitions", "6", "--order", order).returncode, 0)
+            options = ("--size", "0.2", "--partitions", "6", "--order", order)
+            self.assertEqual(self.run_program(self.box, "-o", "a.vtu", *options).returncode, 0)
             first = self.partitions("a.vtu")
             for extension in self.formats:
                 with self.subTest(order=order, extension=extension):
@@ -989,7 +1018,7 @@ class Partitions(ProgramTest):
                     self.assertEqual(self.partitions(f"b.{extension}"), first)
                     checked = self.run_program("check", f"b.{extension}", "--against", self.box)
                     self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
-                    divided = self.run_program(self.box, "-o", f"c.{extension}", "--size", "0.2", "--partitions", "6", "--order", order)
+                    divided = self.run_program(self.box, "-o", f"c.{extension}", *options)
                     self.assertEqual(divided.returncode, 0, divided.stderr)
                     self.assertEqual(self.partitions(f"c.{extension}"), first)
         for extension in ("mesh", "inp", "unv", "ele"):
@@ -1001,7 +1030,8 @@ class Partitions(ProgramTest):
                 for arguments in ((self.box, "-o"), ("convert", "a.vtu", "-o")):
                     run = self.run_program(*arguments, f"d.{extension}", "--partitions", "2")
                     self.assertEqual(run.returncode, 2)
-                    self.assertRegex(run.stderr, rf"--partitions: \.{extension} has no place for partitions; use .*\.msh")
+                    self.assertRegex(
+                        run.stderr, rf"--partitions: \.{extension} has no place for partitions; use .*\.msh")
                     self.assertFalse((self.folder / f"d.{extension}").exists())
 
     def test_convert_divides_anew(self):
@@ -1015,7 +1045,8 @@ class Partitions(ProgramTest):
     def test_pieces_appear_together(self):
         run = self.run_program(self.box, "-o", "a.pvtu", "--size", "0.3", "--partitions", "3")
         self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertEqual(sorted(p.name for p in self.folder.glob("a*")), ["a.pvtu", "a_0.vtu", "a_1.vtu", "a_2.vtu"])
+        self.assertEqual({p.name for p in self.folder.glob("a*")},
+                         {"a.pvtu", "a_0.vtu", "a_1.vtu", "a_2.vtu"})
         self.assertEqual(self.partitions("a.pvtu")["count"], 3)
         before = {p: p.read_bytes() for p in self.folder.glob("a*")}
         (self.folder / "a_1.vtu").unlink()
@@ -1048,8 +1079,34 @@ class Partitions(ProgramTest):
             self.assertEqual(run.returncode, 2, run.stderr)
             self.assertIn(f"{option}: names a file of --output", run.stderr)
 
+    def test_pieces_that_are_not_there_yet_are_outputs(self):
+        for option in ("--cell-decomposition", "--report"):
+            run = self.divide("a.pvtu", 2, option, "./a_0.vtu")
+            self.assertEqual(run.returncode, 2, run.stderr)
+            self.assertIn(f"{option}: names a file of --output", run.stderr)
+            self.assertEqual(list(self.folder.glob("a*")), [])
+        others = ("--report", "a_x.vtu", "--report", "b_0.vtu")
+        run = self.divide("a.pvtu", 2, *others)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(self.partitions("a.pvtu")["count"], 2)
+        json.loads((self.folder / "a_x.vtu").read_text())
+
+    def test_pieces_with_names_of_other_programs(self):
+        self.assertEqual(self.divide("a.pvtu", 2).returncode, 0)
+        (self.folder / "a").mkdir()
+        for number in (0, 1):
+            (self.folder / f"a_{number}.vtu").rename(self.folder / f"a/a_{number}_0.vtu")
+        listed = (self.folder / "a.pvtu").read_text()
+        self.write("a.pvtu", re.sub(r'"a_(\d)\.vtu"', r'"a/a_\1_0.vtu"', listed))
+        before = (self.folder / "a/a_1_0.vtu").read_bytes()
+        run = self.run_program("convert", "a.pvtu", "-o", "a/a_1_0.vtu")
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertIn("a/a_1_0.vtu, a file of the input a.pvtu", run.stderr)
+        self.assertEqual((self.folder / "a/a_1_0.vtu").read_bytes(), before)
+        self.assertEqual(self.run_program("convert", "a.pvtu", "-o", "a_1.vtu").returncode, 0)
+
     def test_pieces_that_do_not_fit_together(self):
-        self.assertEqual(self.run_program(self.box, "-o", "a.pvtu", "--size", "0.3", "--partitions", "3").returncode, 0)
+        self.assertEqual(self.divide("a.pvtu", 3).returncode, 0)
         shutil.copy(self.folder / "a_0.vtu", self.folder / "a_1.vtu")
         run = self.run_program("info", "a.pvtu")
         self.assertEqual(run.returncode, 3)
@@ -1070,9 +1127,11 @@ class Partitions(ProgramTest):
         wanted = self.partitions(self.out)
         for extension in ("msh", "pvtu"):
             with self.subTest(extension=extension):
-                self.assertEqual(self.run_program("convert", self.out, "-o", f"a.{extension}", "--ghost-cells").returncode, 0)
+                run = self.run_program("convert", self.out, "-o", f"a.{extension}", "--ghost-cells")
+                self.assertEqual(run.returncode, 0, run.stderr)
                 self.assertEqual(self.partitions(f"a.{extension}"), wanted)
-                run = self.run_program(self.box, "-o", f"b.{extension}", "--size", "0.2", "--partitions", "4", "--ghost-cells")
+                options = ("--size", "0.2", "--partitions", "4", "--ghost-cells")
+                run = self.run_program(self.box, "-o", f"b.{extension}", *options)
                 self.assertEqual(run.returncode, 0, run.stderr)
                 self.assertEqual(self.partitions(f"b.{extension}"), wanted)
         self.assertIn("$GhostElements", (self.folder / "a.msh").read_text())
@@ -1080,15 +1139,18 @@ class Partitions(ProgramTest):
     def test_mistakes(self):
         for value in ("0", "-1", "1.5", "many", "1e3", "1000001", "99999999999999999999"):
             self.expect(2, self.box, "-o", self.out, "--partitions", value,
-                        says=[r"--partitions: '.*' is not a (number of partitions from 1 to 1000000|whole number)"])
+                        says=[r"--partitions: '.*' is not a "
+                              r"(number of partitions from 1 to 1000000|whole number)"])
         self.expect(2, self.box, "-o", self.out, "--size", "0.5", "--partitions", "900000",
                     says=[r"partitions is 900000, but the mesh has \d+ tets; ask for 1 to \d+"])
-        self.expect(2, self.box, "-o", self.out, "--ghost-cells", says=[r"--ghost-cells: \.vtu has no place.*\.pvtu \.msh"])
+        self.expect(2, self.box, "-o", self.out, "--ghost-cells",
+                    says=[r"--ghost-cells: \.vtu has no place.*\.pvtu \.msh"])
         self.expect(2, self.box, "-o", "a.msh", "--ghost-cells", says=["say how many with --partitions"])
         self.expect(2, self.box, "-o", self.out, "--cell-decomposition", "list", says=["say how many with --partitions"])
         self.expect(8, self.box, "-o", self.out, "--partitions", "2", "--cell-decomposition", "missing/list",
                     says=["missing does not exist"])
-        self.assertEqual(self.run_program("convert", self.box, "-o", "-", "--format", "pvtu", "--partitions", "2").returncode, 2)
+        to_standard_output = ("-o", "-", "--format", "pvtu", "--partitions", "2")
+        self.assertEqual(self.run_program("convert", self.box, *to_standard_output).returncode, 2)
         self.expect(0, self.box, "-o", self.out, "--size", "0.5", writes=True)
         run = self.run_program("convert", self.out, "-o", "a.msh", "--ghost-cells")
         self.assertEqual(run.returncode, 2)
