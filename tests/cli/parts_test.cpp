@@ -96,6 +96,21 @@ TEST_F(StagedFileTest, ErrorsNameTheTarget) {
   }
 }
 
+TEST_F(StagedFileTest, TwoOutputsOfOnePlaceAreAnError) {
+  write(folder / "a.txt", "before");
+  StagedFile first(folder / "a.txt"), second(folder / "." / "b.txt");
+  first.write([](const std::string& path) { write(path, "first"); });
+  second.write([](const std::string& path) {
+    write(path, "second");
+    write(fs::path(path).replace_filename("a.txt"), "beside it");
+  });
+  EXPECT_THROW(StagedFile::commit({&first, &second}), WriteError);
+  EXPECT_FALSE(fs::exists(folder / "b.txt"));
+  std::string text;
+  std::ifstream(folder / "a.txt") >> text;
+  EXPECT_EQ(text, "before");
+}
+
 TEST_F(StagedFileTest, MissingFolderIsAnError) {
   EXPECT_THROW(require_writable(folder / "no" / "a.txt"), WriteError);
   EXPECT_THROW(require_writable(folder), WriteError);

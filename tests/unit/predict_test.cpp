@@ -118,9 +118,9 @@ TEST(Predict, VerySmallSizes) {
   EXPECT_NEAR(std::log10(finer / fine), 3, 0.1);
 }
 
-// So is that on the curves of finely faceted shapes: one piece of a curve for each edge would be 2e8 of them.
+// So is that on the curves of finely faceted shapes, in all of their segments together.
 TEST(Predict, VerySmallSizesOnManySegments) {
-  const Plc plc = plc_of(testing::cylinder(1, 1, 10'000));
+  const Plc plc = plc_of(testing::cylinder(1, 1, 1500));
   const double fine = predicted(plc, with_size(1e-6)), finer = predicted(plc, with_size(1e-7));
   EXPECT_NEAR(std::log10(finer / fine), 3, 0.1);
   EXPECT_NEAR(fine * std::pow(1e-6, 3) / (std::numbers::pi * 6 / 0.61), 1, 0.1);  // as dense as inside
