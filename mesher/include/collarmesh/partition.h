@@ -23,8 +23,9 @@ void require_partitioner();
 /// Divide the tets among ranks: `TetMesh::tet_partition`. Of the graph of tets that share a face few edges
 /// are cut. No partition is empty, and none has more tets than 1.03 times the mean, or the mean rounded up.
 /// The same mesh is divided alike on any machine and by any number of threads. Throws OptionError unless
-/// there are 1 to as many partitions as tets, and as `require_partitioner` does. Cost: n log(partitions), 200
-/// bytes per tet for a while.
+/// there are 1 to as many partitions as tets, and as `require_partitioner` does. Cost: n log(partitions), and
+/// for each tet that Scotch gives to a partition beyond that bound, which are few, at worst n; 200 bytes per
+/// tet for a while.
 void partition(TetMesh& mesh, unsigned partitions);
 
 }  // namespace collarmesh

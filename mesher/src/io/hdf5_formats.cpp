@@ -1,31 +1,20 @@
 // The writers on HDF5 are in a module of their own, which is loaded when one is used: HDF5 and MED bring
 // some forty libraries, and loading those costs as much as a small mesh.
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include "collarmesh/error.h"
+#include "common/module_function.h"
 #include "io/tet_mesh_formats.h"
 
 namespace collarmesh::io {
 
 namespace {
 
-/// A function of the module; null, with the reason, when that cannot be loaded.
-void* find_in_module(const char* function, std::string& reason) {
-  constexpr const char* module = "collarmesh_hdf5.so";
-  // Looked for along the run path of the program; stays loaded, as HDF5 has functions that run at its end.
-  void* const loaded = dlopen(module, RTLD_NOW | RTLD_LOCAL);
-  void* const found = loaded == nullptr ? nullptr : dlsym(loaded, function);
-  if (found == nullptr)
-    reason = fmt::format(
-        "{} cannot be loaded ({}); install it with the program or name its folder in LD_LIBRARY_PATH", module,
-        dlerror());
-  return found;
-}
+constexpr const char* module = "collarmesh_hdf5.so";
 
 void write_by_module(const char* writer, const std::string& path, const TetMesh& mesh) {
   std::string reason;
-  void* const found = find_in_module(writer, reason);
+  void* const found = module_function(module, writer, reason);
   if (found == nullptr)
     throw WriteError(fmt::format("{}: cannot be written, because {}, or write .vtu", path, reason));
   reinterpret_cast<void (*)(const std::string&, const TetMesh&)>(found)(path, mesh);
@@ -33,7 +22,7 @@ void write_by_module(const char* writer, const std::string& path, const TetMesh&
 
 TetMesh read_by_module(const char* reader, const std::string& path) {
   std::string reason;
-  void* const found = find_in_module(reader, reason);
+  void* const found = module_function(module, reader, reason);
   if (found == nullptr)
     throw ReadError(fmt::format("{}: cannot be read, because {}, or use another format", path, reason));
   TetMesh mesh;

@@ -1,6 +1,5 @@
 #include "collarmesh/partition.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "collarmesh/error.h"
+#include "common/module_function.h"
 #include "partition/level_partitions.h"
 #include "partition/scotch_module.h"
 #include "partition/shared_faces.h"
@@ -22,14 +22,9 @@ constexpr double imbalance = 0.03;
 /// Scotch is in a module that is loaded when it is used, as other programs have no need of its libraries.
 ScotchPartition find_scotch() {
 #ifdef COLLARMESH_HAS_SCOTCH
-  constexpr const char* module = "collarmesh_scotch.so";
-  void* const loaded = dlopen(module, RTLD_NOW | RTLD_LOCAL);
-  void* const found = loaded == nullptr ? nullptr : dlsym(loaded, "collarmesh_scotch_partition");
-  if (found == nullptr)
-    throw OptionError(fmt::format(
-        "partitions cannot be made, because {} cannot be loaded ({}); install it with the program "
-        "or name its folder in LD_LIBRARY_PATH",
-        module, dlerror()));
+  std::string reason;
+  void* const found = module_function("collarmesh_scotch.so", "collarmesh_scotch_partition", reason);
+  if (found == nullptr) throw OptionError("partitions cannot be made, because " + reason);
   return reinterpret_cast<ScotchPartition>(found);
 #else
   throw OptionError(
