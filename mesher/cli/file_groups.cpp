@@ -99,7 +99,10 @@ bool same_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error) && !error) return fs::is_regular_file(a, error);
   // A relative path of which nothing exists would stay relative.
-  return fs::weakly_canonical(fs::absolute(a), error) == fs::weakly_canonical(fs::absolute(b), error);
+  const auto canonical = [&](const fs::path& path) {
+    return fs::weakly_canonical(fs::absolute(path, error), error);
+  };
+  return canonical(a) == canonical(b);
 }
 
 std::string overwritten(const std::vector<fs::path>& written, const std::vector<std::string>& inputs,
