@@ -297,7 +297,8 @@ def repair(
 
 def _require_place(extension: str, option: str, what: str, formats: List[str]) -> None:
     if extension not in formats:
-        raise OptionError(f"{option}: {extension or 'the output'} has no place for {what}; use {' '.join(formats)}")
+        known = " ".join(formats)
+        raise OptionError(f"{option}: {extension or 'the output'} has no place for {what}; use {known}")
 
 
 def convert(

@@ -183,7 +183,7 @@ void read_partition_entities(Values values, int point_numbers, Contents& content
     }
 }
 
-/// As above.
+/// `point_numbers`: as of partition entities.
 template <class Values>
 void read_entities(Values values, int point_numbers, Contents& contents) {
   std::array<Index, 4> counts;
