@@ -179,21 +179,31 @@ class Job:
     def move_page(self, path, name):
         """That report to a place where it stays. `name`: what it calls the shape."""
         with open(self._page, encoding="utf-8") as page:
-            text = page.read().replace(self.shape, name).replace(self.folder.name + os.sep, "")
+            text = page.read().replace(self.shape, _in_page(name)).replace(self.folder.name + os.sep, "")
         with open(path, "w", encoding="utf-8") as moved:
             moved.write(text)
 
     def run(self, progress=None):
         """Run and wait; returns the exit code. `progress(Progress)` may return False to cancel.
         Raises MesherError."""
-        with subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                              stderr=subprocess.PIPE, text=True, errors="replace") as process:  # fmt: skip
-            self.folder.program_is(process.pid)
-            for line in process.stderr:
-                step = self.heard(line)
-                if step and progress and progress(step) is False:
+        try:
+            with subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                  stderr=subprocess.PIPE, text=True, errors="replace") as process:  # fmt: skip
+                self.folder.program_is(process.pid)
+                try:
+                    for line in process.stderr:
+                        step = self.heard(line)
+                        if step and progress and progress(step) is False:
+                            raise Cancelled("The mesher was cancelled.")
+                except BaseException:
                     process.kill()
-                    raise Cancelled("The mesher was cancelled.")
-        self.folder.program_is(None)
+                    raise
+        finally:
+            self.folder.program_is(None)
         self.require_success(process.returncode)
         return process.returncode
+
+
+def _in_page(name):
+    """A name as it stands in the report's page: within a string of JSON, in a script."""
+    return json.dumps(name)[1:-1].replace("<", "\\u003c")
