@@ -6,7 +6,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore
 
-from . import compatibility, inputs, mesh_menu, mesh_object, size_objects, take_over
+from . import compatibility, inputs, mesh_menu, mesh_object, other_panel, size_objects, take_over
 from .size_view import icon_of
 from .translations import mark, translate
 from .view_provider import ICON
@@ -51,8 +51,14 @@ class Command:
     def Activated(self):
         target = self.target()
         document = target.Document
+        if other_panel.is_in_the_way():
+            return
         document.openTransaction(self.text())
-        obj = self.create(document, target)
+        try:
+            obj = self.create(document, target)
+        except BaseException:
+            document.abortTransaction()
+            raise
         if not self.panel_commits:
             document.commitTransaction()
         document.recompute()

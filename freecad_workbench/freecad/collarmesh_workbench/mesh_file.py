@@ -22,6 +22,11 @@ def filters():
     return ";;".join(f"{name} (*{extension})" for name, extension in FORMATS)
 
 
+def extension_in(text):
+    """Of one of these filters, without the dot."""
+    return text[text.index("*.") + 2 : text.rindex(")")]
+
+
 def _run(mesh_object, arguments):
     """The program's standard output; `MESH` among the arguments is the object's mesh. Raises MesherError."""
     if mesh_object.FemMesh.VolumeCount == 0:

@@ -83,10 +83,10 @@ class _Wrapped(QtGui.QStyledItemDelegate):
     def sizeHint(self, option, index):
         tree = self.parent()
         levels = 2 if index.parent().isValid() else 1
-        around = 2 * tree.frameWidth() + tree.verticalScrollBar().sizeHint().width() + 10
-        width = tree.width() - levels * tree.indentation() - around
-        box = option.fontMetrics.boundingRect(QtCore.QRect(0, 0, width, 10000), QtCore.Qt.TextWordWrap, index.data())
-        return QtCore.QSize(box.width(), max(box.height(), option.fontMetrics.height()) + 3)
+        around = 2 * tree.frameWidth() + tree.verticalScrollBar().sizeHint().width()  # it may come
+        wrapped = QtGui.QStyleOptionViewItem(option)
+        wrapped.rect = QtCore.QRect(0, 0, tree.width() - levels * tree.indentation() - around, 0)
+        return super().sizeHint(wrapped, index) + QtCore.QSize(0, 3)
 
 
 def _kinds():

@@ -4,6 +4,7 @@ import dataclasses
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 
@@ -151,7 +152,8 @@ class Job:
 
     def _for_people(self, text):
         """Without the folder, which is gone when it is read."""
-        return text.replace(self.shape, "the shape").replace(self.folder.name + os.sep, "")
+        text = text.replace(self.shape, "the shape").replace(self.folder.name + os.sep, "")
+        return re.sub(r"(^|^collarmesh: |\. )the shape\b", r"\1The shape", text)
 
     def warnings(self):
         """What was said of the shape that the user should know, with places, one line each."""
