@@ -313,6 +313,16 @@ def the_worst_elements_show():
     close(document)
 
 
+def rows_show_all_of_their_texts(tree):
+    """Each is as high as its text, as wide as Qt draws it."""
+    margin = tree.style().pixelMetric(QtGui.QStyle.PM_FocusFrameHMargin, None, tree) + 1
+    for item in (item for items in rows(tree).values() for item in items):
+        option = QtCore.QRect(0, 0, tree.visualItemRect(item).width() - 2 * margin, 10000)
+        wanted = tree.fontMetrics().boundingRect(option, QtCore.Qt.TextWordWrap, item.text(0)).height()
+        shown = tree.visualItemRect(item).height()
+        require(wanted <= shown < wanted + 3 * tree.fontMetrics().lineSpacing(), f"{shown} of {wanted}: {item.text(0)}")
+
+
 def problems_select_their_places():
     """A click on a message selects the edges and faces that it names, and looks at them."""
     document, part, obj = new_part(Part.Shell(Part.makeBox(10, 10, 10).Faces[:1]), "Sheet")
@@ -320,6 +330,8 @@ def problems_select_their_places():
     told = run_mesher("2 mm")
     require("No mesh is made" in told and "Edge" in told, told)
     require("“Tolerance of repair”" in told and "--" not in told, f"the panel's names: {told}")
+    require("of the shape. The shape holds" in told, f"sentences begin with capitals: {told}")
+    rows_show_all_of_their_texts(child("places"))
     problem = next(item for items in rows(child("places")).values() for item in items if "Edge" in item.text(0))
     before = FreeCADGui.ActiveDocument.ActiveView.getCamera()
     click_item(problem)
@@ -481,6 +493,65 @@ def another_panel_keeps_its_cancel():
         close(document)
 
 
+def dismiss_message():
+    """What it says."""
+    boxes = [box for box in FreeCADGui.getMainWindow().findChildren(QtGui.QMessageBox) if box.isVisible()]
+    require(len(boxes) == 1, f"{len(boxes)} messages")
+    boxes[0].close()
+    return boxes[0].text()
+
+
+def another_panel_stays():
+    """FreeCAD shows one panel at a time: while one is open that it does not close itself, ours tells so."""
+
+    class Other:
+        def __init__(self):
+            self.form = QtGui.QWidget()
+
+    document, part, obj = new_part(plate())
+    FreeCADGui.Control.showDialog(Other())
+    names = [each.Name for each in document.Objects]
+    require(not FreeCADGui.getDocument(document.Name).setEdit(obj.Name), "the panel does not open")
+    require("Another panel" in dismiss_message(), "and says why")
+    FreeCADGui.Selection.clearSelection()
+    FreeCADGui.Selection.addSelection(part)
+    click_command("Collarmesh_MeshFromShape")
+    require([each.Name for each in document.Objects] == names, "nothing is made")
+    require(find("panel") is None and not document.HasPendingTransaction, "nothing stays")
+    require("Another panel" in dismiss_message(), "it says why, too")
+    FreeCADGui.Control.closeDialog()
+    pause(300)
+    open_panel(obj)
+    close(document)
+
+
+def a_part_deleted_while_marked():
+    document, part, obj = new_part(plate())
+    open_panel(obj)
+    run_mesher("4 mm")
+    child("places").pick_first(places.WORST)
+    require(marks_of(obj) is not None, "an element is marked")
+    document.removeObject(part.Name)
+    child("run").click()
+    require("no object is chosen" in said() and marks_of(obj) is None, said())
+    require(obj.ViewObject.Transparency == 0, "the mesh looks as before")
+    close(document)
+
+
+def numbers_have_the_unit_that_is_shown():
+    document, _, obj = new_part(plate())
+    FreeCAD.Units.setSchema(3)  # inches
+    obj.CharacteristicLengthMax = 5.08
+    open_panel(obj)
+    field = child("CharacteristicLengthMax")
+    require(field.text() == "0.20 in", field.text())
+    for text, millimetres in (("0.1", 2.54), ("4 mm", 4), ("0.25 in", 6.35)):
+        run_mesher(text)
+        require(abs(obj.CharacteristicLengthMax.Value - millimetres) < 1e-9, f"{text}: {obj.CharacteristicLengthMax}")
+    FreeCAD.Units.setSchema(0)
+    close(document)
+
+
 def what_fails_after_the_mesh_takes_nothing_back():
     """The panel tells of the mesh that is there, even without its page."""
     document, _, obj = new_part(plate())
@@ -568,6 +639,9 @@ def test():
         a_part_changed_while_meshing_is_told,
         a_link_changed_while_meshing_is_told,
         another_panel_keeps_its_cancel,
+        another_panel_stays,
+        a_part_deleted_while_marked,
+        numbers_have_the_unit_that_is_shown,
         what_fails_after_the_mesh_takes_nothing_back,
         documents_and_objects_go_while_meshing,
         the_report_opens,

@@ -70,9 +70,14 @@ def click_item(item):
 
 
 def click_command(command):
-    """The command's button in the toolbar."""
-    next(button for bar in window.findChildren(QtGui.QToolBar) for button in bar.findChildren(QtGui.QToolButton)
-         if button.defaultAction() is not None and button.defaultAction().objectName() == command).click()  # fmt: skip
+    """The command's button in the toolbar, which comes a moment after its workbench."""
+    wait_until(lambda: buttons_of(command), f"the button of {command}")
+    buttons_of(command)[0].click()
+
+
+def buttons_of(command):
+    return [button for bar in window.findChildren(QtGui.QToolBar) for button in bar.findChildren(QtGui.QToolButton)
+            if button.defaultAction() is not None and button.defaultAction().objectName() == command]  # fmt: skip
 
 
 def rows(tree):

@@ -114,7 +114,7 @@ class Manipulator:
     """What FreeCAD 1.0 and later ask when a workbench builds its bars."""
 
     def __init__(self, places):
-        """`places`: for each command the one of FreeCAD that it is put after; several after one in this order."""
+        """`places`: for each command the one of FreeCAD that it is put beside; several beside one in this order."""
         self.places = places
 
     def modifyToolBars(self):

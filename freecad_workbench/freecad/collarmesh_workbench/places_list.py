@@ -6,6 +6,7 @@ from . import places
 from .translations import translate
 
 MOST = 200  # rows of a kind
+MOST_PIXELS = 10000  # height of a row
 
 
 class PlacesList(QtGui.QTreeWidget):
@@ -85,7 +86,7 @@ class _Wrapped(QtGui.QStyledItemDelegate):
         levels = 2 if index.parent().isValid() else 1
         around = 2 * tree.frameWidth() + tree.verticalScrollBar().sizeHint().width()  # it may come
         wrapped = QtGui.QStyleOptionViewItem(option)
-        wrapped.rect = QtCore.QRect(0, 0, tree.width() - levels * tree.indentation() - around, 0)
+        wrapped.rect = QtCore.QRect(0, 0, tree.width() - levels * tree.indentation() - around, MOST_PIXELS)
         return super().sizeHint(wrapped, index) + QtCore.QSize(0, 3)
 
 
