@@ -300,6 +300,11 @@ def the_worst_elements_show():
     corners = numpy.array([[obj.FemMesh.getNodeById(n) for n in obj.FemMesh.getElementNodes(number)]], dtype=float)
     (angle,) = worst_elements.smallest_dihedral_angles(corners)
     require(abs(angle - report["mesh"]["min_dihedral"]) < 1e-6, f"element {number} has {angle} degrees")
+    picked = []
+    child("places").picked.connect(picked.append)
+    for row in (worst[1], worst[1], worst[2]):
+        click_item(row)
+    require([len(places_of) for places_of in picked] == [1, 1, 1], f"each click shows its place once: {picked}")
     click_item(worst[0].parent())
     faces = marks_of(obj).getChild(1).getChild(2)
     require(faces.coordIndex.getNum() == len(worst) * 16 and len(worst) >= 10, "all are marked")

@@ -79,7 +79,8 @@ class MeshingProcess(QtCore.QObject):
         self._process.start(self.job.command[0], self.job.command[1:])
         if not self._process.waitForStarted():
             self.job.folder.cleanup()
-            raise MesherError(f"{self.job.command[0]} cannot be started: {self._process.errorString()}")
+            text = translate("collarmesh", "{program} cannot be started: {error}")
+            raise MesherError(text.format(program=self.job.command[0], error=self._process.errorString()))
         self.job.folder.program_is(self._process.processId())
 
     def cancel(self):

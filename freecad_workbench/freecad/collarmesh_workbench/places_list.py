@@ -25,8 +25,9 @@ class PlacesList(QtGui.QTreeWidget):
         self.setVerticalScrollMode(QtGui.QAbstractItemView.ScrollPerPixel)
         self.setItemDelegate(_Wrapped(self))
         self.setToolTip(translate("collarmesh", "Click to see the place"))
-        self.itemClicked.connect(self._pick)
+        self.itemClicked.connect(self._clicked)
         self.currentItemChanged.connect(self._moved)
+        self._moved_to = None  # by the click that is under way
         self._filling = False
 
     def fill(self, found):
@@ -70,11 +71,21 @@ class PlacesList(QtGui.QTreeWidget):
         super().resizeEvent(event)
         self.scheduleDelayedItemsLayout()
 
+    def mousePressEvent(self, event):
+        self._moved_to = None
+        super().mousePressEvent(event)
+
     def _moved(self, item, _previous):
         if item is not None and not self._filling:
+            self._moved_to = item
             self._pick(item)
 
-    def _pick(self, item, _column=0):
+    def _clicked(self, item, _column):
+        """On the row that is the current one already: the view may look elsewhere by now."""
+        if item is not self._moved_to:
+            self._pick(item)
+
+    def _pick(self, item):
         self.picked.emit(item.data(0, QtCore.Qt.UserRole))
 
 

@@ -1,4 +1,4 @@
-"""The collarmesh program as a process. This module knows nothing of FreeCAD."""
+"""The collarmesh program as a process. This module knows nothing of FreeCAD's documents."""
 
 import dataclasses
 import json
@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 
+from .translations import translate
 from .work_folder import WorkFolder
 
 GUARANTEE_MISSED = 7  # the exit code with which a mesh is written all the same
@@ -77,7 +78,8 @@ def find_program(preferred=""):
         if candidate:
             if shutil.which(candidate):
                 return shutil.which(candidate)
-            raise MesherError(f"The mesher {candidate} is no program; correct its path in the preferences.")
+            text = translate("collarmesh", "The mesher {path} is no program; correct its path in the preferences.")
+            raise MesherError(text.format(path=candidate))
     addon = pathlib.Path(__file__).resolve().parents[2]
     beside = [addon.parent / "build" / "release" / "bin" / "collarmesh"]
     if len(addon.parents) > 3:  # installed: WHERE/share/freecad/Mod/collarmesh and WHERE/bin
@@ -86,8 +88,11 @@ def find_program(preferred=""):
         if shutil.which(candidate):
             return shutil.which(candidate)
     raise MesherError(
-        "The program collarmesh is not found: install it so that it is on the PATH, or name its path in the "
-        "preferences."
+        translate(
+            "collarmesh",
+            "The program collarmesh is not found: install it so that it is on the PATH, or name its path in the "
+            "preferences.",
+        )
     )
 
 
@@ -164,7 +169,8 @@ class Job:
         if exit_code in (0, GUARANTEE_MISSED) and os.path.exists(self.mesh):
             return
         said = "\n".join(self.messages).removeprefix("collarmesh: ")
-        raise MesherError(self.explain(said) or f"The mesher ended with exit code {exit_code} and without a word.")
+        nothing = translate("collarmesh", "The mesher ended with exit code {code} and without a word.")
+        raise MesherError(self.explain(said) or nothing.format(code=exit_code))
 
     def report(self):
         """What the program measured (README.md, --report)."""
@@ -196,7 +202,7 @@ class Job:
                     for line in process.stderr:
                         step = self.heard(line)
                         if step and progress and progress(step) is False:
-                            raise Cancelled("The mesher was cancelled.")
+                            raise Cancelled(translate("collarmesh", "The mesher was cancelled."))
                 except BaseException:
                     process.kill()
                     raise
