@@ -121,18 +121,19 @@ def close_panel():
 
 
 def screenshot(name, fit=True, size=(1200, 900)):
-    """A picture of the window, made small for it; `fit`: with all of the document in view."""
+    """A picture of the window, made small for it: `size` in pixels; `fit`: with all of the document in view."""
     if not PICTURES:
         return
     if find("presets") is not None and child("run").isEnabled():
         wait_until(lambda: "…" not in "".join(column_of(child("presets"), 2)), "the numbers of elements")
-    window.setGeometry(0, 0, *size)
+    screen = QtGui.QApplication.primaryScreen()
+    window.setGeometry(0, 0, *(int(length / screen.devicePixelRatio()) for length in size))
     for _ in range(2):
         pause(400)
         if fit:
             FreeCADGui.SendMsgToActiveView("ViewFit")
     pause(400)
-    QtGui.QApplication.primaryScreen().grabWindow(0).copy(0, 0, *size).save(os.path.join(PICTURES, name))
+    screen.grabWindow(0).copy(0, 0, *size).save(os.path.join(PICTURES, name))
     window.setGeometry(*WIDE)
 
 
