@@ -115,7 +115,8 @@ def test():
     stresses.ViewObject.Visibility = True
     stresses.ViewObject.DisplayMode = "Surface"
     stresses.ViewObject.Field = "von Mises Stress"
-    FreeCAD.ParamGet("User parameter:BaseApp/Preferences/View").SetBool("ShowNaviCube", False)  # over the scale's numbers
+    settings = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/View")
+    settings.SetBool("ShowNaviCube", False)  # it would be over the scale's numbers
     view.setCameraType("Orthographic")
     FreeCADGui.SendMsgToActiveView("ViewFit")
     move_aside(view)

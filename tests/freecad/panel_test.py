@@ -21,8 +21,8 @@ from freecad.collarmesh_workbench import (angle_chart, guarantees, mesh_object, 
                                           size_objects, view_marks, work_folder, worst_elements)  # fmt: skip
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from window import (child, click_at, click_command, click_item, close_panel, find, open_panel, pause, plate, require,  # noqa: E402
-                    rows, run_mesher, run_test, said, screenshot, wait_until)  # fmt: skip
+from window import (child, click_at, click_command, click_item, close_panel, find, open_panel, pause,  # noqa: E402
+                    plate, require, rows, run_mesher, run_test, said, screenshot, wait_until)  # fmt: skip
 
 PROGRAM = os.environ["COLLARMESH_PROGRAM"]
 LONG = "0.15 mm"  # a size for which the plate takes much longer than any test
@@ -543,6 +543,23 @@ def a_part_deleted_while_marked():
     close(document)
 
 
+def files_have_no_marks():
+    document, part, obj = new_part(plate())
+    open_panel(obj)
+    run_mesher("4 mm")
+    name, label = obj.Name, part.Name
+    child("places").pick_first(places.WORST)
+    require(obj.ViewObject.Transparency > 0 and not part.ViewObject.Visibility, "an element is marked")
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "plate.FCStd")
+        document.saveAs(path)
+        close(document)
+        document = FreeCAD.openDocument(path)
+    part, obj = document.getObject(label), document.getObject(name)
+    require(obj.ViewObject.Transparency == 0 and part.ViewObject.Visibility, "what is opened looks as it did before")
+    close(document)
+
+
 def numbers_have_the_unit_that_is_shown():
     document, _, obj = new_part(plate())
     FreeCAD.Units.setSchema(3)  # inches
@@ -646,6 +663,7 @@ def test():
         another_panel_keeps_its_cancel,
         another_panel_stays,
         a_part_deleted_while_marked,
+        files_have_no_marks,
         numbers_have_the_unit_that_is_shown,
         what_fails_after_the_mesh_takes_nothing_back,
         documents_and_objects_go_while_meshing,

@@ -30,9 +30,8 @@ class Command:
     """A button; `create` makes an object for what is selected, which is then edited in its panel."""
 
     icon, menu_text, tool_tip = "", "", ""
-    panel_commits = (
-        False  # creation and first edit are one step of undo, which "Cancel" of the panel takes back
-    )
+    # Creation and first edit are one step of undo, which "Cancel" of the panel takes back.
+    panel_commits = False
 
     def GetResources(self):
         return {"Pixmap": self.icon, "MenuText": self.text(), "ToolTip": self.tip()}
@@ -188,7 +187,9 @@ class TakeOver(Command):
 
     icon = os.path.join(os.path.dirname(ICON), "take_over.svg")
     menu_text = mark("collarmesh", "Take over by collarmesh")
-    tool_tip = mark("collarmesh", "Make the selected mesh of Gmsh or Netgen one of collarmesh, with its sizes and groups")
+    tool_tip = mark(
+        "collarmesh", "Make the selected mesh of Gmsh or Netgen one of collarmesh, with its sizes and groups"
+    )
 
     def target(self):
         return selected(take_over.can_be_taken_over)

@@ -98,7 +98,8 @@ class Predictions(QtCore.QObject):
         process.setStandardInputFile(QtCore.QProcess.nullDevice())
         process.setStandardErrorFile(QtCore.QProcess.nullDevice())
         process.finished.connect(lambda exit_code, *_: self._finished(process, exit_code))
-        process.start(program, ["info", self._shape, *self._arguments, *sources, "--predict", repr(missing[0]), "--json"])
+        arguments = [*self._arguments, *sources, "--predict", repr(missing[0]), "--json"]
+        process.start(program, ["info", self._shape, *arguments])
         if process.waitForStarted():
             self._folder.program_is(process.processId())
         else:

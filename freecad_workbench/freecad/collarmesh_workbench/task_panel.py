@@ -214,6 +214,11 @@ class MeshTaskPanel:
         self.predictions.forget()
         self._ask()
 
+    def slotStartSaveDocument(self, document, _path):
+        """The file has the objects as they look without marks."""
+        if document is self.object.Document:
+            self.marks.clear()
+
     def slotDeletedObject(self, deleted):
         if deleted is self.object:
             self.dismiss()
