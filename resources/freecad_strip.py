@@ -11,6 +11,7 @@ import FreeCADGui
 import ObjectsFem
 import Part
 from femtools import ccxtools
+from pivy import coin
 
 from freecad.collarmesh_workbench.commands import MESH_COMMAND
 
@@ -55,6 +56,15 @@ def solve(analysis, solver):
         tools.load_results()
     result = next(each for each in analysis.Group if each.isDerivedFrom("Fem::FemResultObject"))
     return ObjectsFem.makePostVtkResult(analysis.Document, result)
+
+
+def move_aside(view):
+    """What is seen, to the left and smaller: the scale of the colours is at the right."""
+    camera = view.getCameraNode()
+    height = 1.25 * camera.height.getValue()
+    right = camera.orientation.getValue().multVec(coin.SbVec3f(1, 0, 0))
+    camera.height.setValue(height)
+    camera.position.setValue(camera.position.getValue() + right * (0.1 * height))
 
 
 def test():
@@ -105,7 +115,12 @@ def test():
     stresses.ViewObject.Visibility = True
     stresses.ViewObject.DisplayMode = "Surface"
     stresses.ViewObject.Field = "von Mises Stress"
-    screenshot("step6.png", size=SIZE)
+    settings = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/View")
+    settings.SetBool("ShowNaviCube", False)  # it would be over the scale's numbers
+    view.setCameraType("Orthographic")
+    FreeCADGui.SendMsgToActiveView("ViewFit")
+    move_aside(view)
+    screenshot("step6.png", fit=False, size=SIZE)
 
 
 if os.environ.get("COLLARMESH_TEST_ARGUMENT"):

@@ -195,6 +195,10 @@
       <translation>Eine andere Zahl ergibt ein anderes Netz gleicher Güte</translation>
     </message>
     <message>
+      <source>Another panel is open; close it first.</source>
+      <translation>Ein anderes Aufgabenfenster ist offen; schließen Sie es zuerst.</translation>
+    </message>
+    <message>
       <source>As few elements as the sizes ask for</source>
       <translation>So wenige Elemente, wie die Größen verlangen</translation>
     </message>
@@ -623,8 +627,20 @@
       <translation>Das Netz ist fehlerfrei</translation>
     </message>
     <message>
+      <source>The mesher ended with exit code {code} and without a word.</source>
+      <translation>Der Vernetzer endete mit dem Exitcode {code} und ohne ein Wort.</translation>
+    </message>
+    <message>
+      <source>The mesher was cancelled.</source>
+      <translation>Der Vernetzer wurde abgebrochen.</translation>
+    </message>
+    <message>
       <source>The mesher wrote a mesh without elements; please report it with the shape.</source>
       <translation>Der Vernetzer hat ein Netz ohne Elemente geschrieben; bitte melden Sie das mit der Form.</translation>
+    </message>
+    <message>
+      <source>The mesher {path} is no program; correct its path in the preferences.</source>
+      <translation>Der Vernetzer {path} ist kein Programm; berichtigen Sie seinen Pfad in den Einstellungen.</translation>
     </message>
     <message>
       <source>The part was changed while it was meshed: this is the mesh of the part as it was before. Mesh it again.</source>
@@ -637,6 +653,10 @@
     <message>
       <source>The program collarmesh</source>
       <translation>Das Programm collarmesh</translation>
+    </message>
+    <message>
+      <source>The program collarmesh is not found: install it so that it is on the PATH, or name its path in the preferences.</source>
+      <translation>Das Programm collarmesh ist nicht zu finden: Installieren Sie es so, dass es im PATH ist, oder nennen Sie seinen Pfad in den Einstellungen.</translation>
     </message>
     <message>
       <source>The worst tetrahedron: {angle}°. Click to see it.</source>
@@ -909,6 +929,14 @@
     <message>
       <source>{object}: the mesh is made</source>
       <translation>{object}: das Netz ist fertig</translation>
+    </message>
+    <message>
+      <source>{object}: the mesh is made and shows when the other panel is closed</source>
+      <translation>{object}: Das Netz ist fertig und erscheint, wenn das andere Aufgabenfenster geschlossen ist</translation>
+    </message>
+    <message>
+      <source>{program} cannot be started: {error}</source>
+      <translation>{program} lässt sich nicht starten: {error}</translation>
     </message>
     <message>
       <source>{smallest}° to {largest}° in element {number}</source>

@@ -123,6 +123,17 @@ def statistics_and_export(obj):
     w.find("statistics").close()
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "plate.inp")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("of before")
+        asked = []
+
+        def overwrite():
+            box = QtGui.QApplication.activeModalWidget()
+            if not isinstance(box, QtGui.QMessageBox):
+                QtCore.QTimer.singleShot(100, overwrite)
+                return
+            asked.append(box.text())
+            box.button(QtGui.QMessageBox.Yes).click()
 
         def enter_name():
             dialog = next(
@@ -136,13 +147,19 @@ def statistics_and_export(obj):
             if dialog is None:
                 QtCore.QTimer.singleShot(100, enter_name)
                 return
-            dialog.findChild(QtGui.QLineEdit).setText(path)
+            filters = dialog.findChild(QtGui.QComboBox, "fileTypeCombo")
+            while "(*.inp)" not in filters.currentText():
+                down = QtGui.QKeyEvent(QtCore.QEvent.KeyPress, QtCore.Qt.Key_Down, QtCore.Qt.NoModifier)
+                QtGui.QApplication.sendEvent(filters, down)
+            dialog.findChild(QtGui.QLineEdit).setText(path.removesuffix(".inp"))
+            QtCore.QTimer.singleShot(100, overwrite)
             dialog.accept()
 
         QtCore.QTimer.singleShot(300, enter_name)
         menu_of(obj.Label, "export")
-        w.wait_until(lambda: os.path.exists(path), "the file")
+        w.wait_until(lambda: os.path.getsize(path) > 1000, "the file")
         w.pause(300)
+        w.require(len(asked) == 1 and "plate.inp" in asked[0], f"before it overwrites it asks: {asked}")
         with open(path, encoding="utf-8") as file:
             w.require("NAME=FACE1," in file.read(), "faces have their names")
 
@@ -186,13 +203,9 @@ def undo_of_a_meshing_in_the_panel(document, obj):
     w.close_panel()
     made = obj.FemMesh.VolumeCount
     w.require(made != count, "another mesh")
-    for _ in range(3):  # the size and what the run changed may be steps of their own
-        if obj.FemMesh.VolumeCount != count:
-            document.undo()
+    document.undo()
     w.require(obj.FemMesh.VolumeCount == count, f"{obj.FemMesh.VolumeCount} in place of {count} after undo")
-    for _ in range(3):
-        if obj.FemMesh.VolumeCount != made:
-            document.redo()
+    document.redo()
     w.require(obj.FemMesh.VolumeCount == made, "redo")
 
 

@@ -4,12 +4,13 @@ import os
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 import FreeCAD
 import ObjectsFem
 import Part
 from freecad import collarmesh_workbench
-from freecad.collarmesh_workbench import mesh_object, program
+from freecad.collarmesh_workbench import mesh_object, program, work_folder
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import run_in_freecad  # noqa: E402
@@ -110,9 +111,17 @@ class Headless(unittest.TestCase):
         self.assertEqual([step.fraction for step in seen], sorted(step.fraction for step in seen))
         self.assertIn("refine", {step.phase for step in seen})
         count = obj.FemMesh.VolumeCount
-        with self.assertRaises(program.Cancelled):
-            mesh_object.remesh(obj, lambda step: step.phase != "refine")
-        self.assertEqual(obj.FemMesh.VolumeCount, count)
+        for progress, error in (
+            (lambda step: step.phase != "refine", program.Cancelled),
+            (lambda _step: 1 / 0, ZeroDivisionError),
+        ):
+            with mock.patch.object(work_folder.WorkFolder, "program_is", autospec=True) as program_is:
+                with self.assertRaises(error):
+                    mesh_object.remesh(obj, progress)
+            process_id, after = (each.args[1] for each in program_is.call_args_list)
+            self.assertIsNone(after, "the folder forgets the process, whose number may be another one's later")
+            self.assertFalse(os.path.exists(f"/proc/{process_id}"))
+            self.assertEqual(obj.FemMesh.VolumeCount, count)
 
     def test_failures_keep_the_mesh_and_say_why(self):
         part = self.add(Part.makeBox(10, 10, 10))

@@ -5,9 +5,11 @@ The argument may be a folder for screenshots."""
 import json
 import os
 import pathlib
+import re
 import stat
 import sys
 import tempfile
+from unittest import mock
 
 import FreeCAD
 import FreeCADGui
@@ -15,12 +17,12 @@ import numpy
 import Part
 from PySide import QtCore, QtGui
 
-from freecad.collarmesh_workbench import (angle_chart, guarantees, mesh_object, meshing_process, places,
-                                          view_marks, worst_elements)  # fmt: skip
+from freecad.collarmesh_workbench import (angle_chart, guarantees, mesh_object, meshing_process, places, program,
+                                          size_objects, view_marks, work_folder, worst_elements)  # fmt: skip
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from window import (child, click_at, click_item, close_panel, find, open_panel, pause, plate, require,  # noqa: E402
-                    rows, run_mesher, run_test, said, screenshot, wait_until)  # fmt: skip
+from window import (child, click_at, click_command, click_item, close_panel, find, open_panel, pause,  # noqa: E402
+                    plate, require, rows, run_mesher, run_test, said, screenshot, wait_until)  # fmt: skip
 
 PROGRAM = os.environ["COLLARMESH_PROGRAM"]
 LONG = "0.15 mm"  # a size for which the plate takes much longer than any test
@@ -48,6 +50,10 @@ def table():
     """The rows of the presets, as texts."""
     presets = child("presets")
     return [[presets.topLevelItem(i).text(column) for column in range(4)] for i in range(presets.topLevelItemCount())]
+
+
+def panel_of(obj):
+    return obj.ViewObject.Proxy.panel
 
 
 def number_in(text):
@@ -106,6 +112,84 @@ def elements_are_told_before_meshing():
     part.Shape = Part.makeBox(40, 30, 10)
     wait_until(lambda: number_in(table()[2][2]) > 1.3 * counts[2], "the numbers of another shape")
     close(document)
+
+
+def what_is_not_predicted_is_not_told():
+    """The program knows the numbers of coarsened meshes alone."""
+    document, _, obj = new_part(plate())
+    open_panel(obj)
+    wait_until(lambda: number_in(table()[4][2]), "the numbers of elements")
+    child("Coarsen").setChecked(False)
+    require([row[2:] for row in table()] == 6 * [["", ""]], f"{table()}")
+    pause(1500)
+    require([row[2:] for row in table()] == 6 * [["", ""]], f"and nothing comes later: {table()}")
+    child("Coarsen").setChecked(True)
+    require(number_in(table()[4][2]), f"known already: {table()}")
+    close(document)
+
+
+def sizes_by_place_count():
+    """What was predicted without a sphere is not told with it."""
+    document, _, obj = new_part(plate())
+    open_panel(obj)
+    wait_until(lambda: number_in(table()[2][2]), "the number of elements")
+    count = number_in(table()[2][2])
+    sphere = size_objects.make(obj, "Sphere", 0.5)
+    sphere.Radius = 8
+    document.recompute()
+    child("MeshSizeFromCurvature").setValue(1)  # any change asks again
+    child("MeshSizeFromCurvature").setValue(0)
+    wait_until(lambda: number_in(table()[2][2]) > 2 * count, "more elements in the sphere")
+    close(document)
+
+
+def predictions_wait_for_the_mesher():
+    """While it runs nothing else is asked of the processor, and the time left is that of the size it runs with."""
+    document, _, obj = new_part(plate())
+    open_panel(obj)
+    wait_until(lambda: number_in(table()[4][2]), "the numbers of elements")
+    child("CharacteristicLengthMax").setText("0.3 mm")
+    wait_until(lambda: number_in(table()[5][2]), "the number for the custom size")
+    child("run").click()
+    run = meshing_process.run_of(obj)
+    require(run.predicted_seconds == panel_of(obj).known[0.3][1] > 0, f"{run.predicted_seconds}")
+    expected = run.predicted_seconds
+    child("CharacteristicLengthMax").setText("7 mm")
+    pause(1500)
+    require(panel_of(obj).predictions._process is None and not number_in(table()[5][2]), f"{table()}")
+    require(meshing_process.run_of(obj) in (run, None) and run.predicted_seconds == expected, "as it began")
+    child("cancel").click()
+    wait_until(lambda: child("run").isEnabled(), "the end")
+    wait_until(lambda: number_in(table()[5][2]), "the number for the size that was typed")
+    close(document)
+
+
+def the_folder_forgets_processes_that_ended():
+    """Their numbers may be those of other programs later, which the folder's end must not kill."""
+    told = {}
+    program_is = work_folder.WorkFolder.program_is
+
+    def remember(folder, process_id):
+        told.setdefault(folder.name, []).append(process_id)
+        program_is(folder, process_id)
+
+    document, _, obj = new_part(plate())
+    with tempfile.TemporaryDirectory() as folder, mock.patch.object(work_folder.WorkFolder, "program_is", remember):
+        os.environ["COLLARMESH_PROGRAM"] = stand_in(folder, "import time; time.sleep(30)")
+        open_panel(obj)
+        wait_until(lambda: told, "a prediction")
+        child("CharacteristicLengthMax").setText("7 mm")  # ends it
+        ((process_id, after),) = told.values()
+        require(process_id and after is None and not is_running(process_id), f"{told}")
+        told.clear()
+        child("run").click()
+        child("cancel").click()
+        wait_until(lambda: child("run").isEnabled(), "the end")
+        child("run").click()
+        document.removeObject(obj.Name)
+        require(len(told) == 2 and all(each[-1] is None for each in told.values()), f"{told}")
+        os.environ["COLLARMESH_PROGRAM"] = PROGRAM
+    FreeCAD.closeDocument(document.Name)
 
 
 def an_older_program_tells_no_numbers():
@@ -216,6 +300,11 @@ def the_worst_elements_show():
     corners = numpy.array([[obj.FemMesh.getNodeById(n) for n in obj.FemMesh.getElementNodes(number)]], dtype=float)
     (angle,) = worst_elements.smallest_dihedral_angles(corners)
     require(abs(angle - report["mesh"]["min_dihedral"]) < 1e-6, f"element {number} has {angle} degrees")
+    picked = []
+    child("places").picked.connect(picked.append)
+    for row in (worst[1], worst[1], worst[2]):
+        click_item(row)
+    require([len(places_of) for places_of in picked] == [1, 1, 1], f"each click shows its place once: {picked}")
     click_item(worst[0].parent())
     faces = marks_of(obj).getChild(1).getChild(2)
     require(faces.coordIndex.getNum() == len(worst) * 16 and len(worst) >= 10, "all are marked")
@@ -229,6 +318,16 @@ def the_worst_elements_show():
     close(document)
 
 
+def rows_show_all_of_their_texts(tree):
+    """Each is as high as its text, as wide as Qt draws it."""
+    margin = tree.style().pixelMetric(QtGui.QStyle.PM_FocusFrameHMargin, None, tree) + 1
+    for item in (item for items in rows(tree).values() for item in items):
+        option = QtCore.QRect(0, 0, tree.visualItemRect(item).width() - 2 * margin, 10000)
+        wanted = tree.fontMetrics().boundingRect(option, QtCore.Qt.TextWordWrap, item.text(0)).height()
+        shown = tree.visualItemRect(item).height()
+        require(wanted <= shown < wanted + 3 * tree.fontMetrics().lineSpacing(), f"{shown} of {wanted}: {item.text(0)}")
+
+
 def problems_select_their_places():
     """A click on a message selects the edges and faces that it names, and looks at them."""
     document, part, obj = new_part(Part.Shell(Part.makeBox(10, 10, 10).Faces[:1]), "Sheet")
@@ -236,6 +335,8 @@ def problems_select_their_places():
     told = run_mesher("2 mm")
     require("No mesh is made" in told and "Edge" in told, told)
     require("“Tolerance of repair”" in told and "--" not in told, f"the panel's names: {told}")
+    require("of the shape. The shape holds" in told, f"sentences begin with capitals: {told}")
+    rows_show_all_of_their_texts(child("places"))
     problem = next(item for items in rows(child("places")).values() for item in items if "Edge" in item.text(0))
     before = FreeCADGui.ActiveDocument.ActiveView.getCamera()
     click_item(problem)
@@ -348,6 +449,142 @@ def a_part_changed_while_meshing_is_told():
     close(document)
 
 
+def a_link_changed_while_meshing_is_told():
+    """Nothing of the link itself changes; the numbers in the table follow, too."""
+    document, part, obj = new_part(plate())
+    link = document.addObject("App::Link", "Link")
+    link.LinkedObject = part
+    obj.Part = link
+    document.recompute()
+    open_panel(obj)
+    wait_until(lambda: number_in(table()[2][2]), "the number of elements")
+    count = number_in(table()[2][2])
+    child("CharacteristicLengthMax").setText("0.6 mm")
+    child("run").click()
+    part.Shape = Part.makeBox(40, 30, 10)
+    document.recompute()
+    wait_until(lambda: child("run").isEnabled(), "the end of the run")
+    require("changed while it was meshed" in said(), said())
+    wait_until(lambda: number_in(table()[2][2]) > 1.3 * count, "the numbers of the other shape")
+    close(document)
+
+
+def another_panel_keeps_its_cancel():
+    """A run that ends while a size is edited puts its mesh in place after that; "Cancel" takes the size back."""
+    for button in (QtGui.QDialogButtonBox.Cancel, QtGui.QDialogButtonBox.Ok):
+        document, _, obj = new_part(plate())
+        document.UndoMode = 1
+        open_panel(obj)
+        child("CharacteristicLengthMax").setText("2 mm")
+        child("run").click()
+        run = meshing_process.run_of(obj)
+        close_panel()
+        FreeCADGui.Selection.clearSelection()
+        FreeCADGui.Selection.addSelection(obj)
+        click_command("Collarmesh_SizeSphere")
+        wait_until(lambda: find("size_panel") is not None, "the panel of the sphere")
+        wait_until(lambda: run.progress is not None and run.progress.phase == "load", "the end of the mesher")
+        pause(1000)
+        require(meshing_process.run_of(obj) is run and obj.FemMesh.VolumeCount == 0, "the mesh waits")
+        child("size_Radius").setText("3 mm")
+        boxes = [box for box in FreeCADGui.getMainWindow().findChildren(QtGui.QDialogButtonBox) if box.isVisible()]
+        boxes[0].button(button).click()
+        wait_until(lambda: meshing_process.run_of(obj) is None, "the mesh")
+        require(obj.FemMesh.VolumeCount > 100, "it is there")
+        kept = button == QtGui.QDialogButtonBox.Ok
+        require(bool(obj.MeshSizeList) == kept == (document.getObject("SizeSphere") is not None), "the sphere")
+        document.undo()
+        require(obj.FemMesh.VolumeCount == 0 and bool(obj.MeshSizeList) == kept, "undo of the meshing alone")
+        close(document)
+
+
+def dismiss_message():
+    """What it says."""
+    boxes = [box for box in FreeCADGui.getMainWindow().findChildren(QtGui.QMessageBox) if box.isVisible()]
+    require(len(boxes) == 1, f"{len(boxes)} messages")
+    boxes[0].close()
+    return boxes[0].text()
+
+
+def another_panel_stays():
+    """FreeCAD shows one panel at a time: while one is open that it does not close itself, ours tells so."""
+
+    class Other:
+        def __init__(self):
+            self.form = QtGui.QWidget()
+
+    document, part, obj = new_part(plate())
+    FreeCADGui.Control.showDialog(Other())
+    names = [each.Name for each in document.Objects]
+    require(not FreeCADGui.getDocument(document.Name).setEdit(obj.Name), "the panel does not open")
+    require("Another panel" in dismiss_message(), "and says why")
+    FreeCADGui.Selection.clearSelection()
+    FreeCADGui.Selection.addSelection(part)
+    click_command("Collarmesh_MeshFromShape")
+    require([each.Name for each in document.Objects] == names, "nothing is made")
+    require(find("panel") is None and not document.HasPendingTransaction, "nothing stays")
+    require("Another panel" in dismiss_message(), "it says why, too")
+    FreeCADGui.Control.closeDialog()
+    pause(300)
+    open_panel(obj)
+    close(document)
+
+
+def a_part_deleted_while_marked():
+    document, part, obj = new_part(plate())
+    open_panel(obj)
+    run_mesher("4 mm")
+    child("places").pick_first(places.WORST)
+    require(marks_of(obj) is not None, "an element is marked")
+    document.removeObject(part.Name)
+    child("run").click()
+    require("no object is chosen" in said() and marks_of(obj) is None, said())
+    require(obj.ViewObject.Transparency == 0, "the mesh looks as before")
+    close(document)
+
+
+def files_have_no_marks():
+    document, part, obj = new_part(plate())
+    open_panel(obj)
+    run_mesher("4 mm")
+    name, label = obj.Name, part.Name
+    child("places").pick_first(places.WORST)
+    require(obj.ViewObject.Transparency > 0 and not part.ViewObject.Visibility, "an element is marked")
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "plate.FCStd")
+        document.saveAs(path)
+        close(document)
+        document = FreeCAD.openDocument(path)
+    part, obj = document.getObject(label), document.getObject(name)
+    require(obj.ViewObject.Transparency == 0 and part.ViewObject.Visibility, "what is opened looks as it did before")
+    close(document)
+
+
+def numbers_have_the_unit_that_is_shown():
+    document, _, obj = new_part(plate())
+    FreeCAD.Units.setSchema(3)  # inches
+    obj.CharacteristicLengthMax = 5.08
+    open_panel(obj)
+    field = child("CharacteristicLengthMax")
+    require(field.text() == "0.20 in", field.text())
+    for text, millimetres in (("0.1", 2.54), ("4 mm", 4), ("0.25 in", 6.35)):
+        run_mesher(text)
+        require(abs(obj.CharacteristicLengthMax.Value - millimetres) < 1e-9, f"{text}: {obj.CharacteristicLengthMax}")
+    FreeCAD.Units.setSchema(0)
+    close(document)
+
+
+def what_fails_after_the_mesh_takes_nothing_back():
+    """The panel tells of the mesh that is there, even without its page."""
+    document, _, obj = new_part(plate())
+    open_panel(obj)
+    with mock.patch.object(program.Job, "move_page", side_effect=ValueError("of the page")):
+        told = run_mesher("4 mm")
+    require("Every guarantee holds" in told and obj.FemMesh.VolumeCount > 0, told)
+    require(not child("report").isVisible(), "there is no page")
+    close(document)
+
+
 def documents_and_objects_go_while_meshing():
     """The program is killed, its folder is removed, FreeCAD goes on; with the panel open and closed."""
     for panel_open in (True, False):
@@ -386,7 +623,8 @@ def the_report_opens():
 
     opener = Opener()
     QtGui.QDesktopServices.setUrlHandler("file", opener, "open")
-    document, _, obj = new_part(plate(), "Bracket")
+    document, part, obj = new_part(plate(), "Bracket")
+    part.Label = '3/4" <b>\\ </script>'  # as people call parts, and worse
     open_panel(obj)
     require(not child("report").isVisible(), "there is no report yet")
     run_mesher("3 mm")
@@ -394,7 +632,9 @@ def the_report_opens():
     QtGui.QDesktopServices.unsetUrlHandler("file")
     require(len(opened) == 1, f"{opened}")
     page = pathlib.Path(opened[0]).read_text(encoding="utf-8")
-    require("<html" in page and '"Bracket"' in page and "/collarmesh-" not in page, "the page is for people")
+    require("<html" in page and "/collarmesh-" not in page, "the page is for people")
+    (report,) = re.findall(r'<script[^>]*id="report"[^>]*>(.*?)</script>', page, re.DOTALL)
+    require(json.loads(report)["inputs"] == [part.Label], f"the part's name: {json.loads(report)['inputs']}")
     close(document)
     require(not pathlib.Path(opened[0]).exists(), "it goes with the document")
 
@@ -404,6 +644,10 @@ def test():
     only = os.environ.get("COLLARMESH_TEST_ONLY", "")
     for each in (
         elements_are_told_before_meshing,
+        what_is_not_predicted_is_not_told,
+        sizes_by_place_count,
+        predictions_wait_for_the_mesher,
+        the_folder_forgets_processes_that_ended,
         an_older_program_tells_no_numbers,
         advanced_settings_reach_the_program,
         tiny_sizes_are_shown,
@@ -415,6 +659,13 @@ def test():
         cancel_tells_and_time_left_shows,
         a_closed_panel_lets_the_run_go_on,
         a_part_changed_while_meshing_is_told,
+        a_link_changed_while_meshing_is_told,
+        another_panel_keeps_its_cancel,
+        another_panel_stays,
+        a_part_deleted_while_marked,
+        files_have_no_marks,
+        numbers_have_the_unit_that_is_shown,
+        what_fails_after_the_mesh_takes_nothing_back,
         documents_and_objects_go_while_meshing,
         the_report_opens,
     ):

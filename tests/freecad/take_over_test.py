@@ -6,6 +6,7 @@ import tempfile
 import unittest
 from unittest import mock
 
+import Fem
 import FreeCAD
 import ObjectsFem
 import Part
@@ -106,6 +107,7 @@ class TakeOver(WithPart):
     def test_there_and_back(self):
         old, refinement, group = self.gmsh()
         ours, _ = take_over.take_over(old)
+        name = ours.Name
         sphere = size_objects.make(ours, "Sphere", 0.7)
         mesh_object.remesh(ours)
         count = ours.FemMesh.VolumeCount
@@ -120,10 +122,15 @@ class TakeOver(WithPart):
         self.assertEqual(gmsh.FemMesh.VolumeCount, count)
         self.assertIn(gmsh, self.analysis.Group)
         self.assertFalse(gmshtools.GmshTools(gmsh).create_mesh())
-        self.assertNotEqual(gmsh.FemMesh.VolumeCount, count)
+        made_by_gmsh = gmsh.FemMesh.VolumeCount
+        self.assertNotEqual(made_by_gmsh, count)
         again, _ = take_over.take_over(gmsh)
         self.assertEqual(again.MeshSizeList, [sphere])
+        self.assertEqual(again.Name, name, "the name of the one before, but not its meshes")
         mesh_object.remesh(again)
+        self.assertNotEqual(again.FemMesh.VolumeCount, made_by_gmsh)
+        self.document.undo()
+        self.assertEqual(again.FemMesh.VolumeCount, made_by_gmsh)
 
     def test_from_netgen(self):
         """Debian's FreeCAD knows its object, but cannot run it."""
@@ -229,20 +236,41 @@ class Undo(WithPart):
         self.document.undo()
         self.assertEqual(obj.FemMesh.VolumeCount, counts[-1])
 
-    def test_a_mesh_after_undo_starts_anew(self):
+    def test_a_cleared_mesh_stays_cleared(self):
+        """By "Clear FEM mesh" of FreeCAD's menu, where undo of something else follows."""
         obj = mesh_object.make(self.document, self.part)
-        for size in (8, 6):
-            obj.CharacteristicLengthMax = size
-            mesh_object.remesh(obj)
-        first, counts = obj.MeshNumber, [obj.FemMesh.VolumeCount]
+        obj.CharacteristicLengthMax = 8
+        mesh_object.remesh(obj)
+        counts = [obj.FemMesh.VolumeCount]
+        obj.FemMesh = Fem.FemMesh()
+        with compatibility.transaction(self.document, "something else"):
+            self.part.Label = "Other"
         self.document.undo()
-        obj.CharacteristicLengthMax = 4
+        self.assertEqual(obj.FemMesh.VolumeCount, 0)
+        obj.CharacteristicLengthMax = 5
         mesh_object.remesh(obj)
         counts.append(obj.FemMesh.VolumeCount)
-        self.assertEqual(obj.MeshNumber, first)
         self.document.undo()
+        self.assertEqual(obj.FemMesh.VolumeCount, 0, "what the meshing replaced")
         self.document.redo()
         self.assertEqual(obj.FemMesh.VolumeCount, counts[1])
+
+    def test_a_mesh_after_undo_has_a_number_of_its_own(self):
+        obj = mesh_object.make(self.document, self.part)
+        counts, numbers = [], []
+        for size in (8, 6, 4):
+            obj.CharacteristicLengthMax = size
+            mesh_object.remesh(obj)
+            counts.append(obj.FemMesh.VolumeCount)
+            numbers.append(obj.MeshNumber)
+            if size == 6:
+                self.document.undo()
+                self.assertEqual((obj.FemMesh.VolumeCount, obj.MeshNumber), (counts[0], numbers[0]))
+        self.assertEqual(len(set(numbers)), 3)
+        self.document.undo()
+        self.assertEqual(obj.FemMesh.VolumeCount, counts[0])
+        self.document.redo()
+        self.assertEqual(obj.FemMesh.VolumeCount, counts[2])
 
 
 class Files(WithPart):
@@ -253,20 +281,26 @@ class Files(WithPart):
     def test_export_with_names(self):
         with tempfile.TemporaryDirectory() as folder:
             for extension, words in ((".msh", (b'"Face1"', b'"Edge1"', b'"Solid1"')), (".inp", (b"FACE1", b"C3D10", b"SOLID1")),
-                                     (".unv", (b"Face1", b"Solid1")), (".stl", (b"facet normal",))):  # fmt: skip
+                                     (".unv", (b"Face1", b"Solid1")), (".stl", (b"STL",))):  # fmt: skip
                 path = os.path.join(folder, "plate" + extension)
                 mesh_file.export(self.obj, path)
                 with open(path, "rb") as file:
                     text = file.read()
                 for word in words:
-                    self.assertTrue(word in text or extension == ".stl", f"{extension}: {word}")
+                    self.assertTrue(word in text, f"{extension}: {word}")
                 self.assertGreater(len(text), 1000)
+            with open(os.path.join(folder, "plate.stl"), "rb") as file:
+                triangles = (len(file.read()) - 84) / 50  # binary: a head, then 50 bytes for each
+            self.assertEqual(triangles, self.obj.FemMesh.FaceCount)
 
     def test_what_cannot_be_exported_is_told(self):
-        with self.assertRaisesRegex(MesherError, "nonsense"):
-            mesh_file.export(self.obj, "/tmp/plate.nonsense")
-        with self.assertRaisesRegex(MesherError, "Empty has no mesh yet"):
-            mesh_file.export(mesh_object.make(self.document, self.part, "Empty"), "/tmp/plate.msh")
+        with tempfile.TemporaryDirectory() as folder:
+            with self.assertRaisesRegex(MesherError, "nonsense"):
+                mesh_file.export(self.obj, os.path.join(folder, "plate.nonsense"))
+            with self.assertRaisesRegex(MesherError, "Empty has no mesh yet"):
+                empty = mesh_object.make(self.document, self.part, "Empty")
+                mesh_file.export(empty, os.path.join(folder, "plate.msh"))
+            self.assertEqual(os.listdir(folder), [])
 
     def test_statistics(self):
         found = mesh_file.statistics(self.obj)

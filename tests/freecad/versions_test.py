@@ -45,11 +45,47 @@ class Versions(unittest.TestCase):
 
     def test_refinements(self):
         """The function of FreeCAD 1.x, where it is the only one."""
+
+        def make(document, base, element_length=0.0, name="MeshRefinement"):
+            made.append(document.addObject("App::FeaturePython", name))
+            made[0].addProperty("App::PropertyLinkSubListGlobal", "References")
+            made[0].addProperty("App::PropertyLength", "CharacteristicLength")
+            made[0].CharacteristicLength = element_length
+            name = next(each for each in ("MeshRefinementList", "MeshRegionList") if each in base.PropertiesList)
+            setattr(base, name, [*getattr(base, name), made[0]])
+            return made[0]
+
+        made = []
         obj = mesh_object.make(self.document, self.part)
-        later = types.SimpleNamespace(makeMeshRefinement=ObjectsFem.makeMeshRegion)
-        with mock.patch.object(compatibility, "ObjectsFem", later):
+        with mock.patch.object(compatibility, "ObjectsFem", types.SimpleNamespace(makeMeshRefinement=make)):
             refinement = compatibility.make_refinement(self.document, obj)
-        self.assertEqual(obj.MeshRegionList, [refinement])
+        self.assertEqual(([refinement], obj.MeshRegionList), (made, made))
+        refinement.References = [(self.part, "Face1")]
+        refinement.CharacteristicLength = 0.7
+        self.assertEqual(mesh_object.settings_of(obj).face_sizes, {1: 0.7})
+
+    def test_buttons(self):
+        """FreeCAD 1.x asks for the places when it builds its bars, and inserts one after the other."""
+
+        class Gui:
+            manipulators = []
+
+            @classmethod
+            def addWorkbenchManipulator(cls, manipulator):
+                cls.manipulators.append(manipulator)
+
+        with mock.patch.dict(sys.modules, {"FreeCADGui": types.ModuleType("FreeCADGui")}):
+            self.assertFalse(compatibility.add_to_bars({"Ours": "Theirs"}), "before 1.0")
+        with mock.patch.dict(sys.modules, {"FreeCADGui": Gui}):
+            self.assertTrue(compatibility.add_to_bars({"First": "Theirs", "Second": "Theirs", "Third": "Others"}))
+        (manipulator,) = Gui.manipulators
+        bars = {"menuItem": ["Theirs", "Others"], "toolItem": ["Theirs", "Others"]}
+        for changes in (manipulator.modifyMenuBar(), manipulator.modifyToolBars()):
+            for change in changes:
+                kind = next(name for name in bars if name in change)
+                at = bars[kind].index(change[kind])  # in a toolbar before that, in a menu as "after" says
+                bars[kind].insert(at + ("after" in change), change["insert"])
+        self.assertEqual(bars["menuItem"], ["Theirs", "First", "Second", "Others", "Third"])
 
     def test_lists_of_refinements(self):
         gmsh = self.document.addObject("Fem::FemMeshObjectPython", "Gmsh")

@@ -70,9 +70,14 @@ def click_item(item):
 
 
 def click_command(command):
-    """The command's button in the toolbar."""
-    next(button for bar in window.findChildren(QtGui.QToolBar) for button in bar.findChildren(QtGui.QToolButton)
-         if button.defaultAction() is not None and button.defaultAction().objectName() == command).click()  # fmt: skip
+    """The command's button in the toolbar, which comes a moment after its workbench."""
+    wait_until(lambda: buttons_of(command), f"the button of {command}")
+    buttons_of(command)[0].click()
+
+
+def buttons_of(command):
+    return [button for bar in window.findChildren(QtGui.QToolBar) for button in bar.findChildren(QtGui.QToolButton)
+            if button.defaultAction() is not None and button.defaultAction().objectName() == command]  # fmt: skip
 
 
 def rows(tree):
@@ -116,18 +121,19 @@ def close_panel():
 
 
 def screenshot(name, fit=True, size=(1200, 900)):
-    """A picture of the window, made small for it; `fit`: with all of the document in view."""
+    """A picture of the window, made small for it: `size` in pixels; `fit`: with all of the document in view."""
     if not PICTURES:
         return
     if find("presets") is not None and child("run").isEnabled():
         wait_until(lambda: "…" not in "".join(column_of(child("presets"), 2)), "the numbers of elements")
-    window.setGeometry(0, 0, *size)
+    screen = QtGui.QApplication.primaryScreen()
+    window.setGeometry(0, 0, *(int(length / screen.devicePixelRatio()) for length in size))
     for _ in range(2):
         pause(400)
         if fit:
             FreeCADGui.SendMsgToActiveView("ViewFit")
     pause(400)
-    QtGui.QApplication.primaryScreen().grabWindow(0).copy(0, 0, *size).save(os.path.join(PICTURES, name))
+    screen.grabWindow(0).copy(0, 0, *size).save(os.path.join(PICTURES, name))
     window.setGeometry(*WIDE)
 
 

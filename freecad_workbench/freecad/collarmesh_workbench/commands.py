@@ -6,7 +6,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore
 
-from . import compatibility, inputs, mesh_menu, mesh_object, size_objects, take_over
+from . import compatibility, inputs, mesh_menu, mesh_object, other_panel, size_objects, take_over
 from .size_view import icon_of
 from .translations import mark, translate
 from .view_provider import ICON
@@ -30,9 +30,8 @@ class Command:
     """A button; `create` makes an object for what is selected, which is then edited in its panel."""
 
     icon, menu_text, tool_tip = "", "", ""
-    panel_commits = (
-        False  # creation and first edit are one step of undo, which "Cancel" of the panel takes back
-    )
+    # Creation and first edit are one step of undo, which "Cancel" of the panel takes back.
+    panel_commits = False
 
     def GetResources(self):
         return {"Pixmap": self.icon, "MenuText": self.text(), "ToolTip": self.tip()}
@@ -51,8 +50,14 @@ class Command:
     def Activated(self):
         target = self.target()
         document = target.Document
+        if other_panel.is_in_the_way():
+            return
         document.openTransaction(self.text())
-        obj = self.create(document, target)
+        try:
+            obj = self.create(document, target)
+        except BaseException:
+            document.abortTransaction()
+            raise
         if not self.panel_commits:
             document.commitTransaction()
         document.recompute()
@@ -182,7 +187,9 @@ class TakeOver(Command):
 
     icon = os.path.join(os.path.dirname(ICON), "take_over.svg")
     menu_text = mark("collarmesh", "Take over by collarmesh")
-    tool_tip = mark("collarmesh", "Make the selected mesh of Gmsh or Netgen one of collarmesh, with its sizes and groups")
+    tool_tip = mark(
+        "collarmesh", "Make the selected mesh of Gmsh or Netgen one of collarmesh, with its sizes and groups"
+    )
 
     def target(self):
         return selected(take_over.can_be_taken_over)

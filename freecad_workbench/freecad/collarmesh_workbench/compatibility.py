@@ -110,6 +110,31 @@ def _extend(provider, fill):
     provider.setupContextMenu = setup_context_menu
 
 
+class Manipulator:
+    """What FreeCAD 1.0 and later ask when a workbench builds its bars."""
+
+    def __init__(self, places):
+        """`places`: for each command the one of FreeCAD that it is put beside; several beside one in this order."""
+        self.places = places
+
+    def modifyToolBars(self):
+        return [{"insert": command, "toolItem": place} for command, place in self.places.items()]
+
+    def modifyMenuBar(self):
+        # Each one goes right after its place, so the last one comes first.
+        return [{"insert": command, "menuItem": place, "after": ""} for command, place in reversed(self.places.items())]
+
+
+def add_to_bars(places):
+    """Have FreeCAD put commands into its toolbars and menus; False where it cannot, before 1.0."""
+    import FreeCADGui
+
+    if not hasattr(FreeCADGui, "addWorkbenchManipulator"):
+        return False
+    FreeCADGui.addWorkbenchManipulator(Manipulator(places))
+    return True
+
+
 def as_number(button):
     """Standard buttons of panels as FreeCAD wants them; PySide6 (FreeCAD 1.x) has them as an enumeration."""
     return button.value if hasattr(button, "value") else int(button)

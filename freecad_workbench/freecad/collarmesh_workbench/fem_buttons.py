@@ -3,6 +3,7 @@
 import FreeCADGui
 from PySide import QtCore, QtGui
 
+from . import compatibility
 from .commands import COMMANDS, GROUP_COMMAND, MESH_COMMAND, REFINEMENT_COMMAND
 
 BESIDE = {
@@ -23,19 +24,8 @@ def freecads_place(command):
     return freecads_place(place) if place in BESIDE else place
 
 
-class Manipulator:
-    """FreeCAD 1.0 and later ask it when a workbench builds its bars."""
-
-    def modifyToolBars(self):
-        return [{"insert": command, "toolItem": freecads_place(command)} for command in BESIDE]
-
-    def modifyMenuBar(self):
-        # Each one goes right after its place, so the last one comes first.
-        return [{"insert": command, "menuItem": freecads_place(command), "after": ""} for command in reversed(BESIDE)]
-
-
 class Inserter(QtCore.QObject):
-    """Earlier ones: each time a workbench has become active, look for the actions and put ours after them."""
+    """Each time a workbench has become active, look for the actions and put ours after them."""
 
     def __init__(self, window):
         super().__init__(window)
@@ -71,8 +61,6 @@ class Inserter(QtCore.QObject):
 
 
 def install():
-    if hasattr(FreeCADGui, "addWorkbenchManipulator"):
-        FreeCADGui.addWorkbenchManipulator(Manipulator())
-    else:
+    if not compatibility.add_to_bars({command: freecads_place(command) for command in BESIDE}):
         window = FreeCADGui.getMainWindow()
         window.collarmesh_inserter = Inserter(window)

@@ -3,11 +3,11 @@
 import json
 import os
 import subprocess
-import tempfile
 
 from . import preferences
 from .program import MesherError, find_program
 from .translations import translate
+from .work_folder import WorkFolder
 
 # FreeCAD's own export writes some of them, too, but not all, and loses groups of faces in .inp.
 FORMATS = (
@@ -22,25 +22,31 @@ def filters():
     return ";;".join(f"{name} (*{extension})" for name, extension in FORMATS)
 
 
+def extension_in(text):
+    """Of one of these filters, without the dot."""
+    return text[text.index("*.") + 2 : text.rindex(")")]
+
+
 def _run(mesh_object, arguments):
     """The program's standard output; `MESH` among the arguments is the object's mesh. Raises MesherError."""
     if mesh_object.FemMesh.VolumeCount == 0:
         raise MesherError(translate("collarmesh", "{label} has no mesh yet.").format(label=mesh_object.Label))
-    with tempfile.TemporaryDirectory(prefix="collarmesh-") as folder:
-        path = os.path.join(folder, "mesh.unv")
+    program = find_program(preferences.program())
+    folder = WorkFolder()
+    try:
+        path = os.path.join(folder.name, "mesh.unv")
         mesh_object.FemMesh.write(path)
-        command = [
-            find_program(preferences.program()),
-            *(path if each == "MESH" else each for each in arguments),
-        ]
-        result = subprocess.run(
-            command, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace"
-        )
-        if result.returncode != 0:
-            raise MesherError(
-                result.stderr.replace(path, mesh_object.Label).strip().removeprefix("collarmesh: ")
-            )
-        return result.stdout
+        command = [program, *(path if each == "MESH" else each for each in arguments)]
+        with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              text=True, errors="replace") as process:  # fmt: skip
+            folder.program_is(process.pid)
+            answer, complaint = process.communicate()
+        folder.program_is(None)
+    finally:
+        folder.cleanup()
+    if process.returncode != 0:
+        raise MesherError(complaint.replace(path, mesh_object.Label).strip().removeprefix("collarmesh: "))
+    return answer
 
 
 def export(mesh_object, path):

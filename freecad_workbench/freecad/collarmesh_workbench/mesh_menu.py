@@ -1,10 +1,10 @@
 """What the context menus of mesh objects offer, ours and those of FreeCAD's meshers."""
 
-import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 
 from . import compatibility, mesh_file, statistics_dialog, take_over
+from .messages import say
 from .program import MesherError
 from .translations import translate
 
@@ -45,17 +45,6 @@ def _run(action, obj):
         QtGui.QApplication.restoreOverrideCursor()
 
 
-def say(text):
-    """A message that waits for nobody."""
-    FreeCAD.Console.PrintWarning(f"collarmesh: {text}\n")
-    box = QtGui.QMessageBox(QtGui.QMessageBox.Information, "collarmesh", text, QtGui.QMessageBox.Ok,
-                            FreeCADGui.getMainWindow())  # fmt: skip
-    box.setObjectName("collarmesh_message")
-    box.setAttribute(QtCore.Qt.WA_DeleteOnClose)
-    box.setModal(False)
-    box.show()
-
-
 def edit(obj):
     """Open the panel."""
     document = FreeCADGui.getDocument(obj.Document.Name)
@@ -75,13 +64,16 @@ def mesh_again(obj):
 def export(obj):
     QtGui.QApplication.restoreOverrideCursor()
     title = translate("collarmesh", "Export mesh")
-    path, chosen = QtGui.QFileDialog.getSaveFileName(
-        FreeCADGui.getMainWindow(), title, obj.Label, mesh_file.filters()
-    )
+    dialog = QtGui.QFileDialog(FreeCADGui.getMainWindow(), title, "", mesh_file.filters())
+    dialog.setAcceptMode(QtGui.QFileDialog.AcceptSave)
+    # The dialog adds the extension itself, so that it asks before it overwrites a file.
+    dialog.filterSelected.connect(lambda text: dialog.setDefaultSuffix(mesh_file.extension_in(text)))
+    dialog.setDefaultSuffix(mesh_file.extension_in(dialog.selectedNameFilter()))
+    dialog.selectFile(f"{obj.Label.replace('/', '_')}.{dialog.defaultSuffix()}")
+    path = dialog.selectedFiles()[0] if dialog.exec_() else ""
+    dialog.deleteLater()
     QtGui.QApplication.setOverrideCursor(QtCore.Qt.WaitCursor)
     if path:
-        if "." not in path.rsplit("/", 1)[-1]:
-            path += chosen[chosen.index("*") + 1 : chosen.index(")")]
         mesh_file.export(obj, path)
 
 

@@ -322,11 +322,11 @@ def finish(obj, job, exit_code=0):
             )
         )
     groups.add_groups(obj, fem_mesh)
+    report = job.report()
     with compatibility.transaction(obj.Document, translate("collarmesh", "Mesh by collarmesh")):
         mesh_undo.replace(obj, fem_mesh)
         up_to_date.remember(obj, job.state)
     up_to_date.show(obj)
-    report = job.report()
     said = job.messages if exit_code == GUARANTEE_MISSED else [*job.warnings(), *report["notes"]]
     if said:
         FreeCAD.Console.PrintWarning("collarmesh: " + "\n".join(said) + "\n")

@@ -2,25 +2,35 @@
 
 FreeCAD 0.20 writes a new mesh into the very mesh that its undo remembers, so that undo brings the new one back. Here
 the meshes of an object are kept by number. The number is a property, which undo and redo get right, and whose mesh is
-put in place then."""
+put in place then. No two meshes have the same number, also of objects that have the same name one after the other."""
+
+import itertools
+import time
 
 import FreeCAD
 
-from . import groups
+from . import groups, up_to_date
 from .translations import doc
 
 NUMBER = "MeshNumber"
 KEPT = 20  # as many steps of undo as FreeCAD has by default
 NODES = 4_000_000  # in all that is kept of an object, but the last two meshes are kept in any case
 
-_kept = {}  # by document and object: {number: mesh}
+_numbers = itertools.count(int(time.time()))  # not those of earlier sessions, which files have
+_kept = {}  # by document and object: {number: mesh}, the last one that was put in place last
+_in_place = {}  # by document and object: the number that the object had when its mesh was last looked after here
+
+
+def _key(obj):
+    return obj.Document.Name, obj.Name
 
 
 def add_properties(obj):
     if NUMBER not in obj.PropertiesList:
-        obj.addProperty(
-            "App::PropertyInteger", NUMBER, "Base", doc("Which of its meshes the object has"), 4 + 16
-        )
+        text = doc("Which of its meshes the object has")
+        obj.addProperty("App::PropertyInteger", NUMBER, "Base", text, up_to_date.HIDDEN)
+        setattr(obj, NUMBER, next(_numbers))
+        _in_place[_key(obj)] = getattr(obj, NUMBER)
 
 
 def replace(obj, fem_mesh):
@@ -28,18 +38,17 @@ def replace(obj, fem_mesh):
     if not obj.Document.UndoMode:
         obj.FemMesh = fem_mesh
         return
-    meshes = _kept.setdefault((obj.Document.Name, obj.Name), {})
-    before = getattr(obj, NUMBER)
-    for undone in [number for number in meshes if number > before]:
-        del meshes[undone]
-    if before not in meshes:
-        meshes[before] = obj.FemMesh.copy()
-    number = before + 1
+    meshes = _kept.setdefault(_key(obj), {})
+    before, number = getattr(obj, NUMBER), next(_numbers)
+    kept = meshes.pop(before, None)
+    # Something else may have cleared or replaced the mesh since then.
+    meshes[before] = kept if kept is not None and same(kept, obj.FemMesh) else obj.FemMesh.copy()
     meshes[number] = fem_mesh
     while len(meshes) > 2 and (len(meshes) > KEPT or sum(each.NodeCount for each in meshes.values()) > NODES):
-        del meshes[min(meshes)]
+        del meshes[next(iter(meshes))]
     obj.FemMesh = fem_mesh
     setattr(obj, NUMBER, number)
+    _in_place[_key(obj)] = number
 
 
 def same(first, second):
@@ -64,22 +73,31 @@ class Observer:
         self._put_right(document)
 
     def _put_right(self, document):
-        from . import mesh_object, up_to_date
+        from . import mesh_object
 
         for each in document.Objects:
             if not mesh_object.is_ours(each):
                 continue
-            fem_mesh = _kept.get((document.Name, each.Name), {}).get(getattr(each, NUMBER))
-            if fem_mesh is not None and not same(fem_mesh, each.FemMesh):
-                fem_mesh = fem_mesh.copy()
-                if fem_mesh.VolumeCount:
-                    groups.add_groups(each, fem_mesh)
-                each.FemMesh = fem_mesh
+            number = getattr(each, NUMBER)
+            if number != _in_place.get(_key(each)):  # else this step was about something else
+                _in_place[_key(each)] = number
+                _put(each, _kept.get(_key(each), {}).get(number))
             up_to_date.show(each)
 
     def slotDeletedDocument(self, document):
-        for key in [key for key in _kept if key[0] == document.Name]:
-            del _kept[key]
+        for by_object in (_kept, _in_place):
+            for key in [key for key in by_object if key[0] == document.Name]:
+                del by_object[key]
+
+
+def _put(obj, fem_mesh):
+    """In place of the object's mesh, if it is another one; None: it is no longer kept."""
+    if fem_mesh is None or same(fem_mesh, obj.FemMesh):
+        return
+    fem_mesh = fem_mesh.copy()
+    if fem_mesh.VolumeCount:
+        groups.add_groups(obj, fem_mesh)
+    obj.FemMesh = fem_mesh
 
 
 def observe():

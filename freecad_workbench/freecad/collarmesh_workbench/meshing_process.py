@@ -5,7 +5,6 @@ its document is closed and when FreeCAD ends."""
 
 import contextlib
 import dataclasses
-import filecmp
 import os
 import traceback
 
@@ -13,11 +12,11 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import compatibility, mesh_object
+from . import compatibility, mesh_object, up_to_date
 from .program import MesherError, Progress
 from .translations import translate
 
-WHAT_IS_MESHED = ("Shape", "Placement", "Mesh", "LinkPlacement")  # properties of parts
+WAIT = 200  # milliseconds until a run that has ended asks again whether its mesh can be put in place
 _runs = {}  # that are under way, by (document, object)
 _outcomes = {}  # of the last runs
 
@@ -56,19 +55,20 @@ def start(obj):
 
 
 class MeshingProcess(QtCore.QObject):
+    predicted_seconds = None  # how long all of it was said to take, None: unknown
     advanced = QtCore.Signal(object)  # a Progress
     ended = QtCore.Signal()  # there is an outcome
 
     def __init__(self, obj):
         super().__init__()
         self.object = obj
-        self.part = compatibility.meshed_object(obj)
-        self.label = self.part.Label if self.part else ""
+        part = compatibility.meshed_object(obj)
+        self.label = part.Label if part else ""
         self.job = mesh_object.start(obj)
         self.job.add_page()
         self.warnings = tuple(self.job.warnings())
         self.progress = None
-        self._touched = self._cancelled = self._abandoned = False
+        self._cancelled = self._abandoned = False
         self.clock = QtCore.QElapsedTimer()
         self.clock.start()
         self._process = QtCore.QProcess()
@@ -79,7 +79,8 @@ class MeshingProcess(QtCore.QObject):
         self._process.start(self.job.command[0], self.job.command[1:])
         if not self._process.waitForStarted():
             self.job.folder.cleanup()
-            raise MesherError(f"{self.job.command[0]} cannot be started: {self._process.errorString()}")
+            text = translate("collarmesh", "{program} cannot be started: {error}")
+            raise MesherError(text.format(program=self.job.command[0], error=self._process.errorString()))
         self.job.folder.program_is(self._process.processId())
 
     def cancel(self):
@@ -94,9 +95,6 @@ class MeshingProcess(QtCore.QObject):
         self.job.folder.cleanup()
         self.ended.emit()
 
-    def part_is_touched(self):
-        self._touched = True
-
     def seconds(self):
         return self.clock.elapsed() / 1000
 
@@ -108,16 +106,21 @@ class MeshingProcess(QtCore.QObject):
                 self.advanced.emit(step)
 
     def _finished(self, exit_code):
+        self.job.folder.program_is(None)
         if self._abandoned:
             return
         self._read()
-        self.job.folder.program_is(None)
         self.progress = Progress("load", 1, self.progress.tets if self.progress else 0)
         self.advanced.emit(self.progress)
         QtCore.QTimer.singleShot(20, lambda: self._end(exit_code))  # after the window shows that
 
     def _end(self, exit_code):
         if self._abandoned:
+            return
+        if self._something_else_is_edited():
+            text = translate("collarmesh", "{object}: the mesh is made and shows when the other panel is closed")
+            _say(text.format(object=self.object.Label), 5 * WAIT)
+            QtCore.QTimer.singleShot(WAIT, lambda: self._end(exit_code))
             return
         key = _key(self.object)
         try:
@@ -140,44 +143,50 @@ class MeshingProcess(QtCore.QObject):
             report = mesh_object.finish(self.object, self.job, exit_code)
         except MesherError as error:
             return Outcome(error=str(error))
-        part_changed = self._part_changed()
-        self.object.Document.recompute()
+        outcome = Outcome(report=report, warnings=self.warnings)
+        part = compatibility.meshed_object(self.object)
+        outcome.part_changed = not up_to_date.has_shape(part, self.job.state.shape)
+        with _told_in_report_view():
+            self.object.Document.recompute()
         page = os.path.join(self.object.Document.TransientDir, f"{self.object.Name}_report.html")
-        try:
+        with _told_in_report_view():
             self.job.move_page(page, self.label)
-        except OSError as error:
-            FreeCAD.Console.PrintWarning(f"collarmesh: {error}\n")
-            page = ""
-        return Outcome(report=report, page=page, part_changed=part_changed, warnings=self.warnings)
+            outcome.page = page
+        return outcome
 
-    def _part_changed(self):
-        """Is the part another one than the one that was meshed? A part that is recomputed may be the same again."""
-        if not self._touched:
+    def _something_else_is_edited(self):
+        """With a step of undo that is still open, so that "Cancel" there can take it back: a mesh that is put in place
+        would end that step."""
+        document = self.object.Document
+        if not document.HasPendingTransaction:
             return False
-        try:
-            now = mesh_object.start(self.object)
-        except MesherError:
-            return True
-        same = filecmp.cmp(now.shape, self.job.shape, shallow=False)
-        now.folder.cleanup()
-        return not same
+        edited = FreeCADGui.getDocument(document.Name).getInEdit()
+        return edited is not None and edited.Object is not self.object
+
+
+@contextlib.contextmanager
+def _told_in_report_view():
+    """The mesh is in place: what fails after that takes nothing of it away."""
+    try:
+        yield
+    except Exception:
+        FreeCAD.Console.PrintError(traceback.format_exc())
 
 
 def _tell(obj, outcome):
-    """In the status bar, for those whose panel is closed."""
+    """For those whose panel is closed."""
     text = translate("collarmesh", "{object}: the mesh is made")
     if outcome.report is None:
         text = translate("collarmesh", "{object}: no new mesh is made")
-    FreeCADGui.getMainWindow().statusBar().showMessage(text.format(object=obj.Label), 10000)
+    _say(text.format(object=obj.Label), 10000)
+
+
+def _say(text, milliseconds):
+    """In the status bar."""
+    FreeCADGui.getMainWindow().statusBar().showMessage(text, milliseconds)
 
 
 class _Observer:
-    def slotChangedObject(self, changed, name):
-        if name in WHAT_IS_MESHED:
-            for run in _runs.values():
-                if run.part is changed:
-                    run.part_is_touched()
-
     def slotDeletedObject(self, deleted):
         _forget(lambda key: key == _key(deleted))
 

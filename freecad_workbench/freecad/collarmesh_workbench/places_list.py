@@ -6,6 +6,7 @@ from . import places
 from .translations import translate
 
 MOST = 200  # rows of a kind
+MOST_PIXELS = 10000  # height of a row
 
 
 class PlacesList(QtGui.QTreeWidget):
@@ -24,8 +25,9 @@ class PlacesList(QtGui.QTreeWidget):
         self.setVerticalScrollMode(QtGui.QAbstractItemView.ScrollPerPixel)
         self.setItemDelegate(_Wrapped(self))
         self.setToolTip(translate("collarmesh", "Click to see the place"))
-        self.itemClicked.connect(self._pick)
+        self.itemClicked.connect(self._clicked)
         self.currentItemChanged.connect(self._moved)
+        self._moved_to = None  # by the click that is under way
         self._filling = False
 
     def fill(self, found):
@@ -69,11 +71,21 @@ class PlacesList(QtGui.QTreeWidget):
         super().resizeEvent(event)
         self.scheduleDelayedItemsLayout()
 
+    def mousePressEvent(self, event):
+        self._moved_to = None
+        super().mousePressEvent(event)
+
     def _moved(self, item, _previous):
         if item is not None and not self._filling:
+            self._moved_to = item
             self._pick(item)
 
-    def _pick(self, item, _column=0):
+    def _clicked(self, item, _column):
+        """On the row that is the current one already: the view may look elsewhere by now."""
+        if item is not self._moved_to:
+            self._pick(item)
+
+    def _pick(self, item):
         self.picked.emit(item.data(0, QtCore.Qt.UserRole))
 
 
@@ -83,10 +95,10 @@ class _Wrapped(QtGui.QStyledItemDelegate):
     def sizeHint(self, option, index):
         tree = self.parent()
         levels = 2 if index.parent().isValid() else 1
-        around = 2 * tree.frameWidth() + tree.verticalScrollBar().sizeHint().width() + 10
-        width = tree.width() - levels * tree.indentation() - around
-        box = option.fontMetrics.boundingRect(QtCore.QRect(0, 0, width, 10000), QtCore.Qt.TextWordWrap, index.data())
-        return QtCore.QSize(box.width(), max(box.height(), option.fontMetrics.height()) + 3)
+        around = 2 * tree.frameWidth() + tree.verticalScrollBar().sizeHint().width()  # it may come
+        wrapped = QtGui.QStyleOptionViewItem(option)
+        wrapped.rect = QtCore.QRect(0, 0, tree.width() - levels * tree.indentation() - around, MOST_PIXELS)
+        return super().sizeHint(wrapped, index) + QtCore.QSize(0, 3)
 
 
 def _kinds():

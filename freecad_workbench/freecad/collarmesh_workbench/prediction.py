@@ -1,11 +1,14 @@
 """How many elements sizes will make, and how long that takes, asked of the program before meshing."""
 
 import json
+import os
+import pathlib
 
 from PySide import QtCore
 
-from . import mesh_object
-from .program import MesherError
+from . import compatibility, inputs, mesh_object, preferences, up_to_date
+from .program import find_program
+from .work_folder import WorkFolder
 
 WAIT = 400  # milliseconds after the last change
 COUNTING = {"--size-min", "--elements-per-circle", "--elements-across-gap", "--gradation", "--region-size",
@@ -22,19 +25,29 @@ class Predictions(QtCore.QObject):
     def __init__(self, obj, parent=None):
         super().__init__(parent)
         self.object = obj
-        self._job = None  # never run, it has the shape
-        self._question = None
+        self._folder = None  # with the shape, once it is needed
+        self._shape = ""  # its path
+        self._shape_numbers = []  # see up_to_date
+        self._arguments, self._size_field, self._sizes = (), "", ()  # what is asked for
         self._process = None
-        self._known = {}
+        self._known = {}  # {(arguments, size field, size): (number of tetrahedra, seconds)}
         self._timer = QtCore.QTimer(self, singleShot=True, interval=WAIT)
         self._timer.timeout.connect(self._begin)
 
     def ask(self, settings, sizes):
         """For the Settings with each of these sizes (mm), the first ones first; returns the answers that are known
-        already."""
-        self._question = tuple(_arguments(settings)), tuple(dict.fromkeys(sizes))
+        already. Of meshes that are not coarsened the program predicts nothing."""
+        answers = self.known(settings, sizes)
+        if settings.coarsen:
+            self._timer.start()
+        return answers
+
+    def known(self, settings, sizes):
+        """The answers that are known already; nothing is asked of the program."""
         self.pause()
-        self._timer.start()
+        self._arguments = tuple(_arguments(settings))
+        self._size_field = json.dumps(settings.size_field) if settings.size_field else ""
+        self._sizes = tuple(dict.fromkeys(sizes)) if settings.coarsen else ()
         return self._answers()
 
     def pause(self):
@@ -46,49 +59,77 @@ class Predictions(QtCore.QObject):
         """The shape has changed."""
         self.pause()
         self._known = {}
-        if self._job is not None:
-            self._job.folder.cleanup()
-            self._job = None
+        if self._folder is not None:
+            self._folder.cleanup()
+            self._folder = None
+
+    def shape_has_changed(self):
+        """Is it another one than the one that the answers are about?"""
+        part = compatibility.meshed_object(self.object)
+        return self._folder is not None and not up_to_date.has_shape(part, self._shape_numbers)
 
     def _stop(self):
         process, self._process = self._process, None
         if process is not None:
             process.kill()
-            process.waitForFinished(1000)
+            if process.waitForFinished(1000):
+                self._folder.program_is(None)
             process.deleteLater()
 
     def _missing(self):
-        arguments, sizes = self._question
-        return [size for size in sizes if (arguments, size) not in self._known]
+        return [size for size in self._sizes if self._key(size) not in self._known]
+
+    def _key(self, size):
+        return self._arguments, self._size_field, size
 
     def _begin(self):
         missing = self._missing()
         try:
-            if missing and self._job is None:
-                self._job = mesh_object.start(self.object)
-        except MesherError:
+            if missing:
+                program = find_program(preferences.program())
+                self._write_files()
+        except Exception:  # of OpenCASCADE's, too; the run tells what is wrong
             missing = []
         if not missing:
             self._tell()
             return
-        program, shape = self._job.command[:2]
+        sources = ["--size-field", self._size_field_path()] if self._size_field else []
         self._process = process = QtCore.QProcess(self)
         process.setStandardInputFile(QtCore.QProcess.nullDevice())
         process.setStandardErrorFile(QtCore.QProcess.nullDevice())
         process.finished.connect(lambda exit_code, *_: self._finished(process, exit_code))
-        process.start(program, ["info", shape, *self._question[0], *self._size_field(), "--predict", repr(missing[0]), "--json"])
+        arguments = [*self._arguments, *sources, "--predict", repr(missing[0]), "--json"]
+        process.start(program, ["info", self._shape, *arguments])
         if process.waitForStarted():
-            self._job.folder.program_is(process.processId())
+            self._folder.program_is(process.processId())
+        else:
+            self._process = None
+            self._tell()
 
-    def _size_field(self):
-        command = self._job.command
-        return command[at : at + 2] if (at := _position(command, "--size-field")) >= 0 else []
+    def _write_files(self):
+        """For the program. Raises MesherError."""
+        if self._folder is None:
+            part = mesh_object.part_to_mesh(self.object)
+            folder = WorkFolder()
+            self._shape = os.path.join(folder.name, inputs.file_name(part))
+            try:
+                inputs.write(part, self._shape)
+                self._shape_numbers = up_to_date.shape_numbers(part)
+            except BaseException:
+                folder.cleanup()
+                raise
+            self._folder = folder
+        if self._size_field:
+            pathlib.Path(self._size_field_path()).write_text(self._size_field, encoding="utf-8")
+
+    def _size_field_path(self):
+        return os.path.join(self._folder.name, "sizes.json")
 
     def _finished(self, process, exit_code):
         if process is not self._process:  # its answer is no longer asked for
             return
         self._process = None
-        self._job.folder.program_is(None)
+        self._folder.program_is(None)
         learned = exit_code == 0 and self._learn(bytes(process.readAllStandardOutput()))
         process.deleteLater()
         if learned and self._missing():
@@ -101,14 +142,13 @@ class Predictions(QtCore.QObject):
         """False where the program does not know."""
         try:
             found = json.loads(answer)["predictions"][0]
-            self._known[self._question[0], self._missing()[0]] = found["tets"], found["seconds"]
+            self._known[self._key(self._missing()[0])] = found["tets"], found["seconds"]
         except (ValueError, KeyError, TypeError, IndexError):
             return False
         return True
 
     def _answers(self):
-        arguments, sizes = self._question
-        return {size: self._known[arguments, size] for size in sizes if (arguments, size) in self._known}
+        return {size: self._known[self._key(size)] for size in self._sizes if self._key(size) in self._known}
 
     def _tell(self):
         self.made.emit(self._answers())
@@ -119,7 +159,3 @@ def _arguments(settings):
     arguments = settings.arguments()
     pairs = zip(arguments[::2], arguments[1::2])
     return [word for pair in pairs if pair[0] in COUNTING for word in pair]
-
-
-def _position(words, word):
-    return words.index(word) if word in words else -1

@@ -1,12 +1,14 @@
-"""The collarmesh program as a process. This module knows nothing of FreeCAD."""
+"""The collarmesh program as a process. This module knows nothing of FreeCAD's documents."""
 
 import dataclasses
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 
+from .translations import translate
 from .work_folder import WorkFolder
 
 GUARANTEE_MISSED = 7  # the exit code with which a mesh is written all the same
@@ -76,7 +78,8 @@ def find_program(preferred=""):
         if candidate:
             if shutil.which(candidate):
                 return shutil.which(candidate)
-            raise MesherError(f"The mesher {candidate} is no program; correct its path in the preferences.")
+            text = translate("collarmesh", "The mesher {path} is no program; correct its path in the preferences.")
+            raise MesherError(text.format(path=candidate))
     addon = pathlib.Path(__file__).resolve().parents[2]
     beside = [addon.parent / "build" / "release" / "bin" / "collarmesh"]
     if len(addon.parents) > 3:  # installed: WHERE/share/freecad/Mod/collarmesh and WHERE/bin
@@ -85,8 +88,11 @@ def find_program(preferred=""):
         if shutil.which(candidate):
             return shutil.which(candidate)
     raise MesherError(
-        "The program collarmesh is not found: install it so that it is on the PATH, or name its path in the "
-        "preferences."
+        translate(
+            "collarmesh",
+            "The program collarmesh is not found: install it so that it is on the PATH, or name its path in the "
+            "preferences.",
+        )
     )
 
 
@@ -151,7 +157,8 @@ class Job:
 
     def _for_people(self, text):
         """Without the folder, which is gone when it is read."""
-        return text.replace(self.shape, "the shape").replace(self.folder.name + os.sep, "")
+        text = text.replace(self.shape, "the shape").replace(self.folder.name + os.sep, "")
+        return re.sub(r"(^|^collarmesh: |\. )the shape\b", r"\1The shape", text)
 
     def warnings(self):
         """What was said of the shape that the user should know, with places, one line each."""
@@ -162,7 +169,8 @@ class Job:
         if exit_code in (0, GUARANTEE_MISSED) and os.path.exists(self.mesh):
             return
         said = "\n".join(self.messages).removeprefix("collarmesh: ")
-        raise MesherError(self.explain(said) or f"The mesher ended with exit code {exit_code} and without a word.")
+        nothing = translate("collarmesh", "The mesher ended with exit code {code} and without a word.")
+        raise MesherError(self.explain(said) or nothing.format(code=exit_code))
 
     def report(self):
         """What the program measured (README.md, --report)."""
@@ -179,21 +187,31 @@ class Job:
     def move_page(self, path, name):
         """That report to a place where it stays. `name`: what it calls the shape."""
         with open(self._page, encoding="utf-8") as page:
-            text = page.read().replace(self.shape, name).replace(self.folder.name + os.sep, "")
+            text = page.read().replace(self.shape, _in_page(name)).replace(self.folder.name + os.sep, "")
         with open(path, "w", encoding="utf-8") as moved:
             moved.write(text)
 
     def run(self, progress=None):
         """Run and wait; returns the exit code. `progress(Progress)` may return False to cancel.
         Raises MesherError."""
-        with subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                              stderr=subprocess.PIPE, text=True, errors="replace") as process:  # fmt: skip
-            self.folder.program_is(process.pid)
-            for line in process.stderr:
-                step = self.heard(line)
-                if step and progress and progress(step) is False:
+        try:
+            with subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                  stderr=subprocess.PIPE, text=True, errors="replace") as process:  # fmt: skip
+                self.folder.program_is(process.pid)
+                try:
+                    for line in process.stderr:
+                        step = self.heard(line)
+                        if step and progress and progress(step) is False:
+                            raise Cancelled(translate("collarmesh", "The mesher was cancelled."))
+                except BaseException:
                     process.kill()
-                    raise Cancelled("The mesher was cancelled.")
-        self.folder.program_is(None)
+                    raise
+        finally:
+            self.folder.program_is(None)
         self.require_success(process.returncode)
         return process.returncode
+
+
+def _in_page(name):
+    """A name as it stands in the report's page: within a string of JSON, in a script."""
+    return json.dumps(name)[1:-1].replace("<", "\\u003c")

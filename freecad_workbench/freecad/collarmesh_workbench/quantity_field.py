@@ -12,7 +12,8 @@ ROUNDING = 1e-3  # relative: what FreeCAD's number of decimals may change in wha
 
 
 class QuantityField:
-    """A quantity in "mm" or "deg" in a QLineEdit, `widget`; text that is none is red."""
+    """A quantity in "mm" or "deg" in a QLineEdit, `widget`; text that is none is red. A number
+    without a unit is in the one that the field has shown last, which depends on FreeCAD's preferences."""
 
     def __init__(self, unit, value):
         """`value` in `unit`."""
@@ -23,9 +24,9 @@ class QuantityField:
         self.widget.textChanged.connect(self._colour)
 
     def show(self, value):
-        text = FreeCAD.Units.Quantity(f"{value!r} {self.unit}").UserString
+        text, self._shown_unit, _ = FreeCAD.Units.Quantity(f"{value!r} {self.unit}").getUserPreferred()
         if abs(_parse(text).Value - value) > ROUNDING * abs(value):
-            text = f"{value:.6g} {self.unit}"
+            text, self._shown_unit = f"{value:.6g} {self.unit}", 1
         self._shown = value
         self.widget.setText(text)
         self._text = self.widget.text()
@@ -39,7 +40,9 @@ class QuantityField:
         except (ValueError, OSError) as error:
             raise ValueError(translate("collarmesh", "'{text}' is no value: {error}").format(
                 text=self.widget.text(), error=error)) from error  # fmt: skip
-        if quantity.Unit not in (_parse(f"1 {self.unit}").Unit, FreeCAD.Units.Unit()):
+        if quantity.Unit == FreeCAD.Units.Unit():
+            return quantity.Value * self._shown_unit
+        if quantity.Unit != _parse(f"1 {self.unit}").Unit:
             raise ValueError(translate("collarmesh", "'{text}' is not in {unit}").format(
                 text=self.widget.text(), unit=self.unit))  # fmt: skip
         return quantity.Value

@@ -4,7 +4,7 @@ import os
 
 import FreeCADGui
 
-from . import compatibility, size_objects
+from . import compatibility, other_panel, size_objects
 
 ICONS = os.path.join(os.path.dirname(__file__), "icons")
 COLOUR = (0.91, 0.35, 0.05)
@@ -37,6 +37,8 @@ class SizeViewProvider(compatibility.Stateless):
 
         if mode != 0:
             return None  # FreeCAD's own dragger, by "Transform" in the context menu
+        if other_panel.is_in_the_way():
+            return False
         view.show()
         self.panel = SizePanel(view.Object)
         FreeCADGui.Control.showDialog(self.panel)

@@ -58,9 +58,8 @@ def take_over(old):
         setattr(new, size_objects.PROPERTY, getattr(old, size_objects.PROPERTY, []))
         replace(old, new)
         if new.FemMesh.NodeCount:
-            up_to_date.remember(
-                new, up_to_date.State([], mesher)
-            )  # its mesh is not of our making: out of date
+            # Its mesh is not of our making, so it is out of date.
+            up_to_date.remember(new, up_to_date.State([], mesher))
             up_to_date.show(new)
     return new, notes
 

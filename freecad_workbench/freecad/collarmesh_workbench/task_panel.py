@@ -18,6 +18,7 @@ from .translations import translate
 from .view_marks import ViewMarks
 
 WIDTH = 400  # pixels
+WHAT_IS_MESHED = ("Shape", "Placement", "Mesh", "LinkPlacement")  # properties of parts
 
 
 class MeshTaskPanel:
@@ -35,11 +36,11 @@ class MeshTaskPanel:
         self.size.changed.connect(self._ask)
         self.advanced.changed.connect(self._ask)
         self.order.currentIndexChanged.connect(self._ask)
-        self._ask()
         if meshing_process.run_of(obj) is not None:
             self._follow(meshing_process.run_of(obj))
         else:
             self._show_outcome(meshing_process.outcome_of(obj))
+        self._ask()
         self.form.destroyed.connect(self.dismiss)
         FreeCAD.addDocumentObserver(self)
         QtCore.QTimer.singleShot(0, self._widen)
@@ -102,14 +103,17 @@ class MeshTaskPanel:
             self.object.ElementOrder = order
 
     def _ask(self, *_):
-        """What the sizes will make with what is in the fields."""
+        """What the sizes will make with what is in the fields; while the mesher runs only what is known already."""
         try:
             settings = mesh_object.settings_of(self.object)
         except MesherError:
             return
         self.advanced.apply_to(settings)
         settings.order = self.order.currentIndex() + 1
-        self._show_predictions(self.predictions.ask(settings, self.size.sizes()), "…")
+        if self.run is not None or not settings.coarsen:
+            self._show_predictions(self.predictions.known(settings, self.size.sizes()))
+        else:
+            self._show_predictions(self.predictions.ask(settings, self.size.sizes()), "…")
 
     def _show_some_predictions(self, known):
         self._show_predictions(known, "…")
@@ -127,7 +131,9 @@ class MeshTaskPanel:
         self.report_button.hide()
         try:
             self._store()
-            self._follow(meshing_process.start(self.object))
+            run = meshing_process.start(self.object)
+            _, run.predicted_seconds = self.known.get(self.object.CharacteristicLengthMax.Value, (0, None))
+            self._follow(run)
         except MesherError as error:
             self._show_outcome(meshing_process.Outcome(error=str(error)))
 
@@ -145,11 +151,7 @@ class MeshTaskPanel:
             self._advance(run.progress)
 
     def _advance(self, progress):
-        try:
-            predicted = self.known.get(self.size.size(), (0, None))[1]
-        except ValueError:
-            predicted = None
-        self.run_section.advance(progress, self.run.seconds(), predicted)
+        self.run_section.advance(progress, self.run.seconds(), self.run.predicted_seconds)
 
     def _ended(self):
         self._let_go()
@@ -200,9 +202,22 @@ class MeshTaskPanel:
             self.marks.clear()
 
     def slotChangedObject(self, changed, name):
-        if name in meshing_process.WHAT_IS_MESHED and changed is compatibility.meshed_object(self.object):
-            self.predictions.forget()
-            self._ask()
+        if name in WHAT_IS_MESHED and changed is compatibility.meshed_object(self.object):
+            self._ask_anew()
+
+    def slotRecomputedDocument(self, _document):
+        """What a link or a container shows may be another shape then, without a change of its own."""
+        if self.predictions.shape_has_changed():
+            self._ask_anew()
+
+    def _ask_anew(self):
+        self.predictions.forget()
+        self._ask()
+
+    def slotStartSaveDocument(self, document, _path):
+        """The file has the objects as they look without marks."""
+        if document is self.object.Document:
+            self.marks.clear()
 
     def slotDeletedObject(self, deleted):
         if deleted is self.object:
@@ -213,4 +228,3 @@ class MeshTaskPanel:
         if document is self.object.Document:
             self.dismiss()
             FreeCADGui.Control.closeDialog()
-

@@ -15,6 +15,7 @@ SHAPE, SETTINGS = "MeshedShape", "MeshedSettings"
 MARKS = 8  # numbers that stand for a shape
 SAME_PLACE = 1e-9  # relative to the largest coordinate; files of FreeCAD keep 16 digits
 DIGITS = 10  # of a setting
+HIDDEN = 4 | 16  # for addProperty: Prop_Hidden, and Prop_NoRecompute as it changes no mesh
 WITHOUT_EFFECT = ("time_limit",)
 
 
@@ -27,11 +28,10 @@ class State:
 
 
 def add_properties(obj):
-    hidden = 4 + 16  # and of no consequence for a recompute
     for kind, name, text in (("App::PropertyFloatList", SHAPE, doc("What shape the mesh was made of")),
                              ("App::PropertyString", SETTINGS, doc("With what settings it was made"))):  # fmt: skip
         if name not in obj.PropertiesList:
-            obj.addProperty(kind, name, "Base", text, hidden)
+            obj.addProperty(kind, name, "Base", text, HIDDEN)
 
 
 def shape_numbers(part):
@@ -76,6 +76,14 @@ def same_shape(first, second):
         return False
     tolerance = SAME_PLACE * max(first[-2], second[-2]) * math.sqrt(first[-1])
     return all(abs(a - b) <= tolerance for a, b in zip(first[:-1], second[:-1]))
+
+
+def has_shape(part, numbers):
+    """Does the object have the shape that these numbers stand for? False for what cannot be looked at."""
+    try:
+        return same_shape(numbers, shape_numbers(part))
+    except Exception:  # of OpenCASCADE's, too: what cannot be looked at cannot be meshed
+        return False
 
 
 def settings_text(settings, groups):

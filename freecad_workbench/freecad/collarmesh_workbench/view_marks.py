@@ -1,5 +1,7 @@
 """Showing places in the 3D view: sub-shapes are selected, points and tetrahedra are marked, the camera goes there."""
 
+import contextlib
+
 import FreeCAD
 import FreeCADGui
 import numpy
@@ -43,8 +45,9 @@ class ViewMarks:
             part, visible, transparency = self._before
             self._before = None
             self.object.ViewObject.Transparency = transparency
-            if part is not None and part.Document is not None:
-                part.ViewObject.Visibility = visible
+            with contextlib.suppress(ReferenceError):  # the part was deleted
+                if part is not None and part.Document is not None:
+                    part.ViewObject.Visibility = visible
 
     def _make_room(self, part, part_too):
         """The mesh becomes transparent; the part shows where sub-shapes of it are selected, and only there."""

@@ -4,7 +4,7 @@ import os
 
 import FreeCADGui
 
-from . import compatibility, mesh_menu, size_objects, up_to_date
+from . import compatibility, mesh_menu, other_panel, size_objects, up_to_date
 
 ICON = os.path.join(os.path.dirname(__file__), "icons", "collarmesh.svg")
 OUT_OF_DATE_ICON = os.path.join(os.path.dirname(__file__), "icons", "collarmesh_out_of_date.svg")
@@ -45,6 +45,8 @@ class MeshViewProvider(compatibility.Stateless):
 
         if mode != 0:
             return None
+        if other_panel.is_in_the_way():
+            return False
         view.show()
         self.panel = MeshTaskPanel(view.Object)
         FreeCADGui.Control.showDialog(self.panel)
