@@ -217,10 +217,10 @@ def advanced_settings_reach_the_program():
     child("MeshSizeFromCurvature").setValue(24)
     child("SurfaceDistance").setText("0.002 in")
     child("ImproveLevel").setCurrentIndex(child("ImproveLevel").findText("best"))
-    child("Coarsen").setChecked(False)
     child("Repair").setCurrentIndex(child("Repair").findText("wrap where it fails"))
     child("ElementOrder").setCurrentIndex(1)
     screenshot("freecad_advanced.png", size=(1200, 1000))
+    child("Coarsen").setChecked(False)
     run_mesher("4 mm")
     options = meshing_process.outcome_of(obj).report["options"]
     wanted = {"size": 4, "elements_per_circle": 24, "distance": 0.0508, "improve": 3, "coarsen": False,
