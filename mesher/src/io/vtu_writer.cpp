@@ -44,7 +44,7 @@ struct DataArray {
   const VtkArray* array;
   std::string_view type, bytes;
   std::size_t values;
-  std::string text;
+  std::string header, blocks;
 
   explicit DataArray(const VtkArray& from) : array(&from) {
     std::visit(
@@ -56,7 +56,7 @@ struct DataArray {
         },
         from.values);
   }
-  std::size_t blocks() const { return (bytes.size() + block_bytes - 1) / block_bytes; }
+  std::size_t block_count() const { return (bytes.size() + block_bytes - 1) / block_bytes; }
 };
 
 /// The arrays of one part of the file.
@@ -69,25 +69,27 @@ struct Section {
 };
 
 std::string compressed(std::string_view block) {
-  uLongf size = compressBound(block.size());
-  std::string result(size, '\0');
-  if (compress2(reinterpret_cast<Bytef*>(result.data()), &size, reinterpret_cast<const Bytef*>(block.data()),
-                block.size(), Z_BEST_SPEED) != Z_OK)
+  thread_local std::vector<Bytef> buffer(compressBound(block_bytes));
+  uLongf size = buffer.size();
+  if (compress2(buffer.data(), &size, reinterpret_cast<const Bytef*>(block.data()), block.size(),
+                Z_BEST_SPEED) != Z_OK)
     throw std::bad_alloc();  // the only way it fails with a buffer of that size
-  result.resize(size);
-  return result;
+  return {reinterpret_cast<const char*>(buffer.data()), size};
 }
 
-std::string encoded(const DataArray& array, std::span<const std::string> blocks) {
+void encode(std::span<const std::string> blocks, DataArray& array) {
   std::vector<std::uint64_t> header{blocks.size(), block_bytes, array.bytes.size() % block_bytes};
-  std::string joined;
+  std::size_t size = 0;
   for (const std::string& block : blocks) {
     header.push_back(block.size());
-    joined += block;
+    size += block.size();
   }
-  return base64_encode(
-             {reinterpret_cast<const char*>(header.data()), header.size() * sizeof(std::uint64_t)}) +
-         base64_encode(joined);
+  std::string joined;
+  joined.reserve(size);
+  for (const std::string& block : blocks) joined += block;
+  array.header =
+      base64_encode({reinterpret_cast<const char*>(header.data()), header.size() * sizeof(std::uint64_t)});
+  array.blocks = base64_encode(joined);
 }
 
 /// Make the text of all arrays.
@@ -100,14 +102,14 @@ void encode(std::span<Section> sections) {
   for (Section& section : sections)
     for (DataArray& array : section.arrays) {
       arrays.push_back(&array);
-      for (std::size_t i = 0; i < array.blocks(); ++i)
+      for (std::size_t i = 0; i < array.block_count(); ++i)
         bytes.push_back(array.bytes.substr(i * block_bytes, block_bytes));
       first.push_back(bytes.size());
     }
   std::vector<std::string> blocks(bytes.size());
   parallel_for(blocks.size(), [&](std::size_t i) { blocks[i] = compressed(bytes[i]); });
   parallel_for(arrays.size(), [&](std::size_t i) {
-    arrays[i]->text = encoded(*arrays[i], std::span(blocks).subspan(first[i], first[i + 1] - first[i]));
+    encode(std::span(blocks).subspan(first[i], first[i + 1] - first[i]), *arrays[i]);
   });
 }
 
@@ -124,7 +126,7 @@ void write_section(FileWriter& out, const Section& section, std::size_t& offset)
     if (components > 1) out << " NumberOfComponents=\"" << components << '"';
     if (section.name == "FieldData") out << " NumberOfTuples=\"" << array.values << '"';
     out << " format=\"appended\" offset=\"" << offset << "\"/>\n";
-    offset += array.text.size();
+    offset += array.header.size() + array.blocks.size();
   }
   out << "      </" << section.name << ">\n";
 }
@@ -165,7 +167,7 @@ void write_vtu_grid(const std::string& path, VtkGrid& grid, const std::vector<Vt
   for (const Section& section : std::span(sections).subspan(1)) write_section(out, section, offset);
   out << "    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"base64\">\n   _";
   for (const Section& section : sections)
-    for (const DataArray& array : section.arrays) out << array.text;
+    for (const DataArray& array : section.arrays) out << array.header << array.blocks;
   out << "\n  </AppendedData>\n</VTKFile>\n";
   out.commit();
 }
