@@ -253,6 +253,10 @@ class Failures(DistributedTest):
             self.assertIn(word, said[0])
         self.assertEqual([p.name for p in self.folder.iterdir() if "out" in p.name or p.name.startswith(".collarmesh")], [])
 
+    def test_memory(self):
+        self.assert_fails(self.mpirun(2, PROGRAM, MODELS / "bracket.off", "-o", "out.h5", "--size", "4", "--levels", "2",
+                                      "--max-memory", "80M"), 5, "memory")
+
     def test_options(self):
         self.assert_fails(self.mpirun(3, PROGRAM, MODELS / "box.off", "-o", "out.h5", "--levels", "many"), 2, "--levels")
         self.assert_fails(self.mpirun(3, PROGRAM, MODELS / "box.off", "-o", "out.off"), 2, "use .h5 or .pvtu")

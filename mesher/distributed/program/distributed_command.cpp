@@ -6,12 +6,14 @@
 
 #include <array>
 #include <chrono>
+#include <csignal>
 #include <exception>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string_view>
 #include <thread>
 #include <type_traits>
 
@@ -59,6 +61,24 @@ class Session {
   }
   MPI_Abort(MPI_COMM_WORLD, static_cast<int>(code));
   std::_Exit(static_cast<int>(code));
+}
+
+/// HDF5 and MPI may crash where they get no memory. mpirun ends the other ranks.
+[[noreturn]] void end_after_crash(int) {
+  cli::abandon_staged_files();
+  constexpr std::string_view text =
+      "collarmesh: a library has crashed, as some do without memory; raise --max-memory, or use more ranks\n";
+  if (write(STDERR_FILENO, text.data(), text.size()) < 0) {
+    // There is nobody to tell.
+  }
+  std::_Exit(static_cast<int>(ExitCode::internal_error));
+}
+
+[[noreturn]] void end_without_memory(const PetscOutOfMemory& failure) {
+  end_all(
+      ExitCode::budget_hit,
+      fmt::format("there is not enough memory ({}); raise --max-memory, use more ranks, or make fewer levels",
+                  failure.what()));
 }
 
 /// Work that is not collective and may end the program: when it does on one rank it does on all, and the
@@ -350,6 +370,8 @@ void write_files(const DistributedArguments& arguments, const ParallelMesh& mesh
   place = broadcast(MPI_COMM_WORLD, place);
   try {
     writes_pieces(arguments) ? mesh.write_pvtu(place) : mesh.write_h5(place);
+  } catch (const PetscOutOfMemory& failure) {
+    end_without_memory(failure);
   } catch (const PetscFailure& failure) {
     end_all(ExitCode::cannot_write, fmt::format("{}: cannot be written ({}); is the disk full?",
                                                 arguments.mesh.output, failure.what()));
@@ -428,12 +450,15 @@ ExitCode run(int argc, char** argv) {
   cli::install_interrupt_handlers();
   const Session session;
   if (Ranks(MPI_COMM_WORLD).rank != 0) cli::be_silent();
+  std::signal(SIGSEGV, end_after_crash);  // in place of PETSc's
   return cli::guarded([&] {
     try {
       require_equal_command_lines(argc, argv);
       const std::variant<DistributedArguments, ExitCode> parsed = parse(argc, argv);
       if (const ExitCode* code = std::get_if<ExitCode>(&parsed)) return *code;
       return mesh_distributed(std::get<DistributedArguments>(parsed));
+    } catch (const PetscOutOfMemory& failure) {
+      end_without_memory(failure);
     } catch (const PetscFailure& failure) {
       end_all(ExitCode::internal_error, failure.what());
     }

@@ -6,6 +6,7 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 #include <thread>
 
 namespace collarmesh::distributed {
@@ -13,11 +14,15 @@ namespace collarmesh::distributed {
 namespace {
 
 std::string first_message;
+bool out_of_memory = false;  // is what it says
 
 PetscErrorCode remember(MPI_Comm, int, const char* function, const char*, PetscErrorCode code,
                         PetscErrorType type, const char* message, void*) {
-  if (type == PETSC_ERROR_INITIAL)
+  if (type == PETSC_ERROR_INITIAL) {
     first_message = fmt::format("{} ({})", message != nullptr ? message : "no reason given", function);
+    // PETSc 3.18 gives a number of a line for a code where it cannot allocate.
+    out_of_memory = code == PETSC_ERR_MEM || std::string_view(function).starts_with("PetscMalloc");
+  }
   return code;
 }
 
@@ -80,6 +85,7 @@ void wait_quietly(MPI_Request request) {
 
 PetscMessages::PetscMessages() {
   first_message.clear();
+  out_of_memory = false;
   PetscPushErrorHandler(remember, nullptr);
 }
 PetscMessages::~PetscMessages() { PetscPopErrorHandler(); }
@@ -87,9 +93,11 @@ PetscMessages::~PetscMessages() { PetscPopErrorHandler(); }
 void fail(PetscErrorCode code) {
   const char* text = nullptr;
   if (first_message.empty()) PetscErrorMessage(code, &text, nullptr);
-  throw PetscFailure(fmt::format("PETSc: {}", text != nullptr         ? text
-                                              : first_message.empty() ? "unknown error"
-                                                                      : first_message));
+  const std::string message = fmt::format("PETSc: {}", text != nullptr         ? text
+                                                       : first_message.empty() ? "unknown error"
+                                                                               : first_message);
+  if (out_of_memory) throw PetscOutOfMemory(message);
+  throw PetscFailure(message);
 }
 
 void agree(MPI_Comm communicator, const std::function<void()>& work) {

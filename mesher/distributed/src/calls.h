@@ -16,6 +16,9 @@ namespace collarmesh::distributed {
 struct PetscFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+struct PetscOutOfMemory : PetscFailure {
+  using PetscFailure::PetscFailure;
+};
 
 /// What PETSc said about its first error, as one line; it prints nothing while one of these lives.
 class PetscMessages {
@@ -26,7 +29,7 @@ class PetscMessages {
   PetscMessages& operator=(const PetscMessages&) = delete;
 };
 
-/// Throws PetscFailure with what PETSc said.
+/// Throws PetscOutOfMemory, or another PetscFailure, with what PETSc said.
 [[noreturn]] void fail(PetscErrorCode code);
 inline void call(PetscErrorCode code) {
   if (code != 0) fail(code);
