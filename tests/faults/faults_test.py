@@ -16,7 +16,7 @@ PROGRAM, FAULTS = os.environ["COLLARMESH_PROGRAM"], os.environ["COLLARMESH_FAULT
 ALL = os.environ.get("COLLARMESH_ALL_FAULTS") == "1"
 SOURCES = pathlib.Path(__file__).resolve().parents[2]
 BRACKET = SOURCES / "resources" / "models" / "bracket.off"
-CAD = SOURCES / "tests" / "cli" / "hostile" / "iges_closed_face" / "sphere.igs"
+CAD = SOURCES / "resources" / "models" / "flange.step"
 BEFORE = "what was there before"
 
 

@@ -134,12 +134,11 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change) 
   }
   made.replacement.old = ring_.tets;
   made.kind = kept.empty() ? Change::Kind::edge_removal : Change::Kind::boundary_flip;
-  made.read.swap(change.read);
-  const bool accepted = kept.empty() || may_turn(made);
-  if (!accepted)
-    change.read.swap(made.read);
-  else
+  made.read = std::move(change.read);  // a refusal depends on what was read, too
+  if (kept.empty() || may_turn(made))
     change = std::move(made);
+  else
+    change.read = std::move(made.read);
 }
 
 // May a sliver with two faces at the edge ab go to their other side, whose tets must be there?
