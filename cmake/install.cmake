@@ -19,5 +19,6 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/collarmesh-config-version
   COMPATIBILITY SameMinorVersion)
 install(FILES
   ${PROJECT_BINARY_DIR}/collarmesh-config.cmake ${PROJECT_BINARY_DIR}/collarmesh-config-version.cmake
+  cmake/FindLibDeflate.cmake
   DESTINATION ${COLLARMESH_PACKAGE_DIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -1,15 +1,13 @@
 #include "html_report.h"
 
-#include <zlib.h>
-
 #include <filesystem>
-#include <stdexcept>
 #include <string_view>
 #include <vector>
 
 #include "console.h"
 #include "html_report_page.h"
 #include "io/base64.h"
+#include "io/zlib_block.h"
 
 namespace collarmesh::cli {
 
@@ -20,17 +18,6 @@ using Json = nlohmann::ordered_json;
 template <class Number>
 void append(std::string& bytes, const std::vector<Number>& numbers) {
   bytes.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number));
-}
-
-std::string compressed(const std::string& bytes) {
-  uLongf size = compressBound(static_cast<uLong>(bytes.size()));
-  std::string packed(size, '\0');
-  const int status =
-      compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
-                static_cast<uLong>(bytes.size()), Z_DEFAULT_COMPRESSION);
-  if (status != Z_OK) throw std::runtime_error("the mesh cannot be compressed for the report");
-  packed.resize(size);
-  return packed;
 }
 
 /// Nothing in it ends the script that it is in.
@@ -72,7 +59,7 @@ std::string html_report(const Json& report, const ShownMesh& shown) {
   };
   fill("<!--report-->", json_in_page(report));
   fill("<!--shown-->", json_in_page(shown_json(shown)));
-  fill("<!--data-->", io::base64_encode(compressed(data)));
+  fill("<!--data-->", io::base64_encode(io::zlib_pack(data, 6)));
   return page.append(rest);
 }
 

@@ -13,8 +13,8 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <ctime>
 #include <new>
-#include <thread>
 
 #include "console.h"
 #include "staged_file.h"
@@ -86,11 +86,33 @@ Clock::rep from_now(double seconds) {
       .count();
 }
 
+/// Blocks SIGCHLD while it lives, so that the end of a child can be waited for without polling.
+class ChildSignal {
+ public:
+  ChildSignal() {
+    sigemptyset(&signal_);
+    sigaddset(&signal_, SIGCHLD);
+    sigprocmask(SIG_BLOCK, &signal_, &before_);
+  }
+  ~ChildSignal() { unblock(); }
+  ChildSignal(const ChildSignal&) = delete;
+  ChildSignal& operator=(const ChildSignal&) = delete;
+
+  void unblock() const { sigprocmask(SIG_SETMASK, &before_, nullptr); }
+  /// Until a child ends, another signal comes or the time is over.
+  void wait(std::chrono::nanoseconds time) const {
+    const timespec most{0, time.count()};
+    sigtimedwait(&signal_, nullptr, &most);
+  }
+
+ private:
+  sigset_t signal_, before_;
+};
+
 /// How the child ended; it is killed when a limit is over.
-int wait_for_child(bool& out_of_time) {
+int wait_for_child(const ChildSignal& ended_signal, bool& out_of_time) {
   using namespace std::chrono_literals;
   constexpr Clock::duration grace = 3s;  // its own watcher ends it within a second
-  auto pause = 1ms;
   for (int status = 0;;) {
     const pid_t ended = waitpid(child, &status, WNOHANG);
     if (ended == child) return status;
@@ -99,8 +121,7 @@ int wait_for_child(bool& out_of_time) {
       out_of_time = true;
       kill(child, SIGKILL);
     }
-    std::this_thread::sleep_for(pause);
-    pause = std::min(2 * pause, 20ms);
+    ended_signal.wait(20ms);
   }
 }
 
@@ -159,16 +180,21 @@ ExitCode run_supervised(const std::function<ExitCode()>& command) {
   shared = share();
   if (shared == nullptr) return command();
   const pid_t parent = getpid();
+  const ChildSignal child_signal;
   const pid_t made = fork();
-  if (made == 0) be_the_child(parent, command);
+  if (made == 0) {
+    child_signal.unblock();
+    be_the_child(parent, command);
+  }
   if (made < 0) {
+    child_signal.unblock();
     shared = nullptr;
     return command();
   }
   child = made;
   pass_signals_on();
   bool out_of_time = false;
-  const int status = wait_for_child(out_of_time);
+  const int status = wait_for_child(child_signal, out_of_time);
   return reason_for(status, out_of_time);
 }
 

@@ -30,9 +30,9 @@ stand_in id 'echo 1000'
 stand_in dpkg-query 'echo installed'
 expect "nothing to do" 0 '^$'
 
-stand_in dpkg-query 'case "$*" in *libcli11-dev*|*zlib1g-dev*) exit 1;; esac; echo installed'
+stand_in dpkg-query 'case "$*" in *libcli11-dev*|*libdeflate-dev*) exit 1;; esac; echo installed'
 expect "sudo when not root" 0 '^sudo env DEBIAN_FRONTEND=noninteractive apt-get -q update'
-expect "what is missing, only" 0 'install --no-install-recommends libcli11-dev zlib1g-dev$'
+expect "what is missing, only" 0 'install --no-install-recommends libcli11-dev libdeflate-dev$'
 
 stand_in id 'echo 0'
 stand_in sudo "echo sudo >>$work/calls; exit 1"

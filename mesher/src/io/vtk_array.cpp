@@ -1,7 +1,6 @@
 #include "io/vtk_array.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +9,7 @@
 
 #include "io/base64.h"
 #include "io/lz4_block.h"
+#include "io/zlib_block.h"
 
 namespace collarmesh::io {
 
@@ -99,21 +99,15 @@ std::string decode_plain(Stored& stored, const VtkStorage& storage) {
   return stored.take(storage.header_bytes + size).substr(storage.header_bytes);
 }
 
-void inflate_block(std::string_view packed, std::uint64_t size, std::string& bytes) {
-  const std::size_t before = bytes.size();
-  bytes.resize(before + size);
-  uLongf got = size;
-  const int status = uncompress(reinterpret_cast<Bytef*>(bytes.data() + before), &got,
-                                reinterpret_cast<const Bytef*>(packed.data()), packed.size());
-  if (status != Z_OK || got != size) throw VtkArrayError{"a compressed block is damaged"};
-}
-
 void unpack_block(VtkCompression compression, std::string_view packed, std::uint64_t size,
                   std::string& bytes) {
   const bool lz4 = compression == VtkCompression::lz4;
   if (size / (lz4 ? lz4_largest_ratio : vtk_largest_ratio) > packed.size())
     throw VtkArrayError{fmt::format("a block of {} compressed bytes cannot hold {}", packed.size(), size)};
-  if (!lz4) return inflate_block(packed, size, bytes);
+  if (!lz4) {
+    if (!zlib_unpack(packed, size, bytes)) throw VtkArrayError{"a compressed block is damaged"};
+    return;
+  }
   const std::optional<std::string> block = lz4_unpack(packed, size);
   if (!block) throw VtkArrayError{"a compressed block is damaged"};
   bytes += *block;

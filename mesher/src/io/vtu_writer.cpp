@@ -2,10 +2,8 @@
 // are UInt64. See "VTK File Formats" (VTK User's Guide) and vtkXMLDataReader. What the arrays are:
 // vtk_grid.h. The cells are the tets; faces and edges are in FieldData.
 #include <tbb/task_arena.h>
-#include <zlib.h>
 
 #include <bit>
-#include <new>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,11 +16,13 @@
 #include "io/file_writer.h"
 #include "io/tet_mesh_formats.h"
 #include "io/vtk_grid.h"
+#include "io/zlib_block.h"
 
 namespace collarmesh::io {
 
 namespace {
 
+constexpr int fastest = 1;  // of zlib_pack's levels
 constexpr std::size_t block_bytes = 1 << 18;  // a multiple of every value's size, as some readers ask
 
 template <class T>
@@ -68,15 +68,6 @@ struct Section {
       : name(its_name), arrays(of.begin(), of.end()) {}
 };
 
-std::string compressed(std::string_view block) {
-  thread_local std::vector<Bytef> buffer(compressBound(block_bytes));
-  uLongf size = buffer.size();
-  if (compress2(buffer.data(), &size, reinterpret_cast<const Bytef*>(block.data()), block.size(),
-                Z_BEST_SPEED) != Z_OK)
-    throw std::bad_alloc();  // the only way it fails with a buffer of that size
-  return {reinterpret_cast<const char*>(buffer.data()), size};
-}
-
 void encode(std::span<const std::string> blocks, DataArray& array) {
   std::vector<std::uint64_t> header{blocks.size(), block_bytes, array.bytes.size() % block_bytes};
   std::size_t size = 0;
@@ -107,7 +98,7 @@ void encode(std::span<Section> sections) {
       first.push_back(bytes.size());
     }
   std::vector<std::string> blocks(bytes.size());
-  parallel_for(blocks.size(), [&](std::size_t i) { blocks[i] = compressed(bytes[i]); });
+  parallel_for(blocks.size(), [&](std::size_t i) { blocks[i] = zlib_pack(bytes[i], fastest); });
   parallel_for(arrays.size(), [&](std::size_t i) {
     encode(std::span(blocks).subspan(first[i], first[i + 1] - first[i]), *arrays[i]);
   });
