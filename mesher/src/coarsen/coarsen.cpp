@@ -247,10 +247,14 @@ class Coarsening {
   bool improve_once() {
     rule_.set_mode(Mode::final);
     using Poor = std::pair<double, Index>;
+    std::vector<double> qualities(complex().size(), INFINITY);
+    parallel_for(qualities.size(), [&](std::size_t i) {
+      const auto t = static_cast<Index>(i);
+      if (complex()[t].alive && changed_since(t, last_sweep_)) qualities[t] = quality(t);
+    });
     std::vector<Poor> poor;
     for (Index t = 0; t < complex().size(); ++t)
-      if (complex()[t].alive && changed_since(t, last_sweep_))
-        if (const double q = quality(t); q < improved_below) poor.emplace_back(q, t);
+      if (qualities[t] < improved_below) poor.emplace_back(qualities[t], t);
     std::sort(poor.begin(), poor.end());
     last_sweep_ = ++clock_;
     bool any = false;
@@ -354,9 +358,10 @@ CoarsenReport coarsen(TetMesh& mesh, const Plc& plc, const MeshOptions& made_wit
     throw OptionError("the smallest angle of thin tetrahedra must be above 0 and at most 30 degrees");
   if (!(options.reserve >= 0 && options.reserve <= 0.5))
     throw OptionError("the reserve of angles must be from 0 to 0.5");
-  coarsening::Coarsening coarsening(mesh, plc, made_with, options, execution);
   CoarsenReport report;
-  ThreadLimit(options.threads).run([&] { report = coarsening.run(); });
+  ThreadLimit(options.threads).run([&] {
+    report = coarsening::Coarsening(mesh, plc, made_with, options, execution).run();
+  });
   return report;
 }
 

@@ -37,7 +37,6 @@ class Improvement {
         rule_(options.radius_edge, options.thin_angle > 0 ? &thin_ : nullptr),
         operations_([this] { return Operations(workpiece_, rule_); }),
         execution_(execution),
-        threads_(options.threads),
         move_vertices_(options.move_vertices),
         keep_vertices_(options.keep_vertices),
         wanted_(std::sin(options.min_dihedral * std::numbers::pi / 180)),
@@ -46,13 +45,13 @@ class Improvement {
 
   ImproveReport run() {
     const auto started = std::chrono::steady_clock::now();
-    for (Index t = 0; t < complex().size(); ++t) queue(t);
+    queue_all();
     report_.candidates = queue_.size();
     for (unsigned pass = 0; pass < passes_ && !queue_.empty() && !report_.cancelled; ++pass) {
       const std::size_t before = changes();
-      threads_.run([this] { work_off(); });
+      work_off();
       if (changes() == before) break;
-      for (Index t = 0; t < complex().size(); ++t) queue(t);
+      queue_all();
     }
     report_.remaining = count_remaining();
     workpiece_.complex.store();
@@ -86,6 +85,16 @@ class Improvement {
     for (Index t = 0; t < complex().size(); ++t)
       count += complex()[t].alive && !complex()[t].collar && quality(t) < wanted_;
     return count;
+  }
+
+  void queue_all() {
+    std::vector<double> qualities(complex().size(), INFINITY);
+    parallel_for(qualities.size(), [&](std::size_t i) {
+      const auto t = static_cast<Index>(i);
+      if (complex()[t].alive && !complex()[t].collar) qualities[t] = quality(t);
+    });
+    for (Index t = 0; t < complex().size(); ++t)
+      if (qualities[t] < wanted_) queue_.push({qualities[t], t, complex()[t].generation});
   }
 
   void queue(Index tet) {
@@ -191,7 +200,6 @@ class Improvement {
   SliverRule rule_;
   tbb::enumerable_thread_specific<Operations> operations_;
   const Execution& execution_;
-  ThreadLimit threads_;
   bool move_vertices_, keep_vertices_;
   double wanted_, radius_edge_;
   unsigned passes_;
@@ -219,7 +227,11 @@ ImproveOptions improve_options(unsigned level) {
 
 ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& options,
                       const Execution& execution) {
-  return improvement::Improvement(mesh, plc, options, execution).run();
+  ImproveReport report;
+  ThreadLimit(options.threads).run([&] {
+    report = improvement::Improvement(mesh, plc, options, execution).run();
+  });
+  return report;
 }
 
 }  // namespace collarmesh

@@ -1,4 +1,5 @@
 #include "improve/tet_complex.h"
+#include "common/parallel_for.h"
 
 #include <algorithm>
 #include <cassert>
@@ -85,7 +86,7 @@ void TetComplex::link_all() {
   std::vector<Side> sides(first.back());
   std::vector<std::size_t> next(first.begin(), first.end() - 1);
   for_all_sides([&](Index smallest, const Side& side) { sides[next[smallest]++] = side; });
-  for (std::size_t v = 0; v + 1 < first.size(); ++v) {
+  parallel_for(first.size() - 1, [&](std::size_t v) {
     const auto all = std::span(sides).subspan(first[v], first[v + 1] - first[v]);
     std::sort(all.begin(), all.end(),
               [](const Side& a, const Side& b) { return a.other_corners < b.other_corners; });
@@ -105,7 +106,7 @@ void TetComplex::link_all() {
         tet.neighbours[of_tets[s]->corner] = of_tets[1 - s] == nullptr ? none : of_tets[1 - s]->cell;
       }
     }
-  }
+  });
 }
 
 // Bodies touch in vertices and curves of the complex only.
