@@ -2,6 +2,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include <algorithm>
 #include <chrono>
 #include <numbers>
 #include <queue>
@@ -53,7 +54,9 @@ class Improvement {
       if (changes() == before) break;
       queue_all();
     }
-    report_.remaining = count_remaining();
+    const std::vector<double> all = qualities();
+    report_.remaining = static_cast<std::size_t>(
+        std::count_if(all.begin(), all.end(), [this](double q) { return q < wanted_; }));
     workpiece_.complex.store();
     if (!thin_.empty()) mark_thin_tets(workpiece_.complex.mesh(), radius_edge_);
     report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
@@ -80,21 +83,20 @@ class Improvement {
            report_.inserted_vertices + report_.contracted_edges;
   }
 
-  std::size_t count_remaining() const {
-    std::size_t count = 0;
-    for (Index t = 0; t < complex().size(); ++t)
-      count += complex()[t].alive && !complex()[t].collar && quality(t) < wanted_;
-    return count;
+  // Infinite for what is not to be improved.
+  std::vector<double> qualities() const {
+    std::vector<double> all(complex().size(), INFINITY);
+    parallel_for(all.size(), [&](std::size_t i) {
+      const auto t = static_cast<Index>(i);
+      if (complex()[t].alive && !complex()[t].collar) all[t] = quality(t);
+    });
+    return all;
   }
 
   void queue_all() {
-    std::vector<double> qualities(complex().size(), INFINITY);
-    parallel_for(qualities.size(), [&](std::size_t i) {
-      const auto t = static_cast<Index>(i);
-      if (complex()[t].alive && !complex()[t].collar) qualities[t] = quality(t);
-    });
+    const std::vector<double> all = qualities();
     for (Index t = 0; t < complex().size(); ++t)
-      if (qualities[t] < wanted_) queue_.push({qualities[t], t, complex()[t].generation});
+      if (all[t] < wanted_) queue_.push({all[t], t, complex()[t].generation});
   }
 
   void queue(Index tet) {
