@@ -7,5 +7,5 @@ find_package_handle_standard_args(LibDeflate REQUIRED_VARS LibDeflate_LIBRARY Li
 if(LibDeflate_FOUND AND NOT TARGET LibDeflate::LibDeflate)
   add_library(LibDeflate::LibDeflate UNKNOWN IMPORTED)
   set_target_properties(LibDeflate::LibDeflate PROPERTIES
-    IMPORTED_LOCATION ${LibDeflate_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${LibDeflate_INCLUDE_DIR})
+    IMPORTED_LOCATION "${LibDeflate_LIBRARY}" INTERFACE_INCLUDE_DIRECTORIES "${LibDeflate_INCLUDE_DIR}")
 endif()

@@ -86,7 +86,7 @@ Clock::rep from_now(double seconds) {
       .count();
 }
 
-/// Blocks SIGCHLD while it lives, so that the end of a child can be waited for without polling.
+/// Blocks SIGCHLD while it lives, so that the end of a child can be waited for.
 class ChildSignal {
  public:
   ChildSignal() {
@@ -99,7 +99,7 @@ class ChildSignal {
   ChildSignal& operator=(const ChildSignal&) = delete;
 
   void unblock() const { sigprocmask(SIG_SETMASK, &before_, nullptr); }
-  /// Until a child ends, another signal comes or the time is over.
+  /// Until a child ends, another signal comes or the time, less than a second, is over.
   void wait(std::chrono::nanoseconds time) const {
     const timespec most{0, time.count()};
     sigtimedwait(&signal_, nullptr, &most);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "coarsen/proposals.h"
 #include "coarsen/target_sizes.h"
@@ -247,14 +248,14 @@ class Coarsening {
   bool improve_once() {
     rule_.set_mode(Mode::final);
     using Poor = std::pair<double, Index>;
-    std::vector<double> qualities(complex().size(), INFINITY);
-    parallel_for(qualities.size(), [&](std::size_t i) {
+    std::vector<double> asked(complex().size(), INFINITY);
+    parallel_for(asked.size(), [&](std::size_t i) {
       const auto t = static_cast<Index>(i);
-      if (complex()[t].alive && changed_since(t, last_sweep_)) qualities[t] = quality(t);
+      if (complex()[t].alive && changed_since(t, last_sweep_)) asked[t] = quality(t);
     });
     std::vector<Poor> poor;
     for (Index t = 0; t < complex().size(); ++t)
-      if (qualities[t] < improved_below) poor.emplace_back(qualities[t], t);
+      if (asked[t] < improved_below) poor.emplace_back(asked[t], t);
     std::sort(poor.begin(), poor.end());
     last_sweep_ = ++clock_;
     bool any = false;

@@ -1,8 +1,9 @@
 #include "improve/tet_complex.h"
-#include "common/parallel_for.h"
 
 #include <algorithm>
 #include <cassert>
+
+#include "common/parallel_for.h"
 
 namespace collarmesh::improvement {
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 
+#include "collarmesh/usable_threads.h"
 #include "common/parallel_for.h"
 #include "io/cell_nodes.h"
 #include "io/cell_partitions.h"
@@ -119,6 +120,7 @@ float finite(double value) {
 void add_measures(const TetMesh& mesh, std::vector<VtkArray>& arrays) {
   std::array<std::vector<float>, 3> values;
   for (std::vector<float>& v : values) v.resize(cell_count(mesh), 0.0F);
+  keep_to_usable_threads();
   parallel_for(mesh.tets.size(), [&](std::size_t t) {
     const auto& [a, b, c, d] = mesh.tets[t];
     const TetQuality quality = measure(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]);

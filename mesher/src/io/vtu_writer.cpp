@@ -1,7 +1,6 @@
 // VTK's XML format for unstructured grids: appended arrays, compressed in blocks, base64. Headers
 // are UInt64. See "VTK File Formats" (VTK User's Guide) and vtkXMLDataReader. What the arrays are:
 // vtk_grid.h. The cells are the tets; faces and edges are in FieldData.
-#include <tbb/task_arena.h>
 
 #include <bit>
 #include <span>
@@ -85,8 +84,7 @@ void encode(std::span<const std::string> blocks, DataArray& array) {
 
 /// Make the text of all arrays.
 void encode(std::span<Section> sections) {
-  // Counting the threads that there can be keeps TBB to them.
-  if (tbb::this_task_arena::max_concurrency() > 1) static_cast<void>(usable_threads());
+  keep_to_usable_threads();
   std::vector<DataArray*> arrays;
   std::vector<std::size_t> first{0};  // block of each array, and the end
   std::vector<std::string_view> bytes;

@@ -11,6 +11,7 @@ namespace collarmesh::io {
 std::string zlib_pack(std::string_view bytes, int level);
 
 /// Appends what was compressed, which is `size` bytes. False where it is not, or where it is damaged.
+/// Throws std::bad_alloc.
 bool zlib_unpack(std::string_view packed, std::size_t size, std::string& bytes);
 
 }  // namespace collarmesh::io
