@@ -149,17 +149,18 @@ TEST(GradedSize, IsTheLeastOfItsSources) {
   std::vector<GradedSize::Source> sources;
   for (int i = 0; i < 50; ++i) {
     const Point p{std::sin(7.0 * i), std::sin(11.0 * i), std::sin(13.0 * i)};
-    sources.push_back({{p, p, p}, 0.1 + 0.01 * (i % 7)});
+    sources.push_back({{p, p, p}, 0.1 + 0.01 * (i % 7), 0.2 + 0.3 * (i % 3)});
   }
-  const GradedSize sizes(sources, 0.5);
+  const GradedSize sizes(sources);
+  EXPECT_DOUBLE_EQ(sizes.growth(), 0.8);
   for (int i = 0; i < 50; ++i) {
     const Point p{2 * std::cos(3.0 * i), 2 * std::cos(5.0 * i), 2 * std::cos(17.0 * i)};
     double least = 0.6;
     for (const auto& source : sources)
-      least = std::min(least, source.size + 0.5 * distance(p, source.corners[0]));
+      least = std::min(least, source.size + source.growth * distance(p, source.corners[0]));
     EXPECT_DOUBLE_EQ(sizes.at(p, 0.6), least);
   }
-  EXPECT_DOUBLE_EQ(GradedSize({}, 1).at({0, 0, 0}, 3), 3);
+  EXPECT_DOUBLE_EQ(GradedSize({}).at({0, 0, 0}, 3), 3);
 }
 
 TEST(SolidAngles, OfABox) {

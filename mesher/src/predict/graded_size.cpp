@@ -14,23 +14,25 @@ Point centre(const GradedSize::Source& s) { return (s.corners[0] + s.corners[1] 
 
 }  // namespace
 
-GradedSize::GradedSize(std::vector<Source> sources, double growth)
-    : growth_(growth), sources_(std::move(sources)) {
+GradedSize::GradedSize(std::vector<Source> sources) : sources_(std::move(sources)) {
+  for (const Source& source : sources_) growth_ = std::max(growth_, source.growth);
   if (!sources_.empty()) build(0, static_cast<Index>(sources_.size()));
 }
 
 Index GradedSize::build(Index first, Index last) {
   const auto node = static_cast<Index>(nodes_.size());
-  nodes_.push_back({{}, INFINITY, first, last - first});
+  nodes_.push_back({{}, INFINITY, INFINITY, first, last - first});
   Box box, centres;
-  double least = INFINITY;
+  double least = INFINITY, growth = INFINITY;
   for (Index i = first; i < last; ++i) {
     for (const Point& p : sources_[i].corners) box.add(p);
     centres.add(centre(sources_[i]));
     least = std::min(least, sources_[i].size);
+    growth = std::min(growth, sources_[i].growth);
   }
   nodes_[node].box = box;
   nodes_[node].least = least;
+  nodes_[node].growth = growth;
   if (last - first <= leaf_size) return node;
   const Vector extent = centres.max - centres.min;
   const std::size_t axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
@@ -49,7 +51,7 @@ double GradedSize::at(const Point& p, double largest) const {
   if (nodes_.empty()) return size;
   const auto lowest = [&](Index node) {
     const Node& n = nodes_[node];
-    return n.least >= size ? n.least : n.least + growth_ * std::sqrt(squared_distance_to_box(p, n.box));
+    return n.least >= size ? n.least : n.least + n.growth * std::sqrt(squared_distance_to_box(p, n.box));
   };
   // Of halves: as deep as there are bits in an index.
   std::array<std::pair<Index, double>, 8 * sizeof(Index) + 2> stack;
@@ -60,10 +62,10 @@ double GradedSize::at(const Point& p, double largest) const {
     if (low >= size) continue;
     const Node& n = nodes_[node];
     for (Index i = n.first; i < n.first + n.count; ++i) {
-      const auto& [a, b, c] = sources_[i].corners;
-      const double far = size - sources_[i].size;
-      if (far <= 0) continue;
-      size = std::min(size, sources_[i].size + growth_ * std::sqrt(squared_distance_to_triangle(p, a, b, c)));
+      const auto& [corners, least, growth] = sources_[i];
+      const auto& [a, b, c] = corners;
+      if (least >= size) continue;
+      size = std::min(size, least + growth * std::sqrt(squared_distance_to_triangle(p, a, b, c)));
     }
     if (n.count > 0) continue;
     const std::pair<Index, double> left{node + 1, lowest(node + 1)}, right{n.first, lowest(n.first)};

@@ -8,18 +8,20 @@
 namespace collarmesh::prediction {
 
 /// Small edges make what is near them small: the edge length at any point is the least of what some sources
-/// ask for, which grows by so much per unit length away from them.
+/// ask for, which grows away from them.
 class GradedSize {
  public:
   /// A point, segment or triangle (corners may be equal) with its edge length.
   struct Source {
     std::array<Point, 3> corners;
     double size;
+    double growth;  // per unit length
   };
 
   /// Cost: O(n log n).
-  GradedSize(std::vector<Source> sources, double growth);
+  explicit GradedSize(std::vector<Source> sources);
 
+  /// The largest.
   double growth() const { return growth_; }
   /// At most `largest`.
   double at(const Point& p, double largest) const;
@@ -28,13 +30,14 @@ class GradedSize {
   struct Node {
     Box box;
     double least;        // size below
+    double growth;       // the least below
     Index first, count;  // sources; count 0: the children are the next node and `first`
   };
   static constexpr Index leaf_size = 4;
 
   Index build(Index first, Index last);
 
-  double growth_;
+  double growth_ = 0;
   std::vector<Source> sources_;
   std::vector<Node> nodes_;
 };

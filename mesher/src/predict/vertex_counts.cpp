@@ -31,7 +31,7 @@ class Counter {
         model_(model),
         sizing_(plc_, options, Frame()),
         pieces_(pieces_of_curves()),
-        sizes_(sources(), growth()) {}
+        sizes_(sources()) {}
 
   double run() {
     for (const double share : shape_.angles().of_vertex) add(1, share);
@@ -64,10 +64,10 @@ class Counter {
       tets_ += model_.tets_per_vertex * share * vertices;
   }
 
-  double growth() const {
+  double growth(double by_model) const {
     constexpr double growth_in_gaps = 0.25;  // as in coarsen/target_sizes.cpp
     if (options_.gradation > 0) return options_.gradation;
-    return options_.elements_across_gap > 0 ? growth_in_gaps : model_.growth;
+    return options_.elements_across_gap > 0 ? growth_in_gaps : by_model;
   }
 
   /// The longest chord of a circle of this radius that is near enough to it.
@@ -136,7 +136,9 @@ class Counter {
       double edges = 0;
       for (const auto& [a, b, size] : pieces_[c]) edges += distance(a, b) / (model_.edge * size);
       const double stretch = edges / whole(c, edges);
-      for (const auto& [a, b, size] : pieces_[c]) all.push_back({{a, b, b}, stretch * size});
+      const bool asked = options_.curve_size.contains(plc_.curves[c].tag);
+      const double grows = growth(asked ? model_.asked_growth : model_.growth);
+      for (const auto& [a, b, size] : pieces_[c]) all.push_back({{a, b, b}, stretch * size, grows});
     }
     for (Index t = 0; t < plc_.triangles.size(); ++t) {
       const auto corners = shape_.corners(t);
@@ -144,7 +146,7 @@ class Counter {
       double size = size_across(t, centre);
       if (options_.elements_across_gap > 0)
         size = std::min(size, sizing_.gap_size(shape_.wall_width(centre, t, sizing_.widest_gap(size))));
-      if (size < sizing_.default_size(centre)) all.push_back({corners, size});
+      if (size < sizing_.default_size(centre)) all.push_back({corners, size, growth(model_.growth)});
     }
     return all;
   }

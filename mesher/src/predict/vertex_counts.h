@@ -7,14 +7,15 @@ namespace collarmesh::prediction {
 
 /// What the predictions were fitted to (bench/predicted_elements.py). Lengths are in target edge lengths.
 struct Model {
-  double edge = 1.08;          ///< length of an edge on a curve
+  double edge = 1.04;          ///< length of an edge on a curve
   double area = 0.65;          ///< of a patch to a vertex
   double volume = 0.61;        ///< of a region to a vertex
-  double growth = 1.4;         ///< of edges per unit length, away from small ones
+  double growth = 2;           ///< of edges per unit length, away from small ones
+  double asked_growth = 1;     ///< the same, away from curves with sizes of their own
   double chord = 1.15;         ///< the share of the distance tolerance that chords are off
   double aspect = 3;           ///< the largest ratio of edges along and across a curved patch
   double wall = 8.7;           ///< the largest ratio of edges to the width of a wall
-  double strip = 9;            ///< the same of edges on curves to the width of a strip of surface
+  double strip = 7;            ///< the same of edges on curves to the width of a strip of surface
   double border_from = 0.4;    ///< no vertex on a patch is nearer to its border
   double border_to = 0.8;      ///< vertices on a patch are as dense beyond as far away from the border
   double depth_from = 0.3;     ///< the same inside regions
@@ -27,6 +28,7 @@ inline Model model_of_refinement() {
   Model model;
   model.wall = model.strip = 1.2;
   model.growth = 0.8;
+  model.edge = 1.08;
   return model;
 }
 
