@@ -6,7 +6,4 @@ namespace collarmesh {
 /// once, and TBB kept to it: it ends the program where a thread that it wants cannot be made.
 int usable_threads();
 
-/// For parallel parts that nothing may have limited: what that does to TBB, unless they have one thread.
-void keep_to_usable_threads();
-
 }  // namespace collarmesh

@@ -73,8 +73,4 @@ int usable_threads() {
   return threads.count();
 }
 
-void keep_to_usable_threads() {
-  if (tbb::this_task_arena::max_concurrency() > 1) usable_threads();
-}
-
 }  // namespace collarmesh

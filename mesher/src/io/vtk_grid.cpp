@@ -7,8 +7,6 @@
 #include <limits>
 #include <span>
 
-#include "collarmesh/usable_threads.h"
-#include "common/parallel_for.h"
 #include "io/cell_nodes.h"
 #include "io/cell_partitions.h"
 #include "io/complete_mesh.h"
@@ -119,17 +117,16 @@ float finite(double value) {
 
 void add_measures(const TetMesh& mesh, std::vector<VtkArray>& arrays) {
   std::array<std::vector<float>, 3> values;
-  for (std::vector<float>& v : values) v.resize(cell_count(mesh), 0.0F);
-  keep_to_usable_threads();
-  parallel_for(mesh.tets.size(), [&](std::size_t t) {
-    const auto& [a, b, c, d] = mesh.tets[t];
+  for (std::vector<float>& v : values) v.reserve(cell_count(mesh));
+  for (const auto& [a, b, c, d] : mesh.tets) {
     const TetQuality quality = measure(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]);
-    values[0][t] = finite(quality.radius_edge);
-    values[1][t] = finite(quality.min_dihedral);
-    values[2][t] = finite(quality.max_dihedral);
-  });
+    values[0].push_back(finite(quality.radius_edge));
+    values[1].push_back(finite(quality.min_dihedral));
+    values[2].push_back(finite(quality.max_dihedral));
+  }
   constexpr std::array<std::string_view, 3> names{"radius_edge", "min_dihedral", "max_dihedral"};
   for (std::size_t k = 0; k < names.size(); ++k) {
+    values[k].resize(cell_count(mesh), 0.0F);
     arrays.push_back({std::string(names[k]), std::move(values[k])});
   }
 }

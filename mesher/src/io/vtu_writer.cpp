@@ -2,6 +2,8 @@
 // are UInt64. See "VTK File Formats" (VTK User's Guide) and vtkXMLDataReader. What the arrays are:
 // vtk_grid.h. The cells are the tets; faces and edges are in FieldData.
 
+#include <tbb/task_arena.h>
+
 #include <bit>
 #include <span>
 #include <string>
@@ -21,7 +23,7 @@ namespace collarmesh::io {
 
 namespace {
 
-constexpr int fastest = 1;  // of zlib_pack's levels
+constexpr int fastest = 1;                    // of zlib_pack's levels
 constexpr std::size_t block_bytes = 1 << 18;  // a multiple of every value's size, as some readers ask
 
 template <class T>
@@ -84,7 +86,8 @@ void encode(std::span<const std::string> blocks, DataArray& array) {
 
 /// Make the text of all arrays.
 void encode(std::span<Section> sections) {
-  keep_to_usable_threads();
+  // Counting the threads that there can be keeps TBB to them.
+  if (tbb::this_task_arena::max_concurrency() > 1) static_cast<void>(usable_threads());
   std::vector<DataArray*> arrays;
   std::vector<std::size_t> first{0};  // block of each array, and the end
   std::vector<std::string_view> bytes;
