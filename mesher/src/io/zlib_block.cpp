@@ -37,9 +37,9 @@ libdeflate_decompressor* decompressor() {
 
 std::string zlib_pack(std::string_view bytes, int level) {
   libdeflate_compressor* const with = compressor(level);
-  std::string packed(libdeflate_zlib_compress_bound(with, bytes.size()), '\0');
-  packed.resize(libdeflate_zlib_compress(with, bytes.data(), bytes.size(), packed.data(), packed.size()));
-  return packed;
+  const std::size_t most = libdeflate_zlib_compress_bound(with, bytes.size());
+  const auto packed = std::make_unique_for_overwrite<char[]>(most);
+  return {packed.get(), libdeflate_zlib_compress(with, bytes.data(), bytes.size(), packed.get(), most)};
 }
 
 bool zlib_unpack(std::string_view packed, std::size_t size, std::string& bytes) {
