@@ -203,7 +203,7 @@ TEST(Coarsen, SizesByTagHold) {
 TEST(CoarsenCheck, JudgesThinTetsByTheirAngles) {
   auto [meshed, report] = coarsened({"plate", {plate()}, 10, 0, 8, 1270});
   TetMesh& mesh = meshed.result.mesh;
-  ASSERT_GT(report.thin_tets, 0U);
+  ASSERT_GT(meshed.report.thin_tets, 0U);
   EXPECT_EQ(meshed.report.thin_tets,
             static_cast<std::size_t>(std::count(mesh.tet_thin.begin(), mesh.tet_thin.end(), 1)));
   const auto kinds = [&](const CheckOptions& options) {

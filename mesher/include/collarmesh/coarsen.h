@@ -24,7 +24,6 @@ struct CoarsenReport {
   std::size_t tets_before = 0, tets_after = 0;
   std::size_t contracted_edges = 0;  ///< with those repaired
   std::size_t repaired = 0;          ///< of these, those that needed changes of the tets around
-  std::size_t thin_tets = 0;         ///< that exceed the radius-edge bound now
   double seconds = 0;
   bool cancelled = false;  ///< the mesh is valid, as coarse as it had become
 };

@@ -1,9 +1,9 @@
 // Measures of tetrahedra.
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "collarmesh/tet_mesh.h"
@@ -50,7 +50,7 @@ struct Measures {
 int exponent_of_size(const Point& a, const Point& b, const Point& c, const Point& d) {
   double largest = 0;
   for (const Point& p : {b, c, d})
-    for (std::size_t axis = 0; axis < 3; ++axis) largest = std::fmax(largest, std::fabs(p[axis] - a[axis]));
+    for (std::size_t axis = 0; axis < 3; ++axis) largest = std::max(largest, std::fabs(p[axis] - a[axis]));
   const bool in_range = largest > 0x1p-64 && largest < 0x1p64;
   return largest > 0 && !in_range ? std::clamp(std::ilogb(largest), -1000, 1000) : 0;
 }
@@ -131,14 +131,13 @@ double median_edge(const TetMesh& mesh) {
   std::vector<Index> ends(6 * mesh.tets.size());
   for_each_edge([&](Index smaller, Index larger) { ends[next[smaller]++] = larger; });
   std::vector<double> lengths;
+  std::vector<Index> seen_from(mesh.points.size(), none);
   auto first = ends.begin();
-  for (std::size_t i = 0; i + 1 < next.size(); ++i) {  // next[i] is the end of the group now
-    const auto last = ends.begin() + static_cast<std::ptrdiff_t>(next[i]);
-    std::sort(first, last);
-    const auto distinct = std::unique(first, last);
-    std::transform(first, distinct, std::back_inserter(lengths),
-                   [&](Index end) { return distance(mesh.points[i], mesh.points[end]); });
-    first = last;
+  for (Index smaller = 0; smaller < mesh.points.size(); ++smaller) {
+    const auto last = ends.begin() + static_cast<std::ptrdiff_t>(next[smaller]);  // of the group, by now
+    for (; first != last; ++first)
+      if (std::exchange(seen_from[*first], smaller) != smaller)
+        lengths.push_back(distance(mesh.points[smaller], mesh.points[*first]));
   }
   if (lengths.empty()) return 0;
   const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "coarsen/coarsen_workpiece.h"
 #include "coarsen/proposals.h"
 #include "coarsen/target_sizes.h"
 #include "collarmesh/error.h"
@@ -43,20 +44,17 @@ constexpr std::size_t most_proposals = 1024, items_per_proposal = 16;
 /// changed meanwhile, it is made again. So the result is the one that a single thread makes.
 class Coarsening {
  public:
-  Coarsening(TetMesh& mesh, const Plc& plc, const MeshOptions& made_with, const CoarsenOptions& options,
+  Coarsening(Workpiece& workpiece, const MeshOptions& made_with, const CoarsenOptions& options,
              const Execution& execution)
-      : workpiece_(mesh, plc,
-                   made_with.distance > 0 ? made_with.distance
-                                          : default_distance(made_with.size, plc.bounds.diagonal()),
-                   made_with.edges_per_hole),
+      : workpiece_(workpiece),
         radius_edge_(made_with.radius_edge),
-        sizes_(target_sizes(mesh, plc, sizes_asked_for(made_with))),
-        thin_(plc, mesh, options.thin_angle, options.reserve),
+        sizes_(target_sizes(mesh(), workpiece.plc, sizes_asked_for(made_with))),
+        thin_(workpiece.plc, mesh(), options.thin_angle, options.reserve),
         rule_(thin_, made_with.radius_edge, sizes_),
         proposer_(workpiece_, thin_, radius_edge_, sizes_),
         proposers_([this] { return Proposer(workpiece_, thin_, radius_edge_, sizes_); }),
         execution_(execution),
-        changed_(mesh.points.size(), 0) {}
+        changed_(mesh().points.size(), 0) {}
 
   // Holes stay round all the same.
   static MeshOptions sizes_asked_for(MeshOptions options) {
@@ -79,7 +77,7 @@ class Coarsening {
         if (!contract_all(true)) break;
       if (!worthwhile(before)) break;
     }
-    store();
+    finish();
     report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return report_;
   }
@@ -318,20 +316,16 @@ class Coarsening {
         for (const Index v : complex()[t].corners) changed_[v] = clock_;
   }
 
-  void store() {
-    TetMesh& mesh = workpiece_.complex.mesh();
-    mesh.collar_balls.clear();  // their cells are not what they were
+  void finish() {
+    workpiece_.complex.mesh().collar_balls.clear();  // their cells are not what they were
     for (Index t = 0; t < complex().size(); ++t)
       if (complex()[t].alive && complex()[t].collar &&
           rule_.keeps_guarantee(complex().corners(t), quality(t)))
         workpiece_.complex.dissolve(t);
-    workpiece_.complex.store();
-    improvement::mark_thin_tets(mesh, radius_edge_);
-    report_.tets_after = mesh.tets.size();
-    report_.thin_tets = static_cast<std::size_t>(std::count(mesh.tet_thin.begin(), mesh.tet_thin.end(), 1));
+    report_.tets_after = tets_;
   }
 
-  Workpiece workpiece_;
+  Workpiece& workpiece_;
   double radius_edge_;
   std::vector<double> sizes_;
   ThinShape thin_;
@@ -353,7 +347,7 @@ class Coarsening {
 }  // namespace
 }  // namespace coarsening
 
-CoarsenReport coarsen(TetMesh& mesh, const Plc& plc, const MeshOptions& made_with,
+CoarsenReport coarsen(improvement::Workpiece& workpiece, const MeshOptions& made_with,
                       const CoarsenOptions& options, const Execution& execution) {
   if (!(options.thin_angle > 0 && options.thin_angle <= 30))
     throw OptionError("the smallest angle of thin tetrahedra must be above 0 and at most 30 degrees");
@@ -361,8 +355,22 @@ CoarsenReport coarsen(TetMesh& mesh, const Plc& plc, const MeshOptions& made_wit
     throw OptionError("the reserve of angles must be from 0 to 0.5");
   CoarsenReport report;
   ThreadLimit(options.threads).run([&] {
-    report = coarsening::Coarsening(mesh, plc, made_with, options, execution).run();
+    report = coarsening::Coarsening(workpiece, made_with, options, execution).run();
   });
+  return report;
+}
+
+CoarsenReport coarsen(TetMesh& mesh, const Plc& plc, const MeshOptions& made_with,
+                      const CoarsenOptions& options, const Execution& execution) {
+  const double distance =
+      made_with.distance > 0 ? made_with.distance : default_distance(made_with.size, plc.bounds.diagonal());
+  CoarsenReport report;
+  ThreadLimit(options.threads).run([&] {
+    improvement::Workpiece workpiece(mesh, plc, distance, made_with.edges_per_hole);
+    report = coarsen(workpiece, made_with, options, execution);
+    workpiece.complex.store();
+  });
+  improvement::mark_thin_tets(mesh, made_with.radius_edge);
   return report;
 }
 

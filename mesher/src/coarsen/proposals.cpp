@@ -92,7 +92,8 @@ bool Proposer::lengths_fit(Index vertex, Index onto) {
     if (!contains(v, onto)) continue;
     for (const Index w : v) stamps_[w] = stamp_;
   }
-  return std::all_of(neighbours_.begin(), neighbours_.end(), [&](const Neighbour& n) {
+  // The farthest neighbours rule out most.
+  return std::all_of(neighbours_.rbegin(), neighbours_.rend(), [&](const Neighbour& n) {
     if (stamps_[n.vertex] == stamp_) return true;
     const double after = squared_distance(points()[onto], points()[n.vertex]);
     return after >= shortest_ * shortest_ &&

@@ -11,6 +11,7 @@
 #include "collarmesh/error.h"
 #include "collarmesh/mesher.h"
 #include "common/parallel_for.h"
+#include "improve/improve_workpiece.h"
 #include "improve/operations.h"
 #include "thread_limit.h"
 
@@ -31,18 +32,15 @@ constexpr std::size_t steps_between_reports = 1024;
 /// does not depend on the number of threads.
 class Improvement {
  public:
-  Improvement(TetMesh& mesh, const Plc& plc, const ImproveOptions& options, const Execution& execution)
-      : workpiece_(mesh, plc,
-                   options.distance > 0 ? options.distance : default_distance(0, plc.bounds.diagonal()),
-                   options.edges_per_hole),
-        thin_(plc, mesh, options.thin_angle, options.thin_reserve),
+  Improvement(Workpiece& workpiece, const ImproveOptions& options, const Execution& execution)
+      : workpiece_(workpiece),
+        thin_(workpiece.plc, complex().mesh(), options.thin_angle, options.thin_reserve),
         rule_(options.radius_edge, options.thin_angle > 0 ? &thin_ : nullptr),
         operations_([this] { return Operations(workpiece_, rule_); }),
         execution_(execution),
         move_vertices_(options.move_vertices),
         keep_vertices_(options.keep_vertices),
         wanted_(std::sin(options.min_dihedral * std::numbers::pi / 180)),
-        radius_edge_(options.radius_edge),
         passes_(options.passes) {}
 
   ImproveReport run() {
@@ -58,8 +56,6 @@ class Improvement {
     const std::vector<double> all = qualities();
     report_.remaining = static_cast<std::size_t>(
         std::count_if(all.begin(), all.end(), [this](double q) { return q < wanted_; }));
-    workpiece_.complex.store();
-    if (!thin_.empty()) mark_thin_tets(workpiece_.complex.mesh(), radius_edge_);
     report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return report_;
   }
@@ -198,13 +194,13 @@ class Improvement {
     }
   }
 
-  Workpiece workpiece_;
+  Workpiece& workpiece_;
   ThinShape thin_;
   SliverRule rule_;
   tbb::enumerable_thread_specific<Operations> operations_;
   const Execution& execution_;
   bool move_vertices_, keep_vertices_;
-  double wanted_, radius_edge_;
+  double wanted_;
   unsigned passes_;
   std::priority_queue<Item> queue_;
   std::vector<Item> batch_;
@@ -228,12 +224,26 @@ ImproveOptions improve_options(unsigned level) {
   return options;
 }
 
-ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& options,
+ImproveReport improve(improvement::Workpiece& workpiece, const ImproveOptions& options,
                       const Execution& execution) {
   ImproveReport report;
   ThreadLimit(options.threads).run([&] {
-    report = improvement::Improvement(mesh, plc, options, execution).run();
+    report = improvement::Improvement(workpiece, options, execution).run();
   });
+  return report;
+}
+
+ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& options,
+                      const Execution& execution) {
+  const double distance =
+      options.distance > 0 ? options.distance : default_distance(0, plc.bounds.diagonal());
+  ImproveReport report;
+  ThreadLimit(options.threads).run([&] {
+    improvement::Workpiece workpiece(mesh, plc, distance, options.edges_per_hole);
+    report = improve(workpiece, options, execution);
+    workpiece.complex.store();
+  });
+  if (options.thin_angle > 0) improvement::mark_thin_tets(mesh, options.radius_edge);
   return report;
 }
 

@@ -25,22 +25,26 @@ std::uint32_t byte(char c) { return static_cast<unsigned char>(c); }
 
 std::string base64_encode(std::string_view bytes) {
   std::string text(base64_size(bytes.size()), '=');
-  char* out = text.data();
+  base64_encode(bytes, text.data());
+  return text;
+}
+
+void base64_encode(std::string_view bytes, char* text) {
   std::size_t i = 0;
   for (; i + 2 < bytes.size(); i += 3) {
     const std::uint32_t group = byte(bytes[i]) << 16 | byte(bytes[i + 1]) << 8 | byte(bytes[i + 2]);
-    *out++ = alphabet[group >> 18];
-    *out++ = alphabet[group >> 12 & 63];
-    *out++ = alphabet[group >> 6 & 63];
-    *out++ = alphabet[group & 63];
+    *text++ = alphabet[group >> 18];
+    *text++ = alphabet[group >> 12 & 63];
+    *text++ = alphabet[group >> 6 & 63];
+    *text++ = alphabet[group & 63];
   }
-  if (i == bytes.size()) return text;
+  if (i == bytes.size()) return;
   const bool two = i + 1 < bytes.size();
   const std::uint32_t group = byte(bytes[i]) << 16 | (two ? byte(bytes[i + 1]) << 8 : 0);
-  *out++ = alphabet[group >> 18];
-  *out++ = alphabet[group >> 12 & 63];
-  if (two) *out++ = alphabet[group >> 6 & 63];
-  return text;
+  *text++ = alphabet[group >> 18];
+  *text++ = alphabet[group >> 12 & 63];
+  *text++ = two ? alphabet[group >> 6 & 63] : '=';
+  *text = '=';
 }
 
 std::optional<std::string> base64_decode(std::string_view text) {

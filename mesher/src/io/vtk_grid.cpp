@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <deque>
+#include <functional>
 #include <limits>
 #include <span>
 
+#include "common/parallel_for.h"
 #include "io/cell_nodes.h"
 #include "io/cell_partitions.h"
 #include "io/complete_mesh.h"
@@ -35,101 +38,160 @@ std::vector<T> per_cell(const TetMesh& mesh, OfTet of_tet, OfFace of_face, OfEdg
 
 constexpr auto zero = [](std::size_t) { return 0; };
 
-std::vector<double> coordinates(const TetMesh& mesh) {
-  std::vector<double> values;
-  values.reserve(3 * mesh.points.size());
-  for (const Point& p : mesh.points) values.insert(values.end(), {p.x, p.y, p.z});
-  return values;
-}
-
-std::vector<std::int32_t> connectivity(const TetMesh& mesh) {
-  std::vector<std::int32_t> values;
-  const auto add = [&](const CellNodes& nodes) { values.insert(values.end(), nodes.begin(), nodes.end()); };
-  values.reserve(4 * mesh.tets.size() + 3 * mesh.faces.size() + 2 * mesh.edges.size());
-  for (std::size_t i = 0; i < mesh.tets.size(); ++i) add(nodes_of_tet(mesh, i));
-  for (std::size_t i = 0; i < mesh.faces.size(); ++i) add(nodes_of_face(mesh, i));
-  for (std::size_t i = 0; i < mesh.edges.size(); ++i) add(nodes_of_edge(mesh, i));
-  return values;
-}
-
-std::vector<std::int64_t> offsets(const TetMesh& mesh) {
-  std::int64_t end = 0;
-  const bool second = mesh.order() == 2;
-  return per_cell<std::int64_t>(
-      mesh, [&](std::size_t) { return end += second ? 10 : 4; },
-      [&](std::size_t) { return end += second ? 6 : 3; }, [&](std::size_t) { return end += second ? 3 : 2; });
-}
-
-std::vector<std::uint8_t> cell_types(const TetMesh& mesh) {
-  const bool second = mesh.order() == 2;
-  return per_cell<std::uint8_t>(
-      mesh, [=](std::size_t) { return second ? vtk_tet_2 : vtk_tet; },
-      [=](std::size_t) { return second ? vtk_triangle_2 : vtk_triangle; },
-      [=](std::size_t) { return second ? vtk_line_2 : vtk_line; });
-}
-
-std::vector<VtkArray> point_data(const TetMesh& mesh) {
-  if (mesh.features.empty()) return {};
-  std::vector<std::uint8_t> dimension;
-  std::vector<std::int32_t> feature;
-  for (const TetMesh::VertexFeature& f : mesh.features) {
-    dimension.push_back(f.dimension);
-    feature.push_back(static_cast<std::int32_t>(f.feature));
-  }
-  return {{"feature_dimension", std::move(dimension)}, {"feature", std::move(feature)}};
-}
-
-void add_labels(const TetMesh& mesh, std::vector<VtkArray>& arrays) {
-  const auto tet_region = [&](std::size_t i) { return mesh.tet_region[i]; };
-  const auto back = [&](std::size_t i) { return mesh.face_regions[i][0]; };
-  const auto front = [&](std::size_t i) { return mesh.face_regions[i][1]; };
-  const auto either = [&](std::size_t i) { return back(i) != 0 ? back(i) : front(i); };
-  arrays.push_back({"region", per_cell<std::int32_t>(mesh, tet_region, either, zero)});
-  arrays.push_back({"region_back", per_cell<std::int32_t>(mesh, tet_region, back, zero)});
-  arrays.push_back({"region_front", per_cell<std::int32_t>(mesh, tet_region, front, zero)});
-  arrays.push_back({"tag", per_cell<std::int64_t>(
-                               mesh, [&](std::size_t i) { return mesh.tet_tag[i]; },
-                               [&](std::size_t i) { return mesh.face_tag[i]; },
-                               [&](std::size_t i) { return mesh.edge_tag[i]; })});
-  arrays.push_back(
-      {"feature", per_cell<std::int32_t>(
-                      mesh, [](std::size_t) { return -1; }, [&](std::size_t i) { return mesh.face_patch[i]; },
-                      [&](std::size_t i) { return mesh.edge_curve[i]; })});
-  arrays.push_back({"collar", per_cell<std::uint8_t>(
-                                  mesh, [&](std::size_t i) { return mesh.tet_collar[i]; }, zero, zero)});
-  arrays.push_back({"crease", per_cell<std::int64_t>(
-                                  mesh, [&](std::size_t i) { return mesh.tet_crease[i]; }, zero, zero)});
-  if (!mesh.tet_thin.empty())
-    arrays.push_back({"thin", per_cell<std::uint8_t>(
-                                  mesh, [&](std::size_t i) { return mesh.tet_thin[i]; }, zero, zero)});
-  if (mesh.tet_partition.empty()) return;
-  const std::vector<Index> faces = partitions_of_faces(mesh), edges = partitions_of_edges(mesh);
-  arrays.push_back(
-      {"partition", per_cell<std::int32_t>(
-                        mesh, [&](std::size_t i) { return mesh.tet_partition[i]; },
-                        [&](std::size_t i) { return faces[i]; }, [&](std::size_t i) { return edges[i]; })});
-}
-
 /// Programs that read the file do not all take infinity.
 float finite(double value) {
   return static_cast<float>(std::min(value, double{std::numeric_limits<float>::max()}));
 }
 
-void add_measures(const TetMesh& mesh, std::vector<VtkArray>& arrays) {
-  std::array<std::vector<float>, 3> values;
-  for (std::vector<float>& v : values) v.reserve(cell_count(mesh));
-  for (const auto& [a, b, c, d] : mesh.tets) {
-    const TetQuality quality = measure(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]);
-    values[0].push_back(finite(quality.radius_edge));
-    values[1].push_back(finite(quality.min_dihedral));
-    values[2].push_back(finite(quality.max_dihedral));
+/// Makes the arrays of a grid, several at once.
+class GridMaker {
+ public:
+  explicit GridMaker(const TetMesh& mesh) : mesh_(mesh) {
+    grid_.point_count = mesh.points.size();
+    grid_.cell_count = cell_count(mesh);
   }
-  constexpr std::array<std::string_view, 3> names{"radius_edge", "min_dihedral", "max_dihedral"};
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    values[k].resize(cell_count(mesh), 0.0F);
-    arrays.push_back({std::string(names[k]), std::move(values[k])});
+
+  VtkGrid make() {
+    add(grid_.points, "Points", [this] { return coordinates(); });
+    grid_.points.components = 3;
+    add(grid_.connectivity, "connectivity", [this] { return connectivity(); });
+    add(grid_.offsets, "offsets", [this] { return offsets(); });
+    add(grid_.types, "types", [this] { return types(); });
+    add_features();
+    add_labels();
+    add_measures();
+    parallel_for(tasks_.size(), [this](std::size_t i) { tasks_[i](); });
+    for (VtkArray& array : point_data_) grid_.point_data.push_back(std::move(array));
+    for (VtkArray& array : cell_data_) grid_.cell_data.push_back(std::move(array));
+    return std::move(grid_);
   }
-}
+
+ private:
+  static constexpr std::size_t tets_per_task = 1024;
+
+  /// What `values` returns becomes those of the array, which stays where it is.
+  template <class Values>
+  void add(VtkArray& array, std::string_view name, Values values) {
+    array.name = name;
+    tasks_.emplace_back([&array, values] { array.values = values(); });
+  }
+  template <class T, class OfTet, class OfFace, class OfEdge>
+  void add_cell_data(std::string_view name, OfTet of_tet, OfFace of_face, OfEdge of_edge) {
+    add(cell_data_.emplace_back(), name,
+        [this, of_tet, of_face, of_edge] { return per_cell<T>(mesh_, of_tet, of_face, of_edge); });
+  }
+
+  std::vector<double> coordinates() const {
+    std::vector<double> values;
+    values.reserve(3 * mesh_.points.size());
+    for (const Point& p : mesh_.points) values.insert(values.end(), {p.x, p.y, p.z});
+    return values;
+  }
+
+  std::vector<std::int32_t> connectivity() const {
+    std::vector<std::int32_t> values;
+    const auto add_nodes = [&](const CellNodes& nodes) {
+      values.insert(values.end(), nodes.begin(), nodes.end());
+    };
+    values.reserve(4 * mesh_.tets.size() + 3 * mesh_.faces.size() + 2 * mesh_.edges.size());
+    for (std::size_t i = 0; i < mesh_.tets.size(); ++i) add_nodes(nodes_of_tet(mesh_, i));
+    for (std::size_t i = 0; i < mesh_.faces.size(); ++i) add_nodes(nodes_of_face(mesh_, i));
+    for (std::size_t i = 0; i < mesh_.edges.size(); ++i) add_nodes(nodes_of_edge(mesh_, i));
+    return values;
+  }
+
+  std::vector<std::int64_t> offsets() const {
+    std::int64_t end = 0;
+    const bool second = mesh_.order() == 2;
+    return per_cell<std::int64_t>(
+        mesh_, [&](std::size_t) { return end += second ? 10 : 4; },
+        [&](std::size_t) { return end += second ? 6 : 3; },
+        [&](std::size_t) { return end += second ? 3 : 2; });
+  }
+
+  std::vector<std::uint8_t> types() const {
+    const bool second = mesh_.order() == 2;
+    return per_cell<std::uint8_t>(
+        mesh_, [=](std::size_t) { return second ? vtk_tet_2 : vtk_tet; },
+        [=](std::size_t) { return second ? vtk_triangle_2 : vtk_triangle; },
+        [=](std::size_t) { return second ? vtk_line_2 : vtk_line; });
+  }
+
+  void add_features() {
+    if (mesh_.features.empty()) return;
+    add(point_data_.emplace_back(), "feature_dimension", [this] {
+      std::vector<std::uint8_t> dimension;
+      for (const TetMesh::VertexFeature& f : mesh_.features) dimension.push_back(f.dimension);
+      return dimension;
+    });
+    add(point_data_.emplace_back(), "feature", [this] {
+      std::vector<std::int32_t> feature;
+      for (const TetMesh::VertexFeature& f : mesh_.features)
+        feature.push_back(static_cast<std::int32_t>(f.feature));
+      return feature;
+    });
+  }
+
+  void add_labels() {
+    const auto tet_region = [this](std::size_t i) { return mesh_.tet_region[i]; };
+    const auto back = [this](std::size_t i) { return mesh_.face_regions[i][0]; };
+    const auto front = [this](std::size_t i) { return mesh_.face_regions[i][1]; };
+    const auto either = [=](std::size_t i) { return back(i) != 0 ? back(i) : front(i); };
+    add_cell_data<std::int32_t>("region", tet_region, either, zero);
+    add_cell_data<std::int32_t>("region_back", tet_region, back, zero);
+    add_cell_data<std::int32_t>("region_front", tet_region, front, zero);
+    add_cell_data<std::int64_t>(
+        "tag", [this](std::size_t i) { return mesh_.tet_tag[i]; },
+        [this](std::size_t i) { return mesh_.face_tag[i]; },
+        [this](std::size_t i) { return mesh_.edge_tag[i]; });
+    add_cell_data<std::int32_t>(
+        "feature", [](std::size_t) { return -1; }, [this](std::size_t i) { return mesh_.face_patch[i]; },
+        [this](std::size_t i) { return mesh_.edge_curve[i]; });
+    add_cell_data<std::uint8_t>(
+        "collar", [this](std::size_t i) { return mesh_.tet_collar[i]; }, zero, zero);
+    add_cell_data<std::int64_t>(
+        "crease", [this](std::size_t i) { return mesh_.tet_crease[i]; }, zero, zero);
+    if (!mesh_.tet_thin.empty())
+      add_cell_data<std::uint8_t>(
+          "thin", [this](std::size_t i) { return mesh_.tet_thin[i]; }, zero, zero);
+    if (mesh_.tet_partition.empty()) return;
+    add(cell_data_.emplace_back(), "partition", [this] {
+      const std::vector<Index> faces = partitions_of_faces(mesh_), edges = partitions_of_edges(mesh_);
+      return per_cell<std::int32_t>(
+          mesh_, [&](std::size_t i) { return mesh_.tet_partition[i]; },
+          [&](std::size_t i) { return faces[i]; }, [&](std::size_t i) { return edges[i]; });
+    });
+  }
+
+  /// These take longest.
+  void add_measures() {
+    std::array<float*, 3> of_cells{};
+    for (std::size_t k = 0; k < of_cells.size(); ++k) {
+      constexpr std::array<std::string_view, 3> names{"radius_edge", "min_dihedral", "max_dihedral"};
+      VtkArray& array = cell_data_.emplace_back();
+      array.name = names[k];
+      array.values = std::vector<float>(cell_count(mesh_));
+      of_cells[k] = std::get<std::vector<float>>(array.values).data();
+    }
+    for (std::size_t first = 0; first < mesh_.tets.size(); first += tets_per_task)
+      tasks_.emplace_back([this, of_cells, first] {
+        const std::size_t end = std::min(first + tets_per_task, mesh_.tets.size());
+        for (std::size_t i = first; i < end; ++i) {
+          const auto& [a, b, c, d] = mesh_.tets[i];
+          const auto& p = mesh_.points;
+          const TetQuality quality = measure(p[a], p[b], p[c], p[d]);
+          of_cells[0][i] = finite(quality.radius_edge);
+          of_cells[1][i] = finite(quality.min_dihedral);
+          of_cells[2][i] = finite(quality.max_dihedral);
+        }
+      });
+  }
+
+  const TetMesh& mesh_;
+  VtkGrid grid_;
+  std::deque<VtkArray> point_data_, cell_data_;
+  std::vector<std::function<void()>> tasks_;
+};
 
 // Reading
 
@@ -262,19 +324,7 @@ void drop_partial(std::vector<T>& values, std::size_t count) {
 
 }  // namespace
 
-VtkGrid make_vtk_grid(const TetMesh& mesh) {
-  VtkGrid grid;
-  grid.point_count = mesh.points.size();
-  grid.cell_count = cell_count(mesh);
-  grid.points = {"Points", coordinates(mesh), 3};
-  grid.connectivity = {"connectivity", connectivity(mesh)};
-  grid.offsets = {"offsets", offsets(mesh)};
-  grid.types = {"types", cell_types(mesh)};
-  grid.point_data = point_data(mesh);
-  add_labels(mesh, grid.cell_data);
-  add_measures(mesh, grid.cell_data);
-  return grid;
-}
+VtkGrid make_vtk_grid(const TetMesh& mesh) { return GridMaker(mesh).make(); }
 
 std::vector<VtkArray> take_boundary(const TetMesh& mesh, VtkGrid& grid) {
   const std::size_t tets = mesh.tets.size(), corners = tets * (mesh.order() == 2 ? 10 : 4);

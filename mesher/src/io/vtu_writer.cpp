@@ -3,6 +3,7 @@
 // vtk_grid.h. The cells are the tets; faces and edges are in FieldData.
 #include <tbb/task_arena.h>
 
+#include <array>
 #include <bit>
 #include <span>
 #include <string>
@@ -68,25 +69,30 @@ struct Section {
       : name(its_name), arrays(of.begin(), of.end()) {}
 };
 
-void encode(std::span<const std::string> blocks, DataArray& array) {
+/// What of an array a thread turns into text at once.
+struct Piece {
+  DataArray* array;
+  std::string_view bytes;
+  std::size_t first;  // of its characters in the text
+};
+constexpr std::size_t piece_bytes = 3 << 15;  // a multiple of three
+
+void join(std::span<const std::string> blocks, DataArray& array, std::string& joined) {
   std::vector<std::uint64_t> header{blocks.size(), block_bytes, array.bytes.size() % block_bytes};
   std::size_t size = 0;
   for (const std::string& block : blocks) {
     header.push_back(block.size());
     size += block.size();
   }
-  std::string joined;
   joined.reserve(size);
   for (const std::string& block : blocks) joined += block;
   array.header =
       base64_encode({reinterpret_cast<const char*>(header.data()), header.size() * sizeof(std::uint64_t)});
-  array.blocks = base64_encode(joined);
+  array.blocks.resize(base64_size(size));
 }
 
 /// Make the text of all arrays.
 void encode(std::span<Section> sections) {
-  // Counting the threads that there can be keeps TBB to them.
-  if (tbb::this_task_arena::max_concurrency() > 1) static_cast<void>(usable_threads());
   std::vector<DataArray*> arrays;
   std::vector<std::size_t> first{0};  // block of each array, and the end
   std::vector<std::string_view> bytes;
@@ -97,10 +103,18 @@ void encode(std::span<Section> sections) {
         bytes.push_back(array.bytes.substr(i * block_bytes, block_bytes));
       first.push_back(bytes.size());
     }
-  std::vector<std::string> blocks(bytes.size());
+  std::vector<std::string> blocks(bytes.size()), joined(arrays.size());
   parallel_for(blocks.size(), [&](std::size_t i) { blocks[i] = zlib_pack(bytes[i], fastest); });
   parallel_for(arrays.size(), [&](std::size_t i) {
-    encode(std::span(blocks).subspan(first[i], first[i + 1] - first[i]), *arrays[i]);
+    join(std::span(blocks).subspan(first[i], first[i + 1] - first[i]), *arrays[i], joined[i]);
+  });
+  blocks.clear();
+  std::vector<Piece> pieces;
+  for (std::size_t i = 0; i < arrays.size(); ++i)
+    for (std::size_t at = 0; at < joined[i].size(); at += piece_bytes)
+      pieces.push_back({arrays[i], std::string_view(joined[i]).substr(at, piece_bytes), base64_size(at)});
+  parallel_for(pieces.size(), [&](std::size_t i) {
+    base64_encode(pieces[i].bytes, pieces[i].array->blocks.data() + pieces[i].first);
   });
 }
 
@@ -125,6 +139,8 @@ void write_section(FileWriter& out, const Section& section, std::size_t& offset)
 }  // namespace
 
 void write_vtu(const std::string& path, const TetMesh& mesh) {
+  // Counting the threads that there can be keeps TBB to them.
+  if (tbb::this_task_arena::max_concurrency() > 1) static_cast<void>(usable_threads());
   VtkGrid grid = make_vtk_grid(mesh);
   const std::vector<VtkArray> boundary = take_boundary(mesh, grid);
   write_vtu_grid(path, grid, boundary);
@@ -139,8 +155,8 @@ std::string_view vtu_type(const VtkArray& array) {
 void write_vtu_grid(const std::string& path, VtkGrid& grid, const std::vector<VtkArray>& field_data) {
   static_assert(std::endian::native == std::endian::little);
   FileWriter out(path);
-  const std::vector<VtkArray> cells{std::move(grid.connectivity), std::move(grid.offsets),
-                                    std::move(grid.types)};
+  const std::array<VtkArray, 3> cells{std::move(grid.connectivity), std::move(grid.offsets),
+                                      std::move(grid.types)};
   Section sections[] = {{"FieldData", field_data},
                         {"Points", {&grid.points, 1}},
                         {"Cells", cells},

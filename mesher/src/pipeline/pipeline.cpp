@@ -14,11 +14,17 @@
 #include <optional>
 #include <stop_token>
 #include <string_view>
+#include <system_error>
 #include <thread>
 #include <utility>
 
+#include "coarsen/coarsen_workpiece.h"
 #include "collarmesh/error.h"
 #include "collarmesh/partition.h"
+#include "collarmesh/usable_threads.h"
+#include "improve/improve_workpiece.h"
+#include "improve/thin_shape.h"
+#include "thread_limit.h"
 
 namespace collarmesh {
 
@@ -57,6 +63,22 @@ class Deadline {
   std::jthread watcher_;
 };
 
+/// Counts the threads that there can be while refinement, which is alone, runs.
+class ThreadCounter {
+ public:
+  explicit ThreadCounter(unsigned threads) {
+    if (threads == 1) return;
+    try {
+      thread_ = std::jthread([] { usable_threads(); });
+    } catch (const std::system_error&) {
+      // Who needs them counts them.
+    }
+  }
+
+ private:
+  std::jthread thread_;
+};
+
 /// Of facets.
 class SoupSource : public ComplexSource {
  public:
@@ -76,7 +98,8 @@ class SoupSource : public ComplexSource {
 
 class Pipeline {
  public:
-  Pipeline(const PipelineOptions& options, const Execution& execution) : given_(options), outer_(execution) {
+  Pipeline(const PipelineOptions& options, const Execution& execution)
+      : given_(options), outer_(execution), counter_(options.threads) {
     if (options.partitions > 0) require_partitioner();
     if (options.mesh.time_limit > 0) deadline_.emplace(options.mesh.time_limit, execution);
     inner_.cancel = deadline_ ? &deadline_->flag() : execution.cancel;
@@ -246,8 +269,7 @@ class Pipeline {
     bounds_ = bounds_of_refinement();
     bounds_.seed = seed;
     refine();
-    coarsen_elements();
-    improve_elements();
+    reshape();
     project();
     raise_order();
     certify();
@@ -275,30 +297,43 @@ class Pipeline {
     if (result.status == MeshStatus::cancelled || result.status == MeshStatus::budget_hit) throw Ended();
   }
 
-  void coarsen_elements() {
-    if (!options_.coarsen || made_.result.status != MeshStatus::complete) return;
-    begin("coarsen", 0.6, 0.7);
+  /// Coarsening and improvement work on one data structure.
+  void reshape() {
+    if ((!options_.coarsen && options_.improve == 0) || made_.result.status != MeshStatus::complete) return;
+    if (options_.coarsen)
+      begin("coarsen", 0.6, 0.7);
+    else
+      begin("improve", 0.7, 0.8);
+    TetMesh& mesh = made_.result.mesh;
+    ThreadLimit(options_.threads).run([&] {
+      improvement::Workpiece workpiece(mesh, *plc_, bounds_.distance,
+                                       options_.coarsen ? bounds_.edges_per_hole : 0);
+      if (options_.coarsen) coarsen_elements(workpiece);
+      if (options_.improve > 0) improve_elements(workpiece);
+      workpiece.complex.store();
+    });
+    if (options_.coarsen) improvement::mark_thin_tets(mesh, bounds_.radius_edge);
+  }
+
+  void coarsen_elements(improvement::Workpiece& workpiece) {
     made_.coarsening = coarsen(
-        made_.result.mesh, *plc_, bounds_,
+        workpiece, bounds_,
         {.thin_angle = options_.thin_angle, .reserve = reserve(), .threads = options_.threads}, inner_);
     if (made_.coarsening->cancelled) stop();
   }
 
-  void improve_elements() {
-    if (options_.improve == 0 || made_.result.status != MeshStatus::complete) return;
-    begin("improve", 0.7, 0.8);
+  void improve_elements(improvement::Workpiece& workpiece) {
+    if (made_.coarsening) begin("improve", 0.7, 0.8);
     ImproveOptions options = improve_options(options_.improve);
     options.radius_edge = bounds_.radius_edge;
-    options.distance = bounds_.distance;
     options.threads = options_.threads;
     if (made_.coarsening) {
       options.thin_angle = options_.thin_angle;
       options.thin_reserve = reserve();
-      options.edges_per_hole = bounds_.edges_per_hole;
       options.keep_vertices = true;
     }
     if (options_.min_dihedral > 0) options.min_dihedral = options_.min_dihedral;
-    made_.improvement = improve(made_.result.mesh, *plc_, options, inner_);
+    made_.improvement = improve(workpiece, options, inner_);
     if (made_.improvement.cancelled) stop();
   }
 
@@ -384,6 +419,7 @@ class Pipeline {
   std::size_t most_vertices_ = 0;    // in place of the given budget; 0: that
   const Execution& outer_;
   Execution inner_;
+  ThreadCounter counter_;
   std::optional<Deadline> deadline_;
   MeshOptions bounds_;
   const Plc* plc_ = nullptr;

@@ -12,7 +12,7 @@ constexpr double default_sizes_per_diagonal = 20;
 
 double size_of_tag(const std::map<Tag, double>& sizes, Tag tag) {
   const auto found = sizes.find(tag);
-  return found == sizes.end() ? INFINITY : found->second;
+  return found == sizes.end() ? INFINITY : Sizing::edge_per_size * found->second;
 }
 
 }  // namespace
@@ -23,11 +23,12 @@ Sizing::Sizing(const Plc& plc, const MeshOptions& options, const Frame& frame)
       frame_(frame),
       size_min_(options.size_min) {
   if (options.elements_per_circle > 0) curved_ = curvature_sizes(plc, options.elements_per_circle);
-  const double global = options.size > 0 ? options.size : plc.bounds.diagonal() / default_sizes_per_diagonal;
+  const double global =
+      edge_per_size * (options.size > 0 ? options.size : plc.bounds.diagonal() / default_sizes_per_diagonal);
   global_size_ = global;
   for (const Plc::Region& region : plc.regions) {
     double size = std::min(global, size_of_tag(options.region_size, region.tag));
-    if (region.size > 0) size = std::min(size, region.size);
+    if (region.size > 0) size = std::min(size, edge_per_size * region.size);
     region_size_.push_back(std::max(size, size_min_));
     expected_cells_ +=
         region.volume / (0.09 * region_size_.back() * region_size_.back() * region_size_.back());

@@ -8,11 +8,14 @@
 
 namespace collarmesh {
 
-/// Turns the requested target edge lengths into bounds on circumradii.
-/// The factors are measured: with them the median edge of a unit box comes out at the target
-/// (doc/architecture/refinement.md).
+/// Turns the requested sizes into target edge lengths, and these into bounds on circumradii.
+/// The factors are measured (doc/architecture/refinement.md).
 class Sizing {
  public:
+  /// The target edge length where a size is asked for. The median edge of other meshers' meshes exceeds the size
+  /// by more; what is asked for as a number of elements, across a gap or on a circle, is not stretched.
+  static constexpr double edge_per_size = 1.08;
+
   Sizing(const Plc& plc, const MeshOptions& options, const Frame& frame);
 
   /// Largest allowed circumradius of a cell of this region at this point; infinite outside.
@@ -58,7 +61,7 @@ class Sizing {
   static constexpr double subsegment_length_per_edge = 1.3;
 
   double limited(double size, const Point& p) const {
-    return field_ ? std::min(size, std::max(field_(frame_.outside(p)), size_min_)) : size;
+    return field_ ? std::min(size, edge_per_size * std::max(field_(frame_.outside(p)), size_min_)) : size;
   }
 
   double at_least_minimum(double size) const { return std::max(size, size_min_); }

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "collarmesh/coarsen.h"
+#include "improve/workpiece.h"
+
+namespace collarmesh {
+
+/// As `coarsen`, of a mesh whose improvement comes next: the workpiece is not stored, and thin tets are not
+/// marked.
+CoarsenReport coarsen(improvement::Workpiece& workpiece, const MeshOptions& made_with,
+                      const CoarsenOptions& options, const Execution& execution);
+
+}  // namespace collarmesh
