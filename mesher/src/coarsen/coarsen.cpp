@@ -353,11 +353,7 @@ CoarsenReport coarsen(improvement::Workpiece& workpiece, const MeshOptions& made
     throw OptionError("the smallest angle of thin tetrahedra must be above 0 and at most 30 degrees");
   if (!(options.reserve >= 0 && options.reserve <= 0.5))
     throw OptionError("the reserve of angles must be from 0 to 0.5");
-  CoarsenReport report;
-  ThreadLimit(options.threads).run([&] {
-    report = coarsening::Coarsening(workpiece, made_with, options, execution).run();
-  });
-  return report;
+  return coarsening::Coarsening(workpiece, made_with, options, execution).run();
 }
 
 CoarsenReport coarsen(TetMesh& mesh, const Plc& plc, const MeshOptions& made_with,

@@ -26,8 +26,8 @@ Triangulation::Triangulation(const Box& box) {
     vertices_.push_back({p, none, 0, 0});
   }
   for (auto corners : box_cells) {
-    if (predicates::orientation(point(corners[0]), point(corners[1]), point(corners[2]),
-                                point(corners[3])) < 0)
+    if (predicates::orientation(point(corners[0]), point(corners[1]), point(corners[2]), point(corners[3])) <
+        0)
       std::swap(corners[2], corners[3]);
     const Index cell = new_cell();
     cells_[cell] = {corners, {no_face, no_face, no_face, no_face}};
@@ -90,8 +90,7 @@ Triangulation::Sphere Triangulation::circumsphere(const std::array<Index, 4>& co
   Point centre;
   double squared_radius;
   if (det * det < 1e-18 * longest * longest * longest) {
-    centre = predicates::circumcentre_exact(a, point(corners[1]), point(corners[2]),
-                                            point(corners[3]));
+    centre = predicates::circumcentre_exact(a, point(corners[1]), point(corners[2]), point(corners[3]));
     squared_radius = squared_distance(centre, a);
   } else {
     const Vector offset = (ww * cross(u, v) + vv * cross(w, u) + uu * vw) / (2 * det);
@@ -104,6 +103,17 @@ Triangulation::Sphere Triangulation::circumsphere(const std::array<Index, 4>& co
   const double d = k * (r + std::sqrt(longest)) + 2 * e * largest + 4 * e * r;
   const double relative = d / r;
   return {centre, squared_radius, 2.83 * relative + 2 * relative * relative + 8 * e};
+}
+
+// What the search reads when it goes on from a cell of the zone.
+void Triangulation::prefetch_neighbours(Index cell) const {
+  for (const FaceId beyond : cells_[cell].neighbours) {
+    if (beyond == no_face) continue;
+    const Index next = cell_of(beyond);
+    __builtin_prefetch(&states_[next]);
+    __builtin_prefetch(&spheres_[next]);
+    __builtin_prefetch(&cells_[next]);
+  }
 }
 
 void Triangulation::find_conflict_zone(const Point& p, Index start, ConflictZone& zone) {
@@ -131,7 +141,10 @@ void Triangulation::find_conflict_zone(const Point& p, Index start, ConflictZone
       std::uint32_t& mark = states_[next].mark;
       if (mark != inside && mark != outside) {
         mark = in_conflict(next, p) ? inside : outside;
-        if (mark == inside) zone.cells.push_back(next);
+        if (mark == inside) {
+          zone.cells.push_back(next);
+          prefetch_neighbours(next);
+        }
       }
       if (mark == outside) zone.border.push_back(face_id(cell, corner));
     }
@@ -170,8 +183,10 @@ Index Triangulation::insert(ConflictZone& zone) {
     zone.outer.push_back(beyond);
     for (const Index v : made.corners) vertices_[v].cell = cell;
   }
-  if (zone.vertices.size() <= table_limit) link_created(zone);
-  else link_created_by_sorting(zone);
+  if (zone.vertices.size() <= table_limit)
+    link_created(zone);
+  else
+    link_created_by_sorting(zone);
   for (const Index cell : zone.cells) {
     cells_[cell].corners[0] = none;
     ++states_[cell].generation;
@@ -190,13 +205,14 @@ void Triangulation::link_created(ConflictZone& zone) {
       const unsigned apex = corner_of(zone.border[i]);
       const auto& f = face_corners[apex];
       const auto& corners = cells_[cell].corners;
-      const std::array<std::uint32_t, 3> local{vertices_[corners[f[0]]].local,
-                                               vertices_[corners[f[1]]].local,
+      const std::array<std::uint32_t, 3> local{vertices_[corners[f[0]]].local, vertices_[corners[f[1]]].local,
                                                vertices_[corners[f[2]]].local};
       for (unsigned k = 0; k < 3; ++k) {
         const std::uint32_t a = local[(k + 1) % 3], b = local[(k + 2) % 3];
-        if (pass == 0) edge_table_[a * n + b] = face_id(cell, f[k]);
-        else cells_[cell].neighbours[f[k]] = edge_table_[b * n + a];
+        if (pass == 0)
+          edge_table_[a * n + b] = face_id(cell, f[k]);
+        else
+          cells_[cell].neighbours[f[k]] = edge_table_[b * n + a];
       }
     }
 }
@@ -217,9 +233,8 @@ void Triangulation::link_created_by_sorting(ConflictZone& zone) {
       edges.push_back({std::min(a, b), std::max(a, b), face_id(cell, f[k])});
     }
   }
-  std::sort(edges.begin(), edges.end(), [](const Edge& x, const Edge& y) {
-    return x.a != y.a ? x.a < y.a : x.b < y.b;
-  });
+  std::sort(edges.begin(), edges.end(),
+            [](const Edge& x, const Edge& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; });
   for (std::size_t i = 0; i + 1 < edges.size(); i += 2) link(edges[i].face, edges[i + 1].face);
 }
 

@@ -124,6 +124,7 @@ class Triangulation {
   };
 
   bool in_conflict_exact(Index cell, const Point& p) const;
+  void prefetch_neighbours(Index cell) const;
   Sphere circumsphere(const std::array<Index, 4>& corners) const;
   Index new_cell();
   void link(FaceId a, FaceId b);

@@ -226,11 +226,7 @@ ImproveOptions improve_options(unsigned level) {
 
 ImproveReport improve(improvement::Workpiece& workpiece, const ImproveOptions& options,
                       const Execution& execution) {
-  ImproveReport report;
-  ThreadLimit(options.threads).run([&] {
-    report = improvement::Improvement(workpiece, options, execution).run();
-  });
-  return report;
+  return improvement::Improvement(workpiece, options, execution).run();
 }
 
 ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& options,

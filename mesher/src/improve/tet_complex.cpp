@@ -33,6 +33,26 @@ void drop(const Cell& lost, std::vector<Cell>& cells, std::vector<Of>&... of_cel
   (of_cells.resize(kept), ...);
 }
 
+/// So many numbers of tets at most.
+class SmallSet {
+ public:
+  static constexpr std::size_t most = 128;
+
+  SmallSet() { table_.fill(none); }
+  /// False when it is there already.
+  bool insert(Index tet) {
+    for (std::size_t i = tet * 0x9e3779b1U >> 24U;; i = (i + 1) % table_.size()) {
+      if (table_[i] == tet) return false;
+      if (table_[i] != none) continue;
+      table_[i] = tet;
+      return true;
+    }
+  }
+
+ private:
+  std::array<Index, 2 * most> table_;
+};
+
 }  // namespace
 
 TetComplex::TetComplex(TetMesh& mesh) : mesh_(mesh) {
@@ -128,19 +148,19 @@ std::array<Point, 4> TetComplex::corners(Index tet) const {
   return {mesh_.points[v[0]], mesh_.points[v[1]], mesh_.points[v[2]], mesh_.points[v[3]]};
 }
 
-// Stars are small: it is faster to look among the tets found than to mark them.
+// Stars are small: it is faster to keep the tets found in a table at hand than to mark them.
 void TetComplex::star(Index vertex, std::vector<Index>& found) const {
-  std::array<Index, 64> found_from{none};  // by place in `found`: the tet from which
+  SmallSet known;
   found.assign(1, vertex_tet_[vertex]);
+  known.insert(found[0]);
   for (std::size_t i = 0; i < found.size(); ++i) {
-    const Index from = i < found_from.size() ? found_from[i] : none;
     const Tet& tet = tets_[found[i]];
     for (unsigned corner = 0; corner < 4; ++corner) {
       const Index next = tet.neighbours[corner];
-      if (tet.corners[corner] == vertex || next == none || next == from) continue;
-      if (std::find(found.begin(), found.end(), next) != found.end()) continue;
-      if (found.size() < found_from.size()) found_from[found.size()] = found[i];
-      found.push_back(next);
+      if (tet.corners[corner] == vertex || next == none) continue;
+      if (found.size() < SmallSet::most ? known.insert(next)
+                                        : std::find(found.begin(), found.end(), next) == found.end())
+        found.push_back(next);
     }
   }
 }

@@ -12,8 +12,8 @@ namespace collarmesh {
 /// The factors are measured (doc/architecture/refinement.md).
 class Sizing {
  public:
-  /// The target edge length where a size is asked for. The median edge of other meshers' meshes exceeds the size
-  /// by more; what is asked for as a number of elements, across a gap or on a circle, is not stretched.
+  /// The target edge length where a size is asked for. The median edge of other meshers' meshes exceeds the
+  /// size by more; what is asked for as a number of elements, across a gap or on a circle, is not stretched.
   static constexpr double edge_per_size = 1.08;
 
   Sizing(const Plc& plc, const MeshOptions& options, const Frame& frame);
@@ -21,8 +21,7 @@ class Sizing {
   /// Largest allowed circumradius of a cell of this region at this point; infinite outside.
   /// `graded` is a target edge length that gradation imposes, here and below.
   double cell_radius(Index region, const Point& p, double graded) const {
-    return region == 0 ? INFINITY
-                       : cell_radius_per_edge * std::min(graded, limited(region_size_[region], p));
+    return region == 0 ? INFINITY : cell_radius_per_edge * std::min(graded, limited(region_size_[region], p));
   }
   /// The target edge length on a patch at a point of a triangle of the complex.
   double triangle_size(Index patch, Index triangle, const Point& p) const {
