@@ -83,7 +83,7 @@ class CadMeshing : public ::testing::TestWithParam<Case> {};
 
 TEST_P(CadMeshing, PutsMidSideNodesOnFaces) {
   const TopoDS_Shape shape = GetParam().make();
-  const CadMeshed meshed = mesh_of_shape(shape, 0.1, 2);
+  const CadMeshed meshed = mesh_of_shape(shape, 0.0926, 2);
   EXPECT_EQ(faults(meshed), "");
   EXPECT_LE(meshed.second_order.straightened.size(), meshed.second_order.curved / 500);
   EXPECT_LT(farthest_from_faces(meshed, shape), 1e-9);

@@ -16,7 +16,7 @@ namespace {
 
 namespace acute = testing::acute;
 
-constexpr double size = 0.3;
+constexpr double size = 0.3, edge = Sizing::edge_per_size * size;
 
 MeshOptions in_pass() {
   MeshOptions options = testing::with_size(size);
@@ -100,9 +100,9 @@ void expect_created_in_time(const acute::Shape& shape) {
         at_vertex
             ? testing::brute_force_gap(plc, centre, testing::features_of_vertex(plc, ball.feature))
             : testing::brute_force_gap(plc, centre, {none, {ball.feature}, plc.curves[ball.feature].patches});
-    EXPECT_LE(ball.radius, std::min(gap / 3, size) * (1 + 1e-9));
+    EXPECT_LE(ball.radius, std::min(gap / 3, edge) * (1 + 1e-9));
     if (at_vertex && shape.feature_angle == 0) {
-      EXPECT_GE(ball.radius, 0.98 * std::min(gap / 3, size));
+      EXPECT_GE(ball.radius, 0.98 * std::min(gap / 3, edge));
     }
     if (at_vertex) has_ball[ball.feature] = true;
     const Triangulation& mesh = refinement.triangulation();

@@ -17,11 +17,12 @@ using testing::mesh_of;
 using testing::Meshed;
 using testing::with_size;
 
-// Cells, triangles and edges are split above these multiples of the target edge length
-// (doc/architecture/refinement.md).
-constexpr double cell_radius_per_edge = 0.79;
-constexpr double triangle_radius_per_edge = 0.7;
-constexpr double edge_length_per_edge = 1.3;
+// Cells, triangles and edges are split above these multiples of the size, which is what the target edge
+// length is a multiple of (doc/architecture/refinement.md).
+constexpr double edge_per_size = 1.08;
+constexpr double cell_radius_per_size = 0.79 * edge_per_size;
+constexpr double triangle_radius_per_size = 0.7 * edge_per_size;
+constexpr double edge_length_per_size = 1.3 * edge_per_size;
 constexpr double rounding = 1 + 1e-9;
 
 Point centroid(const TetMesh& mesh, const std::array<Index, 4>& t) {
@@ -61,11 +62,11 @@ TEST(RefinementSizing, GlobalSizeBoundsCellsFacesAndEdges) {
   const Meshed meshed = mesh_of(testing::box(), with_size(0.1));
   EXPECT_EQ(faults(meshed), "");
   const TetMesh& mesh = meshed.result.mesh;
-  EXPECT_LE(largest_radius_in_region(mesh, 1), cell_radius_per_edge * 0.1 * rounding);
+  EXPECT_LE(largest_radius_in_region(mesh, 1), cell_radius_per_size * 0.1 * rounding);
   for (Tag side = 1; side <= 6; ++side)
-    EXPECT_LE(largest_radius_with_tag(mesh, side), triangle_radius_per_edge * 0.1 * rounding);
+    EXPECT_LE(largest_radius_with_tag(mesh, side), triangle_radius_per_size * 0.1 * rounding);
   for (const auto& [a, b] : mesh.edges)
-    EXPECT_LE(distance(mesh.points[a], mesh.points[b]), edge_length_per_edge * 0.1 * rounding);
+    EXPECT_LE(distance(mesh.points[a], mesh.points[b]), edge_length_per_size * 0.1 * rounding);
 }
 
 TEST(RefinementSizing, DefaultIsATwentiethOfTheDiagonal) {
@@ -83,7 +84,7 @@ TEST(RefinementSizing, RegionsHaveTheirOwn) {
   const TetMesh& mesh = meshed.result.mesh;
   for (Index r = 1; r <= 2; ++r)
     EXPECT_LE(largest_radius_in_region(mesh, r),
-              cell_radius_per_edge * (meshed.plc.regions[r].tag == 20 ? 0.1 : 0.4) * rounding);
+              cell_radius_per_size * (meshed.plc.regions[r].tag == 20 ? 0.1 : 0.4) * rounding);
   const auto fine = std::count(mesh.tet_tag.begin(), mesh.tet_tag.end(), 20);
   EXPECT_GT(fine, 4 * std::count(mesh.tet_tag.begin(), mesh.tet_tag.end(), 10));
 }
@@ -95,7 +96,7 @@ TEST(RefinementSizing, RegionPointsGiveOne) {
   EXPECT_EQ(faults(meshed), "");
   for (Index r = 1; r <= 2; ++r)
     EXPECT_LE(largest_radius_in_region(meshed.result.mesh, r),
-              cell_radius_per_edge * (meshed.plc.regions[r].tag == 10 ? 0.12 : 0.5) * rounding);
+              cell_radius_per_size * (meshed.plc.regions[r].tag == 10 ? 0.12 : 0.5) * rounding);
 }
 
 TEST(RefinementSizing, PatchesHaveTheirOwn) {
@@ -103,8 +104,8 @@ TEST(RefinementSizing, PatchesHaveTheirOwn) {
   options.patch_size[6] = 0.06;
   const Meshed meshed = mesh_of(testing::box(), options, 0);
   EXPECT_EQ(faults(meshed), "");
-  EXPECT_LE(largest_radius_with_tag(meshed.result.mesh, 6), triangle_radius_per_edge * 0.06 * rounding);
-  EXPECT_GT(largest_radius_with_tag(meshed.result.mesh, 5), 2 * triangle_radius_per_edge * 0.06);
+  EXPECT_LE(largest_radius_with_tag(meshed.result.mesh, 6), triangle_radius_per_size * 0.06 * rounding);
+  EXPECT_GT(largest_radius_with_tag(meshed.result.mesh, 5), 2 * triangle_radius_per_size * 0.06);
 }
 
 TEST(RefinementSizing, CurvesHaveTheirOwn) {
@@ -121,7 +122,7 @@ TEST(RefinementSizing, CurvesHaveTheirOwn) {
     if (mesh.edge_tag[e] != 5) continue;
     ++fine;
     EXPECT_LE(distance(mesh.points[mesh.edges[e][0]], mesh.points[mesh.edges[e][1]]),
-              edge_length_per_edge * 0.02 * rounding);
+              edge_length_per_size * 0.02 * rounding);
   }
   EXPECT_GE(fine, 18U);
 }
@@ -153,7 +154,7 @@ TEST(RefinementSizing, FieldBoundsCellsAtTheirCentres) {
   // The field is taken at the circumcentre, which lies within the radius of the centroid.
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     EXPECT_LE(radii[t],
-              cell_radius_per_edge * (field(centroid(mesh, mesh.tets[t])) + 0.3 * radii[t]) * rounding);
+              cell_radius_per_size * (field(centroid(mesh, mesh.tets[t])) + 0.3 * radii[t]) * rounding);
   MeshOptions fine = options;
   fine.size_field = [](const Point&) { return 0.04; };
   fine.size_min = 0.2;
@@ -217,8 +218,9 @@ TEST(RefinementSizing, GradationLimitsGrowthAwayFromAFineSide) {
     for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
       double nearest = INFINITY;
       for (const Index v : mesh.tets[t]) nearest = std::min(nearest, way[v]);
-      const double target = std::min(0.5, 0.05 + gradation * (nearest + radii[t]));
-      if (radii[t] > cell_radius_per_edge * target * (1 + 1e-5)) ++violations;
+      const double target =
+          std::min(edge_per_size * 0.5, edge_per_size * 0.05 + gradation * (nearest + radii[t]));
+      if (radii[t] > cell_radius_per_size / edge_per_size * target * (1 + 1e-5)) ++violations;
     }
     EXPECT_EQ(violations, 0U);
     EXPECT_GT(mesh.tets.size(), tets_before);

@@ -155,7 +155,7 @@ TEST(CurveChains, SplittingEndsWithEmptyBallsAndFineSubsegments) {
   curves.chains.visit([&](Index, const Subsegment& s) {
     EXPECT_EQ(curves.encroaching(s), 0U);
     const double length = distance(curves.mesh.point(s.ends[0]), curves.mesh.point(s.ends[1]));
-    EXPECT_LE(length, Sizing::subsegment_length(size));
+    EXPECT_LE(length, Sizing::subsegment_length(Sizing::edge_per_size * size));
     EXPECT_NEAR(length, s.parameters[1] - s.parameters[0], 1e-9);
     covered[s.curve] += length;
   });

@@ -13,6 +13,7 @@
 #include "collarmesh/predict.h"
 #include "predict/graded_size.h"
 #include "predict/solid_angles.h"
+#include "refine/sizing.h"
 #include "support/shapes.h"
 
 namespace collarmesh {
@@ -123,7 +124,8 @@ TEST(Predict, VerySmallSizesOnManySegments) {
   const Plc plc = plc_of(testing::cylinder(1, 1, 1500));
   const double fine = predicted(plc, with_size(1e-6)), finer = predicted(plc, with_size(1e-7));
   EXPECT_NEAR(std::log10(finer / fine), 3, 0.1);
-  EXPECT_NEAR(fine * std::pow(1e-6, 3) / (std::numbers::pi * 6 / 0.61), 1, 0.1);  // as dense as inside
+  const double edge = Sizing::edge_per_size * 1e-6;
+  EXPECT_NEAR(fine * std::pow(edge, 3) / (std::numbers::pi * 6 / 0.61), 1, 0.1);  // as dense as inside
 }
 
 TEST(Predict, Refuses) {
