@@ -18,7 +18,7 @@ namespace collarmesh {
 enum class CollarCreation { up_front, in_pass };
 
 /// What `generate` aims at. Lengths are absolute, in input units, and are target edge lengths:
-/// the median edge of a large mesh comes out near them.
+/// the median edge of a large mesh comes out about a tenth above them, as other meshers' does.
 struct MeshOptions {
   double size = 0;      ///< target edge length everywhere; 0: 1/20 of the diagonal
   double size_min = 0;  ///< never ask for less than this because of gradation or fields; 0: none
