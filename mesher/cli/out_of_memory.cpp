@@ -1,5 +1,6 @@
 #include "out_of_memory.h"
 
+#include <fcntl.h>
 #include <gmp.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -7,7 +8,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
-#include <fstream>
 #include <memory>
 #include <new>
 #include <string_view>
@@ -64,9 +64,17 @@ void* gmp_reallocate(void* block, std::size_t old_bytes, std::size_t bytes) {
 /// Before the variables of this program are made, which takes a thousand allocations.
 [[gnu::constructor(101)]] void before_all() { std::set_new_handler(end_for_memory); }
 
+/// Without allocations.
 std::size_t data_bytes() {
-  std::size_t total = 0, resident, shared, text, library, data = 0;
-  std::ifstream("/proc/self/statm") >> total >> resident >> shared >> text >> library >> data;
+  const int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
+  if (file < 0) return 0;
+  char text[256] = {};
+  const bool read_any = read(file, text, sizeof(text) - 1) > 0;
+  close(file);
+  std::size_t data = 0;
+  char* rest = text;
+  // In pages: all, resident, shared, text, libraries, data and stacks.
+  for (int field = 0; read_any && field < 6; ++field) data = std::strtoull(rest, &rest, 10);
   return data * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
@@ -89,6 +97,12 @@ void limit_memory(std::size_t bytes) {
   if (limit.rlim_cur != RLIM_INFINITY && limit.rlim_cur < wanted) return;
   limit.rlim_cur = wanted;
   setrlimit(RLIMIT_DATA, &limit);
+}
+
+bool memory_is_short() {
+  rlimit limit;
+  return getrlimit(RLIMIT_DATA, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
+         data_bytes() > limit.rlim_cur / 2;
 }
 
 }  // namespace collarmesh::cli

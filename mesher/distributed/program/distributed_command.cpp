@@ -65,13 +65,17 @@ class Session {
 
 /// HDF5 and MPI may crash where they get no memory. mpirun ends the other ranks.
 [[noreturn]] void end_after_crash(int) {
+  const bool short_of_memory = cli::memory_is_short();
   cli::abandon_staged_files();
-  constexpr std::string_view text =
-      "collarmesh: a library has crashed, as some do without memory; raise --max-memory, or use more ranks\n";
+  const std::string_view text =
+      short_of_memory
+          ? "collarmesh: a library has crashed, as some do when memory is used up; raise --max-memory, or "
+            "use more ranks\n"
+          : "collarmesh: a library has crashed; please report it with the input and the options\n";
   if (write(STDERR_FILENO, text.data(), text.size()) < 0) {
     // There is nobody to tell.
   }
-  std::_Exit(static_cast<int>(ExitCode::internal_error));
+  std::_Exit(static_cast<int>(short_of_memory ? ExitCode::budget_hit : ExitCode::internal_error));
 }
 
 [[noreturn]] void end_without_memory(const PetscOutOfMemory& failure) {
