@@ -118,6 +118,7 @@ Json options_json(const MeshArguments& a) {
 
 Json statistics_json(const MeshStatistics& s) {
   return {{"vertices_inserted", s.vertices_inserted},
+          {"vertices_in_blocks", s.vertices_in_blocks},
           {"cells", s.cells},
           {"exact_predicates", s.exact_predicates},
           {"warps", s.warps},

@@ -224,8 +224,9 @@ std::string run_text(const MeshArguments& arguments, const MeshRun& run) {
   const MeshStatistics& s = run.result.statistics;
   if (arguments.verbose)
     fmt::format_to(Out(text),
-                   "  {} vertices inserted, {} cells, {} exact predicates, {} warps, {} yields, {:.1f} MB\n",
-                   s.vertices_inserted, s.cells, s.exact_predicates, s.warps, s.yields,
+                   "  {} vertices inserted ({} in blocks), {} cells, {} exact predicates, {} warps, {} "
+                   "yields, {:.1f} MB\n",
+                   s.vertices_inserted, s.vertices_in_blocks, s.cells, s.exact_predicates, s.warps, s.yields,
                    static_cast<double>(s.peak_bytes) / 1e6);
   for (const std::string& note : run.notes) fmt::format_to(Out(text), "  {}\n", note);
   if (run.projection) text += projection_text(run.plc, *run.projection);

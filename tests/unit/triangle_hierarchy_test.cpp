@@ -93,6 +93,22 @@ TEST(TriangleHierarchy, NodesInABoxCoverItsTriangles) {
   }
 }
 
+// The box of an oblique triangle holds much that the triangle is far from. Touching counts as meeting.
+TEST(TriangleHierarchy, LargeTrianglesAreFoundWhereTheirPlanesAre) {
+  const std::vector<Point> points{{0, 0, 0}, {1, 1, 0}, {0, 0, 1}};
+  TriangleHierarchy hierarchy(points, {{0, 1, 2}});
+  const Index root = hierarchy.root();
+  std::vector<Index> found;
+  for (const auto& [centre, count] : {std::pair<Point, std::size_t>{{0.8, 0.2, 0.2}, 0},
+                                      {{0.2, 0.8, 0.2}, 0},
+                                      {{0.55, 0.45, 0.2}, 1},
+                                      {{0.25, 0.125, 0.2}, 1},
+                                      {{0.25, 0.125 - 0x1p-30, 0.2}, 0}}) {
+    hierarchy.nodes_meeting(box_about(centre, 0.125 / 2), 0.125 / 2, {&root, 1}, found);
+    EXPECT_EQ(found.size(), count) << centre.x << ' ' << centre.y;
+  }
+}
+
 TEST(TriangleHierarchy, NodesDoNotOverlap) {
   const Soup soup = random_triangles(300, 0.05);
   TriangleHierarchy hierarchy(soup.points, soup.triangles);

@@ -51,6 +51,7 @@ struct MeshOptions {
   /// Budget in bytes for the mesh structures (a whole run takes about 1.2 times as much); 0: none.
   std::size_t max_memory = 0;
   double time_limit = 0;  ///< budget in seconds; 0: none
+  unsigned threads = 0;   ///< 0: as many as there are cores; any number makes the same mesh
 };
 
 /// The surface distance tolerance unless another one is asked for: a tenth of the target edge length (0: of
@@ -70,6 +71,7 @@ enum class MeshStatus {
 
 struct MeshStatistics {
   std::size_t vertices_inserted = 0;  ///< of the whole triangulation, the box and the outside included
+  std::size_t vertices_in_blocks = 0;  ///< of these, in blocks that several threads may refine
   std::size_t cells = 0;
   std::size_t exact_predicates = 0;   ///< decisions the floating-point filter left to exact arithmetic
   std::size_t warps = 0, yields = 0;  ///< destroy() calls that warped to input or yielded to a lower ball

@@ -46,6 +46,12 @@ class GrowingArray {
     size_ = n;
   }
 
+  /// Grow without setting what is new.
+  void extend(std::size_t n) {
+    if (n > capacity_) reserve(n + n / 2 + 64);
+    size_ = n;
+  }
+
  private:
   void reserve(std::size_t n) {
     void* grown = std::realloc(static_cast<void*>(data_), n * sizeof(T));

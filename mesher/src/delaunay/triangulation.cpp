@@ -4,6 +4,7 @@
 #include <cassert>
 #include <stdexcept>
 
+#include "common/parallel_for.h"
 #include "delaunay/predicates.h"
 
 namespace collarmesh {
@@ -45,7 +46,7 @@ Triangulation::Triangulation(const Box& box) {
 
 std::size_t Triangulation::bytes() const {
   return vertices_.bytes() + cells_.bytes() + spheres_.bytes() + states_.bytes() +
-         free_cells_.capacity() * sizeof(Index) + edge_table_.capacity() * sizeof(FaceId);
+         workspace_.free_cells.capacity() * sizeof(Index) + workspace_.edge_table.capacity() * sizeof(FaceId);
 }
 
 void Triangulation::link(FaceId a, FaceId b) {
@@ -53,22 +54,28 @@ void Triangulation::link(FaceId a, FaceId b) {
   cells_[cell_of(b)].neighbours[corner_of(b)] = a;
 }
 
+void Triangulation::grow(std::size_t cells) {
+  if (cells > (1U << 30)) throw std::length_error("more than 2^30 tetrahedra");
+  cells_.extend(cells);
+  spheres_.extend(cells);
+  states_.extend(cells);
+}
+
 Index Triangulation::new_cell() {
-  if (!free_cells_.empty()) {
-    const Index cell = free_cells_.back();
-    free_cells_.pop_back();
+  auto& free_cells = workspace_.free_cells;
+  if (!free_cells.empty()) {
+    const Index cell = free_cells.back();
+    free_cells.pop_back();
     return cell;
   }
   const auto cell = static_cast<Index>(cells_.size());
-  if (cell >= (1U << 30)) throw std::length_error("more than 2^30 tetrahedra");
-  cells_.push_back({});
-  spheres_.push_back({});
-  states_.push_back({0, 0});
+  grow(cell + 1);
+  states_[cell] = {0, 0};
   return cell;
 }
 
 bool Triangulation::in_conflict_exact(Index cell, const Point& p) const {
-  ++exact_decisions_;
+  exact_decisions_.fetch_add(1, std::memory_order_relaxed);
   const auto& v = cells_[cell].corners;
   return predicates::in_sphere_exact(point(v[0]), point(v[1]), point(v[2]), point(v[3]), p);
 }
@@ -116,15 +123,19 @@ void Triangulation::prefetch_neighbours(Index cell) const {
   }
 }
 
-void Triangulation::find_conflict_zone(const Point& p, Index start, ConflictZone& zone) {
+/// False when a cell in conflict may not be entered; then the zone is not complete.
+template <class MayEnter>
+bool Triangulation::find_zone(const Point& p, Index start, ConflictZone& zone, Workspace& workspace,
+                              const MayEnter& may_enter) {
   assert(in_conflict(start, p));
   zone.point = p;
   zone.cells.clear();
   zone.border.clear();
   zone.vertices.clear();
-  ++search_;
-  const std::uint32_t outside = 2 * search_, inside = 2 * search_ + 1;
-  const std::uint32_t stamp = new_vertex_stamp();
+  ++workspace.search;
+  const std::uint32_t outside = 2 * workspace.search, inside = 2 * workspace.search + 1;
+  const std::uint32_t stamp = ++workspace.vertex_stamp;
+  if (!may_enter(start)) return false;
   zone.cells.push_back(start);
   states_[start].mark = inside;
   for (std::size_t i = 0; i < zone.cells.size(); ++i) {
@@ -142,6 +153,7 @@ void Triangulation::find_conflict_zone(const Point& p, Index start, ConflictZone
       if (mark != inside && mark != outside) {
         mark = in_conflict(next, p) ? inside : outside;
         if (mark == inside) {
+          if (!may_enter(next)) return false;
           zone.cells.push_back(next);
           prefetch_neighbours(next);
         }
@@ -149,6 +161,11 @@ void Triangulation::find_conflict_zone(const Point& p, Index start, ConflictZone
       if (mark == outside) zone.border.push_back(face_id(cell, corner));
     }
   }
+  return true;
+}
+
+void Triangulation::find_conflict_zone(const Point& p, Index start, ConflictZone& zone) {
+  find_zone(p, start, zone, workspace_, [](Index) { return true; });
 }
 
 Index Triangulation::conflicting_cell_around(Index vertex, const Point& p) {
@@ -158,9 +175,10 @@ Index Triangulation::conflicting_cell_around(Index vertex, const Point& p) {
   return none;
 }
 
-Index Triangulation::insert(ConflictZone& zone) {
-  const Index vertex = vertex_count();
-  vertices_.push_back({zone.point, none, 0, 0});
+template <class NewCell>
+void Triangulation::replace_zone(ConflictZone& zone, Index vertex, Workspace& workspace,
+                                 const NewCell& new_cell) {
+  vertices_[vertex] = {zone.point, none, 0, 0};
   for (std::size_t i = 0; i < zone.vertices.size(); ++i)
     vertices_[zone.vertices[i]].local = static_cast<std::uint32_t>(i);
 
@@ -184,21 +202,27 @@ Index Triangulation::insert(ConflictZone& zone) {
     for (const Index v : made.corners) vertices_[v].cell = cell;
   }
   if (zone.vertices.size() <= table_limit)
-    link_created(zone);
+    link_created(zone, workspace.edge_table);
   else
     link_created_by_sorting(zone);
   for (const Index cell : zone.cells) {
     cells_[cell].corners[0] = none;
     ++states_[cell].generation;
-    free_cells_.push_back(cell);
+    workspace.free_cells.push_back(cell);
   }
+}
+
+Index Triangulation::insert(ConflictZone& zone) {
+  const Index vertex = vertex_count();
+  vertices_.push_back({});
+  replace_zone(zone, vertex, workspace_, [this] { return new_cell(); });
   return vertex;
 }
 
 // Each directed edge of the border is written once and read once, so the table needs no clearing.
-void Triangulation::link_created(ConflictZone& zone) {
+void Triangulation::link_created(ConflictZone& zone, std::vector<FaceId>& edge_table) {
   const std::size_t n = zone.vertices.size();
-  if (edge_table_.size() < n * n) edge_table_.resize(n * n);
+  if (edge_table.size() < n * n) edge_table.resize(n * n);
   for (std::size_t pass = 0; pass < 2; ++pass)
     for (std::size_t i = 0; i < zone.created.size(); ++i) {
       const Index cell = zone.created[i];
@@ -210,9 +234,9 @@ void Triangulation::link_created(ConflictZone& zone) {
       for (unsigned k = 0; k < 3; ++k) {
         const std::uint32_t a = local[(k + 1) % 3], b = local[(k + 2) % 3];
         if (pass == 0)
-          edge_table_[a * n + b] = face_id(cell, f[k]);
+          edge_table[a * n + b] = face_id(cell, f[k]);
         else
-          cells_[cell].neighbours[f[k]] = edge_table_[b * n + a];
+          cells_[cell].neighbours[f[k]] = edge_table[b * n + a];
       }
     }
 }
@@ -240,8 +264,7 @@ void Triangulation::link_created_by_sorting(ConflictZone& zone) {
 
 void Triangulation::incident_cells(Index vertex, std::vector<Index>& cells) {
   cells.clear();
-  ++search_;
-  const std::uint32_t seen = 2 * search_;
+  const std::uint32_t seen = 2 * ++workspace_.search;
   const Index first = vertices_[vertex].cell;
   states_[first].mark = seen;
   cells.push_back(first);
@@ -264,6 +287,96 @@ void Triangulation::adjacent_vertices(Index vertex, std::vector<Index>& adjacent
   for (const Index cell : scratch_)
     for (const Index v : cells_[cell].corners)
       if (stamp_vertex(v, stamp)) adjacent.push_back(v);
+}
+
+std::vector<Triangulation::Block> Triangulation::divide(std::span<const Index> insertions, Owners& owners) {
+  // An insertion makes some seven cells more than it destroys, and all of them before it frees any.
+  constexpr std::size_t cells_per_insertion = 8, cells_for_a_zone = 256;
+  std::vector<Block> blocks(insertions.size());
+  std::size_t vertices = vertices_.size(), cells = cells_.size();
+  auto& free_cells = workspace_.free_cells;
+  for (std::size_t number = 0; number < blocks.size(); ++number) {
+    Block& block = blocks[number];
+    block.mesh_ = this;
+    block.owners_ = &owners;
+    block.number_ = static_cast<std::uint16_t>(number);
+    block.first_vertex_ = block.next_vertex_ = static_cast<Index>(vertices);
+    block.end_vertex_ = static_cast<Index>(vertices += insertions[number]);
+    block.workspace_.search = workspace_.search;
+    block.workspace_.vertex_stamp = workspace_.vertex_stamp;
+    const std::size_t needed =
+        insertions[number] == 0 ? 0 : cells_per_insertion * insertions[number] + cells_for_a_zone;
+    const std::size_t recycled = std::min(needed, free_cells.size());
+    block.workspace_.free_cells.assign(free_cells.end() - static_cast<std::ptrdiff_t>(recycled),
+                                       free_cells.end());
+    free_cells.resize(free_cells.size() - recycled);
+    block.next_cell_ = static_cast<Index>(cells);
+    block.end_cell_ = static_cast<Index>(cells += needed - recycled);
+  }
+  vertices_.extend(vertices);
+  grow(cells);
+  owners.reserve(vertices);
+  for (const Block& block : blocks) owners.resize(block.end_vertex_, block.number_);
+  return blocks;
+}
+
+void Triangulation::join(std::vector<Block>& blocks) {
+  if (blocks.empty()) return;
+  const Index before = blocks.front().first_vertex_;
+  Index vertices = before;
+  std::vector<Index> shifts;
+  for (const Block& block : blocks) {
+    shifts.push_back(block.first_vertex_ - vertices);
+    for (Index v = block.first_vertex_; v < block.next_vertex_; ++v) vertices_[vertices++] = vertices_[v];
+  }
+  vertices_.resize(vertices);
+  parallel_for(blocks.size(), [&](std::size_t i) {
+    for (Index cell = blocks[i].next_cell_; cell < blocks[i].end_cell_; ++cell) {
+      cells_[cell].corners[0] = none;
+      states_[cell] = {0, 0};
+    }
+    for (const auto& [cell, generation] : blocks[i].created_)
+      if (alive(cell) && states_[cell].generation == generation)
+        for (Index& v : cells_[cell].corners)
+          if (v >= before) v -= shifts[i];
+  });
+  for (Block& block : blocks) {
+    const Workspace& workspace = block.workspace_;
+    workspace_.search = std::max(workspace_.search, workspace.search);
+    workspace_.vertex_stamp = std::max(workspace_.vertex_stamp, workspace.vertex_stamp);
+    auto& free_cells = workspace_.free_cells;
+    for (Index cell = block.end_cell_; cell > block.next_cell_; --cell) free_cells.push_back(cell - 1);
+    free_cells.insert(free_cells.end(), workspace.free_cells.begin(), workspace.free_cells.end());
+  }
+}
+
+bool Triangulation::Block::owns(Index cell) const {
+  const auto& corners = mesh_->cells_[cell].corners;
+  return std::all_of(corners.begin(), corners.end(), [&](Index v) { return (*owners_)[v] == number_; });
+}
+
+bool Triangulation::Block::find_conflict_zone(const Point& p, Index start, ConflictZone& zone) {
+  if (next_vertex_ == end_vertex_) return false;
+  if (!mesh_->find_zone(p, start, zone, workspace_, [&](Index cell) { return owns(cell); })) return false;
+  return workspace_.free_cells.size() + (end_cell_ - next_cell_) >= zone.border.size();
+}
+
+Index Triangulation::Block::insert(ConflictZone& zone) {
+  const Index vertex = next_vertex_++;
+  auto& free_cells = workspace_.free_cells;
+  mesh_->replace_zone(zone, vertex, workspace_, [&] {
+    Index cell = none;
+    if (free_cells.empty()) {
+      cell = next_cell_++;
+      mesh_->states_[cell] = {0, 0};
+    } else {
+      cell = free_cells.back();
+      free_cells.pop_back();
+    }
+    created_.push_back({cell, mesh_->states_[cell].generation});
+    return cell;
+  });
+  return vertex;
 }
 
 }  // namespace collarmesh

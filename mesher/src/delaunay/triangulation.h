@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "collarmesh/geometry.h"
@@ -25,10 +27,12 @@ inline constexpr std::array<std::array<unsigned, 3>, 4> face_corners{
 struct ConflictZone {
   Point point;
   std::vector<Index> cells;
-  std::vector<FaceId> border;     ///< faces of zone cells towards cells outside the zone (or the hull)
-  std::vector<Index> vertices;    ///< of the zone's cells: the new vertex' neighbours
-  std::vector<Index> created;     ///< after insert: the new cell over border[i], the new vertex in the corner opposite that face
-  std::vector<FaceId> outer;      ///< after insert: the face beyond border[i], seen from outside; no_face on the hull
+  std::vector<FaceId> border;   ///< faces of zone cells towards cells outside the zone (or the hull)
+  std::vector<Index> vertices;  ///< of the zone's cells: the new vertex' neighbours
+  std::vector<Index> created;   ///< after insert: the new cell over border[i], the new vertex in the corner
+                                ///< opposite that face
+  std::vector<FaceId>
+      outer;  ///< after insert: the face beyond border[i], seen from outside; no_face on the hull
 };
 
 /// Delaunay triangulation of points inside a box, as flat arrays.
@@ -37,14 +41,21 @@ struct ConflictZone {
 /// cells. A cell is four vertices, positively oriented (`six_volume` > 0), and four neighbours, with
 /// its circumsphere and an error bound beside it. Ties (cospherical points) are not in conflict.
 /// Cells are recycled; `generation` tells whether an id still means the same cell.
+///
+/// Several threads may insert at once into blocks of vertices, one block each: see `divide`.
 class Triangulation {
  public:
+  class Block;
+  /// The block that each vertex belongs to, by vertex.
+  using Owners = std::vector<std::uint16_t>;
+  static constexpr std::uint16_t no_owner = UINT16_MAX;
+
   explicit Triangulation(const Box& box);
 
   Index vertex_count() const { return static_cast<Index>(vertices_.size()); }
   /// Cells in use and free ones: every id is below this.
   Index cell_capacity() const { return static_cast<Index>(cells_.size()); }
-  Index cell_count() const { return static_cast<Index>(cells_.size() - free_cells_.size()); }
+  Index cell_count() const { return static_cast<Index>(cells_.size() - workspace_.free_cells.size()); }
 
   const Point& point(Index vertex) const { return vertices_[vertex].point; }
   /// Some cell that has this vertex.
@@ -86,20 +97,29 @@ class Triangulation {
   /// Returns the new vertex; fills zone.created and zone.outer.
   Index insert(ConflictZone& zone);
 
+  /// Blocks of vertices, each with room for so many insertions. Until they are joined, nothing else may be
+  /// done with the triangulation than to read what does not change: points, and cells whose vertices all
+  /// belong to the reader's own block. `owners` tells the block of each vertex, below `insertions.size()`, or
+  /// `no_owner`; it grows by the vertices to come, and must stay as it is until the blocks are joined.
+  /// The result does not depend on the threads, nor on their timing.
+  std::vector<Block> divide(std::span<const Index> insertions, Owners& owners);
+  /// The blocks' vertices are numbered, block by block.
+  void join(std::vector<Block>& blocks);
+
   /// The cells that have this vertex, in no particular order.
   void incident_cells(Index vertex, std::vector<Index>& cells);
   /// The vertices joined to this one by an edge.
   void adjacent_vertices(Index vertex, std::vector<Index>& adjacent);
 
   /// A fresh stamp for marking vertices, and the marks.
-  std::uint32_t new_vertex_stamp() { return ++vertex_stamp_; }
+  std::uint32_t new_vertex_stamp() { return ++workspace_.vertex_stamp; }
   bool stamp_vertex(Index vertex, std::uint32_t stamp) {
     if (vertices_[vertex].stamp == stamp) return false;
     vertices_[vertex].stamp = stamp;
     return true;
   }
 
-  std::size_t exact_decisions() const { return exact_decisions_; }
+  std::size_t exact_decisions() const { return exact_decisions_.load(std::memory_order_relaxed); }
   std::size_t bytes() const;
 
  private:
@@ -119,28 +139,70 @@ class Triangulation {
     double margin;  // relative error bound of the conflict test
   };
   struct State {
-    std::uint32_t mark;        // 2 * search: seen, not in conflict; 2 * search + 1: in conflict
+    std::uint32_t mark;  // 2 * search: seen, not in conflict; 2 * search + 1: in conflict
     std::uint32_t generation;
+  };
+
+  /// What a thread that searches and inserts keeps for itself: marks are numbered upwards.
+  struct Workspace {
+    std::uint32_t search = 0;
+    std::uint32_t vertex_stamp = 0;
+    std::vector<Index> free_cells;
+    std::vector<FaceId> edge_table;
   };
 
   bool in_conflict_exact(Index cell, const Point& p) const;
   void prefetch_neighbours(Index cell) const;
   Sphere circumsphere(const std::array<Index, 4>& corners) const;
   Index new_cell();
+  void grow(std::size_t cells);
   void link(FaceId a, FaceId b);
-  void link_created(ConflictZone& zone);
+  template <class MayEnter>
+  bool find_zone(const Point& p, Index start, ConflictZone& zone, Workspace& workspace,
+                 const MayEnter& may_enter);
+  template <class NewCell>
+  void replace_zone(ConflictZone& zone, Index vertex, Workspace& workspace, const NewCell& new_cell);
+  void link_created(ConflictZone& zone, std::vector<FaceId>& edge_table);
   void link_created_by_sorting(ConflictZone& zone);
 
   GrowingArray<Vertex> vertices_;
   GrowingArray<Cell> cells_;
   GrowingArray<Sphere> spheres_;
   GrowingArray<State> states_;
-  std::vector<Index> free_cells_;
-  std::uint32_t search_ = 0;
-  std::uint32_t vertex_stamp_ = 0;
-  mutable std::size_t exact_decisions_ = 0;
-  std::vector<FaceId> edge_table_;
+  Workspace workspace_;
+  mutable std::atomic<std::size_t> exact_decisions_{0};
   std::vector<Index> scratch_;
+};
+
+/// Vertices of a triangulation that one thread may insert between, while others do in other blocks.
+///
+/// A zone lies in a block when all its vertices belong to it. What an insertion then writes are the zone's
+/// cells, the faces towards cells beyond its border, and marks of these. A cell beyond has three vertices of
+/// the block, so that no other block's zone borders on it: no two threads write, or one reads what another
+/// one writes.
+class Triangulation::Block {
+ public:
+  /// Find all cells in conflict with p, as Triangulation::find_conflict_zone does. False when the zone has a
+  /// vertex of others, or when there is no more room.
+  bool find_conflict_zone(const Point& p, Index start, ConflictZone& zone);
+  /// Precondition: the zone is one of this block's. The vertex gets another number when blocks are joined.
+  Index insert(ConflictZone& zone);
+
+ private:
+  friend class Triangulation;
+  struct Created {
+    Index cell;
+    std::uint32_t generation;
+  };
+  bool owns(Index cell) const;
+
+  Triangulation* mesh_;
+  const Owners* owners_;
+  std::uint16_t number_;
+  Index first_vertex_, next_vertex_, end_vertex_;
+  Index next_cell_, end_cell_;  // never used before
+  Workspace workspace_;
+  std::vector<Created> created_;
 };
 
 }  // namespace collarmesh

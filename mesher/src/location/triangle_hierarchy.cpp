@@ -12,6 +12,17 @@ namespace {
 // Height over longest side below which a triangle is a needle, squared.
 constexpr double squared_needle = 1e-12;
 
+// Does the box lie on one side of the triangle's plane? Conservative: the terms that are compared are off by
+// some 16 roundings of the sum of products that the slack is a share of.
+bool misses_plane(const CentredBox& box, const std::array<Point, 3>& t) {
+  const auto sum = [](const Vector& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); };
+  const Vector u = t[1] - t[0], v = t[2] - t[0], n = cross(u, v), d = box.centre - t[0];
+  const double reach =
+      std::fabs(n.x) * box.half.x + std::fabs(n.y) * box.half.y + std::fabs(n.z) * box.half.z;
+  const double slack = 1e-14 * sum(u) * sum(v) * (sum(d) + sum(box.half));
+  return std::fabs(dot(n, d)) > reach + slack;
+}
+
 Point nearest_point_on_segment(const Point& p, const Point& a, const Point& b) {
   const Vector u = b - a;
   const double length = squared_norm(u);
@@ -112,8 +123,10 @@ void TriangleHierarchy::descend(Index index, const CentredBox& box, double exten
   if (node.stamp == stamp_) return;
   node.stamp = stamp_;
   if (!box.meets(node.box)) return;
-  if (node.extent <= extent || node.left == none) {
+  if (node.extent <= extent) {
     found.push_back(index);
+  } else if (node.left == none) {
+    if (!misses_plane(box, corners(node.right))) found.push_back(index);
   } else {
     descend(node.left, box, extent, found);
     descend(node.right, box, extent, found);

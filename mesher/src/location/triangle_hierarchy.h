@@ -40,7 +40,7 @@ class TriangleHierarchy {
   }
 
   /// Replace `found` by the nodes whose boxes meet the box, each at the coarsest level whose extent
-  /// does not exceed `extent`. Precondition: the nodes of `from` cover every triangle that meets it.
+  /// does not exceed `extent`, and by the larger triangles whose planes meet it, too. Precondition: the nodes of `from` cover every triangle that meets it.
   /// Conservative: a node found may hold no triangle that meets the box.
   /// Cost: linear in the nodes found plus the levels between them and `from`.
   void nodes_meeting(const Box& box, double extent, std::span<const Index> from, std::vector<Index>& found);

@@ -268,6 +268,7 @@ class Pipeline {
     if (options_.order != 1 && options_.order != 2) throw OptionError("order must be 1 or 2");
     bounds_ = bounds_of_refinement();
     bounds_.seed = seed;
+    bounds_.threads = options_.threads;
     refine();
     reshape();
     project();

@@ -35,7 +35,7 @@ CellQuality::CellQuality(const Domain& domain, const RefinedMesh& mesh, const Co
   if (domain_.options.vertex_ratio > 0) shortest_edge_.resize(mesh_.vertex_count(), INFINITY);
 }
 
-void CellQuality::judge(Index cell) {
+void CellQuality::judge(Index cell, WorkQueue& queue) const {
   if (collar_cells_.inside(cell)) return;
   const Index region = surface_.region(cell);
   const double r2 = mesh_.squared_radius(cell);
@@ -46,24 +46,24 @@ void CellQuality::judge(Index cell) {
   const bool skinny = r2 > bound * bound * shortest_squared_edge(mesh_, cell) &&
                       !(region == 0 && facing_sheets_.fills_gap(cell, bound));
   if (skinny || (region != 0 && flat(cell))) {
-    if (domain_.in_box(centre)) queue_.push(WorkQueue::skinny_cells, r2, {cell, mesh_.generation(cell)});
+    if (domain_.in_box(centre)) queue.push(WorkQueue::skinny_cells, r2, {cell, mesh_.generation(cell)});
     return;
   }
   if (region == 0) return;
   const auto& v = mesh_.corners(cell);
   const double size = sizes_.asked().cell_radius(region, centre, sizes_.graded(v, std::sqrt(r2)));
   if (r2 > size * size || uneven_at_vertex(cell))
-    queue_.push(WorkQueue::large_cells, r2, {cell, mesh_.generation(cell)});
+    queue.push(WorkQueue::large_cells, r2, {cell, mesh_.generation(cell)});
 }
 
 void CellQuality::judge_all() {
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell)
-    if (mesh_.alive(cell)) judge(cell);
+    if (mesh_.alive(cell)) judge(cell, queue_);
 }
 
 void CellQuality::cells_made(const ConflictZone& zone, Index vertex) {
   note_edges(zone, vertex);
-  for (const Index cell : zone.created) judge(cell);
+  for (const Index cell : zone.created) judge(cell, queue_);
 }
 
 // Cocircular input makes cells whose volume is noise although their radius-edge ratio is not. Those
@@ -104,12 +104,11 @@ void CellQuality::note_edges(const ConflictZone& zone, Index vertex) {
   }
 }
 
-std::optional<Candidate> CellQuality::candidate(Index cell) {
+std::optional<Candidate> CellQuality::candidate(Index cell, RandomOffsets& random) const {
   const double r2 = mesh_.squared_radius(cell);
   const Point& centre = mesh_.circumcentre(cell);
   const Frame& frame = domain_.frame;
-  Point p =
-      frame.rounded(centre + random_.outside_collars(centre, offset_per_radius * std::sqrt(r2 / 3), {}));
+  Point p = frame.rounded(centre + random.outside_collars(centre, offset_per_radius * std::sqrt(r2 / 3), {}));
   if (!domain_.in_box(p)) p = frame.rounded(centre);
   if (!domain_.in_box(p) || !mesh_.in_conflict(cell, p)) return std::nullopt;
   return Candidate{p, r2, centre, {3, none}, cell};

@@ -28,7 +28,8 @@ class CellQuality {
               RandomOffsets& random, WorkQueue& queue);
 
   /// What destroys a cell, if anything can.
-  std::optional<Candidate> candidate(Index cell);
+  std::optional<Candidate> candidate(Index cell) { return candidate(cell, random_); }
+  std::optional<Candidate> candidate(Index cell, RandomOffsets& random) const;
   /// Is the entry of the queue that of a cell that is still there, outside the collars?
   bool due(const WorkQueue::Entry& entry) const {
     return mesh_.alive(entry.id, entry.stamp) && !collar_cells_.inside(entry.id);
@@ -38,13 +39,15 @@ class CellQuality {
 
   /// Precondition: surface, collar cells and sizes know the new cells.
   void cells_made(const ConflictZone& zone, Index vertex);
+  /// Queue a cell that is to be destroyed. For several threads at once, as long as no size is asked of the
+  /// caller and there is no vertex ratio.
+  void judge(Index cell, WorkQueue& queue) const;
   /// At the start, and when sizes have changed everywhere.
   void judge_all();
 
   std::size_t bytes() const { return shortest_edge_.bytes(); }
 
  private:
-  void judge(Index cell);
   bool flat(Index cell) const;
   bool uneven_at_vertex(Index cell) const;
   void note_edges(const ConflictZone& zone, Index vertex);

@@ -30,6 +30,12 @@ class CollarCells {
   }
 
   void cells_made(const ConflictZone& zone, Index vertex);
+  /// Before cells are made between vertices none of which is near: room for all.
+  void fit_mesh();
+  /// One of these. Several threads may tell of several cells.
+  void quiet_cell_made(Index cell) {
+    if (cell < inside_.size()) inside_[cell] = 0;
+  }
 
   /// New balls: this vertex, or the circumcentre of this cell, may lie in one.
   void note_near(Index vertex);
@@ -49,7 +55,6 @@ class CollarCells {
     Index ball;
     std::uint32_t generation;  // of the cell
   };
-  void fit_mesh();
 
   const RefinedMesh& mesh_;
   const CollarSystem& collars_;

@@ -67,6 +67,8 @@ class CurveChains {
   /// Paper, Procedure 2: the protective ball that a candidate with this zone lies deepest in; none if it
   /// encroaches none.
   Index encroached(const ConflictZone& zone, const Candidate& candidate) const;
+  /// Is any ball found from this mesh vertex?
+  bool any_at(Index mesh_vertex) const { return balls_.first_at(mesh_vertex) != none; }
   /// The subsegment that such a ball belongs to; none if it still waits.
   Index subsegment_of(Index ball) const;
   /// The end of a waiting subsegment, not resolved yet, that is nearest to a point in its ball: what would

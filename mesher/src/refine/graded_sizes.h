@@ -24,6 +24,8 @@ class GradedSizes {
   GradedSizes(const Domain& domain, const RefinedMesh& mesh, const RestrictedSurface& surface);
 
   const Sizing& asked() const { return sizing_; }
+  /// Do sizes depend on those at vertices?
+  bool any_at_vertices() const { return at_vertex_.size() > 0; }
   /// The target edge length that gradation imposes on a simplex with these corners, whose ball has this
   /// radius; infinite without gradation.
   double graded(std::span<const Index> corners, double reach) const {

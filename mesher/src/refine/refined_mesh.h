@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "collar/feature_hierarchy.h"
 #include "collarmesh/plc.h"
@@ -77,6 +78,16 @@ class RefinedMesh {
   Index insert(ConflictZone& zone, const Feature& feature) {
     features_.push_back(feature);
     return triangulation_.insert(zone);
+  }
+  /// As in Triangulation. The vertices to come lie on no feature.
+  std::vector<Triangulation::Block> divide(std::span<const Index> insertions, Triangulation::Owners& owners) {
+    auto blocks = triangulation_.divide(insertions, owners);
+    features_.resize(vertex_count(), Feature{3, none});
+    return blocks;
+  }
+  void join(std::vector<Triangulation::Block>& blocks) {
+    triangulation_.join(blocks);
+    features_.resize(vertex_count(), Feature{3, none});
   }
   /// A vertex is found to lie on this feature, too. False when the one that it has is no higher.
   bool lower_feature(Index vertex, const Feature& feature) {

@@ -37,6 +37,8 @@ Refinement::Refinement(const Plc& plc, const MeshOptions& options, const Executi
       collar_creator_(domain_, mesh_, nodes_, sizes_, collars_, collar_cells_, surface_, points_, curves_,
                       open_creases_,
                       [this](std::size_t planned_vertices) { return stopped(planned_vertices); }),
+      blocks_(domain_, mesh_, nodes_, collars_, collar_cells_, surface_, sizes_, points_, curves_, cells_,
+              queue_),
       collar_surface_(domain_, mesh_, nodes_, collars_, collar_cells_, surface_, collar_creator_),
       collar_review_(mesh_, collars_, collar_cells_, surface_, collar_creator_, collar_surface_, outcome_,
                      [this] { return stopped(); }),
@@ -63,13 +65,21 @@ MeshStatus Refinement::run() {
   // Repairs of the collar surface come in many small rounds: let them settle before the rest is
   // looked at again.
   bool mending_collars = false;
+  // Until then nobody looks at the collar surface, which blocks tell nothing.
+  bool first_pass = true;
   while (!outcome_.stopped()) {
-    while (queue_.pop(item)) {
+    for (;;) {
+      if (first_pass && blocks_.due()) {
+        blocks_.round();
+        if (stopped()) return outcome_.status();
+      }
+      if (!queue_.pop(item)) break;
       if (observer_ && item.priority > WorkQueue::skinny_cells) observer_();
       if (item.priority > WorkQueue::encroached_subsegments) collar_creator_.create_on_isolated_curves();
       process(item);
       if (++steps_ % steps_between_stops == 0 && stopped()) return outcome_.status();
     }
+    first_pass = false;
     if (stopped()) return outcome_.status();
     if (collar_creator_.create_remaining()) continue;
     if (mending_collars && check_collars()) continue;
@@ -271,6 +281,7 @@ TetMesh Refinement::extract() const {
 MeshStatistics Refinement::statistics() const {
   MeshStatistics s;
   s.vertices_inserted = mesh_.vertex_count();
+  s.vertices_in_blocks = blocks_.inserted();
   s.cells = mesh_.cell_count();
   s.exact_predicates = mesh_.triangulation().exact_decisions();
   s.warps = warps_;

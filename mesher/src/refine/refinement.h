@@ -5,6 +5,7 @@
 
 #include "collar/collar_system.h"
 #include "collarmesh/mesher.h"
+#include "refine/block_refinement.h"
 #include "refine/budget.h"
 #include "refine/cell_quality.h"
 #include "refine/collar_cells.h"
@@ -101,6 +102,7 @@ class Refinement {
   TriangleQuality triangles_;
   CellQuality cells_;
   CollarCreator collar_creator_;
+  BlockRefinement blocks_;
   // When the queue has run empty:
   CollarSurface collar_surface_;
   CollarReview collar_review_;

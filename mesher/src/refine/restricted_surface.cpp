@@ -224,10 +224,14 @@ void RestrictedSurface::cells_vanish(const ConflictZone& zone) {
 }
 
 void RestrictedSurface::cells_made(const ConflictZone& zone, Index vertex) {
-  labels_.resize(mesh_.cell_capacity());
-  marks_.resize(mesh_.cell_capacity());
+  fit_mesh();
   label_created_cells(zone, vertex);
   mark_border_faces(zone, vertex);
+}
+
+void RestrictedSurface::fit_mesh() {
+  labels_.extend(mesh_.cell_capacity());
+  marks_.extend(mesh_.cell_capacity());
 }
 
 Index RestrictedSurface::new_record() {

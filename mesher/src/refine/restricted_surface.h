@@ -72,6 +72,10 @@ class RestrictedSurface {
   void cells_vanish(const ConflictZone& zone);
   /// Label the new cells; find restricted triangles between them, and look again at those on the border.
   void cells_made(const ConflictZone& zone, Index vertex);
+  /// Before cells are made between vertices that the surface is far from: room for all.
+  void fit_mesh();
+  /// One of these, in the region of the cells that it replaces. Several threads may tell of several cells.
+  void quiet_cell_made(Index cell, Index region) { labels_[cell] = {.region = region}; }
 
   /// A ball has come: does it hold the places of this cell's triangles?
   void note_ball(Index cell, const CollarBall& ball);

@@ -51,6 +51,8 @@ class Sizing {
   }
   /// The target edge length where nothing finer is asked for.
   double default_size(const Point& p) const { return limited(global_size_, p); }
+  /// Is the caller asked for sizes?
+  bool has_field() const { return static_cast<bool>(field_); }
   /// About how many cells the whole domain will take.
   double expected_cells() const { return expected_cells_; }
 

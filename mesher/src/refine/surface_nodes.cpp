@@ -68,6 +68,10 @@ void SurfaceNodes::cells_made(const ConflictZone& zone, Index vertex) {
     if (lists_[neighbour].insertions_left == 0) refresh(neighbour);
 }
 
+void SurfaceNodes::quiet_vertices_made() {
+  lists_.resize(mesh_.vertex_count(), {.insertions_left = insertions_between_refreshes});
+}
+
 void SurfaceNodes::expect_insertions(Index vertex, std::size_t star) {
   const std::size_t least = mesh_.feature(vertex).dimension == 3 ? insertions_between_refreshes
                                                                  : insertions_between_surface_refreshes;

@@ -39,6 +39,8 @@ class SurfaceNodes {
   Index nearest_triangle(const Point& p, Index patch, double& within_squared) const;
 
   void cells_made(const ConflictZone& zone, Index vertex);
+  /// Vertices have come between vertices without nodes: they have none, either.
+  void quiet_vertices_made();
 
   std::size_t bytes() const {
     return hierarchy_.bytes() + pool_.capacity() * sizeof(Index) + lists_.capacity() * sizeof(List);

@@ -41,6 +41,8 @@ class UnresolvedPoints {
   /// Is a point due whose entry in the queue has this stamp? If not it is queued anew: the mesh has become
   /// finer there since, and others have larger balls.
   bool due(Index point, std::uint32_t stamp);
+  /// Is any point found from this mesh vertex?
+  bool any_at(Index mesh_vertex) const { return objects_.first_at(mesh_vertex) != none; }
   /// A point becomes this vertex, which may be about to come.
   void resolve(Index point, Index vertex);
 

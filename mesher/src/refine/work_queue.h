@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "collarmesh/geometry.h"
@@ -36,12 +37,17 @@ class WorkQueue {
   };
 
   /// Balls are compared with this squared radius, the largest to be expected.
-  explicit WorkQueue(double largest_squared_radius)
-      : largest_exponent_(std::ilogb(largest_squared_radius)) {}
+  explicit WorkQueue(double largest_squared_radius) : largest_exponent_(std::ilogb(largest_squared_radius)) {}
 
   void push(Priority priority, double squared_radius, Entry entry) {
+    put(priority, bucket_of(squared_radius), entry);
+  }
+  unsigned bucket_of(double squared_radius) const {
     const int below = largest_exponent_ - std::ilogb(std::max(squared_radius, 1e-300));
-    const auto bucket = static_cast<unsigned>(std::clamp(below, 0, static_cast<int>(bucket_count) - 1));
+    return static_cast<unsigned>(std::clamp(below, 0, static_cast<int>(bucket_count) - 1));
+  }
+  /// Into a bucket: 0 has the largest balls.
+  void put(Priority priority, unsigned bucket, Entry entry) {
     buckets_[priority][bucket].push_back(entry);
     first_[priority] = std::min(first_[priority], bucket);
     ++pushed_;
@@ -49,18 +55,36 @@ class WorkQueue {
 
   /// Take the next entry: largest ball of the first priority that has any. False when empty.
   bool pop(Item& item) {
-    for (unsigned priority = 0; priority < priority_count; ++priority) {
-      unsigned& bucket = first_[priority];
-      for (; bucket < bucket_count; ++bucket) {
+    for (unsigned priority = 0; priority < priority_count; ++priority)
+      if (const unsigned bucket = first_bucket(static_cast<Priority>(priority)); bucket < bucket_count) {
         auto& entries = buckets_[priority][bucket];
-        if (entries.empty()) continue;
         item = {static_cast<Priority>(priority), entries.back()};
         entries.pop_back();
         return true;
       }
-    }
     return false;
   }
+
+  /// The priority of the next entry; `priority_count` when there is none.
+  Priority first_priority() {
+    unsigned priority = 0;
+    while (priority < priority_count && first_bucket(static_cast<Priority>(priority)) == bucket_count)
+      ++priority;
+    return static_cast<Priority>(priority);
+  }
+  /// The bucket of a priority that the next entry is in; `bucket_count` when there is none.
+  unsigned first_bucket(Priority priority) {
+    unsigned& bucket = first_[priority];
+    while (bucket < bucket_count && buckets_[priority][bucket].empty()) ++bucket;
+    return bucket;
+  }
+  std::size_t count(Priority priority, unsigned bucket) const { return buckets_[priority][bucket].size(); }
+  /// Take all entries of a bucket.
+  std::vector<Entry> take(Priority priority, unsigned bucket) {
+    return std::exchange(buckets_[priority][bucket], {});
+  }
+
+  static constexpr unsigned bucket_count = 192;
 
   /// Entries pushed so far.
   std::size_t pushed() const { return pushed_; }
@@ -73,7 +97,6 @@ class WorkQueue {
   }
 
  private:
-  static constexpr unsigned bucket_count = 192;
   int largest_exponent_;
   std::array<std::array<std::vector<Entry>, bucket_count>, priority_count> buckets_;
   std::array<unsigned, priority_count> first_{};
