@@ -32,10 +32,8 @@ bool signals_handled() {
 Execution Watch::execution() {
   Execution execution;
   execution.cancel = &cancel_;
-  execution.progress = [this](const ProgressReport& report) {
-    const std::lock_guard lock(mutex_);
-    stage_ = report.phase;
-    news_ = News{std::string(report.phase), report.fraction};
+  execution.progress = [this](const ProgressReport& news) {
+    report(std::string(news.phase), news.fraction);
     return true;
   };
   return execution;
@@ -47,9 +45,16 @@ void Watch::stop_if_asked() const {
 
 void Watch::begin_stage(std::string stage) {
   stop_if_asked();
+  report(std::move(stage), 0);
+}
+
+void Watch::report(std::string phase, double fraction) {
   const std::lock_guard lock(mutex_);
-  stage_ = stage;
-  news_ = News{std::move(stage), 0};
+  stage_ = phase;
+  if (news_.empty() || news_.back().phase != phase)
+    news_.push_back({std::move(phase), fraction});
+  else
+    news_.back().fraction = fraction;
 }
 
 void run_watched(std::function<void(Watch&)> work, const py::object& progress, double time_limit) {
@@ -83,16 +88,17 @@ void run_watched(std::function<void(Watch&)> work, const py::object& progress, d
   std::unique_lock lock(watch->mutex_);
   for (double told = 0;;) {
     watch->changed_.wait_for(lock, between_looks, [&] { return watch->done_; });
-    const std::optional<Watch::News> news = std::exchange(watch->news_, std::nullopt);
+    const std::vector<Watch::News> news = std::exchange(watch->news_, {});
     stage = watch->stage_;
     const bool done = watch->done_;
     lock.unlock();
     if (reason == Reason::none) {
       try {
-        if (news && !progress.is_none() && news->fraction >= told) {
+        for (const auto& [phase, fraction] : news) {
+          if (progress.is_none() || fraction < told || reason != Reason::none) continue;
           const py::gil_scoped_acquire acquire;
-          told = news->fraction;
-          if (progress(news->phase, told).is(py::bool_(false))) stop(Reason::callback);
+          told = fraction;
+          if (progress(phase, told).is(py::bool_(false))) stop(Reason::callback);
         }
         if (!signals_handled()) {
           const py::gil_scoped_acquire acquire;

@@ -8,8 +8,8 @@
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "collarmesh/error.h"
 #include "collarmesh/progress.h"
@@ -45,11 +45,12 @@ class Watch {
     std::string phase;
     double fraction;
   };
+  void report(std::string phase, double fraction);
 
   std::atomic<bool> cancel_{false};
   std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
-  std::optional<News> news_;
+  std::vector<News> news_;  // since the caller looked: the last of each phase, so that none is missed
   std::string stage_ = "start";
   bool done_ = false;
   std::exception_ptr failure_;

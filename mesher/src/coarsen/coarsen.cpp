@@ -29,6 +29,9 @@ constexpr unsigned plain_passes = 4, repair_passes = 6, rounds = 3;
 // Steps that may repair a contraction. Hardly a step mends two tets, so what has more tets to mend than steps
 // left is given up.
 constexpr unsigned most_repairs = 16;
+// Vertices whose shortest edge is below this share of its target are worth repairs, which are trials that fail
+// more often than not.
+constexpr double repaired_below = 0.65;
 // Tets below this quality are improved between the passes.
 constexpr double improved_below = 1.3;
 constexpr unsigned most_sweeps = 8;
@@ -114,9 +117,9 @@ class Coarsening {
     return true;
   }
 
-  // The vertices with a short edge, those with the shortest one first, where something has changed since they
-  // were asked last.
-  std::vector<Index> find_candidates(std::uint32_t changed_since) const {
+  // The vertices with an edge below this share of its target, those with the shortest one first, where
+  // something has changed since they were asked last.
+  std::vector<Index> find_candidates(std::uint32_t changed_since, double below) const {
     std::vector<double> shortest(mesh().points.size(), INFINITY);
     for (Index t = 0; t < complex().size(); ++t) {
       if (!complex()[t].alive) continue;
@@ -130,7 +133,7 @@ class Coarsening {
     }
     std::vector<Index> candidates;
     for (Index v = 0; v < shortest.size(); ++v)
-      if (is_short(shortest[v]) && mesh().features[v].dimension > 0 && changed_[v] >= changed_since)
+      if (shortest[v] < below * below && mesh().features[v].dimension > 0 && changed_[v] >= changed_since)
         candidates.push_back(v);
     std::sort(candidates.begin(), candidates.end(), [&](Index v, Index w) {
       return shortest[v] != shortest[w] ? shortest[v] < shortest[w] : v < w;
@@ -141,7 +144,7 @@ class Coarsening {
   // Every vertex once. Is another pass worthwhile?
   bool contract_all(bool repair) {
     std::uint32_t& since = last_pass_[repair ? 1 : 0];
-    const std::vector<Index> candidates = find_candidates(since);
+    const std::vector<Index> candidates = find_candidates(since, repair ? repaired_below : contracted_below);
     since = ++clock_;
     const std::size_t before = tets_;
     return for_each<VertexProposal>(

@@ -87,7 +87,7 @@ void BlockRefinement::round() {
     divide_vertices();
     const auto entries = deal(taken);
     auto blocks = mesh_.divide(room_for(entries), owners_);
-    collar_cells_.fit_mesh();
+    if (!collars_.empty()) collar_cells_.fit_mesh();
     surface_.fit_mesh();
     std::vector<std::vector<Waiting>> waiting(blocks.size());
     parallel_for(blocks.size(), [&](std::size_t i) {

@@ -18,7 +18,6 @@ bool CollarCells::any_near(const ConflictZone& zone) const {
 }
 
 void CollarCells::fit_mesh() {
-  if (collars_.empty()) return;
   inside_.resize(mesh_.cell_capacity(), 0);
   near_.resize(mesh_.vertex_count(), 0);
 }
