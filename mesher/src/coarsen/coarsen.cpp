@@ -29,8 +29,8 @@ constexpr unsigned plain_passes = 4, repair_passes = 6, rounds = 3;
 // Steps that may repair a contraction. Hardly a step mends two tets, so what has more tets to mend than steps
 // left is given up.
 constexpr unsigned most_repairs = 16;
-// Vertices whose shortest edge is below this share of its target are worth repairs, which are trials that fail
-// more often than not.
+// Vertices whose shortest edge is below this share of its target are worth repairs, which are trials that
+// fail more often than not.
 constexpr double repaired_below = 0.65;
 // Tets below this quality are improved between the passes.
 constexpr double improved_below = 1.3;
@@ -117,9 +117,15 @@ class Coarsening {
     return true;
   }
 
-  // The vertices with an edge below this share of its target, those with the shortest one first, where
-  // something has changed since they were asked last.
-  std::vector<Index> find_candidates(std::uint32_t changed_since, double below) const {
+  struct Candidate {
+    double shortest;  // edge, squared, relative to its target
+    Index vertex;
+    auto operator<=>(const Candidate&) const = default;
+  };
+
+  // The vertices with a short edge, those with the shortest one first, where something has changed since they
+  // were asked last.
+  std::vector<Candidate> find_candidates(std::uint32_t changed_since) const {
     std::vector<double> shortest(mesh().points.size(), INFINITY);
     for (Index t = 0; t < complex().size(); ++t) {
       if (!complex()[t].alive) continue;
@@ -131,40 +137,42 @@ class Coarsening {
           shortest[v[j]] = std::min(shortest[v[j]], length);
         }
     }
-    std::vector<Index> candidates;
+    std::vector<Candidate> candidates;
     for (Index v = 0; v < shortest.size(); ++v)
-      if (shortest[v] < below * below && mesh().features[v].dimension > 0 && changed_[v] >= changed_since)
-        candidates.push_back(v);
-    std::sort(candidates.begin(), candidates.end(), [&](Index v, Index w) {
-      return shortest[v] != shortest[w] ? shortest[v] < shortest[w] : v < w;
-    });
+      if (is_short(shortest[v]) && mesh().features[v].dimension > 0 && changed_[v] >= changed_since)
+        candidates.push_back({shortest[v], v});
+    std::sort(candidates.begin(), candidates.end());
     return candidates;
   }
 
   // Every vertex once. Is another pass worthwhile?
   bool contract_all(bool repair) {
     std::uint32_t& since = last_pass_[repair ? 1 : 0];
-    const std::vector<Index> candidates = find_candidates(since, repair ? repaired_below : contracted_below);
+    const std::vector<Candidate> candidates = find_candidates(since);
     since = ++clock_;
     const std::size_t before = tets_;
     return for_each<VertexProposal>(
                candidates,
-               [&](Proposer& proposer, Index v, VertexProposal& found) {
-                 if (complex().in_use(v))
-                   proposer.contractions(v, repair, found);
+               [&](Proposer& proposer, const Candidate& candidate, VertexProposal& found) {
+                 if (complex().in_use(candidate.vertex))
+                   proposer.contractions(candidate.vertex, repair && worth_repairs(candidate), found);
                  else
                    found = {};
                },
-               [&](Index v, const VertexProposal& found, std::uint32_t begun) {
-                 return changed_[v] < begun &&
+               [&](const Candidate& candidate, const VertexProposal& found, std::uint32_t begun) {
+                 return changed_[candidate.vertex] < begun &&
                         std::all_of(found.targets.begin(), found.targets.end(),
                                     [&](Index onto) { return changed_[onto] < begun; }) &&
                         may_still_be_made(found.change) &&
                         std::all_of(found.to_repair.begin(), found.to_repair.end(),
                                     [&](const Change& change) { return may_still_be_made(change); });
                },
-               [&](Index, VertexProposal& found) { contract(found); }) &&
+               [&](const Candidate&, VertexProposal& found) { contract(found); }) &&
            worthwhile(before);
+  }
+
+  static bool worth_repairs(const Candidate& candidate) {
+    return candidate.shortest < repaired_below * repaired_below;
   }
 
   bool worthwhile(std::size_t before) const {
