@@ -126,23 +126,34 @@ class Coarsening {
   // The vertices with a short edge, those with the shortest one first, where something has changed since they
   // were asked last.
   std::vector<Candidate> find_candidates(std::uint32_t changed_since) const {
+    constexpr std::size_t tets_at_once = 4096;
+    const std::size_t chunks = (complex().size() + tets_at_once - 1) / tets_at_once;
+    std::vector<std::vector<Candidate>> ends(chunks);  // of short edges, some several times
+    parallel_for(chunks, [&](std::size_t chunk) {
+      const std::size_t end = std::min<std::size_t>((chunk + 1) * tets_at_once, complex().size());
+      for (std::size_t t = chunk * tets_at_once; t < end; ++t)
+        find_short_edges(static_cast<Index>(t), ends[chunk]);
+    });
     std::vector<double> shortest(mesh().points.size(), INFINITY);
-    for (Index t = 0; t < complex().size(); ++t) {
-      if (!complex()[t].alive) continue;
-      const auto& v = complex()[t].corners;
-      for (unsigned i = 0; i < 4; ++i)
-        for (unsigned j = i + 1; j < 4; ++j) {
-          const double length = squared_relative_length(v[i], v[j]);
-          shortest[v[i]] = std::min(shortest[v[i]], length);
-          shortest[v[j]] = std::min(shortest[v[j]], length);
-        }
-    }
+    for (const auto& found : ends)
+      for (const auto& [length, v] : found) shortest[v] = std::min(shortest[v], length);
     std::vector<Candidate> candidates;
     for (Index v = 0; v < shortest.size(); ++v)
-      if (is_short(shortest[v]) && mesh().features[v].dimension > 0 && changed_[v] >= changed_since)
+      if (shortest[v] < INFINITY && mesh().features[v].dimension > 0 && changed_[v] >= changed_since)
         candidates.push_back({shortest[v], v});
     std::sort(candidates.begin(), candidates.end());
     return candidates;
+  }
+
+  void find_short_edges(Index tet, std::vector<Candidate>& ends) const {
+    if (!complex()[tet].alive) return;
+    const auto& v = complex()[tet].corners;
+    for (unsigned i = 0; i < 4; ++i)
+      for (unsigned j = i + 1; j < 4; ++j)
+        if (const double length = squared_relative_length(v[i], v[j]); is_short(length)) {
+          ends.push_back({length, v[i]});
+          ends.push_back({length, v[j]});
+        }
   }
 
   // Every vertex once. Is another pass worthwhile?

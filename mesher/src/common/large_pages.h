@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <new>
 #include <vector>
 
@@ -26,6 +27,40 @@ inline void prefer_large_pages([[maybe_unused]] void* block, [[maybe_unused]] st
   const std::uintptr_t end = (first + bytes) / large_page * large_page;
   madvise(static_cast<char*>(block) + (begin - first), end - begin, MADV_HUGEPAGE);
 #endif
+}
+
+/// A block that grows: `block`, null at first, with so many bytes, of which the new one keeps as many as fit.
+/// Large blocks are remapped by the system instead of being copied. Throws std::bad_alloc.
+inline void* resized_block(void* block, std::size_t bytes, std::size_t new_bytes) {
+#if defined(__linux__)
+  const auto pages = [](std::size_t size) { return (size + large_page - 1) / large_page * large_page; };
+  const bool was_mapped = bytes >= least_bytes_in_large_pages;
+  if (new_bytes >= least_bytes_in_large_pages) {
+    void* mapped = was_mapped ? mremap(block, pages(bytes), pages(new_bytes), MREMAP_MAYMOVE)
+                              : mmap(nullptr, pages(new_bytes), PROT_READ | PROT_WRITE,
+                                     MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (mapped == MAP_FAILED) throw std::bad_alloc();
+    prefer_large_pages(mapped, pages(new_bytes));
+    if (!was_mapped && block != nullptr) {
+      std::memcpy(mapped, block, bytes);
+      std::free(block);
+    }
+    return mapped;
+  }
+#endif
+  void* grown = std::realloc(block, new_bytes);
+  if (grown == nullptr) throw std::bad_alloc();
+  return grown;
+}
+
+inline void free_block(void* block, [[maybe_unused]] std::size_t bytes) {
+#if defined(__linux__)
+  if (bytes >= least_bytes_in_large_pages) {
+    munmap(block, (bytes + large_page - 1) / large_page * large_page);
+    return;
+  }
+#endif
+  std::free(block);
 }
 
 /// Gives large blocks large pages.

@@ -2,8 +2,6 @@
 
 #include <cassert>
 #include <cstddef>
-#include <cstdlib>
-#include <new>
 #include <type_traits>
 #include <utility>
 
@@ -11,7 +9,7 @@
 
 namespace collarmesh {
 
-/// A vector of plain data that grows with realloc: large blocks are remapped by the system instead
+/// A vector of plain data that grows in place where it can: large blocks are remapped by the system instead
 /// of being copied, so growth never holds two copies in memory.
 template <class T>
 class GrowingArray {
@@ -21,7 +19,7 @@ class GrowingArray {
   GrowingArray() = default;
   GrowingArray(const GrowingArray&) = delete;
   GrowingArray& operator=(const GrowingArray&) = delete;
-  ~GrowingArray() { std::free(data_); }
+  ~GrowingArray() { free_block(data_, capacity_ * sizeof(T)); }
 
   std::size_t size() const { return size_; }
   std::size_t bytes() const { return capacity_ * sizeof(T); }
@@ -54,10 +52,7 @@ class GrowingArray {
 
  private:
   void reserve(std::size_t n) {
-    void* grown = std::realloc(static_cast<void*>(data_), n * sizeof(T));
-    if (grown == nullptr) throw std::bad_alloc();
-    prefer_large_pages(grown, n * sizeof(T));
-    data_ = static_cast<T*>(grown);
+    data_ = static_cast<T*>(resized_block(data_, capacity_ * sizeof(T), n * sizeof(T)));
     capacity_ = n;
   }
 

@@ -12,6 +12,7 @@ class Extraction {
       : refined_(refined), plc_(refined.domain.plc), number_(refined.mesh.vertex_count(), none) {}
 
   TetMesh run() {
+    reserve();
     add_cells();
     add_stitched();
     add_balls();
@@ -23,6 +24,19 @@ class Extraction {
   }
 
  private:
+  // A little more than there will be.
+  void reserve() {
+    const std::size_t tets = refined_.mesh.cell_count() + refined_.stitched.tets.size();
+    mesh_.points.reserve(refined_.mesh.vertex_count());
+    mesh_.features.reserve(refined_.mesh.vertex_count());
+    mesh_.tets.reserve(tets);
+    mesh_.tet_region.reserve(tets);
+    mesh_.tet_tag.reserve(tets);
+    mesh_.tet_collar.reserve(tets);
+    mesh_.tet_crease.reserve(tets);
+    mesh_.tet_thin.reserve(tets);
+  }
+
   Index vertex(Index v) {
     if (number_[v] != none) return number_[v];
     number_[v] = static_cast<Index>(mesh_.points.size());
