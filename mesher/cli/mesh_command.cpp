@@ -63,6 +63,7 @@ class Stages {
 PipelineOptions pipeline_options(const MeshArguments& a) {
   PipelineOptions options;
   options.mesh = a.mesh;
+  options.mesh.count_work = !a.reports.empty();
   options.mesh.crease_angle = a.complex.crease_angle;
   options.mesh.time_limit = 0;  // one limit for everything, from reading to writing: the interrupt flag
   options.complex = a.complex.plc;

@@ -116,6 +116,18 @@ Json options_json(const MeshArguments& a) {
           {"time_limit", or_null(m.time_limit)}};
 }
 
+Json counts_json(const WorkCounts& c) {
+  return {{"located", c.located},
+          {"relocated", c.relocated},
+          {"gap_queries", c.gap_queries},
+          {"gap_cells", c.gap_cells},
+          {"largest_degree", c.largest_degree},
+          {"largest_cavity", c.largest_cavity},
+          {"ripped_out", c.ripped_out},
+          {"smallest_aspect", c.smallest_aspect},
+          {"largest_aspect", c.largest_aspect}};
+}
+
 Json statistics_json(const MeshStatistics& s) {
   return {{"vertices_inserted", s.vertices_inserted},
           {"vertices_in_blocks", s.vertices_in_blocks},
@@ -124,7 +136,8 @@ Json statistics_json(const MeshStatistics& s) {
           {"warps", s.warps},
           {"yields", s.yields},
           {"peak_bytes", s.peak_bytes},
-          {"seconds", s.seconds}};
+          {"seconds", s.seconds},
+          {"counts", counts_json(s.counts)}};
 }
 
 Json projection_json(const Plc& plc, const ProjectReport& r) {

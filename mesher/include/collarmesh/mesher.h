@@ -52,6 +52,7 @@ struct MeshOptions {
   std::size_t max_memory = 0;
   double time_limit = 0;  ///< budget in seconds; 0: none
   unsigned threads = 0;   ///< 0: as many as there are cores; any number makes the same mesh
+  bool count_work = false;  ///< fill in MeshStatistics::counts, which takes a moment
 };
 
 /// The surface distance tolerance unless another one is asked for: a tenth of the target edge length (0: of
@@ -69,6 +70,21 @@ enum class MeshStatus {
   cancelled          ///< no mesh
 };
 
+/// What the cost of a refinement consists of: what the paper's analysis bounds. Filled in when asked for
+/// (MeshOptions::count_work).
+struct WorkCounts {
+  std::size_t located = 0;         ///< points and protective balls that were found from mesh vertices
+  std::size_t relocated = 0;       ///< how often one of them moved to a vertex that was new and nearer
+  std::size_t gap_queries = 0;     ///< of the gap size, with collars created in the pass
+  std::size_t gap_cells = 0;       ///< Voronoi cells explored for these
+  std::size_t largest_degree = 0;  ///< neighbours of a new vertex
+  std::size_t largest_cavity = 0;  ///< cells that one insertion destroyed
+  std::size_t ripped_out = 0;      ///< vertices in collars that the result has not (paper, Procedure 5)
+  /// Extremes of R_v / r_v (paper, section 1.2), the largest circumradius at a vertex over half of its shortest
+  /// edge, where all cells at the vertex lie in regions and outside collars; 0 where there is no such vertex.
+  double smallest_aspect = 0, largest_aspect = 0;
+};
+
 struct MeshStatistics {
   std::size_t vertices_inserted = 0;  ///< of the whole triangulation, the box and the outside included
   std::size_t vertices_in_blocks = 0;  ///< of these, in blocks that several threads may refine
@@ -77,6 +93,7 @@ struct MeshStatistics {
   std::size_t warps = 0, yields = 0;  ///< destroy() calls that warped to input or yielded to a lower ball
   std::size_t peak_bytes = 0;         ///< of the mesh structures
   double seconds = 0;
+  WorkCounts counts;
 };
 
 struct MeshResult {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -33,6 +34,17 @@ struct ConflictZone {
                                 ///< opposite that face
   std::vector<FaceId>
       outer;  ///< after insert: the face beyond border[i], seen from outside; no_face on the hull
+};
+
+/// The most vertices and cells of any zone that was replaced.
+struct LargestZone {
+  std::size_t vertices = 0, cells = 0;
+
+  void add(const ConflictZone& zone) { add(LargestZone{zone.vertices.size(), zone.cells.size()}); }
+  void add(const LargestZone& other) {
+    vertices = std::max(vertices, other.vertices);
+    cells = std::max(cells, other.cells);
+  }
 };
 
 /// Delaunay triangulation of points inside a box, as flat arrays.

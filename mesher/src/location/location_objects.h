@@ -41,6 +41,7 @@ class LocationObjects {
     }
     objects_[object] = {centre, squared_radius, none, none, none, owner, kind};
     attach(object, vertex);
+    ++added_;
     return object;
   }
 
@@ -50,9 +51,14 @@ class LocationObjects {
   }
 
   void move(Index object, Index vertex) {
+    ++moved_;
     detach(object);
     attach(object, vertex);
   }
+
+  /// Objects added, and moves to other vertices, so far.
+  std::size_t added() const { return added_; }
+  std::size_t moved() const { return moved_; }
 
   std::size_t bytes() const {
     return objects_.capacity() * sizeof(Object) + first_.capacity() * sizeof(Index);
@@ -81,6 +87,7 @@ class LocationObjects {
   LargeVector<Object> objects_;
   std::vector<Index> free_;
   LargeVector<Index> first_;
+  std::size_t added_ = 0, moved_ = 0;
 };
 
 }  // namespace collarmesh

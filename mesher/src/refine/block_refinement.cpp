@@ -56,7 +56,7 @@ BlockRefinement::BlockRefinement(const Domain& domain, RefinedMesh& mesh, Surfac
       queue_(queue),
       next_round_(least_vertices),
       workers_([&domain] {
-        return Worker{WorkQueue(squared_distance(domain.box.min, domain.box.max)), {}};
+        return Worker{WorkQueue(squared_distance(domain.box.min, domain.box.max)), {}, {}};
       }) {
   // Callers' functions need not bear several threads; what is kept at vertices is not kept by blocks.
   if (sizes.asked().has_field() || sizes.any_at_vertices() || domain_.options.vertex_ratio > 0)
@@ -102,6 +102,12 @@ void BlockRefinement::round() {
   const std::size_t after = mesh_.vertex_count(), inserted = after - before;
   inserted_ += inserted;
   if (inserted * entries_per_insertion < taken.size()) next_round_ = after + after / vertices_per_wait;
+}
+
+LargestZone BlockRefinement::largest_zone() const {
+  LargestZone largest;
+  for (const Worker& worker : workers_) largest.add(worker.largest);
+  return largest;
 }
 
 std::size_t BlockRefinement::block_count() const { return cuts_.size() + 1; }
@@ -223,6 +229,7 @@ bool BlockRefinement::destroy(Index cell, Triangulation::Block& block, Worker& w
     return false;
   const Index region = surface_.region(cell);
   block.insert(zone);
+  worker.largest.add(zone);
   for (const Index created : zone.created) {
     surface_.quiet_cell_made(created, region);
     collar_cells_.quiet_cell_made(created);

@@ -42,6 +42,7 @@ class BlockRefinement {
   void round();
   /// Vertices that all rounds have inserted.
   std::size_t inserted() const { return inserted_; }
+  LargestZone largest_zone() const;
 
  private:
   struct Waiting {
@@ -52,6 +53,7 @@ class BlockRefinement {
   struct Worker {
     WorkQueue queue;
     ConflictZone zone;
+    LargestZone largest;
   };
   /// A node of a binary tree in an array: below the cut is node 2 i + 1, above 2 i + 2. The leaves are
   /// blocks.

@@ -53,6 +53,8 @@ class CollarCreator {
 
   /// The gap size as the mesh is now.
   GapExplorer& gap_size();
+  /// Null unless somebody has asked for it.
+  const GapExplorer* gap_explorer() const { return gap_.get(); }
   /// For tests: called for every ball.
   void observe(std::function<void(const CollarBall&)> observer) { observer_ = std::move(observer); }
 

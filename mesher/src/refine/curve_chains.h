@@ -112,6 +112,7 @@ class CurveChains {
   }
   void remove(const ChainLink& link) { remove_subsegment(link.subsegment); }
 
+  const LocationObjects& balls() const { return balls_; }
   std::size_t bytes() const;
 
  private:

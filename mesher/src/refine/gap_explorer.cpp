@@ -32,6 +32,7 @@ double GapExplorer::on_curve(Index curve, const Point& p, double bound) {
 }
 
 double GapExplorer::explore(const Feature& at, const Point& x, double bound) {
+  ++queries_;
   near_ = mesh_.nearest_vertex(x, near_);
   double squared = bound * bound;
   interviewed_.clear();

@@ -32,6 +32,7 @@ class GapExplorer final : public GapSize {
   /// into the ball, where features come as close as they like.
   bool isolated(const Feature& vertex_or_curve, Index cell, std::span<const CollarBall> except = {});
 
+  std::size_t queries() const { return queries_; }
   /// Vertices whose cells were explored, of all queries.
   std::size_t explored() const { return explored_; }
 
@@ -55,7 +56,7 @@ class GapExplorer final : public GapSize {
   std::vector<Index> fresh_nodes_, adjacent_;
   std::vector<Point> polygon_, clipped_;
   Index near_ = 0;
-  std::size_t explored_ = 0;
+  std::size_t queries_ = 0, explored_ = 0;
 };
 
 }  // namespace collarmesh

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "refine/aspect_ratios.h"
 #include "refine/extract.h"
 
 namespace collarmesh {
@@ -230,6 +231,7 @@ bool Refinement::insert_on_collar(const CollarPoint& point) {
 Index Refinement::force_insert(const Feature& feature) {
   surface_.cells_vanish(zone_);
   const Index vertex = mesh_.insert(zone_, feature);
+  largest_.add(zone_);
   // What is there:
   nodes_.cells_made(zone_, vertex);
   collar_cells_.cells_made(zone_, vertex);
@@ -288,7 +290,44 @@ MeshStatistics Refinement::statistics() const {
   s.yields = yields_;
   s.peak_bytes = std::max(budget_.peak_bytes(), bytes());
   s.seconds = seconds_ > 0 ? seconds_ : budget_.elapsed();
+  if (domain_.options.count_work) s.counts = work_counts();
   return s;
+}
+
+WorkCounts Refinement::work_counts() const {
+  WorkCounts counts;
+  counts.located = points_.objects().added() + curves_.balls().added();
+  counts.relocated = points_.objects().moved() + curves_.balls().moved();
+  if (const GapExplorer* gaps = collar_creator_.gap_explorer()) {
+    counts.gap_queries = gaps->queries();
+    counts.gap_cells = gaps->explored();
+  }
+  LargestZone largest = blocks_.largest_zone();
+  largest.add(largest_);
+  counts.largest_degree = largest.vertices;
+  counts.largest_cavity = largest.cells;
+  const AspectRatios aspects = aspect_ratios(
+      mesh_, [&](Index cell) { return surface_.region(cell) != 0 && !collar_cells_.inside(cell); });
+  counts.smallest_aspect = aspects.smallest;
+  counts.largest_aspect = aspects.largest;
+  counts.ripped_out = ripped_out();
+  return counts;
+}
+
+// Vertices of cells in collars that neither a cell outside nor a stitched one has.
+std::size_t Refinement::ripped_out() const {
+  enum : std::uint8_t { elsewhere, in_collar, kept };
+  std::vector<std::uint8_t> where(mesh_.vertex_count(), elsewhere);
+  for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
+    if (!mesh_.alive(cell)) continue;
+    const bool inside = collar_cells_.inside(cell);
+    if (!inside && surface_.region(cell) == 0) continue;
+    for (const Index v : mesh_.corners(cell))
+      where[v] = std::max<std::uint8_t>(where[v], inside ? in_collar : kept);
+  }
+  for (const auto& tet : stitching_.result().tets)
+    for (const Index v : tet.corners) where[v] = kept;
+  return static_cast<std::size_t>(std::count(where.begin(), where.end(), in_collar));
 }
 
 }  // namespace collarmesh

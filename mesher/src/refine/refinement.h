@@ -80,6 +80,8 @@ class Refinement {
   /// Is a budget spent when so many vertices more will come at least?
   bool stopped(std::size_t planned_vertices = 0);
   std::size_t bytes() const;
+  WorkCounts work_counts() const;
+  std::size_t ripped_out() const;
 
   const Domain domain_;
   Outcome outcome_;
@@ -111,6 +113,7 @@ class Refinement {
   SurfaceTopology topology_;
 
   ConflictZone zone_;
+  LargestZone largest_;
   std::size_t steps_ = 0, warps_ = 0, yields_ = 0;
   double seconds_ = 0;
   std::function<void()> observer_;

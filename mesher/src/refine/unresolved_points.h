@@ -55,6 +55,7 @@ class UnresolvedPoints {
 
   void cells_made(const ConflictZone& zone, Index vertex);
 
+  const LocationObjects& objects() const { return objects_; }
   std::size_t bytes() const { return objects_.bytes() + points_.capacity() * sizeof(Unresolved); }
 
  private:

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <functional>
+
+#include "refine/refined_mesh.h"
+
+namespace collarmesh {
+
+/// Extremes of R_v / r_v over mesh vertices (paper, section 1.2): the radii of the smallest ball around v that
+/// holds its Voronoi cell and of the largest one in it. 0 when there are none.
+struct AspectRatios {
+  double smallest = 0, largest = 0;
+};
+
+/// Of the vertices all of whose cells count.
+AspectRatios aspect_ratios(const RefinedMesh& mesh, const std::function<bool(Index cell)>& counts);
+
+}  // namespace collarmesh
