@@ -77,8 +77,10 @@ TEST(WorkCounts, OfAGridOfWedgesAreThoseOfOne) {
     for (const CollarCreation creation : {CollarCreation::up_front, CollarCreation::in_pass}) {
       SCOPED_TRACE(n);
       PolygonSoup grid = wedge;
-      for (unsigned i = 1; i < n * n; ++i)
-        grid = testing::joined(grid, testing::translated(wedge, {1.5 * (i % n), 1.5 * (i / n), 0}));
+      for (unsigned i = 1; i < n * n; ++i) {
+        const unsigned row = i / n;
+        grid = testing::joined(grid, testing::translated(wedge, {1.5 * (i % n), 1.5 * row, 0}));
+      }
       MeshOptions options = testing::with_size(0.3, 60);
       options.collar_creation = creation;
       const MeshStatistics s = counted({grid}, options);

@@ -120,7 +120,10 @@ class Coarsening {
   struct Candidate {
     double shortest;  // edge, squared, relative to its target
     Index vertex;
-    auto operator<=>(const Candidate&) const = default;
+
+    friend bool operator<(const Candidate& a, const Candidate& b) {
+      return a.shortest != b.shortest ? a.shortest < b.shortest : a.vertex < b.vertex;
+    }
   };
 
   // The vertices with a short edge, those with the shortest one first, where something has changed since they

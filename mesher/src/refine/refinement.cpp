@@ -316,18 +316,18 @@ WorkCounts Refinement::work_counts() const {
 
 // Vertices of cells in collars that neither a cell outside nor a stitched one has.
 std::size_t Refinement::ripped_out() const {
-  enum : std::uint8_t { elsewhere, in_collar, kept };
+  enum : std::uint8_t { elsewhere, ripped, kept };
   std::vector<std::uint8_t> where(mesh_.vertex_count(), elsewhere);
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
     if (!mesh_.alive(cell)) continue;
     const bool inside = collar_cells_.inside(cell);
     if (!inside && surface_.region(cell) == 0) continue;
     for (const Index v : mesh_.corners(cell))
-      where[v] = std::max<std::uint8_t>(where[v], inside ? in_collar : kept);
+      where[v] = std::max<std::uint8_t>(where[v], inside ? ripped : kept);
   }
   for (const auto& tet : stitching_.result().tets)
     for (const Index v : tet.corners) where[v] = kept;
-  return static_cast<std::size_t>(std::count(where.begin(), where.end(), in_collar));
+  return static_cast<std::size_t>(std::count(where.begin(), where.end(), ripped));
 }
 
 }  // namespace collarmesh
