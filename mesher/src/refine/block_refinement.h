@@ -2,7 +2,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "refine/cell_quality.h"
