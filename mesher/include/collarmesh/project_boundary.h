@@ -16,6 +16,7 @@ struct ProjectOptions {
   double tolerance = 1e-9;    ///< absolute: a vertex that stays and is nearer to its feature is no exception
   double reach =
       0;  ///< absolute: vertices farther than this from their feature stay; 0: 1/200 of the diagonal
+  unsigned threads = 0;  ///< at most; 0: as many as there are cores
 };
 
 struct ProjectReport {

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "check/subject.h"
+#include "common/large_pages.h"
 
 namespace collarmesh::checks {
 
@@ -96,7 +97,7 @@ class UseTable {
   }
 
   std::vector<std::size_t> first_;
-  std::vector<Use> uses_;
+  LargeVector<Use> uses_;
 };
 
 class ConformityCheck {

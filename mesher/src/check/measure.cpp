@@ -1,12 +1,16 @@
 // Measures of tetrahedra.
+#include <tbb/enumerable_thread_specific.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "collarmesh/tet_mesh.h"
+#include "common/groups.h"
 
 namespace collarmesh {
 
@@ -120,25 +124,28 @@ TetQuality measure(const Point& a, const Point& b, const Point& c, const Point& 
 
 double median_edge(const TetMesh& mesh) {
   constexpr std::array<std::array<unsigned, 2>, 6> pairs{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
-  const auto for_each_edge = [&](const auto& visit) {
-    for (const auto& tet : mesh.tets)
-      for (const auto& [i, j] : pairs) visit(std::min(tet[i], tet[j]), std::max(tet[i], tet[j]));
-  };
   // The larger ends of all edges, in groups by the smaller one.
-  std::vector<std::size_t> next(mesh.points.size() + 1, 0);
-  for_each_edge([&](Index smaller, Index) { ++next[smaller + 1]; });
-  for (std::size_t i = 1; i < next.size(); ++i) next[i] += next[i - 1];
-  std::vector<Index> ends(6 * mesh.tets.size());
-  for_each_edge([&](Index smaller, Index larger) { ends[next[smaller]++] = larger; });
+  const auto visit = [&](std::size_t t, const auto& give) {
+    const auto& tet = mesh.tets[t];
+    for (const auto& [i, j] : pairs) give(std::min(tet[i], tet[j]), std::max(tet[i], tet[j]));
+  };
+  struct Worker {
+    std::vector<double> lengths;
+    std::vector<Index> seen_from;  // by point
+  };
+  tbb::enumerable_thread_specific<Worker> workers(
+      [&] { return Worker{{}, std::vector<Index>(mesh.points.size(), none)}; });
+  const auto measure = [&](std::size_t group, std::span<Index> larger) {
+    const auto smaller = static_cast<Index>(group);
+    Worker& worker = workers.local();
+    for (const Index end : larger)
+      if (std::exchange(worker.seen_from[end], smaller) != smaller)
+        worker.lengths.push_back(distance(mesh.points[smaller], mesh.points[end]));
+  };
+  for_each_group<Index>(mesh.points.size(), mesh.tets.size(), visit, measure);
   std::vector<double> lengths;
-  std::vector<Index> seen_from(mesh.points.size(), none);
-  auto first = ends.begin();
-  for (Index smaller = 0; smaller < mesh.points.size(); ++smaller) {
-    const auto last = ends.begin() + static_cast<std::ptrdiff_t>(next[smaller]);  // of the group, by now
-    for (; first != last; ++first)
-      if (std::exchange(seen_from[*first], smaller) != smaller)
-        lengths.push_back(distance(mesh.points[smaller], mesh.points[*first]));
-  }
+  for (const Worker& worker : workers)
+    lengths.insert(lengths.end(), worker.lengths.begin(), worker.lengths.end());
   if (lengths.empty()) return 0;
   const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
   std::nth_element(lengths.begin(), middle, lengths.end());

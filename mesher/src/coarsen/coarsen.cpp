@@ -390,8 +390,8 @@ CoarsenReport coarsen(TetMesh& mesh, const Plc& plc, const MeshOptions& made_wit
     improvement::Workpiece workpiece(mesh, plc, distance, made_with.edges_per_hole);
     report = coarsen(workpiece, made_with, options, execution);
     workpiece.complex.store();
+    improvement::mark_thin_tets(mesh, made_with.radius_edge);
   });
-  improvement::mark_thin_tets(mesh, made_with.radius_edge);
   return report;
 }
 

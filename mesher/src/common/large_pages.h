@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <new>
+#include <type_traits>
 #include <vector>
 
 #if defined(__linux__)
@@ -84,6 +85,25 @@ struct LargePageAllocator {
   void deallocate(T* block, std::size_t) { std::free(block); }
 
   friend bool operator==(const LargePageAllocator&, const LargePageAllocator&) { return true; }
+};
+
+/// So many values, which nobody has set.
+template <class T>
+class LargeBlock {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+ public:
+  explicit LargeBlock(std::size_t count)
+      : bytes_(count * sizeof(T)), values_(static_cast<T*>(resized_block(nullptr, 0, bytes_ + 1))) {}
+  ~LargeBlock() { free_block(values_, bytes_ + 1); }
+  LargeBlock(const LargeBlock&) = delete;
+  LargeBlock& operator=(const LargeBlock&) = delete;
+
+  T& operator[](std::size_t i) const { return values_[i]; }
+
+ private:
+  std::size_t bytes_;
+  T* values_;
 };
 
 /// A vector for arrays as large as the mesh.

@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cstddef>
 
 #ifdef __SANITIZE_THREAD__
@@ -30,6 +31,13 @@ void parallel_for(std::size_t count, const Work& work) {
 #else
   tbb::parallel_for(std::size_t{0}, count, work);
 #endif
+}
+
+/// `work(first, last)` for all numbers below `count`, in ranges of this length and a shorter one at the end.
+template <class Work>
+void parallel_for_ranges(std::size_t count, std::size_t length, const Work& work) {
+  parallel_for((count + length - 1) / length,
+               [&](std::size_t i) { work(i * length, std::min((i + 1) * length, count)); });
 }
 
 }  // namespace collarmesh

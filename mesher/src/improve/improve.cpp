@@ -238,8 +238,8 @@ ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& optio
     improvement::Workpiece workpiece(mesh, plc, distance, options.edges_per_hole);
     report = improve(workpiece, options, execution);
     workpiece.complex.store();
+    if (options.thin_angle > 0) improvement::mark_thin_tets(mesh, options.radius_edge);
   });
-  if (options.thin_angle > 0) improvement::mark_thin_tets(mesh, options.radius_edge);
   return report;
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "common/parallel_for.h"
+#include "common/groups.h"
 
 namespace collarmesh::improvement {
 
@@ -77,7 +77,6 @@ TetComplex::TetComplex(TetMesh& mesh) : mesh_(mesh) {
     curve_edges_.emplace(edge_key(mesh.edges[e][0], mesh.edges[e][1]), e);
 }
 
-// Faces are matched in the list of their first vertex.
 void TetComplex::link_all() {
   struct Side {
     std::uint64_t other_corners;  // the two larger ones
@@ -85,40 +84,28 @@ void TetComplex::link_all() {
     std::uint32_t corner;         // opposite it; 4: of a face
   };
   constexpr std::uint32_t of_face = 4;
-  std::vector<std::size_t> first(mesh_.points.size() + 1, 0);
-  const auto for_all_sides = [&](auto&& act) {
-    const auto visit = [&](const std::array<Index, 3>& corners, Index cell, std::uint32_t corner) {
+  const auto visit = [&](std::size_t cell, const auto& give) {
+    const auto give_side = [&](const std::array<Index, 3>& corners, std::size_t index, std::uint32_t corner) {
       const auto key = sorted(corners);
-      act(key[0], Side{std::uint64_t{key[1]} << 32 | key[2], cell, corner});
+      give(key[0], Side{std::uint64_t{key[1]} << 32 | key[2], static_cast<Index>(index), corner});
     };
-    for (Index t = 0; t < tets_.size(); ++t)
+    if (cell < tets_.size())
       for (unsigned corner = 0; corner < 4; ++corner)
-        visit(face_corners(tets_[t].corners, corner), t, corner);
-    for (Index f = 0; f < mesh_.faces.size(); ++f) visit(mesh_.faces[f], f, of_face);
+        give_side(face_corners(tets_[cell].corners, corner), cell, corner);
+    else
+      give_side(mesh_.faces[cell - tets_.size()], cell - tets_.size(), of_face);
   };
-  for (const Tet& tet : tets_) {  // the smallest corner is that of three sides, the next one of the fourth
-    auto v = tet.corners;
-    std::partial_sort(v.begin(), v.begin() + 2, v.end());
-    first[v[0] + 1] += 3;
-    ++first[v[1] + 1];
-  }
-  for (const auto& v : mesh_.faces) ++first[std::min({v[0], v[1], v[2]}) + 1];
-  for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
-  std::vector<Side> sides(first.back());
-  std::vector<std::size_t> next(first.begin(), first.end() - 1);
-  for_all_sides([&](Index smallest, const Side& side) { sides[next[smallest]++] = side; });
-  parallel_for(first.size() - 1, [&](std::size_t v) {
-    const auto all = std::span(sides).subspan(first[v], first[v + 1] - first[v]);
-    std::sort(all.begin(), all.end(),
+  const auto link = [&](std::size_t, std::span<Side> sides) {
+    std::sort(sides.begin(), sides.end(),
               [](const Side& a, const Side& b) { return a.other_corners < b.other_corners; });
-    for (std::size_t i = 0, j = 0; i < all.size(); i = j) {
+    for (std::size_t i = 0, j = 0; i < sides.size(); i = j) {
       Index face = none;
       std::array<const Side*, 2> of_tets{nullptr, nullptr};
-      for (; j < all.size() && all[j].other_corners == all[i].other_corners; ++j) {
-        if (all[j].corner == of_face)
-          face = all[j].cell;
+      for (; j < sides.size() && sides[j].other_corners == sides[i].other_corners; ++j) {
+        if (sides[j].corner == of_face)
+          face = sides[j].cell;
         else
-          (of_tets[0] == nullptr ? of_tets[0] : of_tets[1]) = &all[j];
+          (of_tets[0] == nullptr ? of_tets[0] : of_tets[1]) = &sides[j];
       }
       for (unsigned s = 0; s < 2; ++s) {
         if (of_tets[s] == nullptr) continue;
@@ -127,7 +114,8 @@ void TetComplex::link_all() {
         tet.neighbours[of_tets[s]->corner] = of_tets[1 - s] == nullptr ? none : of_tets[1 - s]->cell;
       }
     }
-  });
+  };
+  for_each_group<Side>(mesh_.points.size(), tets_.size() + mesh_.faces.size(), visit, link);
 }
 
 // Bodies touch in vertices and curves of the complex only.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "collarmesh/tet_mesh.h"
+#include "common/large_pages.h"
 #include "improve/undo_log.h"
 
 namespace collarmesh::improvement {
@@ -134,7 +135,7 @@ class TetComplex {
   unsigned corner_across(Index tet, const std::array<Index, 3>& sorted_face) const;
 
   TetMesh& mesh_;
-  std::vector<Tet> tets_;
+  LargeVector<Tet> tets_;
   std::vector<Index> origin_;  // of every tet: one of the mesh it takes its tags from
   std::vector<Index> vertex_tet_;
   std::unordered_set<Index> pinched_;
@@ -156,7 +157,7 @@ class TetComplex {
 
   // What a trial changes.
   bool on_trial_ = false;
-  UndoLog<Tet> old_tets_;
+  UndoLog<Tet, LargeVector<Tet>> old_tets_;
   UndoLog<Index> old_origins_, old_vertex_tets_, old_lost_vertices_;
   UndoLog<Point> old_points_;
   UndoStack<Index> free_steps_, free_face_steps_;

@@ -7,7 +7,7 @@
 namespace collarmesh::improvement {
 
 /// What entries of an array were before they changed, while it is on, so that they can be put back.
-template <class Value>
+template <class Value, class Values = std::vector<Value>>
 class UndoLog {
  public:
   void begin(std::size_t size) {
@@ -17,11 +17,11 @@ class UndoLog {
   }
   void end() { on_ = false; }
   /// This entry is about to change.
-  void note(const std::vector<Value>& values, std::size_t i) {
+  void note(const Values& values, std::size_t i) {
     if (on_ && i < size_) entries_.emplace_back(i, values[i]);
   }
   /// Put all entries back that there were when it began, drop those added since, and end.
-  void undo(std::vector<Value>& values) {
+  void undo(Values& values) {
     for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry)
       values[entry->first] = entry->second;
     values.resize(size_);

@@ -312,8 +312,8 @@ class Pipeline {
       if (options_.coarsen) coarsen_elements(workpiece);
       if (options_.improve > 0) improve_elements(workpiece);
       workpiece.complex.store();
+      if (options_.coarsen) improvement::mark_thin_tets(mesh, bounds_.radius_edge);
     });
-    if (options_.coarsen) improvement::mark_thin_tets(mesh, bounds_.radius_edge);
   }
 
   void coarsen_elements(improvement::Workpiece& workpiece) {
@@ -345,6 +345,7 @@ class Pipeline {
     options.radius_edge = options_.mesh.radius_edge;
     options.collar_angle = options_.mesh.collar_angle;
     options.reach = distance();
+    options.threads = options_.threads;
     if (made_.coarsening) options.thin_angle = options_.thin_angle;
     made_.projection = project_boundary(made_.result.mesh, *plc_, options_.exact, options, inner_);
   }

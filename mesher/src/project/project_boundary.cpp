@@ -8,6 +8,7 @@
 #include "collarmesh/mesher.h"
 #include "common/flat_features.h"
 #include "project/relaxation.h"
+#include "thread_limit.h"
 
 namespace collarmesh {
 
@@ -49,7 +50,8 @@ class BoundaryProjection {
     for (int pass = 0; pass < retries && retry(pass > 0); ++pass) {
     }
     finish();
-    if (!thin_.empty()) improvement::mark_thin_tets(mesh_, options_.radius_edge);
+    if (!thin_.empty())
+      ThreadLimit(options_.threads).run([&] { improvement::mark_thin_tets(mesh_, options_.radius_edge); });
     return report_;
   }
 

@@ -124,9 +124,9 @@ void BlockRefinement::divide_vertices() {
   cuts_.resize(blocks - 1);
   cut(0, sample);
   owners_.resize(vertices);
-  constexpr std::size_t chunk = 4096;
-  parallel_for((vertices + chunk - 1) / chunk, [&](std::size_t c) {
-    for (std::size_t i = c * chunk; i < std::min((c + 1) * chunk, vertices); ++i) {
+  constexpr std::size_t at_once = 4096;
+  parallel_for_ranges(vertices, at_once, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
       const auto v = static_cast<Index>(i);
       owners_[v] = quiet(v) ? block_at(mesh_.point(v)) : Triangulation::no_owner;
     }
@@ -164,9 +164,9 @@ bool BlockRefinement::quiet(Index vertex) const {
 std::vector<std::vector<WorkQueue::Entry>> BlockRefinement::deal(const std::vector<WorkQueue::Entry>& taken) {
   constexpr std::uint16_t gone = Triangulation::no_owner - 1;
   std::vector<std::uint16_t> owner(taken.size());
-  constexpr std::size_t chunk = 1024;
-  parallel_for((taken.size() + chunk - 1) / chunk, [&](std::size_t c) {
-    for (std::size_t i = c * chunk; i < std::min((c + 1) * chunk, taken.size()); ++i)
+  constexpr std::size_t at_once = 1024;
+  parallel_for_ranges(taken.size(), at_once, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i)
       owner[i] = cells_.due(taken[i]) ? owner_of(taken[i].id) : gone;
   });
   std::vector<std::vector<WorkQueue::Entry>> entries(block_count());

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/large_pages.h"
+#include "common/parallel_for.h"
+
+namespace collarmesh {
+
+/// Calls `use(group, items)` for every group that has items, whose numbers are below `groups`. `visit(i, give)`
+/// calls `give(group, item)` for each item of i, for all i below `count`, and twice: the same both times. In
+/// each group the items are in the order of i, and those of one i in the order they were given. Both are
+/// called by several threads at once.
+/// Cost: linear; memory for all items once.
+template <class Item, class Visit, class Use>
+void for_each_group(std::size_t groups, std::size_t count, const Visit& visit, const Use& use) {
+  // Items are dealt to ranges of groups first, so that the rest happens in a processor's cache.
+  constexpr std::size_t least_chunk = 8192, most_chunks = 64, least_range = 1024, most_ranges = 1024;
+  const auto parts = [](std::size_t n, std::size_t least, std::size_t most) {
+    return std::max((n + most - 1) / most, least);
+  };
+  const std::size_t chunk = parts(count, least_chunk, most_chunks);
+  const std::size_t range = parts(groups, least_range, most_ranges);
+  const std::size_t chunks = (count + chunk - 1) / chunk, ranges = (groups + range - 1) / range;
+  const auto visit_chunk = [&](std::size_t c, const auto& give) {
+    for (std::size_t i = c * chunk; i < std::min((c + 1) * chunk, count); ++i) visit(i, give);
+  };
+  struct Dealt {
+    std::uint32_t group;  // in its range
+    Item item;
+  };
+  std::vector<std::size_t> next(chunks * ranges, 0);  // where a chunk's next item of a range goes
+  parallel_for(chunks, [&](std::size_t c) {
+    visit_chunk(c, [&](std::size_t group, const Item&) { ++next[c * ranges + group / range]; });
+  });
+  std::vector<std::size_t> first(ranges + 1, 0);
+  for (std::size_t r = 0, sum = 0; r < ranges; first[++r] = sum)
+    for (std::size_t c = 0; c < chunks; ++c) {
+      const std::size_t items = next[c * ranges + r];
+      next[c * ranges + r] = sum;
+      sum += items;
+    }
+  const LargeBlock<Dealt> dealt(first.back());
+  parallel_for(chunks, [&](std::size_t c) {
+    visit_chunk(c, [&](std::size_t group, const Item& item) {
+      const std::size_t r = group / range;
+      dealt[next[c * ranges + r]++] = {static_cast<std::uint32_t>(group - r * range), item};
+    });
+  });
+  parallel_for(ranges, [&](std::size_t r) {
+    const std::span<const Dealt> all(&dealt[0] + first[r], first[r + 1] - first[r]);
+    std::vector<std::size_t> end(range + 1, 0);
+    for (const Dealt& d : all) ++end[d.group + 1];
+    for (std::size_t g = 1; g <= range; ++g) end[g] += end[g - 1];
+    std::vector<Item> items(all.size());
+    for (const Dealt& d : all) items[end[d.group]++] = d.item;  // afterwards end[g] is where group g ends
+    std::size_t begin = 0;
+    for (std::size_t g = 0; g < range && begin < items.size(); begin = end[g++])
+      if (end[g] > begin) use(r * range + g, std::span(items).subspan(begin, end[g] - begin));
+  });
+}
+
+}  // namespace collarmesh
