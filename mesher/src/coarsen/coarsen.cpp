@@ -202,7 +202,7 @@ class Coarsening {
   }
 
   bool may_still_be_made(const Change& contraction) const {
-    return contraction.kind == Change::Kind::none || workpiece_.may_contract(contraction);
+    return contraction.kind == Change::Kind::none || workpiece_.curve_can_spare(contraction);
   }
 
   void contract(VertexProposal& found) {

@@ -179,7 +179,7 @@ class Improvement {
       case Change::Kind::boundary_flip: ++report_.boundary_flips; break;
       case Change::Kind::move: ++report_.moved_vertices; break;
       case Change::Kind::contraction:
-        if (!workpiece_.may_contract(change)) return;  // another one took the curve's last edge to spare
+        if (!workpiece_.curve_can_spare(change)) return;  // another one took the curve's last edge to spare
         ++report_.contracted_edges;
         break;
       case Change::Kind::insertion:

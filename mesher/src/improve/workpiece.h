@@ -40,7 +40,7 @@ class Workpiece {
   double quality(Index tet) const;
 
   /// May this contraction still be made? What a curve has to spare is used up by others anywhere on it.
-  bool may_contract(const Change& change) const {
+  bool curve_can_spare(const Change& change) const {
     return complex.mesh().features[change.vertex].dimension != 1 || curves.may_skip(change.vertex);
   }
   /// Returns the tets that are new or have changed, until the next call.

@@ -8,7 +8,6 @@ namespace collarmesh {
 
 namespace {
 
-constexpr unsigned most_rounds = 200;
 constexpr std::size_t triangles_between_stops = 64;
 constexpr double on_sphere = 1e-6;
 // A cell whose volume is below this share of its longest edge cubed is flat.
@@ -42,14 +41,14 @@ void visit_faces_around(const RefinedMesh& mesh, Index cell, Index a, Index b, c
 
 CollarReview::CollarReview(const RefinedMesh& mesh, CollarSystem& collars, CollarCells& cells,
                            const RestrictedSurface& surface, const CollarCreator& creator,
-                           CollarSurface& collar_surface, Outcome& outcome, std::function<bool()> stopped)
+                           CollarSurface& collar_surface, WorkQueue& queue, std::function<bool()> stopped)
     : mesh_(mesh),
       collars_(collars),
       cells_(cells),
       surface_(surface),
       creator_(creator),
       collar_surface_(collar_surface),
-      outcome_(outcome),
+      queue_(queue),
       stopped_(std::move(stopped)) {}
 
 void CollarReview::cells_made(const ConflictZone& zone) {
@@ -66,22 +65,19 @@ void CollarReview::feature_changed(Index vertex) {
   for (const Index cell : scratch_) touch(cell);
 }
 
-bool CollarReview::check(const Insert& insert) {
-  if (collars_.empty() || outcome_.given_up()) return false;
+bool CollarReview::check() {
+  if (collars_.empty()) return false;
   if (!started_) start();
   std::vector<Index> cells = take_touched();
+  if (cells.empty() && vertices_at_last_look_ == mesh_.vertex_count()) return false;
+  vertices_at_last_look_ = mesh_.vertex_count();
   take_in_flat_cells(cells);
   if (!judge_changed_triangles(cells)) return false;
-  find_exposed_centres(cells);
-  bool found = surround_centres(insert);
-  found |= mend_poor_triangles(insert);
-  if (found && ++rounds_ > most_rounds) {
-    outcome_.give_up(mesh_.point(mesh_.last_vertex()),
-                     "the collar surface did not settle; the last vertex is",
-                     "raise collar-angle, or try a smaller size or another seed");
-    return false;
-  }
-  return found;
+  find_exposed_vertices(cells);
+  const std::size_t before = queue_.pushed();
+  queue_exposed_vertices();
+  queue_poor_triangles();
+  return queue_.pushed() > before;
 }
 
 // Everything is new. Voronoi cells have become smaller: fewer vertices are near collars than when they came.
@@ -236,7 +232,7 @@ bool CollarReview::poor_edge(const CollarTriangle& t, Index a, Index b) const {
 
 // A centre, or another point of a crease, must not be a vertex of cells outside: their part of the sphere has
 // no points yet.
-void CollarReview::find_exposed_centres(const std::vector<Index>& cells) {
+void CollarReview::find_exposed_vertices(const std::vector<Index>& cells) {
   for (const Index cell : cells) {
     if (surface_.region(cell) == 0 || cells_.inside(cell)) continue;
     for (const Index v : mesh_.corners(cell)) {
@@ -248,49 +244,62 @@ void CollarReview::find_exposed_centres(const std::vector<Index>& cells) {
   sort_and_make_unique(exposed_);
 }
 
-// False when nothing was inserted.
-bool CollarReview::mend(const CollarTriangle& t, const Insert& insert) {
-  const auto point = collar_surface_.repair(t);
-  return point && insert(*point);
-}
-
-bool CollarReview::surround_centres(const Insert& insert) {
-  bool found = false;
-  std::erase_if(exposed_, [&](Index vertex) {
-    const Index b = ball_at_.at(vertex);
-    const CollarBall& ball = collars_.balls()[b];
-    mesh_.incident_cells(vertex, scratch_);
-    const auto outside = std::find_if(scratch_.begin(), scratch_.end(), [&](Index cell) {
-      return surface_.region(cell) != 0 && !cells_.inside(cell);
-    });
-    if (outside == scratch_.end()) return true;
-    const auto& v = mesh_.corners(*outside);
-    const auto corner = static_cast<unsigned>(std::find(v.begin(), v.end(), vertex) - v.begin());
-    const Vector d = mesh_.circumcentre(*outside) - ball.centre;
-    found |= mend({face_id(*outside, corner), mesh_.generation(*outside), b,
-                   ball.centre + ball.radius / norm(d) * d, false},
-                  insert);
-    return false;
+// A cell of a region that has the vertex and lies outside the collar.
+Index CollarReview::cell_outside(Index vertex) {
+  mesh_.incident_cells(vertex, scratch_);
+  const auto outside = std::find_if(scratch_.begin(), scratch_.end(), [&](Index cell) {
+    return surface_.region(cell) != 0 && !cells_.inside(cell);
   });
-  return found;
+  return outside == scratch_.end() ? none : *outside;
 }
 
-bool CollarReview::mend_poor_triangles(const Insert& insert) {
-  bool found = false;
-  std::vector<FaceId> poor;
-  poor.swap(poor_);
-  sort_and_make_unique(poor);
-  std::size_t looked_at = 0;
-  for (const FaceId face : poor) {
-    if (++looked_at % triangles_between_stops == 0 && stopped_()) return false;
-    const CollarTriangle* t = known_triangle(face);
-    if (t == nullptr || t->face != face || !t->poor) continue;
-    // What an earlier repair has changed is judged anew in the next round.
-    if (touched_[cell_of(face)] == 0 && touched_[cell_of(mesh_.opposite(face))] == 0)
-      found |= mend(CollarTriangle(*t), insert);
-    poor_.push_back(face);
+void CollarReview::queue_exposed_vertices() {
+  std::erase_if(exposed_, [&](Index vertex) { return cell_outside(vertex) == none; });
+  for (const Index vertex : exposed_) {
+    const double radius = collars_.balls()[ball_at_.at(vertex)].radius;
+    queue_.push(WorkQueue::exposed_crease_vertices, radius * radius, {vertex, 0});
   }
-  return found;
+}
+
+void CollarReview::queue_poor_triangles() {
+  sort_and_make_unique(poor_);
+  std::erase_if(poor_, [&](FaceId face) {
+    const CollarTriangle* t = known_triangle(face);
+    return t == nullptr || t->face != face || !t->poor;
+  });
+  for (const FaceId face : poor_) {
+    const double squared_radius =
+        squared_distance(known_triangle(face)->representation, mesh_.point(mesh_.face_vertices(face)[0]));
+    queue_.push(WorkQueue::poor_collar_triangles, squared_radius, {face, mesh_.generation(cell_of(face))});
+  }
+}
+
+std::optional<Candidate> CollarReview::candidate(const WorkQueue::Item& item) {
+  return item.priority == WorkQueue::exposed_crease_vertices ? candidate_at_vertex(item.entry.id)
+                                                             : candidate_on_triangle(item.entry);
+}
+
+// On the sphere, towards the centre of a cell outside.
+std::optional<Candidate> CollarReview::candidate_at_vertex(Index vertex) {
+  const Index outside = cell_outside(vertex);
+  if (outside == none) return std::nullopt;
+  const Index b = ball_at_.at(vertex);
+  const CollarBall& ball = collars_.balls()[b];
+  const auto& v = mesh_.corners(outside);
+  const auto corner = static_cast<unsigned>(std::find(v.begin(), v.end(), vertex) - v.begin());
+  const Vector d = mesh_.circumcentre(outside) - ball.centre;
+  return collar_surface_.repair({face_id(outside, corner), mesh_.generation(outside), b,
+                                 ball.centre + ball.radius / norm(d) * d, false});
+}
+
+std::optional<Candidate> CollarReview::candidate_on_triangle(const WorkQueue::Entry& entry) const {
+  const FaceId face = entry.id;
+  if (!mesh_.alive(cell_of(face), entry.stamp)) return std::nullopt;
+  const CollarTriangle* t = known_triangle(face);
+  if (t == nullptr || t->face != face || !t->poor || touched_[cell_of(face)] != 0 ||
+      touched_[cell_of(mesh_.opposite(face))] != 0)
+    return std::nullopt;
+  return collar_surface_.repair(*t);
 }
 
 }  // namespace collarmesh

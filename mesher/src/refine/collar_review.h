@@ -1,34 +1,36 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
 #include "refine/collar_surface.h"
-#include "refine/outcome.h"
+#include "refine/work_queue.h"
 
 namespace collarmesh {
 
-/// Looks at the collar surface in rounds when everything else is done (paper, section 4): what is poorly
-/// represented is mended, then looked at again.
+/// Looks at the collar surface whenever everything else is done (paper, section 4), and queues what is poorly
+/// represented: triangles, and vertices of creases that cells outside the collar have.
 ///
-/// State: what is known of the collar surface since the last round. Invariant, once started: every cell near
-/// collars that was created since then, or whose vertices lie on other features, is touched; so a round
-/// judges the triangles around those alone, and all rounds together cost what was created. The loop asks for
-/// rounds and tells of insertions.
+/// State: what is known of the collar surface since it looked last. Invariant, once started: every cell near
+/// collars that was created since then, or whose vertices lie on other features, is touched; so it judges the
+/// triangles around those alone, and all looks together cost what was created. The loop asks for looks, takes
+/// candidates and tells of insertions. What has no candidate stays poor, for the certificate to tell.
 class CollarReview {
  public:
-  /// Inserts a point, unless that is impossible: then what stays poor is for the certificate to tell.
-  using Insert = std::function<bool(const CollarPoint&)>;
-
-  /// All are kept by reference. `stopped` is asked now and then. The first round tells the collars that no
+  /// All are kept by reference. `stopped` is asked now and then. The first look tells the collars that no
   /// more balls will come.
   CollarReview(const RefinedMesh& mesh, CollarSystem& collars, CollarCells& cells,
                const RestrictedSurface& surface, const CollarCreator& creator, CollarSurface& collar_surface,
-               Outcome& outcome, std::function<bool()> stopped);
+               WorkQueue& queue, std::function<bool()> stopped);
 
-  /// A round. False when nothing was inserted.
-  bool check(const Insert& insert);
+  /// Precondition: the queue is empty. False when nothing was queued: nothing is poor, or nothing has come of
+  /// what was queued before.
+  bool check();
+  /// What mends a queued triangle, or stands between a queued vertex and the cells outside. Nothing when that
+  /// is impossible, or what was done meanwhile is to be looked at first.
+  std::optional<Candidate> candidate(const WorkQueue::Item& item);
 
   void cells_made(const ConflictZone& zone);
   /// A vertex was found to lie on another feature.
@@ -45,10 +47,12 @@ class CollarReview {
   bool judge_changed_triangles(const std::vector<Index>& cells);
   const CollarTriangle* known_triangle(FaceId face) const;
   bool poor_edge(const CollarTriangle& t, Index a, Index b) const;
-  void find_exposed_centres(const std::vector<Index>& cells);
-  bool mend(const CollarTriangle& t, const Insert& insert);
-  bool surround_centres(const Insert& insert);
-  bool mend_poor_triangles(const Insert& insert);
+  void find_exposed_vertices(const std::vector<Index>& cells);
+  Index cell_outside(Index vertex);
+  void queue_exposed_vertices();
+  void queue_poor_triangles();
+  std::optional<Candidate> candidate_at_vertex(Index vertex);
+  std::optional<Candidate> candidate_on_triangle(const WorkQueue::Entry& entry) const;
 
   const RefinedMesh& mesh_;
   CollarSystem& collars_;
@@ -56,11 +60,11 @@ class CollarReview {
   const RestrictedSurface& surface_;
   const CollarCreator& creator_;
   CollarSurface& collar_surface_;
-  Outcome& outcome_;
+  WorkQueue& queue_;
   std::function<bool()> stopped_;
 
   bool started_ = false;
-  unsigned rounds_ = 0;
+  Index vertices_at_last_look_ = 0;
   GrowingArray<std::uint8_t> touched_;  // by cell: a flag
   std::vector<Index> touched_cells_;    // each of them, and some that are gone or not touched any more
   CollarTriangles triangles_;

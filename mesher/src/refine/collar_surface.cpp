@@ -14,6 +14,10 @@ namespace {
 constexpr double arc_reach = 0.7;
 // ... unless a mesh vertex is this close to the arc's point already, in radii of the empty ball.
 constexpr double arc_clearance = 0.5;
+// Where a smooth patch bends, a point of its arc comes this close to mesh vertices, in distance tolerances.
+constexpr double bent_clearance = 0.1;
+// Other points on the collar surface come this close to mesh vertices, in radii of their ball.
+constexpr double clearance_in_radii = 1e-3;
 // The radius of a ball is at most a third of the gap size.
 constexpr double gap_per_radius = 3;
 
@@ -257,7 +261,7 @@ bool CollarSurface::poor_book(const CollarTriangle& t, const CollarTriangle& u,
          measure(b, a, q, p).max_dihedral > domain_.options.collar_angle;
 }
 
-std::optional<CollarPoint> CollarSurface::repair(const CollarTriangle& t) const {
+std::optional<Candidate> CollarSurface::repair(const CollarTriangle& t) const {
   const CollarBall& ball = collars_.balls()[t.ball];
   const auto v = mesh_.face_vertices(t.face);
   const double clearance = arc_clearance * distance(t.representation, mesh_.point(v[0]));
@@ -274,13 +278,22 @@ std::optional<CollarPoint> CollarSurface::repair(const CollarTriangle& t) const 
     const Index other = collars_.ball_containing(ball.centre + (1 + 1e-9) * (arc - ball.centre));
     if (other != none) continue;
     const double gap = distance(arc, mesh_.point(mesh_.nearest_vertex(arc, v[0])));
-    if (gap < (bent ? 0.1 * domain_.distance : clearance)) continue;
+    if (gap < (bent ? bent_clearance * domain_.distance : clearance)) continue;
     nearest = off;
     best = arc;
     patch = p;
   }
   if (t.bent_on != none && patch == none) return std::nullopt;
-  return CollarPoint{best, {static_cast<std::uint8_t>(patch == none ? 3 : 2), patch}, v[0]};
+  best = domain_.frame.rounded(best);
+  const Index vertex = mesh_.nearest_vertex(best, v[0]);
+  const Index start = mesh_.conflicting_cell_around(vertex, best);
+  const double least = std::max(domain_.floor, t.bent_on == none ? clearance_in_radii * ball.radius : 0);
+  const double squared_radius = squared_distance(t.representation, mesh_.point(v[0]));
+  if (start == none || distance(best, mesh_.point(vertex)) < least ||
+      squared_radius < domain_.floor * domain_.floor)
+    return std::nullopt;
+  const Feature feature{static_cast<std::uint8_t>(patch == none ? 3 : 2), patch};
+  return Candidate{best, squared_radius, t.representation, feature, start};
 }
 
 // What is known of faces whose cells have changed is forgotten.

@@ -4,17 +4,11 @@
 #include <vector>
 
 #include "delaunay/growing_array.h"
+#include "refine/candidate.h"
 #include "refine/collar_creator.h"
 #include "refine/collar_triangles.h"
 
 namespace collarmesh {
-
-/// A point to be inserted on the collar surface.
-struct CollarPoint {
-  Point point;
-  Feature feature;  ///< that it lies on; dimension 3: none
-  Index nearby;     ///< a mesh vertex
-};
 
 /// The collar surface as a restricted Delaunay triangulation (paper, section 4): the triangles between cells
 /// inside the collars and outside, whether they represent the surface well enough to be stitched to the
@@ -51,9 +45,10 @@ class CollarSurface {
   /// An edge and the ball's centre make a face between two regions. Does it lead from one sheet of a smooth
   /// patch to another? In balls smaller than the distance tolerance that does not tell.
   bool spans_sheets(const CollarBall& ball, Index a, Index b) const;
-  /// The point that mends a triangle: its representation point, or the nearest point of an arc where a patch
-  /// through the ball's centre meets the sphere. Nothing when there is none.
-  std::optional<CollarPoint> repair(const CollarTriangle& t) const;
+  /// What mends a triangle: its representation point, or the nearest point of an arc where a patch through the
+  /// ball's centre meets the sphere. Nothing when there is none, or when it is next to a mesh vertex already:
+  /// so the repairs of a ball are bounded (theory.md).
+  std::optional<Candidate> repair(const CollarTriangle& t) const;
 
   /// Does a mesh vertex lie on a crease?
   bool on_crease(Index vertex) const;

@@ -41,7 +41,7 @@ Refinement::Refinement(const Plc& plc, const MeshOptions& options, const Executi
       blocks_(domain_, mesh_, nodes_, collars_, collar_cells_, surface_, sizes_, points_, curves_, cells_,
               queue_),
       collar_surface_(domain_, mesh_, nodes_, collars_, collar_cells_, surface_, collar_creator_),
-      collar_review_(mesh_, collars_, collar_cells_, surface_, collar_creator_, collar_surface_, outcome_,
+      collar_review_(mesh_, collars_, collar_cells_, surface_, collar_creator_, collar_surface_, queue_,
                      [this] { return stopped(); }),
       surface_check_(domain_, mesh_, nodes_, collars_, collar_cells_, surface_, triangles_, points_, curves_,
                      outcome_),
@@ -63,8 +63,7 @@ void Refinement::start() {
 
 MeshStatus Refinement::run() {
   WorkQueue::Item item;
-  // Repairs of the collar surface come in many small rounds: let them settle before the rest is
-  // looked at again.
+  // The collar surface is mended in many small steps: let it settle before the rest is looked at again.
   bool mending_collars = false;
   // Until then nobody looks at the collar surface, which blocks tell nothing.
   bool first_pass = true;
@@ -122,6 +121,10 @@ void Refinement::process(const WorkQueue::Item& item) {
     case WorkQueue::unresolved_triangles:
     case WorkQueue::large_triangles:
       if (triangles_.due(item.entry)) destroy_triangle(item);
+      break;
+    case WorkQueue::exposed_crease_vertices:
+    case WorkQueue::poor_collar_triangles:
+      if (const auto candidate = collar_review_.candidate(item)) destroy(*candidate);
       break;
     case WorkQueue::priority_count: break;
   }
@@ -218,16 +221,6 @@ void Refinement::insert_point(Index index) {
   curves_.point_resolved(index);
 }
 
-bool Refinement::insert_on_collar(const CollarPoint& point) {
-  const Point p = domain_.frame.rounded(point.point);
-  const Index nearest = mesh_.nearest_vertex(p, point.nearby);
-  const Index cell = mesh_.conflicting_cell_around(nearest, p);
-  if (cell == none || distance(p, mesh_.point(nearest)) < domain_.floor) return false;
-  mesh_.find_conflict_zone(p, cell, zone_);
-  force_insert(point.feature);
-  return true;
-}
-
 Index Refinement::force_insert(const Feature& feature) {
   surface_.cells_vanish(zone_);
   const Index vertex = mesh_.insert(zone_, feature);
@@ -257,9 +250,7 @@ bool Refinement::check_gradation() {
   return queue_.pushed() > before;
 }
 
-bool Refinement::check_collars() {
-  return collar_review_.check([this](const CollarPoint& point) { return insert_on_collar(point); });
-}
+bool Refinement::check_collars() { return !outcome_.given_up() && collar_review_.check(); }
 
 bool Refinement::stopped(std::size_t planned_vertices) {
   return budget_.spent({.vertices = mesh_.vertex_count(),

@@ -31,8 +31,8 @@
 
 namespace collarmesh {
 
-/// Sparse Voronoi Refinement of a complex (paper, Procedures 1 to 3): the loop. It alone knows all parts, and
-/// inserts; what it knows of them is their order (doc/architecture/refinement_parts.md).
+/// Sparse Voronoi Refinement of a complex (paper, Procedures 1 to 3): the loop. It alone knows all parts;
+/// what it knows of them is their order (doc/architecture/refinement_parts.md).
 class Refinement {
  public:
   Refinement(const Plc& plc, const MeshOptions& options, const Execution& execution);
@@ -69,7 +69,6 @@ class Refinement {
   /// Paper, Procedure 2. False when nothing could be inserted.
   bool destroy(Candidate candidate);
   void insert_point(Index point);
-  bool insert_on_collar(const CollarPoint& point);
   /// Paper, Procedure 3. Precondition: zone_ is the point's. Returns the new vertex.
   Index force_insert(const Feature& feature);
   bool at_floor(const Candidate& candidate) const {

@@ -36,9 +36,9 @@ struct TriangleNotes {
 ///
 /// Invariants, between insertions: a cell has the region that its circumcentre lies in, as far as its
 /// coordinates are not rounded across the surface; a face is marked, from both of its cells, when its dual
-/// edge crosses a patch, and then it has a record. The loop tells of insertions; the parts that judge
-/// triangles read records and write notes; CollarCreator tells of new balls; SurfaceCheck gives flat cells
-/// outside.
+/// edge crosses a patch, and then it has a record. The loop tells of insertions, BlockRefinement of
+/// cells far from the surface; the parts that judge triangles read records and write notes; CollarCreator
+/// tells of new balls; at the very end SurfaceCheck gives flat cells to the outside.
 class RestrictedSurface {
  public:
   /// All are kept by reference. Labels the cells that the mesh has.

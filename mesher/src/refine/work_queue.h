@@ -25,6 +25,8 @@ class WorkQueue {
     unresolved_triangles,
     large_triangles,
     large_cells,
+    exposed_crease_vertices,
+    poor_collar_triangles,
     priority_count
   };
   struct Entry {
