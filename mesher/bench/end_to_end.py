@@ -59,7 +59,7 @@ def measure(meshers, surface: Surface, target: int, options, cache: SizeCache) -
             folder = work_folder(cache, mesher, surface)
             try:
                 cell.runs.append(mesher.mesh(surface, sizes[mesher.name], folder))
-                if isinstance(mesher, Collarmesh):
+                if mesher.name == "collarmesh":
                     program = options.build / "bin" / "triangulate_points"
                     cell.triangulation.append(
                         triangulation_seconds(program, folder / "mesh.msh", options.time_limit))
@@ -95,6 +95,9 @@ main_header = ["input", "target", "mesher", "tets", "CPU s", "tets/s", "refineme
                "peak bytes/tet", "structure bytes/tet"]
 
 
+before = "collarmesh before"
+
+
 def ratio_row(surface: Surface, target: int, cells: dict[str, Cell]) -> list[str]:
     """Our refinement's speed over the peers', our time over bare triangulation."""
     def speed(name: str) -> float | None:
@@ -103,8 +106,8 @@ def ratio_row(surface: Surface, target: int, cells: dict[str, Cell]) -> list[str
 
     ours = speed("collarmesh")
     if ours is None:
-        return [surface.name, si(target), *[""] * 5]
-    text = [f"{ours / peer:.2f}" if peer else "" for peer in (speed("TetGen"), speed("Gmsh HXT"))]
+        return [surface.name, si(target), *[""] * 6]
+    text = [f"{ours / peer:.2f}" if peer else "" for peer in (speed(before), speed("TetGen"), speed("Gmsh HXT"))]
     cell = cells["collarmesh"]
     triangulation = statistics.median(cell.triangulation)
     stages = cell.runs[-1].stages or {}
@@ -114,7 +117,7 @@ def ratio_row(surface: Surface, target: int, cells: dict[str, Cell]) -> list[str
             f"{cell.runs[-1].cells / cell.tets:.2f}", rest]
 
 
-ratio_header = ["input", "target", "speed / TetGen's", "speed / HXT's", "time / bare triangulation",
+ratio_header = ["input", "target", "speed / before", "speed / TetGen's", "speed / HXT's", "time / bare triangulation",
                 "cells / tets", "stages, s"]
 
 
@@ -145,6 +148,7 @@ def parse() -> argparse.Namespace:
     root = Path(__file__).resolve().parents[2]
     parser.add_argument("--build", type=Path, default=root / "build" / "bench",
                         help="build folder configured with COLLARMESH_BENCH (default: build/bench)")
+    parser.add_argument("--before", type=Path, help="the program of an older version, to run beside this one")
     parser.add_argument("--corpus", type=Path, default=os.environ.get("COLLARMESH_CORPUS"),
                         help="folder of the parts (default: $COLLARMESH_CORPUS); without one, the box alone")
     parser.add_argument("--parts", nargs="*", default=default_parts)
@@ -165,8 +169,11 @@ def main() -> int:
     options = parse()
     about = machine(options.build)
     pin_to_core(options.core)
-    meshers = [Collarmesh(options.build / "bin" / "collarmesh", options.time_limit),
+    arguments = ["--coarsen", "off", "--threads", "1"]
+    meshers = [Collarmesh(options.build / "bin" / "collarmesh", options.time_limit, arguments),
                TetGen(options.time_limit), Gmsh(options.time_limit)]
+    if options.before:
+        meshers.insert(1, Collarmesh(options.before, options.time_limit, arguments, name=before))
     surfaces = [] if options.no_box else [box()]
     if options.corpus:
         surfaces += [read_surface(Path(options.corpus) / part) for part in options.parts]

@@ -28,6 +28,8 @@ class MeshRun:
     stages: dict | None = None
     guarantee_missed: bool = False
     cells: int = 0             # of the whole triangulation, outside the solid too; 0: says nothing
+    wall: float = 0            # seconds of the whole program
+    volume_wall: float = 0     # seconds of making the tets of a given surface and improving them; 0: not known
     report: dict | None = None   # what collarmesh measured
 
     @property
@@ -44,13 +46,13 @@ def _number(pattern: str, text: str) -> float:
 
 
 class Collarmesh:
-    name = "collarmesh"
     mesh_file = "mesh.msh"
     guarantee_missed = 7   # exit code: there is a mesh, but it is not certified
 
-    def __init__(self, program: Path, time_limit: float, arguments: list[str] | None = None, improve: int = 0):
+    def __init__(self, program: Path, time_limit: float, arguments: list[str] | None = None, improve: int = 0,
+                 name: str = "collarmesh"):
         # Most benchmarks compare the refinement: the improvement of elements comes after it.
-        self.program, self.time_limit = program, time_limit
+        self.program, self.time_limit, self.name = program, time_limit, name
         self.arguments = ["--improve", str(improve), *(arguments or [])]
 
     def version(self) -> str:
@@ -76,7 +78,9 @@ class Collarmesh:
         stages = {stage: seconds * share for stage, seconds in report["seconds"].items()}
         return MeshRun(report["mesh"]["tets"], measured.cpu, stages["refine"], measured.peak_bytes,
                        report["statistics"]["peak_bytes"], stages,
-                       measured.exit_code == self.guarantee_missed, report["statistics"]["cells"], report)
+                       measured.exit_code == self.guarantee_missed, report["statistics"]["cells"],
+                       measured.wall, sum(report["seconds"].get(stage, 0) for stage in ("refine", "coarsen", "improve")),
+                       report)
 
     def describe(self, surface: Surface, folder: Path) -> dict:
         """What the program says the complex is: diagonal, regions with their volumes and so on."""
@@ -111,8 +115,10 @@ class TetGen:
 class Gmsh:
     mesh_file = "mesh.msh"
 
-    def __init__(self, time_limit: float, algorithm: str = "hxt", program: str = "gmsh", switches: tuple[str, ...] = ()):
+    def __init__(self, time_limit: float, algorithm: str = "hxt", program: str = "gmsh", switches: tuple[str, ...] = (),
+                 threads: int = 1):
         self.program, self.time_limit, self.algorithm, self.switches = program, time_limit, algorithm, switches
+        self.threads = threads
         self.name = {"hxt": "Gmsh HXT", "del3d": "Gmsh Delaunay"}[algorithm]
 
     def version(self) -> str:
@@ -126,13 +132,14 @@ class Gmsh:
     def mesh(self, surface: Surface, size: float, folder: Path) -> MeshRun:
         (folder / "input.geo").write_text('Include "model.geo";\n' f"Mesh.MeshSizeMin = {size:.17g};\n"
                                           f"Mesh.MeshSizeMax = {size:.17g};\n")
-        measured = run([self.program, "-3", "-algo", self.algorithm, "-nt", "1", *self.switches, "input.geo", "-bin",
+        measured = run([self.program, "-3", "-algo", self.algorithm, "-nt", str(self.threads), *self.switches, "input.geo", "-bin",
                         "-o", self.mesh_file], folder, self.time_limit)
         if "Error" in measured.output:
             raise ProgramFailed(re.search(r"Error +: (.*)", measured.output).group(1))
         return MeshRun(int(_number(self._count(measured.output), measured.output)),
                        measured.cpu, _number(r"Done meshing 3D \(.*CPU ([\d.e+-]+)s", measured.output),
-                       measured.peak_bytes)
+                       measured.peak_bytes, wall=measured.wall,
+                       volume_wall=_number(r"Done meshing 3D \(Wall ([\d.e+-]+)s", measured.output))
 
     @staticmethod
     def _count(output: str) -> str:
