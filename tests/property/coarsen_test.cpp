@@ -34,13 +34,12 @@ struct Shape {
 PolygonSoup plate() { return box({0, 0, 0}, {100, 100, 1}); }
 
 std::vector<Shape> thin_shapes() {
-  // Over twelve seeds the plate's last share is 0 to 6%, 2% in the mean, and the two boxes have 682 to 723
-  // tets.
-  return {{"plate", {plate()}, 10, 0, 8, 1270, 0.07},
-          {"plate with a hole", {scaled(plate_with_hole(1, 32), 1)}, 1.5, 30, 8, 135, 0.05},
+  // In a wedge of 2 degrees hardly a vertex is not on its faces: 0 to 6% of few tets are left over.
+  return {{"plate", {plate()}, 10, 0, 8, 1220},
+          {"plate with a hole", {scaled(plate_with_hole(1, 32), 1)}, 1.5, 30, 8, 130},
           {"sphere in a sphere", {icosphere(1, 12), icosphere(0.95, 12)}, 0.3, 30, 8, 5900},
-          {"wedge of 1 degree", acute::wedge(1).soups, 0.28, 0, 0.5, 1850, 0.1},
-          {"wedge of 2 degrees", acute::wedge(2).soups, 0.3, 0, 1, 450, 0.2},
+          {"wedge of 1 degree", acute::wedge(1).soups, 0.28, 0, 0.5, 1680},
+          {"wedge of 2 degrees", acute::wedge(2).soups, 0.3, 0, 1, 330, 0.06},
           {"wedge of 5 degrees", acute::wedge(5).soups, 0.3, 0, 2.5, 90},
           {"wedge of 20 degrees", acute::wedge(20).soups, 0.2, 0, 8, 245},
           {"fan", acute::fan(8).soups, 0.3, 0, 8, 1500},
@@ -79,7 +78,6 @@ TEST(Coarsen, KeepsEveryGuaranteeOfThinShapes) {
   }
 }
 
-// In sharp wedges and plates with hardly a vertex that is not on their faces there is always something.
 TEST(Coarsen, RemovesHardlyAnythingAgain) {
   std::size_t most = 0, removed = 0;
   for (const Shape& shape : thin_shapes()) {
@@ -93,7 +91,7 @@ TEST(Coarsen, RemovesHardlyAnythingAgain) {
     most += again.tets_before, removed += again.tets_before - again.tets_after;
     EXPECT_EQ(faults({meshed.plc, {}, check(meshed.result.mesh, meshed.plc)}), "");
   }
-  EXPECT_LE(static_cast<double>(removed), 0.03 * static_cast<double>(most));
+  EXPECT_LE(static_cast<double>(removed), 0.01 * static_cast<double>(most));
 }
 
 // One seed says little about a plate.
@@ -109,7 +107,7 @@ TEST(Coarsen, RemovesHardlyAnythingOfPlatesAgain) {
     const CoarsenReport again = coarsen(meshed.result.mesh, meshed.plc, options);
     found += 1 - static_cast<double>(again.tets_after) / static_cast<double>(again.tets_before);
   }
-  EXPECT_LE(found / seeds, 0.03);
+  EXPECT_LE(found / seeds, 0.01);
 }
 
 TEST(Coarsen, KeepsVolumesAndTags) {

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -28,6 +30,10 @@ Meshed improved(const PolygonSoup& soup, double size, double distance = 0) {
   Meshed meshed = mesh_of(soup, options);
   improve(meshed.result.mesh, meshed.plc, {.distance = distance});
   return meshed;
+}
+
+Index vertex_at(const TetMesh& mesh, const Point& p) {
+  return static_cast<Index>(std::find(mesh.points.begin(), mesh.points.end(), p) - mesh.points.begin());
 }
 
 std::string second_order_faults(const Meshed& meshed, const TetMesh& mesh, double distance = 0) {
@@ -129,11 +135,11 @@ TEST(SecondOrder, StaysStraightOnPlanesAndStraightEdges) {
 TEST(SecondOrder, ACallerGivesTheExactSurface) {
   const Meshed meshed = improved(icosphere(1, 12), 0.4, 0.05);
   TetMesh mesh = meshed.result.mesh;
-  const SecondOrderReport report = make_second_order(
-      mesh, meshed.plc, {.exact = [](unsigned dimension, Index, const Point& p) {
-        EXPECT_EQ(dimension, 2U);
-        return p / norm(p);
-      }});
+  const SecondOrderReport report =
+      make_second_order(mesh, meshed.plc, {.exact = [](unsigned dimension, Index, const Point& p) {
+                          EXPECT_EQ(dimension, 2U);
+                          return p / norm(p);
+                        }});
   ASSERT_TRUE(report.straightened.empty());
   for (const auto& nodes : mesh.face_mid_nodes)
     for (const Index node : nodes) EXPECT_NEAR(norm(mesh.points[node]), 1, 1e-14);
@@ -143,8 +149,7 @@ TEST(SecondOrder, ACallerGivesTheExactSurface) {
 TEST(SecondOrder, WhatWouldInvertIsStraightenedAndReported) {
   const Meshed meshed = improved(icosphere(1, 12), 0.4, 0.05);
   TetMesh mesh = meshed.result.mesh;
-  const SecondOrderOptions options{
-      .exact = [](unsigned, Index, const Point& p) { return 0.83 * p; }};
+  const SecondOrderOptions options{.exact = [](unsigned, Index, const Point& p) { return 0.83 * p; }};
   const SecondOrderReport report = make_second_order(mesh, meshed.plc, options);
   EXPECT_GT(report.straightened.size(), 10U);
   for (Index t = 0; t < mesh.tets.size(); ++t)
@@ -165,6 +170,30 @@ TEST(SecondOrder, WhatWouldInvertIsStraightenedAndReported) {
 }
 
 // As other programs give it: without features, with tags of its own, without triangles and edges.
+// In a mesh that misses a guarantee a curve may have an edge that no tet has, and a patch such a face.
+TEST(SecondOrder, WhatIsInNoTetHasNodesOfItsOwn) {
+  Meshed meshed = mesh_of(box(), with_size(0.5));
+  TetMesh& mesh = meshed.result.mesh;
+  const std::array<Index, 3> lost{vertex_at(mesh, {0, 0, 0}), vertex_at(mesh, {1, 1, 1}),
+                                  vertex_at(mesh, {0, 1, 1})};
+  mesh.edges.push_back({lost[0], lost[1]});
+  mesh.edge_curve.push_back(mesh.edge_curve[0]);
+  mesh.edge_tag.push_back(mesh.edge_tag[0]);
+  mesh.faces.push_back(lost);
+  mesh.face_patch.push_back(mesh.face_patch[0]);
+  mesh.face_tag.push_back(mesh.face_tag[0]);
+  mesh.face_regions.push_back(mesh.face_regions[0]);
+  make_second_order(mesh, meshed.plc);
+  ASSERT_EQ(mesh.edge_mid_nodes.size(), mesh.edges.size());
+  EXPECT_EQ(mesh.edge_mid_nodes.back(), mesh.face_mid_nodes.back()[0]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Index node = mesh.face_mid_nodes.back()[k];
+    ASSERT_LT(node, mesh.points.size());
+    EXPECT_EQ(mesh.points[node], 0.5 * (mesh.points[lost[k]] + mesh.points[lost[(k + 1) % 3]]));
+  }
+  EXPECT_NE(second_order_faults(meshed, mesh), "");
+}
+
 TEST(SecondOrder, IsJudgedByPosition) {
   const Meshed meshed = improved(cylinder(1, 1, 60, 3), 0.4, 0.05);
   TetMesh mesh = meshed.result.mesh;

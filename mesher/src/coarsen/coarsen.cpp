@@ -25,7 +25,7 @@ using improvement::ThinShape;
 using improvement::Workpiece;
 using Mode = CoarseningRule::Mode;
 
-constexpr unsigned plain_passes = 4, repair_passes = 6, rounds = 3;
+constexpr unsigned plain_passes = 4, repair_passes = 6, rounds = 12;
 // Steps that may repair a contraction. Hardly a step mends two tets, so what has more tets to mend than steps
 // left is given up.
 constexpr unsigned most_repairs = 16;

@@ -11,10 +11,13 @@ std::uint64_t key(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32
 }  // namespace
 
 MeshEdges::MeshEdges(const TetMesh& mesh) : first_node_(static_cast<Index>(mesh.points.size())) {
-  keys_.reserve(6 * mesh.tets.size());
+  keys_.reserve(6 * mesh.tets.size() + 3 * mesh.faces.size() + mesh.edges.size());
   for (const auto& [a, b, c, d] : mesh.tets)
     for (const std::uint64_t each : {key(a, b), key(b, c), key(c, a), key(a, d), key(b, d), key(c, d)})
       keys_.push_back(each);
+  for (const auto& [a, b, c] : mesh.faces)
+    for (const std::uint64_t each : {key(a, b), key(b, c), key(c, a)}) keys_.push_back(each);
+  for (const auto& [a, b] : mesh.edges) keys_.push_back(key(a, b));
   std::sort(keys_.begin(), keys_.end());
   keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
   keys_.shrink_to_fit();

@@ -8,8 +8,9 @@
 
 namespace collarmesh::second_order {
 
-/// The edges of a mesh's tets, sorted, each with the feature it lies on. The mid-side node of the edge e is
-/// the point first_node() + e.
+/// The edges of a mesh, sorted, each with the feature it lies on: those of its tets, and in a mesh that misses
+/// a guarantee those of faces and curves that are in no tet. The mid-side node of the edge e is the point
+/// first_node() + e.
 class MeshEdges {
  public:
   explicit MeshEdges(const TetMesh& mesh);
@@ -20,7 +21,7 @@ class MeshEdges {
     return {static_cast<Index>(keys_[edge] >> 32U), static_cast<Index>(keys_[edge])};
   }
   const TetMesh::VertexFeature& feature(std::size_t edge) const { return features_[edge]; }
-  /// Precondition: ab is an edge of a tet. Cost: logarithmic.
+  /// Precondition: ab is an edge of a tet, a face or a curve. Cost: logarithmic.
   Index node(Index a, Index b) const;
 
  private:
