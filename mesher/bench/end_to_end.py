@@ -17,10 +17,11 @@ from pathlib import Path
 
 from inputs import Surface, box, read_surface
 from meshers import Collarmesh, Gmsh, MeshRun, TetGen, triangulation_seconds
-from processes import ProgramFailed, pin_to_core
+from processes import ProgramFailed, pin_to_core, touch_memory
 from tables import exponent, machine, seconds, si, table, tets_text
 from tuning import SizeCache, size_for, tolerance
 
+bytes_per_tet = 400   # at least the peak of all meshers
 # Closed, without acute creases, with sharp edges or smooth; all three meshers can do them.
 default_parts = ["joint.off", "spool.off", "plate_holes.STL", "handle.off", "itemb.off"]
 
@@ -51,8 +52,10 @@ def measure(meshers, surface: Surface, target: int, options, cache: SizeCache) -
             sizes[mesher.name] = size_for(mesher, surface, target, folder, cache)
         except ProgramFailed as failure:
             cells[mesher.name].failure = str(failure)
-    for _ in range(options.rounds):
-        for mesher in meshers:
+    for round_ in range(options.rounds):
+        first = round_ % len(meshers)
+        for mesher in (*meshers[first:], *meshers[:first]):
+            touch_memory(target * bytes_per_tet)
             cell = cells[mesher.name]
             if cell.failure:
                 continue

@@ -26,7 +26,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 
 from improve_peers import dihedral_angles
-from meshers import Collarmesh, debian_version
+from meshers import Collarmesh, debian_version, gmsh_part_command
 from processes import pin_to_core, run_limited
 from real_parts import cad_suffixes
 from tables import machine, table
@@ -139,8 +139,7 @@ def reference(path: Path, folder: Path) -> tuple[Triangles, float] | None:
 def command_of(mesher: str, path: Path, out: str, order: int, program: Path) -> list[str]:
     if mesher == "collarmesh":
         return [str(program), str(path), "-o", out, "--order", str(order), "--threads", "1", "--progress", "none", "-q"]
-    script = Path(__file__).resolve().with_name("gmsh_part.py")
-    return [sys.executable, str(script), str(path), out, str(order)]
+    return gmsh_part_command(path, out, order)
 
 
 def measured(path: Path, mesher: str, order: int, folder: Path, references: Path, options) -> Row:

@@ -6,11 +6,13 @@ regular tetrahedron with this edge.
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import math
 import re
 import shutil
 import subprocess
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -170,6 +172,13 @@ class CgalMesh3:
         measured = run([str(self.program), "input.off", f"{size:.17g}", f"{distance:.17g}", self.mesh_file], folder,
                        self.time_limit)
         return MeshRun(int(_number(r"(\d+) tets", measured.output)), measured.cpu, measured.cpu, measured.peak_bytes)
+
+
+def gmsh_part_command(part: Path, out: str, order: int = 1) -> list[str]:
+    """Meshes a CAD file or a surface by Gmsh's Python module; without the module this program ends here."""
+    if importlib.util.find_spec("gmsh") is None:
+        sys.exit("Gmsh's Python module is missing: install python3-gmsh, and run this with the Python that has it")
+    return [sys.executable, str(Path(__file__).resolve().with_name("gmsh_part.py")), str(part), out, str(order)]
 
 
 def debian_version(package: str) -> str:

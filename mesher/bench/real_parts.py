@@ -28,7 +28,7 @@ import numpy as np
 
 from improve_peers import dihedral_angles
 from inputs import Surface, read_surface
-from meshers import Collarmesh, debian_version
+from meshers import Collarmesh, debian_version, gmsh_part_command
 from processes import Measured, pin_to_core, run_limited
 from tables import machine, seconds, table
 
@@ -104,8 +104,7 @@ class GmshProgram:
         return debian_version("gmsh")
 
     def command(self, part: Part) -> list[str]:
-        script = Path(__file__).resolve().with_name("gmsh_part.py")
-        return [sys.executable, str(script), str(part.path) if part.kind == "CAD" else "part.stl", self.mesh_file]
+        return gmsh_part_command(part.path if part.kind == "CAD" else Path("part.stl"), self.mesh_file)
 
 
 class TetGenProgram:

@@ -7,7 +7,8 @@ import math
 import tempfile
 from pathlib import Path
 
-tolerance = 0.1   # of the count
+tolerance = 0.1     # of the count: what is farther off is marked
+near_enough = 0.03  # ends the search
 trials = 8
 
 
@@ -30,7 +31,7 @@ class SizeCache:
 
 
 def size_for(mesher, surface, target: int, folder: Path, cache: SizeCache) -> float:
-    """The size at which `mesher` makes the wanted number of tets, within the tolerance; the nearest
+    """The size at which `mesher` makes the wanted number of tets, nearly; the nearest
     one found when its count jumps over it or never gets that low.
     Raises ProgramFailed when the mesher does."""
     key = f"{mesher.name} {surface.name} {len(surface.polygons)} {target}"
@@ -40,7 +41,7 @@ def size_for(mesher, surface, target: int, folder: Path, cache: SizeCache) -> fl
     found: list[tuple[float, float]] = []   # log size, log(tets / target)
     for _ in range(trials):
         found.append((math.log(size), math.log(mesher.mesh(surface, size, folder).tets / target)))
-        if abs(found[-1][1]) <= 0.9 * math.log(1 + tolerance) or size > 2 * surface.diagonal:
+        if abs(found[-1][1]) <= math.log(1 + near_enough) or size > 2 * surface.diagonal:
             break
         size = math.exp(_next_trial(found))
     best = math.exp(min(found, key=lambda trial: abs(trial[1]))[0])

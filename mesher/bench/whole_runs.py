@@ -16,10 +16,10 @@ import statistics
 import sys
 from pathlib import Path
 
-from end_to_end import count, default_parts, work_folder
+from end_to_end import bytes_per_tet, count, default_parts, work_folder
 from inputs import Surface, box, read_surface
 from meshers import Collarmesh, Gmsh, MeshRun
-from processes import ProgramFailed
+from processes import ProgramFailed, touch_memory
 from tables import machine, seconds, si, table, tets_text
 from tuning import SizeCache, size_for
 
@@ -59,6 +59,7 @@ def measure(options, makers, surface: Surface, target: int, cache: SizeCache) ->
                 runs = results[mesher.name]
                 if runs.failure:
                     continue
+                touch_memory(target * bytes_per_tet)
                 try:
                     runs.by_threads[threads].append(mesher.mesh(surface, sizes[mesher.name], folders[mesher.name]))
                 except ProgramFailed as failure:

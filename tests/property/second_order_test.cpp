@@ -169,7 +169,6 @@ TEST(SecondOrder, WhatWouldInvertIsStraightenedAndReported) {
       }
 }
 
-// As other programs give it: without features, with tags of its own, without triangles and edges.
 // In a mesh that misses a guarantee a curve may have an edge that no tet has, and a patch such a face.
 TEST(SecondOrder, WhatIsInNoTetHasNodesOfItsOwn) {
   Meshed meshed = mesh_of(box(), with_size(0.5));
@@ -194,6 +193,7 @@ TEST(SecondOrder, WhatIsInNoTetHasNodesOfItsOwn) {
   EXPECT_NE(second_order_faults(meshed, mesh), "");
 }
 
+// As other programs give it: without features, with tags of its own, without triangles and edges.
 TEST(SecondOrder, IsJudgedByPosition) {
   const Meshed meshed = improved(cylinder(1, 1, 60, 3), 0.4, 0.05);
   TetMesh mesh = meshed.result.mesh;

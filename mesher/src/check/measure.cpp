@@ -1,15 +1,16 @@
 // Measures of tetrahedra.
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "collarmesh/tet_mesh.h"
+#include "collarmesh/usable_threads.h"
 #include "common/groups.h"
 
 namespace collarmesh {
@@ -129,23 +130,18 @@ double median_edge(const TetMesh& mesh) {
     const auto& tet = mesh.tets[t];
     for (const auto& [i, j] : pairs) give(std::min(tet[i], tet[j]), std::max(tet[i], tet[j]));
   };
-  struct Worker {
-    std::vector<double> lengths;
-    std::vector<Index> seen_from;  // by point
+  tbb::enumerable_thread_specific<std::vector<double>> of_threads;
+  const auto measure = [&](std::size_t smaller, std::span<Index> larger) {
+    std::vector<double>& lengths = of_threads.local();
+    std::sort(larger.begin(), larger.end());
+    for (std::size_t i = 0; i < larger.size(); ++i)
+      if (i == 0 || larger[i] != larger[i - 1])
+        lengths.push_back(distance(mesh.points[smaller], mesh.points[larger[i]]));
   };
-  tbb::enumerable_thread_specific<Worker> workers(
-      [&] { return Worker{{}, std::vector<Index>(mesh.points.size(), none)}; });
-  const auto measure = [&](std::size_t group, std::span<Index> larger) {
-    const auto smaller = static_cast<Index>(group);
-    Worker& worker = workers.local();
-    for (const Index end : larger)
-      if (std::exchange(worker.seen_from[end], smaller) != smaller)
-        worker.lengths.push_back(distance(mesh.points[smaller], mesh.points[end]));
-  };
+  if (tbb::this_task_arena::max_concurrency() > 1) static_cast<void>(usable_threads());  // keeps TBB to them
   for_each_group<Index>(mesh.points.size(), mesh.tets.size(), visit, measure);
   std::vector<double> lengths;
-  for (const Worker& worker : workers)
-    lengths.insert(lengths.end(), worker.lengths.begin(), worker.lengths.end());
+  for (const auto& some : of_threads) lengths.insert(lengths.end(), some.begin(), some.end());
   if (lengths.empty()) return 0;
   const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
   std::nth_element(lengths.begin(), middle, lengths.end());

@@ -54,10 +54,10 @@ class Coarsening {
         sizes_(target_sizes(mesh(), workpiece.plc, sizes_asked_for(made_with))),
         thin_(workpiece.plc, mesh(), options.thin_angle, options.reserve),
         rule_(thin_, made_with.radius_edge, sizes_),
-        proposer_(workpiece_, thin_, radius_edge_, sizes_),
-        proposers_([this] { return Proposer(workpiece_, thin_, radius_edge_, sizes_); }),
-        execution_(execution),
-        changed_(mesh().points.size(), 0) {}
+        changes_{0, std::vector<std::uint32_t>(mesh().points.size(), 0)},
+        proposer_(workpiece_, thin_, radius_edge_, sizes_, changes_),
+        proposers_([this] { return Proposer(workpiece_, thin_, radius_edge_, sizes_, changes_); }),
+        execution_(execution) {}
 
   // Holes stay round all the same.
   static MeshOptions sizes_asked_for(MeshOptions options) {
@@ -74,11 +74,11 @@ class Coarsening {
     // Improvement makes room for more contractions; between the passes of a round it would have all vertices
     // asked again.
     for (unsigned round = 0; round < rounds && !report_.cancelled; ++round) {
-      improve_all();
+      const bool settled = improve_all();
       const std::size_t before = tets_;
       for (unsigned pass = 0; pass < repair_passes; ++pass)
         if (!contract_all(true)) break;
-      if (!worthwhile(before)) break;
+      if (settled && !worthwhile(before)) break;
     }
     finish();
     report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
@@ -104,7 +104,7 @@ class Coarsening {
     std::vector<Proposal> proposals(at_once);
     for (std::size_t first = 0; first < items.size(); first += at_once) {
       const std::size_t count = std::min(at_once, items.size() - first);
-      const std::uint32_t begun = ++clock_;
+      const std::uint32_t begun = ++changes_.now;
       if (!alone)
         parallel_for(count, [&](std::size_t i) { make(proposers_.local(), items[first + i], proposals[i]); });
       for (std::size_t i = 0; i < count; ++i) {
@@ -142,7 +142,8 @@ class Coarsening {
       for (const auto& [length, v] : found) shortest[v] = std::min(shortest[v], length);
     std::vector<Candidate> candidates;
     for (Index v = 0; v < shortest.size(); ++v)
-      if (shortest[v] < INFINITY && mesh().features[v].dimension > 0 && changed_[v] >= changed_since)
+      if (shortest[v] < INFINITY && mesh().features[v].dimension > 0 &&
+          changes_.at_vertex[v] >= changed_since)
         candidates.push_back({shortest[v], v});
     std::sort(candidates.begin(), candidates.end());
     return candidates;
@@ -163,7 +164,7 @@ class Coarsening {
   bool contract_all(bool repair) {
     std::uint32_t& since = last_pass_[repair ? 1 : 0];
     const std::vector<Candidate> candidates = find_candidates(since);
-    since = ++clock_;
+    since = ++changes_.now;
     const std::size_t before = tets_;
     return for_each<VertexProposal>(
                candidates,
@@ -174,9 +175,9 @@ class Coarsening {
                    found = {};
                },
                [&](const Candidate& candidate, const VertexProposal& found, std::uint32_t begun) {
-                 return changed_[candidate.vertex] < begun &&
+                 return changes_.at_vertex[candidate.vertex] < begun &&
                         std::all_of(found.targets.begin(), found.targets.end(),
-                                    [&](Index onto) { return changed_[onto] < begun; }) &&
+                                    [&](Index onto) { return changes_.at_vertex[onto] < begun; }) &&
                         may_still_be_made(found.change) &&
                         std::all_of(found.to_repair.begin(), found.to_repair.end(),
                                     [&](const Change& change) { return may_still_be_made(change); });
@@ -262,10 +263,11 @@ class Coarsening {
     return found;
   }
 
-  // Until nothing more helps, so that asking again finds the mesh as it is.
-  void improve_all() {
-    for (unsigned sweep = 0; sweep < most_sweeps && improve_once(); ++sweep) {
-    }
+  // Does nothing more help? Then asking again would find the mesh as it is.
+  bool improve_all() {
+    for (unsigned sweep = 0; sweep < most_sweeps; ++sweep)
+      if (!improve_once()) return true;
+    return false;
   }
 
   bool improve_once() {
@@ -280,7 +282,7 @@ class Coarsening {
     for (Index t = 0; t < complex().size(); ++t)
       if (asked[t] < improved_below) poor.emplace_back(asked[t], t);
     std::sort(poor.begin(), poor.end());
-    last_sweep_ = ++clock_;
+    last_sweep_ = ++changes_.now;
     bool any = false;
     for_each<Change>(
         poor,
@@ -305,7 +307,7 @@ class Coarsening {
 
   bool changed_since(Index tet, std::uint32_t when) const {
     const auto& v = complex()[tet].corners;
-    return std::any_of(v.begin(), v.end(), [&](Index w) { return changed_[w] >= when; });
+    return std::any_of(v.begin(), v.end(), [&](Index w) { return changes_.at_vertex[w] >= when; });
   }
 
   const std::vector<Index>& apply(Change change) {
@@ -334,11 +336,11 @@ class Coarsening {
 
   // What was changed stays.
   void settle() {
-    ++clock_;
-    for (const Index v : touched_vertices_) changed_[v] = clock_;
+    ++changes_.now;
+    for (const Index v : touched_vertices_) changes_.at_vertex[v] = changes_.now;
     for (const Index t : touched_)
       if (complex()[t].alive)
-        for (const Index v : complex()[t].corners) changed_[v] = clock_;
+        for (const Index v : complex()[t].corners) changes_.at_vertex[v] = changes_.now;
   }
 
   void finish() {
@@ -355,17 +357,16 @@ class Coarsening {
   std::vector<double> sizes_;
   ThinShape thin_;
   CoarseningRule rule_;
+  Changes changes_;
   Proposer proposer_;  // of the thread that does it
   tbb::enumerable_thread_specific<Proposer> proposers_;
   const Execution& execution_;
   std::size_t tets_ = 0;
-  std::vector<std::uint32_t> changed_;            // by vertex: when the tets at it did
   std::array<std::uint32_t, 2> last_pass_{0, 0};  // when it began, without and with repair
   std::uint32_t last_sweep_ = 0;                  // of improvement
-  std::uint32_t clock_ = 0;
-  std::vector<Index> touched_;           // tets that were made or changed
-  std::vector<Index> touched_vertices_;  // of tets that went
-  std::vector<double> qualities_;        // by tet, of those a trial changed
+  std::vector<Index> touched_;                    // tets that were made or changed
+  std::vector<Index> touched_vertices_;           // of tets that went
+  std::vector<double> qualities_;                 // by tet, of those a trial changed
   CoarsenReport report_;
 };
 

@@ -29,15 +29,15 @@ class CoarseningRule final : public improvement::ShapeRule {
       : thin_(thin),
         bound_(radius_edge),
         sizes_(sizes),
-        least_blunt_(
-            std::sin((180 - thin.most() + 2 * improvement::ThinShape::rounding) * std::numbers::pi / 180)) {}
+        least_blunt_(improvement::sine(thin.cosine_of_largest())) {}
 
   double quality(const Corners& p, const std::array<Index, 4>& corners) const override {
     const improvement::ExtremeCosines cosines = improvement::extreme_cosines(p);
     if (!cosines.positive) return -1;
     // Sines of the smallest angle and of what the largest lacks to 180 degrees, by their bounds.
-    const double sharp = sine(cosines.smallest_angle) / thin_.smallest_sine(corners),
-                 blunt = (cosines.largest_angle < 0 ? sine(cosines.largest_angle) : 1) / least_blunt_;
+    const double sharp = improvement::sine(cosines.smallest_angle) / thin_.smallest_sine(corners),
+                 blunt = (cosines.largest_angle < 0 ? improvement::sine(cosines.largest_angle) : 1) /
+                         least_blunt_;
     return blunt < 1 && mode_ != Mode::force ? beyond * blunt * std::min(1.0, sharp) : std::min(blunt, sharp);
   }
   bool allows(const Corners& p, const std::array<Index, 4>&, double quality) const override {
@@ -47,6 +47,8 @@ class CoarseningRule final : public improvement::ShapeRule {
     return squared_length <= squared_before ||
            squared_relative_length(squared_length, a, b) <= longest_new * longest_new;
   }
+  // Each move has contractions around asked again.
+  double least_gain() const override { return 5e-3; }
   bool dissolves_collars() const override { return true; }
 
   bool keeps_guarantee(const Corners& p, double quality) const { return quality >= 1 || bound_.holds(p); }
@@ -60,8 +62,6 @@ class CoarseningRule final : public improvement::ShapeRule {
 
  private:
   static constexpr double beyond = 1e-6;
-
-  static double sine(double cosine) { return std::sqrt(1 - cosine * cosine); }
 
   const improvement::ThinShape& thin_;
   improvement::RadiusEdgeBound bound_;

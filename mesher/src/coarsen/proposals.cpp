@@ -17,11 +17,13 @@ bool contains(const auto& range, Index v) { return std::find(range.begin(), rang
 }  // namespace
 
 Proposer::Proposer(const improvement::Workpiece& workpiece, const improvement::ThinShape& thin,
-                   double radius_edge, std::span<const double> sizes)
+                   double radius_edge, std::span<const double> sizes, const Changes& changes)
     : workpiece_(workpiece),
+      changes_(changes),
       rule_(thin, radius_edge, sizes),
       operations_(workpiece, rule_),
-      stamps_(workpiece.complex.mesh().points.size(), 0) {}
+      stamps_(workpiece.complex.mesh().points.size(), 0),
+      stayed_(stamps_) {}
 
 // Lengths rule out most neighbours, at less cost than the cone.
 void Proposer::contractions(Index vertex, bool repairs, VertexProposal& found) {
@@ -55,8 +57,12 @@ Change Proposer::improvement_of(Index tet, Mode mode) {
   Change change;
   for (unsigned i = 0; i < 4; ++i)
     for (unsigned j = i + 1; j < 4; ++j) operations_.remove_edge(tet, i, j, change);
-  for (unsigned i = 0; i < 4 && change.kind == Change::Kind::none; ++i)
+  for (unsigned i = 0; i < 4 && change.kind == Change::Kind::none; ++i) {
+    // Whether a move helps depends on the tets at the vertex alone, each of which may ask.
+    if (mode == Mode::final && stays(corners[i])) continue;
     operations_.move_vertex(corners[i], change);
+    if (mode == Mode::final && change.kind == Change::Kind::none) stayed_[corners[i]] = changes_.now;
+  }
   return change;
 }
 

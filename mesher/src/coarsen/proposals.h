@@ -15,14 +15,20 @@ struct VertexProposal {
   double floor = 0;                            ///< no tet may get worse than this by repairs
 };
 
+/// When vertices, or tets at them, were changed.
+struct Changes {
+  std::uint32_t now = 0;
+  std::vector<std::uint32_t> at_vertex;
+};
+
 /// Finds what can be done, and does nothing. Each thread has its own.
 class Proposer {
  public:
   using Mode = CoarseningRule::Mode;
 
-  /// All but the number are kept by reference; the last three are those of the rule.
+  /// All but the number are kept by reference; those between are the rule's.
   Proposer(const improvement::Workpiece& workpiece, const improvement::ThinShape& thin, double radius_edge,
-           std::span<const double> sizes);
+           std::span<const double> sizes, const Changes& changes);
   Proposer(const Proposer&) = delete;
   Proposer& operator=(const Proposer&) = delete;
 
@@ -48,8 +54,12 @@ class Proposer {
   void find_neighbours(Index vertex);
   bool lengths_fit(Index vertex, Index onto);
   bool is_new(Index vertex);
+  bool stays(Index vertex) const {
+    return stayed_[vertex] != 0 && stayed_[vertex] >= changes_.at_vertex[vertex];
+  }
 
   const improvement::Workpiece& workpiece_;
+  const Changes& changes_;
   CoarseningRule rule_;
   improvement::Operations operations_;
   std::vector<Index> star_;            // tets at the vertex asked about last
@@ -57,6 +67,7 @@ class Proposer {
   double shortest_ = 0;                // edge there
   std::vector<std::uint32_t> stamps_;  // by vertex
   std::uint32_t stamp_ = 0;
+  std::vector<std::uint32_t> stayed_;  // by vertex: when no move of it was an improvement; 0: not asked yet
 };
 
 /// Edges below this times the target length are contracted.

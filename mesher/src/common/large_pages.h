@@ -17,7 +17,7 @@ namespace collarmesh {
 /// Large arrays that are visited in no particular order cost less when the system keeps them in large pages:
 /// an address is found without a walk through page tables that are themselves not in the cache.
 inline constexpr std::size_t large_page = std::size_t{2} << 20U;
-inline constexpr std::size_t least_bytes_in_large_pages = 2 * large_page;
+inline constexpr std::size_t least_bytes_in_large_pages = large_page / 2;
 
 /// Ask the system for large pages inside this block. Only a wish: nothing depends on it.
 inline void prefer_large_pages([[maybe_unused]] void* block, [[maybe_unused]] std::size_t bytes) {

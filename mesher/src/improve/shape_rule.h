@@ -23,6 +23,8 @@ class ShapeRule {
   virtual bool allows_edge(Index, Index, double /*squared_length*/, double /*squared_before*/) const {
     return true;
   }
+  /// A move of a vertex that raises the quality by less than this share is not worth it.
+  virtual double least_gain() const { return 1e-3; }
   /// May operations replace cells of collars?
   virtual bool dissolves_collars() const { return false; }
 };
@@ -46,14 +48,12 @@ class SliverRule final : public ShapeRule {
  public:
   /// `thin` is kept by reference; null: no tet exceeds the bound.
   explicit SliverRule(double radius_edge, const ThinShape* thin = nullptr)
-      : bound_(radius_edge),
-        thin_(thin),
-        cosine_of_largest_(
-            thin == nullptr ? -1 : std::cos((thin->most() - ThinShape::rounding) * std::numbers::pi / 180)) {}
+      : bound_(radius_edge), thin_(thin) {}
 
   double quality(const Corners& p, const std::array<Index, 4>&) const override {
     const double sine = shape_quality(p);
-    const bool blunt = thin_ != nullptr && sine > 0 && extreme_cosines(p).largest_angle < cosine_of_largest_;
+    const bool blunt =
+        thin_ != nullptr && sine > 0 && extreme_cosines(p).largest_angle < thin_->cosine_of_largest();
     return blunt ? beyond * sine : sine;
   }
   bool allows(const Corners& p, const std::array<Index, 4>& corners, double) const override {
@@ -69,7 +69,6 @@ class SliverRule final : public ShapeRule {
 
   RadiusEdgeBound bound_;
   const ThinShape* thin_;
-  double cosine_of_largest_;
 };
 
 }  // namespace collarmesh::improvement

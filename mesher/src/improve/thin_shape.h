@@ -13,26 +13,36 @@
 
 namespace collarmesh::improvement {
 
-/// The cosines of a tet's extreme angles.
+/// A tet's extreme angles as the squares of their cosines, with the signs of the cosines: they fall as angles
+/// grow, as cosines do, and need no roots.
 struct ExtremeCosines {
   double smallest_angle;  ///< of the smallest dihedral angle
   double largest_angle;   ///< of the largest one, of those of faces, too
   bool positive;          ///< volume
 };
 
+inline double signed_square(double x) { return x * std::fabs(x); }
+/// Of an angle whose cosine is given like that.
+inline double sine(double signed_square_of_cosine) {
+  return std::sqrt(1 - std::fabs(signed_square_of_cosine));
+}
+
 inline ExtremeCosines extreme_cosines(const Corners& p) {
   const Vector ab = p[1] - p[0], ac = p[2] - p[0], ad = p[3] - p[0], bc = p[2] - p[1], bd = p[3] - p[1],
                cd = p[3] - p[2];
   const Vector n_a = cross(bc, bd), n_b = cross(ad, ac), n_c = cross(ab, ad), n_d = cross(ac, ab);
   if (!(-dot(n_d, ad) > 0)) return {1, -1, false};
-  const double a = 1 / norm(n_a), b = 1 / norm(n_b), c = 1 / norm(n_c), d = 1 / norm(n_d);
+  const double a = 1 / squared_norm(n_a), b = 1 / squared_norm(n_b), c = 1 / squared_norm(n_c),
+               d = 1 / squared_norm(n_d);
   // Outward normals: minus their product is the cosine of the angle between the faces.
-  const std::array<double, 6> cosines{-dot(n_c, n_d) * c * d, -dot(n_b, n_d) * b * d, -dot(n_b, n_c) * b * c,
-                                      -dot(n_a, n_d) * a * d, -dot(n_a, n_c) * a * c, -dot(n_a, n_b) * a * b};
-  double least = cosines[0], greatest = cosines[0];
+  const std::array<double, 6> squares{
+      -signed_square(dot(n_c, n_d)) * (c * d), -signed_square(dot(n_b, n_d)) * (b * d),
+      -signed_square(dot(n_b, n_c)) * (b * c), -signed_square(dot(n_a, n_d)) * (a * d),
+      -signed_square(dot(n_a, n_c)) * (a * c), -signed_square(dot(n_a, n_b)) * (a * b)};
+  double least = squares[0], greatest = squares[0];
   for (unsigned i = 1; i < 6; ++i) {
-    least = std::min(least, cosines[i]);
-    greatest = std::max(greatest, cosines[i]);
+    least = std::min(least, squares[i]);
+    greatest = std::max(greatest, squares[i]);
   }
   const double l_ab = squared_norm(ab), l_ac = squared_norm(ac), l_ad = squared_norm(ad),
                l_bc = squared_norm(bc), l_bd = squared_norm(bd), l_cd = squared_norm(cd);
@@ -40,7 +50,7 @@ inline ExtremeCosines extreme_cosines(const Corners& p) {
     const double longest = std::max({x, y, z}), excess = x + y + z - 2 * longest;
     if (excess >= 0) return;
     const double others = longest == x ? y * z : longest == y ? x * z : x * y;
-    least = std::min(least, 0.5 * excess / std::sqrt(others));
+    least = std::min(least, 0.25 * signed_square(excess) / others);
   };
   see_face(l_ab, l_ac, l_bc);
   see_face(l_ab, l_ad, l_bd);
@@ -58,8 +68,10 @@ struct ExtremeAngles {
 inline ExtremeAngles extreme_angles(const Corners& p) {
   const ExtremeCosines cosines = extreme_cosines(p);
   if (!cosines.positive) return {-1, 180};
-  constexpr double degrees = 180 / std::numbers::pi;
-  return {std::acos(cosines.smallest_angle) * degrees, std::acos(cosines.largest_angle) * degrees};
+  const auto angle = [](double square) {
+    return std::acos(std::copysign(std::sqrt(std::fabs(square)), square)) * 180 / std::numbers::pi;
+  };
+  return {angle(cosines.smallest_angle), angle(cosines.largest_angle)};
 }
 
 /// Which tets are thin: their dihedral angles are bounded from below and above and those of their faces from
@@ -75,7 +87,7 @@ class ThinShape {
   ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle, double reserve = 0);
 
   bool empty() const { return !(smallest_ > 0); }
-  /// The sine of `smallest_angle`, with room for rounding.
+  /// The sine of the lower bound on the dihedral angles of a tet with these corners, with room for rounding.
   double smallest_sine(const std::array<Index, 4>& corners) const {
     double least = sine_;
     if (sine_at_vertex_.empty()) return least;
@@ -83,25 +95,18 @@ class ThinShape {
       if (v < sine_at_vertex_.size()) least = std::min(least, sine_at_vertex_[v]);
     return least;
   }
-  /// Lower bound on the dihedral angles of a tet with these corners, degrees.
-  double smallest_angle(const std::array<Index, 4>& corners) const {
-    double least = smallest_;
-    if (at_vertex_.empty()) return least;
-    for (const Index v : corners)
-      if (v < at_vertex_.size()) least = std::min(least, at_vertex_[v]);
-    return least;
-  }
-  /// Upper bound on dihedral angles and those of faces, degrees.
-  double most() const { return most_; }
+  /// The cosine of the upper bound on all angles, as in ExtremeCosines, with room for rounding.
+  double cosine_of_largest() const { return cosine_; }
   bool contains(const Corners& p, const std::array<Index, 4>& corners) const {
     if (empty()) return false;
-    const ExtremeAngles angles = extreme_angles(p);
-    return angles.largest <= most_ - rounding && angles.smallest >= smallest_angle(corners) + rounding;
+    const ExtremeCosines cosines = extreme_cosines(p);
+    return cosines.positive && cosines.largest_angle >= cosine_ &&
+           sine(cosines.smallest_angle) >= smallest_sine(corners);
   }
 
  private:
-  double smallest_, most_, sine_;
-  std::vector<double> at_vertex_, sine_at_vertex_;  // empty where no crease is that sharp
+  double smallest_, sine_, cosine_;
+  std::vector<double> sine_at_vertex_;  // empty where no crease is that sharp
 };
 
 /// Mark the tets outside collars whose circumradius / shortest edge is above the bound.

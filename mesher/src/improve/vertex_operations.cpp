@@ -13,8 +13,6 @@ namespace {
 // Vertices move by steps from this share of their shortest edge down, halved so often.
 constexpr double first_step = 0.4;
 constexpr unsigned halvings = 4;
-// A move that gains less than this share is not worth it.
-constexpr double least_gain = 1e-3;
 
 bool contains(const auto& range, Index v) { return std::find(range.begin(), range.end(), v) != range.end(); }
 
@@ -225,7 +223,7 @@ void Operations::move_vertex(Index vertex, Change& change) {
   if (!where || !find_cone_of_vertex(vertex)) return;
   const Point& p = mesh_.points[vertex];
   worst_at_vertex();
-  const double wanted = std::max(cone_.worst * (1 + least_gain) + 1e-12, change.quality);
+  const double wanted = std::max(cone_.worst * (1 + rule_.least_gain()) + 1e-12, change.quality);
   Point place = p;
   double way = 0, after = 0;
   if (on_curve) {

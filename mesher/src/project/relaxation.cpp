@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "delaunay/predicates.h"
 #include "improve/shape.h"
@@ -136,8 +137,8 @@ double Relaxation::angle_score(Index tet, const Corners& p) const {
                    rounding = improvement::ThinShape::rounding;
   const improvement::ExtremeAngles now = improvement::extreme_angles(p),
                                    then = improvement::extreme_angles(corners(tet, origins_));
-  const double sharpest =
-                   std::min(bounds_.thin->smallest_angle(mesh_.tets[tet]) + 2 * rounding, then.smallest),
+  const double bound = std::asin(bounds_.thin->smallest_sine(mesh_.tets[tet])) * 180 / std::numbers::pi,
+               sharpest = std::min(bound, then.smallest),
                bluntest = std::max(largest - 2 * rounding, then.largest);
   return std::min({1., now.smallest / sharpest, (180 - now.largest) / (180 - bluntest)});
 }

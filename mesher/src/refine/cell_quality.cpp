@@ -12,11 +12,20 @@ constexpr double offset_per_radius = 0.05;
 // A cell whose volume is below this share of its longest edge cubed is flat.
 constexpr double flat_volume = 1e-11;
 
-double shortest_squared_edge(const RefinedMesh& mesh, Index cell) {
-  const auto& v = mesh.corners(cell);
+struct Shape {
+  double shortest_squared_edge;
+  bool flat;
+};
+
+Shape shape_of(const RefinedMesh& mesh, const std::array<Index, 4>& v) {
   const Point &a = mesh.point(v[0]), &b = mesh.point(v[1]), &c = mesh.point(v[2]), &d = mesh.point(v[3]);
-  return std::min({squared_distance(a, b), squared_distance(a, c), squared_distance(a, d),
-                   squared_distance(b, c), squared_distance(b, d), squared_distance(c, d)});
+  const Vector ab = b - a, ac = c - a, ad = d - a;
+  const double l_ab = squared_norm(ab), l_ac = squared_norm(ac), l_ad = squared_norm(ad);
+  const double longest = std::max(std::max(l_ab, l_ac), l_ad), volume = dot(ab, cross(ac, ad));
+  const double at_a = std::min(std::min(l_ab, l_ac), l_ad);
+  const double others =
+      std::min(std::min(squared_distance(b, c), squared_distance(b, d)), squared_distance(c, d));
+  return {std::min(at_a, others), volume * volume < flat_volume * flat_volume * longest * longest * longest};
 }
 
 }  // namespace
@@ -38,19 +47,22 @@ CellQuality::CellQuality(const Domain& domain, const RefinedMesh& mesh, const Co
 void CellQuality::judge(Index cell, WorkQueue& queue) const {
   if (collar_cells_.inside(cell)) return;
   const Index region = surface_.region(cell);
+  const auto& v = mesh_.corners(cell);
+  const Shape shape = shape_of(mesh_, v);
   const double r2 = mesh_.squared_radius(cell);
   const Point& centre = mesh_.circumcentre(cell);
   const double bound = region == 0
                            ? std::max(domain_.options.exterior_radius_edge, domain_.options.radius_edge)
                            : domain_.options.radius_edge;
-  const bool skinny = r2 > bound * bound * shortest_squared_edge(mesh_, cell) &&
+  const bool skinny = r2 > bound * bound * shape.shortest_squared_edge &&
                       !(region == 0 && facing_sheets_.fills_gap(cell, bound));
-  if (skinny || (region != 0 && flat(cell))) {
+  // Cocircular input makes cells whose volume is noise although their radius-edge ratio is not. Those on one
+  // patch are seen to when the queue is empty.
+  if (skinny || (shape.flat && region != 0 && !mesh_.on_one_patch(v))) {
     if (domain_.in_box(centre)) queue.push(WorkQueue::skinny_cells, r2, {cell, mesh_.generation(cell)});
     return;
   }
   if (region == 0) return;
-  const auto& v = mesh_.corners(cell);
   const double size = sizes_.asked().cell_radius(region, centre, sizes_.graded(v, std::sqrt(r2)));
   if (r2 > size * size || uneven_at_vertex(cell))
     queue.push(WorkQueue::large_cells, r2, {cell, mesh_.generation(cell)});
@@ -64,16 +76,6 @@ void CellQuality::judge_all() {
 void CellQuality::cells_made(const ConflictZone& zone, Index vertex) {
   note_edges(zone, vertex);
   for (const Index cell : zone.created) judge(cell, queue_);
-}
-
-// Cocircular input makes cells whose volume is noise although their radius-edge ratio is not. Those
-// on one patch are seen to when the queue is empty.
-bool CellQuality::flat(Index cell) const {
-  const auto& v = mesh_.corners(cell);
-  const Point &a = mesh_.point(v[0]), &b = mesh_.point(v[1]), &c = mesh_.point(v[2]), &d = mesh_.point(v[3]);
-  const double longest = std::max({squared_distance(a, b), squared_distance(a, c), squared_distance(a, d)});
-  const double volume = six_volume(a, b, c, d);
-  return volume * volume < flat_volume * flat_volume * longest * longest * longest && !mesh_.on_one_patch(v);
 }
 
 // The paper's stronger quality measure (section 1.2): a circumradius against the shortest edge at a

@@ -48,7 +48,6 @@ class CellQuality {
   std::size_t bytes() const { return shortest_edge_.bytes(); }
 
  private:
-  bool flat(Index cell) const;
   bool uneven_at_vertex(Index cell) const;
   void note_edges(const ConflictZone& zone, Index vertex);
 

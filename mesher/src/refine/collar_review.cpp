@@ -52,6 +52,7 @@ CollarReview::CollarReview(const RefinedMesh& mesh, CollarSystem& collars, Colla
       stopped_(std::move(stopped)) {}
 
 void CollarReview::cells_made(const ConflictZone& zone) {
+  changed_ = true;
   if (!started_) return;
   touched_.resize(mesh_.cell_capacity(), 0);
   for (const Index cell : zone.created) touched_[cell] = 0;
@@ -59,7 +60,8 @@ void CollarReview::cells_made(const ConflictZone& zone) {
   for (const Index cell : zone.created) touch(cell);
 }
 
-void CollarReview::feature_changed(Index vertex) {
+void CollarReview::vertex_joined_feature(Index vertex) {
+  changed_ = true;
   if (!started_ || !cells_.near(vertex)) return;
   mesh_.incident_cells(vertex, scratch_);
   for (const Index cell : scratch_) touch(cell);
@@ -68,9 +70,8 @@ void CollarReview::feature_changed(Index vertex) {
 bool CollarReview::check() {
   if (collars_.empty()) return false;
   if (!started_) start();
+  if (!std::exchange(changed_, false)) return false;
   std::vector<Index> cells = take_touched();
-  if (cells.empty() && vertices_at_last_look_ == mesh_.vertex_count()) return false;
-  vertices_at_last_look_ = mesh_.vertex_count();
   take_in_flat_cells(cells);
   if (!judge_changed_triangles(cells)) return false;
   find_exposed_vertices(cells);
@@ -254,8 +255,8 @@ Index CollarReview::cell_outside(Index vertex) {
 }
 
 void CollarReview::queue_exposed_vertices() {
-  std::erase_if(exposed_, [&](Index vertex) { return cell_outside(vertex) == none; });
-  for (const Index vertex : exposed_) {
+  for (const Index vertex : std::exchange(exposed_, {})) {
+    if (cell_outside(vertex) == none) continue;
     const double radius = collars_.balls()[ball_at_.at(vertex)].radius;
     queue_.push(WorkQueue::exposed_crease_vertices, radius * radius, {vertex, 0});
   }
@@ -263,13 +264,11 @@ void CollarReview::queue_exposed_vertices() {
 
 void CollarReview::queue_poor_triangles() {
   sort_and_make_unique(poor_);
-  std::erase_if(poor_, [&](FaceId face) {
+  for (const FaceId face : std::exchange(poor_, {})) {
     const CollarTriangle* t = known_triangle(face);
-    return t == nullptr || t->face != face || !t->poor;
-  });
-  for (const FaceId face : poor_) {
+    if (t == nullptr || t->face != face || !t->poor) continue;
     const double squared_radius =
-        squared_distance(known_triangle(face)->representation, mesh_.point(mesh_.face_vertices(face)[0]));
+        squared_distance(t->representation, mesh_.point(mesh_.face_vertices(face)[0]));
     queue_.push(WorkQueue::poor_collar_triangles, squared_radius, {face, mesh_.generation(cell_of(face))});
   }
 }
@@ -288,18 +287,22 @@ std::optional<Candidate> CollarReview::candidate_at_vertex(Index vertex) {
   const auto& v = mesh_.corners(outside);
   const auto corner = static_cast<unsigned>(std::find(v.begin(), v.end(), vertex) - v.begin());
   const Vector d = mesh_.circumcentre(outside) - ball.centre;
-  return collar_surface_.repair({face_id(outside, corner), mesh_.generation(outside), b,
-                                 ball.centre + ball.radius / norm(d) * d, false});
+  auto found = collar_surface_.repair({face_id(outside, corner), mesh_.generation(outside), b,
+                                       ball.centre + ball.radius / norm(d) * d, false});
+  if (found) exposed_.push_back(vertex);  // it may yield: to be looked at again
+  return found;
 }
 
-std::optional<Candidate> CollarReview::candidate_on_triangle(const WorkQueue::Entry& entry) const {
+std::optional<Candidate> CollarReview::candidate_on_triangle(const WorkQueue::Entry& entry) {
   const FaceId face = entry.id;
   if (!mesh_.alive(cell_of(face), entry.stamp)) return std::nullopt;
   const CollarTriangle* t = known_triangle(face);
   if (t == nullptr || t->face != face || !t->poor || touched_[cell_of(face)] != 0 ||
       touched_[cell_of(mesh_.opposite(face))] != 0)
     return std::nullopt;
-  return collar_surface_.repair(*t);
+  auto found = collar_surface_.repair(*t);
+  if (found) poor_.push_back(face);  // it may yield: to be looked at again
+  return found;
 }
 
 }  // namespace collarmesh

@@ -15,8 +15,10 @@ namespace collarmesh {
 ///
 /// State: what is known of the collar surface since it looked last. Invariant, once started: every cell near
 /// collars that was created since then, or whose vertices lie on other features, is touched; so it judges the
-/// triangles around those alone, and all looks together cost what was created. The loop asks for looks, takes
-/// candidates and tells of insertions. What has no candidate stays poor, for the certificate to tell.
+/// triangles around those alone, and those again whose candidates it gave away. So all looks together cost
+/// what was created and what was given. The loop asks for looks, takes candidates, and tells of insertions and
+/// of vertices that join features. What has no candidate will not have one before its cells change: it stays
+/// poor, for the certificate to tell.
 class CollarReview {
  public:
   /// All are kept by reference. `stopped` is asked now and then. The first look tells the collars that no
@@ -25,16 +27,16 @@ class CollarReview {
                const RestrictedSurface& surface, const CollarCreator& creator, CollarSurface& collar_surface,
                WorkQueue& queue, std::function<bool()> stopped);
 
-  /// Precondition: the queue is empty. False when nothing was queued: nothing is poor, or nothing has come of
-  /// what was queued before.
+  /// Precondition: the queue is empty. False when nothing was queued: nothing is poor that can be mended, or
+  /// nothing has come of what was queued before.
   bool check();
   /// What mends a queued triangle, or stands between a queued vertex and the cells outside. Nothing when that
   /// is impossible, or what was done meanwhile is to be looked at first.
   std::optional<Candidate> candidate(const WorkQueue::Item& item);
 
   void cells_made(const ConflictZone& zone);
-  /// A vertex was found to lie on another feature.
-  void feature_changed(Index vertex);
+  /// A vertex that is there was found to lie on a feature.
+  void vertex_joined_feature(Index vertex);
 
   std::size_t bytes() const { return triangles_.bytes() + touched_.bytes(); }
 
@@ -52,7 +54,7 @@ class CollarReview {
   void queue_exposed_vertices();
   void queue_poor_triangles();
   std::optional<Candidate> candidate_at_vertex(Index vertex);
-  std::optional<Candidate> candidate_on_triangle(const WorkQueue::Entry& entry) const;
+  std::optional<Candidate> candidate_on_triangle(const WorkQueue::Entry& entry);
 
   const RefinedMesh& mesh_;
   CollarSystem& collars_;
@@ -64,13 +66,13 @@ class CollarReview {
   std::function<bool()> stopped_;
 
   bool started_ = false;
-  Index vertices_at_last_look_ = 0;
+  bool changed_ = true;  // since it looked last: vertices, or their features
   GrowingArray<std::uint8_t> touched_;  // by cell: a flag
   std::vector<Index> touched_cells_;    // each of them, and some that are gone or not touched any more
   CollarTriangles triangles_;
-  std::vector<FaceId> poor_;                  // those inside regions
+  std::vector<FaceId> poor_;                  // inside regions, to be looked at
   std::unordered_map<Index, Index> ball_at_;  // by the mesh vertices on creases
-  std::vector<Index> exposed_;                // of these vertices, which may have cells outside around them
+  std::vector<Index> exposed_;                // of these vertices, to be looked at
   std::vector<Index> scratch_;
 };
 

@@ -264,7 +264,8 @@ bool CollarSurface::poor_book(const CollarTriangle& t, const CollarTriangle& u,
 std::optional<Candidate> CollarSurface::repair(const CollarTriangle& t) const {
   const CollarBall& ball = collars_.balls()[t.ball];
   const auto v = mesh_.face_vertices(t.face);
-  const double clearance = arc_clearance * distance(t.representation, mesh_.point(v[0]));
+  const double radius = distance(t.representation, mesh_.point(mesh_.nearest_vertex(t.representation, v[0])));
+  const double clearance = arc_clearance * radius;
   Point best = t.representation;
   Index patch = none;
   double nearest = arc_reach * ball.radius;
@@ -287,13 +288,12 @@ std::optional<Candidate> CollarSurface::repair(const CollarTriangle& t) const {
   best = domain_.frame.rounded(best);
   const Index vertex = mesh_.nearest_vertex(best, v[0]);
   const Index start = mesh_.conflicting_cell_around(vertex, best);
-  const double least = std::max(domain_.floor, t.bent_on == none ? clearance_in_radii * ball.radius : 0);
-  const double squared_radius = squared_distance(t.representation, mesh_.point(v[0]));
-  if (start == none || distance(best, mesh_.point(vertex)) < least ||
-      squared_radius < domain_.floor * domain_.floor)
+  const bool mends_bend = patch != none && patch == t.bent_on;
+  const double least = std::max(domain_.floor, mends_bend ? 0 : clearance_in_radii * ball.radius);
+  if (start == none || distance(best, mesh_.point(vertex)) < least || radius < domain_.floor)
     return std::nullopt;
   const Feature feature{static_cast<std::uint8_t>(patch == none ? 3 : 2), patch};
-  return Candidate{best, squared_radius, t.representation, feature, start};
+  return Candidate{best, radius * radius, t.representation, feature, start};
 }
 
 // What is known of faces whose cells have changed is forgotten.

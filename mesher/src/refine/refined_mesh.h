@@ -89,11 +89,9 @@ class RefinedMesh {
     triangulation_.join(blocks);
     features_.resize(vertex_count(), Feature{3, none});
   }
-  /// A vertex is found to lie on this feature, too. False when the one that it has is no higher.
-  bool lower_feature(Index vertex, const Feature& feature) {
-    if (feature.dimension >= features_[vertex].dimension) return false;
-    features_[vertex] = feature;
-    return true;
+  /// A vertex is found to lie on this feature, too: it takes it over where it is of a lower dimension.
+  void lower_feature(Index vertex, const Feature& feature) {
+    if (feature.dimension < features_[vertex].dimension) features_[vertex] = feature;
   }
 
   std::size_t bytes() const { return triangulation_.bytes() + features_.capacity() * sizeof(Feature); }

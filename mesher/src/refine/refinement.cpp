@@ -187,7 +187,8 @@ bool Refinement::destroy_subsegment(Index subsegment, WorkQueue::Priority priori
   const Candidate& candidate = split->candidate;
   if (candidate.start == none) {  // a vertex is there already: it joins the curve
     if (!curves_.can_join(*split)) return false;
-    if (mesh_.lower_feature(split->vertex, candidate.feature)) collar_review_.feature_changed(split->vertex);
+    mesh_.lower_feature(split->vertex, candidate.feature);
+    collar_review_.vertex_joined_feature(split->vertex);
     curves_.remove(*split);
     curves_.add_pieces(*split, split->vertex);
     return true;
@@ -210,7 +211,8 @@ void Refinement::insert_point(Index index) {
   Index vertex = points_.vertex_near(index);
   const Index cell = mesh_.conflicting_cell_around(vertex, p.point);
   if (cell == none) {  // a vertex is there already: it takes over the feature
-    if (mesh_.lower_feature(vertex, p.feature)) collar_review_.feature_changed(vertex);
+    mesh_.lower_feature(vertex, p.feature);
+    collar_review_.vertex_joined_feature(vertex);
     points_.resolve(index, vertex);
   } else {
     mesh_.find_conflict_zone(p.point, cell, zone_);

@@ -36,7 +36,21 @@ struct CurveEdge {
 
 std::array<Index, 2> sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
-std::vector<Side> sorted_sides(const std::vector<SurfaceTriangle>& triangles) {
+// By mesh vertices first, of which there are so many: few have the same one.
+template <class T, class VertexOf>
+void sort_by_vertex(std::vector<T>& values, std::size_t vertices, const VertexOf& vertex_of) {
+  std::vector<Index> end(vertices + 1, 0);
+  for (const T& value : values) ++end[vertex_of(value) + 1];
+  for (std::size_t v = 1; v <= vertices; ++v) end[v] += end[v - 1];
+  std::vector<T> grouped(values.size());
+  for (const T& value : values) grouped[end[vertex_of(value)]++] = value;
+  const auto first = grouped.begin();
+  for (std::size_t v = 0, begin = 0; v < vertices; begin = end[v++])
+    std::sort(first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(end[v]));
+  values.swap(grouped);
+}
+
+std::vector<Side> sorted_sides(const std::vector<SurfaceTriangle>& triangles, std::size_t vertices) {
   std::vector<Side> sides;
   sides.reserve(3 * triangles.size());
   for (Index t = 0; t < triangles.size(); ++t)
@@ -47,7 +61,7 @@ std::vector<Side> sorted_sides(const std::vector<SurfaceTriangle>& triangles) {
       sides.push_back(
           {sorted(a, b), triangles[t].patch, t, a < b ? std::array{at_a, at_b} : std::array{at_b, at_a}});
     }
-  std::sort(sides.begin(), sides.end());
+  sort_by_vertex(sides, vertices, [](const Side& side) { return side.ends[0]; });
   return sides;
 }
 
@@ -96,7 +110,7 @@ bool SurfaceTopology::check() {
   for (const auto& edge : stitching_.result().edges)
     curve_edges.push_back({sorted(edge.corners[0], edge.corners[1]), edge.curve});
   std::sort(curve_edges.begin(), curve_edges.end());
-  const std::vector<Side> sides = sorted_sides(triangles);
+  const std::vector<Side> sides = sorted_sides(triangles, mesh_.vertex_count());
   DisjointSets fans(3 * triangles.size());
   std::vector<Index> wrong_at(mesh_.vertex_count(), none);  // a patch that is wrong at the vertex
   for (const Index v : stitching_.result().open)
@@ -120,7 +134,7 @@ bool SurfaceTopology::check() {
     if (mesh_.feature(v).dimension > 0)
       patch_fans.push_back({v, triangles[corner / 3].patch, fans.find(corner)});
   }
-  std::sort(patch_fans.begin(), patch_fans.end());
+  sort_by_vertex(patch_fans, mesh_.vertex_count(), [](const auto& fan) { return fan[0]; });
   for (std::size_t i = 1; i < patch_fans.size(); ++i) {
     const auto& [v, patch, fan] = patch_fans[i];
     const auto& before = patch_fans[i - 1];
