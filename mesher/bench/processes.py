@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import resource
 import subprocess
+import sys
 import threading
 import time
 from dataclasses import dataclass
@@ -31,10 +32,14 @@ def pin_to_core(core: int | None) -> None:
 
 
 def touch_memory(size: int) -> None:
-    """Fill so many bytes and give them back. A virtual machine fetches memory from its host when somebody uses it who was
-    not the last one, and the program that comes first would pay for that."""
-    block = b"\1" * size
-    del block
+    """Have a process use so many bytes, in large pages, and end. A virtual machine has to fetch memory that was not used for a
+    while from its host, and the program that comes first would pay for that."""
+    use = """import mmap, sys
+block = mmap.mmap(-1, int(sys.argv[1]))
+block.madvise(mmap.MADV_HUGEPAGE)
+for page in range(0, len(block), mmap.PAGESIZE):
+    block[page] = 1"""
+    subprocess.run([sys.executable, "-c", use, str(size)], check=True)
 
 
 def run(command: list[str], folder: Path, time_limit: float, accepted: tuple[int, ...] = (0,)) -> Measured:

@@ -248,7 +248,7 @@ int main() {
     row("needle", fmt::format("{} degrees", angle), acute::pyramid(4, angle).soups, all);
   for (const unsigned sheets : {7U, 12U, 24U, 48U})
     row("fan", fmt::format("{} sheets", sheets), acute::fan(sheets).soups, all);
-  for (const int k : {2, 4, 8, 12, 16, 20})
+  for (const int k : {2, 4, 8, 12, 16, 20, 24, 28})
     row("small facet", fmt::format("2^-{}", k), {box_with_small_facet(std::ldexp(1.0, -k))}, all);
   for (const unsigned levels : {1U, 2U, 4U, 6U})
     row("nested boxes", fmt::format("{}", levels), nested_boxes(levels), all);
