@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import resource
 import subprocess
-import sys
 import threading
 import time
 from dataclasses import dataclass
@@ -29,17 +28,6 @@ def pin_to_core(core: int | None) -> None:
     """This process and all it starts run on one core: the last one we may use unless named."""
     allowed = sorted(os.sched_getaffinity(0))
     os.sched_setaffinity(0, {allowed[-1] if core is None else core})
-
-
-def touch_memory(size: int) -> None:
-    """Have a process use so many bytes, in large pages, and end. A virtual machine has to fetch memory that was not used for a
-    while from its host, and the program that comes first would pay for that."""
-    use = """import mmap, sys
-block = mmap.mmap(-1, int(sys.argv[1]))
-block.madvise(mmap.MADV_HUGEPAGE)
-for page in range(0, len(block), mmap.PAGESIZE):
-    block[page] = 1"""
-    subprocess.run([sys.executable, "-c", use, str(size)], check=True)
 
 
 def run(command: list[str], folder: Path, time_limit: float, accepted: tuple[int, ...] = (0,)) -> Measured:

@@ -10,6 +10,7 @@
 #include "refine/rip_and_stitch.h"
 #include "refine/surface_check.h"
 #include "refine/surface_topology.h"
+#include "support/acute_shapes.h"
 #include "support/plc_shapes.h"
 #include "support/refinement_parts.h"
 
@@ -39,10 +40,19 @@ struct Parts : testing::KnownCurves {
       chains.point_resolved(point);
     }
   }
+  // The radius of the ball on whose sphere a point lies.
+  double radius_around(const Point& p) const {
+    const auto off = [&](const CollarBall& ball) {
+      return std::fabs(distance(p, ball.centre) / ball.radius - 1);
+    };
+    const auto& balls = collars.balls();
+    const auto nearest = std::min_element(balls.begin(), balls.end(),
+                                          [&](const auto& a, const auto& b) { return off(a) < off(b); });
+    EXPECT_LT(off(*nearest), 1e-6);
+    return nearest->radius;
+  }
   // Repairs keep a distance from all vertices; so they end.
   void mend_what_is_queued() {
-    double least_radius = INFINITY;
-    for (const CollarBall& ball : collars.balls()) least_radius = std::min(least_radius, ball.radius);
     for (WorkQueue::Item item; queue.pop(item);) {
       if (item.priority != WorkQueue::exposed_crease_vertices &&
           item.priority != WorkQueue::poor_collar_triangles)
@@ -51,7 +61,8 @@ struct Parts : testing::KnownCurves {
       if (!candidate) continue;
       EXPECT_TRUE(mesh.in_conflict(candidate->start, candidate->point));
       EXPECT_GE(distance(candidate->point, mesh.point(mesh.nearest_vertex(candidate->point))),
-                1e-3 * least_radius);
+                1e-3 * radius_around(candidate->point));
+      ++repairs;
       insert_and_tell(candidate->point, candidate->feature);
     }
   }
@@ -63,6 +74,7 @@ struct Parts : testing::KnownCurves {
     return found;
   }
 
+  std::size_t repairs = 0;
   TriangleQuality triangles{domain, mesh, nodes, surface, sizes, facing_sheets, random, queue};
   CollarCreator creator{domain,
                         mesh,
@@ -187,6 +199,31 @@ TEST(CollarParts, RepairsEndWithACollarSurfaceThatCanBeStitched) {
   }
   EXPECT_EQ(stitching.result().edges.size(),
             parts.collars.links().size() + parts.chains.clipped_ends().size());
+}
+
+// Two smooth patches pass through each ball at the rim.
+TEST(CollarParts, RepairsAtASmoothCreaseEnd) {
+  const testing::acute::Shape lens = testing::acute::lens(40);
+  const Plc plc = build_plc(lens.soups);
+  MeshOptions options;
+  options.size = 0.5;
+  Parts parts(plc, options);
+  parts.resolve_all();
+  ASSERT_FALSE(parts.collars.empty());
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int k = 0; k < 400; ++k) {
+    const auto pick = [&](double low, double high) { return low + (high - low) * unit(random); };
+    const Point p{pick(plc.bounds.min.x, plc.bounds.max.x), pick(plc.bounds.min.y, plc.bounds.max.y),
+                  pick(plc.bounds.min.z, plc.bounds.max.z)};
+    if (parts.collars.ball_containing(p) == none &&
+        distance(p, parts.mesh.point(parts.mesh.nearest_vertex(p))) > 0.02)
+      parts.insert_and_tell(p, {3, none});
+  }
+  for (parts.mend_what_is_queued(); parts.review.check(); parts.mend_what_is_queued()) {
+  }
+  EXPECT_GT(parts.repairs, 0U);
+  EXPECT_FALSE(parts.review.check());
 }
 
 TEST(CollarParts, WithoutCreasesThereIsNothingToReview) {
