@@ -34,7 +34,7 @@ def size_for(mesher, surface, target: int, folder: Path, cache: SizeCache) -> fl
     """The size at which `mesher` makes the wanted number of tets, nearly; the nearest
     one found when its count jumps over it or never gets that low.
     Raises ProgramFailed when the mesher does."""
-    key = f"{mesher.name} {surface.name} {len(surface.polygons)} {target}"
+    key = f"{mesher.name} {surface.name} {len(surface.polygons)} {target} {near_enough}"
     size, signature = cache.get(key) or ((surface.volume / (0.12 * target)) ** (1 / 3), None)
     if signature == mesher.signature():
         return size

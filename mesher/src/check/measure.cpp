@@ -1,5 +1,6 @@
 // Measures of tetrahedra.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>

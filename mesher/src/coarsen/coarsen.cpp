@@ -35,7 +35,8 @@ constexpr double repaired_below = 0.65;
 // Tets below this quality are improved between the passes.
 constexpr double improved_below = 1.3;
 constexpr unsigned most_sweeps = 8;
-// A pass, or a round of them, that removes a smaller share of the tets is the last.
+// A pass that removes a smaller share of the tets is the last one of its round; so is a round of them, once
+// improvement before it has ended by itself.
 constexpr double least_share = 0.005;
 constexpr std::size_t steps_between_reports = 4096;
 // Proposals are made for so many items at once, or for this share of them: few of all, so that they hardly

@@ -26,6 +26,7 @@ inline void prefer_large_pages([[maybe_unused]] void* block, [[maybe_unused]] st
   const auto first = reinterpret_cast<std::uintptr_t>(block);
   const std::uintptr_t begin = (first + large_page - 1) / large_page * large_page;
   const std::uintptr_t end = (first + bytes) / large_page * large_page;
+  if (end <= begin) return;
   madvise(static_cast<char*>(block) + (begin - first), end - begin, MADV_HUGEPAGE);
 #endif
 }
@@ -74,10 +75,10 @@ struct LargePageAllocator {
   LargePageAllocator(const LargePageAllocator<Other>&) {}
 
   T* allocate(std::size_t count) {
-    const std::size_t bytes = count * sizeof(T);
-    void* block = bytes < least_bytes_in_large_pages
-                      ? std::malloc(bytes)
-                      : std::aligned_alloc(large_page, (bytes + large_page - 1) / large_page * large_page);
+    const bool large = count * sizeof(T) >= least_bytes_in_large_pages;
+    const std::size_t bytes =
+        large ? (count * sizeof(T) + large_page - 1) / large_page * large_page : count * sizeof(T);
+    void* block = large ? std::aligned_alloc(large_page, bytes) : std::malloc(bytes);
     if (block == nullptr) throw std::bad_alloc();
     prefer_large_pages(block, bytes);
     return static_cast<T*>(block);

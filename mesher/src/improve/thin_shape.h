@@ -35,10 +35,12 @@ inline ExtremeCosines extreme_cosines(const Corners& p) {
   const double a = 1 / squared_norm(n_a), b = 1 / squared_norm(n_b), c = 1 / squared_norm(n_c),
                d = 1 / squared_norm(n_d);
   // Outward normals: minus their product is the cosine of the angle between the faces.
-  const std::array<double, 6> squares{
-      -signed_square(dot(n_c, n_d)) * (c * d), -signed_square(dot(n_b, n_d)) * (b * d),
-      -signed_square(dot(n_b, n_c)) * (b * c), -signed_square(dot(n_a, n_d)) * (a * d),
-      -signed_square(dot(n_a, n_c)) * (a * c), -signed_square(dot(n_a, n_b)) * (a * b)};
+  const auto square = [](double product, double x, double y) {
+    return -(product * x) * (std::fabs(product) * y);  // in range at any scale
+  };
+  const std::array<double, 6> squares{square(dot(n_c, n_d), c, d), square(dot(n_b, n_d), b, d),
+                                      square(dot(n_b, n_c), b, c), square(dot(n_a, n_d), a, d),
+                                      square(dot(n_a, n_c), a, c), square(dot(n_a, n_b), a, b)};
   double least = squares[0], greatest = squares[0];
   for (unsigned i = 1; i < 6; ++i) {
     least = std::min(least, squares[i]);

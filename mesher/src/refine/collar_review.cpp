@@ -245,18 +245,16 @@ void CollarReview::find_exposed_vertices(const std::vector<Index>& cells) {
   sort_and_make_unique(exposed_);
 }
 
-// A cell of a region that has the vertex and lies outside the collar.
-Index CollarReview::cell_outside(Index vertex) {
+// The cells of regions that have the vertex and lie outside the collar.
+const std::vector<Index>& CollarReview::cells_outside(Index vertex) {
   mesh_.incident_cells(vertex, scratch_);
-  const auto outside = std::find_if(scratch_.begin(), scratch_.end(), [&](Index cell) {
-    return surface_.region(cell) != 0 && !cells_.inside(cell);
-  });
-  return outside == scratch_.end() ? none : *outside;
+  std::erase_if(scratch_, [&](Index cell) { return surface_.region(cell) == 0 || cells_.inside(cell); });
+  return scratch_;
 }
 
 void CollarReview::queue_exposed_vertices() {
   for (const Index vertex : std::exchange(exposed_, {})) {
-    if (cell_outside(vertex) == none) continue;
+    if (cells_outside(vertex).empty()) continue;
     const double radius = collars_.balls()[ball_at_.at(vertex)].radius;
     queue_.push(WorkQueue::exposed_crease_vertices, radius * radius, {vertex, 0});
   }
@@ -280,17 +278,22 @@ std::optional<Candidate> CollarReview::candidate(const WorkQueue::Item& item) {
 
 // On the sphere, towards the centre of a cell outside.
 std::optional<Candidate> CollarReview::candidate_at_vertex(Index vertex) {
-  const Index outside = cell_outside(vertex);
-  if (outside == none) return std::nullopt;
+  for (const Index outside : cells_outside(vertex))
+    if (auto found = candidate_towards(outside, vertex)) {
+      exposed_.push_back(vertex);  // it may yield: to be looked at again
+      return found;
+    }
+  return std::nullopt;
+}
+
+std::optional<Candidate> CollarReview::candidate_towards(Index outside, Index vertex) const {
   const Index b = ball_at_.at(vertex);
   const CollarBall& ball = collars_.balls()[b];
   const auto& v = mesh_.corners(outside);
   const auto corner = static_cast<unsigned>(std::find(v.begin(), v.end(), vertex) - v.begin());
   const Vector d = mesh_.circumcentre(outside) - ball.centre;
-  auto found = collar_surface_.repair({face_id(outside, corner), mesh_.generation(outside), b,
-                                       ball.centre + ball.radius / norm(d) * d, false});
-  if (found) exposed_.push_back(vertex);  // it may yield: to be looked at again
-  return found;
+  return collar_surface_.repair({face_id(outside, corner), mesh_.generation(outside), b,
+                                 ball.centre + ball.radius / norm(d) * d, false});
 }
 
 std::optional<Candidate> CollarReview::candidate_on_triangle(const WorkQueue::Entry& entry) {

@@ -16,9 +16,9 @@ namespace collarmesh {
 /// State: what is known of the collar surface since it looked last. Invariant, once started: every cell near
 /// collars that was created since then, or whose vertices lie on other features, is touched; so it judges the
 /// triangles around those alone, and those again whose candidates it gave away. So all looks together cost
-/// what was created and what was given. The loop asks for looks, takes candidates, and tells of insertions and
-/// of vertices that join features. What has no candidate will not have one before its cells change: it stays
-/// poor, for the certificate to tell.
+/// what was created and what was given. The loop asks for looks, takes candidates, and tells of insertions
+/// and of vertices that join features. What has no candidate is not asked again before its cells change: it
+/// stays poor, for the certificate to tell.
 class CollarReview {
  public:
   /// All are kept by reference. `stopped` is asked now and then. The first look tells the collars that no
@@ -50,10 +50,11 @@ class CollarReview {
   const CollarTriangle* known_triangle(FaceId face) const;
   bool poor_edge(const CollarTriangle& t, Index a, Index b) const;
   void find_exposed_vertices(const std::vector<Index>& cells);
-  Index cell_outside(Index vertex);
+  const std::vector<Index>& cells_outside(Index vertex);
   void queue_exposed_vertices();
   void queue_poor_triangles();
   std::optional<Candidate> candidate_at_vertex(Index vertex);
+  std::optional<Candidate> candidate_towards(Index outside, Index vertex) const;
   std::optional<Candidate> candidate_on_triangle(const WorkQueue::Entry& entry);
 
   const RefinedMesh& mesh_;
@@ -66,7 +67,7 @@ class CollarReview {
   std::function<bool()> stopped_;
 
   bool started_ = false;
-  bool changed_ = true;  // since it looked last: vertices, or their features
+  bool changed_ = true;                 // since it looked last: vertices, or their features
   GrowingArray<std::uint8_t> touched_;  // by cell: a flag
   std::vector<Index> touched_cells_;    // each of them, and some that are gone or not touched any more
   CollarTriangles triangles_;

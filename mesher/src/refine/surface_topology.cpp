@@ -103,6 +103,7 @@ bool SurfaceTopology::check() {
     if (!collar_cells_.inside(cell_of(face)) && !collar_cells_.inside(cell_of(mesh_.opposite(face))))
       triangles.push_back({mesh_.face_vertices(face), surface_.patch(face), face});
   for (const auto& face : stitching_.result().faces) triangles.push_back({face.corners, face.patch, no_face});
+  if (triangles.empty()) return false;
   std::vector<CurveEdge> curve_edges;
   curves_.visit([&](Index, const Subsegment& s) {
     curve_edges.push_back({sorted(s.ends[0], s.ends[1]), s.curve});
