@@ -99,9 +99,6 @@ main_header = ["input", "target", "mesher", "tets", "CPU s", "tets/s", "refineme
                "peak bytes/tet", "structure bytes/tet"]
 
 
-before = "collarmesh before"
-
-
 def ratio_row(surface: Surface, target: int, cells: dict[str, Cell]) -> list[str]:
     """Our refinement's speed over the peers', our time over bare triangulation."""
     def speed(name: str) -> float | None:
@@ -110,8 +107,8 @@ def ratio_row(surface: Surface, target: int, cells: dict[str, Cell]) -> list[str
 
     ours = speed("collarmesh")
     if ours is None:
-        return [surface.name, si(target), *[""] * 6]
-    text = [f"{ours / peer:.2f}" if peer else "" for peer in (speed(before), speed("TetGen"), speed("Gmsh HXT"))]
+        return [surface.name, si(target), *[""] * 5]
+    text = [f"{ours / peer:.2f}" if peer else "" for peer in (speed("TetGen"), speed("Gmsh HXT"))]
     cell = cells["collarmesh"]
     triangulation = statistics.median(cell.triangulation)
     stages = cell.runs[-1].stages or {}
@@ -121,8 +118,8 @@ def ratio_row(surface: Surface, target: int, cells: dict[str, Cell]) -> list[str
             f"{cell.runs[-1].cells / cell.tets:.2f}", rest]
 
 
-ratio_header = ["input", "target", "speed / before", "speed / TetGen's", "speed / HXT's", "time / bare triangulation",
-                "cells / tets", "stages, s"]
+ratio_header = ["input", "target", "speed / TetGen's", "speed / HXT's", "time / bare triangulation", "cells / tets",
+                "stages, s"]
 
 
 def slope(small: Cell, large: Cell) -> float:
@@ -152,7 +149,6 @@ def parse() -> argparse.Namespace:
     root = Path(__file__).resolve().parents[2]
     parser.add_argument("--build", type=Path, default=root / "build" / "bench",
                         help="build folder configured with COLLARMESH_BENCH (default: build/bench)")
-    parser.add_argument("--before", type=Path, help="the program of an older version, to run beside this one")
     parser.add_argument("--corpus", type=Path, default=os.environ.get("COLLARMESH_CORPUS"),
                         help="folder of the parts (default: $COLLARMESH_CORPUS); without one, the box alone")
     parser.add_argument("--parts", nargs="*", default=default_parts)
@@ -176,8 +172,6 @@ def main() -> int:
     arguments = ["--coarsen", "off", "--threads", "1"]
     meshers = [Collarmesh(options.build / "bin" / "collarmesh", options.time_limit, arguments),
                TetGen(options.time_limit), Gmsh(options.time_limit)]
-    if options.before:
-        meshers.insert(1, Collarmesh(options.before, options.time_limit, arguments, name=before))
     surfaces = [] if options.no_box else [box()]
     if options.corpus:
         surfaces += [read_surface(Path(options.corpus) / part) for part in options.parts]

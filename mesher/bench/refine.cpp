@@ -23,7 +23,7 @@ void refine(const char* path, double size) {
   const double seconds = cpu_seconds() - begin;
   const auto tets = static_cast<double>(result.mesh.tets.size());
   std::printf(
-      "complex %.3f s, refinement %.3f s, %.0f tets, %.0f tets/s, %.0f bytes/tet, %zu exact predicates\n",
+      "complex %.3f s, refinement %.5f s, %.0f tets, %.0f tets/s, %.0f bytes/tet, %zu exact predicates\n",
       begin, seconds, tets, tets / seconds, static_cast<double>(result.statistics.peak_bytes) / tets,
       result.statistics.exact_predicates);
 }
