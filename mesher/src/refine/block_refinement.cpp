@@ -20,7 +20,7 @@ constexpr std::size_t least_entries = 2048, vertices_per_entry = 64;
 // the mesh has grown by a share.
 constexpr std::size_t entries_per_insertion = 48, vertices_per_wait = 32;
 constexpr std::size_t vertices_per_block = 4000, most_blocks = 256, samples_per_block = 64;
-constexpr std::size_t most_insertions_of_a_round = std::size_t{1} << 17;
+constexpr std::size_t most_insertions_of_a_round = std::size_t{1} << 18;
 // Where blocks are cut: shares of a sample.
 constexpr double first_share = 0.4, last_share = 0.6;
 
@@ -166,8 +166,11 @@ std::vector<std::vector<WorkQueue::Entry>> BlockRefinement::deal(const std::vect
   std::vector<std::uint16_t> owner(taken.size());
   constexpr std::size_t at_once = 1024;
   parallel_for_ranges(taken.size(), at_once, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i)
+    for (std::size_t i = first; i < last; ++i) {
+      constexpr std::size_t ahead = 16;
+      if (i + ahead < last) mesh_.prefetch(taken[i + ahead].id);
       owner[i] = cells_.due(taken[i]) ? owner_of(taken[i].id) : gone;
+    }
   });
   std::vector<std::vector<WorkQueue::Entry>> entries(block_count());
   for (std::size_t i = 0; i < taken.size(); ++i)

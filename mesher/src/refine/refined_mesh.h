@@ -40,6 +40,8 @@ class RefinedMesh {
   const std::array<Index, 4>& corners(Index cell) const { return triangulation_.corners(cell); }
   FaceId opposite(FaceId face) const { return triangulation_.opposite(face); }
   std::array<Index, 3> face_vertices(FaceId face) const { return triangulation_.face_vertices(face); }
+  /// Of a cell whose corners and generation are asked for soon.
+  void prefetch(Index cell) const { triangulation_.prefetch(cell); }
   const Point& circumcentre(Index cell) const { return triangulation_.circumcentre(cell); }
   double squared_radius(Index cell) const { return triangulation_.squared_radius(cell); }
   bool in_conflict(Index cell, const Point& p) const { return triangulation_.in_conflict(cell, p); }
