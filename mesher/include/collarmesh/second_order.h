@@ -14,13 +14,19 @@ struct SecondOrderOptions {
   ExactGeometry exact;  ///< where it is empty or gives nothing: the complex' own polyline or triangles
   double least_jacobian =
       0.1;  ///< everywhere in a curved tet, relative to the straight one; 0: positive is enough
+  double thin_angle = 0;   ///< degrees, of the mesh's `CoarsenOptions`: vertices may be inserted where a tet would be
+                           ///< flat at a corner, and tets be thin there; 0: the tets stay
+  double radius_edge = 2;  ///< bound on circumradius / shortest edge: what exceeds it is marked thin
+  double distance = 0;     ///< surface distance tolerance of inserted vertices; 0: 1/200 of the diagonal
+  unsigned threads = 0;    ///< at most; 0: as many as there are cores. The result does not depend on it
 };
 
 struct SecondOrderReport {
   std::size_t nodes = 0;   ///< mid-side nodes
   std::size_t curved = 0;  ///< of them, those that lie off the middle of their edge, on a smooth feature
 
-  std::size_t moved_inside = 0;  ///< times that a node inside a region went along, so that a tet is valid
+  std::ptrdiff_t more_tets = 0;  ///< that there are than before, where some could not be curved
+  std::size_t moved_inside = 0;  ///< nodes in regions and planar patches that were moved, so that tets are valid
 
   /// A mid-side node that did not stay on its feature, since a tet at it would have been inverted or nearly
   /// so.

@@ -24,18 +24,11 @@ class CoarseningRule final : public improvement::ShapeRule {
 
   /// `thin` and `sizes`, by vertex, are kept by reference.
   CoarseningRule(const improvement::ThinShape& thin, double radius_edge, std::span<const double> sizes)
-      : thin_(thin),
-        bound_(radius_edge),
-        sizes_(sizes),
-        least_blunt_(improvement::sine(thin.cosine_of_largest())) {}
+      : thin_(thin), bound_(radius_edge), sizes_(sizes) {}
 
   double quality(const Corners& p, const std::array<Index, 4>& corners) const override {
-    const improvement::ExtremeCosines cosines = improvement::extreme_cosines(p);
-    if (!cosines.positive) return -1;
-    // Sines of the smallest angle and of what the largest lacks to 180 degrees, by their bounds.
-    const double sharp = improvement::sine(cosines.smallest_angle) / thin_.smallest_sine(corners),
-                 blunt = (cosines.largest_angle < 0 ? improvement::sine(cosines.largest_angle) : 1) /
-                         least_blunt_;
+    const auto [sharp, blunt] = thin_.margins(p, corners);
+    if (blunt < 0) return -1;
     return blunt < 1 && mode_ != Mode::force ? beyond * blunt * std::min(1.0, sharp) : std::min(blunt, sharp);
   }
   bool allows(const Corners& p, const std::array<Index, 4>&, double quality) const override {
@@ -64,7 +57,6 @@ class CoarseningRule final : public improvement::ShapeRule {
   const improvement::ThinShape& thin_;
   improvement::RadiusEdgeBound bound_;
   std::span<const double> sizes_;
-  double least_blunt_;
   Mode mode_ = Mode::final;
 };
 

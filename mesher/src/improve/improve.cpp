@@ -153,7 +153,7 @@ class Improvement {
     const auto found = [&] { return change.kind != Change::Kind::none; };
     if (found() || !move_vertices_) return change;
     for (const Index v : corners) operations.move_vertex(v, change);
-    if (found() || (keep_vertices_ && !rule_.is_blunt(quality(tet)))) return change;
+    if (found() || !may_change_vertices(tet)) return change;
     for (const Index v : corners)
       for (const Index w : corners)
         if (v != w) operations.contract_edge(v, w, change);
@@ -161,6 +161,20 @@ class Improvement {
       for (unsigned j = i + 1; j < 4 && !found(); ++j)
         operations.split_edge(corners[i], corners[j], enough * wanted_, change);
     return change;
+  }
+
+  // In a coarsened mesh walls are one element thick and tets at them poor for that; vertices would bring
+  // back what has been removed. So only tets beyond the largest angle of thin ones may change their number
+  // there, and all where no thin tet is near.
+  bool may_change_vertices(Index tet) const {
+    if (!keep_vertices_ || rule_.is_blunt(quality(tet))) return true;
+    std::vector<Index> star;
+    for (const Index v : complex()[tet].corners) {
+      complex().star(v, star);
+      for (const Index t : star)
+        if (!rule_.is_within_bound(complex().corners(t))) return false;
+    }
+    return true;
   }
 
   // Is all that the change depends on as it was when the batch was begun? That is in the tets that it

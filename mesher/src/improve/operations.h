@@ -32,6 +32,8 @@ class Operations {
   /// Insert a vertex amid an edge inside a region or a patch, where it serves best, when the tets around it
   /// are all better than `least`.
   void split_edge(Index a, Index b, double least, Change& change);
+  /// The same, however good the tets at the edge are now.
+  void insert_amid(Index a, Index b, double least, Change& change);
   /// Move a vertex along an edge within its feature onto the other end, so that the tets at the edge vanish.
   /// No edge becomes longer than the longest one of the cavity.
   void contract_edge(Index vertex, Index onto, Change& change);

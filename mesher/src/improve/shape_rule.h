@@ -42,6 +42,22 @@ class RadiusEdgeBound {
   double squared_;
 };
 
+/// The rule of what may be thin: tets of quality 1 or more are.
+class ThinRule final : public ShapeRule {
+ public:
+  /// Kept by reference.
+  explicit ThinRule(const ThinShape& thin) : thin_(thin) {}
+
+  double quality(const Corners& p, const std::array<Index, 4>& corners) const override {
+    const auto [sharp, blunt] = thin_.margins(p, corners);
+    return std::min(sharp, blunt);
+  }
+  bool allows(const Corners&, const std::array<Index, 4>&, double) const override { return true; }
+
+ private:
+  const ThinShape& thin_;
+};
+
 /// The rule of improvement: the smallest sine of the dihedral angles, within the bound. Where tets may be
 /// thin those with an angle above the largest of thin ones are worse than all others.
 class SliverRule final : public ShapeRule {
@@ -62,6 +78,7 @@ class SliverRule final : public ShapeRule {
 
   /// Has a tet of this quality an angle above the largest of thin ones, or none above 0.06 degrees? False
   /// where no tet may be thin.
+  bool is_within_bound(const Corners& p) const { return bound_.holds(p); }
   bool is_blunt(double quality) const { return thin_ != nullptr && quality < beyond; }
 
  private:

@@ -422,6 +422,7 @@ void TetComplex::undo() {
   old_vertex_tets_.undo(vertex_tet_);
   old_lost_vertices_.undo(lost_vertices_);
   old_points_.undo(mesh_.points);
+  mesh_.features.resize(mesh_.points.size());
   free_steps_.undo(free_);
   free_face_steps_.undo(free_faces_);
   for (auto old = old_faces_.rbegin(); old != old_faces_.rend(); ++old)

@@ -28,7 +28,8 @@ ThinShape::ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle,
     : smallest_(smallest_angle * (1 + reserve)),
       sine_(sine_above(smallest_)),
       cosine_(
-          signed_square(std::cos((180 - (180 - largest_angle) * (1 + reserve) - 2 * rounding) * radians))) {
+          signed_square(std::cos((180 - (180 - largest_angle) * (1 + reserve) - 2 * rounding) * radians))),
+      least_blunt_(sine(cosine_)) {
   if (empty()) return;
   std::vector<double> of_vertex(plc.vertices.size(), smallest_), of_curve(plc.curves.size(), smallest_);
   bool any = false;

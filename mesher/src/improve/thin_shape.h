@@ -99,6 +99,17 @@ class ThinShape {
   }
   /// The cosine of the upper bound on all angles, as in ExtremeCosines, with room for rounding.
   double cosine_of_largest() const { return cosine_; }
+  /// The sines of the smallest angle and of what the largest lacks to 180 degrees, over those of their bounds:
+  /// both are at least 1 where a tet is thin. Negative for a flat or an inverted tet.
+  struct Margins {
+    double sharp, blunt;
+  };
+  Margins margins(const Corners& p, const std::array<Index, 4>& corners) const {
+    const ExtremeCosines cosines = extreme_cosines(p);
+    if (!cosines.positive) return {-1, -1};
+    return {sine(cosines.smallest_angle) / smallest_sine(corners),
+            (cosines.largest_angle < 0 ? sine(cosines.largest_angle) : 1) / least_blunt_};
+  }
   bool contains(const Corners& p, const std::array<Index, 4>& corners) const {
     if (empty()) return false;
     const ExtremeCosines cosines = extreme_cosines(p);
@@ -107,7 +118,7 @@ class ThinShape {
   }
 
  private:
-  double smallest_, sine_, cosine_;
+  double smallest_, sine_, cosine_, least_blunt_;
   std::vector<double> sine_at_vertex_;  // empty where no crease is that sharp
 };
 

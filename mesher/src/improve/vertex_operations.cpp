@@ -251,12 +251,16 @@ void Operations::move_vertex(Index vertex, Change& change) {
 }
 
 void Operations::split_edge(Index a, Index b, double least, Change& change) {
+  if (find_cone_of_edge(a, b)) insert_amid(a, b, std::max({worst_at_vertex(), least, change.quality}), change);
+}
+
+void Operations::insert_amid(Index a, Index b, double least, Change& change) {
   if (!find_cone_of_edge(a, b)) return;
   const Index patch = cone_.faces.empty() ? none : mesh_.face_patch[cone_.faces[0]];
   const Point middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
   const Freedom where = patch == none ? everywhere : on_patch(patch, middle);
   const auto [place, quality] = best_place(back_on_feature(middle, mesh_.points[a], where), none, where, -1);
-  if (quality <= std::max({worst_at_vertex(), least, change.quality})) return;
+  if (quality <= least) return;
   change = {};
   change.kind = Change::Kind::insertion;
   change.quality = quality;

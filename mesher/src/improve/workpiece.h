@@ -49,7 +49,7 @@ class Workpiece {
 
   /// What is made when first asked for must be made before the first trial.
   void prepare() { surfaces.prepare(), curves.prepare(); }
-  /// What is applied from here on can be undone as a whole, until it is kept. Insertions cannot.
+  /// What is applied from here on can be undone as a whole, until it is kept.
   void begin_trial() { complex.begin_trial(), surfaces.begin_trial(), curves.begin_trial(); }
   void keep() { complex.keep(), surfaces.keep(), curves.keep(); }
   void undo() { complex.undo(), surfaces.undo(), curves.undo(); }

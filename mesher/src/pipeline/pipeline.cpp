@@ -353,7 +353,13 @@ class Pipeline {
   void raise_order() {
     if (options_.order == 1) return;
     begin("second order", 0.83, 0.86);
-    made_.second_order = make_second_order(made_.result.mesh, *plc_, {.exact = options_.exact}, inner_);
+    SecondOrderOptions options;
+    options.exact = options_.exact;
+    options.distance = distance();
+    options.radius_edge = options_.mesh.radius_edge;
+    options.threads = options_.threads;
+    if (made_.coarsening) options.thin_angle = options_.thin_angle;
+    made_.second_order = make_second_order(made_.result.mesh, *plc_, options, inner_);
     if (made_.second_order.cancelled) stop();
   }
 

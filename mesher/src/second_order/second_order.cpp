@@ -4,30 +4,37 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <unordered_set>
+#include <optional>
+#include <span>
 
 #include "collarmesh/curved_tet.h"
 #include "collarmesh/error.h"
-#include "common/cells_at_vertices.h"
+#include "collarmesh/mesher.h"
 #include "common/flat_features.h"
+#include "improve/replace_tets.h"
+#include "improve/thin_shape.h"
 #include "second_order/mid_nodes.h"
 #include "second_order/nearest_on_features.h"
+#include "second_order/untangling.h"
+#include "thread_limit.h"
 
 namespace collarmesh {
 
 namespace second_order {
 namespace {
 
+using improvement::UnwantedTet;
+
 // A node that is farther from the middle of its edge than this, relative to the edge, does not belong to it:
 // the nearest point lies on another part of the feature. A half circle has 0.5.
 constexpr double farthest = 0.5;
 
+// Two edges with a smaller area between their tangents than this share of that between themselves have one tangent.
+constexpr double least_turn = 0.15;
+
 // A node on a planar patch or straight curve goes to the exact geometry if that is farther away, relative to
 // the edge.
 constexpr double rounding = 1e-12;
-
-// How far a node inside goes along with a curved edge beside it.
-constexpr std::array<double, 3> parts_of_the_way{0.5, 0.25, 1};
 
 class Curving {
  public:
@@ -39,26 +46,56 @@ class Curving {
         edges_(mesh),
         nearest_(plc),
         flat_(plc),
-        exact_(options.exact ? flat_.limit(options.exact) : ExactGeometry{}) {}
+        exact_(options.exact ? flat_.limit(options.exact) : ExactGeometry{}),
+        untangling_(mesh, edges_, plc, options.least_jacobian) {}
 
-  SecondOrderReport run() {
-    const auto start = std::chrono::steady_clock::now();
-    SecondOrderReport report;
+  /// First: where do the nodes belong? False when cancelled.
+  bool find_nodes() {
     find_moves();
-    if (execution_.cancelled()) {
-      report.cancelled = true;
-      return report;
-    }
+    return !execution_.cancelled();
+  }
+
+  /// Tets that would be flat at a corner, with the edge to split there. Two curved edges that have one tangent, or
+  /// three with tangents in one plane, as at a corner inside a smooth patch, leave no Jacobian determinant, however small
+  /// they are. What joins their other ends, inside a region or on a planar patch, is to be split.
+  std::vector<UnwantedTet> flat_at_corners() const {
+    std::vector<UnwantedTet> found;
+    for (Index tet = 0; tet < mesh_.tets.size(); ++tet)
+      for (unsigned corner = 0; corner < 4; ++corner)
+        if (const auto edge = edge_at_flat_corner(mesh_.tets[tet], corner)) {
+          found.push_back({tet, *edge});
+          break;
+        }
+    return found;
+  }
+
+  /// Give the mesh its nodes. Returns the tets that are not valid, wherever nodes on no smooth feature are moved.
+  std::vector<UnwantedTet> place_nodes() {
     add_mid_nodes(edges_, mesh_);
     for (const Move& move : moves_) place(move);
+    find_tets_at_moves();
+    std::vector<UnwantedTet> found;
+    for (const Index tet : curved_)
+      if (!is_valid(curved_tet(mesh_, tet)) && !make_room(tet)) found.push_back({tet});
+    return found;
+  }
+  /// Precondition: `place_nodes` has found some.
+  void take_nodes_back() {
+    mesh_.points.resize(edges_.first_node());
+    mesh_.features.resize(std::min<std::size_t>(mesh_.features.size(), edges_.first_node()));
+    mesh_.tet_mid_nodes.clear(), mesh_.face_mid_nodes.clear(), mesh_.edge_mid_nodes.clear();
+  }
+
+  /// Draw nodes back where tets are not valid.
+  SecondOrderReport finish() {
+    SecondOrderReport report;
     draw_back();
     report.nodes = edges_.size();
-    report.moved_inside = made_room_;
+    report.moved_inside = moved_inside_;
     for (const Move& move : moves_) {
       if (move.share > 0) ++report.curved;
       if (move.share < 1) report.straightened.push_back(straightened(move));
     }
-    report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return report;
   }
 
@@ -99,6 +136,59 @@ class Curving {
     return is_smooth(feature) ? nearest_.nearest(feature, middle) : middle;
   }
 
+  const Move* move_of(Index edge) const {
+    const auto at = std::lower_bound(moves_.begin(), moves_.end(), edge,
+                                     [](const Move& move, Index e) { return move.edge < e; });
+    return at != moves_.end() && at->edge == edge ? &*at : nullptr;
+  }
+
+  std::optional<std::array<Index, 2>> edge_at_flat_corner(const std::array<Index, 4>& tet, unsigned corner) const {
+    struct Side {
+      Index end;
+      Vector straight, tangent;
+      bool fixed;
+    };
+    std::array<Side, 3> sides;
+    unsigned n = 0, fixed = 0;
+    bool curved = false;
+    const Index at = tet[corner];
+    for (unsigned k = 0; k < 4; ++k) {
+      if (k == corner) continue;
+      const Index edge = edges_.node(at, tet[k]) - edges_.first_node();
+      const Vector straight = mesh_.points[tet[k]] - mesh_.points[at];
+      const Move* move = move_of(edge);
+      const bool is_fixed = !untangling_.may_move(edge);
+      // Of the quadratic curve through the ends and a node so far off the middle.
+      sides[n++] = {tet[k], straight, move != nullptr && move->share > 0 ? straight + 4 * move->way : straight, is_fixed};
+      fixed += is_fixed ? 1 : 0;
+      curved = curved || (is_fixed && move != nullptr);
+    }
+    if (fixed < 2 || !curved) return std::nullopt;
+    for (unsigned i = 0; i < 3; ++i) {
+      const Side &a = sides[i], &b = sides[(i + 1) % 3];
+      if (!a.fixed || !b.fixed) continue;
+      const Vector straight = cross(a.straight, b.straight);
+      if (dot(cross(a.tangent, b.tangent), straight) > least_turn * squared_norm(straight)) continue;
+      if (may_split(a.end, b.end)) return {{std::min(a.end, b.end), std::max(a.end, b.end)}};
+    }
+    if (fixed < 3) return std::nullopt;
+    const double straight = dot(cross(sides[0].straight, sides[1].straight), sides[2].straight);
+    if (dot(cross(sides[0].tangent, sides[1].tangent), sides[2].tangent) / straight > options_.least_jacobian)
+      return std::nullopt;
+    std::optional<std::array<Index, 2>> found;
+    double longest = 0;
+    for (unsigned i = 0; i < 3; ++i) {
+      const Index a = sides[i].end, b = sides[(i + 1) % 3].end;
+      const double length = squared_distance(mesh_.points[a], mesh_.points[b]);
+      if (length <= longest || !may_split(a, b)) continue;
+      found = {{std::min(a, b), std::max(a, b)}};
+      longest = length;
+    }
+    return found;
+  }
+  // Inside a region or a planar patch, where it changes no surface.
+  bool may_split(Index a, Index b) const { return untangling_.may_move(edges_.node(a, b) - edges_.first_node()); }
+
   Point place_of(const Move& move) const {
     const auto [a, b] = edges_.ends(move.edge);
     return 0.5 * (mesh_.points[a] + mesh_.points[b]) + (move.share > 0 ? move.share * move.way : Vector{});
@@ -117,28 +207,34 @@ class Curving {
     return found;
   }
 
-  // Any order ends in valid tets: curved nodes are only drawn nearer to the middle of their edge, and a node
-  // inside that was put back there stays.
-  void draw_back() {
-    std::vector<std::vector<Index>> tets_at_move(moves_.size());
-    std::vector<Index> work;
+  void find_tets_at_moves() {
+    tets_at_move_.assign(moves_.size(), {});
     for (Index tet = 0; tet < mesh_.tets.size(); ++tet) {
       bool curved = false;
       for (const Index move : moves_of(tet)) {
         if (move == none) continue;
-        tets_at_move[move].push_back(tet);
+        tets_at_move_[move].push_back(tet);
         curved = true;
       }
-      if (curved) work.push_back(tet);
+      if (curved) curved_.push_back(tet);
     }
+  }
+
+  bool make_room(Index tet) {
+    const std::size_t moved = untangling_.untangle(tet);
+    moved_inside_ += moved;
+    return moved > 0;
+  }
+
+  // Any order ends in valid tets: curved nodes are only drawn nearer to the middle of their edge, and a node
+  // inside that was put back there stays.
+  void draw_back() {
+    std::vector<Index> work = curved_;
     while (!work.empty()) {
       const Index tet = work.back();
       work.pop_back();
       while (!is_valid(curved_tet(mesh_, tet))) {
-        if (make_room(tet)) {
-          ++made_room_;
-          continue;
-        }
+        if (make_room(tet)) break;
         const Index move = move_at_fault(tet);
         if (move == none) {
           put_back_inside(tet, work);
@@ -146,7 +242,7 @@ class Curving {
         }
         step_back(moves_[move]);
         place(moves_[move]);
-        for (const Index other : tets_at_move[move])
+        for (const Index other : tets_at_move_[move])
           if (other != tet) work.push_back(other);
       }
     }
@@ -154,69 +250,18 @@ class Curving {
 
   bool is_valid(const CurvedTet& nodes) const { return jacobian_exceeds(nodes, options_.least_jacobian); }
 
-  // A node inside a region goes along with a curved edge beside it, when that makes the tet valid and leaves
-  // the others at it so.
-  bool make_room(Index tet) {
-    const std::array<Index, 6> moves = moves_of(tet);
-    for (std::size_t k = 0; k < 6; ++k) {
-      const Index node = mesh_.tet_mid_nodes[tet][k];
-      const Index edge = node - edges_.first_node();
-      if (edges_.feature(edge).dimension != 3 || stays(edge)) continue;
-      for (const Index m : moves) {
-        if (m == none || moves_[m].share == 0 || !touch(edge, moves_[m].edge)) continue;
-        for (const double part : parts_of_the_way) {
-          const Point before = mesh_.points[node];
-          mesh_.points[node] = before + part * moves_[m].share * moves_[m].way;
-          if (is_valid(curved_tet(mesh_, tet)) && harms_none(edge, tet, before)) return true;
-          mesh_.points[node] = before;
-        }
-      }
-    }
-    return false;
-  }
-
-  bool touch(Index edge, Index other) const {
-    const auto [a, b] = edges_.ends(edge);
-    const auto [c, d] = edges_.ends(other);
-    return a == c || a == d || b == c || b == d;
-  }
-
-  // Is every tet at the edge but this one as valid as with the node where it was?
-  bool harms_none(Index edge, Index tet, const Point& before) {
-    const Index node = edges_.first_node() + edge;
-    const std::vector<Index> around = tets_at(edge);
-    return std::all_of(around.begin(), around.end(), [&](Index other) {
-      CurvedTet nodes = curved_tet(mesh_, other);
-      if (other == tet || is_valid(nodes)) return true;
-      const auto& mids = mesh_.tet_mid_nodes[other];
-      nodes[4 + static_cast<std::size_t>(std::find(mids.begin(), mids.end(), node) - mids.begin())] = before;
-      return !is_valid(nodes);
-    });
-  }
-
   // A tet whose curved edges are straight again: its nodes inside go back, too, and stay there.
   void put_back_inside(Index tet, std::vector<Index>& work) {
     for (const Index node : mesh_.tet_mid_nodes[tet]) {
       const Index edge = node - edges_.first_node();
       const auto [a, b] = edges_.ends(edge);
       const Point middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
-      if (edges_.feature(edge).dimension != 3 || mesh_.points[node] == middle) continue;
+      if (!untangling_.may_move(edge) || mesh_.points[node] == middle) continue;
       mesh_.points[node] = middle;
-      stay_.insert(edge);
-      for (const Index other : tets_at(edge))
+      untangling_.keep(edge);
+      for (const Index other : untangling_.tets_at(edge))
         if (other != tet) work.push_back(other);
     }
-  }
-  bool stays(Index edge) const { return stay_.count(edge) > 0; }
-
-  std::vector<Index> tets_at(Index edge) {
-    if (tets_at_vertex_.empty()) tets_at_vertex_ = {mesh_.tets, edges_.first_node()};
-    const auto [a, end] = edges_.ends(edge);
-    std::vector<Index> found;
-    for (const Index t : tets_at_vertex_[a])
-      if (std::find(mesh_.tets[t].begin(), mesh_.tets[t].end(), end) != mesh_.tets[t].end())
-        found.push_back(t);
-    return found;
   }
 
   static void step_back(Move& move) { move.share = move.share > 0.25 ? 0.5 * move.share : 0; }
@@ -268,10 +313,35 @@ class Curving {
   FlatFeatures flat_;
   ExactGeometry exact_;  // limited; empty when there is none
   std::vector<Move> moves_;         // sorted by edge
-  CellsAtVertices tets_at_vertex_;  // empty until it is needed
-  std::unordered_set<Index> stay_;  // edges inside whose node has been put back
-  std::size_t made_room_ = 0;
+  std::vector<Index> curved_;                     // tets with moves
+  std::vector<std::vector<Index>> tets_at_move_;
+  Untangling untangling_;
+  std::size_t moved_inside_ = 0;
 };
+
+}  // namespace
+}  // namespace second_order
+
+namespace second_order {
+namespace {
+
+// What takes the place of one tet may be no better.
+constexpr unsigned most_rounds = 4;
+
+/// Takes tets out of a mesh of first order; false when none could be.
+bool replace_tets(TetMesh& mesh, const Plc& plc, std::span<const UnwantedTet> unwanted,
+                  const SecondOrderOptions& options) {
+  const double distance = options.distance > 0 ? options.distance : default_distance(0, plc.bounds.diagonal());
+  std::size_t gone = 0;
+  ThreadLimit(options.threads).run([&] {
+    improvement::Workpiece workpiece(mesh, plc, distance);
+    const improvement::ThinShape thin(plc, mesh, options.thin_angle);
+    gone = improvement::replace_tets(workpiece, unwanted, improvement::ThinRule(thin), 1);
+    workpiece.complex.store();
+    improvement::mark_thin_tets(mesh, options.radius_edge);
+  });
+  return gone > 0;
+}
 
 }  // namespace
 }  // namespace second_order
@@ -280,7 +350,35 @@ SecondOrderReport make_second_order(TetMesh& mesh, const Plc& plc, const SecondO
                                     const Execution& execution) {
   if (!(options.least_jacobian >= 0 && options.least_jacobian < 1))
     throw OptionError("least-jacobian must be at least 0 and below 1");
-  return second_order::Curving(mesh, plc, options, execution).run();
+  const auto start = std::chrono::steady_clock::now();
+  const std::size_t tets_before = mesh.tets.size();
+  std::size_t flat_before = SIZE_MAX;
+  SecondOrderReport report;
+  for (unsigned round = 0;; ++round) {
+    second_order::Curving curving(mesh, plc, options, execution);
+    if (!curving.find_nodes()) {
+      report.cancelled = true;
+      break;
+    }
+    const bool may_replace = options.thin_angle > 0 && round < second_order::most_rounds;
+    if (may_replace) {
+      const auto flat = curving.flat_at_corners();
+      const bool fewer = flat.size() < flat_before;
+      flat_before = flat.size();
+      if (!flat.empty() && fewer && second_order::replace_tets(mesh, plc, flat, options)) continue;
+    }
+    const auto invalid = curving.place_nodes();
+    if (may_replace && !invalid.empty()) {
+      curving.take_nodes_back();
+      second_order::replace_tets(mesh, plc, invalid, options);
+      continue;
+    }
+    report = curving.finish();
+    break;
+  }
+  if (!report.cancelled) report.more_tets = static_cast<std::ptrdiff_t>(mesh.tets.size() - tets_before);
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return report;
 }
 
 }  // namespace collarmesh

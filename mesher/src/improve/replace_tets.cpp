@@ -1,0 +1,181 @@
+#include "improve/replace_tets.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "improve/operations.h"
+
+namespace collarmesh::improvement {
+
+namespace {
+
+// What makes a tet worse than this share of what it is to be is not tried.
+constexpr double mendable = 0.15;
+constexpr unsigned most_repairs = 16;
+
+std::array<Index, 4> sorted(std::array<Index, 4> corners) {
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
+/// A rule by which tets with certain corners are worse than all others.
+class Without final : public ShapeRule {
+ public:
+  Without(const ShapeRule& rule, std::set<std::array<Index, 4>> unwanted)
+      : rule_(rule), unwanted_(std::move(unwanted)) {}
+
+  double quality(const Corners& p, const std::array<Index, 4>& corners) const override {
+    const double quality = rule_.quality(p, corners);
+    return quality > 0 && unwanted_.contains(sorted(corners)) ? worst * quality : quality;
+  }
+  bool allows(const Corners& p, const std::array<Index, 4>& corners, double quality) const override {
+    return rule_.allows(p, corners, quality);
+  }
+
+ private:
+  static constexpr double worst = 1e-9;
+
+  const ShapeRule& rule_;
+  std::set<std::array<Index, 4>> unwanted_;
+};
+
+class Replacing {
+ public:
+  Replacing(Workpiece& workpiece, const ShapeRule& rule, double least_quality)
+      : workpiece_(workpiece), rule_(rule), operations_(workpiece, rule), least_(least_quality) {
+    workpiece_.prepare();
+  }
+
+  bool replace(const UnwantedTet& unwanted) {
+    const Index tet = unwanted.tet;
+    const std::array<Index, 4> corners = complex()[tet].corners;
+    if (unwanted.edge[0] != none && split(unwanted.edge)) return true;
+    Change removal;
+    for (unsigned i = 0; i < 4; ++i)
+      for (unsigned j = i + 1; j < 4; ++j) operations_.remove_edge(tet, i, j, removal);
+    const auto is_as_good_as = [&](double quality) {
+      return removal.kind != Change::Kind::none && removal.quality >= quality;
+    };
+    if (is_as_good_as(least_)) return mended(std::move(removal));
+    const auto edges = edges_to_split(corners);
+    return std::any_of(edges.begin(), edges.end(), [this](const auto& edge) { return split(edge); }) ||
+           (is_as_good_as(mendable * least_) && mended(std::move(removal)));
+  }
+
+ private:
+  const TetComplex& complex() const { return workpiece_.complex; }
+
+  bool split(const std::array<Index, 2>& edge) {
+    Change insertion;
+    operations_.insert_amid(edge[0], edge[1], mendable * least_, insertion);
+    return insertion.kind != Change::Kind::none && mended(std::move(insertion));
+  }
+
+  // The longest first.
+  std::vector<std::array<Index, 2>> edges_to_split(const std::array<Index, 4>& corners) const {
+    std::vector<std::array<Index, 2>> edges;
+    for (unsigned i = 0; i < 4; ++i)
+      for (unsigned j = i + 1; j < 4; ++j)
+        if (on_no_smooth_patch(corners[i], corners[j])) edges.push_back({corners[i], corners[j]});
+    const auto& points = complex().mesh().points;
+    std::sort(edges.begin(), edges.end(), [&](const auto& a, const auto& b) {
+      return squared_distance(points[a[0]], points[a[1]]) > squared_distance(points[b[0]], points[b[1]]);
+    });
+    return edges;
+  }
+
+  // Make a change and mend what it leaves too poor; what cannot be mended is undone.
+  bool mended(Change change) {
+    workpiece_.begin_trial();
+    touched_.clear();
+    apply(std::move(change));
+    for (unsigned step = 0;; ++step) {
+      const Index worst = tet_to_mend();
+      if (worst == none) {
+        workpiece_.keep();
+        return true;
+      }
+      change = step < most_repairs ? improvement_of(worst) : Change{};
+      if (change.kind == Change::Kind::none) break;
+      apply(std::move(change));
+    }
+    workpiece_.undo();
+    return false;
+  }
+
+  void apply(Change change) {
+    const std::vector<Index>& changed = workpiece_.apply(std::move(change));
+    touched_.insert(touched_.end(), changed.begin(), changed.end());
+  }
+
+  Index tet_to_mend() const {
+    Index worst = none;
+    double least = least_;
+    for (const Index t : touched_) {
+      if (!complex()[t].alive) continue;
+      const double quality = rule_.quality(complex().corners(t), complex()[t].corners);
+      if (quality >= least) continue;
+      least = quality;
+      worst = t;
+    }
+    return worst;
+  }
+
+  Change improvement_of(Index tet) {
+    const auto corners = complex()[tet].corners;
+    Change change;
+    for (unsigned i = 0; i < 4; ++i)
+      for (unsigned j = i + 1; j < 4; ++j) operations_.remove_edge(tet, i, j, change);
+    for (unsigned i = 0; i < 4 && change.kind == Change::Kind::none; ++i)
+      if (may_move(corners[i])) operations_.move_vertex(corners[i], change);
+    return change;
+  }
+
+  // On smooth features vertices may have been put onto exact geometry.
+  bool may_move(Index vertex) const {
+    const auto& [dimension, feature] = complex().mesh().features[vertex];
+    return dimension == 3 || (dimension == 2 && is_planar(feature));
+  }
+  bool is_planar(Index patch) const { return patch != none && workpiece_.plc.patches[patch].planar; }
+
+  bool on_no_smooth_patch(Index a, Index b) const {
+    const Index tet = complex().tet_at_edge(a, b);
+    if (tet == none || complex().on_curve(a, b)) return false;
+    TetComplex::Ring ring;
+    complex().ring(tet, a, b, ring);
+    for (const Index t : ring.tets)
+      for (unsigned k = 0; k < 4; ++k) {
+        const Index face = complex()[t].faces[k], opposite = complex()[t].corners[k];
+        if (face != none && opposite != a && opposite != b && !is_planar(complex().mesh().face_patch[face]))
+          return false;
+      }
+    return true;
+  }
+
+  Workpiece& workpiece_;
+  const ShapeRule& rule_;
+  Operations operations_;
+  double least_;
+  std::vector<Index> touched_;  // tets that were made or changed
+};
+
+}  // namespace
+
+std::size_t replace_tets(Workpiece& workpiece, std::span<const UnwantedTet> unwanted, const ShapeRule& rule,
+                         double least_quality) {
+  std::vector<std::array<Index, 4>> corners;
+  for (const UnwantedTet& u : unwanted) corners.push_back(sorted(workpiece.complex[u.tet].corners));
+  const Without without(rule, {corners.begin(), corners.end()});
+  Replacing replacing(workpiece, without, least_quality);
+  std::size_t gone = 0;
+  for (std::size_t i = 0; i < unwanted.size(); ++i) {
+    const auto& tet = workpiece.complex[unwanted[i].tet];
+    const bool is_there = tet.alive && sorted(tet.corners) == corners[i];  // else another one took it along
+    if (!is_there || replacing.replace(unwanted[i])) ++gone;
+  }
+  return gone;
+}
+
+}  // namespace collarmesh::improvement

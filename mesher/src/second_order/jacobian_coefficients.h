@@ -1,0 +1,31 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "collarmesh/curved_tet.h"
+
+namespace collarmesh::second_order {
+
+/// The Bernstein coefficients of the Jacobian determinant of a tetrahedron of second order, a cubic: all are
+/// six times the volume where its edges are straight, and the determinant is nowhere below the least of them
+/// (Johnen, Remacle and Geuzaine 2013).
+class JacobianCoefficients {
+ public:
+  static constexpr std::size_t count = 20;
+  using Values = std::array<double, count>;
+
+  explicit JacobianCoefficients(const CurvedTet& nodes);
+
+  const Values& values() const { return values_; }
+  double least() const { return *std::min_element(values_.begin(), values_.end()); }
+  /// The gradient of their sum with these weights, by the six mid-side nodes.
+  std::array<Vector, 6> gradient(const Values& weights) const;
+
+ private:
+  // Half the derivative along the edge from corner 0 to k + 1 is linear: with this value at corner i.
+  std::array<std::array<Vector, 4>, 3> derivatives_;
+  Values values_;
+};
+
+}  // namespace collarmesh::second_order
