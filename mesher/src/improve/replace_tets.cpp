@@ -55,22 +55,28 @@ class Replacing {
     Change removal;
     for (unsigned i = 0; i < 4; ++i)
       for (unsigned j = i + 1; j < 4; ++j) operations_.remove_edge(tet, i, j, removal);
-    const auto is_as_good_as = [&](double quality) {
-      return removal.kind != Change::Kind::none && removal.quality >= quality;
-    };
-    if (is_as_good_as(least_)) return mended(std::move(removal));
+    if (is_as_good_as(least_, removal)) return mended(std::move(removal));
+    Change contraction;
+    for (const Index v : corners)
+      for (const Index w : corners)
+        if (v != w && may_move(v)) operations_.contract_edge(v, w, contraction);
+    if (is_as_good_as(mendable * least_, contraction) && mended(std::move(contraction))) return true;
     const auto edges = edges_to_split(corners);
     return std::any_of(edges.begin(), edges.end(), [this](const auto& edge) { return split(edge); }) ||
-           (is_as_good_as(mendable * least_) && mended(std::move(removal)));
+           (is_as_good_as(mendable * least_, removal) && mended(std::move(removal)));
   }
 
  private:
   const TetComplex& complex() const { return workpiece_.complex; }
 
+  static bool is_as_good_as(double quality, const Change& change) {
+    return change.kind != Change::Kind::none && change.quality >= quality;
+  }
+
   bool split(const std::array<Index, 2>& edge) {
     Change insertion;
     operations_.insert_amid(edge[0], edge[1], mendable * least_, insertion);
-    return insertion.kind != Change::Kind::none && mended(std::move(insertion));
+    return is_as_good_as(mendable * least_, insertion) && mended(std::move(insertion));
   }
 
   // The longest first.

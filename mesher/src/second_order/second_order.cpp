@@ -32,6 +32,9 @@ constexpr double farthest = 0.5;
 // Two edges with a smaller area between their tangents than this share of that between themselves have one tangent.
 constexpr double least_turn = 0.15;
 
+// Nodes go back by such steps, and from this share of their way to the middle of their edge.
+constexpr double step = 0.8, least_share = 0.1, forward_precision = 0.04;
+
 // A node on a planar patch or straight curve goes to the exact geometry if that is farther away, relative to
 // the edge.
 constexpr double rounding = 1e-12;
@@ -90,6 +93,7 @@ class Curving {
   SecondOrderReport finish() {
     SecondOrderReport report;
     draw_back();
+    put_forward();
     report.nodes = edges_.size();
     report.moved_inside = moved_inside_;
     for (const Move& move : moves_) {
@@ -123,7 +127,7 @@ class Curving {
       const auto [a, b] = edges_.ends(e);
       const Point middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
       const Vector way = place_on(feature, middle) - middle;
-      const double length = norm(way), edge_length = distance(mesh_.points[a], mesh_.points[b]);
+      const double length = norm(way), edge_length = length_of(e);
       if (length <= (is_smooth(feature) ? 0 : rounding * edge_length)) continue;
       const bool belongs = length <= farthest * edge_length;  // also false for what is not a number
       moves_.push_back({e, way, belongs ? 1.0 : 0.0});
@@ -248,6 +252,34 @@ class Curving {
     }
   }
 
+  // Others that went back later may have made room.
+  void put_forward() {
+    std::vector<Index> drawn;
+    for (Index m = 0; m < moves_.size(); ++m)
+      if (moves_[m].share < 1 && norm(moves_[m].way) > 0) drawn.push_back(m);
+    const auto left = [this](Index m) { return (1 - moves_[m].share) * norm(moves_[m].way); };
+    std::sort(drawn.begin(), drawn.end(),
+              [&](Index a, Index b) { return left(a) != left(b) ? left(a) > left(b) : a < b; });
+    for (const Index m : drawn) {
+      if (norm(moves_[m].way) > farthest * length_of(moves_[m].edge)) continue;
+      double low = moves_[m].share, high = 1;
+      for (double share = high; high - low > forward_precision; share = 0.5 * (low + high)) {
+        moves_[m].share = share;
+        place(moves_[m]);
+        const bool valid = std::all_of(tets_at_move_[m].begin(), tets_at_move_[m].end(),
+                                       [this](Index tet) { return is_valid(curved_tet(mesh_, tet)); });
+        (valid ? low : high) = share;
+      }
+      moves_[m].share = low;
+      place(moves_[m]);
+    }
+  }
+
+  double length_of(Index edge) const {
+    const auto [a, b] = edges_.ends(edge);
+    return distance(mesh_.points[a], mesh_.points[b]);
+  }
+
   bool is_valid(const CurvedTet& nodes) const { return jacobian_exceeds(nodes, options_.least_jacobian); }
 
   // A tet whose curved edges are straight again: its nodes inside go back, too, and stay there.
@@ -264,7 +296,7 @@ class Curving {
     }
   }
 
-  static void step_back(Move& move) { move.share = move.share > 0.25 ? 0.5 * move.share : 0; }
+  static void step_back(Move& move) { move.share = move.share > least_share ? step * move.share : 0; }
 
   // The one with the shortest way whose next step back makes the tet valid, else the one that goes farthest;
   // none when all its edges are straight.
