@@ -104,6 +104,7 @@ void CollarCreator::create_on_isolated_curves() {
     std::vector<CollarBall> at_ends;
     for (const Index end : domain_.plc.curves[curve].ends)
       if (end != none) at_ends.push_back(collars_.balls()[collars_.ball_at_vertex(end)]);
+    if (gap_size().witness_remains({1, curve}, at_ends)) continue;
     const auto is_isolated = [&](Index end) { return gap_size().isolated({1, curve}, end, at_ends); };
     std::size_t& isolated = isolated_[curve];
     for (; isolated < chain.links.size(); ++isolated) {
