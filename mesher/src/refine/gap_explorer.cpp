@@ -64,7 +64,10 @@ double GapExplorer::on_curve(Index curve, const Point& p, double bound) {
 double GapExplorer::explore(const Feature& at, const Point& x, double bound) {
   ++queries_;
   near_ = mesh_.nearest_vertex(x, near_);
+  // What came near last is near still.
+  Witness& last = last_witness(at);
   double squared = bound * bound;
+  if (last.points[0] != none) squared = std::min(squared, squared_distance_to(last.points, x));
   ++exploration_;
   mesh_.visit_ball(x, near_, squared, [&](Index vertex) {
     ++explored_;
@@ -72,7 +75,10 @@ double GapExplorer::explore(const Feature& at, const Point& x, double bound) {
     for (const Index node : nodes_.at(vertex))
       if (std::exchange(interviewed_[node], exploration_) != exploration_) fresh_nodes_.push_back(node);
     interview(fresh_nodes_, at, x, squared, [&](Index a, Index b, Index c) {
-      squared = std::min(squared, squared_distance_to_triangle(x, points_[a], points_[b], points_[c]));
+      const double d = squared_distance_to({a, b, c}, x);
+      if (d >= squared) return;
+      squared = d;
+      last.points = {a, b, c};
     });
   });
   return std::sqrt(squared);
@@ -81,7 +87,7 @@ double GapExplorer::explore(const Feature& at, const Point& x, double bound) {
 bool GapExplorer::isolated(const Feature& vertex_or_curve, Index cell, std::span<const CollarBall> except) {
   mesh_.adjacent_vertices(cell, adjacent_);
   Witness& last = last_witness(vertex_or_curve);
-  if (last.cell != none && reaches_into(cell, last.points, except)) {
+  if (last.points[0] != none && reaches_into(cell, last.points, except)) {
     last.cell = cell;
     return false;
   }
@@ -89,7 +95,7 @@ bool GapExplorer::isolated(const Feature& vertex_or_curve, Index cell, std::span
   interview(nodes_.at(cell), vertex_or_curve, mesh_.point(cell), squared_bound,
             [&](Index a, Index b, Index c) {
               if (squared_bound == 0 || !reaches_into(cell, {a, b, c}, except)) return;
-              last = {cell, {a, b, c}};
+              last = {{a, b, c}, cell};
               squared_bound = 0;
             });
   return squared_bound > 0;

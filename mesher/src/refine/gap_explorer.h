@@ -45,10 +45,11 @@ class GapExplorer final : public GapSize {
   struct Border {
     std::array<Index, 3> vertices{none, none, none}, curves{none, none, none};
   };
-  /// What kept a vertex or curve from being isolated: points of the complex, and the cell they reach into.
+  /// Points of what came near a vertex or curve last, but does not contain it, and the cell in which that kept
+  /// it from being isolated.
   struct Witness {
+    std::array<Index, 3> points{none, none, none};
     Index cell = none;
-    std::array<Index, 3> points{};
   };
 
   void find_borders();
@@ -60,6 +61,9 @@ class GapExplorer final : public GapSize {
                  const Found& witness);
   Witness& last_witness(const Feature& vertex_or_curve) {
     return witnesses_[vertex_or_curve.index + (vertex_or_curve.dimension == 1 ? plc_.vertices.size() : 0)];
+  }
+  double squared_distance_to(const std::array<Index, 3>& points, const Point& x) const {
+    return squared_distance_to_triangle(x, points_[points[0]], points_[points[1]], points_[points[2]]);
   }
   /// Does a witness reach into this cell, whose neighbours are adjacent_, with more than lies in one of these
   /// balls?
@@ -74,7 +78,7 @@ class GapExplorer final : public GapSize {
   std::vector<Border> borders_;               // of elements that have any
   std::vector<Index> border_of_;              // by element; none: only a triangle
   std::vector<Index> patch_below_;            // by node: the patch of all elements below, if none has a border
-  std::vector<Witness> witnesses_;            // of vertices, then of curves
+  std::vector<Witness> witnesses_;            // the last ones, of vertices, then of curves
   std::vector<std::uint32_t> interviewed_;    // by node: in this exploration, if it is the last one's number
   std::uint32_t exploration_ = 0;
   std::vector<Index> fresh_nodes_, adjacent_;
