@@ -115,6 +115,13 @@ void CollarCreator::create_on_isolated_curves() {
   }
 }
 
+bool CollarCreator::create_at_subsegment(Index subsegment) {
+  const Index curve = curves_.curve_of(subsegment);
+  if (!open_creases_.is_open(curve) || open_creases_.chain(curve).pending > 0) return false;
+  create_on_curve(curve);
+  return true;
+}
+
 bool CollarCreator::create_remaining() {
   std::vector<Index> curves = open_creases_.curves();
   std::sort(curves.begin(), curves.end());

@@ -48,6 +48,9 @@ class CollarCreator {
   void cells_made(const ConflictZone& zone, Index vertex);
   /// The balls of curves that have become isolated.
   void create_on_isolated_curves();
+  /// A subsegment would be split: if it is a crease's whose chain has started, the crease gets its balls
+  /// instead. Did it?
+  bool create_at_subsegment(Index subsegment);
   /// Creates the balls of all creases that have none yet. False when there are no such creases.
   bool create_remaining();
 
