@@ -45,8 +45,8 @@ class GapExplorer final : public GapSize {
   struct Border {
     std::array<Index, 3> vertices{none, none, none}, curves{none, none, none};
   };
-  /// Points of what came near a vertex or curve last, but does not contain it, and the cell in which that kept
-  /// it from being isolated.
+  /// Points of what came near a vertex or curve last, but does not contain it, and the cell in which that
+  /// kept it from being isolated.
   struct Witness {
     std::array<Index, 3> points{none, none, none};
     Index cell = none;
@@ -75,11 +75,11 @@ class GapExplorer final : public GapSize {
   std::span<const Point> points_;
   const RefinedMesh& mesh_;
   const SurfaceNodes& nodes_;
-  std::vector<Border> borders_;               // of elements that have any
-  std::vector<Index> border_of_;              // by element; none: only a triangle
-  std::vector<Index> patch_below_;            // by node: the patch of all elements below, if none has a border
-  std::vector<Witness> witnesses_;            // the last ones, of vertices, then of curves
-  std::vector<std::uint32_t> interviewed_;    // by node: in this exploration, if it is the last one's number
+  std::vector<Border> borders_;             // of elements that have any
+  std::vector<Index> border_of_;            // by element; none: only a triangle
+  std::vector<Index> patch_below_;          // by node: the patch of all elements below, if none has a border
+  std::vector<Witness> witnesses_;          // the last ones, of vertices, then of curves
+  std::vector<std::uint32_t> interviewed_;  // by node: in this exploration, if it is the last one's number
   std::uint32_t exploration_ = 0;
   std::vector<Index> fresh_nodes_, adjacent_;
   std::vector<Point> polygon_, clipped_;
