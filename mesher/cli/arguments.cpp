@@ -251,10 +251,10 @@ void add_quality_options(CLI::App& app, MeshOptions& m) {
                                                         {"in-pass", CollarCreation::in_pass}};
   app.add_option(
          "--collar-creation", m.collar_creation,
-         "Place the balls around creases before the refinement, or each in the pass (the paper's way)")
+         "Place the balls around creases each in the pass (the paper's way), or all before the refinement")
       ->transform(CLI::CheckedTransformer(creations).description(""))
-      ->default_str("up-front")
-      ->type_name("up-front|in-pass")
+      ->default_str("in-pass")
+      ->type_name("in-pass|up-front")
       ->group(group);
   add(app, "--theta THETA", m.theta, "Warp to input within this times a gap ball's radius; 0: never")
       ->check(number_in(0, 0.449, "a number from 0 to below 0.45"))

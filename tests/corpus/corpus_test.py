@@ -83,14 +83,14 @@ def projected(report):
     return f", {off} of {projection['vertices']} off"
 
 
-def create_collars_in_the_pass(program, path, expect, mesh, options, diagonal):
-    """The other way to place balls meets every guarantee, too; not coarsened, with a radius-edge bound everywhere."""
+def place_collars_up_front(program, path, expect, mesh, options, diagonal):
+    """The other way to make collars meets every guarantee, too; not coarsened, with a radius-edge bound everywhere."""
     if not expect.startswith("mesh:"):
         return
-    way = ["--collar-creation", "in-pass", "--coarsen", "off", "--improve", 0]
+    way = ["--collar-creation", "up-front", "--coarsen", "off", "--improve", 0]
     result = run(program, path, "-o", mesh, *options, *way)
     if result.returncode != 0:
-        raise Failed(f"collars in the pass: exit code {result.returncode}: {(result.stderr.splitlines() or [''])[0]}")
+        raise Failed(f"collars up front: exit code {result.returncode}: {(result.stderr.splitlines() or [''])[0]}")
     judge(path, expect, mesh, diagonal, radius_edge=2)
 
 
@@ -112,7 +112,7 @@ def mesh_one(program, path, expect, folder):
     if result.returncode == 0:
         found = json.loads(report.read_text())
         judged = judge(path, expect, mesh, diagonal)
-        create_collars_in_the_pass(program, path, expect, mesh, [*size, *exact], diagonal)
+        place_collars_up_front(program, path, expect, mesh, [*size, *exact], diagonal)
         return f"{found['mesh']['tets']} tets in {found['seconds']['refine']:.2f} s{judged}{projected(found)}"
     if mesh.exists():
         raise Failed(f"a mesh was written in spite of exit code {result.returncode}")

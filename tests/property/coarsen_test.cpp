@@ -36,7 +36,7 @@ std::vector<Shape> thin_shapes() {
   return {{"plate", {plate()}, 10, 0, 8, 1220},
           {"plate with a hole", {scaled(plate_with_hole(1, 32), 1)}, 1.5, 30, 8, 130},
           {"sphere in a sphere", {icosphere(1, 12), icosphere(0.95, 12)}, 0.3, 30, 8, 5900},
-          {"wedge of 1 degree", acute::wedge(1).soups, 0.28, 0, 0.5, 1680},
+          {"wedge of 1 degree", acute::wedge(1).soups, 0.28, 0, 0.5, 1750},  // up front 1583 to 1700 by seed
           {"wedge of 2 degrees", acute::wedge(2).soups, 0.3, 0, 1, 370},
           {"wedge of 5 degrees", acute::wedge(5).soups, 0.3, 0, 2.5, 90},
           {"wedge of 20 degrees", acute::wedge(20).soups, 0.2, 0, 8, 245},

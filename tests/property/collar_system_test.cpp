@@ -1,6 +1,7 @@
 // Gap size against brute force, and the balls of the collar system against their definitions (paper,
 // Definitions 2 and 7), on every acute family.
 #include "collar/collar_system.h"
+#include "collar/collar_placement.h"
 #include "collar/gap_size.h"
 
 #include <gtest/gtest.h>
@@ -69,10 +70,13 @@ std::vector<acute::Shape> curved_shapes() {
 
 struct Placed {
   explicit Placed(const acute::Shape& shape) : plc(build(shape)), creases(find_creases(plc, crease_angle)) {
+    system = CollarSystem(plc, plc.points, creases, options(plc));
+  }
+  static CollarOptions options(const Plc& plc) {
     CollarOptions options;
     options.size = [](const Feature&, const Point&) { return size; };
     options.distance = 1e-3 * plc.bounds.diagonal();
-    system = CollarSystem(plc, plc.points, creases, options);
+    return options;
   }
   static Plc build(const acute::Shape& shape) {
     PlcOptions options;
@@ -285,30 +289,56 @@ TEST(CollarSystem, RadiiOnRoundRimsAreEven) {
 }
 
 // Queries of the hierarchy against all balls.
-TEST(CollarSystem, QueriesEqualBruteForce) {
-  for (const acute::Shape& shape : {acute::fan(8), acute::star_prism(9, 0.4)}) {
-    const Placed placed(shape);
-    const auto& balls = placed.system.balls();
-    for (unsigned i = 0; i < 2000; ++i) {
-      const double t = i * 0.618034, r = 0.05 * (i % 5);
-      const Point p{2 * (t - std::floor(t)) - 1, std::sin(7.0 * i), 0.5 * std::cos(3.0 * i)};
-      const auto inside = [&](const CollarBall& b) { return distance(p, b.centre) < b.radius; };
-      const auto met = [&](const CollarBall& b) { return distance(p, b.centre) <= b.radius + r; };
-      EXPECT_EQ(placed.system.ball_containing(p) != none, std::any_of(balls.begin(), balls.end(), inside));
-      std::vector<Index> found, expected;
-      const auto all_met = static_cast<std::size_t>(std::count_if(balls.begin(), balls.end(), met));
-      for (const std::size_t most : {std::size_t{1}, std::size_t{3}, balls.size()}) {
-        placed.system.balls_meeting(p, r, most, found);
-        EXPECT_EQ(found.size(), std::min(most, all_met));
-        for (const Index b : found) EXPECT_TRUE(met(balls[b]));
-      }
-      const Point q = balls[i % balls.size()].centre;
-      placed.system.balls_on_segment(p, q, found);
-      for (Index b = 0; b < balls.size(); ++b)
-        if (testing::distance_to_segment(balls[b].centre, p, q) < balls[b].radius) expected.push_back(b);
-      std::sort(found.begin(), found.end());
-      EXPECT_EQ(found, expected);
+void expect_brute_force_queries(const CollarSystem& system, unsigned places) {
+  const auto& balls = system.balls();
+  for (unsigned i = 0; i < places; ++i) {
+    const double t = i * 0.618034, r = 0.05 * (i % 5);
+    const Point p{2 * (t - std::floor(t)) - 1, std::sin(7.0 * i), 0.5 * std::cos(3.0 * i)};
+    const auto inside = [&](const CollarBall& b) { return distance(p, b.centre) < b.radius; };
+    const auto met = [&](const CollarBall& b) { return distance(p, b.centre) <= b.radius + r; };
+    EXPECT_EQ(system.ball_containing(p) != none, std::any_of(balls.begin(), balls.end(), inside));
+    std::vector<Index> found, expected;
+    const auto all_met = static_cast<std::size_t>(std::count_if(balls.begin(), balls.end(), met));
+    for (const std::size_t most : {std::size_t{1}, std::size_t{3}, balls.size() + 1}) {
+      system.balls_meeting(p, r, most, found);
+      EXPECT_EQ(found.size(), std::min(most, all_met));
+      for (const Index b : found) EXPECT_TRUE(met(balls[b]));
     }
+    const Point q = balls.empty() ? Point{} : balls[i % balls.size()].centre;
+    system.balls_on_segment(p, q, found);
+    for (Index b = 0; b < balls.size(); ++b)
+      if (testing::distance_to_segment(balls[b].centre, p, q) < balls[b].radius) expected.push_back(b);
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(found, expected);
+  }
+}
+
+TEST(CollarSystem, QueriesEqualBruteForce) {
+  for (const acute::Shape& shape : {acute::fan(8), acute::star_prism(9, 0.4)})
+    expect_brute_force_queries(Placed(shape).system, 2000);
+}
+
+// Each crease gets its balls at another time, and what has come is found at once.
+TEST(CollarSystem, QueriesEqualBruteForceWhileBallsCome) {
+  for (const acute::Shape& shape : {acute::fan(8), acute::star_prism(9, 0.4), acute::lens(40)}) {
+    SCOPED_TRACE(shape.name);
+    const Plc plc = Placed::build(shape);
+    CollarSystem system(plc, plc.points, find_creases(plc, crease_angle));
+    GapInHierarchy gap(plc, system.features());
+    CollarPlacement placement(plc, plc.points, gap, Placed::options(plc), system);
+    expect_brute_force_queries(system, 3);
+    for (const Index vertex : system.crease_vertices()) {
+      placement.place_at_vertex(vertex);
+      expect_brute_force_queries(system, 20);
+    }
+    for (Index c = 0; c < plc.curves.size(); ++c) {
+      if (!system.is_crease_curve(c)) continue;
+      placement.place_on_curve(c);
+      expect_brute_force_queries(system, 20);
+    }
+    system.complete();
+    expect_brute_force_queries(system, 200);
+    EXPECT_EQ(system.balls().size(), Placed(shape).system.balls().size());
   }
 }
 

@@ -311,6 +311,7 @@ TEST(Collar, PlacementCanBeStopped) {
   std::atomic<bool> cancel = false;
   std::size_t asked = 0;
   MeshOptions options = testing::with_size(size);
+  options.collar_creation = CollarCreation::up_front;
   options.size_field = [&](const Point&) {
     cancel = true;
     ++asked;
@@ -319,6 +320,7 @@ TEST(Collar, PlacementCanBeStopped) {
   EXPECT_EQ(generate(plc, options, {.progress = {}, .cancel = &cancel}).status, MeshStatus::cancelled);
   EXPECT_LT(asked, 10U);
   options = testing::with_size(0.001);  // tens of thousands of balls
+  options.collar_creation = CollarCreation::up_front;
   options.distance = 1e-7;
   options.time_limit = 1e-3;
   EXPECT_EQ(generate(plc, options).status, MeshStatus::budget_hit);

@@ -46,7 +46,7 @@ TEST(FiniteElements, FindPolynomialsExactly) {
                                       return Vector{2 * p.x + p.y, p.x, -4 * p.z};
                                     },
                                     [](const Point&) { return 2.0; }};
-  TetMesh mesh = improved_mesh(testing::acute::wedge(20).soups, 0.2, 0);
+  TetMesh mesh = improved_mesh(testing::acute::wedge(20).soups, 0.15, 0);
   EXPECT_LT(testing::solve_poisson(mesh, linear).h1, 1e-9);
   EXPECT_GT(testing::solve_poisson(mesh, quadratic).h1, 1e-3);
   mesh = testing::second_order(mesh);

@@ -18,9 +18,16 @@ namespace collarmesh {
 namespace {
 
 struct Parts : testing::KnownCurves {
-  explicit Parts(const Plc& plc, const MeshOptions& options = {}) : KnownCurves(plc, options) {
+  explicit Parts(const Plc& plc, const MeshOptions& options = with(CollarCreation::up_front))
+      : KnownCurves(plc, options) {
     creator.start();
     chains.start();
+  }
+
+  static MeshOptions with(CollarCreation creation) {
+    MeshOptions options;
+    options.collar_creation = creation;
+    return options;
   }
 
   void insert_and_tell(const Point& p, const Feature& feature) {
@@ -118,9 +125,7 @@ TEST(CollarParts, EveryBallHasItsCentreAndEveryCornerAPoint) {
 
 TEST(CollarParts, InThePassNoBallIsPlacedAtTheStart) {
   const Plc plc = build(testing::wedge(25, 1));
-  MeshOptions options;
-  options.collar_creation = CollarCreation::in_pass;
-  Parts parts(plc, options);
+  Parts parts(plc, Parts::with(CollarCreation::in_pass));
   EXPECT_TRUE(parts.collars.empty());
   const std::vector<Index> open = parts.open_creases.curves();
   ASSERT_FALSE(open.empty());
@@ -139,6 +144,78 @@ TEST(CollarParts, InThePassNoBallIsPlacedAtTheStart) {
   EXPECT_FALSE(parts.creator.waits_for_ball(end));
   EXPECT_NE(parts.open_creases.chain(open[0]).ends[0], none);  // it leaves the ball
   EXPECT_TRUE(parts.collar_cells.near(parts.mesh.last_vertex()));
+}
+
+// A subsegment that would be split makes way for the balls of its crease.
+TEST(CollarParts, ACreaseGetsItsBallsInsteadOfASplit) {
+  const Plc plc = build(testing::wedge(25, 1));
+  Parts parts(plc, Parts::with(CollarCreation::in_pass));
+  const Index curve = parts.open_creases.curves().at(0);
+  for (const Index end : plc.curves[curve].ends) {
+    const Point p = parts.points[end].point;
+    parts.points.resolve(end, parts.mesh.vertex_count());
+    parts.insert_and_tell(p, {0, end});
+    parts.creator.create_at_vertex(end, parts.mesh.last_vertex());
+  }
+  const auto& chain = parts.open_creases.chain(curve);
+  EXPECT_GT(chain.pending, 0U);  // where it leaves the balls there are no vertices yet
+  for (const Index point : std::array<Index, 2>(chain.ends)) {
+    const UnresolvedPoints::Unresolved p = parts.points[point];
+    parts.points.resolve(point, parts.mesh.vertex_count());
+    parts.insert_and_tell(p.point, p.feature);
+    parts.chains.point_resolved(point);
+  }
+  std::vector<Index> subsegments;
+  parts.chains.visit([&](Index s, const Subsegment& piece) {
+    if (piece.curve == curve) subsegments.push_back(s);
+  });
+  ASSERT_FALSE(subsegments.empty());
+  const std::size_t before = parts.collars.balls().size();
+  EXPECT_TRUE(parts.creator.create_at_subsegment(subsegments[0]));
+  EXPECT_GT(parts.collars.balls().size(), before);
+  EXPECT_FALSE(parts.open_creases.is_open(curve));
+  parts.chains.visit([&](Index, const Subsegment& piece) { EXPECT_NE(piece.curve, curve); });
+}
+
+// What came near last is asked first: that changes no answer.
+TEST(CollarParts, ExplorersThatRememberAnswerAsThoseThatDoNot) {
+  std::size_t isolated = 0, others = 0;
+  for (const auto& shape : {testing::acute::lens(40), testing::acute::star_prism(9, 0.4)}) {
+    SCOPED_TRACE(shape.name);
+    PlcOptions complex;
+    complex.feature_angle = shape.feature_angle;
+    const Plc plc = build_plc(shape.soups, complex);
+    testing::KnownMesh known(plc);
+    GapExplorer remembers(known.domain, known.mesh, known.nodes);
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    for (int k = 0; k < 300; ++k) {
+      const Plc::Triangle& t = plc.triangles[random() % plc.triangles.size()];
+      const Vector offset{unit(random), unit(random), unit(random)};
+      const Point p = known.domain.points[t.points[random() % 3]] + 1e-3 * offset;
+      known.insert(p);
+      GapExplorer fresh(known.domain, known.mesh, known.nodes);
+      const bool at_vertex = !plc.vertices.empty() && k % 2 == 0;
+      const auto index = static_cast<Index>(random() % (at_vertex ? plc.vertices.size() : plc.curves.size()));
+      const Feature at{static_cast<std::uint8_t>(at_vertex ? 0 : 1), index};
+      const Point x =
+          known.domain.points[at_vertex ? plc.vertices[index].point : plc.curves[index].points[1]];
+      const auto gap = [&](GapExplorer& explorer) {
+        return at_vertex ? explorer.at_vertex(index) : explorer.on_curve(index, x);
+      };
+      EXPECT_EQ(gap(remembers), gap(fresh));
+      const Index cell = known.mesh.nearest_vertex(x);
+      EXPECT_EQ(remembers.isolated(at, cell), fresh.isolated(at, cell));
+      if (remembers.isolated(at, cell)) {
+        ++isolated;
+      } else {
+        ++others;
+        EXPECT_TRUE(remembers.witness_remains(at));
+      }
+    }
+  }
+  EXPECT_GT(isolated, 10U);
+  EXPECT_GT(others, 10U);
 }
 
 TEST(CollarParts, RepairsEndWithACollarSurfaceThatCanBeStitched) {
@@ -205,7 +282,7 @@ TEST(CollarParts, RepairsEndWithACollarSurfaceThatCanBeStitched) {
 TEST(CollarParts, RepairsAtASmoothCreaseEnd) {
   const testing::acute::Shape lens = testing::acute::lens(40);
   const Plc plc = build_plc(lens.soups);
-  MeshOptions options;
+  MeshOptions options = Parts::with(CollarCreation::up_front);
   options.size = 0.5;
   Parts parts(plc, options);
   parts.resolve_all();

@@ -226,6 +226,35 @@ TEST(TriangleHierarchy, DistanceEqualsBruteForce) {
   }
 }
 
+// Labels by octant: the triangles of an octant are left out by the nodes that hold no others.
+TEST(TriangleHierarchy, NodesWithACommonLabelAreLeftOut) {
+  const Soup soup = random_triangles(400, 0.05);
+  const TriangleHierarchy hierarchy(soup.points, soup.triangles);
+  std::vector<Index> label_of;
+  for (const auto& t : soup.triangles) {
+    const Point& p = soup.points[t[0]];
+    label_of.push_back((p.x < 0.5 ? 0U : 1U) + (p.y < 0.5 ? 0U : 2U) + (p.z < 0.5 ? 0U : 4U));
+  }
+  const std::vector<Index> labels = hierarchy.common_labels(label_of);
+  EXPECT_EQ(labels[hierarchy.root()], none);
+  const Index root = hierarchy.root();
+  for (Index octant = 0; octant < 8; ++octant) {
+    std::vector<Index> found, expected;
+    hierarchy.visit_near(
+        {&root, 1}, {0.5, 0.5, 0.5}, INFINITY, [&](Index node) { return labels[node] == octant; },
+        [&](Index triangle) { found.push_back(triangle); });
+    for (Index t = 0; t < label_of.size(); ++t)
+      if (label_of[t] != octant) expected.push_back(t);
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(found, expected);
+  }
+  // All of one label: nothing is visited.
+  const std::vector<Index> same = hierarchy.common_labels(std::vector<Index>(label_of.size(), 3));
+  hierarchy.visit_near(
+      {&root, 1}, {0.5, 0.5, 0.5}, INFINITY, [&](Index node) { return same[node] == 3; },
+      [&](Index) { ADD_FAILURE(); });
+}
+
 TEST(TriangleHierarchy, DistanceToATriangleIsThatOfSampledPoints) {
   const Point a{0, 0, 0}, b{1, 0, 0}, c{0.2, 0.9, 0.1};
   std::mt19937_64 random(6);

@@ -43,7 +43,7 @@ struct MeshOptions {
   double theta = 0.3;  ///< warp distance relative to a gap ball's radius (paper, Procedure 2); 0: never warp
   double crease_angle = 60;   ///< degrees; features that meet below it get a collar
   double collar_angle = 150;  ///< bound on dihedral angles in collars, degrees; 100 to 175
-  CollarCreation collar_creation = CollarCreation::up_front;  ///< when collars are created
+  CollarCreation collar_creation = CollarCreation::in_pass;  ///< when collars are created
   double representation_angle = 50;  ///< bound on the tilt of collar triangles (Definition 12), degrees
   double distance = 0;     ///< surface distance tolerance on smooth patches and curves; 0: `default_distance`
   std::uint64_t seed = 0;  ///< of the offsets; same input, options and seed: same mesh

@@ -142,7 +142,7 @@ def mesh(
     order: 1 or 2, ten nodes to a tetrahedron.
     partitions: divide the tetrahedra among so many ranks, `Mesh.tet_partition`; None: they are not divided.
     collar_angle: bound on dihedral angles in collars, degrees, 100 to 175; default 150.
-    collar_creation: "up-front" or "in-pass".
+    collar_creation: "in-pass" or "up-front".
     theta: warp to input within this times a gap ball's radius, 0 to below 0.45; default 0.3.
     distance: largest distance from smooth surfaces and curves; default 1/10 of the size, at most 1/200 of the
         diagonal (1/550 for order 2).

@@ -65,18 +65,18 @@ bool CollarPlacement::place_all() {
   }
   for (Index c = 0; c < plc_.curves.size() && !stopped_; ++c)
     if (system_.crease_curve_[c]) add_on_curve(c);
-  system_.index_balls();
+  system_.complete();
   return !stopped_;
 }
 
 void CollarPlacement::place_at_vertex(Index vertex) {
   add_at_vertex(vertex);
-  system_.index_balls();
+  system_.index_balls({0, vertex});
 }
 
 void CollarPlacement::place_on_curve(Index curve) {
   add_on_curve(curve);
-  system_.index_balls();
+  system_.index_balls({1, curve});
 }
 
 bool CollarPlacement::stopped(std::size_t more_balls) {

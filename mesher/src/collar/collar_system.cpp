@@ -22,6 +22,7 @@ CollarSystem::CollarSystem(const Plc& plc, std::span<const Point> points, std::s
   std::sort(crease_vertices_.begin(), crease_vertices_.end());
   crease_vertices_.erase(std::unique(crease_vertices_.begin(), crease_vertices_.end()),
                          crease_vertices_.end());
+  plant(plc, points);
 }
 
 CollarSystem::CollarSystem(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases,
@@ -32,52 +33,93 @@ CollarSystem::CollarSystem(const Plc& plc, std::span<const Point> points, std::s
   if (!CollarPlacement(plc, points, gap, options, *this).place_all()) balls_.clear();
 }
 
-void CollarSystem::complete() {
-  if (trees_.size() <= 1) return;
-  trees_.clear();
-  nodes_.clear();
-  indexed_ = 0;
-  index_balls();
-}
-
-void CollarSystem::index_balls() {
-  const auto count = static_cast<Index>(balls_.size());
-  Index first = indexed_;
-  while (!trees_.empty() && first - trees_.back().first_ball <= count - first) {
-    first = trees_.back().first_ball;
-    nodes_.resize(trees_.back().root);
-    trees_.pop_back();
+// A curve's balls come together.
+void CollarSystem::plant(const Plc& plc, std::span<const Point> points) {
+  std::vector<Item> items;
+  std::vector<Feature> creases;
+  for (const Index vertex : crease_vertices_) {
+    creases.push_back({0, vertex});
+    items.push_back({points[plc.vertices[vertex].point], {}});
   }
-  indexed_ = count;
-  if (first == count) return;
-  std::vector<Index> order(count - first);
-  std::iota(order.begin(), order.end(), first);
+  for (Index curve = 0; curve < plc.curves.size(); ++curve) {
+    if (!crease_curve_[curve]) continue;
+    Box box;
+    for (const Index p : plc.curves[curve].points) box.add(points[p]);
+    creases.push_back({1, curve});
+    items.push_back({box.centre(), {}});
+  }
+  std::vector<Index> order(items.size());
+  std::iota(order.begin(), order.end(), Index{0});
   Box box;
-  trees_.push_back({first, build(order, box)});
+  build(order, items, 0, box);
+  branches_.resize(nodes_.size());
+  leaves_.assign(plc.vertices.size() + plc.curves.size(), none);
+  for (Index n = 0; n < nodes_.size(); ++n) {
+    Node& node = nodes_[n];
+    node.box = CentredBox::empty();
+    if (node.left == none) {
+      const Feature& crease = creases[node.right];
+      leaves_[crease.index + (crease.dimension == 1 ? plc.vertices.size() : 0)] = n;
+    } else {
+      branches_[node.left].parent = branches_[node.right].parent = n;
+    }
+  }
 }
 
-Index CollarSystem::build(std::span<Index> order, Box& box) {
+void CollarSystem::complete() {
+  if (branches_.empty()) return;
+  branches_.clear();
+  leaves_.clear();
+  nodes_.clear();
+  Box box;
+  if (!balls_.empty()) build_over_balls(0, box);
+}
+
+// Precondition: it is not complete.
+void CollarSystem::index_balls(const Feature& crease) {
+  if (indexed_ == balls_.size()) return;
+  Box box;
+  const Index root = build_over_balls(indexed_, box), leaf = leaf_of(crease);
+  indexed_ = static_cast<Index>(balls_.size());
+  nodes_[leaf] = nodes_[root];
+  for (Index n = leaf; n != none; n = branches_[n].parent) {
+    branches_[n].box.add(box);
+    nodes_[n].box = CentredBox(branches_[n].box);
+  }
+}
+
+Index CollarSystem::build_over_balls(Index first, Box& box) {
+  std::vector<Item> items;
+  for (std::size_t i = first; i < balls_.size(); ++i) {
+    const Point& centre = balls_[i].centre;
+    const Vector reach = balls_[i].radius * (1 + 1e-9) * Vector{1, 1, 1};
+    items.push_back({centre, {centre - reach, centre + reach}});
+  }
+  std::vector<Index> order(items.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  return build(order, items, first, box);
+}
+
+Index CollarSystem::build(std::span<Index> order, std::span<const Item> items, Index first, Box& box) {
   const auto node = static_cast<Index>(nodes_.size());
   nodes_.push_back({{}, none, none});
   Box below;
   if (order.size() == 1) {
-    const CollarBall& ball = balls_[order[0]];
-    const Vector reach = ball.radius * (1 + 1e-9) * Vector{1, 1, 1};
-    below.add(ball.centre - reach);
-    below.add(ball.centre + reach);
-    nodes_[node].right = order[0];
+    below = items[order[0]].box;
+    nodes_[node].right = first + order[0];
   } else {
     Box spread;
-    for (const Index ball : order) spread.add(balls_[ball].centre);
+    for (const Index item : order) spread.add(items[item].centre);
     const Vector sides = spread.max - spread.min;
     const std::size_t axis = sides.x >= sides.y && sides.x >= sides.z ? 0 : sides.y >= sides.z ? 1 : 2;
     const std::size_t half = order.size() / 2;
     std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(half), order.end(),
                      [&](Index a, Index b) {
-                       const double x = balls_[a].centre[axis], y = balls_[b].centre[axis];
+                       const double x = items[a].centre[axis], y = items[b].centre[axis];
                        return x != y ? x < y : a < b;
                      });
-    const Index left = build(order.subspan(0, half), below), right = build(order.subspan(half), below);
+    const Index left = build(order.subspan(0, half), items, first, below);
+    const Index right = build(order.subspan(half), items, first, below);
     nodes_[node].left = left;
     nodes_[node].right = right;
   }
@@ -91,7 +133,7 @@ template <class Meets, class Visit>
 void CollarSystem::visit(const Meets& meets_box, const Visit& visit_ball) const {
   std::array<Index, 128> stack;
   std::size_t top = 0;
-  for (const Tree& tree : trees_) stack[top++] = tree.root;
+  if (!nodes_.empty()) stack[top++] = 0;
   while (top > 0) {
     const Node& node = nodes_[stack[--top]];
     if (!meets_box(node.box)) continue;

@@ -85,7 +85,7 @@ class CollarSystem {
   bool is_crease_curve(Index curve) const { return !crease_curve_.empty() && crease_curve_[curve]; }
   /// The ball at a crease vertex; none when it has none yet, and at other vertices.
   Index ball_at_vertex(Index vertex) const { return vertex_ball_.empty() ? none : vertex_ball_[vertex]; }
-  /// No more balls will come: one tree finds all of them.
+  /// No more balls will come: a tree over all of them, whatever crease they are on.
   void complete();
   bool consecutive(Index a, Index b) const { return consecutive_.count(pair_of(a, b)) > 0; }
 
@@ -104,14 +104,31 @@ class CollarSystem {
     CentredBox box;
     Index left, right;  // a leaf has left == none and its ball in right
   };
+  /// What a tree is built over.
+  struct Item {
+    Point centre;
+    Box box;
+  };
+  /// Of the tree over creases: the exact box of a node, of the balls that have come.
+  struct Branch {
+    Box box;
+    Index parent = none;
+  };
   static std::uint64_t pair_of(Index a, Index b) {
     return std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
   }
-  /// Let queries find the balls added since: trees of ever fewer balls, those that are no larger than what
-  /// comes after them are built anew, so that each ball is in O(log b) trees in its time.
-  void index_balls();
-  /// Add to the box what lies below the node that is returned.
-  Index build(std::span<Index> order, Box& box);
+  /// A tree over creases: at its leaves grow the trees over their balls. So that there is one tree, however
+  /// late which balls come.
+  void plant(const Plc& plc, std::span<const Point> points);
+  /// Let queries find the balls added since, all of which are on this vertex or curve.
+  void index_balls(const Feature& crease);
+  /// A tree over all balls from this one. Returns its root.
+  Index build_over_balls(Index first, Box& box);
+  /// A tree over items, the numbers of which start here. Adds their boxes to the box. Returns its root.
+  Index build(std::span<Index> order, std::span<const Item> items, Index first, Box& box);
+  Index leaf_of(const Feature& crease) const {
+    return leaves_[crease.index + (crease.dimension == 1 ? vertex_ball_.size() : 0)];
+  }
   template <class Meets, class Visit>
   void visit(const Meets& meets_box, const Visit& visit_ball) const;
 
@@ -123,11 +140,9 @@ class CollarSystem {
   std::vector<Index> vertex_ball_;
   std::vector<Index> crease_vertices_;             // sorted
   std::unordered_set<std::uint64_t> consecutive_;  // pairs
-  struct Tree {
-    Index first_ball, root;  // to the next one's
-  };
-  std::vector<Tree> trees_;
-  Index indexed_ = 0;  // balls
+  std::vector<Branch> branches_;  // by node: the first ones are a tree over creases; empty when complete
+  std::vector<Index> leaves_;     // of that tree, by vertex, then by curve; none where there is no crease
+  Index indexed_ = 0;             // balls
   LargeVector<Node> nodes_;
 
   friend class CollarPlacement;

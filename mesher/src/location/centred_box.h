@@ -15,6 +15,12 @@ struct CentredBox {
   Vector half;
 
   CentredBox() = default;
+  /// A box that nothing meets, however near.
+  static CentredBox empty() {
+    CentredBox box;
+    box.half = {-INFINITY, -INFINITY, -INFINITY};
+    return box;
+  }
   explicit CentredBox(const Box& box) : centre(0.5 * (box.min + box.max)) {
     const double slack = 1e-14 * (std::max(std::fabs(box.min.x), std::fabs(box.max.x)) +
                                   std::max(std::fabs(box.min.y), std::fabs(box.max.y)) +

@@ -103,6 +103,19 @@ Index TriangleHierarchy::build(std::span<const SpatialKey> keys, Index parent, B
   return node;
 }
 
+// Children come after their parents.
+std::vector<Index> TriangleHierarchy::common_labels(std::span<const Index> label_of_triangle) const {
+  std::vector<Index> labels(nodes_.size());
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    const Node& node = nodes_[i];
+    if (node.left == none)
+      labels[i] = label_of_triangle[node.right];
+    else
+      labels[i] = labels[node.left] == labels[node.right] ? labels[node.left] : none;
+  }
+  return labels;
+}
+
 void TriangleHierarchy::nodes_meeting(const Box& box, double extent, std::span<const Index> from,
                                       std::vector<Index>& found) {
   found.clear();

@@ -32,6 +32,7 @@ class TriangleHierarchy {
   TriangleHierarchy(std::span<const Point> points, std::vector<std::array<Index, 3>> triangles);
 
   bool empty() const { return nodes_.empty(); }
+  std::size_t triangle_count() const { return triangles_.size(); }
   Index root() const { return 0; }
   const std::array<Index, 3>& points(Index triangle) const { return triangles_[triangle]; }
   std::array<Point, 3> corners(Index triangle) const {
@@ -85,7 +86,17 @@ class TriangleHierarchy {
   /// may lower: near ones first.
   template <class Visit>
   void visit_near(std::span<const Index> nodes, const Point& p, const double& squared_bound,
-                  const Visit& visit) const;
+                  const Visit& visit) const {
+    visit_near(nodes, p, squared_bound, [](Index) { return false; }, visit);
+  }
+  /// The same without what lies below nodes that `skips` accepts.
+  template <class Skips, class Visit>
+  void visit_near(std::span<const Index> nodes, const Point& p, const double& squared_bound,
+                  const Skips& skips, const Visit& visit) const;
+
+  /// For each node the label that all triangles below it have; none where they differ. Precondition: one label
+  /// per triangle.
+  std::vector<Index> common_labels(std::span<const Index> label_of_triangle) const;
 
   std::size_t bytes() const;
 
@@ -142,16 +153,17 @@ double TriangleHierarchy::squared_distance_to(const Point& p, double bound, Inde
   return bound;
 }
 
-template <class Visit>
+template <class Skips, class Visit>
 void TriangleHierarchy::visit_near(std::span<const Index> nodes, const Point& p, const double& squared_bound,
-                                   const Visit& visit) const {
+                                   const Skips& skips, const Visit& visit) const {
   std::array<Index, most_spatial_levels + 1> stack;
   for (const Index start : nodes) {
     std::size_t top = 0;
     stack[top++] = start;
     while (top > 0) {
-      const Node& node = nodes_[stack[--top]];
-      if (node.box.squared_distance(p) >= squared_bound) continue;
+      const Index index = stack[--top];
+      const Node& node = nodes_[index];
+      if (node.box.squared_distance(p) >= squared_bound || skips(index)) continue;
       if (node.left == none) {
         visit(node.right);
         continue;

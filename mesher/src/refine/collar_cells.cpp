@@ -17,6 +17,13 @@ bool CollarCells::any_near(const ConflictZone& zone) const {
          std::any_of(zone.vertices.begin(), zone.vertices.end(), [&](Index v) { return near(v); });
 }
 
+bool CollarCells::holds(const std::array<Index, 3>& vertices, const Point& p) const {
+  if (!near(vertices[0])) return false;
+  if (last_vertex_ == none || std::find(vertices.begin(), vertices.end(), last_vertex_) == vertices.end())
+    return collars_.ball_containing(p) != none;
+  return std::any_of(balls_.begin(), balls_.end(), [&](Index ball) { return collars_.contains(ball, p); });
+}
+
 void CollarCells::fit_mesh() {
   inside_.resize(mesh_.cell_capacity(), 0);
   near_.resize(mesh_.vertex_count(), 0);
@@ -30,9 +37,10 @@ void CollarCells::cells_made(const ConflictZone& zone, Index vertex) {
   double largest = 0;
   for (const Index cell : zone.created) largest = std::max(largest, mesh_.squared_radius(cell));
   collars_.balls_meeting(mesh_.point(vertex), std::sqrt(largest), most_nearby_balls, balls_);
+  const bool all_known = balls_.size() < most_nearby_balls;
+  last_vertex_ = all_known ? vertex : none;
   if (balls_.empty()) return;
   near_[vertex] = 1;
-  const bool all_known = balls_.size() < most_nearby_balls;
   for (const Index cell : zone.created) {
     const Point& centre = mesh_.circumcentre(cell);
     const auto holds_centre = [&](Index ball) { return collars_.contains(ball, centre); };
@@ -43,6 +51,7 @@ void CollarCells::cells_made(const ConflictZone& zone, Index vertex) {
 }
 
 void CollarCells::note_near(Index vertex) {
+  last_vertex_ = none;
   fit_mesh();
   near_[vertex] = 1;
 }
@@ -53,6 +62,7 @@ void CollarCells::note_inside(Index cell) {
 }
 
 void CollarCells::forget_far_vertices() {
+  last_vertex_ = none;
   for (Index v = 0; v < near_.size(); ++v) {
     if (near_[v] == 0) continue;
     mesh_.incident_cells(v, cells_);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <unordered_map>
 #include <vector>
 
@@ -24,10 +25,8 @@ class CollarCells {
   bool near(Index vertex) const { return vertex < near_.size() && near_[vertex] != 0; }
   /// Is any vertex of a zone near?
   bool any_near(const ConflictZone& zone) const;
-  /// Does a ball contain a point that lies in the Voronoi cell of this vertex?
-  bool holds(Index vertex, const Point& p) const {
-    return near(vertex) && collars_.ball_containing(p) != none;
-  }
+  /// Does a ball contain a point that lies in the Voronoi cells of all these vertices?
+  bool holds(const std::array<Index, 3>& vertices, const Point& p) const;
 
   void cells_made(const ConflictZone& zone, Index vertex);
   /// Before cells are made between vertices none of which is near: room for all.
@@ -60,7 +59,9 @@ class CollarCells {
   const CollarSystem& collars_;
   GrowingArray<std::uint8_t> inside_, near_;     // by cell, by vertex: flags; empty without balls
   std::unordered_map<Index, TakenIn> taken_in_;  // by cell
-  std::vector<Index> balls_, cells_;             // scratch
+  std::vector<Index> balls_;                     // near the last vertex
+  Index last_vertex_ = none;                     // none when there are more
+  std::vector<Index> cells_;                     // scratch
 };
 
 }  // namespace collarmesh

@@ -104,6 +104,7 @@ void CollarCreator::create_on_isolated_curves() {
     std::vector<CollarBall> at_ends;
     for (const Index end : domain_.plc.curves[curve].ends)
       if (end != none) at_ends.push_back(collars_.balls()[collars_.ball_at_vertex(end)]);
+    if (gap_size().witness_remains({1, curve}, at_ends)) continue;
     const auto is_isolated = [&](Index end) { return gap_size().isolated({1, curve}, end, at_ends); };
     std::size_t& isolated = isolated_[curve];
     for (; isolated < chain.links.size(); ++isolated) {
@@ -112,6 +113,13 @@ void CollarCreator::create_on_isolated_curves() {
     }
     if (isolated == chain.links.size()) create_on_curve(curve);
   }
+}
+
+bool CollarCreator::create_at_subsegment(Index subsegment) {
+  const Index curve = curves_.curve_of(subsegment);
+  if (!open_creases_.is_open(curve) || open_creases_.chain(curve).pending > 0) return false;
+  create_on_curve(curve);
+  return true;
 }
 
 bool CollarCreator::create_remaining() {

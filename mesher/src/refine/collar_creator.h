@@ -17,8 +17,8 @@ namespace collarmesh {
 
 /// Creates the collars: all of them before refinement, or each in the pass (paper, section 3.2 and Procedures
 /// 3 and 4): a vertex ball when the vertex is inserted or, still uninserted, isolated and medial; the balls
-/// along a crease curve, which is refined like other curves until then, when all cells that it crosses
-/// outside its ends' balls are isolated with respect to it.
+/// along a crease curve when all cells that it crosses outside its ends' balls are isolated with respect to
+/// it, or when one of its subsegments would be split.
 ///
 /// Invariant: the centre of every ball and every corner point of the collars is an unresolved point or a mesh
 /// vertex. It alone adds balls to the system, and tells cells, surface and curves of them. The loop starts
@@ -48,6 +48,9 @@ class CollarCreator {
   void cells_made(const ConflictZone& zone, Index vertex);
   /// The balls of curves that have become isolated.
   void create_on_isolated_curves();
+  /// A subsegment would be split: if it is a crease's whose chain has started, the crease gets its balls
+  /// instead. Did it?
+  bool create_at_subsegment(Index subsegment);
   /// Creates the balls of all creases that have none yet. False when there are no such creases.
   bool create_remaining();
 

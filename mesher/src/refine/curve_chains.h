@@ -111,6 +111,7 @@ class CurveChains {
     return is_there(link) ? &subsegments_[link.subsegment].piece : nullptr;
   }
   void remove(const ChainLink& link) { remove_subsegment(link.subsegment); }
+  Index curve_of(Index subsegment) const { return subsegments_[subsegment].piece.curve; }
 
   const LocationObjects& balls() const { return balls_; }
   std::size_t bytes() const;

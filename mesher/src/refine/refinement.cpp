@@ -182,6 +182,7 @@ bool Refinement::destroy_ball(Index ball, const Point& intruder) {
 }
 
 bool Refinement::destroy_subsegment(Index subsegment, WorkQueue::Priority priority) {
+  if (collar_creator_.create_at_subsegment(subsegment)) return true;
   const auto split = curves_.split_of(subsegment);
   if (!split) return false;
   const Candidate& candidate = split->candidate;

@@ -285,7 +285,7 @@ void RestrictedSurface::restrict_face(FaceId face) {
       t.squared_radius = squared_distance(t.x, corner);
     }
   }
-  t.in_collar = collar_cells_.holds(v[0], t.x);
+  t.in_collar = collar_cells_.holds(v, t.x);
 }
 
 Point RestrictedSurface::crossing_point(FaceId face, Index triangle) const {
