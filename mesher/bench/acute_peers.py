@@ -19,7 +19,7 @@ from tuning import SizeCache
 size = 0.3   # the shapes are about 1
 
 members: list[tuple] = [
-    ("wedge", 20, 1), ("wedge", 5, 1), ("wedge", 1, 1),
+    ("wedge", 20, 1), ("wedge", 5, 1), ("wedge", 2, 1), ("wedge", 1, 1),
     ("fan", 8, 0), ("fan", 16, 0), ("fan", 36, 0), ("fan", 72, 0), ("fan", 14, 14), ("sectors", 20),
     ("pyramid", 4, 30), ("pyramid", 7, 5), ("pyramid", 7, 2), ("pyramid", 64, 5),
     ("star_prism", 9, 0.2), ("spiked_octahedron", 2), ("comb", 8, 10), ("comb", 20, 4),

@@ -185,6 +185,7 @@ Json second_order_json(const SecondOrderReport& r) {
                             {"distance", s.distance}});
   return {{"nodes", r.nodes},
           {"curved", r.curved},
+          {"more_tets", r.more_tets},
           {"moved_inside", r.moved_inside},
           {"straightened", std::move(straightened)},
           {"seconds", r.seconds}};

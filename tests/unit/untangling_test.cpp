@@ -78,7 +78,8 @@ TEST(JacobianCoefficients, AreSixTimesTheVolumeOfAStraightTet) {
   std::mt19937 random(2);
   const CurvedTet nodes = random_tet(random, 0);
   const double volume = six_volume(nodes[0], nodes[1], nodes[2], nodes[3]);
-  for (const double value : JacobianCoefficients(nodes).values()) EXPECT_NEAR(value, volume, 1e-14);
+  const JacobianCoefficients coefficients(nodes);
+  for (const double value : coefficients.values()) EXPECT_NEAR(value, volume, 1e-14);
 }
 
 TEST(JacobianCoefficients, TheirGradientIsThatOfDifferences) {
@@ -118,7 +119,6 @@ TEST(Untangling, NodesFollowAnEdgeThatBulges) {
   const MeshEdges edges(mesh);
   add_mid_nodes(edges, mesh);
   const std::vector<Point> middles = mesh.points;
-  Untangling untangling(mesh, edges, meshed.plc, 0.1);
   std::size_t made = 0, impossible = 0;
   for (Index edge = 0; edge < edges.size(); ++edge) {
     if (edges.feature(edge).dimension != 3) continue;
@@ -128,15 +128,15 @@ TEST(Untangling, NodesFollowAnEdgeThatBulges) {
     Point& node = mesh.points[edges.first_node() + edge];
     node = node + 0.3 * norm(along) / norm(aside) * aside;
     const Point kept = node;
-    Untangling at_edge(mesh, edges, meshed.plc, 0.1);
-    at_edge.keep(edge);
-    for (const Index tet : at_edge.tets_at(edge)) {
+    Untangling untangling(mesh, edges, meshed.plc, 0.1);
+    untangling.keep(edge);
+    for (const Index tet : untangling.tets_at(edge)) {
       if (valid(mesh, tet)) continue;
       std::vector<Index> before;
       for (Index t = 0; t < mesh.tets.size(); ++t)
         if (valid(mesh, t)) before.push_back(t);
       const std::vector<Point> places = mesh.points;
-      if (at_edge.untangle(tet) > 0) {
+      if (untangling.untangle(tet) > 0) {
         ++made;
         EXPECT_TRUE(valid(mesh, tet));
         for (const Index t : before) EXPECT_TRUE(valid(mesh, t));

@@ -17,8 +17,8 @@ struct ImproveOptions {
   double thin_reserve = 0;     ///< as CoarsenOptions::reserve
   double distance = 0;         ///< surface distance tolerance on smooth patches; 0: 1/200 of the diagonal
   bool move_vertices = true;   ///< and take some out or in, not only change how they are connected
-  bool keep_vertices = false;  ///< take none out or in but where an angle is above the largest of thin tets:
-                               ///< a coarsened mesh has as many as it needs
+  bool keep_vertices = false;  ///< take none out or in beside thin tets but where an angle is above the largest
+                               ///< of theirs: a coarsened mesh has as many as it needs
   double edges_per_hole = 0;   ///< as MeshOptions::edges_per_hole
   unsigned passes = 3;         ///< at most, over what could not be helped before
   unsigned threads = 0;        ///< at most; 0: as many as there are cores. The result does not depend on it

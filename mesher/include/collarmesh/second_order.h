@@ -14,10 +14,10 @@ struct SecondOrderOptions {
   ExactGeometry exact;  ///< where it is empty or gives nothing: the complex' own polyline or triangles
   double least_jacobian =
       0.1;  ///< everywhere in a curved tet, relative to the straight one; 0: positive is enough
-  double thin_angle = 0;   ///< degrees, of the mesh's `CoarsenOptions`: vertices may be inserted where a tet would be
-                           ///< flat at a corner, and tets be thin there; 0: the tets stay
-  double radius_edge = 2;  ///< bound on circumradius / shortest edge: what exceeds it is marked thin
-  double distance = 0;     ///< surface distance tolerance of inserted vertices; 0: 1/200 of the diagonal
+  double thin_angle = 0;   ///< degrees, that of the mesh' `CoarsenOptions`: tets that cannot be curved may be
+                           ///< replaced by others, which may be thin; 0: the tets stay
+  double radius_edge = 2;  ///< bound on circumradius / shortest edge: tets beyond it are marked as thin
+  double distance = 0;     ///< surface distance tolerance where tets are replaced; 0: 1/200 of the diagonal
   unsigned threads = 0;    ///< at most; 0: as many as there are cores. The result does not depend on it
 };
 
@@ -25,8 +25,8 @@ struct SecondOrderReport {
   std::size_t nodes = 0;   ///< mid-side nodes
   std::size_t curved = 0;  ///< of them, those that lie off the middle of their edge, on a smooth feature
 
-  std::ptrdiff_t more_tets = 0;  ///< that there are than before, where some could not be curved
-  std::size_t moved_inside = 0;  ///< nodes in regions and planar patches that were moved, so that tets are valid
+  std::ptrdiff_t more_tets = 0;  ///< than there were before some were replaced
+  std::size_t moved_inside = 0;  ///< nodes in regions and planar patches that left the middle of their edge
 
   /// A mid-side node that did not stay on its feature, since a tet at it would have been inverted or nearly
   /// so.
@@ -40,17 +40,20 @@ struct SecondOrderReport {
   };
   std::vector<Straightened> straightened;  ///< by index of the point
   double seconds = 0;
-  bool cancelled = false;  ///< the mesh is as it was
+  bool cancelled = false;  ///< the mesh is one of first order
 };
 
-/// Make a mesh one of second order: a node amid every edge, shared by all tets, faces and edges there.
-/// Edges inside regions, on planar patches and on straight curves stay straight; the nodes on smooth
-/// patches and curves lie on these; with exact geometry, all nodes on features lie on that. Where a
-/// tet's Jacobian would then fall to `least_jacobian` or below, by `jacobian_exceeds`, a node inside moves
-/// along with the curved edge beside it if that helps; else the nodes at fault are drawn back to the
-/// middles of their edges, halving the way two times. Straight tets are valid,
-/// so every tet is. Preconditions: `mesh` comes from `generate` for `plc`, first order. Throws OptionError
-/// unless 0 <= least_jacobian < 1. Cost: n log n in the tets.
+/// Make a mesh one of second order: a node amid every edge, shared by all tets, faces and edges there. The
+/// nodes on smooth patches and curves lie on these; with exact geometry, all nodes on features lie on that.
+/// Other edges stay straight where they can. Where a tet's Jacobian would fall to `least_jacobian` or below, by
+/// `jacobian_exceeds`,
+/// 1. tets that curved edges make flat at a corner, wherever other nodes are, are replaced;
+/// 2. nodes inside regions, and in the planes of planar patches, move until all tets there are valid;
+/// 3. tets for which that does not help are replaced;
+/// 4. the nodes at fault are drawn back towards the middles of their edges, as far as is needed.
+/// Straight tets are valid, so every tet is. Preconditions: `mesh` comes from `generate` for `plc`, first order.
+/// Throws OptionError unless 0 <= least_jacobian < 1. Cost: n log n in the tets, and some milliseconds for each tet that is
+/// not valid at first.
 SecondOrderReport make_second_order(TetMesh& mesh, const Plc& plc, const SecondOrderOptions& options = {},
                                     const Execution& execution = {});
 

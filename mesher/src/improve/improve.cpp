@@ -143,8 +143,7 @@ class Improvement {
             !execution_.progress({"improve", 0, complex().mesh().points.size(), complex().size()}));
   }
 
-  // The first that helps of: an edge removed, a corner moved, an edge contracted, a vertex inserted. Where
-  // the number of vertices is to stay, only tets beyond the largest angle of thin ones change it.
+  // The first that helps of: an edge removed, a corner moved, an edge contracted, a vertex inserted.
   Change propose(Operations& operations, Index tet) const {
     Change change;
     for (unsigned i = 0; i < 4; ++i)

@@ -42,10 +42,10 @@ class RadiusEdgeBound {
   double squared_;
 };
 
-/// The rule of what may be thin: tets of quality 1 or more are.
+/// How far a tet is from being thin: of quality 1 or more are those that are. All may be made.
 class ThinRule final : public ShapeRule {
  public:
-  /// Kept by reference.
+  /// `thin` is kept by reference.
   explicit ThinRule(const ThinShape& thin) : thin_(thin) {}
 
   double quality(const Corners& p, const std::array<Index, 4>& corners) const override {
@@ -78,6 +78,7 @@ class SliverRule final : public ShapeRule {
 
   /// Has a tet of this quality an angle above the largest of thin ones, or none above 0.06 degrees? False
   /// where no tet may be thin.
+  /// Is a tet's radius-edge ratio within the bound, which only thin tets exceed?
   bool is_within_bound(const Corners& p) const { return bound_.holds(p); }
   bool is_blunt(double quality) const { return thin_ != nullptr && quality < beyond; }
 

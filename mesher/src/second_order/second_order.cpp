@@ -357,7 +357,8 @@ class Curving {
 namespace second_order {
 namespace {
 
-// What takes the place of one tet may be no better.
+// What takes the place of one tet may be no better: another round follows as long as there are fewer, at most so
+// many times.
 constexpr unsigned most_rounds = 4;
 
 /// Takes tets out of a mesh of first order; false when none could be.
@@ -384,7 +385,7 @@ SecondOrderReport make_second_order(TetMesh& mesh, const Plc& plc, const SecondO
     throw OptionError("least-jacobian must be at least 0 and below 1");
   const auto start = std::chrono::steady_clock::now();
   const std::size_t tets_before = mesh.tets.size();
-  std::size_t flat_before = SIZE_MAX;
+  std::size_t flat_before = SIZE_MAX, invalid_before = SIZE_MAX;
   SecondOrderReport report;
   for (unsigned round = 0;; ++round) {
     second_order::Curving curving(mesh, plc, options, execution);
@@ -400,7 +401,8 @@ SecondOrderReport make_second_order(TetMesh& mesh, const Plc& plc, const SecondO
       if (!flat.empty() && fewer && second_order::replace_tets(mesh, plc, flat, options)) continue;
     }
     const auto invalid = curving.place_nodes();
-    if (may_replace && !invalid.empty()) {
+    if (may_replace && !invalid.empty() && invalid.size() < invalid_before) {
+      invalid_before = invalid.size();
       curving.take_nodes_back();
       second_order::replace_tets(mesh, plc, invalid, options);
       continue;
