@@ -112,7 +112,7 @@ TEST(JacobianCoefficients, TheirGradientIsThatOfDifferences) {
 
 bool valid(const TetMesh& mesh, Index tet) { return jacobian_exceeds(curved_tet(mesh, tet), 0.1); }
 
-// An edge in a box bulges, at right angles to itself, by a third of its length: tets at it follow until all are valid.
+// An edge in a box bulges, at right angles to itself, by a fifth of its length: tets at it follow until all are valid.
 TEST(Untangling, NodesFollowAnEdgeThatBulges) {
   Meshed meshed = mesh_of(box(), with_size(0.4));
   TetMesh& mesh = meshed.result.mesh;
@@ -126,7 +126,7 @@ TEST(Untangling, NodesFollowAnEdgeThatBulges) {
     const auto [a, b] = edges.ends(edge);
     const Vector along = mesh.points[b] - mesh.points[a], aside = cross(along, Vector{0.3, -0.5, 0.8});
     Point& node = mesh.points[edges.first_node() + edge];
-    node = node + 0.3 * norm(along) / norm(aside) * aside;
+    node = node + 0.2 * norm(along) / norm(aside) * aside;
     const Point kept = node;
     Untangling untangling(mesh, edges, meshed.plc, 0.1);
     untangling.keep(edge);
@@ -158,7 +158,7 @@ TEST(Untangling, NodesFollowAnEdgeThatBulges) {
     }
   }
   EXPECT_GT(made, 20U);
-  EXPECT_LT(impossible, made / 2);
+  EXPECT_LT(impossible, made / 4);
 }
 
 }  // namespace

@@ -34,6 +34,7 @@ constexpr double least_turn = 0.15;
 
 // Nodes go back by such steps, and from this share of their way to the middle of their edge.
 constexpr double step = 0.8, least_share = 0.1, forward_precision = 0.04;
+constexpr unsigned steps_per_try = 3;  // after which nodes inside may find room again
 
 // A node on a planar patch or straight curve goes to the exact geometry if that is farther away, relative to
 // the edge.
@@ -237,8 +238,8 @@ class Curving {
     while (!work.empty()) {
       const Index tet = work.back();
       work.pop_back();
-      while (!is_valid(curved_tet(mesh_, tet))) {
-        if (make_room(tet)) break;
+      for (unsigned steps = 0; !is_valid(curved_tet(mesh_, tet)); ++steps) {
+        if (steps % steps_per_try == 0 && make_room(tet)) break;
         const Index move = move_at_fault(tet);
         if (move == none) {
           put_back_inside(tet, work);

@@ -17,6 +17,8 @@ constexpr double barrier_gap = 0.02, barrier_share = 0.1;
 constexpr unsigned most_barriers = 12, steps_per_barrier = 15, remembered_steps = 6, most_halvings = 12;
 // What rises by less with one barrier has no room.
 constexpr double least_rise = 0.01;
+// Moving nodes farther around costs some milliseconds: no more after so many times in vain.
+constexpr std::size_t most_wide_failures = 200;
 // The first step moves no node farther than this share of the shortest edge.
 constexpr double first_step = 0.05;
 
@@ -79,8 +81,11 @@ bool Untangling::may_move(Index edge) const {
 }
 
 std::size_t Untangling::untangle(Index tet) {
-  const std::size_t moved = untangle_within(tet, false);
-  return moved > 0 ? moved : untangle_within(tet, true);
+  std::size_t moved = untangle_within(tet, false);
+  if (moved > 0 || wide_failures_ >= most_wide_failures) return moved;
+  moved = untangle_within(tet, true);
+  if (moved == 0) ++wide_failures_;
+  return moved;
 }
 
 std::size_t Untangling::untangle_within(Index tet, bool wide) {

@@ -50,6 +50,7 @@ class Untangling {
   double least_jacobian_;
   CellsAtVertices tets_at_vertex_;  // empty until it is needed
   std::unordered_set<Index> kept_;  // edges
+  std::size_t wide_failures_ = 0;
 
   // Of the tet at hand:
   std::vector<Free> free_;
