@@ -83,6 +83,8 @@ TEST(Coarsen, KeepsEveryGuaranteeOfThinShapes) {
 }
 
 // One seed says little about a few hundred tets, and one contraction takes more than a hundredth of sixty.
+// (Of the wedge of 1 degree, over 15 seeds, 0.1% with balls placed up front and with those of the pass, 1.2%
+// of one seed. When the rounds ended without asking all again: 0.5 and 0.8% over 48 seeds, up to 6% of one.)
 TEST(Coarsen, RemovesHardlyAnythingAgain) {
   constexpr unsigned seeds = 4, of_one_contraction = 6;
   for (const Shape& shape : thin_shapes()) {
