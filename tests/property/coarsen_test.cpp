@@ -26,8 +26,9 @@ struct Shape {
   std::vector<PolygonSoup> soups;
   double size;
   double feature_angle;
-  double smallest;   ///< that dihedral angles may have, degrees
-  std::size_t most;  ///< tets that may be left: those measured and 8%
+  double smallest;     ///< that dihedral angles may have, degrees
+  std::size_t most;    ///< tets that may be left: those measured and 8%
+  unsigned seeds = 1;  ///< whose mean that is about
 };
 
 PolygonSoup plate() { return box({0, 0, 0}, {100, 100, 1}); }
@@ -36,7 +37,7 @@ std::vector<Shape> thin_shapes() {
   return {{"plate", {plate()}, 10, 0, 8, 1220},
           {"plate with a hole", {scaled(plate_with_hole(1, 32), 1)}, 1.5, 30, 8, 130},
           {"sphere in a sphere", {icosphere(1, 12), icosphere(0.95, 12)}, 0.3, 30, 8, 5900},
-          {"wedge of 1 degree", acute::wedge(1).soups, 0.28, 0, 0.5, 1750},  // up front 1583 to 1700 by seed
+          {"wedge of 1 degree", acute::wedge(1).soups, 0.28, 0, 0.5, 1680, 6},  // by seed 1515 to 1776
           {"wedge of 2 degrees", acute::wedge(2).soups, 0.3, 0, 1, 370},
           {"wedge of 5 degrees", acute::wedge(5).soups, 0.3, 0, 2.5, 90},
           {"wedge of 20 degrees", acute::wedge(20).soups, 0.2, 0, 8, 245},
@@ -52,8 +53,9 @@ struct Coarsened {
   CoarsenReport report;
 };
 
-Coarsened coarsened(const Shape& shape) {
-  const MeshOptions options = with_size(shape.size);
+Coarsened coarsened(const Shape& shape, unsigned seed = 0) {
+  MeshOptions options = with_size(shape.size);
+  options.seed = seed;
   Coarsened made{mesh_of(shape.soups, options, shape.feature_angle), {}};
   EXPECT_EQ(faults(made.meshed), "");
   TetMesh& mesh = made.meshed.result.mesh;
@@ -66,17 +68,23 @@ Coarsened coarsened(const Shape& shape) {
 TEST(Coarsen, KeepsEveryGuaranteeOfThinShapes) {
   for (const Shape& shape : thin_shapes()) {
     SCOPED_TRACE(shape.name);
-    const auto [meshed, report] = coarsened(shape);
-    EXPECT_EQ(faults(meshed), "");
-    EXPECT_LE(meshed.report.max_dihedral, 150.01);
-    EXPECT_GE(meshed.report.min_dihedral, shape.smallest);
-    EXPECT_LE(report.tets_after, shape.most);
-    EXPECT_GT(report.tets_after, 0u);
-    EXPECT_FALSE(report.cancelled);
+    std::size_t left = 0;
+    for (unsigned seed = 0; seed < shape.seeds; ++seed) {
+      const auto [meshed, report] = coarsened(shape, seed);
+      EXPECT_EQ(faults(meshed), "");
+      EXPECT_LE(meshed.report.max_dihedral, 150.01);
+      EXPECT_GE(meshed.report.min_dihedral, shape.smallest);
+      EXPECT_GT(report.tets_after, 0u);
+      EXPECT_FALSE(report.cancelled);
+      left += report.tets_after;
+    }
+    EXPECT_LE(left, shape.most * shape.seeds);
   }
 }
 
 // One seed says little about a few hundred tets, and one contraction takes more than a hundredth of sixty.
+// (Of the wedge of 1 degree, over 15 seeds, 0.1% with balls placed up front and with those of the pass, 1.2%
+// of one seed. When the rounds ended without asking all again: 0.5 and 0.8% over 48 seeds, up to 6% of one.)
 TEST(Coarsen, RemovesHardlyAnythingAgain) {
   constexpr unsigned seeds = 4, of_one_contraction = 6;
   for (const Shape& shape : thin_shapes()) {

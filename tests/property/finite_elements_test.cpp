@@ -19,8 +19,9 @@ namespace {
 using testing::PoissonErrors;
 
 testing::Meshed improved(const std::vector<PolygonSoup>& soups, double size, double feature_angle,
-                         double distance = 0) {
+                         double distance = 0, unsigned seed = 0) {
   MeshOptions options = testing::with_size(size, 60);
+  options.seed = seed;
   options.distance = distance;
   testing::Meshed meshed = testing::mesh_of(soups, options, feature_angle);
   EXPECT_EQ(testing::faults(meshed), "");
@@ -30,8 +31,8 @@ testing::Meshed improved(const std::vector<PolygonSoup>& soups, double size, dou
   return meshed;
 }
 TetMesh improved_mesh(const std::vector<PolygonSoup>& soups, double size, double feature_angle,
-                      double distance = 0) {
-  return improved(soups, size, feature_angle, distance).result.mesh;
+                      double distance = 0, unsigned seed = 0) {
+  return improved(soups, size, feature_angle, distance, seed).result.mesh;
 }
 
 // A polynomial of the elements' degree is found but for rounding, whatever the mesh.
@@ -75,8 +76,12 @@ struct Domain {
 
 class Convergence : public ::testing::TestWithParam<int> {};
 
-// Error ~ size^order: order k + 1 in L2 and k in H1 for elements of order k.
+// Error ~ size^order: order k + 1 in L2 and k in H1 for elements of order k. Two meshes scatter about that,
+// so it is the mean over some seeds. (The fan of sheets' order in H1 with linear elements, over 16 seeds:
+// 0.94 on average whether collars' balls are placed up front or in the pass, 0.91 to 0.99 and 0.88 to 0.98
+// with single seeds.)
 TEST_P(Convergence, IsThatOfTheory) {
+  constexpr unsigned seeds = 4;
   const int order = GetParam();
   const std::vector<Domain> domains{
       {"ball", {testing::icosphere(0.5, 24)}, 30, 0.15, 0.08, 0.02},
@@ -85,16 +90,21 @@ TEST_P(Convergence, IsThatOfTheory) {
   };
   for (const Domain& domain : domains) {
     SCOPED_TRACE(domain.name);
-    std::array<PoissonErrors, 2> errors;
-    for (unsigned i = 0; i < 2; ++i) {
-      TetMesh mesh = improved_mesh(domain.soups, i == 0 ? domain.coarse : domain.fine, domain.feature_angle,
-                                   domain.distance);
-      if (order == 2) mesh = testing::second_order(mesh);
-      errors[i] = testing::solve_poisson(mesh, testing::smooth_solution());
+    double l2 = 0, h1 = 0;
+    for (unsigned seed = 0; seed < seeds; ++seed) {
+      std::array<PoissonErrors, 2> errors;
+      for (unsigned i = 0; i < 2; ++i) {
+        TetMesh mesh = improved_mesh(domain.soups, i == 0 ? domain.coarse : domain.fine, domain.feature_angle,
+                                     domain.distance, seed);
+        if (order == 2) mesh = testing::second_order(mesh);
+        errors[i] = testing::solve_poisson(mesh, testing::smooth_solution());
+      }
+      const double refined = std::log(domain.coarse / domain.fine);
+      l2 += std::log(errors[0].l2 / errors[1].l2) / refined / seeds;
+      h1 += std::log(errors[0].h1 / errors[1].h1) / refined / seeds;
     }
-    const double refined = std::log(domain.coarse / domain.fine);
-    EXPECT_NEAR(std::log(errors[0].l2 / errors[1].l2) / refined, order + 1, 0.1 * (order + 1));
-    EXPECT_NEAR(std::log(errors[0].h1 / errors[1].h1) / refined, order, 0.1 * order);
+    EXPECT_NEAR(l2, order + 1, 0.1 * (order + 1));
+    EXPECT_NEAR(h1, order, 0.1 * order);
   }
 }
 

@@ -82,25 +82,36 @@ std::set<std::vector<double>> collar_tets(const TetMesh& mesh) {
 
 class Improve : public ::testing::TestWithParam<unsigned> {};
 
+// A fifth of one poor tet is none: so many poor ones are judged together, of several seeds where one makes
+// fewer. (Of the pyramid, over 64 seeds, 4.5% of 537 stay at level 1 with balls placed up front, 6.6% of 519
+// with those of the pass; of one seed's 1 to 15, up to a third with the former and all with the latter.)
+constexpr std::size_t enough_poor = 25;
+
 TEST_P(Improve, KeepsEveryGuaranteeAndLeavesFewPoorTets) {
   for (const Shape& shape : shapes()) {
     SCOPED_TRACE(shape.name);
-    Meshed meshed = mesh_of(shape.soups, with_size(shape.size), shape.feature_angle);
-    ASSERT_EQ(testing::faults(meshed), "");
-    TetMesh& mesh = meshed.result.mesh;
-    const double worst = worst_outside_collars(mesh);
-    const auto collars = collar_tets(mesh);
-    const std::size_t poor = count_below(mesh, 15);
+    std::size_t poor = 0, left = 0;
+    for (unsigned seed = 0; poor < enough_poor; ++seed) {
+      ASSERT_LT(seed, enough_poor);
+      MeshOptions options = with_size(shape.size);
+      options.seed = seed;
+      Meshed meshed = mesh_of(shape.soups, options, shape.feature_angle);
+      ASSERT_EQ(testing::faults(meshed), "");
+      TetMesh& mesh = meshed.result.mesh;
+      const double worst = worst_outside_collars(mesh);
+      const auto collars = collar_tets(mesh);
+      poor += count_below(mesh, 15);
 
-    const ImproveReport report = improve(mesh, meshed.plc, improve_options(GetParam()));
-    meshed.report = check(mesh, meshed.plc);
-    EXPECT_EQ(testing::faults(meshed), "");
-    EXPECT_GE(worst_outside_collars(mesh), worst);
-    EXPECT_EQ(collar_tets(mesh), collars);
-    EXPECT_GT(poor, 0U);
-    EXPECT_LE(count_below(mesh, 15), poor / 5);
-    EXPECT_EQ(report.remaining, count_below(mesh, improve_options(GetParam()).min_dihedral));
-    EXPECT_FALSE(report.cancelled);
+      const ImproveReport report = improve(mesh, meshed.plc, improve_options(GetParam()));
+      meshed.report = check(mesh, meshed.plc);
+      EXPECT_EQ(testing::faults(meshed), "");
+      EXPECT_GE(worst_outside_collars(mesh), worst);
+      EXPECT_EQ(collar_tets(mesh), collars);
+      EXPECT_EQ(report.remaining, count_below(mesh, improve_options(GetParam()).min_dihedral));
+      EXPECT_FALSE(report.cancelled);
+      left += count_below(mesh, 15);
+    }
+    EXPECT_LE(left, poor / 5);
   }
 }
 

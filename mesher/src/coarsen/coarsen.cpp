@@ -35,8 +35,8 @@ constexpr double repaired_below = 0.65;
 // Tets below this quality are improved between the passes.
 constexpr double improved_below = 1.3;
 constexpr unsigned most_sweeps = 8;
-// A pass that removes a smaller share of the tets is the last one of its round; so is a round of them, once
-// improvement before it has ended by itself.
+// A pass that removes a smaller share of the tets is the last one of its round; after such a round, once
+// improvement before it has ended by itself, all vertices are asked again.
 constexpr double least_share = 0.005;
 constexpr std::size_t steps_between_reports = 4096;
 // Proposals are made for so many items at once, or for this share of them: few of all, so that they hardly
@@ -73,13 +73,17 @@ class Coarsening {
     for (unsigned pass = 0; pass < plain_passes && !report_.cancelled; ++pass)
       if (!contract_all(false)) break;
     // Improvement makes room for more contractions; between the passes of a round it would have all vertices
-    // asked again.
+    // asked again. Repairs reach beyond the tets at a vertex: in the end those are asked, too, at which
+    // nothing has changed.
+    bool ask_all = false;
     for (unsigned round = 0; round < rounds && !report_.cancelled; ++round) {
       const bool settled = improve_all();
       const std::size_t before = tets_;
+      if (ask_all) last_pass_[1] = 0;
       for (unsigned pass = 0; pass < repair_passes; ++pass)
         if (!contract_all(true)) break;
-      if (settled && !worthwhile(before)) break;
+      if (settled && ask_all && tets_ == before) break;
+      ask_all = settled && !worthwhile(before);
     }
     finish();
     report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
