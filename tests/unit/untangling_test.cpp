@@ -158,7 +158,7 @@ TEST(Untangling, NodesFollowAnEdgeThatBulges) {
     }
   }
   EXPECT_GT(made, 20U);
-  EXPECT_LT(impossible, made / 4);
+  EXPECT_LT(impossible, made / 3);
 }
 
 }  // namespace

@@ -82,7 +82,7 @@ class Coarsening {
       if (ask_all) last_pass_[1] = 0;
       for (unsigned pass = 0; pass < repair_passes; ++pass)
         if (!contract_all(true)) break;
-      if (settled && ask_all && tets_ == before) break;
+      if (settled && ask_all && !worthwhile(before)) break;
       ask_all = settled && !worthwhile(before);
     }
     finish();
