@@ -39,7 +39,7 @@ void validate(const MeshOptions& o) {
 }  // namespace
 
 double default_distance(double size, double diagonal, int order) {
-  constexpr double share_of_size = 0.1, sizes_per_diagonal = 20, for_curved_elements = 1.0 / 450;
+  constexpr double share_of_size = 0.1, sizes_per_diagonal = 20, for_curved_elements = 1.0 / 550;
   const double largest = diagonal / sizes_per_diagonal;
   const double distance = share_of_size * (size > 0 ? std::min(size, largest) : largest);
   return order == 2 ? std::min(distance, for_curved_elements * diagonal) : distance;
