@@ -6,10 +6,13 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <set>
 
+#include "collarmesh/coarsen.h"
 #include "collarmesh/curved_tet.h"
 #include "collarmesh/error.h"
 #include "collarmesh/improve.h"
@@ -167,6 +170,71 @@ TEST(SecondOrder, WhatWouldInvertIsStraightenedAndReported) {
       if (named.count(node) == 0) {
         EXPECT_LT(norm(mesh.points[node]), 0.84);
       }
+}
+
+/// Coarse and curved: thin tets, with edges that turn by up to an eighth of a circle.
+Meshed coarsened(const PolygonSoup& soup, double size) {
+  MeshOptions options = with_size(size);
+  options.distance = 0.1 * size;
+  Meshed meshed = mesh_of(soup, options);
+  coarsen(meshed.result.mesh, meshed.plc, options);
+  improve(meshed.result.mesh, meshed.plc,
+          {.thin_angle = 8, .distance = options.distance, .keep_vertices = true});
+  return meshed;
+}
+
+// Fewer edges stay straight than without, nothing of the surface changes, and threads change nothing.
+TEST(SecondOrder, TetsThatCurvedEdgesFlattenAreReplaced) {
+  struct Shape {
+    PolygonSoup soup;
+    double size;
+  };
+  std::size_t without = 0, with = 0, replaced = 0;
+  for (const auto& [soup, size] : {Shape{cylinder(1, 0.3, 120, 4), 0.7}, Shape{torus(1, 0.12, 120, 24), 0.4},
+                                   Shape{plate_with_hole(1, 96), 1.5}, Shape{cylinder(1, 3, 120, 12), 0.8}}) {
+    const Meshed meshed = coarsened(soup, size);
+    const TetMesh& before = meshed.result.mesh;
+    TetMesh kept = before, mesh = before, again = before;
+    SecondOrderOptions options;
+    options.distance = 0.1 * size;
+    without += make_second_order(kept, meshed.plc, options).straightened.size();
+    EXPECT_EQ(kept.tets, before.tets);
+    options.thin_angle = 8;
+    options.threads = 1;
+    const SecondOrderReport report = make_second_order(mesh, meshed.plc, options);
+    with += report.straightened.size();
+    EXPECT_EQ(second_order_faults(meshed, mesh, options.distance), "");
+    for (Index t = 0; t < mesh.tets.size(); ++t) EXPECT_TRUE(jacobian_exceeds(curved_tet(mesh, t), 0.1)) << t;
+    EXPECT_EQ(report.more_tets, static_cast<std::ptrdiff_t>(mesh.tets.size()) -
+                                    static_cast<std::ptrdiff_t>(before.tets.size()));
+    replaced += mesh.tets != before.tets ? 1 : 0;
+    for (Index v = 0; v < before.points.size(); ++v) {
+      EXPECT_EQ(mesh.features[v], before.features[v]);
+      if (before.features[v].dimension < 3) {
+        EXPECT_EQ(mesh.points[v], before.points[v]);
+      }
+    }
+    options.threads = 3;
+    make_second_order(again, meshed.plc, options);
+    EXPECT_EQ(again.points, mesh.points);
+    EXPECT_EQ(again.tets, mesh.tets);
+  }
+  EXPECT_GT(replaced, 0U);
+  EXPECT_GT(without, 10U);
+  EXPECT_LT(with, without / 2);
+}
+
+TEST(SecondOrder, CancelledAtAnyTimeItIsOfFirstOrder) {
+  const Meshed meshed = coarsened(cylinder(1, 0.3, 120, 4), 0.7);
+  TetMesh mesh = meshed.result.mesh;
+  std::atomic<bool> cancel{false};
+  SecondOrderOptions options{.exact = [&](unsigned, Index, const Point&) -> std::optional<Point> {
+    cancel = true;
+    return std::nullopt;
+  }};
+  EXPECT_TRUE(make_second_order(mesh, meshed.plc, options, {.cancel = &cancel}).cancelled);
+  EXPECT_EQ(mesh.order(), 1);
+  EXPECT_EQ(mesh.points, meshed.result.mesh.points);
 }
 
 // In a mesh that misses a guarantee a curve may have an edge that no tet has, and a patch such a face.

@@ -92,7 +92,8 @@ TEST(JacobianCoefficients, TheirGradientIsThatOfDifferences) {
     const auto weighted = [&] {
       const JacobianCoefficients coefficients(nodes);
       double sum = 0;
-      for (std::size_t c = 0; c < JacobianCoefficients::count; ++c) sum += weights[c] * coefficients.values()[c];
+      for (std::size_t c = 0; c < JacobianCoefficients::count; ++c)
+        sum += weights[c] * coefficients.values()[c];
       return sum;
     };
     const std::array<Vector, 6> gradient = JacobianCoefficients(nodes).gradient(weights);
@@ -112,7 +113,8 @@ TEST(JacobianCoefficients, TheirGradientIsThatOfDifferences) {
 
 bool valid(const TetMesh& mesh, Index tet) { return jacobian_exceeds(curved_tet(mesh, tet), 0.1); }
 
-// An edge in a box bulges, at right angles to itself, by a fifth of its length: tets at it follow until all are valid.
+// An edge in a box bulges, at right angles to itself, by a fifth of its length: tets at it follow until all
+// are valid.
 TEST(Untangling, NodesFollowAnEdgeThatBulges) {
   Meshed meshed = mesh_of(box(), with_size(0.4));
   TetMesh& mesh = meshed.result.mesh;

@@ -13,9 +13,9 @@ namespace collarmesh {
 struct SecondOrderOptions {
   ExactGeometry exact;  ///< where it is empty or gives nothing: the complex' own polyline or triangles
   double least_jacobian =
-      0.1;  ///< everywhere in a curved tet, relative to the straight one; 0: positive is enough
-  double thin_angle = 0;   ///< degrees, that of the mesh' `CoarsenOptions`: tets that cannot be curved may be
-                           ///< replaced by others, which may be thin; 0: the tets stay
+      0.1;                ///< everywhere in a curved tet, relative to the straight one; 0: positive is enough
+  double thin_angle = 0;  ///< degrees, that of the mesh' `CoarsenOptions`: tets that cannot be curved may be
+                          ///< replaced by others, which may be thin; 0: the tets stay
   double radius_edge = 2;  ///< bound on circumradius / shortest edge: tets beyond it are marked as thin
   double distance = 0;     ///< surface distance tolerance where tets are replaced; 0: 1/200 of the diagonal
   unsigned threads = 0;    ///< at most; 0: as many as there are cores. The result does not depend on it
@@ -45,15 +45,16 @@ struct SecondOrderReport {
 
 /// Make a mesh one of second order: a node amid every edge, shared by all tets, faces and edges there. The
 /// nodes on smooth patches and curves lie on these; with exact geometry, all nodes on features lie on that.
-/// Other edges stay straight where they can. Where a tet's Jacobian would fall to `least_jacobian` or below, by
-/// `jacobian_exceeds`,
+/// Other edges stay straight where they can. Where a tet's Jacobian would fall to `least_jacobian` or below,
+/// by `jacobian_exceeds`,
 /// 1. tets that curved edges make flat at a corner, wherever other nodes are, are replaced;
 /// 2. nodes inside regions, and in the planes of planar patches, move until all tets there are valid;
 /// 3. tets for which that does not help are replaced;
 /// 4. the nodes at fault are drawn back towards the middles of their edges, as far as is needed.
-/// Straight tets are valid, so every tet is. Preconditions: `mesh` comes from `generate` for `plc`, first order.
-/// Throws OptionError unless 0 <= least_jacobian < 1. Cost: n log n in the tets, and some milliseconds for each tet that is
-/// not valid at first.
+/// Straight tets are valid, so every tet is. Vertices keep their numbers; mid-side nodes follow all of them.
+/// Preconditions: `mesh` comes from `generate` for `plc`, first order. Throws OptionError unless
+/// 0 <= least_jacobian < 1 and 0 <= thin_angle <= 30. Cost: n log n in the tets, at most five times, and some
+/// milliseconds for each tet that is not valid at first.
 SecondOrderReport make_second_order(TetMesh& mesh, const Plc& plc, const SecondOrderOptions& options = {},
                                     const Execution& execution = {});
 

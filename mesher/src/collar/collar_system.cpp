@@ -60,6 +60,7 @@ void CollarSystem::plant(const Plc& plc, std::span<const Point> points) {
     if (node.left == none) {
       const Feature& crease = creases[node.right];
       leaves_[crease.index + (crease.dimension == 1 ? plc.vertices.size() : 0)] = n;
+      node.right = none;  // no balls yet
     } else {
       branches_[node.left].parent = branches_[node.right].parent = n;
     }
@@ -140,7 +141,7 @@ void CollarSystem::visit(const Meets& meets_box, const Visit& visit_ball) const 
     if (node.left != none) {
       stack[top++] = node.right;
       stack[top++] = node.left;
-    } else if (visit_ball(node.right)) {
+    } else if (node.right != none && visit_ball(node.right)) {
       return;
     }
   }

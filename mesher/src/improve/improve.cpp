@@ -128,6 +128,8 @@ class Improvement {
                    [&](std::size_t i) { proposals_[i] = propose(operations_.local(), batch_[i].tet); });
       ++batch_number_;
       changed_in_.resize(complex().size(), 0);
+      for (std::size_t i = 0; i < batch_.size(); ++i)
+        if (proposals_[i].kind == Change::Kind::none) set_stays(batch_[i].tet, move_vertices_);
       for (std::size_t i = 0; i < batch_.size(); ++i) {
         if (is_untouched(proposals_[i]))
           apply(std::move(proposals_[i]));
@@ -151,7 +153,8 @@ class Improvement {
     const auto& corners = complex()[tet].corners;
     const auto found = [&] { return change.kind != Change::Kind::none; };
     if (found() || !move_vertices_) return change;
-    for (const Index v : corners) operations.move_vertex(v, change);
+    for (const Index v : corners)
+      if (!stays(v)) operations.move_vertex(v, change);
     if (found() || !may_change_vertices(tet)) return change;
     for (const Index v : corners)
       for (const Index w : corners)
@@ -162,9 +165,16 @@ class Improvement {
     return change;
   }
 
+  // Whether a move helps depends on the tets at the vertex alone, each of which may ask.
+  bool stays(Index vertex) const { return vertex < stays_.size() && stays_[vertex]; }
+  void set_stays(Index tet, bool stays) {
+    stays_.resize(complex().mesh().points.size(), false);
+    for (const Index v : complex()[tet].corners) stays_[v] = stays;
+  }
+
   // In a coarsened mesh walls are one element thick and tets at them poor for that; vertices would bring
   // back what has been removed. So only tets beyond the largest angle of thin ones may change their number
-  // there, and all where no thin tet is near.
+  // there, and all where no thin tet is near. (Judged when the batch begins, whatever it changes.)
   bool may_change_vertices(Index tet) const {
     if (!keep_vertices_ || rule_.is_blunt(quality(tet))) return true;
     std::vector<Index> star;
@@ -203,6 +213,7 @@ class Improvement {
     for (const Index t : workpiece_.apply(std::move(change))) {
       if (t >= changed_in_.size()) changed_in_.resize(complex().size(), 0);
       changed_in_[t] = batch_number_;
+      set_stays(t, false);
       queue(t);
     }
   }
@@ -220,6 +231,7 @@ class Improvement {
   std::vector<Change> proposals_;
   std::uint32_t batch_number_ = 0;
   std::vector<std::uint32_t> changed_in_;  // the batch that changed a tet last
+  std::vector<bool> stays_;  // by vertex: no move of it helps, and nothing at it has changed since
   ImproveReport report_;
 };
 

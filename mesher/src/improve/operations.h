@@ -33,7 +33,7 @@ class Operations {
   /// are all better than `least`.
   void split_edge(Index a, Index b, double least, Change& change);
   /// The same, however good the tets at the edge are now.
-  void insert_amid(Index a, Index b, double least, Change& change);
+  void split_edge_anyhow(Index a, Index b, double least, Change& change);
   /// Move a vertex along an edge within its feature onto the other end, so that the tets at the edge vanish.
   /// No edge becomes longer than the longest one of the cavity.
   void contract_edge(Index vertex, Index onto, Change& change);
@@ -92,6 +92,7 @@ class Operations {
   bool find_cone_of_vertex(Index vertex);
   void drop_from_cone(Index vertex);
   bool find_cone_of_edge(Index a, Index b);
+  void insert_in_cone(Index a, Index b, double least, Change& change);
   void add_to_rim(Index face, Index apex);
   double quality_around(const Point& apex, Index id, double above);
   bool surfaces_allow(const Point& apex);

@@ -21,21 +21,21 @@ std::array<Index, 4> sorted(std::array<Index, 4> corners) {
 }
 
 /// A rule by which tets with certain corners are worse than all others.
-class Without final : public ShapeRule {
+class UnwantedRule final : public ShapeRule {
  public:
-  Without(const ShapeRule& rule, std::set<std::array<Index, 4>> unwanted)
+  UnwantedRule(const ShapeRule& rule, std::set<std::array<Index, 4>> unwanted)
       : rule_(rule), unwanted_(std::move(unwanted)) {}
 
   double quality(const Corners& p, const std::array<Index, 4>& corners) const override {
     const double quality = rule_.quality(p, corners);
-    return quality > 0 && unwanted_.contains(sorted(corners)) ? worst * quality : quality;
+    return quality > 0 && unwanted_.contains(sorted(corners)) ? unwanted_factor * quality : quality;
   }
   bool allows(const Corners& p, const std::array<Index, 4>& corners, double quality) const override {
     return rule_.allows(p, corners, quality);
   }
 
  private:
-  static constexpr double worst = 1e-9;
+  static constexpr double unwanted_factor = 1e-9;
 
   const ShapeRule& rule_;
   std::set<std::array<Index, 4>> unwanted_;
@@ -56,11 +56,6 @@ class Replacing {
     for (unsigned i = 0; i < 4; ++i)
       for (unsigned j = i + 1; j < 4; ++j) operations_.remove_edge(tet, i, j, removal);
     if (is_as_good_as(least_, removal)) return mended(std::move(removal));
-    Change contraction;
-    for (const Index v : corners)
-      for (const Index w : corners)
-        if (v != w && may_move(v)) operations_.contract_edge(v, w, contraction);
-    if (is_as_good_as(mendable * least_, contraction) && mended(std::move(contraction))) return true;
     const auto edges = edges_to_split(corners);
     return std::any_of(edges.begin(), edges.end(), [this](const auto& edge) { return split(edge); }) ||
            (is_as_good_as(mendable * least_, removal) && mended(std::move(removal)));
@@ -75,7 +70,7 @@ class Replacing {
 
   bool split(const std::array<Index, 2>& edge) {
     Change insertion;
-    operations_.insert_amid(edge[0], edge[1], mendable * least_, insertion);
+    operations_.split_edge_anyhow(edge[0], edge[1], mendable * least_, insertion);
     return is_as_good_as(mendable * least_, insertion) && mended(std::move(insertion));
   }
 
@@ -135,15 +130,10 @@ class Replacing {
     for (unsigned i = 0; i < 4; ++i)
       for (unsigned j = i + 1; j < 4; ++j) operations_.remove_edge(tet, i, j, change);
     for (unsigned i = 0; i < 4 && change.kind == Change::Kind::none; ++i)
-      if (may_move(corners[i])) operations_.move_vertex(corners[i], change);
+      if (complex().mesh().features[corners[i]].dimension == 3) operations_.move_vertex(corners[i], change);
     return change;
   }
 
-  // On smooth features vertices may have been put onto exact geometry.
-  bool may_move(Index vertex) const {
-    const auto& [dimension, feature] = complex().mesh().features[vertex];
-    return dimension == 3 || (dimension == 2 && is_planar(feature));
-  }
   bool is_planar(Index patch) const { return patch != none && workpiece_.plc.patches[patch].planar; }
 
   bool on_no_smooth_patch(Index a, Index b) const {
@@ -173,7 +163,7 @@ std::size_t replace_tets(Workpiece& workpiece, std::span<const UnwantedTet> unwa
                          double least_quality) {
   std::vector<std::array<Index, 4>> corners;
   for (const UnwantedTet& u : unwanted) corners.push_back(sorted(workpiece.complex[u.tet].corners));
-  const Without without(rule, {corners.begin(), corners.end()});
+  const UnwantedRule without(rule, {corners.begin(), corners.end()});
   Replacing replacing(workpiece, without, least_quality);
   std::size_t gone = 0;
   for (std::size_t i = 0; i < unwanted.size(); ++i) {

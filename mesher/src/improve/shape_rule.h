@@ -76,10 +76,10 @@ class SliverRule final : public ShapeRule {
     return bound_.holds(p) || (thin_ != nullptr && thin_->contains(p, corners));
   }
 
-  /// Has a tet of this quality an angle above the largest of thin ones, or none above 0.06 degrees? False
-  /// where no tet may be thin.
   /// Is a tet's radius-edge ratio within the bound, which only thin tets exceed?
   bool is_within_bound(const Corners& p) const { return bound_.holds(p); }
+  /// Has a tet of this quality an angle above the largest of thin ones, or none above 0.06 degrees? False
+  /// where no tet may be thin.
   bool is_blunt(double quality) const { return thin_ != nullptr && quality < beyond; }
 
  private:

@@ -58,11 +58,6 @@ class TetComplex {
   TetMesh& mesh() { return mesh_; }
   const TetMesh& mesh() const { return mesh_; }
   std::array<Point, 4> corners(Index tet) const;
-  /// The curve that has the edge ab; none if none has.
-  Index curve_of(Index a, Index b) const {
-    const auto edge = curve_edges_.find(edge_key(a, b));
-    return edge == curve_edges_.end() ? none : mesh_.edge_curve[edge->second];
-  }
   bool on_curve(Index a, Index b) const { return curve_edges_.contains(edge_key(a, b)); }
   /// Is the edge ab one of a mesh' face? At a pinched vertex a: always.
   bool on_faces(Index a, Index b) const;

@@ -99,8 +99,8 @@ class ThinShape {
   }
   /// The cosine of the upper bound on all angles, as in ExtremeCosines, with room for rounding.
   double cosine_of_largest() const { return cosine_; }
-  /// The sines of the smallest angle and of what the largest lacks to 180 degrees, over those of their bounds:
-  /// both are at least 1 where a tet is thin. Negative for a flat or an inverted tet.
+  /// The sines of the smallest angle and of what the largest lacks to 180 degrees, over those of their
+  /// bounds: both are at least 1 where a tet is thin. Negative for a flat or an inverted tet.
   struct Margins {
     double sharp, blunt;
   };

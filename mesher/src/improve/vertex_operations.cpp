@@ -251,11 +251,15 @@ void Operations::move_vertex(Index vertex, Change& change) {
 }
 
 void Operations::split_edge(Index a, Index b, double least, Change& change) {
-  if (find_cone_of_edge(a, b)) insert_amid(a, b, std::max({worst_at_vertex(), least, change.quality}), change);
+  if (find_cone_of_edge(a, b))
+    insert_in_cone(a, b, std::max({worst_at_vertex(), least, change.quality}), change);
 }
 
-void Operations::insert_amid(Index a, Index b, double least, Change& change) {
-  if (!find_cone_of_edge(a, b)) return;
+void Operations::split_edge_anyhow(Index a, Index b, double least, Change& change) {
+  if (find_cone_of_edge(a, b)) insert_in_cone(a, b, least, change);
+}
+
+void Operations::insert_in_cone(Index a, Index b, double least, Change& change) {
   const Index patch = cone_.faces.empty() ? none : mesh_.face_patch[cone_.faces[0]];
   const Point middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
   const Freedom where = patch == none ? everywhere : on_patch(patch, middle);

@@ -45,7 +45,7 @@ void GapExplorer::find_borders() {
     if (any) {
       border_of_[element] = static_cast<Index>(borders_.size());
       borders_.push_back(border);
-    } else {
+    } else if (element < plc_.triangles.size()) {
       patch_of[element] = plc_.triangles[element].patch;
     }
   }

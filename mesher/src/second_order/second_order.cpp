@@ -29,7 +29,8 @@ using improvement::UnwantedTet;
 // the nearest point lies on another part of the feature. A half circle has 0.5.
 constexpr double farthest = 0.5;
 
-// Two edges with a smaller area between their tangents than this share of that between themselves have one tangent.
+// Two edges with a smaller area between their tangents than this share of that between themselves have one
+// tangent.
 constexpr double least_turn = 0.15;
 
 // Nodes go back by such steps, and from this share of their way to the middle of their edge.
@@ -38,7 +39,7 @@ constexpr unsigned steps_per_try = 3;  // after which nodes inside may find room
 
 // A node on a planar patch or straight curve goes to the exact geometry if that is farther away, relative to
 // the edge.
-constexpr double rounding = 1e-12;
+constexpr double rounding = 1e-12, slight = 1e-6;
 
 class Curving {
  public:
@@ -59,11 +60,13 @@ class Curving {
     return !execution_.cancelled();
   }
 
-  /// Tets that would be flat at a corner, with the edge to split there. Two curved edges that have one tangent, or
-  /// three with tangents in one plane, as at a corner inside a smooth patch, leave no Jacobian determinant, however small
-  /// they are. What joins their other ends, inside a region or on a planar patch, is to be split.
+  /// Tets that would be flat at a corner, with the edge to split there. Two curved edges that have one
+  /// tangent, or three with tangents in one plane, as at a corner inside a smooth patch, leave no Jacobian
+  /// determinant, however small they are. What joins their other ends, inside a region or on a planar patch,
+  /// is to be split.
   std::vector<UnwantedTet> flat_at_corners() const {
     std::vector<UnwantedTet> found;
+    if (moves_.empty()) return found;
     for (Index tet = 0; tet < mesh_.tets.size(); ++tet)
       for (unsigned corner = 0; corner < 4; ++corner)
         if (const auto edge = edge_at_flat_corner(mesh_.tets[tet], corner)) {
@@ -73,17 +76,22 @@ class Curving {
     return found;
   }
 
-  /// Give the mesh its nodes. Returns the tets that are not valid, wherever nodes on no smooth feature are moved.
+  /// Give the mesh its nodes, and move those on no smooth feature where that makes tets valid. Returns the
+  /// tets that are not valid then.
   std::vector<UnwantedTet> place_nodes() {
     add_mid_nodes(edges_, mesh_);
+    for (const auto& [edge, way] : slight_moves_) mesh_.points[edges_.first_node() + edge] = home(edge);
     for (const Move& move : moves_) place(move);
     find_tets_at_moves();
     std::vector<UnwantedTet> found;
-    for (const Index tet : curved_)
+    for (const Index tet : curved_) {
+      if (execution_.cancelled()) break;
       if (!is_valid(curved_tet(mesh_, tet)) && !make_room(tet)) found.push_back({tet});
+    }
+    std::erase_if(found, [this](const UnwantedTet& u) { return is_valid(curved_tet(mesh_, u.tet)); });
     return found;
   }
-  /// Precondition: `place_nodes` has found some.
+  /// Precondition: the mesh has its nodes.
   void take_nodes_back() {
     mesh_.points.resize(edges_.first_node());
     mesh_.features.resize(std::min<std::size_t>(mesh_.features.size(), edges_.first_node()));
@@ -96,7 +104,8 @@ class Curving {
     draw_back();
     put_forward();
     report.nodes = edges_.size();
-    report.moved_inside = moved_inside_;
+    for (Index e = 0; e < edges_.size(); ++e)
+      if (untangling_.is_free(e) && mesh_.points[edges_.first_node() + e] != home(e)) ++report.moved_inside;
     for (const Move& move : moves_) {
       if (move.share > 0) ++report.curved;
       if (move.share < 1) report.straightened.push_back(straightened(move));
@@ -110,6 +119,13 @@ class Curving {
     Index edge;
     Vector way;        ///< from the middle to where it belongs
     double share = 1;  ///< of the way that it goes
+  };
+
+  /// The same on a planar patch or straight curve, by little more than rounding: it always goes all of its
+  /// way.
+  struct SlightMove {
+    Index edge;
+    Vector way;
   };
 
   static bool on_feature(const TetMesh::VertexFeature& feature) {
@@ -130,9 +146,25 @@ class Curving {
       const Vector way = place_on(feature, middle) - middle;
       const double length = norm(way), edge_length = length_of(e);
       if (length <= (is_smooth(feature) ? 0 : rounding * edge_length)) continue;
+      if (untangling_.is_free(e)) {
+        if (length <= slight * edge_length) {
+          slight_moves_.push_back({e, way});
+          continue;
+        }
+        untangling_.keep(e);
+      }
       const bool belongs = length <= farthest * edge_length;  // also false for what is not a number
       moves_.push_back({e, way, belongs ? 1.0 : 0.0});
     }
+  }
+
+  // Where a node belongs that is not curved.
+  Point home(Index edge) const {
+    const auto [a, b] = edges_.ends(edge);
+    const Point middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
+    const auto at = std::lower_bound(slight_moves_.begin(), slight_moves_.end(), edge,
+                                     [](const SlightMove& move, Index e) { return move.edge < e; });
+    return at != slight_moves_.end() && at->edge == edge ? middle + at->way : middle;
   }
 
   Point place_on(const TetMesh::VertexFeature& feature, const Point& middle) {
@@ -147,7 +179,8 @@ class Curving {
     return at != moves_.end() && at->edge == edge ? &*at : nullptr;
   }
 
-  std::optional<std::array<Index, 2>> edge_at_flat_corner(const std::array<Index, 4>& tet, unsigned corner) const {
+  std::optional<std::array<Index, 2>> edge_at_flat_corner(const std::array<Index, 4>& tet,
+                                                          unsigned corner) const {
     struct Side {
       Index end;
       Vector straight, tangent;
@@ -164,7 +197,8 @@ class Curving {
       const Move* move = move_of(edge);
       const bool is_fixed = !untangling_.may_move(edge);
       // Of the quadratic curve through the ends and a node so far off the middle.
-      sides[n++] = {tet[k], straight, move != nullptr && move->share > 0 ? straight + 4 * move->way : straight, is_fixed};
+      sides[n++] = {tet[k], straight,
+                    move != nullptr && move->share > 0 ? straight + 4 * move->way : straight, is_fixed};
       fixed += is_fixed ? 1 : 0;
       curved = curved || (is_fixed && move != nullptr);
     }
@@ -192,7 +226,9 @@ class Curving {
     return found;
   }
   // Inside a region or a planar patch, where it changes no surface.
-  bool may_split(Index a, Index b) const { return untangling_.may_move(edges_.node(a, b) - edges_.first_node()); }
+  bool may_split(Index a, Index b) const {
+    return untangling_.may_move(edges_.node(a, b) - edges_.first_node());
+  }
 
   Point place_of(const Move& move) const {
     const auto [a, b] = edges_.ends(move.edge);
@@ -204,10 +240,8 @@ class Curving {
   std::array<Index, 6> moves_of(Index tet) const {
     std::array<Index, 6> found;
     for (std::size_t k = 0; k < 6; ++k) {
-      const Index edge = mesh_.tet_mid_nodes[tet][k] - edges_.first_node();
-      const auto at = std::lower_bound(moves_.begin(), moves_.end(), edge,
-                                       [](const Move& move, Index e) { return move.edge < e; });
-      found[k] = at != moves_.end() && at->edge == edge ? static_cast<Index>(at - moves_.begin()) : none;
+      const Move* move = move_of(mesh_.tet_mid_nodes[tet][k] - edges_.first_node());
+      found[k] = move != nullptr ? static_cast<Index>(move - moves_.data()) : none;
     }
     return found;
   }
@@ -225,9 +259,9 @@ class Curving {
     }
   }
 
-  bool make_room(Index tet) {
-    const std::size_t moved = untangling_.untangle(tet);
-    moved_inside_ += moved;
+  bool make_room(Index tet, bool farther = false) {
+    std::size_t moved = untangling_.untangle(tet);
+    if (moved == 0 && farther) moved = untangling_.untangle_farther(tet);
     return moved > 0;
   }
 
@@ -235,11 +269,11 @@ class Curving {
   // inside that was put back there stays.
   void draw_back() {
     std::vector<Index> work = curved_;
-    while (!work.empty()) {
+    while (!work.empty() && !execution_.cancelled()) {
       const Index tet = work.back();
       work.pop_back();
       for (unsigned steps = 0; !is_valid(curved_tet(mesh_, tet)); ++steps) {
-        if (steps % steps_per_try == 0 && make_room(tet)) break;
+        if (steps % steps_per_try == 0 && make_room(tet, steps == 0)) break;
         const Index move = move_at_fault(tet);
         if (move == none) {
           put_back_inside(tet, work);
@@ -262,6 +296,7 @@ class Curving {
     std::sort(drawn.begin(), drawn.end(),
               [&](Index a, Index b) { return left(a) != left(b) ? left(a) > left(b) : a < b; });
     for (const Index m : drawn) {
+      if (execution_.cancelled()) return;
       if (norm(moves_[m].way) > farthest * length_of(moves_[m].edge)) continue;
       double low = moves_[m].share, high = 1;
       for (double share = high; high - low > forward_precision; share = 0.5 * (low + high)) {
@@ -287,10 +322,8 @@ class Curving {
   void put_back_inside(Index tet, std::vector<Index>& work) {
     for (const Index node : mesh_.tet_mid_nodes[tet]) {
       const Index edge = node - edges_.first_node();
-      const auto [a, b] = edges_.ends(edge);
-      const Point middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
-      if (!untangling_.may_move(edge) || mesh_.points[node] == middle) continue;
-      mesh_.points[node] = middle;
+      if (!untangling_.may_move(edge) || mesh_.points[node] == home(edge)) continue;
+      mesh_.points[node] = home(edge);
       untangling_.keep(edge);
       for (const Index other : untangling_.tets_at(edge))
         if (other != tet) work.push_back(other);
@@ -344,12 +377,12 @@ class Curving {
   MeshEdges edges_;
   NearestOnFeatures nearest_;
   FlatFeatures flat_;
-  ExactGeometry exact_;  // limited; empty when there is none
-  std::vector<Move> moves_;         // sorted by edge
-  std::vector<Index> curved_;                     // tets with moves
+  ExactGeometry exact_;                   // limited; empty when there is none
+  std::vector<Move> moves_;               // sorted by edge
+  std::vector<SlightMove> slight_moves_;  // the same
+  std::vector<Index> curved_;             // tets with moves
   std::vector<std::vector<Index>> tets_at_move_;
   Untangling untangling_;
-  std::size_t moved_inside_ = 0;
 };
 
 }  // namespace
@@ -358,22 +391,27 @@ class Curving {
 namespace second_order {
 namespace {
 
-// What takes the place of one tet may be no better: another round follows as long as there are fewer, at most so
-// many times.
+// What takes the place of one tet may be no better: another round follows as long as there are fewer, at most
+// so many times.
 constexpr unsigned most_rounds = 4;
 
 /// Takes tets out of a mesh of first order; false when none could be.
-bool replace_tets(TetMesh& mesh, const Plc& plc, std::span<const UnwantedTet> unwanted,
-                  const SecondOrderOptions& options) {
-  const double distance = options.distance > 0 ? options.distance : default_distance(0, plc.bounds.diagonal());
+bool replace_in_mesh(TetMesh& mesh, const Plc& plc, std::span<const UnwantedTet> unwanted,
+                     const SecondOrderOptions& options) {
+  const double distance =
+      options.distance > 0 ? options.distance : default_distance(0, plc.bounds.diagonal());
+  const std::size_t vertices = mesh.points.size();
   std::size_t gone = 0;
   ThreadLimit(options.threads).run([&] {
     improvement::Workpiece workpiece(mesh, plc, distance);
     const improvement::ThinShape thin(plc, mesh, options.thin_angle);
     gone = improvement::replace_tets(workpiece, unwanted, improvement::ThinRule(thin), 1);
     workpiece.complex.store();
-    improvement::mark_thin_tets(mesh, options.radius_edge);
+    if (gone > 0) improvement::mark_thin_tets(mesh, options.radius_edge);
   });
+  for (std::size_t v = vertices; options.exact && v < mesh.points.size(); ++v)  // on planar patches or inside
+    if (mesh.features[v].dimension == 2)
+      mesh.points[v] = options.exact(2, mesh.features[v].feature, mesh.points[v]).value_or(mesh.points[v]);
   return gone > 0;
 }
 
@@ -384,6 +422,8 @@ SecondOrderReport make_second_order(TetMesh& mesh, const Plc& plc, const SecondO
                                     const Execution& execution) {
   if (!(options.least_jacobian >= 0 && options.least_jacobian < 1))
     throw OptionError("least-jacobian must be at least 0 and below 1");
+  if (!(options.thin_angle >= 0 && options.thin_angle <= 30))
+    throw OptionError("the smallest angle of thin tetrahedra must be from 0 to 30 degrees");
   const auto start = std::chrono::steady_clock::now();
   const std::size_t tets_before = mesh.tets.size();
   std::size_t flat_before = SIZE_MAX, invalid_before = SIZE_MAX;
@@ -399,19 +439,21 @@ SecondOrderReport make_second_order(TetMesh& mesh, const Plc& plc, const SecondO
       const auto flat = curving.flat_at_corners();
       const bool fewer = flat.size() < flat_before;
       flat_before = flat.size();
-      if (!flat.empty() && fewer && second_order::replace_tets(mesh, plc, flat, options)) continue;
+      if (!flat.empty() && fewer && second_order::replace_in_mesh(mesh, plc, flat, options)) continue;
     }
     const auto invalid = curving.place_nodes();
     if (may_replace && !invalid.empty() && invalid.size() < invalid_before) {
       invalid_before = invalid.size();
       curving.take_nodes_back();
-      second_order::replace_tets(mesh, plc, invalid, options);
+      second_order::replace_in_mesh(mesh, plc, invalid, options);
       continue;
     }
     report = curving.finish();
+    report.cancelled = execution.cancelled();
+    if (report.cancelled) curving.take_nodes_back();
     break;
   }
-  if (!report.cancelled) report.more_tets = static_cast<std::ptrdiff_t>(mesh.tets.size() - tets_before);
+  report.more_tets = static_cast<std::ptrdiff_t>(mesh.tets.size() - tets_before);
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;
 }

@@ -18,7 +18,7 @@ constexpr unsigned most_barriers = 12, steps_per_barrier = 15, remembered_steps 
 // What rises by less with one barrier has no room.
 constexpr double least_rise = 0.01;
 // Moving nodes farther around costs some milliseconds: no more after so many times in vain.
-constexpr std::size_t most_wide_failures = 200;
+constexpr std::size_t most_wide_failures = 100;
 // The first step moves no node farther than this share of the shortest edge.
 constexpr double first_step = 0.05;
 
@@ -73,24 +73,24 @@ class Directions {
 Untangling::Untangling(TetMesh& mesh, const MeshEdges& edges, const Plc& plc, double least_jacobian)
     : mesh_(mesh), edges_(edges), plc_(plc), least_jacobian_(least_jacobian) {}
 
-bool Untangling::may_move(Index edge) const {
+bool Untangling::is_free(Index edge) const {
   const TetMesh::VertexFeature& feature = edges_.feature(edge);
-  const bool inside = feature.dimension == 3 || (feature.dimension == 2 && feature.feature != none &&
-                                                 plc_.patches[feature.feature].planar);
-  return inside && !kept_.contains(edge);
+  return feature.dimension == 3 ||
+         (feature.dimension == 2 && feature.feature != none && plc_.patches[feature.feature].planar);
 }
 
-std::size_t Untangling::untangle(Index tet) {
-  std::size_t moved = untangle_within(tet, false);
-  if (moved > 0 || wide_failures_ >= most_wide_failures) return moved;
-  moved = untangle_within(tet, true);
+std::size_t Untangling::untangle_farther(Index tet) {
+  if (wide_failures_ >= most_wide_failures) return 0;
+  const std::size_t moved = untangle_within(tet, true);
   if (moved == 0) ++wide_failures_;
   return moved;
 }
 
 std::size_t Untangling::untangle_within(Index tet, bool wide) {
+  const auto& nodes = mesh_.tet_mid_nodes[tet];
+  const auto is_free = [this](Index node) { return may_move(node - edges_.first_node()); };
+  if (std::none_of(nodes.begin(), nodes.end(), is_free)) return 0;
   gather(tet, wide);
-  if (free_.empty()) return 0;
   std::vector<Point> before;
   for (const Free& f : free_) before.push_back(mesh_.points[f.node]);
   std::vector<Index> valid;
@@ -156,7 +156,9 @@ std::vector<Index> Untangling::tets_at(Index edge) {
   return found;
 }
 
-bool Untangling::is_valid(Index tet) const { return jacobian_exceeds(curved_tet(mesh_, tet), least_jacobian_); }
+bool Untangling::is_valid(Index tet) const {
+  return jacobian_exceeds(curved_tet(mesh_, tet), least_jacobian_);
+}
 
 double Untangling::least_coefficient() const {
   double least = INFINITY;
@@ -191,8 +193,7 @@ double Untangling::objective(double barrier, std::vector<Vector>* gradient) cons
   return sum;
 }
 
-// False when nothing could be lowered.
-bool Untangling::minimize(double barrier) {
+void Untangling::minimize(double barrier) {
   std::vector<Vector> gradient, next_gradient;
   double value = objective(barrier, &gradient);
   Directions directions;
@@ -201,7 +202,6 @@ bool Untangling::minimize(double barrier) {
     const auto [a, b] = edges_.ends(f.node - edges_.first_node());
     shortest = std::min(shortest, distance(mesh_.points[a], mesh_.points[b]));
   }
-  bool any = false;
   for (unsigned step = 0; step < steps_per_barrier; ++step) {
     std::vector<Vector> way = directions.downhill(gradient);
     double slope = dot(way, gradient), farthest = 0;
@@ -215,7 +215,8 @@ bool Untangling::minimize(double barrier) {
     }();
     double after = INFINITY;
     for (unsigned h = 0; h < most_halvings; ++h, length *= 0.5) {
-      for (std::size_t f = 0; f < free_.size(); ++f) mesh_.points[free_[f].node] = before[f] + length * way[f];
+      for (std::size_t f = 0; f < free_.size(); ++f)
+        mesh_.points[free_[f].node] = before[f] + length * way[f];
       after = objective(barrier, nullptr);
       if (after <= value + 1e-4 * length * slope) break;
     }
@@ -223,7 +224,6 @@ bool Untangling::minimize(double barrier) {
       for (std::size_t f = 0; f < free_.size(); ++f) mesh_.points[free_[f].node] = before[f];
       break;
     }
-    any = true;
     objective(barrier, &next_gradient);
     for (Vector& w : way) w = length * w;
     add(gradient, -1, next_gradient);
@@ -232,7 +232,6 @@ bool Untangling::minimize(double barrier) {
     gradient = next_gradient;
     value = after;
   }
-  return any;
 }
 
 }  // namespace collarmesh::second_order

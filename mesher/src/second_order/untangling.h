@@ -11,21 +11,25 @@
 
 namespace collarmesh::second_order {
 
-/// Makes curved tets valid by moving nodes that lie on no smooth feature: those inside regions anywhere, those
-/// on planar patches in their planes. They follow the curved edges beside them, as far as it takes. The sum of
-/// squares of a barrier and of what the Jacobian's coefficients differ from those of the straight tet is
-/// lowered, the barrier just below the least of them, until that is high enough (Toulorge, Geuzaine, Remacle
-/// and Lambrechts, Robust untangling of curvilinear meshes, 2013).
+/// Makes curved tets valid by moving nodes that lie on no smooth feature: those inside regions anywhere,
+/// those on planar patches in their planes. They follow the curved edges beside them, as far as it takes. The
+/// sum of squares of a barrier and of what the Jacobian's coefficients differ from those of the straight tet
+/// is lowered, the barrier just below the least of them, until that is high enough (Toulorge, Geuzaine,
+/// Remacle and Lambrechts, Robust untangling of curvilinear meshes, 2013).
 class Untangling {
  public:
   /// All are kept by reference. The mesh has its nodes already.
   Untangling(TetMesh& mesh, const MeshEdges& edges, const Plc& plc, double least_jacobian);
 
-  /// Make a tet valid, and none invalid. How many nodes were moved for that; 0: that was not possible, and all
-  /// are where they were.
-  std::size_t untangle(Index tet);
-  /// May the node of this edge be moved?
-  bool may_move(Index edge) const;
+  /// Make a tet valid, and none invalid. How many nodes were moved for that; 0: that was not possible, and
+  /// all are where they were.
+  std::size_t untangle(Index tet) { return untangle_within(tet, false); }
+  /// The same with more nodes around, at some times the cost; not after many times in vain.
+  std::size_t untangle_farther(Index tet);
+  /// Is the node of this edge inside a region or on a planar patch?
+  bool is_free(Index edge) const;
+  /// May it be moved?
+  bool may_move(Index edge) const { return is_free(edge) && !kept_.contains(edge); }
   /// It may not, from here on.
   void keep(Index edge) { kept_.insert(edge); }
   std::vector<Index> tets_at(Index edge);
@@ -41,7 +45,7 @@ class Untangling {
   void gather(Index tet, bool wide);
   double objective(double barrier, std::vector<Vector>* gradient) const;
   double least_coefficient() const;
-  bool minimize(double barrier);
+  void minimize(double barrier);
   bool is_valid(Index tet) const;
 
   TetMesh& mesh_;
