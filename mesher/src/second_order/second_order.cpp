@@ -400,7 +400,6 @@ bool replace_in_mesh(TetMesh& mesh, const Plc& plc, std::span<const UnwantedTet>
                      const SecondOrderOptions& options) {
   const double distance =
       options.distance > 0 ? options.distance : default_distance(0, plc.bounds.diagonal());
-  const std::size_t vertices = mesh.points.size();
   std::size_t gone = 0;
   ThreadLimit(options.threads).run([&] {
     improvement::Workpiece workpiece(mesh, plc, distance);
@@ -409,9 +408,6 @@ bool replace_in_mesh(TetMesh& mesh, const Plc& plc, std::span<const UnwantedTet>
     workpiece.complex.store();
     if (gone > 0) improvement::mark_thin_tets(mesh, options.radius_edge);
   });
-  for (std::size_t v = vertices; options.exact && v < mesh.points.size(); ++v)  // on planar patches or inside
-    if (mesh.features[v].dimension == 2)
-      mesh.points[v] = options.exact(2, mesh.features[v].feature, mesh.points[v]).value_or(mesh.points[v]);
   return gone > 0;
 }
 
