@@ -406,7 +406,7 @@ bool replace_in_mesh(TetMesh& mesh, const Plc& plc, std::span<const UnwantedTet>
     const improvement::ThinShape thin(plc, mesh, options.thin_angle);
     gone = improvement::replace_tets(workpiece, unwanted, improvement::ThinRule(thin), 1);
     workpiece.complex.store();
-    if (gone > 0) improvement::mark_thin_tets(mesh, options.radius_edge);
+    improvement::mark_thin_tets(mesh, options.radius_edge);
   });
   return gone > 0;
 }
