@@ -121,8 +121,7 @@ class Curving {
     double share = 1;  ///< of the way that it goes
   };
 
-  /// The same on a planar patch or straight curve, by little more than rounding: it always goes all of its
-  /// way.
+  /// The same on a planar patch, by little more than rounding: it always goes all of its way.
   struct SlightMove {
     Index edge;
     Vector way;
@@ -384,12 +383,6 @@ class Curving {
   std::vector<std::vector<Index>> tets_at_move_;
   Untangling untangling_;
 };
-
-}  // namespace
-}  // namespace second_order
-
-namespace second_order {
-namespace {
 
 // What takes the place of one tet may be no better: another round follows as long as there are fewer, at most
 // so many times.
