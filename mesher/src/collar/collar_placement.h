@@ -9,7 +9,8 @@
 
 namespace collarmesh {
 
-/// Places the balls of a collar system, their circles' corner points with them.
+/// Places the balls of a collar system, their circles' corner points with them. Throws PlcError where a ball
+/// would be smaller than CollarOptions::smallest_radius.
 class CollarPlacement {
  public:
   /// All are kept by reference. `system` knows its creases, `gap` how large balls may be there.

@@ -89,7 +89,8 @@ class CollarSystem {
   void complete();
   bool consecutive(Index a, Index b) const { return consecutive_.count(pair_of(a, b)) > 0; }
 
-  /// A ball that contains p in its interior, none if there is none.
+  /// A ball that contains p in its interior, none if there is none. Several threads may ask at once, while no
+  /// balls come.
   Index ball_containing(const Point& p) const;
   bool contains(Index ball, const Point& p) const {
     return squared_distance(p, balls_[ball].centre) < balls_[ball].radius * balls_[ball].radius;

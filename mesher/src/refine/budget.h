@@ -8,7 +8,8 @@
 namespace collarmesh {
 
 /// Time, memory and vertices that a refinement may use, and whether the caller wants it to go on.
-/// The loop asks now and then.
+/// The loop asks now and then. A time limit is for callers of `generate`: the pipeline, the program and the
+/// Python package watch the time of all stages themselves, pass none, and cancel.
 class Budget {
  public:
   /// What is in use.

@@ -29,6 +29,7 @@ class CellQuality {
 
   /// What destroys a cell, if anything can.
   std::optional<Candidate> candidate(Index cell) { return candidate(cell, random_); }
+  /// Several threads may ask at once, each with offsets of its own.
   std::optional<Candidate> candidate(Index cell, RandomOffsets& random) const;
   /// Is the entry of the queue that of a cell that is still there, outside the collars?
   bool due(const WorkQueue::Entry& entry) const {
@@ -39,8 +40,8 @@ class CellQuality {
 
   /// Precondition: surface, collar cells and sizes know the new cells.
   void cells_made(const ConflictZone& zone, Index vertex);
-  /// Queue a cell that is to be destroyed. For several threads at once, as long as no size is asked of the
-  /// caller and there is no vertex ratio.
+  /// Queue a cell that is to be destroyed. Several threads may ask at once, each with a queue of its own, as
+  /// long as no size is asked of the caller or kept at vertices and there is no vertex ratio.
   void judge(Index cell, WorkQueue& queue) const;
   /// At the start, and when sizes have changed everywhere.
   void judge_all();

@@ -42,14 +42,16 @@ class CollarCreator {
   bool waits_for_ball(Index point) const {
     return placement_ && collars_.is_crease_vertex(point) && collars_.ball_at_vertex(point) == none;
   }
-  /// Paper, Procedure 4. `near`: the mesh vertex whose cell contains the vertex.
+  /// Paper, Procedure 4. `near`: the mesh vertex whose cell contains the vertex. Precondition: it waits for
+  /// its ball.
   void create_at_vertex(Index vertex, Index near);
-  /// Is any crease vertex or curve isolated now? Vertices get their balls at once.
+  /// Is any crease vertex or curve isolated now? Vertices get their balls at once; curves when
+  /// `create_on_isolated_curves` is called. Precondition: all other parts know the new cells.
   void cells_made(const ConflictZone& zone, Index vertex);
   /// The balls of curves that have become isolated.
   void create_on_isolated_curves();
   /// A subsegment would be split: if it is a crease's whose chain has started, the crease gets its balls
-  /// instead. Did it?
+  /// instead. Did it? Then the subsegment is gone.
   bool create_at_subsegment(Index subsegment);
   /// Creates the balls of all creases that have none yet. False when there are no such creases.
   bool create_remaining();

@@ -76,19 +76,28 @@ class CurveChains {
   Index end_to_resolve(Index ball, const Point& intruder) const;
 
   bool due(const WorkQueue::Entry& entry) const { return is_there({entry.id, entry.stamp}); }
-  /// Where to split a subsegment; nothing when its ball is at the floor.
+  // To split a subsegment the loop calls, in this order: CollarCreator::create_at_subsegment, which must say
+  // no; `split_of`; `remove`; force_insert; `add_pieces`. Where a vertex is there already (`start` is none),
+  // `can_join` must say yes before `remove`, and the vertex takes over the curve as its feature instead of
+  // force_insert. When the candidate warps, nothing is removed, and `queue_again` follows.
+  /// Where to split a subsegment; nothing, and given up, when its ball is at the floor. Precondition: the
+  /// subsegment is there (`due`, or `subsegment_of` a ball).
   std::optional<Split> split_of(Index subsegment);
-  /// A subsegment is about to be split: its ball goes before the vertex comes, which may lie in it.
-  void remove(const Split& split);
-  /// The two pieces of a subsegment that was removed. The mesh has this vertex at the place.
-  void add_pieces(const Split& split, Index vertex);
   /// Does the mesh vertex at the place split the subsegment? Not if it is one of its ends.
   bool can_join(const Split& split) const;
-  /// Queue a subsegment again that is still there after something else was inserted.
+  /// A subsegment is about to be split: its ball goes before the vertex comes, which may lie in it.
+  /// Precondition: nothing was inserted since `split_of`.
+  void remove(const Split& split);
+  /// The two pieces of a subsegment that was removed. Precondition: the mesh has this vertex at the place,
+  /// and sizes know it.
+  void add_pieces(const Split& split, Index vertex);
+  /// Queue a subsegment again if it is still there after something else was inserted.
   void queue_again(const Split& split, WorkQueue::Priority priority);
 
   /// An unresolved point has become a mesh vertex: first subsegments that waited for it may start.
   void point_resolved(Index point);
+  /// A vertex has come: balls that it is nearest to move to it. Subsegments whose balls hold it are queued,
+  /// or, while they still wait, their ends. Precondition: the mesh has the vertex.
   void cells_made(const ConflictZone& zone, Index vertex);
   /// Sizes have changed everywhere.
   void judge_all();

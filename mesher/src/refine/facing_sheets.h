@@ -32,7 +32,8 @@ class FacingSheets {
 
   /// These vertices face each other; the second one may be about to come.
   void note_pair(Index a, Index b);
-  /// Is a cell within the radius-edge bound but for the edges between vertices of a pair?
+  /// Is a cell within the radius-edge bound but for the edges between vertices of a pair? Several threads may
+  /// ask at once, while nobody notes pairs.
   bool fills_gap(Index cell, double bound) const { return !pairs_.empty() && within_bound(cell, bound); }
 
   std::size_t bytes() const;

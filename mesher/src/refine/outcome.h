@@ -17,9 +17,10 @@ class Outcome {
 
   explicit Outcome(const Frame& frame) : frame_(frame) {}
 
-  /// Something could not be done. `next`: what the user can do.
+  /// Something could not be done. `next`: what the user can do. The refinement goes on: the loop works off
+  /// the queue, checks nothing any more and returns `guarantee_missed`.
   void give_up(const Point& where, const std::string& what, const std::string& next);
-  /// The refinement ends with this status, whatever else was reported.
+  /// The refinement ends with this status, whatever else was reported: the loop returns, there is no mesh.
   void stop(MeshStatus status, const Point& where, const std::string& what, const std::string& next);
 
   bool given_up() const { return !message_.empty(); }

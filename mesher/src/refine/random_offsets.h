@@ -7,7 +7,9 @@
 namespace collarmesh {
 
 /// Pseudo-random offsets of what is inserted: exact centres of cospherical input make flat cells whose
-/// refinement never ends. One sequence for the whole refinement: who asks when decides about the mesh.
+/// refinement never ends. The loop and the parts it drives have one sequence: who asks when decides about the
+/// mesh. BlockRefinement has one for each cell, from the cell's centre and the seed, so that the number of
+/// threads decides nothing.
 class RandomOffsets {
  public:
   /// The collars are kept by reference.

@@ -60,6 +60,9 @@ class Refinement {
   MeshStatistics statistics() const;
 
  private:
+  /// The order matters: collars and curves take the numbers of the complex' vertices for those of the first
+  /// unresolved points; curves ask which creases balls cover and where balls clip them; cells are judged when
+  /// it is known which lie in collars.
   void start();
   void process(const WorkQueue::Item& item);
   void destroy_cell(const WorkQueue::Item& item);

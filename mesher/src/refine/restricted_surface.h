@@ -27,18 +27,18 @@ struct RestrictedTriangle {
 /// record knows nothing.
 struct TriangleNotes {
   bool judged = false;            ///< since its cells last changed (TriangleQuality)
-  bool given_up = false;          ///< at the floor: no further insertion here (TriangleQuality)
+  bool given_up = false;          ///< nothing could be inserted to destroy it (TriangleQuality)
   bool surface_needs_it = false;  ///< it is split although x may lie in a collar ball (TriangleQuality)
   bool known_near = false;  ///< no sample of it is farther from its patch than the tolerance (SurfaceCheck)
 };
 
 /// The restricted Delaunay triangulation of the mesh to the patches, and the regions of the cells.
 ///
-/// Invariants, between insertions: a cell has the region that its circumcentre lies in, as far as its
-/// coordinates are not rounded across the surface; a face is marked, from both of its cells, when its dual
-/// edge crosses a patch, and then it has a record. The loop tells of insertions, BlockRefinement of
-/// cells far from the surface; the parts that judge triangles read records and write notes; CollarCreator
-/// tells of new balls; at the very end SurfaceCheck gives flat cells to the outside.
+/// Invariants, between insertions and until `give_outside`: a cell has the region that its circumcentre lies
+/// in, as far as its coordinates are not rounded across the surface; a face is marked, from both of its
+/// cells, when its dual edge crosses a patch, and then it has a record. The loop tells of insertions,
+/// BlockRefinement of cells far from the surface; the parts that judge triangles read records and write
+/// notes; CollarCreator tells of new balls; at the very end SurfaceCheck gives flat cells to the outside.
 class RestrictedSurface {
  public:
   /// All are kept by reference. Labels the cells that the mesh has.
@@ -68,9 +68,11 @@ class RestrictedSurface {
   /// crosses the patch.
   Point circumcentre(FaceId face) const;
 
-  /// The zone's cells are about to go: the triangles between them go, too.
+  /// The zone's cells are about to go: the triangles between them go, too. Precondition: the mesh still has
+  /// them; RefinedMesh::insert with the same zone comes next.
   void cells_vanish(const ConflictZone& zone);
   /// Label the new cells; find restricted triangles between them, and look again at those on the border.
+  /// Precondition: `cells_vanish` had the same zone; SurfaceNodes and CollarCells know the new vertex.
   void cells_made(const ConflictZone& zone, Index vertex);
   /// Before cells are made between vertices that the surface is far from: room for all.
   void fit_mesh();
@@ -80,7 +82,7 @@ class RestrictedSurface {
   /// A ball has come: does it hold the places of this cell's triangles?
   void note_ball(Index cell, const CollarBall& ball);
   /// A flat cell at the boundary, with a triangle there, is given to the outside. Each of its faces is marked
-  /// if it was not, and the reverse.
+  /// if it was not, and the reverse. Precondition: nothing is inserted any more.
   void give_outside(Index cell);
 
   std::size_t bytes() const {

@@ -30,9 +30,9 @@ struct Stitched {
   std::vector<Index> open;  ///< mesh vertices of faces between regions that lie on no patch between them
 };
 
-/// Rip and stitch (paper, Procedure 5): the cells inside the collars are dropped; each triangle of the collar
-/// surface makes a star tet with its ball's centre, each edge between triangles of consecutive balls a book
-/// tet with the two centres.
+/// Rip and stitch (paper, Procedure 5). `extract` drops the cells inside the collars; this makes what takes
+/// their place: each triangle of the collar surface makes a star tet with its ball's centre, each edge
+/// between triangles of consecutive balls a book tet with the two centres.
 ///
 /// State: the result, of the mesh as it was when the loop asked last. SurfaceTopology and extraction read it.
 class RipAndStitch {

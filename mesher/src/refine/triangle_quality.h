@@ -13,7 +13,8 @@
 namespace collarmesh {
 
 /// Which restricted triangles are to be destroyed: unresolved ones, whose vertices lie elsewhere, whose dual
-/// edge crosses several sheets or whose circumcentre is too far from the surface; and large ones.
+/// edge crosses several sheets or whose circumcentre is too far from the surface; and large ones. (The first
+/// two are found by RestrictedSurface::restrict_face, when the record is made.)
 ///
 /// State: the notes of the restricted surface. Invariant: after an insertion every triangle of the new cells
 /// is judged, and those that are to be destroyed are in the queue. The loop tells of insertions and takes
@@ -42,9 +43,10 @@ class TriangleQuality {
   bool due(const WorkQueue::Entry& entry) const;
   /// Queue a triangle again that is still there after something else was inserted in its place.
   void queue_again(const WorkQueue::Item& item, double squared_radius);
-  /// Nothing more is inserted to destroy a triangle.
+  /// Nothing could be inserted to destroy a triangle: nothing more is tried.
   void give_up(FaceId face) { surface_.notes(face).given_up = true; }
 
+  /// Precondition: surface and sizes know the new cells and the vertex.
   void cells_made(const ConflictZone& zone);
   /// Sizes have changed everywhere.
   void judge_all();

@@ -16,6 +16,8 @@ namespace collarmesh {
 /// working set in the cache. Entries are never removed early: whoever takes one compares its stamp.
 class WorkQueue {
  public:
+  /// In the order in which work is taken; doc/architecture/refinement.md and doc/theory.md say why.
+  /// Refinement::run compares priorities and BlockRefinement names some: look there when the order changes.
   enum Priority : unsigned {
     encroached_subsegments,
     ends_of_encroached_subsegments,  ///< unresolved ends of a curve's first subsegments
