@@ -1,12 +1,11 @@
-// The parts of the refinement that judge and report: which cells and triangles are queued, target sizes,
-// which cells lie in collars, random offsets, the outcome and the budget.
+// The parts of the refinement that judge: which cells and triangles are queued, which cells fill gaps, target
+// sizes, which cells lie in collars.
 #include <gtest/gtest.h>
 
 #include <array>
 #include <random>
 #include <set>
 
-#include "refine/budget.h"
 #include "refine/cell_quality.h"
 #include "refine/triangle_quality.h"
 #include "support/plc_shapes.h"
@@ -266,67 +265,6 @@ TEST(RefineCollarCells, ACellIsTakenInAsLongAsItLives) {
   EXPECT_EQ(known.collar_cells.taken_in_by(cell), 7U);
   known.insert({0.4, 0.45, 0.5});
   EXPECT_EQ(known.collar_cells.taken_in_by(cell), none);
-}
-
-TEST(RefineRandomOffsets, AreShortOrthogonalAndTheSameForASeed) {
-  const CollarSystem no_collars;
-  RandomOffsets offsets(7, no_collars), same(7, no_collars), other(8, no_collars);
-  const Vector normal{1, 2, 3};
-  bool differs = false;
-  for (int k = 0; k < 100; ++k) {
-    const Vector v = offsets.outside_collars({0, 0, 0}, 0.1, normal);
-    EXPECT_NEAR(dot(v, normal), 0, 1e-15);
-    EXPECT_LE(norm(v), 0.1 * std::sqrt(3.0));
-    EXPECT_EQ(v, same.outside_collars({0, 0, 0}, 0.1, normal));
-    differs = differs || !(v == other.outside_collars({0, 0, 0}, 0.1, normal));
-  }
-  EXPECT_TRUE(differs);
-}
-
-TEST(RefineOutcome, KeepsTheFirstMessageUnlessItIsStopped) {
-  const Frame frame;
-  Outcome outcome(frame);
-  EXPECT_FALSE(outcome.given_up());
-  outcome.give_up({1, 2, 3}, "a first thing", "do this");
-  outcome.give_up({4, 5, 6}, "a second thing", "do that");
-  EXPECT_EQ(outcome.message(), "a first thing near (1, 2, 3); do this");
-  EXPECT_EQ(outcome.status(), MeshStatus::complete);
-  outcome.stop(MeshStatus::budget_hit, {7, 8, 9}, "the end", "raise it");
-  EXPECT_TRUE(outcome.stopped());
-  EXPECT_EQ(outcome.status(), MeshStatus::budget_hit);
-  EXPECT_EQ(outcome.message(), "the end near (7, 8, 9); raise it");
-  EXPECT_EQ(outcome.where(), (Point{7, 8, 9}));
-}
-
-TEST(RefineBudget, CountsVerticesThatWillComeAndRemembersTheMostMemory) {
-  const Frame frame;
-  Outcome outcome(frame);
-  MeshOptions options;
-  options.max_vertices = 100;
-  const Execution execution;
-  Budget budget(options, execution, outcome);
-  EXPECT_FALSE(budget.spent({60, 300, 5000, 40, {}, 1000}));
-  EXPECT_FALSE(budget.spent({80, 300, 4000, 0, {}, 1000}));
-  EXPECT_EQ(budget.peak_bytes(), 5000U);
-  EXPECT_TRUE(budget.spent({60, 300, 4000, 41, {}, 1000}));
-  EXPECT_EQ(outcome.status(), MeshStatus::budget_hit);
-  EXPECT_NE(outcome.message().find("max-vertices"), std::string::npos);
-}
-
-TEST(RefineBudget, ProgressNeverGoesBackAndMayCancel) {
-  const Frame frame;
-  Outcome outcome(frame);
-  const MeshOptions options;
-  Execution execution;
-  std::vector<double> told;
-  execution.progress = [&](const ProgressReport& progress) {
-    told.push_back(progress.fraction);
-    return false;
-  };
-  Budget budget(options, execution, outcome);
-  EXPECT_TRUE(budget.spent({10, 500, 0, 0, {}, 1000}));
-  EXPECT_EQ(told, std::vector<double>{0.5});
-  EXPECT_EQ(outcome.status(), MeshStatus::cancelled);
 }
 
 }  // namespace
