@@ -16,6 +16,7 @@
 #include "collarmesh/curved_tet.h"
 #include "collarmesh/error.h"
 #include "collarmesh/improve.h"
+#include "improve/shape.h"
 #include "support/meshing.h"
 #include "support/second_order.h"
 #include "support/shapes.h"
@@ -223,6 +224,41 @@ TEST(SecondOrder, TetsThatCurvedEdgesFlattenAreReplaced) {
   EXPECT_GT(replaced, 0U);
   EXPECT_GT(without, 10U);
   EXPECT_LT(with, without / 2);
+}
+
+std::multiset<std::array<Index, 4>> sorted_tets(const TetMesh& mesh) {
+  std::multiset<std::array<Index, 4>> tets;
+  for (auto tet : mesh.tets) {
+    std::sort(tet.begin(), tet.end());
+    tets.insert(tet);
+  }
+  return tets;
+}
+
+// Exact geometry that is too far away asks for more than replacing tets can do, so rounds end in which none
+// could be.
+TEST(SecondOrder, TetsAreMarkedThinEvenWhereNoneCouldBeReplaced) {
+  unsigned none_replaced = 0;
+  for (const double factor : {0.95, 0.9, 0.6}) {
+    const Meshed meshed = coarsened(cylinder(1, 0.08, 120, 2), 0.7);
+    TetMesh mesh = meshed.result.mesh;
+    ASSERT_GT(std::count(mesh.tet_thin.begin(), mesh.tet_thin.end(), 1), 0);
+    SecondOrderOptions options;
+    options.thin_angle = 8;
+    options.exact = [&](unsigned dimension, Index, const Point& p) -> std::optional<Point> {
+      if (dimension == 1) return std::nullopt;
+      return Point{factor * p.x, factor * p.y, p.z};
+    };
+    const SecondOrderReport report = make_second_order(mesh, meshed.plc, options);
+    if (!report.straightened.empty() && sorted_tets(mesh) == sorted_tets(meshed.result.mesh)) ++none_replaced;
+    for (Index t = 0; t < mesh.tets.size(); ++t) {
+      const auto& v = mesh.tets[t];
+      const auto sphere = improvement::circumsphere(
+          {mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]]});
+      EXPECT_EQ(mesh.tet_thin[t] != 0, sphere.squared_radius > 4 * sphere.shortest_squared_edge) << t;
+    }
+  }
+  EXPECT_GT(none_replaced, 0U);
 }
 
 TEST(SecondOrder, CancelledAtAnyTimeItIsOfFirstOrder) {

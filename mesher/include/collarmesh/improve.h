@@ -17,11 +17,11 @@ struct ImproveOptions {
   double thin_reserve = 0;     ///< as CoarsenOptions::reserve
   double distance = 0;         ///< surface distance tolerance on smooth patches; 0: 1/200 of the diagonal
   bool move_vertices = true;   ///< and take some out or in, not only change how they are connected
-  bool keep_vertices = false;  ///< take none out or in beside thin tets but where an angle is above the largest
-                               ///< of theirs: a coarsened mesh has as many as it needs
-  double edges_per_hole = 0;   ///< as MeshOptions::edges_per_hole
-  unsigned passes = 3;         ///< at most, over what could not be helped before
-  unsigned threads = 0;        ///< at most; 0: as many as there are cores. The result does not depend on it
+  bool keep_vertices = false;  ///< take none out or in beside thin tets but where an angle is above the
+                               ///< largest of theirs: a coarsened mesh has as many as it needs
+  double edges_per_hole = 0;  ///< as MeshOptions::edges_per_hole
+  unsigned passes = 3;        ///< at most, over what could not be helped before
+  unsigned threads = 0;       ///< at most; 0: as many as there are cores. The result does not depend on it
 };
 
 /// How much time to spend: 1 changes connections of tets below 15 degrees, 2 is the default, 3 goes on
@@ -33,6 +33,7 @@ struct ImproveReport {
   std::size_t remaining = 0;   ///< and after
   std::size_t edge_removals = 0, boundary_flips = 0, moved_vertices = 0, contracted_edges = 0,
               inserted_vertices = 0;
+  std::size_t detours = 0;  ///< that made tets worse first, with all their operations
   double seconds = 0;
   bool cancelled = false;  ///< the mesh is valid, as good as it had become
 };
@@ -42,11 +43,12 @@ struct ImproveReport {
 /// regions and on patches, by moving vertices within their features, by contracting edges where none
 /// becomes longer than those before, and by inserting vertices amid edges (Freitag and Ollivier-Gooch
 /// 1997; the edge removal is Klincsek's optimal triangulation of the ring, as in Klingner and Shewchuk
-/// 2007, section 2). A sliver with two faces on a smooth patch is taken off the region.
-/// No operation makes the worst tet of its cavity worse, breaks the radius-edge bound (by a tet that is not
-/// thin), touches a
-/// collar, leaves the plane of a planar patch, or takes a smooth patch or curve and its faces or edges
-/// farther apart than `distance`.
+/// 2007, section 2). A sliver with two faces on a smooth patch is taken off the region. For the few tets that
+/// no operation helps, one that makes tets worse is tried with the improvement of what it made; both are
+/// undone unless the tets are better then, compared from the worst one up.
+/// Nothing makes the worst tet of its cavity worse, breaks the radius-edge bound (by a tet that is not thin),
+/// touches a collar, leaves the plane of a planar patch, or takes a smooth patch or curve and its faces or
+/// edges farther apart than `distance`.
 /// Preconditions: `mesh` comes from `generate` for `plc`, first order, with the same `distance`.
 /// Cost: linear in the tets, with a small factor for those below a bound that they can reach.
 ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& options = {},

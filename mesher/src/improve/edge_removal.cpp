@@ -72,6 +72,16 @@ bool Operations::flat(Index a, Index b, Index c, Index d) const {
 }
 
 void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change) {
+  remove_edge_above(tet, i, j, std::nullopt, change);
+}
+
+void Operations::remove_edge_anyhow(Index tet, unsigned i, unsigned j, double least, Change& change) {
+  remove_edge_above(tet, i, j, least, change);
+}
+
+// All new tets are better than `least`; without it, than the worst one at the edge and than `change`.
+void Operations::remove_edge_above(Index tet, unsigned i, unsigned j, std::optional<double> least,
+                                   Change& change) {
   const Index a = complex_[tet].corners[i], b = complex_[tet].corners[j];
   if (complex_.on_curve(a, b)) return;
   complex_.ring(tet, a, b, ring_);
@@ -94,7 +104,7 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change) 
         kept.emplace_back(at, t.faces[corner]);
     }
   }
-  const double above = std::max(worst, change.quality);
+  const double above = least.value_or(std::max(worst, change.quality));
   Change made;
   std::vector<Polygon> polygons;
   std::vector<Index> like;

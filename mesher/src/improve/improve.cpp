@@ -11,8 +11,10 @@
 #include "collarmesh/error.h"
 #include "collarmesh/mesher.h"
 #include "common/parallel_for.h"
+#include "improve/detours.h"
 #include "improve/improve_workpiece.h"
 #include "improve/operations.h"
+#include "improve/remedies.h"
 #include "thread_limit.h"
 
 namespace collarmesh {
@@ -20,12 +22,13 @@ namespace collarmesh {
 namespace improvement {
 namespace {
 
-// An inserted vertex has to bring the tets around it to this share of the wanted quality.
-constexpr double enough = 0.7;
 // Changes are proposed for so many tets at once: few of all, so that they hardly meet.
 constexpr std::size_t tets_per_proposal = 2000;
 constexpr std::size_t most_proposals = 1024;
 constexpr std::size_t steps_between_reports = 1024;
+// Detours are for the few tets that are left, so many and one of so many; a bound that more miss is out of
+// reach. So many operations are tried at most, and one for so many tets.
+constexpr std::size_t few = 50, tets_per_few = 50, trials = 4000, tets_per_trial = 8;
 
 /// Works on the tets below a quality, worst first. Changes are proposed for the worst few of them at once, by
 /// several threads, and made one after the other; what met an earlier one is proposed again. So the result
@@ -36,11 +39,10 @@ class Improvement {
       : workpiece_(workpiece),
         thin_(workpiece.plc, complex().mesh(), options.thin_angle, options.thin_reserve),
         rule_(options.radius_edge, options.thin_angle > 0 ? &thin_ : nullptr),
+        remedies_(workpiece, rule_, options),
         operations_([this] { return Operations(workpiece_, rule_); }),
         execution_(execution),
         move_vertices_(options.move_vertices),
-        keep_vertices_(options.keep_vertices),
-        wanted_(std::sin(options.min_dihedral * std::numbers::pi / 180)),
         passes_(options.passes) {}
 
   ImproveReport run() {
@@ -53,9 +55,8 @@ class Improvement {
       if (changes() == before) break;
       queue_all();
     }
-    const std::vector<double> all = qualities();
-    report_.remaining = static_cast<std::size_t>(
-        std::count_if(all.begin(), all.end(), [this](double q) { return q < wanted_; }));
+    if (move_vertices_ && !report_.cancelled) take_detours();
+    report_.remaining = poor_tets().size();
     report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return report_;
   }
@@ -73,39 +74,33 @@ class Improvement {
 
   const TetComplex& complex() const { return workpiece_.complex; }
 
-  double quality(Index tet) const { return rule_.quality(complex().corners(tet), complex()[tet].corners); }
-
   std::size_t changes() const {
     return report_.edge_removals + report_.boundary_flips + report_.moved_vertices +
            report_.inserted_vertices + report_.contracted_edges;
   }
 
-  // Infinite for what is not to be improved.
-  std::vector<double> qualities() const {
-    std::vector<double> all(complex().size(), INFINITY);
-    parallel_for(all.size(), [&](std::size_t i) {
-      const auto t = static_cast<Index>(i);
-      if (complex()[t].alive && !complex()[t].collar) all[t] = quality(t);
-    });
-    return all;
+  std::vector<Item> poor_tets() const {
+    std::vector<double> all(complex().size());
+    parallel_for(all.size(), [&](std::size_t t) { all[t] = remedies_.poor_quality(static_cast<Index>(t)); });
+    std::vector<Item> poor;
+    for (Index t = 0; t < complex().size(); ++t)
+      if (all[t] < INFINITY) poor.push_back({all[t], t, complex()[t].generation});
+    return poor;
   }
 
   void queue_all() {
-    const std::vector<double> all = qualities();
-    for (Index t = 0; t < complex().size(); ++t)
-      if (all[t] < wanted_) queue_.push({all[t], t, complex()[t].generation});
+    for (const Item& item : poor_tets()) queue_.push(item);
   }
 
   void queue(Index tet) {
-    if (!complex()[tet].alive || complex()[tet].collar) return;
-    const double q = quality(tet);
-    if (q < wanted_) queue_.push({q, tet, complex()[tet].generation});
+    const double q = remedies_.poor_quality(tet);
+    if (q < INFINITY) queue_.push({q, tet, complex()[tet].generation});
   }
 
   bool is_up_to_date(const Item& item) const {
     const auto& tet = complex()[item.tet];
     return tet.alive && tet.generation == item.generation &&
-           quality(item.tet) == item.quality;  // else a vertex has moved since
+           remedies_.quality(item.tet) == item.quality;  // else a vertex has moved since
   }
 
   void work_off() {
@@ -124,12 +119,13 @@ class Improvement {
         return;
       }
       proposals_.assign(batch_.size(), {});
-      parallel_for(batch_.size(),
-                   [&](std::size_t i) { proposals_[i] = propose(operations_.local(), batch_[i].tet); });
+      parallel_for(batch_.size(), [&](std::size_t i) {
+        proposals_[i] = remedies_.propose(operations_.local(), batch_[i].tet);
+      });
       ++batch_number_;
       changed_in_.resize(complex().size(), 0);
       for (std::size_t i = 0; i < batch_.size(); ++i)
-        if (proposals_[i].kind == Change::Kind::none) set_stays(batch_[i].tet, move_vertices_);
+        if (proposals_[i].kind == Change::Kind::none) remedies_.nothing_helps(batch_[i].tet);
       for (std::size_t i = 0; i < batch_.size(); ++i) {
         if (is_untouched(proposals_[i]))
           apply(std::move(proposals_[i]));
@@ -145,45 +141,16 @@ class Improvement {
             !execution_.progress({"improve", 0, complex().mesh().points.size(), complex().size()}));
   }
 
-  // The first that helps of: an edge removed, a corner moved, an edge contracted, a vertex inserted.
-  Change propose(Operations& operations, Index tet) const {
-    Change change;
-    for (unsigned i = 0; i < 4; ++i)
-      for (unsigned j = i + 1; j < 4; ++j) operations.remove_edge(tet, i, j, change);
-    const auto& corners = complex()[tet].corners;
-    const auto found = [&] { return change.kind != Change::Kind::none; };
-    if (found() || !move_vertices_) return change;
-    for (const Index v : corners)
-      if (!stays(v)) operations.move_vertex(v, change);
-    if (found() || !may_change_vertices(tet)) return change;
-    for (const Index v : corners)
-      for (const Index w : corners)
-        if (v != w) operations.contract_edge(v, w, change);
-    for (unsigned i = 0; i < 4 && !found(); ++i)
-      for (unsigned j = i + 1; j < 4 && !found(); ++j)
-        operations.split_edge(corners[i], corners[j], enough * wanted_, change);
-    return change;
-  }
-
-  // Whether a move helps depends on the tets at the vertex alone, each of which may ask.
-  bool stays(Index vertex) const { return vertex < stays_.size() && stays_[vertex]; }
-  void set_stays(Index tet, bool stays) {
-    stays_.resize(complex().mesh().points.size(), false);
-    for (const Index v : complex()[tet].corners) stays_[v] = stays;
-  }
-
-  // In a coarsened mesh walls are one element thick and tets at them poor for that; vertices would bring
-  // back what has been removed. So only tets beyond the largest angle of thin ones may change their number
-  // there, and all where no thin tet is near. (Judged when the batch begins, whatever it changes.)
-  bool may_change_vertices(Index tet) const {
-    if (!keep_vertices_ || rule_.is_blunt(quality(tet))) return true;
-    std::vector<Index> star;
-    for (const Index v : complex()[tet].corners) {
-      complex().star(v, star);
-      for (const Index t : star)
-        if (!rule_.is_within_bound(complex().corners(t))) return false;
-    }
-    return true;
+  void take_detours() {
+    std::vector<Index> poor;
+    for (const Item& item : poor_tets()) poor.push_back(item.tet);
+    const auto may_change = [this](Index t) { return remedies_.may_change_vertices(t); };
+    const auto count = static_cast<std::size_t>(std::ranges::count_if(poor, may_change));
+    if (count == 0 || count > few + complex().size() / tets_per_few) return;
+    workpiece_.prepare();
+    Detours detours(workpiece_, rule_, remedies_, operations_.local(),
+                    trials + complex().size() / tets_per_trial);
+    report_.detours = detours.take(std::move(poor), [this] { return report_.cancelled = stopped(); });
   }
 
   // Is all that the change depends on as it was when the batch was begun? That is in the tets that it
@@ -213,7 +180,7 @@ class Improvement {
     for (const Index t : workpiece_.apply(std::move(change))) {
       if (t >= changed_in_.size()) changed_in_.resize(complex().size(), 0);
       changed_in_[t] = batch_number_;
-      set_stays(t, false);
+      remedies_.changed(t);
       queue(t);
     }
   }
@@ -221,17 +188,16 @@ class Improvement {
   Workpiece& workpiece_;
   ThinShape thin_;
   SliverRule rule_;
+  Remedies remedies_;
   tbb::enumerable_thread_specific<Operations> operations_;
   const Execution& execution_;
-  bool move_vertices_, keep_vertices_;
-  double wanted_;
+  bool move_vertices_;
   unsigned passes_;
   std::priority_queue<Item> queue_;
   std::vector<Item> batch_;
   std::vector<Change> proposals_;
   std::uint32_t batch_number_ = 0;
   std::vector<std::uint32_t> changed_in_;  // the batch that changed a tet last
-  std::vector<bool> stays_;  // by vertex: no move of it helps, and nothing at it has changed since
   ImproveReport report_;
 };
 

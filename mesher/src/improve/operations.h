@@ -27,6 +27,8 @@ class Operations {
   /// An edge inside a patch is removed together with its two triangles there, and a sliver that has both
   /// of them goes to the other side.
   void remove_edge(Index tet, unsigned i, unsigned j, Change& change);
+  /// The same, however good the tets at the edge are now; all new ones are better than `least`.
+  void remove_edge_anyhow(Index tet, unsigned i, unsigned j, double least, Change& change);
   /// Move a vertex within its feature to where the worst tet around it is better.
   void move_vertex(Index vertex, Change& change);
   /// Insert a vertex amid an edge inside a region or a patch, where it serves best, when the tets around it
@@ -80,6 +82,7 @@ class Operations {
   double new_quality(const std::array<Index, 4>& corners, double above) const;
 
   // Edge removal.
+  void remove_edge_above(Index tet, unsigned i, unsigned j, std::optional<double> least, Change& change);
   double triangulate(Index a, Index b, const Polygon& polygon, bool closed, double above);
   bool edges_allowed(Index vertex, const Point& from, const Point& to) const;
   void collect(Index a, Index b, const Polygon& polygon, std::size_t i, std::size_t j, Index like,

@@ -34,7 +34,7 @@ using Clock = std::chrono::steady_clock;
 
 // Where there is exact geometry the bounds have to hold still when the vertices have moved onto it: its
 // triangles' share of the distance twice, and some room; of the ratio and the angles a little.
-constexpr double distance_left = 0.75, ratio_left = 0.99, angle_reserve = 0.05;
+constexpr double distance_left = 0.75, ratio_left = 0.99, angle_reserve = 0.05, dihedral_reserve = 0.02;
 
 /// A stage ended before its end; `PipelineResult::result` says why.
 struct Ended {};
@@ -334,6 +334,7 @@ class Pipeline {
       options.keep_vertices = true;
     }
     if (options_.min_dihedral > 0) options.min_dihedral = options_.min_dihedral;
+    if (exact()) options.min_dihedral *= 1 + dihedral_reserve;
     made_.improvement = improve(workpiece, options, inner_);
     if (made_.improvement.cancelled) stop();
   }

@@ -1,0 +1,68 @@
+#include "improve/remedies.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace collarmesh::improvement {
+
+namespace {
+
+// An inserted vertex has to bring the tets around it to this share of the wanted quality.
+constexpr double enough = 0.7;
+// Tets count as thin neighbours from this multiple of the bound on: where vertices move onto exact geometry
+// afterwards, 1% of the bound is kept free for that, and what is within all of it will not be called thin.
+constexpr double clearly_thin = 1 / 0.99 + 1e-4;
+
+}  // namespace
+
+Remedies::Remedies(const Workpiece& workpiece, const SliverRule& rule, const ImproveOptions& options)
+    : complex_(workpiece.complex),
+      rule_(rule),
+      clearly_thin_above_(clearly_thin * options.radius_edge),
+      wanted_(std::sin(options.min_dihedral * std::numbers::pi / 180)),
+      move_vertices_(options.move_vertices),
+      keep_vertices_(options.keep_vertices) {}
+
+double Remedies::poor_quality(Index tet) const {
+  if (!complex_[tet].alive || complex_[tet].collar) return INFINITY;
+  const double q = quality(tet);
+  return q < wanted_ ? q : INFINITY;
+}
+
+Change Remedies::propose(Operations& operations, Index tet) const {
+  Change change;
+  for (unsigned i = 0; i < 4; ++i)
+    for (unsigned j = i + 1; j < 4; ++j) operations.remove_edge(tet, i, j, change);
+  const auto& corners = complex_[tet].corners;
+  const auto found = [&] { return change.kind != Change::Kind::none; };
+  if (found() || !move_vertices_) return change;
+  for (const Index v : corners)
+    if (!stays(v)) operations.move_vertex(v, change);
+  if (found() || !may_change_vertices(tet)) return change;
+  for (const Index v : corners)
+    for (const Index w : corners)
+      if (v != w) operations.contract_edge(v, w, change);
+  for (unsigned i = 0; i < 4 && !found(); ++i)
+    for (unsigned j = i + 1; j < 4 && !found(); ++j)
+      operations.split_edge(corners[i], corners[j], enough * wanted_, change);
+  return change;
+}
+
+bool Remedies::may_change_vertices(Index tet) const {
+  if (!keep_vertices_ || rule_.is_blunt(quality(tet))) return true;
+  std::vector<Index> star;
+  for (const Index v : complex_[tet].corners) {
+    complex_.star(v, star);
+    for (const Index t : star)
+      if (!clearly_thin_above_.holds(complex_.corners(t))) return false;
+  }
+  return true;
+}
+
+void Remedies::set_stays(Index tet, bool stays) {
+  stays_.resize(complex_.mesh().points.size(), false);
+  for (const Index v : complex_[tet].corners) stays_[v] = stays;
+}
+
+}  // namespace collarmesh::improvement

@@ -1,0 +1,193 @@
+// Detours of improvement: the whole mesh is better afterwards, from its worst tet up, or as it was.
+#include "improve/detours.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "collarmesh/check.h"
+#include "collarmesh/improve.h"
+#include "improve/remedies.h"
+#include "support/acute_shapes.h"
+#include "support/meshing.h"
+#include "support/shapes.h"
+#include "support/tet_mesh_comparison.h"
+
+namespace collarmesh {
+namespace {
+
+using improvement::Detours;
+using improvement::Operations;
+using improvement::Remedies;
+using improvement::SliverRule;
+using improvement::Workpiece;
+using testing::Meshed;
+
+constexpr double reached_angle = 33, wanted_angle = 38, hopeless_angle = 65;
+
+std::vector<Meshed> meshes() {
+  using namespace testing;
+  std::vector<Meshed> made;
+  made.push_back(mesh_of(box(), with_size(0.2), 0));
+  made.push_back(mesh_of(cylinder(0.5, 1, 40, 4), with_size(0.2), 30));
+  made.push_back(
+      mesh_of(std::vector<PolygonSoup>{box({-1, -1, -1}, {1, 1, 1}), icosphere(0.6, 8)}, with_size(0.4), 30));
+  made.push_back(mesh_of(acute::wedge(20).soups, with_size(0.2), 0));
+  return made;
+}
+
+ImproveOptions options(double angle) {
+  ImproveOptions made = improve_options(3);
+  made.min_dihedral = angle;
+  return made;
+}
+
+/// What detours work with.
+struct Bench {
+  explicit Bench(Meshed& meshed, double wanted = wanted_angle)
+      : workpiece(meshed.result.mesh, meshed.plc, default_distance(0, meshed.plc.bounds.diagonal())),
+        rule(options(wanted).radius_edge),
+        remedies(workpiece, rule, options(wanted)),
+        operations(workpiece, rule) {
+    workpiece.prepare();
+  }
+
+  Detours detours(std::size_t most_trials) { return {workpiece, rule, remedies, operations, most_trials}; }
+
+  std::vector<Index> poor() const {
+    std::vector<Index> found;
+    for (Index t = 0; t < workpiece.complex.size(); ++t)
+      if (remedies.poor_quality(t) < INFINITY) found.push_back(t);
+    return found;
+  }
+
+  /// Sorted; of poor tets alone.
+  std::vector<double> poor_qualities() const {
+    std::vector<double> found;
+    for (const Index t : poor()) found.push_back(remedies.quality(t));
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
+  /// Of all tets, whatever their order.
+  std::multiset<std::array<Index, 4>> tets() const {
+    std::multiset<std::array<Index, 4>> found;
+    for (Index t = 0; t < workpiece.complex.size(); ++t)
+      if (workpiece.complex[t].alive) found.insert(workpiece.complex[t].corners);
+    return found;
+  }
+
+  Workpiece workpiece;
+  SliverRule rule;
+  Remedies remedies;
+  Operations operations;
+};
+
+bool never() { return false; }
+
+// Fewer poor ones are better, too. The same tet may differ by rounding.
+bool is_better(std::vector<double> now, std::vector<double> before) {
+  const std::size_t size = std::max(now.size(), before.size());
+  now.resize(size, INFINITY);
+  before.resize(size, INFINITY);
+  for (std::size_t i = 0; i < size; ++i)
+    if (std::fabs(now[i] - before[i]) > 1e-9) return now[i] > before[i];
+  return false;
+}
+
+// A detour for the tet; what comes of it is compared with what was there.
+bool take_and_compare(Meshed& meshed, Bench& bench, Index tet) {
+  const auto before = bench.poor_qualities();
+  const auto tets = bench.tets();
+  const auto points = meshed.result.mesh.points;
+  const bool taken = bench.detours(100).take({tet}, never) > 0;
+  if (taken) {
+    EXPECT_TRUE(is_better(bench.poor_qualities(), before));
+  } else {
+    EXPECT_EQ(bench.tets(), tets);
+    EXPECT_EQ(meshed.result.mesh.points, points);
+  }
+  return taken;
+}
+
+TEST(Detours, MakeTheMeshBetter) {
+  std::size_t taken = 0;
+  for (Meshed& meshed : meshes()) {
+    improve(meshed.result.mesh, meshed.plc, options(reached_angle));
+    Bench bench(meshed);
+    std::vector<Index> poor = bench.poor();
+    poor.resize(std::min<std::size_t>(poor.size(), 15));
+    for (const Index tet : poor)
+      if (bench.remedies.poor_quality(tet) < INFINITY) taken += take_and_compare(meshed, bench, tet) ? 1 : 0;
+    bench.workpiece.complex.store();
+    meshed.report = check(meshed.result.mesh, meshed.plc);
+    EXPECT_EQ(testing::faults(meshed), "");
+  }
+  EXPECT_GT(taken, 0U);
+}
+
+// Few tets in a narrow place, where most of what is tried comes to nothing.
+TEST(Detours, LeaveTheMeshAsItWas) {
+  std::size_t refused = 0;
+  for (const double size : {0.6, 0.9, 1.5}) {
+    Meshed meshed = testing::mesh_of(testing::box(), testing::with_size(size), 0);
+    Bench bench(meshed, hopeless_angle);
+    for (const Index tet : bench.poor())
+      if (bench.remedies.poor_quality(tet) < INFINITY)
+        refused += take_and_compare(meshed, bench, tet) ? 0 : 1;
+    bench.workpiece.complex.store();
+    meshed.report = check(meshed.result.mesh, meshed.plc);
+    EXPECT_EQ(testing::faults(meshed), "");
+  }
+  EXPECT_GT(refused, 0U);
+}
+
+TEST(Detours, StopWhenTheyAreTold) {
+  for (Meshed& meshed : meshes()) {
+    improve(meshed.result.mesh, meshed.plc, options(reached_angle));
+    Bench bench(meshed);
+    ASSERT_FALSE(bench.poor().empty());
+    const auto tets = bench.tets();
+    EXPECT_EQ(bench.detours(0).take(bench.poor(), never), 0U);
+    EXPECT_EQ(bench.detours(1000).take(bench.poor(), [] { return true; }), 0U);
+    EXPECT_EQ(bench.tets(), tets);
+  }
+}
+
+// Nobody's tets are as good as that: all trials are spent, and those of the tet that was asked last.
+TEST(Detours, AHopelessBoundEnds) {
+  constexpr std::size_t most_of_one_tet = 3000;
+  for (Meshed& meshed : meshes()) {
+    Bench bench(meshed, hopeless_angle);
+    Detours detours = bench.detours(100);
+    detours.take(bench.poor(), never);
+    EXPECT_GE(detours.trials(), 100U);
+    EXPECT_LT(detours.trials(), 100U + most_of_one_tet);
+    bench.workpiece.complex.store();
+    EXPECT_EQ(improve(meshed.result.mesh, meshed.plc, options(hopeless_angle)).detours, 0U);
+    meshed.report = check(meshed.result.mesh, meshed.plc);
+    EXPECT_EQ(testing::faults(meshed), "");
+  }
+}
+
+TEST(Detours, ThreadsChangeNothing) {
+  std::size_t taken = 0;
+  for (const Meshed& meshed : meshes()) {
+    ImproveOptions with = options(reached_angle);
+    with.threads = 1;
+    TetMesh alone = meshed.result.mesh;
+    taken += improve(alone, meshed.plc, with).detours;
+    for (const unsigned threads : {2U, 5U}) {
+      with.threads = threads;
+      TetMesh together = meshed.result.mesh;
+      improve(together, meshed.plc, with);
+      testing::expect_same(alone, together);
+    }
+  }
+  EXPECT_GT(taken, 0U);
+}
+
+}  // namespace
+}  // namespace collarmesh
