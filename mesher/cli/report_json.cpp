@@ -163,6 +163,7 @@ Json improvement_json(const ImproveReport& r) {
           {"moved_vertices", r.moved_vertices},
           {"contracted_edges", r.contracted_edges},
           {"inserted_vertices", r.inserted_vertices},
+          {"detours", r.detours},
           {"seconds", r.seconds}};
 }
 

@@ -238,9 +238,9 @@ std::string run_text(const MeshArguments& arguments, const MeshRun& run) {
   if (arguments.verbose && i.candidates > 0)
     fmt::format_to(Out(text),
                    "  {} of {} poor tets improved: {} edges removed, {} boundary flips, {} vertices moved, "
-                   "{} edges contracted, {} vertices inserted\n",
+                   "{} edges contracted, {} vertices inserted; {} detours\n",
                    i.candidates - std::min(i.remaining, i.candidates), i.candidates, i.edge_removals,
-                   i.boundary_flips, i.moved_vertices, i.contracted_edges, i.inserted_vertices);
+                   i.boundary_flips, i.moved_vertices, i.contracted_edges, i.inserted_vertices, i.detours);
   if (arguments.order == 2)
     fmt::format_to(Out(text),
                    "  second order: {} nodes amid edges, {} of them on smooth features, {} inside moved, {} "

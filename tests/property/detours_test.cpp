@@ -8,6 +8,7 @@
 #include <set>
 
 #include "collarmesh/check.h"
+#include "collarmesh/coarsen.h"
 #include "collarmesh/improve.h"
 #include "improve/remedies.h"
 #include "support/acute_shapes.h"
@@ -54,7 +55,7 @@ struct Bench {
     workpiece.prepare();
   }
 
-  Detours detours(std::size_t most_trials) { return {workpiece, rule, remedies, operations, most_trials}; }
+  Detours detours(std::size_t most_trials) { return {workpiece, remedies, operations, most_trials}; }
 
   std::vector<Index> poor() const {
     std::vector<Index> found;
@@ -101,13 +102,20 @@ bool is_better(std::vector<double> now, std::vector<double> before) {
 bool take_and_compare(Meshed& meshed, Bench& bench, Index tet) {
   const auto before = bench.poor_qualities();
   const auto tets = bench.tets();
-  const auto points = meshed.result.mesh.points;
-  const bool taken = bench.detours(100).take({tet}, never) > 0;
+  const TetMesh was = meshed.result.mesh;
+  const bool taken = bench.detours(100).take_all({tet}, never) > 0;
   if (taken) {
     EXPECT_TRUE(is_better(bench.poor_qualities(), before));
   } else {
     EXPECT_EQ(bench.tets(), tets);
-    EXPECT_EQ(meshed.result.mesh.points, points);
+    const TetMesh& mesh = meshed.result.mesh;
+    EXPECT_EQ(mesh.points, was.points);
+    EXPECT_EQ(mesh.faces, was.faces);
+    EXPECT_EQ(mesh.face_patch, was.face_patch);
+    EXPECT_EQ(mesh.face_tag, was.face_tag);
+    EXPECT_EQ(mesh.face_regions, was.face_regions);
+    EXPECT_EQ(mesh.edges, was.edges);
+    EXPECT_EQ(mesh.features.size(), was.features.size());
   }
   return taken;
 }
@@ -128,13 +136,18 @@ TEST(Detours, MakeTheMeshBetter) {
   EXPECT_GT(taken, 0U);
 }
 
-// Few tets in a narrow place, where most of what is tried comes to nothing.
+// Few tets in narrow places, where most of what is tried comes to nothing: planar, smooth, with curves.
 TEST(Detours, LeaveTheMeshAsItWas) {
+  using namespace testing;
   std::size_t refused = 0;
-  for (const double size : {0.6, 0.9, 1.5}) {
-    Meshed meshed = testing::mesh_of(testing::box(), testing::with_size(size), 0);
+  for (const auto& [soup, size] :
+       {std::pair{box(), 0.6}, std::pair{box(), 1.5}, std::pair{icosphere(1, 4), 2.0},
+        std::pair{cylinder(0.5, 0.2, 12, 1), 0.6}}) {
+    Meshed meshed = mesh_of(soup, with_size(size), 30);
     Bench bench(meshed, hopeless_angle);
-    for (const Index tet : bench.poor())
+    std::vector<Index> poor = bench.poor();
+    poor.resize(std::min<std::size_t>(poor.size(), 15));
+    for (const Index tet : poor)
       if (bench.remedies.poor_quality(tet) < INFINITY)
         refused += take_and_compare(meshed, bench, tet) ? 0 : 1;
     bench.workpiece.complex.store();
@@ -150,19 +163,19 @@ TEST(Detours, StopWhenTheyAreTold) {
     Bench bench(meshed);
     ASSERT_FALSE(bench.poor().empty());
     const auto tets = bench.tets();
-    EXPECT_EQ(bench.detours(0).take(bench.poor(), never), 0U);
-    EXPECT_EQ(bench.detours(1000).take(bench.poor(), [] { return true; }), 0U);
+    EXPECT_EQ(bench.detours(0).take_all(bench.poor(), never), 0U);
+    EXPECT_EQ(bench.detours(1000).take_all(bench.poor(), [] { return true; }), 0U);
     EXPECT_EQ(bench.tets(), tets);
   }
 }
 
-// Nobody's tets are as good as that: all trials are spent, and those of the tet that was asked last.
+// No tets are as good as that: all trials are spent, and those of the tet that was asked last.
 TEST(Detours, AHopelessBoundEnds) {
-  constexpr std::size_t most_of_one_tet = 3000;
+  constexpr std::size_t most_of_one_tet = 24 * 30;
   for (Meshed& meshed : meshes()) {
     Bench bench(meshed, hopeless_angle);
     Detours detours = bench.detours(100);
-    detours.take(bench.poor(), never);
+    detours.take_all(bench.poor(), never);
     EXPECT_GE(detours.trials(), 100U);
     EXPECT_LT(detours.trials(), 100U + most_of_one_tet);
     bench.workpiece.complex.store();
@@ -170,6 +183,46 @@ TEST(Detours, AHopelessBoundEnds) {
     meshed.report = check(meshed.result.mesh, meshed.plc);
     EXPECT_EQ(testing::faults(meshed), "");
   }
+}
+
+// In a coarsened mesh: tets may be thin, and vertices stay beside those.
+TEST(Detours, KeepTheGuaranteesOfThinTets) {
+  using namespace testing;
+  std::size_t taken = 0;
+  for (const auto& [soup, size] :
+       {std::pair{cylinder(0.5, 1, 40, 4), 0.3}, std::pair{torus(1, 0.25, 80, 24), 0.3},
+        std::pair{plate_with_hole(1, 32), 0.7}, std::pair{l_shape(), 0.4}}) {
+    MeshOptions sizes = with_size(size);
+    sizes.distance = 0.1 * size;
+    Meshed meshed = mesh_of(soup, sizes, 30);
+    coarsen(meshed.result.mesh, meshed.plc, sizes);
+    ImproveOptions with = options(reached_angle);
+    with.distance = sizes.distance;
+    with.thin_angle = 8;
+    with.keep_vertices = true;
+    const ImproveReport report = improve(meshed.result.mesh, meshed.plc, with);
+    taken += report.detours;
+    CheckOptions judge;
+    judge.distance = sizes.distance;
+    meshed.report = check(meshed.result.mesh, meshed.plc, judge);
+    EXPECT_EQ(faults(meshed), "");
+  }
+  EXPECT_GT(taken, 0U);
+}
+
+TEST(Detours, CancelledAmongThemItIsStillRight) {
+  Meshed meshed = std::move(meshes()[1]);
+  TetMesh whole = meshed.result.mesh;
+  int reports = 0;
+  Execution execution;
+  execution.progress = [&](const ProgressReport&) { return ++reports > 0; };
+  ASSERT_GT(improve(whole, meshed.plc, options(reached_angle), execution).detours, 0U);
+  execution.progress = [&](const ProgressReport&) { return --reports > 0; };
+  const ImproveReport report = improve(meshed.result.mesh, meshed.plc, options(reached_angle), execution);
+  EXPECT_TRUE(report.cancelled);
+  EXPECT_EQ(reports, 0);
+  meshed.report = check(meshed.result.mesh, meshed.plc);
+  EXPECT_EQ(testing::faults(meshed), "");
 }
 
 TEST(Detours, ThreadsChangeNothing) {

@@ -12,7 +12,6 @@ namespace {
 
 TEST(LocationObjects, ListsFollowAdditionsMovesAndRemovals) {
   LocationObjects objects;
-  std::vector<std::vector<Index>> expected(20);
   std::mt19937_64 random(9);
   std::vector<std::pair<Index, Index>> alive;  // object, vertex
   for (int step = 0; step < 3000; ++step) {

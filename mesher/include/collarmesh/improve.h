@@ -14,14 +14,15 @@ struct ImproveOptions {
       20;  ///< degrees; tets with a smaller dihedral angle, or one as bad beyond 90 degrees, are worked on
   double radius_edge = 2;      ///< bound on circumradius / shortest edge that no new tet breaks
   double thin_angle = 0;       ///< degrees: thin tets may exceed that bound, see `coarsen`; 0: none may
+  double thin_above = 0;       ///< the radius-edge ratio above which tets will be called thin; 0: radius_edge
   double thin_reserve = 0;     ///< as CoarsenOptions::reserve
   double distance = 0;         ///< surface distance tolerance on smooth patches; 0: 1/200 of the diagonal
   bool move_vertices = true;   ///< and take some out or in, not only change how they are connected
   bool keep_vertices = false;  ///< take none out or in beside thin tets but where an angle is above the
                                ///< largest of theirs: a coarsened mesh has as many as it needs
-  double edges_per_hole = 0;  ///< as MeshOptions::edges_per_hole
-  unsigned passes = 3;        ///< at most, over what could not be helped before
-  unsigned threads = 0;       ///< at most; 0: as many as there are cores. The result does not depend on it
+  double edges_per_hole = 0;   ///< as MeshOptions::edges_per_hole
+  unsigned passes = 3;         ///< at most, over what could not be helped before
+  unsigned threads = 0;        ///< at most; 0: as many as there are cores. The result does not depend on it
 };
 
 /// How much time to spend: 1 changes connections of tets below 15 degrees, 2 is the default, 3 goes on
@@ -33,7 +34,8 @@ struct ImproveReport {
   std::size_t remaining = 0;   ///< and after
   std::size_t edge_removals = 0, boundary_flips = 0, moved_vertices = 0, contracted_edges = 0,
               inserted_vertices = 0;
-  std::size_t detours = 0;  ///< that made tets worse first, with all their operations
+  std::size_t detours =
+      0;  ///< operations that made tets worse first, with what made them better; not counted above
   double seconds = 0;
   bool cancelled = false;  ///< the mesh is valid, as good as it had become
 };

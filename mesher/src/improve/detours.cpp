@@ -2,114 +2,133 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 namespace collarmesh::improvement {
 
 namespace {
 
-// First steps at a tet: contractions of its edges both ways, vertices inserted in them, edges removed.
-constexpr unsigned contractions = 12, insertions = 6, removals = 6;
 constexpr std::array<std::array<unsigned, 2>, 6> edges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
-// They may make tets as poor as this.
+// First steps may make tets as poor as this.
 constexpr double least_quality = 0.02;
 constexpr unsigned most_steps = 30;
-// Rather than leave a tet poor a detour may make so many tets thin.
-constexpr std::size_t most_more_thin = 2;
+// So many operations may be tried before a first detour is taken, and so many more with each one that is.
+constexpr std::size_t first_trials = 1000, trials_per_detour = 150;
 constexpr double least_gain = 1e-3, rounding = 1e-9;
 
 bool contains(const auto& range, Index x) { return std::find(range.begin(), range.end(), x) != range.end(); }
 
 // From the worst up: is the first that differs larger now? Both sorted; one that is missing is good.
-bool better(const std::vector<double>& before, const std::vector<double>& now, double wanted) {
+bool is_better(const std::vector<double>& now, const std::vector<double>& before, double wanted) {
   for (std::size_t i = 0; i < std::max(before.size(), now.size()); ++i) {
     const double was = i < before.size() ? before[i] : wanted, is = i < now.size() ? now[i] : wanted;
     if (is > was * (1 + least_gain)) return true;
-    if (is < was * (1 - rounding)) return false;
+    if (std::fabs(is - was) > rounding * std::fabs(was)) return false;
   }
   return false;
 }
 
 }  // namespace
 
-Detours::Detours(Workpiece& workpiece, const SliverRule& rule, Remedies& remedies, Operations& operations,
-                 std::size_t most_trials)
-    : workpiece_(workpiece),
-      rule_(rule),
-      remedies_(remedies),
-      operations_(operations),
-      most_trials_(most_trials) {}
+Detours::Detours(Workpiece& workpiece, Remedies& remedies, Operations& operations, std::size_t most_trials)
+    : workpiece_(workpiece), remedies_(remedies), operations_(operations), most_trials_(most_trials) {}
 
-std::size_t Detours::take(std::vector<Index> tets, const std::function<bool()>& stopped) {
-  const auto key = [this](Index t) { return std::pair(remedies_.poor_quality(t), t); };
-  std::uint32_t before = 0;
-  do {
-    before = taken_;
-    std::erase_if(tets, [this](Index t) { return remedies_.poor_quality(t) == INFINITY; });
-    std::ranges::sort(tets, {}, key);
-    const auto repeated = std::ranges::unique(tets);
-    tets.erase(repeated.begin(), repeated.end());
-    const std::size_t count = tets.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      const Index tet = tets[i];
-      if (remedies_.poor_quality(tet) == INFINITY || !is_new_to(tet)) continue;
-      asked_at_.resize(std::max<std::size_t>(asked_at_.size(), complex().size()), 0);
-      asked_at_[tet] = taken_ + 1;
-      if (!remedies_.may_change_vertices(tet)) continue;
-      if (exhausted() || stopped()) return taken_;
-      if (!take(tet)) continue;
-      ++taken_;
-      note_changes();
-      tets.insert(tets.end(), changed_.begin(), changed_.end());
-    }
-  } while (taken_ > before);
+bool Detours::exhausted() const {
+  return trials_ >= std::min(most_trials_, first_trials + trials_per_detour * taken_);
+}
+
+std::size_t Detours::take_all(std::vector<Index> tets, const std::function<bool()>& stopped) {
+  bool any = true;
+  while (any && !ended_) {
+    any = take_round(tets, Reach::tet, stopped);
+    if (!any && !ended_) any = take_round(tets, Reach::beside, stopped);
+  }
   return taken_;
 }
 
+// Every tet once, worst first. Was any detour taken?
+bool Detours::take_round(std::vector<Index>& tets, Reach reach, const std::function<bool()>& stopped) {
+  const auto is_good = [this](Index t) { return remedies_.poor_quality(t) == INFINITY; };
+  std::erase_if(tets, is_good);
+  std::ranges::sort(tets, {}, [this](Index t) { return std::pair(remedies_.poor_quality(t), t); });
+  const auto repeated = std::ranges::unique(tets);
+  tets.erase(repeated.begin(), repeated.end());
+  Asked& asked = asked_[static_cast<unsigned>(reach)];
+  const std::uint32_t before = taken_;
+  const std::size_t count = tets.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Index tet = tets[i];
+    if (is_good(tet) || !is_new_to(tet, asked)) continue;
+    asked.resize(std::max<std::size_t>(asked.size(), complex().size()), 0);
+    asked[tet] = taken_ + 1;
+    if (!remedies_.may_change_vertices(tet)) continue;
+    ended_ = exhausted() || stopped();
+    if (ended_) break;
+    if (help(tet, reach)) note_changes(tets);
+  }
+  return taken_ > before;
+}
+
 // Has anything changed at a corner since the tet was asked?
-bool Detours::is_new_to(Index tet) const {
-  if (tet >= asked_at_.size() || asked_at_[tet] == 0) return true;
+bool Detours::is_new_to(Index tet, const Asked& asked) const {
+  if (tet >= asked.size() || asked[tet] == 0) return true;
   return std::ranges::any_of(complex()[tet].corners, [&](Index v) {
-    return v < changed_at_.size() && changed_at_[v] >= asked_at_[tet];
+    return v < last_detour_at_.size() && last_detour_at_[v] >= asked[tet];
   });
 }
 
-void Detours::note_changes() {
-  changed_at_.resize(complex().mesh().points.size(), 0);
-  for (const Index t : changed_)
-    for (const Index v : complex()[t].corners) changed_at_[v] = taken_;
+void Detours::note_changes(std::vector<Index>& tets) {
+  ++taken_;
+  last_detour_at_.resize(complex().mesh().points.size(), 0);
+  for (const Index t : changed_) {
+    if (!complex()[t].alive) continue;
+    tets.push_back(t);
+    for (const Index v : complex()[t].corners) last_detour_at_[v] = taken_;
+  }
 }
 
-bool Detours::take(Index tet) {
-  const double before = remedies_.quality(tet);
-  double best = 0;
-  FirstStep step{none, 0};
-  for (const Index place : places(tet)) {
-    for (unsigned operation = 0; operation < contractions + insertions + removals; ++operation) {
-      const auto [worst, more_thin] = attempt({place, operation});
-      if (worst >= remedies_.wanted() && more_thin == 0) {
-        workpiece_.keep();
-        return true;
-      }
-      if (worst < 0) continue;
-      workpiece_.undo();
-      // No more thin tets first.
-      const double worth = more_thin == 0                                                     ? 1 + worst
-                           : more_thin <= most_more_thin && worst > before * (1 + least_gain) ? worst
-                                                                                              : 0;
-      if (worth > best) best = worth, step = {place, operation};
-    }
-    if (best >= remedies_.wanted() || exhausted()) break;
+// By an operation alone, where other detours have made room for one, else by the first detour that makes all
+// tets good and none thin, else by the one with the best worst tet. True: `changed_` has changed.
+bool Detours::help(Index tet, Reach reach) {
+  if (Change change = remedies_.propose(operations_, tet); change.kind != Change::Kind::none) {
+    ++trials_;
+    begin_trial();
+    apply(std::move(change));
+    workpiece_.keep();
+    return true;
   }
-  if (best == 0) return false;
-  attempt(step);
+  Result best;
+  FirstStep step{};
+  for (const Index place : places(tet, reach))
+    for (unsigned edge = 0; edge < edges.size(); ++edge)
+      for (const Operation operation : {Operation::contraction, Operation::contraction_turned,
+                                        Operation::insertion, Operation::removal}) {
+        const FirstStep tried{place, edge, operation};
+        const Result found = attempt(tried);
+        if (!found.better) continue;
+        if (found.worst >= remedies_.wanted() && !found.more_thin) {
+          workpiece_.keep();
+          return true;
+        }
+        workpiece_.undo();
+        if (!is_worth_it(found)) continue;
+        const auto worth = [](const Result& r) { return std::tuple(r.better, !r.more_thin, r.worst); };
+        if (worth(found) > worth(best)) best = found, step = tried;
+      }
+  if (!best.better || !attempt(step).better) return false;
   workpiece_.keep();
   return true;
 }
 
-// The tet, the neighbours across its faces, then those across its edges.
-std::vector<Index> Detours::places(Index tet) const {
-  std::vector<Index> found{tet}, star;
+// Thin tets are worth it only where all others are good then.
+bool Detours::is_worth_it(const Result& result) const {
+  return !result.more_thin || result.worst >= remedies_.wanted();
+}
+
+std::vector<Index> Detours::places(Index tet, Reach reach) const {
+  if (reach == Reach::tet) return {tet};
+  std::vector<Index> found, star;
   const auto& corners = complex()[tet].corners;
   const auto add = [&](Index t) {
     if (!complex()[t].collar && !contains(found, t)) found.push_back(t);
@@ -126,38 +145,37 @@ std::vector<Index> Detours::places(Index tet) const {
 }
 
 Change Detours::first_step(const FirstStep& step) {
-  const auto corners = complex()[step.tet].corners;
+  const auto& corners = complex()[step.tet].corners;
+  const auto [i, j] = edges[step.edge];
+  const Index a = corners[i], b = corners[j];
   Change change;
-  if (step.operation < contractions) {
-    const auto [i, j] = edges[step.operation / 2];
-    const bool turned = step.operation % 2 != 0;
-    const Index vertex = corners[turned ? j : i], onto = corners[turned ? i : j];
-    if (operations_.begin_contractions(vertex)) operations_.contract_onto(onto, least_quality, 0, change);
-  } else if (step.operation < contractions + insertions) {
-    const auto [i, j] = edges[step.operation - contractions];
-    operations_.split_edge_anyhow(corners[i], corners[j], least_quality, change);
-  } else {
-    const auto [i, j] = edges[step.operation - contractions - insertions];
-    operations_.remove_edge_anyhow(step.tet, i, j, least_quality, change);
+  switch (step.operation) {
+    case Operation::contraction: operations_.contract_edge_anyhow(a, b, least_quality, change); break;
+    case Operation::contraction_turned: operations_.contract_edge_anyhow(b, a, least_quality, change); break;
+    case Operation::insertion: operations_.split_edge_anyhow(a, b, least_quality, change); break;
+    case Operation::removal: operations_.remove_edge_anyhow(step.tet, i, j, least_quality, change); break;
   }
-  if (change.kind == Change::Kind::contraction && !workpiece_.curve_can_spare(change)) change = {};
   return change;
 }
 
 // When it is better, the trial is open afterwards.
-Detours::Outcome Detours::attempt(const FirstStep& step) {
-  ++trials_;
+Detours::Result Detours::attempt(const FirstStep& step) {
   Change change = first_step(step);
   if (change.kind == Change::Kind::none) return {};
+  ++trials_;
+  begin_trial();
+  apply(std::move(change));
+  improve_changed();
+  const Result found = result();
+  if (!found.better) workpiece_.undo();
+  return found;
+}
+
+void Detours::begin_trial() {
   ++trial_;
   changed_.clear(), before_.clear(), to_improve_.clear();
   thin_before_ = 0;
   workpiece_.begin_trial();
-  apply(std::move(change));
-  improve_changed();
-  const Outcome found = outcome();
-  if (found.worst < 0) workpiece_.undo();
-  return found;
 }
 
 void Detours::apply(Change change) {
@@ -173,45 +191,44 @@ void Detours::apply(Change change) {
 }
 
 void Detours::improve_changed() {
+  const auto key = [this](Index t) { return std::pair(remedies_.poor_quality(t), t); };
   for (unsigned step = 0; step < most_steps && !to_improve_.empty(); ++step) {
-    const auto worst = std::ranges::min_element(
-        to_improve_, {}, [this](Index t) { return std::pair(remedies_.poor_quality(t), t); });
+    const auto worst = std::ranges::min_element(to_improve_, {}, key);
     const Index tet = *worst;
     if (remedies_.poor_quality(tet) == INFINITY) return;
     *worst = to_improve_.back();
     to_improve_.pop_back();
     Change change = remedies_.propose(operations_, tet);
-    if (change.kind == Change::Kind::contraction && !workpiece_.curve_can_spare(change)) continue;
     if (change.kind != Change::Kind::none) apply(std::move(change));
   }
 }
 
-Detours::Outcome Detours::outcome() const {
+Detours::Result Detours::result() const {
   std::vector<double> now, before = before_;
   std::size_t thin = 0;
   for (const Index t : changed_) {
     if (!complex()[t].alive) continue;
     now.push_back(std::min(remedies_.wanted(), remedies_.quality(t)));
-    thin += is_thin(t) ? 1 : 0;
+    thin += remedies_.is_thin(t) ? 1 : 0;
   }
   std::ranges::sort(before);
   std::ranges::sort(now);
-  if (!better(before, now, remedies_.wanted())) return {};
-  return {now.empty() ? remedies_.wanted() : now.front(), thin > thin_before_ ? thin - thin_before_ : 0};
+  return {is_better(now, before, remedies_.wanted()), thin > thin_before_,
+          now.empty() ? remedies_.wanted() : now.front()};
 }
 
-// A tet is about to change that may have been there before.
+// A tet is about to change that may have been there before the trial.
 void Detours::see_before(Index tet) {
-  if (tet < changed_in_.size() && changed_in_[tet] == trial_) return;
+  if (tet < last_trial_of_.size() && last_trial_of_[tet] == trial_) return;
   set_changed(tet);
   before_.push_back(std::min(remedies_.wanted(), remedies_.quality(tet)));
-  thin_before_ += is_thin(tet) ? 1 : 0;
+  thin_before_ += remedies_.is_thin(tet) ? 1 : 0;
 }
 
 void Detours::set_changed(Index tet) {
-  if (tet >= changed_in_.size()) changed_in_.resize(complex().size(), 0);
-  if (changed_in_[tet] == trial_) return;
-  changed_in_[tet] = trial_;
+  if (tet >= last_trial_of_.size()) last_trial_of_.resize(complex().size(), 0);
+  if (last_trial_of_[tet] == trial_) return;
+  last_trial_of_[tet] = trial_;
   changed_.push_back(tet);
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -13,68 +12,74 @@ namespace collarmesh::improvement {
 
 /// Detours: where no operation helps a tet, one is made all the same, at the tet or beside it, and the tets
 /// that it makes are improved, for some steps. What that comes to is kept if it is better than what was
-/// there, else undone. Better is compared from the worst tet up, so that no detour is taken twice.
+/// there, else undone. Better is compared from the worst tet up, so the mesh never returns to an earlier
+/// state.
 ///
 /// One thread; the result depends on the mesh alone.
 class Detours {
  public:
-  /// All are kept by reference. At most about `most_trials` operations are tried.
-  Detours(Workpiece& workpiece, const SliverRule& rule, Remedies& remedies, Operations& operations,
-          std::size_t most_trials);
+  /// All are kept by reference. At most `most_trials` operations are tried, and those at one tet.
+  Detours(Workpiece& workpiece, Remedies& remedies, Operations& operations, std::size_t most_trials);
 
   /// Take detours for these tets, and for poor ones that detours leave, where the number of vertices may
-  /// change: worst first, and again where something has changed at a corner, until nothing helps. Returns how
-  /// many were taken. `stopped` is asked between them.
-  std::size_t take(std::vector<Index> tets, const std::function<bool()>& stopped);
+  /// change: worst first, at each tet itself before beside any, and again where something has changed at a
+  /// corner, until nothing helps. Returns how many were taken. `stopped` is asked between tets. Precondition:
+  /// the workpiece is prepared for trials.
+  std::size_t take_all(std::vector<Index> tets, const std::function<bool()>& stopped);
+
   /// Operations tried so far.
   std::size_t trials() const { return trials_; }
 
  private:
-  /// An operation by its number, at an edge of a tet.
+  enum class Operation : std::uint8_t { contraction, contraction_turned, insertion, removal };
+  /// What a detour begins with: an operation at an edge of a tet.
   struct FirstStep {
     Index tet;
-    unsigned operation;
+    unsigned edge;
+    Operation operation;
   };
-  // So many operations may be tried before a first detour is taken, and so many more with each one that is.
-  static constexpr std::size_t first_trials = 1500, trials_per_detour = 150;
-
   /// What a trial comes to.
-  struct Outcome {
-    double worst = -1;          ///< of the tets it has changed, at most the wanted quality; -1: no better
-    std::size_t more_thin = 0;  ///< tets than before
+  struct Result {
+    bool better = false;
+    bool more_thin = false;  ///< are there more thin tets than before?
+    double worst = 0;        ///< of the tets that it has changed, at most the wanted quality
   };
+  /// Where first steps are tried: at the tet itself, or at those across its faces and its edges.
+  enum class Reach : std::uint8_t { tet, beside };
+  /// By tet: how many detours had been taken when it was asked, plus 1; 0: not asked.
+  using Asked = std::vector<std::uint32_t>;
 
-  bool exhausted() const {
-    return trials_ >= std::min(most_trials_, first_trials + trials_per_detour * taken_);
-  }
-  bool is_new_to(Index tet) const;
-  void note_changes();
-  bool take(Index tet);
-  std::vector<Index> places(Index tet) const;
+  bool exhausted() const;
+  bool is_new_to(Index tet, const Asked& asked) const;
+  bool take_round(std::vector<Index>& tets, Reach reach, const std::function<bool()>& stopped);
+  bool help(Index tet, Reach reach);
+  void note_changes(std::vector<Index>& tets);
+  std::vector<Index> places(Index tet, Reach reach) const;
   Change first_step(const FirstStep& step);
-  Outcome attempt(const FirstStep& step);
+  Result attempt(const FirstStep& step);
+  bool is_worth_it(const Result& result) const;
+  void begin_trial();
   void apply(Change change);
   void improve_changed();
-  Outcome outcome() const;
+  Result result() const;
   void see_before(Index tet);
   void set_changed(Index tet);
-  bool is_thin(Index tet) const { return !rule_.is_within_bound(complex().corners(tet)); }
   const TetComplex& complex() const { return workpiece_.complex; }
 
   Workpiece& workpiece_;
-  const SliverRule& rule_;
   Remedies& remedies_;
   Operations& operations_;
   std::size_t most_trials_, trials_ = 0;
   std::uint32_t taken_ = 0;
-  std::vector<std::uint32_t> changed_at_;  // by vertex: the last detour that changed a tet there
-  std::vector<std::uint32_t> asked_at_;  // by tet: how many detours had been taken when it was asked, plus 1
+  bool ended_ = false;                         // all trials are spent, or it was stopped
+  std::vector<std::uint32_t> last_detour_at_;  // by vertex: that changed a tet there
+  std::array<Asked, 2> asked_;                 // by Reach
 
   // Of the trial that is made.
   std::uint32_t trial_ = 0;
-  std::vector<std::uint32_t> changed_in_;  // the trial that changed a tet last
-  std::vector<Index> changed_;
-  std::vector<double> before_;  // qualities of the tets that were there, at most the wanted one
+  std::vector<std::uint32_t> last_trial_of_;  // by tet: that changed it
+  std::vector<Index> changed_;                // tets, some of them gone again
+  std::vector<double> before_;                // qualities of the tets that were there, at most the wanted one
   std::size_t thin_before_ = 0;
   std::vector<Index> to_improve_;
 };

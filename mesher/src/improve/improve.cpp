@@ -26,9 +26,10 @@ namespace {
 constexpr std::size_t tets_per_proposal = 2000;
 constexpr std::size_t most_proposals = 1024;
 constexpr std::size_t steps_between_reports = 1024;
-// Detours are for the few tets that are left, so many and one of so many; a bound that more miss is out of
-// reach. So many operations are tried at most, and one for so many tets.
-constexpr std::size_t few = 50, tets_per_few = 50, trials = 4000, tets_per_trial = 8;
+// Detours are taken if at most `few` of the tets and 2% need them; else the bound is out of reach.
+constexpr std::size_t few = 50, tets_per_few = 50;
+// At most so many operations are tried in them, and one for so many tets.
+constexpr std::size_t trials = 4000, tets_per_trial = 50;
 
 /// Works on the tets below a quality, worst first. Changes are proposed for the worst few of them at once, by
 /// several threads, and made one after the other; what met an earlier one is proposed again. So the result
@@ -148,9 +149,8 @@ class Improvement {
     const auto count = static_cast<std::size_t>(std::ranges::count_if(poor, may_change));
     if (count == 0 || count > few + complex().size() / tets_per_few) return;
     workpiece_.prepare();
-    Detours detours(workpiece_, rule_, remedies_, operations_.local(),
-                    trials + complex().size() / tets_per_trial);
-    report_.detours = detours.take(std::move(poor), [this] { return report_.cancelled = stopped(); });
+    Detours detours(workpiece_, remedies_, operations_.local(), trials + complex().size() / tets_per_trial);
+    report_.detours = detours.take_all(std::move(poor), [this] { return report_.cancelled = stopped(); });
   }
 
   // Is all that the change depends on as it was when the batch was begun? That is in the tets that it

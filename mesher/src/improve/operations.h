@@ -10,8 +10,8 @@
 namespace collarmesh::improvement {
 
 /// The local operations. Each proposes what it would do when that raises the smallest quality in its
-/// cavity and that of `change` and keeps every guarantee; else `change` stays as it is.
-/// Each thread has its own.
+/// cavity and that of `change`, but for those named "anyhow", and keeps every guarantee; else `change` stays
+/// as it is. Each thread has its own.
 class Operations {
  public:
   /// Both are kept by reference.
@@ -39,6 +39,9 @@ class Operations {
   /// Move a vertex along an edge within its feature onto the other end, so that the tets at the edge vanish.
   /// No edge becomes longer than the longest one of the cavity.
   void contract_edge(Index vertex, Index onto, Change& change);
+
+  /// The same, however good the tets around are now; all new ones are better than `least`.
+  void contract_edge_anyhow(Index vertex, Index onto, double least, Change& change);
 
   /// The next questions are about contractions of edges at this vertex. False when it has to stay.
   bool begin_contractions(Index vertex);
@@ -104,6 +107,7 @@ class Operations {
   Point back_on_feature(const Point& p, const Point& from, const Freedom& freedom);
   std::pair<Point, double> best_place(const Point& start, Index id, const Freedom& freedom, double best);
   std::pair<double, double> best_way(Index vertex, double best);
+  void contract_edge_above(Index vertex, Index onto, std::optional<double> least, Change& change);
   bool may_contract(Index vertex, Index onto);
   bool keeps_topology(Index vertex, Index onto);
   bool keeps_lengths(Index vertex, Index onto) const;

@@ -10,16 +10,13 @@ namespace {
 
 // An inserted vertex has to bring the tets around it to this share of the wanted quality.
 constexpr double enough = 0.7;
-// Tets count as thin neighbours from this multiple of the bound on: where vertices move onto exact geometry
-// afterwards, 1% of the bound is kept free for that, and what is within all of it will not be called thin.
-constexpr double clearly_thin = 1 / 0.99 + 1e-4;
 
 }  // namespace
 
 Remedies::Remedies(const Workpiece& workpiece, const SliverRule& rule, const ImproveOptions& options)
     : complex_(workpiece.complex),
       rule_(rule),
-      clearly_thin_above_(clearly_thin * options.radius_edge),
+      thin_above_(options.thin_above > 0 ? options.thin_above : options.radius_edge),
       wanted_(std::sin(options.min_dihedral * std::numbers::pi / 180)),
       move_vertices_(options.move_vertices),
       keep_vertices_(options.keep_vertices) {}
@@ -54,8 +51,7 @@ bool Remedies::may_change_vertices(Index tet) const {
   std::vector<Index> star;
   for (const Index v : complex_[tet].corners) {
     complex_.star(v, star);
-    for (const Index t : star)
-      if (!clearly_thin_above_.holds(complex_.corners(t))) return false;
+    if (std::ranges::any_of(star, [this](Index t) { return is_thin(t); })) return false;
   }
   return true;
 }

@@ -24,6 +24,8 @@ class Remedies {
 
   /// The first that helps of: an edge removed, a corner moved, an edge contracted, a vertex inserted.
   Change propose(Operations& operations, Index tet) const;
+  /// Will the tet be called thin?
+  bool is_thin(Index tet) const { return !thin_above_.holds(complex_.corners(tet)); }
   /// May the number of vertices change at this tet? In a coarsened mesh walls are one element thick and tets
   /// at them poor for that; vertices would bring back what has been removed. So only tets beyond the largest
   /// angle of thin ones may change their number there, and all where no thin tet is near.
@@ -41,7 +43,7 @@ class Remedies {
 
   const TetComplex& complex_;
   const SliverRule& rule_;
-  RadiusEdgeBound clearly_thin_above_;
+  RadiusEdgeBound thin_above_;
   double wanted_;
   bool move_vertices_, keep_vertices_;
   std::vector<bool> stays_;  // by vertex: no move of it helps, and nothing at it has changed since

@@ -274,13 +274,23 @@ void Operations::insert_in_cone(Index a, Index b, double least, Change& change) 
 }
 
 void Operations::contract_edge(Index vertex, Index onto, Change& change) {
+  contract_edge_above(vertex, onto, std::nullopt, change);
+}
+
+void Operations::contract_edge_anyhow(Index vertex, Index onto, double least, Change& change) {
+  contract_edge_above(vertex, onto, least, change);
+}
+
+// All new tets are better than `least`; without it, than the worst one at the vertex and than `change`.
+void Operations::contract_edge_above(Index vertex, Index onto, std::optional<double> least, Change& change) {
   if (mesh_.features[vertex].dimension == 0) return;
   if (!find_cone_of_vertex(vertex) || !may_contract(vertex, onto)) return;
   if (!keeps_lengths(vertex, onto) || !keeps_topology(vertex, onto)) return;
   worst_at_vertex();
   drop_from_cone(onto);
   const Point& place = mesh_.points[onto];
-  const double quality = quality_around(place, onto, std::max(cone_.worst, change.quality));
+  const double above = least.value_or(std::max(cone_.worst, change.quality));
+  const double quality = quality_around(place, onto, above);
   if (quality < 0 || !surfaces_allow(place)) return;
   change = {};
   change.kind = Change::Kind::contraction;

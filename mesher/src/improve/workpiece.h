@@ -9,7 +9,7 @@
 
 namespace collarmesh::improvement {
 
-/// What an operation would do. All new tets are better than the worst of those they replace.
+/// What an operation would do.
 struct Change {
   enum class Kind { none, edge_removal, boundary_flip, move, insertion, contraction };
   /// Stands for the vertex that an insertion makes.

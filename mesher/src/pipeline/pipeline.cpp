@@ -330,6 +330,7 @@ class Pipeline {
     options.threads = options_.threads;
     if (made_.coarsening) {
       options.thin_angle = options_.thin_angle;
+      options.thin_above = options_.mesh.radius_edge / (exact() ? ratio_left : 1);
       options.thin_reserve = reserve();
       options.keep_vertices = true;
     }
