@@ -14,7 +14,7 @@ constexpr std::array<std::array<unsigned, 2>, 6> edges{{{0, 1}, {0, 2}, {0, 3}, 
 constexpr double least_quality = 0.02;
 constexpr unsigned most_steps = 30;
 // So many operations may be tried before a first detour is taken, and so many more with each one that is.
-constexpr std::size_t first_trials = 1000, trials_per_detour = 150;
+constexpr std::size_t first_trials = 2000, trials_per_detour = 200;
 constexpr double least_gain = 1e-3, rounding = 1e-9;
 
 bool contains(const auto& range, Index x) { return std::find(range.begin(), range.end(), x) != range.end(); }
@@ -41,20 +41,21 @@ bool Detours::exhausted() const {
 std::size_t Detours::take_all(std::vector<Index> tets, const std::function<bool()>& stopped) {
   bool any = true;
   while (any && !ended_) {
-    any = take_round(tets, Reach::tet, stopped);
-    if (!any && !ended_) any = take_round(tets, Reach::beside, stopped);
+    any = false;
+    for (const Effort effort : {Effort::at_tet, Effort::beside, Effort::last_resort})
+      if (!any && !ended_) any = take_round(tets, effort, stopped);
   }
   return taken_;
 }
 
 // Every tet once, worst first. Was any detour taken?
-bool Detours::take_round(std::vector<Index>& tets, Reach reach, const std::function<bool()>& stopped) {
+bool Detours::take_round(std::vector<Index>& tets, Effort effort, const std::function<bool()>& stopped) {
   const auto is_good = [this](Index t) { return remedies_.poor_quality(t) == INFINITY; };
   std::erase_if(tets, is_good);
   std::ranges::sort(tets, {}, [this](Index t) { return std::pair(remedies_.poor_quality(t), t); });
   const auto repeated = std::ranges::unique(tets);
   tets.erase(repeated.begin(), repeated.end());
-  Asked& asked = asked_[static_cast<unsigned>(reach)];
+  Asked& asked = asked_[static_cast<unsigned>(effort)];
   const std::uint32_t before = taken_;
   const std::size_t count = tets.size();
   for (std::size_t i = 0; i < count; ++i) {
@@ -65,7 +66,7 @@ bool Detours::take_round(std::vector<Index>& tets, Reach reach, const std::funct
     if (!remedies_.may_change_vertices(tet)) continue;
     ended_ = exhausted() || stopped();
     if (ended_) break;
-    if (help(tet, reach)) note_changes(tets);
+    if (help(tet, effort)) note_changes(tets);
   }
   return taken_ > before;
 }
@@ -90,7 +91,7 @@ void Detours::note_changes(std::vector<Index>& tets) {
 
 // By an operation alone, where other detours have made room for one, else by the first detour that makes all
 // tets good and none thin, else by the one with the best worst tet. True: `changed_` has changed.
-bool Detours::help(Index tet, Reach reach) {
+bool Detours::help(Index tet, Effort effort) {
   if (Change change = remedies_.propose(operations_, tet); change.kind != Change::Kind::none) {
     ++trials_;
     begin_trial();
@@ -100,7 +101,7 @@ bool Detours::help(Index tet, Reach reach) {
   }
   Result best;
   FirstStep step{};
-  for (const Index place : places(tet, reach))
+  for (const Index place : places(tet, effort))
     for (unsigned edge = 0; edge < edges.size(); ++edge)
       for (const Operation operation : {Operation::contraction, Operation::contraction_turned,
                                         Operation::insertion, Operation::removal}) {
@@ -112,7 +113,7 @@ bool Detours::help(Index tet, Reach reach) {
           return true;
         }
         workpiece_.undo();
-        if (!is_worth_it(found)) continue;
+        if (!is_worth_it(found, effort)) continue;
         const auto worth = [](const Result& r) { return std::tuple(r.better, !r.more_thin, r.worst); };
         if (worth(found) > worth(best)) best = found, step = tried;
       }
@@ -121,14 +122,15 @@ bool Detours::help(Index tet, Reach reach) {
   return true;
 }
 
-// Thin tets are worth it only where all others are good then.
-bool Detours::is_worth_it(const Result& result) const {
-  return !result.more_thin || result.worst >= remedies_.wanted();
+// Else thin tets are worth it only where all others are good then.
+bool Detours::is_worth_it(const Result& result, Effort effort) const {
+  return effort == Effort::last_resort || !result.more_thin || result.worst >= remedies_.wanted();
 }
 
-std::vector<Index> Detours::places(Index tet, Reach reach) const {
-  if (reach == Reach::tet) return {tet};
+std::vector<Index> Detours::places(Index tet, Effort effort) const {
+  if (effort == Effort::at_tet) return {tet};
   std::vector<Index> found, star;
+  if (effort == Effort::last_resort) found.push_back(tet);
   const auto& corners = complex()[tet].corners;
   const auto add = [&](Index t) {
     if (!complex()[t].collar && !contains(found, t)) found.push_back(t);

@@ -44,20 +44,21 @@ class Detours {
     bool more_thin = false;  ///< are there more thin tets than before?
     double worst = 0;        ///< of the tets that it has changed, at most the wanted quality
   };
-  /// Where first steps are tried: at the tet itself, or at those across its faces and its edges.
-  enum class Reach : std::uint8_t { tet, beside };
+  /// First steps are tried at the tet itself, then at those across its faces and its edges, then anywhere
+  /// there though more tets are thin and not all others are good afterwards.
+  enum class Effort : std::uint8_t { at_tet, beside, last_resort };
   /// By tet: how many detours had been taken when it was asked, plus 1; 0: not asked.
   using Asked = std::vector<std::uint32_t>;
 
   bool exhausted() const;
   bool is_new_to(Index tet, const Asked& asked) const;
-  bool take_round(std::vector<Index>& tets, Reach reach, const std::function<bool()>& stopped);
-  bool help(Index tet, Reach reach);
+  bool take_round(std::vector<Index>& tets, Effort effort, const std::function<bool()>& stopped);
+  bool help(Index tet, Effort effort);
   void note_changes(std::vector<Index>& tets);
-  std::vector<Index> places(Index tet, Reach reach) const;
+  std::vector<Index> places(Index tet, Effort effort) const;
   Change first_step(const FirstStep& step);
   Result attempt(const FirstStep& step);
-  bool is_worth_it(const Result& result) const;
+  bool is_worth_it(const Result& result, Effort effort) const;
   void begin_trial();
   void apply(Change change);
   void improve_changed();
@@ -73,7 +74,7 @@ class Detours {
   std::uint32_t taken_ = 0;
   bool ended_ = false;                         // all trials are spent, or it was stopped
   std::vector<std::uint32_t> last_detour_at_;  // by vertex: that changed a tet there
-  std::array<Asked, 2> asked_;                 // by Reach
+  std::array<Asked, 3> asked_;                 // by Effort
 
   // Of the trial that is made.
   std::uint32_t trial_ = 0;

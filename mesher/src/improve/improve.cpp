@@ -26,6 +26,9 @@ namespace {
 constexpr std::size_t tets_per_proposal = 2000;
 constexpr std::size_t most_proposals = 1024;
 constexpr std::size_t steps_between_reports = 1024;
+// Tets at walls stay poor however often their vertices move a little. Of the few that detours are for little
+// moves may help.
+constexpr double least_gain = 0.02, least_gain_in_detours = 1e-3;
 // Detours are taken if at most `few` of the tets and 2% need them; else the bound is out of reach.
 constexpr std::size_t few = 50, tets_per_few = 50;
 // At most so many operations are tried in them, and one for so many tets.
@@ -48,6 +51,7 @@ class Improvement {
 
   ImproveReport run() {
     const auto started = std::chrono::steady_clock::now();
+    rule_.set_least_gain(least_gain);
     queue_all();
     report_.candidates = queue_.size();
     for (unsigned pass = 0; pass < passes_ && !queue_.empty() && !report_.cancelled; ++pass) {
@@ -149,6 +153,7 @@ class Improvement {
     const auto count = static_cast<std::size_t>(std::ranges::count_if(poor, may_change));
     if (count == 0 || count > few + complex().size() / tets_per_few) return;
     workpiece_.prepare();
+    rule_.set_least_gain(least_gain_in_detours);
     Detours detours(workpiece_, remedies_, operations_.local(), trials + complex().size() / tets_per_trial);
     report_.detours = detours.take_all(std::move(poor), [this] { return report_.cancelled = stopped(); });
   }

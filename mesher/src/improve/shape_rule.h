@@ -76,6 +76,9 @@ class SliverRule final : public ShapeRule {
     return bound_.holds(p) || (thin_ != nullptr && thin_->contains(p, corners));
   }
 
+  double least_gain() const override { return least_gain_; }
+  /// For the operations that are asked from now on.
+  void set_least_gain(double share) { least_gain_ = share; }
   /// Is a tet's radius-edge ratio within the bound, which only thin tets exceed?
   bool is_within_bound(const Corners& p) const { return bound_.holds(p); }
   /// Has a tet of this quality an angle above the largest of thin ones, or none above 0.06 degrees? False
@@ -87,6 +90,7 @@ class SliverRule final : public ShapeRule {
 
   RadiusEdgeBound bound_;
   const ThinShape* thin_;
+  double least_gain_ = 1e-3;
 };
 
 }  // namespace collarmesh::improvement
