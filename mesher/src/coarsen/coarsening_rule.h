@@ -39,7 +39,7 @@ class CoarseningRule final : public improvement::ShapeRule {
            squared_relative_length(squared_length, a, b) <= longest_new * longest_new;
   }
   // Each move has contractions around asked again.
-  double least_gain() const override { return 5e-3; }
+  double least_gain() const override { return 0.02; }
   bool dissolves_collars() const override { return true; }
 
   bool keeps_guarantee(const Corners& p, double quality) const { return quality >= 1 || bound_.holds(p); }

@@ -68,9 +68,7 @@ class SliverRule final : public ShapeRule {
 
   double quality(const Corners& p, const std::array<Index, 4>&) const override {
     const double sine = shape_quality(p);
-    const bool blunt =
-        thin_ != nullptr && sine > 0 && extreme_cosines(p).largest_angle < thin_->cosine_of_largest();
-    return blunt ? beyond * sine : sine;
+    return thin_ != nullptr && sine > 0 && thin_->is_blunt(p, sine) ? beyond * sine : sine;
   }
   bool allows(const Corners& p, const std::array<Index, 4>& corners, double) const override {
     return bound_.holds(p) || (thin_ != nullptr && thin_->contains(p, corners));

@@ -27,9 +27,27 @@ inline double sine(double signed_square_of_cosine) {
   return std::sqrt(1 - std::fabs(signed_square_of_cosine));
 }
 
+/// Of the largest angle of its faces.
+inline double least_cosine_of_faces(const Corners& p) {
+  const double ab = squared_distance(p[0], p[1]), ac = squared_distance(p[0], p[2]),
+               ad = squared_distance(p[0], p[3]), bc = squared_distance(p[1], p[2]),
+               bd = squared_distance(p[1], p[3]), cd = squared_distance(p[2], p[3]);
+  double least = 1;
+  const auto see_face = [&least](double x, double y, double z) {
+    const double longest = std::max({x, y, z}), excess = x + y + z - 2 * longest;
+    if (excess >= 0) return;
+    const double others = longest == x ? y * z : longest == y ? x * z : x * y;
+    least = std::min(least, 0.25 * signed_square(excess) / others);
+  };
+  see_face(ab, ac, bc);
+  see_face(ab, ad, bd);
+  see_face(ac, ad, cd);
+  see_face(bc, bd, cd);
+  return least;
+}
+
 inline ExtremeCosines extreme_cosines(const Corners& p) {
-  const Vector ab = p[1] - p[0], ac = p[2] - p[0], ad = p[3] - p[0], bc = p[2] - p[1], bd = p[3] - p[1],
-               cd = p[3] - p[2];
+  const Vector ab = p[1] - p[0], ac = p[2] - p[0], ad = p[3] - p[0], bc = p[2] - p[1], bd = p[3] - p[1];
   const Vector n_a = cross(bc, bd), n_b = cross(ad, ac), n_c = cross(ab, ad), n_d = cross(ac, ab);
   if (!(-dot(n_d, ad) > 0)) return {1, -1, false};
   const double a = 1 / squared_norm(n_a), b = 1 / squared_norm(n_b), c = 1 / squared_norm(n_c),
@@ -46,19 +64,7 @@ inline ExtremeCosines extreme_cosines(const Corners& p) {
     least = std::min(least, squares[i]);
     greatest = std::max(greatest, squares[i]);
   }
-  const double l_ab = squared_norm(ab), l_ac = squared_norm(ac), l_ad = squared_norm(ad),
-               l_bc = squared_norm(bc), l_bd = squared_norm(bd), l_cd = squared_norm(cd);
-  const auto see_face = [&least](double x, double y, double z) {
-    const double longest = std::max({x, y, z}), excess = x + y + z - 2 * longest;
-    if (excess >= 0) return;
-    const double others = longest == x ? y * z : longest == y ? x * z : x * y;
-    least = std::min(least, 0.25 * signed_square(excess) / others);
-  };
-  see_face(l_ab, l_ac, l_bc);
-  see_face(l_ab, l_ad, l_bd);
-  see_face(l_ac, l_ad, l_cd);
-  see_face(l_bc, l_bd, l_cd);
-  return {std::min(1.0, greatest), std::max(-1.0, least), true};
+  return {std::min(1.0, greatest), std::max(-1.0, std::min(least, least_cosine_of_faces(p))), true};
 }
 
 /// The extreme angles of a tet, degrees.
@@ -97,8 +103,12 @@ class ThinShape {
       if (v < sine_at_vertex_.size()) least = std::min(least, sine_at_vertex_[v]);
     return least;
   }
-  /// The cosine of the upper bound on all angles, as in ExtremeCosines, with room for rounding.
-  double cosine_of_largest() const { return cosine_; }
+  /// Has a tet of positive volume an angle above the largest of thin ones? `shape` is its shape_quality,
+  /// which tells of most that no dihedral angle is.
+  bool is_blunt(const Corners& p, double shape) const {
+    return shape > obtuse_weight * least_blunt_ + rounding ? least_cosine_of_faces(p) < cosine_
+                                                           : extreme_cosines(p).largest_angle < cosine_;
+  }
   /// The sines of the smallest angle and of what the largest lacks to 180 degrees, over those of their
   /// bounds: both are at least 1 where a tet is thin. Negative for a flat or an inverted tet.
   struct Margins {

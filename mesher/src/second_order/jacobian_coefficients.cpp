@@ -6,21 +6,28 @@ namespace {
 
 constexpr std::array<std::array<unsigned, 2>, 6> ends{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
-// Calls visit(coefficient, u, v, w) for each way to give the three corners of each coefficient to the three
-// linear functions that the determinant is made of. The mean over the six ways is the coefficient.
-template <class Visit>
-void visit_ways(const Visit& visit) {
+// The determinant is made of three linear functions; a coefficient is 8 times the mean over the six ways to
+// give its three corners to them. Of a choice of corners for the functions: which coefficient it belongs to,
+// and 8/6 times how many of the ways it is.
+struct Way {
+  std::size_t coefficient = 0;
+  double weight = 0;
+};
+using Ways = std::array<std::array<std::array<Way, 4>, 4>, 4>;
+
+constexpr Ways ways = [] {
+  Ways made;
   std::size_t coefficient = 0;
   for (unsigned i = 0; i < 4; ++i)
     for (unsigned j = i; j < 4; ++j)
-      for (unsigned k = j; k < 4; ++k, ++coefficient) {
-        visit(coefficient, i, j, k), visit(coefficient, i, k, j);
-        visit(coefficient, j, i, k), visit(coefficient, j, k, i);
-        visit(coefficient, k, i, j), visit(coefficient, k, j, i);
-      }
-}
-
-constexpr double scale = 8.0 / 6;
+      for (unsigned k = j; k < 4; ++k, ++coefficient)
+        for (const auto& [u, v, w] : std::array<std::array<unsigned, 3>, 6>{
+                 {{i, j, k}, {i, k, j}, {j, i, k}, {j, k, i}, {k, i, j}, {k, j, i}}}) {
+          made[u][v][w].coefficient = coefficient;
+          made[u][v][w].weight += 8.0 / 6;
+        }
+  return made;
+}();
 
 }  // namespace
 
@@ -33,20 +40,30 @@ JacobianCoefficients::JacobianCoefficients(const CurvedTet& nodes) : values_{} {
   }
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t i = 0; i < 4; ++i) derivatives_[k][i] = bezier[i][k + 1] - bezier[i][0];
-  visit_ways([this](std::size_t c, unsigned u, unsigned v, unsigned w) {
-    values_[c] += scale * dot(cross(derivatives_[0][u], derivatives_[1][v]), derivatives_[2][w]);
-  });
+  for (unsigned u = 0; u < 4; ++u)
+    for (unsigned v = 0; v < 4; ++v) {
+      const Vector product = cross(derivatives_[0][u], derivatives_[1][v]);
+      for (unsigned w = 0; w < 4; ++w)
+        values_[ways[u][v][w].coefficient] += ways[u][v][w].weight * dot(product, derivatives_[2][w]);
+    }
 }
 
 std::array<Vector, 6> JacobianCoefficients::gradient(const Values& weights) const {
+  const auto weight = [&](unsigned u, unsigned v, unsigned w) {
+    return ways[u][v][w].weight * weights[ways[u][v][w].coefficient];
+  };
   std::array<std::array<Vector, 4>, 3> by_derivatives{};
-  visit_ways([&](std::size_t c, unsigned u, unsigned v, unsigned w) {
-    const Vector &a = derivatives_[0][u], &b = derivatives_[1][v], &d = derivatives_[2][w];
-    const double weight = scale * weights[c];
-    by_derivatives[0][u] = by_derivatives[0][u] + weight * cross(b, d);
-    by_derivatives[1][v] = by_derivatives[1][v] + weight * cross(d, a);
-    by_derivatives[2][w] = by_derivatives[2][w] + weight * cross(a, b);
-  });
+  for (unsigned i = 0; i < 4; ++i)
+    for (unsigned j = 0; j < 4; ++j) {
+      const Vector of_0 = cross(derivatives_[1][i], derivatives_[2][j]),
+                   of_1 = cross(derivatives_[2][i], derivatives_[0][j]),
+                   of_2 = cross(derivatives_[0][i], derivatives_[1][j]);
+      for (unsigned k = 0; k < 4; ++k) {
+        by_derivatives[0][k] = by_derivatives[0][k] + weight(k, i, j) * of_0;
+        by_derivatives[1][k] = by_derivatives[1][k] + weight(j, k, i) * of_1;
+        by_derivatives[2][k] = by_derivatives[2][k] + weight(i, j, k) * of_2;
+      }
+    }
   std::array<std::array<Vector, 4>, 4> by_bezier{};
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t i = 0; i < 4; ++i) {

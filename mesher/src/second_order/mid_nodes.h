@@ -8,9 +8,9 @@
 
 namespace collarmesh::second_order {
 
-/// The edges of a mesh, sorted, each with the feature it lies on: those of its tets, and in a mesh that misses
-/// a guarantee those of faces and curves that are in no tet. The mid-side node of the edge e is the point
-/// first_node() + e.
+/// The edges of a mesh, sorted, each with the feature it lies on: those of its tets, and in a mesh that
+/// misses a guarantee those of faces and curves that are in no tet. The mid-side node of the edge e is the
+/// point first_node() + e.
 class MeshEdges {
  public:
   explicit MeshEdges(const TetMesh& mesh);

@@ -130,7 +130,7 @@ void Untangling::gather(Index tet, bool wide) {
     tets.insert(tets.end(), at.begin(), at.end());
   };
   for (const Index node : mesh_.tet_mid_nodes[tet]) add_tets_at(node, near);
-  free_.clear(), free_at_.clear(), tets_.clear(), six_volumes_.clear();
+  free_.clear(), free_at_.clear(), tets_.clear(), free_of_tets_.clear(), six_volumes_.clear();
   for (const Index t : near)
     for (const Index node : mesh_.tet_mid_nodes[t]) {
       const Index edge = node - edges_.first_node();
@@ -144,6 +144,11 @@ void Untangling::gather(Index tet, bool wide) {
   for (const Index t : tets_) {
     const auto& [a, b, c, d] = mesh_.tets[t];
     six_volumes_.push_back(six_volume(mesh_.points[a], mesh_.points[b], mesh_.points[c], mesh_.points[d]));
+    std::array<Index, 6>& of_tet = free_of_tets_.emplace_back();
+    for (std::size_t k = 0; k < 6; ++k) {
+      const auto at = free_at_.find(mesh_.tet_mid_nodes[t][k]);
+      of_tet[k] = at != free_at_.end() ? at->second : none;
+    }
   }
 }
 
@@ -184,8 +189,7 @@ double Untangling::objective(double barrier, std::vector<Vector>* gradient) cons
     if (gradient == nullptr) continue;
     const std::array<Vector, 6> by_nodes = coefficients.gradient(weights);
     for (std::size_t k = 0; k < 6; ++k)
-      if (const auto f = free_at_.find(mesh_.tet_mid_nodes[tets_[i]][k]); f != free_at_.end())
-        (*gradient)[f->second] = (*gradient)[f->second] + by_nodes[k];
+      if (const Index f = free_of_tets_[i][k]; f != none) (*gradient)[f] = (*gradient)[f] + by_nodes[k];
   }
   if (gradient != nullptr)
     for (std::size_t f = 0; f < free_.size(); ++f)
@@ -214,17 +218,19 @@ void Untangling::minimize(double barrier) {
       return points;
     }();
     double after = INFINITY;
+    bool has_gradient = false;
     for (unsigned h = 0; h < most_halvings; ++h, length *= 0.5) {
       for (std::size_t f = 0; f < free_.size(); ++f)
         mesh_.points[free_[f].node] = before[f] + length * way[f];
-      after = objective(barrier, nullptr);
+      has_gradient = h == 0;  // the first length is right most often
+      after = objective(barrier, has_gradient ? &next_gradient : nullptr);
       if (after <= value + 1e-4 * length * slope) break;
     }
     if (!(after < value)) {
       for (std::size_t f = 0; f < free_.size(); ++f) mesh_.points[free_[f].node] = before[f];
       break;
     }
-    objective(barrier, &next_gradient);
+    if (!has_gradient) objective(barrier, &next_gradient);
     for (Vector& w : way) w = length * w;
     add(gradient, -1, next_gradient);
     for (Vector& g : gradient) g = -1.0 * g;

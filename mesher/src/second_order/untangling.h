@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
@@ -58,9 +59,10 @@ class Untangling {
 
   // Of the tet at hand:
   std::vector<Free> free_;
-  std::unordered_map<Index, Index> free_at_;  // in free_, by node
-  std::vector<Index> tets_;                   // all that have a free node
-  std::vector<double> six_volumes_;           // of these, straight
+  std::unordered_map<Index, Index> free_at_;        // in free_, by node
+  std::vector<Index> tets_;                         // all that have a free node
+  std::vector<std::array<Index, 6>> free_of_tets_;  // in free_, by their nodes; none for those that stay
+  std::vector<double> six_volumes_;                 // of these, straight
 };
 
 }  // namespace collarmesh::second_order
