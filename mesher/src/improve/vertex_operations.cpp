@@ -203,8 +203,8 @@ std::pair<double, double> Operations::best_way(Index vertex, double best) {
   const auto consider = [&](double wish) {
     const Point p = curves_.ahead(vertex, wish);
     const double quality = quality_around(p, vertex, best);
-    if (quality <= best || !edges_allowed(vertex, points[vertex], p) || !curves_.fits(vertex, wish) ||
-        !surfaces_allow(p))
+    if (quality <= best || !edges_allowed(vertex, points[vertex], p) ||
+        (ask_surfaces_ && !(curves_.fits(vertex, wish) && surfaces_allow(p))))
       return false;
     best = quality;
     way = wish;
@@ -226,17 +226,19 @@ void Operations::move_vertex(Index vertex, Change& change) {
   const double wanted = std::max(cone_.worst * (1 + rule_.least_gain()) + 1e-12, change.quality);
   Point place = p;
   double way = 0, after = 0;
-  if (on_curve) {
-    std::tie(way, after) = best_way(vertex, cone_.worst);
-    place = curves_.ahead(vertex, way);
-  } else {
-    // Most often the best place is one that the surface allows.
-    ask_surfaces_ = false;
-    std::tie(place, after) = best_place(p, vertex, *where, cone_.worst);
-    ask_surfaces_ = true;
-    if (after > wanted && !surfaces_allow(place))
+  const auto search = [&] {
+    if (on_curve) {
+      std::tie(way, after) = best_way(vertex, cone_.worst);
+      place = curves_.ahead(vertex, way);
+    } else {
       std::tie(place, after) = best_place(p, vertex, *where, cone_.worst);
-  }
+    }
+  };
+  // Most often the best place is one that surface and curve allow.
+  ask_surfaces_ = false;
+  search();
+  ask_surfaces_ = true;
+  if (after > wanted && !((!on_curve || curves_.fits(vertex, way)) && surfaces_allow(place))) search();
   if (after <= wanted) return;
   std::vector<Index> read = std::move(change.read);
   read.insert(read.end(), cone_.tets.begin(), cone_.tets.end());
