@@ -27,9 +27,9 @@ class CellQuality {
               const RestrictedSurface& surface, const GradedSizes& sizes, const FacingSheets& facing_sheets,
               RandomOffsets& random, WorkQueue& queue);
 
-  /// What destroys a cell, if anything can.
+  /// What destroys a cell, if anything can. For one thread.
   std::optional<Candidate> candidate(Index cell) { return candidate(cell, random_); }
-  /// Several threads may ask at once, each with offsets of its own.
+  /// Several threads may ask at once, each with offsets of its own, of cells of its own block.
   std::optional<Candidate> candidate(Index cell, RandomOffsets& random) const;
   /// Is the entry of the queue that of a cell that is still there, outside the collars?
   bool due(const WorkQueue::Entry& entry) const {

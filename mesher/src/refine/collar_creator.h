@@ -51,9 +51,10 @@ class CollarCreator {
   /// The balls of curves that have become isolated.
   void create_on_isolated_curves();
   /// A subsegment would be split: if it is a crease's whose chain has started, the crease gets its balls
-  /// instead. Did it? Then the subsegment is gone.
+  /// instead. Did it? Then the subsegment is gone. Precondition: the subsegment is there.
   bool create_at_subsegment(Index subsegment);
-  /// Creates the balls of all creases that have none yet. False when there are no such creases.
+  /// Creates the balls of all creases that have none yet. False when there are no such creases. Precondition:
+  /// the queue is empty, so the ends of creases have their balls.
   bool create_remaining();
 
   /// The gap size as the mesh is now.

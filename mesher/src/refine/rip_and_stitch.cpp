@@ -58,6 +58,8 @@ void RipAndStitch::stitch_books(const std::vector<CollarTriangle>& triangles) {
     const std::array<Index, 2> balls{std::min(a, b), std::max(a, b)};
     const auto found =
         std::lower_bound(curve_between.begin(), curve_between.end(), std::pair{balls, Index{0}});
+    // Balls that are not consecutive meet in a triangle only where the review has been given up.
+    if (found == curve_between.end() || found->first != balls) return crease_tag(a);
     return domain_.plc.curves[found->second].tag;
   };
   struct Side {

@@ -51,7 +51,8 @@ class RipAndStitch {
         creator_(creator),
         collar_surface_(collar_surface) {}
 
-  /// Precondition: every point is resolved, and the collar surface well represented.
+  /// Precondition: every point is resolved. Where the collar surface is not well represented, as after
+  /// refinement has given up, some collars are `open` or have other cells than the paper's.
   void stitch();
   const Stitched& result() const { return stitched_; }
 

@@ -14,7 +14,8 @@ namespace collarmesh {
 /// Who asks: CurveChains::too_coarse, TriangleQuality::too_large and CellQuality::judge, for what is to be
 /// split; GradedSizes::cells_made, for the size at a new vertex; CollarCreator::target_size, for the radii of
 /// balls; coarsen/target_sizes.cpp and predict/vertex_counts.cpp, for the same sizes in other stages. A new
-/// kind of size is looked for in each of them (doc/contributing.md).
+/// kind of size is looked for in each of them (doc/contributing.md); if it calls the user's code or is kept
+/// at vertices, BlockRefinement must not have rounds with it, as with `has_field`.
 class Sizing {
  public:
   /// The target edge length where a size is asked for. The median edge of other meshers' meshes exceeds the
