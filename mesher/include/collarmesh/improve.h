@@ -34,8 +34,9 @@ struct ImproveReport {
   std::size_t remaining = 0;   ///< and after
   std::size_t edge_removals = 0, boundary_flips = 0, moved_vertices = 0, contracted_edges = 0,
               inserted_vertices = 0;
-  std::size_t detours =
-      0;  ///< operations that made tets worse first, with what made them better; not counted above
+  /// Operations that made tets worse first, with what made them better, and operations alone that these made
+  /// possible; not counted above.
+  std::size_t detours = 0;
   double seconds = 0;
   bool cancelled = false;  ///< the mesh is valid, as good as it had become
 };

@@ -89,8 +89,8 @@ void Detours::note_changes(std::vector<Index>& tets) {
   }
 }
 
-// By an operation alone, where other detours have made room for one, else by the first detour that makes all
-// tets good and none thin, else by the one with the best worst tet. True: `changed_` has changed.
+// By an operation alone, where there is one now, else by the first detour that makes all tets good and no
+// more of them thin than before, else by the one with the best worst tet. True: `changed_` has changed.
 bool Detours::help(Index tet, Effort effort) {
   if (Change change = remedies_.propose(operations_, tet); change.kind != Change::Kind::none) {
     ++trials_;
@@ -101,10 +101,12 @@ bool Detours::help(Index tet, Effort effort) {
   }
   Result best;
   FirstStep step{};
-  for (const Index place : places(tet, effort))
+  for (const Index place : places(tet, effort)) {
+    const bool may_change_vertices = place == tet || remedies_.may_change_vertices(place);
     for (unsigned edge = 0; edge < edges.size(); ++edge)
       for (const Operation operation : {Operation::contraction, Operation::contraction_turned,
                                         Operation::insertion, Operation::removal}) {
+        if (operation != Operation::removal && !may_change_vertices) continue;
         const FirstStep tried{place, edge, operation};
         const Result found = attempt(tried);
         if (!found.better) continue;
@@ -117,6 +119,7 @@ bool Detours::help(Index tet, Effort effort) {
         const auto worth = [](const Result& r) { return std::tuple(r.better, !r.more_thin, r.worst); };
         if (worth(found) > worth(best)) best = found, step = tried;
       }
+  }
   if (!best.better || !attempt(step).better) return false;
   workpiece_.keep();
   return true;
@@ -187,7 +190,6 @@ void Detours::apply(Change change) {
   for (const Index t : change.replacement.old) see_before(t);
   for (const Index t : workpiece_.apply(std::move(change))) {
     set_changed(t);
-    remedies_.changed(t);
     if (!contains(to_improve_, t)) to_improve_.push_back(t);
   }
 }

@@ -15,7 +15,7 @@ namespace collarmesh::improvement {
 /// there, else undone. Better is compared from the worst tet up, so the mesh never returns to an earlier
 /// state.
 ///
-/// One thread; the result depends on the mesh alone.
+/// One thread. Precondition: `Remedies::forget` was called; so a trial that is made again comes to the same.
 class Detours {
  public:
   /// All are kept by reference. At most `most_trials` operations are tried, and those at one tet.

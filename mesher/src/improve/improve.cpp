@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 #include <queue>
 
 #include "collarmesh/error.h"
@@ -154,6 +153,7 @@ class Improvement {
     if (count == 0 || count > few + complex().size() / tets_per_few) return;
     workpiece_.prepare();
     rule_.set_least_gain(least_gain_in_detours);
+    remedies_.forget();
     Detours detours(workpiece_, remedies_, operations_.local(), trials + complex().size() / tets_per_trial);
     report_.detours = detours.take_all(std::move(poor), [this] { return report_.cancelled = stopped(); });
   }

@@ -35,6 +35,9 @@ class Remedies {
   void nothing_helps(Index tet) { set_stays(tet, move_vertices_); }
   /// The tet is new, or a corner of it has moved.
   void changed(Index tet) { set_stays(tet, false); }
+  /// All may help again, as when the rule asks for less. As long as `nothing_helps` is not called, what is
+  /// proposed depends on the mesh alone.
+  void forget() { stays_.clear(); }
 
  private:
   // Whether a move helps depends on the tets at the vertex alone, each of which may ask.

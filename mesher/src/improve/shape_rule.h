@@ -77,8 +77,6 @@ class SliverRule final : public ShapeRule {
   double least_gain() const override { return least_gain_; }
   /// For the operations that are asked from now on.
   void set_least_gain(double share) { least_gain_ = share; }
-  /// Is a tet's radius-edge ratio within the bound, which only thin tets exceed?
-  bool is_within_bound(const Corners& p) const { return bound_.holds(p); }
   /// Has a tet of this quality an angle above the largest of thin ones, or none above 0.06 degrees? False
   /// where no tet may be thin.
   bool is_blunt(double quality) const { return thin_ != nullptr && quality < beyond; }

@@ -217,9 +217,10 @@ void Untangling::minimize(double barrier) {
       for (const Free& f : free_) points.push_back(mesh_.points[f.node]);
       return points;
     }();
-    double after = INFINITY;
+    double after = INFINITY, gone = length;
     bool has_gradient = false;
     for (unsigned h = 0; h < most_halvings; ++h, length *= 0.5) {
+      gone = length;
       for (std::size_t f = 0; f < free_.size(); ++f)
         mesh_.points[free_[f].node] = before[f] + length * way[f];
       has_gradient = h == 0;  // the first length is right most often
@@ -231,7 +232,7 @@ void Untangling::minimize(double barrier) {
       break;
     }
     if (!has_gradient) objective(barrier, &next_gradient);
-    for (Vector& w : way) w = length * w;
+    for (Vector& w : way) w = gone * w;
     add(gradient, -1, next_gradient);
     for (Vector& g : gradient) g = -1.0 * g;
     directions.note(std::move(way), gradient);
