@@ -115,8 +115,8 @@ bool take_and_compare(Meshed& meshed, Bench& bench, Index tet) {
     EXPECT_EQ(mesh.face_tag, was.face_tag);
     EXPECT_EQ(mesh.face_regions, was.face_regions);
     EXPECT_EQ(mesh.edges, was.edges);
-    ASSERT_EQ(mesh.features.size(), was.features.size());
-    for (std::size_t v = 0; v < was.features.size(); ++v) {
+    EXPECT_EQ(mesh.features.size(), was.features.size());
+    for (std::size_t v = 0; v < std::min(mesh.features.size(), was.features.size()); ++v) {
       EXPECT_EQ(mesh.features[v].dimension, was.features[v].dimension);
       EXPECT_EQ(mesh.features[v].feature, was.features[v].feature);
     }
