@@ -53,8 +53,7 @@ bool Detours::take_round(std::vector<Index>& tets, Effort effort, const std::fun
   const auto is_good = [this](Index t) { return remedies_.poor_quality(t) == INFINITY; };
   std::erase_if(tets, is_good);
   std::ranges::sort(tets, {}, [this](Index t) { return std::pair(remedies_.poor_quality(t), t); });
-  const auto repeated = std::ranges::unique(tets);
-  tets.erase(repeated.begin(), repeated.end());
+  tets.erase(std::unique(tets.begin(), tets.end()), tets.end());
   Asked& asked = asked_[static_cast<unsigned>(effort)];
   const std::uint32_t before = taken_;
   const std::size_t count = tets.size();
