@@ -120,7 +120,7 @@ def main() -> int:
 
     def ours(threads: int) -> Collarmesh:
         return Collarmesh(options.build / "bin" / "collarmesh", options.time_limit, ["--threads", str(threads)], improve=2,
-                          name="whole run")
+                          name="collarmesh, whole run")
 
     def peer(threads: int) -> Gmsh:
         return Gmsh(options.time_limit, threads=threads)

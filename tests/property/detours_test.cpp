@@ -108,18 +108,7 @@ bool take_and_compare(Meshed& meshed, Bench& bench, Index tet) {
     EXPECT_TRUE(is_better(bench.poor_qualities(), before));
   } else {
     EXPECT_EQ(bench.tets(), tets);
-    const TetMesh& mesh = meshed.result.mesh;
-    EXPECT_EQ(mesh.points, was.points);
-    EXPECT_EQ(mesh.faces, was.faces);
-    EXPECT_EQ(mesh.face_patch, was.face_patch);
-    EXPECT_EQ(mesh.face_tag, was.face_tag);
-    EXPECT_EQ(mesh.face_regions, was.face_regions);
-    EXPECT_EQ(mesh.edges, was.edges);
-    EXPECT_EQ(mesh.features.size(), was.features.size());
-    for (std::size_t v = 0; v < std::min(mesh.features.size(), was.features.size()); ++v) {
-      EXPECT_EQ(mesh.features[v].dimension, was.features[v].dimension);
-      EXPECT_EQ(mesh.features[v].feature, was.features[v].feature);
-    }
+    testing::expect_same(meshed.result.mesh, was);
   }
   return taken;
 }
@@ -189,7 +178,7 @@ TEST(Detours, AHopelessBoundEnds) {
   }
 }
 
-// In a coarsened mesh: tets may be thin, and vertices stay beside those.
+// In a coarsened mesh, where tets may be thin.
 TEST(Detours, KeepTheGuaranteesOfThinTets) {
   using namespace testing;
   std::size_t taken = 0;

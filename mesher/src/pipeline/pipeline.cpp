@@ -330,6 +330,7 @@ class Pipeline {
     options.threads = options_.threads;
     if (made_.coarsening) {
       options.thin_angle = options_.thin_angle;
+      // Just above the bound a tet may be within it once its vertices have moved onto the exact geometry.
       options.thin_above = options_.mesh.radius_edge / (exact() ? ratio_left : 1);
       options.thin_reserve = reserve();
       options.keep_vertices = true;
