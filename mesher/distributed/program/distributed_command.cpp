@@ -451,21 +451,25 @@ ExitCode mesh_distributed(const DistributedArguments& arguments) {
 }  // namespace
 
 ExitCode run(int argc, char** argv) {
-  cli::install_interrupt_handlers();
   const Session session;
   if (Ranks(MPI_COMM_WORLD).rank != 0) cli::be_silent();
+  cli::install_interrupt_handlers();
   std::signal(SIGSEGV, end_after_crash);  // in place of PETSc's
-  return cli::guarded([&] {
-    try {
-      require_equal_command_lines(argc, argv);
-      const std::variant<DistributedArguments, ExitCode> parsed = parse(argc, argv);
-      if (const ExitCode* code = std::get_if<ExitCode>(&parsed)) return *code;
-      return mesh_distributed(std::get<DistributedArguments>(parsed));
-    } catch (const PetscOutOfMemory& failure) {
-      end_without_memory(failure);
-    } catch (const PetscFailure& failure) {
-      end_all(ExitCode::internal_error, failure.what());
-    }
+  // Watched only until the result is known: mpirun asks the ranks that are still in MPI_Finalize to stop when
+  // one of them has ended with an error, and that one has been told.
+  return cli::run_interruptible([&] {
+    return cli::guarded([&] {
+      try {
+        require_equal_command_lines(argc, argv);
+        const std::variant<DistributedArguments, ExitCode> parsed = parse(argc, argv);
+        if (const ExitCode* code = std::get_if<ExitCode>(&parsed)) return *code;
+        return mesh_distributed(std::get<DistributedArguments>(parsed));
+      } catch (const PetscOutOfMemory& failure) {
+        end_without_memory(failure);
+      } catch (const PetscFailure& failure) {
+        end_all(ExitCode::internal_error, failure.what());
+      }
+    });
   });
 }
 
