@@ -451,9 +451,9 @@ ExitCode mesh_distributed(const DistributedArguments& arguments) {
 }  // namespace
 
 ExitCode run(int argc, char** argv) {
+  cli::install_interrupt_handlers();  // MPI's own files may be too large, too
   const Session session;
   if (Ranks(MPI_COMM_WORLD).rank != 0) cli::be_silent();
-  cli::install_interrupt_handlers();
   std::signal(SIGSEGV, end_after_crash);  // in place of PETSc's
   // Watched only until the result is known: mpirun asks the ranks that are still in MPI_Finalize to stop when
   // one of them has ended with an error, and that one has been told.
