@@ -37,7 +37,7 @@ std::vector<Shape> thin_shapes() {
   return {{"plate", {plate()}, 10, 0, 8, 1220},
           {"plate with a hole", {scaled(plate_with_hole(1, 32), 1)}, 1.5, 30, 8, 130},
           {"sphere in a sphere", {icosphere(1, 12), icosphere(0.95, 12)}, 0.3, 30, 8, 5900},
-          {"wedge of 1 degree", acute::wedge(1).soups, 0.28, 0, 0.5, 1680, 6},  // by seed 1515 to 1776
+          {"wedge of 1 degree", acute::wedge(1).soups, 0.28, 0, 0.5, 1850, 6},  // by seed 1579 to 1832
           {"wedge of 2 degrees", acute::wedge(2).soups, 0.3, 0, 1, 370},
           {"wedge of 5 degrees", acute::wedge(5).soups, 0.3, 0, 2.5, 90},
           {"wedge of 20 degrees", acute::wedge(20).soups, 0.2, 0, 8, 245},
@@ -89,14 +89,16 @@ TEST(Coarsen, RemovesHardlyAnythingAgain) {
   constexpr unsigned seeds = 4, of_one_contraction = 6;
   for (const Shape& shape : thin_shapes()) {
     SCOPED_TRACE(shape.name);
-    std::size_t all = 0, removed = 0;
+    std::ptrdiff_t all = 0, removed = 0;  // an operation on edges may leave a tet more
     for (unsigned seed = 0; seed < seeds; ++seed) {
       MeshOptions options = with_near_surface(shape.soups, shape.size);
       options.seed = seed;
       Meshed meshed = mesh_of(shape.soups, options, shape.feature_angle);
       coarsen(meshed.result.mesh, meshed.plc, options);
       const CoarsenReport again = coarsen(meshed.result.mesh, meshed.plc, options);
-      all += again.tets_before, removed += again.tets_before - again.tets_after;
+      all += static_cast<std::ptrdiff_t>(again.tets_before);
+      removed +=
+          static_cast<std::ptrdiff_t>(again.tets_before) - static_cast<std::ptrdiff_t>(again.tets_after);
       EXPECT_EQ(faults({meshed.plc, {}, check(meshed.result.mesh, meshed.plc)}), "");
     }
     EXPECT_LE(removed, all / 100 + of_one_contraction);

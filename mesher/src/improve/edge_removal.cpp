@@ -89,11 +89,13 @@ void Operations::remove_edge_above(Index tet, unsigned i, unsigned j, std::optio
   if (n > largest_ring || (ring_.closed && m < 3)) return;
   // Where among the link vertices do faces that must stay leave the edge?
   std::vector<std::pair<std::size_t, Index>> kept;
-  double worst = INFINITY;
+  // What is better than this tet is better than the worst one at the edge.
+  const bool known = least || (change.kind != Change::Kind::none && change.quality >= quality(tet));
+  double worst = known ? -INFINITY : INFINITY;
   for (std::size_t k = 0; k < n; ++k) {
     const auto& t = complex_[ring_.tets[k]];
     if (untouchable(t)) return;
-    worst = std::min(worst, quality(ring_.tets[k]));
+    if (!known) worst = std::min(worst, quality(ring_.tets[k]));
     for (unsigned corner = 0; corner < 4; ++corner) {
       const Index opposite = t.corners[corner];
       if (opposite == a || opposite == b || t.faces[corner] == none) continue;

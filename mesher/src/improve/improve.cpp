@@ -51,16 +51,16 @@ class Improvement {
   ImproveReport run() {
     const auto started = std::chrono::steady_clock::now();
     rule_.set_least_gain(least_gain);
-    queue_all();
-    report_.candidates = queue_.size();
-    for (unsigned pass = 0; pass < passes_ && !queue_.empty() && !report_.cancelled; ++pass) {
+    find_poor_tets();
+    report_.candidates = poor_.size();
+    for (unsigned pass = 0; pass < passes_ && !poor_.empty() && !report_.cancelled; ++pass) {
       const std::size_t before = changes();
       work_off();
       if (changes() == before) break;
-      queue_all();
+      find_poor_tets();
     }
-    if (move_vertices_ && !report_.cancelled) take_detours();
-    report_.remaining = poor_tets().size();
+    if (move_vertices_ && !report_.cancelled && take_detours()) find_poor_tets();
+    report_.remaining = poor_.size();
     report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return report_;
   }
@@ -83,17 +83,12 @@ class Improvement {
            report_.inserted_vertices + report_.contracted_edges;
   }
 
-  std::vector<Item> poor_tets() const {
+  void find_poor_tets() {
     std::vector<double> all(complex().size());
     parallel_for(all.size(), [&](std::size_t t) { all[t] = remedies_.poor_quality(static_cast<Index>(t)); });
-    std::vector<Item> poor;
+    poor_.clear();
     for (Index t = 0; t < complex().size(); ++t)
-      if (all[t] < INFINITY) poor.push_back({all[t], t, complex()[t].generation});
-    return poor;
-  }
-
-  void queue_all() {
-    for (const Item& item : poor_tets()) queue_.push(item);
+      if (all[t] < INFINITY) poor_.push_back({all[t], t, complex()[t].generation});
   }
 
   void queue(Index tet) {
@@ -108,6 +103,7 @@ class Improvement {
   }
 
   void work_off() {
+    for (const Item& item : poor_) queue_.push(item);
     const std::size_t size = std::clamp<std::size_t>(complex().size() / tets_per_proposal, 1, most_proposals);
     std::size_t steps = 0;
     while (!queue_.empty()) {
@@ -145,17 +141,19 @@ class Improvement {
             !execution_.progress({"improve", 0, complex().mesh().points.size(), complex().size()}));
   }
 
-  void take_detours() {
+  // Precondition: the poor tets are those there are. False when none was tried.
+  bool take_detours() {
     std::vector<Index> poor;
-    for (const Item& item : poor_tets()) poor.push_back(item.tet);
+    for (const Item& item : poor_) poor.push_back(item.tet);
     const auto may_change = [this](Index t) { return remedies_.may_change_vertices(t); };
     const auto count = static_cast<std::size_t>(std::ranges::count_if(poor, may_change));
-    if (count == 0 || count > few + complex().size() / tets_per_few) return;
+    if (count == 0 || count > few + complex().size() / tets_per_few) return false;
     workpiece_.prepare();
     rule_.set_least_gain(least_gain_in_detours);
     remedies_.forget();
     Detours detours(workpiece_, remedies_, operations_.local(), trials + complex().size() / tets_per_trial);
     report_.detours = detours.take_all(std::move(poor), [this] { return report_.cancelled = stopped(); });
+    return true;
   }
 
   // Is all that the change depends on as it was when the batch was begun? That is in the tets that it
@@ -198,6 +196,7 @@ class Improvement {
   const Execution& execution_;
   bool move_vertices_;
   unsigned passes_;
+  std::vector<Item> poor_;  // at the last look at all tets
   std::priority_queue<Item> queue_;
   std::vector<Item> batch_;
   std::vector<Change> proposals_;

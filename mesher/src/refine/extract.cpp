@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "refine/memory_order.h"
+
 namespace collarmesh {
 
 namespace {
@@ -20,6 +22,7 @@ class Extraction {
     refined_.curves.visit([&](Index, const Subsegment& s) { add_edge(s.ends, s.curve); });
     forget_features_off_the_surface();
     mesh_.names = plc_.names;
+    order_in_memory(mesh_);
     return std::move(mesh_);
   }
 
