@@ -94,15 +94,19 @@ Measures<Real> measure_as(const Point& a, const Point& b, const Point& c, const 
   quality.min_dihedral = least.degrees();
   quality.max_dihedral = greatest.degrees();
   // The angle of a face between two of its edges, at each corner.
-  const auto at = [](const V& u, const V& v, const V& normal) {
-    return Direction<Real>{dot(u, v), std::sqrt(dot(normal, normal))};
+  const auto twice_area = [](const V& normal) { return std::sqrt(dot(normal, normal)); };
+  const Real bcd = twice_area(n_a), acd = twice_area(n_b), abd = twice_area(n_c), abc = twice_area(n_d);
+  // Of a triangle with these edges from its first corner, and the third one between their ends.
+  Direction<Real> widest{dot(ab, ac), abc};
+  const auto see_face = [&](const V& u, const V& v, const V& w, Real area) {
+    for (const Direction<Real>& angle : {Direction<Real>{dot(u, v), area}, Direction<Real>{-dot(u, w), area},
+                                         Direction<Real>{dot(v, w), area}})
+      if (widest.less_than(angle)) widest = angle;
   };
-  Direction<Real> widest = at(ab, ac, n_d);
-  for (const Direction<Real>& angle :
-       {at(Real(-1) * ab, bc, n_d), at(ac, bc, n_d), at(ab, ad, n_c), at(Real(-1) * ab, bd, n_c),
-        at(ad, bd, n_c), at(ac, ad, n_b), at(Real(-1) * ac, cd, n_b), at(ad, cd, n_b), at(bc, bd, n_a),
-        at(Real(-1) * bc, cd, n_a), at(bd, cd, n_a)})
-    if (widest.less_than(angle)) widest = angle;
+  see_face(ab, ac, bc, abc);
+  see_face(ab, ad, bd, abd);
+  see_face(ac, ad, cd, acd);
+  see_face(bc, bd, cd, bcd);
   quality.max_face_angle = widest.degrees();
   return {quality, size / (longest * std::sqrt(longest))};
 }
