@@ -75,14 +75,15 @@ struct TetMesh {
 
 /// Shape measures of one tetrahedron.
 struct TetQuality {
-  double volume;              ///< signed
-  double radius_edge;         ///< circumradius / shortest edge; infinite for a flat one
-  double min_dihedral;        ///< degrees
-  double max_dihedral;        ///< degrees
-  double max_face_angle = 0;  ///< degrees: the largest angle of its faces
+  double volume;        ///< signed
+  double radius_edge;   ///< circumradius / shortest edge; infinite for a flat one
+  double min_dihedral;  ///< degrees
+  double max_dihedral;  ///< degrees
 };
 /// At any scale: squares and products of lengths may be out of a double's range.
 TetQuality measure(const Point& a, const Point& b, const Point& c, const Point& d);
+/// The largest angle of a tetrahedron's faces, degrees, at any scale.
+double largest_face_angle(const Point& a, const Point& b, const Point& c, const Point& d);
 
 /// The median length of the edges of the tets, each edge counted once; 0 without tets.
 /// Cost: linear, about 80 bytes per tet for a while.

@@ -93,22 +93,18 @@ Measures<Real> measure_as(const Point& a, const Point& b, const Point& c, const 
   }
   quality.min_dihedral = least.degrees();
   quality.max_dihedral = greatest.degrees();
-  // The angle of a face between two of its edges, at each corner.
-  const auto twice_area = [](const V& normal) { return std::sqrt(dot(normal, normal)); };
-  const Real bcd = twice_area(n_a), acd = twice_area(n_b), abd = twice_area(n_c), abc = twice_area(n_d);
-  // Of a triangle with these edges from its first corner, and the third one between their ends.
-  Direction<Real> widest{dot(ab, ac), abc};
-  const auto see_face = [&](const V& u, const V& v, const V& w, Real area) {
-    for (const Direction<Real>& angle : {Direction<Real>{dot(u, v), area}, Direction<Real>{-dot(u, w), area},
-                                         Direction<Real>{dot(v, w), area}})
-      if (widest.less_than(angle)) widest = angle;
-  };
-  see_face(ab, ac, bc, abc);
-  see_face(ab, ad, bd, abd);
-  see_face(ac, ad, cd, acd);
-  see_face(bc, bd, cd, bcd);
-  quality.max_face_angle = widest.degrees();
   return {quality, size / (longest * std::sqrt(longest))};
+}
+
+// Of a triangle.
+template <class Real>
+Direction<Real> largest_angle(const Vector3<Real>& ab, const Vector3<Real>& ac, const Vector3<Real>& bc) {
+  const Vector3<Real> normal = cross(ab, ac);
+  const Real twice_area = std::sqrt(dot(normal, normal));
+  Direction<Real> largest{dot(ab, ac), twice_area};
+  for (const Real x : {-dot(ab, bc), dot(ac, bc)})
+    if (const Direction<Real> angle{x, twice_area}; largest.less_than(angle)) largest = angle;
+  return largest;
 }
 
 }  // namespace
@@ -119,6 +115,19 @@ TetQuality measure(const Point& a, const Point& b, const Point& c, const Point& 
   const Measures<double> measures = measure_as<double>(a, b, c, d);
   if (measures.conditioning > 1e-4) return measures.quality;
   return measure_as<long double>(a, b, c, d).quality;
+}
+
+double largest_face_angle(const Point& a, const Point& b, const Point& c, const Point& d) {
+  using Real = long double;
+  using V = Vector3<Real>;
+  const int exponent = exponent_of_size(a, b, c, d);
+  const Real unit = std::scalbn(Real(1), -exponent);
+  const V ab = unit * V(a, b), ac = unit * V(a, c), ad = unit * V(a, d), bc = unit * V(b, c),
+          bd = unit * V(b, d), cd = unit * V(c, d);
+  Direction<Real> largest = largest_angle(ab, ac, bc);
+  for (const auto& angle : {largest_angle(ab, ad, bd), largest_angle(ac, ad, cd), largest_angle(bc, bd, cd)})
+    if (largest.less_than(angle)) largest = angle;
+  return largest.degrees();
 }
 
 }  // namespace collarmesh

@@ -57,7 +57,8 @@ class ThinCells {
   bool claimed(Index tet) const;
   /// Degrees.
   double smallest_angle(const std::array<Index, 4>& tet) const;
-  bool are_bounded(const TetQuality& quality, const std::array<Index, 4>& tet) const;
+  /// `face_angle`: the largest of its faces.
+  bool are_bounded(const TetQuality& quality, double face_angle, const std::array<Index, 4>& tet) const;
 
  private:
   double smallest_;

@@ -4,12 +4,14 @@
 
 #include "check/orientation.h"
 #include "check/subject.h"
+#include "common/parallel_for.h"
 
 namespace collarmesh::checks {
 
 namespace {
 
 constexpr double slack = 1 + 1e-9;  // of the bounds on shape, relative
+constexpr std::size_t measured_at_once = 4096, in_a_batch = 1 << 17;
 
 struct Corners {
   const Point &a, &b, &c, &d;
@@ -47,14 +49,15 @@ void check_shape(Index tet, const Corners& p, const TetQuality& quality, const S
     ++report.thin_tets;
     report.max_thin_radius_edge = std::max(report.max_thin_radius_edge, quality.radius_edge);
     const auto& corners = subject.mesh.tets[tet];
-    if (thin.are_bounded(quality, corners)) return;
+    const double face_angle = largest_face_angle(p.a, p.b, p.c, p.d);
+    if (thin.are_bounded(quality, face_angle, corners)) return;
     findings.add(
         guarantee::thin_angles, p.centre(), {tet},
         "Tet {} at {} has circumradius / shortest edge {:.6g} and is no thin one: its dihedral angles are "
         "from {:.6g} to {:.6g} degrees, those of its faces at most {:.6g}, allowed are {:.6g} to {:.6g}; "
         "check with the angle that the mesh was made with.",
-        tet, At{p.centre()}, quality.radius_edge, quality.min_dihedral, quality.max_dihedral,
-        quality.max_face_angle, thin.smallest_angle(corners), ThinCells::largest_angle);
+        tet, At{p.centre()}, quality.radius_edge, quality.min_dihedral, quality.max_dihedral, face_angle,
+        thin.smallest_angle(corners), ThinCells::largest_angle);
     return;
   }
   report.max_radius_edge = std::max(report.max_radius_edge, quality.radius_edge);
@@ -83,10 +86,12 @@ void check_tets(const Subject& subject, CheckReport& report, Findings& findings)
   const TetMesh& mesh = subject.mesh;
   std::vector<long double> volumes(subject.plc.regions.size(), 0);
   const ThinCells thin(subject);
-  for (Index tet = 0; tet < mesh.tets.size(); ++tet) {
+  const auto corners = [&mesh](std::size_t tet) -> Corners {
     const auto& t = mesh.tets[tet];
-    const Corners p{mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]};
-    const TetQuality quality = measure(p.a, p.b, p.c, p.d);
+    return {mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]};
+  };
+  const auto see = [&](Index tet, const TetQuality& quality) {
+    const Corners p = corners(tet);
     const bool is_thin = thin.claimed(tet) && quality.radius_edge > subject.options.radius_edge * slack;
     report.measures.add(quality, mesh.tet_region[tet],
                         subject.collar[tet] != 0 ? MeshMeasures::Kind::collar
@@ -96,6 +101,18 @@ void check_tets(const Subject& subject, CheckReport& report, Findings& findings)
     check_shape(tet, p, quality, subject, thin, report, findings);
     check_region_tag(tet, p, subject, findings);
     volumes[mesh.tet_region[tet]] += quality.volume;
+  };
+  // All threads measure; findings and sums are made in the order of the tets.
+  std::vector<TetQuality> qualities(std::min(in_a_batch, mesh.tets.size()));
+  for (std::size_t first = 0; first < mesh.tets.size(); first += in_a_batch) {
+    const std::size_t count = std::min(in_a_batch, mesh.tets.size() - first);
+    parallel_for_ranges(count, measured_at_once, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Corners p = corners(first + i);
+        qualities[i] = measure(p.a, p.b, p.c, p.d);
+      }
+    });
+    for (std::size_t i = 0; i < count; ++i) see(static_cast<Index>(first + i), qualities[i]);
   }
   report.region_volumes.assign(volumes.begin(), volumes.end());
 }

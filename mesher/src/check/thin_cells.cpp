@@ -51,10 +51,10 @@ double ThinCells::smallest_angle(const std::array<Index, 4>& tet) const {
   return least;
 }
 
-bool ThinCells::are_bounded(const TetQuality& quality, const std::array<Index, 4>& tet) const {
+bool ThinCells::are_bounded(const TetQuality& quality, double face_angle,
+                            const std::array<Index, 4>& tet) const {
   return quality.min_dihedral >= smallest_angle(tet) * (1 - slack) &&
-         quality.max_dihedral <= largest_angle * (1 + slack) &&
-         quality.max_face_angle <= largest_angle * (1 + slack);
+         quality.max_dihedral <= largest_angle * (1 + slack) && face_angle <= largest_angle * (1 + slack);
 }
 
 }  // namespace collarmesh::checks

@@ -12,11 +12,14 @@ AspectRatios aspect_ratios(const RefinedMesh& mesh, const std::function<bool(Ind
     if (!mesh.alive(cell)) continue;
     const auto& v = mesh.corners(cell);
     const bool all_count = counts(cell);
-    for (const Index a : v) {
-      squared_radius[a] = std::max(squared_radius[a], all_count ? mesh.squared_radius(cell) : INFINITY);
-      for (const Index b : v)
-        if (b != a)
-          squared_edge[a] = std::min(squared_edge[a], squared_distance(mesh.point(a), mesh.point(b)));
+    const double radius = all_count ? mesh.squared_radius(cell) : INFINITY;
+    for (unsigned i = 0; i < 4; ++i) {
+      squared_radius[v[i]] = std::max(squared_radius[v[i]], radius);
+      for (unsigned j = i + 1; j < 4; ++j) {
+        const double length = squared_distance(mesh.point(v[i]), mesh.point(v[j]));
+        squared_edge[v[i]] = std::min(squared_edge[v[i]], length);
+        squared_edge[v[j]] = std::min(squared_edge[v[j]], length);
+      }
     }
   }
   AspectRatios ratios;
