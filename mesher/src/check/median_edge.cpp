@@ -12,6 +12,25 @@
 
 namespace collarmesh {
 
+namespace {
+
+// In place. Of the few ends of edges at a vertex looking through those found is faster than sorting.
+std::span<const Index> without_repeats(std::span<Index> items) {
+  constexpr std::size_t few = 256;
+  if (items.size() > few) {
+    std::sort(items.begin(), items.end());
+    return {items.begin(), std::unique(items.begin(), items.end())};
+  }
+  std::size_t kept = 0;
+  for (const Index item : items) {
+    const auto end = items.begin() + static_cast<std::ptrdiff_t>(kept);
+    if (std::find(items.begin(), end, item) == end) items[kept++] = item;
+  }
+  return items.first(kept);
+}
+
+}  // namespace
+
 double median_edge(const TetMesh& mesh) {
   constexpr std::array<std::array<unsigned, 2>, 6> pairs{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
   // The larger ends of all edges, in groups by the smaller one.
@@ -22,10 +41,8 @@ double median_edge(const TetMesh& mesh) {
   tbb::enumerable_thread_specific<std::vector<double>> of_threads;
   const auto measure = [&](std::size_t smaller, std::span<Index> larger) {
     std::vector<double>& lengths = of_threads.local();
-    std::sort(larger.begin(), larger.end());
-    for (std::size_t i = 0; i < larger.size(); ++i)
-      if (i == 0 || larger[i] != larger[i - 1])
-        lengths.push_back(distance(mesh.points[smaller], mesh.points[larger[i]]));
+    for (const Index end : without_repeats(larger))
+      lengths.push_back(distance(mesh.points[smaller], mesh.points[end]));
   };
   if (tbb::this_task_arena::max_concurrency() > 1) static_cast<void>(usable_threads());  // keeps TBB to them
   for_each_group<Index>(mesh.points.size(), mesh.tets.size(), visit, measure);

@@ -33,6 +33,21 @@ void drop(const Cell& lost, std::vector<Cell>& cells, std::vector<Of>&... of_cel
   (of_cells.resize(kept), ...);
 }
 
+// Items of one key next to each other. Looking through a few items is faster than sorting them.
+template <class Item, class Key>
+void bring_together(std::span<Item> items, const Key& key) {
+  constexpr std::size_t few = 64;
+  if (items.size() > few) {
+    std::sort(items.begin(), items.end(), [&](const Item& a, const Item& b) { return key(a) < key(b); });
+    return;
+  }
+  for (std::size_t begin = 0, end = 0; begin < items.size(); begin = end) {
+    end = begin + 1;
+    for (std::size_t i = end; i < items.size(); ++i)
+      if (key(items[i]) == key(items[begin])) std::swap(items[end++], items[i]);
+  }
+}
+
 /// So many numbers of tets at most.
 class SmallSet {
  public:
@@ -96,8 +111,7 @@ void TetComplex::link_all() {
       give_side(mesh_.faces[cell - tets_.size()], cell - tets_.size(), of_face);
   };
   const auto link = [&](std::size_t, std::span<Side> sides) {
-    std::sort(sides.begin(), sides.end(),
-              [](const Side& a, const Side& b) { return a.other_corners < b.other_corners; });
+    bring_together(sides, [](const Side& side) { return side.other_corners; });
     for (std::size_t i = 0, j = 0; i < sides.size(); i = j) {
       Index face = none;
       std::array<const Side*, 2> of_tets{nullptr, nullptr};
