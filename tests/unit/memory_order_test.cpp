@@ -66,7 +66,7 @@ TetMesh grid(unsigned n) {
       }
   std::vector<Index> shuffled(mesh.points.size());
   for (Index i = 0; i < shuffled.size(); ++i) shuffled[i] = i;
-  std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(1));  // numbers[old] = new
+  std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(1));  // the new number of each
   std::vector<Point> points(mesh.points.size());
   std::vector<TetMesh::VertexFeature> features(mesh.points.size());
   for (Index i = 0; i < shuffled.size(); ++i) {

@@ -451,14 +451,15 @@ ExitCode mesh_distributed(const DistributedArguments& arguments) {
 }  // namespace
 
 ExitCode run(int argc, char** argv) {
-  cli::install_interrupt_handlers();  // MPI's own files may be too large, too
+  // Before MPI begins: it writes files of its own, and one that grows too large must not end the program.
+  cli::install_interrupt_handlers();
   const Session session;
   if (Ranks(MPI_COMM_WORLD).rank != 0) cli::be_silent();
   std::signal(SIGSEGV, end_after_crash);  // in place of PETSc's
-  // Watched only until the result is known: mpirun asks the ranks that are still in MPI_Finalize to stop when
-  // one of them has ended with an error, and that one has been told.
-  return cli::run_interruptible([&] {
-    return cli::guarded([&] {
+  // Watched only until the result is known: when a rank has ended with an error, which has been reported by
+  // then, mpirun asks those that are still in MPI_Finalize to stop.
+  const ExitCode result = cli::run_interruptible([&] {
+    return cli::guarded([&]() -> ExitCode {
       try {
         require_equal_command_lines(argc, argv);
         const std::variant<DistributedArguments, ExitCode> parsed = parse(argc, argv);
@@ -471,6 +472,8 @@ ExitCode run(int argc, char** argv) {
       }
     });
   });
+  for (const int number : {SIGINT, SIGTERM}) std::signal(number, SIG_DFL);
+  return result;
 }
 
 }  // namespace collarmesh::distributed

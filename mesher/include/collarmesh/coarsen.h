@@ -28,8 +28,9 @@ struct CoarsenReport {
   bool cancelled = false;  ///< the mesh is valid, as coarse as it had become
 };
 
-/// Make as few tets as the sizes ask for: edges shorter than 0.8 times the target edge length there are
-/// contracted, within their features, where no new edge exceeds 1.5 times it or is shorter than all around.
+/// Make as few tets as the sizes ask for: edges shorter than 0.8 times the target edge length there (0.75
+/// inside regions) are contracted, within their features, where no new edge exceeds 1.5 times it or is shorter
+/// than all around.
 /// A radius-edge bound makes tets as small as the thinnest wall and the smallest angle; here it may be
 /// exceeded by thin tets: dihedral angles of at least `thin_angle` and dihedral and face angles of at most
 /// 150 degrees (the maximum-angle condition: Babuska and Aziz 1976, Krizek 1992). Collars dissolve as far as

@@ -96,7 +96,7 @@ Measures<Real> measure_as(const Point& a, const Point& b, const Point& c, const 
   return {quality, size / (longest * std::sqrt(longest))};
 }
 
-// Of a triangle.
+// The largest angle of the triangle abc.
 template <class Real>
 Direction<Real> largest_angle(const Vector3<Real>& ab, const Vector3<Real>& ac, const Vector3<Real>& bc) {
   const Vector3<Real> normal = cross(ab, ac);

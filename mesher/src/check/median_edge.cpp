@@ -14,7 +14,7 @@ namespace collarmesh {
 
 namespace {
 
-// In place. Of the few ends of edges at a vertex looking through those found is faster than sorting.
+// Works in place. A linear search is faster than sorting, as few edges end at a vertex.
 std::span<const Index> without_repeats(std::span<Index> items) {
   constexpr std::size_t few = 256;
   if (items.size() > few) {

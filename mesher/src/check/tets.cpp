@@ -11,6 +11,7 @@ namespace collarmesh::checks {
 namespace {
 
 constexpr double slack = 1 + 1e-9;  // of the bounds on shape, relative
+// Tets that a thread measures at once, and before findings and sums are made of them (in 4 MB).
 constexpr std::size_t measured_at_once = 4096, in_a_batch = 1 << 17;
 
 struct Corners {

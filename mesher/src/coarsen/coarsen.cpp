@@ -33,11 +33,9 @@ constexpr unsigned most_repairs = 16;
 // Vertices whose shortest edge is below this share of its target are worth repairs, which are trials that
 // fail more often than not.
 constexpr double repaired_below = 0.65;
-// Vertices inside regions are asked where their shortest edge is below this share. Refinement makes edges of
-// 0.75 and more, of which one in 500 can be contracted.
+// Vertices inside regions are asked where their shortest edge is below this share. After refinement half of
+// them have one of 0.75 to 0.8, and one in 540 of these can be contracted.
 constexpr double asked_inside_below = 0.75;
-// Tets below this quality are improved between the passes.
-constexpr double improved_below = 1.3;
 constexpr unsigned most_sweeps = 8;
 // A pass that removes a smaller share of the tets is the last one of its round; after such a round, once
 // improvement before it has ended by itself, all vertices are asked again.
@@ -57,12 +55,12 @@ std::size_t proposals_at_once(std::size_t items) {
   return std::clamp<std::size_t>(items / items_per_proposal, 1, most_proposals);
 }
 
-// By rank. Those of one rank, which come in the order of memory, are dealt into as many rows as proposals are
-// made at once, and the rows are taken in turn: what follows in a row is near what the caches hold (in the
-// exact order of lengths or qualities coarsening took a quarter longer), and what is proposed at once is far
-// apart.
+// Sorted by rank. Items of one rank, given in the order of memory, are cut into as many consecutive rows as
+// proposals are made at once; then come the first of each row, the second of each row, and so on. So the
+// proposals of one batch are far apart, and those of the next batch are beside what the caches hold. (In the
+// exact order of lengths or qualities coarsening took a quarter longer.)
 template <class Item>
-std::vector<Item> in_order(std::vector<Item>& items) {
+std::vector<Item> in_order(std::vector<Item> items) {
   std::stable_sort(items.begin(), items.end(), [](const Item& a, const Item& b) { return a.rank < b.rank; });
   const std::size_t most_rows = proposals_at_once(items.size());
   std::vector<Item> ordered;
@@ -79,9 +77,9 @@ std::vector<Item> in_order(std::vector<Item>& items) {
   return ordered;
 }
 
-/// Contracts and improves, the most promising item first. What is to be done at the next items is proposed by
-/// several threads at once and done one after the other; where anything that a proposal depends on has
-/// changed meanwhile, it is made again. So the result is the one that a single thread makes.
+/// Contracts and improves, items by rank, the most promising first. What is to be done at the next items is
+/// proposed by several threads at once and done one after the other; where anything that a proposal depends
+/// on has changed meanwhile, it is made again. So the result is the one that a single thread makes.
 class Coarsening {
  public:
   Coarsening(Workpiece& workpiece, const MeshOptions& made_with, const CoarsenOptions& options,
@@ -115,7 +113,7 @@ class Coarsening {
     for (unsigned round = 0; round < rounds && !report_.cancelled; ++round) {
       const bool settled = improve_all();
       const std::size_t before = tets_;
-      if (ask_all) last_repairs_ = 0;
+      if (ask_all) last_pass_ = last_repairs_ = 0;
       for (unsigned pass = 0; pass < repair_passes; ++pass)
         if (!contract_all(true)) break;
       if (settled && ask_all && !worthwhile(before)) break;
@@ -168,8 +166,8 @@ class Coarsening {
     Index end;
   };
 
-  // The vertices with a short edge where something has changed since they were asked last, by as much as they
-  // may be asked now; those with the shortest edge first.
+  // The vertices with a short edge where something has changed since they were asked last by the same means,
+  // with or without repairs; those with the shortest edge first.
   std::vector<Candidate> find_candidates(bool repair) const {
     constexpr std::size_t tets_at_once = 4096;
     const std::size_t chunks = (complex().size() + tets_at_once - 1) / tets_at_once;
@@ -191,7 +189,7 @@ class Coarsening {
       if (changes_.at_vertex[v] >= (repairs ? last_repairs_ : last_pass_))
         candidates.push_back({static_cast<int>(ranks_of_lengths * shortest[v]), v, repairs});
     }
-    return in_order(candidates);
+    return in_order(std::move(candidates));
   }
 
   void find_short_edges(Index tet, std::vector<ShortEdge>& ends) const {
@@ -232,7 +230,7 @@ class Coarsening {
   }
 
   bool worthwhile(std::size_t before) const {
-    return static_cast<double>(before - tets_) > least_share * static_cast<double>(before);
+    return static_cast<double>(tets_) < (1 - least_share) * static_cast<double>(before);
   }
 
   bool stopped(std::size_t step) {
@@ -326,7 +324,7 @@ class Coarsening {
     std::vector<Poor> poor;
     for (Index t = 0; t < complex().size(); ++t)
       if (asked[t] < improved_below) poor.push_back({rank_of_quality(asked[t]), t, asked[t]});
-    poor = in_order(poor);
+    poor = in_order(std::move(poor));
     last_sweep_ = ++changes_.now;
     bool any = false;
     for_each<Change>(
@@ -408,7 +406,7 @@ class Coarsening {
   tbb::enumerable_thread_specific<Proposer> proposers_;
   const Execution& execution_;
   std::size_t tets_ = 0;
-  std::uint32_t last_pass_ = 0, last_repairs_ = 0;  // when they began, with repairs or not
+  std::uint32_t last_pass_ = 0, last_repairs_ = 0;  // when the last pass of any kind, and with repairs, began
   std::uint32_t last_sweep_ = 0;                    // of improvement
   std::vector<Index> touched_;                      // tets that were made or changed
   std::vector<Index> touched_vertices_;             // of tets that went

@@ -12,10 +12,7 @@ namespace {
 // A contraction that makes nothing worse than this may be repaired.
 constexpr double repairable = 0.15;
 
-// Of edges to remove the first that makes tets of this quality is taken.
-constexpr double good = 1.3;
-
-// The edges of a tet. Those of a sliver that are best removed are its longest.
+// The edges of a tet, longest first: removing the longest edges of a sliver helps most.
 std::array<std::array<unsigned, 2>, 6> longest_first(const improvement::Corners& p) {
   struct Edge {
     double squared_length;
@@ -25,8 +22,9 @@ std::array<std::array<unsigned, 2>, 6> longest_first(const improvement::Corners&
   unsigned count = 0;
   for (unsigned i = 0; i < 4; ++i)
     for (unsigned j = i + 1; j < 4; ++j) edges[count++] = {squared_distance(p[i], p[j]), {i, j}};
-  std::stable_sort(edges.begin(), edges.end(),
-                   [](const Edge& a, const Edge& b) { return a.squared_length > b.squared_length; });
+  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+    return a.squared_length != b.squared_length ? a.squared_length > b.squared_length : a.ends < b.ends;
+  });
   std::array<std::array<unsigned, 2>, 6> sorted;
   std::transform(edges.begin(), edges.end(), sorted.begin(), [](const Edge& e) { return e.ends; });
   return sorted;
@@ -77,7 +75,7 @@ Change Proposer::improvement_of(Index tet, Mode mode) {
   Change change;
   for (const auto& [i, j] : longest_first(complex().corners(tet))) {
     operations_.remove_edge(tet, i, j, change);
-    if (change.quality >= good) break;
+    if (change.quality >= improved_below) break;
   }
   for (unsigned i = 0; i < 4 && change.kind == Change::Kind::none; ++i) {
     // Whether a move helps depends on the tets at the vertex alone, each of which may ask.

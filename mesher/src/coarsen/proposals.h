@@ -36,7 +36,8 @@ class Proposer {
 
   /// Contractions of a vertex; those to repair, too, where there is no other.
   void contractions(Index vertex, bool repairs, VertexProposal& found);
-  /// The first that makes a tet better of: an edge removed, a corner moved.
+  /// What makes a tet better: an edge removed (the longest that makes it good enough, else the best), or a
+  /// corner moved.
   improvement::Change improvement_of(Index tet, Mode mode);
 
  private:
@@ -71,6 +72,9 @@ class Proposer {
   std::uint32_t stamp_ = 0;
   std::vector<std::uint32_t> stayed_;  // by vertex: when no move of it was an improvement; 0: not asked yet
 };
+
+/// Tets below this quality are improved between the passes, and improved enough above it.
+constexpr double improved_below = 1.3;
 
 /// Edges below this times the target length are contracted.
 constexpr double contracted_below = 0.8;

@@ -141,7 +141,7 @@ class Improvement {
             !execution_.progress({"improve", 0, complex().mesh().points.size(), complex().size()}));
   }
 
-  // Precondition: the poor tets are those there are. False when none was tried.
+  // Precondition: `poor_` is up to date. False when no detour was tried, so that it still is.
   bool take_detours() {
     std::vector<Index> poor;
     for (const Item& item : poor_) poor.push_back(item.tet);
@@ -196,7 +196,7 @@ class Improvement {
   const Execution& execution_;
   bool move_vertices_;
   unsigned passes_;
-  std::vector<Item> poor_;  // at the last look at all tets
+  std::vector<Item> poor_;  // as find_poor_tets found them last
   std::priority_queue<Item> queue_;
   std::vector<Item> batch_;
   std::vector<Change> proposals_;

@@ -56,6 +56,7 @@ void order_in_memory(TetMesh& mesh) {
   permute(mesh.tet_collar, order);
   permute(mesh.tet_thin, order);
   permute(mesh.tet_crease, order);
+  permute(mesh.tet_partition, order);
   order = order_by_least_point(mesh.faces, mesh.points.size());
   permute(mesh.faces, order);
   permute(mesh.face_regions, order);
