@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <set>
 
@@ -37,7 +38,7 @@ std::vector<Shape> thin_shapes() {
   return {{"plate", {plate()}, 10, 0, 8, 1220},
           {"plate with a hole", {scaled(plate_with_hole(1, 32), 1)}, 1.5, 30, 8, 130},
           {"sphere in a sphere", {icosphere(1, 12), icosphere(0.95, 12)}, 0.3, 30, 8, 5900},
-          {"wedge of 1 degree", acute::wedge(1).soups, 0.28, 0, 0.5, 1850, 6},  // by seed 1579 to 1832
+          {"wedge of 1 degree", acute::wedge(1).soups, 0.28, 0, 0.5, 1850, 6},  // by seed 1664 to 1809
           {"wedge of 2 degrees", acute::wedge(2).soups, 0.3, 0, 1, 370},
           {"wedge of 5 degrees", acute::wedge(5).soups, 0.3, 0, 2.5, 90},
           {"wedge of 20 degrees", acute::wedge(20).soups, 0.2, 0, 8, 245},
@@ -101,7 +102,7 @@ TEST(Coarsen, RemovesHardlyAnythingAgain) {
           static_cast<std::ptrdiff_t>(again.tets_before) - static_cast<std::ptrdiff_t>(again.tets_after);
       EXPECT_EQ(faults({meshed.plc, {}, check(meshed.result.mesh, meshed.plc)}), "");
     }
-    EXPECT_LE(removed, all / 100 + of_one_contraction);
+    EXPECT_LE(std::abs(removed), all / 100 + of_one_contraction);
   }
 }
 

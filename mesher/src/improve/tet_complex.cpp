@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "common/groups.h"
+#include "common/renumber_points.h"
 
 namespace collarmesh::improvement {
 
@@ -504,14 +505,7 @@ void TetComplex::drop_lost_vertices() {
   }
   mesh_.points.resize(kept);
   mesh_.features.resize(kept);
-  const auto renumber = [&](auto& cells) {
-    for (auto& cell : cells)
-      for (Index& v : cell) v = number[v];
-  };
-  renumber(mesh_.tets);
-  renumber(mesh_.faces);
-  renumber(mesh_.edges);
-  for (TetMesh::CollarBall& ball : mesh_.collar_balls) ball.point = number[ball.point];
+  renumber_points(mesh_, number);
   lost_vertices_.clear();
 }
 

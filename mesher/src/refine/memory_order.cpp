@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/renumber_points.h"
 #include "common/spatial_order.h"
 
 namespace collarmesh {
@@ -40,14 +41,7 @@ void order_in_memory(TetMesh& mesh) {
   }
   permute(mesh.points, order);
   permute(mesh.features, order);
-  const auto renumber = [&](auto& cells) {
-    for (auto& cell : cells)
-      for (Index& point : cell) point = number[point];
-  };
-  renumber(mesh.tets);
-  renumber(mesh.faces);
-  renumber(mesh.edges);
-  for (TetMesh::CollarBall& ball : mesh.collar_balls) ball.point = number[ball.point];
+  renumber_points(mesh, number);
 
   order = order_by_least_point(mesh.tets, mesh.points.size());
   permute(mesh.tets, order);
