@@ -1,112 +1,33 @@
 // Each face of a tet against the other tets at it and against the listed faces.
+#include <tbb/enumerable_thread_specific.h>
+
 #include <algorithm>
-#include <cassert>
-#include <cstdint>
+#include <iterator>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "check/subject.h"
-#include "common/large_pages.h"
+#include "common/simplices_at_vertex.h"
 
 namespace collarmesh::checks {
 
 namespace {
 
-// The corners of the face opposite corner i, with the normal away from the tet.
-constexpr std::array<std::array<unsigned, 3>, 4> outward{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
-
-// A triangle of the mesh that uses three points: a side of a tet or a listed face. Kept with the
-// smallest of the points, so that only the other two need storing.
-struct Use {
-  Index middle, largest;
-  std::uint32_t code;  // listed faces have the top bit; then index and, in the lowest bit, the parity
-
-  static constexpr std::uint32_t listed_bit = 0x80000000U;
-
-  bool listed() const { return (code & listed_bit) != 0; }
-  bool odd() const { return (code & 1U) != 0; }
-  Index face() const { return (code & ~listed_bit) >> 1U; }
-  Index tet() const { return code >> 3U; }
-  unsigned corner() const { return code >> 1U & 3U; }
-  friend bool operator<(const Use& a, const Use& b) {
-    if (a.middle != b.middle) return a.middle < b.middle;
-    if (a.largest != b.largest) return a.largest < b.largest;
-    return a.code < b.code;
-  }
-};
-
-struct SortedTriangle {
-  std::array<Index, 3> corners;
-  bool odd;  // an odd permutation of the given order
-
-  explicit SortedTriangle(Index a, Index b, Index c) : corners{a, b, c}, odd(false) {
-    sort_pair(0, 1);
-    sort_pair(1, 2);
-    sort_pair(0, 1);
-  }
-
- private:
-  void sort_pair(unsigned i, unsigned j) {
-    if (corners[i] <= corners[j]) return;
-    std::swap(corners[i], corners[j]);
-    odd = !odd;
-  }
-};
-
-// All uses, in groups by their smallest point. Twelve bytes for each.
-class UseTable {
- public:
-  explicit UseTable(const TetMesh& mesh) : first_(mesh.points.size() + 1, 0) {
-    assert(mesh.tets.size() < (std::size_t{1} << 28U) && mesh.faces.size() < (std::size_t{1} << 30U));
-    for_each_use(mesh, [&](Index smallest, const Use&) { ++first_[smallest + 1]; });
-    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-    uses_.resize(first_.back());
-    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-    for_each_use(mesh, [&](Index smallest, const Use& use) { uses_[next[smallest]++] = use; });
-    for (std::size_t i = 0; i + 1 < first_.size(); ++i)
-      std::sort(uses_.begin() + static_cast<std::ptrdiff_t>(first_[i]),
-                uses_.begin() + static_cast<std::ptrdiff_t>(first_[i + 1]));
-  }
-
-  /// Calls visit(corners, uses) for each triangle of points: sides of tets first, listed faces last.
-  template <class Visit>
-  void for_each_triangle(const Visit& visit) const {
-    for (Index smallest = 0; smallest + 1 < first_.size(); ++smallest)
-      for (std::size_t i = first_[smallest], j = i; i < first_[smallest + 1]; i = j) {
-        while (j < first_[smallest + 1] && uses_[j].middle == uses_[i].middle &&
-               uses_[j].largest == uses_[i].largest)
-          ++j;
-        visit(std::array{smallest, uses_[i].middle, uses_[i].largest}, std::span(uses_).subspan(i, j - i));
-      }
-  }
-
- private:
-  template <class Visit>
-  static void for_each_use(const TetMesh& mesh, const Visit& visit) {
-    for (Index tet = 0; tet < mesh.tets.size(); ++tet)
-      for (unsigned corner = 0; corner < 4; ++corner) {
-        const auto& t = mesh.tets[tet];
-        const auto& [a, b, c] = outward[corner];
-        const SortedTriangle s(t[a], t[b], t[c]);
-        visit(s.corners[0], Use{s.corners[1], s.corners[2], tet << 3U | corner << 1U | unsigned{s.odd}});
-      }
-    for (Index face = 0; face < mesh.faces.size(); ++face) {
-      const auto& f = mesh.faces[face];
-      const SortedTriangle s(f[0], f[1], f[2]);
-      visit(s.corners[0], Use{s.corners[1], s.corners[2], Use::listed_bit | face << 1U | unsigned{s.odd}});
-    }
-  }
-
-  std::vector<std::size_t> first_;
-  LargeVector<Use> uses_;
-};
-
 class ConformityCheck {
  public:
   ConformityCheck(const Subject& subject, Findings& findings) : subject_(subject), findings_(findings) {}
 
-  void triangle(const std::array<Index, 3>& corners, std::span<const Use> uses) {
-    corners_ = corners;
-    const auto first_listed = std::find_if(uses.begin(), uses.end(), [](const Use& u) { return u.listed(); });
+  /// Most triangles are a side of two tets in one region, one on either side, and no listed face.
+  static bool is_plain(const Subject& subject, std::span<const TriangleUse> uses) {
+    return uses.size() == 2 && !uses[1].listed() && uses[0].odd != uses[1].odd &&
+           subject.mesh.tet_region[uses[0].cell] == subject.mesh.tet_region[uses[1].cell];
+  }
+
+  void triangle(Index smallest, std::span<const TriangleUse> uses) {
+    corners_ = {smallest, uses[0].middle(), uses[0].largest()};
+    const auto first_listed =
+        std::find_if(uses.begin(), uses.end(), [](const TriangleUse& u) { return u.listed(); });
     const auto sides = static_cast<std::size_t>(first_listed - uses.begin());
     listed_ = uses.subspan(sides);
     collect_sides(uses.first(sides));
@@ -116,42 +37,42 @@ class ConformityCheck {
 
  private:
   // Sides of the same tet given twice count once.
-  void collect_sides(std::span<const Use> sides) {
+  void collect_sides(std::span<const TriangleUse> sides) {
     sides_.clear();
-    for (const Use& use : sides) {
-      const auto twin = std::find_if(sides_.begin(), sides_.end(), [&](const Use& other) {
-        return other.odd() == use.odd() && opposite(other) == opposite(use);
+    for (const TriangleUse& use : sides) {
+      const auto twin = std::find_if(sides_.begin(), sides_.end(), [&](const TriangleUse& other) {
+        return other.odd == use.odd && opposite(other) == opposite(use);
       });
       if (twin == sides_.end())
         sides_.push_back(use);
       else if (opposite(use) > corners_[2])  // once, not for each of its four sides
-        report_twins(twin->tet(), use.tet());
+        report_twins(twin->cell, use.cell);
     }
   }
 
   void check_sides() {
-    if (sides_.size() < 2 || (sides_.size() == 2 && sides_[0].odd() != sides_[1].odd())) return;
+    if (sides_.size() < 2 || (sides_.size() == 2 && sides_[0].odd != sides_[1].odd)) return;
     findings_.add(
         guarantee::conforming, where(),
-        {corners_[0], corners_[1], corners_[2], sides_[0].tet(), sides_[1].tet()},
+        {corners_[0], corners_[1], corners_[2], sides_[0].cell, sides_[1].cell},
         "The face of points {}, {}, {} at {} is a side of {} tets, {} of them {} and {} on one side of it; "
         "tets overlap there. If the mesher made this mesh, report it with the input and the options.",
         corners_[0], corners_[1], corners_[2], At{where()}, sides_.size(),
-        sides_[0].odd() == sides_[1].odd() ? "the first two" : "more than one", sides_[0].tet(),
-        sides_[1].tet());
+        sides_[0].odd == sides_[1].odd ? "the first two" : "more than one", sides_[0].cell,
+        sides_[1].cell);
   }
 
   void check_listing() {
     if (listed_.size() > 1)
-      findings_.add(guarantee::listed_faces, where(), {listed_[0].face(), listed_[1].face()},
+      findings_.add(guarantee::listed_faces, where(), {listed_[0].cell, listed_[1].cell},
                     "Faces {} and {} are the same triangle of points {}, {}, {} at {}; list it once.",
-                    listed_[0].face(), listed_[1].face(), corners_[0], corners_[1], corners_[2], At{where()});
+                    listed_[0].cell, listed_[1].cell, corners_[0], corners_[1], corners_[2], At{where()});
     if (sides_.empty())
       findings_.add(
-          guarantee::listed_faces, where(), {listed_[0].face()},
+          guarantee::listed_faces, where(), {listed_[0].cell},
           "Face {} of points {}, {}, {} at {} is a side of no tet; its tets are missing or it does not "
           "belong to the mesh.",
-          listed_[0].face(), corners_[0], corners_[1], corners_[2], At{where()});
+          listed_[0].cell, corners_[0], corners_[1], corners_[2], At{where()});
     else if (listed_.empty())
       check_unlisted();
     else
@@ -161,24 +82,24 @@ class ConformityCheck {
   void check_unlisted() {
     if (sides_.size() == 1)
       findings_.add(
-          guarantee::listed_faces, where(), {sides_[0].tet()},
+          guarantee::listed_faces, where(), {sides_[0].cell},
           "The face of points {}, {}, {} at {} has tet {} on one side and nothing on the other, and is not "
           "among the boundary faces; the mesh has a hole there or the face is missing.",
-          corners_[0], corners_[1], corners_[2], At{where()}, sides_[0].tet());
+          corners_[0], corners_[1], corners_[2], At{where()}, sides_[0].cell);
     else if (sides_.size() == 2 && region(sides_[0]) != region(sides_[1]))
       findings_.add(
-          guarantee::listed_faces, where(), {sides_[0].tet(), sides_[1].tet()},
+          guarantee::listed_faces, where(), {sides_[0].cell, sides_[1].cell},
           "The face of points {}, {}, {} at {} separates tet {} in region {} from tet {} in region {} and is "
           "not among the faces; a tet's region is wrong or the face is missing.",
-          corners_[0], corners_[1], corners_[2], At{where()}, sides_[0].tet(), region(sides_[0]),
-          sides_[1].tet(), region(sides_[1]));
+          corners_[0], corners_[1], corners_[2], At{where()}, sides_[0].cell, region(sides_[0]),
+          sides_[1].cell, region(sides_[1]));
   }
 
   // The normal of a tet's side leaves the tet: the tet on a face's first side has it turned alike.
-  void check_regions(const Use& listed) {
+  void check_regions(const TriangleUse& listed) {
     std::array<Index, 2> regions{0, 0};
-    for (const Use& side : sides_) regions[side.odd() == listed.odd() ? 0 : 1] = region(side);
-    const Index face = listed.face();
+    for (const TriangleUse& side : sides_) regions[side.odd == listed.odd ? 0 : 1] = region(side);
+    const Index face = listed.cell;
     const auto& given = subject_.mesh.face_regions[face];
     if (given == regions) return;
     findings_.add(
@@ -194,15 +115,15 @@ class ConformityCheck {
                   At{where()});
   }
 
-  Index opposite(const Use& side) const { return subject_.mesh.tets[side.tet()][side.corner()]; }
-  Index region(const Use& side) const { return subject_.mesh.tet_region[side.tet()]; }
+  Index opposite(const TriangleUse& side) const { return subject_.mesh.tets[side.cell][side.corner]; }
+  Index region(const TriangleUse& side) const { return subject_.mesh.tet_region[side.cell]; }
   Point where() const { return subject_.centroid(corners_); }
 
   const Subject& subject_;
   Findings& findings_;
   std::array<Index, 3> corners_{};
-  std::vector<Use> sides_;
-  std::span<const Use> listed_;
+  std::vector<TriangleUse> sides_;
+  std::span<const TriangleUse> listed_;
 };
 
 struct BoundaryEdge {
@@ -227,11 +148,35 @@ void add_edges(const std::array<Index, 3>& face, Index region, int direction,
 
 }  // namespace
 
+// Triangles are looked through by all threads; those that need a closer look are judged in their order.
 void check_conformity(const Subject& subject, Findings& findings) {
-  ConformityCheck check(subject, findings);
-  UseTable(subject.mesh).for_each_triangle([&](const auto& corners, auto uses) {
-    check.triangle(corners, uses);
+  struct Triangle {
+    Index smallest;
+    std::vector<TriangleUse> uses;
+  };
+  struct Found {
+    TrianglesAtVertex at_vertex;
+    std::vector<Triangle> not_plain;
+  };
+  tbb::enumerable_thread_specific<Found> of_threads;
+  for_each_vertex_with_cells(subject.mesh, [&](std::size_t vertex, std::span<const Index> cells) {
+    auto& [at_vertex, not_plain] = of_threads.local();
+    const auto smallest = static_cast<Index>(vertex);
+    at_vertex.find(subject.mesh, smallest, cells);
+    at_vertex.for_each([&](std::span<const TriangleUse> uses) {
+      if (!ConformityCheck::is_plain(subject, uses))
+        not_plain.push_back({smallest, {uses.begin(), uses.end()}});
+    });
   });
+  std::vector<Triangle> triangles;
+  for (auto& [at_vertex, not_plain] : of_threads)
+    std::move(not_plain.begin(), not_plain.end(), std::back_inserter(triangles));
+  std::sort(triangles.begin(), triangles.end(), [](const Triangle& a, const Triangle& b) {
+    return a.smallest != b.smallest ? a.smallest < b.smallest
+                                    : a.uses[0].larger_corners < b.uses[0].larger_corners;
+  });
+  ConformityCheck check(subject, findings);
+  for (const Triangle& t : triangles) check.triangle(t.smallest, t.uses);
 }
 
 // The faces of a region, turned outward, have no boundary: every edge is passed as often one way as

@@ -1,10 +1,11 @@
 #include "improve/tet_complex.h"
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <algorithm>
 #include <cassert>
 
-#include "common/groups.h"
-#include "common/renumber_points.h"
+#include "common/simplices_at_vertex.h"
 
 namespace collarmesh::improvement {
 
@@ -34,21 +35,6 @@ void drop(const Cell& lost, std::vector<Cell>& cells, std::vector<Of>&... of_cel
   (of_cells.resize(kept), ...);
 }
 
-// Items of one key next to each other. Looking through a few items is faster than sorting them.
-template <class Item, class Key>
-void bring_together(std::span<Item> items, const Key& key) {
-  constexpr std::size_t few = 64;
-  if (items.size() > few) {
-    std::sort(items.begin(), items.end(), [&](const Item& a, const Item& b) { return key(a) < key(b); });
-    return;
-  }
-  for (std::size_t begin = 0, end = 0; begin < items.size(); begin = end) {
-    end = begin + 1;
-    for (std::size_t i = end; i < items.size(); ++i)
-      if (key(items[i]) == key(items[begin])) std::swap(items[end++], items[i]);
-  }
-}
-
 /// So many numbers of tets at most.
 class SmallSet {
  public:
@@ -71,66 +57,61 @@ class SmallSet {
 
 }  // namespace
 
-TetComplex::TetComplex(TetMesh& mesh) : mesh_(mesh) {
-  tets_.reserve(mesh.tets.size());
-  origin_.reserve(mesh.tets.size());
+TetComplex::TetComplex(TetMesh& mesh, const KnownNeighbours& neighbours) : mesh_(mesh) {
+  tets_.resize(mesh.tets.size());
+  origin_.resize(mesh.tets.size());
   vertex_tet_.assign(mesh.points.size(), none);
+  constexpr std::array<Index, 4> nothing{none, none, none, none};
   for (Index t = 0; t < mesh.tets.size(); ++t) {
-    tets_.push_back({mesh.tets[t],
-                     {none, none, none, none},
-                     {none, none, none, none},
-                     mesh.tet_region[t],
-                     0,
-                     true,
-                     mesh.tet_collar[t] != 0});
-    origin_.push_back(t);
+    const auto& across = neighbours.empty() ? nothing : neighbours[t];
+    tets_[t] = {mesh.tets[t], across, nothing, mesh.tet_region[t], 0, true, mesh.tet_collar[t] != 0};
+    origin_[t] = t;
     for (const Index v : mesh.tets[t]) vertex_tet_[v] = t;
   }
   stamps_.assign(tets_.size(), 0);
-  link_all();
+  link(!neighbours.empty());
   find_pinched_vertices();
   for (Index e = 0; e < mesh.edges.size(); ++e)
     curve_edges_.emplace(edge_key(mesh.edges[e][0], mesh.edges[e][1]), e);
 }
 
-void TetComplex::link_all() {
-  struct Side {
-    std::uint64_t other_corners;  // the two larger ones
-    Index cell;                   // a tet, or one of the mesh' faces
-    std::uint32_t corner;         // opposite it; 4: of a face
-  };
-  constexpr std::uint32_t of_face = 4;
+// `only_open`: of the tets' sides those that have no neighbour yet, and those that may be faces of the mesh.
+void TetComplex::link(bool only_open) {
+  const auto inside = [&](Index v) { return mesh_.features[v].dimension == 3; };
   const auto visit = [&](std::size_t cell, const auto& give) {
-    const auto give_side = [&](const std::array<Index, 3>& corners, std::size_t index, std::uint32_t corner) {
-      const auto key = sorted(corners);
-      give(key[0], Side{std::uint64_t{key[1]} << 32 | key[2], static_cast<Index>(index), corner});
-    };
-    if (cell < tets_.size())
-      for (unsigned corner = 0; corner < 4; ++corner)
-        give_side(face_corners(tets_[cell].corners, corner), cell, corner);
-    else
-      give_side(mesh_.faces[cell - tets_.size()], cell - tets_.size(), of_face);
-  };
-  const auto link = [&](std::size_t, std::span<Side> sides) {
-    bring_together(sides, [](const Side& side) { return side.other_corners; });
-    for (std::size_t i = 0, j = 0; i < sides.size(); i = j) {
-      Index face = none;
-      std::array<const Side*, 2> of_tets{nullptr, nullptr};
-      for (; j < sides.size() && sides[j].other_corners == sides[i].other_corners; ++j) {
-        if (sides[j].corner == of_face)
-          face = sides[j].cell;
-        else
-          (of_tets[0] == nullptr ? of_tets[0] : of_tets[1]) = &sides[j];
-      }
-      for (unsigned s = 0; s < 2; ++s) {
-        if (of_tets[s] == nullptr) continue;
-        Tet& tet = tets_[of_tets[s]->cell];
-        tet.faces[of_tets[s]->corner] = face;
-        tet.neighbours[of_tets[s]->corner] = of_tets[1 - s] == nullptr ? none : of_tets[1 - s]->cell;
-      }
+    if (cell >= tets_.size()) {
+      const auto face = static_cast<Index>(cell - tets_.size());
+      const auto [smallest, use] = triangle_use(mesh_.faces[face], face, TriangleUse::listed_face);
+      give(smallest, use);
+      return;
+    }
+    const Tet& tet = tets_[cell];
+    for (std::uint8_t corner = 0; corner < 4; ++corner) {
+      const auto corners = face_corners(tet.corners, corner);
+      if (only_open && tet.neighbours[corner] != none && std::any_of(corners.begin(), corners.end(), inside))
+        continue;
+      const auto [smallest, use] = triangle_use(corners, static_cast<Index>(cell), corner);
+      give(smallest, use);
     }
   };
-  for_each_group<Side>(mesh_.points.size(), tets_.size() + mesh_.faces.size(), visit, link);
+  const auto link_sides = [&](std::span<const TriangleUse> uses) {
+    const Index face = uses.back().listed() ? uses.back().cell : none;
+    const auto set = [&](const TriangleUse& side, Index beyond) {
+      if (side.listed()) return;
+      tets_[side.cell].faces[side.corner] = face;
+      tets_[side.cell].neighbours[side.corner] = beyond;
+    };
+    const bool joined = uses.size() > 1 && !uses[1].listed();
+    set(uses[0], joined ? uses[1].cell : none);
+    if (joined) set(uses[1], uses[0].cell);
+  };
+  tbb::enumerable_thread_specific<TrianglesAtVertex> of_threads;
+  for_each_group<TriangleUse>(mesh_.points.size(), tets_.size() + mesh_.faces.size(), visit,
+                              [&](std::size_t, std::span<const TriangleUse> uses) {
+                                TrianglesAtVertex& triangles = of_threads.local();
+                                triangles.find(uses);
+                                triangles.for_each(link_sides);
+                              });
 }
 
 // Bodies touch in vertices and curves of the complex only.
@@ -505,7 +486,14 @@ void TetComplex::drop_lost_vertices() {
   }
   mesh_.points.resize(kept);
   mesh_.features.resize(kept);
-  renumber_points(mesh_, number);
+  const auto renumber = [&](auto& cells) {
+    for (auto& cell : cells)
+      for (Index& point : cell) point = number[point];
+  };
+  renumber(mesh_.tets);
+  renumber(mesh_.faces);
+  renumber(mesh_.edges);
+  for (TetMesh::CollarBall& ball : mesh_.collar_balls) ball.point = number[ball.point];
   lost_vertices_.clear();
 }
 

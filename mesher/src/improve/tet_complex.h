@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "collarmesh/tet_mesh.h"
+#include "common/known_neighbours.h"
 #include "common/large_pages.h"
 #include "improve/undo_log.h"
 
@@ -50,8 +51,9 @@ class TetComplex {
     bool closed;
   };
 
-  /// Keeps the mesh, whose tets are out of date until `store`.
-  explicit TetComplex(TetMesh& mesh);
+  /// Keeps the mesh, whose tets are out of date until `store`. `neighbours`: empty, or of each tet; then only
+  /// where they are none neighbours are looked for.
+  explicit TetComplex(TetMesh& mesh, const KnownNeighbours& neighbours = {});
 
   Index size() const { return static_cast<Index>(tets_.size()); }
   const Tet& operator[](Index tet) const { return tets_[tet]; }
@@ -121,7 +123,7 @@ class TetComplex {
   static std::uint64_t edge_key(Index a, Index b) {
     return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
   }
-  void link_all();
+  void link(bool only_open);
   void find_pinched_vertices();
   void make_faces(const Replacement& replacement);
   void set_face(const std::array<Index, 3>& corners, Index face);

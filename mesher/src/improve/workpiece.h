@@ -30,9 +30,10 @@ struct Change {
 class Workpiece {
  public:
   /// Both are kept by reference. `distance` is absolute. Curves that turn by half a circle or more keep
-  /// `edges_per_hole` edges to a full circle.
-  Workpiece(TetMesh& mesh, const Plc& meant, double distance, double edges_per_hole = 0)
-      : complex(mesh),
+  /// `edges_per_hole` edges to a full circle. `neighbours` as in TetComplex.
+  Workpiece(TetMesh& mesh, const Plc& meant, double distance, double edges_per_hole = 0,
+            const KnownNeighbours& neighbours = {})
+      : complex(mesh, neighbours),
         surfaces(meant, mesh, distance),
         curves(meant, mesh, distance, edges_per_hole),
         plc(meant) {}

@@ -24,6 +24,7 @@
 #include "collarmesh/usable_threads.h"
 #include "improve/improve_workpiece.h"
 #include "improve/thin_shape.h"
+#include "refine/generate_linked.h"
 #include "thread_limit.h"
 
 namespace collarmesh {
@@ -293,7 +294,7 @@ class Pipeline {
 
   void refine() {
     begin("refine", 0.06, options_.coarsen ? 0.6 : 0.7);
-    MeshResult& result = made_.result = generate(*plc_, bounds_, inner_);
+    MeshResult& result = made_.result = generate(*plc_, bounds_, inner_, neighbours_);
     if (result.status == MeshStatus::cancelled && out_of_time()) stop();
     if (result.status == MeshStatus::cancelled || result.status == MeshStatus::budget_hit) throw Ended();
   }
@@ -308,7 +309,8 @@ class Pipeline {
     TetMesh& mesh = made_.result.mesh;
     ThreadLimit(options_.threads).run([&] {
       improvement::Workpiece workpiece(mesh, *plc_, bounds_.distance,
-                                       options_.coarsen ? bounds_.edges_per_hole : 0);
+                                       options_.coarsen ? bounds_.edges_per_hole : 0, neighbours_);
+      neighbours_ = {};
       if (options_.coarsen) coarsen_elements(workpiece);
       if (options_.improve > 0) improve_elements(workpiece);
       workpiece.complex.store();
@@ -433,6 +435,7 @@ class Pipeline {
   ThreadCounter counter_;
   std::optional<Deadline> deadline_;
   MeshOptions bounds_;
+  KnownNeighbours neighbours_;  // of the mesh as it was refined
   const Plc* plc_ = nullptr;
   PipelineResult made_;
   std::string_view stage_;

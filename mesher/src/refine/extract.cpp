@@ -1,65 +1,146 @@
 #include "refine/extract.h"
 
+#include <algorithm>
 #include <utility>
 
-#include "refine/memory_order.h"
+#include "common/spatial_order.h"
 
 namespace collarmesh {
 
 namespace {
+
+/// The cells by their least points, those that share it as they were.
+std::vector<Index> order_by_least_point(const std::vector<Index>& least_points, std::size_t points) {
+  std::vector<Index> next(points + 1, 0), order(least_points.size());
+  for (const Index p : least_points) ++next[p + 1];
+  for (std::size_t p = 0; p < points; ++p) next[p + 1] += next[p];
+  for (Index c = 0; c < least_points.size(); ++c) order[next[least_points[c]]++] = c;
+  return order;
+}
+
+template <class T>
+void permute(std::vector<T>& values, const std::vector<Index>& order) {
+  std::vector<T> permuted;
+  permuted.reserve(values.size());
+  for (const Index i : order) permuted.push_back(values[i]);
+  values = std::move(permuted);
+}
 
 class Extraction {
  public:
   explicit Extraction(const Refined& refined)
       : refined_(refined), plc_(refined.domain.plc), number_(refined.mesh.vertex_count(), none) {}
 
-  TetMesh run() {
-    reserve();
-    add_cells();
-    add_stitched();
+  Extracted run() {
+    find_tets();
+    add_points();
+    add_tets();
     add_balls();
     for (const FaceId face : refined_.surface.marked_faces()) add_face(face);
+    for (const auto& face : refined_.stitched.faces) add_face(face.corners, face.regions, face.patch);
+    order_faces();
+    for (const auto& edge : refined_.stitched.edges) add_edge(edge.corners, edge.curve);
     refined_.curves.visit([&](Index, const Subsegment& s) { add_edge(s.ends, s.curve); });
     forget_features_off_the_surface();
     mesh_.names = plc_.names;
-    order_in_memory(mesh_);
-    return std::move(mesh_);
+    return {std::move(mesh_), std::move(neighbours_)};
   }
 
  private:
-  // A little more than there will be.
-  void reserve() {
-    const std::size_t tets = refined_.mesh.cell_count() + refined_.stitched.tets.size();
-    mesh_.points.reserve(refined_.mesh.vertex_count());
-    mesh_.features.reserve(refined_.mesh.vertex_count());
-    mesh_.tets.reserve(tets);
-    mesh_.tet_region.reserve(tets);
-    mesh_.tet_tag.reserve(tets);
-    mesh_.tet_collar.reserve(tets);
-    mesh_.tet_crease.reserve(tets);
-    mesh_.tet_thin.reserve(tets);
+  // The cells of regions outside of collars; after them come the stitched tets.
+  void find_tets() {
+    const auto count = [&](const std::array<Index, 4>& corners) {
+      for (const Index v : corners) {
+        if (number_[v] != none) continue;
+        number_[v] = 0;
+        vertices_.push_back(v);
+      }
+    };
+    vertices_.reserve(refined_.mesh.vertex_count());
+    cells_.reserve(refined_.mesh.cell_count());
+    for (Index cell = 0; cell < refined_.mesh.cell_capacity(); ++cell)
+      if (refined_.mesh.alive(cell) && refined_.surface.region(cell) != 0 &&
+          !refined_.collar_cells.inside(cell)) {
+        cells_.push_back(cell);
+        count(refined_.mesh.corners(cell));
+      }
+    for (const auto& tet : refined_.stitched.tets) count(tet.corners);
   }
 
-  Index vertex(Index v) {
-    if (number_[v] != none) return number_[v];
-    number_[v] = static_cast<Index>(mesh_.points.size());
-    mesh_.points.push_back(refined_.domain.frame.outside(refined_.mesh.point(v)));
-    const Feature& f = refined_.mesh.feature(v);
-    mesh_.features.push_back({f.dimension, f.dimension == 3 ? none : f.index});
-    return number_[v];
+  const std::array<Index, 4>& corners(Index tet) const {
+    return tet < cells_.size() ? refined_.mesh.corners(cells_[tet])
+                               : refined_.stitched.tets[tet - cells_.size()].corners;
   }
 
-  void add_tet(const std::array<Index, 4>& v, Index region, std::uint8_t collar, Tag crease) {
-    mesh_.tets.push_back({vertex(v[0]), vertex(v[1]), vertex(v[2]), vertex(v[3])});
+  // Along a curve through space, so that what is near lies near in memory.
+  void add_points() {
+    std::vector<Point> places;
+    places.reserve(vertices_.size());
+    for (const Index v : vertices_) places.push_back(refined_.domain.frame.outside(refined_.mesh.point(v)));
+    mesh_.points.reserve(vertices_.size());
+    mesh_.features.reserve(vertices_.size());
+    for (const SpatialKey& key : spatial_order(places)) {
+      const Index v = vertices_[key.item];
+      number_[v] = static_cast<Index>(mesh_.points.size());
+      mesh_.points.push_back(places[key.item]);
+      const Feature& f = refined_.mesh.feature(v);
+      mesh_.features.push_back({f.dimension, f.dimension == 3 ? none : f.index});
+    }
+  }
+
+  // In the order of their least points.
+  void add_tets() {
+    const std::size_t count = cells_.size() + refined_.stitched.tets.size();
+    std::vector<Index> least(count);
+    for (Index t = 0; t < count; ++t) {
+      const auto& v = corners(t);
+      least[t] = std::min({number_[v[0]], number_[v[1]], number_[v[2]], number_[v[3]]});
+    }
+    const std::vector<Index> order = order_by_least_point(least, mesh_.points.size());
+    std::vector<Index> tet_of_cell(refined_.mesh.cell_capacity(), none);
+    for (Index t = 0; t < count; ++t)
+      if (order[t] < cells_.size()) tet_of_cell[cells_[order[t]]] = t;
+    mesh_.tets.reserve(count);
+    mesh_.tet_region.reserve(count);
+    mesh_.tet_tag.reserve(count);
+    mesh_.tet_collar.reserve(count);
+    mesh_.tet_crease.reserve(count);
+    mesh_.tet_thin.assign(count, 0);
+    neighbours_.reserve(count);
+    for (const Index tet : order) {
+      const auto& v = corners(tet);
+      mesh_.tets.push_back({number_[v[0]], number_[v[1]], number_[v[2]], number_[v[3]]});
+      if (tet < cells_.size())
+        add_cell(cells_[tet], tet_of_cell);
+      else
+        add_stitched(refined_.stitched.tets[tet - cells_.size()]);
+    }
+  }
+
+  void add_cell(Index cell, const std::vector<Index>& tet_of_cell) {
+    add_labels(refined_.surface.region(cell), 0, 0);
+    std::array<Index, 4> across{};
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      const FaceId beyond = refined_.mesh.opposite(face_id(cell, corner));
+      across[corner] = beyond == no_face ? none : tet_of_cell[cell_of(beyond)];
+    }
+    neighbours_.push_back(across);
+  }
+
+  void add_stitched(const Stitched::Tet& tet) {
+    add_labels(tet.region, tet.collar, tet.crease);
+    neighbours_.push_back({none, none, none, none});
+  }
+
+  void add_labels(Index region, std::uint8_t collar, Tag crease) {
     mesh_.tet_region.push_back(region);
     mesh_.tet_tag.push_back(plc_.regions[region].tag);
     mesh_.tet_collar.push_back(collar);
     mesh_.tet_crease.push_back(crease);
-    mesh_.tet_thin.push_back(0);
   }
 
   void add_face(const std::array<Index, 3>& v, const std::array<Index, 2>& regions, Index patch) {
-    mesh_.faces.push_back({vertex(v[0]), vertex(v[1]), vertex(v[2])});
+    mesh_.faces.push_back({number_[v[0]], number_[v[1]], number_[v[2]]});
     mesh_.face_regions.push_back(regions);
     mesh_.face_patch.push_back(patch);
     mesh_.face_tag.push_back(plc_.patches[patch].tag);
@@ -71,19 +152,6 @@ class Extraction {
     mesh_.edges.push_back({number_[ends[0]], number_[ends[1]]});
     mesh_.edge_curve.push_back(curve);
     mesh_.edge_tag.push_back(plc_.curves[curve].tag);
-  }
-
-  void add_cells() {
-    for (Index cell = 0; cell < refined_.mesh.cell_capacity(); ++cell)
-      if (refined_.mesh.alive(cell) && refined_.surface.region(cell) != 0 &&
-          !refined_.collar_cells.inside(cell))
-        add_tet(refined_.mesh.corners(cell), refined_.surface.region(cell), 0, 0);
-  }
-
-  void add_stitched() {
-    for (const auto& tet : refined_.stitched.tets) add_tet(tet.corners, tet.region, tet.collar, tet.crease);
-    for (const auto& face : refined_.stitched.faces) add_face(face.corners, face.regions, face.patch);
-    for (const auto& edge : refined_.stitched.edges) add_edge(edge.corners, edge.curve);
   }
 
   void add_balls() {
@@ -121,6 +189,18 @@ class Extraction {
     add_face(v, regions, patch);
   }
 
+  // As tets are.
+  void order_faces() {
+    std::vector<Index> least;
+    least.reserve(mesh_.faces.size());
+    for (const auto& face : mesh_.faces) least.push_back(std::min({face[0], face[1], face[2]}));
+    const std::vector<Index> order = order_by_least_point(least, mesh_.points.size());
+    permute(mesh_.faces, order);
+    permute(mesh_.face_regions, order);
+    permute(mesh_.face_patch, order);
+    permute(mesh_.face_tag, order);
+  }
+
   // The middle of a triangle may lie in the plane of its patch, but beside the patch.
   void forget_features_off_the_surface() {
     std::vector<bool> on_surface(mesh_.points.size(), false);
@@ -133,11 +213,14 @@ class Extraction {
   const Refined& refined_;
   const Plc& plc_;
   TetMesh mesh_;
-  std::vector<Index> number_;  // in the result, by mesh vertex; none if no tet has it
+  KnownNeighbours neighbours_;
+  std::vector<Index> number_;    // in the result, by mesh vertex; none if no tet has it
+  std::vector<Index> vertices_;  // that tets have
+  std::vector<Index> cells_;     // that are tets
 };
 
 }  // namespace
 
-TetMesh extract(const Refined& refined) { return Extraction(refined).run(); }
+Extracted extract(const Refined& refined) { return Extraction(refined).run(); }
 
 }  // namespace collarmesh

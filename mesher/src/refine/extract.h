@@ -1,6 +1,7 @@
 #pragma once
 
 #include "collarmesh/tet_mesh.h"
+#include "common/known_neighbours.h"
 #include "refine/rip_and_stitch.h"
 
 namespace collarmesh {
@@ -18,7 +19,14 @@ struct Refined {
   const Stitched& stitched;
 };
 
-/// The result of the refinement: the cells inside regions and outside collars, and what was stitched.
-TetMesh extract(const Refined& refined);
+struct Extracted {
+  TetMesh mesh;
+  KnownNeighbours neighbours;  ///< none where stitched tets meet others
+};
+
+/// The result of the refinement: the cells inside regions and outside collars, and what was stitched. In
+/// memory points lie along a curve through space, tets and faces in the order of their least points: what
+/// visits them one after the other finds their neighbourhood in the caches.
+Extracted extract(const Refined& refined);
 
 }  // namespace collarmesh

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "collarmesh/error.h"
 #include "collarmesh/mesher.h"
 #include "refine/features_inside.h"
+#include "refine/generate_linked.h"
 #include "refine/refinement.h"
 
 namespace collarmesh {
@@ -46,6 +48,12 @@ double default_distance(double size, double diagonal, int order) {
 }
 
 MeshResult generate(const Plc& plc, const MeshOptions& options, const Execution& execution) {
+  KnownNeighbours neighbours;
+  return generate(plc, options, execution, neighbours);
+}
+
+MeshResult generate(const Plc& plc, const MeshOptions& options, const Execution& execution,
+                    KnownNeighbours& neighbours) {
   validate(options);
   const FeaturesInside inside(plc);
   Refinement refinement(inside.plc(), options, execution);
@@ -54,8 +62,12 @@ MeshResult generate(const Plc& plc, const MeshOptions& options, const Execution&
   result.statistics = refinement.statistics();
   result.message = refinement.message();
   if (!result.message.empty()) result.where = refinement.where();
-  if (result.status == MeshStatus::complete || result.status == MeshStatus::guarantee_missed)
-    inside.restore_numbers(result.mesh = refinement.extract());
+  if (result.status == MeshStatus::complete || result.status == MeshStatus::guarantee_missed) {
+    Extracted extracted = refinement.extract();
+    result.mesh = std::move(extracted.mesh);
+    neighbours = std::move(extracted.neighbours);
+    inside.restore_numbers(result.mesh);
+  }
   return result;
 }
 

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "refine/aspect_ratios.h"
-#include "refine/extract.h"
 
 namespace collarmesh {
 
@@ -269,7 +268,7 @@ std::size_t Refinement::bytes() const {
          facing_sheets_.bytes() + points_.bytes() + curves_.bytes() + cells_.bytes() + collar_review_.bytes();
 }
 
-TetMesh Refinement::extract() const {
+Extracted Refinement::extract() const {
   return collarmesh::extract({domain_, mesh_, nodes_, collars_, collar_cells_, surface_, curves_,
                               collar_creator_, stitching_.result()});
 }

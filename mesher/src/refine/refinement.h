@@ -14,6 +14,7 @@
 #include "refine/collar_surface.h"
 #include "refine/curve_chains.h"
 #include "refine/domain.h"
+#include "refine/extract.h"
 #include "refine/facing_sheets.h"
 #include "refine/graded_sizes.h"
 #include "refine/open_creases.h"
@@ -40,7 +41,7 @@ class Refinement {
   /// Refine until nothing is left to do, a budget is spent or the caller cancels.
   MeshStatus run();
   /// After run() returned complete or guarantee_missed.
-  TetMesh extract() const;
+  Extracted extract() const;
 
   /// For tests: called whenever no skinny cell is left to destroy, before anything else goes in.
   void observe_quality_phases(std::function<void()> observer) { observer_ = std::move(observer); }
