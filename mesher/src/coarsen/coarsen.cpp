@@ -41,6 +41,7 @@ constexpr unsigned most_sweeps = 8;
 // improvement before it has ended by itself, all vertices are asked again.
 constexpr double least_share = 0.005;
 constexpr std::size_t steps_between_reports = 4096;
+constexpr std::size_t tets_at_once = 4096;  // that a thread looks at
 // Proposals are made for so many items at once, or for this share of them: few of all, so that they hardly
 // meet.
 constexpr std::size_t most_proposals = 256, items_per_proposal = 16;
@@ -169,13 +170,13 @@ class Coarsening {
   // The vertices with a short edge where something has changed since they were asked last by the same means,
   // with or without repairs; those with the shortest edge first.
   std::vector<Candidate> find_candidates(bool repair) const {
-    constexpr std::size_t tets_at_once = 4096;
+    const std::uint32_t last = repair ? std::min(last_pass_, last_repairs_) : last_pass_;
     const std::size_t chunks = (complex().size() + tets_at_once - 1) / tets_at_once;
     std::vector<std::vector<ShortEdge>> ends(chunks);  // some several times
     parallel_for(chunks, [&](std::size_t chunk) {
       const std::size_t end = std::min<std::size_t>((chunk + 1) * tets_at_once, complex().size());
       for (std::size_t t = chunk * tets_at_once; t < end; ++t)
-        find_short_edges(static_cast<Index>(t), ends[chunk]);
+        if (changed_since(static_cast<Index>(t), last)) find_short_edges(static_cast<Index>(t), ends[chunk]);
     });
     std::vector<double> shortest(mesh().points.size(), INFINITY);
     for (const auto& found : ends)
@@ -316,14 +317,16 @@ class Coarsening {
       Index tet;
       double quality;
     };
-    std::vector<double> asked(complex().size(), INFINITY);
-    parallel_for(asked.size(), [&](std::size_t i) {
-      const auto t = static_cast<Index>(i);
-      if (complex()[t].alive && changed_since(t, last_sweep_)) asked[t] = quality(t);
+    known_qualities_.resize(complex().size(), NAN);
+    parallel_for_ranges(known_qualities_.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
+      for (std::size_t t = first; t < last; ++t)
+        if (std::isnan(known_qualities_[t])) known_qualities_[t] = quality_if_improvable(static_cast<Index>(t));
     });
     std::vector<Poor> poor;
     for (Index t = 0; t < complex().size(); ++t)
-      if (asked[t] < improved_below) poor.push_back({rank_of_quality(asked[t]), t, asked[t]});
+      if (const double q = known_qualities_[t];
+          q < improved_below && complex()[t].alive && changed_since(t, last_sweep_))
+        poor.push_back({rank_of_quality(q), t, q});
     poor = in_order(std::move(poor));
     last_sweep_ = ++changes_.now;
     bool any = false;
@@ -347,6 +350,12 @@ class Coarsening {
           any = true;
         });
     return any && !report_.cancelled;
+  }
+
+  // Infinity where there is nothing to improve.
+  double quality_if_improvable(Index tet) const {
+    if (!complex()[tet].alive || rule_.surely_exceeds(improved_below, complex().corners(tet))) return INFINITY;
+    return quality(tet);
   }
 
   bool changed_since(Index tet, std::uint32_t when) const {
@@ -382,9 +391,12 @@ class Coarsening {
   void settle() {
     ++changes_.now;
     for (const Index v : touched_vertices_) changes_.at_vertex[v] = changes_.now;
-    for (const Index t : touched_)
+    known_qualities_.resize(complex().size(), NAN);
+    for (const Index t : touched_) {
+      known_qualities_[t] = NAN;
       if (complex()[t].alive)
         for (const Index v : complex()[t].corners) changes_.at_vertex[v] = changes_.now;
+    }
   }
 
   void finish() {
@@ -411,6 +423,7 @@ class Coarsening {
   std::vector<Index> touched_;                      // tets that were made or changed
   std::vector<Index> touched_vertices_;             // of tets that went
   std::vector<double> qualities_;                   // by tet, of those a trial changed
+  std::vector<double> known_qualities_;             // by tet, as the last sweep found them; NaN if not known
   CoarsenReport report_;
 };
 

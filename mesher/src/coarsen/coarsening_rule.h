@@ -31,6 +31,8 @@ class CoarseningRule final : public improvement::ShapeRule {
     if (blunt < 0) return -1;
     return blunt < 1 && mode_ != Mode::force ? beyond * blunt * std::min(1.0, sharp) : std::min(blunt, sharp);
   }
+  /// Is the quality above this, which is at least 1? False of some that are; much cheaper.
+  bool surely_exceeds(double quality, const Corners& p) const { return thin_.surely_exceeds(quality, p); }
   bool allows(const Corners& p, const std::array<Index, 4>&, double quality) const override {
     return mode_ != Mode::final || keeps_guarantee(p, quality);
   }

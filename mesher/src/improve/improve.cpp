@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <queue>
 
 #include "collarmesh/error.h"
@@ -25,6 +26,7 @@ namespace {
 constexpr std::size_t tets_per_proposal = 2000;
 constexpr std::size_t most_proposals = 1024;
 constexpr std::size_t steps_between_reports = 1024;
+constexpr std::size_t tets_at_once = 4096;  // that a thread looks at
 // Tets at walls stay poor however often their vertices move a little. Of the few that detours are for little
 // moves may help.
 constexpr double least_gain = 0.02, least_gain_in_detours = 1e-3;
@@ -55,9 +57,10 @@ class Improvement {
     report_.candidates = poor_.size();
     for (unsigned pass = 0; pass < passes_ && !poor_.empty() && !report_.cancelled; ++pass) {
       const std::size_t before = changes();
+      const std::uint32_t begun = batch_number_;
       work_off();
       if (changes() == before) break;
-      find_poor_tets();
+      find_poor_tets_again(begun);
     }
     if (move_vertices_ && !report_.cancelled && take_detours()) find_poor_tets();
     report_.remaining = poor_.size();
@@ -84,11 +87,31 @@ class Improvement {
   }
 
   void find_poor_tets() {
-    std::vector<double> all(complex().size());
-    parallel_for(all.size(), [&](std::size_t t) { all[t] = remedies_.poor_quality(static_cast<Index>(t)); });
+    std::vector<Index> all(complex().size());
+    std::iota(all.begin(), all.end(), Index{0});
+    find_poor_of(all);
+  }
+
+  // The same where only batches after this one have changed tets since.
+  void find_poor_tets_again(std::uint32_t batch) {
+    std::vector<Index> asked;
+    auto poor = poor_.begin();
+    for (Index t = 0; t < complex().size(); ++t) {
+      const bool was_poor = poor != poor_.end() && poor->tet == t;
+      if (was_poor) ++poor;
+      if (was_poor || (t < changed_in_.size() && changed_in_[t] > batch)) asked.push_back(t);
+    }
+    find_poor_of(asked);
+  }
+
+  void find_poor_of(const std::vector<Index>& tets) {
+    std::vector<double> qualities(tets.size());
+    parallel_for_ranges(tets.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) qualities[i] = remedies_.poor_quality(tets[i]);
+    });
     poor_.clear();
-    for (Index t = 0; t < complex().size(); ++t)
-      if (all[t] < INFINITY) poor_.push_back({all[t], t, complex()[t].generation});
+    for (std::size_t i = 0; i < tets.size(); ++i)
+      if (qualities[i] < INFINITY) poor_.push_back({qualities[i], tets[i], complex()[tets[i]].generation});
   }
 
   void queue(Index tet) {

@@ -23,6 +23,7 @@ Remedies::Remedies(const Workpiece& workpiece, const SliverRule& rule, const Imp
 
 double Remedies::poor_quality(Index tet) const {
   if (!complex_[tet].alive || complex_[tet].collar) return INFINITY;
+  if (rule_.surely_exceeds(wanted_, complex_.corners(tet))) return INFINITY;
   const double q = quality(tet);
   return q < wanted_ ? q : INFINITY;
 }

@@ -74,6 +74,14 @@ class SliverRule final : public ShapeRule {
     return bound_.holds(p) || (thin_ != nullptr && thin_->contains(p, corners));
   }
 
+  /// Is the quality above this, which is positive? False of some that are; much cheaper.
+  bool surely_exceeds(double quality, const Corners& p) const {
+    const double of_obtuse = quality / obtuse_weight;
+    const double of_largest = thin_ != nullptr ? thin_->squared_cosine_of_largest() : 1;
+    return of_obtuse < 1 && surely_between(p, 1 - quality * quality,
+                                           std::min(1 - of_obtuse * of_obtuse, of_largest));
+  }
+
   double least_gain() const override { return least_gain_; }
   /// For the operations that are asked from now on.
   void set_least_gain(double share) { least_gain_ = share; }

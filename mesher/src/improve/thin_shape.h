@@ -67,6 +67,37 @@ inline ExtremeCosines extreme_cosines(const Corners& p) {
   return {std::min(1.0, greatest), std::max(-1.0, std::min(least, least_cosine_of_faces(p))), true};
 }
 
+/// Are all dihedral angles between the two whose squared cosines are given, the second one obtuse, and those
+/// of faces below the second? Without divisions, and false where it is close.
+inline bool surely_between(const Corners& p, double squared_cosine, double squared_obtuse_cosine) {
+  constexpr double rounding = 1e-9;
+  const double sharp = squared_cosine * (1 - rounding), blunt = squared_obtuse_cosine * (1 - rounding);
+  const Vector ab = p[1] - p[0], ac = p[2] - p[0], ad = p[3] - p[0], bc = p[2] - p[1], bd = p[3] - p[1],
+               cd = p[3] - p[2];
+  const Vector n_a = cross(bc, bd), n_b = cross(ad, ac), n_c = cross(ab, ad), n_d = cross(ac, ab);
+  const double a = squared_norm(n_a), b = squared_norm(n_b), c = squared_norm(n_c), d = squared_norm(n_d);
+  // Minus the product of outward normals has the sign of the cosine.
+  const auto edge = [&](const Vector& m, const Vector& n, double squares) {
+    const double product = dot(m, n);
+    return product * product < (product < 0 ? sharp : blunt) * squares;
+  };
+  const bool dihedral = edge(n_c, n_d, c * d) & edge(n_b, n_d, b * d) & edge(n_b, n_c, b * c) &
+                        edge(n_a, n_d, a * d) & edge(n_a, n_c, a * c) & edge(n_a, n_b, a * b);
+  // Of a face, between sides of squared lengths x and y.
+  const auto corner = [&](double x, double y, double across) {
+    const double product = x + y - across;
+    return (product > 0) | (product * product < 4 * blunt * (x * y));
+  };
+  const auto face = [&](double x, double y, double z) {
+    return corner(x, y, z) & corner(y, z, x) & corner(z, x, y);
+  };
+  const double s_ab = squared_norm(ab), s_ac = squared_norm(ac), s_ad = squared_norm(ad),
+               s_bc = squared_norm(bc), s_bd = squared_norm(bd), s_cd = squared_norm(cd);
+  const bool faces =
+      face(s_ab, s_ac, s_bc) & face(s_ab, s_ad, s_bd) & face(s_ac, s_ad, s_cd) & face(s_bc, s_bd, s_cd);
+  return (-dot(n_d, ad) > 0) & dihedral & faces;
+}
+
 /// The extreme angles of a tet, degrees.
 struct ExtremeAngles {
   double smallest;  ///< dihedral; negative for a flat or an inverted tet
@@ -95,6 +126,7 @@ class ThinShape {
   ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle, double reserve = 0);
 
   bool empty() const { return !(smallest_ > 0); }
+  double squared_cosine_of_largest() const { return -cosine_; }
   /// The sine of the lower bound on the dihedral angles of a tet with these corners, with room for rounding.
   double smallest_sine(const std::array<Index, 4>& corners) const {
     double least = sine_;
@@ -119,6 +151,11 @@ class ThinShape {
     if (!cosines.positive) return {-1, -1};
     return {sine(cosines.smallest_angle) / smallest_sine(corners),
             (cosines.largest_angle < 0 ? sine(cosines.largest_angle) : 1) / least_blunt_};
+  }
+  /// Are both margins above this, which is at least 1? False of some that are; much cheaper.
+  bool surely_exceeds(double margin, const Corners& p) const {
+    const double sharp = margin * sine_, blunt = margin * least_blunt_;
+    return blunt < 1 && surely_between(p, 1 - sharp * sharp, 1 - blunt * blunt);
   }
   bool contains(const Corners& p, const std::array<Index, 4>& corners) const {
     if (empty()) return false;

@@ -107,7 +107,10 @@ class Extraction {
     mesh_.tet_crease.reserve(count);
     mesh_.tet_thin.assign(count, 0);
     neighbours_.reserve(count);
-    for (const Index tet : order) {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (const std::size_t ahead = i + 16; ahead < count && order[ahead] < cells_.size())
+        refined_.mesh.prefetch(cells_[order[ahead]]);
+      const Index tet = order[i];
       const auto& v = corners(tet);
       mesh_.tets.push_back({number_[v[0]], number_[v[1]], number_[v[2]], number_[v[3]]});
       if (tet < cells_.size())
