@@ -72,13 +72,12 @@ void judge(Subject subject, CheckReport& report, Findings& findings, const Execu
   subject.match = match_features(subject.mesh, subject.plc, subject.rounding);
   subject.collar = collar_cells(subject, findings);
   using Group = void (*)(const Subject&, CheckReport&, Findings&);
-  const std::array<Group, 8> groups{
+  const std::array<Group, 7> groups{
       [](const Subject& s, CheckReport& r, Findings& f) {
         check_tets(s, r, f);
         check_region_volumes(s, r, f);
       },
-      [](const Subject& s, CheckReport& r, Findings&) { r.median_edge = median_edge(s.mesh); },
-      [](const Subject& s, CheckReport&, Findings& f) { check_conformity(s, f); },
+      check_conformity,
       [](const Subject& s, CheckReport&, Findings& f) {
         check_watertight(s, f);
         check_vertices(s, f);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "check/subject.h"
+#include "common/median.h"
 #include "common/simplices_at_vertex.h"
 
 namespace collarmesh::checks {
@@ -148,29 +149,40 @@ void add_edges(const std::array<Index, 3>& face, Index region, int direction,
 
 }  // namespace
 
-// Triangles are looked through by all threads; those that need a closer look are judged in their order.
-void check_conformity(const Subject& subject, Findings& findings) {
+// All threads look at the vertices; triangles that need a closer look are judged in their order.
+void check_conformity(const Subject& subject, CheckReport& report, Findings& findings) {
+  const TetMesh& mesh = subject.mesh;
   struct Triangle {
     Index smallest;
     std::vector<TriangleUse> uses;
   };
   struct Found {
-    TrianglesAtVertex at_vertex;
+    EdgesAtVertex edges;
+    TrianglesAtVertex triangles;
+    std::vector<double> lengths;
     std::vector<Triangle> not_plain;
   };
   tbb::enumerable_thread_specific<Found> of_threads;
-  for_each_vertex_with_cells(subject.mesh, [&](std::size_t vertex, std::span<const Index> cells) {
-    auto& [at_vertex, not_plain] = of_threads.local();
-    const auto smallest = static_cast<Index>(vertex);
-    at_vertex.find(subject.mesh, smallest, cells);
-    at_vertex.for_each([&](std::span<const TriangleUse> uses) {
+  for_each_vertex_with_cells(mesh, [&](std::size_t i, std::span<const Index> cells) {
+    const auto vertex = static_cast<Index>(i);
+    Found& found = of_threads.local();
+    found.edges.find(mesh, vertex, cells);
+    for (const Index end : found.edges.ends())
+      found.lengths.push_back(distance(mesh.points[vertex], mesh.points[end]));
+    if (found.edges.tets_fit()) return;
+    found.triangles.find(mesh, vertex, cells);
+    found.triangles.for_each([&](std::span<const TriangleUse> uses) {
       if (!ConformityCheck::is_plain(subject, uses))
-        not_plain.push_back({smallest, {uses.begin(), uses.end()}});
+        found.not_plain.push_back({vertex, {uses.begin(), uses.end()}});
     });
   });
+  std::vector<double> lengths;
   std::vector<Triangle> triangles;
-  for (auto& [at_vertex, not_plain] : of_threads)
-    std::move(not_plain.begin(), not_plain.end(), std::back_inserter(triangles));
+  for (Found& found : of_threads) {
+    lengths.insert(lengths.end(), found.lengths.begin(), found.lengths.end());
+    std::move(found.not_plain.begin(), found.not_plain.end(), std::back_inserter(triangles));
+  }
+  report.median_edge = median(lengths);
   std::sort(triangles.begin(), triangles.end(), [](const Triangle& a, const Triangle& b) {
     return a.smallest != b.smallest ? a.smallest < b.smallest
                                     : a.uses[0].larger_corners < b.uses[0].larger_corners;

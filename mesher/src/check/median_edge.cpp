@@ -7,6 +7,7 @@
 
 #include "collarmesh/tet_mesh.h"
 #include "collarmesh/usable_threads.h"
+#include "common/median.h"
 #include "common/simplices_at_vertex.h"
 
 namespace collarmesh {
@@ -20,16 +21,14 @@ double median_edge(const TetMesh& mesh) {
   if (tbb::this_task_arena::max_concurrency() > 1) static_cast<void>(usable_threads());  // keeps TBB to them
   for_each_vertex_with_cells(mesh, [&](std::size_t vertex, std::span<const Index> cells) {
     auto& [at_vertex, lengths] = of_threads.local();
-    for (const Index end : at_vertex.find(mesh, static_cast<Index>(vertex), cells))
+    at_vertex.find(mesh, static_cast<Index>(vertex), cells);
+    for (const Index end : at_vertex.ends())
       lengths.push_back(distance(mesh.points[vertex], mesh.points[end]));
   });
   std::vector<double> lengths;
   for (const auto& some : of_threads)
     lengths.insert(lengths.end(), some.lengths.begin(), some.lengths.end());
-  if (lengths.empty()) return 0;
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return *middle;
+  return median(lengths);
 }
 
 }  // namespace collarmesh

@@ -34,6 +34,13 @@ void for_each_vertex_with_cells(const TetMesh& mesh, const Use& use) {
   for_each_group<Index>(mesh.points.size(), tets + mesh.faces.size(), visit, use);
 }
 
+inline unsigned place_of(Index corner, const std::array<Index, 4>& tet) {
+  return (tet[1] == corner ? 1U : 0U) + (tet[2] == corner ? 2U : 0U) + (tet[3] == corner ? 3U : 0U);
+}
+/// The places of the corners opposite each corner of a tet, counterclockwise from outside.
+inline constexpr std::array<std::array<std::uint8_t, 3>, 4> opposite_places{
+    {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+
 /// A side of a tet, or a listed face, by the numbers of its corners.
 struct TriangleUse {
   static constexpr std::uint8_t listed_face = 4;
@@ -107,15 +114,13 @@ class TrianglesAtVertex {
 
   // How corners compare cannot be foreseen: as few branches as possible depend on it.
   void add_sides(const std::array<Index, 4>& tet, Index cell, Index vertex) {
-    // The places of the corners opposite each corner, counterclockwise from outside.
-    constexpr std::array<std::array<std::uint8_t, 3>, 4> opposite{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
-    const unsigned place = (tet[1] == vertex ? 1U : 0U) + (tet[2] == vertex ? 2U : 0U) + (tet[3] == vertex ? 3U : 0U);
+    const auto& places = opposite_places[place_of(vertex, tet)];
     for (unsigned i = 0; i < 3; ++i) {
-      const Index a = tet[opposite[place][i]], b = tet[opposite[place][(i + 1) % 3]];
+      const Index a = tet[places[i]], b = tet[places[(i + 1) % 3]];
       const Index middle = std::min(a, b), largest = std::max(a, b);
       if (middle < vertex) continue;
       // Seen from outside the tet the vertex, a and b are clockwise.
-      add({std::uint64_t{middle} << 32U | largest, cell, opposite[place][(i + 2) % 3], a < b});
+      add({std::uint64_t{middle} << 32U | largest, cell, places[(i + 2) % 3], a < b});
     }
   }
 
@@ -143,35 +148,77 @@ class TrianglesAtVertex {
   std::vector<TriangleUse> together_;
 };
 
-/// The edges from a vertex to larger ones.
+/// The edges from a vertex to larger ones, and whether the tets at it fit together.
 class EdgesAtVertex {
  public:
-  /// The other ends, each once, until the next call. `cells` as `for_each_vertex_with_cells` gives them.
-  std::span<const Index> find(const TetMesh& mesh, Index vertex, std::span<const Index> cells) {
+  /// `cells` as `for_each_vertex_with_cells` gives them.
+  void find(const TetMesh& mesh, Index vertex, std::span<const Index> cells) {
     ends_.clear();
     table_.assign(std::bit_ceil(std::max(least_slots, 4 * cells.size())), none);
-    for (const Index cell : cells)
-      if (cell < mesh.tets.size())
-        for (const Index v : mesh.tets[cell])
-          if (v > vertex) add(v);
-    return ends_;
+    fit_ = cells.size() < counterclockwise;
+    for (const Index cell : cells) {
+      if (cell >= mesh.tets.size()) {
+        fit_ = false;
+        continue;
+      }
+      fit_ &= mesh.tet_region[cell] == mesh.tet_region[cells[0]];
+      add_tet(mesh.tets[cell], vertex);
+    }
+    fit_ &= ends_.size() <= most_counted;
+    fit_ &= take_counts();
   }
 
- private:
-  static constexpr std::size_t least_slots = 64;
+  /// The other ends, each once.
+  std::span<const Index> ends() const { return ends_; }
+  /// Is every triangle of which the vertex is the smallest a side of two tets, one on either side, in one
+  /// region, and no listed face? False also where that was not found out, at more than 32 edges.
+  bool tets_fit() const { return fit_; }
 
-  void add(Index v) {
-    for (std::size_t slot = v * 0x9e3779b1U >> 8U;; ++slot) {
-      Index& end = table_[slot & (table_.size() - 1)];
-      if (end == v) return;
-      if (end != none) continue;
-      end = v;
-      ends_.push_back(v);
-      return;
+ private:
+  static constexpr std::size_t least_slots = 64, most_counted = 32;
+  static constexpr std::uint16_t clockwise = 1, counterclockwise = 1 << 8U;
+
+  void add_tet(const std::array<Index, 4>& tet, Index vertex) {
+    const auto& places = opposite_places[place_of(vertex, tet)];
+    std::array<Index, 3> number{};
+    for (unsigned i = 0; i < 3; ++i) {
+      const Index v = tet[places[i]];
+      number[i] = v > vertex ? number_of(v) : none;
+    }
+    // Seen from outside the tet the vertex, a and b are clockwise.
+    for (unsigned i = 0; i < 3; ++i) {
+      const Index a = number[i], b = number[(i + 1) % 3];
+      if (std::max(a, b) >= most_counted) continue;
+      counts_[std::min(a, b)][std::max(a, b)] += a < b ? clockwise : counterclockwise;
     }
   }
 
-  std::vector<Index> ends_, table_;
+  Index number_of(Index v) {
+    for (std::size_t slot = v * 0x9e3779b1U >> 8U;; ++slot) {
+      Index& number = table_[slot & (table_.size() - 1)];
+      if (number == none) {
+        number = static_cast<Index>(ends_.size());
+        ends_.push_back(v);
+        return number;
+      }
+      if (ends_[number] == v) return number;
+    }
+  }
+
+  // Does each triangle have a tet on either side? All is zero afterwards.
+  bool take_counts() {
+    unsigned amiss = 0;
+    for (std::size_t row = 0; row < std::min(ends_.size(), most_counted); ++row)
+      for (std::uint16_t& count : counts_[row]) {
+        amiss |= (count != 0) & (count != (clockwise | counterclockwise));
+        count = 0;
+      }
+    return amiss == 0;
+  }
+
+  std::vector<Index> ends_, table_;  // numbers of ends by hash
+  std::array<std::array<std::uint16_t, most_counted>, most_counted> counts_{};
+  bool fit_ = false;
 };
 
 }  // namespace collarmesh
