@@ -59,8 +59,7 @@ class ConformityCheck {
         "The face of points {}, {}, {} at {} is a side of {} tets, {} of them {} and {} on one side of it; "
         "tets overlap there. If the mesher made this mesh, report it with the input and the options.",
         corners_[0], corners_[1], corners_[2], At{where()}, sides_.size(),
-        sides_[0].odd == sides_[1].odd ? "the first two" : "more than one", sides_[0].cell,
-        sides_[1].cell);
+        sides_[0].odd == sides_[1].odd ? "the first two" : "more than one", sides_[0].cell, sides_[1].cell);
   }
 
   void check_listing() {

@@ -26,8 +26,7 @@ double median_edge(const TetMesh& mesh) {
       lengths.push_back(distance(mesh.points[vertex], mesh.points[end]));
   });
   std::vector<double> lengths;
-  for (const auto& some : of_threads)
-    lengths.insert(lengths.end(), some.lengths.begin(), some.lengths.end());
+  for (const auto& some : of_threads) lengths.insert(lengths.end(), some.lengths.begin(), some.lengths.end());
   return median(lengths);
 }
 

@@ -41,7 +41,6 @@ constexpr unsigned most_sweeps = 8;
 // improvement before it has ended by itself, all vertices are asked again.
 constexpr double least_share = 0.005;
 constexpr std::size_t steps_between_reports = 4096;
-constexpr std::size_t tets_at_once = 4096;  // that a thread looks at
 // Proposals are made for so many items at once, or for this share of them: few of all, so that they hardly
 // meet.
 constexpr std::size_t most_proposals = 256, items_per_proposal = 16;
@@ -167,20 +166,28 @@ class Coarsening {
     Index end;
   };
 
+  // What `look(t, found)` adds for each tet, in their order; by all threads.
+  template <class Found, class Look>
+  std::vector<Found> found_in_ranges(const Look& look) const {
+    constexpr std::size_t at_once = 4096;
+    std::vector<std::vector<Found>> of_ranges((complex().size() + at_once - 1) / at_once);
+    parallel_for_ranges(complex().size(), at_once, [&](std::size_t first, std::size_t last) {
+      for (std::size_t t = first; t < last; ++t) look(static_cast<Index>(t), of_ranges[first / at_once]);
+    });
+    std::vector<Found> all;
+    for (const auto& found : of_ranges) all.insert(all.end(), found.begin(), found.end());
+    return all;
+  }
+
   // The vertices with a short edge where something has changed since they were asked last by the same means,
   // with or without repairs; those with the shortest edge first.
   std::vector<Candidate> find_candidates(bool repair) const {
     const std::uint32_t last = repair ? std::min(last_pass_, last_repairs_) : last_pass_;
-    const std::size_t chunks = (complex().size() + tets_at_once - 1) / tets_at_once;
-    std::vector<std::vector<ShortEdge>> ends(chunks);  // some several times
-    parallel_for(chunks, [&](std::size_t chunk) {
-      const std::size_t end = std::min<std::size_t>((chunk + 1) * tets_at_once, complex().size());
-      for (std::size_t t = chunk * tets_at_once; t < end; ++t)
-        if (changed_since(static_cast<Index>(t), last)) find_short_edges(static_cast<Index>(t), ends[chunk]);
+    const auto ends = found_in_ranges<ShortEdge>([&](Index t, std::vector<ShortEdge>& found) {
+      if (changed_since(t, last)) find_short_edges(t, found);
     });
     std::vector<double> shortest(mesh().points.size(), INFINITY);
-    for (const auto& found : ends)
-      for (const auto& [length, v] : found) shortest[v] = std::min(shortest[v], length);
+    for (const auto& [length, v] : ends) shortest[v] = std::min(shortest[v], length);
     std::vector<Candidate> candidates;
     for (Index v = 0; v < shortest.size(); ++v) {
       const unsigned dimension = mesh().features[v].dimension;
@@ -318,16 +325,13 @@ class Coarsening {
       double quality;
     };
     known_qualities_.resize(complex().size(), NAN);
-    parallel_for_ranges(known_qualities_.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
-      for (std::size_t t = first; t < last; ++t)
-        if (std::isnan(known_qualities_[t])) known_qualities_[t] = quality_if_improvable(static_cast<Index>(t));
+    const std::vector<Poor> all = found_in_ranges<Poor>([&](Index t, std::vector<Poor>& found) {
+      double& q = known_qualities_[t];
+      if (std::isnan(q)) q = quality_if_improvable(t);
+      if (q < improved_below && complex()[t].alive && changed_since(t, last_sweep_))
+        found.push_back({rank_of_quality(q), t, q});
     });
-    std::vector<Poor> poor;
-    for (Index t = 0; t < complex().size(); ++t)
-      if (const double q = known_qualities_[t];
-          q < improved_below && complex()[t].alive && changed_since(t, last_sweep_))
-        poor.push_back({rank_of_quality(q), t, q});
-    poor = in_order(std::move(poor));
+    const std::vector<Poor> poor = in_order(all);
     last_sweep_ = ++changes_.now;
     bool any = false;
     for_each<Change>(
@@ -354,7 +358,8 @@ class Coarsening {
 
   // Infinity where there is nothing to improve.
   double quality_if_improvable(Index tet) const {
-    if (!complex()[tet].alive || rule_.surely_exceeds(improved_below, complex().corners(tet))) return INFINITY;
+    if (!complex()[tet].alive || rule_.surely_exceeds(improved_below, complex().corners(tet)))
+      return INFINITY;
     return quality(tet);
   }
 

@@ -56,8 +56,8 @@ struct TriangleUse {
   Index largest() const { return static_cast<Index>(larger_corners); }
 };
 
-/// The smallest corner, and the use of the triangle by `cell`. Corners: counterclockwise seen from outside the
-/// tet or from where the face's normal points.
+/// The smallest corner, and the use of the triangle by `cell`. Corners: counterclockwise seen from outside
+/// the tet or from where the face's normal points.
 inline std::pair<Index, TriangleUse> triangle_use(std::array<Index, 3> c, Index cell, std::uint8_t corner) {
   bool odd = false;
   const auto sort_pair = [&](unsigned i, unsigned j) {
@@ -69,7 +69,8 @@ inline std::pair<Index, TriangleUse> triangle_use(std::array<Index, 3> c, Index 
   return {c[0], {std::uint64_t{c[1]} << 32U | c[2], cell, corner, odd}};
 }
 
-/// The triangles of points of which a vertex is the smallest, each with the tets and listed faces that use it.
+/// The triangles of points of which a vertex is the smallest, each with the tets and listed faces that use
+/// it.
 class TrianglesAtVertex {
  public:
   /// `cells` as `for_each_vertex_with_cells` gives them.

@@ -78,8 +78,8 @@ class SliverRule final : public ShapeRule {
   bool surely_exceeds(double quality, const Corners& p) const {
     const double of_obtuse = quality / obtuse_weight;
     const double of_largest = thin_ != nullptr ? thin_->squared_cosine_of_largest() : 1;
-    return of_obtuse < 1 && surely_between(p, 1 - quality * quality,
-                                           std::min(1 - of_obtuse * of_obtuse, of_largest));
+    return of_obtuse < 1 &&
+           surely_between(p, 1 - quality * quality, std::min(1 - of_obtuse * of_obtuse, of_largest));
   }
 
   double least_gain() const override { return least_gain_; }

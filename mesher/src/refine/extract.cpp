@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/parallel_for.h"
 #include "common/spatial_order.h"
+#include "thread_limit.h"
 
 namespace collarmesh {
 
@@ -29,7 +31,10 @@ void permute(std::vector<T>& values, const std::vector<Index>& order) {
 class Extraction {
  public:
   explicit Extraction(const Refined& refined)
-      : refined_(refined), plc_(refined.domain.plc), number_(refined.mesh.vertex_count(), none) {}
+      : refined_(refined),
+        plc_(refined.domain.plc),
+        threads_(refined.domain.options.threads),
+        number_(refined.mesh.vertex_count(), none) {}
 
   Extracted run() {
     find_tets();
@@ -92,54 +97,65 @@ class Extraction {
   void add_tets() {
     const std::size_t count = cells_.size() + refined_.stitched.tets.size();
     std::vector<Index> least(count);
-    for (Index t = 0; t < count; ++t) {
-      const auto& v = corners(t);
-      least[t] = std::min({number_[v[0]], number_[v[1]], number_[v[2]], number_[v[3]]});
-    }
+    for_each_range(count, [&](std::size_t first, std::size_t last) {
+      for (std::size_t t = first; t < last; ++t) {
+        const auto& v = corners(static_cast<Index>(t));
+        least[t] = std::min({number_[v[0]], number_[v[1]], number_[v[2]], number_[v[3]]});
+      }
+    });
     const std::vector<Index> order = order_by_least_point(least, mesh_.points.size());
     std::vector<Index> tet_of_cell(refined_.mesh.cell_capacity(), none);
-    for (Index t = 0; t < count; ++t)
-      if (order[t] < cells_.size()) tet_of_cell[cells_[order[t]]] = t;
-    mesh_.tets.reserve(count);
-    mesh_.tet_region.reserve(count);
-    mesh_.tet_tag.reserve(count);
-    mesh_.tet_collar.reserve(count);
-    mesh_.tet_crease.reserve(count);
-    mesh_.tet_thin.assign(count, 0);
-    neighbours_.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      if (const std::size_t ahead = i + 16; ahead < count && order[ahead] < cells_.size())
-        refined_.mesh.prefetch(cells_[order[ahead]]);
-      const Index tet = order[i];
-      const auto& v = corners(tet);
-      mesh_.tets.push_back({number_[v[0]], number_[v[1]], number_[v[2]], number_[v[3]]});
-      if (tet < cells_.size())
-        add_cell(cells_[tet], tet_of_cell);
-      else
-        add_stitched(refined_.stitched.tets[tet - cells_.size()]);
-    }
+    mesh_.tets.resize(count);
+    mesh_.tet_region.resize(count);
+    mesh_.tet_tag.resize(count);
+    mesh_.tet_collar.resize(count);
+    mesh_.tet_crease.resize(count);
+    mesh_.tet_thin.resize(count);
+    neighbours_.resize(count);
+    for_each_range(count, [&](std::size_t first, std::size_t last) {
+      for (std::size_t t = first; t < last; ++t)
+        if (order[t] < cells_.size()) tet_of_cell[cells_[order[t]]] = static_cast<Index>(t);
+    });
+    for_each_range(count, [&](std::size_t first, std::size_t last) {
+      for (std::size_t t = first; t < last; ++t) {
+        constexpr std::size_t ahead = 16;
+        if (t + ahead < last && order[t + ahead] < cells_.size())
+          refined_.mesh.prefetch(cells_[order[t + ahead]]);
+        const auto& v = corners(order[t]);
+        mesh_.tets[t] = {number_[v[0]], number_[v[1]], number_[v[2]], number_[v[3]]};
+        if (order[t] < cells_.size())
+          set_cell(t, cells_[order[t]], tet_of_cell);
+        else
+          set_stitched(t, refined_.stitched.tets[order[t] - cells_.size()]);
+      }
+    });
   }
 
-  void add_cell(Index cell, const std::vector<Index>& tet_of_cell) {
-    add_labels(refined_.surface.region(cell), 0, 0);
-    std::array<Index, 4> across{};
+  void set_cell(std::size_t tet, Index cell, const std::vector<Index>& tet_of_cell) {
+    set_labels(tet, refined_.surface.region(cell), 0, 0);
     for (unsigned corner = 0; corner < 4; ++corner) {
       const FaceId beyond = refined_.mesh.opposite(face_id(cell, corner));
-      across[corner] = beyond == no_face ? none : tet_of_cell[cell_of(beyond)];
+      neighbours_[tet][corner] = beyond == no_face ? none : tet_of_cell[cell_of(beyond)];
     }
-    neighbours_.push_back(across);
   }
 
-  void add_stitched(const Stitched::Tet& tet) {
-    add_labels(tet.region, tet.collar, tet.crease);
-    neighbours_.push_back({none, none, none, none});
+  void set_stitched(std::size_t tet, const Stitched::Tet& stitched) {
+    set_labels(tet, stitched.region, stitched.collar, stitched.crease);
+    neighbours_[tet] = {none, none, none, none};
   }
 
-  void add_labels(Index region, std::uint8_t collar, Tag crease) {
-    mesh_.tet_region.push_back(region);
-    mesh_.tet_tag.push_back(plc_.regions[region].tag);
-    mesh_.tet_collar.push_back(collar);
-    mesh_.tet_crease.push_back(crease);
+  void set_labels(std::size_t tet, Index region, std::uint8_t collar, Tag crease) {
+    mesh_.tet_region[tet] = region;
+    mesh_.tet_tag[tet] = plc_.regions[region].tag;
+    mesh_.tet_collar[tet] = collar;
+    mesh_.tet_crease[tet] = crease;
+  }
+
+  // By all threads.
+  template <class Work>
+  void for_each_range(std::size_t count, const Work& work) {
+    constexpr std::size_t at_once = 8192;
+    threads_.run([&] { parallel_for_ranges(count, at_once, work); });
   }
 
   void add_face(const std::array<Index, 3>& v, const std::array<Index, 2>& regions, Index patch) {
@@ -215,6 +231,7 @@ class Extraction {
 
   const Refined& refined_;
   const Plc& plc_;
+  ThreadLimit threads_;
   TetMesh mesh_;
   KnownNeighbours neighbours_;
   std::vector<Index> number_;    // in the result, by mesh vertex; none if no tet has it
