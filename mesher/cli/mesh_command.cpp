@@ -174,7 +174,7 @@ void write_report(const std::string& path, const MeshArguments& arguments, const
 
 void write_files(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   stages.begin("write", 0.93, 1, run.result.mesh.tets.size());
-  if (!arguments.reports.empty()) run.worst = worst_tets(run.result.mesh);
+  if (!arguments.reports.empty()) run.worst = worst_tets(run.result.mesh, run.check.measures);
   std::optional<ShownMesh> shown;  // reports are in the input's unit
   if (std::any_of(arguments.reports.begin(), arguments.reports.end(), is_html))
     shown = shown_mesh(run.result.mesh, run.worst);

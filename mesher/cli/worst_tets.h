@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "collarmesh/tet_mesh.h"
+#include "collarmesh/mesh_measures.h"
 
 namespace collarmesh::cli {
 
@@ -14,7 +14,7 @@ struct WorstTet {
 };
 
 /// Ten with the smallest dihedral angles, the smallest first, then those of the ten with the largest ones
-/// that are not among them. Cost: linear.
-std::vector<WorstTet> worst_tets(const TetMesh& mesh);
+/// that are not among them. `measures`: of this mesh.
+std::vector<WorstTet> worst_tets(const TetMesh& mesh, const MeshMeasures& measures);
 
 }  // namespace collarmesh::cli

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <vector>
 
 #include "collarmesh/tet_mesh.h"
 
@@ -10,7 +11,11 @@ namespace collarmesh {
 
 /// The shapes of a mesh's tetrahedra, for summaries and reports.
 struct MeshMeasures {
-  static constexpr std::size_t bins = 18;
+  static constexpr std::size_t bins = 18, listed = 10;
+  struct Extreme {
+    double angle;  ///< dihedral, degrees
+    Index tet;
+  };
 
   double min_dihedral = 180, max_dihedral = 0;    ///< degrees
   double max_radius_edge = 0;                     ///< outside collars and of no thin tet: where it is bounded
@@ -21,10 +26,12 @@ struct MeshMeasures {
   std::array<std::size_t, bins>
       radius_edges{};  ///< tets by radius-edge ratio, 0.25 a bin, the last one is open
   std::map<Index, double> region_volumes;
+  /// The ten tets with the smallest and the ten with the largest dihedral angles, the most extreme first.
+  std::vector<Extreme> smallest_angles, largest_angles;
 
   enum class Kind { plain, thin, collar };
-  /// Count a tet of this quality.
-  void add(const TetQuality& quality, Index region, Kind kind);
+  /// Count a tet of this quality. To be called in the order of the tets.
+  void add(Index tet, const TetQuality& quality, Index region, Kind kind);
 };
 
 /// Of all tets; of a mesh without regions they are those of region 1.

@@ -1,6 +1,7 @@
 #include "collarmesh/mesh_measures.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace collarmesh {
 
@@ -12,9 +13,21 @@ std::size_t bin_of(double value, double width) {
                                                        : MeshMeasures::bins - 1;
 }
 
+/// Among the most extreme, in their order; equal ones by number.
+template <class IsWorse>
+void insert(const MeshMeasures::Extreme& extreme, std::vector<MeshMeasures::Extreme>& worst,
+            const IsWorse& is_worse) {
+  if (worst.size() == MeshMeasures::listed && !is_worse(extreme.angle, worst.back().angle)) return;
+  const auto place = std::find_if(worst.begin(), worst.end(), [&](const MeshMeasures::Extreme& other) {
+    return is_worse(extreme.angle, other.angle);
+  });
+  worst.insert(place, extreme);
+  if (worst.size() > MeshMeasures::listed) worst.pop_back();
+}
+
 }  // namespace
 
-void MeshMeasures::add(const TetQuality& quality, Index region, Kind kind) {
+void MeshMeasures::add(Index tet, const TetQuality& quality, Index region, Kind kind) {
   min_dihedral = std::min(min_dihedral, quality.min_dihedral);
   max_dihedral = std::max(max_dihedral, quality.max_dihedral);
   double& radius_edge = kind == Kind::collar ? max_collar_radius_edge
@@ -25,13 +38,15 @@ void MeshMeasures::add(const TetQuality& quality, Index region, Kind kind) {
   ++max_dihedrals[bin_of(quality.max_dihedral, 10)];
   ++radius_edges[bin_of(quality.radius_edge, 0.25)];
   region_volumes[region] += quality.volume;
+  insert({quality.min_dihedral, tet}, smallest_angles, std::less<double>());
+  insert({quality.max_dihedral, tet}, largest_angles, std::greater<double>());
 }
 
 MeshMeasures measure_mesh(const TetMesh& mesh) {
   MeshMeasures measures;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+  for (Index t = 0; t < mesh.tets.size(); ++t) {
     const auto& [a, b, c, d] = mesh.tets[t];
-    measures.add(measure(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]),
+    measures.add(t, measure(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]),
                  t < mesh.tet_region.size() ? mesh.tet_region[t] : 1,
                  t < mesh.tet_collar.size() && mesh.tet_collar[t] != 0 ? MeshMeasures::Kind::collar
                  : t < mesh.tet_thin.size() && mesh.tet_thin[t] != 0   ? MeshMeasures::Kind::thin

@@ -94,7 +94,7 @@ void check_tets(const Subject& subject, CheckReport& report, Findings& findings)
   const auto see = [&](Index tet, const TetQuality& quality) {
     const Corners p = corners(tet);
     const bool is_thin = thin.claimed(tet) && quality.radius_edge > subject.options.radius_edge * slack;
-    report.measures.add(quality, mesh.tet_region[tet],
+    report.measures.add(tet, quality, mesh.tet_region[tet],
                         subject.collar[tet] != 0 ? MeshMeasures::Kind::collar
                         : is_thin                ? MeshMeasures::Kind::thin
                                                  : MeshMeasures::Kind::plain);
