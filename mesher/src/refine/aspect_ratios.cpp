@@ -1,27 +1,48 @@
 #include "refine/aspect_ratios.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <functional>
 #include <vector>
+
+#include "common/parallel_for.h"
 
 namespace collarmesh {
 
+namespace {
+
+/// By several threads at once: the value that is left is the first one by `comes_first`.
+template <class ComesFirst>
+void replace_if(const ComesFirst& comes_first, double& place, double value) {
+  const std::atomic_ref<double> shared(place);
+  double found = shared.load(std::memory_order_relaxed);
+  while (comes_first(value, found) &&
+         !shared.compare_exchange_weak(found, value, std::memory_order_relaxed)) {
+  }
+}
+
+}  // namespace
+
 AspectRatios aspect_ratios(const RefinedMesh& mesh, const std::function<bool(Index cell)>& counts) {
   std::vector<double> squared_radius(mesh.vertex_count(), 0), squared_edge(mesh.vertex_count(), INFINITY);
-  for (Index cell = 0; cell < mesh.cell_capacity(); ++cell) {
-    if (!mesh.alive(cell)) continue;
+  const auto see_cell = [&](Index cell) {
     const auto& v = mesh.corners(cell);
-    const bool all_count = counts(cell);
-    const double radius = all_count ? mesh.squared_radius(cell) : INFINITY;
+    const double radius = counts(cell) ? mesh.squared_radius(cell) : INFINITY;
     for (unsigned i = 0; i < 4; ++i) {
-      squared_radius[v[i]] = std::max(squared_radius[v[i]], radius);
+      replace_if(std::greater<double>(), squared_radius[v[i]], radius);
       for (unsigned j = i + 1; j < 4; ++j) {
         const double length = squared_distance(mesh.point(v[i]), mesh.point(v[j]));
-        squared_edge[v[i]] = std::min(squared_edge[v[i]], length);
-        squared_edge[v[j]] = std::min(squared_edge[v[j]], length);
+        replace_if(std::less<double>(), squared_edge[v[i]], length);
+        replace_if(std::less<double>(), squared_edge[v[j]], length);
       }
     }
-  }
+  };
+  constexpr std::size_t at_once = 8192;
+  parallel_for_ranges(mesh.cell_capacity(), at_once, [&](std::size_t first, std::size_t last) {
+    for (std::size_t cell = first; cell < last; ++cell)
+      if (mesh.alive(static_cast<Index>(cell))) see_cell(static_cast<Index>(cell));
+  });
   AspectRatios ratios;
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     if (squared_radius[v] == INFINITY) continue;

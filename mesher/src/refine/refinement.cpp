@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "refine/aspect_ratios.h"
+#include "thread_limit.h"
 
 namespace collarmesh {
 
@@ -299,8 +300,11 @@ WorkCounts Refinement::work_counts() const {
   largest.add(largest_);
   counts.largest_degree = largest.vertices;
   counts.largest_cavity = largest.cells;
-  const AspectRatios aspects = aspect_ratios(
-      mesh_, [&](Index cell) { return surface_.region(cell) != 0 && !collar_cells_.inside(cell); });
+  AspectRatios aspects;
+  ThreadLimit(domain_.options.threads).run([&] {
+    aspects = aspect_ratios(
+        mesh_, [&](Index cell) { return surface_.region(cell) != 0 && !collar_cells_.inside(cell); });
+  });
   counts.smallest_aspect = aspects.smallest;
   counts.largest_aspect = aspects.largest;
   counts.ripped_out = ripped_out();
