@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "common/parallel_for.h"
 #include "common/simplices_at_vertex.h"
 
 namespace collarmesh::improvement {
@@ -62,12 +63,16 @@ TetComplex::TetComplex(TetMesh& mesh, const KnownNeighbours& neighbours) : mesh_
   origin_.resize(mesh.tets.size());
   vertex_tet_.assign(mesh.points.size(), none);
   constexpr std::array<Index, 4> nothing{none, none, none, none};
-  for (Index t = 0; t < mesh.tets.size(); ++t) {
-    const auto& across = neighbours.empty() ? nothing : neighbours[t];
-    tets_[t] = {mesh.tets[t], across, nothing, mesh.tet_region[t], 0, true, mesh.tet_collar[t] != 0};
-    origin_[t] = t;
+  constexpr std::size_t at_once = 8192;
+  parallel_for_ranges(mesh.tets.size(), at_once, [&](std::size_t first, std::size_t last) {
+    for (std::size_t t = first; t < last; ++t) {
+      const auto& across = neighbours.empty() ? nothing : neighbours[t];
+      tets_[t] = {mesh.tets[t], across, nothing, mesh.tet_region[t], 0, true, mesh.tet_collar[t] != 0};
+      origin_[t] = static_cast<Index>(t);
+    }
+  });
+  for (Index t = 0; t < mesh.tets.size(); ++t)
     for (const Index v : mesh.tets[t]) vertex_tet_[v] = t;
-  }
   stamps_.assign(tets_.size(), 0);
   link(!neighbours.empty());
   find_pinched_vertices();

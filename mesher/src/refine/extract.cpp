@@ -1,6 +1,7 @@
 #include "refine/extract.h"
 
 #include <algorithm>
+#include <atomic>
 #include <utility>
 
 #include "common/parallel_for.h"
@@ -52,24 +53,32 @@ class Extraction {
   }
 
  private:
+  static constexpr std::size_t at_once = 8192;  // that a thread looks at
+
   // The cells of regions outside of collars; after them come the stitched tets.
   void find_tets() {
-    const auto count = [&](const std::array<Index, 4>& corners) {
-      for (const Index v : corners) {
-        if (number_[v] != none) continue;
-        number_[v] = 0;
-        vertices_.push_back(v);
-      }
+    std::vector<std::uint8_t> used(refined_.mesh.vertex_count(), 0);
+    const auto use = [&](const std::array<Index, 4>& corners) {
+      for (const Index v : corners) std::atomic_ref(used[v]).store(1, std::memory_order_relaxed);
     };
-    vertices_.reserve(refined_.mesh.vertex_count());
-    cells_.reserve(refined_.mesh.cell_count());
-    for (Index cell = 0; cell < refined_.mesh.cell_capacity(); ++cell)
-      if (refined_.mesh.alive(cell) && refined_.surface.region(cell) != 0 &&
-          !refined_.collar_cells.inside(cell)) {
-        cells_.push_back(cell);
-        count(refined_.mesh.corners(cell));
+    const std::size_t capacity = refined_.mesh.cell_capacity();
+    std::vector<std::vector<Index>> of_ranges(capacity / at_once + 1);
+    for_each_range(capacity, [&](std::size_t first, std::size_t last) {
+      std::vector<Index>& found = of_ranges[first / at_once];
+      for (std::size_t i = first; i < last; ++i) {
+        const auto cell = static_cast<Index>(i);
+        if (!refined_.mesh.alive(cell) || refined_.surface.region(cell) == 0 ||
+            refined_.collar_cells.inside(cell))
+          continue;
+        found.push_back(cell);
+        use(refined_.mesh.corners(cell));
       }
-    for (const auto& tet : refined_.stitched.tets) count(tet.corners);
+    });
+    cells_.reserve(refined_.mesh.cell_count());
+    for (const auto& found : of_ranges) cells_.insert(cells_.end(), found.begin(), found.end());
+    for (const auto& tet : refined_.stitched.tets) use(tet.corners);
+    for (Index v = 0; v < used.size(); ++v)
+      if (used[v] != 0) vertices_.push_back(v);
   }
 
   const std::array<Index, 4>& corners(Index tet) const {
@@ -154,7 +163,6 @@ class Extraction {
   // By all threads.
   template <class Work>
   void for_each_range(std::size_t count, const Work& work) {
-    constexpr std::size_t at_once = 8192;
     threads_.run([&] { parallel_for_ranges(count, at_once, work); });
   }
 
