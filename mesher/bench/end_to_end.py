@@ -17,7 +17,7 @@ from pathlib import Path
 
 from inputs import Surface, box, read_surface
 from meshers import Collarmesh, Gmsh, MeshRun, TetGen, triangulation_seconds
-from processes import ProgramFailed, pin_to_core
+from processes import ProgramFailed, fetch_memory, pin_to_core
 from tables import exponent, machine, seconds, si, table, tets_text
 from tuning import SizeCache, size_for, tolerance
 
@@ -59,9 +59,7 @@ def measure(meshers, surface: Surface, target: int, options, cache: SizeCache) -
                 continue
             folder = work_folder(cache, mesher, surface)
             try:
-                # A virtual machine fetches memory that was not used for a while from its host, slowly: the first run pays
-                # for that, and is not counted.
-                mesher.mesh(surface, sizes[mesher.name], folder)
+                fetch_memory()
                 cell.runs.append(mesher.mesh(surface, sizes[mesher.name], folder))
                 if mesher.name == "collarmesh":
                     program = options.build / "bin" / "triangulate_points"

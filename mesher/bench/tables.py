@@ -18,7 +18,7 @@ def table(header: list[str], rows: list[list[str]]) -> str:
 def si(value: float) -> str:
     """1234567 is "1.23M"."""
     for limit, unit in ((1e6, "M"), (1e3, "k")):
-        if value >= limit:
+        if float(f"{value:.3g}") >= limit:   # 999999 is 1M
             return f"{value / limit:.3g}{unit}"
     return f"{value:.3g}"
 

@@ -19,7 +19,7 @@ from pathlib import Path
 from end_to_end import count, default_parts, work_folder
 from inputs import Surface, box, read_surface
 from meshers import Collarmesh, Gmsh, MeshRun
-from processes import ProgramFailed
+from processes import ProgramFailed, fetch_memory
 from tables import machine, seconds, si, table, tets_text
 from tuning import SizeCache, size_for
 
@@ -60,8 +60,7 @@ def measure(options, makers, surface: Surface, target: int, cache: SizeCache) ->
                 if runs.failure:
                     continue
                 try:
-                    # The first run fetches memory (end_to_end.py) and is not counted.
-                    mesher.mesh(surface, sizes[mesher.name], folders[mesher.name])
+                    fetch_memory()
                     runs.by_threads[threads].append(mesher.mesh(surface, sizes[mesher.name], folders[mesher.name]))
                 except ProgramFailed as failure:
                     runs.failure = str(failure)
