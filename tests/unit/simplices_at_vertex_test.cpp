@@ -1,0 +1,182 @@
+#include "common/simplices_at_vertex.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <mutex>
+#include <random>
+#include <set>
+#include <tuple>
+
+namespace collarmesh {
+namespace {
+
+/// What uses a triangle of points: a tet by one of its corners, or a listed face (corner 4).
+struct BruteUse {
+  Index cell;
+  unsigned corner;
+  bool odd;
+
+  friend auto operator<=>(const BruteUse&, const BruteUse&) = default;
+};
+using Triangles = std::map<std::array<Index, 3>, std::vector<BruteUse>>;
+
+bool is_odd(const std::array<Index, 3>& c) {
+  return ((c[0] > c[1]) + (c[0] > c[2]) + (c[1] > c[2])) % 2 == 1;
+}
+
+Triangles all_triangles(const TetMesh& mesh) {
+  Triangles triangles;
+  const auto add = [&](std::array<Index, 3> corners, Index cell, unsigned corner) {
+    const bool odd = is_odd(corners);
+    std::sort(corners.begin(), corners.end());
+    triangles[corners].push_back({cell, corner, odd});
+  };
+  for (Index t = 0; t < mesh.tets.size(); ++t) {
+    const auto& [a, b, c, d] = mesh.tets[t];
+    add({b, c, d}, t, 0), add({a, d, c}, t, 1), add({a, b, d}, t, 2), add({a, c, b}, t, 3);
+  }
+  for (Index f = 0; f < mesh.faces.size(); ++f) add(mesh.faces[f], f, TriangleUse::listed_face);
+  return triangles;
+}
+
+/// Six tets for each cube of a grid, its points numbered at random.
+TetMesh grid(unsigned n, std::uint32_t seed) {
+  TetMesh mesh;
+  std::vector<Index> number((n + 1) * (n + 1) * (n + 1));
+  for (Index i = 0; i < number.size(); ++i) number[i] = i;
+  std::mt19937 random(seed);
+  std::shuffle(number.begin(), number.end(), random);
+  mesh.points.resize(number.size());
+  const auto at = [&](unsigned x, unsigned y, unsigned z) { return number[x + (n + 1) * (y + (n + 1) * z)]; };
+  constexpr std::array<std::array<unsigned, 3>, 6> orders{
+      {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {1, 0, 2}, {2, 1, 0}}};
+  for (unsigned x = 0; x < n; ++x)
+    for (unsigned y = 0; y < n; ++y)
+      for (unsigned z = 0; z < n; ++z)
+        for (std::size_t o = 0; o < orders.size(); ++o) {
+          std::array<unsigned, 3> p{x, y, z};
+          std::array<Index, 4> tet{at(x, y, z)};
+          for (unsigned i = 0; i < 3; ++i) {
+            ++p[orders[o][i]];
+            tet[i + 1] = at(p[0], p[1], p[2]);
+          }
+          if (o >= 3) std::swap(tet[2], tet[3]);
+          mesh.tets.push_back(tet);
+          mesh.tet_region.push_back(1);
+        }
+  return mesh;
+}
+
+/// A tet turned inside out, one given twice, one of another region, one missing, and listed faces.
+void spoil(TetMesh& mesh, std::mt19937& random) {
+  const auto any = [&] { return random() % mesh.tets.size(); };
+  switch (random() % 5) {
+    case 0: std::swap(mesh.tets[any()][0], mesh.tets[any()][0]); break;
+    case 1: {
+      auto& tet = mesh.tets[any()];
+      std::swap(tet[1], tet[2]);
+      break;
+    }
+    case 2:
+      mesh.tets.push_back(mesh.tets[any()]);
+      mesh.tet_region.push_back(1);
+      break;
+    case 3: mesh.tet_region[any()] = 2; break;
+    default: {
+      const auto& tet = mesh.tets[any()];
+      mesh.faces.push_back({tet[2], tet[0], tet[3]});
+    }
+  }
+}
+
+// Corners that are there twice are found before (`check_arrays`).
+bool has_distinct_corners(const TetMesh& mesh) {
+  return std::all_of(mesh.tets.begin(), mesh.tets.end(), [](const std::array<Index, 4>& tet) {
+    return std::set<Index>(tet.begin(), tet.end()).size() == 4;
+  });
+}
+
+/// By vertex, whether each triangle that it is the smallest corner of is as `EdgesAtVertex::tets_fit` says.
+std::vector<bool> vertices_where_tets_fit(const TetMesh& mesh, const Triangles& triangles) {
+  std::vector<bool> fit(mesh.points.size(), true);
+  for (const auto& [corners, uses] : triangles) {
+    const bool plain = uses.size() == 2 && uses[1].corner != TriangleUse::listed_face &&
+                       uses[0].odd != uses[1].odd &&
+                       mesh.tet_region[uses[0].cell] == mesh.tet_region[uses[1].cell];
+    if (!plain) fit[corners[0]] = false;
+  }
+  return fit;
+}
+
+void expect_simplices(const TetMesh& mesh) {
+  const Triangles expected = all_triangles(mesh);
+  const std::vector<bool> fit = vertices_where_tets_fit(mesh, expected);
+  std::set<std::array<Index, 2>> edges;
+  for (const auto& tet : mesh.tets)
+    for (const Index a : tet)
+      for (const Index b : tet)
+        if (a < b) edges.insert({a, b});
+  Triangles found;
+  std::set<std::array<Index, 2>> found_edges;
+  std::mutex mutex;
+  for_each_vertex_with_cells(mesh, [&](std::size_t i, std::span<const Index> cells) {
+    const std::scoped_lock lock(mutex);
+    const auto vertex = static_cast<Index>(i);
+    TrianglesAtVertex triangles;
+    triangles.find(mesh, vertex, cells);
+    triangles.for_each([&](std::span<const TriangleUse> uses) {
+      auto& list = found[{vertex, uses[0].middle(), uses[0].largest()}];
+      EXPECT_TRUE(list.empty());
+      for (const TriangleUse& use : uses) list.push_back({use.cell, use.corner, use.odd});
+    });
+    EdgesAtVertex edges_at;
+    for (unsigned time = 0; time < 2; ++time) {  // it is used again and again
+      edges_at.find(mesh, vertex, cells);
+      // Where it says so it is so; where it is so it may not say so, next to other regions.
+      EXPECT_TRUE(fit[vertex] || !edges_at.tets_fit());
+      const bool one_region = std::all_of(cells.begin(), cells.end(), [&](Index cell) {
+        return cell < mesh.tets.size() && mesh.tet_region[cell] == mesh.tet_region[cells[0]];
+      });
+      if (one_region && edges_at.ends().size() <= 32) {
+        EXPECT_EQ(edges_at.tets_fit(), fit[vertex]) << vertex;
+      }
+    }
+    for (const Index end : edges_at.ends()) EXPECT_TRUE(found_edges.insert({vertex, end}).second);
+  });
+  EXPECT_EQ(found, expected);
+  EXPECT_EQ(found_edges, edges);
+}
+
+TEST(SimplicesAtVertex, OfAGrid) {
+  for (const unsigned n : {1U, 2U, 5U}) expect_simplices(grid(n, n));
+}
+
+TEST(SimplicesAtVertex, OfSpoiltGrids) {
+  std::mt19937 random(7);
+  unsigned spoilt = 0;
+  for (std::uint32_t seed = 0; seed < 100; ++seed) {
+    TetMesh mesh = grid(3, seed);
+    for (unsigned fault = 0; fault < 1 + seed % 4; ++fault) spoil(mesh, random);
+    if (!has_distinct_corners(mesh)) continue;
+    ++spoilt;
+    expect_simplices(mesh);
+  }
+  EXPECT_GT(spoilt, 60U);
+}
+
+// More than are counted by number, and more than a hash table has slots at first.
+TEST(SimplicesAtVertex, OfAVertexOfManyTets) {
+  for (const Index rim : {20U, 31U, 33U, 300U}) {
+    TetMesh mesh;
+    mesh.points.resize(rim + 2);
+    for (Index i = 0; i < rim; ++i) {
+      mesh.tets.push_back({0, 1, 2 + i, 2 + (i + 1) % rim});
+      mesh.tet_region.push_back(1);
+    }
+    expect_simplices(mesh);
+  }
+}
+
+}  // namespace
+}  // namespace collarmesh
