@@ -2,8 +2,8 @@
 """collarmesh beside TetGen and Gmsh HXT at the same numbers of tetrahedra, in one run.
 
 For the unit box and five parts of a corpus: each mesher's size is searched until it makes the wanted
-number of tets (nearly), then the programs run in turn, some rounds, each pinned to one core, and twice, of
-which the second run counts. Prints Markdown tables of medians. Sizes found are kept in the folder for temporary files.
+number of tets (nearly), then the programs run in turn, some rounds, each pinned to one core, after memory was
+fetched for them. Prints Markdown tables of medians. Sizes found are kept in the folder for temporary files.
 """
 
 from __future__ import annotations

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "common/tet_sides.h"
 #include "improve/tet_complex.h"
 #include "refine/generate_linked.h"
 #include "support/acute_shapes.h"
@@ -36,7 +37,7 @@ std::map<std::array<Index, 3>, std::vector<Index>> sides(const TetMesh& mesh) {
   std::map<std::array<Index, 3>, std::vector<Index>> sides;
   for (Index t = 0; t < mesh.tets.size(); ++t)
     for (unsigned corner = 0; corner < 4; ++corner) {
-      auto side = improvement::face_corners(mesh.tets[t], corner);
+      auto side = side_corners(mesh.tets[t], corner);
       std::sort(side.begin(), side.end());
       sides[side].push_back(t);
     }
@@ -64,7 +65,7 @@ TEST(Extraction, KnowsNeighboursAndTheComplexFindsTheRest) {
     const improvement::TetComplex with(mesh, known), without(copy);
     for (Index t = 0; t < mesh.tets.size(); ++t)
       for (unsigned corner = 0; corner < 4; ++corner) {
-        auto side = improvement::face_corners(mesh.tets[t], corner);
+        auto side = side_corners(mesh.tets[t], corner);
         std::sort(side.begin(), side.end());
         const auto& tets = tets_of.at(side);
         ASSERT_LE(tets.size(), 2U);
@@ -80,6 +81,27 @@ TEST(Extraction, KnowsNeighboursAndTheComplexFindsTheRest) {
                                         [](std::uint8_t collar) { return collar != 0; });
     EXPECT_LE(open, 8 * static_cast<std::size_t>(stitched));  // both sides of all that they have
     EXPECT_GT(shared, open);
+  }
+}
+
+TEST(Extraction, KeepsWhatBelongsToATet) {
+  for (const Shape& shape : shapes()) {
+    SCOPED_TRACE(shape.name);
+    const auto meshed = testing::mesh_of(shape.soups, testing::with_size(shape.size));
+    EXPECT_EQ(testing::faults(meshed), "");  // regions, tags, patches and features
+    const TetMesh& mesh = meshed.result.mesh;
+    for (Index t = 0; t < mesh.tets.size(); ++t) {
+      if (mesh.tet_collar[t] == 0) {
+        EXPECT_EQ(mesh.tet_crease[t], 0);
+        continue;
+      }
+      const bool at_crease = std::ranges::any_of(mesh.tets[t], [&](Index v) {
+        const auto& [dimension, feature] = mesh.features[v];
+        return (dimension == 0 && meshed.plc.vertices[feature].tag == mesh.tet_crease[t]) ||
+               (dimension == 1 && meshed.plc.curves[feature].tag == mesh.tet_crease[t]);
+      });
+      EXPECT_TRUE(at_crease) << t;
+    }
   }
 }
 

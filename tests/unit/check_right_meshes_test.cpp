@@ -48,8 +48,14 @@ TEST(CheckRightMeshes, SmoothCurvesAndPlanarPatches) {
 TEST(CheckRightMeshes, PlanarPatchOfTiltedTriangles) {
   constexpr double width = 0.005, lift = 0.9e-6;
   PolygonSoup bar;
-  bar.points = {{0, 0, 0},     {1, 0, 0},     {1, width, 0},            {0, width, 0},
-                {0, 0, width}, {1, 0, width}, {1, width, width + lift}, {0, width, width}};
+  bar.points = {{0, 0, 0},
+                {1, 0, 0},
+                {1, width, 0},
+                {0, width, 0},
+                {0, 0, width},
+                {1, 0, width},
+                {1, width, width + lift},
+                {0, width, width}};
   const std::vector<std::vector<Index>> facets{{0, 3, 2, 1}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6},
                                                {3, 0, 4, 7}, {4, 5, 7},    {5, 6, 7}};
   for (const auto& facet : facets) bar.add_facet(facet);
@@ -138,6 +144,26 @@ TEST(CheckRightMeshes, MeasuresOfTheBox) {
   EXPECT_EQ(report.max_surface_distance, 0);
 }
 
+/// The numbers of the tets with the most extreme angles, found by sorting all.
+template <class AngleOf>
+std::vector<Index> most_extreme(const TetMesh& mesh, const AngleOf& angle_of) {
+  std::vector<std::pair<double, Index>> all;
+  for (Index t = 0; t < mesh.tets.size(); ++t) {
+    const auto& [a, b, c, d] = mesh.tets[t];
+    all.emplace_back(angle_of(measure(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d])), t);
+  }
+  std::sort(all.begin(), all.end());
+  std::vector<Index> tets;
+  for (std::size_t i = 0; i < std::min(MeshMeasures::listed, all.size()); ++i) tets.push_back(all[i].second);
+  return tets;
+}
+
+std::vector<Index> tets_of(const std::vector<MeshMeasures::Extreme>& extremes) {
+  std::vector<Index> tets;
+  for (const MeshMeasures::Extreme& extreme : extremes) tets.push_back(extreme.tet);
+  return tets;
+}
+
 void expect_measures_of(const TetMesh& mesh, const Plc& plc) {
   const MeshMeasures found = check(mesh, plc).measures, expected = measure_mesh(mesh);
   EXPECT_EQ(std::accumulate(found.radius_edges.begin(), found.radius_edges.end(), std::size_t{0}),
@@ -148,6 +174,10 @@ void expect_measures_of(const TetMesh& mesh, const Plc& plc) {
   EXPECT_EQ(found.region_volumes, expected.region_volumes);
   EXPECT_EQ(found.max_radius_edge, expected.max_radius_edge);
   EXPECT_EQ(found.max_collar_radius_edge, expected.max_collar_radius_edge);
+  EXPECT_EQ(tets_of(found.smallest_angles),
+            most_extreme(mesh, [](const TetQuality& q) { return q.min_dihedral; }));
+  EXPECT_EQ(tets_of(found.largest_angles),
+            most_extreme(mesh, [](const TetQuality& q) { return -q.max_dihedral; }));
 }
 
 TEST(CheckRightMeshes, MeasuresAreThoseOfAllTets) {

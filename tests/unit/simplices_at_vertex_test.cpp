@@ -68,25 +68,33 @@ TetMesh grid(unsigned n, std::uint32_t seed) {
   return mesh;
 }
 
-/// A tet turned inside out, one given twice, one of another region, one missing, and listed faces.
+/// Corners of two tets exchanged, a tet turned inside out, one given many times, one of another region, a
+/// listed face, or a tet missing.
 void spoil(TetMesh& mesh, std::mt19937& random) {
   const auto any = [&] { return random() % mesh.tets.size(); };
-  switch (random() % 5) {
+  switch (random() % 6) {
     case 0: std::swap(mesh.tets[any()][0], mesh.tets[any()][0]); break;
     case 1: {
       auto& tet = mesh.tets[any()];
       std::swap(tet[1], tet[2]);
       break;
     }
-    case 2:
-      mesh.tets.push_back(mesh.tets[any()]);
-      mesh.tet_region.push_back(1);
+    case 2: {
+      const std::array<Index, 4> twin = mesh.tets[any()];
+      for (unsigned times = 0; times < 1 + random() % 3; ++times) {
+        mesh.tets.push_back(twin);
+        mesh.tet_region.push_back(1);
+      }
       break;
+    }
     case 3: mesh.tet_region[any()] = 2; break;
-    default: {
+    case 4: {
       const auto& tet = mesh.tets[any()];
       mesh.faces.push_back({tet[2], tet[0], tet[3]});
+      break;
     }
+    default:
+      mesh.tets.erase(mesh.tets.begin() + static_cast<std::ptrdiff_t>(any())), mesh.tet_region.pop_back();
   }
 }
 
@@ -97,7 +105,7 @@ bool has_distinct_corners(const TetMesh& mesh) {
   });
 }
 
-/// By vertex, whether each triangle that it is the smallest corner of is as `EdgesAtVertex::tets_fit` says.
+/// By vertex, whether each triangle that it is the smallest corner of is as `FittingTetsAtVertex::fit` says.
 std::vector<bool> vertices_where_tets_fit(const TetMesh& mesh, const Triangles& triangles) {
   std::vector<bool> fit(mesh.points.size(), true);
   for (const auto& [corners, uses] : triangles) {
@@ -130,16 +138,20 @@ void expect_simplices(const TetMesh& mesh) {
       EXPECT_TRUE(list.empty());
       for (const TriangleUse& use : uses) list.push_back({use.cell, use.corner, use.odd});
     });
+    FittingTetsAtVertex tets_at;
     EdgesAtVertex edges_at;
     for (unsigned time = 0; time < 2; ++time) {  // it is used again and again
+      tets_at.find(mesh, vertex, cells);
       edges_at.find(mesh, vertex, cells);
+      EXPECT_EQ(std::set<Index>(tets_at.ends().begin(), tets_at.ends().end()),
+                std::set<Index>(edges_at.ends().begin(), edges_at.ends().end()));
       // Where it says so it is so; where it is so it may not say so, next to other regions.
-      EXPECT_TRUE(fit[vertex] || !edges_at.tets_fit());
+      EXPECT_TRUE(fit[vertex] || !tets_at.fit());
       const bool one_region = std::all_of(cells.begin(), cells.end(), [&](Index cell) {
         return cell < mesh.tets.size() && mesh.tet_region[cell] == mesh.tet_region[cells[0]];
       });
       if (one_region && edges_at.ends().size() <= 32) {
-        EXPECT_EQ(edges_at.tets_fit(), fit[vertex]) << vertex;
+        EXPECT_EQ(tets_at.fit(), fit[vertex]) << vertex;
       }
     }
     for (const Index end : edges_at.ends()) EXPECT_TRUE(found_edges.insert({vertex, end}).second);
@@ -176,6 +188,35 @@ TEST(SimplicesAtVertex, OfAVertexOfManyTets) {
     }
     expect_simplices(mesh);
   }
+}
+
+// Uses of one triangle are many then: their number must not count twice.
+TEST(SimplicesAtVertex, OfATetGivenManyTimes) {
+  TetMesh mesh;
+  mesh.points.resize(4);
+  mesh.tets.assign(200000, {0, 1, 2, 3});
+  mesh.tet_region.assign(mesh.tets.size(), 1);
+  std::size_t uses_of_all = 0;
+  std::mutex mutex;
+  for_each_vertex_with_cells(mesh, [&](std::size_t vertex, std::span<const Index> cells) {
+    const std::scoped_lock lock(mutex);
+    TrianglesAtVertex triangles;
+    triangles.find(mesh, static_cast<Index>(vertex), cells);
+    triangles.for_each([&](std::span<const TriangleUse> uses) { uses_of_all += uses.size(); });
+    FittingTetsAtVertex tets;
+    tets.find(mesh, static_cast<Index>(vertex), cells);
+    EXPECT_TRUE(!tets.fit() || vertex > 1);  // the two largest are the smallest of no triangle
+  });
+  EXPECT_EQ(uses_of_all, 4 * mesh.tets.size());
+}
+
+// Nobody has checked the meshes of `info`: corners may be there twice, and regions missing.
+TEST(MedianEdge, OfAMeshThatNobodyHasChecked) {
+  TetMesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}, {9, 9, 9}, {9, 9, 9}};
+  mesh.tets = {{3, 1, 0, 1}, {0, 1, 0, 1}, {0, 1, 2, 3}, {2, 2, 2, 2}};
+  // 1, 2, 3, sqrt 5, sqrt 10, sqrt 13
+  EXPECT_EQ(median_edge(mesh), 3);
 }
 
 }  // namespace

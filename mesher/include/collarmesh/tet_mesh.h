@@ -86,7 +86,7 @@ TetQuality measure(const Point& a, const Point& b, const Point& c, const Point& 
 double largest_face_angle(const Point& a, const Point& b, const Point& c, const Point& d);
 
 /// The median length of the edges of the tets, each edge counted once; 0 without tets.
-/// Cost: linear, about 80 bytes per tet for a while.
+/// Cost: linear, about 45 bytes per tet for a while.
 double median_edge(const TetMesh& mesh);
 
 }  // namespace collarmesh

@@ -2,7 +2,6 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
-#include <iterator>
 #include <span>
 #include <utility>
 #include <vector>
@@ -151,43 +150,48 @@ void add_edges(const std::array<Index, 3>& face, Index region, int direction,
 // All threads look at the vertices; triangles that need a closer look are judged in their order.
 void check_conformity(const Subject& subject, CheckReport& report, Findings& findings) {
   const TetMesh& mesh = subject.mesh;
-  struct Triangle {
+  struct NotPlain {
     Index smallest;
-    std::vector<TriangleUse> uses;
+    TriangleUse use;
+
+    auto triangle() const { return std::pair(smallest, use.larger_corners); }
   };
   struct Found {
-    EdgesAtVertex edges;
+    FittingTetsAtVertex tets;
     TrianglesAtVertex triangles;
     std::vector<double> lengths;
-    std::vector<Triangle> not_plain;
+    std::vector<NotPlain> not_plain;
   };
   tbb::enumerable_thread_specific<Found> of_threads;
   for_each_vertex_with_cells(mesh, [&](std::size_t i, std::span<const Index> cells) {
     const auto vertex = static_cast<Index>(i);
     Found& found = of_threads.local();
-    found.edges.find(mesh, vertex, cells);
-    for (const Index end : found.edges.ends())
+    found.tets.find(mesh, vertex, cells);
+    for (const Index end : found.tets.ends())
       found.lengths.push_back(distance(mesh.points[vertex], mesh.points[end]));
-    if (found.edges.tets_fit()) return;
+    if (found.tets.fit()) return;
     found.triangles.find(mesh, vertex, cells);
     found.triangles.for_each([&](std::span<const TriangleUse> uses) {
-      if (!ConformityCheck::is_plain(subject, uses))
-        found.not_plain.push_back({vertex, {uses.begin(), uses.end()}});
+      if (ConformityCheck::is_plain(subject, uses)) return;
+      for (const TriangleUse& use : uses) found.not_plain.push_back({vertex, use});
     });
   });
   std::vector<double> lengths;
-  std::vector<Triangle> triangles;
-  for (Found& found : of_threads) {
+  std::vector<NotPlain> all;
+  for (const Found& found : of_threads) {
     lengths.insert(lengths.end(), found.lengths.begin(), found.lengths.end());
-    std::move(found.not_plain.begin(), found.not_plain.end(), std::back_inserter(triangles));
+    all.insert(all.end(), found.not_plain.begin(), found.not_plain.end());
   }
   report.median_edge = median(lengths);
-  std::sort(triangles.begin(), triangles.end(), [](const Triangle& a, const Triangle& b) {
-    return a.smallest != b.smallest ? a.smallest < b.smallest
-                                    : a.uses[0].larger_corners < b.uses[0].larger_corners;
-  });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const NotPlain& a, const NotPlain& b) { return a.triangle() < b.triangle(); });
   ConformityCheck check(subject, findings);
-  for (const Triangle& t : triangles) check.triangle(t.smallest, t.uses);
+  std::vector<TriangleUse> uses;
+  for (std::size_t i = 0, end = 0; i < all.size(); i = end) {
+    uses.clear();
+    for (; end < all.size() && all[end].triangle() == all[i].triangle(); ++end) uses.push_back(all[end].use);
+    check.triangle(all[i].smallest, uses);
+  }
 }
 
 // The faces of a region, turned outward, have no boundary: every edge is passed as often one way as

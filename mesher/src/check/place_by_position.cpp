@@ -8,15 +8,13 @@
 #include "check/subject.h"
 #include "common/disjoint_sets.h"
 #include "common/distance_tree.h"
+#include "common/tet_sides.h"
 
 namespace collarmesh::checks {
 
 namespace {
 
 using Triangle = std::array<Index, 3>;
-
-// The corners of the face opposite corner i, with the normal away from the tet.
-constexpr std::array<std::array<unsigned, 3>, 4> outward{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
 // Do most of the entities have a tag that the complex knows?
 template <class Features>
@@ -284,9 +282,7 @@ class Placement {
   }
 
   Triangle outward_face(Index tet, Index opposite) const {
-    const auto& t = subject_.mesh.tets[tet];
-    const auto& [i, j, k] = outward[opposite];
-    return {t[i], t[j], t[k]};
+    return side_corners(subject_.mesh.tets[tet], opposite);
   }
 
   // Of each connected part the largest tet tells where all are.

@@ -117,7 +117,8 @@ bool check_labels(const TetMesh& mesh, const Plc& plc, Findings& findings);
 /// Precondition: subject.collar is filled in.
 void check_tets(const Subject& subject, CheckReport& report, Findings& findings);
 
-/// Tets against each other and against the listed faces. Meets each edge once: the median length, too.
+/// Tets against each other and against the listed faces. On the way it meets each edge once, so that it finds
+/// their median length, too.
 void check_conformity(const Subject& subject, CheckReport& report, Findings& findings);
 
 void check_watertight(const Subject& subject, Findings& findings);

@@ -174,8 +174,14 @@ class Coarsening {
     parallel_for_ranges(complex().size(), at_once, [&](std::size_t first, std::size_t last) {
       for (std::size_t t = first; t < last; ++t) look(static_cast<Index>(t), of_ranges[first / at_once]);
     });
+    std::size_t count = 0;
+    for (const auto& found : of_ranges) count += found.size();
     std::vector<Found> all;
-    for (const auto& found : of_ranges) all.insert(all.end(), found.begin(), found.end());
+    all.reserve(count);
+    for (auto& found : of_ranges) {
+      all.insert(all.end(), found.begin(), found.end());
+      std::vector<Found>().swap(found);
+    }
     return all;
   }
 
@@ -300,7 +306,7 @@ class Coarsening {
     double least = INFINITY;
     for (const Index t : touched_) {
       if (!complex()[t].alive) continue;
-      const double q = qualities_[t];
+      const double q = trial_qualities_[t];
       if (q >= 1 || (q >= floor && rule_.keeps_guarantee(complex().corners(t), q))) continue;
       ++found.count;
       if (q >= least) continue;
@@ -325,13 +331,13 @@ class Coarsening {
       double quality;
     };
     known_qualities_.resize(complex().size(), NAN);
-    const std::vector<Poor> all = found_in_ranges<Poor>([&](Index t, std::vector<Poor>& found) {
+    std::vector<Poor> all = found_in_ranges<Poor>([&](Index t, std::vector<Poor>& found) {
       double& q = known_qualities_[t];
       if (std::isnan(q)) q = quality_if_improvable(t);
       if (q < improved_below && complex()[t].alive && changed_since(t, last_sweep_))
         found.push_back({rank_of_quality(q), t, q});
     });
-    const std::vector<Poor> poor = in_order(all);
+    const std::vector<Poor> poor = in_order(std::move(all));
     last_sweep_ = ++changes_.now;
     bool any = false;
     for_each<Change>(
@@ -383,8 +389,8 @@ class Coarsening {
 
   void apply_on_trial(Change change) {
     const auto& changed = apply(std::move(change));
-    if (qualities_.size() < complex().size()) qualities_.resize(complex().size());
-    for (const Index t : changed) qualities_[t] = quality(t);
+    if (trial_qualities_.size() < complex().size()) trial_qualities_.resize(complex().size());
+    for (const Index t : changed) trial_qualities_[t] = quality(t);
   }
 
   void forget_touched() {
@@ -427,8 +433,8 @@ class Coarsening {
   std::uint32_t last_sweep_ = 0;                    // of improvement
   std::vector<Index> touched_;                      // tets that were made or changed
   std::vector<Index> touched_vertices_;             // of tets that went
-  std::vector<double> qualities_;                   // by tet, of those a trial changed
-  std::vector<double> known_qualities_;             // by tet, as the last sweep found them; NaN if not known
+  std::vector<double> trial_qualities_;             // by tet, of those a trial changed
+  std::vector<double> known_qualities_;             // by tet; infinite where good enough, NaN if not known
   CoarsenReport report_;
 };
 

@@ -39,11 +39,14 @@ class TargetSizes {
  private:
   void see(Index vertex, double size) { sizes_[vertex] = std::min(sizes_[vertex], size); }
 
+  // All tets at a vertex inside are in one region.
   void see_regions() {
+    std::vector<Index> region_of(mesh_.points.size(), none);
     for (Index t = 0; t < mesh_.tets.size(); ++t)
-      for (const Index v : mesh_.tets[t])
-        if (mesh_.features[v].dimension == 3)
-          see(v, sizing_.region_size(mesh_.tet_region[t], mesh_.points[v]));
+      for (const Index v : mesh_.tets[t]) region_of[v] = mesh_.tet_region[t];
+    for (Index v = 0; v < mesh_.points.size(); ++v)
+      if (region_of[v] != none && mesh_.features[v].dimension == 3)
+        see(v, sizing_.region_size(region_of[v], mesh_.points[v]));
   }
 
   void see_feature(Index vertex) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -10,16 +11,18 @@
 
 #include "collarmesh/tet_mesh.h"
 #include "common/groups.h"
+#include "common/tet_sides.h"
 
 namespace collarmesh {
 
 /// Calls `use(vertex, cells)` for the vertices of a mesh, by several threads at once and in no particular
-/// order. `cells` are the tets of which the vertex is a corner but the largest one, by number, and the listed
-/// faces of which it is the smallest, each in their order; faces are numbered after all tets.
-/// Cost: linear; 24 bytes a tet.
+/// order. `cells` are the tets that have the vertex as a corner and another one with a larger number, then
+/// the listed faces of which it is the smallest corner, each in their order; faces are numbered after all
+/// tets. Precondition: corners are points of the mesh. Cost: linear; 24 bytes a tet.
 template <class Use>
 void for_each_vertex_with_cells(const TetMesh& mesh, const Use& use) {
   const std::size_t tets = mesh.tets.size();
+  assert(tets + mesh.faces.size() < none);
   const auto visit = [&](std::size_t i, const auto& give) {
     if (i >= tets) {
       const auto& face = mesh.faces[i - tets];
@@ -34,12 +37,100 @@ void for_each_vertex_with_cells(const TetMesh& mesh, const Use& use) {
   for_each_group<Index>(mesh.points.size(), tets + mesh.faces.size(), visit, use);
 }
 
-inline unsigned place_of(Index corner, const std::array<Index, 4>& tet) {
-  return (tet[1] == corner ? 1U : 0U) + (tet[2] == corner ? 2U : 0U) + (tet[3] == corner ? 3U : 0U);
-}
-/// The places of the corners opposite each corner of a tet, counterclockwise from outside.
-inline constexpr std::array<std::array<std::uint8_t, 3>, 4> opposite_places{
-    {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+/// The edges from a vertex to larger ones.
+class EdgesAtVertex {
+ public:
+  /// `cells` as `for_each_vertex_with_cells` gives them.
+  void find(const TetMesh& mesh, Index vertex, std::span<const Index> cells) {
+    clear(cells.size());
+    for (const Index cell : cells)
+      if (cell < mesh.tets.size())
+        for (const Index v : mesh.tets[cell])
+          if (v > vertex) number_of(v);
+  }
+
+  /// The other ends, each once.
+  std::span<const Index> ends() const { return ends_; }
+
+ protected:
+  void clear(std::size_t cells) {
+    ends_.clear();
+    table_.assign(std::bit_ceil(std::max(least_slots, 4 * cells)), none);
+  }
+
+  /// Among the ends; of a new one the next number.
+  Index number_of(Index end) {
+    for (std::size_t slot = end * 0x9e3779b1U >> 8U;; ++slot) {
+      Index& number = table_[slot & (table_.size() - 1)];
+      if (number == none) {
+        number = static_cast<Index>(ends_.size());
+        ends_.push_back(end);
+        return number;
+      }
+      if (ends_[number] == end) return number;
+    }
+  }
+
+ private:
+  static constexpr std::size_t least_slots = 64;
+
+  std::vector<Index> ends_;
+  std::vector<Index> table_;  // numbers of ends by hash
+};
+
+/// The edges from a vertex to larger ones, and whether the tets at it fit together.
+class FittingTetsAtVertex : public EdgesAtVertex {
+ public:
+  /// `cells` as `for_each_vertex_with_cells` gives them. Precondition: no tet has a corner twice.
+  void find(const TetMesh& mesh, Index vertex, std::span<const Index> cells) {
+    clear(cells.size());
+    fit_ = cells.size() < counterclockwise;
+    for (const Index cell : cells) {
+      if (cell >= mesh.tets.size()) {
+        fit_ = false;
+        continue;
+      }
+      fit_ &= mesh.tet_region[cell] == mesh.tet_region[cells[0]];
+      add_tet(mesh.tets[cell], vertex);
+    }
+    fit_ &= ends().size() <= most_counted;
+    fit_ &= take_counts();
+  }
+
+  /// Is every triangle of which the vertex is the smallest corner a side of two tets, one on either side, in
+  /// one region, and no listed face? False also where that was not found out: at more than 32 edges.
+  bool fit() const { return fit_; }
+
+ private:
+  static constexpr std::size_t most_counted = 32;
+  static constexpr std::uint16_t clockwise = 1, counterclockwise = 1 << 8U;
+
+  void add_tet(const std::array<Index, 4>& tet, Index vertex) {
+    std::array<Index, 3> number{};
+    const auto others = side_corners(tet, place_of(vertex, tet));
+    for (unsigned i = 0; i < 3; ++i) number[i] = others[i] > vertex ? number_of(others[i]) : none;
+    // Seen from outside the tet the vertex, a and b are clockwise.
+    for (unsigned i = 0; i < 3; ++i) {
+      const Index a = number[i], b = number[(i + 1) % 3];
+      if (std::max(a, b) >= most_counted) continue;
+      counts_[std::min(a, b)][std::max(a, b)] += a < b ? clockwise : counterclockwise;
+    }
+  }
+
+  // Does each triangle have a tet on either side? All is zero afterwards.
+  bool take_counts() {
+    unsigned amiss = 0;
+    for (std::size_t row = 0; row < std::min(ends().size(), most_counted); ++row)
+      for (std::uint16_t& count : counts_[row]) {
+        amiss |= (count != 0) & (count != (clockwise | counterclockwise));
+        count = 0;
+      }
+    return amiss == 0;
+  }
+
+  std::array<std::array<std::uint16_t, most_counted>, most_counted> counts_{};  // by numbers of ends
+  bool fit_ = false;
+};
 
 /// A side of a tet, or a listed face, by the numbers of its corners.
 struct TriangleUse {
@@ -73,7 +164,7 @@ inline std::pair<Index, TriangleUse> triangle_use(std::array<Index, 3> c, Index 
 /// it.
 class TrianglesAtVertex {
  public:
-  /// `cells` as `for_each_vertex_with_cells` gives them.
+  /// `cells` as `for_each_vertex_with_cells` gives them. Precondition: no tet has a corner twice.
   void find(const TetMesh& mesh, Index vertex, std::span<const Index> cells) {
     clear(3 * cells.size());
     for (const Index cell : cells) {
@@ -93,9 +184,9 @@ class TrianglesAtVertex {
   /// Calls `visit(uses)` for each; uses of one triangle are in the order in which they were given.
   template <class Visit>
   void for_each(const Visit& visit) {
-    for (const Index first : first_) {
+    for (const Listed& list : lists_) {
       together_.clear();
-      for (Index i = first; i != none; i = uses_[i].next) together_.push_back(uses_[i].use);
+      for (Index i = list.first; i != none; i = uses_[i].next) together_.push_back(uses_[i].use);
       visit(std::span<const TriangleUse>(together_));
     }
   }
@@ -106,10 +197,13 @@ class TrianglesAtVertex {
     TriangleUse use;
     Index next;  // of the same triangle
   };
+  struct Listed {  // uses of one triangle
+    Index first, last;
+  };
 
   void clear(std::size_t most_uses) {
     uses_.clear();
-    first_.clear();
+    lists_.clear();
     table_.assign(std::bit_ceil(std::max(least_slots, 2 * most_uses)), none);
   }
 
@@ -129,97 +223,24 @@ class TrianglesAtVertex {
     const auto added = static_cast<Index>(uses_.size());
     uses_.push_back({use, none});
     for (std::size_t slot = use.larger_corners * 0x9e3779b97f4a7c15U >> 32U;; ++slot) {
-      Index& first = table_[slot & (table_.size() - 1)];
-      if (first == none) {
-        first = added;
-        first_.push_back(added);
+      Index& number = table_[slot & (table_.size() - 1)];
+      if (number == none) {
+        number = static_cast<Index>(lists_.size());
+        lists_.push_back({added, added});
         return;
       }
-      if (uses_[first].use.larger_corners != use.larger_corners) continue;
-      Index last = first;
-      while (uses_[last].next != none) last = uses_[last].next;
-      uses_[last].next = added;
+      Listed& list = lists_[number];
+      if (uses_[list.first].use.larger_corners != use.larger_corners) continue;
+      uses_[list.last].next = added;
+      list.last = added;
       return;
     }
   }
 
   std::vector<Linked> uses_;
-  std::vector<Index> first_;  // of each triangle
-  std::vector<Index> table_;  // the same by hash
+  std::vector<Listed> lists_;
+  std::vector<Index> table_;  // numbers of lists by hash
   std::vector<TriangleUse> together_;
-};
-
-/// The edges from a vertex to larger ones, and whether the tets at it fit together.
-class EdgesAtVertex {
- public:
-  /// `cells` as `for_each_vertex_with_cells` gives them.
-  void find(const TetMesh& mesh, Index vertex, std::span<const Index> cells) {
-    ends_.clear();
-    table_.assign(std::bit_ceil(std::max(least_slots, 4 * cells.size())), none);
-    fit_ = cells.size() < counterclockwise;
-    for (const Index cell : cells) {
-      if (cell >= mesh.tets.size()) {
-        fit_ = false;
-        continue;
-      }
-      fit_ &= mesh.tet_region[cell] == mesh.tet_region[cells[0]];
-      add_tet(mesh.tets[cell], vertex);
-    }
-    fit_ &= ends_.size() <= most_counted;
-    fit_ &= take_counts();
-  }
-
-  /// The other ends, each once.
-  std::span<const Index> ends() const { return ends_; }
-  /// Is every triangle of which the vertex is the smallest a side of two tets, one on either side, in one
-  /// region, and no listed face? False also where that was not found out, at more than 32 edges.
-  bool tets_fit() const { return fit_; }
-
- private:
-  static constexpr std::size_t least_slots = 64, most_counted = 32;
-  static constexpr std::uint16_t clockwise = 1, counterclockwise = 1 << 8U;
-
-  void add_tet(const std::array<Index, 4>& tet, Index vertex) {
-    const auto& places = opposite_places[place_of(vertex, tet)];
-    std::array<Index, 3> number{};
-    for (unsigned i = 0; i < 3; ++i) {
-      const Index v = tet[places[i]];
-      number[i] = v > vertex ? number_of(v) : none;
-    }
-    // Seen from outside the tet the vertex, a and b are clockwise.
-    for (unsigned i = 0; i < 3; ++i) {
-      const Index a = number[i], b = number[(i + 1) % 3];
-      if (std::max(a, b) >= most_counted) continue;
-      counts_[std::min(a, b)][std::max(a, b)] += a < b ? clockwise : counterclockwise;
-    }
-  }
-
-  Index number_of(Index v) {
-    for (std::size_t slot = v * 0x9e3779b1U >> 8U;; ++slot) {
-      Index& number = table_[slot & (table_.size() - 1)];
-      if (number == none) {
-        number = static_cast<Index>(ends_.size());
-        ends_.push_back(v);
-        return number;
-      }
-      if (ends_[number] == v) return number;
-    }
-  }
-
-  // Does each triangle have a tet on either side? All is zero afterwards.
-  bool take_counts() {
-    unsigned amiss = 0;
-    for (std::size_t row = 0; row < std::min(ends_.size(), most_counted); ++row)
-      for (std::uint16_t& count : counts_[row]) {
-        amiss |= (count != 0) & (count != (clockwise | counterclockwise));
-        count = 0;
-      }
-    return amiss == 0;
-  }
-
-  std::vector<Index> ends_, table_;  // numbers of ends by hash
-  std::array<std::array<std::uint16_t, most_counted>, most_counted> counts_{};
-  bool fit_ = false;
 };
 
 }  // namespace collarmesh

@@ -227,7 +227,7 @@ void Triangulation::link_created(ConflictZone& zone, std::vector<FaceId>& edge_t
     for (std::size_t i = 0; i < zone.created.size(); ++i) {
       const Index cell = zone.created[i];
       const unsigned apex = corner_of(zone.border[i]);
-      const auto& f = face_corners[apex];
+      const auto& f = opposite_places[apex];
       const auto& corners = cells_[cell].corners;
       const std::array<std::uint32_t, 3> local{vertices_[corners[f[0]]].local, vertices_[corners[f[1]]].local,
                                                vertices_[corners[f[2]]].local};
@@ -250,7 +250,7 @@ void Triangulation::link_created_by_sorting(ConflictZone& zone) {
   edges.reserve(3 * zone.created.size());
   for (std::size_t i = 0; i < zone.created.size(); ++i) {
     const Index cell = zone.created[i];
-    const auto& f = face_corners[corner_of(zone.border[i])];
+    const auto& f = opposite_places[corner_of(zone.border[i])];
     const auto& corners = cells_[cell].corners;
     for (unsigned k = 0; k < 3; ++k) {
       const Index a = corners[f[(k + 1) % 3]], b = corners[f[(k + 2) % 3]];

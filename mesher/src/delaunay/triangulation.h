@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "collarmesh/geometry.h"
+#include "common/tet_sides.h"
 #include "delaunay/growing_array.h"
 
 namespace collarmesh {
@@ -18,10 +19,6 @@ inline constexpr FaceId no_face = none;
 inline Index cell_of(FaceId face) { return face >> 2; }
 inline unsigned corner_of(FaceId face) { return face & 3U; }
 inline FaceId face_id(Index cell, unsigned corner) { return 4 * cell + corner; }
-
-/// The corners of the face opposite corner i, seen counterclockwise from outside the cell.
-inline constexpr std::array<std::array<unsigned, 3>, 4> face_corners{
-    {{{1, 2, 3}}, {{0, 3, 2}}, {{0, 1, 3}}, {{0, 2, 1}}}};
 
 /// The cells whose circumspheres hold a point, with their border: what its insertion replaces.
 /// A caller keeps one and reuses it: no allocation in the steady state.
@@ -78,7 +75,7 @@ class Triangulation {
   FaceId opposite(FaceId face) const { return cells_[cell_of(face)].neighbours[corner_of(face)]; }
   std::array<Index, 3> face_vertices(FaceId face) const {
     const auto& v = corners(cell_of(face));
-    const auto& f = face_corners[corner_of(face)];
+    const auto& f = opposite_places[corner_of(face)];
     return {v[f[0]], v[f[1]], v[f[2]]};
   }
   bool alive(Index cell) const { return cells_[cell].corners[0] != none; }

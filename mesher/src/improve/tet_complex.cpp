@@ -80,9 +80,13 @@ TetComplex::TetComplex(TetMesh& mesh, const KnownNeighbours& neighbours) : mesh_
     curve_edges_.emplace(edge_key(mesh.edges[e][0], mesh.edges[e][1]), e);
 }
 
-// `only_open`: of the tets' sides those that have no neighbour yet, and those that may be faces of the mesh.
-void TetComplex::link(bool only_open) {
-  const auto inside = [&](Index v) { return mesh_.features[v].dimension == 3; };
+// Where some neighbours are known only sides are looked at that have none, and those that may be faces of the
+// mesh, between three points of such faces.
+void TetComplex::link(bool some_are_known) {
+  std::vector<std::uint8_t> on_faces(some_are_known ? mesh_.points.size() : 0, 0);
+  if (some_are_known)
+    for (const auto& face : mesh_.faces)
+      for (const Index v : face) on_faces[v] = 1;
   const auto visit = [&](std::size_t cell, const auto& give) {
     if (cell >= tets_.size()) {
       const auto face = static_cast<Index>(cell - tets_.size());
@@ -92,8 +96,9 @@ void TetComplex::link(bool only_open) {
     }
     const Tet& tet = tets_[cell];
     for (std::uint8_t corner = 0; corner < 4; ++corner) {
-      const auto corners = face_corners(tet.corners, corner);
-      if (only_open && tet.neighbours[corner] != none && std::any_of(corners.begin(), corners.end(), inside))
+      const auto corners = side_corners(tet.corners, corner);
+      if (some_are_known && tet.neighbours[corner] != none &&
+          (on_faces[corners[0]] & on_faces[corners[1]] & on_faces[corners[2]]) == 0)
         continue;
       const auto [smallest, use] = triangle_use(corners, static_cast<Index>(cell), corner);
       give(smallest, use);
@@ -166,7 +171,7 @@ void TetComplex::ring(Index tet, Index a, Index b, Ring& ring) const {
       if (v[i] == b) ib = i;
     }
     // Of the positive face opposite a, the corner after b comes first.
-    const auto face = face_corners(v, ia);
+    const auto face = side_corners(v, ia);
     for (unsigned i = 0; i < 3; ++i)
       if (face[i] == v[ib]) return std::array<Index, 2>{face[(i + 1) % 3], face[(i + 2) % 3]};
     return std::array<Index, 2>{none, none};
@@ -236,7 +241,7 @@ std::span<const Index> TetComplex::replace(const Replacement& replacement) {
     for (unsigned corner = 0; corner < 4; ++corner) {
       const Index outer = tets_[t].neighbours[corner];
       if (outer != none && stamps_[outer] == stamp_) continue;
-      const auto key = sorted(face_corners(tets_[t].corners, corner));
+      const auto key = sorted(side_corners(tets_[t].corners, corner));
       open_.push_back({key, outer, outer == none ? 0 : corner_across(outer, key), tets_[t].faces[corner]});
     }
   tags_.clear();
@@ -273,7 +278,7 @@ std::span<const Index> TetComplex::replace(const Replacement& replacement) {
     created_.push_back(t);
     for (const Index v : corners) set_vertex_tet(v, t);
     for (unsigned corner = 0; corner < 4; ++corner) {
-      const auto key = sorted(face_corners(corners, corner));
+      const auto key = sorted(side_corners(corners, corner));
       const auto open =
           std::find_if(open_.begin(), open_.end(), [&](const OpenFace& f) { return f.key == key; });
       if (open == open_.end()) {
@@ -336,7 +341,7 @@ void TetComplex::set_face(const std::array<Index, 3>& corners, Index face) {
     if (open.tet != none && open.key == key) set_face_of_tet(open.tet, open.corner, face);
   for (const Index t : created_)
     for (unsigned corner = 0; corner < 4; ++corner) {
-      if (sorted(face_corners(tets_[t].corners, corner)) != key) continue;
+      if (sorted(side_corners(tets_[t].corners, corner)) != key) continue;
       set_face_of_tet(t, corner, face);
       const Index other = tets_[t].neighbours[corner];
       if (other != none) set_face_of_tet(other, corner_across(other, key), face);

@@ -12,6 +12,7 @@
 #include "collarmesh/tet_mesh.h"
 #include "common/known_neighbours.h"
 #include "common/large_pages.h"
+#include "common/tet_sides.h"
 #include "improve/undo_log.h"
 
 namespace collarmesh::improvement {
@@ -51,8 +52,8 @@ class TetComplex {
     bool closed;
   };
 
-  /// Keeps the mesh, whose tets are out of date until `store`. `neighbours`: empty, or of each tet; then only
-  /// where they are none neighbours are looked for.
+  /// Keeps the mesh, whose tets are out of date until `store`. `neighbours`: empty, or one entry for each
+  /// tet; then neighbours are looked for only where it says none.
   explicit TetComplex(TetMesh& mesh, const KnownNeighbours& neighbours = {});
 
   Index size() const { return static_cast<Index>(tets_.size()); }
@@ -123,7 +124,7 @@ class TetComplex {
   static std::uint64_t edge_key(Index a, Index b) {
     return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
   }
-  void link(bool only_open);
+  void link(bool some_are_known);
   void find_pinched_vertices();
   void make_faces(const Replacement& replacement);
   void set_face(const std::array<Index, 3>& corners, Index face);
@@ -167,11 +168,5 @@ class TetComplex {
   std::size_t face_count_ = 0;
   std::vector<CurveEdges> joined_;
 };
-
-/// The corners of a tet's face opposite a corner, seen counterclockwise from outside.
-inline std::array<Index, 3> face_corners(const std::array<Index, 4>& tet, unsigned corner) {
-  constexpr std::array<std::array<unsigned, 3>, 4> order{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
-  return {tet[order[corner][0]], tet[order[corner][1]], tet[order[corner][2]]};
-}
 
 }  // namespace collarmesh::improvement

@@ -29,7 +29,7 @@ bool Operations::find_cone_of_vertex(Index vertex) {
     if (untouchable(tet)) return false;
     for (unsigned corner = 0; corner < 4; ++corner) {
       if (tet.corners[corner] == vertex) {
-        cone_.hull.push_back(face_corners(tet.corners, corner));
+        cone_.hull.push_back(side_corners(tet.corners, corner));
         cone_.hull_tet.push_back(t);
       } else if (on_feature && tet.faces[corner] != none && !contains(cone_.faces, tet.faces[corner])) {
         add_to_rim(tet.faces[corner], vertex);
@@ -378,7 +378,7 @@ bool Operations::keeps_topology(Index vertex, Index onto) {
     const auto& tet = complex_[t];
     for (unsigned corner = 0; corner < 4; ++corner) {
       if (tet.faces[corner] == none || tet.corners[corner] == onto) continue;
-      const auto face = face_corners(tet.corners, corner);
+      const auto face = side_corners(tet.corners, corner);
       if (contains(face, vertex)) continue;
       const auto i = static_cast<unsigned>(std::find(face.begin(), face.end(), onto) - face.begin());
       const Index w = face[(i + 1) % 3], x = face[(i + 2) % 3];

@@ -6,15 +6,12 @@
 #include <utility>
 
 #include "collarmesh/error.h"
+#include "common/tet_sides.h"
 #include "io/face_finder.h"
 
 namespace collarmesh::io {
 
 namespace {
-
-/// Seen from outside a positive tet, its faces run counterclockwise.
-constexpr std::array<std::array<std::size_t, 3>, 4> outward_faces{
-    {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
 void turn_tet(TetMesh& mesh, std::size_t tet) {
   std::swap(mesh.tets[tet][2], mesh.tets[tet][3]);
@@ -106,7 +103,7 @@ void find_face_regions(TetMesh& mesh) {
   mesh.face_regions.assign(mesh.faces.size(), {0, 0});
   FaceFinder finder(mesh.faces);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-    for (const auto& [i, j, k] : outward_faces) {
+    for (const auto& [i, j, k] : opposite_places) {
       const FaceFinder::Triangle outward{mesh.tets[t][i], mesh.tets[t][j], mesh.tets[t][k]};
       const Index face = finder.find(outward);
       if (face == none) continue;

@@ -301,7 +301,10 @@ class Pipeline {
 
   /// Coarsening and improvement work on one data structure.
   void reshape() {
-    if ((!options_.coarsen && options_.improve == 0) || made_.result.status != MeshStatus::complete) return;
+    if ((!options_.coarsen && options_.improve == 0) || made_.result.status != MeshStatus::complete) {
+      neighbours_ = KnownNeighbours();
+      return;
+    }
     if (options_.coarsen)
       begin("coarsen", 0.6, 0.7);
     else
@@ -310,7 +313,7 @@ class Pipeline {
     ThreadLimit(options_.threads).run([&] {
       improvement::Workpiece workpiece(mesh, *plc_, bounds_.distance,
                                        options_.coarsen ? bounds_.edges_per_hole : 0, neighbours_);
-      neighbours_ = {};
+      neighbours_ = KnownNeighbours();
       if (options_.coarsen) coarsen_elements(workpiece);
       if (options_.improve > 0) improve_elements(workpiece);
       workpiece.complex.store();

@@ -42,8 +42,8 @@ class Extraction {
     add_points();
     add_tets();
     add_balls();
-    for (const FaceId face : refined_.surface.marked_faces()) add_face(face);
     for (const auto& face : refined_.stitched.faces) add_face(face.corners, face.regions, face.patch);
+    for (const FaceId face : refined_.surface.marked_faces()) add_face(face);
     order_faces();
     for (const auto& edge : refined_.stitched.edges) add_edge(edge.corners, edge.curve);
     refined_.curves.visit([&](Index, const Subsegment& s) { add_edge(s.ends, s.curve); });

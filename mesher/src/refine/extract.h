@@ -21,7 +21,7 @@ struct Refined {
 
 struct Extracted {
   TetMesh mesh;
-  KnownNeighbours neighbours;  ///< none where stitched tets meet others
+  KnownNeighbours neighbours;  ///< none at all sides of stitched tets
 };
 
 /// The result of the refinement: the cells inside regions and outside collars, and what was stitched. In

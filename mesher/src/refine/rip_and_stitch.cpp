@@ -93,7 +93,7 @@ void RipAndStitch::stitch_books(const std::vector<CollarTriangle>& triangles) {
 void RipAndStitch::stitch_faces(const std::vector<CollarTriangle>& triangles) {
   std::vector<FaceUse> uses;
   for (const auto& tet : stitched_.tets)
-    for (const auto& f : face_corners)
+    for (const auto& f : opposite_places)
       uses.push_back(face_use({tet.corners[f[0]], tet.corners[f[1]], tet.corners[f[2]]}, tet.region));
   for (const CollarTriangle& t : triangles) {
     const Index region = surface_.region(cell_of(t.face));
