@@ -13,9 +13,9 @@
 #include "io/abaqus_format.h"
 #include "io/cell_nodes.h"
 #include "io/face_finder.h"
-#include "io/file_writer.h"
 #include "io/label_names.h"
 #include "io/tet_mesh_formats.h"
+#include "io/write_each.h"
 
 namespace collarmesh::io {
 
@@ -69,10 +69,10 @@ void write_node_sets(FileWriter& out, const TetMesh& mesh, std::size_t dimension
 
 void write_nodes(FileWriter& out, const TetMesh& mesh) {
   out << "*NODE, NSET=NALL\n";
-  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+  write_each(out, mesh.points.size(), [&](TextBuffer& text, std::size_t i) {
     const Point& p = mesh.points[i];
-    out << i + 1 << ", " << fitted(p.x) << ", " << fitted(p.y) << ", " << fitted(p.z) << '\n';
-  }
+    text << i + 1 << ", " << fitted(p.x) << ", " << fitted(p.y) << ", " << fitted(p.z) << '\n';
+  });
 }
 
 void write_elements(FileWriter& out, const TetMesh& mesh) {
@@ -84,11 +84,11 @@ void write_elements(FileWriter& out, const TetMesh& mesh) {
     regions_of_tag[mesh.tet_tag[tets.front()]].push_back(region);
     out << "*ELEMENT, TYPE=" << (mesh.order() == 2 ? "C3D10" : "C3D4") << ", ELSET=" << abaqus_volume_prefix
         << region << '\n';
-    for (const Index t : tets) {
-      out << t + 1;
-      for (const Index v : nodes_of_tet(mesh, t)) out << ", " << v + 1;
-      out << '\n';
-    }
+    write_each(out, tets.size(), [&](TextBuffer& text, std::size_t i) {
+      text << tets[i] + 1;
+      for (const Index v : nodes_of_tet(mesh, tets[i])) text << ", " << v + 1;
+      text << '\n';
+    });
   }
   out << "*ELSET, ELSET=EALL\n";
   for (const auto& volume : volumes) out << abaqus_volume_prefix << volume.first << ",\n";

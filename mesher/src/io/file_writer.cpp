@@ -1,30 +1,18 @@
 #include "io/file_writer.h"
 
 #include <cerrno>
-#include <cstring>
 #include <utility>
 
 namespace collarmesh::io {
 
 FileWriter::FileWriter(std::string path)
-    : target_(std::move(path)), file_(std::fopen(target_.temporary().c_str(), "wb")), buffer_(buffer_bytes) {
+    : target_(std::move(path)), file_(std::fopen(target_.temporary().c_str(), "wb")) {
   if (file_ == nullptr) target_.fail(errno);
   std::setvbuf(file_, nullptr, _IONBF, 0);
 }
 
 FileWriter::~FileWriter() {
   if (file_ != nullptr) std::fclose(file_);
-}
-
-FileWriter& FileWriter::operator<<(std::string_view text) {
-  if (text.size() > buffer_.size() - used_) flush();
-  if (text.size() > buffer_.size()) {
-    write(text);
-    return *this;
-  }
-  std::memcpy(buffer_.data() + used_, text.data(), text.size());
-  used_ += text.size();
-  return *this;
 }
 
 void FileWriter::commit() {
@@ -34,13 +22,10 @@ void FileWriter::commit() {
 }
 
 void FileWriter::flush() {
-  write({buffer_.data(), used_});
-  used_ = 0;
-}
-
-void FileWriter::write(std::string_view bytes) {
+  const std::string_view text = buffer_.text();
   errno = 0;
-  if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) target_.fail(errno);
+  if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) target_.fail(errno);
+  buffer_.clear();
 }
 
 }  // namespace collarmesh::io

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "io/cell_nodes.h"
-#include "io/file_writer.h"
 #include "io/medit_format.h"
 #include "io/tet_mesh_formats.h"
+#include "io/write_each.h"
 
 namespace collarmesh::io {
 
@@ -19,19 +19,19 @@ void write_cells(FileWriter& out, const TetMesh& mesh, std::string_view keyword,
                  const std::vector<Reference>& references) {
   if (references.empty()) return;
   out << '\n' << keyword << (mesh.order() == 2 ? "P2\n" : "\n") << references.size() << '\n';
-  for (std::size_t i = 0; i < references.size(); ++i) {
-    for (const Index v : nodes_of(mesh, i)) out << std::size_t{v} + 1 << ' ';
-    out << references[i] << '\n';
-  }
+  write_each(out, references.size(), [&](TextBuffer& text, std::size_t i) {
+    for (const Index v : nodes_of(mesh, i)) text << std::size_t{v} + 1 << ' ';
+    text << references[i] << '\n';
+  });
 }
 
 void write_vertices(FileWriter& out, const TetMesh& mesh) {
   out << "\nVertices\n" << mesh.points.size() << '\n';
-  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+  write_each(out, mesh.points.size(), [&](TextBuffer& text, std::size_t v) {
     const Point& p = mesh.points[v];
-    out << p.x << ' ' << p.y << ' ' << p.z << ' '
-        << (mesh.features.empty() ? 0 : int{mesh.features[v].dimension}) << '\n';
-  }
+    text << p.x << ' ' << p.y << ' ' << p.z << ' '
+         << (mesh.features.empty() ? 0 : int{mesh.features[v].dimension}) << '\n';
+  });
 }
 
 void write_corners(FileWriter& out, const TetMesh& mesh) {

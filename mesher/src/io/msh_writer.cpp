@@ -17,11 +17,11 @@
 
 #include "io/cell_nodes.h"
 #include "io/cell_partitions.h"
-#include "io/file_writer.h"
 #include "io/label_names.h"
 #include "io/msh_entities.h"
 #include "io/msh_format.h"
 #include "io/tet_mesh_formats.h"
+#include "io/write_each.h"
 
 namespace collarmesh::io {
 
@@ -37,7 +37,10 @@ void write_physical_names(FileWriter& out, const TetMesh& mesh, const MshEntitie
   out << "$EndPhysicalNames\n";
 }
 
-void write_point(FileWriter& out, const Point& p) { out << p.x << ' ' << p.y << ' ' << p.z; }
+template <class Text>
+void write_point(Text& out, const Point& p) {
+  out << p.x << ' ' << p.y << ' ' << p.z;
+}
 
 /// `part`: text behind its number.
 void write_entity(FileWriter& out, const MshEntity& entity, std::size_t dimension,
@@ -152,11 +155,12 @@ void write_nodes(FileWriter& out, const TetMesh& mesh, const MshEntities& entiti
       if (members.empty()) continue;
       out << dimension << ' ' << entities.of_dimension[dimension][e].number << " 0 " << members.size()
           << '\n';
-      for (const Index v : members) out << std::size_t{v} + 1 << '\n';
-      for (const Index v : members) {
-        write_point(out, mesh.points[v]);
-        out << '\n';
-      }
+      write_each(out, members.size(),
+                 [&](TextBuffer& text, std::size_t i) { text << std::size_t{members[i]} + 1 << '\n'; });
+      write_each(out, members.size(), [&](TextBuffer& text, std::size_t i) {
+        write_point(text, mesh.points[members[i]]);
+        text << '\n';
+      });
     }
   out << "$EndNodes\n";
 }
@@ -168,12 +172,12 @@ void write_cells(FileWriter& out, const TetMesh& mesh, const std::vector<MshEnti
     const std::span<const Index> members = groups.of(e);
     if (members.empty()) continue;
     out << type.dimension << ' ' << entities[e].number << ' ' << type.number << ' ' << members.size() << '\n';
-    for (const Index i : members) {
-      out << first_number + i;
-      for (const Index v : nodes_of(mesh, i).in_order({type.order.data(), type.nodes}))
-        out << ' ' << std::size_t{v} + 1;
-      out << '\n';
-    }
+    write_each(out, members.size(), [&](TextBuffer& text, std::size_t i) {
+      text << first_number + members[i];
+      for (const Index v : nodes_of(mesh, members[i]).in_order({type.order.data(), type.nodes}))
+        text << ' ' << std::size_t{v} + 1;
+      text << '\n';
+    });
   }
 }
 
@@ -209,7 +213,10 @@ template <class T>
 void write_data(FileWriter& out, std::string_view name, const std::vector<T>& values,
                 const CellGroups& groups) {
   out << "$ElementData\n1\n\"" << name << "\"\n1\n0\n3\n0\n1\n" << groups.count << '\n';
-  for (const Index i : groups.tets.members) out << std::size_t{i} + 1 << ' ' << values[i] << '\n';
+  write_each(out, groups.tets.members.size(), [&](TextBuffer& text, std::size_t i) {
+    const Index tet = groups.tets.members[i];
+    text << std::size_t{tet} + 1 << ' ' << values[tet] << '\n';
+  });
   for (const Index i : groups.faces.members) out << groups.first_face + i << " 0\n";
   for (const Index i : groups.edges.members) out << groups.first_edge + i << " 0\n";
   out << "$EndElementData\n";

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "io/cell_nodes.h"
-#include "io/file_writer.h"
 #include "io/tet_mesh_formats.h"
 #include "io/tetgen_mesh_format.h"
+#include "io/write_each.h"
 
 namespace collarmesh::io {
 
@@ -16,22 +16,22 @@ namespace {
 
 void write_nodes(FileWriter& out, const TetMesh& mesh) {
   out << mesh.points.size() << " 3 0 1\n";
-  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+  write_each(out, mesh.points.size(), [&](TextBuffer& text, std::size_t i) {
     const Point& p = mesh.points[i];
-    out << i + 1 << ' ' << p.x << ' ' << p.y << ' ' << p.z << ' '
-        << (mesh.features.empty() ? 0 : mesh.features[i].dimension + 1) << '\n';
-  }
+    text << i + 1 << ' ' << p.x << ' ' << p.y << ' ' << p.z << ' '
+         << (mesh.features.empty() ? 0 : mesh.features[i].dimension + 1) << '\n';
+  });
 }
 
 /// Number, nodes and label of each cell.
 template <class NodesOf>
 void write_cells(FileWriter& out, const TetMesh& mesh, const std::vector<Tag>& tags,
                  std::span<const std::uint8_t> order, NodesOf nodes_of) {
-  for (std::size_t i = 0; i < tags.size(); ++i) {
-    out << i + 1;
-    for (const Index v : nodes_of(mesh, i).in_order(order)) out << ' ' << std::size_t{v} + 1;
-    out << ' ' << tags[i] << '\n';
-  }
+  write_each(out, tags.size(), [&](TextBuffer& text, std::size_t i) {
+    text << i + 1;
+    for (const Index v : nodes_of(mesh, i).in_order(order)) text << ' ' << std::size_t{v} + 1;
+    text << ' ' << tags[i] << '\n';
+  });
 }
 
 }  // namespace
