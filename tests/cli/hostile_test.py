@@ -16,7 +16,7 @@ import tempfile
 import time
 import unittest
 
-from program_test import BOX_FACES, MODELS, PROGRAM, ProgramTest, box_points, off_text
+from program import BOX_FACES, MODELS, PROGRAM, ProgramTest, box_points, off_text
 
 BRACKET = MODELS / "bracket.off"
 

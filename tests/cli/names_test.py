@@ -9,7 +9,7 @@ import shutil
 import subprocess
 import unittest
 
-from program_test import MODELS, ProgramTest
+from program import MODELS, ProgramTest
 
 
 def faces_by_tag(path):
@@ -62,7 +62,7 @@ class Numbers(ProgramTest):
 class Names(ProgramTest):
     def stl(self):
         """The box with a solid for its bottom, one for its top, and one for the rest."""
-        import program_test as p
+        import program as p
 
         points = p.box_points()
         solids = {"bottom plate": p.BOX_FACES[:1], "top": p.BOX_FACES[1:2], "walls": p.BOX_FACES[2:]}
@@ -111,7 +111,7 @@ class Surfaces(ProgramTest):
         """What gmsh and meshio save of a tagged surface is meshed with its tags."""
         import meshio
         import numpy
-        import program_test as p
+        import program as p
 
         points = numpy.array(p.box_points(), dtype=float)
         triangles = numpy.array([t for a, b, c, d in p.BOX_FACES for t in ((a, b, c), (a, c, d))])
