@@ -76,26 +76,38 @@ inline bool surely_between(const Corners& p, double squared_cosine, double squar
                cd = p[3] - p[2];
   const Vector n_a = cross(bc, bd), n_b = cross(ad, ac), n_c = cross(ab, ad), n_d = cross(ac, ab);
   const double a = squared_norm(n_a), b = squared_norm(n_b), c = squared_norm(n_c), d = squared_norm(n_d);
+  // Without branches; what is not a number is within no bound.
+  unsigned beyond = 0;
+  const auto require = [&beyond](bool holds) { beyond |= holds ? 0U : 1U; };
   // Minus the product of outward normals has the sign of the cosine.
-  const auto edge = [&](const Vector& m, const Vector& n, double squares) {
+  const auto see_edge = [&](const Vector& m, const Vector& n, double squares) {
     const double product = dot(m, n);
-    return product * product < (product < 0 ? sharp : blunt) * squares;
+    require(product * product < (product < 0 ? sharp : blunt) * squares);
   };
-  const bool dihedral = edge(n_c, n_d, c * d) & edge(n_b, n_d, b * d) & edge(n_b, n_c, b * c) &
-                        edge(n_a, n_d, a * d) & edge(n_a, n_c, a * c) & edge(n_a, n_b, a * b);
-  // Of a face, between sides of squared lengths x and y.
-  const auto corner = [&](double x, double y, double across) {
-    const double product = x + y - across;
-    return (product > 0) | (product * product < 4 * blunt * (x * y));
+  see_edge(n_c, n_d, c * d);
+  see_edge(n_b, n_d, b * d);
+  see_edge(n_b, n_c, b * c);
+  see_edge(n_a, n_d, a * d);
+  see_edge(n_a, n_c, a * c);
+  see_edge(n_a, n_b, a * b);
+  // A corner of a face, between sides of squared lengths x and y.
+  const auto see_corner = [&](double x, double y, double across) {
+    const double product = std::min(0.0, x + y - across);
+    require(product * product < 4 * blunt * (x * y));
   };
-  const auto face = [&](double x, double y, double z) {
-    return corner(x, y, z) & corner(y, z, x) & corner(z, x, y);
+  const auto see_face = [&](double x, double y, double z) {
+    see_corner(x, y, z);
+    see_corner(y, z, x);
+    see_corner(z, x, y);
   };
   const double s_ab = squared_norm(ab), s_ac = squared_norm(ac), s_ad = squared_norm(ad),
                s_bc = squared_norm(bc), s_bd = squared_norm(bd), s_cd = squared_norm(cd);
-  const bool faces =
-      face(s_ab, s_ac, s_bc) & face(s_ab, s_ad, s_bd) & face(s_ac, s_ad, s_cd) & face(s_bc, s_bd, s_cd);
-  return (-dot(n_d, ad) > 0) & dihedral & faces;
+  see_face(s_ab, s_ac, s_bc);
+  see_face(s_ab, s_ad, s_bd);
+  see_face(s_ac, s_ad, s_cd);
+  see_face(s_bc, s_bd, s_cd);
+  require(-dot(n_d, ad) > 0);
+  return beyond == 0;
 }
 
 /// The extreme angles of a tet, degrees.

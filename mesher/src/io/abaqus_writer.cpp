@@ -80,7 +80,8 @@ void write_elements(FileWriter& out, const TetMesh& mesh) {
   std::map<Tag, std::vector<Index>> regions_of_tag;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     volumes[mesh.tet_region[t]].push_back(static_cast<Index>(t));
-  for (const auto& [region, tets] : volumes) {
+  for (const auto& [region, tets_of_region] : volumes) {
+    const std::vector<Index>& tets = tets_of_region;  // compilers differ in capturing the other name
     regions_of_tag[mesh.tet_tag[tets.front()]].push_back(region);
     out << "*ELEMENT, TYPE=" << (mesh.order() == 2 ? "C3D10" : "C3D4") << ", ELSET=" << abaqus_volume_prefix
         << region << '\n';
