@@ -31,10 +31,17 @@ inline void prefer_large_pages([[maybe_unused]] void* block, [[maybe_unused]] st
 #endif
 }
 
+// ThreadSanitizer does not see mremap: where the stack of a thread was before, it would report races.
+#if defined(__linux__) && !defined(__SANITIZE_THREAD__)
+#define COLLARMESH_REMAPS 1
+#else
+#define COLLARMESH_REMAPS 0
+#endif
+
 /// A block that grows: `block`, null at first, with so many bytes, of which the new one keeps as many as fit.
 /// Large blocks are remapped by the system instead of being copied. Throws std::bad_alloc.
 inline void* resized_block(void* block, std::size_t bytes, std::size_t new_bytes) {
-#if defined(__linux__)
+#if COLLARMESH_REMAPS
   const auto pages = [](std::size_t size) { return (size + large_page - 1) / large_page * large_page; };
   const bool was_mapped = bytes >= least_bytes_in_large_pages;
   if (new_bytes >= least_bytes_in_large_pages) {
@@ -56,7 +63,7 @@ inline void* resized_block(void* block, std::size_t bytes, std::size_t new_bytes
 }
 
 inline void free_block(void* block, [[maybe_unused]] std::size_t bytes) {
-#if defined(__linux__)
+#if COLLARMESH_REMAPS
   if (bytes >= least_bytes_in_large_pages) {
     munmap(block, (bytes + large_page - 1) / large_page * large_page);
     return;
