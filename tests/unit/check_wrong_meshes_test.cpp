@@ -542,5 +542,32 @@ TEST(CheckWrongMeshes, FindingsAreCountedBeyondThoseListed) {
   EXPECT_EQ(report.findings_total, 6 * 27U);
 }
 
+// Many findings in a mesh that is large enough for every thread to have a part of it.
+TEST(CheckWrongMeshes, AnyNumberOfThreadsFindsTheSame) {
+  MeshedComplex m = meshed_box(20);
+  TetMesh& mesh = m.mesh;
+  for (std::size_t t = 0, count = mesh.tets.size(); t < count; t += 977) {
+    mesh.tets.push_back(mesh.tets[t]);
+    mesh.tet_region.push_back(mesh.tet_region[t]);
+    mesh.tet_tag.push_back(mesh.tet_tag[t]);
+    mesh.tet_collar.push_back(0);
+    mesh.tet_crease.push_back(0);
+    if (!mesh.tet_thin.empty()) mesh.tet_thin.push_back(0);
+    std::swap(mesh.tets[t + 100][0], mesh.tets[t + 100][1]);
+  }
+  for (std::size_t f = 0; f < mesh.faces.size(); f += 211)
+    std::swap(mesh.face_regions[f][0], mesh.face_regions[f][1]);
+  CheckOptions options{.findings_per_guarantee = 10000, .threads = 1};
+  const CheckReport by_one = check(mesh, m.plc, options);
+  EXPECT_GT(by_one.findings_total, 100U);
+  for (const unsigned threads : {2U, 3U, 8U}) {
+    options.threads = threads;
+    const CheckReport by_several = check(mesh, m.plc, options);
+    expect_same_findings(by_one, by_several);
+    EXPECT_EQ(by_one.median_edge, by_several.median_edge);
+    EXPECT_EQ(by_one.region_volumes, by_several.region_volumes);
+  }
+}
+
 }  // namespace
 }  // namespace collarmesh

@@ -11,10 +11,12 @@
 
 #include "collarmesh/io/tet_mesh_io.h"
 #include "support/comma_locale.h"
+#include "support/meshes.h"
 #include "support/replaced.h"
 #include "support/sample_mesh.h"
 #include "support/temporary_file.h"
 #include "support/tet_mesh_comparison.h"
+#include "thread_limit.h"
 
 namespace collarmesh {
 namespace {
@@ -259,6 +261,24 @@ TEST(IoWrite, LeavesNothingWhenTheDiskIsFull) {
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
   EXPECT_EQ(folder.file_count(), 0);
+}
+
+// So many cells that each thread writes several blocks of them.
+TEST(IoTetMesh, AnyNumberOfThreadsWritesTheSame) {
+  const testing::TemporaryFolder folder;
+  const TetMesh mesh = testing::meshed_box(20).mesh;
+  for (const char* extension : {".vtu", ".vtk", ".msh", ".msh2", ".mesh", ".ele", ".inp", ".unv"}) {
+    SCOPED_TRACE(extension);
+    for (const unsigned threads : {1U, 2U, 8U})
+      ThreadLimit(threads).run(
+          [&] { io::write_tet_mesh(folder.file(std::to_string(threads) + extension), mesh); });
+    for (const char* part : {extension, extension == std::string(".ele") ? ".node" : extension}) {
+      const std::string by_one = folder.read(std::string("1") + part);
+      EXPECT_GT(by_one.size(), 100000U);
+      EXPECT_TRUE(by_one == folder.read(std::string("2") + part));
+      EXPECT_TRUE(by_one == folder.read(std::string("8") + part));
+    }
+  }
 }
 
 }  // namespace
