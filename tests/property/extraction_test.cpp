@@ -22,7 +22,7 @@ struct Shape {
 
 std::vector<Shape> shapes() {
   using namespace testing;
-  return {{"box", {box()}, 0.15},
+  return {{"box", {box()}, 0.08},
           {"two boxes", {two_boxes()}, 0.35},
           {"touching boxes", boxes_touching_in_an_edge(), 0.6},
           {"dangling facet", {box_with_dangling_facet()}, 0.3},
@@ -56,8 +56,16 @@ TEST(Extraction, KnowsNeighboursAndTheComplexFindsTheRest) {
     SCOPED_TRACE(shape.name);
     const Plc plc = build_plc(shape.soups, {.feature_angle = 30});
     KnownNeighbours known;
-    TetMesh mesh = generate(plc, testing::with_size(shape.size), {}, known).mesh;
+    MeshOptions options = testing::with_size(shape.size);
+    options.threads = 1;
+    TetMesh mesh = generate(plc, options, {}, known).mesh;
     ASSERT_FALSE(mesh.tets.empty());
+    for (const unsigned threads : {2U, 8U}) {
+      options.threads = threads;
+      KnownNeighbours again;
+      EXPECT_EQ(generate(plc, options, {}, again).mesh.tets, mesh.tets);
+      EXPECT_EQ(again, known);
+    }
     ASSERT_EQ(known.size(), mesh.tets.size());
     const auto tets_of = sides(mesh);
     std::size_t open = 0, shared = 0;

@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <mutex>
+#include <numeric>
 #include <random>
 #include <set>
-#include <tuple>
+
+#include "support/meshes.h"
 
 namespace collarmesh {
 namespace {
@@ -40,31 +43,16 @@ Triangles all_triangles(const TetMesh& mesh) {
   return triangles;
 }
 
-/// Six tets for each cube of a grid, its points numbered at random.
+/// Cubes of six tets each, points numbered at random, no face listed.
 TetMesh grid(unsigned n, std::uint32_t seed) {
+  const TetMesh box = testing::meshed_box(n).mesh;
+  std::vector<Index> number(box.points.size());
+  std::iota(number.begin(), number.end(), Index{0});
+  std::shuffle(number.begin(), number.end(), std::mt19937(seed));
   TetMesh mesh;
-  std::vector<Index> number((n + 1) * (n + 1) * (n + 1));
-  for (Index i = 0; i < number.size(); ++i) number[i] = i;
-  std::mt19937 random(seed);
-  std::shuffle(number.begin(), number.end(), random);
-  mesh.points.resize(number.size());
-  const auto at = [&](unsigned x, unsigned y, unsigned z) { return number[x + (n + 1) * (y + (n + 1) * z)]; };
-  constexpr std::array<std::array<unsigned, 3>, 6> orders{
-      {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {1, 0, 2}, {2, 1, 0}}};
-  for (unsigned x = 0; x < n; ++x)
-    for (unsigned y = 0; y < n; ++y)
-      for (unsigned z = 0; z < n; ++z)
-        for (std::size_t o = 0; o < orders.size(); ++o) {
-          std::array<unsigned, 3> p{x, y, z};
-          std::array<Index, 4> tet{at(x, y, z)};
-          for (unsigned i = 0; i < 3; ++i) {
-            ++p[orders[o][i]];
-            tet[i + 1] = at(p[0], p[1], p[2]);
-          }
-          if (o >= 3) std::swap(tet[2], tet[3]);
-          mesh.tets.push_back(tet);
-          mesh.tet_region.push_back(1);
-        }
+  mesh.points.resize(box.points.size());
+  for (const auto& [a, b, c, d] : box.tets) mesh.tets.push_back({number[a], number[b], number[c], number[d]});
+  mesh.tet_region = box.tet_region;
   return mesh;
 }
 
@@ -190,7 +178,7 @@ TEST(SimplicesAtVertex, OfAVertexOfManyTets) {
   }
 }
 
-// Uses of one triangle are many then: their number must not count twice.
+// A triangle has many uses then; to find them must not take their squared number of steps.
 TEST(SimplicesAtVertex, OfATetGivenManyTimes) {
   TetMesh mesh;
   mesh.points.resize(4);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "common/groups.h"
 #include "common/parallel_for.h"
 #include "common/simplices_at_vertex.h"
 
