@@ -308,22 +308,28 @@ TEST(Collar, PlacementCanBeStopped) {
   PlcOptions smooth;
   smooth.feature_angle = 30;
   const Plc plc = build_plc(acute::lens(20).soups, smooth);
-  std::atomic<bool> cancel = false;
-  std::size_t asked = 0;
-  MeshOptions options = testing::with_size(size);
-  options.collar_creation = CollarCreation::up_front;
-  options.size_field = [&](const Point&) {
-    cancel = true;
-    ++asked;
-    return size;
-  };
-  EXPECT_EQ(generate(plc, options, {.progress = {}, .cancel = &cancel}).status, MeshStatus::cancelled);
-  EXPECT_LT(asked, 10U);
-  options = testing::with_size(0.001);  // tens of thousands of balls
-  options.collar_creation = CollarCreation::up_front;
-  options.distance = 1e-7;
-  options.time_limit = 1e-3;
-  EXPECT_EQ(generate(plc, options).status, MeshStatus::budget_hit);
+  // Up front every ball asks whether to stop, in the pass every 512th step of the loop does, too.
+  using Most = std::pair<CollarCreation, std::size_t>;
+  for (const auto& [creation, most_asked] :
+       {Most{CollarCreation::up_front, 10}, Most{CollarCreation::in_pass, 1024}}) {
+    SCOPED_TRACE(creation == CollarCreation::in_pass ? "in the pass" : "up front");
+    std::atomic<bool> cancel = false;
+    std::size_t asked = 0;
+    MeshOptions options = testing::with_size(size);
+    options.collar_creation = creation;
+    options.size_field = [&](const Point&) {
+      cancel = true;
+      ++asked;
+      return size;
+    };
+    EXPECT_EQ(generate(plc, options, {.progress = {}, .cancel = &cancel}).status, MeshStatus::cancelled);
+    EXPECT_LT(asked, most_asked);
+    options = testing::with_size(0.001);  // tens of thousands of balls
+    options.collar_creation = creation;
+    options.distance = 1e-7;
+    options.time_limit = 1e-3;
+    EXPECT_EQ(generate(plc, options).status, MeshStatus::budget_hit);
+  }
 }
 
 // At other sizes, seeds and bounds.
