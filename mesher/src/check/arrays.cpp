@@ -1,9 +1,18 @@
 // What has to hold before anything else can be looked at.
+#include <tbb/enumerable_thread_specific.h>
+
 #include <algorithm>
+#include <atomic>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <span>
 #include <tuple>
 
 #include "check/subject.h"
+#include "common/found_in_ranges.h"
+#include "common/groups.h"
+#include "common/parallel_for.h"
 
 namespace collarmesh::checks {
 
@@ -19,17 +28,26 @@ void check_length(std::size_t length, std::size_t expected, const char* array, c
 template <std::size_t n>
 void check_corners(const std::vector<std::array<Index, n>>& entities, const TetMesh& mesh, const char* kind,
                    Findings& findings) {
-  for (Index i = 0; i < entities.size(); ++i)
+  struct Wrong {
+    Index entity, place;
+    bool repeated;
+  };
+  const auto all = found_in_ranges<Wrong>(entities.size(), [&](std::size_t i, std::vector<Wrong>& wrong) {
+    const auto& corners = entities[i];
     for (std::size_t k = 0; k < n; ++k) {
-      const Index corner = entities[i][k];
       const bool repeated =
-          std::find(entities[i].begin(), entities[i].begin() + k, corner) != entities[i].begin() + k;
-      if (corner < mesh.points.size() && !repeated) continue;
-      const Point where = corner < mesh.points.size() ? mesh.points[corner] : Point{};
-      findings.add(guarantee::valid_arrays, where, {i},
-                   "{} {} has point {} as corner {}{}; the mesh has {} points. Its writer is at fault.", kind,
-                   i, corner, k, repeated ? " again" : "", mesh.points.size());
+          std::find(corners.begin(), corners.begin() + k, corners[k]) != corners.begin() + k;
+      if (corners[k] >= mesh.points.size() || repeated)
+        wrong.push_back({static_cast<Index>(i), static_cast<Index>(k), repeated});
     }
+  });
+  for (const auto& [i, k, repeated] : all) {
+    const Index corner = entities[i][k];
+    const Point where = corner < mesh.points.size() ? mesh.points[corner] : Point{};
+    findings.add(guarantee::valid_arrays, where, {i},
+                 "{} {} has point {} as corner {}{}; the mesh has {} points. Its writer is at fault.", kind, i,
+                 corner, k, repeated ? " again" : "", mesh.points.size());
+  }
 }
 
 // `optional`: none stands for an unknown one.
@@ -87,38 +105,58 @@ void check_features(const TetMesh& mesh, const Plc& plc, Findings& findings) {
   }
 }
 
-struct PlacedPoint {
-  double x, y, z;
-  Index index;
-
-  auto place() const { return std::tie(x, y, z); }
-};
+// Equal coordinates have equal hashes: zeros of both signs are one.
+std::size_t hash_of(const Point& p) {
+  std::uint64_t hash = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    hash = (hash ^ std::bit_cast<std::uint64_t>(p[axis] + 0.0)) * 0x9e3779b97f4a7c15ULL;
+    hash ^= hash >> 32;
+  }
+  return hash;
+}
 
 void check_distinct(const TetMesh& mesh, Findings& findings) {
-  std::vector<PlacedPoint> points;
-  points.reserve(mesh.points.size());
-  for (Index i = 0; i < mesh.points.size(); ++i)
-    points.push_back({mesh.points[i].x, mesh.points[i].y, mesh.points[i].z, i});
-  std::sort(points.begin(), points.end(), [](const PlacedPoint& a, const PlacedPoint& b) {
-    return a.place() != b.place() ? a.place() < b.place() : a.index < b.index;
-  });
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    const Index first = points[i - 1].index, second = points[i].index;
-    if (points[i - 1].place() == points[i].place())
-      findings.add(guarantee::distinct_points, mesh.points[first], {first, second},
-                   "Points {} and {} are both at {}; the mesh is cut open or doubled there, merge them.",
-                   first, second, At{mesh.points[first]});
-  }
+  const std::vector<Point>& points = mesh.points;
+  using Pair = std::array<Index, 2>;
+  tbb::enumerable_thread_specific<std::vector<Pair>> of_threads;
+  tbb::enumerable_thread_specific<std::vector<Index>> sorted_of_threads;
+  for_each_group<Index>(
+      points.size(), points.size(),
+      [&](std::size_t i, const auto& give) {
+        give(hash_of(points[i]) % points.size(), static_cast<Index>(i));
+      },
+      [&](std::size_t, std::span<const Index> alike) {
+        if (alike.size() < 2) return;
+        std::vector<Index>& sorted = sorted_of_threads.local();
+        sorted.assign(alike.begin(), alike.end());
+        const auto key = [&](Index i) { return std::tie(points[i].x, points[i].y, points[i].z); };
+        std::stable_sort(sorted.begin(), sorted.end(), [&](Index a, Index b) { return key(a) < key(b); });
+        for (std::size_t k = 1; k < sorted.size(); ++k)
+          if (key(sorted[k - 1]) == key(sorted[k]))
+            of_threads.local().push_back({sorted[k - 1], sorted[k]});
+      });
+  std::vector<Pair> pairs;
+  for (const auto& found : of_threads) pairs.insert(pairs.end(), found.begin(), found.end());
+  std::sort(pairs.begin(), pairs.end());
+  for (const auto& [first, second] : pairs)
+    findings.add(guarantee::distinct_points, points[first], {first, second},
+                 "Points {} and {} are both at {}; the mesh is cut open or doubled there, merge them.", first,
+                 second, At{points[first]});
 }
 
 void check_referenced(const TetMesh& mesh, Findings& findings) {
-  std::vector<bool> referenced(mesh.points.size(), false);
-  for (const auto& t : mesh.tets)
-    for (const Index p : t) referenced[p] = true;
-  for (const auto& t : mesh.tet_mid_nodes)
-    for (const Index p : t) referenced[p] = true;
+  std::vector<std::uint8_t> referenced(mesh.points.size(), 0);
+  const auto refer = [&](const auto& cells) {
+    constexpr std::size_t at_once = 8192;
+    parallel_for_ranges(cells.size(), at_once, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i)
+        for (const Index p : cells[i]) std::atomic_ref(referenced[p]).store(1, std::memory_order_relaxed);
+    });
+  };
+  refer(mesh.tets);
+  refer(mesh.tet_mid_nodes);
   for (Index i = 0; i < mesh.points.size(); ++i)
-    if (!referenced[i])
+    if (referenced[i] == 0)
       findings.add(guarantee::referenced_points, mesh.points[i], {i},
                    "Point {} at {} is a node of no tet; leave it out of the mesh.", i, At{mesh.points[i]});
 }

@@ -88,12 +88,10 @@ void judge(Subject subject, CheckReport& report, Findings& findings, const Execu
       [](const Subject& s, CheckReport&, Findings& f) { check_collars(s, f); },
       check_second_order};
   std::array<CheckReport, groups.size()> parts;
-  ThreadLimit(subject.options.threads).run([&] {
-    parallel_for(groups.size(), [&](std::size_t i) {
-      if (execution.cancelled()) return;
-      Findings own(parts[i], subject.options.findings_per_guarantee);
-      groups[i](subject, parts[i], own);
-    });
+  parallel_for(groups.size(), [&](std::size_t i) {
+    if (execution.cancelled()) return;
+    Findings own(parts[i], subject.options.findings_per_guarantee);
+    groups[i](subject, parts[i], own);
   });
   for (CheckReport& part : parts) {
     findings.take(part);
@@ -102,10 +100,8 @@ void judge(Subject subject, CheckReport& report, Findings& findings, const Execu
   report.cancelled = execution.cancelled();
 }
 
-}  // namespace
-
-CheckReport check(const TetMesh& mesh, const Plc& plc, const CheckOptions& options,
-                  const Execution& execution) {
+CheckReport check_by_all_threads(const TetMesh& mesh, const Plc& plc, const CheckOptions& options,
+                                 const Execution& execution) {
   CheckReport report;
   Findings findings(report, options.findings_per_guarantee);
   report.tets = mesh.tets.size();
@@ -122,6 +118,15 @@ CheckReport check(const TetMesh& mesh, const Plc& plc, const CheckOptions& optio
     judge(make_subject(*placed, plc, options), report, findings, execution);
   else
     judge(std::move(given), report, findings, execution);
+  return report;
+}
+
+}  // namespace
+
+CheckReport check(const TetMesh& mesh, const Plc& plc, const CheckOptions& options,
+                  const Execution& execution) {
+  CheckReport report;
+  ThreadLimit(options.threads).run([&] { report = check_by_all_threads(mesh, plc, options, execution); });
   return report;
 }
 

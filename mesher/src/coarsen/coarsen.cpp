@@ -12,6 +12,7 @@
 #include "coarsen/proposals.h"
 #include "coarsen/target_sizes.h"
 #include "collarmesh/error.h"
+#include "common/found_in_ranges.h"
 #include "common/parallel_for.h"
 #include "thread_limit.h"
 
@@ -166,31 +167,12 @@ class Coarsening {
     Index end;
   };
 
-  // What `look(t, found)` adds for each tet, in their order; by all threads.
-  template <class Found, class Look>
-  std::vector<Found> found_in_ranges(const Look& look) const {
-    constexpr std::size_t at_once = 4096;
-    std::vector<std::vector<Found>> of_ranges((complex().size() + at_once - 1) / at_once);
-    parallel_for_ranges(complex().size(), at_once, [&](std::size_t first, std::size_t last) {
-      for (std::size_t t = first; t < last; ++t) look(static_cast<Index>(t), of_ranges[first / at_once]);
-    });
-    std::size_t count = 0;
-    for (const auto& found : of_ranges) count += found.size();
-    std::vector<Found> all;
-    all.reserve(count);
-    for (auto& found : of_ranges) {
-      all.insert(all.end(), found.begin(), found.end());
-      std::vector<Found>().swap(found);
-    }
-    return all;
-  }
-
   // The vertices with a short edge where something has changed since they were asked last by the same means,
   // with or without repairs; those with the shortest edge first.
   std::vector<Candidate> find_candidates(bool repair) const {
     const std::uint32_t last = repair ? std::min(last_pass_, last_repairs_) : last_pass_;
-    const auto ends = found_in_ranges<ShortEdge>([&](Index t, std::vector<ShortEdge>& found) {
-      if (changed_since(t, last)) find_short_edges(t, found);
+    const auto ends = found_in_ranges<ShortEdge>(complex().size(), [&](std::size_t t, std::vector<ShortEdge>& found) {
+      if (changed_since(static_cast<Index>(t), last)) find_short_edges(static_cast<Index>(t), found);
     });
     std::vector<double> shortest(mesh().points.size(), INFINITY);
     for (const auto& [length, v] : ends) shortest[v] = std::min(shortest[v], length);
@@ -331,7 +313,8 @@ class Coarsening {
       double quality;
     };
     known_qualities_.resize(complex().size(), NAN);
-    std::vector<Poor> all = found_in_ranges<Poor>([&](Index t, std::vector<Poor>& found) {
+    std::vector<Poor> all = found_in_ranges<Poor>(complex().size(), [&](std::size_t i, std::vector<Poor>& found) {
+      const auto t = static_cast<Index>(i);
       double& q = known_qualities_[t];
       if (std::isnan(q)) q = quality_if_improvable(t);
       if (q < improved_below && complex()[t].alive && changed_since(t, last_sweep_))

@@ -72,6 +72,20 @@ inline void free_block(void* block, [[maybe_unused]] std::size_t bytes) {
   std::free(block);
 }
 
+/// Room for so many values of a vector or string of any allocator, in large pages if it is large.
+template <class Values>
+void reserve_in_large_pages(Values& values, std::size_t count) {
+  values.reserve(count);
+  prefer_large_pages(values.data(), values.capacity() * sizeof(values[0]));
+}
+
+/// A vector of so many values.
+template <class T>
+void resize_in_large_pages(std::vector<T>& values, std::size_t count) {
+  reserve_in_large_pages(values, count);
+  values.resize(count);
+}
+
 /// Gives large blocks large pages.
 template <class T>
 struct LargePageAllocator {

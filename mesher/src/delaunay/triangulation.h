@@ -9,7 +9,7 @@
 
 #include "collarmesh/geometry.h"
 #include "common/tet_sides.h"
-#include "delaunay/growing_array.h"
+#include "common/growing_array.h"
 
 namespace collarmesh {
 

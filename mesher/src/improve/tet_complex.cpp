@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cassert>
 
+#include "common/found_in_ranges.h"
 #include "common/groups.h"
+#include "common/large_pages.h"
 #include "common/parallel_for.h"
 #include "common/simplices_at_vertex.h"
 
@@ -19,6 +21,8 @@ std::array<Index, 3> sorted(std::array<Index, 3> face) {
   if (face[0] > face[1]) std::swap(face[0], face[1]);
   return face;
 }
+
+constexpr std::size_t tets_at_once = 8192;  // that a thread looks at
 
 // What is gone, until `store`.
 constexpr std::array<Index, 3> lost_face{none, none, none};
@@ -64,8 +68,7 @@ TetComplex::TetComplex(TetMesh& mesh, const KnownNeighbours& neighbours) : mesh_
   origin_.resize(mesh.tets.size());
   vertex_tet_.assign(mesh.points.size(), none);
   constexpr std::array<Index, 4> nothing{none, none, none, none};
-  constexpr std::size_t at_once = 8192;
-  parallel_for_ranges(mesh.tets.size(), at_once, [&](std::size_t first, std::size_t last) {
+  parallel_for_ranges(mesh.tets.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
     for (std::size_t t = first; t < last; ++t) {
       const auto& across = neighbours.empty() ? nothing : neighbours[t];
       tets_[t] = {mesh.tets[t], across, nothing, mesh.tet_region[t], 0, true, mesh.tet_collar[t] != 0};
@@ -448,23 +451,26 @@ void TetComplex::undo() {
 }
 
 void TetComplex::store() {
-  const auto alive = static_cast<std::size_t>(
-      std::count_if(tets_.begin(), tets_.end(), [](const Tet& tet) { return tet.alive; }));
+  const auto alive = found_in_ranges<Index>(tets_.size(), [&](std::size_t t, std::vector<Index>& found) {
+    if (tets_[t].alive) found.push_back(static_cast<Index>(t));
+  });
   TetMesh stored;
-  stored.tets.reserve(alive);
-  stored.tet_region.reserve(alive);
-  stored.tet_tag.reserve(alive);
-  stored.tet_collar.reserve(alive);
-  stored.tet_crease.reserve(alive);
-  for (Index t = 0; t < tets_.size(); ++t) {
-    if (!tets_[t].alive) continue;
-    stored.tets.push_back(tets_[t].corners);
-    stored.tet_region.push_back(tets_[t].region);
-    stored.tet_tag.push_back(mesh_.tet_tag[origin_[t]]);
-    const bool collar = tets_[t].collar;
-    stored.tet_collar.push_back(collar ? mesh_.tet_collar[origin_[t]] : std::uint8_t{0});
-    stored.tet_crease.push_back(collar ? mesh_.tet_crease[origin_[t]] : Tag{0});
-  }
+  resize_in_large_pages(stored.tets, alive.size());
+  resize_in_large_pages(stored.tet_region, alive.size());
+  resize_in_large_pages(stored.tet_tag, alive.size());
+  resize_in_large_pages(stored.tet_collar, alive.size());
+  resize_in_large_pages(stored.tet_crease, alive.size());
+  parallel_for_ranges(alive.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const Index t = alive[i];
+      stored.tets[i] = tets_[t].corners;
+      stored.tet_region[i] = tets_[t].region;
+      stored.tet_tag[i] = mesh_.tet_tag[origin_[t]];
+      const bool collar = tets_[t].collar;
+      stored.tet_collar[i] = collar ? mesh_.tet_collar[origin_[t]] : std::uint8_t{0};
+      stored.tet_crease[i] = collar ? mesh_.tet_crease[origin_[t]] : Tag{0};
+    }
+  });
   mesh_.tets = std::move(stored.tets);
   mesh_.tet_region = std::move(stored.tet_region);
   mesh_.tet_tag = std::move(stored.tet_tag);
@@ -498,8 +504,10 @@ void TetComplex::drop_lost_vertices() {
   mesh_.points.resize(kept);
   mesh_.features.resize(kept);
   const auto renumber = [&](auto& cells) {
-    for (auto& cell : cells)
-      for (Index& point : cell) point = number[point];
+    parallel_for_ranges(cells.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i)
+        for (Index& point : cells[i]) point = number[point];
+    });
   };
   renumber(mesh_.tets);
   renumber(mesh_.faces);

@@ -9,6 +9,7 @@
 #include <limits>
 #include <span>
 
+#include "common/large_pages.h"
 #include "common/parallel_for.h"
 #include "io/cell_nodes.h"
 #include "io/cell_partitions.h"
@@ -29,7 +30,7 @@ std::size_t cell_count(const TetMesh& mesh) {
 template <class T, class OfTet, class OfFace, class OfEdge>
 std::vector<T> per_cell(const TetMesh& mesh, OfTet of_tet, OfFace of_face, OfEdge of_edge) {
   std::vector<T> values;
-  values.reserve(cell_count(mesh));
+  reserve_in_large_pages(values, cell_count(mesh));
   for (std::size_t i = 0; i < mesh.tets.size(); ++i) values.push_back(static_cast<T>(of_tet(i)));
   for (std::size_t i = 0; i < mesh.faces.size(); ++i) values.push_back(static_cast<T>(of_face(i)));
   for (std::size_t i = 0; i < mesh.edges.size(); ++i) values.push_back(static_cast<T>(of_edge(i)));
@@ -83,7 +84,7 @@ class GridMaker {
 
   std::vector<double> coordinates() const {
     std::vector<double> values;
-    values.reserve(3 * mesh_.points.size());
+    reserve_in_large_pages(values, 3 * mesh_.points.size());
     for (const Point& p : mesh_.points) values.insert(values.end(), {p.x, p.y, p.z});
     return values;
   }
@@ -93,7 +94,8 @@ class GridMaker {
     const auto add_nodes = [&](const CellNodes& nodes) {
       values.insert(values.end(), nodes.begin(), nodes.end());
     };
-    values.reserve(4 * mesh_.tets.size() + 3 * mesh_.faces.size() + 2 * mesh_.edges.size());
+    reserve_in_large_pages(
+        values, 4 * mesh_.tets.size() + 3 * mesh_.faces.size() + 2 * mesh_.edges.size());
     for (std::size_t i = 0; i < mesh_.tets.size(); ++i) add_nodes(nodes_of_tet(mesh_, i));
     for (std::size_t i = 0; i < mesh_.faces.size(); ++i) add_nodes(nodes_of_face(mesh_, i));
     for (std::size_t i = 0; i < mesh_.edges.size(); ++i) add_nodes(nodes_of_edge(mesh_, i));
@@ -170,8 +172,10 @@ class GridMaker {
       constexpr std::array<std::string_view, 3> names{"radius_edge", "min_dihedral", "max_dihedral"};
       VtkArray& array = cell_data_.emplace_back();
       array.name = names[k];
-      array.values = std::vector<float>(cell_count(mesh_));
-      of_cells[k] = std::get<std::vector<float>>(array.values).data();
+      std::vector<float> values;
+      resize_in_large_pages(values, cell_count(mesh_));
+      of_cells[k] = values.data();
+      array.values = std::move(values);
     }
     for (std::size_t first = 0; first < mesh_.tets.size(); first += tets_per_task)
       tasks_.emplace_back([this, of_cells, first] {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "collarmesh/usable_threads.h"
+#include "common/large_pages.h"
 #include "common/parallel_for.h"
 #include "io/base64.h"
 #include "io/file_writer.h"
@@ -84,10 +85,11 @@ void join(std::span<const std::string> blocks, DataArray& array, std::string& jo
     header.push_back(block.size());
     size += block.size();
   }
-  joined.reserve(size);
+  reserve_in_large_pages(joined, size);
   for (const std::string& block : blocks) joined += block;
   array.header =
       base64_encode({reinterpret_cast<const char*>(header.data()), header.size() * sizeof(std::uint64_t)});
+  reserve_in_large_pages(array.blocks, base64_size(size));
   array.blocks.resize(base64_size(size));
 }
 

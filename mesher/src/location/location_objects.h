@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "collarmesh/geometry.h"
-#include "common/large_pages.h"
+#include "common/growing_array.h"
 
 namespace collarmesh {
 
@@ -34,7 +34,7 @@ class LocationObjects {
     Index object;
     if (free_.empty()) {
       object = static_cast<Index>(objects_.size());
-      objects_.emplace_back();
+      objects_.push_back({});
     } else {
       object = free_.back();
       free_.pop_back();
@@ -61,12 +61,12 @@ class LocationObjects {
   std::size_t moved() const { return moved_; }
 
   std::size_t bytes() const {
-    return objects_.capacity() * sizeof(Object) + first_.capacity() * sizeof(Index);
+    return objects_.bytes() + first_.bytes();
   }
 
  private:
   void attach(Index object, Index vertex) {
-    if (vertex >= first_.size()) first_.resize(vertex + vertex / 2 + 16, none);
+    if (vertex >= first_.size()) first_.resize(vertex + 1, none);
     Object& o = objects_[object];
     o.vertex = vertex;
     o.previous = none;
@@ -84,9 +84,9 @@ class LocationObjects {
     if (o.next != none) objects_[o.next].previous = o.previous;
   }
 
-  LargeVector<Object> objects_;
+  GrowingArray<Object> objects_;
   std::vector<Index> free_;
-  LargeVector<Index> first_;
+  GrowingArray<Index> first_;
   std::size_t added_ = 0, moved_ = 0;
 };
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "collar/collar_system.h"
-#include "delaunay/growing_array.h"
+#include "common/growing_array.h"
 #include "refine/refined_mesh.h"
 
 namespace collarmesh {

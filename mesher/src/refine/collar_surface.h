@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "delaunay/growing_array.h"
+#include "common/growing_array.h"
 #include "refine/candidate.h"
 #include "refine/collar_creator.h"
 #include "refine/collar_triangles.h"

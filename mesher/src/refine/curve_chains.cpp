@@ -136,7 +136,7 @@ void CurveChains::add_subsegment(Index curve, std::array<Index, 2> ends, std::ar
   std::uint32_t stamp = 0;
   if (free_subsegments_.empty()) {
     index = static_cast<Index>(subsegments_.size());
-    subsegments_.emplace_back();
+    subsegments_.push_back({});
   } else {
     index = free_subsegments_.back();
     free_subsegments_.pop_back();
@@ -331,6 +331,6 @@ void CurveChains::clip(Index c, bool at_start, Index near) {
     hurry_ends(p);
 }
 
-std::size_t CurveChains::bytes() const { return balls_.bytes() + subsegments_.capacity() * sizeof(Chained); }
+std::size_t CurveChains::bytes() const { return balls_.bytes() + subsegments_.bytes(); }
 
 }  // namespace collarmesh

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "collar/collar_system.h"
-#include "common/large_pages.h"
+#include "common/growing_array.h"
 #include "location/location_objects.h"
 #include "refine/candidate.h"
 #include "refine/facing_sheets.h"
@@ -168,7 +168,7 @@ class CurveChains {
   Outcome& outcome_;
   WorkQueue& queue_;
   LocationObjects balls_;
-  LargeVector<Chained> subsegments_;
+  GrowingArray<Chained> subsegments_;
   std::vector<Index> free_subsegments_;
   std::vector<Pending> pending_;
   std::vector<std::vector<Index>> waiting_;  // by unresolved point: first subsegments

@@ -4,6 +4,8 @@
 #include <atomic>
 #include <utility>
 
+#include "common/found_in_ranges.h"
+#include "common/large_pages.h"
 #include "common/parallel_for.h"
 #include "common/spatial_order.h"
 #include "thread_limit.h"
@@ -14,7 +16,8 @@ namespace {
 
 /// The cells by their least points, those that share it as they were.
 std::vector<Index> order_by_least_point(const std::vector<Index>& least_points, std::size_t points) {
-  std::vector<Index> next(points + 1, 0), order(least_points.size());
+  std::vector<Index> next(points + 1, 0), order;
+  resize_in_large_pages(order, least_points.size());
   for (const Index p : least_points) ++next[p + 1];
   for (std::size_t p = 0; p < points; ++p) next[p + 1] += next[p];
   for (Index c = 0; c < least_points.size(); ++c) order[next[least_points[c]]++] = c;
@@ -34,7 +37,6 @@ class Extraction {
   explicit Extraction(const Refined& refined)
       : refined_(refined),
         plc_(refined.domain.plc),
-        threads_(refined.domain.options.threads),
         number_(refined.mesh.vertex_count(), none) {}
 
   Extracted run() {
@@ -62,20 +64,14 @@ class Extraction {
       for (const Index v : corners) std::atomic_ref(used[v]).store(1, std::memory_order_relaxed);
     };
     const std::size_t capacity = refined_.mesh.cell_capacity();
-    std::vector<std::vector<Index>> of_ranges(capacity / at_once + 1);
-    for_each_range(capacity, [&](std::size_t first, std::size_t last) {
-      std::vector<Index>& found = of_ranges[first / at_once];
-      for (std::size_t i = first; i < last; ++i) {
-        const auto cell = static_cast<Index>(i);
-        if (!refined_.mesh.alive(cell) || refined_.surface.region(cell) == 0 ||
-            refined_.collar_cells.inside(cell))
-          continue;
-        found.push_back(cell);
-        use(refined_.mesh.corners(cell));
-      }
+    cells_ = found_in_ranges<Index>(capacity, [&](std::size_t i, std::vector<Index>& found) {
+      const auto cell = static_cast<Index>(i);
+      if (!refined_.mesh.alive(cell) || refined_.surface.region(cell) == 0 ||
+          refined_.collar_cells.inside(cell))
+        return;
+      found.push_back(cell);
+      use(refined_.mesh.corners(cell));
     });
-    cells_.reserve(refined_.mesh.cell_count());
-    for (const auto& found : of_ranges) cells_.insert(cells_.end(), found.begin(), found.end());
     for (const auto& tet : refined_.stitched.tets) use(tet.corners);
     for (Index v = 0; v < used.size(); ++v)
       if (used[v] != 0) vertices_.push_back(v);
@@ -89,43 +85,52 @@ class Extraction {
   // Along a curve through space, so that what is near lies near in memory.
   void add_points() {
     std::vector<Point> places;
-    places.reserve(vertices_.size());
-    for (const Index v : vertices_) places.push_back(refined_.domain.frame.outside(refined_.mesh.point(v)));
-    mesh_.points.reserve(vertices_.size());
-    mesh_.features.reserve(vertices_.size());
-    for (const SpatialKey& key : spatial_order(places)) {
-      const Index v = vertices_[key.item];
-      number_[v] = static_cast<Index>(mesh_.points.size());
-      mesh_.points.push_back(places[key.item]);
-      const Feature& f = refined_.mesh.feature(v);
-      mesh_.features.push_back({f.dimension, f.dimension == 3 ? none : f.index});
-    }
+    resize_in_large_pages(places, vertices_.size());
+    parallel_for_ranges(places.size(), at_once, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i)
+        places[i] = refined_.domain.frame.outside(refined_.mesh.point(vertices_[i]));
+    });
+    const std::vector<SpatialKey> order = spatial_order(places);
+    resize_in_large_pages(mesh_.points, places.size());
+    resize_in_large_pages(mesh_.features, places.size());
+    parallel_for_ranges(places.size(), at_once, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        const Index v = vertices_[order[i].item];
+        number_[v] = static_cast<Index>(i);
+        mesh_.points[i] = places[order[i].item];
+        const Feature& f = refined_.mesh.feature(v);
+        mesh_.features[i] = {f.dimension, f.dimension == 3 ? none : f.index};
+      }
+    });
   }
 
   // In the order of their least points.
   void add_tets() {
     const std::size_t count = cells_.size() + refined_.stitched.tets.size();
-    std::vector<Index> least(count);
-    for_each_range(count, [&](std::size_t first, std::size_t last) {
+    std::vector<Index> least;
+    resize_in_large_pages(least, count);
+    parallel_for_ranges(count, at_once, [&](std::size_t first, std::size_t last) {
       for (std::size_t t = first; t < last; ++t) {
         const auto& v = corners(static_cast<Index>(t));
         least[t] = std::min({number_[v[0]], number_[v[1]], number_[v[2]], number_[v[3]]});
       }
     });
     const std::vector<Index> order = order_by_least_point(least, mesh_.points.size());
-    std::vector<Index> tet_of_cell(refined_.mesh.cell_capacity(), none);
-    mesh_.tets.resize(count);
-    mesh_.tet_region.resize(count);
-    mesh_.tet_tag.resize(count);
-    mesh_.tet_collar.resize(count);
-    mesh_.tet_crease.resize(count);
-    mesh_.tet_thin.resize(count);
+    std::vector<Index> tet_of_cell;
+    reserve_in_large_pages(tet_of_cell, refined_.mesh.cell_capacity());
+    tet_of_cell.resize(refined_.mesh.cell_capacity(), none);
+    resize_in_large_pages(mesh_.tets, count);
+    resize_in_large_pages(mesh_.tet_region, count);
+    resize_in_large_pages(mesh_.tet_tag, count);
+    resize_in_large_pages(mesh_.tet_collar, count);
+    resize_in_large_pages(mesh_.tet_crease, count);
+    resize_in_large_pages(mesh_.tet_thin, count);
     neighbours_.resize(count);
-    for_each_range(count, [&](std::size_t first, std::size_t last) {
+    parallel_for_ranges(count, at_once, [&](std::size_t first, std::size_t last) {
       for (std::size_t t = first; t < last; ++t)
         if (order[t] < cells_.size()) tet_of_cell[cells_[order[t]]] = static_cast<Index>(t);
     });
-    for_each_range(count, [&](std::size_t first, std::size_t last) {
+    parallel_for_ranges(count, at_once, [&](std::size_t first, std::size_t last) {
       for (std::size_t t = first; t < last; ++t) {
         constexpr std::size_t ahead = 16;
         if (t + ahead < last && order[t + ahead] < cells_.size())
@@ -158,12 +163,6 @@ class Extraction {
     mesh_.tet_tag[tet] = plc_.regions[region].tag;
     mesh_.tet_collar[tet] = collar;
     mesh_.tet_crease[tet] = crease;
-  }
-
-  // By all threads.
-  template <class Work>
-  void for_each_range(std::size_t count, const Work& work) {
-    threads_.run([&] { parallel_for_ranges(count, at_once, work); });
   }
 
   void add_face(const std::array<Index, 3>& v, const std::array<Index, 2>& regions, Index patch) {
@@ -239,7 +238,6 @@ class Extraction {
 
   const Refined& refined_;
   const Plc& plc_;
-  ThreadLimit threads_;
   TetMesh mesh_;
   KnownNeighbours neighbours_;
   std::vector<Index> number_;    // in the result, by mesh vertex; none if no tet has it
@@ -249,6 +247,10 @@ class Extraction {
 
 }  // namespace
 
-Extracted extract(const Refined& refined) { return Extraction(refined).run(); }
+Extracted extract(const Refined& refined) {
+  Extracted extracted;
+  ThreadLimit(refined.domain.options.threads).run([&] { extracted = Extraction(refined).run(); });
+  return extracted;
+}
 
 }  // namespace collarmesh

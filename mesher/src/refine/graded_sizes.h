@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <span>
 
-#include "delaunay/growing_array.h"
+#include "common/growing_array.h"
 #include "refine/domain.h"
 #include "refine/refined_mesh.h"
 #include "refine/restricted_surface.h"

@@ -5,10 +5,9 @@
 namespace collarmesh {
 
 RefinedMesh::RefinedMesh(const Plc& plc, const Box& box)
-    : plc_(plc),
-      triangulation_(box),
-      walk_(triangulation_),
-      features_(triangulation_.vertex_count(), Feature{3, none}) {}
+    : plc_(plc), triangulation_(box), walk_(triangulation_) {
+  features_.resize(vertex_count(), Feature{3, none});
+}
 
 bool RefinedMesh::on_one_patch(std::span<const Index> vertices) const {
   for (const Index v : vertices)

@@ -5,7 +5,7 @@
 
 #include "collar/feature_hierarchy.h"
 #include "collarmesh/plc.h"
-#include "common/large_pages.h"
+#include "common/growing_array.h"
 #include "delaunay/triangulation.h"
 #include "location/voronoi_walk.h"
 
@@ -96,13 +96,13 @@ class RefinedMesh {
     if (feature.dimension < features_[vertex].dimension) features_[vertex] = feature;
   }
 
-  std::size_t bytes() const { return triangulation_.bytes() + features_.capacity() * sizeof(Feature); }
+  std::size_t bytes() const { return triangulation_.bytes() + features_.bytes(); }
 
  private:
   const Plc& plc_;
   mutable Triangulation triangulation_;  // its marks
   mutable VoronoiWalk walk_;
-  LargeVector<Feature> features_;
+  GrowingArray<Feature> features_;
 };
 
 }  // namespace collarmesh

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/found_in_ranges.h"
+
 namespace collarmesh {
 
 namespace {
@@ -21,14 +23,13 @@ RestrictedSurface::RestrictedSurface(const Domain& domain, const RefinedMesh& me
 }
 
 std::vector<FaceId> RestrictedSurface::marked_faces() const {
-  std::vector<FaceId> faces;
-  for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
-    if (!mesh_.alive(cell)) continue;
+  return found_in_ranges<FaceId>(mesh_.cell_capacity(), [&](std::size_t i, std::vector<FaceId>& faces) {
+    const auto cell = static_cast<Index>(i);
+    if (!mesh_.alive(cell)) return;
     visit_marked(cell, [&](FaceId face) {
       if (cell < cell_of(mesh_.opposite(face))) faces.push_back(face);
     });
-  }
-  return faces;
+  });
 }
 
 // The box' corners lie outside every region.
@@ -236,7 +237,7 @@ void RestrictedSurface::fit_mesh() {
 
 Index RestrictedSurface::new_record() {
   if (free_records_.empty()) {
-    records_.emplace_back();
+    records_.push_back({});
     return static_cast<Index>(records_.size() - 1);
   }
   const Index record = free_records_.back();

@@ -3,8 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "common/large_pages.h"
-#include "delaunay/growing_array.h"
+#include "common/growing_array.h"
 #include "location/segment_bundle.h"
 #include "refine/collar_cells.h"
 #include "refine/domain.h"
@@ -49,7 +48,7 @@ class RestrictedSurface {
   /// Bit i: the face opposite corner i of the cell is marked.
   unsigned marked(Index cell) const { return labels_[cell].marked; }
   bool is_marked(FaceId face) const { return labels_[cell_of(face)].marked >> corner_of(face) & 1U; }
-  /// All marked faces, each from the cell with the smaller number.
+  /// All marked faces, each from the cell with the smaller number, in their order; by all threads.
   std::vector<FaceId> marked_faces() const;
   /// Visit the marked faces of a cell, seen from it.
   template <class Visit>
@@ -86,7 +85,7 @@ class RestrictedSurface {
   void give_outside(Index cell);
 
   std::size_t bytes() const {
-    return labels_.bytes() + marks_.bytes() + records_.capacity() * sizeof(Record);
+    return labels_.bytes() + marks_.bytes() + records_.bytes();
   }
 
  private:
@@ -129,7 +128,7 @@ class RestrictedSurface {
   const CollarCells& collar_cells_;
   GrowingArray<Label> labels_;                // by cell
   GrowingArray<std::array<Index, 4>> marks_;  // by cell and corner: records of marked faces
-  LargeVector<Record> records_;
+  GrowingArray<Record> records_;
   std::vector<Index> free_records_;
   // During an insertion:
   std::vector<TriangleHierarchy::Crossing> crossings_;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "common/found_in_ranges.h"
+
 namespace collarmesh {
 
 namespace {
@@ -265,11 +267,20 @@ bool SurfaceCheck::resolve_distant_points(const std::vector<FaceId>& faces) {
   return found;
 }
 
+// Cells of regions, outside the collars, whose vertices all lie on features: what may be flat on a patch.
+std::vector<Index> SurfaceCheck::cells_on_surface() const {
+  return found_in_ranges<Index>(mesh_.cell_capacity(), [&](std::size_t i, std::vector<Index>& cells) {
+    const auto cell = static_cast<Index>(i);
+    if (!mesh_.alive(cell) || surface_.region(cell) == 0 || collar_cells_.inside(cell)) return;
+    const auto& corners = mesh_.corners(cell);
+    if (std::all_of(corners.begin(), corners.end(), [&](Index v) { return mesh_.feature(v).dimension < 3; }))
+      cells.push_back(cell);
+  });
+}
+
+// Precondition: it is one of `cells_on_surface`.
 bool SurfaceCheck::flat_on_patch(Index cell) const {
-  if (surface_.region(cell) == 0 || surface_.marked(cell) == 0 || collar_cells_.inside(cell)) return false;
   const auto& corners = mesh_.corners(cell);
-  if (std::any_of(corners.begin(), corners.end(), [&](Index v) { return mesh_.feature(v).dimension == 3; }))
-    return false;
   const bool without_volume = has_no_volume(cell);
   bool found = false;
   surface_.visit_marked(cell, [&](FaceId face) {
@@ -303,8 +314,8 @@ bool SurfaceCheck::at_boundary(FaceId face) const {
 // centre goes in. At a domain boundary relabel_flat_cells sees to it.
 bool SurfaceCheck::check_flat_cells() {
   bool found = false;
-  for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
-    if (!mesh_.alive(cell) || !flat_on_patch(cell)) continue;
+  for (const Index cell : cells_on_surface()) {
+    if (!flat_on_patch(cell)) continue;
     FaceId inside = no_face;
     surface_.visit_marked(cell, [&](FaceId face) {
       if (inside == no_face && !at_boundary(face) && !surface_.notes(face).given_up) inside = face;
@@ -319,8 +330,8 @@ bool SurfaceCheck::check_flat_cells() {
 // Four cocircular vertices of a boundary facet can make a flat cell just inside: it belongs outside.
 bool SurfaceCheck::relabel_flat_cells() {
   bool found = false;
-  for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
-    if (!mesh_.alive(cell) || !flat_on_patch(cell)) continue;
+  for (const Index cell : cells_on_surface()) {
+    if (!flat_on_patch(cell)) continue;
     bool boundary = false;
     surface_.visit_marked(cell, [&](FaceId face) { boundary = at_boundary(face); });
     if (!boundary) continue;

@@ -52,7 +52,7 @@ Index SurfaceNodes::nearest_triangle(const Point& p, Index patch, double& within
 
 // A new vertex' Voronoi cell is cut out of its neighbours' cells: their nodes cover it.
 void SurfaceNodes::cells_made(const ConflictZone& zone, Index vertex) {
-  lists_.emplace_back();
+  lists_.push_back({});
   expect_insertions(vertex, zone.created.size());
   seeds_.clear();
   for (const Index neighbour : zone.vertices) {
@@ -106,9 +106,9 @@ void SurfaceNodes::refresh(Index vertex) {
 void SurfaceNodes::store(List& list) {
   if (found_.size() > list.count) {
     list.first = static_cast<Index>(pool_.size());
-    pool_.insert(pool_.end(), found_.begin(), found_.end());
+    pool_.append(found_);
   } else {
-    std::copy(found_.begin(), found_.end(), pool_.begin() + list.first);
+    std::copy(found_.begin(), found_.end(), &pool_[list.first]);
   }
   list.count = static_cast<Index>(found_.size());
 }

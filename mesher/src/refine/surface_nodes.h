@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "common/large_pages.h"
+#include "common/growing_array.h"
 #include "location/triangle_hierarchy.h"
 #include "refine/domain.h"
 #include "refine/refined_mesh.h"
@@ -43,7 +43,7 @@ class SurfaceNodes {
   void quiet_vertices_made();
 
   std::size_t bytes() const {
-    return hierarchy_.bytes() + pool_.capacity() * sizeof(Index) + lists_.capacity() * sizeof(List);
+    return hierarchy_.bytes() + pool_.bytes() + lists_.bytes();
   }
 
  private:
@@ -59,8 +59,8 @@ class SurfaceNodes {
   const Domain& domain_;
   const RefinedMesh& mesh_;
   TriangleHierarchy hierarchy_;
-  LargeVector<List> lists_;  // by vertex
-  LargeVector<Index> pool_;
+  GrowingArray<List> lists_;  // by vertex
+  GrowingArray<Index> pool_;
   std::vector<Index> seeds_, found_, cells_;  // scratch
 };
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "common/large_pages.h"
+#include "common/growing_array.h"
 #include "location/location_objects.h"
 #include "refine/candidate.h"
 #include "refine/refined_mesh.h"
@@ -56,7 +56,7 @@ class UnresolvedPoints {
   void cells_made(const ConflictZone& zone, Index vertex);
 
   const LocationObjects& objects() const { return objects_; }
-  std::size_t bytes() const { return objects_.bytes() + points_.capacity() * sizeof(Unresolved); }
+  std::size_t bytes() const { return objects_.bytes() + points_.bytes(); }
 
  private:
   void queue(Index point);
@@ -67,7 +67,7 @@ class UnresolvedPoints {
   const RefinedMesh& mesh_;
   WorkQueue& queue_;
   double theta_;
-  LargeVector<Unresolved> points_;
+  GrowingArray<Unresolved> points_;
   LocationObjects objects_;
 };
 

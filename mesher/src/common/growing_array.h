@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -22,7 +24,14 @@ class GrowingArray {
   ~GrowingArray() { free_block(data_, capacity_ * sizeof(T)); }
 
   std::size_t size() const { return size_; }
-  std::size_t bytes() const { return capacity_ * sizeof(T); }
+  /// Of memory. What large arrays have not used yet takes none: the system gives pages when they are used.
+  std::size_t bytes() const {
+    const std::size_t used = (size_ * sizeof(T) + large_page - 1) / large_page * large_page;
+    return std::min(capacity_ * sizeof(T), used);
+  }
+  T* begin() { return data_; }
+  T* end() { return data_ + size_; }
+  const T* data() const { return data_; }
   T& operator[](std::size_t i) {
     assert(i < size_);
     return data_[i];
@@ -36,6 +45,11 @@ class GrowingArray {
     const T copy = value;
     if (size_ == capacity_) reserve(size_ + size_ / 2 + 64);
     data_[size_++] = copy;
+  }
+  void append(std::span<const T> values) {
+    const std::size_t before = size_;
+    extend(size_ + values.size());
+    std::copy(values.begin(), values.end(), data_ + before);
   }
   void resize(std::size_t n, const T& value = T()) {
     const T copy = value;
