@@ -67,14 +67,15 @@ TEST(TriangleHierarchy, NodesInABoxCoverItsTriangles) {
   TriangleHierarchy hierarchy(soup.points, soup.triangles);
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> unit(0, 1);
+  TriangleHierarchy::Marks marks;
   std::vector<Index> coarse, fine;
   std::vector<TriangleHierarchy::Crossing> crossings;
   for (int k = 0; k < 200; ++k) {
     const Point centre{unit(random), unit(random), unit(random)};
     const double radius = 0.3 * unit(random);
     const Index root = hierarchy.root();
-    hierarchy.nodes_meeting(box_about(centre, 0.6), 0.6, {&root, 1}, coarse);
-    hierarchy.nodes_meeting(box_about(centre, radius), radius, coarse, fine);
+    hierarchy.nodes_meeting(box_about(centre, 0.6), 0.6, {&root, 1}, marks, coarse);
+    hierarchy.nodes_meeting(box_about(centre, radius), radius, coarse, marks, fine);
     // Any segment inside the box must find the same crossings from these nodes as from the root.
     for (int s = 0; s < 10; ++s) {
       const auto inside = [&] {
@@ -98,13 +99,14 @@ TEST(TriangleHierarchy, LargeTrianglesAreFoundWhereTheirPlanesAre) {
   const std::vector<Point> points{{0, 0, 0}, {1, 1, 0}, {0, 0, 1}};
   TriangleHierarchy hierarchy(points, {{0, 1, 2}});
   const Index root = hierarchy.root();
+  TriangleHierarchy::Marks marks;
   std::vector<Index> found;
   for (const auto& [centre, count] : {std::pair<Point, std::size_t>{{0.8, 0.2, 0.2}, 0},
                                       {{0.2, 0.8, 0.2}, 0},
                                       {{0.55, 0.45, 0.2}, 1},
                                       {{0.25, 0.125, 0.2}, 1},
                                       {{0.25, 0.125 - 0x1p-30, 0.2}, 0}}) {
-    hierarchy.nodes_meeting(box_about(centre, 0.125 / 2), 0.125 / 2, {&root, 1}, found);
+    hierarchy.nodes_meeting(box_about(centre, 0.125 / 2), 0.125 / 2, {&root, 1}, marks, found);
     EXPECT_EQ(found.size(), count) << centre.x << ' ' << centre.y;
   }
 }
@@ -113,13 +115,14 @@ TEST(TriangleHierarchy, NodesDoNotOverlap) {
   const Soup soup = random_triangles(300, 0.05);
   TriangleHierarchy hierarchy(soup.points, soup.triangles);
   const Index root = hierarchy.root();
+  TriangleHierarchy::Marks marks;
   std::vector<Index> first, second, both;
-  hierarchy.nodes_meeting(box_about({0.4, 0.5, 0.5}, 0.05), 0.05, {&root, 1}, first);
-  hierarchy.nodes_meeting(box_about({0.5, 0.5, 0.5}, 0.3), 0.3, {&root, 1}, second);
+  hierarchy.nodes_meeting(box_about({0.4, 0.5, 0.5}, 0.05), 0.05, {&root, 1}, marks, first);
+  hierarchy.nodes_meeting(box_about({0.5, 0.5, 0.5}, 0.3), 0.3, {&root, 1}, marks, second);
   both = first;
   both.insert(both.end(), second.begin(), second.end());
   std::vector<Index> found;
-  hierarchy.nodes_meeting(box_about({0.45, 0.5, 0.5}, 0.15), 0.15, both, found);
+  hierarchy.nodes_meeting(box_about({0.45, 0.5, 0.5}, 0.15), 0.15, both, marks, found);
   std::vector<TriangleHierarchy::Crossing> crossings;
   hierarchy.crossings({0.31, 0.5, 0.5}, {0.59, 0.5, 0.5}, found, crossings);
   std::vector<Index> triangles;

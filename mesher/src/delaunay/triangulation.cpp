@@ -320,16 +320,17 @@ std::vector<Triangulation::Block> Triangulation::divide(std::span<const Index> i
   return blocks;
 }
 
-void Triangulation::join(std::vector<Block>& blocks) {
-  if (blocks.empty()) return;
+Renumbering Triangulation::join(std::vector<Block>& blocks) {
+  Renumbering renumbering{{}, vertex_count()};
+  if (blocks.empty()) return renumbering;
   const Index before = blocks.front().first_vertex_;
-  Index vertices = before;
-  std::vector<Index> shifts;
+  renumbering.count = before;
   for (const Block& block : blocks) {
-    shifts.push_back(block.first_vertex_ - vertices);
-    for (Index v = block.first_vertex_; v < block.next_vertex_; ++v) vertices_[vertices++] = vertices_[v];
+    renumbering.moved.push_back(
+        {block.first_vertex_, block.next_vertex_, block.first_vertex_ - renumbering.count});
+    renumbering.count += block.next_vertex_ - block.first_vertex_;
   }
-  vertices_.resize(vertices);
+  renumbering.apply(vertices_);
   parallel_for(blocks.size(), [&](std::size_t i) {
     for (Index cell = blocks[i].next_cell_; cell < blocks[i].end_cell_; ++cell) {
       cells_[cell].corners[0] = none;
@@ -338,7 +339,7 @@ void Triangulation::join(std::vector<Block>& blocks) {
     for (const auto& [cell, generation] : blocks[i].created_)
       if (alive(cell) && states_[cell].generation == generation)
         for (Index& v : cells_[cell].corners)
-          if (v >= before) v -= shifts[i];
+          if (v >= before) v -= renumbering.moved[i].shift;
   });
   for (Block& block : blocks) {
     const Workspace& workspace = block.workspace_;
@@ -348,6 +349,19 @@ void Triangulation::join(std::vector<Block>& blocks) {
     for (Index cell = block.end_cell_; cell > block.next_cell_; --cell) free_cells.push_back(cell - 1);
     free_cells.insert(free_cells.end(), workspace.free_cells.begin(), workspace.free_cells.end());
   }
+  return renumbering;
+}
+
+// What is read of a cell that others border on does not change.
+void Triangulation::Block::incident_cells(Index vertex, std::vector<Index>& cells) const {
+  cells.assign(1, mesh_->vertices_[vertex].cell);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      const Cell& cell = mesh_->cells_[cells[i]];
+      if (cell.corners[corner] == vertex || cell.neighbours[corner] == no_face) continue;
+      const Index next = cell_of(cell.neighbours[corner]);
+      if (std::find(cells.begin(), cells.end(), next) == cells.end()) cells.push_back(next);
+    }
 }
 
 bool Triangulation::Block::owns(Index cell) const {

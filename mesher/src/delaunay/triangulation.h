@@ -44,6 +44,24 @@ struct LargestZone {
   }
 };
 
+/// How vertices are numbered when blocks have been joined.
+struct Renumbering {
+  struct Moved {
+    Index first, end;  ///< vertices that were numbered so
+    Index shift;       ///< and whose numbers are smaller by this now
+  };
+  std::vector<Moved> moved;  ///< in their order
+  Index count;               ///< of all vertices
+
+  /// Of what is kept by vertex.
+  template <class T>
+  void apply(GrowingArray<T>& of_vertices) const {
+    for (const auto& [first, end, shift] : moved)
+      for (Index v = first; v < end; ++v) of_vertices[v - shift] = of_vertices[v];
+    of_vertices.resize(count);
+  }
+};
+
 /// Delaunay triangulation of points inside a box, as flat arrays.
 ///
 /// The box' eight corners are vertices 0 to 7; everything stays inside, so there are no infinite
@@ -119,7 +137,7 @@ class Triangulation {
   /// The result does not depend on the threads, nor on their timing.
   std::vector<Block> divide(std::span<const Index> insertions, Owners& owners);
   /// The blocks' vertices are numbered, block by block.
-  void join(std::vector<Block>& blocks);
+  Renumbering join(std::vector<Block>& blocks);
 
   /// The cells that have this vertex, in no particular order.
   void incident_cells(Index vertex, std::vector<Index>& cells);
@@ -202,6 +220,9 @@ class Triangulation::Block {
   bool find_conflict_zone(const Point& p, Index start, ConflictZone& zone);
   /// Precondition: the zone is one of this block's. The vertex gets another number when blocks are joined.
   Index insert(ConflictZone& zone);
+  /// The cells that a vertex of this block has. Cost: quadratic, as it leaves no marks: others may have
+  /// vertices of these cells.
+  void incident_cells(Index vertex, std::vector<Index>& cells) const;
 
  private:
   friend class Triangulation;

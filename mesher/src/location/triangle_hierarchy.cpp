@@ -84,7 +84,7 @@ TriangleHierarchy::TriangleHierarchy(std::span<const Point> points,
 
 Index TriangleHierarchy::build(std::span<const SpatialKey> keys, Index parent, Box& box) {
   const auto node = static_cast<Index>(nodes_.size());
-  nodes_.push_back({{}, 0, parent, none, none, 0, 0});
+  nodes_.push_back({{}, 0, parent, none, none});
   if (keys.size() == 1) {
     for (const Index point : triangles_[keys[0].item]) box.add(points_[point]);
     nodes_[node].right = keys[0].item;
@@ -117,32 +117,33 @@ std::vector<Index> TriangleHierarchy::common_labels(std::span<const Index> label
 }
 
 void TriangleHierarchy::nodes_meeting(const Box& box, double extent, std::span<const Index> from,
-                                      std::vector<Index>& found) {
+                                      Marks& marks, std::vector<Index>& found) const {
   found.clear();
-  ++stamp_;
+  marks.of_nodes_.resize(nodes_.size());
+  ++marks.search_;
   const CentredBox range(box);
   for (Index node : from) {
-    if (nodes_[node].seed_stamp == stamp_) continue;
-    nodes_[node].seed_stamp = stamp_;
+    if (marks.of_nodes_[node].started == marks.search_) continue;
+    marks.of_nodes_[node].started = marks.search_;
     while (nodes_[node].parent != none && nodes_[nodes_[node].parent].extent <= extent)
       node = nodes_[node].parent;
-    descend(node, range, extent, found);
+    descend(node, range, extent, marks, found);
   }
 }
 
-void TriangleHierarchy::descend(Index index, const CentredBox& box, double extent,
-                                std::vector<Index>& found) {
-  Node& node = nodes_[index];
-  if (node.stamp == stamp_) return;
-  node.stamp = stamp_;
+void TriangleHierarchy::descend(Index index, const CentredBox& box, double extent, Marks& marks,
+                                std::vector<Index>& found) const {
+  const Node& node = nodes_[index];
+  if (marks.of_nodes_[index].met == marks.search_) return;
+  marks.of_nodes_[index].met = marks.search_;
   if (!box.meets(node.box)) return;
   if (node.extent <= extent) {
     found.push_back(index);
   } else if (node.left == none) {
     if (!misses_plane(box, corners(node.right))) found.push_back(index);
   } else {
-    descend(node.left, box, extent, found);
-    descend(node.right, box, extent, found);
+    descend(node.left, box, extent, marks, found);
+    descend(node.right, box, extent, marks, found);
   }
 }
 

@@ -27,6 +27,16 @@ class TriangleHierarchy {
     int direction;
   };
 
+  /// Which nodes a search has met. Each thread that searches keeps its own.
+  class Marks {
+    friend class TriangleHierarchy;
+    struct OfNode {
+      std::uint32_t met = 0, started = 0;  // the last search that met it, and that started from it
+    };
+    std::vector<OfNode> of_nodes_;
+    std::uint32_t search_ = 0;
+  };
+
   /// The points are kept by reference. A segment or point is a triangle with equal corners; nothing crosses
   /// it.
   TriangleHierarchy(std::span<const Point> points, std::vector<std::array<Index, 3>> triangles);
@@ -44,7 +54,8 @@ class TriangleHierarchy {
   /// does not exceed `extent`, and by the larger triangles whose planes meet it, too. Precondition: the nodes of `from` cover every triangle that meets it.
   /// Conservative: a node found may hold no triangle that meets the box.
   /// Cost: linear in the nodes found plus the levels between them and `from`.
-  void nodes_meeting(const Box& box, double extent, std::span<const Index> from, std::vector<Index>& found);
+  void nodes_meeting(const Box& box, double extent, std::span<const Index> from, Marks& marks,
+                     std::vector<Index>& found) const;
 
   /// Replace `found` by the triangles below `nodes` that the segment pq crosses. Exact; ties are
   /// broken by moving the segment by (e, e^2, e^3) for an infinitesimal e, so that a closed surface
@@ -106,17 +117,16 @@ class TriangleHierarchy {
     double extent;  // longest side of the box
     Index parent;
     Index left, right;  // a leaf has left == none and its triangle in right
-    std::uint32_t stamp, seed_stamp;
   };
 
   /// Add to the box what lies below the node that is returned.
   Index build(std::span<const SpatialKey> keys, Index parent, Box& box);
-  void descend(Index node, const CentredBox& box, double extent, std::vector<Index>& found);
+  void descend(Index node, const CentredBox& box, double extent, Marks& marks,
+               std::vector<Index>& found) const;
 
   std::span<const Point> points_;
   std::vector<std::array<Index, 3>> triangles_;
   LargeVector<Node> nodes_;
-  std::uint32_t stamp_ = 0;
 };
 
 /// Over the triangles of one patch. The complex' points are kept by reference.

@@ -30,7 +30,15 @@ std::uint64_t mixed(std::uint64_t z) {
   return z ^ (z >> 31);
 }
 
-// The same for the same cell, whoever destroys it.
+bool of_cells(WorkQueue::Priority priority) {
+  return priority == WorkQueue::skinny_cells || priority == WorkQueue::large_cells;
+}
+
+bool of_triangles(WorkQueue::Priority priority) {
+  return priority == WorkQueue::unresolved_triangles || priority == WorkQueue::large_triangles;
+}
+
+// The same for the same cell or triangle, whoever destroys it.
 std::uint64_t seed_at(const Point& centre, std::uint64_t seed) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     seed = mixed(seed + 0x9e3779b97f4a7c15ULL + std::bit_cast<std::uint64_t>(centre[axis]));
@@ -43,7 +51,8 @@ BlockRefinement::BlockRefinement(const Domain& domain, RefinedMesh& mesh, Surfac
                                  const CollarSystem& collars, CollarCells& collar_cells,
                                  RestrictedSurface& surface, const GradedSizes& sizes,
                                  const UnresolvedPoints& points, const CurveChains& curves,
-                                 const CellQuality& cells, WorkQueue& queue)
+                                 const TriangleQuality& triangles, const CellQuality& cells,
+                                 WorkQueue& queue)
     : domain_(domain),
       mesh_(mesh),
       nodes_(nodes),
@@ -52,11 +61,12 @@ BlockRefinement::BlockRefinement(const Domain& domain, RefinedMesh& mesh, Surfac
       surface_(surface),
       points_(points),
       curves_(curves),
+      triangles_(triangles),
       cells_(cells),
       queue_(queue),
       next_round_(least_vertices),
       workers_([&domain] {
-        return Worker{WorkQueue(squared_distance(domain.box.min, domain.box.max)), {}, {}};
+        return Worker{WorkQueue(squared_distance(domain.box.min, domain.box.max)), {}, {}, {}};
       }) {
   // Callers' functions need not bear several threads; what is kept at vertices is not kept by blocks.
   if (sizes.asked().has_field() || sizes.any_at_vertices() || domain_.options.vertex_ratio > 0)
@@ -67,7 +77,7 @@ bool BlockRefinement::due() {
   const std::size_t vertices = mesh_.vertex_count();
   if (vertices < next_round_) return false;
   priority_ = queue_.first_priority();
-  if (priority_ != WorkQueue::skinny_cells && priority_ != WorkQueue::large_cells) return false;
+  if (!of_cells(priority_) && !of_triangles(priority_)) return false;
   bucket_ = queue_.first_bucket(priority_);
   if (queue_.count(priority_, bucket_) < std::max(least_entries, vertices / vertices_per_entry)) return false;
   return most_insertions() >= least_entries;
@@ -86,18 +96,21 @@ void BlockRefinement::round() {
   ThreadLimit(domain_.options.threads).run([&] {
     divide_vertices();
     const auto entries = deal(taken);
-    auto blocks = mesh_.divide(room_for(entries), owners_);
+    const std::vector<Index> room = room_for(entries);
+    auto blocks = mesh_.divide(room, owners_);
+    std::vector<RestrictedSurface::Workspace> surfaces(blocks.size());
     if (!collars_.empty()) collar_cells_.fit_mesh();
-    surface_.fit_mesh();
+    nodes_.fit_mesh();
+    surface_.divide(records_for(room), surfaces);
     std::vector<std::vector<Waiting>> waiting(blocks.size());
     parallel_for(blocks.size(), [&](std::size_t i) {
-      if (!entries[i].empty()) refine(blocks[i], entries[i], workers_.local(), waiting[i]);
+      if (!entries[i].empty()) refine({blocks[i], surfaces[i]}, entries[i], workers_.local(), waiting[i]);
     });
-    mesh_.join(blocks);
+    nodes_.renumber(mesh_.join(blocks));
+    surface_.join(surfaces);
     for (const auto& of_block : waiting)
       for (const auto& [priority, bucket, entry] : of_block) queue_.put(priority, bucket, entry);
   });
-  nodes_.quiet_vertices_made();
   ++rounds_;
   const std::size_t after = mesh_.vertex_count(), inserted = after - before;
   inserted_ += inserted;
@@ -108,6 +121,12 @@ LargestZone BlockRefinement::largest_zone() const {
   LargestZone largest;
   for (const Worker& worker : workers_) largest.add(worker.largest);
   return largest;
+}
+
+std::size_t BlockRefinement::bytes() const {
+  std::size_t sum = 0;
+  for (const Worker& worker : workers_) sum += worker.nodes.bytes();
+  return sum;
 }
 
 std::size_t BlockRefinement::block_count() const { return cuts_.size() + 1; }
@@ -128,7 +147,7 @@ void BlockRefinement::divide_vertices() {
   parallel_for_ranges(vertices, at_once, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const auto v = static_cast<Index>(i);
-      owners_[v] = quiet(v) ? block_at(mesh_.point(v)) : Triangulation::no_owner;
+      owners_[v] = may_belong_to_block(v) ? block_at(mesh_.point(v)) : Triangulation::no_owner;
     }
   });
 }
@@ -155,12 +174,13 @@ std::uint16_t BlockRefinement::block_at(const Point& p) const {
   return static_cast<std::uint16_t>(node - cuts_.size());
 }
 
-bool BlockRefinement::quiet(Index vertex) const {
-  return mesh_.feature(vertex).dimension == 3 && !nodes_.any_at(vertex) && !points_.any_at(vertex) &&
-         !curves_.any_at(vertex) && !collar_cells_.near(vertex);
+bool BlockRefinement::may_belong_to_block(Index vertex) const {
+  return mesh_.feature(vertex).dimension >= 2 && !points_.any_at(vertex) && !curves_.any_at(vertex) &&
+         !collar_cells_.near(vertex);
 }
 
-// The entries of each block: those of cells whose vertices all are its own. The others go back.
+// The entries of each block: those of cells, and of triangles between cells, whose vertices all are its own.
+// The others go back.
 std::vector<std::vector<WorkQueue::Entry>> BlockRefinement::deal(const std::vector<WorkQueue::Entry>& taken) {
   constexpr std::uint16_t gone = Triangulation::no_owner - 1;
   std::vector<std::uint16_t> owner(taken.size());
@@ -168,8 +188,9 @@ std::vector<std::vector<WorkQueue::Entry>> BlockRefinement::deal(const std::vect
   parallel_for_ranges(taken.size(), at_once, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       constexpr std::size_t ahead = 16;
-      if (i + ahead < last) mesh_.prefetch(taken[i + ahead].id);
-      owner[i] = cells_.due(taken[i]) ? owner_of(taken[i].id) : gone;
+      if (i + ahead < last)
+        mesh_.prefetch(of_cells(priority_) ? taken[i + ahead].id : cell_of(taken[i + ahead].id));
+      owner[i] = due({priority_, taken[i]}) ? owner_of(taken[i]) : gone;
     }
   });
   std::vector<std::vector<WorkQueue::Entry>> entries(block_count());
@@ -181,11 +202,19 @@ std::vector<std::vector<WorkQueue::Entry>> BlockRefinement::deal(const std::vect
   return entries;
 }
 
-std::uint16_t BlockRefinement::owner_of(Index cell) const {
-  const auto& v = mesh_.corners(cell);
-  const std::uint16_t owner = owners_[v[0]];
-  return owners_[v[1]] == owner && owners_[v[2]] == owner && owners_[v[3]] == owner ? owner
-                                                                                    : Triangulation::no_owner;
+std::uint16_t BlockRefinement::owner_of(const std::array<Index, 4>& vertices) const {
+  const std::uint16_t owner = owners_[vertices[0]];
+  return std::all_of(vertices.begin() + 1, vertices.end(), [&](Index v) { return owners_[v] == owner; })
+             ? owner
+             : Triangulation::no_owner;
+}
+
+std::uint16_t BlockRefinement::owner_of(const WorkQueue::Entry& entry) const {
+  if (of_cells(priority_)) return owner_of(mesh_.corners(entry.id));
+  const std::uint16_t owner = owner_of(mesh_.corners(cell_of(entry.id)));
+  const FaceId other = mesh_.opposite(entry.id);
+  return other != no_face && owner_of(mesh_.corners(cell_of(other))) == owner ? owner
+                                                                              : Triangulation::no_owner;
 }
 
 // Most insertions destroy several cells that are in the queue.
@@ -201,43 +230,100 @@ std::vector<Index> BlockRefinement::room_for(
   return room;
 }
 
-void BlockRefinement::refine(Triangulation::Block& block, const std::vector<WorkQueue::Entry>& entries,
-                             Worker& worker, std::vector<Waiting>& waiting) const {
-  WorkQueue& queue = worker.queue;
-  for (const WorkQueue::Entry& entry : entries) queue.put(priority_, bucket_, entry);
-  const auto any_left = [&] {
-    return queue.first_bucket(WorkQueue::skinny_cells) < WorkQueue::bucket_count ||
-           (priority_ == WorkQueue::large_cells && queue.first_bucket(WorkQueue::large_cells) <= bucket_);
-  };
-  WorkQueue::Item item;
-  while (any_left() && queue.pop(item)) {
-    const auto [priority, entry] = item;
-    if (cells_.due(entry) && !destroy(entry.id, block, worker))
-      waiting.push_back({priority, queue.bucket_of(mesh_.squared_radius(entry.id)), entry});
-  }
-  for (const auto priority : {WorkQueue::skinny_cells, WorkQueue::large_cells})
-    for (unsigned b = queue.first_bucket(priority); b < WorkQueue::bucket_count;
-         b = queue.first_bucket(priority))
-      for (const WorkQueue::Entry& entry : queue.take(priority, b)) waiting.push_back({priority, b, entry});
+// A vertex on the surface makes two triangles more than it destroys, and others hardly any.
+std::vector<std::size_t> BlockRefinement::records_for(std::span<const Index> room) const {
+  constexpr std::size_t of_a_zone = 512, insertions_per_triangle = 16;
+  std::vector<std::size_t> records;
+  for (const Index insertions : room)
+    records.push_back(insertions == 0             ? 0
+                      : of_triangles(priority_) ? of_a_zone + 2 * insertions
+                                                : of_a_zone + insertions / insertions_per_triangle);
+  return records;
 }
 
-// As the loop does where no candidate warps or yields. False when the cell has to wait.
-bool BlockRefinement::destroy(Index cell, Triangulation::Block& block, Worker& worker) const {
-  RandomOffsets random(seed_at(mesh_.circumcentre(cell), domain_.options.seed), collars_);
-  const auto candidate = cells_.candidate(cell, random);
-  if (!candidate) return true;
-  ConflictZone& zone = worker.zone;
-  if (candidate->squared_radius < domain_.floor * domain_.floor ||
-      !block.find_conflict_zone(candidate->point, cell, zone))
-    return false;
-  const Index region = surface_.region(cell);
-  block.insert(zone);
-  worker.largest.add(zone);
-  for (const Index created : zone.created) {
-    surface_.quiet_cell_made(created, region);
-    collar_cells_.quiet_cell_made(created);
-    cells_.judge(created, worker.queue);
+void BlockRefinement::refine(Block block, const std::vector<WorkQueue::Entry>& entries, Worker& worker,
+                             std::vector<Waiting>& waiting) {
+  WorkQueue& queue = worker.queue;
+  for (const WorkQueue::Entry& entry : entries) queue.put(priority_, bucket_, entry);
+  WorkQueue::Item item;
+  while (any_left(queue) && queue.pop(item)) {
+    if (!due(item)) continue;
+    const double radius = squared_radius(item);
+    if (!destroy(item, block, worker))
+      waiting.push_back({item.priority, queue.bucket_of(radius), item.entry});
+    else if (due(item))  // it has yielded to something that left it alive
+      queue.push(item.priority, radius, item.entry);
   }
+  for (WorkQueue::Priority priority = queue.first_priority(); priority < WorkQueue::priority_count;
+       priority = queue.first_priority()) {
+    const unsigned bucket = queue.first_bucket(priority);
+    for (const WorkQueue::Entry& entry : queue.take(priority, bucket))
+      waiting.push_back({priority, bucket, entry});
+  }
+}
+
+// Of what the loop would take before it comes to smaller balls than those of the round?
+bool BlockRefinement::any_left(WorkQueue& queue) const {
+  const WorkQueue::Priority priority = queue.first_priority();
+  if (priority == WorkQueue::skinny_cells) return true;
+  return priority < priority_ || (priority == priority_ && queue.first_bucket(priority) <= bucket_);
+}
+
+bool BlockRefinement::due(const WorkQueue::Item& item) const {
+  return of_cells(item.priority) ? cells_.due(item.entry) : triangles_.due(item.entry);
+}
+
+double BlockRefinement::squared_radius(const WorkQueue::Item& item) const {
+  return of_cells(item.priority) ? mesh_.squared_radius(item.entry.id)
+                                 : surface_.triangle(item.entry.id).squared_radius;
+}
+
+std::optional<Candidate> BlockRefinement::candidate(const WorkQueue::Item& item,
+                                                    RandomOffsets& random) const {
+  return of_cells(item.priority) ? cells_.candidate(item.entry.id, random)
+                                 : triangles_.candidate_beside(item.entry.id, random);
+}
+
+// As the loop does where no candidate warps or encroaches a subsegment. False when the loop has to do it.
+bool BlockRefinement::destroy(const WorkQueue::Item& item, Block block, Worker& worker) {
+  const Point& centre =
+      of_cells(item.priority) ? mesh_.circumcentre(item.entry.id) : surface_.triangle(item.entry.id).x;
+  RandomOffsets random(seed_at(centre, domain_.options.seed), collars_);
+  std::optional<Candidate> next = candidate(item, random);
+  if (!next) return of_cells(item.priority);
+  for (;;) {
+    if (next->squared_radius < domain_.floor * domain_.floor ||
+        !block.mesh.find_conflict_zone(next->point, next->start, worker.zone))
+      return false;
+    const FaceId face = triangles_.encroached(worker.zone, *next);
+    if (face == no_face) return insert(*next, block, worker);
+    next = triangles_.candidate_beside(face, random);
+    if (!next) return false;
+  }
+}
+
+// False when there is no room for it. Where nothing of the complex is found from the zone's vertices, cells
+// have the region of those that they replace.
+bool BlockRefinement::insert(const Candidate& candidate, Block block, Worker& worker) {
+  ConflictZone& zone = worker.zone;
+  const bool quiet = std::none_of(zone.vertices.begin(), zone.vertices.end(),
+                                  [&](Index v) { return nodes_.any_at(v); });
+  const Index region = surface_.region(zone.cells[0]);
+  if (!quiet) {
+    if (!surface_.has_room(zone, block.surface)) return false;
+    surface_.cells_vanish(zone, block.surface);
+  }
+  const Index vertex = mesh_.insert(block.mesh, zone, candidate.feature);
+  worker.largest.add(zone);
+  nodes_.cells_made(zone, vertex, block.mesh, worker.nodes);
+  for (const Index created : zone.created) collar_cells_.quiet_cell_made(created);
+  if (quiet) {
+    for (const Index created : zone.created) surface_.quiet_cell_made(created, region);
+  } else {
+    surface_.cells_made(zone, vertex, block.surface);
+    triangles_.cells_made(zone, worker.queue);
+  }
+  for (const Index created : zone.created) cells_.judge(created, worker.queue);
   return true;
 }
 

@@ -13,8 +13,8 @@ namespace collarmesh {
 
 /// The Delaunay mesh and the features that its vertices lie on.
 ///
-/// The loop inserts and says that a vertex lies on one feature more, BlockRefinement inserts between vertices
-/// that lie on none; all other parts read. Searching is reading, though it marks cells and vertices: it is
+/// The loop inserts and says that a vertex lies on one feature more, BlockRefinement inserts into blocks; all
+/// other parts read. Searching is reading, though it marks cells and vertices: it is
 /// for one thread. `visit_ball` does not nest. Invariant: every vertex has a feature, of the lowest dimension
 /// that is known to hold it; dimension 3: none.
 class RefinedMesh {
@@ -81,15 +81,22 @@ class RefinedMesh {
     features_.push_back(feature);
     return triangulation_.insert(zone);
   }
-  /// As in Triangulation. The vertices to come lie on no feature.
+  /// As in Triangulation.
   std::vector<Triangulation::Block> divide(std::span<const Index> insertions, Triangulation::Owners& owners) {
     auto blocks = triangulation_.divide(insertions, owners);
     features_.resize(vertex_count(), Feature{3, none});
     return blocks;
   }
-  void join(std::vector<Triangulation::Block>& blocks) {
-    triangulation_.join(blocks);
-    features_.resize(vertex_count(), Feature{3, none});
+  /// For several threads, each with a block of its own.
+  Index insert(Triangulation::Block& block, ConflictZone& zone, const Feature& feature) {
+    const Index vertex = block.insert(zone);
+    features_[vertex] = feature;
+    return vertex;
+  }
+  Renumbering join(std::vector<Triangulation::Block>& blocks) {
+    Renumbering renumbering = triangulation_.join(blocks);
+    renumbering.apply(features_);
+    return renumbering;
   }
   /// A vertex is found to lie on this feature, too: it takes it over where it is of a lower dimension.
   void lower_feature(Index vertex, const Feature& feature) {

@@ -38,8 +38,8 @@ Refinement::Refinement(const Plc& plc, const MeshOptions& options, const Executi
       collar_creator_(domain_, mesh_, nodes_, sizes_, collars_, collar_cells_, surface_, points_, curves_,
                       open_creases_,
                       [this](std::size_t planned_vertices) { return stopped(planned_vertices); }),
-      blocks_(domain_, mesh_, nodes_, collars_, collar_cells_, surface_, sizes_, points_, curves_, cells_,
-              queue_),
+      blocks_(domain_, mesh_, nodes_, collars_, collar_cells_, surface_, sizes_, points_, curves_, triangles_,
+              cells_, queue_),
       collar_surface_(domain_, mesh_, nodes_, collars_, collar_cells_, surface_, collar_creator_),
       collar_review_(mesh_, collars_, collar_cells_, surface_, collar_creator_, collar_surface_, queue_,
                      [this] { return stopped(); }),
@@ -272,7 +272,8 @@ bool Refinement::stopped(std::size_t planned_vertices) {
 
 std::size_t Refinement::bytes() const {
   return queue_.bytes() + mesh_.bytes() + nodes_.bytes() + surface_.bytes() + collar_cells_.bytes() +
-         facing_sheets_.bytes() + points_.bytes() + curves_.bytes() + cells_.bytes() + collar_review_.bytes();
+         facing_sheets_.bytes() + points_.bytes() + curves_.bytes() + cells_.bytes() + collar_review_.bytes() +
+         blocks_.bytes();
 }
 
 Extracted Refinement::extract() const {

@@ -19,7 +19,7 @@ RestrictedSurface::RestrictedSurface(const Domain& domain, const RefinedMesh& me
     : domain_(domain), mesh_(mesh), nodes_(nodes), collar_cells_(collar_cells) {
   labels_.resize(mesh_.cell_capacity());
   marks_.resize(mesh_.cell_capacity());
-  for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) label_from_outside(cell);
+  for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) label_from_outside(cell, workspace_);
 }
 
 std::vector<FaceId> RestrictedSurface::marked_faces() const {
@@ -33,25 +33,25 @@ std::vector<FaceId> RestrictedSurface::marked_faces() const {
 }
 
 // The box' corners lie outside every region.
-void RestrictedSurface::label_from_outside(Index cell) {
-  crossings_.clear();
-  if (!nodes_.hierarchy().empty()) nodes_.crossings(mesh_.point(0), mesh_.circumcentre(cell), crossings_);
-  labels_[cell].region = region_beyond(0);
+void RestrictedSurface::label_from_outside(Index cell, Workspace& w) {
+  w.crossings_.clear();
+  if (!nodes_.hierarchy().empty()) nodes_.crossings(mesh_.point(0), mesh_.circumcentre(cell), w.crossings_);
+  labels_[cell].region = region_beyond(0, w);
 }
 
 // The region at the end of a segment that starts in `region` and has just been intersected
 // (crossings_). Each crossing leaves one region and enters another; the one that is entered once
 // more than left is where the segment ends, whatever the order of the crossings.
-Index RestrictedSurface::region_beyond(Index region) const {
-  if (crossings_.empty()) return region;
+Index RestrictedSurface::region_beyond(Index region, const Workspace& w) const {
+  if (w.crossings_.empty()) return region;
   // The regions that a crossing leaves and enters.
   const auto regions_at = [&](const TriangleHierarchy::Crossing& crossing) {
     auto regions = domain_.plc.patches[domain_.plc.triangles[crossing.triangle].patch].regions;
     if (crossing.direction < 0) std::swap(regions[0], regions[1]);
     return regions;
   };
-  if (crossings_.size() == 1) {
-    const auto [left, entered] = regions_at(crossings_[0]);
+  if (w.crossings_.size() == 1) {
+    const auto [left, entered] = regions_at(w.crossings_[0]);
     return left == region ? entered : region;
   }
   std::vector<std::pair<Index, int>> balance{{region, 1}};
@@ -63,7 +63,7 @@ Index RestrictedSurface::region_beyond(Index region) const {
       }
     balance.push_back({r, change});
   };
-  for (const auto& crossing : crossings_) {
+  for (const auto& crossing : w.crossings_) {
     const auto [left, entered] = regions_at(crossing);
     add(entered, 1);
     add(left, -1);
@@ -75,7 +75,7 @@ Index RestrictedSurface::region_beyond(Index region) const {
 
 // Label one of the new cells from across the zone's border, best where no patch can be in between;
 // when the zone is the whole box, from the box' corner. Returns its index in the zone.
-std::size_t RestrictedSurface::first_label(const ConflictZone& zone) {
+std::size_t RestrictedSurface::first_label(const ConflictZone& zone, Workspace& w) {
   std::size_t seed = zone.created.size();
   for (std::size_t i = 0; i < zone.created.size(); ++i) {
     if (zone.outer[i] == no_face) continue;
@@ -84,89 +84,89 @@ std::size_t RestrictedSurface::first_label(const ConflictZone& zone) {
   }
   if (seed < zone.created.size()) {
     const FaceId outer = zone.outer[seed];
-    nodes_.crossings_of_dual_edge(outer, crossings_);
-    labels_[zone.created[seed]].region = region_beyond(labels_[cell_of(outer)].region);
+    nodes_.crossings_of_dual_edge(outer, w.crossings_);
+    labels_[zone.created[seed]].region = region_beyond(labels_[cell_of(outer)].region, w);
     return seed;
   }
-  label_from_outside(zone.created[0]);
+  label_from_outside(zone.created[0], w);
   return 0;
 }
 
 // Restricted triangles among the faces between the new cells: their dual edges are those of the new vertex'
 // Voronoi cell. What they cross is kept in crossed_faces_ and dual_crossings_.
-void RestrictedSurface::restrict_created_faces(const ConflictZone& zone, Index vertex) {
+void RestrictedSurface::restrict_created_faces(const ConflictZone& zone, Index vertex, Workspace& w) {
   double largest = 0;
   for (const Index cell : zone.created) largest = std::max(largest, mesh_.squared_radius(cell));
-  dual_edges_.start(mesh_.point(vertex), std::sqrt(largest));
-  faces_.clear();
+  w.dual_edges_.start(mesh_.point(vertex), std::sqrt(largest));
+  w.faces_.clear();
   for (Index i = 0; i < zone.created.size(); ++i) {
     const Index cell = zone.created[i];
-    dual_edges_.add_point(mesh_.circumcentre(cell));
+    w.dual_edges_.add_point(mesh_.circumcentre(cell));
     labels_[cell].region = i;  // until it is known
     for (unsigned corner = 0; corner < 4; ++corner) {
       const FaceId face = face_id(cell, corner), other = mesh_.opposite(face);
       if (mesh_.corners(cell)[corner] == vertex || other == no_face) continue;
       const Index j = labels_[cell_of(other)].region;
       if (j >= i) continue;  // its turn comes
-      dual_edges_.add_segment(i, j);
-      faces_.push_back(face);
+      w.dual_edges_.add_segment(i, j);
+      w.faces_.push_back(face);
     }
   }
   for (const Index cell : zone.created) labels_[cell].region = unlabelled;
-  nodes_.hierarchy().crossings(dual_edges_, nodes_.at(vertex), dual_crossings_);
-  crossed_faces_.clear();
-  for (std::size_t from = 0, to = 0; from < dual_crossings_.size(); from = to) {
-    crossings_.clear();
-    const Index edge = dual_crossings_[from].segment;
-    for (; to < dual_crossings_.size() && dual_crossings_[to].segment == edge; ++to)
-      crossings_.push_back(dual_crossings_[to].crossing);
-    restrict_face(faces_[edge]);
-    crossed_faces_.push_back({faces_[edge], from, to});
+  nodes_.hierarchy().crossings(w.dual_edges_, nodes_.at(vertex), w.dual_crossings_);
+  w.crossed_faces_.clear();
+  for (std::size_t from = 0, to = 0; from < w.dual_crossings_.size(); from = to) {
+    w.crossings_.clear();
+    const Index edge = w.dual_crossings_[from].segment;
+    for (; to < w.dual_crossings_.size() && w.dual_crossings_[to].segment == edge; ++to)
+      w.crossings_.push_back(w.dual_crossings_[to].crossing);
+    restrict_face(w.faces_[edge], w);
+    w.crossed_faces_.push_back({w.faces_[edge], from, to});
   }
 }
 
 // What the dual edge of a face between new cells crosses on the way out of the face's cell, in crossings_.
-void RestrictedSurface::recall_crossings(FaceId face) {
-  crossings_.clear();
+void RestrictedSurface::recall_crossings(FaceId face, Workspace& w) const {
+  w.crossings_.clear();
   if (!is_marked(face)) return;
   const FaceId other = mesh_.opposite(face);
-  const auto crossed = std::find_if(crossed_faces_.begin(), crossed_faces_.end(),
-                                    [&](const CrossedFace& f) { return f.face == face || f.face == other; });
+  const auto crossed = std::find_if(w.crossed_faces_.begin(), w.crossed_faces_.end(),
+                                    [&](const auto& f) { return f.face == face || f.face == other; });
   for (std::size_t i = crossed->first; i < crossed->end; ++i) {
-    auto [triangle, direction] = dual_crossings_[i].crossing;
-    crossings_.push_back({triangle, crossed->face == face ? direction : -direction});
+    auto [triangle, direction] = w.dual_crossings_[i].crossing;
+    w.crossings_.push_back({triangle, crossed->face == face ? direction : -direction});
   }
 }
 
 // Labels of the new cells, and restricted triangles among the faces between them.
-void RestrictedSurface::label_created_cells(const ConflictZone& zone, Index vertex) {
+void RestrictedSurface::label_created_cells(const ConflictZone& zone, Index vertex, Workspace& w) {
   for (const Index cell : zone.created) labels_[cell] = {.region = unlabelled};
-  if (nodes_.any_at(vertex)) restrict_created_faces(zone, vertex);
-  const std::size_t seed = first_label(zone);
+  if (nodes_.any_at(vertex)) restrict_created_faces(zone, vertex, w);
+  const std::size_t seed = first_label(zone, w);
   const Index region = labels_[zone.created[seed]].region;
   if (!nodes_.any_at(vertex)) {
     for (const Index cell : zone.created) labels_[cell].region = region;
     return;
   }
-  cells_.assign(1, zone.created[seed]);
-  while (!cells_.empty()) {
-    const Index cell = cells_.back();
-    cells_.pop_back();
+  w.cells_.assign(1, zone.created[seed]);
+  while (!w.cells_.empty()) {
+    const Index cell = w.cells_.back();
+    w.cells_.pop_back();
     for (unsigned corner = 0; corner < 4; ++corner) {
       const FaceId face = face_id(cell, corner), other = mesh_.opposite(face);
       if (mesh_.corners(cell)[corner] == vertex || other == no_face ||
           labels_[cell_of(other)].region != unlabelled)
         continue;
-      recall_crossings(face);
-      labels_[cell_of(other)].region = region_beyond(labels_[cell].region);
-      cells_.push_back(cell_of(other));
+      recall_crossings(face, w);
+      labels_[cell_of(other)].region = region_beyond(labels_[cell].region, w);
+      w.cells_.push_back(cell_of(other));
     }
   }
 }
 
 // A border face' dual edge has become shorter, so that it crosses what it crossed, or nothing. Does it
 // still cross the triangle that it alone crossed, from the one label to the other?
-bool RestrictedSurface::crosses_as_before(FaceId outer, FaceId face, Index vertex) {
+bool RestrictedSurface::crosses_as_before(FaceId outer, FaceId face, Index vertex, Workspace& w) const {
   const RestrictedTriangle& t = triangle(outer);
   // Of a dual edge in the plane of its triangle x may be any point: it is gone when the new vertex has
   // come into the surface gap ball.
@@ -174,8 +174,8 @@ bool RestrictedSurface::crosses_as_before(FaceId outer, FaceId face, Index verte
   const int direction = nodes_.hierarchy().crossing(mesh_.circumcentre(cell_of(outer)),
                                                     mesh_.circumcentre(cell_of(face)), t.triangle);
   if (direction == 0) return false;
-  crossings_.assign(1, {t.triangle, direction});
-  return region_beyond(labels_[cell_of(outer)].region) == labels_[cell_of(face)].region;
+  w.crossings_.assign(1, {t.triangle, direction});
+  return region_beyond(labels_[cell_of(outer)].region, w) == labels_[cell_of(face)].region;
 }
 
 // What it alone crossed is beyond the end that is gone: the labels say so, unless the regions on both sides
@@ -189,7 +189,7 @@ bool RestrictedSurface::crosses_no_more(FaceId outer, FaceId face) const {
 
 // The dual edges of the zone's border faces have become shorter, their ends are rounded anew: look
 // again at those that were marked and those whose labels say that they should be.
-void RestrictedSurface::mark_border_faces(const ConflictZone& zone, Index vertex) {
+void RestrictedSurface::mark_border_faces(const ConflictZone& zone, Index vertex, Workspace& w) {
   for (std::size_t i = 0; i < zone.border.size(); ++i) {
     const FaceId outer = zone.outer[i];
     if (outer == no_face) continue;
@@ -197,20 +197,20 @@ void RestrictedSurface::mark_border_faces(const ConflictZone& zone, Index vertex
     const bool was_marked = is_marked(outer);
     if (!was_marked && labels_[created].region == labels_[cell_of(outer)].region) continue;
     const FaceId face = face_id(created, corner_of(zone.border[i]));
-    if (was_marked && crosses_as_before(outer, face, vertex)) {
+    if (was_marked && crosses_as_before(outer, face, vertex, w)) {
       mark(face, record_of(outer));
       notes(face).judged = false;  // it may have been queued as the destroyed cell's face
       continue;
     }
     const bool known = was_marked && crosses_no_more(outer, face);
-    if (was_marked) unmark(outer);
+    if (was_marked) unmark(outer, w);
     if (known) continue;
-    nodes_.crossings_of_dual_edge(face, crossings_);
-    if (!crossings_.empty()) restrict_face(face);
+    nodes_.crossings_of_dual_edge(face, w.crossings_);
+    if (!w.crossings_.empty()) restrict_face(face, w);
   }
 }
 
-void RestrictedSurface::cells_vanish(const ConflictZone& zone) {
+void RestrictedSurface::cells_vanish(const ConflictZone& zone, Workspace& w) {
   const auto has_marks = [&](Index cell) { return labels_[cell].marked != 0; };
   if (std::none_of(zone.cells.begin(), zone.cells.end(), has_marks)) return;
   // The record of a border face stays: the cell beyond has it, too.
@@ -220,14 +220,18 @@ void RestrictedSurface::cells_vanish(const ConflictZone& zone) {
     visit_marked(cell, [&](FaceId face) {
       const FaceId other = mesh_.opposite(face);
       labels_[cell_of(other)].marked &= static_cast<std::uint8_t>(~(1U << corner_of(other)));
-      unmark(face);
+      unmark(face, w);
     });
 }
 
 void RestrictedSurface::cells_made(const ConflictZone& zone, Index vertex) {
   fit_mesh();
-  label_created_cells(zone, vertex);
-  mark_border_faces(zone, vertex);
+  cells_made(zone, vertex, workspace_);
+}
+
+void RestrictedSurface::cells_made(const ConflictZone& zone, Index vertex, Workspace& w) {
+  label_created_cells(zone, vertex, w);
+  mark_border_faces(zone, vertex, w);
 }
 
 void RestrictedSurface::fit_mesh() {
@@ -235,13 +239,42 @@ void RestrictedSurface::fit_mesh() {
   marks_.extend(mesh_.cell_capacity());
 }
 
-Index RestrictedSurface::new_record() {
-  if (free_records_.empty()) {
+// Those that are free first.
+void RestrictedSurface::divide(std::span<const std::size_t> records, std::span<Workspace> of_blocks) {
+  fit_mesh();
+  std::vector<Index>& free = workspace_.free_records_;
+  for (std::size_t i = 0; i < of_blocks.size(); ++i) {
+    std::vector<Index>& of_block = of_blocks[i].free_records_;
+    while (of_block.size() < records[i] && !free.empty()) {
+      of_block.push_back(free.back());
+      free.pop_back();
+    }
+    for (auto next = static_cast<Index>(records_.size()); of_block.size() < records[i]; ++next)
+      of_block.push_back(next);
+    records_.extend(std::max<std::size_t>(records_.size(), of_block.empty() ? 0 : of_block.back() + 1U));
+  }
+}
+
+void RestrictedSurface::join(std::span<Workspace> of_blocks) {
+  for (Workspace& workspace : of_blocks) {
+    auto& free = workspace.free_records_;
+    workspace_.free_records_.insert(workspace_.free_records_.end(), free.begin(), free.end());
+    free.clear();
+  }
+}
+
+// Every face of a new cell may be one.
+bool RestrictedSurface::has_room(const ConflictZone& zone, const Workspace& w) const {
+  return w.free_records_.size() >= zone.border.size() / 2 * 5;
+}
+
+Index RestrictedSurface::new_record(Workspace& w) {
+  if (w.free_records_.empty()) {
     records_.push_back({});
     return static_cast<Index>(records_.size() - 1);
   }
-  const Index record = free_records_.back();
-  free_records_.pop_back();
+  const Index record = w.free_records_.back();
+  w.free_records_.pop_back();
   records_[record] = {};
   return record;
 }
@@ -252,22 +285,22 @@ void RestrictedSurface::mark(FaceId face, Index record) {
 }
 
 // Drop the mark on this side; the record goes with it.
-void RestrictedSurface::unmark(FaceId face) {
+void RestrictedSurface::unmark(FaceId face, Workspace& w) {
   labels_[cell_of(face)].marked &= static_cast<std::uint8_t>(~(1U << corner_of(face)));
-  free_records_.push_back(record_of(face));
+  w.free_records_.push_back(record_of(face));
 }
 
 // Precondition: crossings_ are those of its dual edge.
-void RestrictedSurface::restrict_face(FaceId face) {
-  const Index record = new_record();
+void RestrictedSurface::restrict_face(FaceId face, Workspace& w) {
+  const Index record = new_record(w);
   mark(face, record);
   mark(mesh_.opposite(face), record);
   const auto v = mesh_.face_vertices(face);
   const Point& corner = mesh_.point(v[0]);
   RestrictedTriangle& t = records_[record].triangle;
-  t.several_sheets = crossings_.size() > 1;
+  t.several_sheets = w.crossings_.size() > 1;
   t.squared_radius = -1;
-  for (const auto& crossing : crossings_) {
+  for (const auto& crossing : w.crossings_) {
     const Point x = crossing_point(face, crossing.triangle);
     const double r2 = squared_distance(x, corner);
     if (r2 <= t.squared_radius) continue;
@@ -324,7 +357,7 @@ void RestrictedSurface::give_outside(Index cell) {
   for (unsigned corner = 0; corner < 4; ++corner) {
     const FaceId face = face_id(cell, corner), other = mesh_.opposite(face);
     if (is_marked(face)) {
-      unmark(face);
+      unmark(face, workspace_);
       labels_[cell_of(other)].marked &= static_cast<std::uint8_t>(~(1U << corner_of(other)));
       continue;
     }

@@ -69,13 +69,38 @@ class RestrictedSurface {
 
   /// The zone's cells are about to go: the triangles between them go, too. Precondition: the mesh still has
   /// them; RefinedMesh::insert with the same zone comes next.
-  void cells_vanish(const ConflictZone& zone);
+  void cells_vanish(const ConflictZone& zone) { cells_vanish(zone, workspace_); }
   /// Label the new cells; find restricted triangles between them, and look again at those on the border.
   /// Precondition: `cells_vanish` had the same zone; SurfaceNodes and CollarCells know the new vertex.
   void cells_made(const ConflictZone& zone, Index vertex);
-  /// Before cells are made between vertices that the surface is far from: room for all.
-  void fit_mesh();
-  /// One of these, in the region of the cells that it replaces. Several threads may tell of several cells.
+
+  /// What an insertion needs for itself, and the records that are free for it.
+  class Workspace {
+    friend class RestrictedSurface;
+    /// A face between new cells whose dual edge crosses patches: dual_crossings_[first, end).
+    struct CrossedFace {
+      FaceId face;
+      std::size_t first, end;
+    };
+    std::vector<Index> free_records_;
+    std::vector<TriangleHierarchy::Crossing> crossings_;
+    SegmentBundle dual_edges_;
+    std::vector<TriangleHierarchy::BundleCrossing> dual_crossings_;
+    std::vector<CrossedFace> crossed_faces_;
+    std::vector<FaceId> faces_;
+    std::vector<Index> cells_;
+  };
+  /// Before cells are made in blocks: room for all of them, and for so many records in each block's workspace.
+  void divide(std::span<const std::size_t> records, std::span<Workspace> of_blocks);
+  /// Blocks were joined.
+  void join(std::span<Workspace> of_blocks);
+  // For several threads, each with a block of its own and the block's workspace:
+  /// Does a block have enough records for an insertion with this zone?
+  bool has_room(const ConflictZone& zone, const Workspace& workspace) const;
+  void cells_vanish(const ConflictZone& zone, Workspace& workspace);
+  void cells_made(const ConflictZone& zone, Index vertex, Workspace& workspace);
+  /// As both of these, for a cell of a zone that nothing of the complex is found from: its region is that of
+  /// the cells that it replaces.
   void quiet_cell_made(Index cell, Index region) { labels_[cell] = {.region = region}; }
 
   /// A ball has come: does it hold the places of this cell's triangles?
@@ -97,29 +122,24 @@ class RestrictedSurface {
     RestrictedTriangle triangle;
     TriangleNotes notes;
   };
-  /// A face between new cells whose dual edge crosses patches: dual_crossings_[first, end).
-  struct CrossedFace {
-    FaceId face;
-    std::size_t first, end;
-  };
-
   Index record_of(FaceId face) const { return marks_[cell_of(face)][corner_of(face)]; }
   const Record& record(FaceId face) const { return records_[record_of(face)]; }
   Index patch_of(const RestrictedTriangle& t) const { return domain_.plc.triangles[t.triangle].patch; }
 
-  void label_from_outside(Index cell);
-  std::size_t first_label(const ConflictZone& zone);
-  Index region_beyond(Index region) const;
-  void label_created_cells(const ConflictZone& zone, Index vertex);
-  void restrict_created_faces(const ConflictZone& zone, Index vertex);
-  void recall_crossings(FaceId face);
-  void mark_border_faces(const ConflictZone& zone, Index vertex);
-  bool crosses_as_before(FaceId outer, FaceId face, Index vertex);
+  void fit_mesh();
+  void label_from_outside(Index cell, Workspace& w);
+  std::size_t first_label(const ConflictZone& zone, Workspace& w);
+  Index region_beyond(Index region, const Workspace& w) const;
+  void label_created_cells(const ConflictZone& zone, Index vertex, Workspace& w);
+  void restrict_created_faces(const ConflictZone& zone, Index vertex, Workspace& w);
+  void recall_crossings(FaceId face, Workspace& w) const;
+  void mark_border_faces(const ConflictZone& zone, Index vertex, Workspace& w);
+  bool crosses_as_before(FaceId outer, FaceId face, Index vertex, Workspace& w) const;
   bool crosses_no_more(FaceId outer, FaceId face) const;
-  Index new_record();
+  Index new_record(Workspace& w);
   void mark(FaceId face, Index record);
-  void unmark(FaceId face);
-  void restrict_face(FaceId face);
+  void unmark(FaceId face, Workspace& w);
+  void restrict_face(FaceId face, Workspace& w);
   Point crossing_point(FaceId face, Index triangle) const;
 
   const Domain& domain_;
@@ -129,14 +149,7 @@ class RestrictedSurface {
   GrowingArray<Label> labels_;                // by cell
   GrowingArray<std::array<Index, 4>> marks_;  // by cell and corner: records of marked faces
   GrowingArray<Record> records_;
-  std::vector<Index> free_records_;
-  // During an insertion:
-  std::vector<TriangleHierarchy::Crossing> crossings_;
-  SegmentBundle dual_edges_;
-  std::vector<TriangleHierarchy::BundleCrossing> dual_crossings_;
-  std::vector<CrossedFace> crossed_faces_;
-  std::vector<FaceId> faces_;
-  std::vector<Index> cells_;
+  Workspace workspace_;  // of the loop
 };
 
 }  // namespace collarmesh

@@ -15,16 +15,32 @@ namespace {
 constexpr std::size_t insertions_between_refreshes = 16;
 constexpr std::size_t insertions_between_surface_refreshes = 48;
 constexpr std::size_t cells_per_insertion = 4;
+constexpr std::size_t nodes_per_chunk = std::size_t{1} << 14;
 
 }  // namespace
+
+Index* SurfaceNodes::Workspace::reserve(std::size_t count) {
+  if (left_ < count) {
+    left_ = std::max(count, nodes_per_chunk);
+    chunks_.push_back(std::make_unique_for_overwrite<Index[]>(left_));
+    reserved_ += left_;
+    end_ = chunks_.back().get() + left_;
+  }
+  Index* const reserved = end_ - left_;
+  left_ -= count;
+  return reserved;
+}
 
 SurfaceNodes::SurfaceNodes(const Domain& domain, const RefinedMesh& mesh)
     : domain_(domain), mesh_(mesh), hierarchy_(domain.points, elements_of(domain.plc)) {
   lists_.resize(mesh_.vertex_count());
   for (Index v = 0; v < mesh_.vertex_count(); ++v) expect_insertions(v, 0);
   if (hierarchy_.empty()) return;
-  pool_.push_back(hierarchy_.root());
-  for (List& list : lists_) list.count = 1;
+  for (List& list : lists_) {
+    list.nodes = workspace_.reserve(1);
+    list.nodes[0] = hierarchy_.root();
+    list.count = 1;
+  }
 }
 
 std::span<const Index> SurfaceNodes::fewest(FaceId face) const {
@@ -50,26 +66,45 @@ Index SurfaceNodes::nearest_triangle(const Point& p, Index patch, double& within
   return nearest;
 }
 
-// A new vertex' Voronoi cell is cut out of its neighbours' cells: their nodes cover it.
 void SurfaceNodes::cells_made(const ConflictZone& zone, Index vertex) {
   lists_.push_back({});
+  cells_made(zone, vertex, workspace_,
+             [&](Index v, std::vector<Index>& cells) { mesh_.incident_cells(v, cells); });
+}
+
+void SurfaceNodes::fit_mesh() { lists_.extend(mesh_.vertex_count()); }
+
+void SurfaceNodes::cells_made(const ConflictZone& zone, Index vertex, const Triangulation::Block& block,
+                              Workspace& workspace) {
+  lists_[vertex] = {};
+  cells_made(zone, vertex, workspace,
+             [&](Index v, std::vector<Index>& cells) { block.incident_cells(v, cells); });
+}
+
+// A new vertex' Voronoi cell is cut out of its neighbours' cells: their nodes cover it.
+template <class IncidentCells>
+void SurfaceNodes::cells_made(const ConflictZone& zone, Index vertex, Workspace& w,
+                              const IncidentCells& incident_cells) {
   expect_insertions(vertex, zone.created.size());
-  seeds_.clear();
+  w.seeds_.clear();
   for (const Index neighbour : zone.vertices) {
     const auto nodes = at(neighbour);
     if (nodes.empty()) continue;
-    seeds_.insert(seeds_.end(), nodes.begin(), nodes.end());
+    w.seeds_.insert(w.seeds_.end(), nodes.begin(), nodes.end());
     if (lists_[neighbour].insertions_left > 0) --lists_[neighbour].insertions_left;
   }
-  if (seeds_.empty()) return;
-  find(zone.created);
-  store(lists_[vertex]);
-  for (const Index neighbour : zone.vertices)
-    if (lists_[neighbour].insertions_left == 0) refresh(neighbour);
-}
-
-void SurfaceNodes::quiet_vertices_made() {
-  lists_.resize(mesh_.vertex_count(), {.insertions_left = insertions_between_refreshes});
+  if (w.seeds_.empty()) return;
+  find(zone.created, w);
+  store(lists_[vertex], w);
+  for (const Index neighbour : zone.vertices) {
+    if (lists_[neighbour].insertions_left > 0) continue;
+    incident_cells(neighbour, w.cells_);
+    const auto nodes = at(neighbour);
+    w.seeds_.assign(nodes.begin(), nodes.end());
+    find(w.cells_, w);
+    store(lists_[neighbour], w);
+    expect_insertions(neighbour, w.cells_.size());
+  }
 }
 
 void SurfaceNodes::expect_insertions(Index vertex, std::size_t star) {
@@ -81,7 +116,7 @@ void SurfaceNodes::expect_insertions(Index vertex, std::size_t star) {
 
 // Into found_: what covers the elements in the Voronoi cell of a vertex with these cells, by the box of its
 // corners, widened by the rounding of circumcentres. Precondition: seeds_ cover them.
-void SurfaceNodes::find(const std::vector<Index>& cells) {
+void SurfaceNodes::find(const std::vector<Index>& cells, Workspace& w) const {
   Box box;
   double largest = 0;
   for (const Index cell : cells) {
@@ -91,26 +126,13 @@ void SurfaceNodes::find(const std::vector<Index>& cells) {
   const double radius = std::sqrt(largest), slack = 1e-9 * radius;
   box.min = box.min - Vector{slack, slack, slack};
   box.max = box.max + Vector{slack, slack, slack};
-  hierarchy_.nodes_meeting(box, radius, seeds_, found_);
+  hierarchy_.nodes_meeting(box, radius, w.seeds_, w.marks_, w.found_);
 }
 
-void SurfaceNodes::refresh(Index vertex) {
-  mesh_.incident_cells(vertex, cells_);
-  const auto nodes = at(vertex);
-  seeds_.assign(nodes.begin(), nodes.end());
-  find(cells_);
-  store(lists_[vertex]);
-  expect_insertions(vertex, cells_.size());
-}
-
-void SurfaceNodes::store(List& list) {
-  if (found_.size() > list.count) {
-    list.first = static_cast<Index>(pool_.size());
-    pool_.append(found_);
-  } else {
-    std::copy(found_.begin(), found_.end(), &pool_[list.first]);
-  }
-  list.count = static_cast<Index>(found_.size());
+void SurfaceNodes::store(List& list, Workspace& w) {
+  if (w.found_.size() > list.count) list.nodes = w.reserve(w.found_.size());
+  std::copy(w.found_.begin(), w.found_.end(), list.nodes);
+  list.count = static_cast<Index>(w.found_.size());
 }
 
 }  // namespace collarmesh

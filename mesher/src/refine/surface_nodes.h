@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -14,16 +15,15 @@ namespace collarmesh {
 /// while the vertex' Voronoi cell is large.
 ///
 /// Invariant: the nodes of a vertex cover every element that meets the box of its Voronoi cell. There may be
-/// more of them: they are filtered now and then. The loop tells of insertions; all parts ask.
+/// more of them: they are filtered now and then. The loop tells of insertions, BlockRefinement of those into
+/// blocks; all parts ask.
 class SurfaceNodes {
  public:
   /// Both are kept by reference. Every vertex that the mesh has gets the root.
   SurfaceNodes(const Domain& domain, const RefinedMesh& mesh);
 
   const TriangleHierarchy& hierarchy() const { return hierarchy_; }
-  std::span<const Index> at(Index vertex) const {
-    return {pool_.data() + lists_[vertex].first, lists_[vertex].count};
-  }
+  std::span<const Index> at(Index vertex) const { return {lists_[vertex].nodes, lists_[vertex].count}; }
   bool any_at(Index vertex) const { return lists_[vertex].count > 0; }
   /// Of the vertices of a face those of the one with the fewest: they cover what the face's dual edge meets.
   std::span<const Index> fewest(FaceId face) const;
@@ -39,29 +39,50 @@ class SurfaceNodes {
   Index nearest_triangle(const Point& p, Index patch, double& within_squared) const;
 
   void cells_made(const ConflictZone& zone, Index vertex);
-  /// Vertices have come between vertices without nodes: they have none, either.
-  void quiet_vertices_made();
 
-  std::size_t bytes() const {
-    return hierarchy_.bytes() + pool_.bytes() + lists_.bytes();
-  }
+  /// What a thread that inserts into blocks keeps for itself: scratch, and the lists that it has made, for as
+  /// long as anybody asks.
+  class Workspace {
+   public:
+    std::size_t bytes() const { return reserved_ * sizeof(Index); }
+
+   private:
+    friend class SurfaceNodes;
+    Index* reserve(std::size_t count);
+
+    std::vector<std::unique_ptr<Index[]>> chunks_;
+    Index* end_ = nullptr;                 // of the last one
+    std::size_t reserved_ = 0, left_ = 0;  // in all of them, in the last one
+    TriangleHierarchy::Marks marks_;
+    std::vector<Index> seeds_, found_, cells_;
+  };
+  /// Before vertices are inserted into blocks: room for all.
+  void fit_mesh();
+  /// As `cells_made`. For several threads, each with its block.
+  void cells_made(const ConflictZone& zone, Index vertex, const Triangulation::Block& block,
+                  Workspace& workspace);
+  /// Blocks were joined.
+  void renumber(const Renumbering& renumbering) { renumbering.apply(lists_); }
+
+  std::size_t bytes() const { return hierarchy_.bytes() + lists_.bytes() + workspace_.bytes(); }
 
  private:
   struct List {
-    Index first = 0, count = 0;         // in pool_
+    Index* nodes = nullptr;             // in a chunk of a workspace
+    Index count = 0;
     std::uint16_t insertions_left = 0;  // in the vertex' star before its nodes are filtered again
   };
-  void find(const std::vector<Index>& cells);
-  void refresh(Index vertex);
+  template <class IncidentCells>
+  void cells_made(const ConflictZone& zone, Index vertex, Workspace& w, const IncidentCells& incident_cells);
+  void find(const std::vector<Index>& cells, Workspace& w) const;
   void expect_insertions(Index vertex, std::size_t star);
-  void store(List& list);
+  void store(List& list, Workspace& w);
 
   const Domain& domain_;
   const RefinedMesh& mesh_;
   TriangleHierarchy hierarchy_;
   GrowingArray<List> lists_;  // by vertex
-  GrowingArray<Index> pool_;
-  std::vector<Index> seeds_, found_, cells_;  // scratch
+  Workspace workspace_;       // of the loop
 };
 
 }  // namespace collarmesh

@@ -47,16 +47,7 @@ FaceId TriangleQuality::encroached(const ConflictZone& zone, const Candidate& ca
 std::optional<Candidate> TriangleQuality::candidate(FaceId face) {
   if (auto across = facing_sheets_.candidate_across(face)) return across;
   const RestrictedTriangle& t = surface_.triangle(face);
-  const Index patch = surface_.patch(face);
-  Point p = t.x;
-  if (domain_.plc.patches[patch].planar && t.resolved_vertices) {
-    const auto v = mesh_.face_vertices(face);
-    const Vector n = cross(mesh_.point(v[1]) - mesh_.point(v[0]), mesh_.point(v[2]) - mesh_.point(v[0]));
-    if (squared_norm(n) > 0)
-      p = p + random_.outside_collars(p, offset_per_radius * std::sqrt(t.squared_radius / 3), n);
-  }
-  if (domain_.plc.patches[patch].planar) p = domain_.on_plane(patch, p);
-  p = domain_.frame.rounded(p);
+  const Point p = place(face, random_);
   const FaceId other = mesh_.opposite(face);
   Index start = none;
   if (mesh_.in_conflict(cell_of(face), p))
@@ -66,7 +57,41 @@ std::optional<Candidate> TriangleQuality::candidate(FaceId face) {
   else
     start = mesh_.conflicting_cell_around(mesh_.face_vertices(face)[0], p);
   if (start == none) return std::nullopt;
-  return Candidate{p, t.squared_radius, t.x, {2, patch}, start};
+  return Candidate{p, t.squared_radius, t.x, {2, surface_.patch(face)}, start};
+}
+
+std::optional<Candidate> TriangleQuality::candidate_beside(FaceId face, RandomOffsets& random) const {
+  if (on_another_sheet(face)) return std::nullopt;
+  const RestrictedTriangle& t = surface_.triangle(face);
+  const Point p = place(face, random);
+  for (const FaceId side : {face, mesh_.opposite(face)})
+    if (side != no_face && mesh_.in_conflict(cell_of(side), p))
+      return Candidate{p, t.squared_radius, t.x, {2, surface_.patch(face)}, cell_of(side)};
+  return std::nullopt;
+}
+
+// Has it a vertex of some feature that is not on its patch, which may face it across a gap?
+bool TriangleQuality::on_another_sheet(FaceId face) const {
+  if (surface_.triangle(face).resolved_vertices) return false;
+  const auto v = mesh_.face_vertices(face);
+  return std::any_of(v.begin(), v.end(), [&](Index vertex) {
+    return mesh_.feature(vertex).dimension < 3 && !mesh_.on_patch(vertex, surface_.patch(face));
+  });
+}
+
+// Where it is split: at the middle of its ball, or near it.
+Point TriangleQuality::place(FaceId face, RandomOffsets& random) const {
+  const RestrictedTriangle& t = surface_.triangle(face);
+  const Index patch = surface_.patch(face);
+  Point p = t.x;
+  if (domain_.plc.patches[patch].planar && t.resolved_vertices) {
+    const auto v = mesh_.face_vertices(face);
+    const Vector n = cross(mesh_.point(v[1]) - mesh_.point(v[0]), mesh_.point(v[2]) - mesh_.point(v[0]));
+    if (squared_norm(n) > 0)
+      p = p + random.outside_collars(p, offset_per_radius * std::sqrt(t.squared_radius / 3), n);
+  }
+  if (domain_.plc.patches[patch].planar) p = domain_.on_plane(patch, p);
+  return domain_.frame.rounded(p);
 }
 
 bool TriangleQuality::due(const WorkQueue::Entry& entry) const {
@@ -88,6 +113,17 @@ void TriangleQuality::cells_made(const ConflictZone& zone) {
     });
 }
 
+void TriangleQuality::cells_made(const ConflictZone& zone, WorkQueue& queue) const {
+  const Sizing& sizing = sizes_.asked();
+  for (const Index cell : zone.created)
+    surface_.visit_marked(cell, [&](FaceId face) {
+      if (surface_.notes(face).judged) return;
+      judge(face, queue, [&](const RestrictedTriangle& t) {
+        return sizing.triangle_size(surface_.patch(face), t.triangle, t.x);
+      });
+    });
+}
+
 void TriangleQuality::judge_all() {
   for (const FaceId face : surface_.marked_faces())
     if (!surface_.notes(face).given_up) judge(face);
@@ -101,16 +137,24 @@ void TriangleQuality::split(FaceId face) {
 }
 
 void TriangleQuality::judge(FaceId face) {
+  judge(face, queue_, [&](const RestrictedTriangle& t) { return target_size(face, t); });
+}
+
+template <class TargetSize>
+void TriangleQuality::judge(FaceId face, WorkQueue& queue, const TargetSize& target_size) const {
   surface_.notes(face).judged = true;
   const RestrictedTriangle& t = surface_.triangle(face);
   if (t.in_collar) return;
-  if (!t.resolved_vertices || t.several_sheets || too_far(face, t))
-    queue_.push(WorkQueue::unresolved_triangles, t.squared_radius, entry(face));
-  else if (too_large(face, t))
-    queue_.push(WorkQueue::large_triangles, t.squared_radius, entry(face));
+  if (!t.resolved_vertices || t.several_sheets || too_far(face, t)) {
+    queue.push(WorkQueue::unresolved_triangles, t.squared_radius, entry(face));
+    return;
+  }
+  const double radius = Sizing::triangle_radius(target_size(t));
+  if (t.squared_radius > radius * radius)
+    queue.push(WorkQueue::large_triangles, t.squared_radius, entry(face));
 }
 
-bool TriangleQuality::too_large(FaceId face, const RestrictedTriangle& t) {
+double TriangleQuality::target_size(FaceId face, const RestrictedTriangle& t) {
   const Sizing& sizing = sizes_.asked();
   const auto corners = mesh_.face_vertices(face);
   double size = sizing.triangle_size(surface_.patch(face), t.triangle, t.x);
@@ -118,9 +162,7 @@ bool TriangleQuality::too_large(FaceId face, const RestrictedTriangle& t) {
     size = std::min(size, sizing.gap_size(gap_at(t, widest)));
   const double reach = std::sqrt(t.squared_radius);
   sizes_.impose(corners, size, reach);
-  size = std::min(size, sizes_.graded(corners, reach));
-  const double radius = Sizing::triangle_radius(size);
-  return t.squared_radius > radius * radius;
+  return std::min(size, sizes_.graded(corners, reach));
 }
 
 // How far is the surface that faces this one across a region, if not farther than `widest`?

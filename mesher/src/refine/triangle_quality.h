@@ -39,6 +39,9 @@ class TriangleQuality {
   FaceId encroached(const ConflictZone& zone, const Candidate& candidate) const;
   /// What destroys a triangle, if anything can.
   std::optional<Candidate> candidate(FaceId face);
+  /// The same, where it lies on no other sheet and there is a cell in conflict beside the triangle. Several
+  /// threads may ask at once, each with offsets of its own, of triangles in its own block.
+  std::optional<Candidate> candidate_beside(FaceId face, RandomOffsets& random) const;
   /// Is the entry of the queue that of a triangle that is to be destroyed?
   bool due(const WorkQueue::Entry& entry) const;
   /// Queue a triangle again that is still there after something else was inserted in its place.
@@ -48,6 +51,9 @@ class TriangleQuality {
 
   /// Precondition: surface and sizes know the new cells and the vertex.
   void cells_made(const ConflictZone& zone);
+  /// The same for a zone in a block. Several threads may tell, each with a queue of its own, as long as no
+  /// size is asked of the caller or kept at vertices.
+  void cells_made(const ConflictZone& zone, WorkQueue& queue) const;
   /// Sizes have changed everywhere.
   void judge_all();
   /// Queue a triangle that is to be split for the sake of its patch, unless it was given up: even one in a
@@ -56,7 +62,11 @@ class TriangleQuality {
 
  private:
   void judge(FaceId face);
-  bool too_large(FaceId face, const RestrictedTriangle& t);
+  template <class TargetSize>
+  void judge(FaceId face, WorkQueue& queue, const TargetSize& target_size) const;
+  Point place(FaceId face, RandomOffsets& random) const;
+  bool on_another_sheet(FaceId face) const;
+  double target_size(FaceId face, const RestrictedTriangle& t);
   double gap_at(const RestrictedTriangle& t, double widest);
   bool too_far(FaceId face, const RestrictedTriangle& t) const;
   WorkQueue::Entry entry(FaceId face) const { return {face, mesh_.generation(cell_of(face))}; }
