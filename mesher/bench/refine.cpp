@@ -1,4 +1,5 @@
 // Complex and refinement alone, without certificate and output: what profile.sh looks at.
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -13,30 +14,34 @@ namespace {
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-void refine(const char* path, double size) {
+void refine(const char* path, double size, unsigned threads) {
   const collarmesh::PolygonSoup soup = collarmesh::io::read_soup(path);
   const collarmesh::Plc plc = collarmesh::build_plc(std::span(&soup, 1));
   const double begin = cpu_seconds();
+  const auto started = std::chrono::steady_clock::now();
   collarmesh::MeshOptions options;
   options.size = size;
+  options.threads = threads;
   const collarmesh::MeshResult result = collarmesh::generate(plc, options);
   const double seconds = cpu_seconds() - begin;
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   const auto tets = static_cast<double>(result.mesh.tets.size());
   std::printf(
-      "complex %.3f s, refinement %.5f s, %.0f tets, %.0f tets/s, %.0f bytes/tet, %zu exact predicates\n",
+      "complex %.3f s, refinement %.5f s, %.0f tets, %.0f tets/s, %.0f bytes/tet, %zu exact predicates, wall "
+      "time %.5f s\n",
       begin, seconds, tets, tets / seconds, static_cast<double>(result.statistics.peak_bytes) / tets,
-      result.statistics.exact_predicates);
+      result.statistics.exact_predicates, wall);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) {
-    std::fprintf(stderr, "usage: refine INPUT SIZE\n");
+  if (argc != 3 && argc != 4) {
+    std::fprintf(stderr, "usage: refine INPUT SIZE [THREADS]\n");
     return 2;
   }
   try {
-    refine(argv[1], std::atof(argv[2]));
+    refine(argv[1], std::atof(argv[2]), argc == 4 ? static_cast<unsigned>(std::atoi(argv[3])) : 1);
   } catch (const collarmesh::Error& error) {
     std::fprintf(stderr, "refine: %s\n", error.what());
     return 3;

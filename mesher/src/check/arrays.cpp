@@ -45,8 +45,8 @@ void check_corners(const std::vector<std::array<Index, n>>& entities, const TetM
     const Index corner = entities[i][k];
     const Point where = corner < mesh.points.size() ? mesh.points[corner] : Point{};
     findings.add(guarantee::valid_arrays, where, {i},
-                 "{} {} has point {} as corner {}{}; the mesh has {} points. Its writer is at fault.", kind, i,
-                 corner, k, repeated ? " again" : "", mesh.points.size());
+                 "{} {} has point {} as corner {}{}; the mesh has {} points. Its writer is at fault.", kind,
+                 i, corner, k, repeated ? " again" : "", mesh.points.size());
   }
 }
 
@@ -132,8 +132,7 @@ void check_distinct(const TetMesh& mesh, Findings& findings) {
         const auto key = [&](Index i) { return std::tie(points[i].x, points[i].y, points[i].z); };
         std::stable_sort(sorted.begin(), sorted.end(), [&](Index a, Index b) { return key(a) < key(b); });
         for (std::size_t k = 1; k < sorted.size(); ++k)
-          if (key(sorted[k - 1]) == key(sorted[k]))
-            of_threads.local().push_back({sorted[k - 1], sorted[k]});
+          if (key(sorted[k - 1]) == key(sorted[k])) of_threads.local().push_back({sorted[k - 1], sorted[k]});
       });
   std::vector<Pair> pairs;
   for (const auto& found : of_threads) pairs.insert(pairs.end(), found.begin(), found.end());

@@ -171,9 +171,10 @@ class Coarsening {
   // with or without repairs; those with the shortest edge first.
   std::vector<Candidate> find_candidates(bool repair) const {
     const std::uint32_t last = repair ? std::min(last_pass_, last_repairs_) : last_pass_;
-    const auto ends = found_in_ranges<ShortEdge>(complex().size(), [&](std::size_t t, std::vector<ShortEdge>& found) {
-      if (changed_since(static_cast<Index>(t), last)) find_short_edges(static_cast<Index>(t), found);
-    });
+    const auto ends =
+        found_in_ranges<ShortEdge>(complex().size(), [&](std::size_t t, std::vector<ShortEdge>& found) {
+          if (changed_since(static_cast<Index>(t), last)) find_short_edges(static_cast<Index>(t), found);
+        });
     std::vector<double> shortest(mesh().points.size(), INFINITY);
     for (const auto& [length, v] : ends) shortest[v] = std::min(shortest[v], length);
     std::vector<Candidate> candidates;
@@ -313,13 +314,14 @@ class Coarsening {
       double quality;
     };
     known_qualities_.resize(complex().size(), NAN);
-    std::vector<Poor> all = found_in_ranges<Poor>(complex().size(), [&](std::size_t i, std::vector<Poor>& found) {
-      const auto t = static_cast<Index>(i);
-      double& q = known_qualities_[t];
-      if (std::isnan(q)) q = quality_if_improvable(t);
-      if (q < improved_below && complex()[t].alive && changed_since(t, last_sweep_))
-        found.push_back({rank_of_quality(q), t, q});
-    });
+    std::vector<Poor> all =
+        found_in_ranges<Poor>(complex().size(), [&](std::size_t i, std::vector<Poor>& found) {
+          const auto t = static_cast<Index>(i);
+          double& q = known_qualities_[t];
+          if (std::isnan(q)) q = quality_if_improvable(t);
+          if (q < improved_below && complex()[t].alive && changed_since(t, last_sweep_))
+            found.push_back({rank_of_quality(q), t, q});
+        });
     const std::vector<Poor> poor = in_order(std::move(all));
     last_sweep_ = ++changes_.now;
     bool any = false;

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <stdexcept>
 
+#include "common/index_set.h"
 #include "common/parallel_for.h"
 #include "delaunay/predicates.h"
 
@@ -355,12 +356,14 @@ Renumbering Triangulation::join(std::vector<Block>& blocks) {
 // What is read of a cell that others border on does not change.
 void Triangulation::Block::incident_cells(Index vertex, std::vector<Index>& cells) const {
   cells.assign(1, mesh_->vertices_[vertex].cell);
+  IndexSet known;
+  known.insert(cells[0]);
   for (std::size_t i = 0; i < cells.size(); ++i)
     for (unsigned corner = 0; corner < 4; ++corner) {
       const Cell& cell = mesh_->cells_[cells[i]];
       if (cell.corners[corner] == vertex || cell.neighbours[corner] == no_face) continue;
       const Index next = cell_of(cell.neighbours[corner]);
-      if (std::find(cells.begin(), cells.end(), next) == cells.end()) cells.push_back(next);
+      if (known.insert(next)) cells.push_back(next);
     }
 }
 

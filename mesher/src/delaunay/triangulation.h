@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "collarmesh/geometry.h"
-#include "common/tet_sides.h"
 #include "common/growing_array.h"
+#include "common/tet_sides.h"
 
 namespace collarmesh {
 
@@ -220,8 +220,8 @@ class Triangulation::Block {
   bool find_conflict_zone(const Point& p, Index start, ConflictZone& zone);
   /// Precondition: the zone is one of this block's. The vertex gets another number when blocks are joined.
   Index insert(ConflictZone& zone);
-  /// The cells that a vertex of this block has. Cost: quadratic, as it leaves no marks: others may have
-  /// vertices of these cells.
+  /// The cells that a vertex of this block has. It leaves no marks on them: others may have vertices of these
+  /// cells, too.
   void incident_cells(Index vertex, std::vector<Index>& cells) const;
 
  private:

@@ -7,6 +7,7 @@
 
 #include "common/found_in_ranges.h"
 #include "common/groups.h"
+#include "common/index_set.h"
 #include "common/large_pages.h"
 #include "common/parallel_for.h"
 #include "common/simplices_at_vertex.h"
@@ -40,26 +41,6 @@ void drop(const Cell& lost, std::vector<Cell>& cells, std::vector<Of>&... of_cel
   cells.resize(kept);
   (of_cells.resize(kept), ...);
 }
-
-/// So many numbers of tets at most.
-class SmallSet {
- public:
-  static constexpr std::size_t most = 128;
-
-  SmallSet() { table_.fill(none); }
-  /// False when it is there already.
-  bool insert(Index tet) {
-    for (std::size_t i = tet * 0x9e3779b1U >> 24U;; i = (i + 1) % table_.size()) {
-      if (table_[i] == tet) return false;
-      if (table_[i] != none) continue;
-      table_[i] = tet;
-      return true;
-    }
-  }
-
- private:
-  std::array<Index, 2 * most> table_;
-};
 
 }  // namespace
 
@@ -148,7 +129,7 @@ std::array<Point, 4> TetComplex::corners(Index tet) const {
 
 // Stars are small: it is faster to keep the tets found in a table at hand than to mark them.
 void TetComplex::star(Index vertex, std::vector<Index>& found) const {
-  SmallSet known;
+  IndexSet known;
   found.assign(1, vertex_tet_[vertex]);
   known.insert(found[0]);
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -156,9 +137,7 @@ void TetComplex::star(Index vertex, std::vector<Index>& found) const {
     for (unsigned corner = 0; corner < 4; ++corner) {
       const Index next = tet.neighbours[corner];
       if (tet.corners[corner] == vertex || next == none) continue;
-      if (found.size() < SmallSet::most ? known.insert(next)
-                                        : std::find(found.begin(), found.end(), next) == found.end())
-        found.push_back(next);
+      if (known.insert(next)) found.push_back(next);
     }
   }
 }

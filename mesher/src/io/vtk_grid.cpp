@@ -94,8 +94,7 @@ class GridMaker {
     const auto add_nodes = [&](const CellNodes& nodes) {
       values.insert(values.end(), nodes.begin(), nodes.end());
     };
-    reserve_in_large_pages(
-        values, 4 * mesh_.tets.size() + 3 * mesh_.faces.size() + 2 * mesh_.edges.size());
+    reserve_in_large_pages(values, 4 * mesh_.tets.size() + 3 * mesh_.faces.size() + 2 * mesh_.edges.size());
     for (std::size_t i = 0; i < mesh_.tets.size(); ++i) add_nodes(nodes_of_tet(mesh_, i));
     for (std::size_t i = 0; i < mesh_.faces.size(); ++i) add_nodes(nodes_of_face(mesh_, i));
     for (std::size_t i = 0; i < mesh_.edges.size(); ++i) add_nodes(nodes_of_edge(mesh_, i));

@@ -51,9 +51,9 @@ class TriangleHierarchy {
   }
 
   /// Replace `found` by the nodes whose boxes meet the box, each at the coarsest level whose extent
-  /// does not exceed `extent`, and by the larger triangles whose planes meet it, too. Precondition: the nodes of `from` cover every triangle that meets it.
-  /// Conservative: a node found may hold no triangle that meets the box.
-  /// Cost: linear in the nodes found plus the levels between them and `from`.
+  /// does not exceed `extent`, and by the larger triangles whose planes meet it, too. Precondition: the nodes
+  /// of `from` cover every triangle that meets it. Conservative: a node found may hold no triangle that meets
+  /// the box. Cost: linear in the nodes found plus the levels between them and `from`.
   void nodes_meeting(const Box& box, double extent, std::span<const Index> from, Marks& marks,
                      std::vector<Index>& found) const;
 
@@ -98,15 +98,16 @@ class TriangleHierarchy {
   template <class Visit>
   void visit_near(std::span<const Index> nodes, const Point& p, const double& squared_bound,
                   const Visit& visit) const {
-    visit_near(nodes, p, squared_bound, [](Index) { return false; }, visit);
+    visit_near(
+        nodes, p, squared_bound, [](Index) { return false; }, visit);
   }
   /// The same without what lies below nodes that `skips` accepts.
   template <class Skips, class Visit>
   void visit_near(std::span<const Index> nodes, const Point& p, const double& squared_bound,
                   const Skips& skips, const Visit& visit) const;
 
-  /// For each node the label that all triangles below it have; none where they differ. Precondition: one label
-  /// per triangle.
+  /// For each node the label that all triangles below it have; none where they differ. Precondition: one
+  /// label per triangle.
   std::vector<Index> common_labels(std::span<const Index> label_of_triangle) const;
 
   std::size_t bytes() const;

@@ -13,7 +13,7 @@ namespace collarmesh {
 namespace {
 
 // In smaller meshes too many vertices lie beside the blocks' borders, or the surface.
-constexpr std::size_t least_vertices = 16384;
+constexpr std::size_t least_vertices = 4096;
 // A round costs some time for every vertex of the mesh.
 constexpr std::size_t least_entries = 2048, vertices_per_entry = 64;
 // A round that destroys less than this share of what it took is not worth its while: the next one waits until
@@ -51,8 +51,7 @@ BlockRefinement::BlockRefinement(const Domain& domain, RefinedMesh& mesh, Surfac
                                  const CollarSystem& collars, CollarCells& collar_cells,
                                  RestrictedSurface& surface, const GradedSizes& sizes,
                                  const UnresolvedPoints& points, const CurveChains& curves,
-                                 const TriangleQuality& triangles, const CellQuality& cells,
-                                 WorkQueue& queue)
+                                 const TriangleQuality& triangles, const CellQuality& cells, WorkQueue& queue)
     : domain_(domain),
       mesh_(mesh),
       nodes_(nodes),
@@ -235,7 +234,7 @@ std::vector<std::size_t> BlockRefinement::records_for(std::span<const Index> roo
   constexpr std::size_t of_a_zone = 512, insertions_per_triangle = 16;
   std::vector<std::size_t> records;
   for (const Index insertions : room)
-    records.push_back(insertions == 0             ? 0
+    records.push_back(insertions == 0           ? 0
                       : of_triangles(priority_) ? of_a_zone + 2 * insertions
                                                 : of_a_zone + insertions / insertions_per_triangle);
   return records;
@@ -306,8 +305,8 @@ bool BlockRefinement::destroy(const WorkQueue::Item& item, Block block, Worker& 
 // have the region of those that they replace.
 bool BlockRefinement::insert(const Candidate& candidate, Block block, Worker& worker) {
   ConflictZone& zone = worker.zone;
-  const bool quiet = std::none_of(zone.vertices.begin(), zone.vertices.end(),
-                                  [&](Index v) { return nodes_.any_at(v); });
+  const bool quiet =
+      std::none_of(zone.vertices.begin(), zone.vertices.end(), [&](Index v) { return nodes_.any_at(v); });
   const Index region = surface_.region(zone.cells[0]);
   if (!quiet) {
     if (!surface_.has_room(zone, block.surface)) return false;

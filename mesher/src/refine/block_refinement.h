@@ -37,8 +37,8 @@ class BlockRefinement {
   /// All are kept by reference.
   BlockRefinement(const Domain& domain, RefinedMesh& mesh, SurfaceNodes& nodes, const CollarSystem& collars,
                   CollarCells& collar_cells, RestrictedSurface& surface, const GradedSizes& sizes,
-                  const UnresolvedPoints& points, const CurveChains& curves,
-                  const TriangleQuality& triangles, const CellQuality& cells, WorkQueue& queue);
+                  const UnresolvedPoints& points, const CurveChains& curves, const TriangleQuality& triangles,
+                  const CellQuality& cells, WorkQueue& queue);
 
   /// Are cells or triangles next in the queue, and so many that a round is worth its while?
   bool due();

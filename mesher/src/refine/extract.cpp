@@ -35,9 +35,7 @@ void permute(std::vector<T>& values, const std::vector<Index>& order) {
 class Extraction {
  public:
   explicit Extraction(const Refined& refined)
-      : refined_(refined),
-        plc_(refined.domain.plc),
-        number_(refined.mesh.vertex_count(), none) {}
+      : refined_(refined), plc_(refined.domain.plc), number_(refined.mesh.vertex_count(), none) {}
 
   Extracted run() {
     find_tets();

@@ -272,8 +272,8 @@ bool Refinement::stopped(std::size_t planned_vertices) {
 
 std::size_t Refinement::bytes() const {
   return queue_.bytes() + mesh_.bytes() + nodes_.bytes() + surface_.bytes() + collar_cells_.bytes() +
-         facing_sheets_.bytes() + points_.bytes() + curves_.bytes() + cells_.bytes() + collar_review_.bytes() +
-         blocks_.bytes();
+         facing_sheets_.bytes() + points_.bytes() + curves_.bytes() + cells_.bytes() +
+         collar_review_.bytes() + blocks_.bytes();
 }
 
 Extracted Refinement::extract() const {

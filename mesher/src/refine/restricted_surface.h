@@ -90,7 +90,8 @@ class RestrictedSurface {
     std::vector<FaceId> faces_;
     std::vector<Index> cells_;
   };
-  /// Before cells are made in blocks: room for all of them, and for so many records in each block's workspace.
+  /// Before cells are made in blocks: room for all of them, and for so many records in each block's
+  /// workspace.
   void divide(std::span<const std::size_t> records, std::span<Workspace> of_blocks);
   /// Blocks were joined.
   void join(std::span<Workspace> of_blocks);
@@ -109,9 +110,7 @@ class RestrictedSurface {
   /// if it was not, and the reverse. Precondition: nothing is inserted any more.
   void give_outside(Index cell);
 
-  std::size_t bytes() const {
-    return labels_.bytes() + marks_.bytes() + records_.bytes();
-  }
+  std::size_t bytes() const { return labels_.bytes() + marks_.bytes() + records_.bytes(); }
 
  private:
   struct Label {

@@ -68,7 +68,7 @@ class SurfaceNodes {
 
  private:
   struct List {
-    Index* nodes = nullptr;             // in a chunk of a workspace
+    Index* nodes = nullptr;  // in a chunk of a workspace
     Index count = 0;
     std::uint16_t insertions_left = 0;  // in the vertex' star before its nodes are filtered again
   };

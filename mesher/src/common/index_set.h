@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "collarmesh/geometry.h"
+
+namespace collarmesh {
+
+/// A set of numbers below `none`, most often of few: those need no memory of their own.
+class IndexSet {
+ public:
+  IndexSet() { few_.fill(none); }
+  IndexSet(const IndexSet&) = delete;
+  IndexSet& operator=(const IndexSet&) = delete;
+
+  /// False when it is there already.
+  bool insert(Index i) {
+    if (2 * (size_ + 1) > table_.size()) grow();
+    if (!insert_into(table_, i)) return false;
+    ++size_;
+    return true;
+  }
+
+ private:
+  static bool insert_into(std::span<Index> table, Index i) {
+    const std::size_t last = table.size() - 1;
+    for (std::size_t slot = (i * 0x9e3779b1U >> 8U) & last;; slot = (slot + 1) & last) {
+      if (table[slot] == i) return false;
+      if (table[slot] != none) continue;
+      table[slot] = i;
+      return true;
+    }
+  }
+
+  void grow() {
+    std::vector<Index> larger(2 * table_.size(), none);
+    for (const Index i : table_)
+      if (i != none) insert_into(larger, i);
+    many_.swap(larger);
+    table_ = many_;
+  }
+
+  std::array<Index, 256> few_;
+  std::vector<Index> many_;
+  std::span<Index> table_ = few_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace collarmesh
