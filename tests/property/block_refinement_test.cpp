@@ -44,10 +44,11 @@ TEST_P(BlockRefinement, MakesTheSameMeshWithAnyNumberOfThreads) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, BlockRefinement,
-                         ::testing::Values(Case{"box", {testing::box()}, 0.032, 0.25},
-                                           Case{"nested_boxes", testing::nested_boxes(2), 0.035, 0.1},
-                                           Case{"sphere", {testing::icosphere(1, 12)}, 0.06, 0.2},
-                                           Case{"wedge", testing::acute::wedge(50).soups, 0.02, 0.03}),
+                         ::testing::Values(Case{"box", {testing::box()}, 0.032, 0.6},
+                                           Case{"nested_boxes", testing::nested_boxes(2), 0.035, 0.5},
+                                           Case{"sphere", {testing::icosphere(1, 12)}, 0.06, 0.5},
+                                           Case{"plate", {testing::box({0, 0, 0}, {1, 1, 0.05})}, 0.02, 0.3},
+                                           Case{"wedge", testing::acute::wedge(50).soups, 0.02, 0.2}),
                          [](const auto& info) { return info.param.name; });
 
 // Blocks do as the loop does: the mesh is as fine, its tets are as good.

@@ -164,6 +164,37 @@ TEST_F(DelaunayBlocks, BecomeTheSameWhateverTheOrderOfThreads) {
   }
 }
 
+TEST_F(DelaunayBlocks, FindTheCellsOfTheirVertices) {
+  std::vector<std::vector<Index>> expected(mesh_.vertex_count());
+  for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell)
+    if (mesh_.alive(cell))
+      for (const Index v : mesh_.corners(cell)) expected[v].push_back(cell);
+  const std::vector<Index> rooms(block_count, 1);
+  std::vector<Triangulation::Block> blocks = mesh_.divide(rooms, owners_);
+  std::vector<Index> found;
+  for (Index v = 8; v < expected.size(); ++v) {
+    blocks[owners_[v]].incident_cells(v, found);
+    std::sort(found.begin(), found.end());
+    ASSERT_EQ(found, expected[v]);
+  }
+  mesh_.join(blocks);
+}
+
+TEST_F(DelaunayBlocks, TellHowTheirVerticesAreNumberedWhenJoined) {
+  const std::vector<Index> rooms(block_count, 20);
+  const auto cells = cells_of_blocks();
+  auto blocks = mesh_.divide(rooms, owners_);
+  for (std::size_t i = 0; i < block_count; ++i)
+    refine(mesh_, blocks[i], {cells[i].begin(), cells[i].begin() + static_cast<std::ptrdiff_t>(3 + i)});
+  GrowingArray<double> x;
+  for (Index v = 0; v < mesh_.vertex_count(); ++v) x.push_back(mesh_.point(v).x);
+  const Renumbering renumbering = mesh_.join(blocks);
+  renumbering.apply(x);
+  EXPECT_EQ(renumbering.count, mesh_.vertex_count());
+  ASSERT_EQ(x.size(), mesh_.vertex_count());
+  for (Index v = 0; v < mesh_.vertex_count(); ++v) EXPECT_EQ(x[v], mesh_.point(v).x);
+}
+
 TEST_F(DelaunayBlocks, TakeNoMoreThanThereIsRoomFor) {
   const Index before = mesh_.vertex_count();
   EXPECT_EQ(refine_blocks(5, true), 5U * block_count);

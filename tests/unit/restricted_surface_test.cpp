@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <random>
 #include <set>
+#include <thread>
 
 #include "support/plc_shapes.h"
 #include "support/refinement_parts.h"
@@ -145,6 +147,111 @@ TEST(RestrictedSurface, NotesLastAsLongAsTheirTriangle) {
   }
   EXPECT_GT(fresh, 0U);
   EXPECT_GT(kept, 0U);
+}
+
+/// Blocks of a KnownMesh on both sides of x = 1, and points inserted into them by a thread for each.
+class KnownBlocks {
+ public:
+  explicit KnownBlocks(KnownMesh& known) : known_(known) {}
+
+  Index insert(std::uint64_t seed, std::size_t records) {
+    Triangulation::Owners owners;
+    for (Index v = 0; v < known_.mesh.vertex_count(); ++v)
+      owners.push_back(v < 8 ? Triangulation::no_owner : known_.mesh.point(v).x > 1 ? 1 : 0);
+    const std::array cells{cells_of(0, owners), cells_of(1, owners)};
+    const std::vector<Index> room{200, 200};
+    const std::vector<std::size_t> records_of_blocks{records, records};
+    auto blocks = known_.mesh.divide(room, owners);
+    std::vector<RestrictedSurface::Workspace> surfaces(2);
+    std::vector<Index> inserted(2, 0);
+    known_.nodes.fit_mesh();
+    known_.surface.divide(records_of_blocks, surfaces);
+    {
+      std::vector<std::jthread> threads;
+      for (std::size_t i = 0; i < 2; ++i)
+        threads.emplace_back([&, i] {
+          inserted[i] = insert(blocks[i], surfaces[i], workspaces_[i], cells[i], seed + i);
+        });
+    }
+    known_.nodes.renumber(known_.mesh.join(blocks));
+    known_.surface.join(surfaces);
+    return inserted[0] + inserted[1];
+  }
+
+ private:
+  std::vector<Index> cells_of(std::size_t block, const Triangulation::Owners& owners) const {
+    std::vector<Index> cells;
+    for (Index cell = 0; cell < known_.mesh.cell_capacity(); ++cell) {
+      if (!known_.mesh.alive(cell)) continue;
+      const auto& v = known_.mesh.corners(cell);
+      if (std::all_of(v.begin(), v.end(), [&](Index w) { return owners[w] == block; })) cells.push_back(cell);
+    }
+    return cells;
+  }
+
+  // Near the circumcentres of some cells, now and then on a facet.
+  Index insert(Triangulation::Block& block, RestrictedSurface::Workspace& surface,
+               SurfaceNodes::Workspace& nodes, const std::vector<Index>& cells, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    ConflictZone zone;
+    Index inserted = 0;
+    for (const Index cell : cells) {
+      if (!known_.mesh.alive(cell)) continue;
+      Point p = known_.mesh.circumcentre(cell);
+      if (random() % 3 == 0) p.x = static_cast<double>(2 * (random() % 2));
+      if (!known_.mesh.in_conflict(cell, p) || !block.find_conflict_zone(p, cell, zone) ||
+          !known_.surface.has_room(zone, surface))
+        continue;
+      known_.surface.cells_vanish(zone, surface);
+      const Index vertex = known_.mesh.insert(block, zone, {3, none});
+      known_.nodes.cells_made(zone, vertex, block, nodes);
+      known_.surface.cells_made(zone, vertex, surface);
+      ++inserted;
+    }
+    return inserted;
+  }
+
+  KnownMesh& known_;
+  std::array<SurfaceNodes::Workspace, 2> workspaces_;
+};
+
+TEST(RestrictedSurface, IsWhatASearchFindsAfterInsertionsIntoBlocks) {
+  const Plc plc = two_boxes();
+  KnownMesh known(plc);
+  RandomPoints random(6);
+  for (int k = 0; k < 400; ++k) known.insert(random.next(known.domain.box));
+  KnownBlocks blocks(known);
+  std::vector<TriangleHierarchy::Crossing> all, found;
+  for (std::uint64_t round = 0; round < 3; ++round) {
+    const Index before = known.mesh.vertex_count();
+    const Index inserted = blocks.insert(10 * round, 600);
+    EXPECT_GT(inserted, 40U);
+    ASSERT_EQ(known.mesh.vertex_count(), before + inserted);
+    std::size_t marked = 0;
+    visit_faces(known.mesh, [&](FaceId face) {
+      const Index cell = cell_of(face);
+      ASSERT_EQ(known.surface.region(cell), region_at(known.mesh.circumcentre(cell)));
+      known.nodes.crossings(known.mesh.circumcentre(cell),
+                            known.mesh.circumcentre(cell_of(known.mesh.opposite(face))), all);
+      known.nodes.crossings_of_dual_edge(face, found);
+      ASSERT_EQ(found.size(), all.size());
+      ASSERT_EQ(known.surface.is_marked(face), !all.empty());
+      if (all.empty()) return;
+      ++marked;
+      EXPECT_EQ(known.surface.triangle(face).several_sheets, all.size() > 1);
+      EXPECT_EQ(&known.surface.triangle(face), &known.surface.triangle(known.mesh.opposite(face)));
+    });
+    EXPECT_EQ(known.surface.marked_faces().size(), marked / 2);
+    known.insert(random.next(known.domain.box));  // the loop goes on from there
+  }
+}
+
+TEST(RestrictedSurface, BlocksInsertNothingWithoutRecords) {
+  const Plc plc = two_boxes();
+  KnownMesh known(plc);
+  RandomPoints random(7);
+  for (int k = 0; k < 400; ++k) known.insert(random.next(known.domain.box));
+  EXPECT_EQ(KnownBlocks(known).insert(1, 0), 0U);
 }
 
 TEST(RestrictedSurface, GivingACellOutsideTurnsTheMarksOfItsFaces) {

@@ -40,7 +40,7 @@ inline void prefer_large_pages([[maybe_unused]] void* block, [[maybe_unused]] st
 
 /// A block that grows: `block`, null at first, with so many bytes, of which the new one keeps as many as fit.
 /// Large blocks are remapped by the system instead of being copied. Throws std::bad_alloc.
-inline void* resized_block(void* block, std::size_t bytes, std::size_t new_bytes) {
+inline void* resized_block(void* block, [[maybe_unused]] std::size_t bytes, std::size_t new_bytes) {
 #if COLLARMESH_REMAPS
   const auto pages = [](std::size_t size) { return (size + large_page - 1) / large_page * large_page; };
   const bool was_mapped = bytes >= least_bytes_in_large_pages;
