@@ -40,6 +40,10 @@ TEST_P(BlockRefinement, MakesTheSameMeshWithAnyNumberOfThreads) {
     EXPECT_EQ(together.statistics.vertices_in_blocks, s.vertices_in_blocks);
     EXPECT_EQ(together.mesh.points, alone.result.mesh.points);
     EXPECT_EQ(together.mesh.tets, alone.result.mesh.tets);
+    EXPECT_EQ(together.mesh.faces, alone.result.mesh.faces);
+    EXPECT_EQ(together.mesh.face_patch, alone.result.mesh.face_patch);
+    EXPECT_EQ(together.statistics.yields, s.yields);
+    EXPECT_EQ(together.statistics.peak_bytes, s.peak_bytes);
   }
 }
 
@@ -51,18 +55,29 @@ INSTANTIATE_TEST_SUITE_P(Shapes, BlockRefinement,
                                            Case{"wedge", testing::acute::wedge(50).soups, 0.02, 0.2}),
                          [](const auto& info) { return info.param.name; });
 
-// Blocks do as the loop does: the mesh is as fine, its tets are as good.
+// Blocks do as the loop does: the mesh is as fine, its tets are as good, and as much is on the surface.
 TEST(BlockRefinementSize, IsThatOfTheLoop) {
-  const Plc plc = build_plc(std::vector{testing::box()});
-  const Meshed blocks = mesh_of(plc, with_size(0.032, 120));
-  MeshOptions options = with_size(1, 120);
-  options.size_field = [](const Point&) { return 0.032; };  // the loop alone asks the caller
-  const Meshed loop = mesh_of(plc, options);
-  EXPECT_GT(blocks.result.statistics.vertices_in_blocks, 0U);
-  EXPECT_EQ(loop.result.statistics.vertices_in_blocks, 0U);
-  EXPECT_NEAR(static_cast<double>(blocks.result.mesh.tets.size()),
-              static_cast<double>(loop.result.mesh.tets.size()),
-              0.02 * static_cast<double>(loop.result.mesh.tets.size()));
+  const Case cases[]{{"box", {testing::box()}, 0.032, 0},
+                     {"sphere", {testing::icosphere(1, 12)}, 0.06, 0},
+                     {"plate", {testing::box({0, 0, 0}, {1, 1, 0.05})}, 0.02, 0}};
+  for (const auto& [name, soups, size, least_share] : cases) {
+    SCOPED_TRACE(name);
+    const Plc plc = build_plc(soups);
+    const Meshed blocks = mesh_of(plc, with_size(size, 120));
+    MeshOptions options = with_size(1, 120);
+    options.size_field = [wanted = size](const Point&) { return wanted; };  // the loop alone asks the caller
+    const Meshed loop = mesh_of(plc, options);
+    EXPECT_EQ(faults(blocks), "");
+    EXPECT_EQ(loop.result.statistics.vertices_in_blocks, 0U);
+    // Most vertices of the plate lie on its surface.
+    EXPECT_GT(blocks.result.statistics.vertices_in_blocks, blocks.result.statistics.vertices_inserted / 2);
+    const auto expect_as_many = [](std::size_t a, std::size_t b) {
+      EXPECT_NEAR(static_cast<double>(a), static_cast<double>(b), 0.03 * static_cast<double>(b));
+    };
+    expect_as_many(blocks.result.mesh.tets.size(), loop.result.mesh.tets.size());
+    expect_as_many(blocks.result.mesh.faces.size(), loop.result.mesh.faces.size());
+    expect_as_many(blocks.result.mesh.edges.size(), loop.result.mesh.edges.size());
+  }
 }
 
 TEST(BlockRefinementSize, KeepsToTheBudgetOfVertices) {

@@ -140,6 +140,20 @@ TEST(CheckWrongMeshes, TwoPointsAtOnePlace) {
   EXPECT_EQ(broken(m), (Names{distinct_points, listed_faces}));
 }
 
+TEST(CheckWrongMeshes, PointsAtOnePlaceAreNamedInPairs) {
+  MeshedComplex m = meshed_box(2);
+  const auto first = static_cast<Index>(m.mesh.points.size());
+  for (const double x : {0.0, 5.0, -0.0, 0.0, 5.0}) {
+    m.mesh.points.push_back({x, -0.0, 7});
+    m.mesh.features.push_back({});
+  }
+  std::vector<std::vector<Index>> pairs;
+  for (const auto& finding : check(m.mesh, m.plc).findings)
+    if (finding.guarantee == distinct_points) pairs.push_back(finding.ids);
+  EXPECT_EQ(pairs, (std::vector<std::vector<Index>>{
+                       {first, first + 2}, {first + 1, first + 4}, {first + 2, first + 3}}));
+}
+
 TEST(CheckWrongMeshes, PointWithoutTet) {
   MeshedComplex m = meshed_box(2);
   m.mesh.points.push_back({0.123, 0.4, 0.5});

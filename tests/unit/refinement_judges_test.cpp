@@ -169,6 +169,63 @@ TEST(RefineTriangleQuality, OnlyCellsYieldToTriangles) {
   EXPECT_EQ(judges.triangles.encroached(judges.zone, candidate), no_face);
 }
 
+TEST(RefineTriangleQuality, InBlocksIsAskedWhereNothingIsFacedAndACellIsBeside) {
+  const Plc plc = box();
+  Judges judges(plc, with_size(0.3));
+  judges.insert_random(40);
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int k = 0; k < 20; ++k) judges.insert_and_tell({unit(random), unit(random), 0}, {2, 0});
+  std::size_t asked = 0, faced = 0;
+  for (const FaceId face : judges.surface.marked_faces()) {
+    const Index patch = judges.surface.patch(face);
+    const auto v = judges.mesh.face_vertices(face);
+    const bool faces_any = std::any_of(v.begin(), v.end(), [&](Index vertex) {
+      const Feature& f = judges.mesh.feature(vertex);
+      return f.dimension == 2 && f.index != patch;
+    });
+    RandomOffsets own{7, judges.collars};
+    const auto candidate = judges.triangles.candidate_beside(face, own);
+    if (faces_any) {
+      EXPECT_FALSE(candidate);
+      ++faced;
+    }
+    if (!candidate) continue;
+    ++asked;
+    EXPECT_TRUE(candidate->start == cell_of(face) || candidate->start == cell_of(judges.mesh.opposite(face)));
+    EXPECT_TRUE(judges.mesh.in_conflict(candidate->start, candidate->point));
+    EXPECT_EQ(candidate->feature.dimension, 2);
+    EXPECT_EQ(candidate->feature.index, patch);
+  }
+  EXPECT_GT(asked, 10U);
+  EXPECT_GT(faced, 0U);
+}
+
+TEST(RefineTriangleQuality, InBlocksQueuesWhatTheLoopWould) {
+  const Plc plc = box();
+  Judges judges(plc, with_size(0.3));
+  judges.insert_random(60);
+  const FaceId face = judges.surface.marked_faces()[5];
+  const Feature patch{2, judges.surface.patch(face)};
+  const Index vertex = judges.insert(judges.surface.triangle(face).x, patch);
+  judges.sizes.cells_made(judges.zone, vertex);
+  const auto entries_of = [](WorkQueue& queue) {
+    std::vector<std::array<Index, 3>> entries;
+    for (WorkQueue::Item item; queue.pop(item);)
+      entries.push_back({item.priority, item.entry.id, item.entry.stamp});
+    return entries;
+  };
+  judges.due();
+  WorkQueue of_block{100};
+  judges.triangles.cells_made(judges.zone, of_block);
+  EXPECT_TRUE(entries_of(judges.queue).empty());
+  for (const FaceId marked : judges.surface.marked_faces()) judges.surface.notes(marked).judged = false;
+  judges.triangles.cells_made(judges.zone);
+  const auto expected = entries_of(judges.queue);
+  EXPECT_GT(expected.size(), 3U);
+  EXPECT_EQ(entries_of(of_block), expected);
+}
+
 TEST(RefineFacingSheets, CellsBetweenPairsAreSparedByTheRestOfTheirEdges) {
   const Plc plc = box();
   Judges judges(plc, with_size(10));

@@ -169,9 +169,8 @@ class KnownBlocks {
     {
       std::vector<std::jthread> threads;
       for (std::size_t i = 0; i < 2; ++i)
-        threads.emplace_back([&, i] {
-          inserted[i] = insert(blocks[i], surfaces[i], workspaces_[i], cells[i], seed + i);
-        });
+        threads.emplace_back(
+            [&, i] { inserted[i] = insert(blocks[i], surfaces[i], workspaces_[i], cells[i], seed + i); });
     }
     known_.nodes.renumber(known_.mesh.join(blocks));
     known_.surface.join(surfaces);
@@ -228,6 +227,7 @@ TEST(RestrictedSurface, IsWhatASearchFindsAfterInsertionsIntoBlocks) {
     EXPECT_GT(inserted, 40U);
     ASSERT_EQ(known.mesh.vertex_count(), before + inserted);
     std::size_t marked = 0;
+    std::set<const RestrictedTriangle*> records;
     visit_faces(known.mesh, [&](FaceId face) {
       const Index cell = cell_of(face);
       ASSERT_EQ(known.surface.region(cell), region_at(known.mesh.circumcentre(cell)));
@@ -240,8 +240,10 @@ TEST(RestrictedSurface, IsWhatASearchFindsAfterInsertionsIntoBlocks) {
       ++marked;
       EXPECT_EQ(known.surface.triangle(face).several_sheets, all.size() > 1);
       EXPECT_EQ(&known.surface.triangle(face), &known.surface.triangle(known.mesh.opposite(face)));
+      records.insert(&known.surface.triangle(face));
     });
     EXPECT_EQ(known.surface.marked_faces().size(), marked / 2);
+    EXPECT_EQ(records.size(), marked / 2);
     known.insert(random.next(known.domain.box));  // the loop goes on from there
   }
 }

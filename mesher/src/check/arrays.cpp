@@ -130,7 +130,8 @@ void check_distinct(const TetMesh& mesh, Findings& findings) {
         std::vector<Index>& sorted = sorted_of_threads.local();
         sorted.assign(alike.begin(), alike.end());
         const auto key = [&](Index i) { return std::tie(points[i].x, points[i].y, points[i].z); };
-        std::stable_sort(sorted.begin(), sorted.end(), [&](Index a, Index b) { return key(a) < key(b); });
+        std::sort(sorted.begin(), sorted.end(),
+                  [&](Index a, Index b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
         for (std::size_t k = 1; k < sorted.size(); ++k)
           if (key(sorted[k - 1]) == key(sorted[k])) of_threads.local().push_back({sorted[k - 1], sorted[k]});
       });

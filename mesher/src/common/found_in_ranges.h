@@ -1,7 +1,7 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "common/parallel_for.h"
@@ -15,7 +15,9 @@ std::vector<Found> found_in_ranges(std::size_t count, const Look& look) {
   constexpr std::size_t at_once = 4096;
   std::vector<std::vector<Found>> of_ranges((count + at_once - 1) / at_once);
   parallel_for_ranges(count, at_once, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) look(i, of_ranges[first / at_once]);
+    std::vector<Found> found;
+    for (std::size_t i = first; i < last; ++i) look(i, found);
+    of_ranges[first / at_once] = std::move(found);
   });
   std::size_t size = 0;
   for (const auto& found : of_ranges) size += found.size();

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <algorithm>
 #include <cassert>
 #include <cstddef>
-#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -24,14 +22,9 @@ class GrowingArray {
   ~GrowingArray() { free_block(data_, capacity_ * sizeof(T)); }
 
   std::size_t size() const { return size_; }
-  /// Of memory. What large arrays have not used yet takes none: the system gives pages when they are used.
-  std::size_t bytes() const {
-    const std::size_t used = (size_ * sizeof(T) + large_page - 1) / large_page * large_page;
-    return std::min(capacity_ * sizeof(T), used);
-  }
+  std::size_t bytes() const { return capacity_ * sizeof(T); }
   T* begin() { return data_; }
   T* end() { return data_ + size_; }
-  const T* data() const { return data_; }
   T& operator[](std::size_t i) {
     assert(i < size_);
     return data_[i];
@@ -43,28 +36,27 @@ class GrowingArray {
 
   void push_back(const T& value) {
     const T copy = value;
-    if (size_ == capacity_) reserve(size_ + size_ / 2 + 64);
+    if (size_ == capacity_) reserve(with_room_to_grow(size_));
     data_[size_++] = copy;
-  }
-  void append(std::span<const T> values) {
-    const std::size_t before = size_;
-    extend(size_ + values.size());
-    std::copy(values.begin(), values.end(), data_ + before);
   }
   void resize(std::size_t n, const T& value = T()) {
     const T copy = value;
-    if (n > capacity_) reserve(n + n / 2 + 64);
+    if (n > capacity_) reserve(with_room_to_grow(n));
     for (; size_ < n; ++size_) data_[size_] = copy;
     size_ = n;
   }
 
   /// Grow without setting what is new.
   void extend(std::size_t n) {
-    if (n > capacity_) reserve(n + n / 2 + 64);
+    if (n > capacity_) reserve(with_room_to_grow(n));
     size_ = n;
   }
 
  private:
+  // Where growing copies nothing, little room is enough.
+  static std::size_t with_room_to_grow(std::size_t n) {
+    return n + n / (grows_in_place(n * sizeof(T)) ? 8 : 2) + 64;
+  }
   void reserve(std::size_t n) {
     data_ = static_cast<T*>(resized_block(data_, capacity_ * sizeof(T), n * sizeof(T)));
     capacity_ = n;

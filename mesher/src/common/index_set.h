@@ -27,7 +27,7 @@ class IndexSet {
  private:
   static bool insert_into(std::span<Index> table, Index i) {
     const std::size_t last = table.size() - 1;
-    for (std::size_t slot = (i * 0x9e3779b1U >> 8U) & last;; slot = (slot + 1) & last) {
+    for (std::size_t slot = i * 0x9e3779b97f4a7c15U >> 32U & last;; slot = (slot + 1) & last) {
       if (table[slot] == i) return false;
       if (table[slot] != none) continue;
       table[slot] = i;

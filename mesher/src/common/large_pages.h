@@ -38,6 +38,15 @@ inline void prefer_large_pages([[maybe_unused]] void* block, [[maybe_unused]] st
 #define COLLARMESH_REMAPS 0
 #endif
 
+/// Does a block of so many bytes grow without being copied?
+inline bool grows_in_place([[maybe_unused]] std::size_t bytes) {
+#if COLLARMESH_REMAPS
+  return bytes >= least_bytes_in_large_pages;
+#else
+  return false;
+#endif
+}
+
 /// A block that grows: `block`, null at first, with so many bytes, of which the new one keeps as many as fit.
 /// Large blocks are remapped by the system instead of being copied. Throws std::bad_alloc.
 inline void* resized_block(void* block, [[maybe_unused]] std::size_t bytes, std::size_t new_bytes) {

@@ -131,8 +131,9 @@ class Triangulation {
   Index insert(ConflictZone& zone);
 
   /// Blocks of vertices, each with room for so many insertions. Until they are joined, nothing else may be
-  /// done with the triangulation than to read what does not change: points, and cells whose vertices all
-  /// belong to the reader's own block. `owners` tells the block of each vertex, below `insertions.size()`, or
+  /// done with the triangulation than to insert into blocks, and to read what no other block changes: points;
+  /// the corners and spheres of cells with a vertex of the reader's own block, and their neighbours across
+  /// faces with such a vertex. `owners` tells the block of each vertex, below `insertions.size()`, or
   /// `no_owner`; it grows by the vertices to come, and must stay as it is until the blocks are joined.
   /// The result does not depend on the threads, nor on their timing.
   std::vector<Block> divide(std::span<const Index> insertions, Owners& owners);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "collarmesh/geometry.h"
@@ -60,9 +61,7 @@ class LocationObjects {
   std::size_t added() const { return added_; }
   std::size_t moved() const { return moved_; }
 
-  std::size_t bytes() const {
-    return objects_.bytes() + first_.bytes();
-  }
+  std::size_t bytes() const { return objects_.bytes() + first_.bytes(); }
 
  private:
   void attach(Index object, Index vertex) {

@@ -29,6 +29,10 @@ class TriangleHierarchy {
 
   /// Which nodes a search has met. Each thread that searches keeps its own.
   class Marks {
+   public:
+    std::size_t bytes() const { return of_nodes_.capacity() * sizeof(OfNode); }
+
+   private:
     friend class TriangleHierarchy;
     struct OfNode {
       std::uint32_t met = 0, started = 0;  // the last search that met it, and that started from it

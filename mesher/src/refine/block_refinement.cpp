@@ -12,7 +12,7 @@ namespace collarmesh {
 
 namespace {
 
-// In smaller meshes too many vertices lie beside the blocks' borders, or the surface.
+// In smaller meshes too many vertices lie beside the blocks' borders, or curves.
 constexpr std::size_t least_vertices = 4096;
 // A round costs some time for every vertex of the mesh.
 constexpr std::size_t least_entries = 2048, vertices_per_entry = 64;
@@ -63,13 +63,26 @@ BlockRefinement::BlockRefinement(const Domain& domain, RefinedMesh& mesh, Surfac
       triangles_(triangles),
       cells_(cells),
       queue_(queue),
-      next_round_(least_vertices),
-      workers_([&domain] {
-        return Worker{WorkQueue(squared_distance(domain.box.min, domain.box.max)), {}, {}, {}};
-      }) {
+      next_round_(least_vertices) {
   // Callers' functions need not bear several threads; what is kept at vertices is not kept by blocks.
   if (sizes.asked().has_field() || sizes.any_at_vertices() || domain_.options.vertex_ratio > 0)
     next_round_ = std::numeric_limits<std::size_t>::max();
+}
+
+BlockRefinement::Worker::Worker(const Domain& domain)
+    : queue(squared_distance(domain.box.min, domain.box.max)) {}
+
+BlockRefinement::Worker& BlockRefinement::take_worker() {
+  const std::scoped_lock lock(of_workers_);
+  if (idle_workers_.empty()) return *workers_.emplace_back(std::make_unique<Worker>(domain_));
+  Worker& worker = *idle_workers_.back();
+  idle_workers_.pop_back();
+  return worker;
+}
+
+void BlockRefinement::give_back(Worker& worker) {
+  const std::scoped_lock lock(of_workers_);
+  idle_workers_.push_back(&worker);
 }
 
 bool BlockRefinement::due() {
@@ -103,7 +116,10 @@ void BlockRefinement::round() {
     surface_.divide(records_for(room), surfaces);
     std::vector<std::vector<Waiting>> waiting(blocks.size());
     parallel_for(blocks.size(), [&](std::size_t i) {
-      if (!entries[i].empty()) refine({blocks[i], surfaces[i]}, entries[i], workers_.local(), waiting[i]);
+      if (entries[i].empty()) return;
+      Worker& worker = take_worker();
+      refine({blocks[i], surfaces[i]}, entries[i], worker, waiting[i]);
+      give_back(worker);
     });
     nodes_.renumber(mesh_.join(blocks));
     surface_.join(surfaces);
@@ -118,13 +134,19 @@ void BlockRefinement::round() {
 
 LargestZone BlockRefinement::largest_zone() const {
   LargestZone largest;
-  for (const Worker& worker : workers_) largest.add(worker.largest);
+  for (const auto& worker : workers_) largest.add(worker->largest);
   return largest;
+}
+
+std::size_t BlockRefinement::yields() const {
+  std::size_t sum = 0;
+  for (const auto& worker : workers_) sum += worker->yields;
+  return sum;
 }
 
 std::size_t BlockRefinement::bytes() const {
   std::size_t sum = 0;
-  for (const Worker& worker : workers_) sum += worker.nodes.bytes();
+  for (const auto& worker : workers_) sum += worker->nodes.bytes();
   return sum;
 }
 
@@ -231,12 +253,12 @@ std::vector<Index> BlockRefinement::room_for(
 
 // A vertex on the surface makes two triangles more than it destroys, and others hardly any.
 std::vector<std::size_t> BlockRefinement::records_for(std::span<const Index> room) const {
-  constexpr std::size_t of_a_zone = 512, insertions_per_triangle = 16;
+  constexpr std::size_t of_a_zone = 512, insertions_per_record = 4;
   std::vector<std::size_t> records;
   for (const Index insertions : room)
     records.push_back(insertions == 0           ? 0
                       : of_triangles(priority_) ? of_a_zone + 2 * insertions
-                                                : of_a_zone + insertions / insertions_per_triangle);
+                                                : of_a_zone + insertions / insertions_per_record);
   return records;
 }
 
@@ -248,9 +270,10 @@ void BlockRefinement::refine(Block block, const std::vector<WorkQueue::Entry>& e
   while (any_left(queue) && queue.pop(item)) {
     if (!due(item)) continue;
     const double radius = squared_radius(item);
-    if (!destroy(item, block, worker))
+    const Fate fate = destroy(item, block, worker);
+    if (fate == Fate::waits)
       waiting.push_back({item.priority, queue.bucket_of(radius), item.entry});
-    else if (due(item))  // it has yielded to something that left it alive
+    else if (fate == Fate::destroyed && due(item))  // it has yielded to something that left it alive
       queue.push(item.priority, radius, item.entry);
   }
   for (WorkQueue::Priority priority = queue.first_priority(); priority < WorkQueue::priority_count;
@@ -261,7 +284,8 @@ void BlockRefinement::refine(Block block, const std::vector<WorkQueue::Entry>& e
   }
 }
 
-// Of what the loop would take before it comes to smaller balls than those of the round?
+// Skinny cells of any size, and of what the loop would take before it comes to smaller balls than those of
+// the round?
 bool BlockRefinement::any_left(WorkQueue& queue) const {
   const WorkQueue::Priority priority = queue.first_priority();
   if (priority == WorkQueue::skinny_cells) return true;
@@ -283,21 +307,25 @@ std::optional<Candidate> BlockRefinement::candidate(const WorkQueue::Item& item,
                                  : triangles_.candidate_beside(item.entry.id, random);
 }
 
-// As the loop does where no candidate warps or encroaches a subsegment. False when the loop has to do it.
-bool BlockRefinement::destroy(const WorkQueue::Item& item, Block block, Worker& worker) {
+// As the loop does where no candidate warps or encroaches a subsegment.
+BlockRefinement::Fate BlockRefinement::destroy(const WorkQueue::Item& item, Block block, Worker& worker) {
   const Point& centre =
       of_cells(item.priority) ? mesh_.circumcentre(item.entry.id) : surface_.triangle(item.entry.id).x;
   RandomOffsets random(seed_at(centre, domain_.options.seed), collars_);
   std::optional<Candidate> next = candidate(item, random);
-  if (!next) return of_cells(item.priority);
-  for (;;) {
+  if (!next) return of_cells(item.priority) ? Fate::stays : Fate::waits;
+  for (std::size_t yields = 0;; ++yields) {
     if (next->squared_radius < domain_.floor * domain_.floor ||
         !block.mesh.find_conflict_zone(next->point, next->start, worker.zone))
-      return false;
+      return Fate::waits;
     const FaceId face = triangles_.encroached(worker.zone, *next);
-    if (face == no_face) return insert(*next, block, worker);
+    if (face == no_face) {
+      if (!insert(*next, block, worker)) return Fate::waits;
+      worker.yields += yields;
+      return Fate::destroyed;
+    }
     next = triangles_.candidate_beside(face, random);
-    if (!next) return false;
+    if (!next) return Fate::waits;
   }
 }
 

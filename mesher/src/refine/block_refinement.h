@@ -1,8 +1,8 @@
 #pragma once
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <array>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
@@ -11,6 +11,7 @@
 #include "refine/collar_cells.h"
 #include "refine/curve_chains.h"
 #include "refine/graded_sizes.h"
+#include "refine/random_offsets.h"
 #include "refine/refined_mesh.h"
 #include "refine/restricted_surface.h"
 #include "refine/surface_nodes.h"
@@ -47,6 +48,7 @@ class BlockRefinement {
   /// Vertices that all rounds have inserted.
   std::size_t inserted() const { return inserted_; }
   LargestZone largest_zone() const;
+  std::size_t yields() const;
   std::size_t bytes() const;
 
  private:
@@ -55,12 +57,15 @@ class BlockRefinement {
     unsigned bucket;
     WorkQueue::Entry entry;
   };
-  /// Of a thread.
+  /// Of a thread, as long as it refines a block.
   struct Worker {
+    explicit Worker(const Domain& domain);
+
     WorkQueue queue;
     ConflictZone zone;
     SurfaceNodes::Workspace nodes;
     LargestZone largest;
+    std::size_t yields = 0;
   };
   /// What a thread works on.
   struct Block {
@@ -74,6 +79,8 @@ class BlockRefinement {
     double place;
   };
 
+  Worker& take_worker();
+  void give_back(Worker& worker);
   std::size_t most_insertions() const;
   std::size_t block_count() const;
   void cut(std::size_t node, std::span<Point> sample);
@@ -91,7 +98,12 @@ class BlockRefinement {
   bool due(const WorkQueue::Item& item) const;
   double squared_radius(const WorkQueue::Item& item) const;
   std::optional<Candidate> candidate(const WorkQueue::Item& item, RandomOffsets& random) const;
-  bool destroy(const WorkQueue::Item& item, Block block, Worker& worker);
+  enum class Fate {
+    destroyed,  ///< something was inserted for its sake
+    stays,      ///< nothing can be inserted for it
+    waits       ///< for the loop
+  };
+  Fate destroy(const WorkQueue::Item& item, Block block, Worker& worker);
   bool insert(const Candidate& candidate, Block block, Worker& worker);
 
   const Domain& domain_;
@@ -113,7 +125,9 @@ class BlockRefinement {
   unsigned bucket_ = 0;
   std::vector<Cut> cuts_;
   Triangulation::Owners owners_;
-  tbb::enumerable_thread_specific<Worker> workers_;
+  std::vector<std::unique_ptr<Worker>> workers_;
+  std::vector<Worker*> idle_workers_;
+  std::mutex of_workers_;
 };
 
 }  // namespace collarmesh

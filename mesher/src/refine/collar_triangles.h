@@ -1,7 +1,7 @@
 #pragma once
 
-#include "common/large_pages.h"
 #include "common/growing_array.h"
+#include "common/large_pages.h"
 #include "delaunay/triangulation.h"
 
 namespace collarmesh {

@@ -8,8 +8,8 @@ namespace collarmesh {
 
 /// Pseudo-random offsets of what is inserted: exact centres of cospherical input make flat cells whose
 /// refinement never ends. The loop and the parts it drives have one sequence: who asks when decides about the
-/// mesh. BlockRefinement has one for each cell, from the cell's centre and the seed, so that the number of
-/// threads decides nothing.
+/// mesh. BlockRefinement has one for each cell or triangle, from its centre and the seed, so that the number
+/// of threads decides nothing.
 class RandomOffsets {
  public:
   /// The collars are kept by reference.

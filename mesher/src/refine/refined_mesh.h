@@ -14,9 +14,9 @@ namespace collarmesh {
 /// The Delaunay mesh and the features that its vertices lie on.
 ///
 /// The loop inserts and says that a vertex lies on one feature more, BlockRefinement inserts into blocks; all
-/// other parts read. Searching is reading, though it marks cells and vertices: it is
-/// for one thread. `visit_ball` does not nest. Invariant: every vertex has a feature, of the lowest dimension
-/// that is known to hold it; dimension 3: none.
+/// other parts read. Searching is reading, though it marks cells and vertices: it is for one thread.
+/// `visit_ball` does not nest. Invariant: every vertex has a feature, of the lowest dimension that is known
+/// to hold it; dimension 3: none.
 class RefinedMesh {
  public:
   /// The corners of a box. The complex is kept by reference.

@@ -288,7 +288,7 @@ MeshStatistics Refinement::statistics() const {
   s.cells = mesh_.cell_count();
   s.exact_predicates = mesh_.triangulation().exact_decisions();
   s.warps = warps_;
-  s.yields = yields_;
+  s.yields = yields_ + blocks_.yields();
   s.peak_bytes = std::max(budget_.peak_bytes(), bytes());
   s.seconds = seconds_ > 0 ? seconds_ : budget_.elapsed();
   if (domain_.options.count_work) s.counts = work_counts();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -36,8 +38,8 @@ struct TriangleNotes {
 /// Invariants, between insertions and until `give_outside`: a cell has the region that its circumcentre lies
 /// in, as far as its coordinates are not rounded across the surface; a face is marked, from both of its
 /// cells, when its dual edge crosses a patch, and then it has a record. The loop tells of insertions,
-/// BlockRefinement of cells far from the surface; the parts that judge triangles read records and write
-/// notes; CollarCreator tells of new balls; at the very end SurfaceCheck gives flat cells to the outside.
+/// BlockRefinement of those into blocks; the parts that judge triangles read records and write notes;
+/// CollarCreator tells of new balls; at the very end SurfaceCheck gives flat cells to the outside.
 class RestrictedSurface {
  public:
   /// All are kept by reference. Labels the cells that the mesh has.

@@ -11,7 +11,7 @@ namespace collarmesh {
 /// Turns the requested sizes into target edge lengths, and these into bounds on circumradii.
 /// The factors are measured (doc/architecture/refinement.md).
 ///
-/// Who asks: CurveChains::too_coarse, TriangleQuality::too_large and CellQuality::judge, for what is to be
+/// Who asks: CurveChains::too_coarse, TriangleQuality::target_size and CellQuality::judge, for what is to be
 /// split; GradedSizes::cells_made, for the size at a new vertex; CollarCreator::target_size, for the radii of
 /// balls; coarsen/target_sizes.cpp and predict/vertex_counts.cpp, for the same sizes in other stages. A new
 /// kind of size is looked for in each of them (doc/contributing.md); if it calls the user's code or is kept

@@ -23,11 +23,11 @@ Index* SurfaceNodes::Workspace::reserve(std::size_t count) {
   if (left_ < count) {
     left_ = std::max(count, nodes_per_chunk);
     chunks_.push_back(std::make_unique_for_overwrite<Index[]>(left_));
-    reserved_ += left_;
     end_ = chunks_.back().get() + left_;
   }
   Index* const reserved = end_ - left_;
   left_ -= count;
+  reserved_ += count;
   return reserved;
 }
 

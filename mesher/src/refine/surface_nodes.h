@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -44,6 +45,7 @@ class SurfaceNodes {
   /// long as anybody asks.
   class Workspace {
    public:
+    /// Of the lists: their sum over all threads does not depend on which thread made which.
     std::size_t bytes() const { return reserved_ * sizeof(Index); }
 
    private:
@@ -51,8 +53,9 @@ class SurfaceNodes {
     Index* reserve(std::size_t count);
 
     std::vector<std::unique_ptr<Index[]>> chunks_;
-    Index* end_ = nullptr;                 // of the last one
-    std::size_t reserved_ = 0, left_ = 0;  // in all of them, in the last one
+    Index* end_ = nullptr;  // of the last one
+    std::size_t left_ = 0;  // in the last one
+    std::size_t reserved_ = 0;
     TriangleHierarchy::Marks marks_;
     std::vector<Index> seeds_, found_, cells_;
   };
@@ -64,7 +67,9 @@ class SurfaceNodes {
   /// Blocks were joined.
   void renumber(const Renumbering& renumbering) { renumbering.apply(lists_); }
 
-  std::size_t bytes() const { return hierarchy_.bytes() + lists_.bytes() + workspace_.bytes(); }
+  std::size_t bytes() const {
+    return hierarchy_.bytes() + lists_.bytes() + workspace_.bytes() + workspace_.marks_.bytes();
+  }
 
  private:
   struct List {

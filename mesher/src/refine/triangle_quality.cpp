@@ -61,7 +61,7 @@ std::optional<Candidate> TriangleQuality::candidate(FaceId face) {
 }
 
 std::optional<Candidate> TriangleQuality::candidate_beside(FaceId face, RandomOffsets& random) const {
-  if (on_another_sheet(face)) return std::nullopt;
+  if (has_vertex_on_another_sheet(face)) return std::nullopt;
   const RestrictedTriangle& t = surface_.triangle(face);
   const Point p = place(face, random);
   for (const FaceId side : {face, mesh_.opposite(face)})
@@ -70,8 +70,8 @@ std::optional<Candidate> TriangleQuality::candidate_beside(FaceId face, RandomOf
   return std::nullopt;
 }
 
-// Has it a vertex of some feature that is not on its patch, which may face it across a gap?
-bool TriangleQuality::on_another_sheet(FaceId face) const {
+// Such a vertex may face the triangle across a gap.
+bool TriangleQuality::has_vertex_on_another_sheet(FaceId face) const {
   if (surface_.triangle(face).resolved_vertices) return false;
   const auto v = mesh_.face_vertices(face);
   return std::any_of(v.begin(), v.end(), [&](Index vertex) {

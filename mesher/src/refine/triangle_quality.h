@@ -17,8 +17,8 @@ namespace collarmesh {
 /// two are found by RestrictedSurface::restrict_face, when the record is made.)
 ///
 /// State: the notes of the restricted surface. Invariant: after an insertion every triangle of the new cells
-/// is judged, and those that are to be destroyed are in the queue. The loop tells of insertions and takes
-/// candidates; SurfaceCheck and SurfaceTopology ask for triangles that are to be split.
+/// is judged, and those that are to be destroyed are in the queue. The loop and BlockRefinement tell of
+/// insertions and take candidates; SurfaceCheck and SurfaceTopology ask for triangles that are to be split.
 class TriangleQuality {
  public:
   /// All are kept by reference.
@@ -39,8 +39,9 @@ class TriangleQuality {
   FaceId encroached(const ConflictZone& zone, const Candidate& candidate) const;
   /// What destroys a triangle, if anything can.
   std::optional<Candidate> candidate(FaceId face);
-  /// The same, where it lies on no other sheet and there is a cell in conflict beside the triangle. Several
-  /// threads may ask at once, each with offsets of its own, of triangles in its own block.
+  /// The same, if no vertex of the triangle lies on another sheet and a cell beside it is in conflict with
+  /// the candidate; else nothing, and only the loop can tell. Several threads may ask at once, each with
+  /// offsets of its own, of triangles in its own block.
   std::optional<Candidate> candidate_beside(FaceId face, RandomOffsets& random) const;
   /// Is the entry of the queue that of a triangle that is to be destroyed?
   bool due(const WorkQueue::Entry& entry) const;
@@ -65,7 +66,7 @@ class TriangleQuality {
   template <class TargetSize>
   void judge(FaceId face, WorkQueue& queue, const TargetSize& target_size) const;
   Point place(FaceId face, RandomOffsets& random) const;
-  bool on_another_sheet(FaceId face) const;
+  bool has_vertex_on_another_sheet(FaceId face) const;
   double target_size(FaceId face, const RestrictedTriangle& t);
   double gap_at(const RestrictedTriangle& t, double widest);
   bool too_far(FaceId face, const RestrictedTriangle& t) const;
