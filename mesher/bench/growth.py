@@ -87,21 +87,29 @@ class Cube:
 
 
 def curve_table(program: Path, time_limit: float, folder: Path) -> str:
+    """Beside a cube whose edges are as long as all others: what a tet and a cell of the triangulation, of
+    which there are some outside the regions, take in memory."""
     rows = []
-    for cube in (Cube("the cube's edges", False), Cube("a segment across it", True)):
+    folder.mkdir(parents=True, exist_ok=True)
+    cubes = [(Cube("the cube's edges", False), [2.0 ** -k for k in range(6, 13)]),
+             (Cube("a segment across it", True), [2.0 ** -k for k in range(6, 13)]),
+             (Cube("none, size as given", False), [0.042, 0.026, 0.0195])]
+    for cube, lengths in cubes:
         before = None
-        for k in range(6, 13):
-            sizes = [f"{curve}={2.0 ** -k}" for curve in cube.curves()]
+        for length in lengths:
+            uniform = cube.title.startswith("none")
+            sizes = [] if uniform else [f"{curve}={length}" for curve in cube.curves()]
             mesher = Collarmesh(program, time_limit, ["--coarsen", "off", *(w for one in sizes for w in ("--curve-size", one))])
-            folder.mkdir(parents=True, exist_ok=True)
             mesher.prepare(cube, folder)
-            run = mesher.mesh(cube, size, folder)
+            run = mesher.mesh(cube, length if uniform else size, folder)
             refine = run.stages["refine"]
             growth = "" if before is None else f"{exponent(before.tets, before.stages['refine'], run.tets, refine):.2f}"
-            rows.append([cube.title, f"1/{2 ** k}", tets_text(run), seconds(refine), growth,
-                         f"{1e6 * refine / run.tets:.2f}", f"{run.structure_bytes / run.tets:.0f}"])
+            rows.append([cube.title, f"{length:g}" if uniform else f"1/{1 / length:.0f}", tets_text(run), seconds(refine), growth,
+                         f"{1e6 * refine / run.tets:.2f}", f"{run.structure_bytes / run.tets:.0f}",
+                         f"{run.cells / run.tets:.2f}", f"{run.structure_bytes / run.cells:.0f}"])
             before = run
-    return table(["curves", "their edges", "tets", "refine s", "exponent", "us/tet", "bytes/tet"], rows)
+    return table(["fine curves", "their edges", "tets", "refine s", "exponent", "us/tet", "bytes/tet", "cells/tet",
+                  "bytes/cell"], rows)
 
 
 def crease_table(series: list[Series]) -> str:
