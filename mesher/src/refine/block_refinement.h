@@ -23,8 +23,8 @@ namespace collarmesh {
 
 /// Destroys many skinny or large cells, or triangles of the surface, at once, by several threads.
 ///
-/// A vertex may belong to a block when no vertex or curve of the complex, no point, no protective ball and no
-/// collar is found from it. A zone between such vertices is the business of the mesh, the surface and the
+/// A vertex may belong to a block when it lies on no vertex or curve of the complex, and no point, no
+/// protective ball and no collar is found from it. A zone between such vertices is the business of the mesh, the surface and the
 /// quality of triangles and cells alone. So a round takes the first bucket of the queue, divides these
 /// vertices into blocks, and refines each block as the loop does: in the same order of priorities, with
 /// cells that yield to triangles. What does not lie in one block waits in the queue; the blocks are others in
@@ -57,7 +57,7 @@ class BlockRefinement {
     unsigned bucket;
     WorkQueue::Entry entry;
   };
-  /// Of a thread, as long as it refines a block.
+  /// Lent to a thread for a block; kept to the end, as SurfaceNodes points into its lists.
   struct Worker {
     explicit Worker(const Domain& domain);
 

@@ -100,10 +100,12 @@ class RestrictedSurface {
   // For several threads, each with a block of its own and the block's workspace:
   /// Does a block have enough records for an insertion with this zone?
   bool has_room(const ConflictZone& zone, const Workspace& workspace) const;
+  /// As above. Precondition: `divide` gave the workspace, the zone lies in its block, and it has room; without
+  /// room a record would be added to those that all threads share.
   void cells_vanish(const ConflictZone& zone, Workspace& workspace);
   void cells_made(const ConflictZone& zone, Index vertex, Workspace& workspace);
-  /// As both of these, for a cell of a zone that nothing of the complex is found from: its region is that of
-  /// the cells that it replaces.
+  /// In place of these three, for a cell of a zone from whose vertices nothing of the complex is found: its
+  /// region is that of the cells that it replaces.
   void quiet_cell_made(Index cell, Index region) { labels_[cell] = {.region = region}; }
 
   /// A ball has come: does it hold the places of this cell's triangles?

@@ -41,8 +41,8 @@ class SurfaceNodes {
 
   void cells_made(const ConflictZone& zone, Index vertex);
 
-  /// What a thread that inserts into blocks keeps for itself: scratch, and the lists that it has made, for as
-  /// long as anybody asks.
+  /// What a thread that inserts into blocks keeps for itself: scratch, and the lists that it has made.
+  /// SurfaceNodes points into these, so it must not be destroyed first.
   class Workspace {
    public:
     /// Of the lists: their sum over all threads does not depend on which thread made which.
