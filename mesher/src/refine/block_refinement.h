@@ -24,12 +24,12 @@ namespace collarmesh {
 /// Destroys many skinny or large cells, or triangles of the surface, at once, by several threads.
 ///
 /// A vertex may belong to a block when it lies on no vertex or curve of the complex, and no point, no
-/// protective ball and no collar is found from it. A zone between such vertices is the business of the mesh, the surface and the
-/// quality of triangles and cells alone. So a round takes the first bucket of the queue, divides these
-/// vertices into blocks, and refines each block as the loop does: in the same order of priorities, with
-/// cells that yield to triangles. What does not lie in one block waits in the queue; the blocks are others in
-/// the next round, and what is left then is little enough for the loop. (Of a study of several ways this one
-/// cost a single thread the least.)
+/// protective ball and no collar is found from it. A zone between such vertices is the business of the mesh,
+/// the surface and the quality of triangles and cells alone. So a round takes the first bucket of the queue,
+/// divides these vertices into blocks, and refines each block as the loop does: in the same order of
+/// priorities, with cells that yield to triangles. What does not lie in one block waits in the queue; the
+/// blocks are others in the next round, and what is left then is little enough for the loop. (Of a study of
+/// several ways this one cost a single thread the least.)
 ///
 /// The mesh does not depend on the number of threads: blocks depend on the mesh alone, random offsets on
 /// what is destroyed. The loop says when the queue may be taken from.

@@ -100,8 +100,8 @@ class RestrictedSurface {
   // For several threads, each with a block of its own and the block's workspace:
   /// Does a block have enough records for an insertion with this zone?
   bool has_room(const ConflictZone& zone, const Workspace& workspace) const;
-  /// As above. Precondition: `divide` gave the workspace, the zone lies in its block, and it has room; without
-  /// room a record would be added to those that all threads share.
+  /// As above. Precondition: `divide` gave the workspace, the zone lies in its block, and it has room;
+  /// without room a record would be added to those that all threads share.
   void cells_vanish(const ConflictZone& zone, Workspace& workspace);
   void cells_made(const ConflictZone& zone, Index vertex, Workspace& workspace);
   /// In place of these three, for a cell of a zone from whose vertices nothing of the complex is found: its
