@@ -193,8 +193,8 @@ void expect_the_crossings_of_each_segment(const Soup& soup, bool on_a_grid) {
       hierarchy.crossings(points[i], points[i + 1], {&root, 1}, expected);
       for (const auto& [triangle, way] : expected) {
         const auto same = std::find_if(found.begin() + static_cast<std::ptrdiff_t>(next), found.end(),
-                                       [&](const TriangleHierarchy::BundleCrossing& c) {
-                                         return c.segment == i && c.crossing.triangle == triangle;
+                                       [&, wanted = triangle](const TriangleHierarchy::BundleCrossing& c) {
+                                         return c.segment == i && c.crossing.triangle == wanted;
                                        });
         ASSERT_NE(same, found.end()) << "radius " << radius << ", segment " << i;
         EXPECT_EQ(same->crossing.direction, way);

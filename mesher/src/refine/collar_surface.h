@@ -45,9 +45,9 @@ class CollarSurface {
   /// An edge and the ball's centre make a face between two regions. Does it lead from one sheet of a smooth
   /// patch to another? In balls smaller than the distance tolerance that does not tell.
   bool spans_sheets(const CollarBall& ball, Index a, Index b) const;
-  /// What mends a triangle: its representation point, or the nearest point of an arc where a patch through the
-  /// ball's centre meets the sphere. Nothing when there is none, or when it is next to a mesh vertex already:
-  /// so the repairs of a ball are bounded (theory.md).
+  /// What mends a triangle: its representation point, or the nearest point of an arc where a patch through
+  /// the ball's centre meets the sphere. Nothing when there is none, or when it is next to a mesh vertex
+  /// already: so the repairs of a ball are bounded (theory.md).
   std::optional<Candidate> repair(const CollarTriangle& t) const;
 
   /// Does a mesh vertex lie on a crease?
