@@ -91,13 +91,12 @@ def curve_table(program: Path, time_limit: float, folder: Path) -> str:
     which there are some outside the regions, take in memory."""
     rows = []
     folder.mkdir(parents=True, exist_ok=True)
-    cubes = [(Cube("the cube's edges", False), [2.0 ** -k for k in range(6, 13)]),
-             (Cube("a segment across it", True), [2.0 ** -k for k in range(6, 13)]),
-             (Cube("none, size as given", False), [0.042, 0.026, 0.0195])]
-    for cube, lengths in cubes:
+    fine = [2.0 ** -k for k in range(6, 13)]
+    cubes = [(Cube("the cube's edges", False), False, fine), (Cube("a segment across it", True), False, fine),
+             (Cube("none, size as given", False), True, [0.042, 0.026, 0.0195])]
+    for cube, uniform, lengths in cubes:
         before = None
         for length in lengths:
-            uniform = cube.title.startswith("none")
             sizes = [] if uniform else [f"{curve}={length}" for curve in cube.curves()]
             mesher = Collarmesh(program, time_limit, ["--coarsen", "off", *(w for one in sizes for w in ("--curve-size", one))])
             mesher.prepare(cube, folder)

@@ -11,25 +11,23 @@ import argparse
 import json
 import os
 import statistics
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-from processes import fetch_memory
+from processes import fetch_memory, run as run_program
 from tables import machine, seconds, table
 
 stages = ("read", "complex", "refine", "coarsen", "improve", "check", "write", "total")
 
 
-def run(program: Path, surface: Path, size: str, threads: int, cores: set[int], suffix: str) -> dict[str, float]:
-    os.sched_setaffinity(0, set(range(os.cpu_count())))
+def run(program: Path, surface: Path, size: str, threads: int, cores: set[int], suffix: str, time_limit: float) -> dict[str, float]:
     fetch_memory()
     os.sched_setaffinity(0, cores)
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.json"
-        subprocess.run([program, surface, "--size", size, "--threads", str(threads), "-o", Path(folder) / f"mesh{suffix}",
-                        "--report", report, "--progress", "none"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        run_program([str(program), str(surface), "--size", size, "--threads", str(threads), "-o", f"mesh{suffix}",
+                     "--report", str(report), "--progress", "none"], Path(folder), time_limit)
         found = json.loads(report.read_text())["seconds"]
     return {stage: found.get(stage, 0.0) for stage in stages}
 
@@ -43,15 +41,18 @@ def main() -> int:
     parser.add_argument("--threads", type=int, nargs="+", default=[2])
     parser.add_argument("--rounds", type=int, default=8)
     parser.add_argument("--suffix", default=".vtu", help="of the mesh that is written")
+    parser.add_argument("--time-limit", type=float, default=600, help="seconds for one run")
     options = parser.parse_args()
-    print(f"{machine(options.build)}. {options.surface.name}, --size {options.size}, {options.suffix}, {options.rounds} rounds.\n")
+    about = machine(options.build).replace("pinned to one core; ", "")
+    print(f"{about}. {options.surface.name}, --size {options.size}, {options.suffix}, {options.rounds} rounds.\n")
     program, cores = options.build.resolve() / "bin" / "collarmesh", sorted(os.sched_getaffinity(0))
     ways = [("one thread, core " + str(core), 1, {core}) for core in cores]
     ways += [(f"{n} threads", n, set(cores[-n:])) for n in options.threads]
     runs: dict[str, list[dict[str, float]]] = {name: [] for name, _, _ in ways}
     for _ in range(options.rounds):
         for name, threads, where in ways:
-            runs[name].append(run(program, options.surface.resolve(), options.size, threads, where, options.suffix))
+            runs[name].append(run(program, options.surface.resolve(), options.size, threads, where, options.suffix,
+                                  options.time_limit))
     medians = {name: {s: statistics.median(r[s] for r in of) for s in stages} for name, of in runs.items()}
     rows = [[name, *(seconds(of[s]) for s in stages)] for name, of in medians.items()]
     alone = [medians[name] for name, threads, _ in ways if threads == 1]

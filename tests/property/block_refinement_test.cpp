@@ -72,7 +72,7 @@ TEST(BlockRefinementSize, IsThatOfTheLoop) {
     // Most vertices of the plate lie on its surface.
     EXPECT_GT(blocks.result.statistics.vertices_in_blocks, blocks.result.statistics.vertices_inserted / 2);
     const auto expect_as_many = [](std::size_t a, std::size_t b) {
-      EXPECT_NEAR(static_cast<double>(a), static_cast<double>(b), 0.03 * static_cast<double>(b));
+      EXPECT_NEAR(static_cast<double>(a), static_cast<double>(b), 0.02 * static_cast<double>(b));
     };
     expect_as_many(blocks.result.mesh.tets.size(), loop.result.mesh.tets.size());
     expect_as_many(blocks.result.mesh.faces.size(), loop.result.mesh.faces.size());

@@ -308,20 +308,25 @@ TEST(Collar, PlacementCanBeStopped) {
   PlcOptions smooth;
   smooth.feature_angle = 30;
   const Plc plc = build_plc(acute::lens(20).soups, smooth);
-  // Up front every ball asks whether to stop, in the pass every 512th step of the loop does, too.
+  // Up front every ball asks whether to stop; in the pass the loop does, every 512 steps.
   using Most = std::pair<CollarCreation, std::size_t>;
   for (const auto& [creation, most_asked] :
        {Most{CollarCreation::up_front, 10}, Most{CollarCreation::in_pass, 1024}}) {
     SCOPED_TRACE(creation == CollarCreation::in_pass ? "in the pass" : "up front");
     std::atomic<bool> cancel = false;
+    bool stops = false;
     std::size_t asked = 0;
     MeshOptions options = testing::with_size(size);
     options.collar_creation = creation;
     options.size_field = [&](const Point&) {
-      cancel = true;
+      cancel = stops;
       ++asked;
       return size;
     };
+    EXPECT_EQ(generate(plc, options, {.progress = {}, .cancel = &cancel}).status, MeshStatus::complete);
+    EXPECT_GT(asked, most_asked);
+    stops = true;
+    asked = 0;
     EXPECT_EQ(generate(plc, options, {.progress = {}, .cancel = &cancel}).status, MeshStatus::cancelled);
     EXPECT_LT(asked, most_asked);
     options = testing::with_size(0.001);  // tens of thousands of balls

@@ -62,7 +62,11 @@ void Refinement::start() {
 }
 
 MeshStatus Refinement::run() {
-  const auto by_all_threads = [this](const auto& work) { ThreadLimit(domain_.options.threads).run(work); };
+  const auto by_all_threads = [this](const auto& look) {
+    bool found = false;
+    ThreadLimit(domain_.options.threads).run([&] { found = look(); });
+    return found;
+  };
   WorkQueue::Item item;
   // The collar surface is mended in many small steps: let it settle before the rest is looked at again.
   bool mending_collars = false;
@@ -85,21 +89,16 @@ MeshStatus Refinement::run() {
     if (collar_creator_.create_remaining()) continue;
     if (mending_collars && check_collars()) continue;
     const bool collars_settled = std::exchange(mending_collars, false);
-    bool found = false;
-    by_all_threads([&] { found = surface_check_.check() || check_gradation(); });
-    if (found) continue;
+    if (by_all_threads([&] { return surface_check_.check() || check_gradation(); })) continue;
     if (!collars_settled && check_collars()) {
       mending_collars = true;
       continue;
     }
     stitching_.stitch();
-    by_all_threads([&] { found = !outcome_.given_up() && topology_.check(); });
-    if (!found) break;
+    if (outcome_.given_up() || !by_all_threads([&] { return topology_.check(); })) break;
   }
   if (outcome_.stopped()) return outcome_.status();
-  bool relabelled = false;
-  by_all_threads([&] { relabelled = surface_check_.relabel_flat_cells(); });
-  if (relabelled) stitching_.stitch();
+  if (by_all_threads([&] { return surface_check_.relabel_flat_cells(); })) stitching_.stitch();
   if (const auto& open = stitching_.result().open; !open.empty())
     outcome_.give_up(mesh_.point(open[0]), "a collar could not be stitched to its surroundings",
                      "try a smaller size or another seed");
