@@ -27,7 +27,11 @@ class CoarseningRule final : public improvement::ShapeRule {
       : thin_(thin), bound_(radius_edge), sizes_(sizes) {}
 
   double quality(const Corners& p, const std::array<Index, 4>& corners) const override {
-    const auto [sharp, blunt] = thin_.margins(p, corners);
+    return quality(improvement::extreme_cosines(p), corners);
+  }
+  bool by_angles() const override { return true; }
+  double quality(const improvement::ExtremeCosines& cosines, const std::array<Index, 4>& corners) const override {
+    const auto [sharp, blunt] = thin_.margins(cosines, corners);
     if (blunt < 0) return -1;
     return blunt < 1 && mode_ != Mode::force ? beyond * blunt * std::min(1.0, sharp) : std::min(blunt, sharp);
   }

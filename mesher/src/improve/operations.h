@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "improve/hull_shapes.h"
 #include "improve/shape_rule.h"
 #include "improve/workpiece.h"
 
@@ -70,6 +71,8 @@ class Operations {
     double worst = INFINITY;                 ///< of their qualities; not known yet: infinite
     std::vector<std::array<Index, 3>> hull;  ///< make positive tets with the apex
     std::vector<Index> hull_tet;             ///< where each of these comes from
+    HullShapes shapes;                       ///< of the hull; empty: not known yet
+    std::size_t decisive = 0;                ///< of their pairs the one that ruled out the last apex
     std::vector<Index> faces;
     double agreement = NAN;                 ///< of the faces with their patches; not known yet: NaN
     std::vector<std::array<Index, 2>> rim;  ///< make faces with the apex
@@ -77,6 +80,7 @@ class Operations {
 
     void clear() {
       tets.clear(), hull.clear(), hull_tet.clear(), faces.clear(), rim.clear(), rim_face.clear();
+      shapes.clear();
       worst = INFINITY;
       agreement = NAN;
     }
@@ -96,12 +100,15 @@ class Operations {
 
   // Cones.
   bool find_cone_of_vertex(Index vertex);
-  void drop_from_cone(Index vertex);
   bool find_cone_of_edge(Index a, Index b);
   void insert_in_cone(Index a, Index b, double least, Change& change);
   void add_to_rim(Index face, Index apex);
   double quality_around(const Point& apex, Index id, double above);
-  bool surfaces_allow(const Point& apex);
+  double quality_by_angles(const Point& apex, Index id, double above);
+  double quality_by_tets(const Point& apex, Index id, double above);
+  Corners with_apex(const Point& apex, const std::array<Index, 4>& corners) const;
+  bool may_be_made(const Point& apex, const std::array<Index, 4>& corners, double quality) const;
+  bool surfaces_allow(const Point& apex, Index id);
   Freedom on_patch(Index patch, const Point& p);
   std::optional<Freedom> freedom(Index vertex);
   Point back_on_feature(const Point& p, const Point& from, const Freedom& freedom);
@@ -111,7 +118,7 @@ class Operations {
   bool may_contract(Index vertex, Index onto);
   bool keeps_topology(Index vertex, Index onto);
   bool keeps_lengths(Index vertex, Index onto) const;
-  void fill(const Cone& cone, Index apex, Change& change) const;
+  void fill(Index apex, Change& change) const;
 
   bool untouchable(const TetComplex::Tet& tet) const { return tet.collar && !rule_.dissolves_collars(); }
   double quality(Index tet) const { return rule_.quality(complex_.corners(tet), complex_[tet].corners); }
@@ -123,7 +130,7 @@ class Operations {
   const CurveSlides& curves_;
   const ShapeRule& rule_;
   TetComplex::Ring ring_;
-  Cone cone_, remaining_;
+  Cone cone_;
   Index vertex_ = none;  // that contractions were begun with
   bool ask_surfaces_ = true;
   std::vector<Index> star_;

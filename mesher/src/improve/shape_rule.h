@@ -17,6 +17,10 @@ class ShapeRule {
 
   /// The larger the better; not positive for a flat or an inverted tet.
   virtual double quality(const Corners& p, const std::array<Index, 4>& corners) const = 0;
+  /// Do the extreme angles of a tet tell its quality? Then many are asked about faster, in pairs.
+  virtual bool by_angles() const { return false; }
+  /// The same quality, of a rule that goes by angles.
+  virtual double quality(const ExtremeCosines&, const std::array<Index, 4>& /*corners*/) const { return NAN; }
   /// May an operation make this tet, of positive quality?
   virtual bool allows(const Corners& p, const std::array<Index, 4>& corners, double quality) const = 0;
   /// May an operation make an edge between these vertices where there was one of another length?

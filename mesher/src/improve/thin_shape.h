@@ -159,7 +159,9 @@ class ThinShape {
     double sharp, blunt;
   };
   Margins margins(const Corners& p, const std::array<Index, 4>& corners) const {
-    const ExtremeCosines cosines = extreme_cosines(p);
+    return margins(extreme_cosines(p), corners);
+  }
+  Margins margins(const ExtremeCosines& cosines, const std::array<Index, 4>& corners) const {
     if (!cosines.positive) return {-1, -1};
     return {sine(cosines.smallest_angle) / smallest_sine(corners),
             (cosines.largest_angle < 0 ? sine(cosines.largest_angle) : 1) / least_blunt_};

@@ -86,22 +86,60 @@ double Operations::worst_at_vertex() {
   return cone_.worst;
 }
 
-// The worst tet of the cone with an apex; -1 when that is not above `above` or the rule forbids one.
+// The worst tet of the cone with an apex; -1 when that is not above `above` or the rule forbids one. Faces that
+// have the apex as a corner count for nothing.
 double Operations::quality_around(const Point& apex, Index id, double above) {
-  const auto& points = mesh_.points;
+  return rule_.by_angles() ? quality_by_angles(apex, id, above) : quality_by_tets(apex, id, above);
+}
+
+double Operations::quality_by_angles(const Point& apex, Index id, double above) {
+  if (cone_.shapes.empty()) {
+    cone_.shapes.assign(cone_.hull, mesh_.points);
+    cone_.decisive = 0;
+  }
+  const std::size_t pairs = cone_.shapes.pairs();
+  double worst = INFINITY;
+  for (std::size_t k = 0, pair = cone_.decisive; k < pairs; ++k, pair = pair + 1 < pairs ? pair + 1 : 0) {
+    const auto cosines = cone_.shapes.extreme_cosines(pair, apex);
+    const std::size_t first = HullShapes::at_once * pair,
+                      last = std::min(first + HullShapes::at_once, cone_.hull.size());
+    for (std::size_t i = first; i < last; ++i) {
+      const auto& face = cone_.hull[i];
+      if (contains(face, id)) continue;
+      const std::array<Index, 4> corners{id, face[0], face[1], face[2]};
+      const double quality = rule_.quality(cosines[i - first], corners);
+      worst = std::min(worst, quality);
+      if (worst > above && may_be_made(apex, corners, quality)) continue;
+      cone_.decisive = pair;  // for the next place, too, it is likely to be
+      return -1;
+    }
+  }
+  return worst;
+}
+
+double Operations::quality_by_tets(const Point& apex, Index id, double above) {
   double worst = INFINITY;
   for (std::size_t i = 0; i < cone_.hull.size(); ++i) {
     const auto& face = cone_.hull[i];
-    const Corners p{apex, points[face[0]], points[face[1]], points[face[2]]};
+    if (contains(face, id)) continue;
     const std::array<Index, 4> corners{id, face[0], face[1], face[2]};
-    const double quality = rule_.quality(p, corners);
+    const double quality = rule_.quality(with_apex(apex, corners), corners);
     worst = std::min(worst, quality);
-    if (worst > above && rule_.allows(p, corners, quality)) continue;
+    if (worst > above && may_be_made(apex, corners, quality)) continue;
     std::swap(cone_.hull[0], cone_.hull[i]);  // is likely to decide for the next place, too
     std::swap(cone_.hull_tet[0], cone_.hull_tet[i]);
     return -1;
   }
   return worst;
+}
+
+Corners Operations::with_apex(const Point& apex, const std::array<Index, 4>& corners) const {
+  const auto& points = mesh_.points;
+  return {apex, points[corners[1]], points[corners[2]], points[corners[3]]};
+}
+
+bool Operations::may_be_made(const Point& apex, const std::array<Index, 4>& corners, double quality) const {
+  return rule_.allows(with_apex(apex, corners), corners, quality);
 }
 
 // To the vertices around, when the vertex moves.
@@ -114,26 +152,29 @@ bool Operations::edges_allowed(Index vertex, const Point& from, const Point& to)
   return true;
 }
 
-bool Operations::surfaces_allow(const Point& apex) {
+bool Operations::surfaces_allow(const Point& apex, Index id) {
   if (cone_.faces.empty()) return true;
   faces_.clear();
   for (std::size_t i = 0; i < cone_.rim.size(); ++i)
+    if (!contains(cone_.rim[i], id))
     faces_.push_back({{apex, mesh_.points[cone_.rim[i][0]], mesh_.points[cone_.rim[i][1]]},
                       mesh_.face_patch[cone_.rim_face[i]]});
   return surfaces_.fit(cone_.faces, faces_, cone_.agreement);
 }
 
 // Cones over hull and rim take the place of the tets and faces.
-void Operations::fill(const Cone& cone, Index apex, Change& change) const {
+void Operations::fill(Index apex, Change& change) const {
   auto& [old, created, old_faces, created_faces] = change.replacement;
-  old = cone.tets;
-  old_faces = cone.faces;
+  old = cone_.tets;
+  old_faces = cone_.faces;
   created.clear();
   created_faces.clear();
-  for (std::size_t i = 0; i < cone.hull.size(); ++i)
-    created.push_back({{apex, cone.hull[i][0], cone.hull[i][1], cone.hull[i][2]}, cone.hull_tet[i]});
-  for (std::size_t i = 0; i < cone.rim.size(); ++i)
-    created_faces.push_back({{apex, cone.rim[i][0], cone.rim[i][1]}, cone.rim_face[i]});
+  for (std::size_t i = 0; i < cone_.hull.size(); ++i)
+    if (const auto& [b, c, d] = cone_.hull[i]; !contains(cone_.hull[i], apex))
+      created.push_back({{apex, b, c, d}, cone_.hull_tet[i]});
+  for (std::size_t i = 0; i < cone_.rim.size(); ++i)
+    if (const auto& [a, b] = cone_.rim[i]; !contains(cone_.rim[i], apex))
+      created_faces.push_back({{apex, a, b}, cone_.rim_face[i]});
 }
 
 Operations::Freedom Operations::on_patch(Index patch, const Point& p) {
@@ -178,7 +219,7 @@ std::pair<Point, double> Operations::best_place(const Point& start, Index id, co
     const Point p = back_on_feature(wish, start, freedom);
     const double quality = quality_around(p, id, best);
     if (quality <= best || (id != none && !edges_allowed(id, start, p)) ||
-        (ask_surfaces_ && !surfaces_allow(p)))
+        (ask_surfaces_ && !surfaces_allow(p, id)))
       return false;
     best = quality;
     place = p;
@@ -204,7 +245,7 @@ std::pair<double, double> Operations::best_way(Index vertex, double best) {
     const Point p = curves_.ahead(vertex, wish);
     const double quality = quality_around(p, vertex, best);
     if (quality <= best || !edges_allowed(vertex, points[vertex], p) ||
-        (ask_surfaces_ && !(curves_.fits(vertex, wish) && surfaces_allow(p))))
+        (ask_surfaces_ && !(curves_.fits(vertex, wish) && surfaces_allow(p, vertex))))
       return false;
     best = quality;
     way = wish;
@@ -238,7 +279,8 @@ void Operations::move_vertex(Index vertex, Change& change) {
   ask_surfaces_ = false;
   search();
   ask_surfaces_ = true;
-  if (after > wanted && !((!on_curve || curves_.fits(vertex, way)) && surfaces_allow(place))) search();
+  if (after > wanted && !((!on_curve || curves_.fits(vertex, way)) && surfaces_allow(place, vertex)))
+    search();
   if (after <= wanted) return;
   std::vector<Index> read = std::move(change.read);
   read.insert(read.end(), cone_.tets.begin(), cone_.tets.end());
@@ -272,7 +314,7 @@ void Operations::insert_in_cone(Index a, Index b, double least, Change& change) 
   change.quality = quality;
   change.place = place;
   if (patch != none) change.feature = {2, patch};
-  fill(cone_, Change::inserted, change);
+  fill(Change::inserted, change);
 }
 
 void Operations::contract_edge(Index vertex, Index onto, Change& change) {
@@ -289,17 +331,16 @@ void Operations::contract_edge_above(Index vertex, Index onto, std::optional<dou
   if (!find_cone_of_vertex(vertex) || !may_contract(vertex, onto)) return;
   if (!keeps_lengths(vertex, onto) || !keeps_topology(vertex, onto)) return;
   worst_at_vertex();
-  drop_from_cone(onto);
   const Point& place = mesh_.points[onto];
   const double above = least.value_or(std::max(cone_.worst, change.quality));
   const double quality = quality_around(place, onto, above);
-  if (quality < 0 || !surfaces_allow(place)) return;
+  if (quality < 0 || !surfaces_allow(place, onto)) return;
   change = {};
   change.kind = Change::Kind::contraction;
   change.quality = quality;
   change.vertex = vertex;
   if (mesh_.features[vertex].dimension < 3) change.read = star_;  // of the other end
-  fill(cone_, onto, change);
+  fill(onto, change);
 }
 
 bool Operations::begin_contractions(Index vertex) {
@@ -310,38 +351,15 @@ bool Operations::begin_contractions(Index vertex) {
 void Operations::contract_onto(Index onto, double least, double enough, Change& change) {
   if (!may_contract(vertex_, onto)) return;
   const Point& place = mesh_.points[onto];
-  remaining_ = cone_;
-  drop_from_cone(onto);
   const double quality = quality_around(place, onto, least);
-  std::swap(cone_, remaining_);
-  if (quality < 0 || (quality < enough && quality < worst_at_vertex()) || !keeps_topology(vertex_, onto))
+  if (quality < 0 || (quality < enough && quality < worst_at_vertex()) || !keeps_topology(vertex_, onto) ||
+      !surfaces_allow(place, onto))
     return;
-  std::swap(cone_, remaining_);
-  const bool fits = surfaces_allow(place);
-  std::swap(cone_, remaining_);
-  cone_.agreement = remaining_.agreement;  // of the same faces
-  if (!fits) return;
   change = {};
   change.kind = Change::Kind::contraction;
   change.quality = quality;
   change.vertex = vertex_;
-  fill(remaining_, onto, change);
-}
-
-// What has this corner is no longer part of hull and rim.
-void Operations::drop_from_cone(Index vertex) {
-  const auto drop = [&](auto& of, auto& origins) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < of.size(); ++i) {
-      if (contains(of[i], vertex)) continue;
-      of[kept] = of[i];
-      origins[kept++] = origins[i];
-    }
-    of.resize(kept);
-    origins.resize(kept);
-  };
-  drop(cone_.hull, cone_.hull_tet);
-  drop(cone_.rim, cone_.rim_face);
+  fill(onto, change);
 }
 
 // Does the edge to `onto` lie in the vertex' feature?

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "improve/thin_shape.h"
+
+namespace collarmesh::improvement {
+
+/// The faces of a hull, whose tets with an apex are measured two at a time: `extreme_cosines` for each, in
+/// half the time. What does not depend on the apex is computed once.
+class HullShapes {
+ public:
+  static constexpr std::size_t at_once = 2;
+
+  void clear() { pairs_.clear(); }
+  bool empty() const { return pairs_.empty(); }
+  /// Each face makes a tet of positive volume with an apex inside. Of an odd number the last one is there twice.
+  void assign(std::span<const std::array<Index, 3>> faces, const std::vector<Point>& points);
+
+  std::size_t pairs() const { return pairs_.size(); }
+  /// Of the tets on the faces 2 `pair` and 2 `pair` + 1. Of a tet without volume only `positive` tells.
+  std::array<ExtremeCosines, at_once> extreme_cosines(std::size_t pair, const Point& apex) const;
+
+ private:
+  using Two = double __attribute__((vector_size(at_once * sizeof(double))));
+  struct TwoVectors {
+    Two x, y, z;
+  };
+  struct Pair {
+    std::array<TwoVectors, 3> corners;
+    TwoVectors normal;
+    Two inverse_squared_normal;
+    std::array<Two, 3> squared_sides;  ///< opposite the corners
+    Two least_cosine;                  ///< of the face's angles, squared with its sign
+  };
+
+  static TwoVectors minus(const TwoVectors& a, const TwoVectors& b);
+  static TwoVectors cross(const TwoVectors& a, const TwoVectors& b);
+  static Two dot(const TwoVectors& a, const TwoVectors& b);
+  static Two least_cosine(const Two& x, const Two& y, const Two& z);
+
+  std::vector<Pair> pairs_;
+};
+
+}  // namespace collarmesh::improvement
