@@ -8,14 +8,6 @@
 
 namespace collarmesh::improvement {
 
-namespace {
-
-double squared_distance_to_segment(const Point& p, const Point& a, const Point& b) {
-  return squared_distance_to_triangle(p, a, b, b);
-}
-
-}  // namespace
-
 CurveSlides::CurveSlides(const Plc& plc, const TetMesh& mesh, double distance, double edges_per_hole)
     : plc_(plc), mesh_(mesh), squared_distance_(distance * distance), paths_(plc, plc.points) {
   spare_edges_.reserve(plc.curves.size());
@@ -147,10 +139,9 @@ bool CurveSlides::edge_fits(Index curve, double from, double way, const Point& a
     if (squared_distance_to_segment(p, a, b) > squared_distance_) return false;
   for (const double t : {0.25, 0.5, 0.75}) {
     const Point p = a + t * (b - a);
-    double least = INFINITY;
-    for (std::size_t i = 1; i < part.size(); ++i)
-      least = std::min(least, squared_distance_to_segment(p, part[i - 1], part[i]));
-    if (least > squared_distance_) return false;
+    std::size_t i = 1;
+    while (i < part.size() && squared_distance_to_segment(p, part[i - 1], part[i]) > squared_distance_) ++i;
+    if (i == part.size()) return false;
   }
   return true;
 }

@@ -25,12 +25,11 @@ bool has_foot(const Point& p, const SmoothSurfaces::Triangle& t) {
   return true;
 }
 
-// Is the triangle, with this normal, nearer to p than the square root of the bound? Most points are far from
-// its plane, or above or below it.
-bool is_near(const Point& p, const SmoothSurfaces::Triangle& t, const Vector& n, double squared_bound) {
-  const double height = dot(p - t[0], n), length = squared_norm(n);
-  if (height * height >= squared_bound * length && length > 0) return false;
-  return (length > 0 && has_foot(p, t)) || squared_distance_to(p, t) < squared_bound;
+// And nearer to its plane than the square root of the bound?
+bool lies_over(const Point& p, const SmoothSurfaces::Triangle& t, double squared_bound) {
+  const Vector n = normal(t);
+  const double height = dot(p - t[0], n);
+  return height * height < squared_bound * squared_norm(n) && has_foot(p, t);
 }
 
 Point centre(const SmoothSurfaces::Triangle& t) { return (t[0] + t[1] + t[2]) / 3; }
@@ -134,11 +133,14 @@ double SmoothSurfaces::agreement(Index patch, const Triangle& t, Index triangle)
 
 double SmoothSurfaces::worst_agreement(std::span<const Index> faces) const {
   double worst = enough_agreement;
+  Index near = none, patch_of_near = none;  // the next face is often near the same triangle
   for (const Index face : faces) {
     if (!smooth(face)) continue;
     const Triangle t = corners(face);
-    const Index near = triangle_near(mesh_.face_patch[face], centre(t));
-    if (near != none) worst = std::min(worst, agreement(mesh_.face_patch[face], t, near));
+    const Index patch = mesh_.face_patch[face];
+    near = triangle_near(patch, centre(t), patch == patch_of_near ? near : none);
+    patch_of_near = patch;
+    if (near != none) worst = std::min(worst, agreement(patch, t, near));
   }
   return worst;
 }
@@ -161,9 +163,6 @@ bool SmoothSurfaces::fit(std::span<const Index> old, std::span<const Face> creat
     if (std::isnan(agreement_of_old)) agreement_of_old = worst_agreement(old);
     if (least < agreement_of_old) return false;
   }
-  std::vector<Vector> normals;
-  normals.reserve(created.size());
-  for (const Face& t : created) normals.push_back(normal(t.corners));
   std::size_t last = 0;  // the next point of a patch is often near the same face
   for (const Index face : old) {
     if (!smooth(face)) continue;
@@ -171,8 +170,8 @@ bool SmoothSurfaces::fit(std::span<const Index> old, std::span<const Face> creat
     const Surface& of = surface(patch);
     const auto has_face = [&](const Point& sample) {
       for (std::size_t tried = 0; tried < created.size(); ++tried) {
-        const Face& t = created[last];
-        if (t.patch == patch && is_near(sample, t.corners, normals[last], squared_distance_)) return true;
+        const auto& [t, patch_of_face] = created[last];
+        if (patch_of_face == patch && is_within(squared_distance_, sample, t[0], t[1], t[2])) return true;
         last = last + 1 < created.size() ? last + 1 : 0;
       }
       return false;
@@ -215,15 +214,24 @@ void SmoothSurfaces::take_samples(std::span<const Index> faces) {
   }
 }
 
+// To the nearest one, or to one that they lie straight above or below, most often that of the last sample.
 void SmoothSurfaces::give_samples(std::span<const Index> faces) {
   first_sample_.resize(mesh_.faces.size(), none);
+  std::size_t last = 0;
   for (const auto& [patch, s] : moving_) {
     Surface& of = surfaces_[patch];
+    const Point& sample = of.samples[s];
     Index nearest = none;
     double least = INFINITY;
-    for (const Index face : faces) {
+    for (std::size_t tried = 0; tried < faces.size(); ++tried, last = last + 1 < faces.size() ? last + 1 : 0) {
+      const Index face = faces[last];
       if (mesh_.face_patch[face] != patch) continue;
-      const double d = squared_distance_to(of.samples[s], corners(face));
+      const Triangle t = corners(face);
+      if (lies_over(sample, t, squared_distance_)) {
+        nearest = face;
+        break;
+      }
+      const double d = squared_distance_to(sample, t);
       if (d < least) {
         least = d;
         nearest = face;

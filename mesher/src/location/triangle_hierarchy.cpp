@@ -70,6 +70,28 @@ double squared_distance_to_triangle(const Point& p, const Point& a, const Point&
   return squared_distance(p, nearest_point_on_triangle(p, a, b, c));
 }
 
+double squared_distance_to_segment(const Point& p, const Point& a, const Point& b) {
+  return squared_distance(p, nearest_point_on_segment(p, a, b));
+}
+
+// Most points are far from the triangle's plane, or above or below it. Of all others the nearest point is on a
+// side that they lie beyond.
+bool is_within(double squared_bound, const Point& p, const Point& a, const Point& b, const Point& c) {
+  const Vector u = b - a, w = c - a, n = cross(u, w);
+  const double nn = squared_norm(n), longest = std::max(squared_norm(u), squared_norm(w));
+  if (!(nn > squared_needle * longest * longest))
+    return squared_distance_to_triangle(p, a, b, c) < squared_bound;
+  const double height = dot(p - a, n);
+  if (height * height >= squared_bound * nn) return false;
+  bool inside = true;
+  const auto is_near_side = [&](const Point& from, const Point& to) {
+    if (dot(cross(to - from, p - from), n) >= 0) return false;
+    inside = false;
+    return squared_distance_to_segment(p, from, to) < squared_bound;
+  };
+  return is_near_side(a, b) || is_near_side(b, c) || is_near_side(c, a) || inside;
+}
+
 TriangleHierarchy::TriangleHierarchy(std::span<const Point> points,
                                      std::vector<std::array<Index, 3>> triangles)
     : points_(points), triangles_(std::move(triangles)) {

@@ -138,6 +138,9 @@ std::unique_ptr<TriangleHierarchy> hierarchy_of_patch(const Plc& plc, Index patc
 
 /// Squared distance from p to the triangle abc, which may be degenerate.
 double squared_distance_to_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
+double squared_distance_to_segment(const Point& p, const Point& a, const Point& b);
+/// Is the squared distance from p to the triangle abc, which may be degenerate, below the bound?
+bool is_within(double squared_bound, const Point& p, const Point& a, const Point& b, const Point& c);
 /// The point of the triangle abc, which may be degenerate, that is nearest to p.
 Point nearest_point_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
 /// Squared distance from p to the box; 0 inside.
@@ -195,7 +198,7 @@ Index TriangleHierarchy::triangle_within(const Point& p, double bound, Index hin
                                          const Counts& counts) const {
   const auto is_near = [&](Index triangle) {
     const auto t = corners(triangle);
-    return squared_distance_to_triangle(p, t[0], t[1], t[2]) < bound;
+    return is_within(bound, p, t[0], t[1], t[2]);
   };
   if (nodes_.empty()) return none;
   if (hint != none && is_near(hint)) return hint;
