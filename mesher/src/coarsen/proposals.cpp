@@ -49,7 +49,7 @@ void Proposer::contractions(Index vertex, bool repairs, VertexProposal& found) {
   find_neighbours(vertex);
   for (const Neighbour& n : neighbours_) {
     if (!is_short(n.squared_relative_length)) break;
-    if (lengths_fit(vertex, n.vertex)) found.targets.push_back(n.vertex);
+    if (may_share_feature(vertex, n.vertex) && lengths_fit(vertex, n.vertex)) found.targets.push_back(n.vertex);
   }
   if (found.targets.empty()) return;
   rule_.set_mode(Mode::final);
@@ -84,6 +84,14 @@ Change Proposer::improvement_of(Index tet, Mode mode) {
     if (mode == Mode::final && change.kind == Change::Kind::none) stayed_[corners[i]] = changes_.now;
   }
   return change;
+}
+
+// Could an edge to `onto` lie in the vertex' curve or patch?
+bool Proposer::may_share_feature(Index vertex, Index onto) const {
+  const auto& [dimension, feature] = complex().mesh().features[vertex];
+  const auto& other = complex().mesh().features[onto];
+  return dimension == 3 || other.dimension < dimension ||
+         (other.dimension == dimension && other.feature == feature);
 }
 
 bool Proposer::is_new(Index vertex) {

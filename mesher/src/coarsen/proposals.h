@@ -55,6 +55,7 @@ class Proposer {
   const improvement::TetComplex& complex() const { return workpiece_.complex; }
   const std::vector<Point>& points() const { return complex().mesh().points; }
   void find_neighbours(Index vertex);
+  bool may_share_feature(Index vertex, Index onto) const;
   bool lengths_fit(Index vertex, Index onto);
   bool is_new(Index vertex);
   bool stays(Index vertex) const {

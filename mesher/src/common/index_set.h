@@ -23,11 +23,18 @@ class IndexSet {
     ++size_;
     return true;
   }
+  bool contains(Index i) const {
+    const std::size_t last = table_.size() - 1;
+    std::size_t slot = first_slot(i) & last;
+    while (table_[slot] != i && table_[slot] != none) slot = (slot + 1) & last;
+    return table_[slot] == i;
+  }
 
  private:
+  static std::size_t first_slot(Index i) { return i * 0x9e3779b97f4a7c15U >> 32U; }
   static bool insert_into(std::span<Index> table, Index i) {
     const std::size_t last = table.size() - 1;
-    for (std::size_t slot = i * 0x9e3779b97f4a7c15U >> 32U & last;; slot = (slot + 1) & last) {
+    for (std::size_t slot = first_slot(i) & last;; slot = (slot + 1) & last) {
       if (table[slot] == i) return false;
       if (table[slot] != none) continue;
       table[slot] = i;

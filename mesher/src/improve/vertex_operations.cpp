@@ -3,6 +3,7 @@
 #include <initializer_list>
 #include <tuple>
 
+#include "common/index_set.h"
 #include "improve/operations.h"
 #include "improve/shape.h"
 
@@ -81,8 +82,8 @@ void Operations::add_to_rim(Index face, Index opposite) {
 }
 
 double Operations::worst_at_vertex() {
-  if (std::isinf(cone_.worst))
-    for (const Index t : cone_.tets) cone_.worst = std::min(cone_.worst, quality(t));
+  if (!std::isinf(cone_.worst)) return cone_.worst;
+  for (const Index t : cone_.tets) cone_.worst = std::min(cone_.worst, quality(t));
   return cone_.worst;
 }
 
@@ -386,12 +387,21 @@ bool Operations::may_contract(Index vertex, Index onto) {
 bool Operations::keeps_topology(Index vertex, Index onto) {
   if (mesh_.features[vertex].dimension == 3) return true;
   if (complex_.pinched(onto)) return false;
-  complex_.star(onto, star_);
+  // The other vertices that the vertex is joined to, and those that the edge is.
+  IndexSet joined, joined_to_edge;
+  for (const auto& face : cone_.hull) {
+    const bool at_edge = contains(face, onto);
+    for (const Index v : face) {
+      joined.insert(v);
+      if (at_edge) joined_to_edge.insert(v);
+    }
+  }
   const auto have = [](const auto& cells, std::initializer_list<Index> vertices) {
     return std::any_of(cells.begin(), cells.end(), [&](const auto& cell) {
       return std::all_of(vertices.begin(), vertices.end(), [&](Index v) { return contains(cell, v); });
     });
   };
+  complex_.star(onto, star_);
   for (const Index t : star_) {
     const auto& tet = complex_[t];
     for (unsigned corner = 0; corner < 4; ++corner) {
@@ -405,12 +415,17 @@ bool Operations::keeps_topology(Index vertex, Index onto) {
         if (have(cone_.rim, {v}) && !have(cone_.rim, {v, onto})) return false;
     }
     if (contains(tet.corners, vertex)) continue;
+    std::array<Index, 3> shared;
+    unsigned count = 0;
     for (const Index w : tet.corners) {
-      if (w == onto) continue;
-      if (have(cone_.hull, {w}) && !have(cone_.hull, {w, onto})) return false;
-      for (const Index x : tet.corners)
-        if (x != onto && x != w && have(cone_.hull, {w, x}) && !have(cone_.hull, {w, x, onto})) return false;
+      if (w == onto || !joined.contains(w)) continue;
+      if (!joined_to_edge.contains(w)) return false;
+      shared[count++] = w;
     }
+    for (unsigned i = 1; i < count; ++i)
+      for (unsigned j = 0; j < i; ++j)
+        if (have(cone_.hull, {shared[i], shared[j]}) && !have(cone_.hull, {shared[i], shared[j], onto}))
+          return false;
   }
   return true;
 }
