@@ -46,6 +46,7 @@ class CoarseningRule final : public improvement::ShapeRule {
   }
   // Each move has contractions around asked again.
   double least_gain() const override { return 0.02; }
+  unsigned halvings() const override { return 2; }
   bool dissolves_collars() const override { return true; }
 
   bool keeps_guarantee(const Corners& p, double quality) const { return quality >= 1 || bound_.holds(p); }

@@ -29,6 +29,8 @@ class ShapeRule {
   }
   /// A move of a vertex that raises the quality by less than this share is not worth it.
   virtual double least_gain() const { return 1e-3; }
+  /// How often the steps of a move are halved.
+  virtual unsigned halvings() const { return 4; }
   /// May operations replace cells of collars?
   virtual bool dissolves_collars() const { return false; }
 };

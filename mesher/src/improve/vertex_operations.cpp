@@ -11,9 +11,8 @@ namespace collarmesh::improvement {
 
 namespace {
 
-// Vertices move by steps from this share of their shortest edge down, halved so often.
+// Vertices move by steps from this share of their shortest edge down.
 constexpr double first_step = 0.4;
-constexpr unsigned halvings = 4;
 
 bool contains(const auto& range, Index v) { return std::find(range.begin(), range.end(), v) != range.end(); }
 
@@ -229,7 +228,7 @@ std::pair<Point, double> Operations::best_place(const Point& start, Index id, co
   consider(start + to_centre);
   consider(start + 0.5 * to_centre);
   double step = first_step * std::sqrt(shortest);
-  for (unsigned h = 0; h < halvings; ++h, step *= 0.5)
+  for (unsigned h = 0; h < rule_.halvings(); ++h, step *= 0.5)
     for (unsigned d = 0; d < freedom.count; ++d)
       if (!consider(place + step * freedom.directions[d])) consider(place - step * freedom.directions[d]);
   return {place, best};
@@ -253,7 +252,7 @@ std::pair<double, double> Operations::best_way(Index vertex, double best) {
     return true;
   };
   double step = first_step * std::sqrt(shortest);
-  for (unsigned h = 0; h < halvings; ++h, step *= 0.5)
+  for (unsigned h = 0; h < rule_.halvings(); ++h, step *= 0.5)
     if (!consider(way + step)) consider(way - step);
   return {way, best};
 }
