@@ -50,11 +50,13 @@ class Operations {
   /// than `least`; below `enough` no worse than the worst tet of the cavity, either.
   void contract_onto(Index onto, double least, double enough, Change& change);
   /// The quality of the worst tet at the vertex that contractions were begun with.
-  double worst_at_vertex();
+  double worst_at_vertex() { return worst_at_vertex(vertex_); }
 
  private:
   /// Larger rings are hardly ever improved by an operation at their edge.
   static constexpr std::size_t largest_ring = 9;
+
+  static constexpr std::size_t all_passed = SIZE_MAX;
 
   using Polygon = std::vector<Index>;
   /// The directions a vertex may be moved in, and the patch it has to stay on, if any.
@@ -80,7 +82,7 @@ class Operations {
 
     void clear() {
       tets.clear(), hull.clear(), hull_tet.clear(), faces.clear(), rim.clear(), rim_face.clear();
-      shapes.clear();
+      shapes.clear(), decisive = 0;
       worst = INFINITY;
       agreement = NAN;
     }
@@ -104,6 +106,10 @@ class Operations {
   void insert_in_cone(Index a, Index b, double least, Change& change);
   void add_to_rim(Index face, Index apex);
   double quality_around(const Point& apex, Index id, double above);
+  double worst_at_cone();
+  double worst_at_vertex(Index vertex);
+  template <class Passes>
+  std::size_t for_each_shape(const Point& apex, std::size_t first_pair, const Passes& passes);
   double quality_by_angles(const Point& apex, Index id, double above);
   double quality_by_tets(const Point& apex, Index id, double above);
   Corners with_apex(const Point& apex, const std::array<Index, 4>& corners) const;

@@ -80,9 +80,36 @@ void Operations::add_to_rim(Index face, Index opposite) {
   cone_.rim_face.push_back(face);
 }
 
-double Operations::worst_at_vertex() {
-  if (!std::isinf(cone_.worst)) return cone_.worst;
-  for (const Index t : cone_.tets) cone_.worst = std::min(cone_.worst, quality(t));
+// Tell of the tets between an apex and the hull, those of a pair first, until one does not pass; returns its
+// pair.
+template <class Passes>
+std::size_t Operations::for_each_shape(const Point& apex, std::size_t first_pair, const Passes& passes) {
+  if (cone_.shapes.empty()) cone_.shapes.assign(cone_.hull, mesh_.points);
+  const std::size_t pairs = cone_.shapes.pairs();
+  for (std::size_t k = 0, pair = first_pair; k < pairs; ++k, pair = pair + 1 < pairs ? pair + 1 : 0) {
+    const auto cosines = cone_.shapes.extreme_cosines(pair, apex);
+    const std::size_t first = HullShapes::at_once * pair,
+                      count = std::min(HullShapes::at_once, cone_.hull.size() - first);
+    for (std::size_t lane = 0; lane < count; ++lane)
+      if (!passes(first + lane, cosines[lane])) return pair;
+  }
+  return all_passed;
+}
+
+double Operations::worst_at_cone() {
+  if (std::isinf(cone_.worst))
+    for (const Index t : cone_.tets) cone_.worst = std::min(cone_.worst, quality(t));
+  return cone_.worst;
+}
+
+// With the vertex as their apex the tets are what they are now.
+double Operations::worst_at_vertex(Index vertex) {
+  if (!rule_.by_angles() || !std::isinf(cone_.worst)) return worst_at_cone();
+  for_each_shape(mesh_.points[vertex], 0, [&](std::size_t i, const ExtremeCosines& cosines) {
+    const auto& [b, c, d] = cone_.hull[i];
+    cone_.worst = std::min(cone_.worst, rule_.quality(cosines, {vertex, b, c, d}));
+    return true;
+  });
   return cone_.worst;
 }
 
@@ -93,28 +120,18 @@ double Operations::quality_around(const Point& apex, Index id, double above) {
 }
 
 double Operations::quality_by_angles(const Point& apex, Index id, double above) {
-  if (cone_.shapes.empty()) {
-    cone_.shapes.assign(cone_.hull, mesh_.points);
-    cone_.decisive = 0;
-  }
-  const std::size_t pairs = cone_.shapes.pairs();
   double worst = INFINITY;
-  for (std::size_t k = 0, pair = cone_.decisive; k < pairs; ++k, pair = pair + 1 < pairs ? pair + 1 : 0) {
-    const auto cosines = cone_.shapes.extreme_cosines(pair, apex);
-    const std::size_t first = HullShapes::at_once * pair,
-                      last = std::min(first + HullShapes::at_once, cone_.hull.size());
-    for (std::size_t i = first; i < last; ++i) {
-      const auto& face = cone_.hull[i];
-      if (contains(face, id)) continue;
-      const std::array<Index, 4> corners{id, face[0], face[1], face[2]};
-      const double quality = rule_.quality(cosines[i - first], corners);
-      worst = std::min(worst, quality);
-      if (worst > above && may_be_made(apex, corners, quality)) continue;
-      cone_.decisive = pair;  // for the next place, too, it is likely to be
-      return -1;
-    }
-  }
-  return worst;
+  const auto failed = for_each_shape(apex, cone_.decisive, [&](std::size_t i, const ExtremeCosines& cosines) {
+    const auto& face = cone_.hull[i];
+    if (contains(face, id)) return true;
+    const std::array<Index, 4> corners{id, face[0], face[1], face[2]};
+    const double quality = rule_.quality(cosines, corners);
+    worst = std::min(worst, quality);
+    return worst > above && may_be_made(apex, corners, quality);
+  });
+  if (failed == all_passed) return worst;
+  cone_.decisive = failed;  // for the next place, too, it is likely to be
+  return -1;
 }
 
 double Operations::quality_by_tets(const Point& apex, Index id, double above) {
@@ -263,7 +280,7 @@ void Operations::move_vertex(Index vertex, Change& change) {
   const auto where = on_curve ? std::optional(everywhere) : freedom(vertex);
   if (!where || !find_cone_of_vertex(vertex)) return;
   const Point& p = mesh_.points[vertex];
-  worst_at_vertex();
+  worst_at_vertex(vertex);
   const double wanted = std::max(cone_.worst * (1 + rule_.least_gain()) + 1e-12, change.quality);
   Point place = p;
   double way = 0, after = 0;
@@ -296,7 +313,7 @@ void Operations::move_vertex(Index vertex, Change& change) {
 
 void Operations::split_edge(Index a, Index b, double least, Change& change) {
   if (find_cone_of_edge(a, b))
-    insert_in_cone(a, b, std::max({worst_at_vertex(), least, change.quality}), change);
+    insert_in_cone(a, b, std::max({worst_at_cone(), least, change.quality}), change);
 }
 
 void Operations::split_edge_anyhow(Index a, Index b, double least, Change& change) {
@@ -330,7 +347,7 @@ void Operations::contract_edge_above(Index vertex, Index onto, std::optional<dou
   if (mesh_.features[vertex].dimension == 0) return;
   if (!find_cone_of_vertex(vertex) || !may_contract(vertex, onto)) return;
   if (!keeps_lengths(vertex, onto) || !keeps_topology(vertex, onto)) return;
-  worst_at_vertex();
+  worst_at_vertex(vertex);
   const Point& place = mesh_.points[onto];
   const double above = least.value_or(std::max(cone_.worst, change.quality));
   const double quality = quality_around(place, onto, above);
@@ -352,7 +369,7 @@ void Operations::contract_onto(Index onto, double least, double enough, Change& 
   if (!may_contract(vertex_, onto)) return;
   const Point& place = mesh_.points[onto];
   const double quality = quality_around(place, onto, least);
-  if (quality < 0 || (quality < enough && quality < worst_at_vertex()) || !keeps_topology(vertex_, onto) ||
+  if (quality < 0 || (quality < enough && quality < worst_at_vertex(vertex_)) || !keeps_topology(vertex_, onto) ||
       !surfaces_allow(place, onto))
     return;
   change = {};
