@@ -30,7 +30,7 @@ using Mode = CoarseningRule::Mode;
 constexpr unsigned plain_passes = 4, repair_passes = 6, rounds = 12;
 // Steps that may repair a contraction. Hardly a step mends two tets, so what has more tets to mend than steps
 // left is given up.
-constexpr unsigned most_repairs = 16;
+constexpr unsigned most_repairs = 24;
 // Vertices whose shortest edge is below this share of its target are worth repairs, which are trials that
 // fail more often than not.
 constexpr double repaired_below = 0.65;
@@ -43,8 +43,10 @@ constexpr unsigned most_sweeps = 8;
 constexpr double least_share = 0.005;
 constexpr std::size_t steps_between_reports = 4096;
 // Proposals are made for so many items at once, or for this share of them: few of all, so that they hardly
-// meet.
-constexpr std::size_t most_proposals = 256, items_per_proposal = 16;
+// meet, but several for each thread.
+constexpr std::size_t most_proposals = 256, items_per_proposal = 256, proposals_per_thread = 4;
+// Items of one rank lie in so many rows, or in this share of them.
+constexpr std::size_t most_rows = 256, items_per_row = 16;
 constexpr double ranks_of_lengths = 64;  // for each unit of squared relative length
 
 constexpr double square(double x) { return x * x; }
@@ -53,23 +55,25 @@ constexpr double square(double x) { return x * x; }
 int rank_of_quality(double quality) { return quality > 0 ? std::ilogb(quality * quality) : INT_MIN; }
 
 std::size_t proposals_at_once(std::size_t items) {
-  return std::clamp<std::size_t>(items / items_per_proposal, 1, most_proposals);
+  const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  if (threads == 1) return 1;
+  return std::min(most_proposals, std::max(items / items_per_proposal, proposals_per_thread * threads));
 }
 
-// Sorted by rank. Items of one rank, given in the order of memory, are cut into as many consecutive rows as
-// proposals are made at once; then come the first of each row, the second of each row, and so on. So the
-// proposals of one batch are far apart, and those of the next batch are beside what the caches hold. (In the
-// exact order of lengths or qualities coarsening took a quarter longer.)
+// Sorted by rank. Items of one rank, given in the order of memory, are cut into consecutive rows; then come
+// the first of each row, the second of each row, and so on. So the proposals of one batch are far apart, and
+// those of the next batch are beside what the caches hold. (In the exact order of lengths or qualities
+// coarsening took a quarter longer.)
 template <class Item>
 std::vector<Item> in_order(std::vector<Item> items) {
   std::stable_sort(items.begin(), items.end(), [](const Item& a, const Item& b) { return a.rank < b.rank; });
-  const std::size_t most_rows = proposals_at_once(items.size());
+  const std::size_t rows = std::clamp<std::size_t>(items.size() / items_per_row, 1, most_rows);
   std::vector<Item> ordered;
   ordered.reserve(items.size());
   for (auto first = items.begin(); first != items.end();) {
     const auto last = std::find_if(first, items.end(), [&](const Item& i) { return i.rank != first->rank; });
     const auto count = static_cast<std::size_t>(last - first);
-    const std::size_t length = (count + most_rows - 1) / most_rows;
+    const std::size_t length = (count + rows - 1) / rows;
     for (std::size_t column = 0; column < length; ++column)
       for (std::size_t i = column; i < count; i += length)
         ordered.push_back(first[static_cast<std::ptrdiff_t>(i)]);
@@ -138,8 +142,8 @@ class Coarsening {
   template <class Proposal, class Item, class Make, class UpToDate, class Use>
   bool for_each(const std::vector<Item>& items, const Make& make, const UpToDate& up_to_date,
                 const Use& use) {
-    const bool alone = tbb::this_task_arena::max_concurrency() == 1;
-    const std::size_t at_once = alone ? 1 : proposals_at_once(items.size());
+    const std::size_t at_once = proposals_at_once(items.size());
+    const bool alone = at_once == 1;
     std::vector<Proposal> proposals(at_once);
     for (std::size_t first = 0; first < items.size(); first += at_once) {
       const std::size_t count = std::min(at_once, items.size() - first);
@@ -216,7 +220,7 @@ class Coarsening {
                },
                [&](const Candidate& candidate, const VertexProposal& found, std::uint32_t begun) {
                  return changes_.at_vertex[candidate.vertex] < begun &&
-                        std::all_of(found.targets.begin(), found.targets.end(),
+                        std::all_of(found.read.begin(), found.read.end(),
                                     [&](Index onto) { return changes_.at_vertex[onto] < begun; }) &&
                         may_still_be_made(found.change) &&
                         std::all_of(found.to_repair.begin(), found.to_repair.end(),

@@ -47,14 +47,18 @@ Proposer::Proposer(const improvement::Workpiece& workpiece, const improvement::T
 void Proposer::contractions(Index vertex, bool repairs, VertexProposal& found) {
   found = {};
   find_neighbours(vertex);
+  targets_.clear();
   for (const Neighbour& n : neighbours_) {
     if (!is_short(n.squared_relative_length)) break;
-    if (may_share_feature(vertex, n.vertex) && lengths_fit(vertex, n.vertex)) found.targets.push_back(n.vertex);
+    if (may_share_feature(vertex, n.vertex) && lengths_fit(vertex, n.vertex)) targets_.push_back(n.vertex);
   }
-  if (found.targets.empty()) return;
+  if (targets_.empty()) return;
   rule_.set_mode(Mode::final);
   if (!operations_.begin_contractions(vertex)) return;
-  for (const Index onto : found.targets) {
+  // On features the link condition looks at the tets at the other end, too.
+  const bool looks_beyond = complex().mesh().features[vertex].dimension < 3;
+  for (const Index onto : targets_) {
+    if (looks_beyond) found.read.push_back(onto);
     operations_.contract_onto(onto, 0, 1, found.change);
     if (found.change.kind != Change::Kind::none) return;
   }
@@ -62,7 +66,7 @@ void Proposer::contractions(Index vertex, bool repairs, VertexProposal& found) {
   found.floor = std::min(1.0, operations_.worst_at_vertex());
   rule_.set_mode(Mode::force);
   if (!operations_.begin_contractions(vertex)) return;
-  for (const Index onto : found.targets) {
+  for (const Index onto : targets_) {
     Change change;
     operations_.contract_onto(onto, repairable, -INFINITY, change);
     if (change.kind != Change::Kind::none) found.to_repair.push_back(std::move(change));

@@ -11,10 +11,10 @@ namespace collarmesh::coarsening {
 
 /// The contractions of one vertex that the lengths of edges allow, as the mesh is.
 struct VertexProposal {
-  std::vector<Index> targets;  ///< neighbours onto which lengths allow it, the nearest by the size first
-  improvement::Change change;  ///< onto the first of them that shapes allow, too; else none
+  improvement::Change change;  ///< onto the first target that shapes allow, too; else none
   std::vector<improvement::Change> to_repair;  ///< onto each of them, with tets that have to be improved
   double floor = 0;                            ///< no tet may get worse than this by repairs
+  std::vector<Index> read;  ///< vertices that this depends on the tets at, besides the one that goes
 };
 
 /// When vertices, or tets at them, were changed.
@@ -68,6 +68,7 @@ class Proposer {
   improvement::Operations operations_;
   std::vector<Index> star_;            // tets at the vertex asked about last
   std::vector<Neighbour> neighbours_;  // of that vertex, the nearest by the size first
+  std::vector<Index> targets_;         // those onto which lengths allow a contraction
   double shortest_ = 0;                // edge there
   std::vector<std::uint32_t> stamps_;  // by vertex
   std::uint32_t stamp_ = 0;
