@@ -31,9 +31,10 @@ class CoarseningRule final : public improvement::ShapeRule {
   }
   bool by_angles() const override { return true; }
   double quality(const improvement::ExtremeCosines& cosines, const std::array<Index, 4>& corners) const override {
-    const auto [sharp, blunt] = thin_.margins(cosines, corners);
+    const auto [sharp, blunt] = thin_.squared_margins(cosines, corners);
     if (blunt < 0) return -1;
-    return blunt < 1 && mode_ != Mode::force ? beyond * blunt * std::min(1.0, sharp) : std::min(blunt, sharp);
+    if (blunt < 1 && mode_ != Mode::force) return beyond * std::sqrt(blunt * std::min(1.0, sharp));
+    return std::sqrt(std::min(blunt, sharp));
   }
   /// Is the quality above this, which is at least 1? False of some that are; much cheaper.
   bool surely_exceeds(double quality, const Corners& p) const { return thin_.surely_exceeds(quality, p); }

@@ -55,8 +55,12 @@ class ThinRule final : public ShapeRule {
   explicit ThinRule(const ThinShape& thin) : thin_(thin) {}
 
   double quality(const Corners& p, const std::array<Index, 4>& corners) const override {
-    const auto [sharp, blunt] = thin_.margins(p, corners);
-    return std::min(sharp, blunt);
+    return quality(extreme_cosines(p), corners);
+  }
+  bool by_angles() const override { return true; }
+  double quality(const ExtremeCosines& cosines, const std::array<Index, 4>& corners) const override {
+    const auto [sharp, blunt] = thin_.squared_margins(cosines, corners);
+    return blunt < 0 ? -1 : std::sqrt(std::min(sharp, blunt));
   }
   bool allows(const Corners&, const std::array<Index, 4>&, double) const override { return true; }
 

@@ -29,7 +29,8 @@ ThinShape::ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle,
       sine_(sine_above(smallest_)),
       cosine_(
           signed_square(std::cos((180 - (180 - largest_angle) * (1 + reserve) - 2 * rounding) * radians))),
-      least_blunt_(sine(cosine_)) {
+      least_blunt_(sine(cosine_)),
+      inverse_squared_least_blunt_(1 / squared_sine(cosine_)) {
   if (empty()) return;
   std::vector<double> of_vertex(plc.vertices.size(), smallest_), of_curve(plc.curves.size(), smallest_);
   bool any = false;
