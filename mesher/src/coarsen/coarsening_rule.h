@@ -43,7 +43,7 @@ class CoarseningRule final : public improvement::ShapeRule {
   }
   bool allows_edge(Index a, Index b, double squared_length, double squared_before) const override {
     return squared_length <= squared_before ||
-           squared_relative_length(squared_length, a, b) <= longest_new * longest_new;
+           squared_length <= longest_new * longest_new * squared_target(a, b);
   }
   // Each move has contractions around asked again.
   double least_gain() const override { return 0.02; }
@@ -55,12 +55,16 @@ class CoarseningRule final : public improvement::ShapeRule {
   void set_mode(Mode mode) { mode_ = mode; }
   /// Squared length of an edge by the target there.
   double squared_relative_length(double squared_length, Index a, Index b) const {
-    const double target = 0.5 * (sizes_[a] + sizes_[b]);
-    return squared_length / (target * target);
+    return squared_length / squared_target(a, b);
   }
 
  private:
   static constexpr double beyond = 1e-6;
+
+  double squared_target(Index a, Index b) const {
+    const double target = 0.5 * (sizes_[a] + sizes_[b]);
+    return target * target;
+  }
 
   const improvement::ThinShape& thin_;
   improvement::RadiusEdgeBound bound_;

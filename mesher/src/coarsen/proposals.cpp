@@ -50,11 +50,11 @@ void Proposer::contractions(Index vertex, bool repairs, VertexProposal& found) {
   targets_.clear();
   for (const Neighbour& n : neighbours_) {
     if (!is_short(n.squared_relative_length)) break;
-    if (may_share_feature(vertex, n.vertex) && lengths_fit(vertex, n.vertex)) targets_.push_back(n.vertex);
+    if (may_share_feature(vertex, n.vertex) && lengths_fit(n.vertex)) targets_.push_back(n.vertex);
   }
   if (targets_.empty()) return;
   rule_.set_mode(Mode::final);
-  if (!operations_.begin_contractions(vertex)) return;
+  if (!operations_.begin_contractions(vertex, star_)) return;
   // On features the link condition looks at the tets at the other end, too.
   const bool looks_beyond = complex().mesh().features[vertex].dimension < 3;
   for (const Index onto : targets_) {
@@ -65,7 +65,7 @@ void Proposer::contractions(Index vertex, bool repairs, VertexProposal& found) {
   if (!repairs) return;
   found.floor = std::min(1.0, operations_.worst_at_vertex());
   rule_.set_mode(Mode::force);
-  if (!operations_.begin_contractions(vertex)) return;
+  if (!operations_.begin_contractions(vertex, star_)) return;
   for (const Index onto : targets_) {
     Change change;
     operations_.contract_onto(onto, repairable, -INFINITY, change);
@@ -108,34 +108,33 @@ void Proposer::find_neighbours(Index vertex) {
   neighbours_.clear();
   ++stamp_;
   stamps_[vertex] = stamp_;
-  shortest_ = INFINITY;
+  squared_shortest_ = INFINITY;
   complex().star(vertex, star_);
   for (const Index t : star_)
     for (const Index w : complex()[t].corners) {
       if (!is_new(w)) continue;
       const double squared = squared_distance(points()[vertex], points()[w]);
-      shortest_ = std::min(shortest_, squared);
-      neighbours_.push_back({rule_.squared_relative_length(squared, vertex, w), w});
+      squared_shortest_ = std::min(squared_shortest_, squared);
+      neighbours_.push_back({rule_.squared_relative_length(squared, vertex, w), squared, w});
     }
-  shortest_ = std::sqrt(shortest_);
   std::sort(neighbours_.begin(), neighbours_.end());
 }
 
 // Of the edges that a contraction makes. None may be longer than what is wanted, unless it takes the place of
-// one as long, or shorter than what there is around.
-bool Proposer::lengths_fit(Index vertex, Index onto) {
-  ++stamp_;
-  for (const Index t : star_) {
-    const auto& v = complex()[t].corners;
-    if (!contains(v, onto)) continue;
-    for (const Index w : v) stamps_[w] = stamp_;
-  }
-  // The farthest neighbours rule out most.
+// one as long, or shorter than what there is around. The farthest neighbours rule out most.
+bool Proposer::lengths_fit(Index onto) const {
   return std::all_of(neighbours_.rbegin(), neighbours_.rend(), [&](const Neighbour& n) {
-    if (stamps_[n.vertex] == stamp_) return true;
+    if (n.vertex == onto) return true;
     const double after = squared_distance(points()[onto], points()[n.vertex]);
-    return after >= shortest_ * shortest_ &&
-           rule_.allows_edge(onto, n.vertex, after, squared_distance(points()[vertex], points()[n.vertex]));
+    return (after >= squared_shortest_ && rule_.allows_edge(onto, n.vertex, after, n.squared_length)) ||
+           are_joined_here(onto, n.vertex);
+  });
+}
+
+// By a tet at the vertex asked about?
+bool Proposer::are_joined_here(Index a, Index b) const {
+  return std::any_of(star_.begin(), star_.end(), [&](Index t) {
+    return contains(complex()[t].corners, a) && contains(complex()[t].corners, b);
   });
 }
 

@@ -42,7 +42,7 @@ class Proposer {
 
  private:
   struct Neighbour {
-    double squared_relative_length;
+    double squared_relative_length, squared_length;
     Index vertex;
 
     friend bool operator<(const Neighbour& x, const Neighbour& y) {
@@ -56,7 +56,8 @@ class Proposer {
   const std::vector<Point>& points() const { return complex().mesh().points; }
   void find_neighbours(Index vertex);
   bool may_share_feature(Index vertex, Index onto) const;
-  bool lengths_fit(Index vertex, Index onto);
+  bool lengths_fit(Index onto) const;
+  bool are_joined_here(Index a, Index b) const;
   bool is_new(Index vertex);
   bool stays(Index vertex) const {
     return stayed_[vertex] != 0 && stayed_[vertex] >= changes_.at_vertex[vertex];
@@ -69,7 +70,7 @@ class Proposer {
   std::vector<Index> star_;            // tets at the vertex asked about last
   std::vector<Neighbour> neighbours_;  // of that vertex, the nearest by the size first
   std::vector<Index> targets_;         // those onto which lengths allow a contraction
-  double shortest_ = 0;                // edge there
+  double squared_shortest_ = 0;        // edge there
   std::vector<std::uint32_t> stamps_;  // by vertex
   std::uint32_t stamp_ = 0;
   std::vector<std::uint32_t> stayed_;  // by vertex: when no move of it was an improvement; 0: not asked yet

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -44,8 +45,9 @@ class Operations {
   /// The same, however good the tets around are now; all new ones are better than `least`.
   void contract_edge_anyhow(Index vertex, Index onto, double least, Change& change);
 
-  /// The next questions are about contractions of edges at this vertex. False when it has to stay.
-  bool begin_contractions(Index vertex);
+  /// The next questions are about contractions of edges at this vertex, whose star is given. False when it has
+  /// to stay.
+  bool begin_contractions(Index vertex, std::span<const Index> star);
   /// The same contraction for the sake of fewer tets: the rule allows all new ones, and they are no worse
   /// than `least`; below `enough` no worse than the worst tet of the cavity, either.
   void contract_onto(Index onto, double least, double enough, Change& change);
@@ -102,6 +104,7 @@ class Operations {
 
   // Cones.
   bool find_cone_of_vertex(Index vertex);
+  bool make_cone_of_vertex(Index vertex);
   bool find_cone_of_edge(Index a, Index b);
   void insert_in_cone(Index a, Index b, double least, Change& change);
   void add_to_rim(Index face, Index apex);

@@ -23,6 +23,11 @@ bool Operations::find_cone_of_vertex(Index vertex) {
   cone_.clear();
   if (complex_.pinched(vertex)) return false;
   complex_.star(vertex, cone_.tets);
+  return make_cone_of_vertex(vertex);
+}
+
+// From its tets.
+bool Operations::make_cone_of_vertex(Index vertex) {
   const bool on_feature = mesh_.features[vertex].dimension < 3;
   for (const Index t : cone_.tets) {
     const auto& tet = complex_[t];
@@ -360,9 +365,12 @@ void Operations::contract_edge_above(Index vertex, Index onto, std::optional<dou
   fill(onto, change);
 }
 
-bool Operations::begin_contractions(Index vertex) {
+bool Operations::begin_contractions(Index vertex, std::span<const Index> star) {
   vertex_ = vertex;
-  return mesh_.features[vertex].dimension > 0 && find_cone_of_vertex(vertex);
+  if (mesh_.features[vertex].dimension == 0 || complex_.pinched(vertex)) return false;
+  cone_.clear();
+  cone_.tets.assign(star.begin(), star.end());
+  return make_cone_of_vertex(vertex);
 }
 
 void Operations::contract_onto(Index onto, double least, double enough, Change& change) {
