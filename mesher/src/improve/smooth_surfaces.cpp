@@ -103,22 +103,31 @@ Index SmoothSurfaces::triangle_near(Index patch, const Point& p, Index hint) con
   return triangles(patch).triangle_within(p, squared_distance_, hint);
 }
 
-// At the corners, thirds and middles. The distance to one triangle is convex: when the corners are near
-// it, all are.
-bool SmoothSurfaces::edges_near(Index patch, const Triangle& t, Index hint) const {
-  std::array<Index, 3> near;
-  for (unsigned i = 0; i < 3; ++i) {
-    near[i] = triangle_near(patch, t[i], hint);
-    if (near[i] == none) return false;
-  }
-  if (near[0] == hint && near[1] == hint && near[2] == hint) return true;
-  for (unsigned i = 0; i < 3; ++i) {
-    const unsigned j = (i + 1) % 3;
-    if (near[i] == near[j]) continue;
-    const Point &a = t[i], &b = t[j];
-    if (triangle_near(patch, 0.5 * (a + b), hint) == none ||
-        triangle_near(patch, (2 * a + b) / 3, near[i]) == none ||
-        triangle_near(patch, (a + 2 * b) / 3, near[j]) == none)
+// At the ends, thirds and the middle. The distance to one triangle is convex: when both ends are near it, all
+// are.
+bool SmoothSurfaces::edge_near(Index patch, const Point& a, const Point& b, Index hint) const {
+  const Index near_a = triangle_near(patch, a, hint);
+  if (near_a == none) return false;
+  const Index near_b = triangle_near(patch, b, near_a);
+  if (near_b == none || near_a == near_b) return near_b != none;
+  return triangle_near(patch, 0.5 * (a + b), hint) != none &&
+         triangle_near(patch, (2 * a + b) / 3, near_a) != none &&
+         triangle_near(patch, (a + 2 * b) / 3, near_b) != none;
+}
+
+// Edges that the old faces have are as near as they were, and of an edge that two faces share one asks.
+bool SmoothSurfaces::edges_near(std::span<const Index> old, std::span<const Face> created, std::size_t i,
+                                Index hint) const {
+  const auto has_edge = [](const Triangle& t, const Point& a, const Point& b) {
+    return std::find(t.begin(), t.end(), a) != t.end() && std::find(t.begin(), t.end(), b) != t.end();
+  };
+  const auto& [t, patch] = created[i];
+  for (unsigned k = 0; k < 3; ++k) {
+    const Point &a = t[k], &b = t[(k + 1) % 3];
+    const bool asked = std::any_of(created.begin(), created.begin() + static_cast<std::ptrdiff_t>(i),
+                                   [&](const Face& f) { return f.patch == patch && has_edge(f.corners, a, b); });
+    if (!asked && std::none_of(old.begin(), old.end(), [&](Index f) { return has_edge(corners(f), a, b); }) &&
+        !edge_near(patch, a, b, hint))
       return false;
   }
   return true;
@@ -180,7 +189,7 @@ bool SmoothSurfaces::fit(std::span<const Index> old, std::span<const Face> creat
       if (!has_face(of.samples[s])) return false;
   }
   for (std::size_t i = 0; i < created.size(); ++i)
-    if (!is_planar(created[i]) && !edges_near(created[i].patch, created[i].corners, near[i])) return false;
+    if (!is_planar(created[i]) && !edges_near(old, created, i, near[i])) return false;
   return true;
 }
 

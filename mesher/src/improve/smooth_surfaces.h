@@ -76,7 +76,8 @@ class SmoothSurfaces {
   void share_out(Index patch, Surface& surface) const;
   bool smooth(Index face) const;
   Index triangle_near(Index patch, const Point& p, Index hint = none) const;
-  bool edges_near(Index patch, const Triangle& t, Index hint) const;
+  bool edge_near(Index patch, const Point& a, const Point& b, Index hint) const;
+  bool edges_near(std::span<const Index> old, std::span<const Face> created, std::size_t i, Index hint) const;
   double agreement(Index patch, const Triangle& t, Index triangle) const;
   double worst_agreement(std::span<const Index> faces) const;
   Triangle corners(Index face) const;
