@@ -177,7 +177,8 @@ class Coarsening {
     const std::uint32_t last = repair ? std::min(last_pass_, last_repairs_) : last_pass_;
     const auto ends =
         found_in_ranges<ShortEdge>(complex().size(), [&](std::size_t t, std::vector<ShortEdge>& found) {
-          if (changed_since(static_cast<Index>(t), last)) find_short_edges(static_cast<Index>(t), found);
+          const auto tet = static_cast<Index>(t);
+          if (complex()[tet].alive && changed_since(tet, last)) find_short_edges(tet, found);
         });
     std::vector<double> shortest(mesh().points.size(), INFINITY);
     for (const auto& [length, v] : ends) shortest[v] = std::min(shortest[v], length);
@@ -194,7 +195,6 @@ class Coarsening {
   }
 
   void find_short_edges(Index tet, std::vector<ShortEdge>& ends) const {
-    if (!complex()[tet].alive) return;
     const auto& v = complex()[tet].corners;
     for (unsigned i = 0; i < 4; ++i)
       for (unsigned j = i + 1; j < 4; ++j)

@@ -23,6 +23,11 @@ std::array<Index, 3> sorted(std::array<Index, 3> face) {
   return face;
 }
 
+// As ==, which calls a function for its twelve bytes.
+bool equal(const std::array<Index, 3>& a, const std::array<Index, 3>& b) {
+  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
 constexpr std::size_t tets_at_once = 8192;  // that a thread looks at
 
 // What is gone, until `store`.
@@ -263,7 +268,7 @@ std::span<const Index> TetComplex::replace(const Replacement& replacement) {
     for (unsigned corner = 0; corner < 4; ++corner) {
       const auto key = sorted(side_corners(corners, corner));
       const auto open =
-          std::find_if(open_.begin(), open_.end(), [&](const OpenFace& f) { return f.key == key; });
+          std::find_if(open_.begin(), open_.end(), [&](const OpenFace& f) { return equal(f.key, key); });
       if (open == open_.end()) {
         open_.push_back({key, t, corner, none});
         continue;
@@ -321,10 +326,13 @@ void TetComplex::make_faces(const Replacement& replacement) {
 void TetComplex::set_face(const std::array<Index, 3>& corners, Index face) {
   const auto key = sorted(corners);
   for (const OpenFace& open : open_)
-    if (open.tet != none && open.key == key) set_face_of_tet(open.tet, open.corner, face);
+    if (open.tet != none && equal(open.key, key)) set_face_of_tet(open.tet, open.corner, face);
   for (const Index t : created_)
     for (unsigned corner = 0; corner < 4; ++corner) {
-      if (sorted(side_corners(tets_[t].corners, corner)) != key) continue;
+      const auto& v = tets_[t].corners;
+      const auto on_face = [&](Index w) { return w == key[0] || w == key[1] || w == key[2]; };
+      if (on_face(v[corner]) || !std::all_of(v.begin(), v.end(), [&](Index w) { return w == v[corner] || on_face(w); }))
+        continue;
       set_face_of_tet(t, corner, face);
       const Index other = tets_[t].neighbours[corner];
       if (other != none) set_face_of_tet(other, corner_across(other, key), face);
