@@ -274,6 +274,27 @@ TEST(TriangleHierarchy, DistanceToATriangleIsThatOfSampledPoints) {
   }
 }
 
+// On all sides of triangles, of needles and of triangles whose corners are in line or the same.
+TEST(TriangleHierarchy, WithinADistanceIsNearerThanIt) {
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  unsigned within = 0, beyond = 0;
+  for (int k = 0; k < 200000; ++k) {
+    const auto point = [&] { return Point{unit(random), unit(random), unit(random)}; };
+    const Point a = point(), b = point();
+    const double height = k % 4 == 0 ? 1 : std::pow(10.0, -2.0 * (k % 7));
+    const Point c = k % 11 == 0 ? b : k % 13 == 0 ? a + unit(random) * (b - a)
+                                                  : a + unit(random) * (b - a) + height * (point() - Point{});
+    const Point p = a + 1.5 * unit(random) * (b - a) + 1.5 * unit(random) * (c - a) + 0.3 * (point() - Point{});
+    const double squared = squared_distance_to_triangle(p, a, b, c), bound = 0.1 * std::fabs(unit(random));
+    if (std::fabs(squared - bound) < 1e-9) continue;
+    EXPECT_EQ(is_within(bound, p, a, b, c), squared < bound) << k << ' ' << squared << ' ' << bound;
+    ++(squared < bound ? within : beyond);
+  }
+  EXPECT_GT(within, 20000U);
+  EXPECT_GT(beyond, 20000U);
+}
+
 TEST(TriangleHierarchy, FindsATriangleWithinADistanceWithAndWithoutAHint) {
   const Soup soup = random_triangles(400, 0.05);
   const TriangleHierarchy hierarchy(soup.points, soup.triangles);
