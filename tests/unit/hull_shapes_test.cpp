@@ -27,7 +27,8 @@ struct Hull {
   }
 };
 
-/// Faces of any shape, some of them turned the other way, some with corners in line or with the apex in their plane.
+/// Faces of any shape, some of them turned the other way, some with corners in line or with the apex in their
+/// plane.
 Hull any_hull(std::size_t size, std::mt19937& random) {
   std::normal_distribution<double> normal;
   const double scale = std::pow(10, std::uniform_int_distribution(-20, 20)(random)),
@@ -105,10 +106,12 @@ TEST(HullShapes, RulesFindTheSameQualityByAngles) {
       const auto angles = improvement::extreme_angles(p);
       ++seen[quality < 0 ? 0 : angles.largest > 150 ? 1 : 2];
       if (quality < 0 || !(angles.smallest > 0.01 && angles.largest < 179.99)) return;
-      const double radians = std::acos(-1) / 180, sharp = std::sin(angles.smallest * radians) / std::sin(8 * radians),
+      const double radians = std::acos(-1) / 180,
+                   sharp = std::sin(angles.smallest * radians) / std::sin(8 * radians),
                    blunt = angles.largest > 90 ? std::sin(angles.largest * radians) / 0.5 : 2;
       if (std::fabs(blunt - 1) < 1e-5) return;
-      EXPECT_NEAR(quality, blunt < 1 ? 1e-6 * blunt * std::min(1.0, sharp) : std::min(blunt, sharp), 1e-5 * quality);
+      EXPECT_NEAR(quality, blunt < 1 ? 1e-6 * blunt * std::min(1.0, sharp) : std::min(blunt, sharp),
+                  1e-5 * quality);
     });
   for (const unsigned count : seen) EXPECT_GT(count, 500U);
 }

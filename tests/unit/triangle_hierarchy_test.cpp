@@ -283,9 +283,11 @@ TEST(TriangleHierarchy, WithinADistanceIsNearerThanIt) {
     const auto point = [&] { return Point{unit(random), unit(random), unit(random)}; };
     const Point a = point(), b = point();
     const double height = k % 4 == 0 ? 1 : std::pow(10.0, -2.0 * (k % 7));
-    const Point c = k % 11 == 0 ? b : k % 13 == 0 ? a + unit(random) * (b - a)
-                                                  : a + unit(random) * (b - a) + height * (point() - Point{});
-    const Point p = a + 1.5 * unit(random) * (b - a) + 1.5 * unit(random) * (c - a) + 0.3 * (point() - Point{});
+    const Point c = k % 11 == 0   ? b
+                    : k % 13 == 0 ? a + unit(random) * (b - a)
+                                  : a + unit(random) * (b - a) + height * (point() - Point{});
+    const Point p =
+        a + 1.5 * unit(random) * (b - a) + 1.5 * unit(random) * (c - a) + 0.3 * (point() - Point{});
     const double squared = squared_distance_to_triangle(p, a, b, c), bound = 0.1 * std::fabs(unit(random));
     if (std::fabs(squared - bound) < 1e-9) continue;
     EXPECT_EQ(is_within(bound, p, a, b, c), squared < bound) << k << ' ' << squared << ' ' << bound;

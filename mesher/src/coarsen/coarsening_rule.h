@@ -30,7 +30,8 @@ class CoarseningRule final : public improvement::ShapeRule {
     return quality(improvement::extreme_cosines(p), corners);
   }
   bool by_angles() const override { return true; }
-  double quality(const improvement::ExtremeCosines& cosines, const std::array<Index, 4>& corners) const override {
+  double quality(const improvement::ExtremeCosines& cosines,
+                 const std::array<Index, 4>& corners) const override {
     const auto [sharp, blunt] = thin_.squared_margins(cosines, corners);
     if (blunt < 0) return -1;
     if (blunt < 1 && mode_ != Mode::force) return beyond * std::sqrt(blunt * std::min(1.0, sharp));

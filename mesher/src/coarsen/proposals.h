@@ -11,7 +11,7 @@ namespace collarmesh::coarsening {
 
 /// The contractions of one vertex that the lengths of edges allow, as the mesh is.
 struct VertexProposal {
-  improvement::Change change;  ///< onto the first target that shapes allow, too; else none
+  improvement::Change change;                  ///< onto the first target that shapes allow, too; else none
   std::vector<improvement::Change> to_repair;  ///< onto each of them, with tets that have to be improved
   double floor = 0;                            ///< no tet may get worse than this by repairs
   std::vector<Index> read;  ///< vertices that this depends on the tets at, besides the one that goes

@@ -88,7 +88,8 @@ std::array<ExtremeCosines, HullShapes::at_once> HullShapes::extreme_cosines(std:
   const Two largest_angles = smaller(least, of_faces);
   std::array<ExtremeCosines, at_once> cosines;
   for (std::size_t lane = 0; lane < at_once; ++lane)
-    cosines[lane] = {std::min(1.0, greatest[lane]), std::max(-1.0, largest_angles[lane]), six_volumes[lane] > 0};
+    cosines[lane] = {std::min(1.0, greatest[lane]), std::max(-1.0, largest_angles[lane]),
+                     six_volumes[lane] > 0};
   return cosines;
 }
 

@@ -17,7 +17,8 @@ class HullShapes {
 
   void clear() { pairs_.clear(); }
   bool empty() const { return pairs_.empty(); }
-  /// Each face makes a tet of positive volume with an apex inside. Of an odd number the last one is there twice.
+  /// Each face makes a tet of positive volume with an apex inside. Of an odd number the last one is there
+  /// twice.
   void assign(std::span<const std::array<Index, 3>> faces, const std::vector<Point>& points);
 
   std::size_t pairs() const { return pairs_.size(); }

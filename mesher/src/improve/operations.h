@@ -45,8 +45,8 @@ class Operations {
   /// The same, however good the tets around are now; all new ones are better than `least`.
   void contract_edge_anyhow(Index vertex, Index onto, double least, Change& change);
 
-  /// The next questions are about contractions of edges at this vertex, whose star is given. False when it has
-  /// to stay.
+  /// The next questions are about contractions of edges at this vertex, whose star is given. False when it
+  /// has to stay.
   bool begin_contractions(Index vertex, std::span<const Index> star);
   /// The same contraction for the sake of fewer tets: the rule allows all new ones, and they are no worse
   /// than `least`; below `enough` no worse than the worst tet of the cavity, either.

@@ -124,8 +124,9 @@ bool SmoothSurfaces::edges_near(std::span<const Index> old, std::span<const Face
   const auto& [t, patch] = created[i];
   for (unsigned k = 0; k < 3; ++k) {
     const Point &a = t[k], &b = t[(k + 1) % 3];
-    const bool asked = std::any_of(created.begin(), created.begin() + static_cast<std::ptrdiff_t>(i),
-                                   [&](const Face& f) { return f.patch == patch && has_edge(f.corners, a, b); });
+    const bool asked =
+        std::any_of(created.begin(), created.begin() + static_cast<std::ptrdiff_t>(i),
+                    [&](const Face& f) { return f.patch == patch && has_edge(f.corners, a, b); });
     if (!asked && std::none_of(old.begin(), old.end(), [&](Index f) { return has_edge(corners(f), a, b); }) &&
         !edge_near(patch, a, b, hint))
       return false;
@@ -232,7 +233,8 @@ void SmoothSurfaces::give_samples(std::span<const Index> faces) {
     const Point& sample = of.samples[s];
     Index nearest = none;
     double least = INFINITY;
-    for (std::size_t tried = 0; tried < faces.size(); ++tried, last = last + 1 < faces.size() ? last + 1 : 0) {
+    for (std::size_t tried = 0; tried < faces.size();
+         ++tried, last = last + 1 < faces.size() ? last + 1 : 0) {
       const Index face = faces[last];
       if (mesh_.face_patch[face] != patch) continue;
       const Triangle t = corners(face);

@@ -28,6 +28,11 @@ bool equal(const std::array<Index, 3>& a, const std::array<Index, 3>& b) {
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
+bool has_face(const std::array<Index, 4>& tet, const std::array<Index, 3>& face) {
+  return std::count_if(tet.begin(), tet.end(),
+                       [&](Index v) { return v == face[0] || v == face[1] || v == face[2]; }) == 3;
+}
+
 constexpr std::size_t tets_at_once = 8192;  // that a thread looks at
 
 // What is gone, until `store`.
@@ -327,16 +332,13 @@ void TetComplex::set_face(const std::array<Index, 3>& corners, Index face) {
   const auto key = sorted(corners);
   for (const OpenFace& open : open_)
     if (open.tet != none && equal(open.key, key)) set_face_of_tet(open.tet, open.corner, face);
-  for (const Index t : created_)
-    for (unsigned corner = 0; corner < 4; ++corner) {
-      const auto& v = tets_[t].corners;
-      const auto on_face = [&](Index w) { return w == key[0] || w == key[1] || w == key[2]; };
-      if (on_face(v[corner]) || !std::all_of(v.begin(), v.end(), [&](Index w) { return w == v[corner] || on_face(w); }))
-        continue;
-      set_face_of_tet(t, corner, face);
-      const Index other = tets_[t].neighbours[corner];
-      if (other != none) set_face_of_tet(other, corner_across(other, key), face);
-    }
+  for (const Index t : created_) {
+    if (!has_face(tets_[t].corners, key)) continue;
+    const unsigned corner = corner_across(t, key);
+    set_face_of_tet(t, corner, face);
+    const Index other = tets_[t].neighbours[corner];
+    if (other != none) set_face_of_tet(other, corner_across(other, key), face);
+  }
 }
 
 void TetComplex::join_curve_edges(Index before, Index vertex, Index after) {

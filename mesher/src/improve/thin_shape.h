@@ -24,7 +24,9 @@ struct ExtremeCosines {
 inline double signed_square(double x) { return x * std::fabs(x); }
 /// Of an angle whose cosine is given like that.
 inline double squared_sine(double signed_square_of_cosine) { return 1 - std::fabs(signed_square_of_cosine); }
-inline double sine(double signed_square_of_cosine) { return std::sqrt(squared_sine(signed_square_of_cosine)); }
+inline double sine(double signed_square_of_cosine) {
+  return std::sqrt(squared_sine(signed_square_of_cosine));
+}
 
 /// Of the largest angle of its faces.
 inline double least_cosine_of_faces(const Corners& p) {
@@ -153,15 +155,17 @@ class ThinShape {
                                                            : extreme_cosines(p).largest_angle < cosine_;
   }
   /// The sines of the smallest angle and of what the largest lacks to 180 degrees, over those of their
-  /// bounds: both are at least 1 where a tet is thin. Negative for a flat or an inverted tet. Here their squares.
+  /// bounds: both are at least 1 where a tet is thin. Negative for a flat or an inverted tet. Here their
+  /// squares.
   struct SquaredMargins {
     double sharp, blunt;
   };
   SquaredMargins squared_margins(const ExtremeCosines& cosines, const std::array<Index, 4>& corners) const {
     if (!cosines.positive) return {-1, -1};
     const double least = smallest_sine(corners);
-    return {squared_sine(cosines.smallest_angle) / (least * least),
-            (cosines.largest_angle < 0 ? squared_sine(cosines.largest_angle) : 1) * inverse_squared_least_blunt_};
+    return {
+        squared_sine(cosines.smallest_angle) / (least * least),
+        (cosines.largest_angle < 0 ? squared_sine(cosines.largest_angle) : 1) * inverse_squared_least_blunt_};
   }
   /// Are both margins above this, which is at least 1? False of some that are; much cheaper.
   bool surely_exceeds(double margin, const Corners& p) const {

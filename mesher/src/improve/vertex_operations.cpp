@@ -118,8 +118,8 @@ double Operations::worst_at_vertex(Index vertex) {
   return cone_.worst;
 }
 
-// The worst tet of the cone with an apex; -1 when that is not above `above` or the rule forbids one. Faces that
-// have the apex as a corner count for nothing.
+// The worst tet of the cone with an apex; -1 when that is not above `above` or the rule forbids one. Faces
+// that have the apex as a corner count for nothing.
 double Operations::quality_around(const Point& apex, Index id, double above) {
   return rule_.by_angles() ? quality_by_angles(apex, id, above) : quality_by_tets(apex, id, above);
 }
@@ -179,8 +179,8 @@ bool Operations::surfaces_allow(const Point& apex, Index id) {
   faces_.clear();
   for (std::size_t i = 0; i < cone_.rim.size(); ++i)
     if (!contains(cone_.rim[i], id))
-    faces_.push_back({{apex, mesh_.points[cone_.rim[i][0]], mesh_.points[cone_.rim[i][1]]},
-                      mesh_.face_patch[cone_.rim_face[i]]});
+      faces_.push_back({{apex, mesh_.points[cone_.rim[i][0]], mesh_.points[cone_.rim[i][1]]},
+                        mesh_.face_patch[cone_.rim_face[i]]});
   return surfaces_.fit(cone_.faces, faces_, cone_.agreement);
 }
 
@@ -377,8 +377,8 @@ void Operations::contract_onto(Index onto, double least, double enough, Change& 
   if (!may_contract(vertex_, onto)) return;
   const Point& place = mesh_.points[onto];
   const double quality = quality_around(place, onto, least);
-  if (quality < 0 || (quality < enough && quality < worst_at_vertex(vertex_)) || !keeps_topology(vertex_, onto) ||
-      !surfaces_allow(place, onto))
+  if (quality < 0 || (quality < enough && quality < worst_at_vertex(vertex_)) ||
+      !keeps_topology(vertex_, onto) || !surfaces_allow(place, onto))
     return;
   change = {};
   change.kind = Change::Kind::contraction;

@@ -74,8 +74,8 @@ double squared_distance_to_segment(const Point& p, const Point& a, const Point& 
   return squared_distance(p, nearest_point_on_segment(p, a, b));
 }
 
-// Most points are far from the triangle's plane, or above or below it. Of all others the nearest point is on a
-// side that they lie beyond.
+// Most points are far from the triangle's plane, or above or below it. Of all others the nearest point is on
+// a side that they lie beyond.
 bool is_within(double squared_bound, const Point& p, const Point& a, const Point& b, const Point& c) {
   const Vector u = b - a, w = c - a, n = cross(u, w);
   const double nn = squared_norm(n), longest = std::max(squared_norm(u), squared_norm(w));
