@@ -3,11 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "coarsen/coarsening_rule.h"
-#include "improve/shape_rule.h"
 
 namespace collarmesh {
 namespace {
@@ -50,9 +51,10 @@ void for_each_tet(const Hull& hull, const Visit& visit) {
   HullShapes shapes;
   EXPECT_TRUE(shapes.empty());
   shapes.assign(hull.faces, hull.points);
-  ASSERT_EQ(shapes.pairs(), (hull.faces.size() + 1) / 2);
+  constexpr std::size_t at_once = HullShapes::at_once;
+  ASSERT_EQ(shapes.pairs(), (hull.faces.size() + at_once - 1) / at_once);
   for (std::size_t i = 0; i < hull.faces.size(); ++i)
-    visit(hull.tet(i), shapes.extreme_cosines(i / 2, hull.apex)[i % 2]);
+    visit(hull.tet(i), shapes.extreme_cosines(i / at_once, hull.apex)[i % at_once]);
 }
 
 TEST(HullShapes, AnglesAreThoseOfEachTet) {
@@ -61,7 +63,8 @@ TEST(HullShapes, AnglesAreThoseOfEachTet) {
   for (std::size_t k = 0; k < 20000; ++k)
     for_each_tet(any_hull(1 + k % 9, random), [&](const Corners& p, const ExtremeCosines& found) {
       const ExtremeCosines expected = improvement::extreme_cosines(p);
-      const double longest = std::sqrt(std::max(squared_distance(p[0], p[1]), squared_distance(p[0], p[2])));
+      const double longest = std::sqrt(std::max(
+          {squared_distance(p[0], p[1]), squared_distance(p[0], p[2]), squared_distance(p[0], p[3])}));
       const double six_volume = std::fabs(dot(p[1] - p[0], cross(p[2] - p[0], p[3] - p[0])));
       // A volume of rounding errors has no sign.
       if (six_volume > 1e-12 * longest * longest * longest) {
@@ -77,41 +80,33 @@ TEST(HullShapes, AnglesAreThoseOfEachTet) {
   EXPECT_GT(others, 20000U);
 }
 
-TEST(HullShapes, RulesFindTheSameQualityByAngles) {
+// The sines of the extreme angles over those of their bounds.
+TEST(HullShapes, QualitiesOfCoarseningAreThoseOfTheAngles) {
   std::mt19937 random(12);
   const Plc plc;
   const TetMesh mesh;
   const improvement::ThinShape thin(plc, mesh, 8);
   const std::vector<double> sizes;
-  using Mode = coarsening::CoarseningRule::Mode;
-  const improvement::ThinRule thin_rule(thin);
-  coarsening::CoarseningRule coarse(thin, 2, sizes);
+  coarsening::CoarseningRule rule(thin, 2, sizes);
   constexpr std::array<Index, 4> corners{0, 1, 2, 3};
-  std::array<unsigned, 3> seen{};  // of negative quality, with an angle too large, good
+  constexpr double radians = std::numbers::pi / 180;
+  std::array<unsigned, 3> seen{};  // without volume, with an angle too large, others
   for (std::size_t k = 0; k < 5000; ++k)
-    for_each_tet(any_hull(1 + k % 9, random), [&](const Corners& p, const ExtremeCosines&) {
-      const ExtremeCosines cosines = improvement::extreme_cosines(p);
-      const auto expect_same = [&](const improvement::ShapeRule& rule) {
-        ASSERT_TRUE(rule.by_angles());
-        EXPECT_EQ(rule.quality(cosines, corners), rule.quality(p, corners));
-      };
-      expect_same(thin_rule);
-      for (const Mode mode : {Mode::final, Mode::trial, Mode::force}) {
-        coarse.set_mode(mode);
-        expect_same(coarse);
-      }
-      coarse.set_mode(Mode::final);
-      const double quality = coarse.quality(p, corners);
-      // Its definition: the sines of the extreme angles over those of their bounds.
+    for_each_tet(any_hull(1 + k % 9, random), [&](const Corners& p, const ExtremeCosines& paired) {
       const auto angles = improvement::extreme_angles(p);
-      ++seen[quality < 0 ? 0 : angles.largest > 150 ? 1 : 2];
-      if (quality < 0 || !(angles.smallest > 0.01 && angles.largest < 179.99)) return;
-      const double radians = std::acos(-1) / 180,
-                   sharp = std::sin(angles.smallest * radians) / std::sin(8 * radians),
+      ++seen[angles.smallest < 0 ? 0 : angles.largest > 150 ? 1 : 2];
+      if (!(angles.smallest > 0.01 && angles.largest < 179.99)) return;
+      const double sharp = std::sin(angles.smallest * radians) / std::sin(8 * radians),
                    blunt = angles.largest > 90 ? std::sin(angles.largest * radians) / 0.5 : 2;
       if (std::fabs(blunt - 1) < 1e-5) return;
-      EXPECT_NEAR(quality, blunt < 1 ? 1e-6 * blunt * std::min(1.0, sharp) : std::min(blunt, sharp),
-                  1e-5 * quality);
+      using Mode = coarsening::CoarseningRule::Mode;
+      for (const Mode mode : {Mode::final, Mode::trial, Mode::force}) {
+        rule.set_mode(mode);
+        const bool last = blunt < 1 && mode != Mode::force;
+        const double expected = last ? 1e-6 * blunt * std::min(1.0, sharp) : std::min(blunt, sharp);
+        EXPECT_NEAR(rule.quality(p, corners), expected, 1e-5 * expected);
+        EXPECT_NEAR(rule.quality_of(paired, corners), expected, 1e-5 * expected);
+      }
     });
   for (const unsigned count : seen) EXPECT_GT(count, 500U);
 }

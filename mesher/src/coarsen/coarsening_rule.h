@@ -11,7 +11,7 @@ using improvement::Corners;
 
 /// The rule of coarsening: a tet of quality 1 or more is thin; its quality says how far its angles are within
 /// or beyond these bounds. Whatever has an angle above the largest is worse than all that has none.
-class CoarseningRule final : public improvement::ShapeRule {
+class CoarseningRule final : public improvement::AngleRule {
  public:
   enum class Mode {
     final,  ///< new tets keep the guarantee: they are thin or within the radius-edge bound
@@ -26,12 +26,8 @@ class CoarseningRule final : public improvement::ShapeRule {
   CoarseningRule(const improvement::ThinShape& thin, double radius_edge, std::span<const double> sizes)
       : thin_(thin), bound_(radius_edge), sizes_(sizes) {}
 
-  double quality(const Corners& p, const std::array<Index, 4>& corners) const override {
-    return quality(improvement::extreme_cosines(p), corners);
-  }
-  bool by_angles() const override { return true; }
-  double quality(const improvement::ExtremeCosines& cosines,
-                 const std::array<Index, 4>& corners) const override {
+  double quality_of(const improvement::ExtremeCosines& cosines,
+                    const std::array<Index, 4>& corners) const override {
     const auto [sharp, blunt] = thin_.squared_margins(cosines, corners);
     if (blunt < 0) return -1;
     if (blunt < 1 && mode_ != Mode::force) return beyond * std::sqrt(blunt * std::min(1.0, sharp));
@@ -48,7 +44,7 @@ class CoarseningRule final : public improvement::ShapeRule {
   }
   // Each move has contractions around asked again.
   double least_gain() const override { return 0.02; }
-  unsigned halvings() const override { return 2; }
+  unsigned step_lengths() const override { return 2; }
   bool dissolves_collars() const override { return true; }
 
   bool keeps_guarantee(const Corners& p, double quality) const { return quality >= 1 || bound_.holds(p); }

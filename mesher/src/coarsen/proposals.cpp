@@ -65,7 +65,6 @@ void Proposer::contractions(Index vertex, bool repairs, VertexProposal& found) {
   if (!repairs) return;
   found.floor = std::min(1.0, operations_.worst_at_vertex());
   rule_.set_mode(Mode::force);
-  if (!operations_.begin_contractions(vertex, star_)) return;
   for (const Index onto : targets_) {
     Change change;
     operations_.contract_onto(onto, repairable, -INFINITY, change);

@@ -11,10 +11,12 @@ namespace collarmesh::coarsening {
 
 /// The contractions of one vertex that the lengths of edges allow, as the mesh is.
 struct VertexProposal {
-  improvement::Change change;                  ///< onto the first target that shapes allow, too; else none
-  std::vector<improvement::Change> to_repair;  ///< onto each of them, with tets that have to be improved
+  improvement::Change change;  ///< onto the nearest by the size that shapes allow, too; else none
+  std::vector<improvement::Change> to_repair;  ///< onto each one, with tets that have to be improved
   double floor = 0;                            ///< no tet may get worse than this by repairs
-  std::vector<Index> read;  ///< vertices that this depends on the tets at, besides the one that goes
+  /// The tets at the vertex and at these are all that this depends on. None inside regions, where no link
+  /// condition is asked about.
+  std::vector<Index> read;
 };
 
 /// When vertices, or tets at them, were changed.

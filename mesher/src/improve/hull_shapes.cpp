@@ -45,7 +45,7 @@ HullShapes::Two HullShapes::least_cosine(const Two& x, const Two& y, const Two& 
 }
 
 void HullShapes::assign(std::span<const std::array<Index, 3>> faces, const std::vector<Point>& points) {
-  pairs_.resize((faces.size() + 1) / at_once);
+  pairs_.resize((faces.size() + at_once - 1) / at_once);
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     Pair& pair = pairs_[k];
     for (std::size_t lane = 0; lane < at_once; ++lane) {

@@ -109,11 +109,11 @@ class Operations {
   void insert_in_cone(Index a, Index b, double least, Change& change);
   void add_to_rim(Index face, Index apex);
   double quality_around(const Point& apex, Index id, double above);
-  double worst_at_cone();
+  double worst_of_cone();
   double worst_at_vertex(Index vertex);
   template <class Passes>
   std::size_t for_each_shape(const Point& apex, std::size_t first_pair, const Passes& passes);
-  double quality_by_angles(const Point& apex, Index id, double above);
+  double quality_by_angles(const AngleRule& rule, const Point& apex, Index id, double above);
   double quality_by_tets(const Point& apex, Index id, double above);
   Corners with_apex(const Point& apex, const std::array<Index, 4>& corners) const;
   bool may_be_made(const Point& apex, const std::array<Index, 4>& corners, double quality) const;

@@ -7,6 +7,8 @@
 
 namespace collarmesh::improvement {
 
+class AngleRule;
+
 /// How good tets are, and which ones operations may make. Several threads may ask at once.
 class ShapeRule {
  public:
@@ -17,10 +19,9 @@ class ShapeRule {
 
   /// The larger the better; not positive for a flat or an inverted tet.
   virtual double quality(const Corners& p, const std::array<Index, 4>& corners) const = 0;
-  /// Do the extreme angles of a tet tell its quality? Then many are asked about faster, in pairs.
-  virtual bool by_angles() const { return false; }
-  /// The same quality, of a rule that goes by angles.
-  virtual double quality(const ExtremeCosines&, const std::array<Index, 4>& /*corners*/) const { return NAN; }
+  /// This rule, if it goes by the extreme angles of tets alone, which are measured faster in pairs; else
+  /// null.
+  virtual const AngleRule* by_angles() const { return nullptr; }
   /// May an operation make this tet, of positive quality?
   virtual bool allows(const Corners& p, const std::array<Index, 4>& corners, double quality) const = 0;
   /// May an operation make an edge between these vertices where there was one of another length?
@@ -29,10 +30,20 @@ class ShapeRule {
   }
   /// A move of a vertex that raises the quality by less than this share is not worth it.
   virtual double least_gain() const { return 1e-3; }
-  /// How often the steps of a move are halved.
-  virtual unsigned halvings() const { return 4; }
+  /// How many lengths of steps a move tries, each half of the last.
+  virtual unsigned step_lengths() const { return 4; }
   /// May operations replace cells of collars?
   virtual bool dissolves_collars() const { return false; }
+};
+
+/// A rule by which the extreme angles of a tet tell its quality.
+class AngleRule : public ShapeRule {
+ public:
+  virtual double quality_of(const ExtremeCosines& cosines, const std::array<Index, 4>& corners) const = 0;
+  double quality(const Corners& p, const std::array<Index, 4>& corners) const final {
+    return quality_of(extreme_cosines(p), corners);
+  }
+  const AngleRule* by_angles() const final { return this; }
 };
 
 /// A bound on circumradius / shortest edge, which thin tets may exceed.
@@ -49,16 +60,12 @@ class RadiusEdgeBound {
 };
 
 /// How far a tet is from being thin: of quality 1 or more are those that are. All may be made.
-class ThinRule final : public ShapeRule {
+class ThinRule final : public AngleRule {
  public:
   /// `thin` is kept by reference.
   explicit ThinRule(const ThinShape& thin) : thin_(thin) {}
 
-  double quality(const Corners& p, const std::array<Index, 4>& corners) const override {
-    return quality(extreme_cosines(p), corners);
-  }
-  bool by_angles() const override { return true; }
-  double quality(const ExtremeCosines& cosines, const std::array<Index, 4>& corners) const override {
+  double quality_of(const ExtremeCosines& cosines, const std::array<Index, 4>& corners) const override {
     const auto [sharp, blunt] = thin_.squared_margins(cosines, corners);
     return blunt < 0 ? -1 : std::sqrt(std::min(sharp, blunt));
   }

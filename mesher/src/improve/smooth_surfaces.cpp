@@ -1,6 +1,7 @@
 #include "improve/smooth_surfaces.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 namespace collarmesh::improvement {
@@ -25,7 +26,7 @@ bool has_foot(const Point& p, const SmoothSurfaces::Triangle& t) {
   return true;
 }
 
-// And nearer to its plane than the square root of the bound?
+// Does p lie straight above or below the triangle, nearer to its plane than the square root of the bound?
 bool lies_over(const Point& p, const SmoothSurfaces::Triangle& t, double squared_bound) {
   const Vector n = normal(t);
   const double height = dot(p - t[0], n);
@@ -127,7 +128,9 @@ bool SmoothSurfaces::edges_near(std::span<const Index> old, std::span<const Face
     const bool asked =
         std::any_of(created.begin(), created.begin() + static_cast<std::ptrdiff_t>(i),
                     [&](const Face& f) { return f.patch == patch && has_edge(f.corners, a, b); });
-    if (!asked && std::none_of(old.begin(), old.end(), [&](Index f) { return has_edge(corners(f), a, b); }) &&
+    if (!asked &&
+        std::none_of(old.begin(), old.end(),
+                     [&](Index f) { return mesh_.face_patch[f] == patch && has_edge(corners(f), a, b); }) &&
         !edge_near(patch, a, b, hint))
       return false;
   }
@@ -248,6 +251,7 @@ void SmoothSurfaces::give_samples(std::span<const Index> faces) {
         nearest = face;
       }
     }
+    assert(nearest != none);  // some face of the patch takes the place of those that the samples had
     if (on_trial_) old_links_.push_back({patch, s, of.next_sample[s]});
     old_first_samples_.note(first_sample_, nearest);
     of.next_sample[s] = first_sample_[nearest];

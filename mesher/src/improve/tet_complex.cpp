@@ -23,7 +23,7 @@ std::array<Index, 3> sorted(std::array<Index, 3> face) {
   return face;
 }
 
-// As ==, which calls a function for its twelve bytes.
+// As ==, which calls memcmp.
 bool equal(const std::array<Index, 3>& a, const std::array<Index, 3>& b) {
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }

@@ -154,9 +154,8 @@ class ThinShape {
     return shape > obtuse_weight * least_blunt_ + rounding ? least_cosine_of_faces(p) < cosine_
                                                            : extreme_cosines(p).largest_angle < cosine_;
   }
-  /// The sines of the smallest angle and of what the largest lacks to 180 degrees, over those of their
-  /// bounds: both are at least 1 where a tet is thin. Negative for a flat or an inverted tet. Here their
-  /// squares.
+  /// Squares of the sines of the smallest angle and of what the largest lacks to 180 degrees, over those of
+  /// their bounds: both are at least 1 where a tet is thin. Negative for a flat or an inverted tet.
   struct SquaredMargins {
     double sharp, blunt;
   };

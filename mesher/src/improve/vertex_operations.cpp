@@ -85,8 +85,8 @@ void Operations::add_to_rim(Index face, Index opposite) {
   cone_.rim_face.push_back(face);
 }
 
-// Tell of the tets between an apex and the hull, those of a pair first, until one does not pass; returns its
-// pair.
+// Calls `passes` for the tet between the apex and each face of the hull, from `first_pair` on and around.
+// Stops at the first that returns false and returns its pair, else `all_passed`.
 template <class Passes>
 std::size_t Operations::for_each_shape(const Point& apex, std::size_t first_pair, const Passes& passes) {
   if (cone_.shapes.empty()) cone_.shapes.assign(cone_.hull, mesh_.points);
@@ -101,7 +101,7 @@ std::size_t Operations::for_each_shape(const Point& apex, std::size_t first_pair
   return all_passed;
 }
 
-double Operations::worst_at_cone() {
+double Operations::worst_of_cone() {
   if (std::isinf(cone_.worst))
     for (const Index t : cone_.tets) cone_.worst = std::min(cone_.worst, quality(t));
   return cone_.worst;
@@ -109,10 +109,11 @@ double Operations::worst_at_cone() {
 
 // With the vertex as their apex the tets are what they are now.
 double Operations::worst_at_vertex(Index vertex) {
-  if (!rule_.by_angles() || !std::isinf(cone_.worst)) return worst_at_cone();
+  const AngleRule* rule = rule_.by_angles();
+  if (rule == nullptr || !std::isinf(cone_.worst)) return worst_of_cone();
   for_each_shape(mesh_.points[vertex], 0, [&](std::size_t i, const ExtremeCosines& cosines) {
     const auto& [b, c, d] = cone_.hull[i];
-    cone_.worst = std::min(cone_.worst, rule_.quality(cosines, {vertex, b, c, d}));
+    cone_.worst = std::min(cone_.worst, rule->quality_of(cosines, {vertex, b, c, d}));
     return true;
   });
   return cone_.worst;
@@ -121,16 +122,17 @@ double Operations::worst_at_vertex(Index vertex) {
 // The worst tet of the cone with an apex; -1 when that is not above `above` or the rule forbids one. Faces
 // that have the apex as a corner count for nothing.
 double Operations::quality_around(const Point& apex, Index id, double above) {
-  return rule_.by_angles() ? quality_by_angles(apex, id, above) : quality_by_tets(apex, id, above);
+  const AngleRule* rule = rule_.by_angles();
+  return rule != nullptr ? quality_by_angles(*rule, apex, id, above) : quality_by_tets(apex, id, above);
 }
 
-double Operations::quality_by_angles(const Point& apex, Index id, double above) {
+double Operations::quality_by_angles(const AngleRule& rule, const Point& apex, Index id, double above) {
   double worst = INFINITY;
   const auto failed = for_each_shape(apex, cone_.decisive, [&](std::size_t i, const ExtremeCosines& cosines) {
     const auto& face = cone_.hull[i];
     if (contains(face, id)) return true;
     const std::array<Index, 4> corners{id, face[0], face[1], face[2]};
-    const double quality = rule_.quality(cosines, corners);
+    const double quality = rule.quality_of(cosines, corners);
     worst = std::min(worst, quality);
     return worst > above && may_be_made(apex, corners, quality);
   });
@@ -250,7 +252,7 @@ std::pair<Point, double> Operations::best_place(const Point& start, Index id, co
   consider(start + to_centre);
   consider(start + 0.5 * to_centre);
   double step = first_step * std::sqrt(shortest);
-  for (unsigned h = 0; h < rule_.halvings(); ++h, step *= 0.5)
+  for (unsigned k = 0; k < rule_.step_lengths(); ++k, step *= 0.5)
     for (unsigned d = 0; d < freedom.count; ++d)
       if (!consider(place + step * freedom.directions[d])) consider(place - step * freedom.directions[d]);
   return {place, best};
@@ -274,7 +276,7 @@ std::pair<double, double> Operations::best_way(Index vertex, double best) {
     return true;
   };
   double step = first_step * std::sqrt(shortest);
-  for (unsigned h = 0; h < rule_.halvings(); ++h, step *= 0.5)
+  for (unsigned k = 0; k < rule_.step_lengths(); ++k, step *= 0.5)
     if (!consider(way + step)) consider(way - step);
   return {way, best};
 }
@@ -318,7 +320,7 @@ void Operations::move_vertex(Index vertex, Change& change) {
 
 void Operations::split_edge(Index a, Index b, double least, Change& change) {
   if (find_cone_of_edge(a, b))
-    insert_in_cone(a, b, std::max({worst_at_cone(), least, change.quality}), change);
+    insert_in_cone(a, b, std::max({worst_of_cone(), least, change.quality}), change);
 }
 
 void Operations::split_edge_anyhow(Index a, Index b, double least, Change& change) {
@@ -367,8 +369,8 @@ void Operations::contract_edge_above(Index vertex, Index onto, std::optional<dou
 
 bool Operations::begin_contractions(Index vertex, std::span<const Index> star) {
   vertex_ = vertex;
-  if (mesh_.features[vertex].dimension == 0 || complex_.pinched(vertex)) return false;
   cone_.clear();
+  if (mesh_.features[vertex].dimension == 0 || complex_.pinched(vertex)) return false;
   cone_.tets.assign(star.begin(), star.end());
   return make_cone_of_vertex(vertex);
 }
