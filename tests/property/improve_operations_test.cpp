@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <random>
+#include <set>
 #include <string>
 
 #include "improve/operations.h"
@@ -190,6 +191,83 @@ class ImproveOperations : public ::testing::Test {
     return all;
   }
 };
+
+/// All shapes are as good as any.
+class AnyShape final : public improvement::ShapeRule {
+ public:
+  double quality(const improvement::Corners&, const std::array<Index, 4>&) const override { return 1; }
+  bool allows(const improvement::Corners&, const std::array<Index, 4>&, double) const override { return true; }
+};
+
+/// What cells that contain a vertex add to it: vertices and pairs, sorted.
+using Link = std::set<std::vector<Index>>;
+
+template <class Cells>
+Link link_of(const Cells& cells, std::vector<Index> of) {
+  Link link;
+  for (const auto& cell : cells) {
+    std::vector<Index> others;
+    for (const Index v : cell)
+      if (std::find(of.begin(), of.end(), v) == of.end()) others.push_back(v);
+    if (others.size() + of.size() != cell.size()) continue;
+    std::sort(others.begin(), others.end());
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      link.insert({others[i]});
+      for (std::size_t j = i + 1; j < others.size(); ++j) link.insert({others[i], others[j]});
+    }
+  }
+  return link;
+}
+
+/// Is all that both ends have in their links in that of the edge?
+template <class Cells>
+bool link_condition(const Cells& cells, Index a, Index b) {
+  const Link of_a = link_of(cells, {a}), of_b = link_of(cells, {b}), of_edge = link_of(cells, {a, b});
+  const auto has = [](const std::vector<Index>& simplex, Index v) {
+    return std::find(simplex.begin(), simplex.end(), v) != simplex.end();
+  };
+  return std::all_of(of_a.begin(), of_a.end(), [&](const std::vector<Index>& simplex) {
+    return has(simplex, b) || !of_b.contains(simplex) || of_edge.contains(simplex);
+  });
+}
+
+// Whatever their shapes: in the tets and in the mesh' faces.
+TEST_F(ImproveOperations, ContractionsOnFeaturesKeepTheLinkCondition) {
+  const AnyShape rule;
+  std::size_t proposed = 0, forbidden = 0;
+  for (const auto& [name, meshed] : meshes()) {
+    SCOPED_TRACE(name);
+    Workbench on(meshed, meshed.result.mesh);
+    Operations operations(on.workpiece, rule);
+    std::set<std::array<Index, 2>> edges;
+    for (const auto& face : on.mesh.faces)
+      for (unsigned i = 0; i < 3; ++i)
+        for (const unsigned j : {(i + 1) % 3, (i + 2) % 3}) edges.insert({face[i], face[j]});
+    for (const auto& [vertex, onto] : edges) {
+      if (on.mesh.features[vertex].dimension == 0) continue;
+      std::vector<std::array<Index, 4>> tets;
+      std::vector<std::array<Index, 3>> faces;
+      for (const Index end : {vertex, onto}) {
+        std::vector<Index> star;
+        on.complex.star(end, star);
+        for (const Index t : star) tets.push_back(on.complex[t].corners);
+        for (const Index t : star)
+          for (unsigned corner = 0; corner < 4; ++corner)
+            if (on.complex[t].faces[corner] != none && on.complex[t].corners[corner] != end)
+              faces.push_back(on.mesh.faces[on.complex[t].faces[corner]]);
+      }
+      const bool holds = link_condition(tets, vertex, onto) && link_condition(faces, vertex, onto);
+      forbidden += holds ? 0 : 1;
+      Change change;
+      operations.contract_edge_anyhow(vertex, onto, 0, change);
+      if (change.kind == Change::Kind::none) continue;
+      ++proposed;
+      EXPECT_TRUE(holds) << vertex << " onto " << onto;
+    }
+  }
+  EXPECT_GT(proposed, 1000U);
+  EXPECT_GT(forbidden, 100U);
+}
 
 // After each single one the mesh passes.
 TEST_F(ImproveOperations, EachKeepsTheCertificate) {
