@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <optional>
 #include <random>
 #include <set>
@@ -267,6 +268,75 @@ TEST_F(ImproveOperations, ContractionsOnFeaturesKeepTheLinkCondition) {
   }
   EXPECT_GT(proposed, 1000U);
   EXPECT_GT(forbidden, 100U);
+}
+
+/// A body of these tets whose whole surface is one plane patch to operations that ask for no shapes.
+TetMesh body(const std::vector<std::array<Index, 4>>& tets, std::vector<Point> points) {
+  TetMesh mesh;
+  mesh.points = std::move(points);
+  mesh.features.resize(mesh.points.size());
+  std::map<std::array<Index, 3>, std::pair<unsigned, std::array<Index, 3>>> sides;
+  for (std::array<Index, 4> tet : tets) {
+    const auto& p = mesh.points;
+    if (six_volume(p[tet[0]], p[tet[1]], p[tet[2]], p[tet[3]]) < 0) std::swap(tet[0], tet[1]);
+    mesh.tets.push_back(tet);
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      const auto side = side_corners(tet, corner);
+      auto key = side;
+      std::sort(key.begin(), key.end());
+      auto& [count, corners] = sides[key];
+      ++count;
+      corners = side;
+    }
+  }
+  for (const auto& [key, side] : sides) {
+    if (side.first > 1) continue;
+    mesh.faces.push_back(side.second);
+    for (const Index v : key) mesh.features[v] = {2, 0};
+  }
+  mesh.tet_region.assign(mesh.tets.size(), 1);
+  mesh.tet_tag.assign(mesh.tets.size(), 1);
+  mesh.tet_collar.assign(mesh.tets.size(), 0);
+  mesh.tet_crease.assign(mesh.tets.size(), 0);
+  mesh.face_regions.assign(mesh.faces.size(), {1, 0});
+  mesh.face_patch.assign(mesh.faces.size(), 0);
+  mesh.face_tag.assign(mesh.faces.size(), 1);
+  return mesh;
+}
+
+// Bodies in which the vertex 0 may go onto 1, or only one part of the link condition forbids it.
+TEST(ContractionsOnFeatures, EachPartOfTheLinkConditionForbidsSome) {
+  // Vertex 0 is far away, so that no edge becomes too long.
+  const std::vector<Point> points{{9, 8, 7},       {1, 0, 0},      {0, 1, 0.1},    {0, 0.2, 1},
+                                  {0.5, 0.5, 0.6}, {-1, 0.4, 0.2}, {-0.5, -1, 0.3}};
+  struct Case {
+    std::string name;
+    std::vector<std::array<Index, 4>> tets;
+    bool allowed;
+  };
+  const std::vector<Case> cases{
+      {"octahedron around an axis", {{2, 3, 0, 1}, {2, 3, 1, 4}, {2, 3, 4, 5}, {2, 3, 5, 0}}, true},
+      {"two faces would coincide", {{0, 1, 2, 3}}, false},
+      {"two tets would coincide",
+       {{0, 1, 2, 4}, {0, 1, 3, 4}, {0, 2, 3, 4}, {1, 2, 3, 4}, {0, 2, 3, 5}, {1, 2, 3, 6}},
+       false},
+      {"on the surface a vertex is joined to both ends beside the edge",
+       {{0, 1, 2, 3}, {0, 1, 3, 4}, {0, 2, 3, 5}, {0, 3, 4, 6}},
+       false}};
+  Plc plc;
+  plc.patches.resize(1);
+  plc.patches[0].planar = true;
+  const AnyShape rule;
+  for (const auto& [name, tets, allowed] : cases) {
+    SCOPED_TRACE(name);
+    TetMesh mesh = body(tets, points);
+    EXPECT_EQ(link_condition(mesh.tets, 0, 1) && link_condition(mesh.faces, 0, 1), allowed);
+    Workpiece workpiece(mesh, plc, distance);
+    Operations operations(workpiece, rule);
+    Change change;
+    operations.contract_edge_anyhow(0, 1, 0, change);
+    EXPECT_EQ(change.kind, allowed ? Change::Kind::contraction : Change::Kind::none);
+  }
 }
 
 // After each single one the mesh passes.
