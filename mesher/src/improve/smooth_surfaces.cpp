@@ -122,7 +122,8 @@ bool SmoothSurfaces::edges_near(std::span<const Index> old, std::span<const Face
   const auto has_edge = [](const Triangle& t, const Point& a, const Point& b) {
     return std::find(t.begin(), t.end(), a) != t.end() && std::find(t.begin(), t.end(), b) != t.end();
   };
-  const auto& [t, patch] = created[i];
+  const Triangle& t = created[i].corners;
+  const Index patch = created[i].patch;
   for (unsigned k = 0; k < 3; ++k) {
     const Point &a = t[k], &b = t[(k + 1) % 3];
     const bool asked =
