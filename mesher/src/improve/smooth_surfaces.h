@@ -16,8 +16,8 @@
 namespace collarmesh::improvement {
 
 /// The smooth patches of a complex and the faces that stand for them: whether other faces would, too.
-/// A patch and its faces are within the distance tolerance of each other, in samples: centres and edges of the
-/// faces are near the patch; points of the patch belong to faces that they are near to.
+/// A patch and its faces are within the distance tolerance of each other, in samples: centres and edges of
+/// the faces are near the patch; points of the patch belong to faces that they are near to.
 /// Several threads may ask at once.
 class SmoothSurfaces {
  public:
