@@ -17,7 +17,7 @@ from freecad.collarmesh_workbench.commands import MESH_COMMAND
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "tests" / "freecad"))
 from window import (child, click_command, click_item, close_panel, find, require, rows, run_test,  # noqa: E402
-                    screenshot, wait_until)  # fmt: skip
+                    screenshot, wait_until)
 
 SIZE = (1040, 780)  # of the window
 

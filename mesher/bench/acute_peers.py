@@ -33,7 +33,6 @@ members: list[tuple] = [
 curved = ("round_cone", "lens", "cut_torus")
 
 
-
 def measure_mesh(program: Path, mesh: Path) -> dict:
     told = subprocess.run([str(program), "info", str(mesh), "--json"], capture_output=True, text=True, check=True)
     return json.loads(told.stdout)["mesh"]

@@ -47,7 +47,8 @@ def measure(program: Path, shape: AcuteInput, size: float, seeds: int, folder: P
     sums = [Sums() for _ in modes]
     for seed in range(seeds):
         for mode, total in zip(modes, sums):
-            mesher = Collarmesh(program, time_limit, ["--coarsen", "off", "--threads", "1", "--collar-creation", mode, "--seed", str(seed)])
+            mesher = Collarmesh(program, time_limit, ["--coarsen", "off",
+                                "--threads", "1", "--collar-creation", mode, "--seed", str(seed)])
             if seed == 0 and mode == modes[0]:
                 mesher.prepare(shape, folder)
             total.add(mesher.mesh(shape, size, folder))

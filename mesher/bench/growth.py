@@ -98,7 +98,8 @@ def curve_table(program: Path, time_limit: float, folder: Path) -> str:
         before = None
         for length in lengths:
             sizes = [] if uniform else [f"{curve}={length}" for curve in cube.curves()]
-            mesher = Collarmesh(program, time_limit, ["--coarsen", "off", *(w for one in sizes for w in ("--curve-size", one))])
+            mesher = Collarmesh(program, time_limit, ["--coarsen", "off", *
+                                (w for one in sizes for w in ("--curve-size", one))])
             mesher.prepare(cube, folder)
             run = mesher.mesh(cube, length if uniform else size, folder)
             refine = run.stages["refine"]

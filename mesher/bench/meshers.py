@@ -81,7 +81,8 @@ class Collarmesh:
         return MeshRun(report["mesh"]["tets"], measured.cpu, stages["refine"], measured.peak_bytes,
                        report["statistics"]["peak_bytes"], stages,
                        measured.exit_code == self.guarantee_missed, report["statistics"]["cells"],
-                       measured.wall, sum(report["seconds"].get(stage, 0) for stage in ("refine", "coarsen", "improve")),
+                       measured.wall, sum(report["seconds"].get(stage, 0)
+                                          for stage in ("refine", "coarsen", "improve")),
                        report)
 
     def describe(self, surface: Surface, folder: Path) -> dict:

@@ -1,9 +1,9 @@
 // A Poisson problem with a known solution on the tets of a mesh file: errors and condition number.
 // poisson MESH [plate|shell|wedge]
 //
-// Without a second argument the mesh is scaled to a diagonal of 1 and the values are given on all of its boundary. The
-// domains of the second one are thin and have next to no inner nodes: values are given at their ends only, and the
-// solution does not change across them, so that its normal derivative is zero elsewhere.
+// Without a second argument the mesh is scaled to a diagonal of 1 and the values are given on all of its
+// boundary. The domains of the second one are thin and have next to no inner nodes: values are given at their
+// ends only, and the solution does not change across them, so that its normal derivative is zero elsewhere.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -54,8 +54,8 @@ Solution on_shell() {
           [](const Point& p) { return is_near(p.z, 0) || is_near(p.z, 10); }};
 }
 
-// u = exp(-a r^2) cos(b z) around the z axis, which is the edge; given at the back x = 10 and at the ends z = 0 and
-// z = 4.
+// u = exp(-a r^2) cos(b z) around the z axis, which is the edge; given at the back x = 10 and at the ends z =
+// 0 and z = 4.
 Solution on_wedge() {
   constexpr double a = 0.05, b = 0.4;
   const auto squared_radius = [](const Point& p) { return p.x * p.x + p.y * p.y; };

@@ -87,12 +87,15 @@ def main() -> int:
         for what, of in (("one made by refinement", [c.over_making for c in costs]),
                          ("one refined and improved, with --coarsen off", [c.over_making_good for c in costs])):
             tenths = statistics.quantiles(of, n=10, method="inclusive")
-            rows.append([str(threads), str(len(costs)), what, *(f"{q:.2f}" for q in (tenths[0], statistics.median(of), tenths[-1]))])
-        each += [[str(threads), c.part, str(c.made), str(c.left), *(f"{x:.1f}" for x in (c.removing, c.making, c.making_good))] for c in costs]
+            rows.append([str(threads), str(len(costs)), what, *
+                        (f"{q:.2f}" for q in (tenths[0], statistics.median(of), tenths[-1]))])
+        each += [[str(threads), c.part, str(c.made), str(c.left), *
+                  (f"{x:.1f}" for x in (c.removing, c.making, c.making_good))] for c in costs]
     print(machine(options.build).replace("pinned to one core; ", "") + ".\n")
     print(table(["threads", "parts", "a removed tet over", "10%", "median", "90%"], rows))
     if options.each:
-        print("\n" + table(["threads", "part", "made", "left", "us removed", "us made", "us refined and improved"], each))
+        print("\n" + table(["threads", "part", "made", "left",
+              "us removed", "us made", "us refined and improved"], each))
     for line in missing:
         print("not measured: " + line, file=sys.stderr)
     return 0

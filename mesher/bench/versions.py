@@ -65,7 +65,8 @@ def main() -> int:
     root = Path(__file__).resolve().parents[2]
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("before", type=Path, help="build folder of the older version, configured with COLLARMESH_BENCH")
-    parser.add_argument("--build", type=Path, default=root / "build" / "bench", help="of this one (default: build/bench)")
+    parser.add_argument("--build", type=Path, default=root / "build" /
+                        "bench", help="of this one (default: build/bench)")
     parser.add_argument("--corpus", type=Path, default=os.environ.get("COLLARMESH_CORPUS"),
                         help="folder of the parts (default: $COLLARMESH_CORPUS); without one, the box alone")
     parser.add_argument("--parts", nargs="*", default=default_parts)

@@ -137,7 +137,8 @@ def main() -> int:
             ratios += ratio_rows(surface, target, results)
     print(about + f". collarmesh {ours(1).version()}, Gmsh HXT {peer(1).version()}. Medians of {options.rounds}, wall "
           "seconds; tets/s are per core.\n")
-    print(table(["input", "target", "mesher", "tets", "threads", "volume s", "tets/s", "whole run s", "tets/s"], rows) + "\n")
+    print(table(["input", "target", "mesher", "tets", "threads",
+          "volume s", "tets/s", "whole run s", "tets/s"], rows) + "\n")
     print(table(["input", "target", "threads", "volume: speed / HXT's", "ours, gain by threads", "HXT's",
                  "whole run: speed / HXT's", "ours, gain by threads", "HXT's", "our stages, s"], ratios))
     return 0

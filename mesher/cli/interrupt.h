@@ -21,8 +21,9 @@ struct Cancelled : Stopped {
   Cancelled() : Stopped(ExitCode::cancelled, "cancelled; nothing was written") {}
 };
 
-/// Set by the first SIGINT (Ctrl-C), SIGTERM, SIGHUP or SIGQUIT, and when the time is up, the command's or the
-/// processor's. The second signal ends the program at once, without unfinished files; the third one kills it.
+/// Set by the first SIGINT (Ctrl-C), SIGTERM, SIGHUP or SIGQUIT, and when the time is up, the command's or
+/// the processor's. The second signal ends the program at once, without unfinished files; the third one kills
+/// it.
 const std::atomic<bool>& interrupt_flag();
 
 /// Catch the signals from now on.

@@ -331,7 +331,8 @@ class Partitions(ProgramTest):
         self.expect(2, self.box, "-o", self.out, "--ghost-cells",
                     says=[r"--ghost-cells: \.vtu has no place.*\.pvtu \.msh"])
         self.expect(2, self.box, "-o", "a.msh", "--ghost-cells", says=["say how many with --partitions"])
-        self.expect(2, self.box, "-o", self.out, "--cell-decomposition", "list", says=["say how many with --partitions"])
+        self.expect(2, self.box, "-o", self.out, "--cell-decomposition",
+                    "list", says=["say how many with --partitions"])
         self.expect(8, self.box, "-o", self.out, "--partitions", "2", "--cell-decomposition", "missing/list",
                     says=["missing does not exist"])
         to_standard_output = ("-o", "-", "--format", "pvtu", "--partitions", "2")

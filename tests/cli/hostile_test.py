@@ -417,7 +417,8 @@ class CadFilesThatCrash(HostileTest):
         part = HOSTILE / "iges_closed_face" / "sphere.igs"
         for number, code in ((signal.SIGSEGV, (1, 3)), (signal.SIGKILL, (5,))):
             for delay in (0.05, 0.2, 0.4, 0.8):
-                run = subprocess.Popen([PROGRAM, part, "-o", self.out, "--size", "0.3"], stderr=subprocess.PIPE, text=True)
+                run = subprocess.Popen([PROGRAM, part, "-o", self.out, "--size", "0.3"],
+                                       stderr=subprocess.PIPE, text=True)
                 self.addCleanup(run.kill)
                 time.sleep(delay)
                 children = pathlib.Path(f"/proc/{run.pid}/task/{run.pid}/children").read_text().split()
@@ -435,6 +436,7 @@ class CadFilesThatCrash(HostileTest):
             with self.subTest(path=path.name):
                 self.expect(0, path, "-o", self.out, writes=True)
                 self.out.unlink()
+
 
 class Regions(HostileTest):
     """No body is lost without a word."""
@@ -493,7 +495,8 @@ class Judgement(HostileTest):
             mesh.write_text("\n".join(changed) + "\n")
             self.expect(7, "check", mesh, "--against", self.box)
         tets = int(lines[at - 1])
-        mesh.write_text("\n".join(lines[:at] + [swapped(line) for line in lines[at:at + tets]] + lines[at + tets:]) + "\n")
+        mesh.write_text("\n".join(lines[:at] + [swapped(line)
+                        for line in lines[at:at + tets]] + lines[at + tets:]) + "\n")
         self.expect(0, "check", mesh, "--against", self.box)  # another convention
 
 

@@ -117,7 +117,8 @@ class Surfaces(ProgramTest):
         triangles = numpy.array([t for a, b, c, d in p.BOX_FACES for t in ((a, b, c), (a, c, d))])
         tags = numpy.repeat(numpy.arange(11, 17), 2)
         gmsh = {"gmsh:physical": [tags], "gmsh:geometrical": [tags]}
-        meshio.Mesh(points, [("triangle", triangles)], cell_data=gmsh).write(self.folder / "box.msh", file_format="gmsh22", binary=False)
+        meshio.Mesh(points, [("triangle", triangles)], cell_data=gmsh).write(
+            self.folder / "box.msh", file_format="gmsh22", binary=False)
         meshio.Mesh(points, [("triangle", triangles)], cell_data={"medit:ref": [tags]}).write(self.folder / "box.mesh")
         meshio.Mesh(points, [("triangle", triangles)], cell_data={"tag": [tags]}).write(self.folder / "box.vtu")
         self.write_vtp(points, triangles, tags)
@@ -160,7 +161,8 @@ class Units(ProgramTest):
         import meshio
 
         for name, scale in (("a.vtu", "0.001"), ("b.vtu", "1")):
-            self.assertEqual(self.run_program(self.box, "-o", self.folder / name, "--size", "0.5", "--scale", scale).returncode, 0)
+            self.assertEqual(self.run_program(self.box, "-o", self.folder / name,
+                             "--size", "0.5", "--scale", scale).returncode, 0)
         small, large = (meshio.read(self.folder / name) for name in ("a.vtu", "b.vtu"))
         self.assertTrue((small.points == 0.001 * large.points).all())
         self.run_program("convert", self.box, "-o", self.folder / "c.off", "--scale", "1000")

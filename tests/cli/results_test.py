@@ -42,7 +42,8 @@ class Guarantees(ProgramTest):
         model = self.write("segment.poly", "\n".join([*lines, "0", "0"]) + "\n")
         report = self.folder / "report.json"
         run = self.expect(7, model, "-o", self.out, "--crease-angle", "0", "--report", report, writes=True)
-        self.assertRegex(run.stderr, "collarmesh: a guarantee is missed: .*near " + COORDINATES.pattern + ".*crease-angle")
+        self.assertRegex(run.stderr, "collarmesh: a guarantee is missed: .*near " +
+                         COORDINATES.pattern + ".*crease-angle")
         found = json.loads(report.read_text())
         self.assertEqual((found["status"], found["guarantees_hold"]), ("guarantee_missed", False))
         self.assertEqual(self.run_program("info", self.out).returncode, 0)
@@ -125,7 +126,8 @@ class Reports(ProgramTest):
         self.expect(0, model, "-o", self.out, "--report", path, writes=True)
         self.assertEqual(json.loads(path.read_text())["complex"]["warnings"], [])
         lines = text.rstrip().splitlines()
-        at = max(k for k, line in enumerate(lines) if line.split() == ["2"] or line.split()[:1] == ["2"] and len(line.split()) == 1)
+        at = max(k for k, line in enumerate(lines) if line.split() == [
+                 "2"] or line.split()[:1] == ["2"] and len(line.split()) == 1)
         lines[at] = "3"
         outside = self.write("outside.poly", "\n".join([*lines, "3 70 0 0 5"]) + "\n")
         run = self.expect(0, outside, "-o", self.out, "-q", "--report", path, writes=True)
@@ -191,7 +193,8 @@ class Reports(ProgramTest):
         self.assertEqual(self.predictions(self.box, "--size", "0.5", "--predict", "0")[0]["size"], 0.5)
         sphere = MODELS / "sphere.off"
         coarse = 3 * self.predictions(sphere, "--predict", "0")[0]["size"]
-        straight, curved = (self.predictions(sphere, "--predict", coarse, "--order", order)[0]["tets"] for order in "12")
+        straight, curved = (self.predictions(sphere, "--predict", coarse,
+                            "--order", order)[0]["tets"] for order in "12")
         self.assertGreater(curved, straight)  # near enough to the sphere to be curved
         near = self.predictions(sphere, "--predict", coarse, "--distance", coarse / 500)[0]["tets"]
         self.assertGreater(near, curved)

@@ -105,7 +105,8 @@ class Progress(ProgramTest):
 
     def test_bar_on_a_terminal(self):
         ours, theirs = pty.openpty()
-        process = subprocess.Popen([PROGRAM, self.box, "-o", self.out, "--size", "0.025"], cwd=self.folder, stderr=theirs)
+        process = subprocess.Popen([PROGRAM, self.box, "-o", self.out, "--size",
+                                   "0.025"], cwd=self.folder, stderr=theirs)
         os.close(theirs)
         shown = b""
         while True:

@@ -95,7 +95,8 @@ class Mesh:
         digest = hashlib.sha256()
         for cells, labels in ((self.tets, [self.tags, self.collar]), (self.faces, [self.face_tags]), (self.edges, [self.edge_tags])):
             places = (self.points[cells] + 0.0).view(numpy.int64).reshape(len(cells), cells.shape[1], 3)
-            order = numpy.lexsort(numpy.moveaxis(places, 2, 0)[::-1], axis=1) if len(cells) else numpy.zeros((0, 1), int)
+            order = numpy.lexsort(numpy.moveaxis(places, 2, 0)[::-1],
+                                  axis=1) if len(cells) else numpy.zeros((0, 1), int)
             places = numpy.take_along_axis(places, order[:, :, None], axis=1).reshape(len(cells), -1)
             rows = numpy.column_stack([places, *labels])
             digest.update(rows[numpy.lexsort(rows.T[::-1])].tobytes())
@@ -251,21 +252,24 @@ class Failures(DistributedTest):
         self.assertEqual(len(said), 1, run.stderr)
         for word in words:
             self.assertIn(word, said[0])
-        self.assertEqual([p.name for p in self.folder.iterdir() if "out" in p.name or p.name.startswith(".collarmesh")], [])
+        self.assertEqual([p.name for p in self.folder.iterdir()
+                         if "out" in p.name or p.name.startswith(".collarmesh")], [])
 
     def test_memory(self):
         self.assert_fails(self.mpirun(2, PROGRAM, MODELS / "bracket.off", "-o", "out.h5", "--size", "4", "--levels", "2",
                                       "--max-memory", "80M"), 5, "memory")
 
     def test_options(self):
-        self.assert_fails(self.mpirun(3, PROGRAM, MODELS / "box.off", "-o", "out.h5", "--levels", "many"), 2, "--levels")
+        self.assert_fails(self.mpirun(3, PROGRAM, MODELS / "box.off", "-o",
+                          "out.h5", "--levels", "many"), 2, "--levels")
         self.assert_fails(self.mpirun(3, PROGRAM, MODELS / "box.off", "-o", "out.off"), 2, "use .h5 or .pvtu")
         self.assert_fails(self.mpirun(3, PROGRAM, "-o", "out.h5"), 2, "INPUT")
         self.assert_fails(self.mpirun(3, PROGRAM, "missing.off", "-o", "out.h5"), 3, "missing.off")
         self.assert_fails(self.mpirun(2, PROGRAM, MODELS / "box.off", "-o", "nowhere/out.h5"), 8, "nowhere")
 
     def test_time_limit(self):
-        self.assert_fails(self.mpirun(2, PROGRAM, MODELS / "bracket.off", "-o", "out.h5", "--size", "1", "--time-limit", "1"), 5, "time limit")
+        self.assert_fails(self.mpirun(2, PROGRAM, MODELS / "bracket.off", "-o",
+                          "out.h5", "--size", "1", "--time-limit", "1"), 5, "time limit")
 
     def test_other_options_on_a_rank(self):
         run = self.mpirun(1, PROGRAM, MODELS / "box.off", "-o", "out.h5", ":", "-n", "1", PROGRAM, MODELS / "box.off", "-o", "out.h5",
@@ -283,7 +287,8 @@ class Failures(DistributedTest):
     def test_full_disk(self):
         """Files may have 1 MB, the mesh takes more."""
         for output in "out.h5", "out.pvtu":
-            run = self.mpirun(2, "bash", "-c", f"ulimit -f 1000; exec {PROGRAM} {MODELS / 'bracket.off'} -o {output} --size 6 --levels 2 -q")
+            run = self.mpirun(
+                2, "bash", "-c", f"ulimit -f 1000; exec {PROGRAM} {MODELS / 'bracket.off'} -o {output} --size 6 --levels 2 -q")
             self.assert_fails(run, 8, "out")
 
     def run_until_meshed(self, *options):
@@ -335,7 +340,8 @@ class Solutions(DistributedTest):
             self.skipTest("dolfinx is not there")
         for order, expected in ("1", 2), ("2", 3):
             for level in range(3):
-                self.mesh(2, MODELS / "box.off", "--size", "0.5", "--levels", level, "--order", order, output=f"part_{level}.h5")
+                self.mesh(2, MODELS / "box.off", "--size", "0.5", "--levels",
+                          level, "--order", order, output=f"part_{level}.h5")
             results = []
             for ranks in RANKS:
                 run = self.mpirun(ranks, PYTHON, DISTRIBUTED / "examples" / "poisson.py", "part_0", "part_1", "part_2")

@@ -146,7 +146,7 @@ class Analysis:
         if len(totals) != len(self.held):
             raise RuntimeError(f"CalculiX wrote reactions for {len(totals)} of {len(self.held)} constraints")
         return [sum(float(total[1 + i]) for total in totals if axis in self.held[total[0]])
-                for i, axis in enumerate("xyz")]  # fmt: skip
+                for i, axis in enumerate("xyz")]
 
 
 def peak(result, radius):

@@ -20,7 +20,7 @@ from freecad.collarmesh_workbench.commands import MESH_COMMAND  # noqa: E402
 def tree_item(label):
     """Of the object with a label, in FreeCAD's tree."""
     found = [item for tree in w.window.findChildren(QtGui.QTreeWidget) if tree.isVisible()
-             for item in tree.findItems(label, QtCore.Qt.MatchExactly | QtCore.Qt.MatchRecursive, 0)]  # fmt: skip
+             for item in tree.findItems(label, QtCore.Qt.MatchExactly | QtCore.Qt.MatchRecursive, 0)]
     w.require(len(found) == 1, f"{len(found)} times {label} in the tree")
     return found[0]
 

@@ -80,7 +80,7 @@ def ends_cleanly(program, by_its_button):
         variables = run.environment(home, program)
         result = pathlib.Path(variables["COLLARMESH_TEST_RESULT"])
         screen = subprocess.Popen(run.command(script, gui=True), stdin=subprocess.DEVNULL, env=variables,
-                                  start_new_session=True)  # fmt: skip
+                                  start_new_session=True)
         try:
             begun = lambda: result.exists() and result.read_text().endswith("]")  # noqa: E731
             wait_until(lambda: screen.poll() is not None or begun(), "a run")

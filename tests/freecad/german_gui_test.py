@@ -28,7 +28,7 @@ def texts_of(widget):
 def actions():
     """{command: (text, tool tip)} of ours in the toolbars."""
     return {action.objectName(): (action.text(), action.toolTip()) for bar in w.window.findChildren(QtGui.QToolBar)
-            for action in bar.actions() if action.objectName().startswith("Collarmesh")}  # fmt: skip
+            for action in bar.actions() if action.objectName().startswith("Collarmesh")}
 
 
 def test():

@@ -15,7 +15,7 @@ from freecad.collarmesh_workbench.fem_buttons import BESIDE
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from window import (child, click_command, open_panel, plate, require, run_mesher, run_test, said,  # noqa: E402
-                    screenshot, wait_until, window)  # fmt: skip
+                    screenshot, wait_until, window)
 
 
 def bars_with(command):

@@ -209,7 +209,7 @@ class Headless(unittest.TestCase):
             "PlanarTolerance": 2e-6, "WeldTolerance": 2e-9,
             "RepairTolerance": 2e-5, "RadiusEdgeRatio": 1.9, "Coarsen": False, "ImproveLevel": 3,
             "MinDihedralAngle": 25, "Seed": 7, "TimeLimit": 60,
-        }  # fmt: skip
+        }
         self.assertEqual(set(values), {name for _, name, *_ in mesh_object.PROPERTIES})
         for name, value in values.items():
             setattr(obj, name, value)
@@ -233,7 +233,7 @@ class Headless(unittest.TestCase):
         """A message of the program, as the panel and the report view show it."""
         lines = ["repaired: a hole filled at (1, 2, 3)", "warning: a point lies outside", "stage: done"]
         self.assertEqual([program.as_warning(line) for line in lines],
-                         ["warning: the shape was repaired: a hole filled at (1, 2, 3)", lines[1], None])  # fmt: skip
+                         ["warning: the shape was repaired: a hole filled at (1, 2, 3)", lines[1], None])
 
     def test_save_and_reopen(self):
         obj = collarmesh_workbench.mesh(self.add(plate_with_hole()), size=4)

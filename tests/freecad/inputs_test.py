@@ -120,9 +120,9 @@ class Shapes(WithDocument):
     def test_what_the_button_takes(self):
         box = self.add("Part::Box", "Box")
         taken = [box, self.add("App::Link", "Link", LinkedObject=box), self.document.addObject("App::Part", "Container"),
-                 self.document.addObject("PartDesign::Body", "Body"), self.document.addObject("Mesh::Feature", "Mesh")]  # fmt: skip
+                 self.document.addObject("PartDesign::Body", "Body"), self.document.addObject("Mesh::Feature", "Mesh")]
         refused = [self.document.addObject("App::DocumentObjectGroup", "Folder"), mesh_object.make(self.document, box),
-                   ObjectsFem.makeMeshGmsh(self.document), self.document.addObject("App::Link", "Dangling")]  # fmt: skip
+                   ObjectsFem.makeMeshGmsh(self.document), self.document.addObject("App::Link", "Dangling")]
         for obj in taken + refused:
             self.assertEqual(inputs.can_be_meshed(obj), obj in taken, obj.Name)
 
@@ -234,7 +234,7 @@ class OutOfDate(WithDocument):
 
     def test_the_shape_changed_and_back(self):
         for change in (lambda: setattr(self.box, "Length", 10.001), lambda: setattr(self.part, "Edges", [(1, 1.1, 1.1)]),
-                       lambda: setattr(self.part, "Edges", [(2, 1.0, 1.0)])):  # fmt: skip
+                       lambda: setattr(self.part, "Edges", [(2, 1.0, 1.0)])):
             change()
             self.assertTrue(self.is_out_of_date())
             self.box.Length = 10
@@ -244,7 +244,7 @@ class OutOfDate(WithDocument):
     def test_sizes_and_settings_changed(self):
         size, obj = self.size, self.obj
         for holder, name, value in ((size, "Radius", 2), (size, "Size", 0.5), (size, "Growth", 0.2), (obj, "ElementOrder", "2nd"),
-                                    (obj, "CharacteristicLengthMax", 2), (obj, "MeshSizeList", [])):  # fmt: skip
+                                    (obj, "CharacteristicLengthMax", 2), (obj, "MeshSizeList", [])):
             with self.subTest(name):
                 before = getattr(holder, name)
                 self.assertFalse(self.is_out_of_date())

@@ -22,7 +22,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="collarmesh-package-") as folder:
         folder = pathlib.Path(folder)
         subprocess.run([cpack, "-G", "DEB", "--config", f"{build}/CPackConfig.cmake", "-B", folder], check=True,
-                       stdout=subprocess.DEVNULL)  # fmt: skip
+                       stdout=subprocess.DEVNULL)
         (package,) = folder.glob("*.deb")
         fields = subprocess.run(["dpkg-deb", "-f", package], check=True, capture_output=True, text=True).stdout
         print(fields)

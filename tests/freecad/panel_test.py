@@ -18,11 +18,11 @@ import Part
 from PySide import QtCore, QtGui
 
 from freecad.collarmesh_workbench import (angle_chart, guarantees, mesh_object, meshing_process, places, program,
-                                          size_objects, view_marks, work_folder, worst_elements)  # fmt: skip
+                                          size_objects, view_marks, work_folder, worst_elements)
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from window import (child, click_at, click_command, click_item, close_panel, find, open_panel, pause,  # noqa: E402
-                    plate, require, rows, run_mesher, run_test, said, screenshot, wait_until)  # fmt: skip
+                    plate, require, rows, run_mesher, run_test, said, screenshot, wait_until)
 
 PROGRAM = os.environ["COLLARMESH_PROGRAM"]
 LONG = "0.15 mm"  # a size for which the plate takes much longer than any test
@@ -224,7 +224,7 @@ def advanced_settings_reach_the_program():
     run_mesher("4 mm")
     options = meshing_process.outcome_of(obj).report["options"]
     wanted = {"size": 4, "elements_per_circle": 24, "distance": 0.0508, "improve": 3, "coarsen": False,
-              "repair": "wrap", "order": 2, "crease_angle": 60, "radius_edge": 2}  # fmt: skip
+              "repair": "wrap", "order": 2, "crease_angle": 60, "radius_edge": 2}
     require({name: options[name] for name in wanted} == wanted, f"{options}")
     require((obj.ImproveLevel, obj.Repair, obj.ElementOrder) == (3, "Wrap", "2nd"), "the object has them")
     require(len(obj.FemMesh.getElementNodes(obj.FemMesh.Volumes[0])) == 10, "second order")

@@ -23,7 +23,7 @@ class Words(unittest.TestCase):
     def test_each_message_is_told_once(self):
         report = {"check": {"findings": []}, "complex": {"warnings": [{"message": "a note", "where": [0, 0, 0]}]},
                   "warnings": ["a note"], "notes": ["a note", "another"], "message": "", "guarantees_hold": True,
-                  "repair": {"repaired": False}, "projection": None, "second_order": None}  # fmt: skip
+                  "repair": {"repaired": False}, "projection": None, "second_order": None}
         self.assertEqual([each.text for each in places.in_report(report)], ["a note", "another"])
 
     def test_sizes_fit_the_shape(self):

@@ -54,7 +54,7 @@ def drag(obj, name, by, steps=8):
         held = kind == QtCore.QEvent.MouseButtonPress or (held and kind != QtCore.QEvent.MouseButtonRelease)
         button = QtCore.Qt.NoButton if kind == QtCore.QEvent.MouseMove else QtCore.Qt.LeftButton
         event = QtGui.QMouseEvent(kind, QtCore.QPointF(on_screen(place)), target.mapToGlobal(on_screen(place)), button,
-                                  QtCore.Qt.LeftButton if held else QtCore.Qt.NoButton, QtCore.Qt.NoModifier)  # fmt: skip
+                                  QtCore.Qt.LeftButton if held else QtCore.Qt.NoButton, QtCore.Qt.NoModifier)
         QtGui.QApplication.sendEvent(target, event)
         w.pause(30)
 

@@ -159,10 +159,11 @@ class TakeOver(WithPart):
         """A stand-in with the properties that it has there."""
         old = self.document.addObject("Fem::FemMeshObjectPython", "FromNetgen")
         for kind, name, value in (
-            ("App::PropertyLink", "Shape", self.part), ("App::PropertyLength", "MaxSize", 3), ("App::PropertyLength", "MinSize", 0.2),
+            ("App::PropertyLink", "Shape", self.part), ("App::PropertyLength",
+                                                        "MaxSize", 3), ("App::PropertyLength", "MinSize", 0.2),
             ("App::PropertyBool", "SecondOrder", True), ("App::PropertyFloat", "GrowthRate", 0.3),
             ("App::PropertyFloat", "CurvatureSafety", 2), ("App::PropertyLinkList", "MeshRefinementList", []),
-        ):  # fmt: skip
+        ):
             old.addProperty(kind, name)
             setattr(old, name, value)
         old.addProperty("App::PropertyEnumeration", "Fineness")
@@ -281,7 +282,7 @@ class Files(WithPart):
     def test_export_with_names(self):
         with tempfile.TemporaryDirectory() as folder:
             for extension, words in ((".msh", (b'"Face1"', b'"Edge1"', b'"Solid1"')), (".inp", (b"FACE1", b"C3D10", b"SOLID1")),
-                                     (".unv", (b"Face1", b"Solid1")), (".stl", (b"STL",))):  # fmt: skip
+                                     (".unv", (b"Face1", b"Solid1")), (".stl", (b"STL",))):
                 path = os.path.join(folder, "plate" + extension)
                 mesh_file.export(self.obj, path)
                 with open(path, "rb") as file:

@@ -55,7 +55,7 @@ def pause(milliseconds):
 def click_at(widget, place):
     """The left button of the mouse at a QPoint of the widget."""
     for kind, buttons in ((QtCore.QEvent.MouseButtonPress, QtCore.Qt.LeftButton),
-                          (QtCore.QEvent.MouseButtonRelease, QtCore.Qt.NoButton)):  # fmt: skip
+                          (QtCore.QEvent.MouseButtonRelease, QtCore.Qt.NoButton)):
         event = QtGui.QMouseEvent(kind, QtCore.QPointF(place), QtCore.Qt.LeftButton, buttons, QtCore.Qt.NoModifier)
         QtGui.QApplication.sendEvent(widget, event)
     QtGui.QApplication.processEvents()
@@ -77,7 +77,7 @@ def click_command(command):
 
 def buttons_of(command):
     return [button for bar in window.findChildren(QtGui.QToolBar) for button in bar.findChildren(QtGui.QToolButton)
-            if button.defaultAction() is not None and button.defaultAction().objectName() == command]  # fmt: skip
+            if button.defaultAction() is not None and button.defaultAction().objectName() == command]
 
 
 def rows(tree):

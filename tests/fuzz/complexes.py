@@ -166,7 +166,8 @@ def slivers(random_):
 
 def random_complex(seed):
     random_ = random.Random(seed)
-    made = random_.choice([separate_bodies, separate_bodies, grid_of_boxes, grid_of_boxes, nested, soup, soup, slivers])(random_)
+    made = random_.choice([separate_bodies, separate_bodies, grid_of_boxes,
+                          grid_of_boxes, nested, soup, soup, slivers])(random_)
     return made, random_
 
 

@@ -93,7 +93,8 @@ def try_complex(folder, seed):
     if fault is None and run.code == 0:
         fault = judge_volumes(folder, made.volumes, made.rounding, "is lost" in run.text)
     if fault is None and run.code == 0 and random_.random() < 0.1 and "repaired" not in run.text:
-        check = Trial(folder, "check", "out.vtu", "--against", path, *exact, *(["--thin-angle", "0"] if "off" in size else []))
+        check = Trial(folder, "check", "out.vtu", "--against", path, *exact,
+                      *(["--thin-angle", "0"] if "off" in size else []))
         fault = check.fault({0}) and f"check: {check.fault({0})}"
     return f"complex {made.name}", run.code, fault
 
@@ -154,7 +155,8 @@ def seeds_of_cad():
     files = [p for p in (SOURCES / "tests" / "cli" / "hostile").rglob("*") if p.suffix in suffixes]
     for real in (os.environ.get("COLLARMESH_REAL"), os.environ.get("COLLARMESH_CORPUS")):
         if real:
-            files += [p for p in pathlib.Path(real).rglob("*") if p.suffix.lower() in suffixes and p.stat().st_size < 60000]
+            files += [p for p in pathlib.Path(real).rglob("*") if p.suffix.lower()
+                      in suffixes and p.stat().st_size < 60000]
     return sorted(files)
 
 

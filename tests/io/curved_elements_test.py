@@ -71,7 +71,8 @@ def with_calculix(folder):
             f"*BOUNDARY\n{boundary}*STEP\n*STATIC\n*TEMPERATURE\nNALL, {rise}\n*NODE PRINT, NSET=NALL\nU\n*END STEP\n")
         run = subprocess.run([ccx, "-i", job.name], cwd=folder, capture_output=True, text=True)
         errors = re.findall(r"\*ERROR[^\n]*|[^\n]*nonpositive[^\n]*", run.stdout)
-        expect(run.returncode == 0 and "Job finished" in run.stdout and not errors, f"{model}: {run.returncode} {errors}")
+        expect(run.returncode == 0 and "Job finished" in run.stdout and not errors,
+               f"{model}: {run.returncode} {errors}")
         if failures:
             continue
         rows = [line.split() for line in job.with_suffix(".dat").read_text().splitlines()]
@@ -129,7 +130,8 @@ def with_meshio(folder):
     corners = tets[:, :4]
     straight = np.linalg.det(corners[:, 1:] - corners[:, :1]).sum() / 6
     wanted = volume_within(MODELS / "sphere.off")
-    expect(abs(volume - wanted) < 0.15 * abs(straight - wanted), f"volume {volume}, straight {straight}, wanted {wanted}")
+    expect(abs(volume - wanted) < 0.15 * abs(straight - wanted),
+           f"volume {volume}, straight {straight}, wanted {wanted}")
 
 
 PROGRAMS = {"calculix": with_calculix, "gmsh": with_gmsh, "meshio": with_meshio}

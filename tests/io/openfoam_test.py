@@ -46,7 +46,8 @@ def main():
         names = {"patches": {"inlet": {"at": [0, 1, 0.5]}, "outlet": {"at": [3, 1, 0.5]}, "walls": rest},
                  "regions": {"air": 1}}
         (folder / "names.json").write_text(json.dumps(names))
-        run(folder, program, models / "box.off", "-o", "box.msh2", "--size", "0.2", "--names", "names.json", "--scale", "0.001")
+        run(folder, program, models / "box.off", "-o", "box.msh2",
+            "--size", "0.2", "--names", "names.json", "--scale", "0.001")
         shutil.copy(folder / "box.msh2", folder / "box.msh")
         run(folder, "gmshToFoam", "box.msh")
         boundary = (folder / "constant/polyMesh/boundary").read_text()

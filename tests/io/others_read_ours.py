@@ -151,7 +151,8 @@ def main():
         return 77
     with tempfile.TemporaryDirectory() as folder:
         vtu, vtk_file, msh, mesh = (os.path.join(folder, "sample" + ext) for ext in (".vtu", ".vtk", ".msh", ".mesh"))
-        run = subprocess.run([sys.argv[1], str(N), "1", vtu, vtk_file, msh, mesh], capture_output=True, text=True, check=True)
+        run = subprocess.run([sys.argv[1], str(N), "1", vtu, vtk_file, msh, mesh],
+                             capture_output=True, text=True, check=True)
         counts = tuple(map(int, run.stdout.split()))
         ours = check_vtk_with_meshio(vtk_file, counts)
         volume = check_vtu_with_meshio(vtu, counts)

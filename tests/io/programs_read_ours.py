@@ -56,7 +56,8 @@ def check_mid_nodes(label, points, cells, edges):
     for k, (i, j) in enumerate(edges):
         middle = (points[cells[:, i]] + points[cells[:, j]]) / 2
         corners = cells.shape[1] - len(edges)
-        expect(np.allclose(points[cells[:, corners + k]], middle, atol=1e-12), f"{label}: mid node {k} of {cells.shape}")
+        expect(np.allclose(points[cells[:, corners + k]], middle, atol=1e-12),
+               f"{label}: mid node {k} of {cells.shape}")
 
 
 def cells_by_type(mesh):
@@ -95,7 +96,8 @@ def check_xdmf_parts(sample, meshio):
         mesh = meshio.read(f"{stem}_{part}.xdmf")
         cells = cells_by_type(mesh)
         label = f".xdmf of order {sample.order} by meshio: {part}"
-        expect(set(cells) == {kind} and len(cells[kind]) == count, f"{label}: {[(k, len(v)) for k, v in cells.items()]}")
+        expect(set(cells) == {kind} and len(cells[kind]) == count,
+               f"{label}: {[(k, len(v)) for k, v in cells.items()]}")
         expect(len(mesh.cell_data["tag"][0]) == count, f"{label}: tags")
         expect(len(mesh.points) == sample.points, f"{label}: points")
 
@@ -122,7 +124,8 @@ def with_meshio(folder):
             if extension == ".xdmf":
                 check_xdmf_parts(sample, meshio)
             if extension == ".inp":
-                expect({"REGION_20", "REGION_MINUS_4", "VOLUME_1", "EALL"} <= set(mesh.cell_sets), f"{label}: element sets {set(mesh.cell_sets)}")
+                expect({"REGION_20", "REGION_MINUS_4", "VOLUME_1", "EALL"} <= set(
+                    mesh.cell_sets), f"{label}: element sets {set(mesh.cell_sets)}")
                 expect("PATCH_MINUS_3_NODES" in mesh.point_sets and any(name.startswith("CURVE_") for name in mesh.point_sets),
                        f"{label}: node sets {set(mesh.point_sets)}")
             if extension == ".med":
@@ -140,7 +143,8 @@ def cut_through(grid, vtk):
     cutter.SetInputData(grid)
     cutter.Update()
     kinds = {cutter.GetOutput().GetCellType(i) for i in range(cutter.GetOutput().GetNumberOfCells())}
-    expect(kinds and kinds <= {vtk.VTK_TRIANGLE, vtk.VTK_QUAD, vtk.VTK_POLYGON}, f"a cut has cells of the types {kinds}")
+    expect(kinds and kinds <= {vtk.VTK_TRIANGLE, vtk.VTK_QUAD,
+           vtk.VTK_POLYGON}, f"a cut has cells of the types {kinds}")
     low, high = grid.GetCellData().GetArray("min_dihedral").GetRange()
     expect(low > 0, f"min_dihedral is from {low} to {high}")
 
@@ -168,9 +172,11 @@ def with_vtk(folder):
             expect((types == (10 if order == 1 else 24)).sum() == sample.tets, f"{label}: types of cells")
             grids.append(grid)
         first, second = grids
-        expect(np.array_equal(vtk_to_numpy(first.GetPoints().GetData()), vtk_to_numpy(second.GetPoints().GetData())), "points differ")
+        expect(np.array_equal(vtk_to_numpy(first.GetPoints().GetData()),
+               vtk_to_numpy(second.GetPoints().GetData())), "points differ")
         volume = vtk_to_numpy(second.GetCells().GetConnectivityArray())
-        expect(np.array_equal(vtk_to_numpy(first.GetCells().GetConnectivityArray())[: len(volume)], volume), "corners differ")
+        expect(np.array_equal(vtk_to_numpy(first.GetCells().GetConnectivityArray())
+               [: len(volume)], volume), "corners differ")
         for k in range(second.GetCellData().GetNumberOfArrays()):
             name = second.GetCellData().GetArrayName(k)
             array = first.GetCellData().GetArray(name)
@@ -178,7 +184,8 @@ def with_vtk(folder):
             expect(of_tets is not None and np.array_equal(of_tets, vtk_to_numpy(second.GetCellData().GetArray(k))),
                    f"cell array {name}")
         field = second.GetFieldData()
-        expect(len(vtk_to_numpy(field.GetArray("boundary_types"))) == sample.faces + sample.edges, ".vtu: boundary in field data")
+        expect(len(vtk_to_numpy(field.GetArray("boundary_types"))) ==
+               sample.faces + sample.edges, ".vtu: boundary in field data")
         cut_through(second, vtk)
 
 
@@ -194,14 +201,16 @@ def with_gmsh(folder):
             out = os.path.join(folder, "by_gmsh.msh")
             run = subprocess.run([gmsh, sample.files[extension], "-0", "-save_all", "-format", "msh2", "-o", out],
                                  capture_output=True, text=True)
-            complaints = [line for line in (run.stdout + run.stderr).splitlines() if "Error" in line or "Warning" in line]
+            complaints = [line for line in (run.stdout + run.stderr).splitlines()
+                          if "Error" in line or "Warning" in line]
             expect(run.returncode == 0 and not complaints, f"{label}: {run.returncode} {complaints}")
             check_meshio_mesh(label, meshio.read(out), sample)
 
 
 def run_tetgen(*arguments):
     run = subprocess.run(["tetgen", *arguments], capture_output=True, text=True)
-    expect(run.returncode == 0 and "Error" not in run.stdout, f"tetgen {arguments}: {run.returncode} {run.stdout[-300:]}")
+    expect(run.returncode == 0 and "Error" not in run.stdout,
+           f"tetgen {arguments}: {run.returncode} {run.stdout[-300:]}")
     return run.stdout
 
 
@@ -245,8 +254,10 @@ def with_calculix(folder):
         origin = min(coordinates.values())
         corner = {key: number for number, key in coordinates.items()}
         a = corner[origin]
-        far_x = max(n for n, p in coordinates.items() if p[1:] == origin[1:] and p[0] == max(q[0] for q in coordinates.values()))
-        far_y = max(n for n, p in coordinates.items() if (p[0], p[2]) == (origin[0], origin[2]) and p[1] == max(q[1] for q in coordinates.values()))
+        far_x = max(n for n, p in coordinates.items() if p[1:] ==
+                    origin[1:] and p[0] == max(q[0] for q in coordinates.values()))
+        far_y = max(n for n, p in coordinates.items() if (p[0], p[2]) == (
+            origin[0], origin[2]) and p[1] == max(q[1] for q in coordinates.values()))
         name = os.path.join(folder, f"job{order}")
         with open(name + ".inp", "w") as file:
             file.write(f"*INCLUDE, INPUT={os.path.basename(sample.files['.inp'])}\n"
@@ -261,7 +272,8 @@ def with_calculix(folder):
                        "*NODE PRINT, NSET=PATCH_MINUS_3_NODES\nU\n*EL PRINT, ELSET=VOLUME_1\nS\n*END STEP\n")
         run = subprocess.run([ccx, "-i", os.path.basename(name)], cwd=folder, capture_output=True, text=True)
         problems = re.findall(r"\*(?:ERROR|WARNING)[^\n]*", run.stdout)
-        expect(run.returncode == 0 and "Job finished" in run.stdout, f"ccx of order {order}: {run.returncode} {run.stdout[-500:]}")
+        expect(run.returncode == 0 and "Job finished" in run.stdout,
+               f"ccx of order {order}: {run.returncode} {run.stdout[-500:]}")
         expect(not [p for p in problems if "ERROR" in p], f"ccx of order {order}: {problems}")
         with open(name + ".dat") as file:
             dat = file.read()
@@ -270,7 +282,8 @@ def with_calculix(folder):
         expect(len(displacements) > 0, f"ccx of order {order}: displacements of a node set")
         for number, *u in displacements:
             wanted = [expansion * rise * (c - o) for c, o in zip(coordinates[int(number)], origin)]
-            expect(np.allclose(u, wanted, atol=1e-8), f"ccx of order {order}: node {number} moved {u}, expected {wanted}")
+            expect(np.allclose(u, wanted, atol=1e-8),
+                   f"ccx of order {order}: node {number} moved {u}, expected {wanted}")
         stresses = [list(map(float, line.split()[2:])) for line in
                     dat.split("stresses", 1)[1].splitlines()[1:] if len(line.split()) == 8]
         expect(len(stresses) > 0 and np.abs(stresses).max() < 1e-3, f"ccx of order {order}: stresses of an element set")

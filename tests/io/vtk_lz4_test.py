@@ -57,7 +57,8 @@ def main():
         damaged = bytearray(packed.read_bytes())
         damaged[len(damaged) // 2] ^= 0x55
         (folder / "damaged.vtu").write_bytes(damaged[: len(damaged) * 3 // 4])
-        run = subprocess.run([program, "convert", folder / "damaged.vtu", "-o", folder / "out.mesh"], capture_output=True)
+        run = subprocess.run([program, "convert", folder / "damaged.vtu",
+                             "-o", folder / "out.mesh"], capture_output=True)
         if run.returncode != 3:
             raise SystemExit(f"a damaged file: exit code {run.returncode}")
     return 0

@@ -25,7 +25,7 @@ def main():
         return 77
     with tempfile.TemporaryDirectory(prefix="collarmesh-package-") as folder:
         subprocess.run([cpack, "-G", "DEB", "--config", f"{build}/CPackConfig.cmake", "-B", folder], check=True,
-                       stdout=subprocess.DEVNULL)  # fmt: skip
+                       stdout=subprocess.DEVNULL)
         (package,) = pathlib.Path(folder).glob("*.deb")
         listed = subprocess.run(["dpkg-deb", "-c", package], check=True, capture_output=True, text=True).stdout
         files = {line.split()[5].removeprefix("./") for line in listed.splitlines()}
@@ -33,7 +33,8 @@ def main():
             raise SystemExit(f"the package lacks {lacking}")
         if unwanted := [file for file in files if re.search(r"bench|/tests?/|gtest|acute_shape", file.replace("workbench", ""))]:
             raise SystemExit(f"the package has {unwanted}")
-        found = subprocess.run(["lintian", "--allow-root", "--fail-on", "error", package], capture_output=True, text=True)
+        found = subprocess.run(["lintian", "--allow-root", "--fail-on", "error",
+                               package], capture_output=True, text=True)
         print(found.stdout, found.stderr)
         return found.returncode
 

@@ -119,10 +119,10 @@ class Reader:
         print(block.code, run.stdout, sep="\n")
         return run.stdout
 
-
     def run_in_freecad(self, page, block):
         script = self.folder / "macro.py"
-        script.write_text(block.code + "import os\nopen(os.environ['COLLARMESH_TEST_RESULT'], 'w').write('the macro has ended')\n")
+        script.write_text(
+            block.code + "import os\nopen(os.environ['COLLARMESH_TEST_RESULT'], 'w').write('the macro has ended')\n")
         run = subprocess.run([sys.executable, self.sources / "tests/freecad/run.py", self.build / "bin/collarmesh", script],
                              cwd=self.folder, capture_output=True, text=True)
         if run.returncode != 77 and "the macro has ended" not in run.stdout:
@@ -176,7 +176,8 @@ def run_cpp(sources, build):
     """The programs of the pages, built against what `cmake --install` installs."""
     with tempfile.TemporaryDirectory(prefix="collarmesh-page-") as folder:
         folder = pathlib.Path(folder)
-        subprocess.run(["cmake", "--install", build, "--prefix", folder / "prefix"], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run(["cmake", "--install", build, "--prefix", folder / "prefix"],
+                       check=True, stdout=subprocess.DEVNULL)
         (link,) = [block.code for block in blocks(sources / "mesher/doc/cpp.md") if block.language == "cmake"]
         text = CMAKE
         for page, target in (("cpp", "mesher"), ("openmesh", "openmesh_io")):
@@ -184,9 +185,11 @@ def run_cpp(sources, build):
             (folder / f"{page}.cpp").write_text(code)
             text += f"add_executable({page} {page}.cpp)\n"
             text += link.replace("program", page).replace("::mesher", f"::{target}")
-        text = text.replace("add_executable(openmesh", "if(NOT TARGET collarmesh::openmesh_io)\n  return()\nendif()\nadd_executable(openmesh")
+        text = text.replace("add_executable(openmesh",
+                            "if(NOT TARGET collarmesh::openmesh_io)\n  return()\nendif()\nadd_executable(openmesh")
         (folder / "CMakeLists.txt").write_text(text)
-        subprocess.run(["cmake", "-S", folder, "-B", folder / "build", f"-DCMAKE_PREFIX_PATH={folder}/prefix"], check=True)
+        subprocess.run(["cmake", "-S", folder, "-B", folder / "build",
+                       f"-DCMAKE_PREFIX_PATH={folder}/prefix"], check=True)
         subprocess.run(["cmake", "--build", folder / "build"], check=True)
         shutil.copy(sources / "resources/models/bracket.off", folder)
         subprocess.run([folder / "build/cpp"], check=True, cwd=folder)

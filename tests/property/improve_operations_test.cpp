@@ -197,7 +197,9 @@ class ImproveOperations : public ::testing::Test {
 class AnyShape final : public improvement::ShapeRule {
  public:
   double quality(const improvement::Corners&, const std::array<Index, 4>&) const override { return 1; }
-  bool allows(const improvement::Corners&, const std::array<Index, 4>&, double) const override { return true; }
+  bool allows(const improvement::Corners&, const std::array<Index, 4>&, double) const override {
+    return true;
+  }
 };
 
 /// What cells that contain a vertex add to it: vertices and pairs, sorted.

@@ -43,7 +43,8 @@ def import_from_prefix(build, prefix):
     where = prefix / f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/dist-packages"
     use = f"import site; site.addsitedir('{where}'); import collarmesh; print(collarmesh.__file__)"
     environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
-    found = subprocess.run([sys.executable, "-c", use], check=True, capture_output=True, text=True, env=environment).stdout
+    found = subprocess.run([sys.executable, "-c", use], check=True,
+                           capture_output=True, text=True, env=environment).stdout
     if not found.startswith(str(prefix)):
         raise SystemExit(f"the package was imported from {found}")
 

@@ -169,7 +169,8 @@ class Inputs(unittest.TestCase):
         self.assertAlmostEqual(numpy.linalg.norm(numpy.cross(b - a, c - a), axis=1).sum() / 2, 6, places=10)
 
     def test_a_facet_with_a_hole(self):
-        points = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (3, 0), (3, 3), (0, 3), (1, 1), (2, 1), (2, 2), (1, 2))]
+        points = [(x, y, z) for z in (0, 1)
+                  for x, y in ((0, 0), (3, 0), (3, 3), (0, 3), (1, 1), (2, 1), (2, 2), (1, 2))]
         ring = lambda first: [[first + i for i in range(4)], [first + 4 + i for i in range(4)]]
         facets = [ring(0), ring(8)]
         facets += [[i, (i + 1) % 4, 8 + (i + 1) % 4, 8 + i] for i in range(4)]
@@ -299,7 +300,8 @@ class Options(unittest.TestCase):
         mesh = collarmesh.mesh((torn, loose, tags), size=0.5, weld=1e-5, repair="none")
         self.assertAlmostEqual(volumes(mesh).sum(), 1, places=5)
         plate = box((0, 0, 0), (4, 4, 0.1))
-        self.assertLess(3 * len(collarmesh.mesh(plate, size=1).tets), len(collarmesh.mesh(plate, size=1, coarsen=False).tets))
+        self.assertLess(3 * len(collarmesh.mesh(plate, size=1).tets),
+                        len(collarmesh.mesh(plate, size=1, coarsen=False).tets))
 
 
 class Meshes(unittest.TestCase):
@@ -478,7 +480,8 @@ class Stopping(unittest.TestCase):
 
     def run_script(self, script, after):
         """Send Ctrl-C so many seconds after the script says that it begins; how long it takes to end."""
-        process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
         self.addCleanup(process.kill)
         self.assertEqual(process.stdout.readline().strip(), "begin")
         time.sleep(after)

@@ -41,7 +41,8 @@ def main():
 
     stub = (sources / "mesher/python/collarmesh/_core.pyi").read_text()
     functions = {name for name in vars(core) if not name.startswith("_")}
-    told = {line.split("(")[0].split()[1].rstrip(":") for line in stub.splitlines() if line.startswith(("def ", "class "))}
+    told = {line.split("(")[0].split()[1].rstrip(":")
+            for line in stub.splitlines() if line.startswith(("def ", "class "))}
     if functions != told:
         raise SystemExit(f"the stub differs from the module: {functions ^ told}")
     return 0

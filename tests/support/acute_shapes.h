@@ -103,12 +103,13 @@ Shape cut_torus(double plane);
 Shape long_lens(double rim_angle, double width);
 /// A bar of length 1 over a drop: its only side is one smooth patch that meets itself at this angle.
 Shape drop_bar(double angle);
-/// A cone of height 1 over a drop: its only side is one smooth patch, folded along a curve that is no crease and
-/// ends at the acute apex.
+/// A cone of height 1 over a drop: its only side is one smooth patch, folded along a curve that is no crease
+/// and ends at the acute apex.
 Shape drop_cone(double angle, double apex_angle);
 /// The side of such a cone alone, inside a room.
 Shape drop_cone_in_a_room(double angle, double apex_angle);
-/// A box with a sheet that rises from its bottom at this angle, becomes steeper by 60 degrees and ends inside.
+/// A box with a sheet that rises from its bottom at this angle, becomes steeper by 60 degrees and ends
+/// inside.
 Shape curved_facet_ending_inside(double angle);
 
 }  // namespace collarmesh::testing::acute

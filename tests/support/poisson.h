@@ -26,8 +26,9 @@ struct PoissonErrors {
 };
 
 /// Linear or, with mid-side nodes, isoparametric quadratic elements; the solution's values are given at
-/// the nodes on the boundary, or on its part where they are to be given. The condition number is that of the extreme eigenvalues, by power and inverse
-/// iteration. Throws std::runtime_error when there are no inner nodes or the matrix is not positive definite.
+/// the nodes on the boundary, or on its part where they are to be given. The condition number is that of the
+/// extreme eigenvalues, by power and inverse iteration. Throws std::runtime_error when there are no inner
+/// nodes or the matrix is not positive definite.
 PoissonErrors solve_poisson(const TetMesh& mesh, const Solution& exact, bool with_condition_number = false);
 
 /// Smooth, not a polynomial, with all derivatives of the size of one.

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <random>
 
-#include "common/distance_tree.h"
 #include "check/orientation.h"
 #include "check/polyline.h"
 #include "check/subject.h"
 #include "collarmesh/plc_builder.h"
 #include "collarmesh/tet_mesh.h"
+#include "common/distance_tree.h"
 #include "support/shapes.h"
 
 namespace collarmesh {

@@ -117,8 +117,9 @@ TEST_P(DelaunayTriangulation, IsValidAndLocallyDelaunay) {
     if (!mesh.alive(cell)) continue;
     ++alive;
     const auto& v = mesh.corners(cell);
-    ASSERT_GT(predicates::orientation_exact(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]),
-                                            mesh.point(v[3])), 0);
+    ASSERT_GT(
+        predicates::orientation_exact(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])),
+        0);
     for (unsigned corner = 0; corner < 4; ++corner) {
       const FaceId face = face_id(cell, corner), other = mesh.opposite(face);
       if (other == no_face) continue;
@@ -128,8 +129,8 @@ TEST_P(DelaunayTriangulation, IsValidAndLocallyDelaunay) {
       std::sort(theirs.begin(), theirs.end());
       ASSERT_EQ(mine, theirs);
       const Point& apex = mesh.point(mesh.corners(cell_of(other))[corner_of(other)]);
-      ASSERT_FALSE(predicates::in_sphere_exact(mesh.point(v[0]), mesh.point(v[1]),
-                                               mesh.point(v[2]), mesh.point(v[3]), apex));
+      ASSERT_FALSE(predicates::in_sphere_exact(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]),
+                                               mesh.point(v[3]), apex));
     }
   }
   EXPECT_EQ(alive, mesh.cell_count());
@@ -196,8 +197,7 @@ TEST_P(DelaunayTriangulation, HasTheCellsOfTheOracle) {
   // Up to ties (the box' corners tie in every set): a cell of one that the other lacks has a fifth
   // point on its sphere.
   std::vector<Cell> missing;
-  std::set_difference(mine.begin(), mine.end(), theirs.begin(), theirs.end(),
-                      std::back_inserter(missing));
+  std::set_difference(mine.begin(), mine.end(), theirs.begin(), theirs.end(), std::back_inserter(missing));
   for (const Cell& cell : missing) {
     std::array<Point, 4> c;
     for (std::size_t i = 0; i < 4; ++i) c[i] = {cell[i][0], cell[i][1], cell[i][2]};
@@ -212,14 +212,14 @@ TEST_P(DelaunayTriangulation, HasTheCellsOfTheOracle) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    PointSets, DelaunayTriangulation,
-    ::testing::Values(random_points("random", 1500, {}, 1), random_points("tiny", 700, {}, 1e-9),
-                      random_points("far_from_the_origin", 700, {1e6, -3e6, 2e6}, 1),
-                      grid("grid", 8, {}, 0), grid("near_grid", 8, {}, 1e-13),
-                      grid("near_grid_far_away", 8, {1e6, 1e6, 1e6}, 1e-9), on_sphere(400),
-                      on_plane_and_line()),
-    [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(PointSets, DelaunayTriangulation,
+                         ::testing::Values(random_points("random", 1500, {}, 1),
+                                           random_points("tiny", 700, {}, 1e-9),
+                                           random_points("far_from_the_origin", 700, {1e6, -3e6, 2e6}, 1),
+                                           grid("grid", 8, {}, 0), grid("near_grid", 8, {}, 1e-13),
+                                           grid("near_grid_far_away", 8, {1e6, 1e6, 1e6}, 1e-9),
+                                           on_sphere(400), on_plane_and_line()),
+                         [](const auto& info) { return info.param.name; });
 
 TEST(DelaunayTriangulationZone, OfAVertexWithManyNeighboursIsLinked) {
   // A vertex in the middle of a sphere of others: more than the square table takes.

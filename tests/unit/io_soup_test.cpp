@@ -165,7 +165,8 @@ TEST(IoObj, ReadsPolygonsAndLines) {
 TEST(IoObj, RefusesBadFiles) {
   expect_refused("a.obj", "", "line 1: ");
   // A vertex must not get lost where a line ends with a carriage return alone.
-  expect_refused("a.obj", "v 0 0 0\rv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n", "line 1: expected a weight or colour");
+  expect_refused("a.obj", "v 0 0 0\rv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n",
+                 "line 1: expected a weight or colour");
   expect_refused("a.obj", std::string("\0\1\2\3garbage", 11), "line 1: expected a keyword");
   expect_refused("a.obj", obj_points + "f 1 3", "line 5: expected a face of at least 3 corners, found 2");
   expect_refused("a.obj", obj + "f 1 2 5\n", "line 9: a corner is vertex 5, but the file has 4");

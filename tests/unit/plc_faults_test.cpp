@@ -39,7 +39,8 @@ TEST(PlcFaults, PointThatIsNotFinite) {
 TEST(PlcFaults, CoordinatesOutOfRange) {
   for (const double scale : {1e31, 1e80, 1e150, 1e200, 1e-31, 1e-80, 1e-150})
     expect_fault({testing::box({0, 0, 0}, {scale, scale, scale})}, Kind::bad_point, "scale it");
-  for (const double scale : {1e29, 1e-29}) EXPECT_FALSE(error_of({testing::box({0, 0, 0}, {scale, scale, scale})}));
+  for (const double scale : {1e29, 1e-29})
+    EXPECT_FALSE(error_of({testing::box({0, 0, 0}, {scale, scale, scale})}));
 }
 
 TEST(PlcFaults, IndexOutOfRange) {

@@ -11,8 +11,8 @@
 #include <span>
 #include <utility>
 
-#include "common/distance_tree.h"
 #include "common/box_tree.h"
+#include "common/distance_tree.h"
 #include "location/triangle_hierarchy.h"
 
 namespace collarmesh {

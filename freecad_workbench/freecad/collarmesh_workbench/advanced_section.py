@@ -76,7 +76,7 @@ def sections():
             Row("TimeLimit", translate("collarmesh", "Time limit in seconds"), zero=translate("collarmesh", "none"),
                 tip=translate("collarmesh", "Give up after so many seconds; 0: never")),
         )),
-    )  # fmt: skip
+    )
 
 
 class AdvancedSection(QtGui.QWidget):

@@ -111,7 +111,7 @@ class AngleChart(QtGui.QWidget):
     def _tip(self, place, over_mark):
         if over_mark:
             return translate("collarmesh", "The worst tetrahedron: {angle}°. Click to see it.").format(
-                angle=f"{self.extremes[0]:.2f}")  # fmt: skip
+                angle=f"{self.extremes[0]:.2f}")
         frame = self._frame()
         number = int((place.x() - frame.left()) / (frame.width() * self.bin_width / STRAIGHT))
         first = number * self.bin_width

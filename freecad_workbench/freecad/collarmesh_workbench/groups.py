@@ -25,7 +25,7 @@ def analysis_of(mesh_object):
 
 def materials_of(analysis):
     return [each for each in analysis.Group if each.Name and getattr(getattr(each, "Proxy", None), "Type", "") ==
-            "Fem::MaterialCommon"] if analysis else []  # fmt: skip
+            "Fem::MaterialCommon"] if analysis else []
 
 
 def elements_of(fem_mesh, part, subshapes):
@@ -122,7 +122,7 @@ def meshes_among(objects):
     from .mesh_object import is_ours
 
     return [each for each in objects if is_ours(each) and each.FemMesh.VolumeCount > 0
-            and compatibility.meshed_object(each) is not None]  # fmt: skip
+            and compatibility.meshed_object(each) is not None]
 
 
 def observe():

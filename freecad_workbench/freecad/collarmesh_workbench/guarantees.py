@@ -34,4 +34,4 @@ def _groups():
          ("collar_cells", "collar_centre", "collar_dihedral", "collar_disjoint", "collar_gap")),
         (translate("collarmesh", "Curved elements are not inverted"),
          ("mid_nodes", "mid_node_distance", "positive_jacobian")),
-    ]  # fmt: skip
+    ]

@@ -14,7 +14,7 @@ FORMATS = (
     ("VTK, ParaView", ".vtu"), ("VTK", ".vtk"), ("Gmsh", ".msh"), ("Gmsh 2.2", ".msh2"), ("Abaqus, CalculiX", ".inp"),
     ("I-DEAS, SALOME", ".unv"), ("Medit", ".mesh"), ("TetGen", ".ele"), ("STL", ".stl"), ("OBJ", ".obj"), ("PLY", ".ply"),
     ("OFF", ".off"),
-)  # fmt: skip
+)
 
 
 def filters():
@@ -38,7 +38,7 @@ def _run(mesh_object, arguments):
         mesh_object.FemMesh.write(path)
         command = [program, *(path if each == "MESH" else each for each in arguments)]
         with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                              text=True, errors="replace") as process:  # fmt: skip
+                              text=True, errors="replace") as process:
             folder.program_is(process.pid)
             answer, complaint = process.communicate()
         folder.program_is(None)

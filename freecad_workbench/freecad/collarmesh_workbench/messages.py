@@ -9,7 +9,7 @@ def say(text):
     """A message that waits for nobody."""
     FreeCAD.Console.PrintWarning(f"collarmesh: {text}\n")
     box = QtGui.QMessageBox(QtGui.QMessageBox.Information, "collarmesh", text, QtGui.QMessageBox.Ok,
-                            FreeCADGui.getMainWindow())  # fmt: skip
+                            FreeCADGui.getMainWindow())
     box.setObjectName("collarmesh_message_box")
     box.setAttribute(QtCore.Qt.WA_DeleteOnClose)
     box.setModal(False)

@@ -60,4 +60,4 @@ def _nodes_off_their_faces(report):
     for each in (report["second_order"] or {}).get("straightened", ()):
         off.append((f"{_SHAPE_BY_DIMENSION[each['dimension']]}{each['tag']}", each["where"], each["distance"]))
     return [Place(OFF_FACE, f"{name}: {distance:.3g} mm" if distance is not None else name, (tuple(where),), (name,))
-            for name, where, distance in off]  # fmt: skip
+            for name, where, distance in off]

@@ -13,7 +13,7 @@ from .work_folder import WorkFolder
 WAIT = 400  # milliseconds after the last change
 COUNTING = {"--size-min", "--elements-per-circle", "--elements-across-gap", "--gradation", "--region-size",
             "--patch-size", "--curve-size", "--distance", "--order", "--planar-tolerance", "--weld", "--repair",
-            "--repair-tolerance", "--crease-angle"}  # fmt: skip
+            "--repair-tolerance", "--crease-angle"}
 
 
 class Predictions(QtCore.QObject):

@@ -26,7 +26,7 @@ def improve_level():
 def improve_levels():
     """Texts by level."""
     return (translate("collarmesh", "none"), translate("collarmesh", "quick"), translate("collarmesh", "good"),
-            translate("collarmesh", "best"))  # fmt: skip
+            translate("collarmesh", "best"))
 
 
 def second_order():

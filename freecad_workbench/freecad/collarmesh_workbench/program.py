@@ -132,7 +132,7 @@ class Job:
         self.mesh = os.path.join(self.folder.name, "mesh.unv")
         self._report = os.path.join(self.folder.name, "report.json")
         self.command = [find_program(program), self.shape, "-o", self.mesh, "--report", self._report,
-                        "--progress", "json", "--threads", str(threads), *settings.arguments()]  # fmt: skip
+                        "--progress", "json", "--threads", str(threads), *settings.arguments()]
         if settings.size_field:
             path = os.path.join(self.folder.name, "sizes.json")
             pathlib.Path(path).write_text(json.dumps(settings.size_field), encoding="utf-8")
@@ -196,7 +196,7 @@ class Job:
         Raises MesherError."""
         try:
             with subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                                  stderr=subprocess.PIPE, text=True, errors="replace") as process:  # fmt: skip
+                                  stderr=subprocess.PIPE, text=True, errors="replace") as process:
                 self.folder.program_is(process.pid)
                 try:
                     for line in process.stderr:

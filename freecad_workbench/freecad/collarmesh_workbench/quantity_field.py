@@ -39,12 +39,12 @@ class QuantityField:
             quantity = _parse(self.widget.text())
         except (ValueError, OSError) as error:
             raise ValueError(translate("collarmesh", "'{text}' is no value: {error}").format(
-                text=self.widget.text(), error=error)) from error  # fmt: skip
+                text=self.widget.text(), error=error)) from error
         if quantity.Unit == FreeCAD.Units.Unit():
             return quantity.Value * self._shown_unit
         if quantity.Unit != _parse(f"1 {self.unit}").Unit:
             raise ValueError(translate("collarmesh", "'{text}' is not in {unit}").format(
-                text=self.widget.text(), unit=self.unit))  # fmt: skip
+                text=self.widget.text(), unit=self.unit))
         return quantity.Value
 
     def _colour(self, _text):

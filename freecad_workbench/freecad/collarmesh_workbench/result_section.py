@@ -42,7 +42,7 @@ class ResultSection(QtGui.QWidget):
             self._show_report(outcome.report)
             if outcome.part_changed:
                 text = translate("collarmesh", "The part was changed while it was meshed: this is the mesh of the part as "
-                                               "it was before. Mesh it again.")  # fmt: skip
+                                               "it was before. Mesh it again.")
                 self.say(text, CARE)
 
     def _show_report(self, report):
@@ -61,7 +61,7 @@ def counts_text(report):
     angles = translate("collarmesh", "dihedral angles from {smallest}° to {largest}°, in {time}")
     return (counts.format(tets=_exact(mesh["tets"]), nodes=_exact(mesh["points"]), faces=_exact(mesh["faces"])) + "<br>"
             + angles.format(smallest=f"{mesh['min_dihedral']:.1f}", largest=f"{mesh['max_dihedral']:.1f}",
-                            time=_time(report["seconds"]["total"])))  # fmt: skip
+                            time=_time(report["seconds"]["total"])))
 
 
 def _time(seconds):

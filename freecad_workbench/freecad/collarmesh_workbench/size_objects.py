@@ -130,9 +130,9 @@ class Distance(Size):
         super().add_properties(obj)
         if "References" not in obj.PropertiesList:
             obj.addProperty("App::PropertyLinkSubList", "References", "Size",
-                            doc("Faces and edges near which the size holds"))  # fmt: skip
+                            doc("Faces and edges near which the size holds"))
             obj.addProperty("App::PropertyLength", "Within", "Size",
-                            doc("The size holds up to this distance and grows beyond"))  # fmt: skip
+                            doc("The size holds up to this distance and grows beyond"))
             obj.setEditorMode("Placement", 2)
 
     def place(self, obj, part):

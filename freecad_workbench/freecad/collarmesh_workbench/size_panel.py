@@ -127,7 +127,7 @@ class SizePanel:
 
     def _add_hint(self, layout):
         hint = QtGui.QLabel(translate("collarmesh", "Drag the handles in the 3D view. To turn it, close this panel and choose "
-                                      "Transform in its context menu."))  # fmt: skip
+                                      "Transform in its context menu."))
         hint.setWordWrap(True)
         layout.addWidget(hint)
 

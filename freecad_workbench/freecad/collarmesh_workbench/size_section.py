@@ -61,10 +61,10 @@ class SizeSection(QtGui.QWidget):
         table.setObjectName("collarmesh_presets")
         table.setRootIsDecorated(False)
         headings = (translate("collarmesh", "Fineness"), translate("collarmesh", "Size"),
-                    translate("collarmesh", "≈ elements"), translate("collarmesh", "≈ time"))  # fmt: skip
+                    translate("collarmesh", "≈ elements"), translate("collarmesh", "≈ time"))
         table.setHeaderLabels(headings)
         table.setToolTip(translate("collarmesh", "Choose a size; how many elements it makes and how long that takes "
-                                                 "is estimated for this shape"))  # fmt: skip
+                                                 "is estimated for this shape"))
         for name, size in self.presets:
             item = QtGui.QTreeWidgetItem(table, [name, f"{size:g} mm" if size else "", "", ""])
             item.setData(NAME, QtCore.Qt.UserRole, size)

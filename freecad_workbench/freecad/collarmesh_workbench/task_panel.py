@@ -55,7 +55,7 @@ class MeshTaskPanel:
         self.order = narrow_combo()
         self.order.setObjectName("collarmesh_ElementOrder")
         self.order.addItems([translate("collarmesh", "first (straight, 4 nodes)"),
-                             translate("collarmesh", "second (curved, 10 nodes)")])  # fmt: skip
+                             translate("collarmesh", "second (curved, 10 nodes)")])
         self.order.setCurrentIndex(mesh_object.ORDERS.index(self.object.ElementOrder))
         self.order.setToolTip(translate("collarmesh", "Second order: nodes amid edges, on the exact faces"))
         self.advanced = AdvancedSection(self.object)

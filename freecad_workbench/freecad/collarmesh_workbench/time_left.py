@@ -5,7 +5,7 @@ LEAST_SECONDS, LEAST_SHARE = 2, 0.13  # before these, nobody can know from the r
 # What share of the time has gone by where the program says that it is this far: rounded means over seven runs that
 # made from 2,500 to 225,000 elements.
 _SHARES = ((0, 0), (0.08, 0.1), (0.131, 0.13), (0.59, 0.3), (0.675, 0.7), (0.76, 0.88), (0.811, 0.91),
-           (0.93, 0.97), (1, 1))  # fmt: skip
+           (0.93, 0.97), (1, 1))
 
 
 def share_of_time(fraction):

@@ -29,7 +29,7 @@ class State:
 
 def add_properties(obj):
     for kind, name, text in (("App::PropertyFloatList", SHAPE, doc("What shape the mesh was made of")),
-                             ("App::PropertyString", SETTINGS, doc("With what settings it was made"))):  # fmt: skip
+                             ("App::PropertyString", SETTINGS, doc("With what settings it was made"))):
         if name not in obj.PropertiesList:
             obj.addProperty(kind, name, "Base", text, HIDDEN)
 

@@ -27,7 +27,7 @@ class WorkFolder:
         self.name = tempfile.mkdtemp(prefix="collarmesh-")
         self._watcher = subprocess.Popen(
             ["/bin/sh", "-c", _WATCH, "collarmesh-watch", self.name], stdin=subprocess.PIPE, text=True,
-            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)  # fmt: skip
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
 
     def program_is(self, process_id):
         """The process that works in the folder; None: it has ended."""

@@ -49,7 +49,7 @@ def in_report(fem_mesh, report):
     text = translate("collarmesh", "{smallest}° to {largest}° in element {number}")
     return [places.Place(places.WORST, text.format(smallest=f"{each['smallest']:.1f}", largest=f"{each['largest']:.1f}",
                                                    number=numbers[each["tet"]]),
-                         (), (), numpy.array([each["corners"]])) for each in report.get("worst", ())]  # fmt: skip
+                         (), (), numpy.array([each["corners"]])) for each in report.get("worst", ())]
 
 
 def in_mesh(fem_mesh):
@@ -58,4 +58,4 @@ def in_mesh(fem_mesh):
         return []
     text = translate("collarmesh", "{angle}° in element {number}")
     return [places.Place(places.WORST, text.format(angle=f"{angle:.1f}", number=number), (), (), corners[None])
-            for number, angle, corners in zip(*worst(fem_mesh))]  # fmt: skip
+            for number, angle, corners in zip(*worst(fem_mesh))]

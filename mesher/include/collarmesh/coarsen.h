@@ -29,17 +29,16 @@ struct CoarsenReport {
 };
 
 /// Make as few tets as the sizes ask for: edges shorter than 0.8 times the target edge length there (0.75
-/// inside regions) are contracted, within their features, where no new edge exceeds 1.5 times it or is shorter
-/// than all around.
-/// A radius-edge bound makes tets as small as the thinnest wall and the smallest angle; here it may be
-/// exceeded by thin tets: dihedral angles of at least `thin_angle` and dihedral and face angles of at most
-/// 150 degrees (the maximum-angle condition: Babuska and Aziz 1976, Krizek 1992). Collars dissolve as far as
-/// their cells can become thin tets or such within the bound. What nearly fits is repaired at once, by edge
-/// removal and by moving vertices, else undone. All other guarantees hold as before; planar patches stay
-/// planar, smooth patches and curves keep the distance. Preconditions: `mesh` comes from `generate` for `plc`
-/// with the options `made_with`, first order. Guarantee: same input and options, same mesh. Throws
-/// OptionError for an angle out of range. Cost: linear in the tets, with local changes: some microseconds for
-/// each tet that vanishes, and several times that where trials of repair fail.
+/// inside regions) are contracted, within their features, where no new edge exceeds 1.5 times it or is
+/// shorter than all around. A radius-edge bound makes tets as small as the thinnest wall and the smallest
+/// angle; here it may be exceeded by thin tets: dihedral angles of at least `thin_angle` and dihedral and
+/// face angles of at most 150 degrees (the maximum-angle condition: Babuska and Aziz 1976, Krizek 1992).
+/// Collars dissolve as far as their cells can become thin tets or such within the bound. What nearly fits is
+/// repaired at once, by edge removal and by moving vertices, else undone. All other guarantees hold as
+/// before; planar patches stay planar, smooth patches and curves keep the distance. Preconditions: `mesh`
+/// comes from `generate` for `plc` with the options `made_with`, first order. Guarantee: same input and
+/// options, same mesh. Throws OptionError for an angle out of range. Cost: linear in the tets, with local
+/// changes: some microseconds for each tet that vanishes, and several times that where trials of repair fail.
 CoarsenReport coarsen(TetMesh& mesh, const Plc& plc, const MeshOptions& made_with,
                       const CoarsenOptions& options = {}, const Execution& execution = {});
 

@@ -33,9 +33,9 @@ struct MeshOptions {
   /// Smooth curves that turn by half a circle or more get at least so many edges to a full circle: small
   /// holes stay round. No target edge length otherwise; 0: none.
   double edges_per_hole = 7;
-  double elements_across_gap = 0;   ///< target edge lengths on patches put so many between them and what they
-                                    ///< face across a region; 0: none
-  double radius_edge = 2;           ///< bound on circumradius / shortest edge in the regions; at least 1
+  double elements_across_gap = 0;  ///< target edge lengths on patches put so many between them and what they
+                                   ///< face across a region; 0: none
+  double radius_edge = 2;          ///< bound on circumradius / shortest edge in the regions; at least 1
   /// The same outside every region, where that is larger; edges straight across a gap do not count there.
   double exterior_radius_edge = 8;
   double vertex_ratio = 0;  ///< bound on largest circumradius / shortest edge at a vertex in the regions
@@ -50,8 +50,8 @@ struct MeshOptions {
   std::size_t max_vertices = 0;  ///< budget; 0: none
   /// Budget in bytes for the mesh structures (a whole run takes about 1.2 times as much); 0: none.
   std::size_t max_memory = 0;
-  double time_limit = 0;  ///< budget in seconds; 0: none
-  unsigned threads = 0;   ///< 0: as many as there are cores; any number makes the same mesh
+  double time_limit = 0;    ///< budget in seconds; 0: none
+  unsigned threads = 0;     ///< 0: as many as there are cores; any number makes the same mesh
   bool count_work = false;  ///< fill in MeshStatistics::counts, which takes a moment
 };
 
@@ -80,13 +80,14 @@ struct WorkCounts {
   std::size_t largest_degree = 0;  ///< neighbours of a new vertex
   std::size_t largest_cavity = 0;  ///< cells that one insertion destroyed
   std::size_t ripped_out = 0;      ///< vertices in collars that the result has not (paper, Procedure 5)
-  /// Extremes of R_v / r_v (paper, section 1.2), the largest circumradius at a vertex over half of its shortest
-  /// edge, where all cells at the vertex lie in regions and outside collars; 0 where there is no such vertex.
+  /// Extremes of R_v / r_v (paper, section 1.2), the largest circumradius at a vertex over half of its
+  /// shortest edge, where all cells at the vertex lie in regions and outside collars; 0 where there is no
+  /// such vertex.
   double smallest_aspect = 0, largest_aspect = 0;
 };
 
 struct MeshStatistics {
-  std::size_t vertices_inserted = 0;  ///< of the whole triangulation, the box and the outside included
+  std::size_t vertices_inserted = 0;   ///< of the whole triangulation, the box and the outside included
   std::size_t vertices_in_blocks = 0;  ///< of these, in blocks that several threads may refine
   std::size_t cells = 0;
   std::size_t exact_predicates = 0;   ///< decisions the floating-point filter left to exact arithmetic

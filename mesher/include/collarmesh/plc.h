@@ -28,9 +28,10 @@ struct Plc {
   /// Mesh vertices may lie anywhere on its polyline.
   struct Curve {
     std::vector<Index> points;  ///< the polyline, at least 2; a closed curve does not repeat its first
-    std::array<Index, 2> ends{none, none};  ///< vertices; both none for a closed curve without one; equal for a loop at one vertex
-    bool closed = false;        ///< closed without any vertex on it (ends are none)
-    bool straight = false;      ///< within the planar tolerance of its chord
+    std::array<Index, 2> ends{
+        none, none};  ///< vertices; both none for a closed curve without one; equal for a loop at one vertex
+    bool closed = false;    ///< closed without any vertex on it (ends are none)
+    bool straight = false;  ///< within the planar tolerance of its chord
     Tag tag = 0;
     std::vector<Index> patches;  ///< sorted; the patches that contain it (in their border or interior)
   };
@@ -41,9 +42,9 @@ struct Plc {
   /// the normal (b-a) x (c-a)), `regions[1]` in front. They form an orientable manifold with border.
   struct Patch {
     Index first_triangle = 0, triangle_count = 0;  ///< its range in `triangles`
-    bool planar = false;    ///< all its points within the planar tolerance of one plane
-    Vector normal;          ///< unit; of the plane if planar, else zero
-    Point origin;           ///< a point on that plane
+    bool planar = false;  ///< all its points within the planar tolerance of one plane
+    Vector normal;        ///< unit; of the plane if planar, else zero
+    Point origin;         ///< a point on that plane
     std::array<Index, 2> regions{0, 0};
     Tag tag = 0;
     std::vector<Index> curves;    ///< sorted; border and embedded curves
@@ -57,10 +58,10 @@ struct Plc {
   };
 
   struct Region {
-    Tag tag = 0;          ///< region number, or what a region point gave
-    double volume = 0;    ///< of the complex, input units cubed
-    double size = 0;      ///< target edge length, 0: none given
-    std::string name;     ///< for messages: file name or tag
+    Tag tag = 0;        ///< region number, or what a region point gave
+    double volume = 0;  ///< of the complex, input units cubed
+    double size = 0;    ///< target edge length, 0: none given
+    std::string name;   ///< for messages: file name or tag
   };
 
   /// What the builder changed in the input to make it a complex.
@@ -89,8 +90,9 @@ struct Plc {
   bool numbered_patches = false, numbered_curves = false;
 
   Box bounds;
-  double planar_tolerance = 0;   ///< absolute, input units: used to build this complex
-  double largest_deviation = 0;  ///< absolute: how far merging (weld, planar, collinear) moved the input at most
+  double planar_tolerance = 0;  ///< absolute, input units: used to build this complex
+  double largest_deviation =
+      0;  ///< absolute: how far merging (weld, planar, collinear) moved the input at most
   Cleanup cleanup;
   std::vector<Warning> warnings;
 

@@ -10,10 +10,11 @@
 namespace collarmesh {
 
 struct PlcOptions {
-  double feature_angle = 30;        ///< degrees; edges that deviate more from flat are segments. 0: every non-coplanar edge
-  double planar_tolerance = 1e-6;   ///< relative to the bounding-box diagonal; 0: the exact predicate
-  double weld = 1e-9;               ///< relative to the bounding-box diagonal; closer points are one
-  bool require_solid = true;        ///< a complex that bounds no region is an error
+  double feature_angle =
+      30;  ///< degrees; edges that deviate more from flat are segments. 0: every non-coplanar edge
+  double planar_tolerance = 1e-6;  ///< relative to the bounding-box diagonal; 0: the exact predicate
+  double weld = 1e-9;              ///< relative to the bounding-box diagonal; closer points are one
+  bool require_solid = true;       ///< a complex that bounds no region is an error
 };
 
 /// Build the complex of one or several soups: weld, orient, merge coplanar and collinear
@@ -33,9 +34,9 @@ void number_untagged(std::span<const PolygonSoup> soups, Plc& plc);
 struct Crease {
   enum class Kind { facets, segments, segment_and_facet, facets_in_vertex, patch_fold };
   Kind kind;
-  double angle;            ///< degrees
-  Index curve = none;      ///< the crease curve, when it is one
-  Index vertex = none;     ///< the crease vertex, when it is one
+  double angle;                               ///< degrees
+  Index curve = none;                         ///< the crease curve, when it is one
+  Index vertex = none;                        ///< the crease vertex, when it is one
   std::array<Index, 2> features{none, none};  ///< the two features (patches or curves, by kind)
   Point where;
 };
@@ -48,11 +49,11 @@ struct PlcSummary {
   Index points = 0, vertices = 0, curves = 0, straight_curves = 0, patches = 0, planar_patches = 0,
         triangles = 0, regions = 0;
   double diagonal = 0;
-  double smallest_angle = 180;   ///< degrees, between any two features that meet
-  double shortest_segment = 0;   ///< between adjacent feature vertices, input units
-  double spread = 0;             ///< diagonal / shortest feature length
+  double smallest_angle = 180;  ///< degrees, between any two features that meet
+  double shortest_segment = 0;  ///< between adjacent feature vertices, input units
+  double spread = 0;            ///< diagonal / shortest feature length
   double largest_deviation = 0;
-  std::vector<Crease> creases;   ///< below the threshold given
+  std::vector<Crease> creases;  ///< below the threshold given
 };
 PlcSummary summarize(const Plc& plc, double crease_threshold = 60);
 

@@ -44,12 +44,14 @@ class PolygonSoup {
   std::vector<Tag> point_tags;  ///< one per point, or empty
   std::vector<Segment> segments;
   std::vector<Index> vertices;  ///< points that are features by themselves
-  bool given_features = false;  ///< its features are its vertices, its segments and the borders of its tags; angles make none
+  bool given_features =
+      false;  ///< its features are its vertices, its segments and the borders of its tags; angles make none
   std::vector<RegionPoint> region_points;  ///< .poly: with hole_points they decide for their file
   std::vector<Point> hole_points;          ///< the region around each is empty
   std::vector<FacetHole> facet_holes;
-  TagNames tag_names;                      ///< that the file gives to tags
-  std::optional<Tag> region_tag;  ///< of the regions that this surface is the first to bound; else their number
+  TagNames tag_names;  ///< that the file gives to tags
+  std::optional<Tag>
+      region_tag;  ///< of the regions that this surface is the first to bound; else their number
 
   /// Start a facet; the polygons added next belong to it.
   void begin_facet(Tag tag = 0) { facets_.push_back({polygon_count(), tag}); }
@@ -84,8 +86,7 @@ class PolygonSoup {
             facet + 1 < facets_.size() ? facets_[facet + 1].first_polygon : polygon_count()};
   }
   std::span<const Index> polygon(Index polygon) const {
-    return {corners_.data() + polygon_starts_[polygon],
-            corners_.data() + polygon_starts_[polygon + 1]};
+    return {corners_.data() + polygon_starts_[polygon], corners_.data() + polygon_starts_[polygon + 1]};
   }
 
  private:

@@ -11,8 +11,8 @@ namespace collarmesh {
 /// A target edge length at every point, absolute, in input units; for `MeshOptions::size_field`.
 using SizeField = std::function<double(const Point&)>;
 
-/// Read a size field: .json (a description, see `size_field_from_json`), or .vtu or .msh (a mesh with a scalar
-/// field of target edge lengths on its points). Throws ReadError or OptionError.
+/// Read a size field: .json (a description, see `size_field_from_json`), or .vtu or .msh (a mesh with a
+/// scalar field of target edge lengths on its points). Throws ReadError or OptionError.
 SizeField read_size_field(const std::string& path, const Plc& plc);
 
 /// The smallest of what some sources ask for: `size` at the source, inside it and `within` a distance of it

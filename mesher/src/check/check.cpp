@@ -72,21 +72,20 @@ void judge(Subject subject, CheckReport& report, Findings& findings, const Execu
   subject.match = match_features(subject.mesh, subject.plc, subject.rounding);
   subject.collar = collar_cells(subject, findings);
   using Group = void (*)(const Subject&, CheckReport&, Findings&);
-  const std::array<Group, 7> groups{
-      [](const Subject& s, CheckReport& r, Findings& f) {
-        check_tets(s, r, f);
-        check_region_volumes(s, r, f);
-      },
-      check_conformity,
-      [](const Subject& s, CheckReport&, Findings& f) {
-        check_watertight(s, f);
-        check_vertices(s, f);
-        check_listed_edges(s, f);
-      },
-      check_curves,
-      check_patches,
-      [](const Subject& s, CheckReport&, Findings& f) { check_collars(s, f); },
-      check_second_order};
+  const std::array<Group, 7> groups{[](const Subject& s, CheckReport& r, Findings& f) {
+                                      check_tets(s, r, f);
+                                      check_region_volumes(s, r, f);
+                                    },
+                                    check_conformity,
+                                    [](const Subject& s, CheckReport&, Findings& f) {
+                                      check_watertight(s, f);
+                                      check_vertices(s, f);
+                                      check_listed_edges(s, f);
+                                    },
+                                    check_curves,
+                                    check_patches,
+                                    [](const Subject& s, CheckReport&, Findings& f) { check_collars(s, f); },
+                                    check_second_order};
   std::array<CheckReport, groups.size()> parts;
   parallel_for(groups.size(), [&](std::size_t i) {
     if (execution.cancelled()) return;

@@ -71,10 +71,11 @@ class CollarCheck {
       const double allowed =
           subject_.rounding + (feature_of(b).dimension == 0 ? 0 : subject_.options.distance);
       if (way <= allowed) continue;
-      findings_.add(guarantee::collar_centre, now, {balls_[b].point},
-                    "The collar's ball at {} (radius {:.9g}) has its centre at point {}, which is {:.6g} away "
-                    "from there, allowed is {:.6g}; the point was moved, or the ball is another point's.",
-                    At{centre(b)}, radius(b), balls_[b].point, way, allowed);
+      findings_.add(
+          guarantee::collar_centre, now, {balls_[b].point},
+          "The collar's ball at {} (radius {:.9g}) has its centre at point {}, which is {:.6g} away "
+          "from there, allowed is {:.6g}; the point was moved, or the ball is another point's.",
+          At{centre(b)}, radius(b), balls_[b].point, way, allowed);
     }
   }
 

@@ -7,9 +7,9 @@
 #include <memory>
 #include <numeric>
 
-#include "common/distance_tree.h"
 #include "check/subject.h"
 #include "common/disjoint_sets.h"
+#include "common/distance_tree.h"
 
 namespace collarmesh::checks {
 

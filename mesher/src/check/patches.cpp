@@ -3,10 +3,10 @@
 #include <bit>
 #include <cmath>
 
-#include "common/distance_tree.h"
 #include "check/patch_topology.h"
 #include "check/polyline.h"
 #include "check/subject.h"
+#include "common/distance_tree.h"
 #include "common/patch_points.h"
 
 namespace collarmesh::checks {
@@ -132,11 +132,12 @@ class PatchCheck {
   }
 
   // Both areas are those of the projections along the plane's normal, with signs (a finding about a turned
-  // face is told already, so it counts as if it were not). Such an area depends on the border alone: it is half the sum of dot(normal, cross(a, b)) over its edges ab, to which each inner edge
-  // adds nothing, as its two sides run against each other. How the triangles of a patch that is planar up to a
-  // tolerance are tilted, or folded where they are narrower than that, is no part of it. (The triangles' own
-  // areas are: tilted by an angle t they exceed their projection by t^2 / 2, relatively, needles by anything.)
-  // So the areas differ where the border does: by its length times how far it may move, and by rounding.
+  // face is told already, so it counts as if it were not). Such an area depends on the border alone: it is
+  // half the sum of dot(normal, cross(a, b)) over its edges ab, to which each inner edge adds nothing, as its
+  // two sides run against each other. How the triangles of a patch that is planar up to a tolerance are
+  // tilted, or folded where they are narrower than that, is no part of it. (The triangles' own areas are:
+  // tilted by an angle t they exceed their projection by t^2 / 2, relatively, needles by anything.) So the
+  // areas differ where the border does: by its length times how far it may move, and by rounding.
   void compare_area(double found) {
     long double sum = 0;
     for (Index i = 0; i < patch_.triangle_count; ++i) {

@@ -3,9 +3,9 @@
 #include <mutex>
 #include <optional>
 
-#include "common/distance_tree.h"
 #include "collarmesh/plc.h"
 #include "common/box_tree.h"
+#include "common/distance_tree.h"
 
 namespace collarmesh::checks {
 

@@ -1,9 +1,9 @@
 // Cells of second order: their mid-side nodes and their Jacobian.
 #include <algorithm>
 
-#include "common/distance_tree.h"
 #include "check/subject.h"
 #include "collarmesh/curved_tet.h"
+#include "common/distance_tree.h"
 
 namespace collarmesh::checks {
 

@@ -48,9 +48,9 @@ FlatFeatures::FlatFeatures(const Plc& plc)
     if (!plc.curves[c].straight) continue;
     double deviation = 0;
     for (const Index i : chain)
-      deviation = std::max(deviation, distance(plc.points[i], nearest_on_segment(plc.points[i],
-                                                                                 plc.points[chain.front()],
-                                                                                 plc.points[chain.back()])));
+      deviation = std::max(
+          deviation, distance(plc.points[i], nearest_on_segment(plc.points[i], plc.points[chain.front()],
+                                                                plc.points[chain.back()])));
     curve_room_[c] = 0.5 * permitted(deviation) + rounding;
   }
   for (Index k = 0; k < plc.patches.size(); ++k) {

@@ -19,10 +19,9 @@ int orientation_exact(const Point& a, const Point& b, const Point& c, const Poin
   return static_cast<int>(CGAL::orientation(filtered(a), filtered(b), filtered(c), filtered(d)));
 }
 
-bool in_sphere_exact(const Point& a, const Point& b, const Point& c, const Point& d,
-                     const Point& p) {
-  return CGAL::side_of_oriented_sphere(filtered(a), filtered(b), filtered(c), filtered(d),
-                                       filtered(p)) == CGAL::ON_POSITIVE_SIDE;
+bool in_sphere_exact(const Point& a, const Point& b, const Point& c, const Point& d, const Point& p) {
+  return CGAL::side_of_oriented_sphere(filtered(a), filtered(b), filtered(c), filtered(d), filtered(p)) ==
+         CGAL::ON_POSITIVE_SIDE;
 }
 
 Point circumcentre_exact(const Point& a, const Point& b, const Point& c, const Point& d) {

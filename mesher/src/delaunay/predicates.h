@@ -26,8 +26,7 @@ int cross_product_sign_exact(const Point& p, const Point& q, const Point& a, con
 /// floating-point arithmetic, 1997, orient3d stage A).
 inline int orientation(const Point& a, const Point& b, const Point& c, const Point& d) {
   const Vector u = b - a, v = c - a, w = d - a;
-  const double yz = v.y * w.z, zy = v.z * w.y, zx = v.z * w.x, xz = v.x * w.z, xy = v.x * w.y,
-               yx = v.y * w.x;
+  const double yz = v.y * w.z, zy = v.z * w.y, zx = v.z * w.x, xz = v.x * w.z, xy = v.x * w.y, yx = v.y * w.x;
   const double det = u.x * (yz - zy) + u.y * (zx - xz) + u.z * (xy - yx);
   const double permanent = std::fabs(u.x) * (std::fabs(yz) + std::fabs(zy)) +
                            std::fabs(u.y) * (std::fabs(zx) + std::fabs(xz)) +

@@ -92,7 +92,8 @@ class Improvement {
     find_poor_of(all);
   }
 
-  // As find_poor_tets, when tets have changed only in batches after this one. `poor_` is in the order of tets.
+  // As find_poor_tets, when tets have changed only in batches after this one. `poor_` is in the order of
+  // tets.
   void find_poor_tets_again(std::uint32_t batch) {
     std::vector<Index> asked;
     auto poor = poor_.begin();

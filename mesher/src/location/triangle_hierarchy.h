@@ -102,7 +102,8 @@ class TriangleHierarchy {
   template <class Visit>
   void visit_near(std::span<const Index> nodes, const Point& p, const double& squared_bound,
                   const Visit& visit) const {
-    visit_near(nodes, p, squared_bound, [](Index) { return false; }, visit);
+    visit_near(
+        nodes, p, squared_bound, [](Index) { return false; }, visit);
   }
   /// The same without what lies below nodes that `skips` accepts.
   template <class Skips, class Visit>

@@ -17,13 +17,13 @@ void triangulate_facets(std::span<const PolygonSoup> soups, const PointMap& map,
 
 /// What `triangulate_any_facets` could not take as it was.
 struct BentFacets {
-  Index split = 0;    ///< not planar, or with edges that cross: cut into triangles between its corners
-  Index dropped = 0;  ///< without an area
+  Index split = 0;           ///< not planar, or with edges that cross: cut into triangles between its corners
+  Index dropped = 0;         ///< without an area
   std::vector<Point> where;  ///< some of them
 };
 
-/// The same without faults: a polygon that is not planar is cut in the plane that fits it best, or from one of
-/// its corners where its edges cross in that plane; one without an area is left out.
+/// The same without faults: a polygon that is not planar is cut in the plane that fits it best, or from one
+/// of its corners where its edges cross in that plane; one without an area is left out.
 BentFacets triangulate_any_facets(std::span<const PolygonSoup> soups, const PointMap& map, Draft& draft);
 
 }  // namespace collarmesh::build

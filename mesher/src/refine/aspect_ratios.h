@@ -6,8 +6,8 @@
 
 namespace collarmesh {
 
-/// Extremes of R_v / r_v over mesh vertices (paper, section 1.2): the radii of the smallest ball around v that
-/// holds its Voronoi cell and of the largest one in it. 0 when there are none.
+/// Extremes of R_v / r_v over mesh vertices (paper, section 1.2): the radii of the smallest ball around v
+/// that holds its Voronoi cell and of the largest one in it. 0 when there are none.
 struct AspectRatios {
   double smallest = 0, largest = 0;
 };

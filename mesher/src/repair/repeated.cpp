@@ -76,7 +76,8 @@ class CopyGroups {
       sum.group = sets_.find(side / 3);
     }
     for (const auto& [soup, sum] : by_soup)
-      if (sum.group != none) change_[sum.group] += std::abs(sum.before - sum.of_copies) - std::abs(sum.before);
+      if (sum.group != none)
+        change_[sum.group] += std::abs(sum.before - sum.of_copies) - std::abs(sum.before);
   }
 
   DisjointSets sets_;

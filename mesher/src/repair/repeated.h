@@ -12,9 +12,8 @@ struct RepeatedReport {
   std::vector<Point> where;
 };
 
-/// Drop repeated triangles: those of one soup with the same corners and orientation, where that does not open the
-/// surface (two solids may share a facet), and in complexes all copies but one.
-/// Cost: O(n log n).
+/// Drop repeated triangles: those of one soup with the same corners and orientation, where that does not open
+/// the surface (two solids may share a facet), and in complexes all copies but one. Cost: O(n log n).
 RepeatedReport drop_repeated(build::Draft& draft);
 
 }  // namespace collarmesh::repairing

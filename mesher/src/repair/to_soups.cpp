@@ -24,7 +24,8 @@ class SoupMaker {
       const Origin& origin = draft_.origins[t];
       const Corners& c = draft_.triangles[t];
       result_[origin.soup].add_facet(
-          std::array{point(origin.soup, c[0]), point(origin.soup, c[1]), point(origin.soup, c[2])}, origin.tag);
+          std::array{point(origin.soup, c[0]), point(origin.soup, c[1]), point(origin.soup, c[2])},
+          origin.tag);
     }
     add_segments();
     add_vertices();
@@ -68,7 +69,8 @@ class SoupMaker {
   }
 
   void add_new_edges(const std::set<std::array<Index, 3>>& known) {
-    if (std::none_of(soups_.begin(), soups_.end(), [](const PolygonSoup& s) { return s.given_features; })) return;
+    if (std::none_of(soups_.begin(), soups_.end(), [](const PolygonSoup& s) { return s.given_features; }))
+      return;
     std::vector<Tag> next_tag(soups_.size(), 1);
     for (const Segment& s : draft_.segments) next_tag[s.soup] = std::max(next_tag[s.soup], s.tag + 1);
     const EdgeTable edges(draft_.triangles, draft_.points.size());
@@ -113,7 +115,8 @@ class SoupMaker {
 
 }  // namespace
 
-std::vector<PolygonSoup> to_soups(std::span<const PolygonSoup> soups, const Draft& draft, Index first_new_point) {
+std::vector<PolygonSoup> to_soups(std::span<const PolygonSoup> soups, const Draft& draft,
+                                  Index first_new_point) {
   return SoupMaker(soups, draft, first_new_point).run();
 }
 

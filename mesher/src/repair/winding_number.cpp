@@ -23,9 +23,7 @@ Vector area_vector(const WeightedTriangle& t) {
   return 0.5 * cross(t.corners[1] - t.corners[0], t.corners[2] - t.corners[0]);
 }
 
-Point centroid(const WeightedTriangle& t) {
-  return (1.0 / 3) * (t.corners[0] + t.corners[1] + t.corners[2]);
-}
+Point centroid(const WeightedTriangle& t) { return (1.0 / 3) * (t.corners[0] + t.corners[1] + t.corners[2]); }
 
 }  // namespace
 
@@ -87,7 +85,8 @@ bool WindingNumber::is_on_another(Index node, const Point& p, Index left_out) co
   if (distance(n.centre, p) > 1.001 * n.radius) return false;
   if (n.count == 0) return is_on_another(node + 1, p, left_out) || is_on_another(n.first, p, left_out);
   for (Index i = n.first; i < n.first + n.count; ++i)
-    if (triangles_[i].number != left_out && std::fabs(solid_angle(triangles_[i], p)) > half_sphere) return true;
+    if (triangles_[i].number != left_out && std::fabs(solid_angle(triangles_[i], p)) > half_sphere)
+      return true;
   return false;
 }
 

@@ -16,9 +16,9 @@ struct WeightedTriangle {
   Index number = 0;  ///< by which it is left out
 };
 
-/// The generalized winding number of triangles around points (Jacobson, Kavan, Sorkine-Hornung 2013), with far
-/// ones taken together as in Barill, Dickson, Schmidt, Levin, Jacobson 2018: 1 inside a closed surface that is
-/// oriented outwards, 0 outside, and in between where a surface is open.
+/// The generalized winding number of triangles around points (Jacobson, Kavan, Sorkine-Hornung 2013), with
+/// far ones taken together as in Barill, Dickson, Schmidt, Levin, Jacobson 2018: 1 inside a closed surface
+/// that is oriented outwards, 0 outside, and in between where a surface is open.
 class WindingNumber {
  public:
   /// Cost: O(n).
@@ -34,11 +34,11 @@ class WindingNumber {
 
  private:
   struct Node {
-    Point centre;        // weighted by area
-    double radius;       // of the ball around it that holds all corners
-    Vector area;         // sum of weight * area vectors
+    Point centre;                  // weighted by area
+    double radius;                 // of the ball around it that holds all corners
+    Vector area;                   // sum of weight * area vectors
     std::array<double, 9> moment;  // sum of weight * (centroid - centre) x area vector, as a matrix
-    Index first, count;  // of a leaf; count 0: the children are the next node and `first`
+    Index first, count;            // of a leaf; count 0: the children are the next node and `first`
   };
   static constexpr Index leaf_size = 8;
 
