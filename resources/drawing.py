@@ -52,7 +52,7 @@ def surface_of(grid):
 
 
 def split_by_origin(kept, whole):
-    """The surface of the kept tets as (part of the whole mesh' surface, cut faces)."""
+    """The surface of the kept tets as (part of the whole mesh's surface, cut faces)."""
     def key(data, cell):
         return tuple(sorted(data.GetPoint(cell.GetPointId(k)) for k in range(3)))
 

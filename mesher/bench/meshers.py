@@ -190,6 +190,6 @@ def debian_version(package: str) -> str:
 
 
 def triangulation_seconds(program: Path, mesh: Path, time_limit: float) -> float:
-    """CPU seconds of CGAL's Delaunay triangulation of a mesh' vertices."""
+    """CPU seconds of CGAL's Delaunay triangulation of a mesh's vertices."""
     measured: Measured = run([str(program), str(mesh)], mesh.parent, time_limit)
     return _number(r"([\d.e+-]+) s", measured.output)

@@ -1,4 +1,4 @@
-// How long CGAL takes for the bare Delaunay triangulation of a mesh' vertices: the yardstick for
+// How long CGAL takes for the bare Delaunay triangulation of a mesh's vertices: the yardstick for
 // refinement, which has to find those vertices too.
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

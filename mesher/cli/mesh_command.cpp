@@ -11,6 +11,7 @@
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
 #include "collarmesh/partition.h"
+#include "common/thread_limit.h"
 #include "complex_input.h"
 #include "console.h"
 #include "conversion_report.h"
@@ -23,7 +24,6 @@
 #include "scale.h"
 #include "staged_file.h"
 #include "supervisor.h"
-#include "thread_limit.h"
 
 namespace collarmesh::cli {
 

@@ -8,7 +8,7 @@ namespace collarmesh::cli {
 
 namespace {
 
-/// The tets with a face among the mesh' faces.
+/// The tets with a face among the mesh's faces.
 std::vector<bool> tets_at_faces(const TetMesh& mesh) {
   std::vector<std::array<Index, 3>> faces(mesh.faces);
   for (auto& face : faces) std::sort(face.begin(), face.end());

@@ -3,7 +3,7 @@
     corpus_test.py PROGRAM [-k WORD] [--keep FOLDER]
 
 COLLARMESH_CORPUS names the folder; its MANIFEST.tsv says what to expect of each file. Files are
-meshed at 1/25 of their bounding box' diagonal; COLLARMESH_JUDGE may name a checker (judging.py).
+meshed at 1/25 of their bounding box's diagonal; COLLARMESH_JUDGE may name a checker (judging.py).
 Exit code 77 (skipped) without a corpus.
 """
 

@@ -27,7 +27,7 @@ class BlockRefinement : public ::testing::TestWithParam<Case> {};
 TEST_P(BlockRefinement, MakesTheSameMeshWithAnyNumberOfThreads) {
   const auto& [name, soups, size, least_share] = GetParam();
   const Plc plc = build_plc(soups);
-  MeshOptions options = with_size(size, 120);
+  MeshOptions options = with_size(size);
   options.threads = 1;
   const Meshed alone = mesh_of(plc, options);
   EXPECT_EQ(faults(alone), "");
@@ -63,8 +63,8 @@ TEST(BlockRefinementSize, IsThatOfTheLoop) {
   for (const auto& [name, soups, size, least_share] : cases) {
     SCOPED_TRACE(name);
     const Plc plc = build_plc(soups);
-    const Meshed blocks = mesh_of(plc, with_size(size, 120));
-    MeshOptions options = with_size(1, 120);
+    const Meshed blocks = mesh_of(plc, with_size(size));
+    MeshOptions options = with_size(1);
     options.size_field = [wanted = size](const Point&) { return wanted; };  // the loop alone asks the caller
     const Meshed loop = mesh_of(plc, options);
     EXPECT_EQ(faults(blocks), "");
@@ -82,7 +82,7 @@ TEST(BlockRefinementSize, IsThatOfTheLoop) {
 
 TEST(BlockRefinementSize, KeepsToTheBudgetOfVertices) {
   const Plc plc = build_plc(std::vector{testing::box()});
-  MeshOptions options = with_size(0.025, 120);
+  MeshOptions options = with_size(0.025);
   options.max_vertices = 45'000;
   const MeshResult result = generate(plc, options);
   EXPECT_EQ(result.status, MeshStatus::budget_hit);

@@ -20,7 +20,7 @@ using testing::PoissonErrors;
 
 testing::Meshed improved(const std::vector<PolygonSoup>& soups, double size, double feature_angle,
                          double distance = 0, unsigned seed = 0) {
-  MeshOptions options = testing::with_size(size, 60);
+  MeshOptions options = testing::with_size(size);
   options.seed = seed;
   options.distance = distance;
   testing::Meshed meshed = testing::mesh_of(soups, options, feature_angle);

@@ -234,7 +234,7 @@ bool link_condition(const Cells& cells, Index a, Index b) {
   });
 }
 
-// Whatever their shapes: in the tets and in the mesh' faces.
+// Whatever their shapes: in the tets and in the mesh's faces.
 TEST_F(ImproveOperations, ContractionsOnFeaturesKeepTheLinkCondition) {
   const AnyShape rule;
   std::size_t proposed = 0, forbidden = 0;

@@ -1,4 +1,4 @@
-// Improvement of a mesh' elements: every guarantee stays, no sliver does.
+// Improvement of a mesh's elements: every guarantee stays, no sliver does.
 #include <gtest/gtest.h>
 
 #include <algorithm>

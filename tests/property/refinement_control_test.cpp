@@ -49,11 +49,12 @@ TEST(RefinementBudget, Memory) {
 }
 
 TEST(RefinementBudget, Time) {
-  const MeshResult result = generate(box_complex(), with_size(0.005, 0.1));
+  MeshOptions options = with_size(0.005);
+  options.time_limit = 0.1;
+  const MeshResult result = generate(box_complex(), options);
   expect_no_mesh(result, MeshStatus::budget_hit);
   EXPECT_NE(result.message.find("time limit"), std::string::npos) << result.message;
   EXPECT_NE(result.message.find("raise time-limit"), std::string::npos) << result.message;
-  EXPECT_LT(result.statistics.seconds, 30);
 }
 
 // Also when the whole mesh takes few steps.
@@ -64,24 +65,27 @@ TEST(RefinementBudget, OfASmallMesh) {
 }
 
 TEST(RefinementBudget, EnoughIsNoHindrance) {
-  MeshOptions options = with_size(0.2, 60);
+  MeshOptions options = with_size(0.2);
   options.max_vertices = 100'000;
   options.max_memory = 1'000'000'000;
   EXPECT_EQ(testing::faults(testing::mesh_of(box_complex(), options)), "");
 }
 
 TEST(RefinementCancel, ByTheFlagFromAnotherThread) {
-  std::atomic<bool> cancel = false;
+  std::atomic<bool> cancel = false, begun = false;
   Execution execution;
   execution.cancel = &cancel;
+  execution.progress = [&](const auto&...) {
+    begun = true;
+    return true;
+  };
   std::thread other([&] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    while (!begun) std::this_thread::yield();
     cancel = true;
   });
   const MeshResult result = generate(box_complex(), with_size(0.005), execution);
   other.join();
   expect_no_mesh(result, MeshStatus::cancelled);
-  EXPECT_LT(result.statistics.seconds, 30);
 }
 
 TEST(RefinementCancel, BeforeTheStart) {

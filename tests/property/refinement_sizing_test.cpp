@@ -132,8 +132,7 @@ TEST(RefinementSizing, CurvesHaveTheirOwn) {
 TEST(RefinementSizing, FineCurvesTakeHardlyMoreMemoryPerCellThanFineRegions) {
   const Plc plc = build_plc(std::array{testing::box()}, {});
   const auto bytes_per_cell = [&](double size, double along_curves) {
-    constexpr double seconds = 200;
-    MeshOptions options = with_size(size, seconds);
+    MeshOptions options = with_size(size);
     for (const Plc::Curve& curve : plc.curves) options.curve_size[curve.tag] = along_curves;
     const MeshResult result = generate(plc, options);
     EXPECT_EQ(result.status, MeshStatus::complete);

@@ -60,7 +60,7 @@ TEST(WorkCounts, OfFineCurvesAreThoseOfCoarseOnes) {
   const Plc plc = build_plc({&cube, 1});
   for (const int exponent : {4, 6, 8}) {
     SCOPED_TRACE(exponent);
-    MeshOptions options = testing::with_size(0.5, 60);
+    MeshOptions options = testing::with_size(0.5);
     for (const Plc::Curve& curve : plc.curves) options.curve_size[curve.tag] = std::ldexp(1.0, -exponent);
     const MeshStatistics s = counted({cube}, options);
     EXPECT_LE(s.counts.relocated, 60U);
@@ -81,7 +81,7 @@ TEST(WorkCounts, OfAGridOfWedgesAreThoseOfOne) {
         const unsigned row = i / n;
         grid = testing::joined(grid, testing::translated(wedge, {1.5 * (i % n), 1.5 * row, 0}));
       }
-      MeshOptions options = testing::with_size(0.3, 60);
+      MeshOptions options = testing::with_size(0.3);
       options.collar_creation = creation;
       const MeshStatistics s = counted({grid}, options);
       EXPECT_LE(moves_per_object(s.counts), 0.6 * std::log2(s.counts.located));

@@ -55,17 +55,10 @@ std::string faults(const Meshed& meshed) {
   return text;
 }
 
-// Sanitizers slow the mesher down; the limit is there to end what would never end.
-#ifdef __SANITIZE_ADDRESS__
-constexpr double slowdown = 30;
-#else
-constexpr double slowdown = 3;
-#endif
-
-MeshOptions with_size(double size, double time_limit) {
+MeshOptions with_size(double size, std::size_t max_vertices) {
   MeshOptions options;
   options.size = size;
-  options.time_limit = slowdown * time_limit;
+  options.max_vertices = max_vertices;
   return options;
 }
 

@@ -27,8 +27,8 @@ Meshed mesh_of(std::span<const PolygonSoup> soups, const MeshOptions& options = 
 /// certificate. Empty when all is right.
 std::string faults(const Meshed& meshed);
 
-/// The options with this target edge length and a time budget, so that no test hangs.
-MeshOptions with_size(double size, double time_limit = 20);
+/// The options with this target edge length and a budget of vertices, which ends a run that would not end.
+MeshOptions with_size(double size, std::size_t max_vertices = 1'000'000);
 /// The same with half the default surface distance, for volumes of curved shapes.
 MeshOptions with_near_surface(std::span<const PolygonSoup> soups, double size);
 

@@ -105,8 +105,9 @@ std::vector<std::array<Index, 3>> ears(const std::vector<Point>& points, std::sp
 }  // namespace
 
 unsigned members(unsigned count) {
-  const char* factor = std::getenv("COLLARMESH_REPAIR_MEMBERS");
-  return count * std::max(1U, factor == nullptr ? 1U : static_cast<unsigned>(std::atoi(factor)));
+  const char* share = std::getenv("COLLARMESH_FAMILY_SHARE");
+  return std::max(1U,
+                  share == nullptr ? count : static_cast<unsigned>(std::lround(count * std::atof(share))));
 }
 
 double uniform(Random& random, double low, double high) {

@@ -16,7 +16,8 @@ namespace collarmesh::testing::faulty {
 
 using Random = std::mt19937_64;
 
-/// How many random members a test takes: `count`, times the environment variable COLLARMESH_REPAIR_MEMBERS.
+/// How many random members a test takes: `count`, times the environment variable COLLARMESH_FAMILY_SHARE
+/// (more than 1 to search longer, less with sanitizers), but at least one.
 unsigned members(unsigned count);
 
 double uniform(Random& random, double low, double high);

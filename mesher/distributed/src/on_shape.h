@@ -33,7 +33,7 @@ class OnShape {
       if (const auto place = exact_(feature.dimension, feature.feature, p)) return *place;
     return is_smooth(feature) ? nearest_.nearest(feature, p) : p;
   }
-  /// To the complex' own polyline or triangles.
+  /// To the complex's own polyline or triangles.
   double distance_to_complex(const TetMesh::VertexFeature& feature, const Point& p) {
     return distance(nearest_.nearest(feature, p), p);
   }

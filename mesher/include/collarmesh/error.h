@@ -40,7 +40,7 @@ struct PlcFault {
   };
   Kind kind;
   std::string message;        ///< full sentence: entities, coordinates, what to do next
-  std::vector<Index> points;  ///< indices of the complex' points concerned
+  std::vector<Index> points;  ///< indices of the complex's points concerned
   Point where;                ///< a place to look at, input units
 };
 

@@ -35,7 +35,7 @@ struct Plc {
     Tag tag = 0;
     std::vector<Index> patches;  ///< sorted; the patches that contain it (in their border or interior)
   };
-  // A loop at one vertex repeats that vertex' point at the end of `points`.
+  // A loop at one vertex repeats that vertex's point at the end of `points`.
 
   /// A feature of dimension 2: a planar polygonal facet with holes, or the facets that one smooth
   /// face was cut into. Its triangles are oriented alike: `regions[0]` lies behind them (opposite to

@@ -11,10 +11,10 @@
 namespace collarmesh {
 
 struct SecondOrderOptions {
-  ExactGeometry exact;  ///< where it is empty or gives nothing: the complex' own polyline or triangles
+  ExactGeometry exact;  ///< where it is empty or gives nothing: the complex's own polyline or triangles
   double least_jacobian =
       0.1;                ///< everywhere in a curved tet, relative to the straight one; 0: positive is enough
-  double thin_angle = 0;  ///< degrees, that of the mesh' `CoarsenOptions`: tets that cannot be curved may be
+  double thin_angle = 0;  ///< degrees, that of the mesh's `CoarsenOptions`: tets that cannot be curved may be
                           ///< replaced by others, which may be thin; 0: the tets stay
   double radius_edge = 2;  ///< bound on circumradius / shortest edge: tets beyond it are marked as thin
   double distance = 0;     ///< surface distance tolerance where tets are replaced; 0: 1/200 of the diagonal

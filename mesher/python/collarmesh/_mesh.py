@@ -49,7 +49,7 @@ class Mesh:
     faces: (k, 3), triangles on boundaries, interfaces and internal facets.
     face_regions: (k, 2), regions behind and before the triangle; 0: none.
     face_tag: (k,), tags of the surfaces' triangles, or numbers of patches where these had none.
-    face_patch: (k,), rows of the complex' patches; -1: not known.
+    face_patch: (k,), rows of the complex's patches; -1: not known.
     edges: (j, 2), edges on feature curves; edge_tag, edge_curve: (j,).
     tet_mid_nodes (m, 6), face_mid_nodes (k, 3), edge_mid_nodes (j,): nodes amid the edges ab, bc, ca, ad, bd, cd;
         empty for first order.

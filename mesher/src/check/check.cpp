@@ -9,7 +9,7 @@
 #include "check/subject.h"
 #include "collarmesh/mesher.h"
 #include "common/parallel_for.h"
-#include "thread_limit.h"
+#include "common/thread_limit.h"
 
 namespace collarmesh {
 

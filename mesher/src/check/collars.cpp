@@ -142,7 +142,7 @@ class CollarCheck {
         At{centre(ball)}, radius(ball), gap, kinds[element.dimension], element.feature);
   }
 
-  // Of one crease are a vertex' ball and those on its curves, and those on one curve.
+  // Of one crease are a vertex's ball and those on its curves, and those on one curve.
   bool of_one_crease(Index a, Index b) const {
     const auto &f = feature_of(a), &g = feature_of(b);
     if (f.dimension == 1 && g.dimension == 1) return f.feature == g.feature;

@@ -31,9 +31,9 @@ inline constexpr char listed_faces[] =
     "listed_faces";  ///< faces hold the boundary and the interfaces, once each
 inline constexpr char face_regions[] = "face_regions";    ///< a face's regions are those of its tets
 inline constexpr char watertight[] = "watertight";        ///< the faces around a region form a closed surface
-inline constexpr char region_volume[] = "region_volume";  ///< is the complex' own
+inline constexpr char region_volume[] = "region_volume";  ///< is the complex's own
 
-// The complex' vertices and curves
+// The complex's vertices and curves
 inline constexpr char vertex_present[] = "vertex_present";  ///< each is a mesh vertex
 inline constexpr char listed_edges[] = "listed_edges";      ///< edges are edges of tets, listed once
 inline constexpr char curve_tag[] = "curve_tag";            ///< an edge's tag is its curve's

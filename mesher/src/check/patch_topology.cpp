@@ -108,7 +108,7 @@ class TopologyCheck {
           patch_.tag, last - first, side.ends[0], side.ends[1], At{where});
   }
 
-  // Every edge of the patch' curves has faces of it.
+  // Every edge of the patch's curves has faces of it.
   void check_curves() {
     for (const Index curve : patch_.curves) {
       const std::size_t expected = uses_.triangles_at(curve, id_);

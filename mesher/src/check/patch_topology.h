@@ -9,7 +9,7 @@ namespace collarmesh::checks {
 /// A side of a face of one patch.
 struct PatchEdge {
   std::array<Index, 2> ends;  ///< sorted
-  Index place;                ///< of the face in the patch' list of faces
+  Index place;                ///< of the face in the patch's list of faces
   Index face;
   bool ascending;  ///< runs from the smaller to the larger point, with the face turned as its patch
 
@@ -44,14 +44,14 @@ class CurveUses {
   Grouping edges_by_curve_;
 };
 
-/// Is the face turned against its patch (its regions are the patch' in reverse)?
+/// Is the face turned against its patch (its regions are the patch's in reverse)?
 inline bool reversed(const Subject& subject, Index face) {
   const auto& given = subject.mesh.face_regions[face];
   const auto& own = subject.plc.patches[subject.match.face_patch[face]].regions;
   return own[0] != own[1] && given[0] == own[1] && given[1] == own[0];
 }
 
-/// The faces of a patch form a surface that is turned one way and ends at the patch' curves.
+/// The faces of a patch form a surface that is turned one way and ends at the patch's curves.
 void check_patch_topology(const Subject& subject, Index patch, const std::vector<Index>& faces,
                           const CurveUses& uses, Findings& findings);
 

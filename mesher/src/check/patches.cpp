@@ -207,7 +207,7 @@ class PatchCheck {
       const auto nearest = faces.nearest(sample, enough(), hint);
       hint = nearest.triangle;
       measure(nearest.distance, faces_[nearest.triangle], sample,
-              "Face {}, the nearest of patch {} (tag {}), is {:.6g} away from the patch' point at {}");
+              "Face {}, the nearest of patch {} (tag {}), is {:.6g} away from the patch's point at {}");
     };
     for (const Index point : patch_points) look_at(subject_.plc.points[point]);
     for (Index i = 0; i < patch_.triangle_count; ++i) {

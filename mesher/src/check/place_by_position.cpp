@@ -95,7 +95,7 @@ class InnerPatches {
   }
 
   const Subject& subject_;
-  std::vector<Index> numbers_;  // of the complex' triangles
+  std::vector<Index> numbers_;  // of the complex's triangles
   DistanceTree triangles_;
   std::vector<std::int8_t> near_;  // by mesh point: is it on one of them? -1: not asked yet
 };

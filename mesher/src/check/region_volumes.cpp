@@ -1,4 +1,4 @@
-// Region volumes of the mesh against those that the complex' triangles enclose.
+// Region volumes of the mesh against those that the complex's triangles enclose.
 #include <cmath>
 #include <optional>
 

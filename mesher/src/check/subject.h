@@ -103,9 +103,9 @@ bool check_arrays(const TetMesh& mesh, Findings& findings);
 bool check_points(const Subject& subject, Findings& findings);
 
 /// Of a mesh from a file: what its labels do not tell is found by position. Of tets whose region and tag are
-/// not the complex' the regions, each connected part (up to listed faces and planar patches) by its largest
+/// not the complex's the regions, each connected part (up to listed faces and planar patches) by its largest
 /// tet; when most tags of faces or edges are none of the complex', or there are none, those anew from the
-/// tets and the complex. The result has the complex' labels; what was found like that becomes a note. None
+/// tets and the complex. The result has the complex's labels; what was found like that becomes a note. None
 /// when there is nothing to find, or tets lie outside, which is a finding. Precondition: check_arrays and
 /// check_points hold. Cost: O(n log n).
 std::optional<TetMesh> place_by_position(const Subject& subject, CheckReport& report, Findings& findings);
@@ -128,7 +128,7 @@ void check_region_volumes(const Subject& subject, const CheckReport& report, Fin
 
 /// How far the mesh may be from straight curves and planar patches: their own deviation from
 /// straight or planar (a few times, vertices are extrapolated from others) but not more than the
-/// complex' planar tolerance; from others the distance tolerance; in each case also the rounding.
+/// complex's planar tolerance; from others the distance tolerance; in each case also the rounding.
 std::vector<double> curve_allowances(const Subject& subject);
 std::vector<double> patch_allowances(const Subject& subject);
 

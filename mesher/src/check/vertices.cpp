@@ -1,4 +1,4 @@
-// The complex' vertices in the mesh, and what the mesh says its points lie on.
+// The complex's vertices in the mesh, and what the mesh says its points lie on.
 #include "check/subject.h"
 
 namespace collarmesh::checks {

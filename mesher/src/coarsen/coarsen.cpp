@@ -14,7 +14,7 @@
 #include "collarmesh/error.h"
 #include "common/found_in_ranges.h"
 #include "common/parallel_for.h"
-#include "thread_limit.h"
+#include "common/thread_limit.h"
 
 namespace collarmesh {
 

@@ -89,7 +89,7 @@ Change Proposer::improvement_of(Index tet, Mode mode) {
   return change;
 }
 
-// Could an edge to `onto` lie in the vertex' curve or patch?
+// Could an edge to `onto` lie in the vertex's curve or patch?
 bool Proposer::may_share_feature(Index vertex, Index onto) const {
   const auto& [dimension, feature] = complex().mesh().features[vertex];
   const auto& other = complex().mesh().features[onto];

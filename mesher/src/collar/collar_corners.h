@@ -17,7 +17,7 @@ class CollarCorners {
   /// Where the sheets that meet at a crease pass through the circle of two consecutive balls' spheres.
   void add_on_circle(const CollarLink& link, const CollarBall& a, const CollarBall& b);
   /// Three points where a smooth patch that surrounds a crease vertex (a cone its apex) leaves the
-  /// vertex' ball.
+  /// vertex's ball.
   void add_around(const CollarBall& ball);
 
  private:

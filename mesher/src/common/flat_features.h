@@ -17,7 +17,7 @@ class FlatFeatures {
 
   /// The exact geometry as far as it stays with the straight curves and planar patches that the feature is,
   /// or is on: a place off a plane by more than the certificate permits (that is min(4 d, planar tolerance)
-  /// and rounding, where d is how far the complex' own points are off), or off a straight curve by more than
+  /// and rounding, where d is how far the complex's own points are off), or off a straight curve by more than
   /// half of that, is moved back towards it. Half, because the edges between nodes must be near the curve's
   /// own points, too, and those are up to 2 d off the chords. Nothing where there is no such place near.
   /// This and `exact` are kept by reference.

@@ -26,7 +26,7 @@ struct ConflictZone {
   Point point;
   std::vector<Index> cells;
   std::vector<FaceId> border;   ///< faces of zone cells towards cells outside the zone (or the hull)
-  std::vector<Index> vertices;  ///< of the zone's cells: the new vertex' neighbours
+  std::vector<Index> vertices;  ///< of the zone's cells: the new vertex's neighbours
   std::vector<Index> created;   ///< after insert: the new cell over border[i], the new vertex in the corner
                                 ///< opposite that face
   std::vector<FaceId>
@@ -64,7 +64,7 @@ struct Renumbering {
 
 /// Delaunay triangulation of points inside a box, as flat arrays.
 ///
-/// The box' eight corners are vertices 0 to 7; everything stays inside, so there are no infinite
+/// The box's eight corners are vertices 0 to 7; everything stays inside, so there are no infinite
 /// cells. A cell is four vertices, positively oriented (`six_volume` > 0), and four neighbours, with
 /// its circumsphere and an error bound beside it. Ties (cospherical points) are not in conflict.
 /// Cells are recycled; `generation` tells whether an id still means the same cell.

@@ -1,4 +1,4 @@
-// Operations on an edge' ring: other tets in its place.
+// Operations on an edge's ring: other tets in its place.
 #include <algorithm>
 
 #include "improve/operations.h"

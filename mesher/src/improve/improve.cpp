@@ -11,11 +11,11 @@
 #include "collarmesh/error.h"
 #include "collarmesh/mesher.h"
 #include "common/parallel_for.h"
+#include "common/thread_limit.h"
 #include "improve/detours.h"
 #include "improve/improve_workpiece.h"
 #include "improve/operations.h"
 #include "improve/remedies.h"
-#include "thread_limit.h"
 
 namespace collarmesh {
 
@@ -181,7 +181,7 @@ class Improvement {
   }
 
   // Is all that the change depends on as it was when the batch was begun? That is in the tets that it
-  // replaces or has read, with their corners' places and the mesh' faces, samples and curve edges there,
+  // replaces or has read, with their corners' places and the mesh's faces, samples and curve edges there,
   // since stars are complete: nothing is proposed where they are not.
   bool is_untouched(const Change& change) const {
     const auto untouched = [&](Index t) { return complex()[t].alive && changed_in_[t] != batch_number_; };

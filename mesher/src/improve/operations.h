@@ -68,7 +68,7 @@ class Operations {
     Index patch;  ///< planar or smooth
   };
   static constexpr Freedom everywhere{{Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}}, 3, none};
-  /// A cavity whose tets, and the mesh' faces in it, are cones that share an apex: a vertex that is there
+  /// A cavity whose tets, and the mesh's faces in it, are cones that share an apex: a vertex that is there
   /// or would be.
   struct Cone {
     std::vector<Index> tets;

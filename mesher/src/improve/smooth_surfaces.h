@@ -42,7 +42,7 @@ class SmoothSurfaces {
     Triangle corners;
     Index patch;
   };
-  /// Could these take the place of the mesh' faces `old`, turned like the patch as far as they are now?
+  /// Could these take the place of the mesh's faces `old`, turned like the patch as far as they are now?
   /// Faces on planar patches count for nothing. How well the old ones are turned is computed where it is NaN,
   /// for a caller who asks about the same ones again.
   bool fit(std::span<const Index> old, std::span<const Face> created, double& agreement_of_old) const;
@@ -50,7 +50,7 @@ class SmoothSurfaces {
     double agreement_of_old = NAN;
     return fit(old, created, agreement_of_old);
   }
-  /// Before the mesh' faces are replaced or moved: take the points of the patches from these,
+  /// Before the mesh's faces are replaced or moved: take the points of the patches from these,
   void take_samples(std::span<const Index> faces);
   /// and after it, give them to those that `fit`.
   void give_samples(std::span<const Index> faces);

@@ -327,7 +327,7 @@ void TetComplex::make_faces(const Replacement& replacement) {
   }
 }
 
-// Tell the tets at a face of the last cavity what it is among the mesh' faces.
+// Tell the tets at a face of the last cavity what it is among the mesh's faces.
 void TetComplex::set_face(const std::array<Index, 3>& corners, Index face) {
   const auto key = sorted(corners);
   for (const OpenFace& open : open_)

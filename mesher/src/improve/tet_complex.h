@@ -17,14 +17,14 @@
 
 namespace collarmesh::improvement {
 
-/// A mesh' tets with their neighbours, ready for local changes, tied to the faces that must stay:
+/// A mesh's tets with their neighbours, ready for local changes, tied to the faces that must stay:
 /// boundaries, interfaces and facets inside regions.
 class TetComplex {
  public:
   struct Tet {
     std::array<Index, 4> corners;
     std::array<Index, 4> neighbours;  ///< across the face opposite each corner; none at a boundary
-    std::array<Index, 4> faces;       ///< that face among the mesh' faces; none when it is not one
+    std::array<Index, 4> faces;       ///< that face among the mesh's faces; none when it is not one
     Index region;
     std::uint32_t generation;
     bool alive, collar;
@@ -35,10 +35,10 @@ class TetComplex {
   };
   struct NewFace {
     std::array<Index, 3> corners;
-    Index like;  ///< one of the mesh' faces whose patch, regions and tag it takes
+    Index like;  ///< one of the mesh's faces whose patch, regions and tag it takes
   };
   /// Tets that take the place of others and fill the same cavity, or less of it at a boundary, with the
-  /// mesh' faces inside the cavity or on its border that change.
+  /// mesh's faces inside the cavity or on its border that change.
   struct Replacement {
     std::vector<Index> old;
     std::vector<NewTet> created;
@@ -62,7 +62,7 @@ class TetComplex {
   const TetMesh& mesh() const { return mesh_; }
   std::array<Point, 4> corners(Index tet) const;
   bool on_curve(Index a, Index b) const { return curve_edges_.contains(edge_key(a, b)); }
-  /// Is the edge ab one of a mesh' face? At a pinched vertex a: always.
+  /// Is the edge ab one of a mesh's face? At a pinched vertex a: always.
   bool on_faces(Index a, Index b) const;
 
   /// Is the vertex a corner of any tet?
@@ -81,7 +81,7 @@ class TetComplex {
   Index add_vertex(const Point& p, const TetMesh::VertexFeature& feature);
   /// Returns the new tets' indices until the next call.
   std::span<const Index> replace(const Replacement& replacement);
-  /// The mesh' faces that the last replacement made.
+  /// The mesh's faces that the last replacement made.
   std::span<const Index> created_faces() const { return created_faces_; }
   /// A vertex on a curve between two others there is gone: its edges become the one that joins these.
   void join_curve_edges(Index before, Index vertex, Index after);
@@ -144,7 +144,7 @@ class TetComplex {
   std::unordered_set<Index> pinched_;
   std::vector<std::uint32_t> stamps_;
   std::uint32_t stamp_ = 0;
-  std::unordered_map<std::uint64_t, Index> curve_edges_;  // among the mesh' edges, by their ends
+  std::unordered_map<std::uint64_t, Index> curve_edges_;  // among the mesh's edges, by their ends
   std::vector<Index> free_, free_faces_;
   std::vector<Index> created_, created_faces_;
   std::vector<std::pair<Index, Index>> tags_;  // region and origin of the tets being made

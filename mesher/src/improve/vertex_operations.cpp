@@ -18,7 +18,7 @@ bool contains(const auto& range, Index v) { return std::find(range.begin(), rang
 
 }  // namespace
 
-// The tets and the mesh' faces at a vertex; false at a collar and where they do not hang together.
+// The tets and the mesh's faces at a vertex; false at a collar and where they do not hang together.
 bool Operations::find_cone_of_vertex(Index vertex) {
   cone_.clear();
   if (complex_.pinched(vertex)) return false;
@@ -389,7 +389,7 @@ void Operations::contract_onto(Index onto, double least, double enough, Change& 
   fill(onto, change);
 }
 
-// Does the edge to `onto` lie in the vertex' feature?
+// Does the edge to `onto` lie in the vertex's feature?
 bool Operations::may_contract(Index vertex, Index onto) {
   const auto& feature = mesh_.features[vertex];
   if (feature.dimension == 3) return true;

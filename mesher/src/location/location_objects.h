@@ -22,7 +22,7 @@ class LocationObjects {
     Point centre;
     double squared_radius;
     Index vertex;          ///< nearest mesh vertex
-    Index previous, next;  ///< in that vertex' list
+    Index previous, next;  ///< in that vertex's list
     Index owner;           ///< index of what it is, among those of its kind
     Kind kind;
   };

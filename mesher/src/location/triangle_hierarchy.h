@@ -134,7 +134,7 @@ class TriangleHierarchy {
   LargeVector<Node> nodes_;
 };
 
-/// Over the triangles of one patch. The complex' points are kept by reference.
+/// Over the triangles of one patch. The complex's points are kept by reference.
 std::unique_ptr<TriangleHierarchy> hierarchy_of_patch(const Plc& plc, Index patch);
 
 /// Squared distance from p to the triangle abc, which may be degenerate.

@@ -22,10 +22,10 @@
 #include "collarmesh/error.h"
 #include "collarmesh/partition.h"
 #include "collarmesh/usable_threads.h"
+#include "common/thread_limit.h"
 #include "improve/improve_workpiece.h"
 #include "improve/thin_shape.h"
 #include "refine/generate_linked.h"
-#include "thread_limit.h"
 
 namespace collarmesh {
 

@@ -7,8 +7,8 @@
 
 #include "collarmesh/mesher.h"
 #include "common/flat_features.h"
+#include "common/thread_limit.h"
 #include "project/relaxation.h"
-#include "thread_limit.h"
 
 namespace collarmesh {
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "common/parallel_for.h"
-#include "thread_limit.h"
+#include "common/thread_limit.h"
 
 namespace collarmesh {
 

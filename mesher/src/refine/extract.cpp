@@ -8,7 +8,7 @@
 #include "common/large_pages.h"
 #include "common/parallel_for.h"
 #include "common/spatial_order.h"
-#include "thread_limit.h"
+#include "common/thread_limit.h"
 
 namespace collarmesh {
 

@@ -5,7 +5,7 @@
 
 namespace collarmesh {
 
-/// As the public one. `neighbours`: what the triangulation knows of the mesh' tets, for the stages to come.
+/// As the public one. `neighbours`: what the triangulation knows of the mesh's tets, for the stages to come.
 MeshResult generate(const Plc& plc, const MeshOptions& options, const Execution& execution,
                     KnownNeighbours& neighbours);
 

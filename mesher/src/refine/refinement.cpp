@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/thread_limit.h"
 #include "refine/aspect_ratios.h"
-#include "thread_limit.h"
 
 namespace collarmesh {
 

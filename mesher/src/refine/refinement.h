@@ -61,7 +61,7 @@ class Refinement {
   MeshStatistics statistics() const;
 
  private:
-  /// The order matters: collars and curves take the numbers of the complex' vertices for those of the first
+  /// The order matters: collars and curves take the numbers of the complex's vertices for those of the first
   /// unresolved points; curves ask which creases balls cover and where balls clip them; cells are judged when
   /// it is known which lie in collars.
   void start();

@@ -32,7 +32,7 @@ std::vector<FaceId> RestrictedSurface::marked_faces() const {
   });
 }
 
-// The box' corners lie outside every region.
+// The box's corners lie outside every region.
 void RestrictedSurface::label_from_outside(Index cell, Workspace& w) {
   w.crossings_.clear();
   if (!nodes_.hierarchy().empty()) nodes_.crossings(mesh_.point(0), mesh_.circumcentre(cell), w.crossings_);
@@ -74,7 +74,7 @@ Index RestrictedSurface::region_beyond(Index region, const Workspace& w) const {
 }
 
 // Label one of the new cells from across the zone's border, best where no patch can be in between;
-// when the zone is the whole box, from the box' corner. Returns its index in the zone.
+// when the zone is the whole box, from the box's corner. Returns its index in the zone.
 std::size_t RestrictedSurface::first_label(const ConflictZone& zone, Workspace& w) {
   std::size_t seed = zone.created.size();
   for (std::size_t i = 0; i < zone.created.size(); ++i) {
@@ -92,7 +92,7 @@ std::size_t RestrictedSurface::first_label(const ConflictZone& zone, Workspace& 
   return 0;
 }
 
-// Restricted triangles among the faces between the new cells: their dual edges are those of the new vertex'
+// Restricted triangles among the faces between the new cells: their dual edges are those of the new vertex's
 // Voronoi cell. What they cross is kept in crossed_faces_ and dual_crossings_.
 void RestrictedSurface::restrict_created_faces(const ConflictZone& zone, Index vertex, Workspace& w) {
   double largest = 0;
@@ -164,7 +164,7 @@ void RestrictedSurface::label_created_cells(const ConflictZone& zone, Index vert
   }
 }
 
-// A border face' dual edge has become shorter, so that it crosses what it crossed, or nothing. Does it
+// A border face's dual edge has become shorter, so that it crosses what it crossed, or nothing. Does it
 // still cross the triangle that it alone crossed, from the one label to the other?
 bool RestrictedSurface::crosses_as_before(FaceId outer, FaceId face, Index vertex, Workspace& w) const {
   const RestrictedTriangle& t = triangle(outer);

@@ -127,7 +127,7 @@ Point RipAndStitch::centroid(const std::array<Index, 3>& face) const {
   return (mesh_.point(face[0]) + mesh_.point(face[1]) + mesh_.point(face[2])) / 3;
 }
 
-// Does the face's normal point to the patch' back?
+// Does the face's normal point to the patch's back?
 bool RipAndStitch::against_patch(const std::array<Index, 3>& face, Index patch) const {
   double any = INFINITY;
   const Index nearest = nodes_.nearest_triangle(centroid(face), patch, any);

@@ -81,7 +81,7 @@ void SurfaceNodes::cells_made(const ConflictZone& zone, Index vertex, const Tria
              [&](Index v, std::vector<Index>& cells) { block.incident_cells(v, cells); });
 }
 
-// A new vertex' Voronoi cell is cut out of its neighbours' cells: their nodes cover it.
+// A new vertex's Voronoi cell is cut out of its neighbours' cells: their nodes cover it.
 template <class IncidentCells>
 void SurfaceNodes::cells_made(const ConflictZone& zone, Index vertex, Workspace& w,
                               const IncidentCells& incident_cells) {

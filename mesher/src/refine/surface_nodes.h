@@ -13,7 +13,7 @@
 namespace collarmesh {
 
 /// What of the complex is found from a mesh vertex: nodes of a hierarchy over all its elements, coarse ones
-/// while the vertex' Voronoi cell is large.
+/// while the vertex's Voronoi cell is large.
 ///
 /// Invariant: the nodes of a vertex cover every element that meets the box of its Voronoi cell. There may be
 /// more of them: they are filtered now and then. The loop tells of insertions, BlockRefinement of those into
@@ -75,7 +75,7 @@ class SurfaceNodes {
   struct List {
     Index* nodes = nullptr;  // in a chunk of a workspace
     Index count = 0;
-    std::uint16_t insertions_left = 0;  // in the vertex' star before its nodes are filtered again
+    std::uint16_t insertions_left = 0;  // in the vertex's star before its nodes are filtered again
   };
   template <class IncidentCells>
   void cells_made(const ConflictZone& zone, Index vertex, Workspace& w, const IncidentCells& incident_cells);

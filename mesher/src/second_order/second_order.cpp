@@ -11,12 +11,12 @@
 #include "collarmesh/error.h"
 #include "collarmesh/mesher.h"
 #include "common/flat_features.h"
+#include "common/thread_limit.h"
 #include "improve/replace_tets.h"
 #include "improve/thin_shape.h"
 #include "second_order/mid_nodes.h"
 #include "second_order/nearest_on_features.h"
 #include "second_order/untangling.h"
-#include "thread_limit.h"
 
 namespace collarmesh {
 

@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "collarmesh/io/tet_mesh_io.h"
+#include "common/thread_limit.h"
 #include "support/comma_locale.h"
 #include "support/meshes.h"
 #include "support/replaced.h"
 #include "support/sample_mesh.h"
 #include "support/temporary_file.h"
 #include "support/tet_mesh_comparison.h"
-#include "thread_limit.h"
 
 namespace collarmesh {
 namespace {

@@ -1,4 +1,4 @@
-// A mesh of another program, without the complex' labels, is judged by positions.
+// A mesh of another program, without the complex's labels, is judged by positions.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -113,7 +113,7 @@ TEST(PlcRegions, InsertFillsACavityExactly) {
 }
 
 TEST(PlcRegions, CavityThatTouchesTheWallInAnEdge) {
-  // The cavity's edge lies on the box' edge: a non-manifold edge.
+  // The cavity's edge lies on the box's edge: a non-manifold edge.
   PolygonSoup soup;
   soup.points = {{0, 0, 0},     {2, 0, 0},     {2, 2, 0},   {0, 2, 0},     {0, 0, 2},
                  {2, 0, 2},     {2, 2, 2},     {0, 2, 2},   {0.5, 1, 0.5}, {0.5, 1, 1.5},

@@ -44,7 +44,7 @@ TEST(CheckRightMeshes, SmoothCurvesAndPlanarPatches) {
 }
 
 // The two triangles of the upper side are one planar patch up to the tolerance; they are tilted against each
-// other, so that their areas exceed that of the patch' outline seen from above by 8e-9 of it.
+// other, so that their areas exceed that of the patch's outline seen from above by 8e-9 of it.
 TEST(CheckRightMeshes, PlanarPatchOfTiltedTriangles) {
   constexpr double width = 0.005, lift = 0.9e-6;
   PolygonSoup bar;

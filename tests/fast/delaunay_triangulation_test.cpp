@@ -194,7 +194,7 @@ TEST_P(DelaunayTriangulation, HasTheCellsOfTheOracle) {
     theirs.insert(key);
   }
   EXPECT_NEAR(double(mine.size()), double(theirs.size()), 0.1 * double(theirs.size()));
-  // Up to ties (the box' corners tie in every set): a cell of one that the other lacks has a fifth
+  // Up to ties (the box's corners tie in every set): a cell of one that the other lacks has a fifth
   // point on its sphere.
   std::vector<Cell> missing;
   std::set_difference(mine.begin(), mine.end(), theirs.begin(), theirs.end(), std::back_inserter(missing));
