@@ -16,7 +16,7 @@ from pivy import coin
 from freecad.collarmesh_workbench.commands import MESH_COMMAND
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "tests" / "freecad"))
-from window import (child, click_command, click_item, close_panel, find, require, rows, run_test,  # noqa: E402
+from window import (child, click, click_command, click_item, close_panel, find, require, rows, run_test,  # noqa: E402
                     screenshot, wait_until)
 
 SIZE = (1040, 780)  # of the window
@@ -67,7 +67,7 @@ def move_aside(view):
     camera.position.setValue(camera.position.getValue() + right * (0.1 * height))
 
 
-def test():
+async def test():
     FreeCADGui.activateWorkbench("FemWorkbench")
     document = FreeCAD.newDocument("Bracket")
     part = document.addObject("Part::Feature", "Bracket")
@@ -81,25 +81,25 @@ def test():
     document.recompute()
     view = FreeCADGui.ActiveDocument.ActiveView
     view.viewIsometric()
-    screenshot("step1.png", size=SIZE)
+    await screenshot("step1.png", size=SIZE)
     FreeCADGui.Selection.addSelection(part)
-    click_command(MESH_COMMAND)
-    wait_until(lambda: find("run") is not None and find("run").isVisible(), "the panel")
-    wait_until(numbers_are_there, "the numbers of elements")
+    await click_command(MESH_COMMAND)
+    await wait_until(lambda: find("run") is not None and find("run").isVisible(), "the panel")
+    await wait_until(numbers_are_there, "the numbers of elements")
     for number in (3, 2):  # fine, medium
-        click_item(child("presets").topLevelItem(number))
+        await click_item(child("presets").topLevelItem(number))
     child("ElementOrder").setCurrentIndex(1)
-    wait_until(numbers_are_there, "the numbers of elements")
-    screenshot("step2.png", size=SIZE)
-    child("run").click()
-    wait_until(lambda: child("run").isEnabled(), "the mesh")
+    await wait_until(numbers_are_there, "the numbers of elements")
+    await screenshot("step2.png", size=SIZE)
+    await click(child("run"))
+    await wait_until(lambda: child("run").isEnabled(), "the mesh")
     part.ViewObject.Visibility = False
-    screenshot("step3.png", size=SIZE)
+    await screenshot("step3.png", size=SIZE)
     worst = next(items for heading, items in rows(child("places")).items() if heading.startswith("Worst"))
     worst[0].parent().setExpanded(True)
-    click_item(worst[0])
-    screenshot("step4.png", fit=False, size=SIZE)
-    close_panel()
+    await click_item(worst[0])
+    await screenshot("step4.png", fit=False, size=SIZE)
+    await close_panel()
     fixed = analysis.addObject(ObjectsFem.makeConstraintFixed(document, "Fixed"))[0]
     fixed.References = [(part, face_at(part.Shape, 0, 15, 10))]
     force = analysis.addObject(ObjectsFem.makeConstraintForce(document, "Force"))[0]
@@ -107,7 +107,7 @@ def test():
     force.Force = 500
     force.Direction = (part, [face_at(part.Shape, 25, 1, 0)])
     document.recompute()
-    screenshot("step5.png", size=SIZE)
+    await screenshot("step5.png", size=SIZE)
     stresses = solve(analysis, solver)
     for each in document.Objects:
         if hasattr(each, "ViewObject") and each is not stresses:
@@ -120,7 +120,7 @@ def test():
     view.setCameraType("Orthographic")
     FreeCADGui.SendMsgToActiveView("ViewFit")
     move_aside(view)
-    screenshot("step6.png", fit=False, size=SIZE)
+    await screenshot("step6.png", fit=False, size=SIZE)
 
 
 if os.environ.get("COLLARMESH_TEST_ARGUMENT"):

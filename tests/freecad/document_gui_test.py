@@ -31,7 +31,7 @@ def icon_of(label):
     return [image.pixel(x, y) for x in range(image.width()) for y in range(image.height())]
 
 
-def show_model():
+async def show_model():
     """The tab with the tree."""
     tree = next(iter(w.window.findChildren(QtGui.QTreeWidget)))
     for tabs in w.window.findChildren(QtGui.QTabWidget):
@@ -40,14 +40,14 @@ def show_model():
                 tabs.setCurrentIndex(i)
     for each in w.window.findChildren(QtGui.QTreeWidget):
         each.expandAll()
-    w.pause(200)
+    await w.pause(200)
 
 
-def menu_of(label, choose=None, picture=""):
+async def menu_of(label, choose=None, picture=""):
     """Open the context menu of an object in the tree; the texts in it. `choose`: the entry to click."""
-    show_model()
+    await show_model()
     item = tree_item(label)
-    w.click_item(item)
+    await w.click_item(item)
     texts = []
 
     def look():
@@ -70,51 +70,51 @@ def menu_of(label, choose=None, picture=""):
     place = tree.visualItemRect(item).center()
     event = QtGui.QContextMenuEvent(QtGui.QContextMenuEvent.Mouse, place, tree.viewport().mapToGlobal(place))
     QtGui.QApplication.sendEvent(tree.viewport(), event)
-    w.wait_until(lambda: texts, "the menu")
-    w.pause(300)
+    await w.wait_until(lambda: texts, "the menu")
+    await w.pause(300)
     return texts
 
 
-def a_changed_shape_marks_its_mesh(document, part, obj):
-    show_model()
-    w.pause(500)  # icons are drawn a moment later
+async def a_changed_shape_marks_its_mesh(document, part, obj):
+    await show_model()
+    await w.pause(500)  # icons are drawn a moment later
     fresh = icon_of(obj.Label)
     count = obj.FemMesh.VolumeCount
     part.Radius = 7
     document.recompute()
-    w.wait_until(lambda: icon_of(obj.Label) != fresh, "the icon in the tree shows it", 10)
+    await w.wait_until(lambda: icon_of(obj.Label) != fresh, "the icon in the tree shows it", 10)
     w.require(obj.ViewObject.Proxy.getIcon() == view_provider.OUT_OF_DATE_ICON, "by the mark")
     w.require(obj.FemMesh.VolumeCount == count, "nothing is meshed by a recompute")
     FreeCADGui.ActiveDocument.ActiveView.viewIsometric()
-    w.screenshot("freecad_out_of_date.png", size=(900, 600))
+    await w.screenshot("freecad_out_of_date.png", size=(900, 600))
     part.Radius = 6
     document.recompute()
-    w.wait_until(lambda: icon_of(obj.Label) == fresh, "the mark goes when the shape is as before", 10)
+    await w.wait_until(lambda: icon_of(obj.Label) == fresh, "the mark goes when the shape is as before", 10)
     document.openTransaction("Radius")
     part.Radius = 7
     document.recompute()
     document.commitTransaction()
-    w.wait_until(lambda: icon_of(obj.Label) != fresh, "the mark again", 10)
+    await w.wait_until(lambda: icon_of(obj.Label) != fresh, "the mark again", 10)
     document.undo()
-    w.wait_until(lambda: icon_of(obj.Label) == fresh, "the mark goes by undo, too", 10)
+    await w.wait_until(lambda: icon_of(obj.Label) == fresh, "the mark goes by undo, too", 10)
 
 
-def mesh_again_by_the_menu(document, part, obj):
+async def mesh_again_by_the_menu(document, part, obj):
     part.Radius = 8
     document.recompute()
-    entries = menu_of(obj.Label, "mesh_again", "freecad_menu.png")
+    entries = await menu_of(obj.Label, "mesh_again", "freecad_menu.png")
     for text in ("Edit mesh", "Mesh again", "Export mesh...", "Statistics...", "Hand over to Gmsh"):
         w.require(text in entries, f"{text} is not in {entries}")
-    w.wait_until(lambda: w.find("run") is not None, "the panel")
-    w.wait_until(lambda: not up_to_date.is_out_of_date(obj) and w.child("run").isEnabled(), "the new mesh")
+    await w.wait_until(lambda: w.find("run") is not None, "the panel")
+    await w.wait_until(lambda: not up_to_date.is_out_of_date(obj) and w.child("run").isEnabled(), "the new mesh")
     w.require(obj.FemMesh.VolumeCount > 100, "it has elements")
     w.require(obj.ViewObject.Proxy.getIcon() == view_provider.ICON, "the mark is gone")
-    w.close_panel()
+    await w.close_panel()
 
 
-def statistics_and_export(obj):
-    menu_of(obj.Label, "statistics")
-    w.wait_until(lambda: w.find("statistics") is not None, "the statistics")
+async def statistics_and_export(obj):
+    await menu_of(obj.Label, "statistics")
+    await w.wait_until(lambda: w.find("statistics") is not None, "the statistics")
     text = w.find("statistics").findChild(QtGui.QTextBrowser).toPlainText()
     for word in (str(obj.FemMesh.VolumeCount), str(obj.FemMesh.NodeCount), "Face7", "Solid1"):
         w.require(word in text, f"{word} is not in {text}")
@@ -156,39 +156,39 @@ def statistics_and_export(obj):
             dialog.accept()
 
         QtCore.QTimer.singleShot(300, enter_name)
-        menu_of(obj.Label, "export")
-        w.wait_until(lambda: os.path.getsize(path) > 1000, "the file")
-        w.pause(300)
+        await menu_of(obj.Label, "export")
+        await w.wait_until(lambda: os.path.getsize(path) > 1000, "the file")
+        await w.pause(300)
         w.require(len(asked) == 1 and "plate.inp" in asked[0], f"before it overwrites it asks: {asked}")
         with open(path, encoding="utf-8") as file:
             w.require("NAME=FACE1," in file.read(), "faces have their names")
 
 
-def gmsh_and_back(document, part, obj):
+async def gmsh_and_back(document, part, obj):
     old = ObjectsFem.makeMeshGmsh(document, "FromGmsh")
     old.Part = part
     document.recompute()
-    w.require("Take over by collarmesh" not in menu_of(obj.Label), "ours need not be taken over")
-    w.require("Take over by collarmesh" in menu_of("FromGmsh", "take_over"), "the entry in Gmsh's menu")
-    w.wait_until(lambda: document.getObject("FromGmsh") is None, "the take over")
+    w.require("Take over by collarmesh" not in await menu_of(obj.Label), "ours need not be taken over")
+    w.require("Take over by collarmesh" in await menu_of("FromGmsh", "take_over"), "the entry in Gmsh's menu")
+    await w.wait_until(lambda: document.getObject("FromGmsh") is None, "the take over")
     new = next(each for each in document.Objects if each.Label == "FromGmsh")
     w.require(mesh_object.is_ours(new), "it is ours")
-    menu_of("FromGmsh", "hand_over")
-    w.wait_until(lambda: any(take_over.mesher_of(each) for each in document.Objects), "the way back")
+    await menu_of("FromGmsh", "hand_over")
+    await w.wait_until(lambda: any(take_over.mesher_of(each) for each in document.Objects), "the way back")
     document.undo()
     w.require(not any(take_over.mesher_of(each) for each in document.Objects), "undo of that")
     document.removeObject(next(each for each in document.Objects if each.Label == "FromGmsh").Name)
 
 
-def netgen_by_its_button(document, part):
+async def netgen_by_its_button(document, part):
     """Its object has no context menu in Python in this FreeCAD."""
     old = ObjectsFem.makeMeshNetgen(document, "FromNetgen")
     old.Shape = part
     document.recompute()
     FreeCADGui.Selection.clearSelection()
     FreeCADGui.Selection.addSelection(old)
-    w.click_command("Collarmesh_TakeOver")
-    w.wait_until(lambda: document.getObject("FromNetgen") is None, "the take over")
+    await w.click_command("Collarmesh_TakeOver")
+    await w.wait_until(lambda: document.getObject("FromNetgen") is None, "the take over")
     new = next(each for each in document.Objects if each.Label == "FromNetgen")
     w.require(mesh_object.is_ours(new), "it is ours")
     document.undo()
@@ -196,11 +196,11 @@ def netgen_by_its_button(document, part):
     document.removeObject("FromNetgen")
 
 
-def undo_of_a_meshing_in_the_panel(document, obj):
+async def undo_of_a_meshing_in_the_panel(document, obj):
     count = obj.FemMesh.VolumeCount
-    w.open_panel(obj)
-    w.run_mesher("2.5 mm")
-    w.close_panel()
+    await w.open_panel(obj)
+    await w.run_mesher("2.5 mm")
+    await w.close_panel()
     made = obj.FemMesh.VolumeCount
     w.require(made != count, "another mesh")
     document.undo()
@@ -209,40 +209,40 @@ def undo_of_a_meshing_in_the_panel(document, obj):
     w.require(obj.FemMesh.VolumeCount == made, "redo")
 
 
-def undo_of_the_creation_while_meshing(document, part):
+async def undo_of_the_creation_while_meshing(document, part):
     """Takes the object away under the run."""
     before = len(document.Objects)
     FreeCADGui.Selection.clearSelection()
     FreeCADGui.Selection.addSelection(part)
-    w.click_command(MESH_COMMAND)
-    w.wait_until(lambda: w.find("run") is not None, "the panel")
+    await w.click_command(MESH_COMMAND)
+    await w.wait_until(lambda: w.find("run") is not None, "the panel")
     w.child("CharacteristicLengthMax").setText("0.2 mm")
-    w.child("run").click()
-    w.wait_until(lambda: w.child("progress").value() > 0, "the run")
+    await w.click(w.child("run"))
+    await w.wait_until(lambda: w.child("progress").value() > 0, "the run")
     name = document.Objects[-1].Name
     while document.getObject(name) is not None:
         w.require(document.UndoCount > 0, "the creation can be undone")
         document.undo()
-        w.pause(50)
-    w.pause(1000)
+        await w.pause(50)
+    await w.pause(1000)
     w.require(len(document.Objects) == before, "it is gone")
 
 
-def triangles_by_the_button(document):
+async def triangles_by_the_button(document):
     triangles = document.addObject("Mesh::Feature", "Triangles")
     triangles.Mesh = Mesh.createSphere(5, 30)
     document.recompute()
     FreeCADGui.Selection.clearSelection()
     FreeCADGui.Selection.addSelection(triangles)
-    w.click_command(MESH_COMMAND)
-    w.wait_until(lambda: w.find("run") is not None, "the panel")
+    await w.click_command(MESH_COMMAND)
+    await w.wait_until(lambda: w.find("run") is not None, "the panel")
     obj = document.Objects[-1]
-    said = w.run_mesher("2 mm")
+    said = await w.run_mesher("2 mm")
     w.require(obj.FemMesh.VolumeCount > 50, said)
-    w.close_panel()
+    await w.close_panel()
 
 
-def the_mark_is_there_after_reopening(document, part, obj):
+async def the_mark_is_there_after_reopening(document, part, obj):
     part.Radius = 5
     document.recompute()
     w.require(up_to_date.is_out_of_date(obj), "it is out of date")
@@ -253,14 +253,14 @@ def the_mark_is_there_after_reopening(document, part, obj):
         FreeCAD.closeDocument(document.Name)
         document = FreeCAD.openDocument(path)
     obj = document.getObject(name)
-    w.pause(300)
+    await w.pause(300)
     w.require(obj.ViewObject.Proxy.getIcon() == view_provider.OUT_OF_DATE_ICON, "the mark after reopening")
     document.getObject("Hole").Radius = 8
     document.recompute()
     w.require(obj.ViewObject.Proxy.getIcon() == view_provider.ICON, "and it goes")
 
 
-def test():
+async def test():
     document = FreeCAD.newDocument("document")
     document.UndoMode = 1
     box = document.addObject("Part::Box", "Box")
@@ -277,16 +277,16 @@ def test():
     mesh_object.remesh(obj)
     document.recompute()
     part.ViewObject.Visibility = False
-    w.pause(500)
-    a_changed_shape_marks_its_mesh(document, cylinder, obj)
-    mesh_again_by_the_menu(document, cylinder, obj)
-    statistics_and_export(obj)
-    gmsh_and_back(document, part, obj)
-    netgen_by_its_button(document, part)
-    undo_of_a_meshing_in_the_panel(document, obj)
-    undo_of_the_creation_while_meshing(document, part)
-    triangles_by_the_button(document)
-    the_mark_is_there_after_reopening(document, cylinder, obj)
+    await w.pause(500)
+    await a_changed_shape_marks_its_mesh(document, cylinder, obj)
+    await mesh_again_by_the_menu(document, cylinder, obj)
+    await statistics_and_export(obj)
+    await gmsh_and_back(document, part, obj)
+    await netgen_by_its_button(document, part)
+    await undo_of_a_meshing_in_the_panel(document, obj)
+    await undo_of_the_creation_while_meshing(document, part)
+    await triangles_by_the_button(document)
+    await the_mark_is_there_after_reopening(document, cylinder, obj)
 
 
 w.run_test(test)

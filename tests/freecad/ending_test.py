@@ -24,18 +24,18 @@ sys.path.insert(0, {tests!r})
 import window
 from freecad.collarmesh_workbench import mesh_object, meshing_process
 
-def begin():
+async def begin():
     FreeCADGui.activateWorkbench("FemWorkbench")
     document = FreeCAD.newDocument()
     part = document.addObject("Part::Feature", "Plate")
     part.Shape = window.plate()
     obj = mesh_object.make(document, part)
     document.saveAs(os.path.join(os.environ["FREECAD_USER_HOME"], "plate.FCStd"))
-    window.open_panel(obj)
+    await window.open_panel(obj)
     window.child("CharacteristicLengthMax").setText("0.12 mm")
-    window.child("run").click()
+    await window.click(window.child("run"))
     work = meshing_process.run_of(obj)
-    window.wait_until(lambda: work.progress is not None and work.progress.tets > 1000, "progress")
+    await window.wait_until(lambda: work.progress is not None and work.progress.tets > 1000, "progress")
     with open(os.environ["COLLARMESH_TEST_RESULT"], "w") as file:
         json.dump([os.getpid(), work._process.processId(), work.job.folder.name], file)
     if {close}:
@@ -46,7 +46,7 @@ def discard():
     box = QtGui.QApplication.activeModalWidget()
     box.button(QtGui.QMessageBox.Discard).click()
 
-QtCore.QTimer.singleShot(1500, begin)
+QtCore.QTimer.singleShot(1500, lambda: window.follow(begin(), print))
 """
 
 

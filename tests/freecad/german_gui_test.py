@@ -31,24 +31,24 @@ def actions():
             for action in bar.actions() if action.objectName().startswith("Collarmesh")}
 
 
-def test():
+async def test():
     document = FreeCAD.newDocument("german")
     part = document.addObject("Part::Feature", "Platte")
     part.Shape = w.plate()
     document.recompute()
     FreeCADGui.activateWorkbench("FemWorkbench")
-    w.wait_until(lambda: "Collarmesh_SizeSphere" in actions(), "the buttons")
+    await w.wait_until(lambda: "Collarmesh_SizeSphere" in actions(), "the buttons")
     w.require(actions()["Collarmesh_SizeSphere"][0] == "Größe in einer Kugel", f"{actions()}")
     w.require("Kugel verlangen" in actions()["Collarmesh_SizeSphere"][1], f"{actions()}")
     obj = mesh_object.make(document, part)
-    w.open_panel(obj)
+    await w.open_panel(obj)
     texts = texts_of(w.child("panel"))
     for word in ("Vernetzen", "Abbrechen", "zweite (gekrümmt, 10 Knoten)", "Ordnung der Elemente"):
         w.require(word in texts, f"{word} is not in {texts}")
-    w.screenshot("freecad_german.png")
-    said = w.run_mesher("4 mm")
+    await w.screenshot("freecad_german.png")
+    said = await w.run_mesher("4 mm")
     w.require("Alle Zusagen sind eingehalten" in said and "Tetraeder" in said, said)
-    w.close_panel()
+    await w.close_panel()
     size = size_objects.make(obj, "Distance", 1)
     try:
         mesh_object.remesh(obj)
@@ -62,11 +62,11 @@ def test():
     sphere = size_objects.make(obj, "Sphere", 1)
     document.recompute()
     sphere.ViewObject.doubleClicked()
-    w.wait_until(lambda: w.find("size_panel") is not None, "the panel of the sphere")
+    await w.wait_until(lambda: w.find("size_panel") is not None, "the panel of the sphere")
     w.require("Wachstum davon weg" in texts_of(w.child("size_panel")), f"{texts_of(w.child('size_panel'))}")
     w.require(w.child("size_Radius").toolTip() == "Radius der Kugel", w.child("size_Radius").toolTip())
     w.child("size_Radius").setText("3,5 mm")
-    w.pause(50)
+    await w.pause(50)
     w.require(sphere.Radius.Value == 3.5, f"a German number: {sphere.Radius}")
 
 

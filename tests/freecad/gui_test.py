@@ -14,7 +14,7 @@ from freecad.collarmesh_workbench.commands import GROUP_COMMAND, MESH_COMMAND, R
 from freecad.collarmesh_workbench.fem_buttons import BESIDE
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from window import (child, click_command, open_panel, plate, require, run_mesher, run_test, said,  # noqa: E402
+from window import (child, click, click_command, open_panel, plate, require, run_mesher, run_test, said,  # noqa: E402
                     screenshot, wait_until, window)
 
 
@@ -28,26 +28,26 @@ def bars_with(command):
     return found
 
 
-def buttons_are_in_fem():
+async def buttons_are_in_fem():
     FreeCADGui.activateWorkbench("PartWorkbench")
     FreeCADGui.activateWorkbench("FemWorkbench")
     for command in BESIDE:
-        wait_until(lambda: bars_with(command) == {"QToolBar", "QMenu"}, f"{command} in the toolbar and the menu")
+        await wait_until(lambda: bars_with(command) == {"QToolBar", "QMenu"}, f"{command} in the toolbar and the menu")
 
 
-def click_opens_the_panel(document, part):
+async def click_opens_the_panel(document, part):
     FreeCADGui.Selection.addSelection(part)
-    click_command(MESH_COMMAND)
-    wait_until(lambda: window.findChild(QtGui.QWidget, "collarmesh_run") is not None, "the panel")
+    await click_command(MESH_COMMAND)
+    await wait_until(lambda: window.findChild(QtGui.QWidget, "collarmesh_run") is not None, "the panel")
     obj = document.getObject("FEMMeshCollarmesh")
     require(obj is not None and obj.Part is part, "the object links its part")
     return obj
 
 
-def progress_moves_and_the_mesh_shows(obj, part):
+async def progress_moves_and_the_mesh_shows(obj, part):
     seen = set()
     child("progress").valueChanged.connect(seen.add)
-    told = run_mesher("2 mm")
+    told = await run_mesher("2 mm")
     require(obj.FemMesh.VolumeCount > 1000, told)
     require(len(seen) > 3 and max(seen) > 900, f"progress moves: {sorted(seen)}")
     require("Every guarantee holds" in told and "dihedral angles" in told, told)
@@ -55,24 +55,24 @@ def progress_moves_and_the_mesh_shows(obj, part):
     require(obj.ViewObject.Visibility, "the mesh shows")
     FreeCADGui.ActiveDocument.ActiveView.viewIsometric()
     FreeCADGui.SendMsgToActiveView("ViewFit")
-    screenshot("freecad_panel.png")
+    await screenshot("freecad_panel.png")
 
 
-def cancel_keeps_the_mesh(obj):
+async def cancel_keeps_the_mesh(obj):
     count = obj.FemMesh.VolumeCount
     child("CharacteristicLengthMax").setText("0.15 mm")
-    child("run").click()
+    await click(child("run"))
     require(child("cancel").isEnabled(), "cancel is possible")
-    wait_until(lambda: child("progress").value() > 70, "a long run")
+    await wait_until(lambda: child("progress").value() > 70, "a long run")
     clock = QtCore.QElapsedTimer()
     clock.start()
-    child("cancel").click()
-    wait_until(lambda: child("run").isEnabled(), "the end of the cancelled run")
+    await click(child("cancel"))
+    await wait_until(lambda: child("run").isEnabled(), "the end of the cancelled run")
     require(clock.elapsed() < 3000, "cancel is quick")
     require(obj.FemMesh.VolumeCount == count, "cancel keeps the mesh")
 
 
-def bad_shapes_are_told(obj, part):
+async def bad_shapes_are_told(obj, part):
     count, program = obj.FemMesh.VolumeCount, os.environ["COLLARMESH_PROGRAM"]
     box = Part.makeBox(10, 10, 10)
     shapes = (
@@ -81,42 +81,42 @@ def bad_shapes_are_told(obj, part):
     )
     for name, shape, words in shapes:
         part.Shape = shape
-        told = run_mesher("2 mm")
+        told = await run_mesher("2 mm")
         for word in words:
             require(word in told, f"{name}: {word} is not in: {told}")
         require(obj.FemMesh.VolumeCount == count, f"{name} keeps the mesh")
         if name == "a sheet":
-            screenshot("freecad_message.png")
+            await screenshot("freecad_message.png")
     os.environ["COLLARMESH_PROGRAM"] = "/no/such/program"
     part.Shape = box
-    told = run_mesher("2 mm")
+    told = await run_mesher("2 mm")
     require("/no/such/program" in told and "preferences" in told, told)
     os.environ["COLLARMESH_PROGRAM"] = program
-    told = run_mesher("nonsense")
+    told = await run_mesher("nonsense")
     require("no value" in told, told)
     require(obj.FemMesh.VolumeCount == count, "the mesh is kept")
     step = [FreeCAD.Vector(*p) for p in ((0, 0, 0), (9, 0, 0), (10, 0.005, 0), (10, 0.01, 0), (0, 10, 0), (0, 0, 0))]
     part.Shape = Part.Face(Part.makePolygon(step)).extrude(FreeCAD.Vector(0, 0, 2))
-    told = run_mesher("2 mm")
+    told = await run_mesher("2 mm")
     require("0.005 mm" in told and "Edge" in told and "(10, 0.0075, " in told, told)
 
 
-def refinements_and_groups(document, obj, part):
+async def refinements_and_groups(document, obj, part):
     """Their buttons, and what they do to the mesh."""
     part.Shape = plate()
     obj.CharacteristicLengthMax = 4
     for command in (REFINEMENT_COMMAND, GROUP_COMMAND):
         FreeCADGui.Selection.clearSelection()
         FreeCADGui.Selection.addSelection(obj)
-        click_command(command)
-        wait_until(lambda: FreeCADGui.ActiveDocument.getInEdit() is not None, "its panel")
+        await click_command(command)
+        await wait_until(lambda: FreeCADGui.ActiveDocument.getInEdit() is not None, "its panel")
         FreeCADGui.Control.closeDialog()
         FreeCADGui.ActiveDocument.resetEdit()
     refinement, group = obj.MeshRegionList[0], obj.MeshGroupList[0]
     refinement.CharacteristicLength = 0.8
     refinement.References = group.References = [(part, "Face1")]
     FreeCADGui.ActiveDocument.setEdit(obj.Name)
-    told = run_mesher("4 mm")
+    told = await run_mesher("4 mm")
     names = {obj.FemMesh.getGroupName(n): n for n in obj.FemMesh.Groups}
     require(f"{group.Name}_Faces" in names, told)
     elements = obj.FemMesh.getGroupElements(names[f"{group.Name}_Faces"])
@@ -142,7 +142,7 @@ def preferences_page_keeps_values():
     page.saveSettings()
 
 
-def reopening_keeps_everything(document, obj):
+async def reopening_keeps_everything(document, obj):
     name, count, size = obj.Name, obj.FemMesh.VolumeCount, obj.CharacteristicLengthMax.Value
     groups = {obj.FemMesh.getGroupName(n): len(obj.FemMesh.getGroupElements(n)) for n in obj.FemMesh.Groups}
     with tempfile.TemporaryDirectory() as folder:
@@ -155,27 +155,27 @@ def reopening_keeps_everything(document, obj):
     again = {obj.FemMesh.getGroupName(n): len(obj.FemMesh.getGroupElements(n)) for n in obj.FemMesh.Groups}
     require(again == groups, "groups are kept")
     require(len(obj.MeshRegionList) == len(obj.MeshGroupList) == 1, "refinement and group are kept")
-    open_panel(obj)
+    await open_panel(obj)
     require("Worst elements" in said(), "what the mesh itself tells")
-    require("Every guarantee holds" in run_mesher("4 mm"), "it can be meshed again")
+    require("Every guarantee holds" in await run_mesher("4 mm"), "it can be meshed again")
     FreeCADGui.ActiveDocument.resetEdit()
     FreeCAD.closeDocument(document.Name)
 
 
-def test():
+async def test():
     document = FreeCAD.newDocument("gui")
     part = document.addObject("Part::Feature", "Plate")
     part.Shape = plate()
     document.recompute()
-    buttons_are_in_fem()
-    obj = click_opens_the_panel(document, part)
-    progress_moves_and_the_mesh_shows(obj, part)
-    cancel_keeps_the_mesh(obj)
-    bad_shapes_are_told(obj, part)
+    await buttons_are_in_fem()
+    obj = await click_opens_the_panel(document, part)
+    await progress_moves_and_the_mesh_shows(obj, part)
+    await cancel_keeps_the_mesh(obj)
+    await bad_shapes_are_told(obj, part)
     FreeCADGui.ActiveDocument.resetEdit()
-    refinements_and_groups(document, obj, part)
+    await refinements_and_groups(document, obj, part)
     preferences_page_keeps_values()
-    reopening_keeps_everything(document, obj)
+    await reopening_keeps_everything(document, obj)
 
 
 run_test(test)

@@ -21,7 +21,7 @@ from freecad.collarmesh_workbench import (angle_chart, guarantees, mesh_object, 
                                           size_objects, view_marks, work_folder, worst_elements)
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from window import (child, click_at, click_command, click_item, close_panel, find, open_panel, pause,  # noqa: E402
+from window import (child, click, click_at, click_command, click_item, close_panel, find, open_panel, pause,  # noqa: E402
                     plate, require, rows, run_mesher, run_test, said, screenshot, wait_until)
 
 PROGRAM = os.environ["COLLARMESH_PROGRAM"]
@@ -40,9 +40,9 @@ def new_part(shape, label="Plate"):
     return document, part, obj
 
 
-def close(document):
+async def close(document):
     if find("run") is not None:
-        close_panel()
+        await close_panel()
     FreeCAD.closeDocument(document.Name)
 
 
@@ -87,84 +87,84 @@ def stand_in(folder, text):
     return str(path)
 
 
-def elements_are_told_before_meshing():
+async def elements_are_told_before_meshing():
     """The program's numbers stand beside the presets, follow other settings, and are about those that come."""
     document, part, obj = new_part(plate())
-    open_panel(obj)
-    wait_until(lambda: number_in(table()[4][2]), "the numbers of elements")
+    await open_panel(obj)
+    await wait_until(lambda: number_in(table()[4][2]), "the numbers of elements")
     counts = [number_in(row[2]) for row in table()[:5]]
     require(counts == sorted(counts) and counts[0] < counts[-1], f"finer has more: {table()}")
     require(all(row[3] for row in table()[:5]), f"times: {table()}")
     require(child("presets").currentItem().text(0) == "Medium", "a new mesh is medium")
     require(table()[2][1] == "2.5 mm", f"{table()}")
     require(table()[5] == ["Custom", "", "", ""], f"{table()[5]}")
-    screenshot("freecad_presets.png")
-    click_item(child("presets").topLevelItem(1))
+    await screenshot("freecad_presets.png")
+    await click_item(child("presets").topLevelItem(1))
     require(child("CharacteristicLengthMax").text() == "5.00 mm", "a preset sets the size")
     child("CharacteristicLengthMax").setText("3 mm")
     require(child("presets").currentItem().text(0) == "Custom", "another size is a custom one")
-    wait_until(lambda: number_in(table()[5][2]), "the number for the custom size")
+    await wait_until(lambda: number_in(table()[5][2]), "the number for the custom size")
     require(table()[5][1] == "3 mm" and counts[1] < number_in(table()[5][2]) < counts[2], f"{table()}")
     child("MeshSizeFromCurvature").setValue(60)
-    wait_until(lambda: number_in(table()[1][2]) > counts[1], "more elements on circles")
+    await wait_until(lambda: number_in(table()[1][2]) > counts[1], "more elements on circles")
     child("MeshSizeFromCurvature").setValue(0)
-    wait_until(lambda: number_in(table()[1][2]) == counts[1], "the numbers from before")
+    await wait_until(lambda: number_in(table()[1][2]) == counts[1], "the numbers from before")
     part.Shape = Part.makeBox(40, 30, 10)
-    wait_until(lambda: number_in(table()[2][2]) > 1.3 * counts[2], "the numbers of another shape")
-    close(document)
+    await wait_until(lambda: number_in(table()[2][2]) > 1.3 * counts[2], "the numbers of another shape")
+    await close(document)
 
 
-def what_is_not_predicted_is_not_told():
+async def what_is_not_predicted_is_not_told():
     """The program knows the numbers of coarsened meshes alone."""
     document, _, obj = new_part(plate())
-    open_panel(obj)
-    wait_until(lambda: number_in(table()[4][2]), "the numbers of elements")
+    await open_panel(obj)
+    await wait_until(lambda: number_in(table()[4][2]), "the numbers of elements")
     child("Coarsen").setChecked(False)
     require([row[2:] for row in table()] == 6 * [["", ""]], f"{table()}")
-    pause(1500)
+    await pause(1500)
     require([row[2:] for row in table()] == 6 * [["", ""]], f"and nothing comes later: {table()}")
     child("Coarsen").setChecked(True)
     require(number_in(table()[4][2]), f"known already: {table()}")
-    close(document)
+    await close(document)
 
 
-def sizes_by_place_count():
+async def sizes_by_place_count():
     """What was predicted without a sphere is not told with it."""
     document, _, obj = new_part(plate())
-    open_panel(obj)
-    wait_until(lambda: number_in(table()[2][2]), "the number of elements")
+    await open_panel(obj)
+    await wait_until(lambda: number_in(table()[2][2]), "the number of elements")
     count = number_in(table()[2][2])
     sphere = size_objects.make(obj, "Sphere", 0.5)
     sphere.Radius = 8
     document.recompute()
     child("MeshSizeFromCurvature").setValue(1)  # any change asks again
     child("MeshSizeFromCurvature").setValue(0)
-    wait_until(lambda: number_in(table()[2][2]) > 2 * count, "more elements in the sphere")
-    close(document)
+    await wait_until(lambda: number_in(table()[2][2]) > 2 * count, "more elements in the sphere")
+    await close(document)
 
 
-def predictions_wait_for_the_mesher():
+async def predictions_wait_for_the_mesher():
     """While it runs nothing else is asked of the processor, and the time left is that of the size it runs with."""
     document, _, obj = new_part(plate())
-    open_panel(obj)
-    wait_until(lambda: number_in(table()[4][2]), "the numbers of elements")
+    await open_panel(obj)
+    await wait_until(lambda: number_in(table()[4][2]), "the numbers of elements")
     child("CharacteristicLengthMax").setText("0.3 mm")
-    wait_until(lambda: number_in(table()[5][2]), "the number for the custom size")
-    child("run").click()
+    await wait_until(lambda: number_in(table()[5][2]), "the number for the custom size")
+    await click(child("run"))
     run = meshing_process.run_of(obj)
     require(run.predicted_seconds == panel_of(obj).known[0.3][1] > 0, f"{run.predicted_seconds}")
     expected = run.predicted_seconds
     child("CharacteristicLengthMax").setText("7 mm")
-    pause(1500)
+    await pause(1500)
     require(panel_of(obj).predictions._process is None and not number_in(table()[5][2]), f"{table()}")
     require(meshing_process.run_of(obj) in (run, None) and run.predicted_seconds == expected, "as it began")
-    child("cancel").click()
-    wait_until(lambda: child("run").isEnabled(), "the end")
-    wait_until(lambda: number_in(table()[5][2]), "the number for the size that was typed")
-    close(document)
+    await click(child("cancel"))
+    await wait_until(lambda: child("run").isEnabled(), "the end")
+    await wait_until(lambda: number_in(table()[5][2]), "the number for the size that was typed")
+    await close(document)
 
 
-def the_folder_forgets_processes_that_ended():
+async def the_folder_forgets_processes_that_ended():
     """Their numbers may be those of other programs later, which the folder's end must not kill."""
     told = {}
     program_is = work_folder.WorkFolder.program_is
@@ -176,40 +176,40 @@ def the_folder_forgets_processes_that_ended():
     document, _, obj = new_part(plate())
     with tempfile.TemporaryDirectory() as folder, mock.patch.object(work_folder.WorkFolder, "program_is", remember):
         os.environ["COLLARMESH_PROGRAM"] = stand_in(folder, "import time; time.sleep(30)")
-        open_panel(obj)
-        wait_until(lambda: told, "a prediction")
+        await open_panel(obj)
+        await wait_until(lambda: told, "a prediction")
         child("CharacteristicLengthMax").setText("7 mm")  # ends it
         ((process_id, after),) = told.values()
         require(process_id and after is None and not is_running(process_id), f"{told}")
         told.clear()
-        child("run").click()
-        child("cancel").click()
-        wait_until(lambda: child("run").isEnabled(), "the end")
-        child("run").click()
+        await click(child("run"))
+        await click(child("cancel"))
+        await wait_until(lambda: child("run").isEnabled(), "the end")
+        await click(child("run"))
         document.removeObject(obj.Name)
         require(len(told) == 2 and all(each[-1] is None for each in told.values()), f"{told}")
         os.environ["COLLARMESH_PROGRAM"] = PROGRAM
     FreeCAD.closeDocument(document.Name)
 
 
-def an_older_program_tells_no_numbers():
+async def an_older_program_tells_no_numbers():
     document, _, obj = new_part(plate())
     with tempfile.TemporaryDirectory() as folder:
         os.environ["COLLARMESH_PROGRAM"] = stand_in(folder, "if '--predict' in sys.argv: sys.exit(2)")
-        open_panel(obj)
-        pause(1500)
+        await open_panel(obj)
+        await pause(1500)
         require([row[2:] for row in table()] == 6 * [["", ""]], f"{table()}")
-        require("Every guarantee holds" in run_mesher("4 mm"), "and meshes")
+        require("Every guarantee holds" in await run_mesher("4 mm"), "and meshes")
         os.environ["COLLARMESH_PROGRAM"] = PROGRAM
-    close(document)
+    await close(document)
 
 
-def advanced_settings_reach_the_program():
+async def advanced_settings_reach_the_program():
     """What is clicked and typed, with units, is what is asked for."""
     document, _, obj = new_part(plate())
-    open_panel(obj)
+    await open_panel(obj)
     require(not child("MeshSizeFromCurvature").isVisible(), "folded at first")
-    child("advanced").click()
+    await click(child("advanced"))
     require(child("MeshSizeFromCurvature").isVisible(), "unfolded")
     for name in ("CharacteristicLengthMax", "ElementOrder", "presets", *obj.PropertiesList):
         if find(name) is not None:
@@ -219,9 +219,9 @@ def advanced_settings_reach_the_program():
     child("ImproveLevel").setCurrentIndex(child("ImproveLevel").findText("best"))
     child("Repair").setCurrentIndex(child("Repair").findText("wrap where it fails"))
     child("ElementOrder").setCurrentIndex(1)
-    screenshot("freecad_advanced.png", size=(1200, 1000))
+    await screenshot("freecad_advanced.png", size=(1200, 1000))
     child("Coarsen").setChecked(False)
-    run_mesher("4 mm")
+    await run_mesher("4 mm")
     options = meshing_process.outcome_of(obj).report["options"]
     wanted = {"size": 4, "elements_per_circle": 24, "distance": 0.0508, "improve": 3, "coarsen": False,
               "repair": "wrap", "order": 2, "crease_angle": 60, "radius_edge": 2}
@@ -230,28 +230,28 @@ def advanced_settings_reach_the_program():
     require(len(obj.FemMesh.getElementNodes(obj.FemMesh.Volumes[0])) == 10, "second order")
     require(f"{obj.FemMesh.NodeCount:,}".replace(",", "\u202f") in child("counts").text(), child("counts").text())
     child("CharacteristicLengthMin").setText("3 kg")
-    told = run_mesher("4 mm")
+    told = await run_mesher("4 mm")
     require("Smallest size" in told and "3 kg" in told, told)
-    close(document)
+    await close(document)
 
 
-def tiny_sizes_are_shown():
+async def tiny_sizes_are_shown():
     """FreeCAD writes two decimals."""
     document, _, obj = new_part(Part.makeBox(0.01, 0.01, 0.01))
     obj.CharacteristicLengthMax = 0.00123456789
-    open_panel(obj)
+    await open_panel(obj)
     require(child("CharacteristicLengthMax").text() == "0.00123457 mm", child("CharacteristicLengthMax").text())
-    child("run").click()
-    wait_until(lambda: child("run").isEnabled(), "the end of the run")
+    await click(child("run"))
+    await wait_until(lambda: child("run").isEnabled(), "the end of the run")
     require(obj.CharacteristicLengthMax.Value == 0.00123456789, "what nobody has edited stays as it is")
-    close(document)
+    await close(document)
 
 
-def the_result_is_told():
+async def the_result_is_told():
     """Counts are those of the mesh, the chart holds all elements, a guarantee that is missed is red."""
     document, part, obj = new_part(plate())
-    open_panel(obj)
-    run_mesher("2 mm")
+    await open_panel(obj)
+    await run_mesher("2 mm")
     report, fem_mesh = meshing_process.outcome_of(obj).report, obj.FemMesh
     for count in (fem_mesh.VolumeCount, fem_mesh.NodeCount, fem_mesh.FaceCount):
         require(f"{count:,}".replace(",", "\u202f") in child("counts").text(), f"{count}: {child('counts').text()}")
@@ -260,7 +260,7 @@ def the_result_is_told():
     lines = child("guarantees").text()
     require("✗" not in lines and lines.count("✓") == 6, lines)
     part.ViewObject.Visibility = False
-    screenshot("freecad_panel.png", size=(1200, 1000))
+    await screenshot("freecad_panel.png", size=(1200, 1000))
     x, y = int(chart._x(chart.extremes[0])), int(chart._frame().bottom())
     picture = chart.grab().toImage()
     colours = {picture.pixelColor(x + i, y - j).name() for i in range(-3, 4) for j in range(2, 12)}
@@ -272,26 +272,26 @@ def the_result_is_told():
     broken = [text for text, messages in guarantees.guarantees(report) if messages]
     require(broken == ["Circumradius / shortest edge is bounded"], f"{broken}")
     meshing_process._outcomes[meshing_process._key(obj)] = meshing_process.Outcome(report=report)
-    close_panel()
-    open_panel(obj)
+    await close_panel()
+    await open_panel(obj)
     told = said()
     require("A guarantee is missed" in told and told.count("✗") == 1 and "Tetrahedron 7 is bad." in told, told)
-    close(document)
+    await close(document)
 
 
-def the_worst_elements_show():
+async def the_worst_elements_show():
     """A click on the chart's mark, on a row and on the heading."""
     document, part, obj = new_part(plate())
-    open_panel(obj)
-    run_mesher("2 mm")
+    await open_panel(obj)
+    await run_mesher("2 mm")
     require(marks_of(obj) is None, "nothing is marked at first")
     view = FreeCADGui.ActiveDocument.ActiveView
     before = view.getCamera()
     chart = child("chart")
-    click_at(chart, QtCore.QPoint(int(chart._x(chart.extremes[0])), int(chart._frame().bottom()) - 8))
+    await click_at(chart, QtCore.QPoint(int(chart._x(chart.extremes[0])), int(chart._frame().bottom()) - 8))
     require(marks_of(obj) is not None and view.getCamera() != before, "the worst element is marked and looked at")
     require(obj.ViewObject.Transparency > 50 and not part.ViewObject.Visibility, "it can be seen")
-    screenshot("freecad_worst_elements.png", fit=False, size=(1200, 1000))
+    await screenshot("freecad_worst_elements.png", fit=False, size=(1200, 1000))
     report = meshing_process.outcome_of(obj).report
     worst = next(items for heading, items in rows(child("places")).items() if heading.startswith("Worst elements"))
     smallest, rest = worst[0].text(0).split("° to ")
@@ -303,19 +303,19 @@ def the_worst_elements_show():
     picked = []
     child("places").picked.connect(picked.append)
     for row in (worst[1], worst[1], worst[2]):
-        click_item(row)
+        await click_item(row)
     require([len(places_of) for places_of in picked] == [1, 1, 1], f"each click shows its place once: {picked}")
-    click_item(worst[0].parent())
+    await click_item(worst[0].parent())
     faces = marks_of(obj).getChild(1).getChild(2)
     require(faces.coordIndex.getNum() == len(worst) * 16 and len(worst) >= 10, "all are marked")
-    close_panel()
+    await close_panel()
     require(marks_of(obj) is None and obj.ViewObject.Transparency == 0 and part.ViewObject.Visibility, "as before")
-    open_panel(obj)
+    await open_panel(obj)
     child("places").pick_first(places.WORST)
     require(marks_of(obj) is not None, "what the last run found is still there")
     FreeCADGui.ActiveDocument.resetEdit()  # as when another object is edited
-    wait_until(lambda: marks_of(obj) is None and find("run") is None, "the end of panel and marks")
-    close(document)
+    await wait_until(lambda: marks_of(obj) is None and find("run") is None, "the end of panel and marks")
+    await close(document)
 
 
 def rows_show_all_of_their_texts(tree):
@@ -328,174 +328,174 @@ def rows_show_all_of_their_texts(tree):
         require(wanted <= shown < wanted + 3 * tree.fontMetrics().lineSpacing(), f"{shown} of {wanted}: {item.text(0)}")
 
 
-def problems_select_their_places():
+async def problems_select_their_places():
     """A click on a message selects the edges and faces that it names, and looks at them."""
     document, part, obj = new_part(Part.Shell(Part.makeBox(10, 10, 10).Faces[:1]), "Sheet")
-    open_panel(obj)
-    told = run_mesher("2 mm")
+    await open_panel(obj)
+    told = await run_mesher("2 mm")
     require("No mesh is made" in told and "Edge" in told, told)
     require("“Tolerance of repair”" in told and "--" not in told, f"the panel's names: {told}")
     require("of the shape. The shape holds" in told, f"sentences begin with capitals: {told}")
     rows_show_all_of_their_texts(child("places"))
     problem = next(item for items in rows(child("places")).values() for item in items if "Edge" in item.text(0))
     before = FreeCADGui.ActiveDocument.ActiveView.getCamera()
-    click_item(problem)
+    await click_item(problem)
     selected = {name for each in FreeCADGui.Selection.getSelectionEx() for name in each.SubElementNames}
     named = set(places.told(places.PROBLEM, problem.text(0)).subshapes)
     require(selected == named and any(name.startswith("Edge") for name in named), f"{selected} of {named}")
     require(FreeCADGui.ActiveDocument.ActiveView.getCamera() != before, "the camera moves")
-    screenshot("freecad_message.png", fit=False)
-    close_panel()
+    await screenshot("freecad_message.png", fit=False)
+    await close_panel()
     require(not FreeCADGui.Selection.getSelectionEx(), "nothing stays selected")
-    close(document)
+    await close(document)
 
 
-def notes_and_repairs_are_told_once():
+async def notes_and_repairs_are_told_once():
     box = Part.makeBox(10, 10, 10)
     overlapping = Part.makeCompound([box, Part.makeBox(10, 10, 10, FreeCAD.Vector(6, 0, 0))])
     document, part, obj = new_part(overlapping, "Blocks")
-    open_panel(obj)
-    told = run_mesher("3 mm")
+    await open_panel(obj)
+    told = await run_mesher("3 mm")
     require(told.count("Solid1 and Solid2 overlap around (8, 5, 5)") == 1, told)
     require("Every guarantee holds" in told and "Warnings (1)" in told and "changed while" not in told, told)
     part.Shape = Part.Shell(box.Faces[:5])
-    told = run_mesher("3 mm")
+    told = await run_mesher("3 mm")
     require(told.count("a hole of 4 edges around (5, 5, 10)") == 1 and "Repaired (" in told, told)
     require("changed while" not in told, told)
     hole = rows(child("places"))[next(text for text in rows(child("places")) if text.startswith("Repaired"))][0]
-    click_item(hole)
+    await click_item(hole)
     point = marks_of(obj).getChild(1).getChild(0).point.getValues()[0].getValue()
     require(tuple(point) == (5, 5, 10), f"the hole is marked: {point}")
-    screenshot("freecad_repair.png", fit=False)
-    close(document)
+    await screenshot("freecad_repair.png", fit=False)
+    await close(document)
 
 
-def nodes_off_their_faces_are_listed():
+async def nodes_off_their_faces_are_listed():
     """As the program reports them: with their faces, which a click selects."""
     document, part, obj = new_part(Part.makeTorus(10, 3), "Ring")
     obj.CharacteristicLengthMax, obj.ElementOrder = 2.7, "2nd"
-    open_panel(obj)
-    run_mesher("2.7 mm")
+    await open_panel(obj)
+    await run_mesher("2.7 mm")
     outcome = meshing_process.outcome_of(obj)
     off = len(outcome.report["second_order"]["straightened"])
     require((f"Nodes off their face ({off})" in said()) == bool(off), said())
     outcome.report["second_order"]["straightened"] = [{"dimension": 2, "tag": 1, "where": [13, 0, 0], "distance": 0.01}]
-    close_panel()
-    open_panel(obj)
+    await close_panel()
+    await open_panel(obj)
     (node,) = rows(child("places"))["Nodes off their face (1)"]
     require(node.text(0) == "Face1: 0.01 mm", node.text(0))
-    click_item(node)
+    await click_item(node)
     selected = [each.SubElementNames for each in FreeCADGui.Selection.getSelectionEx()]
     require(selected == [("Face1",)], f"the face is selected: {selected}")
-    close(document)
+    await close(document)
 
 
-def cancel_tells_and_time_left_shows():
+async def cancel_tells_and_time_left_shows():
     document, _, obj = new_part(plate())
-    open_panel(obj)
-    run_mesher("3 mm")
+    await open_panel(obj)
+    await run_mesher("3 mm")
     count, left = obj.FemMesh.VolumeCount, child("left")
     child("CharacteristicLengthMax").setText(LONG)
-    child("run").click()
+    await click(child("run"))
     require(not child("run").isEnabled() and child("progress").isVisible(), "a run is under way")
     require("left" not in left.text(), "at the start nobody knows")
-    wait_until(lambda: "left" in left.text() and "elements so far" in left.text(), "the time left")
-    screenshot("freecad_progress.png", size=(1200, 1000))
-    child("cancel").click()
-    wait_until(lambda: child("run").isEnabled(), "the end")
+    await wait_until(lambda: "left" in left.text() and "elements so far" in left.text(), "the time left")
+    await screenshot("freecad_progress.png", size=(1200, 1000))
+    await click(child("cancel"))
+    await wait_until(lambda: child("run").isEnabled(), "the end")
     require("Cancelled" in said() and obj.FemMesh.VolumeCount == count, said())
-    close(document)
+    await close(document)
 
 
-def a_closed_panel_lets_the_run_go_on():
+async def a_closed_panel_lets_the_run_go_on():
     """Two documents, two runs at once; a panel that is opened again shows its run."""
     first, _, one = new_part(plate(), "First")
     second, _, other = new_part(plate(), "Second")
-    open_panel(one)
+    await open_panel(one)
     child("CharacteristicLengthMax").setText("0.5 mm")
-    child("run").click()
-    close_panel()
-    open_panel(other)
+    await click(child("run"))
+    await close_panel()
+    await open_panel(other)
     child("CharacteristicLengthMax").setText("0.6 mm")
-    child("run").click()
+    await click(child("run"))
     require(len(meshing_process._runs) == 2, "two runs")
-    close_panel()
-    open_panel(one)
+    await close_panel()
+    await open_panel(one)
     require(meshing_process.run_of(one) is None or not child("run").isEnabled(), "the panel shows its run")
-    wait_until(lambda: not meshing_process._runs, "both runs", 120)
+    await wait_until(lambda: not meshing_process._runs, "both runs", 120)
     require("Every guarantee holds" in said(), said())
     require(one.FemMesh.VolumeCount > other.FemMesh.VolumeCount > 10000, "both meshes are there")
-    close(first)
-    close(second)
+    await close(first)
+    await close(second)
 
 
-def a_part_changed_while_meshing_is_told():
+async def a_part_changed_while_meshing_is_told():
     document, part, obj = new_part(plate())
-    open_panel(obj)
+    await open_panel(obj)
     child("CharacteristicLengthMax").setText("0.6 mm")
-    child("run").click()
+    await click(child("run"))
     part.Shape = Part.makeBox(40, 30, 5)
-    wait_until(lambda: child("run").isEnabled(), "the end of the run")
+    await wait_until(lambda: child("run").isEnabled(), "the end of the run")
     require("changed while it was meshed" in said(), said())
-    require("changed while" not in run_mesher("3 mm"), said())
+    require("changed while" not in await run_mesher("3 mm"), said())
     count = obj.FemMesh.VolumeCount
     child("CharacteristicLengthMax").setText("0.6 mm")
-    child("run").click()
+    await click(child("run"))
     document.removeObject(part.Name)
-    wait_until(lambda: child("run").isEnabled(), "the end of the run")
+    await wait_until(lambda: child("run").isEnabled(), "the end of the run")
     require("deleted while it was meshed" in said() and obj.FemMesh.VolumeCount == count, said())
-    told = run_mesher("3 mm")
+    told = await run_mesher("3 mm")
     require("no object is chosen" in told, told)
-    close(document)
+    await close(document)
 
 
-def a_link_changed_while_meshing_is_told():
+async def a_link_changed_while_meshing_is_told():
     """Nothing of the link itself changes; the numbers in the table follow, too."""
     document, part, obj = new_part(plate())
     link = document.addObject("App::Link", "Link")
     link.LinkedObject = part
     obj.Part = link
     document.recompute()
-    open_panel(obj)
-    wait_until(lambda: number_in(table()[2][2]), "the number of elements")
+    await open_panel(obj)
+    await wait_until(lambda: number_in(table()[2][2]), "the number of elements")
     count = number_in(table()[2][2])
     child("CharacteristicLengthMax").setText("0.6 mm")
-    child("run").click()
+    await click(child("run"))
     part.Shape = Part.makeBox(40, 30, 10)
     document.recompute()
-    wait_until(lambda: child("run").isEnabled(), "the end of the run")
+    await wait_until(lambda: child("run").isEnabled(), "the end of the run")
     require("changed while it was meshed" in said(), said())
-    wait_until(lambda: number_in(table()[2][2]) > 1.3 * count, "the numbers of the other shape")
-    close(document)
+    await wait_until(lambda: number_in(table()[2][2]) > 1.3 * count, "the numbers of the other shape")
+    await close(document)
 
 
-def another_panel_keeps_its_cancel():
+async def another_panel_keeps_its_cancel():
     """A run that ends while a size is edited puts its mesh in place after that; "Cancel" takes the size back."""
     for button in (QtGui.QDialogButtonBox.Cancel, QtGui.QDialogButtonBox.Ok):
         document, _, obj = new_part(plate())
         document.UndoMode = 1
-        open_panel(obj)
+        await open_panel(obj)
         child("CharacteristicLengthMax").setText("2 mm")
-        child("run").click()
+        await click(child("run"))
         run = meshing_process.run_of(obj)
-        close_panel()
+        await close_panel()
         FreeCADGui.Selection.clearSelection()
         FreeCADGui.Selection.addSelection(obj)
-        click_command("Collarmesh_SizeSphere")
-        wait_until(lambda: find("size_panel") is not None, "the panel of the sphere")
-        wait_until(lambda: run.progress is not None and run.progress.phase == "load", "the end of the mesher")
-        pause(1000)
+        await click_command("Collarmesh_SizeSphere")
+        await wait_until(lambda: find("size_panel") is not None, "the panel of the sphere")
+        await wait_until(lambda: run.progress is not None and run.progress.phase == "load", "the end of the mesher")
+        await pause(1000)
         require(meshing_process.run_of(obj) is run and obj.FemMesh.VolumeCount == 0, "the mesh waits")
         child("size_Radius").setText("3 mm")
         boxes = [box for box in FreeCADGui.getMainWindow().findChildren(QtGui.QDialogButtonBox) if box.isVisible()]
-        boxes[0].button(button).click()
-        wait_until(lambda: meshing_process.run_of(obj) is None, "the mesh")
+        await click(boxes[0].button(button))
+        await wait_until(lambda: meshing_process.run_of(obj) is None, "the mesh")
         require(obj.FemMesh.VolumeCount > 100, "it is there")
         kept = button == QtGui.QDialogButtonBox.Ok
         require(bool(obj.MeshSizeList) == kept == (document.getObject("SizeSphere") is not None), "the sphere")
         document.undo()
         require(obj.FemMesh.VolumeCount == 0 and bool(obj.MeshSizeList) == kept, "undo of the meshing alone")
-        close(document)
+        await close(document)
 
 
 def dismiss_message():
@@ -506,7 +506,7 @@ def dismiss_message():
     return boxes[0].text()
 
 
-def another_panel_stays():
+async def another_panel_stays():
     """FreeCAD shows one panel at a time: while one is open that it does not close itself, ours tells so."""
 
     class Other:
@@ -520,99 +520,99 @@ def another_panel_stays():
     require("Another panel" in dismiss_message(), "and says why")
     FreeCADGui.Selection.clearSelection()
     FreeCADGui.Selection.addSelection(part)
-    click_command("Collarmesh_MeshFromShape")
+    await click_command("Collarmesh_MeshFromShape")
     require([each.Name for each in document.Objects] == names, "nothing is made")
     require(find("panel") is None and not document.HasPendingTransaction, "nothing stays")
     require("Another panel" in dismiss_message(), "it says why, too")
     FreeCADGui.Control.closeDialog()
-    pause(300)
-    open_panel(obj)
-    close(document)
+    await pause(300)
+    await open_panel(obj)
+    await close(document)
 
 
-def a_part_deleted_while_marked():
+async def a_part_deleted_while_marked():
     document, part, obj = new_part(plate())
-    open_panel(obj)
-    run_mesher("4 mm")
+    await open_panel(obj)
+    await run_mesher("4 mm")
     child("places").pick_first(places.WORST)
     require(marks_of(obj) is not None, "an element is marked")
     document.removeObject(part.Name)
-    child("run").click()
+    await click(child("run"))
     require("no object is chosen" in said() and marks_of(obj) is None, said())
     require(obj.ViewObject.Transparency == 0, "the mesh looks as before")
-    close(document)
+    await close(document)
 
 
-def files_have_no_marks():
+async def files_have_no_marks():
     document, part, obj = new_part(plate())
-    open_panel(obj)
-    run_mesher("4 mm")
+    await open_panel(obj)
+    await run_mesher("4 mm")
     name, label = obj.Name, part.Name
     child("places").pick_first(places.WORST)
     require(obj.ViewObject.Transparency > 0 and not part.ViewObject.Visibility, "an element is marked")
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "plate.FCStd")
         document.saveAs(path)
-        close(document)
+        await close(document)
         document = FreeCAD.openDocument(path)
     part, obj = document.getObject(label), document.getObject(name)
     require(obj.ViewObject.Transparency == 0 and part.ViewObject.Visibility, "what is opened looks as it did before")
-    close(document)
+    await close(document)
 
 
-def numbers_have_the_unit_that_is_shown():
+async def numbers_have_the_unit_that_is_shown():
     document, _, obj = new_part(plate())
     FreeCAD.Units.setSchema(3)  # inches
     obj.CharacteristicLengthMax = 5.08
-    open_panel(obj)
+    await open_panel(obj)
     field = child("CharacteristicLengthMax")
     require(field.text() == "0.20 in", field.text())
     for text, millimetres in (("0.1", 2.54), ("4 mm", 4), ("0.25 in", 6.35)):
-        run_mesher(text)
+        await run_mesher(text)
         require(abs(obj.CharacteristicLengthMax.Value - millimetres) < 1e-9, f"{text}: {obj.CharacteristicLengthMax}")
     FreeCAD.Units.setSchema(0)
-    close(document)
+    await close(document)
 
 
-def what_fails_after_the_mesh_takes_nothing_back():
+async def what_fails_after_the_mesh_takes_nothing_back():
     """The panel tells of the mesh that is there, even without its page."""
     document, _, obj = new_part(plate())
-    open_panel(obj)
+    await open_panel(obj)
     with mock.patch.object(program.Job, "move_page", side_effect=ValueError("of the page")):
-        told = run_mesher("4 mm")
+        told = await run_mesher("4 mm")
     require("Every guarantee holds" in told and obj.FemMesh.VolumeCount > 0, told)
     require(not child("report").isVisible(), "there is no page")
-    close(document)
+    await close(document)
 
 
-def documents_and_objects_go_while_meshing():
+async def documents_and_objects_go_while_meshing():
     """The program is killed, its folder is removed, FreeCAD goes on; with the panel open and closed."""
     for panel_open in (True, False):
         for what in ("document", "object"):
             document, _, obj = new_part(plate())
             before = collarmesh_folders()
-            open_panel(obj)
+            await open_panel(obj)
             child("CharacteristicLengthMax").setText(LONG)
-            child("run").click()
+            await click(child("run"))
             run = meshing_process.run_of(obj)
-            wait_until(lambda: run.progress is not None, "the first progress")
+            await wait_until(lambda: run.progress is not None, "the first progress")
             process_id, folder = run._process.processId(), pathlib.Path(run.job.folder.name)
             require(is_running(process_id) and folder.exists(), "it runs")
             if not panel_open:
-                close_panel()
+                await close_panel()
             if what == "document":
                 FreeCAD.closeDocument(document.Name)
             else:
                 document.removeObject(obj.Name)
-            wait_until(lambda: not is_running(process_id) and not folder.exists(), f"the end with the {what}")
-            wait_until(lambda: find("run") is None, "the panel's end")
+            await wait_until(lambda: not is_running(process_id) and not folder.exists(), f"the end with the {what}")
+            await wait_until(lambda: find("run") is None, "the panel's end")
             require(not meshing_process._runs, "no run")
             if what == "object":
                 FreeCAD.closeDocument(document.Name)
-            wait_until(lambda: not collarmesh_folders() - before, f"no folder stays: {collarmesh_folders() - before}")
+            await wait_until(lambda: not collarmesh_folders() - before, f"no folder stays: {collarmesh_folders() - before}")
 
 
-def the_report_opens():
+async def the_report_opens():
     """The button opens a page that is still there, and that names the part instead of temporary files."""
     opened = []
 
@@ -625,21 +625,21 @@ def the_report_opens():
     QtGui.QDesktopServices.setUrlHandler("file", opener, "open")
     document, part, obj = new_part(plate(), "Bracket")
     part.Label = '3/4" <b>\\ </script>'  # as people call parts, and worse
-    open_panel(obj)
+    await open_panel(obj)
     require(not child("report").isVisible(), "there is no report yet")
-    run_mesher("3 mm")
-    child("report").click()
+    await run_mesher("3 mm")
+    await click(child("report"))
     QtGui.QDesktopServices.unsetUrlHandler("file")
     require(len(opened) == 1, f"{opened}")
     page = pathlib.Path(opened[0]).read_text(encoding="utf-8")
     require("<html" in page and "/collarmesh-" not in page, "the page is for people")
     (report,) = re.findall(r'<script[^>]*id="report"[^>]*>(.*?)</script>', page, re.DOTALL)
     require(json.loads(report)["inputs"] == [part.Label], f"the part's name: {json.loads(report)['inputs']}")
-    close(document)
+    await close(document)
     require(not pathlib.Path(opened[0]).exists(), "it goes with the document")
 
 
-def test():
+async def test():
     FreeCADGui.activateWorkbench("FemWorkbench")
     only = os.environ.get("COLLARMESH_TEST_ONLY", "")
     for each in (
@@ -671,7 +671,7 @@ def test():
     ):
         if only in each.__name__:
             print(each.__name__, flush=True)
-            each()
+            await each()
 
 
 run_test(test)

@@ -4,7 +4,8 @@
 
 PROGRAM is the mesher, "" where the add-on is to find it; FOLDER is the add-on, by default that of the sources;
 with --gui the script runs in FreeCAD's window on a virtual screen. ARGUMENT reaches the script as
-COLLARMESH_TEST_ARGUMENT. Exit code: the script's; 77 (skipped) where FreeCAD is not installed.
+COLLARMESH_TEST_ARGUMENT. Exit code: the script's, and 1 where a script in the window does not tell that it passed; 77
+(skipped) where FreeCAD is not installed.
 """
 
 import os
@@ -50,10 +51,16 @@ def main():
         variables = environment(home, program, addon)
         variables["COLLARMESH_TEST_ARGUMENT"] = sys.argv[-1] if "--" in sys.argv else ""
         code = subprocess.run(words, stdin=subprocess.DEVNULL, env=variables, timeout=500).returncode
-        result = pathlib.Path(variables["COLLARMESH_TEST_RESULT"])
-        if result.exists():
-            print(result.read_text())
+        if code == 0 and "--gui" in sys.argv:  # FreeCAD ends with 0 whatever happened in it
+            code = verdict(pathlib.Path(variables["COLLARMESH_TEST_RESULT"]))
         return code
+
+
+def verdict(result):
+    """What a script in the window leaves behind, as an exit code."""
+    text = result.read_text(encoding="utf-8") if result.exists() else "FreeCAD ended without a verdict"
+    print(text)
+    return 0 if text == "passed" else 1
 
 
 if __name__ == "__main__":

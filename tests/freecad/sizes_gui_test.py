@@ -28,17 +28,17 @@ def on_screen(place):
     return QtCore.QPoint(round(x * scale), round((height - 1 - y) * scale))
 
 
-def wait_for_camera():
+async def wait_for_camera():
     """It moves for a while after a change of the view."""
     seen = []
     while len(seen) < 4 or seen[-1] != seen[-4]:
         seen.append((on_screen(FreeCAD.Vector()), on_screen(FreeCAD.Vector(1, 2, 3)), view().getSize()))
-        w.pause(100)
+        await w.pause(100)
 
 
-def drag(obj, name, by, steps=8):
+async def drag(obj, name, by, steps=8):
     """A handle's head with the left button; `name`: of a length, or of the axis along which it moves the object."""
-    wait_for_camera()
+    await wait_for_camera()
     handle = next(each for each in obj.ViewObject.Proxy.panel.handles.handles if each.name == name)
     turn = FreeCAD.Rotation(*handle.transform.rotation.getValue().getValue())
     start = FreeCAD.Vector(*handle.transform.translation.getValue().getValue())
@@ -56,7 +56,7 @@ def drag(obj, name, by, steps=8):
         event = QtGui.QMouseEvent(kind, QtCore.QPointF(on_screen(place)), target.mapToGlobal(on_screen(place)), button,
                                   QtCore.Qt.LeftButton if held else QtCore.Qt.NoButton, QtCore.Qt.NoModifier)
         QtGui.QApplication.sendEvent(target, event)
-        w.pause(30)
+        await w.pause(30)
 
 
 def action(command):
@@ -68,38 +68,38 @@ def action(command):
     )
 
 
-def enter(name, text):
+async def enter(name, text):
     """Type into a field of the panel."""
     w.child("size_" + name).setText(text)
-    w.pause(50)
+    await w.pause(50)
 
 
 def shown(name):
     return FreeCAD.Units.Quantity(w.child("size_" + name).text()).Value
 
 
-def press(button):
+async def press(button):
     """A button below the panel."""
     box = next(
         each
         for each in w.window.findChildren(QtGui.QDialogButtonBox)
         if each.isVisible() and each.button(button)
     )
-    box.button(button).click()
-    w.wait_until(lambda: w.find("size_panel") is None, "the panel's end")
+    await w.click(box.button(button))
+    await w.wait_until(lambda: w.find("size_panel") is None, "the panel's end")
 
 
-def buttons_are_in_fem():
+async def buttons_are_in_fem():
     FreeCADGui.activateWorkbench("FemWorkbench")
     for kind in KINDS:
-        w.wait_until(lambda: action(f"Collarmesh_Size{kind}"), f"the button of {kind}")
+        await w.wait_until(lambda: action(f"Collarmesh_Size{kind}"), f"the button of {kind}")
 
 
-def a_sphere_by_its_button(document, obj):
+async def a_sphere_by_its_button(document, obj):
     FreeCADGui.Selection.clearSelection()
     FreeCADGui.Selection.addSelection(obj)
-    w.click_command("Collarmesh_SizeSphere")
-    w.wait_until(lambda: w.find("size_panel") is not None, "the panel of the sphere")
+    await w.click_command("Collarmesh_SizeSphere")
+    await w.wait_until(lambda: w.find("size_panel") is not None, "the panel of the sphere")
     (sphere,) = obj.MeshSizeList
     w.require(sphere in obj.ViewObject.Proxy.claimChildren(), "it is below the mesh object in the tree")
     w.require(sphere.ViewObject.Transparency > 50, "it is translucent")
@@ -107,34 +107,34 @@ def a_sphere_by_its_button(document, obj):
     return sphere
 
 
-def fields_change_the_sphere(sphere):
-    enter("Size", "0.6 mm")
-    enter("Radius", "5 mm")
-    enter("x", "10 mm")
+async def fields_change_the_sphere(sphere):
+    await enter("Size", "0.6 mm")
+    await enter("Radius", "5 mm")
+    await enter("x", "10 mm")
     w.require(sphere.Size.Value == 0.6 and sphere.Radius.Value == 5, f"{sphere.Size} {sphere.Radius}")
     w.require(abs(sphere.Placement.Base.x - 10) < 1e-9, f"{sphere.Placement}")
     w.require(abs(sphere.Shape.BoundBox.XLength - 10) < 0.1, "the shape follows")
 
 
-def handles_change_the_sphere(sphere):
+async def handles_change_the_sphere(sphere):
     view().viewTop()
     FreeCADGui.SendMsgToActiveView("ViewFit")
     centre = sphere.Placement.Base
-    drag(sphere, "Radius", FreeCAD.Vector(4, 0, 0))
+    await drag(sphere, "Radius", FreeCAD.Vector(4, 0, 0))
     w.require(abs(sphere.Radius.Value - 9) < 0.5, f"the radius is dragged to {sphere.Radius}")
     w.require(abs(shown("Radius") - sphere.Radius.Value) < 0.01, "the field follows")
     w.require((sphere.Placement.Base - centre).Length < 1e-9, "it stays where it is")
 
 
-def the_centre_moves(sphere):
+async def the_centre_moves(sphere):
     centre, radius = sphere.Placement.Base, sphere.Radius.Value
-    drag(sphere, "X", FreeCAD.Vector(6, 0, 0))
+    await drag(sphere, "X", FreeCAD.Vector(6, 0, 0))
     w.require(
         (sphere.Placement.Base - centre - FreeCAD.Vector(6, 0, 0)).Length < 0.5,
         f"it is dragged to {sphere.Placement.Base}",
     )
     centre = sphere.Placement.Base
-    drag(sphere, "Y", FreeCAD.Vector(0, -5, 0))
+    await drag(sphere, "Y", FreeCAD.Vector(0, -5, 0))
     w.require(
         (sphere.Placement.Base - centre - FreeCAD.Vector(0, -5, 0)).Length < 0.5,
         f"it is dragged to {sphere.Placement.Base}",
@@ -143,24 +143,24 @@ def the_centre_moves(sphere):
     w.require(abs(shown("x") - sphere.Placement.Base.x) < 0.01, "the field follows")
 
 
-def cancel_and_undo(document, obj):
+async def cancel_and_undo(document, obj):
     """Creation and first edit are one step, later edits are others."""
     name = obj.MeshSizeList[0].Name
-    press(QtGui.QDialogButtonBox.Cancel)
+    await press(QtGui.QDialogButtonBox.Cancel)
     w.require(document.getObject(name) is None and obj.MeshSizeList == [], "cancel takes the new sphere back")
     FreeCADGui.Selection.addSelection(obj)
-    w.click_command("Collarmesh_SizeSphere")
-    w.wait_until(lambda: w.find("size_panel") is not None, "the panel of the sphere")
-    enter("Radius", "3 mm")
-    press(QtGui.QDialogButtonBox.Ok)
+    await w.click_command("Collarmesh_SizeSphere")
+    await w.wait_until(lambda: w.find("size_panel") is not None, "the panel of the sphere")
+    await enter("Radius", "3 mm")
+    await press(QtGui.QDialogButtonBox.Ok)
     (sphere,) = obj.MeshSizeList
     w.require(sphere.Radius.Value == 3, "OK keeps it")
     for button, radius in ((QtGui.QDialogButtonBox.Cancel, 3), (QtGui.QDialogButtonBox.Ok, 6)):
-        w.wait_until(lambda: FreeCADGui.ActiveDocument.getInEdit() is None, "the end of the edit")
+        await w.wait_until(lambda: FreeCADGui.ActiveDocument.getInEdit() is None, "the end of the edit")
         sphere.ViewObject.doubleClicked()
-        w.wait_until(lambda: w.find("size_panel") is not None, "the panel after a double click", 5)
-        enter("Radius", "6 mm")
-        press(button)
+        await w.wait_until(lambda: w.find("size_panel") is not None, "the panel after a double click", 5)
+        await enter("Radius", "6 mm")
+        await press(button)
         w.require(sphere.Radius.Value == radius, f"{sphere.Radius} in place of {radius}")
         w.require(
             sphere.ViewObject.RootNode.getByName("collarmesh_size_handles") is None, "the handles are gone"
@@ -176,11 +176,11 @@ def cancel_and_undo(document, obj):
     w.require(size_objects.kind_of(sphere) == "Sphere", "it is a sphere again")
 
 
-def a_box_and_a_cylinder(document, part):
+async def a_box_and_a_cylinder(document, part):
     """The mesh object need not be selected: there is only one, or the part is."""
     FreeCADGui.Selection.clearSelection()
-    w.click_command("Collarmesh_SizeBox")
-    w.wait_until(lambda: w.find("size_panel") is not None, "the panel of the box")
+    await w.click_command("Collarmesh_SizeBox")
+    await w.wait_until(lambda: w.find("size_panel") is not None, "the panel of the box")
     box = document.getObject("SizeBox")
     for name, text in (
         ("Length", "8 mm"),
@@ -190,56 +190,56 @@ def a_box_and_a_cylinder(document, part):
         ("y", "2 mm"),
         ("z", "0 mm"),
     ):
-        enter(name, text)
+        await enter(name, text)
     view().viewTop()
     FreeCADGui.SendMsgToActiveView("ViewFit")
-    drag(box, "Width", FreeCAD.Vector(0, 4, 0))
+    await drag(box, "Width", FreeCAD.Vector(0, 4, 0))
     w.require(
         abs(box.Width.Value - 10) < 0.5 and box.Length.Value == 8, f"the width is dragged to {box.Width}"
     )
-    drag(box, "Length", FreeCAD.Vector(2, 0, 0))
+    await drag(box, "Length", FreeCAD.Vector(2, 0, 0))
     w.require(abs(box.Length.Value - 10) < 0.5, f"the length is dragged to {box.Length}")
-    press(QtGui.QDialogButtonBox.Ok)
+    await press(QtGui.QDialogButtonBox.Ok)
     FreeCADGui.Selection.addSelection(part, "Edge1")
-    w.click_command("Collarmesh_SizeCylinder")
-    w.wait_until(lambda: w.find("size_panel") is not None, "the panel of the cylinder")
+    await w.click_command("Collarmesh_SizeCylinder")
+    await w.wait_until(lambda: w.find("size_panel") is not None, "the panel of the cylinder")
     cylinder = document.getObject("SizeCylinder")
     edge = part.Shape.Edge1.BoundBox.Center
     w.require((cylinder.Shape.BoundBox.Center - edge).Length < 0.1, "it is at the edge that was selected")
     view().viewFront()
     FreeCADGui.SendMsgToActiveView("ViewFit")
     height = cylinder.Height.Value
-    drag(cylinder, "Height", FreeCAD.Vector(0, 0, 3))
+    await drag(cylinder, "Height", FreeCAD.Vector(0, 0, 3))
     w.require(
         abs(cylinder.Height.Value - height - 3) < 0.5,
         f"the height is dragged from {height} to {cylinder.Height}",
     )
-    press(QtGui.QDialogButtonBox.Ok)
+    await press(QtGui.QDialogButtonBox.Ok)
     return box
 
 
-def transform_by_freecad(box):
+async def transform_by_freecad(box):
     """FreeCAD's own dragger, as "Transform" in the context menu opens it."""
     document = FreeCADGui.ActiveDocument
     document.setEdit(box.Name, 1)
-    w.pause(300)
+    await w.pause(300)
     w.require(document.getInEdit() is not None, "FreeCAD's dragger is there")
     w.require(w.find("size_panel") is None, "without our panel")
     document.resetEdit()
-    w.pause(100)
+    await w.pause(100)
 
 
-def distance_of_selected_faces(document, obj, part):
+async def distance_of_selected_faces(document, obj, part):
     FreeCADGui.Selection.clearSelection()
     hole = next(i for i, face in enumerate(part.Shape.Faces, 1) if isinstance(face.Surface, Part.Cylinder))
     FreeCADGui.Selection.addSelection(part, f"Face{hole}")
-    w.click_command("Collarmesh_SizeDistance")
-    w.wait_until(lambda: w.find("size_panel") is not None, "the panel of the distance")
+    await w.click_command("Collarmesh_SizeDistance")
+    await w.wait_until(lambda: w.find("size_panel") is not None, "the panel of the distance")
     distance = document.getObject("SizeDistance")
     w.require(size_objects.references(distance) == [(part, f"Face{hole}")], "the selected face is taken")
     FreeCADGui.Selection.clearSelection()
     FreeCADGui.Selection.addSelection(part, "Edge1")
-    w.child("size_add").click()
+    await w.click(w.child("size_add"))
     w.require(
         [name for _, name in size_objects.references(distance)] == [f"Face{hole}", "Edge1"],
         "an edge is added",
@@ -247,13 +247,13 @@ def distance_of_selected_faces(document, obj, part):
     listed = w.child("size_references")
     w.require(listed.item(1).text() == "Plate: Edge1", listed.item(1).text())
     listed.item(1).setSelected(True)
-    w.child("size_remove").click()
+    await w.click(w.child("size_remove"))
     w.require(
         [name for _, name in size_objects.references(distance)] == [f"Face{hole}"], "the edge is removed"
     )
-    enter("Size", "0.5 mm")
-    enter("Within", "1 mm")
-    press(QtGui.QDialogButtonBox.Ok)
+    await enter("Size", "0.5 mm")
+    await enter("Within", "1 mm")
+    await press(QtGui.QDialogButtonBox.Ok)
     w.require(distance.Within.Value == 1 and distance.Size.Value == 0.5, "the values are stored")
     w.require(abs(distance.Shape.Area - part.Shape.Faces[hole - 1].Area) < 1e-6, "its face shows")
     w.require(len(obj.ViewObject.Proxy.claimChildren()) == 4, "all are below the mesh object")
@@ -271,7 +271,7 @@ def the_mesh_has_the_sizes(obj):
     )
 
 
-def a_picture_of_all(document, obj, part):
+async def a_picture_of_all(document, obj, part):
     part.ViewObject.Visibility = False
     document.SizeSphere.Placement.Base = FreeCAD.Vector(8, 24, 5)
     document.SizeBox.Placement.Base = FreeCAD.Vector(28, 1, 2)
@@ -284,30 +284,30 @@ def a_picture_of_all(document, obj, part):
     for dock in w.window.findChildren(QtGui.QDockWidget):
         if dock.windowTitle() == "Report view":
             dock.hide()
-    w.screenshot("freecad_sizes.png")
+    await w.screenshot("freecad_sizes.png")
 
 
-def test():
+async def test():
     document = FreeCAD.newDocument("sizes")
     part = document.addObject("Part::Feature", "Plate")
     part.Shape = w.plate()
     document.recompute()
-    buttons_are_in_fem()
+    await buttons_are_in_fem()
     obj = mesh_object.make(document, part)
     obj.CharacteristicLengthMax = 4
     document.recompute()
-    sphere = a_sphere_by_its_button(document, obj)
-    fields_change_the_sphere(sphere)
-    handles_change_the_sphere(sphere)
-    the_centre_moves(sphere)
+    sphere = await a_sphere_by_its_button(document, obj)
+    await fields_change_the_sphere(sphere)
+    await handles_change_the_sphere(sphere)
+    await the_centre_moves(sphere)
     view().viewIsometric()
-    w.screenshot("freecad_size_handles.png")
-    cancel_and_undo(document, obj)
-    box = a_box_and_a_cylinder(document, part)
-    transform_by_freecad(box)
-    distance_of_selected_faces(document, obj, part)
+    await w.screenshot("freecad_size_handles.png")
+    await cancel_and_undo(document, obj)
+    box = await a_box_and_a_cylinder(document, part)
+    await transform_by_freecad(box)
+    await distance_of_selected_faces(document, obj, part)
     the_mesh_has_the_sizes(obj)
-    a_picture_of_all(document, obj, part)
+    await a_picture_of_all(document, obj, part)
 
 
 w.run_test(test)

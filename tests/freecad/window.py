@@ -1,9 +1,13 @@
-"""What tests do in FreeCAD's window: find widgets, click them, wait, look. For scripts run by run.py --gui."""
+"""What tests do in FreeCAD's window: find widgets, click them, wait, look. For scripts run by run.py --gui.
+
+A test is a coroutine. Whatever waits or clicks is awaited, and gives control back to Qt's main loop meanwhile, as it is
+between the clicks of a person: only there Qt deletes what was closed."""
 
 import os
 import pathlib
 import sys
 import traceback
+import warnings
 
 import FreeCAD
 import FreeCADGui
@@ -11,6 +15,7 @@ import Part
 from PySide import QtCore, QtGui
 
 PICTURES = os.environ.get("COLLARMESH_TEST_ARGUMENT", "")  # a folder for screenshots
+EVERY = 20  # milliseconds between two looks at what a test waits for
 window = FreeCADGui.getMainWindow()
 WIDE = (0, 0, 2600, 1000)  # enough for all buttons of FEM
 window.setGeometry(*WIDE)
@@ -20,6 +25,32 @@ if PICTURES:  # on white
         view_settings.SetBool(name, False)
     view_settings.SetBool("Simple", True)
     view_settings.SetUnsigned("BackgroundColor", 0xFFFFFFFF)
+
+
+class turn:
+    """`await turn()` goes on from the main loop, after some milliseconds."""
+
+    def __init__(self, milliseconds=0):
+        self.milliseconds = milliseconds
+
+    def __await__(self):
+        yield self.milliseconds
+
+
+def follow(coroutine, ended):
+    """Run a coroutine from the main loop; `ended` gets what it raised, or None."""
+
+    def step():
+        try:
+            wait = coroutine.send(None)
+        except StopIteration:
+            ended(None)
+        except BaseException as error:
+            ended(error)
+        else:
+            QtCore.QTimer.singleShot(wait, step)
+
+    step()
 
 
 def require(condition, what):
@@ -37,47 +68,54 @@ def child(name):
     return find(name)
 
 
-def wait_until(condition, what, seconds=60):
+async def wait_until(condition, what, seconds=60):
     """Lets FreeCAD go on until the condition holds."""
     clock = QtCore.QElapsedTimer()
     clock.start()
     while not condition():
-        QtGui.QApplication.processEvents(QtCore.QEventLoop.AllEvents, 20)
+        await turn(EVERY)
         require(clock.elapsed() < 1000 * seconds, f"waited too long for {what}")
 
 
-def pause(milliseconds):
-    clock = QtCore.QElapsedTimer()
-    clock.start()
-    wait_until(lambda: clock.elapsed() > milliseconds, "the time")
+async def pause(milliseconds):
+    await turn(milliseconds)
 
 
-def click_at(widget, place):
+async def click(button):
+    """As a person can: when it shows and is not grey."""
+    await wait_until(lambda: button.isVisible() and button.isEnabled(), f"the button {button.objectName()}", 10)
+    button.click()
+    await turn()
+
+
+async def click_at(widget, place):
     """The left button of the mouse at a QPoint of the widget."""
     for kind, buttons in ((QtCore.QEvent.MouseButtonPress, QtCore.Qt.LeftButton),
                           (QtCore.QEvent.MouseButtonRelease, QtCore.Qt.NoButton)):
         event = QtGui.QMouseEvent(kind, QtCore.QPointF(place), QtCore.Qt.LeftButton, buttons, QtCore.Qt.NoModifier)
         QtGui.QApplication.sendEvent(widget, event)
-    QtGui.QApplication.processEvents()
+    await turn()
 
 
-def click_item(item):
+async def click_item(item):
     """A row of a tree."""
     tree = item.treeWidget()
     tree.scrollToItem(item)
-    QtGui.QApplication.processEvents()
-    click_at(tree.viewport(), tree.visualItemRect(item).center())
+    await turn()
+    await click_at(tree.viewport(), tree.visualItemRect(item).center())
 
 
-def click_command(command):
+async def click_command(command):
     """The command's button in the toolbar, which comes a moment after its workbench."""
-    wait_until(lambda: buttons_of(command), f"the button of {command}")
-    buttons_of(command)[0].click()
+    await wait_until(lambda: buttons_of(command), f"the button of {command}")
+    await click(buttons_of(command)[0])
 
 
 def buttons_of(command):
+    """Those that a person can click."""
     return [button for bar in window.findChildren(QtGui.QToolBar) for button in bar.findChildren(QtGui.QToolButton)
-            if button.defaultAction() is not None and button.defaultAction().objectName() == command]
+            if button.isVisible() and button.isEnabled() and button.defaultAction() is not None
+            and button.defaultAction().objectName() == command]
 
 
 def rows(tree):
@@ -99,40 +137,40 @@ def said():
     return "\n".join(shown)
 
 
-def run_mesher(size):
+async def run_mesher(size):
     """Enter a size, click "Mesh" and wait for the end; returns what the panel tells."""
     child("CharacteristicLengthMax").setText(size)
-    child("run").click()
-    wait_until(lambda: child("run").isEnabled(), "the end of the run")
+    await click(child("run"))
+    await wait_until(lambda: child("run").isEnabled(), "the end of the run")
     return said()
 
 
-def open_panel(obj):
+async def open_panel(obj):
     FreeCADGui.getDocument(obj.Document.Name).setEdit(obj.Name)
-    wait_until(lambda: find("run") is not None and find("run").isVisible(), "the panel")
+    await wait_until(lambda: find("run") is not None and find("run").isVisible(), "the panel")
 
 
-def close_panel():
+async def close_panel():
     """Its button."""
     buttons = [each for box in window.findChildren(QtGui.QDialogButtonBox) for each in box.buttons() if box.isVisible()]
     require(len(buttons) == 1, f"{len(buttons)} buttons below the panel")
-    buttons[0].click()
-    wait_until(lambda: find("run") is None, "the panel's end")
+    await click(buttons[0])
+    await wait_until(lambda: find("run") is None, "the panel's end")
 
 
-def screenshot(name, fit=True, size=(1200, 900)):
+async def screenshot(name, fit=True, size=(1200, 900)):
     """A picture of the window, made small for it: `size` in pixels; `fit`: with all of the document in view."""
     if not PICTURES:
         return
     if find("presets") is not None and child("run").isEnabled():
-        wait_until(lambda: "…" not in "".join(column_of(child("presets"), 2)), "the numbers of elements")
+        await wait_until(lambda: "…" not in "".join(column_of(child("presets"), 2)), "the numbers of elements")
     screen = QtGui.QApplication.primaryScreen()
     window.setGeometry(0, 0, *(int(length / screen.devicePixelRatio()) for length in size))
     for _ in range(2):
-        pause(400)
+        await pause(400)
         if fit:
             FreeCADGui.SendMsgToActiveView("ViewFit")
-    pause(400)
+    await pause(400)
     screen.grabWindow(0).copy(0, 0, *size).save(os.path.join(PICTURES, name))
     window.setGeometry(*WIDE)
 
@@ -142,20 +180,20 @@ def plate():
 
 
 def run_test(test):
-    """A moment after FreeCAD has started; ends FreeCAD with the verdict."""
-
+    """A moment after FreeCAD has started. Then FreeCAD ends as by its button; run.py reads the verdict, and sees when
+    FreeCAD dies before or after that."""
     errors = []
     sys.excepthook = lambda *error: errors.append("".join(traceback.format_exception(*error)))  # in Qt's slots, too
+    warnings.simplefilter("always", RuntimeWarning)
+    warnings.showwarning = lambda message, *_: errors.append(str(message))  # a coroutine that nobody awaits
 
-    def main():
-        try:
-            test()
-            require(not errors, errors and errors[0])
-            verdict = "passed"
-        except BaseException:
-            verdict = traceback.format_exc()
-        pathlib.Path(os.environ["COLLARMESH_TEST_RESULT"]).write_text(verdict, encoding="utf-8")
+    def ended(error):
+        told = "".join(traceback.format_exception(type(error), error,
+                       error.__traceback__)) if error else "\n".join(errors)
+        pathlib.Path(os.environ["COLLARMESH_TEST_RESULT"]).write_text(told or "passed", encoding="utf-8")
         sys.stdout.flush()
-        os._exit(0 if verdict == "passed" else 1)
+        for name in list(FreeCAD.listDocuments()):
+            FreeCAD.closeDocument(name)
+        QtCore.QTimer.singleShot(200, window.close)
 
-    QtCore.QTimer.singleShot(1500, main)
+    QtCore.QTimer.singleShot(1500, lambda: follow(test(), ended))

@@ -12,7 +12,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import compatibility, mesh_object, up_to_date
+from . import compatibility, mesh_object, processes, up_to_date
 from .program import MesherError, Progress
 from .translations import translate
 
@@ -71,16 +71,17 @@ class MeshingProcess(QtCore.QObject):
         self._cancelled = self._abandoned = False
         self.clock = QtCore.QElapsedTimer()
         self.clock.start()
-        self._process = QtCore.QProcess()
+        self._process = processes.new()
         self._process.setReadChannel(QtCore.QProcess.StandardError)
         self._process.readyReadStandardError.connect(self._read)
-        self._process.finished.connect(lambda exit_code, *_: self._finished(exit_code))
-        self._process.setStandardInputFile(QtCore.QProcess.nullDevice())
+        self._process.finished.connect(self._finished)
         self._process.start(self.job.command[0], self.job.command[1:])
         if not self._process.waitForStarted():
             self.job.folder.cleanup()
             text = translate("collarmesh", "{program} cannot be started: {error}")
-            raise MesherError(text.format(program=self.job.command[0], error=self._process.errorString()))
+            error = text.format(program=self.job.command[0], error=self._process.errorString())
+            processes.end(self._process)
+            raise MesherError(error)
         self.job.folder.program_is(self._process.processId())
 
     def cancel(self):
@@ -90,8 +91,8 @@ class MeshingProcess(QtCore.QObject):
     def abandon(self):
         """End at once, without an outcome: there is nothing any more that could have it."""
         self._abandoned = True
-        self._process.kill()
-        self._process.waitForFinished(3000)
+        if processes.end(self._process):
+            self.job.folder.program_is(None)
         self.job.folder.cleanup()
         self.ended.emit()
 
@@ -105,10 +106,8 @@ class MeshingProcess(QtCore.QObject):
                 self.progress = step
                 self.advanced.emit(step)
 
-    def _finished(self, exit_code):
+    def _finished(self, exit_code, *_):
         self.job.folder.program_is(None)
-        if self._abandoned:
-            return
         self._read()
         self.progress = Progress("load", 1, self.progress.tets if self.progress else 0)
         self.advanced.emit(self.progress)
@@ -130,7 +129,7 @@ class MeshingProcess(QtCore.QObject):
             _outcomes[key] = Outcome(error=f"{type(error).__name__}: {error}")
         del _runs[key]
         self.job.folder.cleanup()
-        self._process.deleteLater()
+        processes.end(self._process)
         _tell(self.object, _outcomes[key])
         self.ended.emit()
 

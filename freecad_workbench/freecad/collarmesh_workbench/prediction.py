@@ -6,7 +6,7 @@ import pathlib
 
 from PySide import QtCore
 
-from . import compatibility, inputs, mesh_object, preferences, up_to_date
+from . import compatibility, inputs, mesh_object, preferences, processes, up_to_date
 from .program import find_program
 from .work_folder import WorkFolder
 
@@ -70,11 +70,8 @@ class Predictions(QtCore.QObject):
 
     def _stop(self):
         process, self._process = self._process, None
-        if process is not None:
-            process.kill()
-            if process.waitForFinished(1000):
-                self._folder.program_is(None)
-            process.deleteLater()
+        if process is not None and processes.end(process):
+            self._folder.program_is(None)
 
     def _missing(self):
         return [size for size in self._sizes if self._key(size) not in self._known]
@@ -94,16 +91,15 @@ class Predictions(QtCore.QObject):
             self._tell()
             return
         sources = ["--size-field", self._size_field_path()] if self._size_field else []
-        self._process = process = QtCore.QProcess(self)
-        process.setStandardInputFile(QtCore.QProcess.nullDevice())
+        self._process = process = processes.new()
         process.setStandardErrorFile(QtCore.QProcess.nullDevice())
-        process.finished.connect(lambda exit_code, *_: self._finished(process, exit_code))
+        process.finished.connect(self._finished)
         arguments = [*self._arguments, *sources, "--predict", repr(missing[0]), "--json"]
         process.start(program, ["info", self._shape, *arguments])
         if process.waitForStarted():
             self._folder.program_is(process.processId())
         else:
-            self._process = None
+            self._stop()
             self._tell()
 
     def _write_files(self):
@@ -125,13 +121,9 @@ class Predictions(QtCore.QObject):
     def _size_field_path(self):
         return os.path.join(self._folder.name, "sizes.json")
 
-    def _finished(self, process, exit_code):
-        if process is not self._process:  # its answer is no longer asked for
-            return
-        self._process = None
-        self._folder.program_is(None)
-        learned = exit_code == 0 and self._learn(bytes(process.readAllStandardOutput()))
-        process.deleteLater()
+    def _finished(self, exit_code, *_):
+        learned = exit_code == 0 and self._learn(bytes(self._process.readAllStandardOutput()))
+        self._stop()
         if learned and self._missing():
             self.partly_made.emit(self._answers())
             self._begin()

@@ -5,7 +5,7 @@ import contextlib
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import compatibility, size_objects
+from . import compatibility, dock, size_objects
 from .quantity_field import QuantityField
 from .translations import translate
 
@@ -68,14 +68,7 @@ class SizePanel:
             self._add_hint(layout)
             self._add_handles()
         self.fill()
-        QtCore.QTimer.singleShot(0, self._widen)
-
-    def _widen(self):
-        """FreeCAD shows what fits into its dock; make room for all of the panel."""
-        window = FreeCADGui.getMainWindow()
-        for dock in window.findChildren(QtGui.QDockWidget):
-            if dock.isAncestorOf(self.form) and not dock.isFloating() and dock.width() < WIDTH:
-                window.resizeDocks([dock], [WIDTH], QtCore.Qt.Horizontal)
+        dock.widen(self.form, WIDTH)
 
     def _add_length(self, name, text, store):
         field = QuantityField("mm", 0.0)

@@ -2,7 +2,7 @@
 
 import html
 
-from PySide import QtGui
+from PySide import QtCore, QtGui
 
 from . import groups, mesh_file
 from .translations import translate
@@ -56,6 +56,7 @@ def show(mesh_object, parent):
     dialog = QtGui.QDialog(parent)
     dialog.setObjectName("collarmesh_statistics")
     dialog.setWindowTitle(translate("collarmesh", "Statistics of {label}").format(label=mesh_object.Label))
+    dialog.setAttribute(QtCore.Qt.WA_DeleteOnClose)
     dialog.resize(460, 620)
     browser = QtGui.QTextBrowser(dialog)
     browser.setHtml(text)

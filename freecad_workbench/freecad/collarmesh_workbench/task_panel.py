@@ -6,7 +6,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import compatibility, extent, meshing_process, mesh_object, places, worst_elements
+from . import compatibility, dock, extent, meshing_process, mesh_object, places, worst_elements
 from .advanced_section import AdvancedSection, in_panel_words, narrow_combo
 from .places_list import PlacesList
 from .prediction import Predictions
@@ -43,7 +43,7 @@ class MeshTaskPanel:
         self._ask()
         self.form.destroyed.connect(self.dismiss)
         FreeCAD.addDocumentObserver(self)
-        QtCore.QTimer.singleShot(0, self._widen)
+        dock.widen(self.form, WIDTH)
 
     def _build(self):
         self.form = QtGui.QWidget()
@@ -63,7 +63,7 @@ class MeshTaskPanel:
         self.run_section.run_clicked.connect(self.start)
         self.run_section.cancel_clicked.connect(self.cancel)
         self.result = ResultSection()
-        self.result.chart.worst_clicked.connect(lambda: self.list.pick_first(places.WORST))
+        self.result.chart.worst_clicked.connect(self.show_worst)
         self.list = PlacesList()
         self.list.picked.connect(self.marks.show)
         self.report_button = QtGui.QPushButton(translate("collarmesh", "Report"))
@@ -81,13 +81,6 @@ class MeshTaskPanel:
         layout.addStretch()
         self.list.hide()
         self.report_button.hide()
-
-    def _widen(self):
-        """FreeCAD shows what fits into its dock; make room for all of the panel once."""
-        window = FreeCADGui.getMainWindow()
-        for dock in window.findChildren(QtGui.QDockWidget):
-            if dock.isAncestorOf(self.form) and not dock.isFloating() and dock.width() < WIDTH:
-                window.resizeDocks([dock], [WIDTH], QtCore.Qt.Horizontal)
 
     def _store(self):
         """The fields into the properties. Raises MesherError."""
@@ -177,6 +170,9 @@ class MeshTaskPanel:
                 found += worst_elements.in_report(self.object.FemMesh, outcome.report)
             self.report_button.setVisible(bool(outcome.page))
         self.list.fill(found)
+
+    def show_worst(self):
+        self.list.pick_first(places.WORST)
 
     def open_report(self):
         page = meshing_process.outcome_of(self.object).page

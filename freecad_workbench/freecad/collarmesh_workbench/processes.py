@@ -1,0 +1,29 @@
+"""Processes of Qt that may outlive what started them.
+
+Qt frees a process from its main loop, after everything else has let go of it. What its connections hold ends in the
+middle of that, and a parent among it would free the process a second time. So the application is the parent of all of
+them, and nothing is connected any more to one that ends."""
+
+import contextlib
+
+from PySide import QtCore
+
+PATIENCE = 3000  # milliseconds for a process that was killed
+
+
+def new():
+    """One that reads nothing, to be started, and let go by `end`."""
+    process = QtCore.QProcess(QtCore.QCoreApplication.instance())
+    process.setStandardInputFile(QtCore.QProcess.nullDevice())
+    return process
+
+
+def end(process):
+    """Let go of a process, which is killed if it runs. False if it still runs, as one does that waits for a disk."""
+    for signal in (process.finished, process.readyReadStandardError):
+        with contextlib.suppress(RuntimeError):  # of a signal that nothing is connected to
+            signal.disconnect()
+    process.kill()
+    process.waitForFinished(PATIENCE)
+    process.deleteLater()
+    return process.state() == QtCore.QProcess.NotRunning
