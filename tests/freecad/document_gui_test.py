@@ -13,7 +13,7 @@ from PySide import QtCore, QtGui
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import window as w  # noqa: E402
-from freecad.collarmesh_workbench import mesh_object, take_over, up_to_date, view_provider  # noqa: E402
+from freecad.collarmesh_workbench import mesh_object, mesh_properties, take_over, up_to_date, view_provider  # noqa: E402
 from freecad.collarmesh_workbench.commands import MESH_COMMAND  # noqa: E402
 
 
@@ -172,7 +172,7 @@ async def gmsh_and_back(document, part, obj):
     w.require("Take over by collarmesh" in await menu_of("FromGmsh", "take_over"), "the entry in Gmsh's menu")
     await w.wait_until(lambda: document.getObject("FromGmsh") is None, "the take over")
     new = next(each for each in document.Objects if each.Label == "FromGmsh")
-    w.require(mesh_object.is_ours(new), "it is ours")
+    w.require(mesh_properties.is_ours(new), "it is ours")
     await menu_of("FromGmsh", "hand_over")
     await w.wait_until(lambda: any(take_over.mesher_of(each) for each in document.Objects), "the way back")
     document.undo()
@@ -190,7 +190,7 @@ async def netgen_by_its_button(document, part):
     await w.click_command("Collarmesh_TakeOver")
     await w.wait_until(lambda: document.getObject("FromNetgen") is None, "the take over")
     new = next(each for each in document.Objects if each.Label == "FromNetgen")
-    w.require(mesh_object.is_ours(new), "it is ours")
+    w.require(mesh_properties.is_ours(new), "it is ours")
     document.undo()
     w.require(document.getObject("FromNetgen") is not None, "undo of that")
     document.removeObject("FromNetgen")

@@ -10,7 +10,7 @@ import FreeCAD
 import ObjectsFem
 import Part
 from freecad import collarmesh_workbench
-from freecad.collarmesh_workbench import mesh_object, program, work_folder
+from freecad.collarmesh_workbench import mesh_object, mesh_properties, program, work_folder
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import run_in_freecad  # noqa: E402
@@ -210,20 +210,20 @@ class Headless(unittest.TestCase):
             "RepairTolerance": 2e-5, "RadiusEdgeRatio": 1.9, "Coarsen": False, "ImproveLevel": 3,
             "MinDihedralAngle": 25, "Seed": 7, "TimeLimit": 60,
         }
-        self.assertEqual(set(values), {name for _, name, *_ in mesh_object.PROPERTIES})
+        self.assertEqual(set(values), {name for _, name, *_ in mesh_properties.PROPERTIES})
         for name, value in values.items():
             setattr(obj, name, value)
             self.assertNotEqual(obj.getDocumentationOfProperty(name), "")
             self.assertNotEqual(obj.getGroupOfProperty(name), "")
         options = mesh_object.remesh(obj)["options"]
         self.assertEqual(obj.FemMesh.VolumeCount > 0, True)
-        for _, name, field, *_ in mesh_object.PROPERTIES:
+        for _, name, field, *_ in mesh_properties.PROPERTIES:
             self.assertEqual(options[field], values[name], name)
 
     def test_kinds_of_repair_reach_the_program(self):
         obj = collarmesh_workbench.mesh(self.add(Part.makeBox(10, 10, 10)), size=4, repair="none")
         self.assertEqual(obj.Repair, "None")
-        for kind, word in mesh_object.REPAIRS.items():
+        for kind, word in mesh_properties.REPAIRS.items():
             obj.Repair = kind
             report = mesh_object.remesh(obj)
             self.assertEqual(report["options"]["repair"], word)

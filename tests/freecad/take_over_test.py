@@ -16,6 +16,7 @@ from freecad.collarmesh_workbench import (
     compatibility,
     mesh_file,
     mesh_object,
+    mesh_properties,
     mesh_undo,
     size_objects,
     statistics_dialog,
@@ -69,7 +70,7 @@ class TakeOver(WithPart):
         new, notes = take_over.take_over(old)
         self.assertEqual(notes, [])
         self.assertIsNone(self.document.getObject("FromGmsh"))
-        self.assertTrue(mesh_object.is_ours(new))
+        self.assertTrue(mesh_properties.is_ours(new))
         self.assertEqual([each.Name for each in self.analysis.Group], ["Steel", new.Name, "Fixed"])
         self.assertEqual((new.Label, compatibility.meshed_object(new)), (label, self.part))
         self.assertEqual((new.CharacteristicLengthMax.Value, new.CharacteristicLengthMin.Value), (4, 0.5))
@@ -89,9 +90,9 @@ class TakeOver(WithPart):
         self.assertEqual(take_over.mesher_of(old), "Gmsh")
         self.assertIn(old, self.analysis.Group)
         self.assertEqual((old.MeshRegionList, old.MeshGroupList), ([refinement], [group]))
-        self.assertFalse(any(mesh_object.is_ours(each) for each in self.document.Objects))
+        self.assertFalse(any(mesh_properties.is_ours(each) for each in self.document.Objects))
         self.document.redo()
-        (new,) = [each for each in self.document.Objects if mesh_object.is_ours(each)]
+        (new,) = [each for each in self.document.Objects if mesh_properties.is_ours(each)]
         self.assertEqual((new.MeshRegionList, new.MeshGroupList), ([refinement], [group]))
         mesh_object.remesh(new)
 

@@ -9,7 +9,7 @@ from unittest import mock
 import FreeCAD
 import ObjectsFem
 import Part
-from freecad.collarmesh_workbench import compatibility, mesh_object, size_objects, take_over, up_to_date
+from freecad.collarmesh_workbench import compatibility, mesh_object, mesh_properties, size_objects, take_over, up_to_date
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import run_in_freecad  # noqa: E402
@@ -62,7 +62,7 @@ class Versions(unittest.TestCase):
         self.assertEqual(([refinement], obj.MeshRegionList), (made, made))
         refinement.References = [(self.part, "Face1")]
         refinement.CharacteristicLength = 0.7
-        self.assertEqual(mesh_object.settings_of(obj).face_sizes, {1: 0.7})
+        self.assertEqual(mesh_properties.settings_of(obj).face_sizes, {1: 0.7})
 
     def test_buttons(self):
         """FreeCAD 1.x asks for the places when it builds its bars, and inserts one after the other."""

@@ -4,7 +4,7 @@ import dataclasses
 
 from PySide import QtCore, QtGui
 
-from . import mesh_object, preferences
+from . import mesh_properties, preferences
 from .quantity_field import QuantityField
 from .translations import translate
 
@@ -123,7 +123,7 @@ class AdvancedSection(QtGui.QWidget):
 
     def apply_to(self, settings):
         """Into Settings, as far as they can be read."""
-        for _, name, field, *_ in mesh_object.PROPERTIES:
+        for _, name, field, *_ in mesh_properties.PROPERTIES:
             if name in self._readers:
                 try:
                     setattr(settings, field, self._readers[name][1]())
@@ -190,7 +190,7 @@ def in_panel_words(text):
     """A message of the program, with the names of the panel's fields in place of options."""
     labels = {row.name: row.text for _, rows in sections() for row in rows}
     labels["CharacteristicLengthMax"] = translate("collarmesh", "Size of the elements")
-    fields = {name: field for _, name, field, *_ in mesh_object.PROPERTIES}
+    fields = {name: field for _, name, field, *_ in mesh_properties.PROPERTIES}
     words = {"--" + fields[name].replace("_", "-"): text for name, text in labels.items() if name in fields}
     words["--repair wrap"] = f"{labels['Repair']}: {translate('collarmesh', 'wrap where it fails')}"
     words["--repair"] = labels["Repair"]

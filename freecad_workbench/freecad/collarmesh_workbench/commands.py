@@ -6,7 +6,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore
 
-from . import compatibility, inputs, mesh_menu, mesh_object, other_panel, size_objects, take_over
+from . import compatibility, inputs, mesh_menu, mesh_object, mesh_properties, other_panel, size_objects, take_over
 from .size_view import icon_of
 from .translations import mark, translate
 from .view_provider import ICON
@@ -93,7 +93,7 @@ class Refinement(Command):
     )
 
     def target(self):
-        return selected(mesh_object.is_ours)
+        return selected(mesh_properties.is_ours)
 
     def create(self, document, obj):
         return compatibility.make_refinement(document, obj)
@@ -121,7 +121,7 @@ class Size(Command):
         QtCore.QTimer.singleShot(0, super().Activated)
 
     def target(self):
-        ours = [each for each in FreeCAD.ActiveDocument.Objects if mesh_object.is_ours(each)]
+        ours = [each for each in FreeCAD.ActiveDocument.Objects if mesh_properties.is_ours(each)]
         chosen = FreeCADGui.Selection.getSelection()
         found = [each for each in ours if each in chosen or compatibility.meshed_object(each) in chosen]
         found = found or ([] if chosen else ours)

@@ -8,7 +8,7 @@ on the exact faces."""
 import FreeCAD
 from femmesh import meshtools
 
-from . import compatibility, inputs
+from . import compatibility, inputs, mesh_properties
 
 KINDS = {"Solid": "Volume", "Face": "Face", "Edge": "Edge"}
 
@@ -119,9 +119,7 @@ class Observer:
 
 def meshes_among(objects):
     """Our mesh objects that have a mesh and a part."""
-    from .mesh_object import is_ours
-
-    return [each for each in objects if is_ours(each) and each.FemMesh.VolumeCount > 0
+    return [each for each in objects if mesh_properties.is_ours(each) and each.FemMesh.VolumeCount > 0
             and compatibility.meshed_object(each) is not None]
 
 

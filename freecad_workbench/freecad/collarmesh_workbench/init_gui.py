@@ -2,10 +2,14 @@
 
 import FreeCADGui
 
-from . import commands, fem_buttons, mesh_menu, preferences, translations
+from . import (commands, fem_buttons, mesh_menu, meshing_process, preferences, size_view, translations,
+               view_provider)
 
 translations.load()  # before there are texts
 commands.register()
+view_provider.register()
+size_view.register()
+meshing_process.observe()
 fem_buttons.install()
 mesh_menu.install()
 FreeCADGui.addPreferencePage(preferences.Page, "FEM")

@@ -9,7 +9,7 @@ import time
 
 import FreeCAD
 
-from . import groups, up_to_date
+from . import groups, mesh_properties, up_to_date
 from .translations import doc
 
 NUMBER = "MeshNumber"
@@ -73,10 +73,8 @@ class Observer:
         self._put_right(document)
 
     def _put_right(self, document):
-        from . import mesh_object
-
         for each in document.Objects:
-            if not mesh_object.is_ours(each):
+            if not mesh_properties.is_ours(each):
                 continue
             number = getattr(each, NUMBER)
             if number != _in_place.get(_key(each)):  # else this step was about something else

@@ -205,5 +205,6 @@ def _abandon_all():
         _forget(lambda _key: True)
 
 
-FreeCAD.addDocumentObserver(_Observer())
-QtGui.QApplication.instance().aboutToQuit.connect(_abandon_all)
+def observe():
+    FreeCAD.addDocumentObserver(_Observer())
+    QtGui.QApplication.instance().aboutToQuit.connect(_abandon_all)

@@ -6,7 +6,7 @@ import pathlib
 
 from PySide import QtCore
 
-from . import compatibility, inputs, mesh_object, preferences, processes, up_to_date
+from . import compatibility, inputs, mesh_properties, preferences, processes, up_to_date
 from .program import find_program
 from .work_folder import WorkFolder
 
@@ -105,7 +105,7 @@ class Predictions(QtCore.QObject):
     def _write_files(self):
         """For the program. Raises MesherError."""
         if self._folder is None:
-            part = mesh_object.part_to_mesh(self.object)
+            part = mesh_properties.part_to_mesh(self.object)
             folder = WorkFolder()
             self._shape = os.path.join(folder.name, inputs.file_name(part))
             try:

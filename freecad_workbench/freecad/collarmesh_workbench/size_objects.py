@@ -5,7 +5,7 @@ import re
 import FreeCAD
 import Part
 
-from . import compatibility, extent, inputs
+from . import compatibility, extent, inputs, views
 from .program import MesherError
 from .translations import doc, translate
 
@@ -233,10 +233,7 @@ def make(mesh_object, kind, size=0, name=""):
         )
     obj.Size = size
     setattr(mesh_object, PROPERTY, [*getattr(mesh_object, PROPERTY), obj])
-    if compatibility.has_gui():
-        from .size_view import SizeViewProvider
-
-        SizeViewProvider(obj.ViewObject)
+    views.show(proxy.Type, obj)
     obj.recompute()
     return obj
 

@@ -6,6 +6,7 @@ import FreeCADGui
 from PySide import QtCore, QtGui
 
 from . import compatibility, dock, size_objects
+from .size_handles import Handles
 from .quantity_field import QuantityField
 from .translations import translate
 
@@ -125,8 +126,6 @@ class SizePanel:
         layout.addWidget(hint)
 
     def _add_handles(self):
-        from .size_handles import Handles
-
         self.object.recompute()
         self.handles = Handles(self.object, self.kind, self.fill)
 

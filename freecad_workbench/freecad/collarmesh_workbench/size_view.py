@@ -4,7 +4,8 @@ import os
 
 import FreeCADGui
 
-from . import compatibility, other_panel, size_objects
+from . import compatibility, other_panel, size_objects, views
+from .size_panel import SizePanel
 
 ICONS = os.path.join(os.path.dirname(__file__), "icons")
 COLOUR = (0.91, 0.35, 0.05)
@@ -33,8 +34,6 @@ class SizeViewProvider(compatibility.Stateless):
         return icon_of(size_objects.kind_of(self.Object))
 
     def setEdit(self, view, mode=0):
-        from .size_panel import SizePanel
-
         if mode != 0:
             return None  # FreeCAD's own dragger, by "Transform" in the context menu
         if other_panel.is_in_the_way():
@@ -56,3 +55,8 @@ class SizeViewProvider(compatibility.Stateless):
         if not document.getInEdit():
             document.setEdit(view.Object.Name)
         return True
+
+
+def register():
+    for kind in size_objects.KINDS.values():
+        views.register(kind.Type, SizeViewProvider)

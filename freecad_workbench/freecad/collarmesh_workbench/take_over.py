@@ -5,7 +5,7 @@ import math
 
 import ObjectsFem
 
-from . import compatibility, extent, inputs, mesh_object, size_objects, up_to_date
+from . import compatibility, extent, inputs, mesh_object, mesh_properties, size_objects, up_to_date
 from .program import MesherError
 from .translations import doc, translate
 
@@ -83,7 +83,7 @@ def take_netgen(old, new):
     if part is None or largest < extent.bounding_box(part).DiagonalLength:
         new.CharacteristicLengthMax = largest
     new.CharacteristicLengthMin = value_of(old, "MinSize")
-    new.ElementOrder = mesh_object.ORDERS[bool(getattr(old, "SecondOrder", False))]
+    new.ElementOrder = mesh_properties.ORDERS[bool(getattr(old, "SecondOrder", False))]
     radius = value_of(old, "NbSegsPerRadius") or value_of(old, "CurvatureSafety")
     growth, along_radius = FINENESS.get(getattr(old, "Fineness", ""), (value_of(old, "GrowthRate"), radius))
     new.Gradation = growth

@@ -6,7 +6,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import compatibility, dock, extent, meshing_process, mesh_object, places, worst_elements
+from . import compatibility, dock, extent, mesh_properties, meshing_process, places, worst_elements
 from .advanced_section import AdvancedSection, in_panel_words, narrow_combo
 from .places_list import PlacesList
 from .prediction import Predictions
@@ -56,7 +56,7 @@ class MeshTaskPanel:
         self.order.setObjectName("collarmesh_ElementOrder")
         self.order.addItems([translate("collarmesh", "first (straight, 4 nodes)"),
                              translate("collarmesh", "second (curved, 10 nodes)")])
-        self.order.setCurrentIndex(mesh_object.ORDERS.index(self.object.ElementOrder))
+        self.order.setCurrentIndex(mesh_properties.ORDERS.index(self.object.ElementOrder))
         self.order.setToolTip(translate("collarmesh", "Second order: nodes amid edges, on the exact faces"))
         self.advanced = AdvancedSection(self.object)
         self.run_section = RunSection()
@@ -91,14 +91,14 @@ class MeshTaskPanel:
             raise MesherError(str(error)) from error
         if size != self.object.CharacteristicLengthMax.Value:
             self.object.CharacteristicLengthMax = size
-        order = mesh_object.ORDERS[self.order.currentIndex()]
+        order = mesh_properties.ORDERS[self.order.currentIndex()]
         if order != self.object.ElementOrder:
             self.object.ElementOrder = order
 
     def _ask(self, *_):
         """What the sizes will make with what is in the fields; while the mesher runs only what is known already."""
         try:
-            settings = mesh_object.settings_of(self.object)
+            settings = mesh_properties.settings_of(self.object)
         except MesherError:
             return
         self.advanced.apply_to(settings)

@@ -7,7 +7,7 @@ import math
 
 import numpy
 
-from . import compatibility, inputs
+from . import compatibility, inputs, mesh_properties
 from .program import MesherError, Settings
 from .translations import doc, translate
 
@@ -112,8 +112,6 @@ def rounded(value):
 
 def state_of(obj):
     """What a mesh of the object would be made of now. Raises MesherError."""
-    from . import mesh_object
-
     part = compatibility.meshed_object(obj)
     if part is None:
         raise MesherError(
@@ -123,7 +121,7 @@ def state_of(obj):
         [group.Name, [[linked.Name, list(names)] for linked, names in group.References]]
         for group in obj.MeshGroupList
     ]
-    return State(shape_numbers(part), settings_text(mesh_object.settings_of(obj), groups))
+    return State(shape_numbers(part), settings_text(mesh_properties.settings_of(obj), groups))
 
 
 def remember(obj, state):

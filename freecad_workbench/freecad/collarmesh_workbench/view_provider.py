@@ -4,7 +4,8 @@ import os
 
 import FreeCADGui
 
-from . import compatibility, mesh_menu, other_panel, size_objects, up_to_date
+from . import compatibility, mesh_menu, mesh_properties, other_panel, size_objects, up_to_date, views
+from .task_panel import MeshTaskPanel
 
 ICON = os.path.join(os.path.dirname(__file__), "icons", "collarmesh.svg")
 OUT_OF_DATE_ICON = os.path.join(os.path.dirname(__file__), "icons", "collarmesh_out_of_date.svg")
@@ -41,8 +42,6 @@ class MeshViewProvider(compatibility.Stateless):
         mesh_menu.fill(menu, self.Object)
 
     def setEdit(self, view, mode=0):
-        from .task_panel import MeshTaskPanel
-
         if mode != 0:
             return None
         if other_panel.is_in_the_way():
@@ -62,3 +61,7 @@ class MeshViewProvider(compatibility.Stateless):
         if not document.getInEdit():
             document.setEdit(view.Object.Name)
         return True
+
+
+def register():
+    views.register(mesh_properties.TYPE, MeshViewProvider)

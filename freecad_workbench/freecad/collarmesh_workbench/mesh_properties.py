@@ -1,0 +1,236 @@
+"""The properties of mesh objects, and the Settings that they stand for. Works without the GUI."""
+
+import re
+
+from . import compatibility, preferences, size_objects
+from .program import MesherError, Settings
+from .translations import doc, translate
+
+TYPE = "Fem::FemMeshCollarmesh"  # what FEM's tools ask for
+
+# Names that macros for FreeCAD's Gmsh object use as well come first. Lines: type, name, field of Settings, group in
+# the property editor, text.
+SIZES, FEATURES, QUALITY, RUN = "Sizes", "Features", "Quality", "Run"
+PROPERTIES = (
+    (
+        "App::PropertyLength",
+        "CharacteristicLengthMax",
+        "size",
+        SIZES,
+        doc("Target edge length; 0: 1/20 of the diagonal"),
+    ),
+    (
+        "App::PropertyLength",
+        "CharacteristicLengthMin",
+        "size_min",
+        SIZES,
+        doc("Never ask for less than this; 0: none"),
+    ),
+    (
+        "App::PropertyInteger",
+        "MeshSizeFromCurvature",
+        "elements_per_circle",
+        SIZES,
+        doc("Elements on a full circle; 0: any"),
+    ),
+    (
+        "App::PropertyInteger",
+        "ElementsAcrossGap",
+        "elements_across_gap",
+        SIZES,
+        doc("Elements across thin parts; 0: any"),
+    ),
+    (
+        "App::PropertyFloat",
+        "Gradation",
+        "gradation",
+        SIZES,
+        doc("Growth of size per unit length away from finer ones; 0: any"),
+    ),
+    (
+        "App::PropertyLength",
+        "SurfaceDistance",
+        "distance",
+        FEATURES,
+        doc(
+            "Largest distance of faces and edges of the mesh from the shape; 0: 1/10 of the size, at most 1/200 of "
+            "the diagonal (2nd order: 1/550)"
+        ),
+    ),
+    (
+        "App::PropertyAngle",
+        "CreaseAngle",
+        "crease_angle",
+        FEATURES,
+        doc("Edges and faces that meet below it get a collar"),
+    ),
+    (
+        "App::PropertyAngle",
+        "CollarAngle",
+        "collar_angle",
+        FEATURES,
+        doc("Bound on dihedral angles in collars"),
+    ),
+    (
+        "App::PropertyFloat",
+        "PlanarTolerance",
+        "planar_tolerance",
+        FEATURES,
+        doc("Faces this near to a plane are planar, relative to the diagonal; 0: 1e-6"),
+    ),
+    (
+        "App::PropertyFloat",
+        "WeldTolerance",
+        "weld",
+        FEATURES,
+        doc("Points closer than this are one, relative to the diagonal; 0: 1e-9"),
+    ),
+    (
+        "App::PropertyFloat",
+        "RepairTolerance",
+        "repair_tolerance",
+        FEATURES,
+        doc(
+            "Where the shape has to be repaired, features below this are noise, relative to the diagonal; 0: 1e-5"
+        ),
+    ),
+    (
+        "App::PropertyBool",
+        "Coarsen",
+        "coarsen",
+        QUALITY,
+        doc(
+            "As few elements as the sizes ask for, thin ones in thin places; else the bound on circumradius / shortest edge "
+            "holds everywhere outside collars"
+        ),
+    ),
+    (
+        "App::PropertyFloat",
+        "RadiusEdgeRatio",
+        "radius_edge",
+        QUALITY,
+        doc("Bound on circumradius / shortest edge"),
+    ),
+    (
+        "App::PropertyInteger",
+        "ImproveLevel",
+        "improve",
+        QUALITY,
+        doc("Removal of slivers: 0 none, 1 quick, 2 good, 3 best"),
+    ),
+    (
+        "App::PropertyAngle",
+        "MinDihedralAngle",
+        "min_dihedral",
+        QUALITY,
+        doc(
+            "Improve elements with smaller dihedral angles; 0: 15, 20 or 30 degrees by the level of improvement"
+        ),
+    ),
+    (
+        "App::PropertyInteger",
+        "Seed",
+        "seed",
+        RUN,
+        doc("Another number gives another mesh of the same quality"),
+    ),
+    ("App::PropertyFloat", "TimeLimit", "time_limit", RUN, doc("Give up after so many seconds; 0: never")),
+)
+ORDERS = ["1st", "2nd"]
+REPAIRS = {"Automatic": "auto", "None": "none", "Wrap": "wrap"}  # the program's words
+REFINEMENTS = {"Solid": "solid_sizes", "Face": "face_sizes", "Edge": "edge_sizes"}
+
+
+def is_ours(obj):
+    return getattr(getattr(obj, "Proxy", None), "Type", "") == TYPE
+
+
+def add_properties(obj):
+    """Add the properties that the object does not have yet, with their defaults."""
+    defaults = Settings(improve=preferences.improve_level())
+    have = obj.PropertiesList
+    if "Shape" not in have and "Part" not in have:
+        obj.addProperty("App::PropertyLink", "Part", "FEM Mesh", doc("The object whose shape is meshed"))
+    for kind, name, field, group, text in PROPERTIES:
+        if name not in have:
+            obj.addProperty(kind, name, group, text)
+            setattr(obj, name, getattr(defaults, field))
+    if "ElementOrder" not in have:
+        obj.addProperty("App::PropertyEnumeration", "ElementOrder", QUALITY, doc("Order of the elements"))
+        obj.ElementOrder = ORDERS
+        obj.ElementOrder = ORDERS[preferences.second_order()]
+    if "Repair" not in have:
+        obj.addProperty(
+            "App::PropertyEnumeration",
+            "Repair",
+            FEATURES,
+            doc(
+                "What to do with triangles of the shape that intersect or leave holes. Automatic: "
+                "repair them; None: refuse them; Wrap: where repair fails, mesh a closed surface "
+                "around everything"
+            ),
+        )
+        obj.Repair = list(REPAIRS)
+        obj.Repair = "Automatic"
+    for name, text in (
+        ("MeshRegionList", doc("Finer parts of the mesh")),
+        ("MeshGroupList", doc("Groups of the mesh")),
+        (size_objects.PROPERTY, doc("Sizes in spheres, boxes and cylinders and near faces and edges")),
+    ):
+        if name not in have:
+            obj.addProperty("App::PropertyLinkList", name, "Base", text)
+
+
+def settings_of(obj):
+    """The Settings that the object's properties ask for. Raises MesherError."""
+    values = {}
+    for _kind, name, field, _group, _text in PROPERTIES:
+        value = getattr(obj, name)
+        values[field] = getattr(value, "Value", value)
+    settings = Settings(order=ORDERS.index(obj.ElementOrder) + 1, repair=REPAIRS[obj.Repair], **values)
+    for region in obj.MeshRegionList:
+        add_refinement(region, compatibility.meshed_object(obj), settings)
+    settings.size_field = size_objects.field_of(obj)
+    return settings
+
+
+def apply_settings(obj, settings):
+    """The other way round; sizes by sub-shape have no property."""
+    for _kind, name, field, _group, _text in PROPERTIES:
+        setattr(obj, name, getattr(settings, field))
+    obj.ElementOrder = ORDERS[settings.order - 1]
+    obj.Repair = next(name for name, word in REPAIRS.items() if word == settings.repair)
+
+
+def add_refinement(region, part, settings):
+    """The sizes of a mesh region object; the smallest counts where several have one."""
+    size = getattr(region.CharacteristicLength, "Value", region.CharacteristicLength)
+    if not size:
+        return
+    for linked, names in region.References:
+        if part is not None and linked is not part:
+            raise MesherError(
+                translate(
+                    "collarmesh", "{label} refers to {other}, but {part} is meshed; choose its sub-shapes."
+                ).format(label=region.Label, other=linked.Label, part=part.Label)
+            )
+        for name in (names,) if isinstance(names, str) else names:
+            kind, number = re.fullmatch(r"([A-Za-z]*)(\d*)", name).groups()
+            if kind not in REFINEMENTS or not number:
+                raise MesherError(
+                    translate("collarmesh", "{label}: {name} cannot have a size of its own.").format(
+                        label=region.Label, name=name or translate("collarmesh", "the whole object")
+                    )
+                )
+            sizes = getattr(settings, REFINEMENTS[kind])
+            sizes[int(number)] = min(size, sizes.get(int(number), size))
+
+
+def part_to_mesh(obj):
+    """The object that is to be meshed. Raises MesherError."""
+    part = compatibility.meshed_object(obj)
+    if part is None:
+        raise MesherError(
+            translate("collarmesh", "{label}: no object is chosen to be meshed.").format(label=obj.Label)
+        )
+    return part

@@ -1,0 +1,15 @@
+"""How new objects show in FreeCAD's window. The modules of the window register that here, so that those of the document
+need not know them."""
+
+_providers = {}
+
+
+def register(kind, provider):
+    """`kind`: the `Type` of the objects' proxies."""
+    _providers[kind] = provider
+
+
+def show(kind, obj):
+    """Nothing without a window."""
+    if kind in _providers:
+        _providers[kind](obj.ViewObject)
