@@ -4,8 +4,8 @@
 
 PROGRAM is the mesher, "" where the add-on is to find it; FOLDER is the add-on, by default that of the sources;
 with --gui the script runs in FreeCAD's window on a virtual screen. ARGUMENT reaches the script as
-COLLARMESH_TEST_ARGUMENT. Exit code: the script's, and 1 where a script in the window does not tell that it passed; 77
-(skipped) where FreeCAD is not installed.
+COLLARMESH_TEST_ARGUMENT; the environment variable COLLARMESH_TEST_SECONDS gives it more time. Exit code: the script's,
+and 1 where a script in the window does not tell that it passed; 77 (skipped) where FreeCAD is not installed.
 """
 
 import os
@@ -16,6 +16,7 @@ import sys
 import tempfile
 
 SOURCES = pathlib.Path(__file__).resolve().parents[2] / "freecad_workbench"
+SECONDS = float(os.environ.get("COLLARMESH_TEST_SECONDS", 500))
 
 
 def command(script, gui):
@@ -50,7 +51,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="collarmesh-freecad-") as home:
         variables = environment(home, program, addon)
         variables["COLLARMESH_TEST_ARGUMENT"] = sys.argv[-1] if "--" in sys.argv else ""
-        code = subprocess.run(words, stdin=subprocess.DEVNULL, env=variables, timeout=500).returncode
+        code = subprocess.run(words, stdin=subprocess.DEVNULL, env=variables, timeout=SECONDS).returncode
         if code == 0 and "--gui" in sys.argv:  # FreeCAD ends with 0 whatever happened in it
             code = verdict(pathlib.Path(variables["COLLARMESH_TEST_RESULT"]))
         return code
