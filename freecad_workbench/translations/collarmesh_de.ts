@@ -339,6 +339,10 @@
       <translation>Feinheit</translation>
     </message>
     <message>
+      <source>First order is too stiff for bending: displacements come out too small, and stresses far too small. It is for a first look, and for solvers that ask for it.</source>
+      <translation>Die erste Ordnung ist zu steif bei Biegung: Verschiebungen werden zu klein, Spannungen viel zu klein. Sie ist für einen ersten Blick, und für Löser, die sie verlangen.</translation>
+    </message>
+    <message>
       <source>FreeCAD's Gmsh cannot mesh triangle meshes.</source>
       <translation>Gmsh kann in FreeCAD keine Dreiecksnetze vernetzen.</translation>
     </message>

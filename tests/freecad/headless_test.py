@@ -44,7 +44,7 @@ def volume_in(fem_mesh, name):
     """Of the tetrahedra in a group."""
     volume = 0
     for element in group(fem_mesh, name):
-        a, b, c, d = (fem_mesh.getNodeById(n) for n in fem_mesh.getElementNodes(element))
+        a, b, c, d = (fem_mesh.getNodeById(n) for n in fem_mesh.getElementNodes(element)[:4])
         volume -= (b - a).cross(c - a).dot(d - a) / 6  # FreeCAD's order of nodes
     return volume
 

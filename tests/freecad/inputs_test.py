@@ -243,7 +243,7 @@ class OutOfDate(WithDocument):
 
     def test_sizes_and_settings_changed(self):
         size, obj = self.size, self.obj
-        for holder, name, value in ((size, "Radius", 2), (size, "Size", 0.5), (size, "Growth", 0.2), (obj, "ElementOrder", "2nd"),
+        for holder, name, value in ((size, "Radius", 2), (size, "Size", 0.5), (size, "Growth", 0.2), (obj, "ElementOrder", "1st"),
                                     (obj, "CharacteristicLengthMax", 2), (obj, "MeshSizeList", [])):
             with self.subTest(name):
                 before = getattr(holder, name)

@@ -22,7 +22,7 @@ from freecad.collarmesh_workbench import (angle_chart, guarantees, mesh_object, 
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from window import (child, click, click_at, click_command, click_item, close_panel, find, open_panel, pause,  # noqa: E402
-                    plate, require, rows, run_mesher, run_test, said, screenshot, wait_until)
+                    plate, require, rows, run_mesher, run_test, said, screenshot, turn, wait_until)
 
 PROGRAM = os.environ["COLLARMESH_PROGRAM"]
 LONG = "0.15 mm"  # a size for which the plate takes much longer than any test
@@ -235,6 +235,27 @@ async def advanced_settings_reach_the_program():
     await close(document)
 
 
+async def second_order_is_the_default():
+    """What first order is for is said where it is chosen."""
+    document, _, obj = new_part(plate())
+    await open_panel(obj)
+    order, note = child("ElementOrder"), child("order_note")
+    require(order.currentIndex() == 1 and not note.isVisible(), "a new mesh is of second order")
+    await wait_until(lambda: number_in(table()[2][2]), "the numbers of elements")
+    order.setCurrentIndex(0)
+    await turn()
+    require(note.isVisible() and "too stiff" in note.text(), "what first order is for")
+    await screenshot("freecad_first_order.png")
+    await run_mesher("5 mm")
+    require(obj.ElementOrder == "1st" and len(obj.FemMesh.getElementNodes(obj.FemMesh.Volumes[0])) == 4, "it is made")
+    order.setCurrentIndex(1)
+    await turn()
+    require(not note.isVisible(), "the note goes")
+    await run_mesher("5 mm")
+    require(obj.ElementOrder == "2nd" and len(obj.FemMesh.getElementNodes(obj.FemMesh.Volumes[0])) == 10, "second order")
+    await close(document)
+
+
 async def tiny_sizes_are_shown():
     """FreeCAD writes two decimals."""
     document, _, obj = new_part(Part.makeBox(0.01, 0.01, 0.01))
@@ -258,7 +279,7 @@ async def the_result_is_told():
     chart = child("chart")
     require(all(sum(counts) == fem_mesh.VolumeCount for _, _, counts in chart.series), "all elements are in the chart")
     lines = child("guarantees").text()
-    require("✗" not in lines and lines.count("✓") == 6, lines)
+    require("✗" not in lines and lines.count("✓") == 7, lines)
     part.ViewObject.Visibility = False
     await screenshot("freecad_panel.png", size=(1200, 1000))
     x, y = int(chart._x(chart.extremes[0])), int(chart._frame().bottom())
@@ -297,7 +318,7 @@ async def the_worst_elements_show():
     smallest, rest = worst[0].text(0).split("° to ")
     number = int(rest.split()[-1])
     require(abs(float(smallest) - report["mesh"]["min_dihedral"]) < 0.1, worst[0].text(0))
-    corners = numpy.array([[obj.FemMesh.getNodeById(n) for n in obj.FemMesh.getElementNodes(number)]], dtype=float)
+    corners = numpy.array([[obj.FemMesh.getNodeById(n) for n in obj.FemMesh.getElementNodes(number)[:4]]], dtype=float)
     (angle,) = worst_elements.smallest_dihedral_angles(corners)
     require(abs(angle - report["mesh"]["min_dihedral"]) < 1e-6, f"element {number} has {angle} degrees")
     picked = []
@@ -650,6 +671,7 @@ async def test():
         the_folder_forgets_processes_that_ended,
         an_older_program_tells_no_numbers,
         advanced_settings_reach_the_program,
+        second_order_is_the_default,
         tiny_sizes_are_shown,
         the_result_is_told,
         the_worst_elements_show,

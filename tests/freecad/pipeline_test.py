@@ -7,9 +7,11 @@ import os
 import sys
 import unittest
 
+import FreeCAD
 import Part
 from BOPTools import SplitAPI
 from FreeCAD import Vector
+from freecad import collarmesh_workbench
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import run_in_freecad  # noqa: E402
@@ -153,6 +155,25 @@ class Pipeline(unittest.TestCase):
 
     def test_two_solids(self):
         self.compare(two_solids)
+
+    def test_first_order_is_too_stiff(self):
+        """As the panel says: a console of the default size that is bent."""
+        length, width, height, force = 60, 10, 4, 100
+        expected = force * length**3 / (3 * 210000 * width * height**3 / 12)  # mm
+        analysis = Analysis(Part.makeBox(length, width, height))
+        analysis.hold("xyz", (0, 5, 2))
+        analysis.pull((length, 5, 2), force, (0, 0, 1))
+        found = {}
+        for order in (1, 2):
+            analysis.mesh(order, analysis.part.Shape.BoundBox.DiagonalLength / 20)
+            found[order] = analysis.solve()["displacement"] / expected
+            analysis.remove_mesh()
+        analysis.close()
+        self.assertAlmostEqual(found[2], 1, delta=0.03)
+        self.assertLess(found[1], 0.8)
+        new = collarmesh_workbench.mesh(Part.makeBox(1, 1, 1))
+        self.assertEqual(new.ElementOrder, "2nd")
+        FreeCAD.closeDocument(new.Document.Name)
 
 
 run_in_freecad.run(Pipeline)

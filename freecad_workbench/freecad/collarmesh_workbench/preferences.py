@@ -30,7 +30,7 @@ def improve_levels():
 
 
 def second_order():
-    return _stored().GetBool("SecondOrder", False)
+    return _stored().GetBool("SecondOrder", True)
 
 
 class Page:

@@ -44,7 +44,7 @@ class Settings:
     time_limit: float = 0
     improve: int = 2
     coarsen: bool = True
-    order: int = 1
+    order: int = 2
     repair: str = "auto"  # or "none", or "wrap"
     solid_sizes: dict = dataclasses.field(default_factory=dict)
     face_sizes: dict = dataclasses.field(default_factory=dict)

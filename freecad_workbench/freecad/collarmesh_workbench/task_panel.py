@@ -7,7 +7,8 @@ import FreeCADGui
 from PySide import QtCore, QtGui
 
 from . import compatibility, dock, extent, mesh_properties, meshing_process, places, worst_elements
-from .advanced_section import AdvancedSection, in_panel_words, narrow_combo
+from .advanced_section import AdvancedSection, in_panel_words
+from .order_section import OrderSection
 from .places_list import PlacesList
 from .prediction import Predictions
 from .program import MesherError
@@ -35,7 +36,7 @@ class MeshTaskPanel:
         self.predictions.partly_made.connect(self._show_some_predictions)
         self.size.changed.connect(self._ask)
         self.advanced.changed.connect(self._ask)
-        self.order.currentIndexChanged.connect(self._ask)
+        self.order.changed.connect(self._ask)
         if meshing_process.run_of(obj) is not None:
             self._follow(meshing_process.run_of(obj))
         else:
@@ -52,12 +53,7 @@ class MeshTaskPanel:
         self.form.setWindowIcon(QtGui.QIcon(self.object.ViewObject.Proxy.getIcon()))
         diagonal = extent.diagonal(compatibility.meshed_object(self.object))
         self.size = SizeSection(self.object.CharacteristicLengthMax.Value, diagonal)
-        self.order = narrow_combo()
-        self.order.setObjectName("collarmesh_ElementOrder")
-        self.order.addItems([translate("collarmesh", "first (straight, 4 nodes)"),
-                             translate("collarmesh", "second (curved, 10 nodes)")])
-        self.order.setCurrentIndex(mesh_properties.ORDERS.index(self.object.ElementOrder))
-        self.order.setToolTip(translate("collarmesh", "Second order: nodes amid edges, on the exact faces"))
+        self.order = OrderSection(mesh_properties.ORDERS.index(self.object.ElementOrder) + 1)
         self.advanced = AdvancedSection(self.object)
         self.run_section = RunSection()
         self.run_section.run_clicked.connect(self.start)
@@ -71,12 +67,8 @@ class MeshTaskPanel:
         tip = translate("collarmesh", "Open a page with all measurements and a view of the mesh")
         self.report_button.setToolTip(tip)
         self.report_button.clicked.connect(self.open_report)
-        row = QtGui.QFormLayout()
-        row.addRow(translate("collarmesh", "Order of the elements"), self.order)
         layout = QtGui.QVBoxLayout(self.form)
-        layout.addWidget(self.size)
-        layout.addLayout(row)
-        for widget in (self.advanced, self.run_section, self.result, self.list, self.report_button):
+        for widget in (self.size, self.order, self.advanced, self.run_section, self.result, self.list, self.report_button):
             layout.addWidget(widget)
         layout.addStretch()
         self.list.hide()
@@ -91,7 +83,7 @@ class MeshTaskPanel:
             raise MesherError(str(error)) from error
         if size != self.object.CharacteristicLengthMax.Value:
             self.object.CharacteristicLengthMax = size
-        order = mesh_properties.ORDERS[self.order.currentIndex()]
+        order = mesh_properties.ORDERS[self.order.order() - 1]
         if order != self.object.ElementOrder:
             self.object.ElementOrder = order
 
@@ -102,7 +94,7 @@ class MeshTaskPanel:
         except MesherError:
             return
         self.advanced.apply_to(settings)
-        settings.order = self.order.currentIndex() + 1
+        settings.order = self.order.order()
         if self.run is not None or not settings.coarsen:
             self._show_predictions(self.predictions.known(settings, self.size.sizes()))
         else:

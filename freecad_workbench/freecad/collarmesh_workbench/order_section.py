@@ -1,0 +1,45 @@
+"""The part of the panel that asks for the order of the elements."""
+
+from PySide import QtCore, QtGui
+
+from .advanced_section import narrow_combo
+from .translations import translate
+
+
+class OrderSection(QtGui.QWidget):
+    """`changed` is emitted when another order is chosen."""
+
+    changed = QtCore.Signal()
+
+    def __init__(self, order):
+        super().__init__()
+        self.combo = narrow_combo()
+        self.combo.setObjectName("collarmesh_ElementOrder")
+        self.combo.addItems([translate("collarmesh", "first (straight, 4 nodes)"),
+                             translate("collarmesh", "second (curved, 10 nodes)")])
+        self.combo.setToolTip(translate("collarmesh", "Second order: nodes amid edges, on the exact faces"))
+        self.note = QtGui.QLabel(translate(
+            "collarmesh", "First order is too stiff for bending: displacements come out too small, and stresses far "
+            "too small. It is for a first look, and for solvers that ask for it."))
+        self.note.setObjectName("collarmesh_order_note")
+        self.note.setWordWrap(True)
+        row = QtGui.QFormLayout()
+        row.addRow(translate("collarmesh", "Order of the elements"), self.combo)
+        layout = QtGui.QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addLayout(row)
+        layout.addWidget(self.note)
+        self.combo.setCurrentIndex(order - 1)
+        self._show_note()
+        self.combo.currentIndexChanged.connect(self._choose)
+
+    def order(self):
+        """1 or 2."""
+        return self.combo.currentIndex() + 1
+
+    def _choose(self, _index):
+        self._show_note()
+        self.changed.emit()
+
+    def _show_note(self):
+        self.note.setVisible(self.order() == 1)
