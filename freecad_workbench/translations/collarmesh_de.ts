@@ -159,12 +159,24 @@
       <translation> mm je mm</translation>
     </message>
     <message>
-      <source>'{text}' is no value: {error}</source>
-      <translation>„{text}“ ist kein Wert: {error}</translation>
+      <source>'{text}' is negative</source>
+      <translation>„{text}“ ist negativ</translation>
+    </message>
+    <message>
+      <source>'{text}' is no number</source>
+      <translation>„{text}“ ist keine Zahl</translation>
+    </message>
+    <message>
+      <source>'{text}' is no value</source>
+      <translation>„{text}“ ist kein Wert</translation>
     </message>
     <message>
       <source>'{text}' is not in {unit}</source>
       <translation>„{text}“ ist nicht in {unit}</translation>
+    </message>
+    <message>
+      <source>'{text}' is too large</source>
+      <translation>„{text}“ ist zu groß</translation>
     </message>
     <message>
       <source>&lt; 1 s</source>
@@ -455,6 +467,10 @@
       <translation>Neu vernetzen</translation>
     </message>
     <message>
+      <source>Mesh all the same</source>
+      <translation>Trotzdem vernetzen</translation>
+    </message>
+    <message>
       <source>Mesh by collarmesh</source>
       <translation>Netz von collarmesh</translation>
     </message>
@@ -619,6 +635,10 @@
       <translation>Tetraeder</translation>
     </message>
     <message>
+      <source>That takes about {time}.</source>
+      <translation>Das dauert etwa {time}.</translation>
+    </message>
+    <message>
       <source>The bound that the elements keep; at least 2 always ends</source>
       <translation>Die Schranke, die die Elemente einhalten; ab 2 endet der Lauf immer</translation>
     </message>
@@ -667,12 +687,24 @@
       <translation>Das schlechteste Tetraeder: {angle}°. Klicken zeigt es.</translation>
     </message>
     <message>
+      <source>They need about {needed} GB of memory, but {free} GB are free.</source>
+      <translation>Sie brauchen etwa {needed} GB Speicher, aber {free} GB sind frei.</translation>
+    </message>
+    <message>
+      <source>They need about {needed} GB of memory.</source>
+      <translation>Sie brauchen etwa {needed} GB Speicher.</translation>
+    </message>
+    <message>
       <source>Thin elements have no small or large angle</source>
       <translation>Dünne Elemente haben keine kleinen oder großen Winkel</translation>
     </message>
     <message>
       <source>Thin places of the shape get so many elements across; 0: any number</source>
       <translation>Dünne Stellen der Form bekommen so viele Elemente quer hindurch; 0: beliebig viele</translation>
+    </message>
+    <message>
+      <source>This size makes about {elements} elements.</source>
+      <translation>Diese Größe ergibt etwa {elements} Elemente.</translation>
     </message>
     <message>
       <source>Threads</source>
@@ -791,12 +823,24 @@
       <translation>wird verbessert</translation>
     </message>
     <message>
+      <source>it has to be more than 0</source>
+      <translation>der Wert muss größer als 0 sein</translation>
+    </message>
+    <message>
       <source>largest angle</source>
       <translation>größter Winkel</translation>
     </message>
     <message>
       <source>loading the mesh</source>
       <translation>Netz wird geladen</translation>
+    </message>
+    <message>
+      <source>more than a year</source>
+      <translation>mehr als ein Jahr</translation>
+    </message>
+    <message>
+      <source>no limit</source>
+      <translation>keine Grenze</translation>
     </message>
     <message>
       <source>none</source>
@@ -837,6 +881,10 @@
     <message>
       <source>the whole object</source>
       <translation>das ganze Objekt</translation>
+    </message>
+    <message>
+      <source>there is no value</source>
+      <translation>es steht kein Wert da</translation>
     </message>
     <message>
       <source>wrap where it fails</source>
@@ -887,6 +935,10 @@
       <translation>{label}: Growth ist {value}, aber Größen wachsen um 0 oder mehr.</translation>
     </message>
     <message>
+      <source>{label}: a size of {size:g} mm makes no sense, it has to be more than 0.</source>
+      <translation>{label}: eine Größe von {size:g} mm ist sinnlos, sie muss größer als 0 sein.</translation>
+    </message>
+    <message>
       <source>{label}: no object is chosen to be meshed.</source>
       <translation>{label}: es ist kein Objekt zum Vernetzen gewählt.</translation>
     </message>
@@ -913,6 +965,14 @@
     <message>
       <source>{label}: {property} is {value}, but must be positive.</source>
       <translation>{label}: {property} ist {value}, muss aber positiv sein.</translation>
+    </message>
+    <message>
+      <source>{label}: {size:g} mm is less than a hundred thousandth of the part, which is {diagonal:.4g} mm large. Choose a larger size.</source>
+      <translation>{label}: {size:g} mm sind weniger als ein Hunderttausendstel des Teils, das {diagonal:.4g} mm groß ist. Wählen Sie eine größere Größe.</translation>
+    </message>
+    <message>
+      <source>{n} days</source>
+      <translation>{n} Tage</translation>
     </message>
     <message>
       <source>{n} h</source>

@@ -216,7 +216,7 @@ async def undo_of_the_creation_while_meshing(document, part):
     FreeCADGui.Selection.addSelection(part)
     await w.click_command(MESH_COMMAND)
     await w.wait_until(lambda: w.find("run") is not None, "the panel")
-    w.child("CharacteristicLengthMax").setText("0.2 mm")
+    w.child("CharacteristicLengthMax").setText("0.25 mm")
     await w.click(w.child("run"))
     await w.wait_until(lambda: w.child("progress").value() > 0, "the run")
     name = document.Objects[-1].Name

@@ -32,7 +32,7 @@ async def begin():
     obj = mesh_object.make(document, part)
     document.saveAs(os.path.join(os.environ["FREECAD_USER_HOME"], "plate.FCStd"))
     await window.open_panel(obj)
-    window.child("CharacteristicLengthMax").setText("0.12 mm")
+    window.child("CharacteristicLengthMax").setText("0.25 mm")
     await window.click(window.child("run"))
     work = meshing_process.run_of(obj)
     await window.wait_until(lambda: work.progress is not None and work.progress.tets > 1000, "progress")

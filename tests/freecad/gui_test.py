@@ -60,7 +60,7 @@ async def progress_moves_and_the_mesh_shows(obj, part):
 
 async def cancel_keeps_the_mesh(obj):
     count = obj.FemMesh.VolumeCount
-    child("CharacteristicLengthMax").setText("0.15 mm")
+    child("CharacteristicLengthMax").setText("0.25 mm")
     await click(child("run"))
     require(child("cancel").isEnabled(), "cancel is possible")
     await wait_until(lambda: child("progress").value() > 70, "a long run")

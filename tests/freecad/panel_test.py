@@ -17,7 +17,7 @@ import numpy
 import Part
 from PySide import QtCore, QtGui
 
-from freecad.collarmesh_workbench import (angle_chart, guarantees, mesh_object, meshing_process, places, program,
+from freecad.collarmesh_workbench import (angle_chart, cost, guarantees, mesh_object, meshing_process, places, program,
                                           size_objects, view_marks, work_folder, worst_elements)
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -25,7 +25,7 @@ from window import (child, click, click_at, click_command, click_item, close_pan
                     plate, require, rows, run_mesher, run_test, said, screenshot, turn, wait_until)
 
 PROGRAM = os.environ["COLLARMESH_PROGRAM"]
-LONG = "0.15 mm"  # a size for which the plate takes much longer than any test
+LONG = "0.25 mm"  # a size for which the plate takes much longer than any test
 
 
 def new_part(shape, label="Plate"):
@@ -252,7 +252,73 @@ async def second_order_is_the_default():
     await turn()
     require(not note.isVisible(), "the note goes")
     await run_mesher("5 mm")
-    require(obj.ElementOrder == "2nd" and len(obj.FemMesh.getElementNodes(obj.FemMesh.Volumes[0])) == 10, "second order")
+    require(obj.ElementOrder == "2nd" and len(
+        obj.FemMesh.getElementNodes(obj.FemMesh.Volumes[0])) == 10, "second order")
+    await close(document)
+
+
+async def sizes_are_checked_before_a_run():
+    document, _, obj = new_part(plate())
+    await open_panel(obj)
+    size, ratio = child("CharacteristicLengthMax"), child("RadiusEdgeRatio")
+    for text, words in (("", "no value"), ("0 mm", "more than 0"), ("-3 mm", "negative"), ("1e400 mm", "too large"),
+                        ("3 kg", "not in mm"), ("some", "no value"), ("1e-6 mm", "hundred thousandth")):
+        size.setText(text)
+        await click(child("run"))
+        require(meshing_process.run_of(obj) is None, f"{text} does not run")
+        if child("question").isVisible():  # it would be asked about, too
+            await click(child("run"))
+        require(f"Size of the elements: " in said() and words in said(), f"{text}: {said()}")
+    size.setText("4 mm")
+    for name, field, text, words in (("RadiusEdgeRatio", "Circumradius / shortest edge", "", "no value"),
+                                     ("Gradation", "Growth of the size", "-1", "negative"),
+                                     ("CharacteristicLengthMin", "Smallest size", "-1 mm", "negative")):
+        before = child(name).text()
+        child(name).setText(text)
+        await click(child("run"))
+        require(f"{field}: " in said() and words in said() and child(name).isVisible(), f"{name}: {said()}")
+        child(name).setText(before)
+    require(ratio.text() == "2" and child("CharacteristicLengthMin").text() == "", "what is empty by default")
+    await run_mesher("3 mm + 1 mm")
+    require(obj.CharacteristicLengthMax.Value == 4 and obj.FemMesh.VolumeCount, "a sum is a size")
+    obj.CharacteristicLengthMax = 4e-5
+    try:
+        mesh_object.start(obj)
+        require(False, "macros are told, too")
+    except program.MesherError as error:
+        require("Size of the elements: 4e-05 mm" in str(error), str(error))
+    await close(document)
+
+
+async def very_many_elements_are_asked_about():
+    """By the prediction, or before that by the volume."""
+    document, _, obj = new_part(plate())
+    await open_panel(obj)
+    size, question = child("CharacteristicLengthMax"), child("question")
+    require(child("run").text() == "Mesh" and not question.isVisible(), "nothing is asked at first")
+    for wait in (False, True):
+        size.setText("0.05 mm")
+        if wait:
+            await wait_until(lambda: number_in(table()[5][2]), "the number of elements")
+        await click(child("run"))
+        require(meshing_process.run_of(obj) is None, "it does not start")
+        require("elements" in question.text() and "GB" in question.text() and question.isVisible(), question.text())
+        require(wait == ("That takes about" in question.text()), question.text())
+        require(child("run").text() == "Mesh all the same", child("run").text())
+        if wait:
+            await screenshot("freecad_question.png")
+        else:
+            size.setText("4 mm")
+            require(not question.isVisible() and child("run").text() == "Mesh", "another size needs no question")
+    await click(child("run"))
+    run = meshing_process.run_of(obj)
+    require(run is not None and not question.isVisible(), "a second click is the answer")
+    await click(child("cancel"))
+    await wait_until(lambda: child("run").isEnabled(), "the end")
+    with mock.patch.object(cost, "free_memory", lambda: 1e6):
+        size.setText("2 mm")
+        await click(child("run"))
+    require("but 0.0 GB are free" in question.text(), question.text())
     await close(document)
 
 
@@ -672,6 +738,8 @@ async def test():
         an_older_program_tells_no_numbers,
         advanced_settings_reach_the_program,
         second_order_is_the_default,
+        sizes_are_checked_before_a_run,
+        very_many_elements_are_asked_about,
         tiny_sizes_are_shown,
         the_result_is_told,
         the_worst_elements_show,

@@ -4,7 +4,7 @@ import dataclasses
 
 from PySide import QtCore, QtGui
 
-from . import mesh_properties, preferences
+from . import mesh_properties, numbers_typed, preferences
 from .quantity_field import QuantityField
 from .translations import translate
 
@@ -27,7 +27,7 @@ def sections():
     """Headings and their rows."""
     any_number = translate("collarmesh", "any")
     any_growth = translate("collarmesh", "as the sizes ask for")
-    default = translate("collarmesh", "default")
+    no_limit, default = translate("collarmesh", "no limit"), translate("collarmesh", "default")
     repair = {
         "Automatic": translate("collarmesh", "automatic"),
         "None": translate("collarmesh", "none, refuse"),
@@ -35,7 +35,7 @@ def sections():
     }
     return (
         (translate("collarmesh", "Sizes"), (
-            Row("CharacteristicLengthMin", translate("collarmesh", "Smallest size"), "mm",
+            Row("CharacteristicLengthMin", translate("collarmesh", "Smallest size"), "mm", no_limit,
                 tip=translate("collarmesh", "Never ask for smaller elements than this; 0: no limit")),
             Row("MeshSizeFromCurvature", translate("collarmesh", "Elements on a full circle"), zero=any_number,
                 tip=translate("collarmesh", "Curved faces get so many elements on a full circle; 0: any number")),
@@ -45,12 +45,12 @@ def sections():
                 tip=translate("collarmesh", "Growth of the size by unit of length away from finer places; 0: any")),
         )),
         (translate("collarmesh", "Shape"), (
-            Row("SurfaceDistance", translate("collarmesh", "Largest distance from the shape"), "mm",
+            Row("SurfaceDistance", translate("collarmesh", "Largest distance from the shape"), "mm", default,
                 tip=translate("collarmesh", "How far faces and edges of elements may be from curved faces; 0: a tenth "
                                             "of the size, at most 1/200 of the diagonal (second order: 1/550)")),
-            Row("CreaseAngle", translate("collarmesh", "Sharp below this angle"), "deg",
+            Row("CreaseAngle", translate("collarmesh", "Sharp below this angle"), "deg", default,
                 tip=translate("collarmesh", "Edges and faces that meet at less than this get a collar")),
-            Row("CollarAngle", translate("collarmesh", "Largest angle in collars"), "deg",
+            Row("CollarAngle", translate("collarmesh", "Largest angle in collars"), "deg", default,
                 tip=translate("collarmesh", "Bound on dihedral angles in collars")),
             Row("PlanarTolerance", translate("collarmesh", "Tolerance of planes"), zero=default,
                 tip=translate("collarmesh", "Faces this near to a plane are planar, "
@@ -63,7 +63,7 @@ def sections():
         (translate("collarmesh", "Quality"), (
             Row("ImproveLevel", translate("collarmesh", "Improvement"), choices=preferences.improve_levels(),
                 tip=translate("collarmesh", "How much time goes into removing flat elements")),
-            Row("MinDihedralAngle", translate("collarmesh", "Improve below this angle"), "deg",
+            Row("MinDihedralAngle", translate("collarmesh", "Improve below this angle"), "deg", default,
                 tip=translate("collarmesh", "Elements with smaller dihedral angles are improved; 0: 15, 20 or 30 "
                                             "degrees by the level of improvement")),
             Row("Coarsen", translate("collarmesh", "As few elements as the sizes ask for")),
@@ -117,6 +117,7 @@ class AdvancedSection(QtGui.QWidget):
             try:
                 value = read()
             except ValueError as error:
+                self.fold.setChecked(True)
                 raise ValueError(f"{text}: {error}") from error
             if value != self._value(name):
                 setattr(self.object, name, value)
@@ -156,7 +157,7 @@ class AdvancedSection(QtGui.QWidget):
         if row.choices:
             return self._combo(row, value)
         if row.unit:
-            field = QuantityField(row.unit, value)
+            field = QuantityField(row.unit, value, self.object, zero=row.zero)
             field.widget.textChanged.connect(self.changed)
             return field.widget, field.value
         if isinstance(value, bool):
@@ -174,7 +175,7 @@ class AdvancedSection(QtGui.QWidget):
         text = QtGui.QLineEdit("" if value == 0 and row.zero else f"{value:.12g}")
         text.setPlaceholderText(row.zero)
         text.textChanged.connect(self.changed)
-        return text, lambda: _number(text)
+        return text, lambda: _ratio(text.text(), row.zero)
 
     def _combo(self, row, value):
         combo = narrow_combo()
@@ -208,6 +209,13 @@ def narrow_combo():
     return combo
 
 
-def _number(field):
-    text = field.text().strip().replace(QtCore.QLocale().decimalPoint(), ".")
-    return float(text) if text else 0.0
+def _ratio(text, zero):
+    """A number without unit that is not negative; empty text is 0 where that stands for something."""
+    if not text.strip():
+        if zero:
+            return 0.0
+        raise ValueError(translate("collarmesh", "there is no value"))
+    value = numbers_typed.number(text)
+    if value < 0:
+        raise ValueError(translate("collarmesh", "'{text}' is negative").format(text=text))
+    return value

@@ -3,7 +3,7 @@
 import Fem
 import FreeCAD
 
-from . import compatibility, groups, inputs, mesh_properties, mesh_undo, preferences, size_objects, up_to_date, views
+from . import compatibility, groups, inputs, mesh_properties, mesh_undo, preferences, size_check, size_objects, up_to_date, views
 from .program import GUARANTEE_MISSED, Job, MesherError
 from .translations import translate
 
@@ -48,6 +48,8 @@ def start(obj, program="", settings=None):
     part = mesh_properties.part_to_mesh(obj)
     state = up_to_date.state_of(obj)
     settings = settings or mesh_properties.settings_of(obj)
+    sources = size_objects.sources_of(obj)
+    size_check.check(settings, sources, part)
     job = Job(settings, program or preferences.program(), preferences.threads(), inputs.file_name(part))
     try:
         inputs.write(part, job.shape)
@@ -56,7 +58,7 @@ def start(obj, program="", settings=None):
         raise
     job.messages += tiny_edges(inputs.shape_of(part), settings.size)
     job.state = state
-    labels = [label for label, _ in size_objects.sources_of(obj)]
+    labels = [label for label, _ in sources]
     job.explain = lambda text: size_objects.with_labels(text, labels)
     return job
 
@@ -65,7 +67,8 @@ def tiny_edges(shape, size):
     """Warnings, one for each edge much shorter than the target edge length (mm; 0: the default)."""
     if shape.isNull():
         return []
-    size = size or shape.BoundBox.DiagonalLength / 20
+    default = shape.BoundBox.DiagonalLength / 20
+    size = min(size, 4 * default) or default
     text = translate(
         "collarmesh",
         "{edge} at {place} is only {length} mm long, the mesh becomes very fine there: remove the edge if it is not "

@@ -15,7 +15,10 @@ class RunSection(QtGui.QWidget):
 
     def __init__(self):
         super().__init__()
-        self.run = QtGui.QPushButton(translate("collarmesh", "Mesh"))
+        self.question = QtGui.QLabel()
+        self.question.setObjectName("collarmesh_question")
+        self.question.setWordWrap(True)
+        self.run = QtGui.QPushButton()
         self.run.setObjectName("collarmesh_run")
         self.run.setDefault(True)
         self.run.clicked.connect(self.run_clicked)
@@ -33,19 +36,38 @@ class RunSection(QtGui.QWidget):
         buttons.addWidget(self.cancel)
         layout = QtGui.QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.question)
         layout.addLayout(buttons)
         layout.addWidget(self.bar)
         layout.addWidget(self.left)
         self.rest()
 
+    def ask(self, text):
+        """Another click is the answer."""
+        self.question.setText(text)
+        self.question.show()
+        self.run.setText(translate("collarmesh", "Mesh all the same"))
+
+    def asked(self):
+        """The question that is shown; "" without one."""
+        return self.question.text()
+
+    def withdraw(self):
+        """Ask no more."""
+        self.question.clear()
+        self.question.hide()
+        self.run.setText(translate("collarmesh", "Mesh"))
+
     def rest(self):
         """No run is under way."""
+        self.withdraw()
         self.run.setEnabled(True)
         self.cancel.setEnabled(False)
         self.bar.hide()
         self.left.hide()
 
     def begin(self):
+        self.withdraw()
         self.run.setEnabled(False)
         self.cancel.setEnabled(True)
         self.bar.setValue(0)

@@ -7,7 +7,7 @@ from PySide import QtCore, QtGui
 
 from . import compatibility, dock, size_objects
 from .size_handles import Handles
-from .quantity_field import QuantityField
+from .quantity_field import ANY, NOT_NEGATIVE, POSITIVE, QuantityField
 from .translations import translate
 
 AXES = ("x", "y", "z")
@@ -54,25 +54,27 @@ class SizePanel:
         self.rows = QtGui.QFormLayout()
         layout.addLayout(self.rows)
         self.fields = {}
-        lengths = [name for name, _, _ in obj.Proxy.lengths]
+        for name in ("Size", *(name for name, _, _ in obj.Proxy.lengths)):
+            self._add_property(name)
         if self.kind == "Distance":
-            lengths.append("Within")
-        for name in ("Size", *lengths):
-            self._add_length(name, texts()[name], lambda value, name=name: setattr(obj, name, value))
+            self._add_property("Within", NOT_NEGATIVE)
         self._add_growth()
         if self.kind == "Distance":
             self._add_references(layout)
         else:
             for i, axis in enumerate(AXES):
                 text = translate("collarmesh", "Position {axis}").format(axis=axis)
-                self._add_length(axis, text, lambda value, i=i: self._put(i, value))
+                self._add_length(axis, text, lambda value, i=i: self._put(i, value), ANY)
             self._add_hint(layout)
             self._add_handles()
         self.fill()
         dock.widen(self.form, WIDTH)
 
-    def _add_length(self, name, text, store):
-        field = QuantityField("mm", 0.0)
+    def _add_property(self, name, allowed=POSITIVE):
+        self._add_length(name, texts()[name], lambda value: setattr(self.object, name, value), allowed)
+
+    def _add_length(self, name, text, store, allowed=POSITIVE):
+        field = QuantityField("mm", 0.0, self.object, allowed)
         field.widget.setObjectName("collarmesh_size_" + name)
         if name in self.object.PropertiesList:
             field.widget.setToolTip(translate("App::Property", self.object.getDocumentationOfProperty(name)))

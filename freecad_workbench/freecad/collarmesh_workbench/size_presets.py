@@ -5,6 +5,8 @@ import math
 from .translations import translate
 
 DEFAULT_PART_OF_DIAGONAL = 1 / 20  # the program's, which is the medium one
+DAY, YEAR = 86400, 365 * 86400  # seconds
+SUPERSCRIPTS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def presets(diagonal):
@@ -26,6 +28,9 @@ def rounded(length, digits=2):
 
 def count_text(count):
     """A number of elements, rounded, as people read it: 12 000."""
+    if count >= 1e9:
+        mantissa, exponent = f"{count:.0e}".split("e")
+        return f"{mantissa}·10" + str(int(exponent)).translate(SUPERSCRIPTS)
     return f"{int(rounded(count)):,}".replace(",", "\u202f")
 
 
@@ -37,4 +42,8 @@ def duration_text(seconds):
         return translate("collarmesh", "{n} s").format(n=round(seconds))
     if seconds < 6000:
         return translate("collarmesh", "{n} min").format(n=round(seconds / 60))
-    return translate("collarmesh", "{n} h").format(n=round(seconds / 3600, 1))
+    if seconds < 3 * DAY:
+        return translate("collarmesh", "{n} h").format(n=round(seconds / 3600, 1))
+    if seconds < YEAR:
+        return translate("collarmesh", "{n} days").format(n=round(seconds / DAY))
+    return translate("collarmesh", "more than a year")

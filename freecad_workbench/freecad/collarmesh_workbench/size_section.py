@@ -3,7 +3,7 @@
 from PySide import QtCore, QtGui
 
 from . import size_presets
-from .quantity_field import QuantityField
+from .quantity_field import POSITIVE, QuantityField
 from .translations import translate
 
 NAME, SIZE, ELEMENTS, TIME = range(4)
@@ -14,18 +14,20 @@ class SizeSection(QtGui.QWidget):
 
     changed = QtCore.Signal()
 
-    def __init__(self, size, diagonal):
-        """`size` in mm, 0: the default one; `diagonal` of the shape's bounding box."""
+    def __init__(self, obj, diagonal):
+        """For a mesh object, whose size may be 0, which is the default one; `diagonal` of the shape's bounding box."""
         super().__init__()
         self.presets = size_presets.presets(diagonal)
         self.table = self._table()
+        size = obj.CharacteristicLengthMax.Value
         if size == 0 and diagonal > 0:
             size = self.presets[len(self.presets) // 2][1]
-        self.field = QuantityField("mm", size)
+        self.field = QuantityField("mm", size, obj, POSITIVE)
         self.field.widget.setObjectName("collarmesh_CharacteristicLengthMax")
         self.field.widget.setToolTip(translate("collarmesh", "Length that the edges of the elements are to have"))
         row = QtGui.QFormLayout()
-        row.addRow(translate("collarmesh", "Size of the elements"), self.field.widget)
+        self.label = translate("collarmesh", "Size of the elements")
+        row.addRow(self.label, self.field.widget)
         layout = QtGui.QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.table)
@@ -35,8 +37,11 @@ class SizeSection(QtGui.QWidget):
         self.field.widget.textChanged.connect(self._edited)
 
     def size(self):
-        """In mm. Raises ValueError."""
-        return self.field.value()
+        """In mm. Raises ValueError, which names the field."""
+        try:
+            return self.field.value()
+        except ValueError as error:
+            raise ValueError(f"{self.label}: {error}") from error
 
     def sizes(self):
         """Those of the table, in mm, the chosen one first."""

@@ -6,7 +6,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import compatibility, dock, extent, mesh_properties, meshing_process, places, worst_elements
+from . import compatibility, cost, dock, extent, mesh_properties, meshing_process, places, worst_elements
 from .advanced_section import AdvancedSection, in_panel_words
 from .order_section import OrderSection
 from .places_list import PlacesList
@@ -52,7 +52,7 @@ class MeshTaskPanel:
         self.form.setWindowTitle(translate("collarmesh", "Mesh by collarmesh"))
         self.form.setWindowIcon(QtGui.QIcon(self.object.ViewObject.Proxy.getIcon()))
         diagonal = extent.diagonal(compatibility.meshed_object(self.object))
-        self.size = SizeSection(self.object.CharacteristicLengthMax.Value, diagonal)
+        self.size = SizeSection(self.object, diagonal)
         self.order = OrderSection(mesh_properties.ORDERS.index(self.object.ElementOrder) + 1)
         self.advanced = AdvancedSection(self.object)
         self.run_section = RunSection()
@@ -89,6 +89,7 @@ class MeshTaskPanel:
 
     def _ask(self, *_):
         """What the sizes will make with what is in the fields; while the mesher runs only what is known already."""
+        self.run_section.withdraw()
         try:
             settings = mesh_properties.settings_of(self.object)
         except MesherError:
@@ -110,17 +111,34 @@ class MeshTaskPanel:
     def start(self):
         if self.run is not None:
             return
-        self.marks.clear()
-        self.list.fill([])
-        self.result.clear()
-        self.report_button.hide()
         try:
             self._store()
+            question = self._question()
+            if question and not self.run_section.asked():
+                self.run_section.ask(question)
+                return
+            self._clear()
             run = meshing_process.start(self.object)
             _, run.predicted_seconds = self.known.get(self.object.CharacteristicLengthMax.Value, (0, None))
             self._follow(run)
         except MesherError as error:
+            self._clear()
             self._show_outcome(meshing_process.Outcome(error=str(error)))
+
+    def _clear(self):
+        """What is told of the last run."""
+        self.marks.clear()
+        self.list.fill([])
+        self.result.clear()
+        self.report_button.hide()
+
+    def _question(self):
+        """About a mesh that costs much; "" where there is none."""
+        part, size = compatibility.meshed_object(self.object), self.object.CharacteristicLengthMax.Value
+        elements, seconds = self.known.get(size, (0, None))
+        if not elements and part is not None:
+            elements = cost.elements_by_volume(part, size)
+        return cost.question(elements, self.order.order(), seconds)
 
     def cancel(self):
         if self.run is not None:

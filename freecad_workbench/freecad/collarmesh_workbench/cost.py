@@ -1,0 +1,46 @@
+"""What a mesh costs, and when that is asked about before it is made. Works without the GUI."""
+
+import math
+
+from . import inputs
+from .size_presets import count_text, duration_text
+from .translations import translate
+
+MANY = 5_000_000  # elements
+BYTES = {1: 1000, 2: 2000}  # of memory for an element, by order: in the mesher, and then in FreeCAD
+GIGABYTE = 1e9
+
+
+def elements_by_volume(part, size):
+    """About how many elements of one size (mm) fill a part: regular tetrahedra."""
+    mesh, shape = inputs.triangles_of(part), inputs.shape_of(part)
+    volume = mesh.Volume if mesh is not None else 0 if shape.isNull() else shape.Volume
+    return 6 * math.sqrt(2) * abs(volume) / size**3
+
+
+def free_memory():
+    """In bytes; infinite where nobody knows."""
+    try:
+        with open("/proc/meminfo", encoding="ascii") as file:
+            lines = dict(line.split(":", 1) for line in file)
+        return 1024 * int(lines["MemAvailable"].split()[0])
+    except (OSError, KeyError, ValueError):
+        return math.inf
+
+
+def question(elements, order, seconds=None):
+    """What to ask before so many elements are made; "" where nothing is. `seconds`: None where nobody knows."""
+    needed, free = BYTES[order] * elements, free_memory()
+    if elements <= MANY and needed <= free:
+        return ""
+    text = translate("collarmesh", "This size makes about {elements} elements.").format(elements=count_text(elements))
+    if seconds is not None:
+        text += " " + translate("collarmesh", "That takes about {time}.").format(time=duration_text(seconds))
+    memory = translate("collarmesh", "They need about {needed} GB of memory.")
+    if needed > free:
+        memory = translate("collarmesh", "They need about {needed} GB of memory, but {free} GB are free.")
+    return f"{text} {memory}".format(needed=_gigabytes(needed), free=_gigabytes(free))
+
+
+def _gigabytes(count):
+    return count_text(count / GIGABYTE) if count >= 10 * GIGABYTE else f"{count / GIGABYTE:.1f}"
