@@ -17,8 +17,9 @@ import numpy
 import Part
 from PySide import QtCore, QtGui
 
-from freecad.collarmesh_workbench import (angle_chart, cost, guarantees, mesh_object, meshing_process, places, program,
-                                          size_objects, view_marks, work_folder, worst_elements)
+from freecad.collarmesh_workbench import (angle_chart, cost, guarantees, mesh_object, meshing_process, places,
+                                          prediction, processes, program, size_objects, view_marks, work_folder,
+                                          worst_elements)
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from window import (child, click, click_at, click_command, click_item, close_panel, find, open_panel, pause,  # noqa: E402
@@ -111,6 +112,36 @@ async def elements_are_told_before_meshing():
     await wait_until(lambda: number_in(table()[1][2]) == counts[1], "the numbers from before")
     part.Shape = Part.makeBox(40, 30, 10)
     await wait_until(lambda: number_in(table()[2][2]) > 1.3 * counts[2], "the numbers of another shape")
+    await close(document)
+
+
+async def predictions_take_one_process():
+    """For all sizes; none where they are known, and none for a mesh that is only looked at."""
+    document, part, obj = new_part(plate())
+    started = []
+    prediction._answers.clear()
+    with mock.patch.object(processes, "new", side_effect=lambda new=processes.new: started.append(0) or new()):
+        await open_panel(obj)
+        await wait_until(lambda: number_in(table()[2][2]), "the number of elements")
+        require(all(number_in(row[2]) for row in table()[:5]) and len(started) == 1, f"{table()}, {len(started)} runs")
+        await close_panel()
+        other = mesh_object.make(document, part)
+        await open_panel(other)
+        require(all(number_in(row[2]) for row in table()[:5]), f"known already: {table()}")
+        child("CharacteristicLengthMin").setText("1.5 mm")
+        await wait_until(lambda: number_in(table()[2][2]), "what is not smaller than that")
+        require([bool(row[2]) for row in table()[:5]] == 3 * [True] + 2 * [False], f"{table()}")
+        child("CharacteristicLengthMin").setText("")
+        await run_mesher("5 mm")
+        await close_panel()
+        prediction._answers.clear()
+        started.clear()
+        await open_panel(other)
+        await pause(1000)
+        require(not started and not any(row[2] for row in table()), f"a mesh is looked at: {table()}, {len(started)}")
+        await click_item(child("presets").topLevelItem(2))
+        await wait_until(lambda: number_in(table()[2][2]), "the number of elements for another one")
+        require(len(started) == 1, f"{len(started)} runs")
     await close(document)
 
 
@@ -731,6 +762,7 @@ async def test():
     only = os.environ.get("COLLARMESH_TEST_ONLY", "")
     for each in (
         elements_are_told_before_meshing,
+        predictions_take_one_process,
         what_is_not_predicted_is_not_told,
         sizes_by_place_count,
         predictions_wait_for_the_mesher,

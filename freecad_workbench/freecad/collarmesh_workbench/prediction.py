@@ -1,5 +1,6 @@
 """How many elements sizes will make, and how long that takes, asked of the program before meshing."""
 
+import collections
 import json
 import os
 import pathlib
@@ -14,41 +15,55 @@ WAIT = 400  # milliseconds after the last change
 COUNTING = {"--size-min", "--elements-per-circle", "--elements-across-gap", "--gradation", "--region-size",
             "--patch-size", "--curve-size", "--distance", "--order", "--planar-tolerance", "--weld", "--repair",
             "--repair-tolerance", "--crease-angle"}
+SHAPES = 50  # of which the answers are kept
+
+_answers = collections.deque(maxlen=SHAPES)  # (numbers of a shape, {(arguments, size field, size): answer})
+
+
+def _answers_for(numbers):
+    """Of the shape that these numbers stand for (see up_to_date); they are kept while FreeCAD runs."""
+    for known_numbers, answers in _answers:
+        if up_to_date.same_shape(known_numbers, numbers):
+            return answers
+    _answers.append((numbers, {}))
+    return _answers[-1][1]
 
 
 class Predictions(QtCore.QObject):
     """Asks in a process of its own, a moment after the last `ask`. Where the program does not know, nothing is told."""
 
     made = QtCore.Signal(object)  # {asked size in mm: (number of tetrahedra, seconds)}
-    partly_made = QtCore.Signal(object)  # the same, while the others are asked for: each may take seconds
 
     def __init__(self, obj, parent=None):
         super().__init__(parent)
         self.object = obj
         self._folder = None  # with the shape, once it is needed
         self._shape = ""  # its path
-        self._shape_numbers = []  # see up_to_date
+        self._numbers = None  # that stand for the shape; None: not looked at
+        self._known = {}  # what is known of it
         self._arguments, self._size_field, self._sizes = (), "", ()  # what is asked for
+        self._asked = ()  # the sizes that the process is about
         self._process = None
-        self._known = {}  # {(arguments, size field, size): (number of tetrahedra, seconds)}
-        self._timer = QtCore.QTimer(self, singleShot=True, interval=WAIT)
+        self._timer = QtCore.QTimer(self, singleShot=True)
         self._timer.timeout.connect(self._begin)
 
-    def ask(self, settings, sizes):
-        """For the Settings with each of these sizes (mm), the first ones first; returns the answers that are known
-        already. Of meshes that are not coarsened the program predicts nothing."""
+    def ask(self, settings, sizes, wait=WAIT):
+        """For the Settings with each of these sizes (mm); returns the answers that are known already. Of meshes that
+        are not coarsened the program predicts nothing."""
         answers = self.known(settings, sizes)
         if settings.coarsen:
-            self._timer.start()
+            self._timer.start(wait)
         return answers
 
     def known(self, settings, sizes):
         """The answers that are known already; nothing is asked of the program."""
         self.pause()
+        self._look_at_shape()
         self._arguments = tuple(_arguments(settings))
         self._size_field = json.dumps(settings.size_field) if settings.size_field else ""
+        sizes = [size for size in sizes if size >= settings.size_min]  # the program refuses others
         self._sizes = tuple(dict.fromkeys(sizes)) if settings.coarsen else ()
-        return self._answers()
+        return self._told()
 
     def pause(self):
         """Until the next `ask`: the processor is for something else."""
@@ -56,9 +71,9 @@ class Predictions(QtCore.QObject):
         self._stop()
 
     def forget(self):
-        """The shape has changed."""
+        """The shape has changed, or nobody asks any more."""
         self.pause()
-        self._known = {}
+        self._numbers, self._known = None, {}
         if self._folder is not None:
             self._folder.cleanup()
             self._folder = None
@@ -66,36 +81,42 @@ class Predictions(QtCore.QObject):
     def shape_has_changed(self):
         """Is it another one than the one that the answers are about?"""
         part = compatibility.meshed_object(self.object)
-        return self._folder is not None and not up_to_date.has_shape(part, self._shape_numbers)
+        return self._numbers is not None and not up_to_date.has_shape(part, self._numbers)
+
+    def _look_at_shape(self):
+        """Answers that are known of it are used, also those for another panel."""
+        if self._numbers is None:
+            try:
+                self._numbers = up_to_date.shape_numbers(mesh_properties.part_to_mesh(self.object))
+                self._known = _answers_for(self._numbers)
+            except Exception:  # of OpenCASCADE's, too; the run tells what is wrong
+                self._known = {}
 
     def _stop(self):
         process, self._process = self._process, None
         if process is not None and processes.end(process):
             self._folder.program_is(None)
 
-    def _missing(self):
-        return [size for size in self._sizes if self._key(size) not in self._known]
-
     def _key(self, size):
         return self._arguments, self._size_field, size
 
     def _begin(self):
-        missing = self._missing()
+        self._asked = [size for size in self._sizes if self._key(size) not in self._known]
         try:
-            if missing:
+            if self._asked:
                 program = find_program(preferences.program())
                 self._write_files()
         except Exception:  # of OpenCASCADE's, too; the run tells what is wrong
-            missing = []
-        if not missing:
+            self._asked = []
+        if not self._asked:
             self._tell()
             return
         sources = ["--size-field", self._size_field_path()] if self._size_field else []
         self._process = process = processes.new()
         process.setStandardErrorFile(QtCore.QProcess.nullDevice())
         process.finished.connect(self._finished)
-        arguments = [*self._arguments, *sources, "--predict", repr(missing[0]), "--json"]
-        process.start(program, ["info", self._shape, *arguments])
+        sizes = ",".join(map(repr, self._asked))
+        process.start(program, ["info", self._shape, *self._arguments, *sources, "--predict", sizes, "--json"])
         if process.waitForStarted():
             self._folder.program_is(process.processId())
         else:
@@ -110,7 +131,6 @@ class Predictions(QtCore.QObject):
             self._shape = os.path.join(folder.name, inputs.file_name(part))
             try:
                 inputs.write(part, self._shape)
-                self._shape_numbers = up_to_date.shape_numbers(part)
             except BaseException:
                 folder.cleanup()
                 raise
@@ -122,28 +142,24 @@ class Predictions(QtCore.QObject):
         return os.path.join(self._folder.name, "sizes.json")
 
     def _finished(self, exit_code, *_):
-        learned = exit_code == 0 and self._learn(bytes(self._process.readAllStandardOutput()))
+        if exit_code == 0:
+            self._learn(bytes(self._process.readAllStandardOutput()))
         self._stop()
-        if learned and self._missing():
-            self.partly_made.emit(self._answers())
-            self._begin()
-        else:
-            self._tell()
+        self._tell()
 
-    def _learn(self, answer):
-        """False where the program does not know."""
+    def _learn(self, text):
+        """What the program says; nothing where it does not know."""
         try:
-            found = json.loads(answer)["predictions"][0]
-            self._known[self._key(self._missing()[0])] = found["tets"], found["seconds"]
-        except (ValueError, KeyError, TypeError, IndexError):
-            return False
-        return True
+            found = [(each["tets"], each["seconds"]) for each in json.loads(text)["predictions"]]
+        except (ValueError, KeyError, TypeError):
+            return
+        self._known.update(zip(map(self._key, self._asked), found))
 
-    def _answers(self):
+    def _told(self):
         return {size: self._known[self._key(size)] for size in self._sizes if self._key(size) in self._known}
 
     def _tell(self):
-        self.made.emit(self._answers())
+        self.made.emit(self._told())
 
 
 def _arguments(settings):

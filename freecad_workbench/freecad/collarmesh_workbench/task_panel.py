@@ -6,11 +6,10 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import compatibility, cost, dock, extent, mesh_properties, meshing_process, places, worst_elements
+from . import compatibility, cost, dock, extent, mesh_properties, meshing_process, places, prediction, up_to_date, worst_elements
 from .advanced_section import AdvancedSection, in_panel_words
 from .order_section import OrderSection
 from .places_list import PlacesList
-from .prediction import Predictions
 from .program import MesherError
 from .result_section import BAD, ResultSection
 from .run_section import RunSection
@@ -22,6 +21,11 @@ WIDTH = 400  # pixels
 WHAT_IS_MESHED = ("Shape", "Placement", "Mesh", "LinkPlacement")  # properties of parts
 
 
+def has_mesh_of_now(obj):
+    """Is its mesh that of its shape and settings? Who opens its panel looks at it, and asks for no other one yet."""
+    return obj.FemMesh.VolumeCount > 0 and not up_to_date.is_out_of_date(obj)
+
+
 class MeshTaskPanel:
     """Shows the run of its object, which goes on when the panel is closed."""
 
@@ -31,9 +35,8 @@ class MeshTaskPanel:
         self.known = {}  # predictions
         self.marks = ViewMarks(obj)
         self._build()
-        self.predictions = Predictions(obj)
+        self.predictions = prediction.Predictions(obj)
         self.predictions.made.connect(self._show_predictions)
-        self.predictions.partly_made.connect(self._show_some_predictions)
         self.size.changed.connect(self._ask)
         self.advanced.changed.connect(self._ask)
         self.order.changed.connect(self._ask)
@@ -41,7 +44,7 @@ class MeshTaskPanel:
             self._follow(meshing_process.run_of(obj))
         else:
             self._show_outcome(meshing_process.outcome_of(obj))
-        self._ask()
+        self._predict(None if has_mesh_of_now(obj) else 0)
         self.form.destroyed.connect(self.dismiss)
         FreeCAD.addDocumentObserver(self)
         dock.widen(self.form, WIDTH)
@@ -88,21 +91,23 @@ class MeshTaskPanel:
             self.object.ElementOrder = order
 
     def _ask(self, *_):
-        """What the sizes will make with what is in the fields; while the mesher runs only what is known already."""
+        """After a change."""
         self.run_section.withdraw()
+        self._predict(prediction.WAIT)
+
+    def _predict(self, wait):
+        """What the sizes will make with what is in the fields, asked after so many milliseconds; None, and while the
+        mesher runs: only what is known already."""
         try:
             settings = mesh_properties.settings_of(self.object)
         except MesherError:
             return
         self.advanced.apply_to(settings)
         settings.order = self.order.order()
-        if self.run is not None or not settings.coarsen:
+        if wait is None or self.run is not None or not settings.coarsen:
             self._show_predictions(self.predictions.known(settings, self.size.sizes()))
         else:
-            self._show_predictions(self.predictions.ask(settings, self.size.sizes()), "…")
-
-    def _show_some_predictions(self, known):
-        self._show_predictions(known, "…")
+            self._show_predictions(self.predictions.ask(settings, self.size.sizes(), wait), "…")
 
     def _show_predictions(self, known, missing=""):
         self.known = known
