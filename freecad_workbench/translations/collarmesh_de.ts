@@ -183,16 +183,16 @@
       <translation>&lt; 1 s</translation>
     </message>
     <message>
-      <source>&lt;b&gt;A guarantee is missed&lt;/b&gt;</source>
-      <translation>&lt;b&gt;Eine Zusage ist verfehlt&lt;/b&gt;</translation>
-    </message>
-    <message>
-      <source>&lt;b&gt;Every guarantee holds&lt;/b&gt;</source>
-      <translation>&lt;b&gt;Alle Zusagen sind eingehalten&lt;/b&gt;</translation>
-    </message>
-    <message>
       <source>&lt;b&gt;{tets}&lt;/b&gt; tetrahedra, &lt;b&gt;{nodes}&lt;/b&gt; nodes, &lt;b&gt;{faces}&lt;/b&gt; faces</source>
       <translation>&lt;b&gt;{tets}&lt;/b&gt; Tetraeder, &lt;b&gt;{nodes}&lt;/b&gt; Knoten, &lt;b&gt;{faces}&lt;/b&gt; Flächen</translation>
+    </message>
+    <message>
+      <source>A guarantee is missed</source>
+      <translation>Eine Zusage ist verfehlt</translation>
+    </message>
+    <message>
+      <source>A guarantee was missed when it was made</source>
+      <translation>Eine Zusage war verfehlt, als es entstand</translation>
     </message>
     <message>
       <source>Add the selected</source>
@@ -325,6 +325,14 @@
     <message>
       <source>End the run; the mesh stays as it is</source>
       <translation>Den Lauf beenden; das Netz bleibt, wie es ist</translation>
+    </message>
+    <message>
+      <source>Every guarantee held when it was made</source>
+      <translation>Alle Zusagen waren eingehalten, als es entstand</translation>
+    </message>
+    <message>
+      <source>Every guarantee holds</source>
+      <translation>Alle Zusagen sind eingehalten</translation>
     </message>
     <message>
       <source>Export mesh</source>
@@ -701,6 +709,10 @@
     <message>
       <source>Thin places of the shape get so many elements across; 0: any number</source>
       <translation>Dünne Stellen der Form bekommen so viele Elemente quer hindurch; 0: beliebig viele</translation>
+    </message>
+    <message>
+      <source>This mesh is out of date: the shape, a size or a setting has changed since it was made. Mesh it again.</source>
+      <translation>Dieses Netz ist veraltet: Form, Größe oder eine Einstellung hat sich geändert, seit es entstand. Vernetzen Sie noch einmal.</translation>
     </message>
     <message>
       <source>This size makes about {elements} elements.</source>

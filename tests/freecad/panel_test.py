@@ -2,6 +2,7 @@
 
 The argument may be a folder for screenshots."""
 
+import dataclasses
 import json
 import os
 import pathlib
@@ -17,7 +18,7 @@ import numpy
 import Part
 from PySide import QtCore, QtGui
 
-from freecad.collarmesh_workbench import (angle_chart, cost, guarantees, mesh_object, meshing_process, places,
+from freecad.collarmesh_workbench import (angle_chart, colours, cost, guarantees, mesh_object, meshing_process, places,
                                           prediction, processes, program, size_objects, view_marks, work_folder,
                                           worst_elements)
 
@@ -375,8 +376,12 @@ async def the_result_is_told():
         require(f"{count:,}".replace(",", "\u202f") in child("counts").text(), f"{count}: {child('counts').text()}")
     chart = child("chart")
     require(all(sum(counts) == fem_mesh.VolumeCount for _, _, counts in chart.series), "all elements are in the chart")
+    require(child("guarantees_fold").text() == "Every guarantee holds", child("guarantees_fold").text())
+    require(not child("guarantees").isVisible(), "one line is enough when all hold")
+    await click(child("guarantees_fold"))
     lines = child("guarantees").text()
-    require("✗" not in lines and lines.count("✓") == 7, lines)
+    require("✗" not in lines and lines.count("✓") == 7 and child("guarantees").isVisible(), lines)
+    await click(child("guarantees_fold"))
     part.ViewObject.Visibility = False
     await screenshot("freecad_panel.png", size=(1200, 1000))
     x, y = int(chart._x(chart.extremes[0])), int(chart._frame().bottom())
@@ -389,11 +394,54 @@ async def the_result_is_told():
     report["check"]["findings"] = [finding]
     broken = [text for text, messages in guarantees.guarantees(report) if messages]
     require(broken == ["Circumradius / shortest edge is bounded"], f"{broken}")
-    meshing_process._outcomes[meshing_process._key(obj)] = meshing_process.Outcome(report=report)
+    key = meshing_process._key(obj)
+    meshing_process._outcomes[key] = dataclasses.replace(meshing_process._outcomes[key], report=report)
     await close_panel()
     await open_panel(obj)
     told = said()
     require("A guarantee is missed" in told and told.count("✗") == 1 and "Tetrahedron 7 is bad." in told, told)
+    await close(document)
+
+
+async def a_mesh_that_is_out_of_date_says_so():
+    """While the panel is open and when it opens; what held is grey then; a new run, or the shape from before, ends it."""
+    document, part, obj = new_part(plate())
+    document.UndoMode = 1
+    await open_panel(obj)
+    require(not child("out_of_date").isVisible(), "there is no mesh yet")
+    await run_mesher("4 mm")
+    count = obj.FemMesh.VolumeCount
+    require(not child("out_of_date").isVisible() and "holds" in child("guarantees_fold").text(), said())
+    document.openTransaction("Larger")
+    part.Shape = Part.makeBox(40, 30, 10)
+    document.recompute()
+    document.commitTransaction()
+    for again in (False, True):
+        await wait_until(lambda: child("out_of_date").isVisible(), "the words")
+        require("out of date" in said() and "held when it was made" in said() and "holds" not in said(), said())
+        grey = colours.of(colours.FAINT)
+        require(grey in child("guarantees").text() and grey in child("guarantees_fold").styleSheet(), "it is grey")
+        if again:
+            await screenshot("freecad_out_of_date_panel.png")
+        else:
+            await close_panel()
+            await open_panel(obj)
+    document.undo()
+    await wait_until(lambda: not child("out_of_date").isVisible(), "the shape from before")
+    require("Every guarantee holds" in said(), said())
+    obj.ElementOrder = "1st"
+    document.recompute()
+    await wait_until(lambda: child("out_of_date").isVisible(), "another setting")
+    await run_mesher("3 mm")
+    require(not child("out_of_date").isVisible() and "holds" in said(), said())
+    made = child("counts").text()
+    document.undo()
+    require(obj.FemMesh.VolumeCount == count, "undo brings the mesh from before")
+    await turn(50)
+    require(not child("counts").isVisible(), f"of which the last run tells nothing: {said()}")
+    document.redo()
+    await wait_until(lambda: child("counts").isVisible(), "the last run's mesh")
+    require(child("counts").text() == made, said())
     await close(document)
 
 
@@ -774,6 +822,7 @@ async def test():
         very_many_elements_are_asked_about,
         tiny_sizes_are_shown,
         the_result_is_told,
+        a_mesh_that_is_out_of_date_says_so,
         the_worst_elements_show,
         problems_select_their_places,
         notes_and_repairs_are_told_once,

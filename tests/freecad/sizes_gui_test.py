@@ -281,9 +281,6 @@ async def a_picture_of_all(document, obj, part):
     view().viewIsometric()
     for tree in w.window.findChildren(QtGui.QTreeWidget):
         tree.expandAll()
-    for dock in w.window.findChildren(QtGui.QDockWidget):
-        if dock.windowTitle() == "Report view":
-            dock.hide()
     await w.screenshot("freecad_sizes.png")
 
 

@@ -131,7 +131,8 @@ def column_of(tree, column):
 
 def said():
     """All that the panel tells of the last run."""
-    shown = [child(name).text() for name in ("message", "counts", "guarantees") if child(name).isVisible()]
+    names = ("out_of_date", "message", "counts", "guarantees_fold", "guarantees")
+    shown = [child(name).text() for name in names if child(name).isVisible()]
     for heading, items in rows(child("places")).items():
         shown += [heading, *(item.text(0) for item in items)]
     return "\n".join(shown)
@@ -164,6 +165,9 @@ async def screenshot(name, fit=True, size=(1200, 900)):
         return
     if find("presets") is not None and child("run").isEnabled():
         await wait_until(lambda: "…" not in "".join(column_of(child("presets"), 2)), "the numbers of elements")
+    for dock in window.findChildren(QtGui.QDockWidget):
+        if dock.windowTitle() == "Report view":
+            dock.hide()
     screen = QtGui.QApplication.primaryScreen()
     window.setGeometry(0, 0, *(int(length / screen.devicePixelRatio()) for length in size))
     for _ in range(2):

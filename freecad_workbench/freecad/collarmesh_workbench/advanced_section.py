@@ -5,6 +5,7 @@ import dataclasses
 from PySide import QtCore, QtGui
 
 from . import mesh_properties, numbers_typed, preferences
+from .fold import Fold
 from .quantity_field import QuantityField
 from .translations import translate
 
@@ -88,15 +89,10 @@ class AdvancedSection(QtGui.QWidget):
         super().__init__()
         self.object = obj
         self._readers = {}
-        self.fold = QtGui.QToolButton()
+        body = QtGui.QWidget()
+        self.fold = Fold(body, translate("collarmesh", "Advanced"))
         self.fold.setObjectName("collarmesh_advanced")
-        self.fold.setText(translate("collarmesh", "Advanced"))
-        self.fold.setToolButtonStyle(QtCore.Qt.ToolButtonTextBesideIcon)
-        self.fold.setAutoRaise(True)
-        self.fold.setCheckable(True)
-        self.fold.toggled.connect(self._unfold)
-        self.body = QtGui.QWidget()
-        rows = QtGui.QFormLayout(self.body)
+        rows = QtGui.QFormLayout(body)
         rows.setContentsMargins(12, 0, 0, 0)
         rows.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
         for heading, properties in sections():
@@ -108,8 +104,7 @@ class AdvancedSection(QtGui.QWidget):
         layout = QtGui.QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.fold)
-        layout.addWidget(self.body)
-        self._unfold(False)
+        layout.addWidget(body)
 
     def store(self):
         """Into the object's properties. Raises ValueError, which names the field."""
@@ -130,10 +125,6 @@ class AdvancedSection(QtGui.QWidget):
                     setattr(settings, field, self._readers[name][1]())
                 except ValueError:
                     pass
-
-    def _unfold(self, shown):
-        self.fold.setArrowType(QtCore.Qt.DownArrow if shown else QtCore.Qt.RightArrow)
-        self.body.setVisible(shown)
 
     def _value(self, name):
         value = getattr(self.object, name)

@@ -12,7 +12,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import compatibility, mesh_object, processes, up_to_date
+from . import compatibility, mesh_object, mesh_undo, processes, up_to_date
 from .program import MesherError, Progress
 from .translations import translate
 
@@ -31,6 +31,7 @@ class Outcome:
     page: str = ""  # path of the report for people
     part_changed: bool = False  # while it was meshed
     warnings: tuple = ()  # of the shape, from before the run
+    mesh_number: int = 0  # see mesh_undo
 
 
 def _key(obj):
@@ -43,8 +44,13 @@ def run_of(obj):
 
 
 def outcome_of(obj):
-    """The outcome of the object's last run since its document was opened, else None."""
-    return _outcomes.get(_key(obj))
+    """The outcome of the object's last run since its document was opened, else None. By undo, say, the mesh may be
+    another one than that of the run."""
+    outcome = _outcomes.get(_key(obj))
+    if outcome is None or outcome.report is None:
+        return outcome
+    is_there = obj.FemMesh.VolumeCount > 0 and getattr(obj, mesh_undo.NUMBER) == outcome.mesh_number
+    return outcome if is_there else None
 
 
 def start(obj):
@@ -123,14 +129,15 @@ class MeshingProcess(QtCore.QObject):
             return
         key = _key(self.object)
         try:
-            _outcomes[key] = self._outcome(exit_code)
+            outcome = self._outcome(exit_code)
         except Exception as error:  # of FreeCAD: the panel goes on
             FreeCAD.Console.PrintError(traceback.format_exc())
-            _outcomes[key] = Outcome(error=f"{type(error).__name__}: {error}")
+            outcome = Outcome(error=f"{type(error).__name__}: {error}")
+        _outcomes[key] = outcome
         del _runs[key]
         self.job.folder.cleanup()
         processes.end(self._process)
-        _tell(self.object, _outcomes[key])
+        _tell(self.object, outcome)
         self.ended.emit()
 
     def _outcome(self, exit_code):
@@ -142,7 +149,7 @@ class MeshingProcess(QtCore.QObject):
             report = mesh_object.finish(self.object, self.job, exit_code)
         except MesherError as error:
             return Outcome(error=str(error))
-        outcome = Outcome(report=report, warnings=self.warnings)
+        outcome = Outcome(report=report, warnings=self.warnings, mesh_number=getattr(self.object, mesh_undo.NUMBER))
         part = compatibility.meshed_object(self.object)
         outcome.part_changed = not up_to_date.has_shape(part, self.job.state.shape)
         with _told_in_report_view():

@@ -6,7 +6,7 @@ which FEM's panels are then given for theirs, and fail."""
 import FreeCAD
 from PySide import QtGui
 
-from . import numbers_typed
+from . import colours, numbers_typed
 from .translations import translate
 
 ROUNDING = 1e-3  # relative: what FreeCAD's number of decimals may change in what is shown
@@ -59,4 +59,4 @@ class QuantityField:
             self.value()
             self.widget.setStyleSheet("")
         except ValueError:
-            self.widget.setStyleSheet("color: #c83c3c")
+            self.widget.setStyleSheet(f"color: {colours.of(colours.BAD)}")

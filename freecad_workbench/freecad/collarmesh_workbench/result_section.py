@@ -2,56 +2,65 @@
 
 from PySide import QtCore, QtGui
 
+from . import colours
 from .angle_chart import AngleChart
-from .guarantees import guarantees
+from .guarantees_view import GuaranteesView, escaped
 from .size_presets import duration_text
 from .translations import translate
-
-GOOD, BAD, CARE = "#2e8b57", "#c83c3c", "#b07010"
 
 
 class ResultSection(QtGui.QWidget):
     def __init__(self):
         super().__init__()
+        self.out_of_date = _label("collarmesh_out_of_date")
         self.message = _label("collarmesh_message")
         self.counts = _label("collarmesh_counts")
-        self.lines = _label("collarmesh_guarantees")
+        self.guarantees = GuaranteesView()
         self.chart = AngleChart()
+        self.out_of_date.hide()
+        self.out_of_date.setText(_coloured(colours.CARE, translate(
+            "collarmesh", "This mesh is out of date: the shape, a size or a setting has changed since it was made. "
+            "Mesh it again.")))
         layout = QtGui.QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        for widget in (self.message, self.counts, self.lines, self.chart):
+        for widget in (self.out_of_date, self.message, self.counts, self.guarantees, self.chart):
             layout.addWidget(widget)
         self.clear()
 
     def clear(self):
-        for widget in (self.message, self.counts, self.lines, self.chart):
+        for widget in (self.message, self.counts, self.guarantees, self.chart):
             widget.hide()
 
-    def say(self, text, colour):
-        """A message above everything else."""
-        self.message.setText(f'<span style="color:{colour}">{_escaped(text)}</span>')
+    def say(self, text, kind):
+        """A message above everything else; `kind` is one of colours."""
+        self.message.setText(_coloured(kind, text))
         self.message.show()
+
+    def show_out_of_date(self, out_of_date):
+        """Say so, or say so no more."""
+        self.out_of_date.setVisible(out_of_date)
+        self.guarantees.show_out_of_date(out_of_date)
 
     def show_outcome(self, outcome):
         self.clear()
         if outcome.cancelled:
-            self.say(translate("collarmesh", "Cancelled; the mesh is the one from before."), CARE)
+            self.say(translate("collarmesh", "Cancelled; the mesh is the one from before."), colours.CARE)
         elif outcome.report is None:
-            self.say(translate("collarmesh", "No mesh is made; the list says why."), BAD)
+            self.say(translate("collarmesh", "No mesh is made; the list says why."), colours.BAD)
         else:
             self._show_report(outcome.report)
             if outcome.part_changed:
                 text = translate("collarmesh", "The part was changed while it was meshed: this is the mesh of the part as "
                                                "it was before. Mesh it again.")
-                self.say(text, CARE)
+                self.say(text, colours.CARE)
 
     def _show_report(self, report):
         mesh = report["mesh"]
         self.counts.setText(counts_text(report))
-        self.lines.setText(guarantees_text(report))
+        self.guarantees.show_report(report)
         self.chart.show_report(mesh)
-        for widget in (self.counts, self.lines, self.chart):
-            widget.show()
+        self.counts.show()
+        self.chart.show()
 
 
 def counts_text(report):
@@ -68,28 +77,12 @@ def _time(seconds):
     return translate("collarmesh", "{n} s").format(n=f"{seconds:.1f}") if seconds < 10 else duration_text(seconds)
 
 
-def guarantees_text(report):
-    lines = []
-    if report["guarantees_hold"]:
-        lines.append(_line(GOOD, translate("collarmesh", "<b>Every guarantee holds</b>")))
-    else:
-        lines.append(_line(BAD, translate("collarmesh", "<b>A guarantee is missed</b>")))
-    for text, broken in guarantees(report):
-        count = f" ({len(broken)})" if broken else ""
-        lines.append(_line(BAD if broken else GOOD, ("✗ " if broken else "✓ ") + _escaped(text) + count))
-    return "<br>".join(lines)
-
-
-def _line(colour, text):
-    return f'<span style="color:{colour}">{text}</span>'
+def _coloured(kind, text):
+    return f'<span style="color:{colours.of(kind)}">{escaped(text)}</span>'
 
 
 def _exact(count):
     return f"{count:,}".replace(",", "\u202f")
-
-
-def _escaped(text):
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace("\n", "<br>")
 
 
 def _label(name):

@@ -7,13 +7,12 @@ import FreeCADGui
 from . import compatibility, other_panel, size_objects, views
 from .size_panel import SizePanel
 
-ICONS = os.path.join(os.path.dirname(__file__), "icons")
 COLOUR = (0.91, 0.35, 0.05)
 TRANSPARENCY = 75
 
 
 def icon_of(kind):
-    return os.path.join(ICONS, f"size_{kind.lower()}.svg")
+    return os.path.join(views.ICONS, f"size_{kind.lower()}.svg")
 
 
 class SizeViewProvider(compatibility.Stateless):

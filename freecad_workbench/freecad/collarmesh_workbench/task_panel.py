@@ -6,24 +6,21 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import compatibility, cost, dock, extent, mesh_properties, meshing_process, places, prediction, up_to_date, worst_elements
+from . import (colours, compatibility, cost, dock, extent, mesh_properties, meshing_process, places, prediction,
+               up_to_date, views, worst_elements)
 from .advanced_section import AdvancedSection, in_panel_words
 from .order_section import OrderSection
 from .places_list import PlacesList
 from .program import MesherError
-from .result_section import BAD, ResultSection
+from .result_section import ResultSection
 from .run_section import RunSection
 from .size_section import SizeSection
 from .translations import translate
 from .view_marks import ViewMarks
 
 WIDTH = 400  # pixels
+MOMENT = 100  # milliseconds, in which a part that is dragged changes again
 WHAT_IS_MESHED = ("Shape", "Placement", "Mesh", "LinkPlacement")  # properties of parts
-
-
-def has_mesh_of_now(obj):
-    """Is its mesh that of its shape and settings? Who opens its panel looks at it, and asks for no other one yet."""
-    return obj.FemMesh.VolumeCount > 0 and not up_to_date.is_out_of_date(obj)
 
 
 class MeshTaskPanel:
@@ -32,6 +29,7 @@ class MeshTaskPanel:
     def __init__(self, obj):
         self.object = obj
         self.run = None
+        self.outcome = None  # that is shown
         self.known = {}  # predictions
         self.marks = ViewMarks(obj)
         self._build()
@@ -44,8 +42,12 @@ class MeshTaskPanel:
             self._follow(meshing_process.run_of(obj))
         else:
             self._show_outcome(meshing_process.outcome_of(obj))
-        self._predict(None if has_mesh_of_now(obj) else 0)
+        out_of_date = up_to_date.is_out_of_date(obj)
+        self.result.show_out_of_date(out_of_date)
+        self._predict(None if obj.FemMesh.VolumeCount > 0 and not out_of_date else 0)  # it is only looked at
         self.form.destroyed.connect(self.dismiss)
+        self.changes = QtCore.QTimer(self.form, singleShot=True, interval=MOMENT)
+        self.changes.timeout.connect(self._ask_anew)
         FreeCAD.addDocumentObserver(self)
         dock.widen(self.form, WIDTH)
 
@@ -53,7 +55,7 @@ class MeshTaskPanel:
         self.form = QtGui.QWidget()
         self.form.setObjectName("collarmesh_panel")
         self.form.setWindowTitle(translate("collarmesh", "Mesh by collarmesh"))
-        self.form.setWindowIcon(QtGui.QIcon(self.object.ViewObject.Proxy.getIcon()))
+        self.form.setWindowIcon(QtGui.QIcon(views.ICON))
         diagonal = extent.diagonal(compatibility.meshed_object(self.object))
         self.size = SizeSection(self.object, diagonal)
         self.order = OrderSection(mesh_properties.ORDERS.index(self.object.ElementOrder) + 1)
@@ -173,9 +175,18 @@ class MeshTaskPanel:
             run.advanced.disconnect(self._advance)
             run.ended.disconnect(self._ended)
 
+    def show_state(self, out_of_date):
+        """After a recompute, a run, an undo: is the mesh the one that is told about, and up to date?"""
+        outcome = meshing_process.outcome_of(self.object)
+        if self.run is None and outcome is not self.outcome:
+            self._show_outcome(outcome)
+        self.result.show_out_of_date(out_of_date)
+
     def _show_outcome(self, outcome):
         """None: of a mesh that was there before the document was opened nothing but its worst elements is known."""
+        self.outcome = outcome
         if outcome is None:
+            self.result.clear()
             found = worst_elements.in_mesh(self.object.FemMesh)
         else:
             self.result.show_outcome(outcome)
@@ -183,7 +194,7 @@ class MeshTaskPanel:
             if outcome.report is not None:
                 found += places.in_report(outcome.report, outcome.warnings)
                 found += worst_elements.in_report(self.object.FemMesh, outcome.report)
-            self.report_button.setVisible(bool(outcome.page))
+        self.report_button.setVisible(outcome is not None and bool(outcome.page))
         self.list.fill(found)
 
     def show_worst(self):
@@ -193,7 +204,7 @@ class MeshTaskPanel:
         page = meshing_process.outcome_of(self.object).page
         if not QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(page)):
             text = translate("collarmesh", "No program shows pages; the report is {path}")
-            self.result.say(text.format(path=page), BAD)
+            self.result.say(text.format(path=page), colours.BAD)
 
     def getStandardButtons(self):
         return compatibility.as_number(QtGui.QDialogButtonBox.Close)
@@ -214,16 +225,18 @@ class MeshTaskPanel:
 
     def slotChangedObject(self, changed, name):
         if name in WHAT_IS_MESHED and changed is compatibility.meshed_object(self.object):
-            self._ask_anew()
+            self.changes.start()
 
     def slotRecomputedDocument(self, _document):
         """What a link or a container shows may be another shape then, without a change of its own."""
         if self.predictions.shape_has_changed():
-            self._ask_anew()
+            self.changes.start()
 
     def _ask_anew(self):
+        """Of another shape."""
         self.predictions.forget()
         self._ask()
+        self.show_state(up_to_date.is_out_of_date(self.object))
 
     def slotStartSaveDocument(self, document, _path):
         """The file has the objects as they look without marks."""

@@ -1,14 +1,10 @@
 """How the mesh object looks in the tree, and what a double click does."""
 
-import os
-
 import FreeCADGui
 
 from . import compatibility, mesh_menu, mesh_properties, other_panel, size_objects, up_to_date, views
 from .task_panel import MeshTaskPanel
-
-ICON = os.path.join(os.path.dirname(__file__), "icons", "collarmesh.svg")
-OUT_OF_DATE_ICON = os.path.join(os.path.dirname(__file__), "icons", "collarmesh_out_of_date.svg")
+from .views import ICON, OUT_OF_DATE_ICON
 
 
 class MeshViewProvider(compatibility.Stateless):
@@ -29,10 +25,12 @@ class MeshViewProvider(compatibility.Stateless):
         up_to_date.show(self.Object)
 
     def show_out_of_date(self, out_of_date):
-        """Mark the object in the tree, or take the mark away."""
+        """Mark the object in the tree and in its panel, or take the mark away."""
         if out_of_date != self.out_of_date:
             self.out_of_date = out_of_date
             self.ViewObject.signalChangeIcon()
+        if self.panel is not None:
+            self.panel.show_state(out_of_date)
 
     def claimChildren(self):
         sizes = getattr(self.Object, size_objects.PROPERTY, [])

@@ -1,0 +1,65 @@
+"""The part of the panel that tells which guarantees a mesh keeps."""
+
+from PySide import QtCore, QtGui
+
+from . import colours
+from .fold import Fold
+from .guarantees import guarantees
+from .translations import translate
+
+
+class GuaranteesView(QtGui.QWidget):
+    """One line when all hold, which unfolds to all of them."""
+
+    def __init__(self):
+        super().__init__()
+        self._report, self._out_of_date = None, False
+        self.lines = QtGui.QLabel()
+        self.lines.setObjectName("collarmesh_guarantees")
+        self.lines.setWordWrap(True)
+        self.lines.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
+        self.fold = Fold(self.lines)
+        self.fold.setObjectName("collarmesh_guarantees_fold")
+        layout = QtGui.QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(2)
+        layout.addWidget(self.fold)
+        layout.addWidget(self.lines)
+
+    def show_report(self, report):
+        self._report, self._out_of_date = report, False
+        self.fold.setChecked(not report["guarantees_hold"])
+        self._write()
+        self.show()
+
+    def show_out_of_date(self, out_of_date):
+        """What held when the mesh was made is grey then."""
+        if self._report is not None and out_of_date != self._out_of_date:
+            self._out_of_date = out_of_date
+            self._write()
+
+    def _write(self):
+        holds = self._report["guarantees_hold"]
+        self.fold.setText(self._heading(holds))
+        self.fold.setStyleSheet(f"color: {self._colour(holds)}; font-weight: bold")
+        self.lines.setText("<br>".join(self._line(*each) for each in guarantees(self._report)))
+
+    def _heading(self, holds):
+        if self._out_of_date:
+            return (translate("collarmesh", "Every guarantee held when it was made") if holds else
+                    translate("collarmesh", "A guarantee was missed when it was made"))
+        return (translate("collarmesh", "Every guarantee holds") if holds else
+                translate("collarmesh", "A guarantee is missed"))
+
+    def _colour(self, holds):
+        return colours.of(colours.FAINT if self._out_of_date else colours.GOOD if holds else colours.BAD)
+
+    def _line(self, text, broken):
+        count = f" ({len(broken)})" if broken else ""
+        mark = "✗" if broken else "✓"
+        return f'<span style="color:{self._colour(not broken)}">{mark} {escaped(text)}{count}</span>'
+
+
+def escaped(text):
+    """For labels."""
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace("\n", "<br>")
