@@ -382,7 +382,6 @@ async def the_result_is_told():
     lines = child("guarantees").text()
     require("✗" not in lines and lines.count("✓") == 7 and child("guarantees").isVisible(), lines)
     await click(child("guarantees_fold"))
-    part.ViewObject.Visibility = False
     await screenshot("freecad_panel.png", size=(1200, 1000))
     x, y = int(chart._x(chart.extremes[0])), int(chart._frame().bottom())
     picture = chart.grab().toImage()
@@ -445,6 +444,31 @@ async def a_mesh_that_is_out_of_date_says_so():
     await close(document)
 
 
+async def the_part_hides_when_its_mesh_appears():
+    """And shows again when the mesh goes."""
+    document, part, obj = new_part(plate())
+    document.UndoMode = 1
+    obj.ViewObject.Visibility = False
+    await open_panel(obj)
+    part.Shape = Part.Shell(part.Shape.Faces[:1])
+    await run_mesher("4 mm")
+    require(part.ViewObject.Visibility, "without a mesh it stays")
+    part.Shape = plate()
+    await run_mesher("4 mm")
+    require(obj.ViewObject.Visibility and not part.ViewObject.Visibility, "the mesh shows in its place")
+    document.undo()
+    require(obj.FemMesh.VolumeCount == 0 and part.ViewObject.Visibility, "undo shows the part")
+    await run_mesher("4 mm")
+    require(not part.ViewObject.Visibility, "it hides again")
+    await close_panel()
+    FreeCADGui.Selection.clearSelection()
+    FreeCADGui.Selection.addSelection(obj)
+    FreeCADGui.runCommand("Std_Delete")
+    await turn()
+    require(part.ViewObject.Visibility and len(document.Objects) == 1, "without the mesh object the part shows")
+    await close(document)
+
+
 async def the_worst_elements_show():
     """A click on the chart's mark, on a row and on the heading."""
     document, part, obj = new_part(plate())
@@ -475,7 +499,7 @@ async def the_worst_elements_show():
     faces = marks_of(obj).getChild(1).getChild(2)
     require(faces.coordIndex.getNum() == len(worst) * 16 and len(worst) >= 10, "all are marked")
     await close_panel()
-    require(marks_of(obj) is None and obj.ViewObject.Transparency == 0 and part.ViewObject.Visibility, "as before")
+    require(marks_of(obj) is None and obj.ViewObject.Transparency == 0 and not part.ViewObject.Visibility, "as before")
     await open_panel(obj)
     child("places").pick_first(places.WORST)
     require(marks_of(obj) is not None, "what the last run found is still there")
@@ -722,7 +746,7 @@ async def files_have_no_marks():
         await close(document)
         document = FreeCAD.openDocument(path)
     part, obj = document.getObject(label), document.getObject(name)
-    require(obj.ViewObject.Transparency == 0 and part.ViewObject.Visibility, "what is opened looks as it did before")
+    require(obj.ViewObject.Transparency == 0 and not part.ViewObject.Visibility, "what is opened looks as it did before")
     await close(document)
 
 
@@ -823,6 +847,7 @@ async def test():
         tiny_sizes_are_shown,
         the_result_is_told,
         a_mesh_that_is_out_of_date_says_so,
+        the_part_hides_when_its_mesh_appears,
         the_worst_elements_show,
         problems_select_their_places,
         notes_and_repairs_are_told_once,

@@ -138,6 +138,8 @@ class MeshingProcess(QtCore.QObject):
         self.job.folder.cleanup()
         processes.end(self._process)
         _tell(self.object, outcome)
+        if outcome.report is not None:
+            self.object.ViewObject.Proxy.show_in_place_of_part()
         self.ended.emit()
 
     def _outcome(self, exit_code):

@@ -10,6 +10,7 @@ from .views import ICON, OUT_OF_DATE_ICON
 class MeshViewProvider(compatibility.Stateless):
     out_of_date = False
     panel = None  # while it is open
+    hid_part = False  # when the mesh appeared
 
     def __init__(self, view):
         view.Proxy = self
@@ -31,6 +32,27 @@ class MeshViewProvider(compatibility.Stateless):
             self.ViewObject.signalChangeIcon()
         if self.panel is not None:
             self.panel.show_state(out_of_date)
+        if self.Object.FemMesh.NodeCount == 0:  # by undo
+            self.show_part_again()
+
+    def show_in_place_of_part(self):
+        """The mesh, which has appeared: a part at the same place would be seen through it."""
+        part = compatibility.meshed_object(self.Object)
+        self.ViewObject.show()
+        if part is not None and part.ViewObject.Visibility:
+            part.ViewObject.Visibility = False
+            self.hid_part = True
+
+    def show_part_again(self):
+        """If it was hidden for the mesh, which goes."""
+        part = compatibility.meshed_object(self.Object)
+        if self.hid_part and part is not None:
+            part.ViewObject.Visibility = True
+        self.hid_part = False
+
+    def onDelete(self, _view, _names):
+        self.show_part_again()
+        return True
 
     def claimChildren(self):
         sizes = getattr(self.Object, size_objects.PROPERTY, [])
