@@ -451,8 +451,8 @@
       <translation>Länge, die die Kanten der Elemente haben sollen</translation>
     </message>
     <message>
-      <source>Make a tetrahedral mesh of the selected solid, certified, with groups for its faces</source>
-      <translation>Ein geprüftes Tetraedernetz des ausgewählten Körpers machen, mit Gruppen für seine Flächen</translation>
+      <source>Make a tetrahedral mesh of the selected solid, certified, with groups for its faces, or open the one that is there</source>
+      <translation>Ein geprüftes Tetraedernetz des ausgewählten Körpers machen, mit Gruppen für seine Flächen, oder das vorhandene öffnen</translation>
     </message>
     <message>
       <source>Make the selected mesh of Gmsh or Netgen one of collarmesh, with its sizes and groups</source>
@@ -633,6 +633,10 @@
     <message>
       <source>Statistics...</source>
       <translation>Statistik...</translation>
+    </message>
+    <message>
+      <source>Stop</source>
+      <translation>Anhalten</translation>
     </message>
     <message>
       <source>Take over by collarmesh</source>

@@ -7,14 +7,16 @@ import tempfile
 
 import FreeCAD
 import FreeCADGui
+import FemGui
 import Mesh
 import ObjectsFem
+import Part
 from PySide import QtCore, QtGui
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import window as w  # noqa: E402
 from freecad.collarmesh_workbench import mesh_object, mesh_properties, take_over, up_to_date, view_provider  # noqa: E402
-from freecad.collarmesh_workbench.commands import MESH_COMMAND  # noqa: E402
+from freecad.collarmesh_workbench.commands import GROUP_COMMAND, MESH_COMMAND, REFINEMENT_COMMAND  # noqa: E402
 
 
 def tree_item(label):
@@ -209,6 +211,89 @@ async def undo_of_a_meshing_in_the_panel(document, obj):
     w.require(obj.FemMesh.VolumeCount == made, "redo")
 
 
+async def buttons_are_grey_where_they_do_nothing(document, part, obj):
+    commands = {MESH_COMMAND, REFINEMENT_COMMAND, GROUP_COMMAND, "Collarmesh_SizeSphere", "Collarmesh_SizeDistance",
+                "Collarmesh_TakeOver"}
+    gmsh = ObjectsFem.makeMeshGmsh(document, "OfGmsh")
+    for_ours = {REFINEMENT_COMMAND, GROUP_COMMAND, "Collarmesh_SizeSphere", "Collarmesh_SizeDistance"}
+    sizes = {"Collarmesh_SizeSphere", "Collarmesh_SizeDistance"}  # of the only mesh, of its part, of the selected one
+    for chosen, clickable in (([], sizes), ([part], {MESH_COMMAND, *sizes}), ([part, document.Box], sizes),
+                              ([obj], for_ours), ([document.Box], {MESH_COMMAND}), ([gmsh], {"Collarmesh_TakeOver"})):
+        FreeCADGui.Selection.clearSelection()
+        for each in chosen:
+            FreeCADGui.Selection.addSelection(each)
+        await w.pause(50)
+        await w.wait_until(lambda: {each for each in commands if w.buttons_of(each)} == clickable,
+                           f"{[each.Name for each in chosen]}: {[each for each in commands if w.buttons_of(each)]}", 5)
+    document.removeObject(gmsh.Name)
+    FreeCADGui.activateWorkbench("PartWorkbench")
+    FreeCADGui.activateWorkbench("FemWorkbench")
+
+
+async def a_second_click_opens_the_mesh_that_is_there(document, part, obj):
+    """In an analysis that of the analysis."""
+    count = len(document.Objects)
+    for _ in range(2):
+        FreeCADGui.Selection.clearSelection()
+        FreeCADGui.Selection.addSelection(part)
+        await w.click_command(MESH_COMMAND)
+        await w.wait_until(lambda: w.find("run") is not None, "the panel")
+        w.require(FreeCADGui.ActiveDocument.getInEdit().Object is obj, "it is the panel of the mesh that is there")
+    w.require(len(document.Objects) == count, "nothing is made")
+    await w.close_panel(QtGui.QDialogButtonBox.Cancel)
+    w.require(document.getObject(obj.Name) is obj, "Cancel leaves it")
+    analysis = ObjectsFem.makeAnalysis(document, "Analysis")
+    FemGui.setActiveAnalysis(analysis)
+    FreeCADGui.Selection.addSelection(part)
+    await w.click_command(MESH_COMMAND)
+    await w.wait_until(lambda: w.find("run") is not None, "the panel")
+    w.require(len(analysis.Group) == 1 and analysis.Group[0] is not obj, "an analysis has a mesh of its own")
+    await w.close_panel()
+    document.removeObject(analysis.Group[0].Name)
+    document.removeObject(analysis.Name)
+    FemGui.setActiveAnalysis()
+
+
+async def cancel_removes_an_empty_new_mesh(document, part):
+    """Also after a run that failed; "OK" keeps it, with what was entered."""
+    shape, names = part.Shape, {each.Name for each in document.Objects}
+
+    async def click_the_button():
+        FreeCADGui.Selection.clearSelection()
+        FreeCADGui.Selection.addSelection(part)
+        await w.click_command(MESH_COMMAND)
+        await w.wait_until(lambda: w.find("run") is not None, "the panel")
+        (new,) = [each for each in document.Objects if each.Name not in names]
+        return new
+
+    for fails in (False, True):
+        steps = document.UndoCount
+        await click_the_button()
+        if fails:
+            part.Shape = Part.Shell(Part.makeBox(1, 1, 1).Faces[:1])
+            w.require("No mesh is made" in await w.run_mesher("2 mm"), w.said())
+        await w.close_panel(QtGui.QDialogButtonBox.Cancel)
+        await w.pause(100)
+        w.require({each.Name for each in document.Objects} == names, "the empty mesh is gone")
+        w.require(document.UndoCount == steps, "its creation is undone")
+        part.Shape = shape
+    new = await click_the_button()
+    w.child("CharacteristicLengthMax").setText("3.5 mm")
+    await w.close_panel()
+    w.require(document.getObject(new.Name) is new and new.CharacteristicLengthMax.Value == 3.5, "OK keeps it")
+    await w.open_panel(new)
+    w.child("CharacteristicLengthMax").setText("2.5 mm")
+    await w.close_panel(QtGui.QDialogButtonBox.Cancel)
+    w.require(document.getObject(new.Name) is new and new.CharacteristicLengthMax.Value == 3.5, "it is no new one")
+    await w.open_panel(new)
+    w.child("CharacteristicLengthMax").setText("-1 mm")
+    boxes = [box for box in w.window.findChildren(QtGui.QDialogButtonBox) if box.isVisible()]
+    await w.click(boxes[0].button(QtGui.QDialogButtonBox.Ok))
+    w.require("negative" in w.said(), "what makes no sense is told, and the panel stays")
+    await w.close_panel(QtGui.QDialogButtonBox.Cancel)
+    document.removeObject(new.Name)
+
+
 async def undo_of_the_creation_while_meshing(document, part):
     """Takes the object away under the run."""
     before = len(document.Objects)
@@ -284,7 +369,12 @@ async def test():
     await gmsh_and_back(document, part, obj)
     await netgen_by_its_button(document, part)
     await undo_of_a_meshing_in_the_panel(document, obj)
-    await undo_of_the_creation_while_meshing(document, part)
+    await buttons_are_grey_where_they_do_nothing(document, part, obj)
+    await a_second_click_opens_the_mesh_that_is_there(document, part, obj)
+    copy = document.addObject("Part::Feature", "Copy")
+    copy.Shape = part.Shape
+    await cancel_removes_an_empty_new_mesh(document, copy)
+    await undo_of_the_creation_while_meshing(document, copy)
     await triangles_by_the_button(document)
     await the_mark_is_there_after_reopening(document, cylinder, obj)
 

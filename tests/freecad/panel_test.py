@@ -31,7 +31,8 @@ LONG = "0.25 mm"  # a size for which the plate takes much longer than any test
 
 
 def new_part(shape, label="Plate"):
-    """A document with a part and its empty mesh object."""
+    """A document with a part and its empty mesh object, of which nothing is known."""
+    prediction._answers.clear()
     document = FreeCAD.newDocument(label)
     part = document.addObject("Part::Feature", label)
     part.Shape = shape
@@ -44,7 +45,7 @@ def new_part(shape, label="Plate"):
 
 async def close(document):
     if find("run") is not None:
-        await close_panel()
+        await close_panel(QtGui.QDialogButtonBox.Cancel)
     FreeCAD.closeDocument(document.Name)
 
 

@@ -151,11 +151,11 @@ async def open_panel(obj):
     await wait_until(lambda: find("run") is not None and find("run").isVisible(), "the panel")
 
 
-async def close_panel():
-    """Its button."""
-    buttons = [each for box in window.findChildren(QtGui.QDialogButtonBox) for each in box.buttons() if box.isVisible()]
-    require(len(buttons) == 1, f"{len(buttons)} buttons below the panel")
-    await click(buttons[0])
+async def close_panel(button=QtGui.QDialogButtonBox.Ok):
+    """By a button below or above it."""
+    boxes = [box for box in window.findChildren(QtGui.QDialogButtonBox) if box.isVisible()]
+    require(len(boxes) == 1, f"{len(boxes)} panels")
+    await click(boxes[0].button(button))
     await wait_until(lambda: find("run") is None, "the panel's end")
 
 

@@ -6,7 +6,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore
 
-from . import compatibility, inputs, mesh_menu, mesh_object, mesh_properties, other_panel, size_objects, take_over
+from . import compatibility, inputs, mesh_menu, mesh_object, mesh_properties, new_mesh, other_panel, size_objects, take_over
 from .size_view import icon_of
 from .translations import mark, translate
 from .view_provider import ICON
@@ -67,13 +67,22 @@ class Command:
 
 class MeshFromShape(Command):
     icon = ICON
-    menu_text = mark("collarmesh", "FEM mesh from shape by collarmesh")
+    menu_text = new_mesh.CREATION
     tool_tip = mark(
-        "collarmesh", "Make a tetrahedral mesh of the selected solid, certified, with groups for its faces"
+        "collarmesh", "Make a tetrahedral mesh of the selected solid, certified, with groups for its faces, or open the "
+        "one that is there"
     )
 
     def target(self):
         return selected_part()
+
+    def Activated(self):
+        there = mesh_of(self.target())
+        if there is None:
+            super().Activated()
+        else:
+            FreeCADGui.Selection.clearSelection()
+            mesh_menu.edit(there)
 
     def create(self, document, part):
         import FemGui
@@ -82,7 +91,19 @@ class MeshFromShape(Command):
         analysis = FemGui.getActiveAnalysis()
         if analysis is not None and analysis.Document is document:
             analysis.addObject(obj)
+        if obj.ViewObject is not None:
+            obj.ViewObject.Proxy.is_new = True
         return obj
+
+
+def mesh_of(part):
+    """Our mesh object for a part, of the active analysis if there is one; None: there is none yet."""
+    import FemGui
+
+    analysis = FemGui.getActiveAnalysis()
+    among = analysis.Group if analysis is not None else compatibility.mesh_objects(part.Document)
+    return next((each for each in among if mesh_properties.is_ours(each)
+                 and compatibility.meshed_object(each) is part), None)
 
 
 class Refinement(Command):
@@ -121,7 +142,7 @@ class Size(Command):
         QtCore.QTimer.singleShot(0, super().Activated)
 
     def target(self):
-        ours = [each for each in FreeCAD.ActiveDocument.Objects if mesh_properties.is_ours(each)]
+        ours = [each for each in compatibility.mesh_objects(FreeCAD.ActiveDocument) if mesh_properties.is_ours(each)]
         chosen = FreeCADGui.Selection.getSelection()
         found = [each for each in ours if each in chosen or compatibility.meshed_object(each) in chosen]
         found = found or ([] if chosen else ours)

@@ -54,6 +54,11 @@ def set_refinements(mesh_object, refinements):
     setattr(mesh_object, name, refinements)
 
 
+def mesh_objects(document):
+    """FEM's, of all meshers."""
+    return document.findObjects("Fem::FemMeshObject")
+
+
 def make_refinement(document, mesh_object):
     """FreeCAD's object for a size on sub-shapes; later versions call it a refinement."""
     make = getattr(ObjectsFem, "makeMeshRegion", None) or ObjectsFem.makeMeshRefinement

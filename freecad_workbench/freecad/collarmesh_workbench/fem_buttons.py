@@ -16,6 +16,7 @@ BESIDE = {
     GROUP_COMMAND: "FEM_MeshGroup",
     "Collarmesh_TakeOver": GROUP_COMMAND,
 }
+EVERY = 200  # milliseconds
 
 
 def freecads_place(command):
@@ -32,6 +33,9 @@ class Inserter(QtCore.QObject):
         self.window = window
         self.actions = [self._action(name, command) for name, command in COMMANDS.items()]
         window.workbenchActivated.connect(self.later)
+        self._timer = QtCore.QTimer(self, interval=EVERY)
+        self._timer.timeout.connect(self.grey)
+        self._timer.start()
         self.later()
 
     def _action(self, name, command):
@@ -40,6 +44,11 @@ class Inserter(QtCore.QObject):
         action.setToolTip(command.tip())
         action.triggered.connect(lambda: FreeCADGui.runCommand(name))
         return action
+
+    def grey(self):
+        """As FreeCAD does for its own: what would do nothing now."""
+        for action in self.actions:
+            action.setEnabled(FreeCADGui.Command.get(action.objectName()).isActive())
 
     def later(self, _name=""):
         QtCore.QTimer.singleShot(0, self.insert)

@@ -22,7 +22,7 @@ class RunSection(QtGui.QWidget):
         self.run.setObjectName("collarmesh_run")
         self.run.setDefault(True)
         self.run.clicked.connect(self.run_clicked)
-        self.cancel = QtGui.QPushButton(translate("collarmesh", "Cancel"))
+        self.cancel = QtGui.QPushButton(translate("collarmesh", "Stop"))
         self.cancel.setObjectName("collarmesh_cancel")
         self.cancel.setToolTip(translate("collarmesh", "End the run; the mesh stays as it is"))
         self.cancel.clicked.connect(self.cancel_clicked)

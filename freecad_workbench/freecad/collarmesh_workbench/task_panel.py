@@ -6,8 +6,8 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import (colours, compatibility, cost, dock, extent, mesh_properties, meshing_process, places, prediction,
-               up_to_date, views, worst_elements)
+from . import (colours, compatibility, cost, dock, extent, mesh_properties, meshing_process, new_mesh, places,
+               prediction, up_to_date, views, worst_elements)
 from .advanced_section import AdvancedSection, in_panel_words
 from .order_section import OrderSection
 from .places_list import PlacesList
@@ -176,9 +176,11 @@ class MeshTaskPanel:
             run.ended.disconnect(self._ended)
 
     def show_state(self, out_of_date):
-        """After a recompute, a run, an undo: is the mesh the one that is told about, and up to date?"""
+        """After a recompute, a run, an undo: is the mesh the one that is told about, and up to date? What is wrong with
+        the fields, or the part, stays."""
         outcome = meshing_process.outcome_of(self.object)
-        if self.run is None and outcome is not self.outcome:
+        tells_of_mesh = self.outcome is None or self.outcome.report is not None
+        if self.run is None and tells_of_mesh and outcome is not self.outcome:
             self._show_outcome(outcome)
         self.result.show_out_of_date(out_of_date)
 
@@ -207,12 +209,32 @@ class MeshTaskPanel:
             self.result.say(text.format(path=page), colours.BAD)
 
     def getStandardButtons(self):
-        return compatibility.as_number(QtGui.QDialogButtonBox.Close)
+        return compatibility.as_number(QtGui.QDialogButtonBox.Ok | QtGui.QDialogButtonBox.Cancel)
+
+    def accept(self):
+        """What is in the fields holds for the next run."""
+        try:
+            self._store()
+        except MesherError as error:
+            self._clear()
+            self._show_outcome(meshing_process.Outcome(error=str(error)))
+            return False
+        self.object.ViewObject.Proxy.is_new = False
+        self._close()
+        return True
 
     def reject(self):
+        """A new mesh object that is still empty goes; a run goes on."""
+        is_wanted = not self.object.ViewObject.Proxy.is_new or self.object.FemMesh.NodeCount or self.run is not None
+        self._close()
+        if not is_wanted:
+            key = self.object.Document.Name, self.object.Name
+            QtCore.QTimer.singleShot(0, lambda: new_mesh.take_back(*key))  # when the panel has gone
+        return True
+
+    def _close(self):
         self.dismiss()
         FreeCADGui.getDocument(self.object.Document.Name).resetEdit()
-        return True
 
     def dismiss(self, *_):
         """The panel goes; what it showed in the view goes with it."""

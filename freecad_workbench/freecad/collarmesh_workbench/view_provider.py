@@ -10,6 +10,7 @@ from .views import ICON, OUT_OF_DATE_ICON
 class MeshViewProvider(compatibility.Stateless):
     out_of_date = False
     panel = None  # while it is open
+    is_new = False  # made by the button, and without a mesh yet
     hid_part = False  # when the mesh appeared
 
     def __init__(self, view):
@@ -38,6 +39,7 @@ class MeshViewProvider(compatibility.Stateless):
     def show_in_place_of_part(self):
         """The mesh, which has appeared: a part at the same place would be seen through it."""
         part = compatibility.meshed_object(self.Object)
+        self.is_new = False
         self.ViewObject.show()
         if part is not None and part.ViewObject.Visibility:
             part.ViewObject.Visibility = False

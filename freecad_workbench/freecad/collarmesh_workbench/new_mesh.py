@@ -1,0 +1,20 @@
+"""A mesh object that the button has made, and that nobody wants."""
+
+import FreeCAD
+
+from .translations import mark, translate
+
+CREATION = mark("collarmesh", "FEM mesh from shape by collarmesh")  # the step of undo that made it
+
+
+def take_back(document_name, name):
+    """Undo its creation, or remove it where that was not the last step."""
+    document = FreeCAD.listDocuments().get(document_name)
+    if document is None or document.getObject(name) is None:
+        return
+    if document.UndoNames[:1] == [translate("collarmesh", CREATION)]:
+        document.undo()
+    if document.getObject(name) is not None:
+        document.openTransaction(translate("collarmesh", "Cancel"))
+        document.removeObject(name)
+        document.commitTransaction()
