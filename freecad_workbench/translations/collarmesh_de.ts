@@ -843,6 +843,10 @@
       <translation>der Wert muss größer als 0 sein</translation>
     </message>
     <message>
+      <source>it takes longer than was estimated</source>
+      <translation>es dauert länger als geschätzt</translation>
+    </message>
+    <message>
       <source>largest angle</source>
       <translation>größter Winkel</translation>
     </message>

@@ -1,6 +1,7 @@
 """What the panel makes of reports, messages and progress, without the window. Run by run.py."""
 
 import enum
+import math
 import os
 import subprocess
 import sys
@@ -34,15 +35,38 @@ class Words(unittest.TestCase):
         self.assertEqual(size_presets.rounded(0.02534), 0.025)
         self.assertEqual(size_presets.count_text(12345), "12\u202f000")
 
-    def test_time_left_counts_down(self):
+    def test_time_left_of_what_was_predicted(self):
+        """A run that is as fast as predicted, one that is faster, slower, and much slower."""
+        for pace in (1, 0.3, 1.3, 6):
+            left = time_left.TimeLeft(predicted=20, afterwards=4)
+            told = [left.seconds(20 * pace * time_left.share_of_time(i / 100), i / 100) for i in range(101)]
+            self.assertEqual(told[0], 24)
+            numbers = [each for each in told if each != math.inf]
+            for i, number in enumerate(numbers):
+                self.assertLessEqual(number, 1.5 * min(numbers[:i + 1]), f"{pace}: {told}")
+            self.assertAlmostEqual(numbers[-1], 4)
+            self.assertEqual(math.inf in told, pace > 1.5, f"{pace}: {told}")
+            if 1 <= pace < 1.5:
+                self.assertAlmostEqual(told[60], (1 - time_left.share_of_time(0.6)) * 20 * pace + 4)
+
+    def test_time_left_of_a_run_that_stands_still(self):
+        left = time_left.TimeLeft(predicted=10)
+        told = [left.seconds(passed, 0.01) for passed in range(60)]
+        self.assertEqual(told[-1], math.inf)
+        self.assertLess(told[0], 11)
+
+    def test_time_left_without_prediction(self):
         left = time_left.TimeLeft()
         self.assertIsNone(left.seconds(0.5, 0.9))
         self.assertIsNone(time_left.TimeLeft().seconds(60, 0.05))
-        self.assertEqual(left.seconds(1, 0.05, predicted=20), 19)
         first = left.seconds(10, 0.59)
         self.assertAlmostEqual(first, 10 / 0.3 - 10)
         self.assertAlmostEqual(left.seconds(15, 0.59), first - 5)  # no news
-        self.assertIsNone(left.seconds(100, 0.59))  # it takes longer than that
+        self.assertEqual(left.seconds(100, 0.59), math.inf)
+        self.assertEqual(left.seconds(200, 0.6), math.inf)  # what was told would grow
+        self.assertLess(left.seconds(210, 0.97), 15)
+
+    def test_shares_of_time(self):
         shares = [time_left.share_of_time(i / 100) for i in range(101)]
         self.assertEqual((shares, shares[0], shares[-1]), (sorted(shares), 0, 1))
 

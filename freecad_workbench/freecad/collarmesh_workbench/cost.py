@@ -9,6 +9,7 @@ from .translations import translate
 MANY = 5_000_000  # elements
 BYTES = {1: 1000, 2: 2000}  # of memory for an element, by order: in the mesher, and then in FreeCAD
 GIGABYTE = 1e9
+LOADING = {1: 5e-6, 2: 12e-6}  # seconds for an element, by order, until FreeCAD has read it
 
 
 def elements_by_volume(part, size):
@@ -16,6 +17,10 @@ def elements_by_volume(part, size):
     mesh, shape = inputs.triangles_of(part), inputs.shape_of(part)
     volume = mesh.Volume if mesh is not None else 0 if shape.isNull() else shape.Volume
     return 6 * math.sqrt(2) * abs(volume) / size**3
+
+
+def loading_seconds(elements, order):
+    return LOADING[order] * elements
 
 
 def free_memory():

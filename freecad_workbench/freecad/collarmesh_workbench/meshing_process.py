@@ -14,6 +14,7 @@ from PySide import QtCore, QtGui
 
 from . import compatibility, mesh_object, mesh_undo, processes, up_to_date
 from .program import MesherError, Progress
+from .time_left import TimeLeft
 from .translations import translate
 
 WAIT = 200  # milliseconds until a run that has ended asks again whether its mesh can be put in place
@@ -53,19 +54,18 @@ def outcome_of(obj):
     return outcome if is_there else None
 
 
-def start(obj):
-    """Begin a run. Raises MesherError."""
+def start(obj, time_left=None):
+    """Begin a run; `time_left`: a TimeLeft, if somebody said how long it takes. Raises MesherError."""
     if run_of(obj) is None:
-        _runs[_key(obj)] = MeshingProcess(obj)
+        _runs[_key(obj)] = MeshingProcess(obj, time_left)
     return run_of(obj)
 
 
 class MeshingProcess(QtCore.QObject):
-    predicted_seconds = None  # how long all of it was said to take, None: unknown
     advanced = QtCore.Signal(object)  # a Progress
     ended = QtCore.Signal()  # there is an outcome
 
-    def __init__(self, obj):
+    def __init__(self, obj, time_left=None):
         super().__init__()
         self.object = obj
         part = compatibility.meshed_object(obj)
@@ -74,6 +74,7 @@ class MeshingProcess(QtCore.QObject):
         self.job.add_page()
         self.warnings = tuple(self.job.warnings())
         self.progress = None
+        self.time_left = time_left or TimeLeft()
         self._cancelled = self._abandoned = False
         self.clock = QtCore.QElapsedTimer()
         self.clock.start()

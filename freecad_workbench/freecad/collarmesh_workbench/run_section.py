@@ -1,9 +1,10 @@
 """The part of the panel that starts and cancels runs, and tells how far they are."""
 
+import math
+
 from PySide import QtCore, QtGui
 
 from .size_presets import duration_text
-from .time_left import TimeLeft
 from .translations import translate
 
 
@@ -66,27 +67,30 @@ class RunSection(QtGui.QWidget):
         self.bar.hide()
         self.left.hide()
 
-    def begin(self):
+    def begin(self, time_left):
+        """`time_left`: a TimeLeft."""
         self.withdraw()
         self.run.setEnabled(False)
         self.cancel.setEnabled(True)
         self.bar.setValue(0)
         self.bar.setFormat("%p%")
-        self._time_left = TimeLeft()
+        self._time_left = time_left
         self.left.setText("")
         self.bar.show()
         self.left.show()
 
-    def advance(self, progress, seconds, predicted=None):
-        """`seconds` since the start; `predicted`: how long all of it was said to take, None: unknown."""
+    def advance(self, progress, seconds):
+        """`seconds` since the start."""
         self.bar.setValue(int(1000 * progress.fraction))
         self.bar.setFormat(phase_text(progress.phase) + " %p%")
-        left = self._time_left.seconds(seconds, progress.fraction, predicted)
+        left = self._time_left.seconds(seconds, progress.fraction)
         words = []
         if progress.tets:
             tets = f"{progress.tets:,}".replace(",", "\u202f")
             words.append(translate("collarmesh", "{tets} elements so far").format(tets=tets))
-        if left is not None:
+        if left == math.inf:
+            words.append(translate("collarmesh", "it takes longer than was estimated"))
+        elif left is not None:
             words.append(translate("collarmesh", "about {time} left").format(time=duration_text(left)))
         self.left.setText(", ".join(words))
 

@@ -15,6 +15,7 @@ from .program import MesherError
 from .result_section import ResultSection
 from .run_section import RunSection
 from .size_section import SizeSection
+from .time_left import TimeLeft
 from .translations import translate
 from .view_marks import ViewMarks
 
@@ -113,7 +114,9 @@ class MeshTaskPanel:
 
     def _show_predictions(self, known, missing=""):
         self.known = known
-        self.size.show_predictions(known, missing)
+        order = self.order.order()
+        self.size.show_predictions({size: (elements, seconds + cost.loading_seconds(elements, order))
+                                    for size, (elements, seconds) in known.items()}, missing)
 
     def start(self):
         if self.run is not None:
@@ -125,9 +128,7 @@ class MeshTaskPanel:
                 self.run_section.ask(question)
                 return
             self._clear()
-            run = meshing_process.start(self.object)
-            _, run.predicted_seconds = self.known.get(self.object.CharacteristicLengthMax.Value, (0, None))
-            self._follow(run)
+            self._follow(meshing_process.start(self.object, self._time_left()))
         except MesherError as error:
             self._clear()
             self._show_outcome(meshing_process.Outcome(error=str(error)))
@@ -145,7 +146,13 @@ class MeshTaskPanel:
         elements, seconds = self.known.get(size, (0, None))
         if not elements and part is not None:
             elements = cost.elements_by_volume(part, size)
+        if seconds is not None:
+            seconds += cost.loading_seconds(elements, self.order.order())
         return cost.question(elements, self.order.order(), seconds)
+
+    def _time_left(self):
+        elements, seconds = self.known.get(self.object.CharacteristicLengthMax.Value, (0, None))
+        return TimeLeft(seconds, cost.loading_seconds(elements, self.order.order()))
 
     def cancel(self):
         if self.run is not None:
@@ -154,14 +161,14 @@ class MeshTaskPanel:
     def _follow(self, run):
         self.run = run
         self.predictions.pause()
-        self.run_section.begin()
+        self.run_section.begin(run.time_left)
         run.advanced.connect(self._advance)
         run.ended.connect(self._ended)
         if run.progress is not None:
             self._advance(run.progress)
 
     def _advance(self, progress):
-        self.run_section.advance(progress, self.run.seconds(), self.run.predicted_seconds)
+        self.run_section.advance(progress, self.run.seconds())
 
     def _ended(self):
         self._let_go()

@@ -1,6 +1,9 @@
-"""How long a run will go on, from how far it is and how long it has taken."""
+"""How long a run will go on, from how far it is, how long it has taken, and how long it was said to take."""
+
+import math
 
 LEAST_SECONDS, LEAST_SHARE = 2, 0.13  # before these, nobody can know from the run itself
+GROWTH = 1.5  # what was told grows by no more than that
 
 # What share of the time has gone by where the program says that it is this far: rounded means over seven runs that
 # made from 2,500 to 225,000 elements.
@@ -17,17 +20,32 @@ def share_of_time(fraction):
 
 
 class TimeLeft:
-    """Of one run. While the program stays where it is, time goes by."""
+    """Of one run. `predicted` and `afterwards`: seconds that the program and what comes after it were said to take;
+    `predicted` is None where nobody said."""
 
-    def __init__(self):
-        self._fraction = self._end = None
+    def __init__(self, predicted=None, afterwards=0):
+        self._predicted, self._afterwards = predicted, afterwards
+        self._fraction, self._end = -1, math.inf  # of what the run itself tells
+        self._least = math.inf  # that was told
 
-    def seconds(self, passed, fraction, predicted=None):
-        """None where nobody can know. `passed`: since the start; `predicted`: for the whole run, before it began."""
+    def seconds(self, passed, fraction):
+        """After so many seconds; None: nobody knows; infinite: longer than was told before."""
         share = share_of_time(fraction)
-        if passed >= LEAST_SECONDS and share >= LEAST_SHARE:
-            if self._fraction is None or fraction > self._fraction:
-                self._fraction, self._end = fraction, passed / share
-        elif predicted is not None:
-            self._end = predicted
-        return self._end - passed if self._end is not None and self._end > passed else None
+        left = self._by_run(passed, fraction, share) if self._predicted is None else self._by_prediction(passed, share)
+        if left is None or left > GROWTH * self._least:
+            return left if left is None else math.inf
+        self._least = min(self._least, left)
+        return left
+
+    def _by_prediction(self, passed, share):
+        """A run that is slower than was said goes on as slowly."""
+        pace = passed / (max(share, LEAST_SHARE) * self._predicted)
+        return (1 - share) * self._predicted * max(1, pace) + self._afterwards
+
+    def _by_run(self, passed, fraction, share):
+        """While the program stays where it is, time goes by."""
+        if passed < LEAST_SECONDS or share < LEAST_SHARE:
+            return None
+        if fraction > self._fraction:
+            self._fraction, self._end = fraction, passed / share
+        return self._end - passed if self._end > passed else math.inf
