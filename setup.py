@@ -29,8 +29,9 @@ class CMakeBuild(build_ext):
             for component in ("python", "modules"):
                 subprocess.run(["cmake", "--install", folder, "--prefix", prefix, "--component", component,
                                 "--strip"], check=True)
-            for module in pathlib.Path(prefix).rglob("collarmesh/*.so"):
-                shutil.copy2(module, package)
+            for name in ("*.so", "_functions.py"):  # what the build has made
+                for path in pathlib.Path(prefix).rglob(f"collarmesh/{name}"):
+                    shutil.copy2(path, package)
 
     @staticmethod
     def compile(folder):

@@ -8,15 +8,10 @@
 #include <vector>
 
 #include "collarmesh/geometry.h"
+#include "collarmesh/options.h"
 #include "collarmesh/polygon_soup.h"
 
 namespace collarmesh::cli {
-
-/// Whose is what several solids of a CAD file have in common?
-enum class SolidOverlap {
-  first,  ///< the first one's, or that of one which lies wholly inside it
-  region  ///< a region of its own
-};
 
 /// How CAD files are read.
 struct CadReading {

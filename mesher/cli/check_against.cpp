@@ -12,14 +12,23 @@ namespace collarmesh::cli {
 
 namespace {
 
+CheckOptions check_options(const RunOptions& o) {
+  return {.radius_edge = o.mesh.radius_edge,
+          .thin_angle = o.thin_angle,
+          .distance = o.mesh.distance,
+          .collar_angle = o.mesh.collar_angle,
+          .crease_angle = o.mesh.crease_angle,
+          .findings_per_guarantee = o.findings,
+          .threads = o.threads};
+}
+
 /// Finds the repair that the mesh is one of. The report stays where it is one of none.
-void check_against_further(const TetMesh& mesh, ComplexInput& input, ComplexArguments how,
-                           const CheckOptions& options, const Execution& execution, CheckReport& report,
-                           RepairReport& repair) {
-  for (const RepairOptions& further : further_repairs(how.repair, repair)) {
-    how.repair = further;
+void check_against_further(const TetMesh& mesh, ComplexInput& input, const RunOptions& options,
+                           const Execution& execution, CheckReport& report, RepairReport& repair) {
+  for (const RepairOptions& further : further_repairs(options.repair, repair)) {
     try {
-      CheckReport other = check(mesh, input.build(how), options, execution);
+      CheckReport other =
+          check(mesh, input.build(options.complex, further), check_options(options), execution);
       if (other.cancelled || !other.passed()) continue;
       report = std::move(other);
     } catch (const PlcError&) {
@@ -38,12 +47,13 @@ void check_against_further(const TetMesh& mesh, ComplexInput& input, ComplexArgu
 
 }  // namespace
 
-CheckReport check_against(const TetMesh& mesh, ComplexInput& input, ComplexArguments how,
-                          const CheckOptions& options, const Execution& execution) {
-  CheckReport report = check(mesh, input.build(how), options, execution);
+CheckReport check_against(const TetMesh& mesh, ComplexInput& input, const RunOptions& options,
+                          const Execution& execution) {
+  CheckReport report =
+      check(mesh, input.build(options.complex, options.repair), check_options(options), execution);
   RepairReport repair = input.repaired();
   if (!report.passed() && !report.cancelled)
-    check_against_further(mesh, input, std::move(how), options, execution, report, repair);
+    check_against_further(mesh, input, options, execution, report, repair);
   if (repair.repaired)
     report.notes.emplace_back(
         "the mesh was judged against the repaired complex, and that against the input:");

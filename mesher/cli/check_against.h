@@ -5,10 +5,9 @@
 
 namespace collarmesh::cli {
 
-/// The certificate of a mesh against the complex of `input`, built as `how` says; for meshes of inputs that
-/// had to be repaired further (`further_repairs`), against the complex of that. Throws as
-/// `ComplexInput::build`.
-CheckReport check_against(const TetMesh& mesh, ComplexInput& input, ComplexArguments how,
-                          const CheckOptions& options, const Execution& execution = {});
+/// Certify a mesh against the complex of `input`; if it was made of an input that had to be repaired further
+/// (`further_repairs`), against the complex of that. Throws as `ComplexInput::build`.
+CheckReport check_against(const TetMesh& mesh, ComplexInput& input, const RunOptions& options,
+                          const Execution& execution = {});
 
 }  // namespace collarmesh::cli

@@ -13,19 +13,17 @@
 namespace collarmesh::cli {
 
 ExitCode check_command(const CheckArguments& arguments) {
-  set_time_limit(arguments.time_limit);
+  set_time_limit(arguments.mesh.time_limit);
   limit_memory(memory_of_the_machine() / 2);
-  const TetMesh mesh = read_mesh(arguments.mesh);
+  const TetMesh mesh = read_mesh(arguments.mesh_path);
   const auto distance = [&](double diagonal) {
-    return arguments.check.distance > 0 ? arguments.check.distance
-                                        : default_distance(0, diagonal, mesh.order());
+    return arguments.mesh.distance > 0 ? arguments.mesh.distance
+                                       : default_distance(0, diagonal, mesh.order());
   };
-  ComplexInput input(arguments.inputs, interruptible({{}, distance, arguments.complex.overlap}));
-  CheckOptions options = arguments.check;
-  options.crease_angle = arguments.complex.crease_angle;
+  ComplexInput input(arguments.inputs, interruptible({{}, distance, arguments.overlap, arguments.names}));
   Execution execution;
   execution.cancel = &interrupt_flag();
-  const CheckReport report = check_against(mesh, input, arguments.complex, options, execution);
+  const CheckReport report = check_against(mesh, input, arguments, execution);
   stop_if_interrupted();
   if (arguments.json)
     print_result(json_text(check_json(report), 1) + "\n");

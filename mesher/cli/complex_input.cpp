@@ -90,12 +90,12 @@ Execution ComplexInput::watched() const {
   return execution;
 }
 
-Plc ComplexInput::build(const ComplexArguments& options) {
+Plc ComplexInput::build(const PlcOptions& options, const RepairOptions& repair) {
   built_ = {};
-  Plc plc = build_unnamed(options);
+  Plc plc = build_unnamed(options, repair);
   for (const Plc::Patch& patch : plc.patches) built_.patch_numbers.push_back(patch.tag);
   for (const Plc::Curve& curve : plc.curves) built_.curve_numbers.push_back(curve.tag);
-  if (!options.names.empty()) name(options.names, plc);
+  if (!reading_.names.empty()) name(reading_.names, plc);
   return plc;
 }
 
@@ -114,13 +114,13 @@ void ComplexInput::name(const std::string& path, Plc& plc) {
   }
 }
 
-Plc ComplexInput::build_unnamed(const ComplexArguments& options) {
-  if (cad_.empty() || options.repair.wrap_at_once) {
+Plc ComplexInput::build_unnamed(const PlcOptions& options, const RepairOptions& repair) {
+  if (cad_.empty() || repair.wrap_at_once) {
     if (!cad_.empty()) tessellate(1);
     try {
-      return build_repaired(options);
+      return build_repaired(options, repair);
     } catch (const PlcError& error) {
-      throw with_advice(error, options.repair);
+      throw with_advice(error, repair);
     }
   }
   // Triangles of faces that nearly touch may meet where finer ones do not.
@@ -128,19 +128,18 @@ Plc ComplexInput::build_unnamed(const ComplexArguments& options) {
   for (const double finer : {1.0, 4.0}) {
     tessellate(finer);
     try {
-      return take(
-          remove_noise(build_plc(soups_, options.plc), soups_, options.plc, options.repair, watched()));
+      return take(remove_noise(build_plc(soups_, options), soups_, options, repair, watched()));
     } catch (const PlcError& error) {
       if (!first) first = with_names(error, cad_);
       if (!cad_.fused() || !may_be_too_coarse(error)) break;
     }
   }
-  if (options.repair.mode == RepairMode::off) throw with_advice(*first, options.repair);
+  if (repair.mode == RepairMode::off) throw with_advice(*first, repair);
   tessellate(may_be_too_coarse(*first) ? 2 : 1);  // of finer ones fewer meet, and there is less to cut
   try {
-    return build_repaired(options);
+    return build_repaired(options, repair);
   } catch (const PlcError&) {
-    throw with_advice(*first, options.repair);
+    throw with_advice(*first, repair);
   }
 }
 
@@ -156,8 +155,8 @@ void ComplexInput::tessellate(double finer) {
   finer_ = finer;
 }
 
-Plc ComplexInput::build_repaired(const ComplexArguments& options) {
-  return take(build_repaired_plc(soups_, options.plc, options.repair, watched()));
+Plc ComplexInput::build_repaired(const PlcOptions& options, const RepairOptions& repair) {
+  return take(build_repaired_plc(soups_, options, repair, watched()));
 }
 
 Plc ComplexInput::take(RepairedPlc result) {

@@ -5,10 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "arguments.h"
 #include "cad_files.h"
 #include "collarmesh/error.h"
-#include "collarmesh/mesher.h"
+#include "collarmesh/options.h"
 #include "collarmesh/plc_builder.h"
 #include "collarmesh/progress.h"
 #include "collarmesh/project_boundary.h"
@@ -24,6 +23,7 @@ struct InputReading {
     return default_distance(0, diagonal);
   };
   SolidOverlap overlap = SolidOverlap::first;
+  std::string names = {};                     ///< of features: the path of a file, or its text; empty: none
   const std::atomic<bool>* cancel = nullptr;  ///< ends the work when it is set
   std::function<void()> stop = [] {};         ///< called between steps; throws when the work is to end
 };
@@ -48,7 +48,7 @@ class ComplexInput {
   /// The complex, of repaired facets where that is needed. Where triangles of CAD faces meet that should not,
   /// finer ones are tried first.
   /// Throws PlcError; with CAD faces the messages name them.
-  Plc build(const ComplexArguments& options);
+  Plc build(const PlcOptions& options, const RepairOptions& repair = {});
   /// What was done to the facets of the complex built last.
   const RepairReport& repaired() const { return built_.repaired; }
 
@@ -58,8 +58,8 @@ class ComplexInput {
 
  private:
   void name(const std::string& path, Plc& plc);
-  Plc build_unnamed(const ComplexArguments& options);
-  Plc build_repaired(const ComplexArguments& options);
+  Plc build_unnamed(const PlcOptions& options, const RepairOptions& repair);
+  Plc build_repaired(const PlcOptions& options, const RepairOptions& repair);
   PlcError with_advice(const PlcError& error, const RepairOptions& options) const;
   Plc take(RepairedPlc result);
   void tessellate(double finer);

@@ -45,7 +45,7 @@ void scale_soup(PolygonSoup& soup, double factor) {
 }
 
 void write_soup(const MeshArguments& a, const std::vector<PolygonSoup>& soups) {
-  MergedSoup merged = merge_for_output(soups, a.output, a.output_format, a.complex.plc);
+  MergedSoup merged = merge_for_output(soups, a.output, a.output_format, a.complex);
   scale_soup(merged.soup, a.scale);
   stop_if_interrupted();
   StagedFile file(a.output);
@@ -110,14 +110,13 @@ void convert_mesh(const MeshArguments& a, TetMesh& mesh) {
 
 /// The soups become those of a complex that encloses something; unless it can be one, PlcError is thrown.
 void repair(const MeshArguments& a, ComplexInput& input) {
-  const Plc plc = input.build(a.complex);
+  const Plc plc = input.build(a.complex, a.repair);
   tell("{}{}", warnings_text(plc), repair_text(input.repaired(), a.quiet));
 }
 
 }  // namespace
 
-ExitCode convert_command(const ConvertArguments& arguments) {
-  const MeshArguments& a = arguments.mesh;
+ExitCode convert_command(const ConvertArguments& a) {
   set_time_limit(a.mesh.time_limit);
   limit_memory(a.mesh.max_memory);
   require_writable(a.output, a.output_format);
@@ -125,16 +124,16 @@ ExitCode convert_command(const ConvertArguments& arguments) {
   const bool to_surface = is_surface_format(a.output, a.output_format);
   std::optional<TetMesh> mesh = read_mesh_if_there(a.inputs.front(), a.input_format);
   const bool from_mesh = mesh.has_value();
-  if ((to_surface || from_mesh) && !arguments.meshing_options.empty())
-    tell("warning: {}: no effect, since nothing is meshed here.\n",
-         fmt::join(arguments.meshing_options, " "));
+  if ((to_surface || from_mesh) && !a.meshing_options.empty())
+    tell("warning: {}: no effect, since nothing is meshed here.\n", fmt::join(a.meshing_options, " "));
   if (from_mesh) {
     convert_mesh(a, *mesh);
     return ExitCode::success;
   }
   if (!to_surface) return mesh_command(a);
-  ComplexInput input(a.inputs, interruptible({.format = a.input_format, .overlap = a.complex.overlap}));
-  if (arguments.repair) repair(a, input);
+  ComplexInput input(a.inputs,
+                     interruptible({.format = a.input_format, .overlap = a.overlap, .names = a.names}));
+  if (a.repairs) repair(a, input);
   write_soup(a, input.soups());
   return ExitCode::success;
 }

@@ -33,22 +33,22 @@ void print_mesh(const TetMesh& mesh, bool as_json) {
 
 /// The complex that would be meshed; what bounds no region, and cannot be repaired so that it does, is one
 /// here, too.
-Plc build_any(ComplexInput& input, ComplexArguments options) {
+Plc build_any(ComplexInput& input, const RunOptions& options) {
   try {
-    return input.build(options);
+    return input.build(options.complex, options.repair);
   } catch (const PlcError&) {
-    options.plc.require_solid = false;
-    return input.build(options);
+    PlcOptions any = options.complex;
+    any.require_solid = false;
+    return input.build(any, options.repair);
   }
 }
 
 /// `read`: seconds that reading and building the complex took, as they will again.
 std::vector<Prediction> predictions(const InfoArguments& arguments, const Plc& plc, double read) {
   if (arguments.predicted_sizes.empty()) return {};
-  PipelineOptions options;
-  options.mesh = arguments.mesh;
-  options.order = arguments.order;
-  if (!arguments.size_field.empty()) options.mesh.size_field = read_size_field(arguments.size_field, plc);
+  PipelineOptions options = arguments;
+  if (!arguments.size_field_file.empty())
+    options.mesh.size_field = read_size_field(arguments.size_field_file, plc);
   stop_if_interrupted();
   std::vector<Prediction> result = predict(plc, options, arguments.predicted_sizes);
   for (Prediction& prediction : result) prediction.seconds += read;
@@ -58,12 +58,13 @@ std::vector<Prediction> predictions(const InfoArguments& arguments, const Plc& p
 void print_complex(const InfoArguments& arguments) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point begin = Clock::now();
-  ComplexInput input(arguments.inputs, interruptible({.format = {}, .overlap = arguments.complex.overlap}));
-  const Plc plc = build_any(input, arguments.complex);
+  ComplexInput input(arguments.inputs,
+                     interruptible({.format = {}, .overlap = arguments.overlap, .names = arguments.names}));
+  const Plc plc = build_any(input, arguments);
   stop_if_interrupted();
   const double read = std::chrono::duration<double>(Clock::now() - begin).count();
   const std::vector<Prediction> predicted = predictions(arguments, plc, read);
-  const PlcSummary summary = summarize(plc, arguments.complex.crease_angle);
+  const PlcSummary summary = summarize(plc, arguments.mesh.crease_angle);
   if (arguments.json) {
     nlohmann::ordered_json json{{"complex", complex_json(plc, summary)},
                                 {"repair", repair_json(input.repaired())}};
@@ -78,7 +79,7 @@ void print_complex(const InfoArguments& arguments) {
 }  // namespace
 
 ExitCode info_command(const InfoArguments& arguments) {
-  set_time_limit(arguments.time_limit);
+  set_time_limit(arguments.mesh.time_limit);
   limit_memory(memory_of_the_machine() / 2);
   const std::string& first = arguments.inputs.front();
   const std::optional<TetMesh> mesh = read_mesh_if_there(first);

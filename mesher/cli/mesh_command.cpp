@@ -61,20 +61,9 @@ class Stages {
 };
 
 PipelineOptions pipeline_options(const MeshArguments& a) {
-  PipelineOptions options;
-  options.mesh = a.mesh;
+  PipelineOptions options = a;
   options.mesh.count_work = !a.reports.empty();
-  options.mesh.crease_angle = a.complex.crease_angle;
   options.mesh.time_limit = 0;  // one limit for everything, from reading to writing: the interrupt flag
-  options.complex = a.complex.plc;
-  options.repair = a.complex.repair;
-  options.coarsen = a.coarsen;
-  options.thin_angle = a.thin_angle;
-  options.improve = a.improve;
-  options.min_dihedral = a.min_dihedral;
-  options.order = a.order;
-  options.partitions = a.partitions;
-  options.threads = a.threads;
   return options;
 }
 
@@ -96,22 +85,21 @@ class InputSource : public ComplexSource {
       : arguments_(arguments), input_(input), stages_(stages) {}
 
   RepairedPlc build(const RepairOptions& repair, const Execution&) override {
-    ComplexArguments how = arguments_.complex;
-    how.repair = repair;
     if (repair.wrap_at_once)
       stages_.print("wrapped: no mesh of the complex keeps every guarantee within its vertices\n");
-    else if (repair.tolerance != arguments_.complex.repair.tolerance)
+    else if (repair.tolerance != arguments_.repair.tolerance)
       stages_.print(fmt::format(
           "repaired again, with --repair-tolerance {:.3g}: no mesh of the complex keeps every guarantee\n",
           repair.tolerance));
-    RepairedPlc built{input_.build(how), input_.repaired(), {}};
+    RepairedPlc built{input_.build(arguments_.complex, repair), input_.repaired(), {}};
     built_with_ = repair;
     stages_.print(warnings_text(built.plc) + repair_text(built.report, arguments_.quiet));
     return built;
   }
 
   void adapt(const Plc& plc, PipelineOptions& options) override {
-    if (!arguments_.size_field.empty()) options.mesh.size_field = read_size_field(arguments_.size_field, plc);
+    if (!arguments_.size_field_file.empty())
+      options.mesh.size_field = read_size_field(arguments_.size_field_file, plc);
     if (input_.has_cad()) options.exact = input_.exact_geometry(plc);
     std::string text;
     for (const std::string& warning : option_warnings(arguments_, plc))
@@ -153,13 +141,13 @@ RepairOptions mesh(const MeshArguments& arguments, ComplexInput& input, Stages& 
     throw Stopped(ExitCode::budget_hit, run.result.message + "; nothing was written");
   if (input.has_cad()) run.result.mesh.group_names = GroupNames::cad;
   run.notes = input.notes();
-  run.summary = summarize(run.plc, arguments.complex.crease_angle);
+  run.summary = summarize(run.plc, arguments.mesh.crease_angle);
   run.warnings = option_warnings(arguments, run.plc);
   return source.built_with();
 }
 
 ProgressStyle progress_of(const MeshArguments& arguments) {
-  return arguments.quiet ? ProgressStyle::none : arguments.progress;
+  return arguments.quiet ? ProgressStyle::off : arguments.progress;
 }
 
 /// `shown`: for pages.
@@ -218,9 +206,10 @@ void tell_of(const MeshArguments& arguments, const MeshRun& run) {
 }
 
 std::unique_ptr<ComplexInput> read_inputs(const MeshArguments& arguments) {
-  const auto distance = [&](double diagonal) { return distance_of(pipeline_options(arguments), diagonal); };
+  const auto distance = [&](double diagonal) { return distance_of(arguments, diagonal); };
   return std::make_unique<ComplexInput>(
-      arguments.inputs, interruptible({arguments.input_format, distance, arguments.complex.overlap}));
+      arguments.inputs,
+      interruptible({arguments.input_format, distance, arguments.overlap, arguments.names}));
 }
 
 MadeMesh make_mesh(const MeshArguments& arguments) {

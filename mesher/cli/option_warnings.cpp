@@ -35,7 +35,7 @@ std::vector<std::string> option_warnings(const MeshArguments& a, const Plc& plc)
   if (a.improve == 0 && a.min_dihedral > 0)
     warnings.push_back(fmt::format("--min-dihedral {}: nothing is improved at --improve 0; leave that out.",
                                    a.min_dihedral));
-  if (a.mesh.collar_angle < reached_collar_angle && !find_creases(plc, a.complex.crease_angle).empty())
+  if (a.mesh.collar_angle < reached_collar_angle && !find_creases(plc, a.mesh.crease_angle).empty())
     warnings.push_back(
         fmt::format("--collar-angle {}: collars need not reach bounds below 130 degrees; refinement "
                     "then ends when a budget is spent, set one with --max-vertices or --time-limit.",
@@ -46,12 +46,12 @@ std::vector<std::string> option_warnings(const MeshArguments& a, const Plc& plc)
                     "number of elements grows with its inverse; a larger distance, or --feature-angle "
                     "0 for the facets as they are, costs less.",
                     a.mesh.distance, a.mesh.distance / diagonal));
-  if (a.complex.plc.planar_tolerance > large_planar_tolerance)
+  if (a.complex.planar_tolerance > large_planar_tolerance)
     warnings.push_back(
         fmt::format("--planar-tolerance {}: facets that are not flat were merged into flat ones, up to "
                     "{:.6g} from where they were, and the mesh follows the merged ones; a curved face "
                     "stays one without it.",
-                    a.complex.plc.planar_tolerance, plc.largest_deviation));
+                    a.complex.planar_tolerance, plc.largest_deviation));
   return warnings;
 }
 

@@ -40,9 +40,7 @@ bool reads_cad(const Arguments& arguments) {
           return std::any_of(inputs.begin(), inputs.end(),
                              [&](const std::string& path) { return CadFiles::knows(path, format); });
         };
-        if constexpr (requires { a.mesh.inputs; })
-          return any(a.mesh.inputs, a.mesh.input_format);
-        else if constexpr (requires { a.input_format; })
+        if constexpr (requires { a.input_format; })
           return any(a.inputs, a.input_format);
         else
           return any(a.inputs, {});

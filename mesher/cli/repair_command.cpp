@@ -24,7 +24,7 @@ namespace {
 std::string read_again(const std::string& path, const RepairArguments& a) {
   try {
     const PolygonSoup soups[] = {read_surface(path, a.output_format)};
-    build_plc(soups, a.complex.plc);
+    build_plc(soups, a.complex);
   } catch (const PlcError& error) {
     return fmt::format(
         "warning: what this format keeps of it is no valid complex: {} Formats that keep more are .off, .obj "
@@ -49,16 +49,17 @@ std::string repairs_text(const RepairReport& report, const RepairArguments& a) {
 }  // namespace
 
 ExitCode repair_command(const RepairArguments& a) {
-  set_time_limit(a.time_limit);
+  set_time_limit(a.mesh.time_limit);
   limit_memory(memory_of_the_machine() / 2);
   require_writable(a.output, a.output_format);
-  if (!a.report.empty()) require_writable(a.report);
-  ComplexInput input(a.inputs, interruptible({.format = a.input_format, .overlap = a.complex.overlap}));
-  const Plc plc = input.build(a.complex);
+  for (const std::string& report : a.reports) require_writable(report);
+  ComplexInput input(a.inputs,
+                     interruptible({.format = a.input_format, .overlap = a.overlap, .names = a.names}));
+  const Plc plc = input.build(a.complex, a.repair);
   stop_if_interrupted();
   const nlohmann::ordered_json told =
-      repair_run_json(a, plc, summarize(plc, a.complex.crease_angle), input.repaired());
-  const MergedSoup merged = merge_for_output(input.soups(), a.output, a.output_format, a.complex.plc);
+      repair_run_json(a, plc, summarize(plc, a.mesh.crease_angle), input.repaired());
+  const MergedSoup merged = merge_for_output(input.soups(), a.output, a.output_format, a.complex);
   std::string warning;
   StagedFile surface(a.output);
   surface.write([&](const std::string& path) {
@@ -66,8 +67,8 @@ ExitCode repair_command(const RepairArguments& a) {
     warning = read_again(path, a);
   });
   std::optional<StagedFile> report;
-  if (!a.report.empty()) {
-    report.emplace(a.report);
+  if (!a.reports.empty()) {
+    report.emplace(a.reports.front());
     report->write([&](const std::string& path) { write_report(path, told); });
   }
   StagedFile::commit({&surface, report ? &*report : nullptr});

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "options_json.h"
 #include "report.h"
 
 namespace collarmesh::cli {
@@ -42,15 +43,6 @@ const char* status_name(MeshStatus status) {
   return "unknown";
 }
 
-const char* repair_mode_name(RepairMode mode) {
-  switch (mode) {
-    case RepairMode::off: return "none";
-    case RepairMode::automatic: return "auto";
-    case RepairMode::wrap: return "wrap";
-  }
-  return "unknown";
-}
-
 /// Some places of a change; `size` is what their size is called, or null.
 Json places_json(const RepairPlaces& places, const char* size) {
   Json where = Json::array();
@@ -70,50 +62,6 @@ Json filled_json(const std::vector<FilledHole>& holes) {
                     {"area", hole.area},
                     {"where", point_json(hole.where)}});
   return json;
-}
-
-/// 0 stands for a default or for "none" in the options; null does so here.
-template <class Number>
-Json or_null(Number value) {
-  return value == 0 ? Json(nullptr) : Json(value);
-}
-
-Json options_json(const MeshArguments& a) {
-  const MeshOptions& m = a.mesh;
-  return {{"size", or_null(m.size)},
-          {"size_min", or_null(m.size_min)},
-          {"region_size", by_number(m.region_size)},
-          {"patch_size", by_number(m.patch_size)},
-          {"curve_size", by_number(m.curve_size)},
-          {"size_field", a.size_field.empty() ? Json() : Json(a.size_field)},
-          {"elements_per_circle", or_null(m.elements_per_circle)},
-          {"elements_across_gap", or_null(m.elements_across_gap)},
-          {"gradation", or_null(m.gradation)},
-          {"radius_edge", m.radius_edge},
-          {"vertex_ratio", or_null(m.vertex_ratio)},
-          {"theta", m.theta},
-          {"distance", or_null(m.distance)},
-          {"feature_angle", a.complex.plc.feature_angle},
-          {"planar_tolerance", a.complex.plc.planar_tolerance},
-          {"weld", a.complex.plc.weld},
-          {"repair", repair_mode_name(a.complex.repair.mode)},
-          {"repair_tolerance", a.complex.repair.tolerance},
-          {"wrap_offset", a.complex.repair.wrap_offset},
-          {"overlap", a.complex.overlap == SolidOverlap::region ? "region" : "first"},
-          {"crease_angle", a.complex.crease_angle},
-          {"collar_angle", m.collar_angle},
-          {"collar_creation", m.collar_creation == CollarCreation::in_pass ? "in-pass" : "up-front"},
-          {"coarsen", a.coarsen},
-          {"thin_angle", a.thin_angle},
-          {"improve", a.improve},
-          {"min_dihedral", or_null(a.min_dihedral)},
-          {"order", a.order},
-          {"partitions", or_null(a.partitions)},
-          {"seed", m.seed},
-          {"threads", a.threads},
-          {"max_vertices", or_null(m.max_vertices)},
-          {"max_memory", or_null(m.max_memory)},
-          {"time_limit", or_null(m.time_limit)}};
 }
 
 Json counts_json(const WorkCounts& c) {

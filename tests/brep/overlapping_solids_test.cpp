@@ -180,7 +180,7 @@ TEST(CadOverlaps, OptionOfTheProgram) {
     words.insert(words.end(), options.begin(), options.end());
     const auto parsed = cli::parse(static_cast<int>(words.size()), words.data());
     const auto& info = std::get<cli::InfoArguments>(std::get<cli::Arguments>(parsed));
-    cli::ComplexInput input(info.inputs, {.format = {}, .overlap = info.complex.overlap});
+    cli::ComplexInput input(info.inputs, {.format = {}, .overlap = info.overlap});
     return volumes_of(input.soups());
   };
   const Volumes first{{1, 6000}, {2, 6000 - 1875}}, region{{1, 6000 - 1875}, {2, 6000 - 1875}, {3, 1875}};

@@ -16,7 +16,6 @@
 #include "collarmesh/mesh_measures.h"
 #include "input_files.h"
 #include "interrupt.h"
-#include "option_values.h"
 #include "program.h"
 #include "progress_display.h"
 #include "report.h"
@@ -45,17 +44,6 @@ class FolderTest : public testing::Test {
 
 using StagedFileTest = FolderTest;
 using SimilarFileTest = FolderTest;
-
-TEST(TagValue, Parsed) {
-  EXPECT_EQ(parse_tag_value("7=0.25"), (std::pair<Tag, double>(7, 0.25)));
-  EXPECT_EQ(parse_tag_value("-3=1e-3"), (std::pair<Tag, double>(-3, 1e-3)));
-}
-
-TEST(TagValue, MistakesSayWhatIsExpected) {
-  for (const char* text :
-       {"", "7", "=1", "7=", "7=0", "7=-1", "7=nan", "7=inf", "a=1", "7=1x", "1.5=2", "7 =1"})
-    EXPECT_THROW(parse_tag_value(text), std::invalid_argument) << text;
-}
 
 TEST(ProgressLine, TellsPhasePercentAndTimeLeft) {
   const std::string line = progress_line("refine", 0.5, 1234567, 3, 200);
@@ -141,19 +129,6 @@ TEST(MeshMeasures, OfOneTet) {
   EXPECT_NEAR(median_edge(mesh), std::sqrt(2), 1e-12);
 }
 
-TEST(Memory, Parsed) {
-  for (const auto& [text, bytes] : {std::pair{"0", 0.0},
-                                    {"2000", 2e3},
-                                    {"3K", 3072.0},
-                                    {"500m", 524288000.0},
-                                    {"1.5G", 1610612736.0},
-                                    {"2GiB", 2147483648.0},
-                                    {"1tb", 1099511627776.0}})
-    EXPECT_EQ(static_cast<double>(parse_memory(text)), bytes) << text;
-  for (const char* text : {"", "G", "-1", "1X", "much", "nan", "inf", "1e30", "4 G", "4GG"})
-    EXPECT_THROW(parse_memory(text), std::invalid_argument) << text;
-}
-
 template <class Thrown>
 void expect_code(ExitCode code, const Thrown& thrown, const std::string& told) {
   testing::internal::CaptureStderr();
@@ -186,21 +161,21 @@ TEST(RepairArguments, AreUnderstood) {
                  "1e-4", "--wrap-offset", "0.01", "--json", "--report", "r.json"});
   EXPECT_EQ(repair.inputs, std::vector<std::string>{"a.stl"});
   EXPECT_EQ(repair.output, "b.off");
-  EXPECT_EQ(repair.report, "r.json");
+  EXPECT_EQ(repair.reports, std::vector<std::string>{"r.json"});
   EXPECT_TRUE(repair.json);
-  EXPECT_EQ(repair.complex.repair.mode, RepairMode::wrap);
-  EXPECT_EQ(repair.complex.repair.tolerance, 1e-4);
-  EXPECT_EQ(repair.complex.repair.wrap_offset, 0.01);
+  EXPECT_EQ(repair.repair.mode, RepairMode::wrap);
+  EXPECT_EQ(repair.repair.tolerance, 1e-4);
+  EXPECT_EQ(repair.repair.wrap_offset, 0.01);
 }
 
 TEST(RepairArguments, ConvertRepairsOnRequestOnly) {
-  EXPECT_FALSE(parsed<ConvertArguments>(std::array{"collarmesh", "convert", "a.stl", "-o", "b.off"}).repair);
+  EXPECT_FALSE(parsed<ConvertArguments>(std::array{"collarmesh", "convert", "a.stl", "-o", "b.off"}).repairs);
   EXPECT_FALSE(parsed<ConvertArguments>(
                    std::array{"collarmesh", "convert", "a.stl", "-o", "b.off", "--repair", "none"})
-                   .repair);
+                   .repairs);
   EXPECT_TRUE(parsed<ConvertArguments>(
                   std::array{"collarmesh", "convert", "a.stl", "-o", "b.off", "--repair", "auto"})
-                  .repair);
+                  .repairs);
 }
 
 RepairReport every_kind_of_repair() {

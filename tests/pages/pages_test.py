@@ -238,11 +238,19 @@ def build_site(sources):
 
 
 def options_told(sources, build):
-    page = (sources / "mesher/doc/options.md").read_text().replace("`", " ").split()
-    said = subprocess.run([f"{build}/bin/collarmesh", "--help"], capture_output=True, text=True, check=True).stdout
-    missing = {option for option in re.findall(r"--[a-z][a-z-]+", said) if option not in page}
+    """Each option is on the page, and the table is that of the program."""
+    sys.path.insert(0, str(sources / "resources"))
+    import options_page
+
+    page = (sources / "mesher/doc/options.md").read_text(encoding="utf-8")
+    program = f"{build}/bin/collarmesh"
+    said = subprocess.run([program, "--help"], capture_output=True, text=True, check=True).stdout
+    words = page.replace("`", " ").split()
+    missing = {option for option in re.findall(r"--[a-z][a-z-]+", said) if option not in words}
     if missing:
         raise SystemExit(f"options.md does not tell of {missing}")
+    if options_page.page(page, program) != page:
+        raise SystemExit(f"the table of options.md is out of date; write it: resources/options_page.py {program}")
 
 
 def run_readme(sources, build):

@@ -3,11 +3,14 @@
     types_test.py SOURCES   (the module on PYTHONPATH)
 """
 
+import os
 import pathlib
 import shutil
 import subprocess
 import sys
 import tempfile
+
+import collarmesh._core as core
 
 USE = """
 import pathlib
@@ -33,12 +36,12 @@ def main():
         use.write_text(USE)
         wrong.write_text('import collarmesh\ncollarmesh.mesh("box.off", size="small")\n')
         common = [mypy, "--strict", "--config-file", sources / "pyproject.toml", "--cache-dir", f"{folder}/cache"]
-        subprocess.run([*common, sources / "mesher/python/collarmesh", use], check=True, cwd=sources)
-        refused = subprocess.run([*common, wrong], cwd=sources, capture_output=True, text=True)
+        package = pathlib.Path(core.__file__).parent
+        environment = {**os.environ, "MYPYPATH": str(package.parent)}
+        subprocess.run([*common, package, use], check=True, cwd=folder, env=environment)
+        refused = subprocess.run([*common, wrong], cwd=folder, env=environment, capture_output=True, text=True)
         if 'incompatible type "str"' not in refused.stdout:
             raise SystemExit(f"mypy does not see a wrong type:\n{refused.stdout}{refused.stderr}")
-    import collarmesh._core as core
-
     stub = (sources / "mesher/python/collarmesh/_core.pyi").read_text()
     functions = {name for name in vars(core) if not name.startswith("_")}
     told = {line.split("(")[0].split()[1].rstrip(":")

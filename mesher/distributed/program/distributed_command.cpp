@@ -155,7 +155,7 @@ void require_equal_command_lines(int argc, const char* const* argv) {
 
 void require_equal_files(const DistributedArguments& arguments) {
   std::vector<std::string> paths = arguments.mesh.inputs;
-  for (const std::string& path : {arguments.mesh.complex.names, arguments.mesh.size_field})
+  for (const std::string& path : {arguments.mesh.names, arguments.mesh.size_field_file})
     if (!path.empty() && !path.starts_with('{')) paths.push_back(path);
   for (const std::string& path : paths) {
     Hash hash;
@@ -190,13 +190,11 @@ std::uint64_t fingerprint(const Plc& plc) {
 struct Coarse {
   cli::MadeMesh made;  ///< of others than rank 0 only the input and the complex
   Shape shape() const {
-    PipelineOptions options;
-    options.mesh = mesh_options;
     const Plc& plc = made.run.plc;
     return {plc, made.input->has_cad() ? made.input->exact_geometry(plc) : ExactGeometry{},
             distance_of(options, plc.bounds.diagonal())};
   }
-  MeshOptions mesh_options;
+  PipelineOptions options;
 };
 
 /// Rank 0 makes the mesh, the others the complex that it was made of.
@@ -205,7 +203,7 @@ Coarse make_coarse(const DistributedArguments& arguments) {
   Coarse coarse;
   cli::MeshArguments first_order = arguments.mesh;
   first_order.order = 1;
-  coarse.mesh_options = first_order.mesh;
+  coarse.options = first_order;
   together([&] {
     if (ranks.rank == 0) coarse.made = cli::make_mesh(first_order);
   });
@@ -214,9 +212,7 @@ Coarse make_coarse(const DistributedArguments& arguments) {
   together([&] {
     if (ranks.rank == 0) return;
     coarse.made.input = cli::read_inputs(first_order);
-    cli::ComplexArguments how = first_order.complex;
-    how.repair = coarse.made.repair;
-    coarse.made.run.plc = coarse.made.input->build(how);
+    coarse.made.run.plc = coarse.made.input->build(first_order.complex, coarse.made.repair);
   });
   if (const int other = first_that_differs(fingerprint(coarse.made.run.plc)); other >= 0)
     throw std::runtime_error(fmt::format(

@@ -13,9 +13,9 @@
 
 namespace collarmesh {
 
-/// When the balls of collars are placed: before the first vertex is inserted, or in the pass, each when the
-/// mesh has become fine enough around its crease (paper, section 3.2). The guarantees are the same.
-enum class CollarCreation { up_front, in_pass };
+/// When the balls of collars are placed: in the pass, each when the mesh has become fine enough around its
+/// crease (paper, section 3.2), or before the first vertex is inserted. The guarantees are the same.
+enum class CollarCreation { in_pass, up_front };
 
 /// What `generate` aims at. Lengths are absolute, in input units, and are target edge lengths:
 /// the median edge of a large mesh comes out about a tenth above them, as other meshers' does.

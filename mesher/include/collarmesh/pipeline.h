@@ -23,10 +23,10 @@
 namespace collarmesh {
 
 struct PipelineOptions {
-  PlcOptions complex;    ///< how facets become a complex
-  RepairOptions repair;  ///< and what happens where they are none
-  MeshOptions mesh;      ///< sizes, bounds and budgets; the time limit is one for all stages
-  bool coarsen = true;   ///< as few tets as the sizes ask for
+  PlcOptions complex = {};    ///< how facets become a complex
+  RepairOptions repair = {};  ///< and what happens where they are none
+  MeshOptions mesh = {};      ///< sizes, bounds and budgets; the time limit is one for all stages
+  bool coarsen = true;        ///< as few tets as the sizes ask for
   double thin_angle = CoarsenOptions{}.thin_angle;  ///< degrees, of thin tets, where it coarsens
   unsigned improve = 2;                             ///< level, 1 to 3; 0: leave the slivers
   double min_dihedral = 0;                          ///< degrees, in place of the level's; 0: the level's
@@ -38,7 +38,7 @@ struct PipelineOptions {
   unsigned threads = 0;     ///< at most; 0: as many as there are cores
   /// What the facets approximate, as a CAD shape. The mesh is kept within tighter bounds first, so that its
   /// vertices can move onto this; may be empty.
-  ExactGeometry exact;
+  ExactGeometry exact = {};
 };
 
 /// What came out. Only where `result.status` is complete or guarantee_missed is there a mesh, `result.mesh`.

@@ -16,8 +16,8 @@
 namespace collarmesh {
 
 enum class RepairMode {
-  off,        ///< what is no valid complex is an error
   automatic,  ///< what is no valid complex is repaired
+  off,        ///< what is no valid complex is an error
   wrap  ///< automatic, and where that makes no solid, or none that can be meshed, a closed surface around
         ///< everything
 };

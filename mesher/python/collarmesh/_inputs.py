@@ -1,7 +1,7 @@
-"""What can be meshed: files, surfaces of arrays, complexes with holes and regions."""
+"""What can be meshed: files, surfaces of arrays, complexes with holes and regions; and the values of options."""
 
 import os
-from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy
 
@@ -15,6 +15,10 @@ if TYPE_CHECKING:  # importing numpy.typing takes as long as all the rest
 else:
     Array = ArrayLike = Any
 Path = Union[str, "os.PathLike[str]"]
+Surface = Tuple[Array, Array, Array]
+SizeField = Union[
+    Path, Mapping[str, Any], Tuple[ArrayLike, ArrayLike, ArrayLike], Callable[[float, float, float], float]
+]
 
 
 def reals(values: ArrayLike, what: str, columns: int) -> Array:
@@ -162,3 +166,52 @@ def inputs(given: Sequence[Input]) -> List[Any]:
         else:
             raise OptionError(f"input {number} must be a path, a tuple (points, triangles) or a Complex, not {each!r}")
     return result
+
+
+def _size_field(field: SizeField) -> Any:
+    """A path, a dict, a callable, or the arrays of a mesh with values on its points."""
+    if isinstance(field, (str, os.PathLike)):
+        return os.fspath(field)
+    if callable(field) or isinstance(field, Mapping):
+        return dict(field) if isinstance(field, Mapping) else field
+    if not isinstance(field, tuple) or len(field) != 3:
+        raise OptionError("size_field must be a path, a dict, a callable or a tuple (points, tets, values)")
+    points = reals(field[0], "the points of size_field", 3)
+    values = reals([[value] for value in field[2]], "the values of size_field", 1).ravel()  # type: ignore
+    if len(values) != len(points):
+        raise OptionError(f"size_field has {len(values)} values for {len(points)} points")
+    return {"points": points, "tets": integers(field[1], "the tets of size_field", 4), "values": values,
+            "cad_names": False}
+
+
+def given(options: Mapping[str, Any]) -> Dict[str, Any]:
+    """Options as the compiled part takes them, without those that are None."""
+    found = {name: value for name, value in options.items() if value is not None}
+    if "names" in found:
+        names = found["names"]
+        found["names"] = dict(names) if isinstance(names, Mapping) else os.fspath(names)
+    if "size_field" in found:
+        found["size_field"] = _size_field(found["size_field"])
+    for name in ("region_size", "patch_size", "curve_size"):
+        if name in found:
+            tags = integers(list(found[name]), f"the tags of {name}")
+            found[name] = {int(tag): length for tag, length in zip(tags, found[name].values())}
+    return found
+
+
+def triangles(soup: Dict[str, Any]) -> Surface:
+    """A soup of triangles, with polygons of four and more corners cut into fans."""
+    corners: List[Tuple[int, int, int]] = []
+    tags: List[int] = []
+    begin = 0
+    ends = soup["polygon_ends"]
+    first = 0
+    for facet, last in enumerate(soup["facet_ends"]):
+        for polygon in range(first, last):
+            a, *rest = soup["corners"][begin : ends[polygon]]
+            begin = ends[polygon]
+            for b, c in zip(rest, rest[1:]):
+                corners.append((a, b, c))
+                tags.append(soup["facet_tags"][facet])
+        first = last
+    return soup["points"], integers(corners, "triangles", 3), integers(tags, "tags")

@@ -57,8 +57,9 @@ cli::ComplexInput read(const Inputs& inputs, const Options& options, Watch& watc
   watch.begin_stage("read");
   cli::InputReading reading;
   reading.format = options.input_format;
-  reading.distance = [&options](double diagonal) { return distance_of(options.pipeline, diagonal); };
+  reading.distance = [&options](double diagonal) { return distance_of(options, diagonal); };
   reading.overlap = options.overlap;
+  reading.names = options.names;
   reading.cancel = &watch.flag();
   reading.stop = [&watch] { watch.stop_if_asked(); };
   cli::ComplexInput input(inputs.paths, reading);
@@ -69,7 +70,7 @@ cli::ComplexInput read(const Inputs& inputs, const Options& options, Watch& watc
 void build(const Inputs& inputs, const Options& options, Watch& watch, Complex& complex) {
   complex.input.emplace(read(inputs, options, watch));
   watch.begin_stage("complex");
-  complex.plc = complex.input->build(options.complex());
+  complex.plc = complex.input->build(options.complex, options.repair);
   watch.stop_if_asked();
 }
 
@@ -92,9 +93,7 @@ class InputSource : public ComplexSource {
   InputSource(const Options& options, cli::ComplexInput& input) : options_(options), input_(input) {}
 
   RepairedPlc build(const RepairOptions& repair, const Execution&) override {
-    cli::ComplexArguments how = options_.complex();
-    how.repair = repair;
-    return {input_.build(how), input_.repaired(), {}};
+    return {input_.build(options_.complex, repair), input_.repaired(), {}};
   }
 
   void adapt(const Plc& plc, PipelineOptions& options) override {
@@ -112,7 +111,7 @@ class InputSource : public ComplexSource {
 
 void mesh(MeshCall& call, Watch& watch) {
   call.input.emplace(read(call.inputs, call.options, watch));
-  PipelineOptions options = call.options.pipeline;
+  PipelineOptions options = call.options;
   options.mesh.time_limit = 0;  // the watch looks at it, over all that the call does
   InputSource source(call.options, *call.input);
   call.run = run_pipeline(source, options, watch.execution());
@@ -126,7 +125,7 @@ py::dict mesh_of(const py::list& inputs, const py::dict& options, const py::obje
   const auto call = std::make_shared<MeshCall>();
   call->inputs = inputs_of(inputs);
   call->options = options_of(options);
-  const double time_limit = call->options.pipeline.mesh.time_limit;
+  const double time_limit = call->options.mesh.time_limit;
   run_watched([call](Watch& watch) { mesh(*call, watch); }, progress, time_limit);
   py::dict arrays = arrays_of(std::move(call->run.result.mesh));
   arrays["status_message"] = call->run.result.message;
@@ -155,11 +154,10 @@ py::object check_mesh(const py::dict& mesh, const py::list& against, const py::d
   const auto work = [call](Watch& watch) {
     call->input.emplace(read(call->inputs, call->options, watch));
     watch.begin_stage("check");
-    call->report = cli::check_against(call->mesh, *call->input, call->options.complex(), call->options.check,
-                                      watch.execution());
+    call->report = cli::check_against(call->mesh, *call->input, call->options, watch.execution());
     watch.stop_if_asked();
   };
-  run_watched(work, py::none(), call->options.pipeline.mesh.time_limit);
+  run_watched(work, py::none(), call->options.mesh.time_limit);
   return parsed(cli::check_json(call->report));
 }
 
@@ -178,12 +176,12 @@ py::object info(const py::list& inputs, const py::dict& options) {
     try {
       build(call->inputs, call->options, watch, call->complex);
     } catch (const PlcError&) {
-      call->options.pipeline.complex.require_solid = false;
+      call->options.complex.require_solid = false;
       build(call->inputs, call->options, watch, call->complex);
     }
-    call->summary = summarize(call->complex.plc, call->options.pipeline.mesh.crease_angle);
+    call->summary = summarize(call->complex.plc, call->options.mesh.crease_angle);
   };
-  run_watched(work, py::none(), call->options.pipeline.mesh.time_limit);
+  run_watched(work, py::none(), call->options.mesh.time_limit);
   nlohmann::ordered_json json{{"complex", cli::complex_json(call->complex.plc, call->summary)},
                               {"repair", cli::repair_json(call->complex.input->repaired())}};
   return parsed(json);
@@ -201,7 +199,7 @@ py::list repaired(const py::list& inputs, const py::dict& options, py::list& mes
   call->inputs = inputs_of(inputs);
   call->options = options_of(options);
   run_watched([call](Watch& watch) { build(call->inputs, call->options, watch, call->complex); }, py::none(),
-              call->options.pipeline.mesh.time_limit);
+              call->options.mesh.time_limit);
   py::list soups;
   for (const PolygonSoup& soup : call->complex.input->soups()) soups.append(arrays_of(soup));
   for (const std::string& line : describe(call->complex.input->repaired())) messages.append(line);
@@ -224,12 +222,12 @@ std::string convert_surfaces(const py::list& inputs, const std::string& output, 
   call->output = output;
   const auto work = [call](Watch& watch) {
     const cli::ComplexInput input = read(call->inputs, call->options, watch);
-    const cli::MergedSoup merged = cli::merge_for_output(
-        input.soups(), call->output, call->options.output_format, call->options.pipeline.complex);
+    const cli::MergedSoup merged = cli::merge_for_output(input.soups(), call->output,
+                                                         call->options.output_format, call->options.complex);
     cli::write_surface(call->output, merged.soup, call->options.output_format);
     call->told = merged.told;
   };
-  run_watched(work, py::none(), call->options.pipeline.mesh.time_limit);
+  run_watched(work, py::none(), call->options.mesh.time_limit);
   return call->told;
 }
 

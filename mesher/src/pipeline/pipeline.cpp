@@ -20,6 +20,7 @@
 
 #include "coarsen/coarsen_workpiece.h"
 #include "collarmesh/error.h"
+#include "collarmesh/options.h"
 #include "collarmesh/partition.h"
 #include "collarmesh/usable_threads.h"
 #include "common/thread_limit.h"
@@ -80,6 +81,15 @@ class ThreadCounter {
   std::jthread thread_;
 };
 
+/// Is `size` the one that the number of elements depends on?
+bool has_one_size(const PipelineOptions& options) {
+  const RunOptions given{options}, defaults;
+  return !options.mesh.size_field && options.mesh.radius_edge >= defaults.mesh.radius_edge &&
+         std::none_of(option_table().begin(), option_table().end(), [&](const Option& option) {
+           return option.finer && option.get(given) != option.get(defaults);
+         });
+}
+
 /// Of facets.
 class SoupSource : public ComplexSource {
  public:
@@ -101,6 +111,7 @@ class Pipeline {
  public:
   Pipeline(const PipelineOptions& options, const Execution& execution)
       : given_(options), outer_(execution), counter_(options.threads) {
+    validate({options});
     if (options.partitions > 0) require_partitioner();
     if (options.mesh.time_limit > 0) deadline_.emplace(options.mesh.time_limit, execution);
     inner_.cancel = deadline_ ? &deadline_->flag() : execution.cancel;
@@ -235,13 +246,9 @@ class Pipeline {
   std::size_t vertices_before_wrap(const SoupPipelineResult& all,
                                    const std::vector<RepairOptions>& further) const {
     constexpr double always = 2e5, per_cube_of_size = 20, sizes_per_diagonal = 20;
-    const MeshOptions &m = given_.mesh, defaults;
-    const bool one_size = !m.size_field && m.region_size.empty() && m.patch_size.empty() &&
-                          m.curve_size.empty() && m.elements_across_gap == defaults.elements_across_gap &&
-                          m.elements_per_circle == defaults.elements_per_circle &&
-                          m.vertex_ratio == defaults.vertex_ratio && m.distance == 0 &&
-                          m.radius_edge >= defaults.radius_edge;
-    if (further.empty() || !further.back().wrap_at_once || !all.repair.repaired || !one_size) return 0;
+    const MeshOptions& m = given_.mesh;
+    if (further.empty() || !further.back().wrap_at_once || !all.repair.repaired || !has_one_size(given_))
+      return 0;
     const double size = m.size > 0 ? m.size : all.plc.bounds.diagonal() / sizes_per_diagonal;
     double vertices = always;
     for (const Plc::Region& region : all.plc.regions)
@@ -266,7 +273,6 @@ class Pipeline {
     if (source_ != nullptr) source_->adapt(plc, options_);
     if (most_vertices_ > 0) options_.mesh.max_vertices = most_vertices_;
     require_known_tags(options_.mesh, plc);
-    if (options_.order != 1 && options_.order != 2) throw OptionError("order must be 1 or 2");
     bounds_ = bounds_of_refinement();
     bounds_.seed = seed;
     bounds_.threads = options_.threads;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "collarmesh/options.h"
 #include "collarmesh/plc_builder.h"
 #include "plc/angles.h"
 #include "plc/cleanup.h"
@@ -150,17 +151,6 @@ void link_patches(const Draft& draft, Plc& plc) {
   }
 }
 
-void check_options(const PlcOptions& options) {
-  if (!(options.feature_angle >= 0 && options.feature_angle <= 180))
-    throw OptionError(fmt::format("The feature angle is {}; it must lie between 0 and 180 degrees.",
-                                  options.feature_angle));
-  for (const auto& [name, value] :
-       {std::pair{"planar tolerance", options.planar_tolerance}, std::pair{"weld distance", options.weld}})
-    if (!(value >= 0 && value < 1))
-      throw OptionError(fmt::format(
-          "The {} is {}; it is relative to the diagonal and must lie between 0 and 1.", name, value));
-}
-
 void warn_of_patches_outside(Plc& plc) {
   std::size_t count = 0;
   double area = 0;
@@ -190,7 +180,7 @@ void warn_of_patches_outside(Plc& plc) {
 }  // namespace
 
 Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options) {
-  check_options(options);
+  validate({{.complex = options}});
   Draft draft;
   Faults faults;
   name_soups(soups, draft);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "collarmesh/error.h"
+#include "collarmesh/options.h"
 #include "predict/vertex_counts.h"
 
 namespace collarmesh {
@@ -20,9 +21,9 @@ double seconds_for(double refined_tets, unsigned order) {
   return of_one * std::pow(refined_tets, power) * (order == 2 ? of_second_order : 1);
 }
 
-void validate(const PipelineOptions& options, std::span<const double> sizes, const Plc& plc) {
+void require_valid(const PipelineOptions& options, std::span<const double> sizes, const Plc& plc) {
   if (!options.coarsen) throw OptionError("only meshes that are coarsened can be predicted");
-  if (options.order != 1 && options.order != 2) throw OptionError("order must be 1 or 2");
+  validate({options});
   require_known_tags(options.mesh, plc);
   for (const double size : sizes) {
     if (!(size >= 0) || !std::isfinite(size))
@@ -38,7 +39,7 @@ void validate(const PipelineOptions& options, std::span<const double> sizes, con
 
 std::vector<Prediction> predict(const Plc& plc, const PipelineOptions& options,
                                 std::span<const double> sizes) {
-  validate(options, sizes, plc);
+  require_valid(options, sizes, plc);
   const double diagonal = plc.bounds.diagonal();
   const bool is_empty = plc.regions.size() < 2;
   const prediction::Shape shape(plc);

@@ -1,4 +1,4 @@
-#include "option_table.h"
+#include "man_page.h"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,100 @@
+"""The functions that take options. When the package is built, a line `# options of ...` becomes the options that the
+command takes, in a signature as parameters, in a description as text (write_functions.py)."""
+
+import os
+from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple, Union
+
+from . import _core
+from ._inputs import Input, Path, SizeField, Surface, given, inputs, triangles
+from ._mesh import Mesh
+
+
+def mesh(
+    *surfaces: Input,
+    # options of mesh
+    input_format: Optional[str] = None,
+    progress: Optional[Callable[[str, float], Optional[bool]]] = None,
+) -> Mesh:
+    """Mesh what surfaces bound, and certify the result.
+
+    surfaces: paths of files, CAD shapes included; tuples (points, triangles) or (points, triangles, tags) with
+        points of shape (n, 3), triangles of shape (m, 3), rows of points, oriented outwards, and tags of shape (m,),
+        integers by which the faces of the mesh are found again; and `Complex`es. Several are several regions of one
+        mesh, numbered from 1; one inside another and oriented inwards is a cavity.
+    # options of mesh
+    input_format: extension in place of the files' own, ".stl".
+    progress: called with the stage and the fraction, 0 to 1, that is done of everything; False cancels.
+
+    Returns a `Mesh`; its `passed` says whether every guarantee holds. Raises the subclasses of `Error` that the
+    description of the package lists.
+    """
+    return Mesh(_core.mesh(inputs(surfaces), given(locals()), progress))
+
+
+def read(path: Path, format: str = "") -> Mesh:
+    """Read a tetrahedral mesh.
+
+    path: the file. format: an extension such as ".vtu", in place of the file's own. Raises ReadError.
+    """
+    return Mesh(_core.read_mesh(os.fspath(path), format))
+
+
+def check(
+    mesh: Union[Mesh, Path],
+    *against: Input,
+    # options of check
+) -> Dict[str, Any]:
+    """Certify a mesh, of this or another program, against the surfaces it was made of.
+
+    mesh: a `Mesh` or the path of one.
+    against: the surfaces, as in `collarmesh.mesh`.
+    # options of check
+
+    Give the options with which the mesh was made. Returns a dict, as `collarmesh check --json` prints it: "passed",
+    "findings", angles, volumes. Raises `Error`.
+    """
+    options = given(locals())
+    subject = mesh if isinstance(mesh, Mesh) else read(mesh)
+    return _core.check(subject._arrays(), inputs(against), options)
+
+
+def info(
+    *of: Union[Input, Mesh],
+    # options of repair
+) -> Dict[str, Any]:
+    """Describe surfaces (patches with numbers and names, regions, creases, angles) or a mesh.
+
+    of: surfaces as in `collarmesh.mesh`, or one mesh. Options: as in `collarmesh.mesh`.
+
+    Returns a dict, as `collarmesh info --json` prints it. Raises `Error`.
+    """
+    options = given(locals())
+    if len(of) == 1 and isinstance(of[0], Mesh):
+        return of[0].info()
+    if len(of) == 1 and isinstance(of[0], (str, os.PathLike)):
+        arrays = _core.read_mesh_if_there(os.fspath(of[0]), "")
+        if arrays is not None:
+            return Mesh(arrays).info()
+    return _core.info(inputs(of), options)  # type: ignore[arg-type]
+
+
+def repair(
+    *surfaces: Input,
+    output: Optional[Path] = None,
+    # options of repair
+    input_format: Optional[str] = None,
+) -> Tuple[List[Surface], List[str]]:
+    """The surfaces that would be meshed: repaired where they are no valid complex.
+
+    surfaces, options: as in `collarmesh.mesh`.
+    output: a file to which they are written as well.
+
+    Returns a list of (points, triangles, tags), one for each surface, with the shapes of `collarmesh.mesh`, and a list
+    of what was done, in sentences with places. Polygons of valid surfaces are divided into fans of triangles. Raises
+    `Error`.
+    """
+    messages: List[str] = []
+    soups = _core.repaired(inputs(surfaces), given(locals()), messages)
+    if output is not None:
+        _core.convert_surfaces(soups, os.fspath(output), {})
+    return [triangles(soup) for soup in soups], messages

@@ -1,0 +1,385 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <type_traits>
+#include <utility>
+
+#include "collarmesh/options.h"
+
+namespace collarmesh {
+
+namespace {
+
+using Kind = Option::Kind;
+using Unit = Option::Unit;
+
+template <class T>
+constexpr Kind kind_of(bool has_words) {
+  if (std::is_same_v<T, bool> || std::is_enum_v<T>) return has_words ? Kind::choice : Kind::flag;
+  if (std::is_integral_v<T>) return Kind::count;
+  if (std::is_floating_point_v<T>) return Kind::number;
+  if (std::is_same_v<T, std::string>) return Kind::text;
+  return std::is_same_v<T, std::vector<std::string>> ? Kind::texts : Kind::sizes;
+}
+
+/// Leads to a member of a member of RunOptions. A choice has `words`.
+template <bool has_words, auto... members>
+struct At {
+  static auto& of(auto& options) { return (options.*....*members); }
+  using Type = std::remove_cvref_t<decltype(of(std::declval<RunOptions&>()))>;
+
+  static OptionValue get(const Option& option, const RunOptions& options) {
+    const Type& value = of(options);
+    if constexpr (std::is_enum_v<Type> && has_words)
+      return option.words[static_cast<std::size_t>(value)];
+    else if constexpr (std::is_enum_v<Type>)
+      return value != Type{};
+    else if constexpr (kind_of<Type>(false) == Kind::count)
+      return std::uint64_t{value};
+    else
+      return value;
+  }
+  static void set(const Option& option, RunOptions& options, const OptionValue& given) {
+    Type& value = of(options);
+    if constexpr (std::is_enum_v<Type> && has_words) {
+      const auto word = std::find(option.words.begin(), option.words.end(), std::get<std::string>(given));
+      value = static_cast<Type>(word - option.words.begin());
+    } else if constexpr (std::is_enum_v<Type>) {
+      value = static_cast<Type>(std::get<bool>(given));
+    } else if constexpr (kind_of<Type>(false) == Kind::count) {
+      value = static_cast<Type>(std::get<std::uint64_t>(given));
+    } else {
+      value = std::get<Type>(given);
+    }
+  }
+  static constexpr Option::Place place{kind_of<Type>(has_words), &get, &set};
+};
+
+template <auto... members>
+constexpr Option::Place at = At<false, members...>::place;
+template <auto... members>
+constexpr Option::Place choice_at = At<true, members...>::place;
+template <auto member>
+constexpr Option::Place in_mesh = at<&RunOptions::mesh, member>;
+
+constexpr unsigned writing = Option::mesh | Option::convert, meshing = writing | Option::programs,
+                   judging = meshing | Option::check, sizing = meshing | Option::info,
+                   everywhere = judging | sizing | Option::repair;
+
+const char* const size_group = "Size (target edge lengths, absolute, input units)";
+const char* const quality_group = "Quality";
+const char* const partitions_group = "Partitions (for programs that run on many ranks)";
+const char* const complex_group = "The complex";
+const char* const budget_group = "Budgets (hitting one is exit code 5)";
+
+std::vector<Option> size_options() {
+  return {
+      {.name = "size LENGTH",
+       .place = in_mesh<&MeshOptions::size>,
+       .unit = Unit::length,
+       .default_text = "1/20 of the diagonal",
+       .help = "Target edge length everywhere"},
+      {.name = "size-min LENGTH",
+       .place = in_mesh<&MeshOptions::size_min>,
+       .unit = Unit::length,
+       .default_text = "none",
+       .help = "Never ask for less than this"},
+      {.name = "region-size TAG=LENGTH",
+       .place = in_mesh<&MeshOptions::region_size>,
+       .unit = Unit::length,
+       .finer = true,
+       .help = "Target edge length in the regions with this tag"},
+      {.name = "patch-size TAG=LENGTH",
+       .place = in_mesh<&MeshOptions::patch_size>,
+       .unit = Unit::length,
+       .finer = true,
+       .help = "Target edge length on the patches (faces) with this tag"},
+      {.name = "curve-size TAG=LENGTH",
+       .place = in_mesh<&MeshOptions::curve_size>,
+       .unit = Unit::length,
+       .finer = true,
+       .help = "Target edge length on the curves (edges) with this tag"},
+      {.name = "size-field FILE",
+       .place = at<&RunOptions::size_field_file>,
+       .finer = true,
+       .help =
+           "Sizes by place: .json (balls, boxes, cylinders, distances from features), or .vtu or .msh with a "
+           "scalar on its points",
+       .details = "never above `--size`, see below"},
+      {.name = "elements-per-circle N",
+       .place = in_mesh<&MeshOptions::elements_per_circle>,
+       .finer = true,
+       .default_text = "none",
+       .help = "Finer where smooth surfaces and edges curve: so many elements on a full circle"},
+      {.name = "elements-across-gap N",
+       .place = in_mesh<&MeshOptions::elements_across_gap>,
+       .finer = true,
+       .default_text = "none",
+       .help = "Finer where surfaces face each other across a thin part: so many elements between them"},
+      {.name = "gradation G",
+       .place = in_mesh<&MeshOptions::gradation>,
+       .default_text = "unlimited",
+       .help = "Growth of size per unit length away from finer features",
+       .details = "a target, not certified"}};
+}
+
+std::vector<Option> quality_options() {
+  return {{.name = "radius-edge RHO",
+           .place = in_mesh<&MeshOptions::radius_edge>,
+           .unit = Unit::ratio,
+           .low = 1,
+           .help = "Bound on circumradius / shortest edge of a tetrahedron that is not thin",
+           .details = "below sqrt 2 refinement need not end",
+           .commands = judging},
+          {.name = "vertex-ratio TAU",
+           .place = in_mesh<&MeshOptions::vertex_ratio>,
+           .unit = Unit::ratio,
+           .low = 2.83,
+           .finer = true,
+           .zero = true,
+           .default_text = "none",
+           .help = "Refine until largest circumradius / shortest edge at each vertex is below this, more "
+                   "than 2 sqrt 2",
+           .details = "not certified, and improvement may exceed it"},
+          {.name = "collar-angle DEGREES",
+           .place = in_mesh<&MeshOptions::collar_angle>,
+           .unit = Unit::degrees,
+           .low = 100,
+           .high = 175,
+           .help = "Bound on dihedral angles in the collars around creases",
+           .details = "130 and more were reached on all shapes tried",
+           .commands = judging},
+          {.name = "collar-creation",
+           .words = {"in-pass", "up-front"},
+           .place = choice_at<&RunOptions::mesh, &MeshOptions::collar_creation>,
+           .help = "in-pass: the balls around creases are placed during the refinement, as in the paper; "
+                   "up-front: all of them before it",
+           .details = "the guarantees are the same"},
+          {.name = "theta THETA",
+           .place = in_mesh<&MeshOptions::theta>,
+           .high = 0.449,
+           .help = "Insert a point of the input in place of a gap ball's centre within this share of the "
+                   "ball's radius; 0: never"},
+          {.name = "distance LENGTH",
+           .place = in_mesh<&MeshOptions::distance>,
+           .unit = Unit::length,
+           .finer = true,
+           .default_text = "1/10 of the size, at most 1/200 of the diagonal (1/550 with --order 2)",
+           .help = "Largest distance from smooth surfaces and curves",
+           .details = "curves that turn by half a circle or more get at least seven edges to a circle",
+           .commands = sizing},
+          {.name = "distance LENGTH",
+           .place = in_mesh<&MeshOptions::distance>,
+           .unit = Unit::length,
+           .default_text = "1/200 of the diagonal",
+           .help = "Largest distance from smooth surfaces and curves",
+           .commands = Option::check | Option::programs},
+          {.name = "seed N",
+           .place = in_mesh<&MeshOptions::seed>,
+           .help = "Seed of the pseudo-random offsets",
+           .details = "same input, options and seed: same mesh"},
+          {.name = "coarsen",
+           .words = {"on", "off"},
+           .place = choice_at<&RunOptions::coarsen>,
+           .help = "on: as few tetrahedra as the sizes ask for, thin ones in thin places; off: the bound on "
+                   "circumradius / shortest edge holds everywhere outside collars"},
+          {.name = "thin-angle DEGREES",
+           .place = at<&RunOptions::thin_angle>,
+           .unit = Unit::degrees,
+           .low = 0.1,
+           .high = 30,
+           .zero = true,
+           .help = "Smallest dihedral angle of thin tetrahedra, at sharper creases half their angle; 0: none "
+                   "may be thin",
+           .details = "values below 5 save tetrahedra in sharp wedges only",
+           .commands = judging},
+          {.name = "improve LEVEL",
+           .place = at<&RunOptions::improve>,
+           .high = 3,
+           .help = "Removal of slivers: 0 none, 1 quick (below 15 degrees, connections only), 2 good (20), 3 "
+                   "best (30)"},
+          {.name = "min-dihedral DEGREES",
+           .place = at<&RunOptions::min_dihedral>,
+           .unit = Unit::degrees,
+           .high = 60,
+           .default_text = "15, 20, 30 by level",
+           .help = "Improve tetrahedra with smaller dihedral angles",
+           .details =
+               "of CAD files 2% more is aimed at, as vertices move onto the shape afterwards; few tetrahedra "
+               "reach more than 30, and trying takes many times as long as the rest"}};
+}
+
+std::vector<Option> element_options() {
+  return {{.name = "order ORDER",
+           .place = at<&RunOptions::order>,
+           .low = 1,
+           .high = 2,
+           .help =
+               "Order of the elements: 1 straight with nodes at the corners, 2 with a node amid every edge, "
+               "curved on smooth surfaces",
+           .commands = sizing}};
+}
+
+std::vector<Option> partition_options() {
+  return {
+      {.name = "partitions N",
+       .place = at<&RunOptions::partitions>,
+       .low = 1,
+       .high = 1e6,
+       .default_text = "not divided",
+       .help = "Divide the tetrahedra among so many ranks, evenly and with few shared faces",
+       .details = "see [Formats](formats.md#partitions)"},
+      {.name = "ghost-cells",
+       .place = at<&RunOptions::ghost_cells>,
+       .help = fmt::format("With each partition the tetrahedra of others that share a vertex with it; {}",
+                           fmt::join(io::formats_with_ghost_cells(), " ")),
+       .commands = writing},
+      {.name = "cell-decomposition FILE",
+       .place = at<&RunOptions::cell_decomposition>,
+       .help = "Also write the partition of each tetrahedron as a list that OpenFOAM's decomposePar reads",
+       .commands = writing}};
+}
+
+std::vector<Option> complex_options() {
+  return {
+      {.name = "feature-angle DEGREES",
+       .place = at<&RunOptions::complex, &PlcOptions::feature_angle>,
+       .unit = Unit::degrees,
+       .high = 180,
+       .help =
+           "Edges that deviate more than this from flat are kept as edges; 0: every edge that is not flat"},
+      {.name = "planar-tolerance T",
+       .place = at<&RunOptions::complex, &PlcOptions::planar_tolerance>,
+       .unit = Unit::of_diagonal,
+       .high = 0.01,
+       .help = "Neighbouring facets within this of one plane are one, relative to the diagonal; 0: exactly "
+               "coplanar ones only"},
+      {.name = "weld T",
+       .place = at<&RunOptions::complex, &PlcOptions::weld>,
+       .unit = Unit::of_diagonal,
+       .high = 0.1,
+       .help = "Points closer than this are one, relative to the diagonal",
+       .details = "other features that come this close without meeting make the complex invalid, see "
+                  "[Limits](limits.md)"},
+      {.name = "repair",
+       .words = {"auto", "none", "wrap"},
+       .place = choice_at<&RunOptions::repair, &RepairOptions::mode>,
+       .help = "auto: facets that are no valid complex are repaired; none: they are an error; wrap: where "
+               "repair fails, or its result cannot be meshed, a closed surface around everything is meshed",
+       .details = "see [Repair](repair.md)"},
+      {.name = "repair-tolerance T",
+       .place = at<&RunOptions::repair, &RepairOptions::tolerance>,
+       .unit = Unit::of_diagonal,
+       .high = 0.01,
+       .help = "Features below this are noise to the repair, relative to the diagonal"},
+      {.name = "wrap-offset T",
+       .place = at<&RunOptions::repair, &RepairOptions::wrap_offset>,
+       .unit = Unit::of_diagonal,
+       .low = 1e-4,
+       .high = 0.1,
+       .help = "How far outside of the input the surface of --repair wrap lies, relative to the diagonal"},
+      {.name = "overlap",
+       .words = {"first", "region"},
+       .place = choice_at<&RunOptions::overlap>,
+       .help = "first: the common part of solids of a CAD file belongs to the first one; region: it is a "
+               "region of its own"},
+      {.name = "names FILE.json",
+       .place = at<&RunOptions::names>,
+       .help =
+           "Names of patches, curves and regions, by number or by a point on them, for formats with names",
+       .details = "see [Names](names.md)"},
+      {.name = "crease-angle DEGREES",
+       .place = in_mesh<&MeshOptions::crease_angle>,
+       .unit = Unit::degrees,
+       .high = 90,
+       .help = "Features that meet below this angle form a crease and get a collar"}};
+}
+
+std::vector<Option> budget_options() {
+  return {{.name = "max-vertices N",
+           .place = in_mesh<&MeshOptions::max_vertices>,
+           .default_text = "none",
+           .help = "Most vertices of the triangulation, outside included"},
+          {.name = "max-memory BYTES",
+           .place = in_mesh<&MeshOptions::max_memory>,
+           .unit = Unit::bytes,
+           .default_text = "half of the machine's",
+           .help = "Most bytes for everything, as 500M or 1.5G; 0: no limit",
+           .details = "powers of 1024, reading included, plus some 50 MB for libraries and stacks"},
+          {.name = "time-limit SECONDS",
+           .place = in_mesh<&MeshOptions::time_limit>,
+           .unit = Unit::seconds,
+           .default_text = "none",
+           .help = "Seconds for everything, from reading to writing",
+           .commands = everywhere}};
+}
+
+std::vector<Option> run_options() {
+  return {
+      {.name = "threads N",
+       .place = at<&RunOptions::threads>,
+       .high = 1024,
+       .help = "Largest number of threads, which change no result; 0: as many as there are cores",
+       .details = "refinement uses them away from the surface, all later stages everywhere",
+       .commands = judging},
+      {.name = "scale FACTOR",
+       .place = at<&RunOptions::scale>,
+       .low = 1e-100,
+       .high = 1e100,
+       .help = "Coordinates are multiplied by this when they are written: 0.001 makes metres of millimetres"},
+      {.name = "findings N",
+       .place = at<&RunOptions::findings>,
+       .help = "List at most this many per guarantee",
+       .commands = Option::check | Option::programs},
+      {.name = "report FILE",
+       .place = at<&RunOptions::reports>,
+       .help = "Write all measurements, as JSON, or as a page to look at (.html)",
+       .details = "see [Reports](report.md)"},
+      {.name = "progress",
+       .words = {"auto", "json", "none"},
+       .place = choice_at<&RunOptions::progress>,
+       .help = "auto: a bar on a terminal; json: one object a line; none: no progress"},
+      {.name = "verbose",
+       .letter = 'v',
+       .place = at<&RunOptions::verbose>,
+       .help = "Say more: time of each stage, statistics"},
+      {.name = "quiet",
+       .letter = 'q',
+       .place = at<&RunOptions::quiet>,
+       .help = "Report errors only, and repairs that change the shape by more than the tolerance",
+       .commands = writing | Option::repair}};
+}
+
+/// Adds rows, with what most of a group have in common. In a row the name is followed by that of the value.
+void append(std::vector<Option>& table, std::vector<Option> options, const char* group, unsigned commands) {
+  for (Option& option : options) {
+    const std::size_t space = std::min(option.name.find(' '), option.name.size());
+    option.value_name = option.words.empty() ? option.name.substr(std::min(space + 1, option.name.size()))
+                                             : fmt::format("{}", fmt::join(option.words, "|"));
+    option.name.resize(space);
+    if (option.group.empty()) option.group = group;
+    if (option.commands == 0) option.commands = commands;
+    table.push_back(std::move(option));
+  }
+}
+
+std::vector<Option> made_table() {
+  std::vector<Option> table;
+  append(table, size_options(), size_group, sizing);
+  append(table, quality_options(), quality_group, meshing);
+  append(table, element_options(), "Elements", sizing);
+  append(table, partition_options(), partitions_group, meshing);
+  append(table, complex_options(), complex_group, everywhere);
+  append(table, budget_options(), budget_group, meshing);
+  append(table, run_options(), "Options", writing);
+  return table;
+}
+
+}  // namespace
+
+const std::vector<Option>& option_table() {
+  static const std::vector<Option> table = made_table();
+  return table;
+}
+
+}  // namespace collarmesh

@@ -1,0 +1,160 @@
+#include "collarmesh/options.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "collarmesh/error.h"
+
+namespace collarmesh {
+namespace {
+
+using Kind = Option::Kind;
+
+const Option& row(const std::string& name) {
+  for (const Option& option : option_table())
+    if (option.name == name) return option;
+  throw std::runtime_error("no option " + name);
+}
+
+/// A number in the middle of the range of an option, or a word.
+std::string some_text(const Option& option) {
+  switch (option.kind()) {
+    case Kind::choice: return option.words.back();
+    case Kind::sizes: return "7=0.25";
+    case Kind::text:
+    case Kind::texts: return "a file";
+    default: break;
+  }
+  const double number =
+      std::isfinite(option.high) ? std::ceil(0.5 * (option.low + option.high)) : option.low + 3;
+  return number <= option.high ? std::to_string(number).substr(0, std::to_string(number).find('.'))
+                               : std::to_string(option.high);
+}
+
+TEST(OptionTable, ANameIsThereOnceForEachCommand) {
+  std::set<std::pair<std::string, unsigned>> known;
+  for (const Option& option : option_table())
+    for (unsigned command = Option::mesh; command <= Option::repair; command *= 2)
+      if ((option.commands & command) != 0) {
+        EXPECT_TRUE(known.emplace(option.name, command).second) << option.name;
+      }
+}
+
+TEST(OptionTable, EveryOptionIsExplained) {
+  for (const Option& option : option_table()) {
+    EXPECT_FALSE(option.help.empty()) << option.name;
+    EXPECT_FALSE(option.group.empty()) << option.name;
+    EXPECT_NE(option.help.back(), '.') << option.name;
+    EXPECT_EQ(option.value_name.empty(), option.kind() == Kind::flag) << option.name;
+  }
+}
+
+// Each row has a place of its own: reading one changes no other, but for a second row of the same name.
+TEST(OptionTable, ReadingChangesOneOption) {
+  for (const Option& option : option_table()) {
+    if (option.kind() == Kind::flag) continue;
+    RunOptions options;
+    ASSERT_TRUE(option.read(some_text(option), options)) << option.name << ' ' << some_text(option);
+    for (const Option& other : option_table())
+      EXPECT_EQ(other.get(options) != other.get({}), other.name == option.name)
+          << option.name << ' ' << other.name;
+  }
+}
+
+TEST(OptionTable, DefaultsAreValid) { EXPECT_NO_THROW(validate({})); }
+
+TEST(OptionTable, RangesHoldForTextAndForValues) {
+  for (const Option& option : option_table()) {
+    if (option.kind() != Kind::number) continue;
+    const auto judged = [&](double number) {
+      RunOptions options;
+      option.set(options, number);
+      bool valid = true;
+      try {
+        validate(options);
+      } catch (const OptionError& error) {
+        valid = false;
+        EXPECT_NE(std::string(error.what()).find(option.name), std::string::npos) << error.what();
+      }
+      const bool read = option.read(std::to_string(number), options);
+      EXPECT_TRUE(read == valid || OptionValue(number) == option.get({})) << option.name << ' ' << number;
+      return valid;
+    };
+    EXPECT_FALSE(judged(-1)) << option.name;
+    EXPECT_FALSE(judged(std::nan(""))) << option.name;
+    EXPECT_FALSE(judged(INFINITY)) << option.name;
+    if (option.low > 0) EXPECT_FALSE(judged(0.9 * option.low)) << option.name;
+    if (option.high < 1e6) EXPECT_FALSE(judged(option.high + 1)) << option.name;
+    if (option.high < 1e6) EXPECT_TRUE(judged(option.high)) << option.name;
+  }
+}
+
+TEST(OptionTable, WhatFitsIsTold) {
+  EXPECT_EQ(row("size").fitting(), "a length >= 0 in input units");
+  EXPECT_EQ(row("collar-angle").fitting(), "an angle from 100 to 175 degrees");
+  EXPECT_EQ(row("thin-angle").fitting(), "an angle from 0.1 to 30 degrees, or 0");
+  EXPECT_EQ(row("weld").fitting(), "a number from 0 to 0.1 (relative to the diagonal)");
+  EXPECT_EQ(row("improve").fitting(), "one of 0, 1, 2, 3");
+  EXPECT_EQ(row("repair").fitting(), "one of auto, none, wrap");
+  EXPECT_EQ(row("partitions").fitting(), "a whole number from 1 to 1000000");
+  EXPECT_EQ(row("threads").fitting(), "a whole number from 0 to 1024");
+  EXPECT_EQ(row("radius-edge").fitting(), "a ratio of at least 1");
+}
+
+TEST(OptionTable, WordsAreThoseOfTheEnumerations) {
+  RunOptions options;
+  EXPECT_TRUE(row("repair").read("none", options) && row("coarsen").read("off", options));
+  EXPECT_TRUE(row("collar-creation").read("up-front", options) && row("overlap").read("region", options));
+  EXPECT_EQ(options.repair.mode, RepairMode::off);
+  EXPECT_FALSE(options.coarsen);
+  EXPECT_EQ(options.mesh.collar_creation, CollarCreation::up_front);
+  EXPECT_EQ(options.overlap, SolidOverlap::region);
+  EXPECT_TRUE(row("repair").read("wrap", options));
+  EXPECT_EQ(options.repair.mode, RepairMode::wrap);
+  EXPECT_EQ(std::get<std::string>(row("repair").get(options)), "wrap");
+  EXPECT_FALSE(row("repair").read("maybe", options));
+}
+
+TEST(OptionTable, RepeatedOptionsAreAdded) {
+  RunOptions options;
+  for (const char* text : {"7=0.25", "8=1", "7=0.5"}) EXPECT_TRUE(row("patch-size").read(text, options));
+  EXPECT_EQ(options.mesh.patch_size, (std::map<Tag, double>{{7, 0.5}, {8, 1}}));
+  for (const char* text : {"a.json", "a.html"}) EXPECT_TRUE(row("report").read(text, options));
+  EXPECT_EQ(options.reports, (std::vector<std::string>{"a.json", "a.html"}));
+}
+
+TEST(OptionTable, ContradictionsAreRefused) {
+  EXPECT_THROW(validate({{.mesh = {.size = 1, .size_min = 2}}}), OptionError);
+  EXPECT_THROW(validate({{.mesh = {.region_size = {{3, -1}}}}}), OptionError);
+  EXPECT_NO_THROW(validate({{.coarsen = false, .thin_angle = 0}}));
+  EXPECT_THROW(validate({{.thin_angle = 0}}), OptionError);
+}
+
+TEST(TagValue, Read) {
+  EXPECT_EQ(read_tag_value("7=0.25"), (std::pair<Tag, double>(7, 0.25)));
+  EXPECT_EQ(read_tag_value("-3=1e-3"), (std::pair<Tag, double>(-3, 1e-3)));
+  for (const char* text :
+       {"", "7", "=1", "7=", "7=0", "7=-1", "7=nan", "7=inf", "a=1", "7=1x", "1.5=2", "7 =1"})
+    EXPECT_FALSE(read_tag_value(text)) << text;
+}
+
+TEST(Memory, Read) {
+  for (const auto& [text, bytes] : {std::pair{"0", 0.0},
+                                    {"2000", 2e3},
+                                    {"3K", 3072.0},
+                                    {"500m", 524288000.0},
+                                    {"1.5G", 1610612736.0},
+                                    {"2GiB", 2147483648.0},
+                                    {"1tb", 1099511627776.0}})
+    EXPECT_EQ(static_cast<double>(read_bytes(text).value()), bytes) << text;
+  for (const char* text : {"", "G", "-1", "1X", "much", "nan", "inf", "1e30", "4 G", "4GG"})
+    EXPECT_FALSE(read_bytes(text)) << text;
+}
+
+}  // namespace
+}  // namespace collarmesh
