@@ -13,13 +13,7 @@ namespace collarmesh::cli {
 namespace {
 
 CheckOptions check_options(const RunOptions& o) {
-  return {.radius_edge = o.mesh.radius_edge,
-          .thin_angle = o.thin_angle,
-          .distance = o.mesh.distance,
-          .collar_angle = o.mesh.collar_angle,
-          .crease_angle = o.mesh.crease_angle,
-          .findings_per_guarantee = o.findings,
-          .threads = o.threads};
+  return {.bounds = o.mesh.bounds, .findings_per_guarantee = o.findings, .threads = o.mesh.threads};
 }
 
 /// Finds the repair that the mesh is one of. The report stays where it is one of none.

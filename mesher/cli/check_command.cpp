@@ -17,8 +17,8 @@ ExitCode check_command(const CheckArguments& arguments) {
   limit_memory(memory_of_the_machine() / 2);
   const TetMesh mesh = read_mesh(arguments.mesh_path);
   const auto distance = [&](double diagonal) {
-    return arguments.mesh.distance > 0 ? arguments.mesh.distance
-                                       : default_distance(0, diagonal, mesh.order());
+    return arguments.mesh.bounds.distance > 0 ? arguments.mesh.bounds.distance
+                                              : default_distance(0, diagonal, mesh.order());
   };
   ComplexInput input(arguments.inputs, interruptible({{}, distance, arguments.overlap, arguments.names}));
   Execution execution;

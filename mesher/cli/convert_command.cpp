@@ -96,7 +96,7 @@ void convert_mesh(const MeshArguments& a, TetMesh& mesh) {
   stop_if_interrupted();
   StagedFile file(a.output);
   file.write([&](const std::string& path) {
-    ThreadLimit(a.threads).run([&] { io::write_tet_mesh(path, mesh, a.output_format, a.ghost_cells); });
+    ThreadLimit(a.mesh.threads).run([&] { io::write_tet_mesh(path, mesh, a.output_format, a.ghost_cells); });
   });
   std::optional<StagedFile> decomposition;
   if (!a.cell_decomposition.empty()) {

@@ -64,7 +64,7 @@ void print_complex(const InfoArguments& arguments) {
   stop_if_interrupted();
   const double read = std::chrono::duration<double>(Clock::now() - begin).count();
   const std::vector<Prediction> predicted = predictions(arguments, plc, read);
-  const PlcSummary summary = summarize(plc, arguments.mesh.crease_angle);
+  const PlcSummary summary = summarize(plc, arguments.mesh.bounds.crease_angle);
   if (arguments.json) {
     nlohmann::ordered_json json{{"complex", complex_json(plc, summary)},
                                 {"repair", repair_json(input.repaired())}};

@@ -141,7 +141,7 @@ RepairOptions mesh(const MeshArguments& arguments, ComplexInput& input, Stages& 
     throw Stopped(ExitCode::budget_hit, run.result.message + "; nothing was written");
   if (input.has_cad()) run.result.mesh.group_names = GroupNames::cad;
   run.notes = input.notes();
-  run.summary = summarize(run.plc, arguments.mesh.crease_angle);
+  run.summary = summarize(run.plc, arguments.mesh.bounds.crease_angle);
   run.warnings = option_warnings(arguments, run.plc);
   return source.built_with();
 }
@@ -169,7 +169,7 @@ void write_files(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   scale(run.result.mesh.points, arguments.scale);
   StagedFile mesh(arguments.output);
   mesh.write([&](const std::string& path) {
-    ThreadLimit(arguments.threads).run([&] {
+    ThreadLimit(arguments.mesh.threads).run([&] {
       io::write_tet_mesh(path, run.result.mesh, arguments.output_format, arguments.ghost_cells);
     });
   });

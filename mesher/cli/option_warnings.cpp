@@ -27,25 +27,27 @@ bool is_smooth_anywhere(const Plc& plc) {
 std::vector<std::string> option_warnings(const MeshArguments& a, const Plc& plc) {
   std::vector<std::string> warnings;
   const double diagonal = plc.bounds.diagonal();
-  if (a.mesh.radius_edge < proved_radius_edge)
+  if (a.mesh.bounds.radius_edge < proved_radius_edge)
     warnings.push_back(
         fmt::format("--radius-edge {}: refinement need not end below sqrt 2 = 1.414; it ends when a "
                     "budget is spent, set one with --max-vertices or --time-limit.",
-                    a.mesh.radius_edge));
+                    a.mesh.bounds.radius_edge));
   if (a.improve == 0 && a.min_dihedral > 0)
     warnings.push_back(fmt::format("--min-dihedral {}: nothing is improved at --improve 0; leave that out.",
                                    a.min_dihedral));
-  if (a.mesh.collar_angle < reached_collar_angle && !find_creases(plc, a.mesh.crease_angle).empty())
+  if (a.mesh.bounds.collar_angle < reached_collar_angle &&
+      !find_creases(plc, a.mesh.bounds.crease_angle).empty())
     warnings.push_back(
         fmt::format("--collar-angle {}: collars need not reach bounds below 130 degrees; refinement "
                     "then ends when a budget is spent, set one with --max-vertices or --time-limit.",
-                    a.mesh.collar_angle));
-  if (a.mesh.distance > 0 && a.mesh.distance < small_distance * diagonal && is_smooth_anywhere(plc))
+                    a.mesh.bounds.collar_angle));
+  if (a.mesh.bounds.distance > 0 && a.mesh.bounds.distance < small_distance * diagonal &&
+      is_smooth_anywhere(plc))
     warnings.push_back(
         fmt::format("--distance {:.6g} is {:.2g} of the diagonal: on smooth faces and curves the "
                     "number of elements grows with its inverse; a larger distance, or --feature-angle "
                     "0 for the facets as they are, costs less.",
-                    a.mesh.distance, a.mesh.distance / diagonal));
+                    a.mesh.bounds.distance, a.mesh.bounds.distance / diagonal));
   if (a.complex.planar_tolerance > large_planar_tolerance)
     warnings.push_back(
         fmt::format("--planar-tolerance {}: facets that are not flat were merged into flat ones, up to "

@@ -58,7 +58,7 @@ ExitCode repair_command(const RepairArguments& a) {
   const Plc plc = input.build(a.complex, a.repair);
   stop_if_interrupted();
   const nlohmann::ordered_json told =
-      repair_run_json(a, plc, summarize(plc, a.mesh.crease_angle), input.repaired());
+      repair_run_json(a, plc, summarize(plc, a.mesh.bounds.crease_angle), input.repaired());
   const MergedSoup merged = merge_for_output(input.soups(), a.output, a.output_format, a.complex);
   std::string warning;
   StagedFile surface(a.output);

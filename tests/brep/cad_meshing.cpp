@@ -64,7 +64,7 @@ CadMeshed mesh_of_cad_file(const std::string& path, double relative_size, int or
   meshed.plc = input.build({});
   PipelineOptions options;
   options.mesh.size = relative_size * meshed.plc.bounds.diagonal();
-  options.mesh.distance = relative_distance * meshed.plc.bounds.diagonal();
+  options.mesh.bounds.distance = relative_distance * meshed.plc.bounds.diagonal();
   options.mesh.time_limit = 60;
   options.coarsen = false;
   options.order = static_cast<unsigned>(order);

@@ -16,7 +16,8 @@ namespace {
 using namespace collarmesh::testing;
 using Names = std::set<std::string>;
 
-Names broken(const TetMesh& mesh, const Plc& plc, const CheckOptions& options = {.distance = 0.05}) {
+Names broken(const TetMesh& mesh, const Plc& plc,
+             const CheckOptions& options = {.bounds = {.distance = 0.05}}) {
   Names names;
   for (const Finding& f : check(mesh, plc, options).findings) names.insert(f.guarantee);
   return names;
@@ -55,7 +56,7 @@ TetMesh without_edges(TetMesh mesh) {
 
 TEST(CheckPlacing, StrangeTags) {
   for (const MeshedComplex& m : samples()) {
-    const CheckReport report = check(with_strange_tags(m), m.plc, {.distance = 0.05});
+    const CheckReport report = check(with_strange_tags(m), m.plc, {.bounds = {.distance = 0.05}});
     EXPECT_TRUE(report.passed()) << report.findings.front().message;
     EXPECT_EQ(report.faces, m.mesh.faces.size());
     EXPECT_EQ(report.edges, m.mesh.edges.size());
@@ -92,7 +93,8 @@ TEST(CheckPlacing, LabelsInMemoryCount) {
 TEST(CheckPlacing, FaultsAreStillFound) {
   const MeshedComplex m = meshed_two_boxes(4);
   const TetMesh strange = without_faces(without_edges(with_strange_tags(m)));
-  EXPECT_EQ(broken(strange, m.plc, {.radius_edge = 0.8, .thin_angle = 0}), Names{guarantee::radius_edge});
+  EXPECT_EQ(broken(strange, m.plc, {.bounds = {.radius_edge = 0.8, .thin_angle = 0}}),
+            Names{guarantee::radius_edge});
   TetMesh mesh = strange;
   mesh.tets.pop_back();
   mesh.tet_region.pop_back();
@@ -110,18 +112,20 @@ TEST(CheckPlacing, FaultsAreStillFound) {
 TEST(CheckPlacing, CreasesExcuseWhatTouchesThem) {
   const MeshedComplex m = meshed_box(4);  // all twelve edges are creases for angles below 91 degrees
   const TetMesh mesh = without_features(m.mesh);
-  const CheckOptions creases{.radius_edge = 0.1, .thin_angle = 0, .crease_angle = 91};
+  const CheckOptions creases{.bounds = {.radius_edge = 0.1, .thin_angle = 0, .crease_angle = 91}};
   const CheckReport report = check(mesh, m.plc, creases);
   EXPECT_GT(report.collar_tets, 0U);
   EXPECT_EQ(report.findings_total, report.tets - report.collar_tets);
-  EXPECT_EQ(broken(mesh, m.plc, {.collar_angle = 89, .crease_angle = 91}), Names{guarantee::collar_dihedral});
-  EXPECT_EQ(broken(mesh, m.plc, {.collar_angle = 89}), Names{}) << "without creases there are no collars";
+  EXPECT_EQ(broken(mesh, m.plc, {.bounds = {.collar_angle = 89, .crease_angle = 91}}),
+            Names{guarantee::collar_dihedral});
+  EXPECT_EQ(broken(mesh, m.plc, {.bounds = {.collar_angle = 89}}), Names{})
+      << "without creases there are no collars";
 }
 
 TEST(CheckPlacing, MarksAloneExcuseNothing) {
   MeshedComplex m = meshed_box(4);
   m.mesh.tet_collar.assign(m.mesh.tets.size(), 1);
-  const CheckOptions strict{.radius_edge = 0.1, .thin_angle = 0};
+  const CheckOptions strict{.bounds = {.radius_edge = 0.1, .thin_angle = 0}};
   EXPECT_EQ(broken(m.mesh, m.plc, strict), (Names{guarantee::collar_cells, guarantee::radius_edge}));
   const CheckReport report = check(without_features(m.mesh), m.plc, strict);
   EXPECT_EQ(report.collar_tets, 0U);
@@ -160,7 +164,7 @@ TEST(CheckPlacing, EdgesOnNoCurve) {
     mesh.edge_tag.push_back(0);
   }
   ASSERT_GT(mesh.edges.size(), on_curve.size());
-  const CheckReport report = check(mesh, m.plc, {.distance = 0.05});
+  const CheckReport report = check(mesh, m.plc, {.bounds = {.distance = 0.05}});
   EXPECT_TRUE(report.passed()) << report.findings.front().message;
   EXPECT_EQ(report.edges, on_curve.size());
 }

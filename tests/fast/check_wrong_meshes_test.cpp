@@ -223,7 +223,7 @@ TEST(CheckWrongMeshes, ThreeTetsAtAFace) {
 }
 
 TEST(CheckWrongMeshes, RadiusEdgeAboveTheBound) {
-  EXPECT_EQ(broken(meshed_box(2), {.radius_edge = 0.866}), Names{radius_edge});
+  EXPECT_EQ(broken(meshed_box(2), {.bounds = {.radius_edge = 0.866}}), Names{radius_edge});
   MeshedComplex m = meshed_box(3);
   const Index p = point_of_dimension(m.mesh, 3);
   const Index t = first_index(m.mesh.tets.size(), [&](Index i) { return m.mesh.tets[i][0] == p; });
@@ -334,9 +334,9 @@ TEST(CheckWrongMeshes, MissingEdge) {
 
 TEST(CheckWrongMeshes, MissingEdgeOfAClosedCurve) {
   MeshedComplex m = meshed_cylinder(12, 4);
-  ASSERT_EQ(broken(m, {.distance = 0.05}), Names{});
+  ASSERT_EQ(broken(m, {.bounds = {.distance = 0.05}}), Names{});
   erase_edge(m.mesh, 4);
-  EXPECT_EQ(broken(m, {.distance = 0.05}), (Names{curve_cover, patch_border}));
+  EXPECT_EQ(broken(m, {.bounds = {.distance = 0.05}}), (Names{curve_cover, patch_border}));
 }
 
 TEST(CheckWrongMeshes, EdgeTwice) {
@@ -397,8 +397,8 @@ TEST(CheckWrongMeshes, CurveVertexMovedAlongTheCurveIsRight) {
 
 TEST(CheckWrongMeshes, SmoothCurveTooCoarse) {
   // 1 - cos(15 degrees) = 0.034
-  EXPECT_EQ(broken(meshed_cylinder(12, 4), {.distance = 0.04}), Names{});
-  const Names names = broken(meshed_cylinder(12, 4), {.distance = 0.03});
+  EXPECT_EQ(broken(meshed_cylinder(12, 4), {.bounds = {.distance = 0.04}}), Names{});
+  const Names names = broken(meshed_cylinder(12, 4), {.bounds = {.distance = 0.03}});
   EXPECT_EQ(names.count(curve_distance), 1U);
   EXPECT_EQ(names.count(patch_distance), 1U);
 }
@@ -409,7 +409,7 @@ TEST(CheckWrongMeshes, CurveLeavesALoopOut) {
   const Plc::Curve& curve = m.plc.curves[0];
   const Index i = curve.points[2];  // between two vertices of the mesh
   m.plc.points[i] = 1.5 * m.plc.points[i];
-  EXPECT_EQ(broken(m, {.distance = 0.05}).count(curve_distance), 1U);
+  EXPECT_EQ(broken(m, {.bounds = {.distance = 0.05}}).count(curve_distance), 1U);
 }
 
 // Patches
@@ -499,7 +499,7 @@ TEST(CheckWrongMeshes, PatchWithABubble) {
     add_face(mesh, side, {1, 1}, face);
   mesh.features.clear();
   m.plc.patches[patch].planar = false;
-  EXPECT_EQ(broken(m, {.distance = 1}), Names{patch_manifold});
+  EXPECT_EQ(broken(m, {.bounds = {.distance = 1}}), Names{patch_manifold});
 }
 
 TEST(CheckWrongMeshes, PatchWithAFin) {
@@ -529,14 +529,14 @@ TEST(CheckWrongMeshes, PatchWithAFin) {
   add_face(mesh, fin, {1, 1}, face);
   mesh.features.clear();
   m.plc.patches[patch].planar = false;
-  EXPECT_EQ(broken(m, {.distance = 1}), (Names{patch_manifold, patch_border}));
+  EXPECT_EQ(broken(m, {.bounds = {.distance = 1}}), (Names{patch_manifold, patch_border}));
 }
 
 TEST(CheckWrongMeshes, SmoothPatchTooCoarse) {
   const MeshedComplex m = meshed_ball(4, 4);
-  const double found = check(m.mesh, m.plc, {.distance = 1}).max_surface_distance;
-  EXPECT_EQ(broken(m, {.distance = 1.001 * found}), Names{});
-  EXPECT_EQ(broken(m, {.distance = 0.95 * found}), Names{patch_distance});
+  const double found = check(m.mesh, m.plc, {.bounds = {.distance = 1}}).max_surface_distance;
+  EXPECT_EQ(broken(m, {.bounds = {.distance = 1.001 * found}}), Names{});
+  EXPECT_EQ(broken(m, {.bounds = {.distance = 0.95 * found}}), Names{patch_distance});
 }
 
 TEST(CheckWrongMeshes, LostSpike) {
@@ -546,12 +546,12 @@ TEST(CheckWrongMeshes, LostSpike) {
                         [&](const Point& p) { return distance(p, m.plc.points[i]) < 0.05; });
   });
   m.plc.points[tip] = 1.3 * m.plc.points[tip];
-  EXPECT_EQ(broken(m, {.distance = 0.05}), Names{patch_distance});
+  EXPECT_EQ(broken(m, {.bounds = {.distance = 0.05}}), Names{patch_distance});
 }
 
 TEST(CheckWrongMeshes, FindingsAreCountedBeyondThoseListed) {
-  const CheckReport report =
-      check(meshed_box(3).mesh, meshed_box(3).plc, {.radius_edge = 0.5, .findings_per_guarantee = 4});
+  const CheckReport report = check(meshed_box(3).mesh, meshed_box(3).plc,
+                                   {.bounds = {.radius_edge = 0.5}, .findings_per_guarantee = 4});
   EXPECT_EQ(report.findings.size(), 4U);
   EXPECT_EQ(report.findings_total, 6 * 27U);
 }

@@ -131,8 +131,8 @@ TEST(OptionTable, RepeatedOptionsAreAdded) {
 TEST(OptionTable, ContradictionsAreRefused) {
   EXPECT_THROW(validate({{.mesh = {.size = 1, .size_min = 2}}}), OptionError);
   EXPECT_THROW(validate({{.mesh = {.region_size = {{3, -1}}}}}), OptionError);
-  EXPECT_NO_THROW(validate({{.coarsen = false, .thin_angle = 0}}));
-  EXPECT_THROW(validate({{.thin_angle = 0}}), OptionError);
+  EXPECT_NO_THROW(validate({{.mesh = {.bounds = {.thin_angle = 0}}, .coarsen = false}}));
+  EXPECT_THROW(validate({{.mesh = {.bounds = {.thin_angle = 0}}}}), OptionError);
 }
 
 TEST(TagValue, Read) {

@@ -79,9 +79,9 @@ TEST(RefineCellQuality, QueuesSkinnyCellsAndLargeOnesInside) {
   for (Index cell = 0; cell < judges.mesh.cell_capacity(); ++cell) {
     if (!judges.mesh.alive(cell)) continue;
     const Index region = judges.surface.region(cell);
-    const double bound =
-        region == 0 ? std::max(judges.domain.options.exterior_radius_edge, judges.domain.options.radius_edge)
-                    : judges.domain.options.radius_edge;
+    const double bound = region == 0 ? std::max(judges.domain.options.exterior_radius_edge,
+                                                judges.domain.options.bounds.radius_edge)
+                                     : judges.domain.options.bounds.radius_edge;
     if (radius_edge(judges.mesh, cell) > bound) {
       EXPECT_EQ(due[WorkQueue::skinny_cells].contains(cell),
                 judges.domain.in_box(judges.mesh.circumcentre(cell)));
@@ -102,7 +102,7 @@ TEST(RefineCellQuality, WithAVertexRatioOlderCellsAreQueuedWhenAnEdgeBecomesShor
   const Plc plc = box();
   MeshOptions options = with_size(10);
   options.vertex_ratio = 3;
-  options.radius_edge = options.exterior_radius_edge = 100;
+  options.bounds.radius_edge = options.exterior_radius_edge = 100;
   Judges judges(plc, options);
   judges.insert_random(80);
   judges.due();
@@ -279,7 +279,7 @@ TEST(RefineCollarCells, CellsAreInsideWhenABallHoldsTheirCircumcentre) {
   KnownMesh known(plc);
   CollarOptions options;
   options.size = [](const Feature&, const Point&) { return 0.2; };
-  options.distance = 0.01;
+  options.bounds.distance = 0.01;
   known.collars = CollarSystem(plc, known.domain.points, find_creases(plc, 60), options);
   ASSERT_FALSE(known.collars.empty());
   for (Index v = 0; v < known.mesh.vertex_count(); ++v) known.collar_cells.note_near(v);

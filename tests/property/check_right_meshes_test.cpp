@@ -37,10 +37,10 @@ TEST(CheckRightMeshes, TwoRegions) { expect_pass(meshed_two_boxes(3)); }
 
 TEST(CheckRightMeshes, DanglingFacet) { expect_pass(meshed_box_with_facet(4)); }
 
-TEST(CheckRightMeshes, SmoothClosedPatch) { expect_pass(meshed_ball(4, 4), {.distance = 0.05}); }
+TEST(CheckRightMeshes, SmoothClosedPatch) { expect_pass(meshed_ball(4, 4), {.bounds = {.distance = 0.05}}); }
 
 TEST(CheckRightMeshes, SmoothCurvesAndPlanarPatches) {
-  expect_pass(meshed_cylinder(12, 4), {.distance = 0.05});
+  expect_pass(meshed_cylinder(12, 4), {.bounds = {.distance = 0.05}});
 }
 
 // The two triangles of the upper side are one planar patch up to the tolerance; they are tilted against each
@@ -101,7 +101,7 @@ TEST(CheckRightMeshes, SurfaceDistanceIsThatOfAllSamples) {
       m.mesh.points[face[moved]] = m.mesh.points[face[moved]] - 0.15 * off;
       const double expected = largest_distance(m, false);
       ASSERT_GT(expected, 1.2 * largest_distance(m, true));
-      EXPECT_NEAR(check(m.mesh, m.plc, {.distance = 0.5}).max_surface_distance, expected, 1e-12);
+      EXPECT_NEAR(check(m.mesh, m.plc, {.bounds = {.distance = 0.5}}).max_surface_distance, expected, 1e-12);
     }
   }
 }
@@ -190,7 +190,7 @@ TEST(CheckRightMeshes, MeasuresAreThoseOfAllTets) {
 
 TEST(CheckRightMeshes, MeasuresOfTheBall) {
   const MeshedComplex m = meshed_ball(3, 8);
-  const CheckReport report = check(m.mesh, m.plc, {.distance = 0.1});
+  const CheckReport report = check(m.mesh, m.plc, {.bounds = {.distance = 0.1}});
   // The farthest places are the centres of the large faces, near a point of the fine sphere.
   double sagitta = 0;
   for (const auto& f : m.mesh.faces)

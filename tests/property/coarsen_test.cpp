@@ -61,7 +61,7 @@ Coarsened coarsened(const Shape& shape, unsigned seed = 0) {
   EXPECT_EQ(faults(made.meshed), "");
   TetMesh& mesh = made.meshed.result.mesh;
   made.report = coarsen(mesh, made.meshed.plc, options);
-  improve(mesh, made.meshed.plc, {.thin_angle = 8, .keep_vertices = true});
+  improve(mesh, made.meshed.plc, {.keep_vertices = true});
   made.meshed.report = check(mesh, made.meshed.plc);
   return made;
 }
@@ -140,13 +140,13 @@ TEST(Coarsen, ThreadsChangeNothing) {
   shapes.push_back({"disk", {cylinder(0.5, 0.02, 96, 1)}, 0.15, 30, 8, 0});  // curves with edges to spare
   for (const Shape& shape : shapes) {
     SCOPED_TRACE(shape.name);
-    const MeshOptions options = with_size(shape.size);
+    MeshOptions options = with_size(shape.size);
     const Meshed made = mesh_of(shape.soups, options, shape.feature_angle);
-    TetMesh alone = made.result.mesh;
-    const CoarsenReport report = coarsen(alone, made.plc, options, {.threads = 1});
-    EXPECT_GT(report.contracted_edges, 0U);
-    TetMesh together = made.result.mesh;
-    coarsen(together, made.plc, options, {.threads = 4});
+    TetMesh alone = made.result.mesh, together = made.result.mesh;
+    options.threads = 1;
+    EXPECT_GT(coarsen(alone, made.plc, options).contracted_edges, 0U);
+    options.threads = 4;
+    coarsen(together, made.plc, options);
     expect_same(alone, together);
   }
 }
@@ -206,8 +206,8 @@ TEST(CoarsenCheck, JudgesThinTetsByTheirAngles) {
     return found;
   };
   EXPECT_EQ(kinds({}), std::set<std::string>());
-  EXPECT_EQ(kinds({.thin_angle = 0}), std::set<std::string>{"radius_edge"});
-  EXPECT_EQ(kinds({.thin_angle = 20}), std::set<std::string>{"thin_angles"});
+  EXPECT_EQ(kinds({.bounds = {.thin_angle = 0}}), std::set<std::string>{"radius_edge"});
+  EXPECT_EQ(kinds({.bounds = {.thin_angle = 20}}), std::set<std::string>{"thin_angles"});
   mesh.tet_thin.assign(mesh.tets.size(), 0);
   EXPECT_EQ(kinds({}), std::set<std::string>{"radius_edge"});
 }
@@ -215,9 +215,9 @@ TEST(CoarsenCheck, JudgesThinTetsByTheirAngles) {
 TEST(Coarsen, RefusesAnglesOutOfRange) {
   Meshed meshed = mesh_of(box(), with_size(0.5), 0);
   for (const double angle : {0.0, -1.0, 31.0, std::nan("")})
-    EXPECT_THROW(coarsen(meshed.result.mesh, meshed.plc, {}, {.thin_angle = angle}), OptionError);
+    EXPECT_THROW(coarsen(meshed.result.mesh, meshed.plc, {.bounds = {.thin_angle = angle}}), OptionError);
   for (const double reserve : {-0.1, 0.6, std::nan("")})
-    EXPECT_THROW(coarsen(meshed.result.mesh, meshed.plc, {}, {.reserve = reserve}), OptionError);
+    EXPECT_THROW(coarsen(meshed.result.mesh, meshed.plc, {.bounds = {.reserve = reserve}}), OptionError);
 }
 
 }  // namespace

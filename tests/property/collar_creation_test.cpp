@@ -81,7 +81,7 @@ bool contains_crease(const Plc& plc, const Feature& feature, const CollarBall& b
 
 // With theta and the largest radius-edge ratio that the run allows (paper, proof of Lemma 8).
 double epsilon_0(const MeshOptions& options) {
-  const double epsilon_1 = 1 / (4 * std::max(options.exterior_radius_edge, options.radius_edge));
+  const double epsilon_1 = 1 / (4 * std::max(options.exterior_radius_edge, options.bounds.radius_edge));
   return options.theta * epsilon_1 / (options.theta + 1);
 }
 
@@ -121,7 +121,7 @@ void expect_created_in_time(const acute::Shape& shape) {
     }
   });
   EXPECT_EQ(refinement.run(), MeshStatus::complete);
-  for (const Crease& crease : find_creases(plc, options.crease_angle))
+  for (const Crease& crease : find_creases(plc, options.bounds.crease_angle))
     if (crease.vertex != none) {
       EXPECT_TRUE(has_ball[crease.vertex]);
     }

@@ -234,7 +234,7 @@ TEST(Collar, SheetsOfOnePatchAtACorner) {
   facet({11, 9, 10});
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     MeshOptions options = testing::with_size(0.5);
-    options.distance = 0.065;
+    options.bounds.distance = 0.065;
     options.seed = seed;
     EXPECT_EQ(testing::faults(testing::mesh_of(soup, options, 37)), "") << seed;
   }
@@ -297,7 +297,7 @@ TEST(Collar, FilesAreJudgedByTheCreasesOfTheComplex) {
   EXPECT_TRUE(check(mesh, meshed.plc).passed());
   mesh = meshed.result.mesh;
   CheckOptions no_creases;
-  no_creases.crease_angle = 10;
+  no_creases.bounds.crease_angle = 10;
   const CheckReport report = check(mesh, meshed.plc, no_creases);
   EXPECT_GE(report.findings_total, meshed.report.collar_tets);
   EXPECT_EQ(report.findings.front().guarantee, "collar_cells");
@@ -331,7 +331,7 @@ TEST(Collar, PlacementCanBeStopped) {
     EXPECT_LT(asked, most_asked);
     options = testing::with_size(0.001);  // tens of thousands of balls
     options.collar_creation = creation;
-    options.distance = 1e-7;
+    options.bounds.distance = 1e-7;
     options.time_limit = 1e-3;
     EXPECT_EQ(generate(plc, options).status, MeshStatus::budget_hit);
   }
@@ -353,7 +353,7 @@ TEST(Collar, SizesAndSeeds) {
 TEST(Collar, TighterAngle) {
   for (const double angle : {20.0, 40.0}) {
     MeshOptions options = testing::with_size(size);
-    options.collar_angle = 140;
+    options.bounds.collar_angle = 140;
     EXPECT_EQ(testing::faults(testing::mesh_of(acute::wedge(angle).soups, options, 0)), "");
   }
 }

@@ -42,6 +42,7 @@ std::vector<Meshed> meshes() {
 ImproveOptions options(double angle) {
   ImproveOptions made = improve_options(3);
   made.min_dihedral = angle;
+  made.bounds = testing::without_thin();
   return made;
 }
 
@@ -49,7 +50,7 @@ ImproveOptions options(double angle) {
 struct Bench {
   explicit Bench(Meshed& meshed, double wanted = wanted_angle)
       : workpiece(meshed.result.mesh, meshed.plc, default_distance(0, meshed.plc.bounds.diagonal())),
-        rule(options(wanted).radius_edge),
+        rule(options(wanted).bounds.radius_edge),
         remedies(workpiece, rule, options(wanted)),
         operations(workpiece, rule) {
     workpiece.prepare();
@@ -186,17 +187,17 @@ TEST(Detours, KeepTheGuaranteesOfThinTets) {
        {std::pair{cylinder(0.5, 1, 40, 4), 0.3}, std::pair{torus(1, 0.25, 80, 24), 0.3},
         std::pair{plate_with_hole(1, 32), 0.7}, std::pair{l_shape(), 0.4}}) {
     MeshOptions sizes = with_size(size);
-    sizes.distance = 0.1 * size;
+    sizes.bounds.distance = 0.1 * size;
     Meshed meshed = mesh_of(soup, sizes, 30);
     coarsen(meshed.result.mesh, meshed.plc, sizes);
     ImproveOptions with = options(reached_angle);
-    with.distance = sizes.distance;
-    with.thin_angle = 8;
+    with.bounds.distance = sizes.bounds.distance;
+    with.bounds.thin_angle = 8;
     with.keep_vertices = true;
     const ImproveReport report = improve(meshed.result.mesh, meshed.plc, with);
     taken += report.detours;
     CheckOptions judge;
-    judge.distance = sizes.distance;
+    judge.bounds.distance = sizes.bounds.distance;
     meshed.report = check(meshed.result.mesh, meshed.plc, judge);
     EXPECT_EQ(faults(meshed), "");
   }

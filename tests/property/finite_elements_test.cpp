@@ -22,12 +22,10 @@ testing::Meshed improved(const std::vector<PolygonSoup>& soups, double size, dou
                          double distance = 0, unsigned seed = 0) {
   MeshOptions options = testing::with_size(size);
   options.seed = seed;
-  options.distance = distance;
+  options.bounds.distance = distance;
   testing::Meshed meshed = testing::mesh_of(soups, options, feature_angle);
   EXPECT_EQ(testing::faults(meshed), "");
-  ImproveOptions improvement;
-  improvement.distance = distance;
-  improve(meshed.result.mesh, meshed.plc, improvement);
+  improve(meshed.result.mesh, meshed.plc, {.bounds = testing::without_thin(distance)});
   return meshed;
 }
 TetMesh improved_mesh(const std::vector<PolygonSoup>& soups, double size, double feature_angle,
@@ -127,8 +125,10 @@ TEST(FiniteElements, CurvedElementsKeepTheOrderOnTheBall) {
     TetMesh& mesh = meshed.result.mesh;
     for (std::size_t p = 0; p < mesh.points.size(); ++p)
       if (mesh.features[p].dimension == 2) mesh.points[p] = mesh.points[p] / norm(mesh.points[p]);
-    const SecondOrderReport report = make_second_order(
-        mesh, meshed.plc, {.exact = [](unsigned, Index, const Point& p) { return p / norm(p); }});
+    const SecondOrderReport report =
+        make_second_order(mesh, meshed.plc,
+                          {.exact = [](unsigned, Index, const Point& p) { return p / norm(p); },
+                           .bounds = testing::without_thin()});
     EXPECT_TRUE(report.straightened.empty());
     errors[i] = testing::solve_poisson(mesh, zero_on_the_sphere());
   }

@@ -155,7 +155,7 @@ void apply(Workbench& on, const Change& change, bool anyhow = false) {
 std::string faults_of(const Meshed& meshed, TetMesh mesh) {
   Meshed changed{meshed.plc, {}, {}};
   changed.result.mesh = std::move(mesh);
-  changed.report = check(changed.result.mesh, changed.plc, {.distance = distance});
+  changed.report = check(changed.result.mesh, changed.plc, {.bounds = {.distance = distance}});
   return testing::faults(changed);
 }
 

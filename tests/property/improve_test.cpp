@@ -102,7 +102,7 @@ TEST_P(Improve, KeepsEveryGuaranteeAndLeavesFewPoorTets) {
       const auto collars = collar_tets(mesh);
       poor += count_below(mesh, 15);
 
-      const ImproveReport report = improve(mesh, meshed.plc, improve_options(GetParam()));
+      const ImproveReport report = improve(mesh, meshed.plc, options_of(GetParam()));
       meshed.report = check(mesh, meshed.plc);
       EXPECT_EQ(testing::faults(meshed), "");
       EXPECT_GE(worst_outside_collars(mesh), worst);
@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(Level, Improve, ::testing::Values(1U, 2U, 3U));
 
 TEST(ImproveBox, LeavesNothingBelowTheBound) {
   Meshed meshed = mesh_of(testing::box(), with_size(0.1), 0);
-  improve(meshed.result.mesh, meshed.plc);
+  improve(meshed.result.mesh, meshed.plc, {.bounds = testing::without_thin()});
   EXPECT_EQ(count_below(meshed.result.mesh, 20), 0U);
 }
 
@@ -128,7 +128,7 @@ TEST(ImproveSmooth, LeavesNothingBelowTheBound) {
   using namespace testing;
   for (const PolygonSoup& soup : {icosphere(1, 8), cylinder(0.5, 1, 40, 4), torus(1, 0.4, 60, 30)}) {
     Meshed meshed = mesh_of(soup, with_size(0.12), 30);
-    const ImproveReport report = improve(meshed.result.mesh, meshed.plc);
+    const ImproveReport report = improve(meshed.result.mesh, meshed.plc, {.bounds = testing::without_thin()});
     EXPECT_GT(report.boundary_flips, 0U);
     EXPECT_EQ(count_below(meshed.result.mesh, 15), 0U);
     meshed.report = check(meshed.result.mesh, meshed.plc);
@@ -139,30 +139,25 @@ TEST(ImproveSmooth, LeavesNothingBelowTheBound) {
 // With hardly any tolerance hardly anything on the surface may change; nothing may leave it.
 TEST(ImproveSmooth, KeepsATightTolerance) {
   MeshOptions options = with_size(0.3);
-  options.distance = 2e-3;
+  options.bounds.distance = 2e-3;
   Meshed meshed = mesh_of(testing::torus(1, 0.4, 60, 30), options, 30);
-  ImproveOptions improvement;
-  improvement.distance = options.distance;
-  const ImproveReport report = improve(meshed.result.mesh, meshed.plc, improvement);
+  const ImproveReport report =
+      improve(meshed.result.mesh, meshed.plc, {.bounds = testing::without_thin(options.bounds.distance)});
   EXPECT_GT(report.edge_removals, 0U);
-  CheckOptions check_options;
-  check_options.distance = options.distance;
-  meshed.report = check(meshed.result.mesh, meshed.plc, check_options);
+  meshed.report = check(meshed.result.mesh, meshed.plc, {.bounds = options.bounds});
   EXPECT_EQ(testing::faults(meshed), "");
 }
 
 std::string faults_improved_to(double min_dihedral, const std::vector<PolygonSoup>& soups, double size,
                                double distance) {
   MeshOptions options = with_size(size);
-  options.distance = distance;
+  options.bounds.distance = distance;
   Meshed meshed = mesh_of(soups, options, 30);
   ImproveOptions improvement = improve_options(3);
   improvement.min_dihedral = min_dihedral;
-  improvement.distance = distance;
+  improvement.bounds = testing::without_thin(distance);
   improve(meshed.result.mesh, meshed.plc, improvement);
-  CheckOptions check_options;
-  check_options.distance = distance;
-  meshed.report = check(meshed.result.mesh, meshed.plc, check_options);
+  meshed.report = check(meshed.result.mesh, meshed.plc, {.bounds = options.bounds});
   return testing::faults(meshed);
 }
 
@@ -185,8 +180,8 @@ TEST(ImproveInclusion, ATinyOneStays) {
 TEST(ImproveBox, SameMeshSameResult) {
   Meshed first = mesh_of(testing::box(), with_size(0.15), 0),
          second = mesh_of(testing::box(), with_size(0.15), 0);
-  improve(first.result.mesh, first.plc);
-  improve(second.result.mesh, second.plc);
+  improve(first.result.mesh, first.plc, {.bounds = testing::without_thin()});
+  improve(second.result.mesh, second.plc, {.bounds = testing::without_thin()});
   testing::expect_same(first.result.mesh, second.result.mesh);
 }
 
@@ -195,7 +190,7 @@ TEST(ImproveThreads, ChangeNothing) {
   using namespace testing;
   for (const PolygonSoup& soup : {box(), cylinder(0.5, 1, 40, 4)}) {
     const Meshed meshed = mesh_of(soup, with_size(0.06), 30);
-    ImproveOptions options;
+    ImproveOptions options{.bounds = without_thin()};
     options.threads = 1;
     TetMesh alone = meshed.result.mesh;
     improve(alone, meshed.plc, options);
@@ -211,7 +206,7 @@ TEST(ImproveThreads, ChangeNothing) {
 TEST(ImproveBox, NothingToDo) {
   Meshed meshed = mesh_of(testing::box(), with_size(0.2), 0);
   const TetMesh before = meshed.result.mesh;
-  ImproveOptions options;
+  ImproveOptions options{.bounds = testing::without_thin()};
   options.min_dihedral = 0;
   EXPECT_EQ(improve(meshed.result.mesh, meshed.plc, options).candidates, 0U);
   testing::expect_same(before, meshed.result.mesh);
@@ -222,7 +217,7 @@ TEST(ImproveBox, CancelledInTheMiddleIsStillRight) {
   int reports = 0;
   Execution execution;
   execution.progress = [&](const ProgressReport&) { return ++reports < 2; };
-  ImproveOptions options;
+  ImproveOptions options{.bounds = testing::without_thin()};
   options.min_dihedral = 40;
   const ImproveReport report = improve(meshed.result.mesh, meshed.plc, options, execution);
   EXPECT_TRUE(report.cancelled);

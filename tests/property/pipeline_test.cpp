@@ -43,9 +43,9 @@ TEST(Pipeline, MeshesWithoutSliversAndCertifies) {
   EXPECT_TRUE(made.guarantees_hold());
   EXPECT_EQ(slivers(made.result.mesh, 8), 0U);
   EXPECT_EQ(made.result.mesh.order(), 2);
-  EXPECT_TRUE(
-      check(made.result.mesh, made.plc, {.distance = distance_of(options, made.plc.bounds.diagonal())})
-          .passed());
+  EXPECT_TRUE(check(made.result.mesh, made.plc,
+                    {.bounds = {.distance = distance_of(options, made.plc.bounds.diagonal())}})
+                  .passed());
   options.coarsen = false;
   options.improve = 0;
   options.order = 1;
@@ -186,7 +186,7 @@ TEST(Pipeline, MovesOntoExactGeometry) {
   const std::span<const PolygonSoup> soups(&sphere, 1);
   const Plc plc = build_plc(soups);
   PipelineOptions options = with_size(0.3);
-  options.mesh.distance = 0.05;
+  options.mesh.bounds.distance = 0.05;
   options.exact = [](unsigned, Index, const Point& p) -> std::optional<Point> {
     return p / norm(p - Point{});
   };

@@ -25,9 +25,9 @@ void expect_guarantees(const TetMesh& before, const TetMesh& after, const MeshOp
     const TetQuality q = measure(after.points[a], after.points[b], after.points[c], after.points[d]);
     ASSERT_GT(q.volume, 0);
     if (after.tet_collar[t] == 0) {
-      ASSERT_LE(q.radius_edge, options.radius_edge);
+      ASSERT_LE(q.radius_edge, options.bounds.radius_edge);
     } else {
-      ASSERT_LE(q.max_dihedral, options.collar_angle);
+      ASSERT_LE(q.max_dihedral, options.bounds.collar_angle);
     }
   }
 }
@@ -36,9 +36,13 @@ TEST(ProjectBoundary, PutsASpheresVerticesOnTheSphere) {
   Meshed meshed = mesh_of(icosphere(1, 12), with_size(0.3));
   ASSERT_EQ(faults(meshed), "");
   TetMesh& mesh = meshed.result.mesh;
-  improve(mesh, meshed.plc);  // no sliver has its four corners on the sphere, which would be its circumsphere
+  improve(
+      mesh, meshed.plc,
+      {.bounds =
+           without_thin()});  // no sliver has its four corners on the sphere, which would be its circumsphere
   const TetMesh before = mesh;
-  const ProjectReport report = project_boundary(mesh, meshed.plc, on_unit_sphere, {.reach = 0.1});
+  const ProjectReport report =
+      project_boundary(mesh, meshed.plc, on_unit_sphere, {.bounds = without_thin(0.1)});
   expect_guarantees(before, mesh, {});
   std::size_t boundary = 0, inside = 0;
   for (std::size_t p = 0; p < mesh.points.size(); ++p) {
@@ -94,8 +98,8 @@ TEST(ProjectBoundary, MakesRoomAndLeavesVerticesThatFindNone) {
       ASSERT_EQ(faults(meshed), "");
       const TetMesh before = meshed.result.mesh;
       const ExactGeometry waves = with_waves(meshed.plc, height);
-      const ProjectReport report =
-          project_boundary(meshed.result.mesh, without_flat_features(meshed.plc), waves, {.reach = 2});
+      const ProjectReport report = project_boundary(meshed.result.mesh, without_flat_features(meshed.plc),
+                                                    waves, {.bounds = without_thin(2)});
       expect_guarantees(before, meshed.result.mesh, {});
       std::set<Index> left;
       for (const auto& exception : report.exceptions) left.insert(exception.point);
@@ -127,7 +131,8 @@ TEST(ProjectBoundary, LeavesWhatIsOutOfReach) {
   const ExactGeometry far = [](unsigned, Index, const Point& p) -> std::optional<Point> {
     return p + Point{0.05, 0, 0};
   };
-  const ProjectReport report = project_boundary(meshed.result.mesh, meshed.plc, far);
+  const ProjectReport report =
+      project_boundary(meshed.result.mesh, meshed.plc, far, {.bounds = without_thin()});
   EXPECT_EQ(before.points, meshed.result.mesh.points);
   EXPECT_EQ(report.exceptions.size(), report.vertices);
   EXPECT_NEAR(report.largest_distance, 0.05, 1e-12);
@@ -140,7 +145,8 @@ TEST(ProjectBoundary, KeepsFlatFeaturesFlat) {
     Meshed meshed = mesh_of(subdivided_box({0, 0, 0}, {1, 1, 1}, 1), with_size(0.2));
     ASSERT_EQ(faults(meshed), "");
     const ExactGeometry waves = with_waves(meshed.plc, height);
-    const ProjectReport report = project_boundary(meshed.result.mesh, meshed.plc, waves);
+    const ProjectReport report =
+        project_boundary(meshed.result.mesh, meshed.plc, waves, {.bounds = without_thin()});
     EXPECT_EQ(check(meshed.result.mesh, meshed.plc).findings.size(), 0U) << height;
     std::set<Index> told;
     for (const auto& exception : report.exceptions) {
@@ -157,7 +163,7 @@ TEST(ProjectBoundary, KeepsFlatFeaturesFlat) {
       largest = std::max(largest, off);
     }
     EXPECT_DOUBLE_EQ(report.largest_distance, largest);
-    make_second_order(meshed.result.mesh, meshed.plc, {.exact = waves});
+    make_second_order(meshed.result.mesh, meshed.plc, {.exact = waves, .bounds = without_thin()});
     EXPECT_EQ(check(meshed.result.mesh, meshed.plc).findings.size(), 0U) << height;
   }
 }
@@ -171,7 +177,8 @@ TEST(ProjectBoundary, KeepsCapsFlatAtCurvedRims) {
     if (radius < 0.99) return p;
     return Point{p.x / radius, p.y / radius, p.z + 1e-4 * std::sin(3 * std::atan2(p.y, p.x))};
   };
-  const ProjectReport report = project_boundary(meshed.result.mesh, meshed.plc, exact, {.reach = 0.01});
+  const ProjectReport report =
+      project_boundary(meshed.result.mesh, meshed.plc, exact, {.bounds = without_thin(0.01)});
   EXPECT_EQ(check(meshed.result.mesh, meshed.plc).findings.size(), 0U);
   EXPECT_GT(report.exceptions.size(), 0U);
   std::size_t on_rims = 0;
@@ -192,8 +199,9 @@ TEST(ProjectBoundary, LeavesTheBallsOfCollarsAsTheyAre) {
   ASSERT_FALSE(before.collar_balls.empty());
   const Plc smooth = without_flat_features(meshed.plc);
   CheckOptions options;
-  options.distance = 0.02;
-  project_boundary(meshed.result.mesh, smooth, with_waves(meshed.plc, 0.01), {.reach = options.distance});
+  options.bounds.distance = 0.02;
+  project_boundary(meshed.result.mesh, smooth, with_waves(meshed.plc, 0.01),
+                   {.bounds = without_thin(options.bounds.distance)});
   const TetMesh& mesh = meshed.result.mesh;
   std::size_t moved = 0;
   ASSERT_EQ(mesh.collar_balls.size(), before.collar_balls.size());

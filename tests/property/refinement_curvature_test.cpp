@@ -71,7 +71,7 @@ TEST(Curvature, PutsElementsOnACircle) {
   for (const double elements : {16.0, 32.0}) {
     MeshOptions options = with_size(1);
     options.elements_per_circle = elements;
-    options.distance = 0.1;  // which alone would leave it coarser
+    options.bounds.distance = 0.1;  // which alone would leave it coarser
     const Meshed meshed = mesh_of(testing::icosphere(1, 16), options);
     EXPECT_EQ(faults(meshed), "");
     const double wanted = 2 * std::numbers::pi / elements;
@@ -82,7 +82,7 @@ TEST(Curvature, PutsElementsOnACircle) {
 
 TEST(Curvature, LeavesFlatPartsCoarseAndHeedsTheMinimum) {
   MeshOptions options = with_size(1);
-  options.distance = 0.02;
+  options.bounds.distance = 0.02;
   const PolygonSoup soup = testing::plate_with_hole(0.5, 64);
   const std::size_t without = mesh_of(soup, options).result.mesh.edges.size();
   options.elements_per_circle = 48;

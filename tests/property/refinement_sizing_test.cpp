@@ -258,7 +258,7 @@ TEST(RefinementQuality, TighterRadiusEdge) {
   for (const PolygonSoup& soup :
        {testing::box(), testing::icosphere(1, 8), testing::plate_with_hole(1, 16)}) {
     MeshOptions options = with_size(0.4);
-    options.radius_edge = 1.5;
+    options.bounds.radius_edge = 1.5;
     const Meshed meshed = mesh_of(soup, options);
     EXPECT_EQ(faults(meshed), "");
     EXPECT_LE(meshed.report.max_radius_edge, 1.5 * rounding);
@@ -267,7 +267,7 @@ TEST(RefinementQuality, TighterRadiusEdge) {
 
 TEST(RefinementQuality, TighterDistance) {
   MeshOptions options = with_size(0.5);
-  options.distance = 1e-3;
+  options.bounds.distance = 1e-3;
   const Meshed meshed = mesh_of(testing::icosphere(1, 30), options);
   EXPECT_EQ(faults(meshed), "");
   EXPECT_LE(meshed.report.max_surface_distance, 1e-3 * rounding);

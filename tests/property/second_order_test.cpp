@@ -30,9 +30,9 @@ constexpr double pi = std::numbers::pi;
 
 Meshed improved(const PolygonSoup& soup, double size, double distance = 0) {
   MeshOptions options = with_size(size);
-  options.distance = distance;
+  options.bounds.distance = distance;
   Meshed meshed = mesh_of(soup, options);
-  improve(meshed.result.mesh, meshed.plc, {.distance = distance});
+  improve(meshed.result.mesh, meshed.plc, {.bounds = without_thin(distance)});
   return meshed;
 }
 
@@ -42,7 +42,7 @@ Index vertex_at(const TetMesh& mesh, const Point& p) {
 
 std::string second_order_faults(const Meshed& meshed, const TetMesh& mesh, double distance = 0) {
   CheckOptions options;
-  options.distance = distance;
+  options.bounds.distance = distance;
   options.findings_per_guarantee = 3;
   std::string text;
   for (const Finding& f : check(mesh, meshed.plc, options).findings)
@@ -105,7 +105,7 @@ TEST_P(SecondOrderShapes, AreCertifiedAndRounderThanStraightOnes) {
   const auto& [name, soup, size, distance, volume] = GetParam();
   const Meshed meshed = improved(soup, size, distance);
   TetMesh mesh = meshed.result.mesh;
-  const SecondOrderReport report = make_second_order(mesh, meshed.plc);
+  const SecondOrderReport report = make_second_order(mesh, meshed.plc, {.bounds = without_thin()});
   EXPECT_EQ(second_order_faults(meshed, mesh, distance), "");
   EXPECT_EQ(mesh.order(), 2);
   EXPECT_EQ(report.nodes, count_edges(mesh));
@@ -128,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(SecondOrder, StaysStraightOnPlanesAndStraightEdges) {
   const Meshed meshed = improved(l_shape(), 0.3);
   TetMesh mesh = meshed.result.mesh;
-  const SecondOrderReport report = make_second_order(mesh, meshed.plc);
+  const SecondOrderReport report = make_second_order(mesh, meshed.plc, {.bounds = without_thin()});
   EXPECT_EQ(report.curved, 0U);
   EXPECT_EQ(second_order_faults(meshed, mesh), "");
   const TetMesh expected = second_order(meshed.result.mesh);
@@ -139,11 +139,13 @@ TEST(SecondOrder, StaysStraightOnPlanesAndStraightEdges) {
 TEST(SecondOrder, ACallerGivesTheExactSurface) {
   const Meshed meshed = improved(icosphere(1, 12), 0.4, 0.05);
   TetMesh mesh = meshed.result.mesh;
-  const SecondOrderReport report =
-      make_second_order(mesh, meshed.plc, {.exact = [](unsigned dimension, Index, const Point& p) {
-                          EXPECT_EQ(dimension, 2U);
-                          return p / norm(p);
-                        }});
+  const SecondOrderReport report = make_second_order(mesh, meshed.plc,
+                                                     {.exact =
+                                                          [](unsigned dimension, Index, const Point& p) {
+                                                            EXPECT_EQ(dimension, 2U);
+                                                            return p / norm(p);
+                                                          },
+                                                      .bounds = without_thin()});
   ASSERT_TRUE(report.straightened.empty());
   for (const auto& nodes : mesh.face_mid_nodes)
     for (const Index node : nodes) EXPECT_NEAR(norm(mesh.points[node]), 1, 1e-14);
@@ -153,7 +155,8 @@ TEST(SecondOrder, ACallerGivesTheExactSurface) {
 TEST(SecondOrder, WhatWouldInvertIsStraightenedAndReported) {
   const Meshed meshed = improved(icosphere(1, 12), 0.4, 0.05);
   TetMesh mesh = meshed.result.mesh;
-  const SecondOrderOptions options{.exact = [](unsigned, Index, const Point& p) { return 0.83 * p; }};
+  const SecondOrderOptions options{.exact = [](unsigned, Index, const Point& p) { return 0.83 * p; },
+                                   .bounds = without_thin()};
   const SecondOrderReport report = make_second_order(mesh, meshed.plc, options);
   EXPECT_GT(report.straightened.size(), 10U);
   for (Index t = 0; t < mesh.tets.size(); ++t)
@@ -176,11 +179,10 @@ TEST(SecondOrder, WhatWouldInvertIsStraightenedAndReported) {
 /// Coarse and curved: thin tets, with edges that turn by up to an eighth of a circle.
 Meshed coarsened(const PolygonSoup& soup, double size) {
   MeshOptions options = with_size(size);
-  options.distance = 0.1 * size;
+  options.bounds.distance = 0.1 * size;
   Meshed meshed = mesh_of(soup, options);
   coarsen(meshed.result.mesh, meshed.plc, options);
-  improve(meshed.result.mesh, meshed.plc,
-          {.thin_angle = 8, .distance = options.distance, .keep_vertices = true});
+  improve(meshed.result.mesh, meshed.plc, {.bounds = options.bounds, .keep_vertices = true});
   return meshed;
 }
 
@@ -197,14 +199,14 @@ TEST(SecondOrder, TetsThatCurvedEdgesFlattenAreReplaced) {
     const TetMesh& before = meshed.result.mesh;
     TetMesh kept = before, mesh = before, again = before;
     SecondOrderOptions options;
-    options.distance = 0.1 * size;
+    options.bounds = without_thin(0.1 * size);
     without += make_second_order(kept, meshed.plc, options).straightened.size();
     EXPECT_EQ(kept.tets, before.tets);
-    options.thin_angle = 8;
+    options.bounds.thin_angle = 8;
     options.threads = 1;
     const SecondOrderReport report = make_second_order(mesh, meshed.plc, options);
     with += report.straightened.size();
-    EXPECT_EQ(second_order_faults(meshed, mesh, options.distance), "");
+    EXPECT_EQ(second_order_faults(meshed, mesh, options.bounds.distance), "");
     for (Index t = 0; t < mesh.tets.size(); ++t) EXPECT_TRUE(jacobian_exceeds(curved_tet(mesh, t), 0.1)) << t;
     EXPECT_EQ(report.more_tets, static_cast<std::ptrdiff_t>(mesh.tets.size()) -
                                     static_cast<std::ptrdiff_t>(before.tets.size()));
@@ -244,7 +246,6 @@ TEST(SecondOrder, TetsAreMarkedThinEvenWhereNoneCouldBeReplaced) {
     TetMesh mesh = meshed.result.mesh;
     ASSERT_GT(std::count(mesh.tet_thin.begin(), mesh.tet_thin.end(), 1), 0);
     SecondOrderOptions options;
-    options.thin_angle = 8;
     options.exact = [&](unsigned dimension, Index, const Point& p) -> std::optional<Point> {
       if (dimension == 1) return std::nullopt;
       return Point{factor * p.x, factor * p.y, p.z};
@@ -265,7 +266,7 @@ TEST(SecondOrder, CancelledAtAnyTimeItIsOfFirstOrder) {
   const Meshed meshed = coarsened(cylinder(1, 0.3, 120, 4), 0.7);
   TetMesh mesh = meshed.result.mesh;
   std::atomic<bool> cancel{false};
-  SecondOrderOptions options;
+  SecondOrderOptions options{.bounds = without_thin()};
   options.exact = [&](unsigned, Index, const Point&) -> std::optional<Point> {
     cancel = true;
     return std::nullopt;
@@ -288,7 +289,7 @@ TEST(SecondOrder, WhatIsInNoTetHasNodesOfItsOwn) {
   mesh.face_patch.push_back(mesh.face_patch[0]);
   mesh.face_tag.push_back(mesh.face_tag[0]);
   mesh.face_regions.push_back(mesh.face_regions[0]);
-  make_second_order(mesh, meshed.plc);
+  make_second_order(mesh, meshed.plc, {.bounds = without_thin()});
   ASSERT_EQ(mesh.edge_mid_nodes.size(), mesh.edges.size());
   EXPECT_EQ(mesh.edge_mid_nodes.back(), mesh.face_mid_nodes.back()[0]);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -303,7 +304,7 @@ TEST(SecondOrder, WhatIsInNoTetHasNodesOfItsOwn) {
 TEST(SecondOrder, IsJudgedByPosition) {
   const Meshed meshed = improved(cylinder(1, 1, 60, 3), 0.4, 0.05);
   TetMesh mesh = meshed.result.mesh;
-  make_second_order(mesh, meshed.plc);
+  make_second_order(mesh, meshed.plc, {.bounds = without_thin()});
   mesh.features.clear();
   for (Tag& tag : mesh.face_tag) tag += 500;
   for (Tag& tag : mesh.edge_tag) tag += 500;
@@ -317,8 +318,8 @@ TEST(SecondOrder, IsJudgedByPosition) {
 TEST(SecondOrder, SameBytesAgain) {
   const Meshed meshed = improved(cylinder(1, 1, 60, 3), 0.4, 0.05);
   TetMesh first = meshed.result.mesh, second = meshed.result.mesh;
-  make_second_order(first, meshed.plc);
-  make_second_order(second, meshed.plc);
+  make_second_order(first, meshed.plc, {.bounds = without_thin()});
+  make_second_order(second, meshed.plc, {.bounds = without_thin()});
   EXPECT_EQ(first.points, second.points);
   EXPECT_EQ(first.tet_mid_nodes, second.tet_mid_nodes);
 }
@@ -334,7 +335,7 @@ class WrongSecondOrder : public ::testing::Test {
   void SetUp() override {
     meshed_ = improved(cylinder(1, 1, 60, 3), 0.4, 0.05);
     mesh_ = meshed_.result.mesh;
-    make_second_order(mesh_, meshed_.plc);
+    make_second_order(mesh_, meshed_.plc, {.bounds = without_thin()});
     ASSERT_EQ(second_order_faults(meshed_, mesh_, 0.05), "");
   }
   void expect_finding(const std::string& guarantee) {

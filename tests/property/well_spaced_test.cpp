@@ -41,7 +41,7 @@ void expect_well_spaced_all_along(const std::vector<PolygonSoup>& soups, double 
   complex.feature_angle = feature_angle;
   const Plc plc = build_plc(soups, complex);
   const MeshOptions options = testing::with_size(size);
-  const double bound = std::max(options.radius_edge, options.exterior_radius_edge) * (1 + 1e-9);
+  const double bound = std::max(options.bounds.radius_edge, options.exterior_radius_edge) * (1 + 1e-9);
   const Execution execution;
   Refinement refinement(plc, options, execution);
   std::size_t phases = 0, cells = 0, worse = 0;

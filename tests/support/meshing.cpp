@@ -25,13 +25,7 @@ std::string_view name_of(MeshStatus status) {
 
 Meshed mesh_of(const Plc& plc, const MeshOptions& options) {
   Meshed meshed{plc, generate(plc, options), {}};
-  CheckOptions bounds;
-  bounds.radius_edge = options.radius_edge;
-  bounds.distance = options.distance;
-  bounds.collar_angle = options.collar_angle;
-  bounds.crease_angle = options.crease_angle;
-  bounds.findings_per_guarantee = 2;
-  meshed.report = check(meshed.result.mesh, plc, bounds);
+  meshed.report = check(meshed.result.mesh, plc, {.bounds = options.bounds, .findings_per_guarantee = 2});
   return meshed;
 }
 
@@ -67,7 +61,7 @@ MeshOptions with_near_surface(std::span<const PolygonSoup> soups, double size) {
   for (const PolygonSoup& soup : soups)
     for (const Point& p : soup.points) bounds.add(p);
   MeshOptions options = with_size(size);
-  options.distance = 0.5 * default_distance(size, bounds.diagonal());
+  options.bounds.distance = 0.5 * default_distance(size, bounds.diagonal());
   return options;
 }
 

@@ -31,6 +31,8 @@ std::string faults(const Meshed& meshed);
 MeshOptions with_size(double size, std::size_t max_vertices = 1'000'000);
 /// The same with half the default surface distance, for volumes of curved shapes.
 MeshOptions with_near_surface(std::span<const PolygonSoup> soups, double size);
+/// The bounds of a mesh that is not coarsened: no tet may be thin.
+inline Bounds without_thin(double distance = 0) { return {.thin_angle = 0, .distance = distance}; }
 
 /// Circumradius of every tet.
 std::vector<double> circumradii(const TetMesh& mesh);

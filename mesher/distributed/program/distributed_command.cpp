@@ -414,7 +414,7 @@ ExitCode mesh_distributed(const DistributedArguments& arguments) {
   MPI_Bcast(&holds, 1, MPI_INT, 0, MPI_COMM_WORLD);
   const Shape shape = coarse.shape();
   ParallelMesh mesh(MPI_COMM_WORLD, coarse.made.run.result.mesh, coarse.made.run.plc,
-                    arguments.mesh.mesh.collar_angle);
+                    arguments.mesh.mesh.bounds.collar_angle);
   coarse.made.run.result.mesh = {};
   Report report;
   report.coarse = mesh.coarse_angles();

@@ -123,7 +123,7 @@ struct Expected {
   Expected(const Plc& plc, double distance) {
     const TetMesh nothing;
     CheckOptions options;
-    options.distance = distance;
+    options.bounds.distance = distance;
     constexpr double epsilon = 0x1p-52;
     double largest = 0;
     for (std::size_t axis = 0; axis < 3; ++axis)

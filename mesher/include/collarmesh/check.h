@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "collarmesh/bounds.h"
 #include "collarmesh/mesh_measures.h"
 #include "collarmesh/plc.h"
 #include "collarmesh/progress.h"
@@ -11,16 +12,9 @@
 namespace collarmesh {
 
 struct CheckOptions {
-  double radius_edge = 2;  ///< bound outside collars, but for thin tets
-  /// Degrees: a thin tet, which may exceed that bound, has dihedral angles of at least this (at a sharper
-  /// crease half its angle) and dihedral and face angles of at most 150; 0: no tet may exceed the bound.
-  /// Where a mesh tells which tets are thin only these may be, in memory as well as read from a file.
-  double thin_angle = 8;
-  double distance =
-      0;  ///< surface distance tolerance on smooth patches and curves, absolute; 0: 1/200 of the diagonal
-  double collar_angle = 150;  ///< largest dihedral angle in collars, degrees
-  double crease_angle =
-      60;  ///< degrees; features that meet below it are the creases that excuse a collar's cells
+  /// Where a mesh tells which tets are thin only these may be, in memory as well as read from a file. Cells
+  /// of a collar are excused at creases only.
+  Bounds bounds;
   std::size_t findings_per_guarantee = 20;  ///< more are counted, not listed
   unsigned threads = 0;                     ///< at most; 0: as many as there are cores
 };

@@ -9,17 +9,6 @@
 
 namespace collarmesh {
 
-/// What bounds the shapes of a coarsened mesh.
-struct CoarsenOptions {
-  /// Degrees, above 0 and at most 30: no dihedral angle of a thin tet is below this; where features meet at
-  /// less than twice this angle, not below half the angle that they meet at.
-  double thin_angle = 8;
-  /// The share of both bounds on the angles of thin tets, counted from 0 and from 180 degrees, that is kept
-  /// free for what moves vertices afterwards, as `project_boundary` does; 0 to 0.5.
-  double reserve = 0;
-  unsigned threads = 0;  ///< 0: as many as there are cores; any number makes the same mesh
-};
-
 struct CoarsenReport {
   std::size_t tets_before = 0, tets_after = 0;
   std::size_t contracted_edges = 0;  ///< with those repaired
@@ -40,6 +29,6 @@ struct CoarsenReport {
 /// options, same mesh. Throws OptionError for an angle out of range. Cost: linear in the tets, with local
 /// changes: some microseconds for each tet that vanishes, and several times that where trials of repair fail.
 CoarsenReport coarsen(TetMesh& mesh, const Plc& plc, const MeshOptions& made_with,
-                      const CoarsenOptions& options = {}, const Execution& execution = {});
+                      const Execution& execution = {});
 
 }  // namespace collarmesh

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "collarmesh/bounds.h"
 #include "collarmesh/plc.h"
 #include "collarmesh/progress.h"
 #include "collarmesh/tet_mesh.h"
@@ -12,11 +13,8 @@ namespace collarmesh {
 struct ImproveOptions {
   double min_dihedral =
       20;  ///< degrees; tets with a smaller dihedral angle, or one as bad beyond 90 degrees, are worked on
-  double radius_edge = 2;      ///< bound on circumradius / shortest edge that no new tet breaks
-  double thin_angle = 0;       ///< degrees: thin tets may exceed that bound, see `coarsen`; 0: none may
-  double thin_above = 0;       ///< the radius-edge ratio above which tets will be called thin; 0: radius_edge
-  double thin_reserve = 0;     ///< as CoarsenOptions::reserve
-  double distance = 0;         ///< surface distance tolerance on smooth patches; 0: 1/200 of the diagonal
+  Bounds bounds;          ///< which no new tet breaks
+  double thin_above = 0;  ///< the radius-edge ratio above which tets will be called thin; 0: the bound on it
   bool move_vertices = true;   ///< and take some out or in, not only change how they are connected
   bool keep_vertices = false;  ///< take none out or in beside thin tets but where an angle is above the
                                ///< largest of theirs: a coarsened mesh has as many as it needs
@@ -51,7 +49,7 @@ struct ImproveReport {
 /// undone unless the tets are better then, compared from the worst one up.
 /// Nothing makes the worst tet of its cavity worse, breaks the radius-edge bound (by a tet that is not thin),
 /// touches a collar, leaves the plane of a planar patch, or takes a smooth patch or curve and its faces or
-/// edges farther apart than `distance`.
+/// edges farther apart than the distance.
 /// Preconditions: `mesh` comes from `generate` for `plc`, first order, with the same `distance`.
 /// Cost: linear in the tets, with a small factor for those below a bound that they can reach.
 ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& options = {},

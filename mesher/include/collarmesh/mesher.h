@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "collarmesh/bounds.h"
 #include "collarmesh/plc.h"
 #include "collarmesh/progress.h"
 #include "collarmesh/size_field.h"
@@ -35,19 +36,17 @@ struct MeshOptions {
   double edges_per_hole = 7;
   double elements_across_gap = 0;  ///< target edge lengths on patches put so many between them and what they
                                    ///< face across a region; 0: none
-  double radius_edge = 2;          ///< bound on circumradius / shortest edge in the regions; at least 1
-  /// The same outside every region, where that is larger; edges straight across a gap do not count there.
+  Bounds bounds;
+  /// The bound on circumradius / shortest edge outside every region, where that is larger; edges straight
+  /// across a gap do not count there.
   double exterior_radius_edge = 8;
   double vertex_ratio = 0;  ///< bound on largest circumradius / shortest edge at a vertex in the regions
                             ///< (paper, section 1.2); 0: none, else > 2 sqrt 2
   double theta = 0.3;  ///< warp distance relative to a gap ball's radius (paper, Procedure 2); 0: never warp
-  double crease_angle = 60;   ///< degrees; features that meet below it get a collar
-  double collar_angle = 150;  ///< bound on dihedral angles in collars, degrees; 100 to 175
   CollarCreation collar_creation = CollarCreation::in_pass;  ///< when collars are created
   double representation_angle = 50;  ///< bound on the tilt of collar triangles (Definition 12), degrees
-  double distance = 0;     ///< surface distance tolerance on smooth patches and curves; 0: `default_distance`
-  std::uint64_t seed = 0;  ///< of the offsets; same input, options and seed: same mesh
-  std::size_t max_vertices = 0;  ///< budget; 0: none
+  std::uint64_t seed = 0;            ///< of the offsets; same input, options and seed: same mesh
+  std::size_t max_vertices = 0;      ///< budget; 0: none
   /// Budget in bytes for the mesh structures (a whole run takes about 1.2 times as much); 0: none.
   std::size_t max_memory = 0;
   double time_limit = 0;    ///< budget in seconds; 0: none

@@ -65,7 +65,7 @@ struct Option {
   Place place;
   Unit unit = Unit::number;
   double low = 0, high = std::numeric_limits<double>::infinity();  ///< range of a number
-  bool finer = false;  ///< makes some elements finer than `size`
+  bool finer = false;                                              ///< makes some elements finer than `size`
   bool zero = false;              ///< 0 is allowed, too, although it is out of range
   std::string default_text = {};  ///< in place of 0 or nothing, where that stands for a default or for none
   std::string group = {};         ///< a heading

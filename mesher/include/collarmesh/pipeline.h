@@ -27,15 +27,13 @@ struct PipelineOptions {
   RepairOptions repair = {};  ///< and what happens where they are none
   MeshOptions mesh = {};      ///< sizes, bounds and budgets; the time limit is one for all stages
   bool coarsen = true;        ///< as few tets as the sizes ask for
-  double thin_angle = CoarsenOptions{}.thin_angle;  ///< degrees, of thin tets, where it coarsens
-  unsigned improve = 2;                             ///< level, 1 to 3; 0: leave the slivers
-  double min_dihedral = 0;                          ///< degrees, in place of the level's; 0: the level's
-  unsigned order = 1;                               ///< of the cells, 1 or 2
+  unsigned improve = 2;       ///< level, 1 to 3; 0: leave the slivers
+  double min_dihedral = 0;    ///< degrees, in place of the level's; 0: the level's
+  unsigned order = 1;         ///< of the cells, 1 or 2
   /// So many are tried, from `mesh.seed` on, until every guarantee holds; at least 1. The first mesh stays
   /// where none does.
   unsigned seeds = 2;
   unsigned partitions = 0;  ///< the tets are divided among so many ranks (see `partition`); 0: they are not
-  unsigned threads = 0;     ///< at most; 0: as many as there are cores
   /// What the facets approximate, as a CAD shape. The mesh is kept within tighter bounds first, so that its
   /// vertices can move onto this; may be empty.
   ExactGeometry exact = {};

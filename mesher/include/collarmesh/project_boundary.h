@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "collarmesh/bounds.h"
 #include "collarmesh/exact_geometry.h"
 #include "collarmesh/plc.h"
 #include "collarmesh/progress.h"
@@ -10,13 +11,9 @@
 namespace collarmesh {
 
 struct ProjectOptions {
-  double radius_edge = 2;     ///< bound on circumradius / shortest edge that no tet outside collars breaks
-  double thin_angle = 0;      ///< degrees: thin tets may exceed that bound, see `coarsen`; 0: none may
-  double collar_angle = 150;  ///< bound on dihedral angles in collars, degrees
-  double tolerance = 1e-9;    ///< absolute: a vertex that stays and is nearer to its feature is no exception
-  double reach =
-      0;  ///< absolute: vertices farther than this from their feature stay; 0: 1/200 of the diagonal
-  unsigned threads = 0;  ///< at most; 0: as many as there are cores
+  Bounds bounds;  ///< which no tet breaks; vertices farther than the distance from their feature stay
+  double tolerance = 1e-9;  ///< absolute: a vertex that stays and is nearer to its feature is no exception
+  unsigned threads = 0;     ///< at most; 0: as many as there are cores
 };
 
 struct ProjectReport {
@@ -39,7 +36,7 @@ struct ProjectReport {
 /// Move the vertices on curves and patches onto the exact geometry. No tet is inverted by it, breaks the
 /// radius-edge bound or, in a collar, the bound on its dihedral angles: where one would, its corners make
 /// room by moving inside their region or along their exact features, as little as keeps faces and edges
-/// within half of the reach of the exact geometry. A vertex for which that does not suffice stays where it
+/// within half of the distance of the exact geometry. A vertex for which that does not suffice stays where it
 /// is; these are the exceptions. So are vertices on what the complex calls straight or planar where the exact
 /// geometry is not: they go only as near as that permits. Preconditions: `mesh` comes from `generate` for
 /// `plc`, first order; `exact` gives a point that is its own nearest one. Cost: linear in the tets, with a

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "collarmesh/bounds.h"
 #include "collarmesh/exact_geometry.h"
 #include "collarmesh/plc.h"
 #include "collarmesh/progress.h"
@@ -13,12 +14,11 @@ namespace collarmesh {
 struct SecondOrderOptions {
   ExactGeometry exact;  ///< where it is empty or gives nothing: the complex's own polyline or triangles
   double least_jacobian =
-      0.1;                ///< everywhere in a curved tet, relative to the straight one; 0: positive is enough
-  double thin_angle = 0;  ///< degrees, that of the mesh's `CoarsenOptions`: tets that cannot be curved may be
-                          ///< replaced by others, which may be thin; 0: the tets stay
-  double radius_edge = 2;  ///< bound on circumradius / shortest edge: tets beyond it are marked as thin
-  double distance = 0;     ///< surface distance tolerance where tets are replaced; 0: 1/200 of the diagonal
-  unsigned threads = 0;    ///< at most; 0: as many as there are cores. The result does not depend on it
+      0.1;  ///< everywhere in a curved tet, relative to the straight one; 0: positive is enough
+  /// Those of the mesh. Tets that cannot be curved are replaced by others, which may be thin; with a thin
+  /// angle of 0 the tets stay.
+  Bounds bounds;
+  unsigned threads = 0;  ///< at most; 0: as many as there are cores. The result does not depend on it
 };
 
 struct SecondOrderReport {
@@ -53,7 +53,7 @@ struct SecondOrderReport {
 /// 4. the nodes at fault are drawn back towards the middles of their edges, as far as is needed.
 /// Straight tets are valid, so every tet is. Vertices keep their numbers; mid-side nodes follow all of them.
 /// Preconditions: `mesh` comes from `generate` for `plc`, first order. Throws OptionError unless
-/// 0 <= least_jacobian < 1 and 0 <= thin_angle <= 30. Cost: n log n in the tets, at most five times, and some
+/// 0 <= least_jacobian < 1. Cost: n log n in the tets, at most five times, and some
 /// milliseconds for each tet that is not valid at first.
 SecondOrderReport make_second_order(TetMesh& mesh, const Plc& plc, const SecondOrderOptions& options = {},
                                     const Execution& execution = {});

@@ -54,6 +54,7 @@ __all__ = [
     "repair",
 ]
 
+
 def _require_place(extension: str, option: str, what: str, formats: List[str]) -> None:
     if extension not in formats:
         known = " ".join(formats)

@@ -179,7 +179,7 @@ py::object info(const py::list& inputs, const py::dict& options) {
       call->options.complex.require_solid = false;
       build(call->inputs, call->options, watch, call->complex);
     }
-    call->summary = summarize(call->complex.plc, call->options.mesh.crease_angle);
+    call->summary = summarize(call->complex.plc, call->options.mesh.bounds.crease_angle);
   };
   run_watched(work, py::none(), call->options.mesh.time_limit);
   nlohmann::ordered_json json{{"complex", cli::complex_json(call->complex.plc, call->summary)},

@@ -43,7 +43,8 @@ Subject make_subject(const TetMesh& mesh, const Plc& plc, const CheckOptions& op
                   std::make_shared<RegionLocator>(plc),
                   {},
                   {}};
-  if (!(subject.options.distance > 0)) subject.options.distance = default_distance(0, box.diagonal());
+  if (!(subject.options.bounds.distance > 0))
+    subject.options.bounds.distance = default_distance(0, box.diagonal());
   subject.curve_allowance = curve_allowances(subject);
   subject.patch_allowance = patch_allowances(subject);
   return subject;

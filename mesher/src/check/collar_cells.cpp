@@ -17,7 +17,7 @@ class CreaseCorners {
       if (vertex != none && subject.match.vertex_point[vertex] != none)
         on_crease_[subject.match.vertex_point[vertex]] = true;
     };
-    for (const Crease& crease : find_creases(plc, subject.options.crease_angle)) {
+    for (const Crease& crease : find_creases(plc, subject.options.bounds.crease_angle)) {
       add_vertex(crease.vertex);
       if (crease.curve == none) continue;
       is_crease[crease.curve] = true;
@@ -67,7 +67,7 @@ std::vector<std::uint8_t> collar_cells(const Subject& subject, Findings& finding
         "Tet {} at {} is marked as a {} of a collar, but is none around a crease of the complex where "
         "features meet below {:.6g} degrees; give the crease angle that the mesh was made with, or "
         "take the mark off.",
-        t, At{where}, mesh.tet_collar[t] == 1 ? "star" : "book", subject.options.crease_angle);
+        t, At{where}, mesh.tet_collar[t] == 1 ? "star" : "book", subject.options.bounds.crease_angle);
   }
   return cells;
 }

@@ -35,17 +35,17 @@ void check_shape(Index tet, const Corners& p, const TetQuality& quality, const S
   if (subject.collar[tet] != 0) {
     ++report.collar_tets;
     report.max_collar_dihedral = std::max(report.max_collar_dihedral, quality.max_dihedral);
-    if (quality.max_dihedral > options.collar_angle * slack)
+    if (quality.max_dihedral > options.bounds.collar_angle * slack)
       findings.add(
           guarantee::collar_dihedral, p.centre(), {tet},
           "Tet {} of a collar at {} has a dihedral angle of {:.6g} degrees, allowed are {:.6g}; a smaller "
           "size there resolves the crease better.",
-          tet, At{p.centre()}, quality.max_dihedral, options.collar_angle);
+          tet, At{p.centre()}, quality.max_dihedral, options.bounds.collar_angle);
     return;
   }
   report.min_dihedral = std::min(report.min_dihedral, quality.min_dihedral);
   report.max_dihedral = std::max(report.max_dihedral, quality.max_dihedral);
-  const bool within = quality.radius_edge <= options.radius_edge * slack;
+  const bool within = quality.radius_edge <= options.bounds.radius_edge * slack;
   if (!within && thin.claimed(tet)) {
     ++report.thin_tets;
     report.max_thin_radius_edge = std::max(report.max_thin_radius_edge, quality.radius_edge);
@@ -67,7 +67,7 @@ void check_shape(Index tet, const Corners& p, const TetQuality& quality, const S
         guarantee::radius_edge, p.centre(), {tet},
         "Tet {} at {} has circumradius / shortest edge {:.9g}, allowed is {:.9g}; refine with that bound, or "
         "check against the bound that the mesh was made with.",
-        tet, At{p.centre()}, quality.radius_edge, options.radius_edge);
+        tet, At{p.centre()}, quality.radius_edge, options.bounds.radius_edge);
 }
 
 void check_region_tag(Index tet, const Corners& p, const Subject& subject, Findings& findings) {
@@ -93,7 +93,8 @@ void check_tets(const Subject& subject, CheckReport& report, Findings& findings)
   };
   const auto see = [&](Index tet, const TetQuality& quality) {
     const Corners p = corners(tet);
-    const bool is_thin = thin.claimed(tet) && quality.radius_edge > subject.options.radius_edge * slack;
+    const bool is_thin =
+        thin.claimed(tet) && quality.radius_edge > subject.options.bounds.radius_edge * slack;
     report.measures.add(tet, quality, mesh.tet_region[tet],
                         subject.collar[tet] != 0 ? MeshMeasures::Kind::collar
                         : is_thin                ? MeshMeasures::Kind::thin

@@ -13,7 +13,7 @@ constexpr double slack = 1e-9;  // relative
 }  // namespace
 
 ThinCells::ThinCells(const Subject& subject)
-    : smallest_(subject.options.thin_angle),
+    : smallest_(subject.options.bounds.thin_angle),
       marks_(subject.mesh.tet_thin),
       all_(marks_.empty() && subject.mesh.features.empty()) {
   if (!(smallest_ > 0) || (marks_.empty() && !all_)) return;

@@ -87,13 +87,12 @@ std::vector<Item> in_order(std::vector<Item> items) {
 /// on has changed meanwhile, it is made again. So the result is the one that a single thread makes.
 class Coarsening {
  public:
-  Coarsening(Workpiece& workpiece, const MeshOptions& made_with, const CoarsenOptions& options,
-             const Execution& execution)
+  Coarsening(Workpiece& workpiece, const MeshOptions& made_with, const Execution& execution)
       : workpiece_(workpiece),
-        radius_edge_(made_with.radius_edge),
+        radius_edge_(made_with.bounds.radius_edge),
         sizes_(target_sizes(mesh(), workpiece.plc, sizes_asked_for(made_with))),
-        thin_(workpiece.plc, mesh(), options.thin_angle, options.reserve),
-        rule_(thin_, made_with.radius_edge, sizes_),
+        thin_(workpiece.plc, mesh(), made_with.bounds.thin_angle, made_with.bounds.reserve),
+        rule_(thin_, made_with.bounds.radius_edge, sizes_),
         changes_{0, std::vector<std::uint32_t>(mesh().points.size(), 0)},
         proposer_(workpiece_, thin_, radius_edge_, sizes_, changes_),
         proposers_([this] { return Proposer(workpiece_, thin_, radius_edge_, sizes_, changes_); }),
@@ -431,24 +430,25 @@ class Coarsening {
 }  // namespace coarsening
 
 CoarsenReport coarsen(improvement::Workpiece& workpiece, const MeshOptions& made_with,
-                      const CoarsenOptions& options, const Execution& execution) {
-  if (!(options.thin_angle > 0 && options.thin_angle <= 30))
+                      const Execution& execution) {
+  if (!(made_with.bounds.thin_angle > 0 && made_with.bounds.thin_angle <= 30))
     throw OptionError("the smallest angle of thin tetrahedra must be above 0 and at most 30 degrees");
-  if (!(options.reserve >= 0 && options.reserve <= 0.5))
+  if (!(made_with.bounds.reserve >= 0 && made_with.bounds.reserve <= 0.5))
     throw OptionError("the reserve of angles must be from 0 to 0.5");
-  return coarsening::Coarsening(workpiece, made_with, options, execution).run();
+  return coarsening::Coarsening(workpiece, made_with, execution).run();
 }
 
 CoarsenReport coarsen(TetMesh& mesh, const Plc& plc, const MeshOptions& made_with,
-                      const CoarsenOptions& options, const Execution& execution) {
-  const double distance =
-      made_with.distance > 0 ? made_with.distance : default_distance(made_with.size, plc.bounds.diagonal());
+                      const Execution& execution) {
+  const double distance = made_with.bounds.distance > 0
+                              ? made_with.bounds.distance
+                              : default_distance(made_with.size, plc.bounds.diagonal());
   CoarsenReport report;
-  ThreadLimit(options.threads).run([&] {
+  ThreadLimit(made_with.threads).run([&] {
     improvement::Workpiece workpiece(mesh, plc, distance, made_with.edges_per_hole);
-    report = coarsen(workpiece, made_with, options, execution);
+    report = coarsen(workpiece, made_with, execution);
     workpiece.complex.store();
-    improvement::mark_thin_tets(mesh, made_with.radius_edge);
+    improvement::mark_thin_tets(mesh, made_with.bounds.radius_edge);
   });
   return report;
 }

@@ -8,6 +8,6 @@ namespace collarmesh {
 /// As `coarsen`, of a mesh whose improvement comes next: the workpiece is not stored, thin tets are not
 /// marked, and the threads are those of the arena that runs the caller.
 CoarsenReport coarsen(improvement::Workpiece& workpiece, const MeshOptions& made_with,
-                      const CoarsenOptions& options, const Execution& execution);
+                      const Execution& execution);
 
 }  // namespace collarmesh

@@ -42,8 +42,8 @@ class Improvement {
  public:
   Improvement(Workpiece& workpiece, const ImproveOptions& options, const Execution& execution)
       : workpiece_(workpiece),
-        thin_(workpiece.plc, complex().mesh(), options.thin_angle, options.thin_reserve),
-        rule_(options.radius_edge, options.thin_angle > 0 ? &thin_ : nullptr),
+        thin_(workpiece.plc, complex().mesh(), options.bounds.thin_angle, options.bounds.reserve),
+        rule_(options.bounds.radius_edge, options.bounds.thin_angle > 0 ? &thin_ : nullptr),
         remedies_(workpiece, rule_, options),
         operations_([this] { return Operations(workpiece_, rule_); }),
         execution_(execution),
@@ -251,13 +251,13 @@ ImproveReport improve(improvement::Workpiece& workpiece, const ImproveOptions& o
 ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& options,
                       const Execution& execution) {
   const double distance =
-      options.distance > 0 ? options.distance : default_distance(0, plc.bounds.diagonal());
+      options.bounds.distance > 0 ? options.bounds.distance : default_distance(0, plc.bounds.diagonal());
   ImproveReport report;
   ThreadLimit(options.threads).run([&] {
     improvement::Workpiece workpiece(mesh, plc, distance, options.edges_per_hole);
     report = improve(workpiece, options, execution);
     workpiece.complex.store();
-    if (options.thin_angle > 0) improvement::mark_thin_tets(mesh, options.radius_edge);
+    if (options.bounds.thin_angle > 0) improvement::mark_thin_tets(mesh, options.bounds.radius_edge);
   });
   return report;
 }

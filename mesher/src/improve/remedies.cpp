@@ -16,7 +16,7 @@ constexpr double enough = 0.7;
 Remedies::Remedies(const Workpiece& workpiece, const SliverRule& rule, const ImproveOptions& options)
     : complex_(workpiece.complex),
       rule_(rule),
-      thin_above_(options.thin_above > 0 ? options.thin_above : options.radius_edge),
+      thin_above_(options.thin_above > 0 ? options.thin_above : options.bounds.radius_edge),
       wanted_(std::sin(options.min_dihedral * std::numbers::pi / 180)),
       move_vertices_(options.move_vertices),
       keep_vertices_(options.keep_vertices) {}

@@ -112,7 +112,7 @@ void require(bool holds, const std::string& message) {
 void require_consistent(const RunOptions& o) {
   require(o.mesh.size == 0 || o.mesh.size_min <= o.mesh.size,
           fmt::format("size-min {} exceeds size {}; make it smaller", o.mesh.size_min, o.mesh.size));
-  require(!o.coarsen || o.thin_angle > 0,
+  require(!o.coarsen || o.mesh.bounds.thin_angle > 0,
           "thin-angle 0 is for meshes that are not coarsened; make it at least 0.1, or coarsen off");
 }
 

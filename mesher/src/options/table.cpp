@@ -61,6 +61,8 @@ template <auto... members>
 constexpr Option::Place choice_at = At<true, members...>::place;
 template <auto member>
 constexpr Option::Place in_mesh = at<&RunOptions::mesh, member>;
+template <auto member>
+constexpr Option::Place in_bounds = at<&RunOptions::mesh, &MeshOptions::bounds, member>;
 
 constexpr unsigned writing = Option::mesh | Option::convert, meshing = writing | Option::programs,
                    judging = meshing | Option::check, sizing = meshing | Option::info,
@@ -125,7 +127,7 @@ std::vector<Option> size_options() {
 
 std::vector<Option> quality_options() {
   return {{.name = "radius-edge RHO",
-           .place = in_mesh<&MeshOptions::radius_edge>,
+           .place = in_bounds<&Bounds::radius_edge>,
            .unit = Unit::ratio,
            .low = 1,
            .help = "Bound on circumradius / shortest edge of a tetrahedron that is not thin",
@@ -142,7 +144,7 @@ std::vector<Option> quality_options() {
                    "than 2 sqrt 2",
            .details = "not certified, and improvement may exceed it"},
           {.name = "collar-angle DEGREES",
-           .place = in_mesh<&MeshOptions::collar_angle>,
+           .place = in_bounds<&Bounds::collar_angle>,
            .unit = Unit::degrees,
            .low = 100,
            .high = 175,
@@ -161,7 +163,7 @@ std::vector<Option> quality_options() {
            .help = "Insert a point of the input in place of a gap ball's centre within this share of the "
                    "ball's radius; 0: never"},
           {.name = "distance LENGTH",
-           .place = in_mesh<&MeshOptions::distance>,
+           .place = in_bounds<&Bounds::distance>,
            .unit = Unit::length,
            .finer = true,
            .default_text = "1/10 of the size, at most 1/200 of the diagonal (1/550 with --order 2)",
@@ -169,7 +171,7 @@ std::vector<Option> quality_options() {
            .details = "curves that turn by half a circle or more get at least seven edges to a circle",
            .commands = sizing},
           {.name = "distance LENGTH",
-           .place = in_mesh<&MeshOptions::distance>,
+           .place = in_bounds<&Bounds::distance>,
            .unit = Unit::length,
            .default_text = "1/200 of the diagonal",
            .help = "Largest distance from smooth surfaces and curves",
@@ -184,7 +186,7 @@ std::vector<Option> quality_options() {
            .help = "on: as few tetrahedra as the sizes ask for, thin ones in thin places; off: the bound on "
                    "circumradius / shortest edge holds everywhere outside collars"},
           {.name = "thin-angle DEGREES",
-           .place = at<&RunOptions::thin_angle>,
+           .place = in_bounds<&Bounds::thin_angle>,
            .unit = Unit::degrees,
            .low = 0.1,
            .high = 30,
@@ -289,7 +291,7 @@ std::vector<Option> complex_options() {
            "Names of patches, curves and regions, by number or by a point on them, for formats with names",
        .details = "see [Names](names.md)"},
       {.name = "crease-angle DEGREES",
-       .place = in_mesh<&MeshOptions::crease_angle>,
+       .place = in_bounds<&Bounds::crease_angle>,
        .unit = Unit::degrees,
        .high = 90,
        .help = "Features that meet below this angle form a crease and get a collar"}};
@@ -317,7 +319,7 @@ std::vector<Option> budget_options() {
 std::vector<Option> run_options() {
   return {
       {.name = "threads N",
-       .place = at<&RunOptions::threads>,
+       .place = in_mesh<&MeshOptions::threads>,
        .high = 1024,
        .help = "Largest number of threads, which change no result; 0: as many as there are cores",
        .details = "refinement uses them away from the surface, all later stages everywhere",

@@ -84,7 +84,7 @@ class ThreadCounter {
 /// Is `size` the one that the number of elements depends on?
 bool has_one_size(const PipelineOptions& options) {
   const RunOptions given{options}, defaults;
-  return !options.mesh.size_field && options.mesh.radius_edge >= defaults.mesh.radius_edge &&
+  return !options.mesh.size_field && options.mesh.bounds.radius_edge >= defaults.mesh.bounds.radius_edge &&
          std::none_of(option_table().begin(), option_table().end(), [&](const Option& option) {
            return option.finer && option.get(given) != option.get(defaults);
          });
@@ -110,7 +110,7 @@ class SoupSource : public ComplexSource {
 class Pipeline {
  public:
   Pipeline(const PipelineOptions& options, const Execution& execution)
-      : given_(options), outer_(execution), counter_(options.threads) {
+      : given_(options), outer_(execution), counter_(options.mesh.threads) {
     validate({options});
     if (options.partitions > 0) require_partitioner();
     if (options.mesh.time_limit > 0) deadline_.emplace(options.mesh.time_limit, execution);
@@ -273,9 +273,8 @@ class Pipeline {
     if (source_ != nullptr) source_->adapt(plc, options_);
     if (most_vertices_ > 0) options_.mesh.max_vertices = most_vertices_;
     require_known_tags(options_.mesh, plc);
-    bounds_ = bounds_of_refinement();
-    bounds_.seed = seed;
-    bounds_.threads = options_.threads;
+    refined_with_ = options_of_refinement();
+    refined_with_.seed = seed;
     refine();
     reshape();
     project();
@@ -283,24 +282,31 @@ class Pipeline {
     certify();
   }
 
-  double distance() const { return distance_of(options_, plc_->bounds.diagonal()); }
   bool exact() const { return static_cast<bool>(options_.exact); }
-  /// Of the bounds on angles, where vertices move onto exact geometry afterwards.
-  double reserve() const { return exact() ? angle_reserve : 0; }
 
-  MeshOptions bounds_of_refinement() const {
-    MeshOptions bounds = options_.mesh;
-    bounds.distance = distance();
-    bounds.time_limit = 0;  // one limit for all stages
-    if (!exact()) return bounds;
-    bounds.distance *= distance_left;
-    bounds.radius_edge = std::max(1.0, ratio_left * bounds.radius_edge);
+  /// The bounds of the finished mesh.
+  Bounds bounds() const {
+    Bounds bounds = options_.mesh.bounds;
+    bounds.distance = distance_of(options_, plc_->bounds.diagonal());
+    if (!made_.coarsening) bounds.thin_angle = 0;
     return bounds;
+  }
+
+  /// Keeps the mesh within tighter bounds where its vertices move onto exact geometry afterwards.
+  MeshOptions options_of_refinement() const {
+    MeshOptions options = options_.mesh;
+    options.bounds.distance = distance_of(options_, plc_->bounds.diagonal());
+    options.time_limit = 0;  // one limit for all stages
+    if (!exact()) return options;
+    options.bounds.distance *= distance_left;
+    options.bounds.radius_edge = std::max(1.0, ratio_left * options.bounds.radius_edge);
+    options.bounds.reserve = angle_reserve;
+    return options;
   }
 
   void refine() {
     begin("refine", 0.06, options_.coarsen ? 0.6 : 0.7);
-    MeshResult& result = made_.result = generate(*plc_, bounds_, inner_, neighbours_);
+    MeshResult& result = made_.result = generate(*plc_, refined_with_, inner_, neighbours_);
     if (result.status == MeshStatus::cancelled && out_of_time()) stop();
     if (result.status == MeshStatus::cancelled || result.status == MeshStatus::budget_hit) throw Ended();
   }
@@ -316,34 +322,31 @@ class Pipeline {
     else
       begin("improve", 0.7, 0.8);
     TetMesh& mesh = made_.result.mesh;
-    ThreadLimit(options_.threads).run([&] {
-      improvement::Workpiece workpiece(mesh, *plc_, bounds_.distance,
-                                       options_.coarsen ? bounds_.edges_per_hole : 0, neighbours_);
+    ThreadLimit(options_.mesh.threads).run([&] {
+      improvement::Workpiece workpiece(mesh, *plc_, refined_with_.bounds.distance,
+                                       options_.coarsen ? refined_with_.edges_per_hole : 0, neighbours_);
       neighbours_ = KnownNeighbours();
       if (options_.coarsen) coarsen_elements(workpiece);
       if (options_.improve > 0) improve_elements(workpiece);
       workpiece.complex.store();
-      if (options_.coarsen) improvement::mark_thin_tets(mesh, bounds_.radius_edge);
+      if (options_.coarsen) improvement::mark_thin_tets(mesh, refined_with_.bounds.radius_edge);
     });
   }
 
   void coarsen_elements(improvement::Workpiece& workpiece) {
-    made_.coarsening = coarsen(
-        workpiece, bounds_,
-        {.thin_angle = options_.thin_angle, .reserve = reserve(), .threads = options_.threads}, inner_);
+    made_.coarsening = coarsen(workpiece, refined_with_, inner_);
     if (made_.coarsening->cancelled) stop();
   }
 
   void improve_elements(improvement::Workpiece& workpiece) {
     if (made_.coarsening) begin("improve", 0.7, 0.8);
     ImproveOptions options = improve_options(options_.improve);
-    options.radius_edge = bounds_.radius_edge;
-    options.threads = options_.threads;
+    options.bounds = refined_with_.bounds;
+    options.bounds.thin_angle = bounds().thin_angle;
+    options.threads = options_.mesh.threads;
     if (made_.coarsening) {
-      options.thin_angle = options_.thin_angle;
       // Just above the bound a tet may be within it once its vertices have moved onto the exact geometry.
-      options.thin_above = options_.mesh.radius_edge / (exact() ? ratio_left : 1);
-      options.thin_reserve = reserve();
+      options.thin_above = options_.mesh.bounds.radius_edge / (exact() ? ratio_left : 1);
       options.keep_vertices = true;
     }
     if (options_.min_dihedral > 0) options.min_dihedral = options_.min_dihedral;
@@ -355,38 +358,23 @@ class Pipeline {
   void project() {
     if (!exact() || made_.result.status != MeshStatus::complete) return;
     begin("project", 0.8, 0.83);
-    ProjectOptions options;
-    options.radius_edge = options_.mesh.radius_edge;
-    options.collar_angle = options_.mesh.collar_angle;
-    options.reach = distance();
-    options.threads = options_.threads;
-    if (made_.coarsening) options.thin_angle = options_.thin_angle;
+    const ProjectOptions options{.bounds = bounds(), .threads = options_.mesh.threads};
     made_.projection = project_boundary(made_.result.mesh, *plc_, options_.exact, options, inner_);
   }
 
   void raise_order() {
     if (options_.order == 1) return;
     begin("second order", 0.83, 0.86);
-    SecondOrderOptions options;
-    options.exact = options_.exact;
-    options.distance = distance();
-    options.radius_edge = options_.mesh.radius_edge;
-    options.threads = options_.threads;
-    if (made_.coarsening) options.thin_angle = options_.thin_angle;
+    const SecondOrderOptions options{
+        .exact = options_.exact, .bounds = bounds(), .threads = options_.mesh.threads};
     made_.second_order = make_second_order(made_.result.mesh, *plc_, options, inner_);
     if (made_.second_order.cancelled) stop();
   }
 
   void certify() {
     begin("check", 0.86, given_.partitions > 0 ? 0.96 : 1);
-    CheckOptions options;
-    options.radius_edge = options_.mesh.radius_edge;
-    options.distance = distance();
-    options.thin_angle = options_.thin_angle;
-    options.collar_angle = options_.mesh.collar_angle;
-    options.crease_angle = options_.mesh.crease_angle;
-    options.threads = options_.threads;
-    made_.check = check(made_.result.mesh, *plc_, options, inner_);
+    made_.check =
+        check(made_.result.mesh, *plc_, {.bounds = bounds(), .threads = options_.mesh.threads}, inner_);
     stop_if_asked();
   }
 
@@ -443,7 +431,7 @@ class Pipeline {
   Execution inner_;
   ThreadCounter counter_;
   std::optional<Deadline> deadline_;
-  MeshOptions bounds_;
+  MeshOptions refined_with_;
   KnownNeighbours neighbours_;  // of the mesh as it was refined
   const Plc* plc_ = nullptr;
   PipelineResult made_;
@@ -459,8 +447,8 @@ std::string PipelineResult::missed() const {
 }
 
 double distance_of(const PipelineOptions& options, double diagonal) {
-  return options.mesh.distance > 0
-             ? options.mesh.distance
+  return options.mesh.bounds.distance > 0
+             ? options.mesh.bounds.distance
              : default_distance(options.mesh.size, diagonal, static_cast<int>(options.order));
 }
 

@@ -48,7 +48,7 @@ std::vector<Prediction> predict(const Plc& plc, const PipelineOptions& options,
     PipelineOptions of_size = options;
     if (given > 0) of_size.mesh.size = given;
     MeshOptions& mesh = of_size.mesh;
-    mesh.distance = distance_of(of_size, diagonal);
+    mesh.bounds.distance = distance_of(of_size, diagonal);
     Prediction& made = predictions.emplace_back();
     made.size = mesh.size > 0 ? mesh.size : diagonal / sizes_per_diagonal;
     if (is_empty) continue;

@@ -71,7 +71,9 @@ class Counter {
   }
 
   /// The longest chord of a circle of this radius that is near enough to it.
-  double chord(double radius) const { return std::sqrt(8 * radius * model_.chord * options_.distance); }
+  double chord(double radius) const {
+    return std::sqrt(8 * radius * model_.chord * options_.bounds.distance);
+  }
 
   double size_of_segment(Index c, std::size_t i) const {
     const auto [a, b] = shape_.segment(c, i);

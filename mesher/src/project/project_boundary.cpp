@@ -24,10 +24,11 @@ class BoundaryProjection {
         limited_(flat_.limit(exact)),
         options_(options),
         execution_(execution),
-        reach_(options.reach > 0 ? options.reach : default_distance(0, plc.bounds.diagonal())),
-        thin_(plc, mesh, options.thin_angle),
+        reach_(options.bounds.distance > 0 ? options.bounds.distance
+                                           : default_distance(0, plc.bounds.diagonal())),
+        thin_(plc, mesh, options.bounds.thin_angle),
         room_(mesh, limited_,
-              {options.radius_edge, options.collar_angle, thin_.empty() ? nullptr : &thin_,
+              {options.bounds.radius_edge, options.bounds.collar_angle, thin_.empty() ? nullptr : &thin_,
                largest_sag * reach_}) {}
 
   ProjectReport run() {
@@ -51,7 +52,9 @@ class BoundaryProjection {
     }
     finish();
     if (!thin_.empty())
-      ThreadLimit(options_.threads).run([&] { improvement::mark_thin_tets(mesh_, options_.radius_edge); });
+      ThreadLimit(options_.threads).run([&] {
+        improvement::mark_thin_tets(mesh_, options_.bounds.radius_edge);
+      });
     return report_;
   }
 

@@ -51,9 +51,9 @@ void CellQuality::judge(Index cell, WorkQueue& queue) const {
   const Shape shape = shape_of(mesh_, v);
   const double r2 = mesh_.squared_radius(cell);
   const Point& centre = mesh_.circumcentre(cell);
-  const double bound = region == 0
-                           ? std::max(domain_.options.exterior_radius_edge, domain_.options.radius_edge)
-                           : domain_.options.radius_edge;
+  const double bound =
+      region == 0 ? std::max(domain_.options.exterior_radius_edge, domain_.options.bounds.radius_edge)
+                  : domain_.options.bounds.radius_edge;
   const bool skinny = r2 > bound * bound * shape.shortest_squared_edge &&
                       !(region == 0 && facing_sheets_.fills_gap(cell, bound));
   // Cocircular input makes cells whose volume is noise although their radius-edge ratio is not. Those on one

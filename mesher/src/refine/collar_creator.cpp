@@ -31,7 +31,7 @@ void CollarCreator::start() {
   options.stopped = stopped_;
   options.smallest_radius = domain_.floor;
   options.outside = [this](const Point& p) { return domain_.frame.outside(p); };
-  const std::vector<Crease> creases = find_creases(domain_.plc, domain_.options.crease_angle);
+  const std::vector<Crease> creases = find_creases(domain_.plc, domain_.options.bounds.crease_angle);
   if (creases.empty()) return;
   if (domain_.options.collar_creation == CollarCreation::in_pass) {
     collars_ = CollarSystem(domain_.plc, domain_.points, creases);

@@ -123,7 +123,7 @@ bool CollarSurface::poorly_represented(const CollarTriangle& t) {
   const Point &a = mesh_.point(v[0]), &b = mesh_.point(v[1]), &c = mesh_.point(v[2]);
   if (predicates::orientation(a, b, c, ball.centre) <= 0) return true;
   const TetQuality quality = measure(a, b, c, ball.centre);
-  if (quality.max_dihedral > domain_.options.collar_angle) return true;
+  if (quality.max_dihedral > domain_.options.bounds.collar_angle) return true;
   if (cells_.taken_in_by(cell_of(inner)) == none) {
     const Vector along = mesh_.circumcentre(cell_of(inner)) - mesh_.circumcentre(outer);
     const Vector normal = ball.centre - t.representation;
@@ -258,7 +258,7 @@ bool CollarSurface::poor_book(const CollarTriangle& t, const CollarTriangle& u,
   const Point &a = mesh_.point(v[first]), &b = mesh_.point(v[(first + 1) % 3]);
   const Point &p = collars_.balls()[t.ball].centre, &q = collars_.balls()[u.ball].centre;
   return predicates::orientation(b, a, q, p) <= 0 ||
-         measure(b, a, q, p).max_dihedral > domain_.options.collar_angle;
+         measure(b, a, q, p).max_dihedral > domain_.options.bounds.collar_angle;
 }
 
 std::optional<Candidate> CollarSurface::repair(const CollarTriangle& t) const {

@@ -392,14 +392,14 @@ constexpr unsigned most_rounds = 4;
 bool replace_in_mesh(TetMesh& mesh, const Plc& plc, std::span<const UnwantedTet> unwanted,
                      const SecondOrderOptions& options) {
   const double distance =
-      options.distance > 0 ? options.distance : default_distance(0, plc.bounds.diagonal());
+      options.bounds.distance > 0 ? options.bounds.distance : default_distance(0, plc.bounds.diagonal());
   std::size_t gone = 0;
   ThreadLimit(options.threads).run([&] {
     improvement::Workpiece workpiece(mesh, plc, distance);
-    const improvement::ThinShape thin(plc, mesh, options.thin_angle);
+    const improvement::ThinShape thin(plc, mesh, options.bounds.thin_angle);
     gone = improvement::replace_tets(workpiece, unwanted, improvement::ThinRule(thin), 1);
     workpiece.complex.store();
-    improvement::mark_thin_tets(mesh, options.radius_edge);
+    improvement::mark_thin_tets(mesh, options.bounds.radius_edge);
   });
   return gone > 0;
 }
@@ -411,8 +411,6 @@ SecondOrderReport make_second_order(TetMesh& mesh, const Plc& plc, const SecondO
                                     const Execution& execution) {
   if (!(options.least_jacobian >= 0 && options.least_jacobian < 1))
     throw OptionError("least-jacobian must be at least 0 and below 1");
-  if (!(options.thin_angle >= 0 && options.thin_angle <= 30))
-    throw OptionError("the smallest angle of thin tetrahedra must be from 0 to 30 degrees");
   const auto start = std::chrono::steady_clock::now();
   const std::size_t tets_before = mesh.tets.size();
   std::size_t flat_before = SIZE_MAX, invalid_before = SIZE_MAX;
@@ -423,7 +421,7 @@ SecondOrderReport make_second_order(TetMesh& mesh, const Plc& plc, const SecondO
       report.cancelled = true;
       break;
     }
-    const bool may_replace = options.thin_angle > 0 && round < second_order::most_rounds;
+    const bool may_replace = options.bounds.thin_angle > 0 && round < second_order::most_rounds;
     if (may_replace) {
       const auto flat = curving.flat_at_corners();
       const bool fewer = flat.size() < flat_before;
