@@ -328,7 +328,7 @@ TEST(SurfaceParts, AClosedPatchIsSeededAndAMissedOneMore) {
 TEST(SurfaceParts, WhatIsFarFromASmoothPatchIsSplitUntilNothingIs) {
   const Plc plc = build(testing::sphere(12, 1, {0, 0, 0}));
   MeshOptions options;
-  options.distance = 0.1;
+  options.bounds.distance = 0.1;
   Parts parts(plc, options);
   parts.check.seed_closed_patches();
   parts.resolve_all();
@@ -351,7 +351,7 @@ TEST(SurfaceParts, WhatIsFarFromASmoothPatchIsSplitUntilNothingIs) {
           std::min(nearest, squared_distance_to_triangle(p, parts.mesh.point(v[0]), parts.mesh.point(v[1]),
                                                          parts.mesh.point(v[2])));
     }
-    EXPECT_LE(std::sqrt(nearest), options.distance);
+    EXPECT_LE(std::sqrt(nearest), options.bounds.distance);
   }
 }
 

@@ -88,9 +88,13 @@ TEST(OptionTable, RangesHoldForTextAndForValues) {
     EXPECT_FALSE(judged(-1)) << option.name;
     EXPECT_FALSE(judged(std::nan(""))) << option.name;
     EXPECT_FALSE(judged(INFINITY)) << option.name;
-    if (option.low > 0) EXPECT_FALSE(judged(0.9 * option.low)) << option.name;
-    if (option.high < 1e6) EXPECT_FALSE(judged(option.high + 1)) << option.name;
-    if (option.high < 1e6) EXPECT_TRUE(judged(option.high)) << option.name;
+    if (option.low > 0) {
+      EXPECT_FALSE(judged(0.9 * option.low)) << option.name;
+    }
+    if (option.high < 1e6) {
+      EXPECT_FALSE(judged(option.high + 1)) << option.name;
+      EXPECT_TRUE(judged(option.high)) << option.name;
+    }
   }
 }
 

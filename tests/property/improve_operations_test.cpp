@@ -181,7 +181,7 @@ class ImproveOperations : public ::testing::Test {
   static void SetUpTestSuite() {
     for (const Shape& shape : shapes()) {
       MeshOptions options = with_size(shape.size);
-      options.distance = distance;
+      options.bounds.distance = distance;
       meshes().emplace_back(shape.name, mesh_of(shape.soups, options, shape.feature_angle));
       ASSERT_EQ(testing::faults(meshes().back().second), "") << shape.name;
     }

@@ -14,7 +14,7 @@ namespace collarmesh {
 struct CheckOptions {
   /// Where a mesh tells which tets are thin only these may be, in memory as well as read from a file. Cells
   /// of a collar are excused at creases only.
-  Bounds bounds;
+  Bounds bounds = {};
   std::size_t findings_per_guarantee = 20;  ///< more are counted, not listed
   unsigned threads = 0;                     ///< at most; 0: as many as there are cores
 };

@@ -13,7 +13,7 @@ namespace collarmesh {
 struct ImproveOptions {
   double min_dihedral =
       20;  ///< degrees; tets with a smaller dihedral angle, or one as bad beyond 90 degrees, are worked on
-  Bounds bounds;          ///< which no new tet breaks
+  Bounds bounds = {};     ///< which no new tet breaks
   double thin_above = 0;  ///< the radius-edge ratio above which tets will be called thin; 0: the bound on it
   bool move_vertices = true;   ///< and take some out or in, not only change how they are connected
   bool keep_vertices = false;  ///< take none out or in beside thin tets but where an angle is above the

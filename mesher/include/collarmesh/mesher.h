@@ -23,12 +23,12 @@ enum class CollarCreation { in_pass, up_front };
 struct MeshOptions {
   double size = 0;      ///< target edge length everywhere; 0: 1/20 of the diagonal
   double size_min = 0;  ///< never ask for less than this because of gradation or fields; 0: none
-  std::map<Tag, double> region_size;  ///< target edge length by region tag
-  std::map<Tag, double> patch_size;   ///< by patch tag
-  std::map<Tag, double> curve_size;   ///< by curve tag
+  std::map<Tag, double> region_size = {};  ///< target edge length by region tag
+  std::map<Tag, double> patch_size = {};   ///< by patch tag
+  std::map<Tag, double> curve_size = {};   ///< by curve tag
   /// Growth of size per unit length away from a finer patch, curve or region; 0: unlimited.
   double gradation = 0;
-  SizeField size_field;            ///< target edge length at a point; may be empty
+  SizeField size_field = {};       ///< target edge length at a point; may be empty
   double elements_per_circle = 0;  ///< target edge lengths on smooth patches and curves put so many on a full
                                    ///< circle of their curvature; 0: none
   /// Smooth curves that turn by half a circle or more get at least so many edges to a full circle: small
@@ -36,7 +36,7 @@ struct MeshOptions {
   double edges_per_hole = 7;
   double elements_across_gap = 0;  ///< target edge lengths on patches put so many between them and what they
                                    ///< face across a region; 0: none
-  Bounds bounds;
+  Bounds bounds = {};
   /// The bound on circumradius / shortest edge outside every region, where that is larger; edges straight
   /// across a gap do not count there.
   double exterior_radius_edge = 8;

@@ -11,7 +11,7 @@
 namespace collarmesh {
 
 struct ProjectOptions {
-  Bounds bounds;  ///< which no tet breaks; vertices farther than the distance from their feature stay
+  Bounds bounds = {};  ///< which no tet breaks; vertices farther than the distance from their feature stay
   double tolerance = 1e-9;  ///< absolute: a vertex that stays and is nearer to its feature is no exception
   unsigned threads = 0;     ///< at most; 0: as many as there are cores
 };

@@ -12,12 +12,12 @@
 namespace collarmesh {
 
 struct SecondOrderOptions {
-  ExactGeometry exact;  ///< where it is empty or gives nothing: the complex's own polyline or triangles
+  ExactGeometry exact = {};  ///< where it is empty or gives nothing: the complex's own polyline or triangles
   double least_jacobian =
       0.1;  ///< everywhere in a curved tet, relative to the straight one; 0: positive is enough
   /// Those of the mesh. Tets that cannot be curved are replaced by others, which may be thin; with a thin
   /// angle of 0 the tets stay.
-  Bounds bounds;
+  Bounds bounds = {};
   unsigned threads = 0;  ///< at most; 0: as many as there are cores. The result does not depend on it
 };
 
