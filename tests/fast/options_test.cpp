@@ -1,5 +1,6 @@
 #include "collarmesh/options.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +22,7 @@ const Option& row(const std::string& name) {
   throw std::runtime_error("no option " + name);
 }
 
-/// A number in the middle of the range of an option, or a word.
+/// A word, or a number within the range of an option that is not its default.
 std::string some_text(const Option& option) {
   switch (option.kind()) {
     case Kind::choice: return option.words.back();
@@ -30,10 +31,13 @@ std::string some_text(const Option& option) {
     case Kind::texts: return "a file";
     default: break;
   }
-  const double number =
-      std::isfinite(option.high) ? std::ceil(0.5 * (option.low + option.high)) : option.low + 3;
-  return number <= option.high ? std::to_string(number).substr(0, std::to_string(number).find('.'))
-                               : std::to_string(option.high);
+  const double middle = std::isfinite(option.high) ? 0.5 * (option.low + option.high) : option.low + 3;
+  for (const double number : {std::ceil(middle), middle, option.high}) {
+    RunOptions options;
+    std::string text = fmt::format("{}", number);
+    if (option.read(text, options) && option.get(options) != option.get({})) return text;
+  }
+  throw std::runtime_error("only one value for " + option.name);
 }
 
 TEST(OptionTable, ANameIsThereOnceForEachCommand) {

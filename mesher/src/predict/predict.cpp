@@ -21,17 +21,20 @@ double seconds_for(double refined_tets, unsigned order) {
   return of_one * std::pow(refined_tets, power) * (order == 2 ? of_second_order : 1);
 }
 
+/// With another size; 0: its own.
+PipelineOptions with_size(PipelineOptions options, double size) {
+  if (size > 0) options.mesh.size = size;
+  return options;
+}
+
 void require_valid(const PipelineOptions& options, std::span<const double> sizes, const Plc& plc) {
   if (!options.coarsen) throw OptionError("only meshes that are coarsened can be predicted");
-  validate({options});
   require_known_tags(options.mesh, plc);
+  if (sizes.empty()) validate({options});
   for (const double size : sizes) {
     if (!(size >= 0) || !std::isfinite(size))
       throw OptionError(fmt::format("a size of {} cannot be predicted; 0 stands for the default", size));
-    const double used = size > 0 ? size : options.mesh.size;
-    if (used > 0 && options.mesh.size_min > used)
-      throw OptionError(
-          fmt::format("size-min {} exceeds the size {}; make it smaller", options.mesh.size_min, used));
+    validate({with_size(options, size)});
   }
 }
 
@@ -45,8 +48,7 @@ std::vector<Prediction> predict(const Plc& plc, const PipelineOptions& options,
   const prediction::Shape shape(plc);
   std::vector<Prediction> predictions;
   for (const double given : sizes) {
-    PipelineOptions of_size = options;
-    if (given > 0) of_size.mesh.size = given;
+    PipelineOptions of_size = with_size(options, given);
     MeshOptions& mesh = of_size.mesh;
     mesh.bounds.distance = distance_of(of_size, diagonal);
     Prediction& made = predictions.emplace_back();
