@@ -31,6 +31,7 @@ class AcuteInput:
     suffix = ".poly"
     volume = diagonal = 1.0   # about: for a first guess of the size that makes so many tets
     parts: list[Part] = field(default_factory=list)
+    small_copy: float = 0   # beside it; of polylines
 
     @property
     def name(self) -> str:
@@ -71,7 +72,9 @@ class AcuteInput:
         for old in path_without_suffix.parent.glob(f"{path_without_suffix.name}_*.poly"):
             old.unlink()
         command = [str(self.program), str(path_without_suffix), self.family, *(f"{p:.17g}" for p in self.parameters)]
-        subprocess.run(command + (["--copies", str(self.copies)] if self.copies else []), check=True)
+        command += ["--copies", str(self.copies)] if self.copies else []
+        command += ["--small-copy", f"{self.small_copy:.17g}"] if self.small_copy else []
+        subprocess.run(command, check=True)
         count = len(list(path_without_suffix.parent.glob(f"{path_without_suffix.name}_*.poly")))
         self.parts = [read_part(path_without_suffix.parent / f"{path_without_suffix.name}_{k + 1}.poly")
                       for k in range(count)] if self.copies == 0 else [Part([], [])] * count

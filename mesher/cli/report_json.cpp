@@ -67,10 +67,15 @@ Json filled_json(const std::vector<FilledHole>& holes) {
 Json counts_json(const WorkCounts& c) {
   return {{"located", c.located},
           {"relocated", c.relocated},
+          {"looks", c.looks},
           {"gap_queries", c.gap_queries},
           {"gap_cells", c.gap_cells},
+          {"gap_interviews", c.gap_interviews},
           {"largest_degree", c.largest_degree},
           {"largest_cavity", c.largest_cavity},
+          {"largest_cavity_outside_hubs", c.largest_cavity_outside_hubs},
+          {"peak_cells_per_vertex", c.peak_cells_per_vertex},
+          {"before_quality", c.before_quality},
           {"ripped_out", c.ripped_out},
           {"smallest_aspect", c.smallest_aspect},
           {"largest_aspect", c.largest_aspect}};

@@ -1,5 +1,6 @@
-// Writes a member of the acute families of the tests as .poly files, one for each solid: PREFIX_1.poly,
-// PREFIX_2.poly, ... With --copies N it is N turned copies in a cubic grid. With --triangulated it is also
+// Writes a member of the families of the tests (acute shapes, polylines) as .poly files, one for each solid:
+// PREFIX_1.poly, PREFIX_2.poly, ... With --copies N it is N turned copies in a cubic grid, with
+// --small-copy SHARE (of polylines) a copy so small beside it. With --triangulated it is also
 // written as one complex of conforming triangles: PREFIX.off when these bound solids and nothing else, else
 // PREFIX.poly.
 #include <fmt/format.h>
@@ -17,6 +18,7 @@
 
 #include "conforming_triangles.h"
 #include "support/acute_shapes.h"
+#include "support/polylines.h"
 
 namespace {
 
@@ -27,6 +29,7 @@ using collarmesh::PolygonSoup;
 using collarmesh::Vector;
 using collarmesh::testing::TriangleComplex;
 namespace acute = collarmesh::testing::acute;
+namespace polylines = collarmesh::testing::polylines;
 
 using Family = std::function<acute::Shape(std::span<const double>)>;
 
@@ -51,7 +54,7 @@ acute::Shape random_member(std::uint32_t seed, std::size_t number) {
   return members[number];
 }
 
-const std::map<std::string, Family>& families() {
+const std::map<std::string, Family>& acute_families() {
   static const std::map<std::string, Family> all{
       {"comb", family(acute::comb)},
       {"cubes_touching_in_a_corner", family(acute::cubes_touching_in_a_corner)},
@@ -87,6 +90,31 @@ const std::map<std::string, Family>& families() {
       {"wedges_touching_in_an_edge", family(acute::wedges_touching_in_an_edge)},
   };
   return all;
+}
+
+const std::map<std::string, Family>& polyline_families() {
+  static const std::map<std::string, Family> all{
+      {"box_frames", family(polylines::box_frames)},
+      {"crossed_strips", family(polylines::crossed_strips)},
+      {"crossed_wires", family(polylines::crossed_wires)},
+      {"graph", family(polylines::graph)},
+      {"helices", family(polylines::helices)},
+      {"outlines", family(polylines::outlines)},
+      {"random_walk", family(polylines::random_walk)},
+      {"shrinking_spiral", family(polylines::shrinking_spiral)},
+      {"skew_combs", family(polylines::skew_combs)},
+      {"skew_zigzags", family(polylines::skew_zigzags)},
+      {"star", family(polylines::star)},
+      {"torus_knot", family(polylines::torus_knot)},
+      {"welded_mesh", family(polylines::welded_mesh)},
+  };
+  return all;
+}
+
+const Family& family_named(const std::string& name) {
+  for (const auto* families : {&acute_families(), &polyline_families()})
+    if (const auto found = families->find(name); found != families->end()) return found->second;
+  throw std::invalid_argument("no such family");
 }
 
 Box bounds(const std::vector<PolygonSoup>& soups) {
@@ -175,6 +203,7 @@ void write_triangles(const TriangleComplex& complex, const std::string& prefix) 
 struct Request {
   std::vector<std::string> words;  // prefix, family and parameters
   unsigned copies = 0;
+  double small_copy = 0;  // of polylines
   bool triangulated = false;
 };
 
@@ -186,6 +215,8 @@ Request request_of(std::span<char* const> arguments) {
       request.triangulated = true;
     else if (argument == "--copies" && i + 1 < arguments.size())
       request.copies = static_cast<unsigned>(std::stoul(arguments[++i]));
+    else if (argument == "--small-copy" && i + 1 < arguments.size())
+      request.small_copy = std::stod(arguments[++i]);
     else
       request.words.push_back(argument);
   }
@@ -194,11 +225,10 @@ Request request_of(std::span<char* const> arguments) {
 
 int write_shape(const Request& request) {
   const std::string &prefix = request.words[0], &family = request.words[1];
-  const auto found = families().find(family);
-  if (found == families().end()) throw std::invalid_argument("no such family");
   std::vector<double> values;
   for (std::size_t i = 2; i < request.words.size(); ++i) values.push_back(std::stod(request.words[i]));
-  const acute::Shape shape = found->second(values);
+  acute::Shape shape = family_named(family)(values);
+  if (request.small_copy > 0) shape = polylines::with_small_copy(shape, request.small_copy);
   const auto soups = request.copies == 0 ? shape.soups : copies_of(shape, request.copies);
   for (std::size_t k = 0; k < soups.size(); ++k)
     write_poly(soups[k], fmt::format("{}_{}.poly", prefix, k + 1));
@@ -207,7 +237,7 @@ int write_shape(const Request& request) {
 }
 
 int list_families() {
-  for (const auto& [name, make] : families())
+  for (const auto& [name, make] : acute_families())
     if (name != "random_member") fmt::print("{}\n", name);
   return 0;
 }
@@ -219,10 +249,11 @@ int list_random_members(const std::string& seed) {
 }
 
 int usage() {
-  fmt::print(stderr,
-             "usage: acute_shape PREFIX FAMILY PARAMETERS... [--copies N] [--triangulated]\n"
-             "       acute_shape --families\n"
-             "       acute_shape --random-members SEED\n");
+  fmt::print(
+      stderr,
+      "usage: acute_shape PREFIX FAMILY PARAMETERS... [--copies N] [--small-copy SHARE] [--triangulated]\n"
+      "       acute_shape --families\n"
+      "       acute_shape --random-members SEED\n");
   return 2;
 }
 

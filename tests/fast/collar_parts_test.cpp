@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <set>
 
@@ -12,6 +13,7 @@
 #include "refine/surface_topology.h"
 #include "support/acute_shapes.h"
 #include "support/plc_shapes.h"
+#include "support/polylines.h"
 #include "support/refinement_parts.h"
 
 namespace collarmesh {
@@ -46,6 +48,29 @@ struct Parts : testing::KnownCurves {
       insert_and_tell(p.point, p.feature);
       chains.point_resolved(point);
     }
+  }
+  void resolve_vertex_with_ball(Index vertex) {
+    const Point p = points[vertex].point;
+    points.resolve(vertex, mesh.vertex_count());
+    insert_and_tell(p, {0, vertex});
+    creator.create_at_vertex(vertex, mesh.last_vertex());
+    chains.point_resolved(vertex);
+  }
+  // Split all subsegments whose balls hold vertices, as the loop does.
+  void split_encroached() {
+    WorkQueue::Item item;
+    while (queue.first_priority() == WorkQueue::encroached_subsegments && queue.pop(item))
+      if (chains.due(item.entry) && !creator.create_at_subsegment(item.entry.id))
+        chains.split_ahead(*chains.split_of(item.entry.id));
+  }
+  // The pieces of a curve by their parameters, sorted.
+  std::vector<std::array<double, 2>> pieces_of(Index curve) const {
+    std::vector<std::array<double, 2>> pieces;
+    chains.visit([&](Index, const Subsegment& s) {
+      if (s.curve == curve) pieces.push_back(s.parameters);
+    });
+    std::sort(pieces.begin(), pieces.end());
+    return pieces;
   }
   // The radius of the ball on whose sphere a point lies.
   double radius_around(const Point& p) const {
@@ -151,14 +176,9 @@ TEST(CollarParts, ACreaseGetsItsBallsInsteadOfASplit) {
   const Plc plc = build(testing::wedge(25, 1));
   Parts parts(plc, Parts::with(CollarCreation::in_pass));
   const Index curve = parts.open_creases.curves().at(0);
-  for (const Index end : plc.curves[curve].ends) {
-    const Point p = parts.points[end].point;
-    parts.points.resolve(end, parts.mesh.vertex_count());
-    parts.insert_and_tell(p, {0, end});
-    parts.creator.create_at_vertex(end, parts.mesh.last_vertex());
-  }
+  for (const Index end : plc.curves[curve].ends) parts.resolve_vertex_with_ball(end);
   const auto& chain = parts.open_creases.chain(curve);
-  EXPECT_GT(chain.pending, 0U);  // where it leaves the balls there are no vertices yet
+  EXPECT_GT(chain.unresolved, 0U);  // where it leaves the balls there are no vertices yet
   for (const Index point : std::array<Index, 2>(chain.ends)) {
     const UnresolvedPoints::Unresolved p = parts.points[point];
     parts.points.resolve(point, parts.mesh.vertex_count());
@@ -175,6 +195,117 @@ TEST(CollarParts, ACreaseGetsItsBallsInsteadOfASplit) {
   EXPECT_GT(parts.collars.balls().size(), before);
   EXPECT_FALSE(parts.open_creases.is_open(curve));
   parts.chains.visit([&](Index, const Subsegment& piece) { EXPECT_NE(piece.curve, curve); });
+}
+
+// One that was split while its ends were missing gets them as soon as these are there, and what splits it
+// goes.
+TEST(CollarParts, ACreaseThatIsSplitAheadGetsItsBallsWhenItsEndsAreThere) {
+  const Plc plc = build(testing::wedge(25, 1));
+  Parts parts(plc, Parts::with(CollarCreation::in_pass));
+  const Index curve = parts.open_creases.curves().at(0);
+  const double length = parts.domain.paths.length(curve);
+  parts.insert_and_tell(parts.domain.paths.point(curve, 0.45 * length) + Vector{-0.05, 0.01, 0}, {3, none});
+  parts.split_encroached();
+  EXPECT_GT(parts.pieces_of(curve).size(), 2U);
+  EXPECT_TRUE(parts.open_creases.chain(curve).split);
+  for (const Index end : plc.curves[curve].ends) parts.resolve_vertex_with_ball(end);
+  for (const Index point : std::array<Index, 2>(parts.open_creases.chain(curve).ends)) {
+    const UnresolvedPoints::Unresolved p = parts.points[point];
+    parts.points.resolve(point, parts.mesh.vertex_count());
+    parts.insert_and_tell(p.point, p.feature);
+    parts.chains.point_resolved(point);
+  }
+  parts.split_encroached();
+  EXPECT_FALSE(parts.open_creases.is_open(curve));
+  EXPECT_TRUE(parts.pieces_of(curve).empty());
+  for (Index point = 0; point < parts.points.size(); ++point)
+    if (parts.points[point].dormant) {
+      EXPECT_EQ(parts.points[point].object, none);
+    }
+}
+
+// A dome over a segment of a disc that spans so many degrees: its rim has an inner seed close behind the
+// sphere of each ball at its ends.
+PolygonSoup dome(double span) {
+  constexpr Index around = 24, along = 8;
+  const double half = span * std::numbers::pi / 360;
+  const Point middle{std::cos(half), 0, 0};
+  PolygonSoup soup;
+  for (Index j = 1; j <= along; ++j)
+    for (Index i = 0; i <= around; ++i) {
+      const double turn = half * (2.0 * i / around - 1), t = static_cast<double>(j) / along;
+      Point p = middle + t * (Point{std::cos(turn), std::sin(turn), 0} - middle);
+      p.z = 0.15 * (1 - t * t);
+      soup.points.push_back(p);
+    }
+  soup.points.push_back(middle + Vector{0, 0, 0.15});
+  const auto at = [](Index j, Index i) { return (j - 1) * (around + 1) + i; };
+  const Index top = at(along, around) + 1;
+  std::vector<Index> base, side{top};
+  for (Index i = 0; i <= around; ++i) base.push_back(at(along, around - i));
+  for (Index j = 1; j <= along; ++j) side.push_back(at(j, around));
+  for (Index j = along; j > 0; --j) side.push_back(at(j, 0));
+  soup.add_facet(base, 1);
+  soup.add_facet(side, 2);
+  for (Index i = 0; i < around; ++i) {
+    soup.add_facet(std::array{top, at(1, i), at(1, i + 1)}, 3);
+    for (Index j = 1; j < along; ++j) {
+      soup.add_facet(std::array{at(j, i), at(j + 1, i), at(j + 1, i + 1)}, 3);
+      soup.add_facet(std::array{at(j, i), at(j + 1, i + 1), at(j, i + 1)}, 3);
+    }
+  }
+  return soup;
+}
+
+// Nobody waits for a seed that goes because the ball at an end of its crease nearly holds it.
+TEST(CollarParts, ACreaseWhoseSeedsAreWithdrawnIsComplete) {
+  PlcOptions smooth;
+  smooth.feature_angle = 35;
+  const Plc plc = build_plc(std::vector{dome(130)}, smooth);
+  Parts parts(plc, Parts::with(CollarCreation::in_pass));
+  const auto curves = parts.open_creases.curves();
+  const auto rim =
+      std::find_if(curves.begin(), curves.end(), [&](Index c) { return !plc.curves[c].straight; });
+  ASSERT_NE(rim, curves.end());
+  ASSERT_EQ(parts.pieces_of(*rim).size(), 3U);
+  for (const Index end : plc.curves[*rim].ends) parts.resolve_vertex_with_ball(end);
+  EXPECT_EQ(parts.pieces_of(*rim).size(), 1U);
+  EXPECT_EQ(parts.open_creases.chain(*rim).unresolved, 2U);  // where it leaves the balls
+}
+
+TEST(CollarParts, AChainThatIsSplitBeginsOnTheSphereOfTheBallAtItsEnd) {
+  const Plc plc = build(testing::polylines::skew_zigzags(16, 40).soups[0]);
+  const auto creases = find_creases(plc, 60);
+  ASSERT_FALSE(creases.empty());
+  for (const double away : {0.01, 0.1, 0.3, 0.5}) {
+    SCOPED_TRACE(away);
+    Parts parts(plc, Parts::with(CollarCreation::in_pass));
+    const Index vertex = creases[0].vertex;
+    const Index curve = plc.vertices[vertex].curves.at(0);
+    const double length = parts.domain.paths.length(curve);
+    const bool at_start = plc.curves[curve].ends[0] == vertex;
+    const double near = at_start ? away * length : (1 - away) * length;
+    const Vector aside{0, 0, 0.2 * away * length};
+    parts.insert_and_tell(parts.domain.paths.point(curve, near) + aside, {3, none});
+    parts.split_encroached();
+    EXPECT_GT(parts.pieces_of(curve).size(), 2U);
+    parts.resolve_vertex_with_ball(vertex);
+    const CollarBall ball = parts.collars.balls().back();
+    const auto pieces = parts.pieces_of(curve);
+    ASSERT_FALSE(pieces.empty());
+    for (std::size_t i = 1; i < pieces.size(); ++i) EXPECT_EQ(pieces[i - 1][1], pieces[i][0]);
+    EXPECT_NEAR(at_start ? pieces.front()[0] : length - pieces.back()[1], ball.radius, 1e-9);
+    EXPECT_NEAR(at_start ? pieces.back()[1] : pieces.front()[0], at_start ? length : 0, 1e-9);
+    for (Index point = 0; point < parts.points.size(); ++point) {
+      const UnresolvedPoints::Unresolved& p = parts.points[point];
+      if (p.object != none && p.feature.dimension == 1 && p.feature.index == curve) {
+        EXPECT_GT(distance(p.point, ball.centre), ball.radius * (1 - 1e-9));
+      }
+    }
+    const double shortest =
+        at_start ? pieces.front()[1] - pieces.front()[0] : pieces.back()[1] - pieces.back()[0];
+    EXPECT_GT(shortest, 0.25 * ball.radius);
+  }
 }
 
 // What came near last is asked first: that changes no answer.

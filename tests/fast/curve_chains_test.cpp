@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "support/plc_shapes.h"
 #include "support/refinement_parts.h"
@@ -36,33 +39,71 @@ struct Curves : testing::KnownCurves {
     for (Index point = 0; point < points.size(); ++point)
       if (!points.resolved(point)) resolve(point);
   }
-  std::size_t count() const {
+  std::size_t count(bool resolved) const {
     std::size_t n = 0;
-    chains.visit([&](Index, const Subsegment&) { ++n; });
+    chains.visit([&](Index, const Subsegment& s) { n += s.resolved() == resolved ? 1 : 0; });
     return n;
   }
-  /// Split what is in the queue until nothing is. Returns how many were.
-  std::size_t split_all() {
+  std::size_t count() const { return count(true) + count(false); }
+  /// Do what the queue asks for, as the loop does, until nothing is left. Returns the number of splits.
+  std::size_t work_off() {
     std::size_t splits = 0;
     for (WorkQueue::Item item; queue.pop(item);) {
-      const bool splits_one = item.priority == WorkQueue::encroached_subsegments ||
-                              item.priority == WorkQueue::coarse_subsegments;
-      if (!splits_one || !chains.due(item.entry)) continue;
-      const auto split = chains.split_of(item.entry.id);
-      if (!split || split->candidate.start == none) return none;
-      chains.remove(*split);
-      insert_and_tell(split->candidate.point, split->candidate.feature);
-      chains.add_pieces(*split, mesh.last_vertex());
-      ++splits;
+      if (item.priority == WorkQueue::unresolved_points) {
+        if (points.due(item.entry.id, item.entry.stamp)) resolve(item.entry.id);
+      } else if (chains.due(item.entry)) {
+        const auto split = chains.split_of(item.entry.id);
+        if (!split || split->candidate.start == none) return none;
+        if (item.priority == WorkQueue::encroached_subsegments)
+          chains.split_ahead(*split);
+        else
+          insert_at(*split);
+        ++splits;
+      }
     }
     return splits;
+  }
+  void insert_at(const CurveChains::Split& split) {
+    chains.drop_ball(split);
+    insert_and_tell(split.candidate.point, split.candidate.feature);
+    chains.split_at(split, mesh.last_vertex());
+  }
+  /// How many of each kind are in the queue, which is emptied.
+  std::size_t queued(WorkQueue::Priority priority) {
+    std::set<Index> found;
+    for (WorkQueue::Item item; queue.pop(item);)
+      if (item.priority == priority && chains.due(item.entry)) found.insert(item.entry.id);
+    return found.size();
+  }
+  Point end_of(const Subsegment& s, unsigned side) const {
+    if (s.ends[side] != none) return mesh.point(s.ends[side]);
+    return domain.paths.point(s.curve, s.parameters[side]);
   }
   /// The number of the mesh vertices in a subsegment's ball.
   std::size_t encroaching(const Subsegment& s) const {
     std::size_t n = 0;
     for (Index v = 0; v < mesh.vertex_count(); ++v)
-      n += v != s.ends[0] && v != s.ends[1] && squared_distance(mesh.point(v), s.centre) < s.squared_radius;
+      n += mesh.point(v) != end_of(s, 0) && mesh.point(v) != end_of(s, 1) &&
+           squared_distance(mesh.point(v), s.centre) < s.squared_radius;
     return n;
+  }
+  /// Does each curve that no balls cover consist of its subsegments, with equal points where they meet?
+  void expect_covered(double length) const {
+    std::vector<std::vector<std::pair<double, double>>> pieces(domain.plc.curves.size());
+    chains.visit([&](Index, const Subsegment& s) {
+      pieces[s.curve].push_back({s.parameters[0], s.parameters[1]});
+    });
+    for (auto& of_curve : pieces) {
+      std::sort(of_curve.begin(), of_curve.end());
+      double covered = 0;
+      for (std::size_t i = 0; i < of_curve.size(); ++i) {
+        if (i > 0) {
+          EXPECT_EQ(of_curve[i].first, of_curve[i - 1].second);
+        }
+        covered += of_curve[i].second - of_curve[i].first;
+      }
+      EXPECT_NEAR(covered, length, 1e-9);
+    }
   }
 };
 
@@ -71,24 +112,36 @@ Plc box() {
   return build_plc({&soup, 1});
 }
 
-TEST(CurveChains, ACurveStartsWhenItsEndsAreInTheMesh) {
+TEST(CurveChains, ASubsegmentIsResolvedWhenItsEndsAreInTheMesh) {
   const Plc plc = box();
   Curves curves(plc, 10);
   EXPECT_EQ(curves.points.size(), 8U);
-  EXPECT_EQ(curves.count(), 0U);
+  EXPECT_EQ(curves.count(false), 12U);
   curves.resolve(plc.curves[0].ends[0]);
-  EXPECT_EQ(curves.count(), 0U);
+  EXPECT_EQ(curves.count(true), 0U);
   curves.resolve(plc.curves[0].ends[1]);
-  EXPECT_EQ(curves.count(), 1U);
+  EXPECT_EQ(curves.count(true), 1U);
   curves.chains.visit([&](Index, const Subsegment& s) {
-    EXPECT_EQ(s.curve, 0U);
+    if (s.resolved()) {
+      EXPECT_EQ(s.curve, 0U);
+    }
     EXPECT_NEAR(s.squared_radius, 0.25, 1e-12);
   });
   curves.resolve_all();
-  EXPECT_EQ(curves.count(), 12U);
+  EXPECT_EQ(curves.count(true), 12U);
 }
 
-TEST(CurveChains, WhatEncroachesAWaitingCurveBringsItsEndsIn) {
+// Else the whole skeleton would come in at once, one end after the other.
+TEST(CurveChains, TheirOwnEndsEncroachNoSubsegments) {
+  const Plc plc = box();
+  Curves curves(plc, 10);
+  for (Index point = 0; point < 8; ++point) {
+    curves.resolve(point);
+    EXPECT_EQ(curves.queued(WorkQueue::encroached_subsegments), 0U);
+  }
+}
+
+TEST(CurveChains, ACandidateThatEncroachesAnUnresolvedOneMakesWayForAMedialEnd) {
   const Plc plc = box();
   Curves curves(plc, 10);
   const Point near = curves.points[plc.curves[0].ends[0]].point,
@@ -98,30 +151,49 @@ TEST(CurveChains, WhatEncroachesAWaitingCurveBringsItsEndsIn) {
   std::uniform_real_distribution<double> unit(-0.3, 1.3);
   for (int k = 0; k < 200; ++k) {
     const Point p{unit(random), unit(random), unit(random)};
-    if (distance(p, 0.5 * (near + far)) > 0.5) curves.insert_and_tell(p);
+    if (distance(p, 0.5 * (near + far)) > 0.6) curves.insert_and_tell(p);
   }
-  curves.queue = WorkQueue(100);
   const Point intruder = near + 0.45 * (far - near);
   curves.find_zone(intruder);
   const Candidate candidate{intruder, 1, intruder, {3, none}, curves.zone.cells[0]};
-  const Index ball = curves.chains.encroached(curves.zone, candidate);
-  ASSERT_NE(ball, none);
-  EXPECT_EQ(curves.chains.subsegment_of(ball), none);
-  EXPECT_EQ(curves.chains.end_to_resolve(ball, intruder), plc.curves[0].ends[0]);
-  // Inserted nevertheless it makes them come next.
-  curves.insert_and_tell(intruder);
-  std::set<Index> hurried;
-  for (WorkQueue::Item item; curves.queue.pop(item);)
-    if (item.priority == WorkQueue::ends_of_encroached_subsegments) hurried.insert(item.entry.id);
-  EXPECT_TRUE(hurried.contains(plc.curves[0].ends[0]));
-  EXPECT_TRUE(hurried.contains(plc.curves[0].ends[1]));
+  const Index subsegment = curves.chains.encroached(curves.zone, candidate);
+  ASSERT_NE(subsegment, none);
+  EXPECT_EQ(curves.chains.curve_of(subsegment), 0U);
+  EXPECT_EQ(curves.chains.end_to_resolve(subsegment, candidate), plc.curves[0].ends[0]);
+  // A vertex beside each end: now it would be a bad place for another one.
+  curves.insert_and_tell(near + 1e-4 * (near - far));
+  EXPECT_EQ(curves.chains.end_to_resolve(subsegment, candidate), plc.curves[0].ends[1]);
+  curves.insert_and_tell(far + 1e-4 * (far - near));
+  EXPECT_EQ(curves.chains.end_to_resolve(subsegment, candidate), none);
+}
+
+// No vertex comes in for it, as the mesh may have skinny cells.
+TEST(CurveChains, WhatAVertexEncroachesIsSplitAheadOfTheMesh) {
+  const Plc plc = box();
+  Curves curves(plc, 10);
+  curves.insert_and_tell({0.3, 0.02, 0.01});
+  const Index vertices = curves.mesh.vertex_count();
+  WorkQueue::Item item;
+  std::size_t splits = 0;
+  for (; curves.queue.first_priority() == WorkQueue::encroached_subsegments; ++splits) {
+    if (curves.queue.pop(item) && curves.chains.due(item.entry))
+      curves.chains.split_ahead(*curves.chains.split_of(item.entry.id));
+  }
+  EXPECT_GT(splits, 3U);
+  EXPECT_EQ(curves.mesh.vertex_count(), vertices);
+  curves.chains.visit([&](Index, const Subsegment& s) { EXPECT_EQ(curves.encroaching(s), 0U); });
+  curves.expect_covered(1);
+  curves.work_off();
+  EXPECT_EQ(curves.count(false), 0U);
+  EXPECT_GE(curves.count(true), 12U + 4U);
+  curves.expect_covered(1);
 }
 
 TEST(CurveChains, AVertexInABallQueuesItsSubsegmentAndNoOther) {
   const Plc plc = box();
   Curves curves(plc, 10);
   curves.resolve_all();
-  EXPECT_EQ(curves.split_all(), 0U);
+  EXPECT_EQ(curves.work_off(), 0U);
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> unit(-0.3, 1.3);
   for (int k = 0; k < 500; ++k) {
@@ -132,15 +204,12 @@ TEST(CurveChains, AVertexInABallQueuesItsSubsegmentAndNoOther) {
     });
     if (!in_ball) curves.insert_and_tell(p);
   }
-  EXPECT_EQ(curves.split_all(), 0U);
+  EXPECT_EQ(curves.work_off(), 0U);
   curves.insert_and_tell({0.5, 0.2, 0.1});
   std::size_t encroached = 0;
   curves.chains.visit([&](Index, const Subsegment& s) { encroached += curves.encroaching(s) > 0; });
   EXPECT_GT(encroached, 0U);
-  std::set<Index> queued;
-  for (WorkQueue::Item item; curves.queue.pop(item);)
-    if (item.priority == WorkQueue::encroached_subsegments) queued.insert(item.entry.id);
-  EXPECT_EQ(queued.size(), encroached);
+  EXPECT_EQ(curves.queued(WorkQueue::encroached_subsegments), encroached);
 }
 
 TEST(CurveChains, SplittingEndsWithEmptyBallsAndFineSubsegments) {
@@ -148,18 +217,16 @@ TEST(CurveChains, SplittingEndsWithEmptyBallsAndFineSubsegments) {
   const double size = 0.2;
   Curves curves(plc, size);
   curves.resolve_all();
-  EXPECT_GT(curves.split_all(), 40U);
+  EXPECT_GT(curves.work_off(), 40U);
   curves.insert_and_tell({0.5, 0.02, 0.01});
-  EXPECT_GT(curves.split_all(), 0U);
-  std::vector<double> covered(plc.curves.size(), 0);
+  EXPECT_GT(curves.work_off(), 0U);
   curves.chains.visit([&](Index, const Subsegment& s) {
     EXPECT_EQ(curves.encroaching(s), 0U);
     const double length = distance(curves.mesh.point(s.ends[0]), curves.mesh.point(s.ends[1]));
     EXPECT_LE(length, Sizing::subsegment_length(Sizing::edge_per_size * size));
     EXPECT_NEAR(length, s.parameters[1] - s.parameters[0], 1e-9);
-    covered[s.curve] += length;
   });
-  for (const double length : covered) EXPECT_NEAR(length, 1, 1e-9);
+  curves.expect_covered(1);
   EXPECT_FALSE(curves.outcome.given_up());
 }
 
@@ -184,9 +251,7 @@ TEST(CurveChains, ABallAtTheFloorIsGivenUp) {
     const auto split = curves.chains.split_of(some);
     if (!split) break;
     ASSERT_NE(split->candidate.start, none);
-    curves.chains.remove(*split);
-    curves.insert_and_tell(split->candidate.point, split->candidate.feature);
-    curves.chains.add_pieces(*split, curves.mesh.last_vertex());
+    curves.insert_at(*split);
     double smallest = INFINITY;
     curves.chains.visit([&](Index s, const Subsegment& piece) {
       if (piece.squared_radius < smallest) some = s;

@@ -18,7 +18,7 @@ TEST(LocationObjects, ListsFollowAdditionsMovesAndRemovals) {
     const auto vertex = static_cast<Index>(random() % 20);
     const auto action = random() % 3;
     if (action == 0 || alive.empty()) {
-      alive.push_back({objects.add(LocationObjects::Kind::point, 0, {}, 0, vertex), vertex});
+      alive.push_back({objects.add(0, {}, 0, vertex), vertex});
     } else {
       const std::size_t k = random() % alive.size();
       if (action == 1) {

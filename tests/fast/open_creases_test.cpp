@@ -31,22 +31,36 @@ TEST(OpenCreases, AreTouchedOnceUntilTheyAreTaken) {
 TEST(OpenCreases, KnowTheirChains) {
   OpenCreases creases;
   creases.open(2);
-  creases.note_pending(2);
-  creases.note_pending(2);
-  creases.note_pending(1);
-  EXPECT_EQ(creases.chain(2).pending, 2U);
-  creases.note_started(2);
+  creases.note_unresolved(2);
+  creases.note_unresolved(2);
+  creases.note_unresolved(1);
+  EXPECT_EQ(creases.chain(2).unresolved, 2U);
+  EXPECT_FALSE(creases.note_resolved(2));
   creases.note_link(2, {10, 0});
   creases.note_link(2, {11, 4});
   creases.note_end(2, 1, 30);
   EXPECT_FALSE(creases.is_open(1));
   const OpenCreases::Chain chain = creases.close(2);
-  EXPECT_EQ(chain.pending, 1U);
+  EXPECT_EQ(chain.unresolved, 1U);
+  EXPECT_FALSE(chain.split);
   ASSERT_EQ(chain.links.size(), 2U);
   EXPECT_EQ(chain.links[1].subsegment, 11U);
   EXPECT_EQ(chain.links[1].stamp, 4U);
   EXPECT_EQ(chain.ends, (std::array<Index, 2>{none, 30}));
   EXPECT_FALSE(creases.is_open(2));
+}
+
+TEST(OpenCreases, TellWhenASplitChainIsComplete) {
+  OpenCreases creases;
+  for (const Index curve : {1U, 2U}) creases.open(curve);
+  for (const Index curve : {1U, 2U})
+    for (int end = 0; end < 2; ++end) creases.note_unresolved(curve);
+  creases.note_split(1);
+  EXPECT_FALSE(creases.note_resolved(1));
+  EXPECT_TRUE(creases.note_resolved(1));
+  EXPECT_FALSE(creases.note_resolved(2));
+  EXPECT_FALSE(creases.note_resolved(2));  // it was not split
+  EXPECT_FALSE(creases.note_resolved(3));  // not open
 }
 
 }  // namespace

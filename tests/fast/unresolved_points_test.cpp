@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
+#include <vector>
 
 namespace collarmesh {
 namespace {
@@ -84,6 +86,51 @@ TEST_F(UnresolvedPointsTest, ACandidateWarpsToTheLowestDimensionWithinTheta) {
   EXPECT_EQ(target(centre, 0.2), nearer);
   points_.resolve(nearer, 0);
   EXPECT_EQ(target(centre, 0.2), on_curve);
+}
+
+TEST_F(UnresolvedPointsTest, ADormantOneComesInOnlyWhenACandidateWarpsToIt) {
+  insert({0.5, 0.5, 0.5});
+  UnresolvedPoints::Unresolved dormant{{0.5, 0.5, 0.74}, {1, 0}};
+  dormant.dormant = true;
+  const Index point = points_.add(dormant, none);
+  WorkQueue::Item item;
+  EXPECT_FALSE(queue_.pop(item));
+  EXPECT_EQ(target({0.5, 0.5, 0.7}, 0.2), point);
+}
+
+TEST_F(UnresolvedPointsTest, OneThatIsWithdrawnIsFoundNoMore) {
+  const Index v = insert({0.5, 0.5, 0.5});
+  const Index point = points_.add({0.5, 0.5, 0.55}, {1, 0});
+  EXPECT_TRUE(points_.any_at(v));
+  WorkQueue::Item item;
+  ASSERT_TRUE(queue_.pop(item));
+  points_.withdraw(point);
+  EXPECT_FALSE(points_.any_at(v));
+  EXPECT_FALSE(points_.due(point, item.entry.stamp));
+  EXPECT_FALSE(points_.resolved(point));
+  EXPECT_EQ(target({0.5, 0.5, 0.56}, 0.2), none);
+}
+
+// Near one vertex of a coarse mesh it is not, between several it is: by a search of all of them.
+TEST_F(UnresolvedPointsTest, MedialOnesHaveASecondVertexHardlyFarther) {
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> unit(0.01, 0.99);
+  const double theta_0 = 0.25 / 1.25;
+  std::size_t medial = 0, others = 0;
+  for (int k = 0; k < 200; ++k) {
+    const Point v{unit(random), unit(random), unit(random)};
+    insert(v);
+    const Point p =
+        k % 2 == 0 ? Point{unit(random), unit(random), unit(random)} : v + Vector{0.01, 0.005, 0.002};
+    std::vector<double> distances;
+    for (Index w = 0; w < mesh_.vertex_count(); ++w) distances.push_back(distance(p, mesh_.point(w)));
+    std::sort(distances.begin(), distances.end());
+    const Index point = points_.add(p, {0, 0});
+    EXPECT_EQ(points_.medial(point), distances[0] >= theta_0 * distances[1]);
+    ++(points_.medial(point) ? medial : others);
+  }
+  EXPECT_GT(medial, 50U);
+  EXPECT_GT(others, 50U);
 }
 
 TEST_F(UnresolvedPointsTest, OfSeveralVerticesOfTheComplexInACellNoneIsTheOnlyOne) {

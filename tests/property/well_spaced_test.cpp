@@ -36,7 +36,9 @@ bool holds(const Box& box, const Point& p) {
   return true;
 }
 
-void expect_well_spaced_all_along(const std::vector<PolygonSoup>& soups, double size, double feature_angle) {
+// Returns how many vertices came in blocks.
+std::size_t expect_well_spaced_all_along(const std::vector<PolygonSoup>& soups, double size,
+                                         double feature_angle) {
   PlcOptions complex;
   complex.feature_angle = feature_angle;
   const Plc plc = build_plc(soups, complex);
@@ -47,8 +49,8 @@ void expect_well_spaced_all_along(const std::vector<PolygonSoup>& soups, double 
   std::size_t phases = 0, cells = 0, worse = 0;
   refinement.observe_quality_phases([&] {
     // All of them early on, then ever fewer: each costs the whole mesh.
-    if (++phases > 64 && phases % 37 != 0) return;
     const Triangulation& mesh = refinement.triangulation();
+    if (++phases > 64 && phases % (37 + mesh.vertex_count() / 64) != 0) return;
     const Box box = bounds(mesh);
     for (Index cell = 0; cell < mesh.cell_capacity(); ++cell) {
       if (!mesh.alive(cell) || refinement.in_collar(cell) || !holds(box, mesh.circumcentre(cell))) continue;
@@ -60,11 +62,19 @@ void expect_well_spaced_all_along(const std::vector<PolygonSoup>& soups, double 
   EXPECT_GT(phases, 50U);
   EXPECT_GT(cells, 1000U);
   EXPECT_EQ(worse, 0U) << "of " << cells << " in " << phases << " phases";
+  return refinement.statistics().vertices_in_blocks;
 }
 
 TEST(WellSpaced, AfterEachQualityPhase) {
   expect_well_spaced_all_along({testing::l_shape()}, 0.2, 0);
   expect_well_spaced_all_along({testing::icosphere(1, 12)}, 0.3, 30);
+}
+// Many cells and triangles are destroyed at once: what is left over between blocks comes before anything
+// else.
+TEST(WellSpaced, BetweenRoundsOfBlocks) {
+  EXPECT_GT(expect_well_spaced_all_along({testing::l_shape()}, 0.06, 0), 5000U);
+  EXPECT_GT(expect_well_spaced_all_along({testing::icosphere(1, 12)}, 0.075, 30), 3000U);
+  EXPECT_GT(expect_well_spaced_all_along(testing::acute::wedge(20).soups, 0.035, 0), 1000U);
 }
 TEST(WellSpaced, AfterEachQualityPhaseBesideCollars) {
   expect_well_spaced_all_along(testing::acute::wedge(20).soups, 0.3, 0);

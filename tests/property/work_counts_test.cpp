@@ -3,23 +3,34 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "support/acute_shapes.h"
 #include "support/meshing.h"
+#include "support/polylines.h"
 #include "support/shapes.h"
 
 namespace collarmesh {
 namespace {
 
+namespace polylines = testing::polylines;
+using polylines::Shape;
+
 MeshStatistics counted(const std::vector<PolygonSoup>& soups, MeshOptions options) {
   options.count_work = true;
-  const MeshResult result = generate(build_plc(soups), options);
+  PlcOptions complex;
+  complex.feature_angle = 0;
+  const MeshResult result = generate(build_plc(soups, complex), options);
   EXPECT_EQ(result.status, MeshStatus::complete) << result.message;
   return result.statistics;
 }
 
 double moves_per_object(const WorkCounts& counts) {
   return static_cast<double>(counts.relocated) / static_cast<double>(counts.located);
+}
+
+double looks_per_object(const WorkCounts& counts) {
+  return static_cast<double>(counts.looks) / static_cast<double>(counts.located);
 }
 
 // Aspect ratios are those of a radius-edge bound of 2; the largest seen is 10.
@@ -92,6 +103,104 @@ TEST(WorkCounts, OfAGridOfWedgesAreThoseOfOne) {
       EXPECT_GT(s.counts.gap_queries, 10U * n * n);
       EXPECT_LE(s.counts.gap_cells, 12U * s.counts.gap_queries);
     }
+}
+
+struct Family {
+  const char* name;
+  Shape (*make)(unsigned n);
+};
+
+const Family families[] = {
+    {"skew zigzags", [](unsigned n) { return polylines::skew_zigzags(n); }},
+    {"skew zigzags with creases", [](unsigned n) { return polylines::skew_zigzags(n, 45); }},
+    {"skew combs", [](unsigned n) { return polylines::skew_combs(n / 2); }},
+    {"helices", [](unsigned n) { return polylines::helices(n); }},
+    {"a knot", [](unsigned n) { return polylines::torus_knot(n); }},
+    {"a walk", [](unsigned n) { return polylines::random_walk(n); }},
+    {"frames of boxes", [](unsigned n) { return polylines::box_frames(n); }},
+    {"a graph", [](unsigned n) { return polylines::graph(n); }},
+    {"crossed wires", [](unsigned n) { return polylines::crossed_wires(n / 8); }},
+    {"crossed wires far apart", [](unsigned n) { return polylines::crossed_wires(n / 8, n / 32.0); }},
+    {"crossed strips", [](unsigned n) { return polylines::crossed_strips(n / 16); }},
+    {"a welded mesh", [](unsigned n) { return polylines::welded_mesh(n); }},
+    {"outlines of letters", [](unsigned n) { return polylines::outlines(n); }},
+    {"a star", [](unsigned n) { return polylines::star(n / 4); }},
+};
+
+// No Delaunay triangulation of the input's vertices is built first: of most of these it is far larger than
+// the mesh, and while it is there each vertex destroys a large part of it. A ball whose vertices are half of
+// its radius apart, as the bound on radius-edge ratios lets them, has up to some 60 of them, and twice as
+// many cells.
+void expect_bounded_work(const WorkCounts& counts, double logarithm) {
+  EXPECT_EQ(counts.before_quality, 0U);
+  EXPECT_LE(counts.peak_cells_per_vertex, 8);
+  EXPECT_LE(counts.largest_cavity_outside_hubs, 250U);
+  EXPECT_LE(moves_per_object(counts), 0.8 * logarithm);
+  EXPECT_LE(looks_per_object(counts), 45 * logarithm);
+}
+
+TEST(WorkCounts, OfPolylinesAreBoundedAsTheirNumberGrows) {
+  for (const Family& family : families)
+    for (const unsigned n : {60U, 240U, 960U}) {
+      SCOPED_TRACE(family.name + std::string(" ") + std::to_string(n));
+      const MeshStatistics s = counted(family.make(n).soups, testing::with_size(2));
+      expect_bounded_work(s.counts, std::log2(n));
+    }
+}
+
+TEST(WorkCounts, OfPolylinesAreBoundedAsTheirSpreadGrows) {
+  for (const int exponent : {1, 2, 3}) {
+    const double small = 0.08 * std::pow(10, -exponent);
+    for (const Family& family : families) {
+      SCOPED_TRACE(family.name + std::string(" ") + std::to_string(small));
+      const Shape shape = polylines::with_small_copy(family.make(80), small);
+      const MeshStatistics s = counted(shape.soups, testing::with_size(2));
+      expect_bounded_work(s.counts, std::log2(80 / small));
+    }
+    SCOPED_TRACE(small);
+    const MeshStatistics s = counted(polylines::shrinking_spiral(60, small).soups, testing::with_size(2));
+    expect_bounded_work(s.counts, std::log2(60 / small));
+  }
+}
+
+namespace acute = testing::acute;
+
+// The same of inputs with collars; and a gap query asks few features where few are near.
+TEST(WorkCounts, OfAcuteFamiliesAreBounded) {
+  std::vector<Shape> shapes{acute::star_prism(9, 0.4),
+                            acute::spiked_octahedron(1),
+                            acute::knife(10),
+                            acute::two_knives(10, 20),
+                            acute::facet_ending_inside(3),
+                            acute::segment_meeting_a_facet(3),
+                            acute::cubes_touching_in_an_edge(10),
+                            acute::pyramid_on_a_box(20)};
+  for (const double angle : {80.0, 40.0, 5.0, 2.0}) shapes.push_back(acute::wedge(angle));
+  for (const double small : {1e-1, 1e-2, 1e-4, 1e-6})
+    shapes.push_back(acute::wedge_on_a_large_one(20, small));
+  for (const unsigned teeth : {2U, 8U, 32U}) shapes.push_back(acute::comb(teeth, 20));
+  for (const double away : {0.3, 0.03, 0.01}) shapes.push_back(acute::segment_near_a_crease(20, away));
+  for (const Shape& shape : shapes) {
+    SCOPED_TRACE(shape.name);
+    const MeshStatistics s = counted(shape.soups, testing::with_size(0.3));
+    expect_bounded_work(s.counts, std::log2(s.counts.located));
+    EXPECT_LE(s.counts.gap_interviews, 40 * s.counts.gap_queries);
+    EXPECT_LE(s.counts.gap_cells, 20 * s.counts.gap_queries);
+  }
+}
+
+// At a hub a query asks all that meets there.
+TEST(WorkCounts, AtHubsGrowWithWhatMeetsThere) {
+  for (const unsigned k : {8U, 16U, 32U}) {
+    SCOPED_TRACE(k);
+    const WorkCounts fan = counted(acute::fan(k).soups, testing::with_size(0.3)).counts;
+    expect_bounded_work(fan, std::log2(fan.located));
+    EXPECT_LE(fan.gap_interviews, 8 * k * fan.gap_queries);
+    EXPECT_LE(fan.gap_cells, 40 * fan.gap_queries);
+    const WorkCounts star = counted(polylines::star(4 * k).soups, testing::with_size(2)).counts;
+    expect_bounded_work(star, std::log2(star.located));
+    EXPECT_LE(star.gap_interviews, 8 * 4 * k * star.gap_queries);
+  }
 }
 
 TEST(WorkCounts, AreMadeOnRequestOnly) {

@@ -74,11 +74,17 @@ enum class MeshStatus {
 struct WorkCounts {
   std::size_t located = 0;         ///< points and protective balls that were found from mesh vertices
   std::size_t relocated = 0;       ///< how often one of them moved to a vertex that was new and nearer
+  std::size_t looks = 0;           ///< at one of them, for the sake of a new vertex or a candidate
   std::size_t gap_queries = 0;     ///< of the gap size, with collars created in the pass
   std::size_t gap_cells = 0;       ///< Voronoi cells explored for these
+  std::size_t gap_interviews = 0;  ///< pieces of features whose distance was asked for these
   std::size_t largest_degree = 0;  ///< neighbours of a new vertex
   std::size_t largest_cavity = 0;  ///< cells that one insertion destroyed
-  std::size_t ripped_out = 0;      ///< vertices in collars that the result has not (paper, Procedure 5)
+  /// The same away from vertices and curves of the complex at which very many features meet.
+  std::size_t largest_cavity_outside_hubs = 0;
+  double peak_cells_per_vertex = 0;  ///< of the whole triangulation, at any time
+  std::size_t before_quality = 0;    ///< vertices inserted for something else while a skinny cell waited
+  std::size_t ripped_out = 0;        ///< vertices in collars that the result has not (paper, Procedure 5)
   /// Extremes of R_v / r_v (paper, section 1.2), the largest circumradius at a vertex over half of its
   /// shortest edge, where all cells at the vertex lie in regions and outside collars; 0 where there is no
   /// such vertex.

@@ -13,25 +13,30 @@ namespace collarmesh {
 /// centre, that is, at its nearest vertex.
 class LocationObjects {
  public:
-  enum class Kind : std::uint8_t {
-    point,              ///< an unresolved point
-    subsegment,         ///< a subsegment with both ends in the mesh
-    pending_subsegment  ///< a curve's first subsegment, an end of which is still unresolved
-  };
   struct Object {
     Point centre;
     double squared_radius;
     Index vertex;          ///< nearest mesh vertex
     Index previous, next;  ///< in that vertex's list
-    Index owner;           ///< index of what it is, among those of its kind
-    Kind kind;
+    Index owner;           ///< index of what it is, given when it was added
   };
 
   const Object& operator[](Index object) const { return objects_[object]; }
   /// First object at a mesh vertex, none if it has none; follow `next`.
   Index first_at(Index vertex) const { return vertex < first_.size() ? first_[vertex] : none; }
 
-  Index add(Kind kind, Index owner, const Point& centre, double squared_radius, Index vertex) {
+  /// Look at all objects at a mesh vertex: their numbers, and what they are. The visitor may move or remove
+  /// the object that it is shown, and no other one.
+  template <class Visit>
+  void visit_at(Index vertex, const Visit& visit) const {
+    for (Index o = first_at(vertex), next = none; o != none; o = next) {
+      next = objects_[o].next;
+      ++looks_;
+      visit(o, objects_[o]);
+    }
+  }
+
+  Index add(Index owner, const Point& centre, double squared_radius, Index vertex) {
     Index object;
     if (free_.empty()) {
       object = static_cast<Index>(objects_.size());
@@ -40,7 +45,7 @@ class LocationObjects {
       object = free_.back();
       free_.pop_back();
     }
-    objects_[object] = {centre, squared_radius, none, none, none, owner, kind};
+    objects_[object] = {centre, squared_radius, none, none, none, owner};
     attach(object, vertex);
     ++added_;
     return object;
@@ -57,9 +62,10 @@ class LocationObjects {
     attach(object, vertex);
   }
 
-  /// Objects added, and moves to other vertices, so far.
+  /// Objects added, moves to other vertices, and looks, so far.
   std::size_t added() const { return added_; }
   std::size_t moved() const { return moved_; }
+  std::size_t looks() const { return looks_; }
 
   std::size_t bytes() const { return objects_.bytes() + first_.bytes(); }
 
@@ -87,6 +93,7 @@ class LocationObjects {
   std::vector<Index> free_;
   GrowingArray<Index> first_;
   std::size_t added_ = 0, moved_ = 0;
+  mutable std::size_t looks_ = 0;
 };
 
 }  // namespace collarmesh

@@ -75,12 +75,7 @@ void CollarCreator::cells_made(const ConflictZone& zone, Index vertex) {
 void CollarCreator::create_if_isolated(Index at) {
   const Index only = points_.only_vertex_at(at);
   if (only == none || !waits_for_ball(only)) return;
-  const Point p = points_[only].point;
-  double second = INFINITY;
-  mesh_.adjacent_vertices(at, scratch_);
-  for (const Index v : scratch_) second = std::min(second, squared_distance(p, mesh_.point(v)));
-  const double theta = domain_.options.theta, theta_0 = 2 * theta / (2 * theta + 1);
-  if (squared_distance(p, mesh_.point(at)) < theta_0 * theta_0 * second) return;
+  if (!points_.medial(only)) return;
   if (gap_size().isolated({0, only}, at)) create_at_vertex(only, at);
 }
 
@@ -100,7 +95,7 @@ void CollarCreator::create_on_isolated_curves() {
     const Index curve = open_creases_.take_touched();
     if (curve == none) continue;
     const OpenCreases::Chain& chain = open_creases_.chain(curve);
-    if (chain.pending > 0) continue;
+    if (chain.unresolved > 0) continue;
     std::vector<CollarBall> at_ends;
     for (const Index end : domain_.plc.curves[curve].ends)
       if (end != none) at_ends.push_back(collars_.balls()[collars_.ball_at_vertex(end)]);
@@ -117,7 +112,7 @@ void CollarCreator::create_on_isolated_curves() {
 
 bool CollarCreator::create_at_subsegment(Index subsegment) {
   const Index curve = curves_.curve_of(subsegment);
-  if (!open_creases_.is_open(curve) || open_creases_.chain(curve).pending > 0) return false;
+  if (!open_creases_.is_open(curve) || open_creases_.chain(curve).unresolved > 0) return false;
   create_on_curve(curve);
   return true;
 }
@@ -132,12 +127,8 @@ bool CollarCreator::create_remaining() {
 void CollarCreator::create_on_curve(Index curve) {
   const OpenCreases::Chain chain = open_creases_.close(curve);
   isolated_.erase(curve);
-  Index near = mesh_.last_vertex();
-  for (const ChainLink& link : chain.links)
-    if (const Subsegment* s = curves_.find(link)) {
-      near = s->ends[0];
-      curves_.remove(link);
-    }
+  const Index at_chain = curves_.remove_chain(curve),
+              near = at_chain == none ? mesh_.last_vertex() : at_chain;
   gap_size().start_near(near);
   placement_->place_on_curve(curve);
   take_up_balls(near, chain.ends);

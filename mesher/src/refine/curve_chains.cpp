@@ -11,65 +11,60 @@ namespace {
 constexpr double seeded_length_per_chord = 1.2;
 // Subsegments are split at most this share of their radius off the centre.
 constexpr double subsegment_offset = 0.1;
+// What is left of a subsegment beyond the ball at its end is at least this share of the ball's radius long,
+// unless a vertex is there already.
+constexpr double least_clipped_length = 0.3;
 // An arc may leave its chord by this share of the chord: about 60 degrees of turning.
 constexpr double largest_sagitta_per_chord = 0.15;
 
 }  // namespace
 
 void CurveChains::start() {
+  chain_ends_.assign(domain_.plc.curves.size(), {none, none});
   for (Index c = 0; c < domain_.plc.curves.size(); ++c) add_chain(c);
 }
 
 void CurveChains::add_chain(Index c) {
-  const Plc::Curve& curve = domain_.plc.curves[c];
   if (collars_.is_crease_curve(c)) {
     if (domain_.options.collar_creation != CollarCreation::in_pass) return;  // covered by balls
     open_creases_.open(c);
   }
-  double from = 0, to = domain_.paths.length(c);
-  const auto seed = [&](double parameter) { return points_.add(domain_.paths.point(c, parameter), {1, c}); };
-  // Clipped where it leaves a vertex ball.
-  std::array<Index, 2> ends = curve.ends;
-  for (const bool at_start : {true, false}) {
+  const std::vector<End> ends = first_ends(c);
+  Index previous = none;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    const Index next = add(c, {ends[i], ends[i + 1]}, none);
+    link(c, previous, next);
+    open_creases_.note_unresolved(c);
+    previous = next;
+  }
+  const bool closed = domain_.plc.curves[c].closed;
+  link(c, previous, closed ? chain_ends_[c][0] : none);
+  if (!closed) open_creases_.note_unresolved(c);
+}
+
+// Unresolved points: those of its vertices, or where it leaves their balls, and seeds between them.
+std::vector<CurveChains::End> CurveChains::first_ends(Index c) {
+  const Plc::Curve& curve = domain_.plc.curves[c];
+  const auto seed = [&](double parameter) {
+    return End{none, points_.add(domain_.paths.point(c, parameter), {1, c}), parameter};
+  };
+  std::array<End, 2> ends{End{none, curve.ends[0], 0}, End{none, curve.ends[1], domain_.paths.length(c)}};
+  for (const unsigned side : {0U, 1U}) {
     if (curve.closed) continue;
-    const Index ball = collars_.ball_at_vertex(curve.ends[at_start ? 0 : 1]);
+    const Index ball = collars_.ball_at_vertex(curve.ends[side]);
     if (ball == none) continue;
-    double& parameter = at_start ? from : to;
-    parameter = leaving_parameter(c, collars_.balls()[ball], at_start);
-    ends[at_start ? 0 : 1] = seed(parameter);
-    clipped_ends_.push_back({c, ball, ends[at_start ? 0 : 1]});
+    ends[side] = seed(leaving_parameter(c, collars_.balls()[ball], side == 0));
+    clipped_ends_.push_back({c, ball, ends[side].point});
   }
-  std::vector<std::pair<Index, double>> chain;
-  const Index first = curve.closed ? seed(0) : ends[0];
-  const Index last = curve.closed ? first : ends[1];
-  const double length = to - from;
-  const double chord = distance(points_[first].point, points_[last].point);
-  chain.push_back({first, from});
-  if (length > seeded_length_per_chord * chord)
-    for (const double share : {1.0 / 3, 2.0 / 3})
-      chain.push_back({seed(from + share * length), from + share * length});
-  chain.push_back({last, to});
-  for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
-    const auto index = static_cast<Index>(pending_.size());
-    pending_.push_back({c, {chain[i].first, chain[i + 1].first}, {chain[i].second, chain[i + 1].second}});
-    for (const Index point : pending_.back().points) waiting_for(point).push_back(index);
-    guard(index, none);
-    open_creases_.note_pending(c);
+  if (curve.closed) {
+    ends[0] = seed(0);
+    ends[1].point = ends[0].point;
   }
-}
-
-std::vector<Index>& CurveChains::waiting_for(Index point) {
-  if (point >= waiting_.size()) waiting_.resize(point + 1);
-  return waiting_[point];
-}
-
-void CurveChains::guard(Index index, Index near) {
-  Pending& p = pending_[index];
-  const Point a = points_[p.points[0]].point, b = points_[p.points[1]].point;
-  const Point centre =
-      domain_.paths.point(p.curve, bisecting_parameter(p.curve, a, b, p.parameters[0], p.parameters[1]));
-  p.ball = balls_.add(LocationObjects::Kind::pending_subsegment, index, centre, squared_distance(centre, a),
-                      mesh_.nearest_vertex(centre, near));
+  const double from = ends[0].parameter, length = ends[1].parameter - from;
+  const double chord = distance(points_[ends[0].point].point, points_[ends[1].point].point);
+  if (length <= seeded_length_per_chord * chord) return {ends[0], ends[1]};
+  const End first = seed(from + length / 3), second = seed(from + length * 2 / 3);
+  return {ends[0], first, second, ends[1]};
 }
 
 // Where a curve leaves the ball at one of its ends: bisection, the ball meets it in one arc.
@@ -85,22 +80,31 @@ double CurveChains::leaving_parameter(Index c, const CollarBall& ball, bool at_s
 }
 
 void CurveChains::point_resolved(Index point) {
-  const std::vector<Index> waiting = std::move(waiting_for(point));
-  for (const Index index : waiting) {
-    Pending& p = pending_[index];
-    if (--p.missing > 0) continue;
-    balls_.remove(p.ball);
-    open_creases_.note_started(p.curve);
-    const std::array<Index, 2> ends{points_[p.points[0]].vertex, points_[p.points[1]].vertex};
-    add_subsegment(p.curve, ends, p.parameters, ends[0]);
+  if (point < domain_.plc.vertices.size()) {
+    for (const Index c : domain_.plc.vertices[point].curves)
+      for (const unsigned side : {0U, 1U}) {
+        const Index piece = chain_ends_[c][side];
+        if (piece == none || subsegments_[piece].points[side] != point) continue;
+        resolve_end(piece, side);
+        if (open_creases_.note_resolved(c)) encroach(piece);
+      }
+    return;
   }
+  const Index piece = point < piece_at_.size() ? piece_at_[point] : none;
+  if (piece == none) return;
+  const unsigned side = subsegments_[piece].points[0] == point ? 0 : 1;
+  const Index other = subsegments_[piece].neighbours[side];
+  resolve_end(piece, side);
+  if (other != none) resolve_end(other, 1 - side);
+  if (!points_[point].dormant && open_creases_.note_resolved(subsegments_[piece].piece.curve))
+    encroach(piece);
 }
 
-// A mesh vertex lies in the ball of a first subsegment: its ends come next, before skinny cells.
-void CurveChains::hurry_ends(const Pending& pending) {
-  for (const Index end : pending.points)
-    if (!points_.resolved(end))
-      queue_.push(WorkQueue::ends_of_encroached_subsegments, balls_[pending.ball].squared_radius, {end, 0});
+void CurveChains::resolve_end(Index subsegment, unsigned side) {
+  Chained& s = subsegments_[subsegment];
+  s.piece.ends[side] = points_[s.points[side]].vertex;
+  s.points[side] = none;
+  if (s.piece.resolved()) judge(subsegment);
 }
 
 // Where the curve between two parameters meets the bisector plane of a and b: bisection on the sign
@@ -130,42 +134,75 @@ double CurveChains::bisecting_parameter(Index c, const Point& a, const Point& b,
                           : 0.5 * (low + high);
 }
 
-void CurveChains::add_subsegment(Index curve, std::array<Index, 2> ends, std::array<double, 2> parameters,
-                                 Index nearby) {
+Index CurveChains::add(Index curve, const std::array<End, 2>& ends, Index near) {
   Index index;
-  std::uint32_t stamp = 0;
   if (free_subsegments_.empty()) {
     index = static_cast<Index>(subsegments_.size());
     subsegments_.push_back({});
   } else {
     index = free_subsegments_.back();
     free_subsegments_.pop_back();
-    stamp = subsegments_[index].stamp;
   }
-  Subsegment s{curve, ends, parameters, {}, 0, 0};
-  const Point a = mesh_.point(ends[0]), b = mesh_.point(ends[1]);
-  s.centre_parameter = bisecting_parameter(curve, a, b, parameters[0], parameters[1]);
-  s.centre = domain_.frame.rounded(domain_.paths.point(curve, s.centre_parameter));
-  s.squared_radius = std::max(squared_distance(s.centre, a), squared_distance(s.centre, b));
-  const Index nearest = mesh_.nearest_vertex(s.centre, nearby);
-  const Index ball =
-      balls_.add(LocationObjects::Kind::subsegment, index, s.centre, s.squared_radius, nearest);
-  subsegments_[index] = {s, ball, stamp, true};
-  open_creases_.note_link(curve, {index, stamp});
-  const bool empty = nearest == ends[0] || nearest == ends[1] ||
-                     squared_distance(s.centre, mesh_.point(nearest)) > s.squared_radius;
-  if (!empty || turns_too_far(s))
-    encroach(index);
-  else if (too_coarse(s))
-    queue(WorkQueue::coarse_subsegments, index);
+  Chained& s = subsegments_[index];
+  s.points = {ends[0].point, ends[1].point};
+  s.neighbours = {none, none};
+  s.alive = true;
+  s.piece = {curve, {ends[0].vertex, ends[1].vertex}, {ends[0].parameter, ends[1].parameter}, {}, 0, 0};
+  const Point a = place(s, 0), b = place(s, 1);
+  s.piece.centre_parameter = bisecting_parameter(curve, a, b, ends[0].parameter, ends[1].parameter);
+  s.piece.centre = domain_.frame.rounded(domain_.paths.point(curve, s.piece.centre_parameter));
+  s.piece.squared_radius = std::max(squared_distance(s.piece.centre, a), squared_distance(s.piece.centre, b));
+  s.ball =
+      balls_.add(index, s.piece.centre, s.piece.squared_radius, mesh_.nearest_vertex(s.piece.centre, near));
+  for (const Index point : s.points) note_piece(point, index);
+  open_creases_.note_link(curve, {index, s.stamp});
+  judge(index);
+  return index;
 }
 
-void CurveChains::remove_subsegment(Index subsegment) {
+// The complex's vertices find theirs through its curves.
+void CurveChains::note_piece(Index point, Index subsegment) {
+  if (point == none || point < domain_.plc.vertices.size()) return;
+  if (point >= piece_at_.size()) piece_at_.resize(points_.size(), none);
+  piece_at_[point] = subsegment;
+}
+
+// None before the first piece of a curve, and after its last one.
+void CurveChains::link(Index curve, Index before, Index after) {
+  (before == none ? chain_ends_[curve][0] : subsegments_[before].neighbours[1]) = after;
+  (after == none ? chain_ends_[curve][1] : subsegments_[after].neighbours[0]) = before;
+}
+
+void CurveChains::remove(Index subsegment) {
   Chained& s = subsegments_[subsegment];
-  balls_.remove(s.ball);
+  if (s.ball != none) balls_.remove(s.ball);
+  for (const Index point : s.points) note_piece(point, none);
   s.alive = false;
   ++s.stamp;
   free_subsegments_.push_back(subsegment);
+}
+
+// Is it to be split?
+void CurveChains::judge(Index subsegment) {
+  const Chained& s = subsegments_[subsegment];
+  if (holds(s, balls_[s.ball].vertex) || turns_too_far(s))
+    encroach(subsegment);
+  else if (s.piece.resolved() && too_coarse(s))
+    queue(WorkQueue::coarse_subsegments, subsegment);
+}
+
+// Does a vertex encroach a subsegment? Its ends do not, nor what is at their places.
+bool CurveChains::holds(const Chained& s, Index vertex) const {
+  return squared_distance(mesh_.point(vertex), s.piece.centre) <= s.piece.squared_radius &&
+         !is_end(s, vertex);
+}
+
+bool CurveChains::is_end(const Chained& s, Index vertex) const {
+  for (const unsigned side : {0U, 1U}) {
+    if (s.piece.ends[side] == vertex) return true;
+    if (s.points[side] != none && points_[s.points[side]].point == mesh_.point(vertex)) return true;
+  }
+  return false;
 }
 
 void CurveChains::encroach(Index subsegment) { queue(WorkQueue::encroached_subsegments, subsegment); }
@@ -175,27 +212,28 @@ void CurveChains::queue(WorkQueue::Priority priority, Index subsegment) {
   queue_.push(priority, s.piece.squared_radius, {subsegment, s.stamp});
 }
 
-bool CurveChains::too_coarse(const Subsegment& s) const {
+bool CurveChains::too_coarse(const Chained& chained) const {
+  const Subsegment& s = chained.piece;
   if (collars_.is_crease_curve(s.curve)) return false;  // it only waits for its balls
-  const Point a = mesh_.point(s.ends[0]), b = mesh_.point(s.ends[1]);
+  const Point a = place(chained, 0), b = place(chained, 1);
   const double size = sizes_.asked().curve_size(s.curve, domain_.paths.segment(s.curve, s.parameters[0]),
                                                 domain_.paths.segment(s.curve, s.parameters[1]), s.centre);
   const double length =
       Sizing::subsegment_length(std::min(size, sizes_.graded(s.ends, 0.5 * distance(a, b))));
-  return squared_distance(a, b) > length * length || leaves_chord(s, domain_.distance);
+  return squared_distance(a, b) > length * length || leaves_chord(chained, domain_.distance);
 }
 
 // Its ball may not hold all of it.
-bool CurveChains::turns_too_far(const Subsegment& s) const {
-  if (collars_.is_crease_curve(s.curve)) return false;
-  return leaves_chord(s,
-                      largest_sagitta_per_chord * distance(mesh_.point(s.ends[0]), mesh_.point(s.ends[1])));
+bool CurveChains::turns_too_far(const Chained& s) const {
+  if (collars_.is_crease_curve(s.piece.curve)) return false;
+  return leaves_chord(s, largest_sagitta_per_chord * distance(place(s, 0), place(s, 1)));
 }
 
 // By more than this?
-bool CurveChains::leaves_chord(const Subsegment& s, double sagitta) const {
+bool CurveChains::leaves_chord(const Chained& chained, double sagitta) const {
+  const Subsegment& s = chained.piece;
   if (domain_.plc.curves[s.curve].straight) return false;
-  const Point a = mesh_.point(s.ends[0]), b = mesh_.point(s.ends[1]);
+  const Point a = place(chained, 0), b = place(chained, 1);
   const double chord = squared_distance(a, b);
   const auto leaves = [&](const Point& p) {
     const double t = chord > 0 ? std::clamp(dot(p - a, b - a) / chord, 0.0, 1.0) : 0.0;
@@ -211,7 +249,8 @@ bool CurveChains::leaves_chord(const Subsegment& s, double sagitta) const {
 
 void CurveChains::judge_all() {
   for (Index s = 0; s < subsegments_.size(); ++s)
-    if (subsegments_[s].alive && too_coarse(subsegments_[s].piece)) queue(WorkQueue::coarse_subsegments, s);
+    if (subsegments_[s].alive && subsegments_[s].piece.resolved() && too_coarse(subsegments_[s]))
+      queue(WorkQueue::coarse_subsegments, s);
 }
 
 Index CurveChains::encroached(const ConflictZone& zone, const Candidate& candidate) const {
@@ -219,25 +258,22 @@ Index CurveChains::encroached(const ConflictZone& zone, const Candidate& candida
   Index best = none;
   double deepest = 0;
   for (const Index v : zone.vertices)
-    for (Index o = balls_.first_at(v); o != none; o = balls_[o].next) {
-      const double depth = balls_[o].squared_radius - squared_distance(candidate.point, balls_[o].centre);
-      if (depth < 0 || (best != none && depth <= deepest)) continue;
-      best = o;
+    balls_.visit_at(v, [&](Index, const LocationObjects::Object& ball) {
+      const double depth = ball.squared_radius - squared_distance(candidate.point, ball.centre);
+      if (depth < 0 || (best != none && depth <= deepest)) return;
+      best = ball.owner;
       deepest = depth;
-    }
+    });
   return best;
 }
 
-Index CurveChains::subsegment_of(Index ball) const {
-  return balls_[ball].kind == LocationObjects::Kind::subsegment ? balls_[ball].owner : none;
-}
-
-Index CurveChains::end_to_resolve(Index ball, const Point& intruder) const {
+Index CurveChains::end_to_resolve(Index subsegment, const Candidate& candidate) const {
+  const Chained& s = subsegments_[subsegment];
   Index nearest = none;
-  for (const Index end : pending_[balls_[ball].owner].points) {
-    if (points_.resolved(end)) continue;
-    if (nearest == none ||
-        squared_distance(intruder, points_[end].point) < squared_distance(intruder, points_[nearest].point))
+  for (const Index end : s.points) {
+    if (end == none || points_[end].dormant || !points_.medial(end)) continue;
+    if (nearest == none || squared_distance(candidate.point, points_[end].point) <
+                               squared_distance(candidate.point, points_[nearest].point))
       nearest = end;
   }
   return nearest;
@@ -252,7 +288,9 @@ std::optional<CurveChains::Split> CurveChains::split_of(Index subsegment) {
     return std::nullopt;
   }
   const Index nearest = balls_[chained.ball].vertex;
-  const auto across = facing_sheets_.parameter_across(s, nearest);
+  const auto across = is_end(chained, nearest) ? std::nullopt
+                                               : facing_sheets_.parameter_across(
+                                                     s, place(chained, 1) - place(chained, 0), nearest);
   // A little off the centre: halves of symmetric curves would be cocircular.
   const double parameter =
       across ? *across
@@ -262,73 +300,131 @@ std::optional<CurveChains::Split> CurveChains::split_of(Index subsegment) {
   const Index cell = mesh_.conflicting_cell_around(around, p);
   const Candidate candidate{p,    s.squared_radius,       across ? p : s.centre, {1, s.curve},
                             cell, across ? nearest : none};
-  return Split{candidate, {subsegment, chained.stamp}, s, parameter, around};
+  return Split{candidate, {subsegment, chained.stamp}, parameter, around};
 }
 
 bool CurveChains::can_join(const Split& split) const {
-  return split.vertex != split.piece.ends[0] && split.vertex != split.piece.ends[1];
+  return !is_end(subsegments_[split.link.subsegment], split.vertex);
 }
 
-void CurveChains::remove(const Split& split) { remove_subsegment(split.link.subsegment); }
-
-void CurveChains::add_pieces(const Split& split, Index vertex) {
-  const Subsegment& s = split.piece;
-  add_subsegment(s.curve, {s.ends[0], vertex}, {s.parameters[0], split.parameter}, vertex);
-  add_subsegment(s.curve, {vertex, s.ends[1]}, {split.parameter, s.parameters[1]}, vertex);
+void CurveChains::split_ahead(const Split& split) {
+  UnresolvedPoints::Unresolved point{split.candidate.point, split.candidate.feature};
+  point.across = split.candidate.across;
+  point.dormant = open_creases_.is_open(split.candidate.feature.index);
+  cut(split.link.subsegment, {none, points_.add(point, split.vertex), split.parameter}, split.vertex);
 }
 
-void CurveChains::queue_again(const Split& split, WorkQueue::Priority priority) {
-  if (is_there(split.link)) queue(priority, split.link.subsegment);
+void CurveChains::drop_ball(const Split& split) {
+  Chained& s = subsegments_[split.link.subsegment];
+  balls_.remove(s.ball);
+  s.ball = none;
+}
+
+// The vertex may have made a ball at an end of the curve: then the piece has become another one.
+void CurveChains::split_at(const Split& split, Index vertex) {
+  Index piece = split.link.subsegment;
+  if (!is_there(split.link)) {
+    const auto has_place = [&](Index s) {
+      const auto& [from, to] = subsegments_[s].piece.parameters;
+      return from < split.parameter && split.parameter < to;
+    };
+    const auto& ends = chain_ends_[split.candidate.feature.index];
+    const auto found =
+        std::find_if(ends.begin(), ends.end(), [&](Index s) { return s != none && has_place(s); });
+    if (found == ends.end()) return;
+    piece = *found;
+  }
+  cut(piece, {vertex, none, split.parameter}, vertex);
+}
+
+void CurveChains::cut(Index subsegment, const End& middle, Index near) {
+  const Chained whole = subsegments_[subsegment];
+  const Index curve = whole.piece.curve;
+  remove(subsegment);
+  const Index first = add(curve, {end_of(whole, 0), middle}, near);
+  const Index second = add(curve, {middle, end_of(whole, 1)}, near);
+  if (chain_ends_[curve][0] == subsegment) chain_ends_[curve][0] = first;
+  link(curve, whole.neighbours[0], first);
+  link(curve, first, second);
+  link(curve, second, whole.neighbours[1]);
+  open_creases_.note_split(curve);
+}
+
+void CurveChains::queue_again(const Split& split) {
+  if (is_there(split.link)) queue(WorkQueue::coarse_subsegments, split.link.subsegment);
 }
 
 void CurveChains::cells_made(const ConflictZone& zone, Index vertex) {
   const Point p = mesh_.point(vertex);
   for (const Index neighbour : zone.vertices)
-    for (Index o = balls_.first_at(neighbour), next = none; o != none; o = next) {
-      const auto& ball = balls_[o];
-      next = ball.next;
-      const double d = squared_distance(p, ball.centre);
-      const bool nearer = d < squared_distance(mesh_.point(neighbour), ball.centre);
-      if (d <= ball.squared_radius) {
-        if (ball.kind == LocationObjects::Kind::subsegment)
-          encroach(ball.owner);
-        else
-          hurry_ends(pending_[ball.owner]);
-      }
-      if (nearer) balls_.move(o, vertex);
-    }
+    balls_.visit_at(neighbour, [&](Index o, const LocationObjects::Object& ball) {
+      if (holds(subsegments_[ball.owner], vertex)) encroach(ball.owner);
+      if (squared_distance(p, ball.centre) < squared_distance(mesh_.point(neighbour), ball.centre))
+        balls_.move(o, vertex);
+    });
+}
+
+Index CurveChains::remove_chain(Index curve) {
+  const Index first = chain_ends_[curve][0];
+  Index near = none;
+  for (Index s = first, next = none; s != none; s = next == first ? none : next) {
+    next = subsegments_[s].neighbours[1];
+    if (const Index ball = subsegments_[s].ball; ball != none) near = balls_[ball].vertex;
+    const Index point = subsegments_[s].points[1];
+    if (next != none && point != none && !points_.resolved(point)) withdraw(point, curve);
+    remove(s);
+  }
+  chain_ends_[curve] = {none, none};
+  return near;
+}
+
+void CurveChains::withdraw(Index point, Index curve) {
+  points_.withdraw(point);
+  if (!points_[point].dormant) open_creases_.note_resolved(curve);  // nobody waits for it any more
 }
 
 void CurveChains::clip(Index c, bool at_start, Index near) {
   const unsigned side = at_start ? 0 : 1;
   const Index vertex = domain_.plc.curves[c].ends[side], ball = collars_.ball_at_vertex(vertex);
+  const Index first = chain_ends_[c][side];
+  if (first == none || subsegments_[first].points[side] != vertex) return;
   const CollarBall& b = collars_.balls()[ball];
   const double end = at_start ? 0 : domain_.paths.length(c);
-  auto& waiting = waiting_for(vertex);
-  const auto found = std::find_if(waiting.begin(), waiting.end(), [&](Index index) {
-    const Pending& p = pending_[index];
-    return p.curve == c && p.points[side] == vertex && p.parameters[side] == end;
-  });
-  if (found == waiting.end()) return;
-  const Index index = *found;
-  waiting.erase(found);
-  const bool is_open = open_creases_.is_open(c);
   double parameter = at_start ? b.radius : end - b.radius;
+  const bool is_open = open_creases_.is_open(c);
   if (!is_open) parameter = leaving_parameter(c, b, at_start);
   const Index point = points_.add(domain_.paths.point(c, parameter), {1, c}, near);
   if (is_open)
     open_creases_.note_end(c, side, point);
   else
     clipped_ends_.push_back({c, ball, point});
-  Pending& p = pending_[index];
-  p.points[side] = point;
-  p.parameters[side] = parameter;
-  waiting_for(point).push_back(index);
-  balls_.remove(p.ball);
-  guard(index, near);
-  const LocationObjects::Object& guarding = balls_[p.ball];
-  if (squared_distance(mesh_.point(guarding.vertex), guarding.centre) <= guarding.squared_radius)
-    hurry_ends(p);
+  cut_off(first, side, {none, point, parameter}, near);
+}
+
+// The chain begins at a new end; what lies before it goes, and unresolved points that are just behind it.
+void CurveChains::cut_off(Index first, unsigned side, const End& end, Index near) {
+  const Index curve = subsegments_[first].piece.curve;
+  const double from = subsegments_[first].piece.parameters[side];
+  const double least = least_clipped_length * std::fabs(end.parameter - from);
+  Index piece = first;
+  for (;;) {
+    const Chained& s = subsegments_[piece];
+    const Index next = s.neighbours[1 - side];
+    const double beyond = (s.piece.parameters[1 - side] - end.parameter) * (side == 0 ? 1 : -1);
+    const bool movable = s.points[1 - side] != none && !points_.resolved(s.points[1 - side]);
+    if (next == none || beyond > (movable ? least : 0)) break;
+    if (movable) withdraw(s.points[1 - side], curve);
+    remove(piece);
+    piece = next;
+  }
+  const Chained rest = subsegments_[piece];
+  remove(piece);
+  std::array<End, 2> ends{end, end};
+  ends[1 - side] = end_of(rest, 1 - side);
+  const Index cut = add(curve, ends, near);
+  const Index next = rest.neighbours[1 - side];
+  side == 0 ? (link(curve, none, cut), link(curve, cut, next))
+            : (link(curve, next, cut), link(curve, cut, none));
 }
 
 std::size_t CurveChains::bytes() const { return balls_.bytes() + subsegments_.bytes(); }

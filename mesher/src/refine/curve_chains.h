@@ -1,8 +1,7 @@
 #pragma once
 
+#include <array>
 #include <optional>
-#include <span>
-#include <utility>
 #include <vector>
 
 #include "collar/collar_system.h"
@@ -23,20 +22,21 @@ namespace collarmesh {
 /// The chains of curves: each is cut into subsegments, whose protective balls keep other features' samples
 /// away until they are split.
 ///
-/// A curve starts as first subsegments between unresolved points. Each waits, guarded by a ball of its own,
-/// until both ends are in the mesh. Invariants, between insertions: what is left of a curve that has no
-/// collar is covered by its subsegments and by those that wait; a subsegment whose ball holds a mesh vertex,
-/// or that is too coarse, is in the queue; each ball is found from the mesh vertex that is nearest to its
-/// centre. The loop tells of insertions and of resolved points, and splits; SurfaceCheck wants more;
-/// CollarCreator clips chains, and in the end gives a crease its collar instead. It learns of the chains of
-/// creases through OpenCreases.
+/// Chains run ahead of the mesh, as the paper's one-dimensional meshes do: a subsegment ends at mesh vertices
+/// or at unresolved points. What a vertex encroaches is split by an unresolved point, which comes in when the
+/// mesh has quality again; so a vertex never makes other vertices come in at once, and no protective ball
+/// holds a vertex for long. Invariants, between insertions: what is left of a curve that has no collar is
+/// covered by its subsegments; a subsegment whose ball holds a mesh vertex, or that is resolved and too
+/// coarse, is in the queue; each ball is found from the mesh vertex that is nearest to its centre. The loop
+/// tells of insertions and of resolved points, and splits; SurfaceCheck wants more; CollarCreator clips
+/// chains, and in the end gives a crease its collar instead. It learns of the chains of creases through
+/// OpenCreases.
 class CurveChains {
  public:
   /// A place where a subsegment is to be split.
   struct Split {
     Candidate candidate;  ///< start == none: a mesh vertex is there already, `vertex`
     ChainLink link;
-    Subsegment piece;
     double parameter;
     Index vertex;  ///< nearest to the place
   };
@@ -64,40 +64,38 @@ class CurveChains {
   /// first unresolved points, in their order.
   void start();
 
-  /// Paper, Procedure 2: the protective ball that a candidate with this zone lies deepest in; none if it
-  /// encroaches none.
+  /// Paper, Procedure 2: the subsegment in whose protective ball a candidate with this zone lies deepest;
+  /// none if it encroaches none.
   Index encroached(const ConflictZone& zone, const Candidate& candidate) const;
   /// Is any ball found from this mesh vertex?
   bool any_at(Index mesh_vertex) const { return balls_.first_at(mesh_vertex) != none; }
-  /// The subsegment that such a ball belongs to; none if it still waits.
-  Index subsegment_of(Index ball) const;
-  /// The end of a waiting subsegment, not resolved yet, that is nearest to a point in its ball: what would
-  /// encroach it brings the ends in, so that nothing comes too close to a curve that is not resolved yet.
-  Index end_to_resolve(Index ball, const Point& intruder) const;
+  /// The end of a subsegment, not resolved yet, that is to come in instead of a candidate that encroaches it:
+  /// the one nearer to the candidate of those that are medial. None if there is no such end.
+  Index end_to_resolve(Index subsegment, const Candidate& candidate) const;
 
   bool due(const WorkQueue::Entry& entry) const { return is_there({entry.id, entry.stamp}); }
   // To split a subsegment the loop calls, in this order: CollarCreator::create_at_subsegment, which must say
-  // no; `split_of`; `remove`; force_insert; `add_pieces`. Where a vertex is there already (`start` is none),
-  // `can_join` must say yes before `remove`, and the vertex takes over the curve as its feature instead of
-  // force_insert. When the candidate warps, nothing is removed, and `queue_again` follows.
+  // no; `split_of`; then `split_ahead`, or `drop_ball`, force_insert and `split_at`. Where a vertex is there
+  // already (`start` is none), `can_join` must say yes, the vertex takes over the curve as its feature, and
+  // `split_at` follows. When the candidate warps, `queue_again` follows.
   /// Where to split a subsegment; nothing, and given up, when its ball is at the floor. Precondition: the
-  /// subsegment is there (`due`, or `subsegment_of` a ball).
+  /// subsegment is there (`due`, or `encroached`).
   std::optional<Split> split_of(Index subsegment);
   /// Does the mesh vertex at the place split the subsegment? Not if it is one of its ends.
   bool can_join(const Split& split) const;
-  /// A subsegment is about to be split: its ball goes before the vertex comes, which may lie in it.
-  /// Precondition: nothing was inserted since `split_of`.
-  void remove(const Split& split);
-  /// The two pieces of a subsegment that was removed. Precondition: the mesh has this vertex at the place,
-  /// and sizes know it.
-  void add_pieces(const Split& split, Index vertex);
-  /// Queue a subsegment again if it is still there after something else was inserted.
-  void queue_again(const Split& split, WorkQueue::Priority priority);
+  /// Split a subsegment by an unresolved point. Precondition: no mesh vertex is at the place.
+  void split_ahead(const Split& split);
+  /// The vertex that splits a subsegment is about to come, and may lie in its ball.
+  void drop_ball(const Split& split);
+  /// Split a subsegment by a mesh vertex at the place. Precondition: sizes know it.
+  void split_at(const Split& split, Index vertex);
+  /// Queue a subsegment that is too coarse again, if it is still there after something else was inserted.
+  void queue_again(const Split& split);
 
-  /// An unresolved point has become a mesh vertex: first subsegments that waited for it may start.
+  /// An unresolved point has become a mesh vertex: what ends there knows it.
   void point_resolved(Index point);
-  /// A vertex has come: balls that it is nearest to move to it. Subsegments whose balls hold it are queued,
-  /// or, while they still wait, their ends. Precondition: the mesh has the vertex.
+  /// A vertex has come: balls that it is nearest to move to it. Subsegments whose balls hold it are queued.
+  /// Precondition: the mesh has the vertex, and the point that it was, if any, is resolved.
   void cells_made(const ConflictZone& zone, Index vertex);
   /// Sizes have changed everywhere.
   void judge_all();
@@ -119,40 +117,54 @@ class CurveChains {
   const Subsegment* find(const ChainLink& link) const {
     return is_there(link) ? &subsegments_[link.subsegment].piece : nullptr;
   }
-  void remove(const ChainLink& link) { remove_subsegment(link.subsegment); }
+  /// Balls take the place of a chain: its subsegments go, and the points between them that are not resolved.
+  /// Returns a mesh vertex near it, none if there was no chain.
+  Index remove_chain(Index curve);
   Index curve_of(Index subsegment) const { return subsegments_[subsegment].piece.curve; }
 
   const LocationObjects& balls() const { return balls_; }
   std::size_t bytes() const;
 
  private:
+  /// The end of a subsegment: a mesh vertex or, as long as there is none, an unresolved point.
+  struct End {
+    Index vertex, point;
+    double parameter;
+  };
   struct Chained {
     Subsegment piece;
+    std::array<Index, 2> points;      // unresolved points at its ends; none where there are mesh vertices
+    std::array<Index, 2> neighbours;  // on the curve; none at its ends
     Index ball;
     std::uint32_t stamp;
     bool alive;
   };
-  /// A subsegment of a curve's first chain, waiting for its ends to be inserted.
-  struct Pending {
-    Index curve;
-    std::array<Index, 2> points;  // unresolved points
-    std::array<double, 2> parameters;
-    Index ball = none;
-    unsigned missing = 2;
-  };
 
   void add_chain(Index curve);
-  void guard(Index pending, Index near);
-  std::vector<Index>& waiting_for(Index point);
-  void hurry_ends(const Pending& pending);
+  std::vector<End> first_ends(Index curve);
+  End end_of(const Chained& s, unsigned side) const {
+    return {s.piece.ends[side], s.points[side], s.piece.parameters[side]};
+  }
+  const Point& place(const Chained& s, unsigned side) const {
+    return s.points[side] == none ? mesh_.point(s.piece.ends[side]) : points_[s.points[side]].point;
+  }
+  Index add(Index curve, const std::array<End, 2>& ends, Index near);
+  void note_piece(Index point, Index subsegment);
+  void link(Index curve, Index before, Index after);
+  void cut(Index subsegment, const End& middle, Index near);
+  void cut_off(Index first, unsigned side, const End& end, Index near);
+  void remove(Index subsegment);
+  void withdraw(Index point, Index curve);
+  void judge(Index subsegment);
+  bool holds(const Chained& s, Index vertex) const;
+  bool is_end(const Chained& s, Index vertex) const;
+  void resolve_end(Index subsegment, unsigned side);
   double leaving_parameter(Index curve, const CollarBall& ball, bool at_start) const;
   double bisecting_parameter(Index curve, const Point& a, const Point& b, double from, double to) const;
-  void add_subsegment(Index curve, std::array<Index, 2> ends, std::array<double, 2> parameters, Index nearby);
-  void remove_subsegment(Index subsegment);
   void queue(WorkQueue::Priority priority, Index subsegment);
-  bool too_coarse(const Subsegment& s) const;
-  bool turns_too_far(const Subsegment& s) const;
-  bool leaves_chord(const Subsegment& s, double sagitta) const;
+  bool too_coarse(const Chained& s) const;
+  bool turns_too_far(const Chained& s) const;
+  bool leaves_chord(const Chained& s, double sagitta) const;
   bool is_there(const ChainLink& link) const {
     return subsegments_[link.subsegment].alive && subsegments_[link.subsegment].stamp == link.stamp;
   }
@@ -170,8 +182,8 @@ class CurveChains {
   LocationObjects balls_;
   GrowingArray<Chained> subsegments_;
   std::vector<Index> free_subsegments_;
-  std::vector<Pending> pending_;
-  std::vector<std::vector<Index>> waiting_;  // by unresolved point: first subsegments
+  std::vector<std::array<Index, 2>> chain_ends_;  // by curve: its first and last subsegment
+  GrowingArray<Index> piece_at_;  // by unresolved point amid a curve: the piece that ends there
   std::vector<ClippedEnd> clipped_ends_;
 };
 

@@ -57,11 +57,11 @@ std::optional<Candidate> FacingSheets::candidate_across(FaceId face) {
   return Candidate{beneath, t.squared_radius, beneath, {2, patch}, start, across};
 }
 
-std::optional<double> FacingSheets::parameter_across(const Subsegment& s, Index vertex) const {
-  if (vertex == s.ends[0] || vertex == s.ends[1] || !apart(vertex, s.curve)) return std::nullopt;
+std::optional<double> FacingSheets::parameter_across(const Subsegment& s, const Vector& along,
+                                                     Index vertex) const {
+  if (!apart(vertex, s.curve)) return std::nullopt;
   const Point& p = mesh_.point(vertex);
   if (squared_distance(p, s.centre) > s.squared_radius) return std::nullopt;
-  const Vector along = mesh_.point(s.ends[1]) - mesh_.point(s.ends[0]);
   const double length = s.parameters[1] - s.parameters[0];
   double low = s.parameters[0] + least_part * length, high = s.parameters[1] - least_part * length;
   const auto before = [&](double parameter) {

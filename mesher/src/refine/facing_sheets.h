@@ -27,8 +27,9 @@ class FacingSheets {
 
   /// For a restricted triangle with a vertex on another sheet: the point of its patch beneath that vertex.
   std::optional<Candidate> candidate_across(FaceId face);
-  /// Where on a subsegment the vertex is nearest that encroaches it from across a gap, if it does.
-  std::optional<double> parameter_across(const Subsegment& s, Index vertex) const;
+  /// Where on a subsegment, which goes this way, the vertex is nearest that encroaches it from across a gap,
+  /// if it does. Precondition: it is none of its ends.
+  std::optional<double> parameter_across(const Subsegment& s, const Vector& along, Index vertex) const;
 
   /// These vertices face each other; the second one may be about to come.
   void note_pair(Index a, Index b);

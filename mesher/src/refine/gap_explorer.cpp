@@ -147,6 +147,7 @@ void GapExplorer::interview(std::span<const Index> nodes, const Feature& at, con
     return patch_below_[node] != none && !counts({2, patch_below_[node]});
   };
   nodes_.hierarchy().visit_near(nodes, x, squared_bound, contains_all, [&](Index element) {
+    ++interviews_;
     const auto& e = nodes_.hierarchy().points(element);
     // What bounds a patch is no nearer than the patch. Without a border it counts: it was not left out.
     const bool is_triangle = element < plc_.triangles.size();

@@ -38,6 +38,8 @@ class GapExplorer final : public GapSize {
   std::size_t queries() const { return queries_; }
   /// Vertices whose cells were explored, of all queries.
   std::size_t explored() const { return explored_; }
+  /// Elements below the nodes of these cells that were asked for their distance.
+  std::size_t interviews() const { return interviews_; }
 
  private:
   /// What of the complex an element holds besides its triangle: the vertices at its corners, and the curves
@@ -84,7 +86,7 @@ class GapExplorer final : public GapSize {
   std::vector<Index> fresh_nodes_, adjacent_;
   std::vector<Point> polygon_, clipped_;
   Index near_ = 0;
-  std::size_t queries_ = 0, explored_ = 0;
+  std::size_t queries_ = 0, explored_ = 0, interviews_ = 0;
 };
 
 }  // namespace collarmesh

@@ -25,7 +25,8 @@ class OpenCreases {
  public:
   struct Chain {
     std::vector<ChainLink> links;           ///< all there have been
-    std::size_t pending = 0;                ///< first subsegments that still wait
+    std::size_t unresolved = 0;             ///< of the points that its chain started with
+    bool split = false;                     ///< some subsegment was, before all of these were resolved
     std::array<Index, 2> ends{none, none};  ///< unresolved points where it leaves the balls at its ends
   };
 
@@ -40,11 +41,17 @@ class OpenCreases {
   /// Precondition: it is open.
   const Chain& chain(Index curve) const { return creases_.at(curve).chain; }
 
-  void note_pending(Index curve) {
-    if (Crease* crease = find(curve)) ++crease->chain.pending;
+  /// Its chain starts with one unresolved point more.
+  void note_unresolved(Index curve) {
+    if (Crease* crease = find(curve)) ++crease->chain.unresolved;
   }
-  void note_started(Index curve) {
-    if (Crease* crease = find(curve)) --crease->chain.pending;
+  /// One of these is resolved, or not needed any more. Was it the last one, and has the chain been split?
+  bool note_resolved(Index curve) {
+    Crease* crease = find(curve);
+    return crease != nullptr && --crease->chain.unresolved == 0 && crease->chain.split;
+  }
+  void note_split(Index curve) {
+    if (Crease* crease = find(curve)) crease->chain.split = true;
   }
   void note_link(Index curve, const ChainLink& link) {
     if (Crease* crease = find(curve)) crease->chain.links.push_back(link);

@@ -48,6 +48,7 @@ Refinement::Refinement(const Plc& plc, const MeshOptions& options, const Executi
       stitching_(domain_, mesh_, nodes_, collars_, surface_, points_, curves_, collar_creator_,
                  collar_surface_),
       topology_(domain_, mesh_, collar_cells_, surface_, curves_, stitching_, triangles_, surface_check_) {
+  if (domain_.options.count_work) counter_.emplace(plc, mesh_);
   start();
 }
 
@@ -75,7 +76,9 @@ MeshStatus Refinement::run() {
   while (!outcome_.stopped()) {
     for (;;) {
       if (first_pass && blocks_.due()) {
+        if (observer_ && queue_.first_priority() > WorkQueue::skinny_cells) observer_();
         blocks_.round();
+        if (counter_) counter_->note_round(blocks_.largest_zone());
         if (stopped()) return outcome_.status();
       }
       if (!queue_.pop(item)) break;
@@ -108,13 +111,13 @@ MeshStatus Refinement::run() {
 
 void Refinement::process(const WorkQueue::Item& item) {
   const auto [id, stamp] = item.entry;
+  working_on_ = item.priority;
   switch (item.priority) {
     case WorkQueue::encroached_subsegments:
-    case WorkQueue::coarse_subsegments:
-      if (curves_.due(item.entry)) destroy_subsegment(id, item.priority);
+      if (curves_.due(item.entry)) split_ahead(id);
       break;
-    case WorkQueue::ends_of_encroached_subsegments:
-      if (!points_.resolved(id)) insert_point(id);
+    case WorkQueue::coarse_subsegments:
+      if (curves_.due(item.entry)) destroy_subsegment(id, true);
       break;
     case WorkQueue::unresolved_points:
       if (points_.due(id, stamp)) insert_point(id);
@@ -163,9 +166,9 @@ bool Refinement::destroy(Candidate candidate) {
       insert_point(point);
       return true;
     }
-    if (const Index ball = curves_.encroached(zone_, candidate); ball != none) {
+    if (const Index subsegment = curves_.encroached(zone_, candidate); subsegment != none) {
       ++yields_;
-      return destroy_ball(ball, candidate.point);
+      return yield_to(subsegment, candidate);
     }
     if (const FaceId face = triangles_.encroached(zone_, candidate); face != no_face)
       if (const auto lower = triangles_.candidate(face); lower && !at_floor(*lower)) {
@@ -179,36 +182,51 @@ bool Refinement::destroy(Candidate candidate) {
   }
 }
 
-bool Refinement::destroy_ball(Index ball, const Point& intruder) {
-  if (const Index subsegment = curves_.subsegment_of(ball); subsegment != none)
-    return destroy_subsegment(subsegment, WorkQueue::encroached_subsegments);
-  insert_point(curves_.end_to_resolve(ball, intruder));
-  return true;
+// The ball is empty: its middle is as good a place for a vertex as the candidate's, and so is a medial end.
+bool Refinement::yield_to(Index subsegment, const Candidate& candidate) {
+  if (const Index end = curves_.end_to_resolve(subsegment, candidate); end != none) {
+    insert_point(end);
+    return true;
+  }
+  return destroy_subsegment(subsegment, false);
 }
 
-bool Refinement::destroy_subsegment(Index subsegment, WorkQueue::Priority priority) {
+bool Refinement::destroy_subsegment(Index subsegment, bool queue_again) {
   if (collar_creator_.create_at_subsegment(subsegment)) return true;
   const auto split = curves_.split_of(subsegment);
   if (!split) return false;
   const Candidate& candidate = split->candidate;
-  if (candidate.start == none) {  // a vertex is there already: it joins the curve
-    if (!curves_.can_join(*split)) return false;
-    mesh_.lower_feature(split->vertex, candidate.feature);
-    collar_review_.vertex_joined_feature(split->vertex);
-    curves_.remove(*split);
-    curves_.add_pieces(*split, split->vertex);
-    return true;
-  }
+  if (candidate.start == none) return join(*split);
   mesh_.find_conflict_zone(candidate.point, candidate.start, zone_);
   if (const Index point = points_.warp_target(zone_, candidate); point != none) {
     ++warps_;
     insert_point(point);
-    curves_.queue_again(*split, priority);
+    if (queue_again) curves_.queue_again(*split);
     return true;
   }
-  curves_.remove(*split);
   if (candidate.across != none) facing_sheets_.note_pair(candidate.across, mesh_.vertex_count());
-  curves_.add_pieces(*split, force_insert(candidate.feature));
+  curves_.drop_ball(*split);
+  curves_.split_at(*split, force_insert(candidate.feature));
+  return true;
+}
+
+// A vertex is in the ball: what splits the subsegment waits for its turn.
+void Refinement::split_ahead(Index subsegment) {
+  if (collar_creator_.create_at_subsegment(subsegment)) return;
+  const auto split = curves_.split_of(subsegment);
+  if (!split) return;
+  if (split->candidate.start == none)
+    join(*split);
+  else
+    curves_.split_ahead(*split);
+}
+
+// A vertex is there already: it joins the curve.
+bool Refinement::join(const CurveChains::Split& split) {
+  if (!curves_.can_join(split)) return false;
+  mesh_.lower_feature(split.vertex, split.candidate.feature);
+  collar_review_.vertex_joined_feature(split.vertex);
+  curves_.split_at(split, split.vertex);
   return true;
 }
 
@@ -223,6 +241,7 @@ void Refinement::insert_point(Index index) {
   } else {
     mesh_.find_conflict_zone(p.point, cell, zone_);
     points_.resolve(index, mesh_.vertex_count());
+    if (p.across != none) facing_sheets_.note_pair(p.across, mesh_.vertex_count());
     vertex = force_insert(p.feature);
   }
   if (collar_creator_.waits_for_ball(index)) collar_creator_.create_at_vertex(index, vertex);
@@ -230,9 +249,10 @@ void Refinement::insert_point(Index index) {
 }
 
 Index Refinement::force_insert(const Feature& feature) {
+  const bool early = counter_ && too_early();
   surface_.cells_vanish(zone_);
   const Index vertex = mesh_.insert(zone_, feature);
-  largest_.add(zone_);
+  if (counter_) counter_->note_insertion(zone_, early);
   // What is there:
   nodes_.cells_made(zone_, vertex);
   collar_cells_.cells_made(zone_, vertex);
@@ -247,6 +267,13 @@ Index Refinement::force_insert(const Feature& feature) {
   collar_review_.cells_made(zone_);
   collar_creator_.cells_made(zone_, vertex);
   return vertex;
+}
+
+// Does something else come in than what destroys skinny cells, while one of these waits?
+bool Refinement::too_early() {
+  return working_on_ != WorkQueue::skinny_cells &&
+         queue_.any_due(WorkQueue::skinny_cells,
+                        [&](const WorkQueue::Entry& entry) { return cells_.due(entry); });
 }
 
 bool Refinement::check_gradation() {
@@ -298,14 +325,13 @@ WorkCounts Refinement::work_counts() const {
   WorkCounts counts;
   counts.located = points_.objects().added() + curves_.balls().added();
   counts.relocated = points_.objects().moved() + curves_.balls().moved();
+  counts.looks = points_.objects().looks() + curves_.balls().looks();
   if (const GapExplorer* gaps = collar_creator_.gap_explorer()) {
     counts.gap_queries = gaps->queries();
     counts.gap_cells = gaps->explored();
+    counts.gap_interviews = gaps->interviews();
   }
-  LargestZone largest = blocks_.largest_zone();
-  largest.add(largest_);
-  counts.largest_degree = largest.vertices;
-  counts.largest_cavity = largest.cells;
+  counter_->fill(counts);
   AspectRatios aspects;
   ThreadLimit(domain_.options.threads).run([&] {
     aspects = aspect_ratios(

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "collar/collar_system.h"
@@ -28,6 +29,7 @@
 #include "refine/surface_topology.h"
 #include "refine/triangle_quality.h"
 #include "refine/unresolved_points.h"
+#include "refine/work_counter.h"
 #include "refine/work_queue.h"
 
 namespace collarmesh {
@@ -68,8 +70,10 @@ class Refinement {
   void process(const WorkQueue::Item& item);
   void destroy_cell(const WorkQueue::Item& item);
   void destroy_triangle(const WorkQueue::Item& item);
-  bool destroy_subsegment(Index subsegment, WorkQueue::Priority priority);
-  bool destroy_ball(Index ball, const Point& intruder);
+  bool destroy_subsegment(Index subsegment, bool queue_again);
+  void split_ahead(Index subsegment);
+  bool join(const CurveChains::Split& split);
+  bool yield_to(Index subsegment, const Candidate& candidate);
   /// Paper, Procedure 2. False when nothing could be inserted.
   bool destroy(Candidate candidate);
   void insert_point(Index point);
@@ -83,6 +87,7 @@ class Refinement {
   /// Is a budget spent when so many vertices more will come at least?
   bool stopped(std::size_t planned_vertices = 0);
   std::size_t bytes() const;
+  bool too_early();
   WorkCounts work_counts() const;
   std::size_t ripped_out() const;
 
@@ -116,7 +121,8 @@ class Refinement {
   SurfaceTopology topology_;
 
   ConflictZone zone_;
-  LargestZone largest_;
+  std::optional<WorkCounter> counter_;  // for those who ask
+  WorkQueue::Priority working_on_ = WorkQueue::priority_count;
   std::size_t steps_ = 0, warps_ = 0, yields_ = 0;
   double seconds_ = 0;
   std::function<void()> observer_;

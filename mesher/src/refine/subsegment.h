@@ -6,15 +6,18 @@
 
 namespace collarmesh {
 
-/// A piece of a curve between two mesh vertices that are consecutive on it, with its protective
-/// ball: centred where the curve meets the bisector plane of the ends.
+/// A piece of a curve between two points that are consecutive on it, with its protective ball: centred
+/// where the curve meets the bisector plane of the ends.
 struct Subsegment {
   Index curve;
-  std::array<Index, 2> ends;         ///< mesh vertices
+  std::array<Index, 2> ends;         ///< mesh vertices; none where the point is unresolved
   std::array<double, 2> parameters;  ///< arc length along the curve
   Point centre;
   double centre_parameter;
   double squared_radius;
+
+  /// Are both ends in the mesh?
+  bool resolved() const { return ends[0] != none && ends[1] != none; }
 };
 
 }  // namespace collarmesh

@@ -12,13 +12,28 @@ int exponent(double squared_radius) { return std::ilogb(std::max(squared_radius,
 
 }  // namespace
 
-Index UnresolvedPoints::add(const Point& p, const Feature& feature, Index near) {
+Index UnresolvedPoints::add(Unresolved point, Index near) {
   const auto index = static_cast<Index>(points_.size());
-  points_.push_back({p, feature});
-  points_[index].object =
-      objects_.add(LocationObjects::Kind::point, index, p, 0, mesh_.nearest_vertex(p, near));
-  queue(index);
+  point.object = objects_.add(index, point.point, 0, mesh_.nearest_vertex(point.point, near));
+  points_.push_back(point);
+  if (!point.dormant) queue(index);
   return index;
+}
+
+void UnresolvedPoints::withdraw(Index point) {
+  objects_.remove(points_[point].object);
+  points_[point].object = none;
+}
+
+// The vertex that is second nearest is a neighbour of the nearest one.
+bool UnresolvedPoints::medial(Index point) const {
+  const double theta_0 = theta_ / (theta_ + 1);
+  const Unresolved& p = points_[point];
+  const Index nearest = objects_[p.object].vertex;
+  double second = INFINITY;
+  mesh_.adjacent_vertices(nearest, adjacent_);
+  for (const Index v : adjacent_) second = std::min(second, squared_distance(p.point, mesh_.point(v)));
+  return squared_distance(p.point, mesh_.point(nearest)) >= theta_0 * theta_0 * second;
 }
 
 void UnresolvedPoints::queue(Index point) {
@@ -28,7 +43,7 @@ void UnresolvedPoints::queue(Index point) {
 
 bool UnresolvedPoints::due(Index point, std::uint32_t stamp) {
   const Unresolved& p = points_[point];
-  if (p.vertex != none) return false;
+  if (p.object == none) return false;
   if (exponent(squared_ball(p)) >= static_cast<int>(stamp)) return true;
   queue(point);
   return false;
@@ -36,6 +51,7 @@ bool UnresolvedPoints::due(Index point, std::uint32_t stamp) {
 
 void UnresolvedPoints::resolve(Index point, Index vertex) {
   objects_.remove(points_[point].object);
+  points_[point].object = none;
   points_[point].vertex = vertex;
 }
 
@@ -45,18 +61,17 @@ Index UnresolvedPoints::warp_target(const ConflictZone& zone, const Candidate& c
   double reach = theta_ * theta_ * candidate.squared_radius;
   std::uint8_t dimension = candidate.feature.dimension;
   for (const Index v : zone.vertices)
-    for (Index o = objects_.first_at(v); o != none; o = objects_[o].next) {
-      const Index point = objects_[o].owner;
-      const Unresolved& p = points_[point];
+    objects_.visit_at(v, [&](Index, const LocationObjects::Object& object) {
+      const Unresolved& p = points_[object.owner];
       const double d = squared_distance(p.point, candidate.ball_centre);
       if (p.feature.dimension > dimension || (p.feature.dimension == dimension && best == none) || d > reach)
-        continue;
+        return;
       if (p.feature.dimension == dimension && best != none &&
           d >= squared_distance(points_[best].point, candidate.ball_centre))
-        continue;
-      best = point;
+        return;
+      best = object.owner;
       dimension = p.feature.dimension;
-    }
+    });
   return best;
 }
 
@@ -74,12 +89,10 @@ Index UnresolvedPoints::only_vertex_at(Index mesh_vertex) const {
 void UnresolvedPoints::cells_made(const ConflictZone& zone, Index vertex) {
   const Point p = mesh_.point(vertex);
   for (const Index neighbour : zone.vertices)
-    for (Index o = objects_.first_at(neighbour), next = none; o != none; o = next) {
-      const auto& object = objects_[o];
-      next = object.next;
+    objects_.visit_at(neighbour, [&](Index o, const LocationObjects::Object& object) {
       if (squared_distance(p, object.centre) < squared_distance(mesh_.point(neighbour), object.centre))
         objects_.move(o, vertex);
-    }
+    });
 }
 
 }  // namespace collarmesh

@@ -13,15 +13,17 @@ namespace collarmesh {
 /// Points that the mesh must have and has not yet: vertices of the complex, seeds, corner points of collars.
 ///
 /// Invariant: each of them is found from the mesh vertex that is nearest to it, and is in the queue with the
-/// ball around it that is empty. Any part may add one; the loop resolves them, when their turn has come or as
-/// what a candidate warps to.
+/// ball around it that is empty, unless it is dormant. Any part may add one; the loop resolves them, when
+/// their turn has come or as what a candidate warps to.
 class UnresolvedPoints {
  public:
   struct Unresolved {
     Point point;
     Feature feature;
-    Index object = none;  // in objects_
-    Index vertex = none;  ///< the mesh vertex that it became
+    Index object = none;   // in objects_; none when it is resolved or withdrawn
+    Index vertex = none;   ///< the mesh vertex that it became
+    Index across = none;   ///< the mesh vertex that it faces across a gap
+    bool dormant = false;  ///< comes in only when a candidate warps to it
   };
 
   /// All are kept by reference. `theta`: how far to warp (paper, Procedure 2).
@@ -29,10 +31,18 @@ class UnresolvedPoints {
       : mesh_(mesh), queue_(queue), theta_(theta) {}
 
   /// `near`: a mesh vertex not far away, if one is known. Points are numbered in their order.
-  Index add(const Point& p, const Feature& feature, Index near = none);
+  Index add(const Point& p, const Feature& feature, Index near = none) {
+    return add(Unresolved{p, feature}, near);
+  }
+  Index add(Unresolved point, Index near);
+  /// Nobody needs it any more. Precondition: it is not resolved.
+  void withdraw(Index point);
   const Unresolved& operator[](Index point) const { return points_[point]; }
   std::size_t size() const { return points_.size(); }
   bool resolved(Index point) const { return points_[point].vertex != none; }
+  /// Is an unresolved point theta_0-medial (paper, section 3.1 and appendix A): is the second nearest mesh
+  /// vertex not much farther than the nearest one?
+  bool medial(Index point) const;
   /// The mesh vertex that a point became, or is nearest to it.
   Index vertex_near(Index point) const {
     const Unresolved& p = points_[point];
@@ -69,6 +79,7 @@ class UnresolvedPoints {
   double theta_;
   GrowingArray<Unresolved> points_;
   LocationObjects objects_;
+  mutable std::vector<Index> adjacent_;  // scratch
 };
 
 }  // namespace collarmesh

@@ -20,7 +20,6 @@ class WorkQueue {
   /// Refinement::run compares priorities and BlockRefinement names some: look there when the order changes.
   enum Priority : unsigned {
     encroached_subsegments,
-    ends_of_encroached_subsegments,  ///< unresolved ends of a curve's first subsegments
     skinny_cells,
     coarse_subsegments,
     unresolved_points,
@@ -81,6 +80,16 @@ class WorkQueue {
     unsigned& bucket = first_[priority];
     while (bucket < bucket_count && buckets_[priority][bucket].empty()) ++bucket;
     return bucket;
+  }
+  /// Is any entry of a priority still due? Those that are not are dropped on the way.
+  template <class Due>
+  bool any_due(Priority priority, const Due& due) {
+    for (unsigned bucket = first_bucket(priority); bucket < bucket_count; bucket = first_bucket(priority)) {
+      auto& entries = buckets_[priority][bucket];
+      while (!entries.empty() && !due(entries.back())) entries.pop_back();
+      if (!entries.empty()) return true;
+    }
+    return false;
   }
   std::size_t count(Priority priority, unsigned bucket) const { return buckets_[priority][bucket].size(); }
   /// Take all entries of a bucket.

@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""Time and counts against the number of segments of loose polylines, and against their spread, by this version and
+by an older one on request: cells per vertex of the triangulation at its largest, the largest number of cells that
+one insertion destroyed (away from vertices where very many features meet), vertices that came while skinny cells
+waited. Prints Markdown tables."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from acute_inputs import AcuteInput
+from meshers import Collarmesh, MeshRun
+from processes import ProgramFailed, pin_to_core
+from tables import exponent, machine, seconds, si, table
+from tuning import SizeCache
+
+size = 2.0   # the box is a unit cube: the mesh is what the features force
+# Family, further parameters by the number n, and by how much n differs: some make n^2 vertices of n segments.
+families: list[tuple] = [
+    ("skew_zigzags", lambda n: (135,), 1), ("skew_zigzags", lambda n: (45,), 1), ("skew_combs", lambda n: (), 0.1),
+    ("helices", lambda n: (), 0.3), ("torus_knot", lambda n: (), 1), ("random_walk", lambda n: (1,), 1),
+    ("box_frames", lambda n: (1,), 1), ("graph", lambda n: (1,), 1), ("welded_mesh", lambda n: (), 1),
+    ("crossed_wires", lambda n: (1,), 0.05), ("crossed_wires", lambda n: (n / 4,), 0.05),
+    ("crossed_strips", lambda n: (1,), 0.02), ("outlines", lambda n: (), 1), ("star", lambda n: (1,), 0.1)]
+names = {("skew_zigzags", (45,)): "skew zigzags, creases", ("crossed_wires", (1,)): "crossed wires, near"}
+
+
+def name_of(family: str, parameters: tuple) -> str:
+    return names.get((family, parameters), family.replace("_", " "))
+
+
+def measure(mesher: Collarmesh, shape: AcuteInput, folder: Path) -> MeshRun | str:
+    try:
+        mesher.prepare(shape, folder)
+        return mesher.mesh(shape, size, folder)
+    except ProgramFailed as failure:
+        return str(failure)
+
+
+def counts_of(run: MeshRun) -> list[str]:
+    counts = run.report["statistics"]["counts"]
+    return [f"{counts['peak_cells_per_vertex']:.1f}", si(counts["largest_cavity_outside_hubs"]),
+            si(counts["before_quality"])]
+
+
+def cells_of(run: MeshRun | str, before: MeshRun | str | None) -> list[str]:
+    """Vertices, seconds, the slope of these over those, counts."""
+    if isinstance(run, str):
+        return ["", run, "", "", "", ""]
+    vertices = run.report["statistics"]["vertices_inserted"]
+    growth = ""
+    if isinstance(before, MeshRun):
+        earlier = before.report["statistics"]["vertices_inserted"]
+        if vertices > 1.2 * earlier:
+            growth = f"{exponent(earlier, before.refinement_cpu, vertices, run.refinement_cpu):.2f}"
+    return [si(vertices), seconds(run.refinement_cpu), growth, *counts_of(run)]
+
+
+def rows_of(meshers: list[Collarmesh], title: str, series: dict[str, AcuteInput], folder: Path) -> list[list[str]]:
+    rows, last = [], [None] * len(meshers)
+    for at, shape in series.items():
+        runs = [measure(mesher, shape, folder) for mesher in meshers]
+        rows.append([title, at, *(cell for run, before in zip(runs, last) for cell in cells_of(run, before))])
+        print(" ".join(rows[-1]), file=sys.stderr)
+        last = runs
+    return rows
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    root = Path(__file__).resolve().parents[2]
+    parser.add_argument("what", nargs="*", default=["number", "spread"], help="number, spread")
+    parser.add_argument("--build", type=Path, default=root / "build" / "bench")
+    parser.add_argument("--before", type=Path, help="an older version's program")
+    parser.add_argument("--smallest", type=int, default=400,
+                        help="number of segments, less where these make n^2 vertices")
+    parser.add_argument("--factors", type=int, nargs="*", default=[1, 10, 100])
+    parser.add_argument("--time-limit", type=float, default=600)
+    parser.add_argument("--core", type=int)
+    options = parser.parse_args()
+    about = machine(options.build)
+    pin_to_core(options.core)
+    arguments = ["--coarsen", "off", "--threads", "1"]
+    meshers = [Collarmesh(program, options.time_limit, arguments)
+               for program in (options.build / "bin" / "collarmesh", options.before) if program]
+    generator = options.build / "bin" / "acute_shape"
+    folder = SizeCache().folder / "polylines"
+    folder.mkdir(parents=True, exist_ok=True)
+    columns = ["vertices", "refine s", "exponent", "peak cells/vertex", "largest cavity", "too early"]
+    header = ["polylines"] + [c + suffix for suffix in ("", ", before")[:len(meshers)] for c in columns]
+    print(f"{about}. collarmesh {meshers[0].version()}.\n")
+    if "number" in options.what:
+        rows = []
+        for family, further, scale in families:
+            counts = [max(16, round(options.smallest * scale)) * factor for factor in options.factors]
+            series = {si(n): AcuteInput(generator, family, (n, *further(n))) for n in counts}
+            rows += rows_of(meshers, name_of(family, further(400)), series, folder)
+        print(table([header[0], "n", *header[1:]], rows) + "\n")
+    if "spread" in options.what:
+        rows = []
+        smalls = [0.08 * 10.0 ** -k for k in (0, 2, 4)]
+        for family, further, scale in families:
+            n = max(16, round(options.smallest * scale / 4))
+            series = {f"{small:g}": AcuteInput(generator, family, (n, *further(n)), small_copy=small)
+                      for small in smalls if family != "crossed_strips"}
+            rows += rows_of(meshers, name_of(family, further(400)), series, folder)
+        series = {f"{small:g}": AcuteInput(generator, "shrinking_spiral", (60, small)) for small in smalls}
+        rows += rows_of(meshers, "shrinking spiral", series, folder)
+        print(table([header[0], "smallest", *header[1:]], rows))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
