@@ -41,6 +41,17 @@ std::vector<std::string> option_warnings(const MeshArguments& a, const Plc& plc)
         fmt::format("--collar-angle {}: collars need not reach bounds below 130 degrees; refinement "
                     "then ends when a budget is spent, set one with --max-vertices or --time-limit.",
                     a.mesh.bounds.collar_angle));
+  if (a.coarsen && a.mesh.bounds.collar_angle != Bounds{}.collar_angle &&
+      !find_creases(plc, a.mesh.bounds.crease_angle).empty())
+    warnings.push_back(fmt::format(
+        "--collar-angle {}: coarsening dissolves collars, and the mesh that it makes need not keep "
+        "this bound; --coarsen off keeps collars and bound.",
+        a.mesh.bounds.collar_angle));
+  if (a.coarsen && a.mesh.vertex_ratio > 0)
+    warnings.push_back(fmt::format(
+        "--vertex-ratio {}: the mesh that coarsening makes need not keep this bound; --coarsen off "
+        "leaves what refinement made, which improvement may still exceed.",
+        a.mesh.vertex_ratio));
   if (a.mesh.bounds.distance > 0 && a.mesh.bounds.distance < small_distance * diagonal &&
       is_smooth_anywhere(plc))
     warnings.push_back(

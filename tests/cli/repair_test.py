@@ -130,6 +130,18 @@ class Creases(ProgramTest):
         self.assertIsNone(found["coarsening"])
         self.expect(0, "check", self.out, "--against", wedge, writes=True)
 
+    def test_bounds_that_coarsening_does_not_keep(self):
+        wedge = self.write("wedge.off", wedge_text(40))
+        for option, value in (("--collar-angle", "140"), ("--vertex-ratio", "6")):
+            for coarsen, warns in (("on", True), ("off", False)):
+                with self.subTest(option=option, coarsen=coarsen):
+                    run = self.expect(0, wedge, "-o", self.out, option, value, "--coarsen", coarsen, writes=True)
+                    warning = [line for line in run.stderr.splitlines() if line.startswith("warning: " + option)]
+                    self.assertEqual(["--coarsen off" in line for line in warning], [True] if warns else [])
+        # Where there is no crease no collar dissolves.
+        run = self.expect(0, self.box, "-o", self.out, "--collar-angle", "140", writes=True)
+        self.assertNotIn("warning", run.stderr)
+
     def test_a_sharp_wedge_gets_thin_tets_in_the_place_of_many(self):
         wedge = self.write("wedge.off", wedge_text(5))
         tets = {}

@@ -142,14 +142,15 @@ std::vector<Option> quality_options() {
            .default_text = "none",
            .help = "Refine until largest circumradius / shortest edge at each vertex is below this, more "
                    "than 2 sqrt 2",
-           .details = "not certified, and improvement may exceed it"},
+           .details = "not certified, and coarsening and improvement may exceed it"},
           {.name = "collar-angle DEGREES",
            .place = in_bounds<&Bounds::collar_angle>,
            .unit = Unit::degrees,
            .low = 100,
            .high = 175,
            .help = "Bound on dihedral angles in the collars around creases",
-           .details = "130 and more were reached on all shapes tried",
+           .details = "130 and more were reached on all shapes tried; coarsening dissolves collars, and the "
+                      "bound with them",
            .commands = judging},
           {.name = "collar-creation",
            .words = {"in-pass", "up-front"},
