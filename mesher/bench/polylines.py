@@ -40,9 +40,12 @@ def measure(mesher: Collarmesh, shape: AcuteInput, folder: Path) -> MeshRun | st
 
 
 def counts_of(run: MeshRun) -> list[str]:
+    """An older version counts less: of all vertices, hubs included, and not how large the mesh is meanwhile."""
     counts = run.report["statistics"]["counts"]
-    return [f"{counts['peak_cells_per_vertex']:.1f}", si(counts["largest_cavity_outside_hubs"]),
-            si(counts["before_quality"])]
+    peak, early = counts.get("peak_cells_per_vertex"), counts.get("before_quality")
+    return ["" if peak is None else f"{peak:.1f}",
+            si(counts.get("largest_cavity_outside_hubs", counts["largest_cavity"])),
+            "" if early is None else si(early)]
 
 
 def cells_of(run: MeshRun | str, before: MeshRun | str | None) -> list[str]:
