@@ -258,6 +258,49 @@ TEST(TriangleHierarchy, NodesWithACommonLabelAreLeftOut) {
       [&](Index) { ADD_FAILURE(); });
 }
 
+// Two tilted sheets along each other, the first one coarse: what is nearest on it is found without looking at
+// all of the second one on the way.
+TEST(TriangleHierarchy, TheNearestOfOneLabelLooksAtFewOfAnother) {
+  Soup soup;
+  std::vector<Index> label_of;
+  for (const Index label : {0U, 1U}) {
+    const int n = label == 0 ? 2 : 60;
+    const auto first = static_cast<Index>(soup.points.size());
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; j <= n; ++j) {
+        const double x = static_cast<double>(i) / n, y = static_cast<double>(j) / n;
+        soup.points.push_back({x, y, x + y + 1e-3 * label});
+      }
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        const auto a = first + static_cast<Index>(i * (n + 1) + j), b = a + static_cast<Index>(n) + 1;
+        soup.triangles.insert(soup.triangles.end(), {{a, b, b + 1}, {a, b + 1, a + 1}});
+        label_of.insert(label_of.end(), {label, label});
+      }
+  }
+  const TriangleHierarchy hierarchy(soup.points, soup.triangles);
+  const std::vector<Index> labels = hierarchy.common_labels(label_of);
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::size_t looked_at = 0;
+  constexpr std::size_t queries = 200;
+  for (std::size_t k = 0; k < queries; ++k) {
+    const Point p{unit(random), unit(random), 2 * unit(random)};
+    Index expected = none, nearest = none;
+    const double squared = hierarchy.squared_distance_to(
+        p, INFINITY, &expected, [&](Index triangle) { return label_of[triangle] == 0; });
+    EXPECT_EQ(hierarchy.squared_distance_to(
+                  p, INFINITY, &nearest, [&](Index node) { return labels[node] == 1; },
+                  [&](Index triangle) {
+                    ++looked_at;
+                    return label_of[triangle] == 0;
+                  }),
+              squared);
+    EXPECT_EQ(nearest, expected);
+  }
+  EXPECT_LE(looked_at, 8 * queries);
+}
+
 TEST(TriangleHierarchy, DistanceToATriangleIsThatOfSampledPoints) {
   const Point a{0, 0, 0}, b{1, 0, 0}, c{0.2, 0.9, 0.1};
   std::mt19937_64 random(6);

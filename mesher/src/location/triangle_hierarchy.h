@@ -86,7 +86,14 @@ class TriangleHierarchy {
   }
   /// The same among the triangles that `counts` accepts.
   template <class Counts>
-  double squared_distance_to(const Point& p, double bound, Index* nearest, const Counts& counts) const;
+  double squared_distance_to(const Point& p, double bound, Index* nearest, const Counts& counts) const {
+    return squared_distance_to(
+        p, bound, nearest, [](Index) { return false; }, counts);
+  }
+  /// The same without what lies below nodes that `skips` accepts.
+  template <class Skips, class Counts>
+  double squared_distance_to(const Point& p, double bound, Index* nearest, const Skips& skips,
+                             const Counts& counts) const;
 
   /// Some triangle whose squared distance from p is below `bound`, the `hint` if its is; none if there is no
   /// such triangle.
@@ -155,12 +162,12 @@ inline double squared_distance_to_box(const Point& p, const Box& box) {
                        beyond(box.min.z, p.z, box.max.z)});
 }
 
-template <class Counts>
+template <class Skips, class Counts>
 double TriangleHierarchy::squared_distance_to(const Point& p, double bound, Index* nearest,
-                                              const Counts& counts) const {
+                                              const Skips& skips, const Counts& counts) const {
   if (nodes_.empty()) return bound;
   const Index top = root();
-  visit_near({&top, 1}, p, bound, [&](Index triangle) {
+  visit_near({&top, 1}, p, bound, skips, [&](Index triangle) {
     if (!counts(triangle)) return;
     const auto t = corners(triangle);
     const double d = squared_distance_to_triangle(p, t[0], t[1], t[2]);

@@ -36,6 +36,9 @@ SurfaceNodes::SurfaceNodes(const Domain& domain, const RefinedMesh& mesh)
   lists_.resize(mesh_.vertex_count());
   for (Index v = 0; v < mesh_.vertex_count(); ++v) expect_insertions(v, 0);
   if (hierarchy_.empty()) return;
+  std::vector<Index> patch_of(hierarchy_.triangle_count(), static_cast<Index>(domain_.plc.patches.size()));
+  for (Index t = 0; t < domain_.plc.triangles.size(); ++t) patch_of[t] = domain_.plc.triangles[t].patch;
+  patch_below_ = hierarchy_.common_labels(patch_of);
   for (List& list : lists_) {
     list.nodes = workspace_.reserve(1);
     list.nodes[0] = hierarchy_.root();
@@ -57,12 +60,17 @@ void SurfaceNodes::crossings_of_dual_edge(FaceId face,
                        fewest(face), found);
 }
 
+// Other patches may be nearer all along, as a sheet that faces this one: what lies below nodes of one of them
+// is not looked at.
 Index SurfaceNodes::nearest_triangle(const Point& p, Index patch, double& within_squared) const {
   const Plc& plc = domain_.plc;
   Index nearest = none;
-  within_squared = hierarchy_.squared_distance_to(p, within_squared, &nearest, [&](Index triangle) {
-    return triangle < plc.triangles.size() && plc.triangles[triangle].patch == patch;
-  });
+  within_squared = hierarchy_.squared_distance_to(
+      p, within_squared, &nearest,
+      [&](Index node) { return patch_below_[node] != none && patch_below_[node] != patch; },
+      [&](Index triangle) {
+        return triangle < plc.triangles.size() && plc.triangles[triangle].patch == patch;
+      });
   return nearest;
 }
 

@@ -68,7 +68,8 @@ class SurfaceNodes {
   void renumber(const Renumbering& renumbering) { renumbering.apply(lists_); }
 
   std::size_t bytes() const {
-    return hierarchy_.bytes() + lists_.bytes() + workspace_.bytes() + workspace_.marks_.bytes();
+    return hierarchy_.bytes() + patch_below_.capacity() * sizeof(Index) + lists_.bytes() +
+           workspace_.bytes() + workspace_.marks_.bytes();
   }
 
  private:
@@ -86,8 +87,9 @@ class SurfaceNodes {
   const Domain& domain_;
   const RefinedMesh& mesh_;
   TriangleHierarchy hierarchy_;
-  GrowingArray<List> lists_;  // by vertex
-  Workspace workspace_;       // of the loop
+  std::vector<Index> patch_below_;  // by node of it: the patch of all elements below, none if they differ
+  GrowingArray<List> lists_;        // by vertex
+  Workspace workspace_;             // of the loop
 };
 
 }  // namespace collarmesh
