@@ -208,5 +208,23 @@ TEST(PlcFeatures, LoopAtOneVertexRepeatsIt) {
   }
 }
 
+// Two flat pyramids on one base: no surface is smooth where it is folded, whoever gives the features.
+TEST(PlcFeatures, FoldsAreCurvesWhereFeaturesAreGiven) {
+  PolygonSoup soup;
+  soup.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 0.1}, {0.5, 0.5, -0.1}};
+  for (Index i = 0; i < 4; ++i) {
+    soup.add_facet(std::array<Index, 3>{i, (i + 1) % 4, 4}, 1);
+    soup.add_facet(std::array<Index, 3>{(i + 1) % 4, i, 5}, 1);
+  }
+  soup.given_features = true;
+  const Plc plc = build(soup);
+  EXPECT_EQ(plc.patches.size(), 2U);
+  double length = 0;
+  for (const auto& curve : plc.curves)
+    for (std::size_t i = 0; i + 1 < curve.points.size(); ++i)
+      length += distance(plc.points[curve.points[i]], plc.points[curve.points[i + 1]]);
+  EXPECT_DOUBLE_EQ(length, 4);
+}
+
 }  // namespace
 }  // namespace collarmesh

@@ -3,6 +3,7 @@
 
 #include "face_mending.h"
 #include "flat_triangles.h"
+#include "folded_triangles.h"
 
 #include <fmt/format.h>
 #include <BRepAdaptor_Curve.hxx>
@@ -105,6 +106,7 @@ class Tessellator {
     }
     insert_vertices_amid(face, at, triangles);
     flip_flat_triangles(points_, flat_ * deflection_, triangles);
+    unfold(points_, static_cast<Index>(first_inner), deflection_, triangles);
     return true;
   }
 
@@ -194,6 +196,7 @@ class Tessellator {
     for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next())
       cut_edge(TopoDS::Edge(edge.Current()));
     const MendedFace mended = mend_face(face, outline_of(face), deflection_, angle_);
+    const auto first_inner = static_cast<Index>(points_.size());
     std::vector<Index> at = mended.outline_points;
     for (std::size_t i = 0; i < at.size(); ++i) {
       if (at[i] != none) continue;
@@ -204,6 +207,7 @@ class Tessellator {
     for (const auto& [a, b, c] : mended.triangles)
       if (at[a] != at[b] && at[b] != at[c] && at[c] != at[a]) triangles.push_back({at[a], at[b], at[c]});
     flip_flat_triangles(points_, flat_ * deflection_, triangles);
+    unfold(points_, first_inner, deflection_, triangles);
     Samples& samples = result_.faces[topology_.number(face)].emplace_back();
     samples.shape = mended.triangles.empty() ? face : mended.face;
     samples.points = mended.points;

@@ -25,9 +25,11 @@ class SegmentTest {
     const Index s = sides[0] / 3, t = sides[1] / 3;
     if (draft_.origins[s].soup != draft_.origins[t].soup || draft_.origins[s].tag != draft_.origins[t].tag)
       return true;
-    if (draft_.soup_gives_features[draft_.origins[s].soup]) return false;
     if (clusters_.seed[s] == clusters_.seed[t]) return false;
-    return every_fold_ || dot(clusters_.normal[s], clusters_.normal[t]) < smallest_cosine_;
+    const double cosine = dot(clusters_.normal[s], clusters_.normal[t]);
+    // A surface through two sheets that are folded onto each other has no mesh without a curve there.
+    if (draft_.soup_gives_features[draft_.origins[s].soup]) return cosine < 0;
+    return every_fold_ || cosine < smallest_cosine_;
   }
 
  private:
