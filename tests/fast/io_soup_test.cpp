@@ -11,13 +11,18 @@
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "collarmesh/io/mesh_surface_io.h"
 #include "collarmesh/io/soup_io.h"
+#include "collarmesh/io/tet_mesh_io.h"
+#include "collarmesh/plc_builder.h"
 #include "support/comma_locale.h"
 #include "support/replaced.h"
+#include "support/sample_mesh.h"
 #include "support/temporary_file.h"
 
 namespace collarmesh {
@@ -228,6 +233,7 @@ TEST(IoStl, ReadsVariants) {
   expect_stl_tetrahedron(crlf(text), false);
   expect_stl_tetrahedron(all_replaced(text, "facet", "FACET"), false);
   expect_stl_tetrahedron("solid\n" + text.substr(text.find('\n') + 1), false);
+  expect_stl_tetrahedron(replaced(text, "endsolid", "end solid"), false);
   expect_stl_tetrahedron(stl_binary(), true);
   expect_stl_tetrahedron(stl_binary("solid but binary"), true);
   expect_stl_tetrahedron(stl_binary(std::string(80, '\0')), true);
@@ -451,6 +457,25 @@ TEST(IoSoup, ReadsTheCorpus) {
     if (!io::is_soup_format(path)) continue;
     EXPECT_NO_THROW(EXPECT_GT(io::read_soup(path).facet_count(), 0) << path) << path;
   }
+}
+
+// A mesh of tets as a surface: its regions keep their tags.
+TEST(IoMeshSurface, KeepsTagsOfRegions) {
+  const TetMesh mesh = testing::sample_mesh(2);
+  const TemporaryFolder folder;
+  io::write_tet_mesh(folder.file("a.msh"), mesh);
+  const PolygonSoup soup = io::read_mesh_surface(folder.file("a.msh"));
+  ASSERT_EQ(soup.named_regions.size(), 2U);
+  const Plc plc = build_plc({&soup, 1});
+  std::map<Tag, double> expected, volumes;
+  for (Index t = 0; t < mesh.tets.size(); ++t) {
+    const auto& [a, b, c, d] = mesh.tets[t];
+    expected[mesh.tet_tag[t]] +=
+        six_volume(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]) / 6;
+  }
+  for (std::size_t r = 1; r < plc.regions.size(); ++r) volumes[plc.regions[r].tag] = plc.regions[r].volume;
+  ASSERT_EQ(volumes.size(), expected.size());
+  for (const auto& [tag, volume] : expected) EXPECT_NEAR(volumes[tag], volume, 1e-12) << tag;
 }
 
 }  // namespace

@@ -44,10 +44,11 @@ class PolygonSoup {
   std::vector<Tag> point_tags;  ///< one per point, or empty
   std::vector<Segment> segments;
   std::vector<Index> vertices;  ///< points that are features by themselves
-  bool given_features =
-      false;  ///< its features are its vertices, its segments and the borders of its tags; angles make none
+  /// Its features are its vertices, its segments, the borders of its tags and folds above 90 degrees.
+  bool given_features = false;
   std::vector<RegionPoint> region_points;  ///< .poly: with hole_points they decide for their file
   std::vector<Point> hole_points;          ///< the region around each is empty
+  std::vector<RegionPoint> named_regions;  ///< points that name regions, but decide nothing
   std::vector<FacetHole> facet_holes;
   TagNames tag_names;  ///< that the file gives to tags
   std::optional<Tag>

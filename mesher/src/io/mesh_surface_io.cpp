@@ -4,8 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
 
 #include "collarmesh/error.h"
+#include "common/disjoint_sets.h"
 #include "io/file_bytes.h"
 #include "io/tet_mesh_formats.h"
 
@@ -26,6 +31,41 @@ const Format* find_format(const std::string& path, std::string_view format) {
   for (const Format& known : formats)
     if (known.extension == extension) return &known;
   return nullptr;
+}
+
+/// A point in each body of tets with one tag, which hang together by faces.
+std::vector<PolygonSoup::RegionPoint> points_in_regions(const TetMesh& mesh) {
+  if (mesh.tet_tag.size() != mesh.tets.size()) return {};
+  std::vector<std::pair<std::array<Index, 3>, Index>> sides;  // corners in order, and the tet
+  sides.reserve(4 * mesh.tets.size());
+  for (Index t = 0; t < mesh.tets.size(); ++t)
+    for (unsigned i = 0; i < 4; ++i) {
+      const auto& c = mesh.tets[t];
+      sides.push_back({{c[(i + 1) % 4], c[(i + 2) % 4], c[(i + 3) % 4]}, t});
+      std::sort(sides.back().first.begin(), sides.back().first.end());
+    }
+  std::sort(sides.begin(), sides.end());
+  DisjointSets bodies(mesh.tets.size());
+  for (std::size_t i = 1; i < sides.size(); ++i) {
+    const Index s = sides[i - 1].second, t = sides[i].second;
+    if (sides[i - 1].first == sides[i].first && mesh.tet_tag[s] == mesh.tet_tag[t]) bodies.unite(s, t);
+  }
+  std::map<Index, std::pair<double, Index>> largest;  // of each body: six volumes, and the tet
+  for (Index t = 0; t < mesh.tets.size(); ++t) {
+    const auto& [a, b, c, d] = mesh.tets[t];
+    const double volume =
+        std::fabs(six_volume(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]));
+    auto& best = largest.try_emplace(bodies.find(t), volume, t).first->second;
+    if (volume > best.first) best = {volume, t};
+  }
+  std::vector<PolygonSoup::RegionPoint> points;
+  for (const auto& [body, best] : largest) {
+    if (mesh.tet_tag[best.second] == 0 || !(best.first > 0)) continue;
+    Point centre{};
+    for (const Index corner : mesh.tets[best.second]) centre = centre + 0.25 * mesh.points[corner];
+    points.push_back({centre, mesh.tet_tag[best.second], 0});
+  }
+  return points;
 }
 
 }  // namespace
@@ -53,6 +93,7 @@ PolygonSoup read_mesh_surface(const std::string& path, std::string_view format) 
   for (std::size_t e = 0; e < mesh.edges.size(); ++e)
     soup.segments.push_back({point(mesh.edges[e][0]), point(mesh.edges[e][1]), mesh.edge_tag[e]});
   soup.tag_names = mesh.names;
+  soup.named_regions = points_in_regions(mesh);
   return soup;
 }
 

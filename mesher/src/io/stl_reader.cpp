@@ -73,6 +73,10 @@ void read_text_solid(TextScanner& scan, PointMerger& merger, std::vector<std::ar
   for (;;) {
     const std::string_view keyword = scan.word("facet or endsolid");
     if (equal_ignoring_case(keyword, "endsolid")) break;
+    if (equal_ignoring_case(keyword, "end")) {  // some programs write two words
+      expect(scan, "solid");
+      break;
+    }
     if (!equal_ignoring_case(keyword, "facet")) scan.fail("facet or endsolid", keyword);
     read_text_facet(scan, merger, triangles);
   }

@@ -78,6 +78,8 @@ class Merger {
       if (number[hole.facet] != none) result_.facet_holes.push_back({number[hole.facet], hole.point});
     result_.region_points.insert(result_.region_points.end(), soup.region_points.begin(),
                                  soup.region_points.end());
+    result_.named_regions.insert(result_.named_regions.end(), soup.named_regions.begin(),
+                                 soup.named_regions.end());
     result_.hole_points.insert(result_.hole_points.end(), soup.hole_points.begin(), soup.hole_points.end());
   }
 

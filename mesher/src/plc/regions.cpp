@@ -208,9 +208,10 @@ class RegionFinder {
           list_[at].hole_soup = s;
           holes_.push_back({s, {hole}, at});
         }
-      for (const auto& point : soups[s].region_points)
-        if (const Index at = enclosing_chamber(point.point, "region", s); at != none)
-          region_points_.push_back({s, point, at});
+      for (const auto* points : {&soups[s].named_regions, &soups[s].region_points})
+        for (const auto& point : *points)
+          if (const Index at = enclosing_chamber(point.point, "region", s); at != none)
+            region_points_.push_back({s, point, at});
     }
   }
 

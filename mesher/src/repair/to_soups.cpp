@@ -38,6 +38,7 @@ class SoupMaker {
     frame.name = soup.name;
     frame.given_features = soup.given_features;
     frame.region_points = soup.region_points;
+    frame.named_regions = soup.named_regions;
     frame.hole_points = soup.hole_points;
     frame.region_tag = soup.region_tag;
     frame.tag_names = soup.tag_names;

@@ -9,8 +9,8 @@
 namespace collarmesh::io {
 
 /// Read the tagged triangles and lines of a mesh file, with the names of their groups, as a surface: .msh
-/// .mesh .vtu .vtp, by extension or as `format` says. Tetrahedra that are there as well are left out, nodes
-/// amid edges too. Throws ReadError.
+/// .mesh .vtu .vtp, by extension or as `format` says. Tetrahedra that are there as well are left out, but
+/// name their regions by their tags; nodes amid edges are left out, too. Throws ReadError.
 PolygonSoup read_mesh_surface(const std::string& path, std::string_view format = {});
 
 /// Does `read_mesh_surface` know this extension or format?
