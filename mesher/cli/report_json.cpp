@@ -278,11 +278,16 @@ Json repair_json(const RepairReport& r) {
           {"turned", places_json(r.turned, nullptr)},
           {"stitched", places_json(r.stitched, "largest_distance")},
           {"cut", places_json(r.cut, nullptr)},
+          {"flakes", places_json(r.flakes, "volume")},
+          {"second_sides", r.second_sides},
           {"merged", places_json(r.merged, "area")},
           {"dropped", r.dropped.count},
           {"collapsed", places_json(r.collapsed, "largest_distance")},
+          {"kept", places_json(r.kept, nullptr)},
           {"filled", filled_json(r.filled)},
           {"lost_tags", r.lost_tags},
+          {"lost_groups", r.lost_groups},
+          {"lost_regions", r.lost_regions},
           {"messages", describe(r)}};
 }
 

@@ -52,6 +52,8 @@ std::string times_text(const StageTimes& times) {
 RepairReport beyond_tolerance(const RepairReport& report) {
   RepairReport rest;
   rest.turned = report.turned;
+  rest.flakes = report.flakes;
+  rest.second_sides = report.second_sides;
   rest.merged = report.merged;
   rest.filled = report.filled;
   rest.lost_tags = report.lost_tags;

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "collarmesh/error.h"
 #include "collarmesh/repair.h"
@@ -109,6 +110,27 @@ TEST(RepairBounds, FurtherRepairsAreCoarserAndThenWrap) {
   EXPECT_EQ(further_repairs(options, repaired).size(), 1U);
   options.mode = RepairMode::off;
   EXPECT_TRUE(further_repairs(options, repaired).empty());
+}
+
+TEST(RepairBounds, CoarserRepairsKeepBelowTheSize) {
+  const auto tolerances = [](RepairOptions options, double size) {
+    std::vector<double> list;
+    for (const RepairOptions& repair : coarser_repairs(options, size, 20)) list.push_back(repair.tolerance);
+    return list;
+  };
+  RepairOptions options;
+  EXPECT_EQ(tolerances(options, 2), (std::vector<double>{1e-4, 1e-3}));
+  EXPECT_EQ(tolerances(options, 1), (std::vector<double>{1e-4, 5e-4}));
+  EXPECT_EQ(tolerances(options, 0.3), (std::vector<double>{1e-4}));
+  EXPECT_EQ(tolerances(options, 0.11), (std::vector<double>{5e-5}));
+  EXPECT_TRUE(tolerances(options, 0.01).empty());
+  options.tolerance = 2e-4;
+  EXPECT_EQ(tolerances(options, 2), (std::vector<double>{1e-3}));
+  options.tolerance = 1e-2;
+  EXPECT_TRUE(tolerances(options, 2).empty());
+  options = {};
+  options.mode = RepairMode::off;
+  EXPECT_TRUE(tolerances(options, 2).empty());
 }
 
 TEST(RepairBounds, WrapsAtOnce) {

@@ -11,8 +11,11 @@
 #include <numbers>
 #include <set>
 
+#include "collarmesh/repair.h"
 #include "plc/edges.h"
 #include "repair/arrangement.h"
+#include "repair/better_places.h"
+#include "repair/changes.h"
 #include "repair/holes.h"
 #include "repair/inside.h"
 #include "repair/repeated.h"
@@ -384,6 +387,60 @@ TEST(Snapping, BringsNothingNear) {
   EXPECT_LE(20 * spoiled, members(20));
 }
 
+// The apex of a cone beside the edges of a fan: each edge near it is found once, not once for each triangle
+// at the apex and at the edge.
+TEST(Snapping, WorkGrowsWithCornersAndEdges) {
+  std::array<std::size_t, 2> spent{};
+  for (const unsigned double_size : {0U, 1U}) {
+    const unsigned n = 100U << double_size;
+    PolygonSoup soup;
+    const auto fan = [&](const Point& apex, const auto& rim) {
+      const auto first = static_cast<Index>(soup.points.size());
+      soup.points.push_back(apex);
+      for (unsigned i = 0; i < n; ++i) soup.points.push_back(rim(static_cast<double>(i) / (n - 1)));
+      for (Index i = 1; i < n; ++i) soup.add_facet(std::array<Index, 3>{first, first + i, first + i + 1}, 1);
+    };
+    fan({0, 0, 1e-4}, [](double x) { return Point{std::cos(6 * x), std::sin(6 * x), 0.5}; });
+    fan({-2, 0, 0}, [](double x) { return Point{2, 0.001 * (x - 0.5), 0}; });
+    Draft draft = draft_of({&soup, 1}, true);
+    const Execution execution;
+    constexpr std::size_t most = 1'000'000'000;
+    Work work(most, execution);
+    snap_near_features(draft, 2e-3, SnapWhat::corners, &work);
+    spent[double_size] = most - work.left();
+  }
+  EXPECT_LE(spent[1], 3 * spent[0]);
+}
+
+// The long sides of needles along one line would all be cut at all the others' corners: there nothing is
+// snapped. Elsewhere two corners become one as ever.
+TEST(Snapping, IsTakenBackOnlyWhereItDoesNotSettle) {
+  constexpr Index needles = 80;
+  constexpr double limit = 1e-3;
+  PolygonSoup soup;
+  for (Index i = 0; i < needles; ++i) {
+    const double angle = 0.07 * i, x = 0.02 * i, off = 0.1 * limit;
+    const auto first = static_cast<Index>(soup.points.size());
+    soup.points.push_back({x, off * std::cos(angle), off * std::sin(angle)});
+    soup.points.push_back({20 - 1.01 * x, off * std::cos(angle), off * std::sin(angle)});
+    soup.points.push_back({10, std::cos(angle), std::sin(angle)});
+    soup.add_facet(std::array<Index, 3>{first, first + 1, first + 2}, 1);
+  }
+  const auto first = static_cast<Index>(soup.points.size());
+  soup.points.insert(soup.points.end(),
+                     {{50, 0, 0}, {51, 0, 0}, {50, 1, 0}, {50, 0, 0.1 * limit}, {49, 0, 2}, {49, 1, 3}});
+  soup.add_facet(std::array<Index, 3>{first, first + 1, first + 2}, 1);
+  soup.add_facet(std::array<Index, 3>{first + 3, first + 4, first + 5}, 1);
+  Draft draft = draft_of({&soup, 1}, true);
+  const std::vector<Corners> before(draft.triangles.begin(), draft.triangles.begin() + needles);
+  const SnapReport report = snap_near_features(draft, limit);
+  EXPECT_EQ(report.changes(), 1U);
+  EXPECT_EQ(report.merged_points, 1U);
+  ASSERT_EQ(draft.triangles.size(), needles + 2);
+  for (const Corners& t : before)
+    EXPECT_NE(std::find(draft.triangles.begin(), draft.triangles.end(), t), draft.triangles.end());
+}
+
 TEST(Snapping, CancelsTwins) {
   const PolygonSoup ball = testing::icosphere(1, 2);
   Draft draft = draft_of(joined(std::array{ball, testing::inverted(ball), ball}));
@@ -507,6 +564,121 @@ TEST(Holes, SheetsAreNoHoles) {
   Draft draft = draft_of(sheet);
   EXPECT_TRUE(fill_holes(draft, 7).empty());
   EXPECT_EQ(draft.triangles.size(), 2U);
+}
+
+// --- keep_one_side, drop_flakes ---
+
+// A box of two-sided faces: each has a turned copy that is cut along the other diagonal.
+PolygonSoup two_sided_box() {
+  const PolygonSoup box = soup_of({{0, 0, 0}, {1, 2, 3}});
+  PolygonSoup soup;
+  soup.points = box.points;
+  for (Index f = 0; f < box.facet_count(); ++f) {
+    const auto c = box.polygon(box.facet_polygons(f)[0]);
+    soup.add_facet(std::array{c[0], c[1], c[2]}, 1);
+    soup.add_facet(std::array{c[0], c[2], c[3]}, 1);
+    soup.add_facet(std::array{c[3], c[1], c[0]}, 1);
+    soup.add_facet(std::array{c[3], c[2], c[1]}, 1);
+  }
+  return soup;
+}
+
+TEST(KeepOneSide, OfABoxIsTheBox) {
+  const PolygonSoup soup = two_sided_box();
+  Draft draft = draft_of(soup);
+  EXPECT_TRUE(is_two_sided(draft));
+  arrange(draft, 0, nullptr, false);
+  const std::size_t both = draft.triangles.size();
+  EXPECT_EQ(keep_one_side(draft), both / 2);
+  EXPECT_NEAR(volume_of(draft), 6, 1e-12);
+  EXPECT_TRUE(balanced(draft));
+  EXPECT_FALSE(is_two_sided(draft));
+  const RepairedPlc repaired = build_repaired_plc({&soup, 1});
+  ASSERT_EQ(repaired.plc.regions.size(), 2U);
+  EXPECT_NEAR(repaired.plc.regions[1].volume, 6, 1e-9);
+  EXPECT_GT(repaired.report.second_sides, 0U);
+}
+
+// A sheet with two sides encloses nothing with one of them either.
+TEST(KeepOneSide, SheetsAreLeft) {
+  PolygonSoup pillow;
+  pillow.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  pillow.add_facet(std::array<Index, 3>{0, 1, 2}, 1);
+  pillow.add_facet(std::array<Index, 3>{0, 2, 3}, 1);
+  pillow.add_facet(std::array<Index, 3>{3, 2, 0}, 1);
+  pillow.add_facet(std::array<Index, 3>{2, 1, 0}, 1);
+  Draft draft = draft_of(pillow);
+  EXPECT_EQ(keep_one_side(draft), 0U);
+  EXPECT_EQ(draft.triangles.size(), 4U);
+}
+
+TEST(DropFlakes, WhatIsThinAndSmallGoes) {
+  const PolygonSoup box = soup_of({{0, 0, 0}, {1, 1, 1}});
+  const auto flake = [](double thickness, double width) {
+    return testing::translated(soup_of({{0, 0, 0}, {width, width, thickness}}), {2, 0, 0});
+  };
+  const auto dropped = [&](const std::vector<PolygonSoup>& soups) {
+    Draft draft = draft_of(joined(soups));
+    const double before = volume_of(draft);
+    const FlakeReport report = drop_flakes(draft, 1e-3);
+    EXPECT_NEAR(volume_of(draft), before - report.volume, 1e-12);
+    return report.places.size();
+  };
+  EXPECT_EQ(dropped({box, flake(5e-4, 0.5)}), 1U);
+  EXPECT_EQ(dropped({box, flake(5e-3, 0.5)}), 0U) << "thicker than the tolerance";
+  EXPECT_EQ(dropped({box, flake(9e-4, 3)}), 0U) << "with too much of the volume";
+  EXPECT_EQ(dropped({flake(5e-4, 0.5)}), 0U) << "all that there is";
+}
+
+// --- Changes ---
+
+Draft with_moved_corners(Draft draft) {
+  for (const double x : {0.0, 6.0}) {
+    const auto moved = static_cast<Index>(draft.points.size());
+    draft.points.push_back({x, 0.1, 0.2});
+    draft.point_tags.push_back(0);
+    for (Corners& t : draft.triangles)
+      for (Index& p : t)
+        if (draft.points[p] == Point{x, 0, 0}) p = moved;
+  }
+  return draft;
+}
+
+// Two boxes far apart of which a corner each is moved: either place can be taken back alone.
+TEST(Changes, ArePlacesThatCanBeTakenBackAlone) {
+  const std::vector<PolygonSoup> soups{soup_of({{0, 0, 0}, {1, 1, 1}}), soup_of({{5, 0, 0}, {6, 1, 1}})};
+  const Draft before = draft_of(joined(soups));
+  const Draft after = with_moved_corners(before);
+  const Changes changes(before, after);
+  ASSERT_EQ(changes.places(), 2U);
+  const double whole = volume_of(before), less = volume_of(after);
+  std::vector<Index> place;
+  EXPECT_NEAR(volume_of(changes.without({false, false}, place)), less, 1e-12);
+  EXPECT_NEAR(volume_of(changes.without({true, true}, place)), whole, 1e-12);
+  for (const bool first : {false, true}) {
+    const Draft mixed = changes.without({first, !first}, place);
+    EXPECT_EQ(mixed.triangles.size(), 24U);
+    EXPECT_TRUE(balanced(mixed));
+    EXPECT_NEAR(volume_of(mixed), 0.5 * (whole + less), 1e-12);
+  }
+}
+
+// The same boxes: the corner goes back where that makes trouble, the other one stays moved.
+TEST(Changes, ThatMakeTroubleAreTakenBack) {
+  const std::vector<PolygonSoup> soups{soup_of({{0, 0, 0}, {1, 1, 1}}), soup_of({{5, 0, 0}, {6, 1, 1}})};
+  const Draft before = draft_of(joined(soups));
+  const Draft after = with_moved_corners(before);
+  const double whole = volume_of(before), less = volume_of(after);
+  const Trouble first{{0, 0.1, 0.2}, 3}, second{{6, 0.1, 0.2}, 3}, worse{{6, 0, 0}, 5},
+      elsewhere{{3, 3, 3}, 50};
+  const BetterPlaces better =
+      better_places(before, {worse, elsewhere}, after, {first, second, elsewhere}, 0.5);
+  EXPECT_EQ(better.places, 2U);
+  ASSERT_EQ(better.taken_back.size(), 1U);
+  EXPECT_LE(better.taken_back[0].x, 1);
+  EXPECT_TRUE(balanced(better.draft));
+  EXPECT_NEAR(volume_of(better.draft), 0.5 * (whole + less), 1e-12);
+  EXPECT_TRUE(better_places(before, {}, after, {}, 0.5).taken_back.empty());
 }
 
 // --- turn_components ---

@@ -60,12 +60,17 @@ struct RepairReport {
   RepairPlaces repeated;             ///< triangles that lay on others, dropped
   RepairPlaces turned;               ///< components turned inside out
   RepairPlaces stitched;             ///< points of borders; size: largest distance
-  RepairPlaces collapsed;  ///< points, edges and triangles below the tolerance; size: largest distance
-  RepairPlaces cut;        ///< pairs of facets that intersected
-  RepairPlaces merged;     ///< triangles inside solids, removed; size: area
-  RepairPlaces dropped;    ///< triangles of open sheets outside of all solids, removed
+  RepairPlaces collapsed;        ///< points, edges and triangles below the tolerance; size: largest distance
+  RepairPlaces cut;              ///< pairs of facets that intersected
+  RepairPlaces kept;             ///< as they were before, as creases there would become sharper
+  RepairPlaces flakes;           ///< closed parts thinner than the tolerance, dropped; size: volume
+  std::size_t second_sides = 0;  ///< triangles of surfaces that had two sides everywhere, dropped
+  RepairPlaces merged;           ///< triangles inside solids, removed; size: area
+  RepairPlaces dropped;          ///< triangles of open sheets outside of all solids, removed
   std::vector<FilledHole> filled;
-  std::vector<Tag> lost_tags;  ///< of facets of which nothing is left
+  std::vector<Tag> lost_tags;     ///< of facets of which nothing is left
+  std::vector<Tag> lost_groups;   ///< those of them that are more than the number of a CAD face
+  std::vector<Tag> lost_regions;  ///< that the input gives, of which the complex has none
   /// Absolute: of a point of what is left of the facets from those of the input. What fills holes does not
   /// count.
   double largest_distance = 0;
@@ -74,6 +79,14 @@ struct RepairReport {
   double largest_distance_of_input = 0;
   bool gave_up = false;    ///< the work was more than `RepairOptions::max_work`
   bool cancelled = false;  ///< by the execution
+
+  /// Are there facets that are not as they were?
+  bool changed() const {
+    return split_polygons + dropped_polygons + repeated.count + turned.count + stitched.count +
+               collapsed.count + cut.count + second_sides + flakes.count + merged.count + dropped.count +
+               filled.size() >
+           0;
+  }
 };
 
 struct RepairResult {
@@ -116,6 +129,11 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
 /// that is three times as coarse, where something was repaired: refinement does not end in folds about as
 /// fine as the tolerance, which a repair may leave. Then, in `RepairMode::wrap`, a surface around everything.
 std::vector<RepairOptions> further_repairs(const RepairOptions& options, const RepairReport& report);
+
+/// The repairs to try, one after the other, where the refinement of a complex takes far more vertices than
+/// its sizes ask for: features just above the tolerance may be resolved as if they mattered. With tolerances
+/// of 1e-4 and 1e-3 of the diagonal, none above a hundredth of `size` (absolute).
+std::vector<RepairOptions> coarser_repairs(const RepairOptions& options, double size, double diagonal);
 
 /// For people: a line for each kind of change with counts, sizes and places; empty if there was none.
 std::vector<std::string> describe(const RepairReport& report);

@@ -465,7 +465,8 @@ class Settled {
 // compared with itself.
 class GrainSnapper {
  public:
-  GrainSnapper(Draft& draft, double reach, Work* work) : draft_(draft), reach_(reach), work_(work) {}
+  GrainSnapper(Draft& draft, double reach, Work* work, bool cancel)
+      : draft_(draft), reach_(reach), work_(work), cancel_(cancel) {}
 
   // A round was of no help: where snapping undoes what was cut, rounds without it help.
   void change() { pausing_ = !pausing_; }
@@ -477,7 +478,7 @@ class GrainSnapper {
     std::vector<bool> known;
     known.reserve(draft_.triangles.size());
     for (const Corners& t : draft_.triangles) known.push_back(known_.has(t));
-    snap_near_features(draft_, reach_, SnapWhat::corners, work_, known);
+    snap_near_features(draft_, reach_, SnapWhat::corners, work_, known, cancel_);
     known_.clear();
     for (const Corners& t : draft_.triangles) known_.add(t);
     known_.close();
@@ -488,6 +489,7 @@ class GrainSnapper {
   double reach_;
   bool pausing_ = false;
   Work* work_;
+  bool cancel_;
   KnownSimplices known_;
 };
 
@@ -522,11 +524,11 @@ void unify_equal_points(Draft& draft) {
   for (Index& p : draft.loose_points) p = merged[p];
 }
 
-ArrangementReport arrange(Draft& draft, double grain, Work* work) {
+ArrangementReport arrange(Draft& draft, double grain, Work* work, bool cancel_twins) {
   ArrangementReport report;
   constexpr std::size_t few = 1000;
   Settled settled;
-  GrainSnapper snapper(draft, grain, work);
+  GrainSnapper snapper(draft, grain, work, cancel_twins);
   std::optional<Draft> clean_before;
   for (std::size_t fewest = none;; ++report.rounds) {
     unify_equal_points(draft);

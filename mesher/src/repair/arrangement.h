@@ -22,10 +22,11 @@ struct ArrangementReport {
 /// others or of edges become one with them, unless that undoes the cuts; what intersects by this is cut in
 /// further rounds. Where that undid the cuts it is tried once more in the end, and taken back if it does so
 /// again. Triangles that cover each other become copies of one: all stay, as their orientations say
-/// what is inside. Throws WorkStopped; the draft is then of no use. Pieces keep their triangle's origin, but
-/// for `Origin::facet`, which is renumbered. Cost: O(n log n) and for k intersecting pairs O(k log k) exact
-/// constructions, some 0.1 ms each.
-ArrangementReport arrange(build::Draft& draft, double grain, Work* work = nullptr);
+/// what is inside; those that arise near others cancel, unless `cancel_twins` is false. Throws WorkStopped;
+/// the draft is then of no use. Pieces keep their triangle's origin, but for `Origin::facet`, which is
+/// renumbered. Cost: O(n log n) and for k intersecting pairs O(k log k) exact constructions, some 0.1 ms
+/// each.
+ArrangementReport arrange(build::Draft& draft, double grain, Work* work = nullptr, bool cancel_twins = true);
 
 /// Make points with equal coordinates one, and drop the triangles and segments that lose a corner in this.
 void unify_equal_points(build::Draft& draft);

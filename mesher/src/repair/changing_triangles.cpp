@@ -68,12 +68,39 @@ std::vector<Index> ChangingTriangles::sides(const Edge& edge) const {
   return found;
 }
 
-Box ChangingTriangles::box_of(Index t) const {
+std::vector<Index> ChangingTriangles::triangles_from(Index first) const {
+  std::vector<Index> triangles;
+  for (Index t = first; t < end(); ++t)
+    if (alive_[t]) triangles.push_back(t);
+  return triangles;
+}
+
+std::vector<Index> ChangingTriangles::corners_of(const std::vector<Index>& triangles) const {
+  std::vector<Index> corners;
+  corners.reserve(3 * triangles.size());
+  for (const Index t : triangles)
+    corners.insert(corners.end(), draft_.triangles[t].begin(), draft_.triangles[t].end());
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  return corners;
+}
+
+std::vector<Edge> ChangingTriangles::edges_of(const std::vector<Index>& triangles) const {
+  std::vector<Edge> edges;
+  edges.reserve(3 * triangles.size());
+  for (const Index t : triangles)
+    for (const Edge& edge : edges_of(draft_.triangles[t])) edges.push_back(edge);
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+Box ChangingTriangles::box_around(std::span<const Index> points) const {
   const Vector margin = 0.5 * reach_ * Vector{1, 1, 1};
   Box box;
-  for (unsigned i = 0; i < 3; ++i) {
-    box.add(draft_.corner(t, i) - margin);
-    box.add(draft_.corner(t, i) + margin);
+  for (const Index p : points) {
+    box.add(draft_.points[p] - margin);
+    box.add(draft_.points[p] + margin);
   }
   return box;
 }
@@ -87,29 +114,6 @@ bool ChangingTriangles::beyond(Index s, Index t) const {
     high = std::max(high, height);
   }
   return low > reach_ || high < -reach_;
-}
-
-void ChangingTriangles::Tree::build(const ChangingTriangles& of, Index from) {
-  triangles.clear();
-  std::vector<Box> boxes;
-  end = of.end();
-  boxes.reserve(end - from);
-  triangles.reserve(end - from);
-  for (Index t = from; t < end; ++t) {
-    if (!of.alive_[t]) continue;
-    triangles.push_back(t);
-    boxes.push_back(of.box_of(t));
-  }
-  tree = std::make_unique<BoxTree>(boxes);
-}
-
-void ChangingTriangles::renew_trees() {
-  const bool stale = !all_.tree || few * (end() - all_.end) > count_;
-  if (stale) all_.build(*this, 0);
-  if (end() > all_.end)
-    late_.build(*this, all_.end);
-  else
-    late_.clear();
 }
 
 Draft ChangingTriangles::compacted() const {

@@ -1,19 +1,21 @@
 #pragma once
 
 #include <algorithm>
-#include <memory>
+#include <array>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "common/box_tree.h"
 #include "plc/draft.h"
+#include "repair/item_trees.h"
 #include "repair/polygon_cutter.h"
 #include "repair/work.h"
 
 namespace collarmesh::repairing {
 
-/// The triangles of a draft while some are replaced by others. They keep their numbers; those at a
-/// point, those at an edge and those near others are found without looking at all of them.
+/// The triangles of a draft while some are replaced by others. They keep their numbers; those at a point,
+/// those at an edge and those near others, and corners near edges are found without looking at all of them.
 /// Holds between calls: the draft's points may have grown, its triangles change by these functions alone.
 class ChangingTriangles {
  public:
@@ -52,38 +54,69 @@ class ChangingTriangles {
   void for_each_near_pair(const std::vector<Index>& changed, const Visit& visit) {
     std::vector<bool> among(end(), false);
     for (const Index t : changed) among[t] = true;
+    const auto box_of = [&](Index t) { return box_around(draft_.triangles[t]); };
     const auto meet = [&](Index s, Index t) {
       work_.spend(1);
       if (!alive_[s] || !alive_[t] || beyond(s, t) || beyond(t, s)) return;
       visit(std::min(s, t), std::max(s, t));
     };
     if (few * changed.size() > count_) {
-      all_.build(*this, 0);
-      late_.clear();
-      all_.tree->for_each_pair([&](Index i, Index j) {
-        const Index s = all_.triangles[i], t = all_.triangles[j];
-        if (among[s] || among[t]) meet(s, t);
+      const std::vector<Index> all = triangles_from(0);
+      BoxTree(boxes_of(all, box_of)).for_each_pair([&](Index i, Index j) {
+        if (among[all[i]] || among[all[j]]) meet(all[i], all[j]);
       });
       return;
     }
-    if (!all_.tree && !searched_) {
-      searched_ = true;
-      search_from_all(changed, [&](Index s, Index t) {
-        if (t != s && !(among[t] && t < s)) meet(s, t);
-      });
+    const auto meet_once = [&](Index s, Index t) {
+      if (t != s && !(among[t] && t < s)) meet(s, t);
+    };
+    if (trees_.empty() && !std::exchange(searched_triangles_, true)) {
+      const BoxTree tree(boxes_of(changed, box_of));
+      for (const Index t : triangles_from(0))
+        tree.for_each_meeting(box_of(t), [&](Index i) { meet_once(changed[i], t); });
       return;
     }
-    renew_trees();
-    for (const Index s : changed) {
-      const Box box = box_of(s);
-      for (const Tree* tree : {&all_, &late_}) {
-        if (!tree->tree) continue;
-        tree->tree->for_each_meeting(box, [&](Index i) {
-          const Index t = tree->triangles[i];
-          if (t != s && !(among[t] && t < s)) meet(s, t);
-        });
-      }
+    trees_.renew(
+        end(), count_, [&](Index from) { return triangles_from(from); }, box_of);
+    for (const Index s : changed) trees_.for_each_meeting(box_of(s), [&](Index t) { meet_once(s, t); });
+  }
+
+  /// Calls visit(p, edge) for each corner p and edge that it is no end of whose boxes, larger by half of
+  /// `reach` on all sides, meet, if a changed triangle has one of them; for some pairs several times. Corners
+  /// and edges may be gone. Spends these pairs. Cost: as above, however many triangles have a corner.
+  template <class Visit>
+  void for_each_corner_near_edge(const std::vector<Index>& changed, const Visit& visit) {
+    const std::vector<Index> corners = corners_of(changed);
+    const std::vector<Edge> edges = edges_of(changed);
+    std::vector<bool> among(draft_.points.size(), false);
+    for (const Index p : corners) among[p] = true;
+    const auto box_of_corner = [&](Index p) { return box_around({&p, 1}); };
+    const auto box_of_edge = [&](const Edge& edge) { return box_around(edge); };
+    const auto meet = [&](Index p, const Edge& edge) {
+      work_.spend(1);
+      if (p != edge[0] && p != edge[1]) visit(p, edge);
+    };
+    if (few * changed.size() <= count_ && edge_trees_.empty() && !std::exchange(searched_corners_, true)) {
+      const BoxTree corner_tree(boxes_of(corners, box_of_corner)), edge_tree(boxes_of(edges, box_of_edge));
+      for (const Index t : triangles_from(0))
+        for (const Edge& edge : edges_of(draft_.triangles[t]))
+          corner_tree.for_each_meeting(box_of_edge(edge), [&](Index i) { meet(corners[i], edge); });
+      for (Index p = 0; p < first_.size(); ++p)
+        if (uses(p) && !among[p])
+          edge_tree.for_each_meeting(box_of_corner(p), [&](Index i) { meet(p, edges[i]); });
+      return;
     }
+    edge_trees_.renew(
+        end(), count_, [&](Index from) { return edges_of(triangles_from(from)); }, box_of_edge);
+    for (const Index p : corners)
+      edge_trees_.for_each_meeting(box_of_corner(p), [&](const Edge& edge) { meet(p, edge); });
+    if (changed.size() == count_) return;
+    corner_trees_.renew(
+        end(), count_, [&](Index from) { return corners_of(triangles_from(from)); }, box_of_corner);
+    for (const Edge& edge : edges)
+      corner_trees_.for_each_meeting(box_of_edge(edge), [&](Index p) {
+        if (!among[p]) meet(p, edge);
+      });
   }
 
   /// The draft without gaps: triangles stay in order, but have other numbers there.
@@ -92,41 +125,30 @@ class ChangingTriangles {
  private:
   static constexpr std::size_t few = 8;  // changed ones of which each is looked for alone, as a share of all
 
-  struct Tree {
-    std::vector<Index> triangles;
-    std::unique_ptr<BoxTree> tree;
-    void build(const ChangingTriangles& of, Index from);
-    void clear() { tree.reset(), triangles.clear(); }
-    Index end = 0;  // it holds those before
-  };
-
-  // Without a tree of all: visit(s, t) for changed ones s and all t.
-  template <class Visit>
-  void search_from_all(const std::vector<Index>& changed, const Visit& visit) const {
-    std::vector<Box> boxes;
-    boxes.reserve(changed.size());
-    for (const Index s : changed) boxes.push_back(box_of(s));
-    const BoxTree tree(boxes);
-    for (Index t = 0; t < end(); ++t)
-      if (alive_[t]) tree.for_each_meeting(box_of(t), [&](Index i) { visit(changed[i], t); });
+  // Those that are there, from this number on.
+  std::vector<Index> triangles_from(Index first) const;
+  // What these have, each once.
+  std::vector<Index> corners_of(const std::vector<Index>& triangles) const;
+  std::vector<Edge> edges_of(const std::vector<Index>& triangles) const;
+  static std::array<Edge, 3> edges_of(const build::Corners& c) {
+    return {edge_key(c[0], c[1]), edge_key(c[1], c[2]), edge_key(c[2], c[0])};
   }
-
-  Box box_of(Index triangle) const;
+  Box box_around(std::span<const Index> points) const;
   // Does t keep its distance from the plane of s?
   bool beyond(Index s, Index t) const;
-  void renew_trees();
   void link(Index triangle);
 
   build::Draft& draft_;
   double reach_;
   Work& work_;
-  bool searched_ = false;  // for a few changed ones, without a tree of all
+  bool searched_triangles_ = false, searched_corners_ = false;  // for a few changed ones, without trees
   std::size_t count_ = 0;
   std::vector<bool> alive_;
   std::vector<Vector> normals_;
   std::vector<Index> first_, next_;  // by point and by side: the sides that start there, a list
   std::vector<Index> degree_;        // by point: how long the list is
-  Tree all_, late_;                  // of most triangles, and of those that came later
+  ItemTrees<Index> trees_, corner_trees_;
+  ItemTrees<Edge> edge_trees_;
 };
 
 }  // namespace collarmesh::repairing

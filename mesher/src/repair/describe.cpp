@@ -41,6 +41,16 @@ std::vector<std::string> describe(const RepairReport& r) {
   if (r.cut.count > 0)
     lines.push_back(fmt::format("{} pair{} of intersecting facets cut{}", r.cut.count, plural(r.cut.count),
                                 first_place(r.cut)));
+  if (r.flakes.count > 0)
+    lines.push_back(fmt::format(
+        "{} closed part{} thinner than the tolerance of {:.3g} dropped, with a volume of {:.3g} "
+        "together{}",
+        r.flakes.count, plural(r.flakes.count), r.tolerance, r.flakes.size, first_place(r.flakes)));
+  if (r.second_sides > 0)
+    lines.push_back(
+        fmt::format("{} triangle{} dropped that lay on others turned the other way: the surface had "
+                    "two sides everywhere, one of which stays",
+                    r.second_sides, plural(r.second_sides)));
   if (r.merged.count > 0)
     lines.push_back(
         fmt::format("{} triangle{} inside solids or enclosing nothing removed, an area of {:.4g}{}",
@@ -52,6 +62,9 @@ std::vector<std::string> describe(const RepairReport& r) {
     lines.push_back(fmt::format("{} feature{} below the tolerance of {:.3g} collapsed, over at most {:.3g}{}",
                                 r.collapsed.count, plural(r.collapsed.count), r.tolerance, r.collapsed.size,
                                 first_place(r.collapsed)));
+  if (r.kept.count > 0)
+    lines.push_back(fmt::format("{} place{} left as before, as creases there would become sharper{}",
+                                r.kept.count, plural(r.kept.count), first_place(r.kept)));
   if (!r.lost_tags.empty())
     lines.push_back(fmt::format("nothing is left of the facets with tag{} {}", plural(r.lost_tags.size()),
                                 fmt::join(r.lost_tags, ", ")));

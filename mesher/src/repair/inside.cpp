@@ -497,6 +497,48 @@ TurnReport turn_components(Draft& draft) {
   return report;
 }
 
+FlakeReport drop_flakes(Draft& draft, double thickness) {
+  constexpr double most_of_all = 1e-3;  // of the volume
+  FlakeReport report;
+  const Components components(draft);
+  const Point origin = draft.bounds.centre();
+  struct Size {
+    double volume = 0, area = 0;
+  };
+  std::map<Index, Size> sizes;
+  double all = 0;
+  for (const auto& [component, triangles] : components.triangles) {
+    Size& size = sizes[component];
+    for (const Index t : triangles) {
+      const auto p = corner_points(draft, draft.triangles[t]);
+      size.volume += six_volume(p[0], p[1], p[2], origin) / -6;
+      size.area += area_of(draft, draft.triangles[t]);
+    }
+    all += std::fabs(size.volume);
+  }
+  std::vector<bool> dropped(draft.triangles.size(), false);
+  for (const auto& [component, size] : sizes) {
+    const double volume = std::fabs(size.volume);
+    if (!components.closed.at(component) || draft.soup_is_complex[draft.origins[component].soup] ||
+        2 * volume > thickness * size.area || volume > most_of_all * all)
+      continue;
+    for (const Index t : components.triangles.at(component)) dropped[t] = true;
+    report.volume += volume;
+    report.places.push_back(centroid(draft, draft.triangles[component]));
+  }
+  if (report.places.empty()) return report;
+  if (report.places.size() == components.triangles.size()) return {};  // nothing else is there
+  std::size_t kept = 0;
+  for (Index t = 0; t < draft.triangles.size(); ++t) {
+    if (dropped[t]) continue;
+    draft.triangles[kept] = draft.triangles[t];
+    draft.origins[kept++] = draft.origins[t];
+  }
+  draft.triangles.resize(kept);
+  draft.origins.resize(kept);
+  return report;
+}
+
 InsideReport keep_boundaries(Draft& draft, double thickness) {
   return BoundaryKeeper(draft, thickness).run();
 }

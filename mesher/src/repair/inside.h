@@ -24,6 +24,17 @@ struct TurnReport {
 /// edges that two triangles of one soup share. Cost: O(n log n).
 TurnReport turn_components(build::Draft& draft);
 
+/// What `drop_flakes` did.
+struct FlakeReport {
+  double volume = 0;          ///< of all that were dropped
+  std::vector<Point> places;  ///< one in each
+};
+
+/// Drop closed components thinner than `thickness` (absolute: twice the volume by the area) with hardly any
+/// of the volume of all. Components are those of `turn_components`; of complexes none is dropped. Cost: O(n
+/// log n).
+FlakeReport drop_flakes(build::Draft& draft, double thickness);
+
 /// What `keep_boundaries` did.
 struct InsideReport {
   std::size_t removed_triangles = 0;  ///< inside a solid, or enclosing nothing

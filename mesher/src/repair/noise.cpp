@@ -11,6 +11,8 @@ namespace collarmesh::repairing {
 
 namespace {
 
+constexpr double flat_angle = 1;  // degrees
+
 bool is_short(const Plc& plc, const Plc::Curve& curve, double tolerance) {
   double length = 0;
   for (std::size_t i = 0; i + 1 < curve.points.size() && length < tolerance; ++i)
@@ -39,13 +41,26 @@ std::optional<Point> find_noise(const Plc& plc, double tolerance) {
   if (!(tolerance > 0)) return std::nullopt;
   for (const Plc::Curve& curve : plc.curves)
     if (is_short(plc, curve, tolerance)) return plc.points[curve.points.front()];
-  constexpr double flat_angle = 1;  // degrees
   for (const Crease& crease : find_creases(plc, flat_angle))
     if (is_slit(plc, crease, tolerance)) return crease.where;
   build::Faults faults;
   build::find_near_touching(plc, tolerance, faults);
   if (faults.empty()) return std::nullopt;
   return faults.list().front().where;
+}
+
+std::vector<Trouble> find_troubles(const Plc& plc, double tolerance) {
+  constexpr double of_short_curve = 1, of_near_features = 10, least_angle = 1e-6;
+  std::vector<Trouble> troubles;
+  for (const Plc::Curve& curve : plc.curves)
+    if (is_short(plc, curve, tolerance))
+      troubles.push_back({plc.points[curve.points.front()], of_short_curve});
+  for (const Crease& crease : find_creases(plc, flat_angle))
+    troubles.push_back({crease.where, flat_angle / std::max(crease.angle, least_angle)});
+  build::Faults faults;
+  build::find_near_touching(plc, tolerance, faults);
+  for (const PlcFault& fault : faults.list()) troubles.push_back({fault.where, of_near_features});
+  return troubles;
 }
 
 }  // namespace collarmesh::repairing

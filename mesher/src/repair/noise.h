@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "collarmesh/plc.h"
 
@@ -10,5 +11,15 @@ namespace collarmesh::repairing {
 /// shorter, features that come as close without meeting, and patches that meet at such a small angle that
 /// they stay as close all along. Cost: O(n log n + k) for k pairs of near neighbours.
 std::optional<Point> find_noise(const Plc& plc, double tolerance);
+
+/// What makes refinement expensive at a place.
+struct Trouble {
+  Point where;
+  double cost;  ///< any unit
+};
+
+/// Features below a tolerance (absolute), of near ones the first ones, and creases of less than a degree,
+/// which cost the more the sharper they are. Cost: O(n log n + k) for k pairs of near neighbours.
+std::vector<Trouble> find_troubles(const Plc& plc, double tolerance);
 
 }  // namespace collarmesh::repairing

@@ -19,6 +19,7 @@
 #include "plc/orientation.h"
 #include "plc/weld.h"
 #include "repair/arrangement.h"
+#include "repair/better_places.h"
 #include "repair/distances.h"
 #include "repair/holes.h"
 #include "repair/inside.h"
@@ -109,7 +110,8 @@ class Repairer {
     work_.spend(0);
     RepairResult result{to_soups(soups_, draft_, first_new_point_), std::move(report_)};
     result.report.repaired = true;
-    result.report.lost_tags = lost_tags(result.soups);
+    result.report.lost_tags = lost_tags(result.soups, false);
+    result.report.lost_groups = lost_tags(result.soups, true);
     return result;
   }
 
@@ -171,6 +173,8 @@ class Repairer {
       orient_components(draft_, edges, one_sided);
       report_.filled = fill_holes(draft_, next_tag(), &work_);
     }
+    const FlakeReport flakes = drop_flakes(draft_, tolerance_);
+    add_places(report_.flakes, flakes.places.size(), flakes.volume, flakes.places);
     const TurnReport turned = turn_components(draft_);
     add_places(report_.turned, turned.turned_components, 0, turned.places);
   }
@@ -183,44 +187,101 @@ class Repairer {
     return tag + 1;
   }
 
-  // What is clean once stays so: where snapping spoils it, less far is tried.
+  /// What is clean once stays so.
+  struct State {
+    Draft draft;
+    RepairReport report;
+  };
+  State state() const { return {draft_, report_}; }
+  void restore(State state) {
+    draft_ = std::move(state.draft);
+    report_ = std::move(state.report);
+    encloses_nothing_ = false;
+  }
+
   void make_valid() {
     first_new_point_ = static_cast<Index>(draft_.points.size());
     if (!cut_what_nearly_coincides() || encloses_nothing_) return;
-    double reach = tolerance_;
-    std::size_t changes_before = none;
-    for (std::size_t round = 0; round < most_rounds; ++round) {
-      const Draft clean = draft_;
-      const RepairReport report_of_clean = report_;
-      const SnapReport snapped = collapse(reach);
-      // Where cutting undoes much of what snapping does, more of both would not end.
-      const bool goes_on = snapped.changed() && 2 * snapped.changes() <= changes_before;
-      if (goes_on) {
-        changes_before = snapped.changes();
-        if (cut_and_keep()) continue;
-      }
-      draft_ = clean;
-      report_ = report_of_clean;
-      if (!goes_on) break;
-      reach *= 0.1;
-    }
-    if (!encloses_nothing_) remove_near_contacts();
+    const State valid = state();
+    try_on([&] { snap_in_rounds(); });
+    // Cutting leaves corners that all but touch other facets. Within a small part of the tolerance there are
+    // few such places, and it settles.
+    try_on([&] {
+      const State clean = state();
+      if (!collapse(grain * tolerance_).changed() || !cut_and_keep()) restore(clean);
+    });
+    keep_better_places(valid);
   }
 
-  // Cutting leaves corners that all but touch other facets. Snapping is taken back as a whole where one of
-  // many places does not settle, and then leaves them all. Within a small part of the tolerance there are few
-  // such places, and it settles.
-  void remove_near_contacts() {
-    Draft clean = draft_;
-    RepairReport report_of_clean = report_;
+  /// Where that takes too much work the repair is as good as it was.
+  template <class Step>
+  void try_on(const Step& step) {
+    State clean = state();
     try {
-      if (!collapse(grain * tolerance_).changed() || cut_and_keep()) return;
+      step();
+      if (!encloses_nothing_) return;
     } catch (const WorkStopped& stopped) {
-      if (stopped.cancelled) throw;  // else the repair is as good as it was
+      if (stopped.cancelled) throw;
     }
-    draft_ = std::move(clean);
-    report_ = std::move(report_of_clean);
-    encloses_nothing_ = false;
+    restore(std::move(clean));
+  }
+
+  // Cutting undoes some of what snapping does. Of the rounds the one stays that leaves the least to snap.
+  // Where snapping spoils what is clean, less far is tried.
+  void snap_in_rounds() {
+    constexpr std::size_t most_worse = 2;
+    double reach = tolerance_;
+    State best = state();
+    std::size_t fewest = none, worse = 0;
+    bool changed = false;
+    for (std::size_t round = 0; round < most_rounds; ++round) {
+      State clean = state();
+      const SnapReport snapped = collapse(reach);
+      if (!snapped.changed()) return restore(std::move(clean));
+      if (changed && snapped.changes() < fewest) {
+        fewest = snapped.changes();
+        worse = 0;
+        best = clean;
+      } else if (changed && ++worse == most_worse) {
+        break;
+      }
+      if (cut_and_keep() && !encloses_nothing_) {
+        changed = true;
+        if (fewest == none) best = state();
+        continue;
+      }
+      restore(std::move(clean));
+      reach *= 0.1;
+      fewest = none;
+    }
+    restore(std::move(best));
+  }
+
+  // A place where refinement has more trouble than before is taken back.
+  void keep_better_places(const State& valid) {
+    const std::optional<Plc> after = complex_of(draft_);
+    const std::vector<Trouble> troubles_after =
+        after ? find_troubles(*after, tolerance_) : std::vector<Trouble>();
+    if (after && troubles_after.empty()) return;
+    const std::optional<Plc> before = complex_of(valid.draft);
+    if (!before) return;
+    if (!after) return restore(valid);
+    BetterPlaces better = better_places(valid.draft, find_troubles(*before, tolerance_), draft_,
+                                        troubles_after, 2 * tolerance_);
+    if (better.taken_back.empty()) return;
+    if (better.taken_back.size() == better.places) return restore(valid);
+    draft_ = std::move(better.draft);
+    add_places(report_.kept, better.taken_back.size(), 0, better.taken_back);
+  }
+
+  std::optional<Plc> complex_of(const Draft& draft) const {
+    PlcOptions options = complex_;
+    options.require_solid = false;
+    try {
+      return build_plc(to_soups(soups_, draft, first_new_point_), options);
+    } catch (const PlcError&) {
+      return std::nullopt;
+    }
   }
 
   // Where facets nearly coincide, rounding what cuts them makes ever more intersections: they are made to
@@ -245,9 +306,11 @@ class Repairer {
   }
 
   bool cut_and_keep() {
-    const ArrangementReport arranged = arrange(draft_, grain * tolerance_, &work_);
+    const bool two_sided = is_two_sided(draft_);
+    const ArrangementReport arranged = arrange(draft_, grain * tolerance_, &work_, !two_sided);
     if (report_.cut.count == 0) add_places(report_.cut, arranged.intersecting_pairs, 0, arranged.places);
     if (!arranged.clean) return false;
+    if (two_sided) report_.second_sides += keep_one_side(draft_);
     encloses_nothing_ = arranged.intersecting_pairs == 0 && peels_away(draft_);
     if (encloses_nothing_) return true;
     double area = 0;
@@ -263,10 +326,12 @@ class Repairer {
     return true;
   }
 
-  std::vector<Tag> lost_tags(const std::vector<PolygonSoup>& repaired) const {
+  // Of facets; those of CAD faces are their numbers, and no groups.
+  std::vector<Tag> lost_tags(const std::vector<PolygonSoup>& repaired, bool only_groups) const {
     std::set<Tag> before, after;
     for (const PolygonSoup& soup : soups_)
-      for (Index f = 0; f < soup.facet_count(); ++f) before.insert(soup.facet_tag(f));
+      for (Index f = 0; f < soup.facet_count() && !(only_groups && soup.given_features); ++f)
+        before.insert(soup.facet_tag(f));
     for (const PolygonSoup& soup : repaired)
       for (Index f = 0; f < soup.facet_count(); ++f) after.insert(soup.facet_tag(f));
     std::vector<Tag> lost;
@@ -294,6 +359,20 @@ RepairOptions for_try(RepairOptions options, double factor) {
   return options;
 }
 
+// Tags of regions that the soups give, but the complex does not have.
+RepairedPlc with_lost_regions(RepairedPlc complex, std::span<const PolygonSoup> soups) {
+  std::set<Tag> given, there;
+  for (const PolygonSoup& soup : soups) {
+    if (soup.region_tag) given.insert(*soup.region_tag);
+    for (const auto* points : {&soup.region_points, &soup.named_regions})
+      for (const PolygonSoup::RegionPoint& point : *points) given.insert(point.tag);
+  }
+  for (std::size_t r = 1; r < complex.plc.regions.size(); ++r) there.insert(complex.plc.regions[r].tag);
+  std::set_difference(given.begin(), given.end(), there.begin(), there.end(),
+                      std::back_inserter(complex.report.lost_regions));
+  return complex;
+}
+
 // The complex of what was repaired, and how far it is from the input. Throws PlcError.
 RepairedPlc judged(const Repairer& repairer, RepairResult result, const PlcOptions& options) {
   RepairedPlc complex{build_plc(result.soups, options), std::move(result.report), std::move(result.soups)};
@@ -302,7 +381,16 @@ RepairedPlc judged(const Repairer& repairer, RepairResult result, const PlcOptio
   if (complex.report.repaired)
     std::ranges::copy(build::lost_bodies(repairer.input(), complex.plc, repairer.tolerance()),
                       std::back_inserter(complex.plc.warnings));
-  return complex;
+  return with_lost_regions(std::move(complex), repairer.input());
+}
+
+// To 1, 2 or 5 times a power of ten, which a message can name.
+double round_down(double x) {
+  if (!(x > 0)) return 0;
+  const double ten = std::pow(10, std::floor(std::log10(x)));
+  for (const double digit : {5.0, 2.0})
+    if (digit * ten <= x * (1 + 1e-9)) return digit * ten;
+  return ten;
 }
 
 PlcError given_up(const PlcError& error, const RepairOptions& options) {
@@ -324,14 +412,15 @@ RepairResult repair(std::span<const PolygonSoup> soups, const RepairOptions& opt
 
 RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcOptions& options,
                          const RepairOptions& repair_options, const Execution& execution) {
-  if (repair_options.mode == RepairMode::off) return {std::move(plc), {}, {}};
+  if (repair_options.mode == RepairMode::off) return with_lost_regions({std::move(plc), {}, {}}, soups);
   const double tolerance = repair_options.tolerance * plc.bounds.diagonal();
   const std::optional<Point> noise = find_noise(plc, tolerance);
-  if (!noise) return {std::move(plc), {}, {}};
+  if (!noise) return with_lost_regions({std::move(plc), {}, {}}, soups);
   Repairer repairer(soups, repair_options, options, execution);
   RepairResult result = repairer.run();
   if (result.report.cancelled) return {Plc(), std::move(result.report), {}};
-  if (!result.report.gave_up) {
+  const bool changes = result.report.changed();
+  if (!result.report.gave_up && changes) {
     try {
       return judged(repairer, std::move(result), options);
     } catch (const PlcError&) {
@@ -343,9 +432,11 @@ RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcO
            "Features below the repair tolerance of {:.3g} stay, the first one at {}: to remove them {}; they "
            "cost elements and time, another --repair-tolerance may help.",
            tolerance, text(*noise),
-           result.report.gave_up ? "takes too long" : "would make the facets no valid complex"),
+           result.report.gave_up ? "takes too long"
+           : changes             ? "would make the facets no valid complex"
+                                 : "would make others that are worse"),
        *noise});
-  return {std::move(plc), {}, {}};
+  return with_lost_regions({std::move(plc), {}, {}}, soups);
 }
 
 RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOptions& options,
@@ -384,6 +475,21 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
   if (repair_options.mode == RepairMode::wrap)
     if (auto wrapped = build_wrapped_plc(soups, options, repair_options)) return *std::move(wrapped);
   throw PlcError(*first);
+}
+
+std::vector<RepairOptions> coarser_repairs(const RepairOptions& options, double size, double diagonal) {
+  constexpr double most_of_size = 0.01, least_factor = 2;
+  const double most = round_down(most_of_size * size / diagonal);
+  std::vector<RepairOptions> coarser;
+  if (options.mode == RepairMode::off || options.wrap_at_once) return coarser;
+  double last = options.tolerance;
+  for (const double tolerance : {1e-4, 1e-3}) {
+    if (std::min(tolerance, most) < least_factor * last) continue;
+    last = std::min(tolerance, most);
+    coarser.push_back(options);
+    coarser.back().tolerance = last;
+  }
+  return coarser;
 }
 
 std::vector<RepairOptions> further_repairs(const RepairOptions& options, const RepairReport& report) {

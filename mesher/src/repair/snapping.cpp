@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "plc/edges.h"
+#include "repair/changes.h"
 #include "repair/changing_triangles.h"
 #include "repair/point_grid.h"
 #include "repair/polygon_cutter.h"
@@ -42,8 +43,9 @@ NearestOnSegment nearest_on_segment(const Point& p, const Point& a, const Point&
 // Each round looks at the triangles that the one before has changed.
 class Snapper {
  public:
-  Snapper(Draft& draft, double distance_limit, SnapWhat what, Work& work)
-      : draft_(draft),
+  Snapper(Draft& draft, double distance_limit, SnapWhat what, Work& work, bool cancel)
+      : cancel_(cancel),
+        draft_(draft),
         limit_(distance_limit),
         what_(what),
         work_(work),
@@ -57,14 +59,13 @@ class Snapper {
     if (!known.empty()) cancel_new_twins();
     // Corners alone are few after a cut: where they multiply triangles, these run along each other.
     most_triangles_ = triangles_.count() / (what_ == SnapWhat::corners ? 4 : 1) + triangles_.count() + 1000;
-    Draft before = draft_;
-    SnapReport report_before;
-    if (!snap_all_corners()) return give_back(before, report_before);
+    if (Draft before = draft_; !snap_all_corners()) return keep_settled(before, 0, unseen_by_corners);
     if (what_ != SnapWhat::all) return finish();
-    // Overlays make new corners. They are taken back where one makes many and more than half as many as the
-    // one before, where corners come and go, and where there are too many overlays.
-    before = triangles_.compacted();
-    report_before = report_;
+    // Overlays make new corners. Where one makes many and more than half as many as the one before, where
+    // corners come and go, and where there are too many overlays, the places are taken back that still
+    // change.
+    const Draft before = triangles_.compacted();
+    const std::size_t done_before = done_.size();
     std::size_t crossings = none;
     for (std::size_t overlays = 0;; ++overlays) {
       if (!overlay()) return finish();
@@ -75,7 +76,7 @@ class Snapper {
         break;
       crossings = count;
     }
-    return give_back(before, report_before);
+    return keep_settled(before, done_before, unseen);
   }
 
  private:
@@ -111,12 +112,30 @@ class Snapper {
 
   SnapReport finish() {
     draft_ = triangles_.compacted();
+    for (const Done& done : done_) count(done);
     return std::move(report_);
   }
 
-  SnapReport give_back(Draft& before, SnapReport& report) {
-    draft_ = std::move(before);
-    return std::move(report);
+  // Take back what was done since then where triangles are still to be looked at by these.
+  SnapReport keep_settled(const Draft& before, std::size_t done_before, Index by) {
+    const Draft after = triangles_.compacted();
+    const Changes changes(before, after);
+    std::vector<bool> changing(changes.places(), false), kept_at(after.points.size(), true);
+    for (Index t = 0; t < after.triangles.size(); ++t)
+      if (const Index place = changes.place_of_come()[t]; place != none && (after.origins[t].facet & by) != 0)
+        changing[place] = true;
+    const auto mark = [&](const Draft& draft, const std::vector<Index>& place) {
+      for (Index t = 0; t < place.size(); ++t)
+        if (place[t] != none)
+          for (const Index p : draft.triangles[t]) kept_at[p] = !changing[place[t]];
+    };
+    mark(before, changes.place_of_gone());
+    mark(after, changes.place_of_come());
+    for (std::size_t i = 0; i < done_.size(); ++i)
+      if (i < done_before || kept_at[done_[i].point]) count(done_[i]);
+    std::vector<Index> place;
+    draft_ = changes.without(changing, place);
+    return std::move(report_);
   }
 
   // Until nothing is near or many rounds are over; false where triangles grow and grow.
@@ -135,9 +154,19 @@ class Snapper {
 
   const Point& at(Index p) const { return draft_.points[p]; }
 
-  void note(const Point& where, double moved) {
-    report_.largest_distance = std::max(report_.largest_distance, moved);
-    if (report_.places.size() < most_places) report_.places.push_back(where);
+  // A change to be told.
+  struct Done {
+    enum class What { merged, cut_edge, cut_triangle, more } what;
+    Index point;
+    double moved;
+  };
+
+  void count(const Done& done) {
+    if (done.what == Done::What::merged) ++report_.merged_points;
+    if (done.what == Done::What::cut_edge) ++report_.cut_edges;
+    if (done.what == Done::What::cut_triangle) ++report_.cut_triangles;
+    report_.largest_distance = std::max(report_.largest_distance, done.moved);
+    if (report_.places.size() < most_places) report_.places.push_back(at(done.point));
   }
 
   // --- Triangles that come and go ---
@@ -174,6 +203,7 @@ class Snapper {
 
   // Only triangles that were added can have become twins.
   void cancel_new_twins() {
+    if (!cancel_) return;
     for (const Index t : std::exchange(added_, {})) {
       if (!triangles_.alive(t)) continue;
       const build::Corners& corners = draft_.triangles[t];
@@ -234,10 +264,9 @@ class Snapper {
         continue;
       }
       merged.emplace_back(p, near);
-      note(at(near), distance(at(p), at(near)));
+      done_.push_back({Done::What::merged, p, distance(at(p), at(near))});
     }
     if (merged.empty()) return false;
-    report_.merged_points += merged.size();
     rename(merged);
     return true;
   }
@@ -319,54 +348,42 @@ class Snapper {
   // An edge while those are chosen that are cut in this round.
   struct EdgeState {
     std::vector<Index> sides;
-    bool taken = false;     // it is cut
-    bool blocked = false;   // a triangle there is cut at another side
     bool deferred = false;  // its triangles are looked at again
   };
 
-  // Edges get the corners near them, the longest first. In one round a triangle is cut at one of its sides
-  // only.
+  // Edges get the corners near them, the longest first.
   bool snap_corners() {
     clear();
+    const std::size_t done_before = done_.size();
     const std::vector<Index> looked_at = take_unseen(unseen_by_corners);
     std::vector<NearEdge> found;
-    triangles_.for_each_near_pair(looked_at, [&](Index s, Index t) {
-      find_near_edges(s, t, found);
-      find_near_edges(t, s, found);
-    });
-    for (const Index t : looked_at)
-      for (unsigned i = 0; i < 3; ++i) find_near_edge(t, i, draft_.triangles[t][(i + 2) % 3], found);
+    triangles_.for_each_corner_near_edge(looked_at,
+                                         [&](Index p, const Edge& edge) { find_near_edge(p, edge, found); });
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end(),
                             [](const NearEdge& a, const NearEdge& b) {
                               return a.edge == b.edge && a.corner.point == b.corner.point;
                             }),
                 found.end());
-    std::unordered_map<Index, Edge> cut;  // by triangle: at which side
     std::map<Edge, EdgeState> states;
     for (const NearEdge& near : found) {
       const auto [at, added] = states.try_emplace(near.edge);
       EdgeState& state = at->second;
       if (added) state.sides = triangles_.sides(near.edge);
-      if (!state.taken && !state.blocked)
-        state.blocked = std::any_of(state.sides.begin(), state.sides.end(), [&](Index side) {
-          const auto before = cut.find(side / 3);
-          return before != cut.end() && before->second != near.edge;
-        });
-      if (state.blocked || !has_room(near)) {
+      work_.spend(state.sides.size());
+      if (!has_room(near)) {
         if (!std::exchange(state.deferred, true))
           for (const Index side : state.sides) defer(side / 3);
         continue;
       }
-      work_.spend(state.sides.size());
-      if (!may_cut(near, state.sides)) continue;
-      if (!std::exchange(state.taken, true))
-        for (const Index side : state.sides) cut.try_emplace(side / 3, near.edge);
-      add_on_edge(near.edge, near.corner, near.distance);
+      if (may_cut(near, state.sides)) add_on_edge(near.edge, near.corner, near.distance);
     }
     if (on_edge_.empty()) return false;
     if (pieces() > most_triangles_) {
       grows_ = true;
+      done_.resize(done_before);
+      for (const auto& [edge, points] : on_edge_)
+        for (const Index side : triangles_.sides(edge)) defer(side / 3);
       return false;
     }
     apply();
@@ -400,25 +417,15 @@ class Snapper {
     });
   }
 
-  void find_near_edges(Index s, Index t, std::vector<NearEdge>& found) const {
-    const build::Corners& corners = draft_.triangles[t];
-    const Vector& normal = triangles_.normal(t);
-    for (const Index p : draft_.triangles[s]) {
-      if (p == corners[0] || p == corners[1] || p == corners[2]) continue;
-      if (std::fabs(dot(normal, at(p) - at(corners[0]))) > beyond_plane * limit_) continue;
-      for (unsigned i = 0; i < 3; ++i) find_near_edge(t, i, p, found);
-    }
-  }
-
-  void find_near_edge(Index t, unsigned i, Index p, std::vector<NearEdge>& found) const {
-    const Edge key = edge_key(draft_.triangles[t][i], draft_.triangles[t][(i + 1) % 3]);
-    const Vector along = at(key[1]) - at(key[0]), to = at(p) - at(key[0]);
+  void find_near_edge(Index p, const Edge& edge, std::vector<NearEdge>& found) const {
+    const Vector along = at(edge[1]) - at(edge[0]), to = at(p) - at(edge[0]);
     const double ll = squared_norm(along), d1 = dot(to, along);
     if (!(d1 > 0 && d1 < ll)) return;
     if (squared_norm(cross(along, to)) > beyond_plane * beyond_plane * limit_ * limit_ * ll) return;
-    const auto [d, parameter] = nearest_on_segment(at(p), at(key[0]), at(key[1]));
-    if (d > limit_ || !(parameter > 0 && parameter < 1) || !may_snap(key)) return;
-    found.push_back({distance(at(key[0]), at(key[1])), d, key, {parameter, p}});
+    const auto [d, parameter] = nearest_on_segment(at(p), at(edge[0]), at(edge[1]));
+    if (d > limit_ || !(parameter > 0 && parameter < 1) || !may_snap(edge) || !triangles_.uses(p)) return;
+    if (triangles_.sides(edge).empty()) return;  // it is gone
+    found.push_back({std::sqrt(ll), d, edge, {parameter, p}});
   }
 
   // --- Triangles that run along each other ---
@@ -480,9 +487,8 @@ class Snapper {
     auto& points = on_edge_[key];
     if (std::any_of(points.begin(), points.end(), [&](const OnEdge& o) { return o.point == point.point; }))
       return;
-    if (points.empty()) ++report_.cut_edges;
+    done_.push_back({points.empty() ? Done::What::cut_edge : Done::What::more, point.point, moved});
     points.push_back(point);
-    note(at(point.point), moved);
   }
 
   bool consider_inside(Index t, Index p) {
@@ -497,9 +503,8 @@ class Snapper {
       return false;
     auto& points = inside_[t];
     if (std::find(points.begin(), points.end(), p) != points.end()) return true;
-    if (points.empty()) ++report_.cut_triangles;
+    done_.push_back({points.empty() ? Done::What::cut_triangle : Done::What::more, p, height});
     points.push_back(p);
-    note(q, height);
     return true;
   }
 
@@ -714,11 +719,13 @@ class Snapper {
   // Rounding of heights over a plane, in which only edges of the triangle there are near.
   static constexpr double beyond_plane = 1 + 1e-9;
 
+  bool cancel_;  // twins
   Draft& draft_;
   double limit_;
   SnapWhat what_;
   Work& work_;
   SnapReport report_;
+  std::vector<Done> done_;
   std::size_t most_triangles_ = 0;
   bool grows_ = false;    // beyond that
   bool settled_ = false;  // nothing more is merged or cut
@@ -740,11 +747,11 @@ class Snapper {
 }  // namespace
 
 SnapReport snap_near_features(Draft& draft, double distance, SnapWhat what, Work* work,
-                              const std::vector<bool>& known) {
+                              const std::vector<bool>& known, bool cancel) {
   Work any;
-  const std::size_t twins = known.empty() ? cancel_twins(draft) : 0;
+  const std::size_t twins = known.empty() && cancel ? cancel_twins(draft) : 0;
   SnapReport report;
-  if (distance > 0) report = Snapper(draft, distance, what, work != nullptr ? *work : any).run(known);
+  if (distance > 0) report = Snapper(draft, distance, what, work != nullptr ? *work : any, cancel).run(known);
   report.cancelled_triangles += twins;
   return report;
 }

@@ -33,10 +33,11 @@ enum class SnapWhat {
 /// between. Short edges, needles, caps, slits and T-junctions vanish by this. Surfaces stay closed: as
 /// chains, triangles change by boundaries only. They may intersect afterwards. Runs until nothing is near or
 /// a number of rounds is over; a few places may not settle and stay as they are. What is between two `known`
-/// triangles (by number; empty: none are) is not looked at: nothing there is near. Throws WorkStopped; the
-/// draft is then of no use. Cost: O(n log n + k) for k pairs of near neighbours; each round after the first
-/// one looks at what the one before has changed.
+/// triangles (by number; empty: none are) is not looked at: nothing there is near. Triangles that come to lie
+/// on others turned the other way vanish with them, unless `cancel` is false. Throws WorkStopped; the draft
+/// is then of no use. Cost: O(n log n + k) for k pairs of near neighbours; each round after the first one
+/// looks at what the one before has changed.
 SnapReport snap_near_features(build::Draft& draft, double distance, SnapWhat what = SnapWhat::all,
-                              Work* work = nullptr, const std::vector<bool>& known = {});
+                              Work* work = nullptr, const std::vector<bool>& known = {}, bool cancel = true);
 
 }  // namespace collarmesh::repairing

@@ -1,7 +1,14 @@
 #include "repair/twins.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
+
+#include "common/disjoint_sets.h"
+#include "plc/edges.h"
+#include "plc/faults.h"
+#include "plc/orientation.h"
+#include "repair/inside.h"
 
 namespace collarmesh::repairing {
 
@@ -25,7 +32,11 @@ std::vector<Index> cancelled_among(std::vector<Twin> twins, bool in_complex) {
   return cancelled;
 }
 
-std::size_t cancel_twins(Draft& draft) {
+namespace {
+
+// Visit the triangles of one soup with the same corners, where there are several.
+template <class Visit>
+void for_each_group(const Draft& draft, const Visit& visit) {
   struct Key {
     Corners corners;
     Index soup, triangle;
@@ -38,17 +49,19 @@ std::size_t cancel_twins(Draft& draft) {
   std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
     return std::tie(a.corners, a.soup, a.triangle) < std::tie(b.corners, b.soup, b.triangle);
   });
-  std::vector<bool> removed(draft.triangles.size(), false);
   std::vector<Twin> twins;
   for (auto first = keys.begin(); first != keys.end();) {
     twins.clear();
     auto last = first;
     for (; last != keys.end() && last->corners == first->corners && last->soup == first->soup; ++last)
       twins.push_back({is_odd(draft.triangles[last->triangle]), last->triangle});
-    if (twins.size() > 1)
-      for (const Index t : cancelled_among(twins, draft.soup_is_complex[first->soup])) removed[t] = true;
+    if (twins.size() > 1) visit(twins);
     first = last;
   }
+}
+
+// Returns how many.
+std::size_t drop(Draft& draft, const std::vector<bool>& removed) {
   std::size_t kept = 0;
   for (Index t = 0; t < draft.triangles.size(); ++t) {
     if (removed[t]) continue;
@@ -58,6 +71,64 @@ std::size_t cancel_twins(Draft& draft) {
   const std::size_t count = draft.triangles.size() - kept;
   draft.triangles.resize(kept);
   draft.origins.resize(kept);
+  return count;
+}
+
+// By point: the component of triangles that hang together by corners.
+DisjointSets components_of(const Draft& draft) {
+  DisjointSets sets(draft.points.size());
+  for (const Corners& t : draft.triangles) {
+    sets.unite(t[0], t[1]);
+    sets.unite(t[0], t[2]);
+  }
+  return sets;
+}
+
+}  // namespace
+
+std::size_t cancel_twins(Draft& draft) {
+  std::vector<bool> removed(draft.triangles.size(), false);
+  for_each_group(draft, [&](const std::vector<Twin>& twins) {
+    for (const Index t : cancelled_among(twins, draft.soup_is_complex[draft.origins[twins[0].triangle].soup]))
+      removed[t] = true;
+  });
+  return drop(draft, removed);
+}
+
+bool is_two_sided(const Draft& draft) {
+  constexpr double least = 1e-6;  // volume by that of a box with the surface's area
+  const Point centre = draft.bounds.centre();
+  double six = 0, area = 0;
+  for (Index t = 0; t < draft.triangles.size(); ++t) {
+    six += dot(draft.corner(t, 0) - centre, cross(draft.corner(t, 1) - centre, draft.corner(t, 2) - centre));
+    area += area_of(draft, draft.triangles[t]);
+  }
+  return std::fabs(six) < least * std::pow(area, 1.5);
+}
+
+std::size_t keep_one_side(Draft& draft) {
+  std::vector<bool> second(draft.triangles.size(), false);
+  for_each_group(draft, [&](std::vector<Twin> twins) {
+    std::sort(twins.begin(), twins.end());
+    for (std::size_t i = 1; i < twins.size(); ++i) second[twins[i].triangle] = true;
+  });
+  DisjointSets component = components_of(draft);
+  std::vector<bool> closed(draft.points.size(), true);
+  const EdgeTable edges(draft.triangles, draft.points.size());
+  for (Index e = 0; e < edges.size(); ++e) {
+    const auto sides = edges.sides(e);
+    const auto left =
+        std::count_if(sides.begin(), sides.end(), [&](Index side) { return !second[side / 3]; });
+    if (left % 2 != 0) closed[component.find(edges.ends(e)[0])] = false;
+  }
+  for (Index t = 0; t < second.size(); ++t)
+    second[t] = second[t] && closed[component.find(draft.triangles[t][0])];
+  const std::size_t count = drop(draft, second);
+  if (count == 0) return 0;
+  EdgeTable left(draft.triangles, draft.points.size());
+  Faults one_sided;
+  orient_components(draft, left, one_sided);
+  turn_components(draft);
   return count;
 }
 

@@ -30,4 +30,11 @@ std::vector<Index> cancelled_among(std::vector<Twin> twins, bool in_complex);
 /// Cost: O(n log n).
 std::size_t cancel_twins(build::Draft& draft);
 
+/// Does a surface enclose no volume by its orientation, as one with two sides everywhere?
+bool is_two_sided(const build::Draft& draft);
+
+/// Of closed surfaces whose triangles have copies turned against them keep one of each two, turned alike.
+/// Returns how many were dropped. Cost: O(n log n).
+std::size_t keep_one_side(build::Draft& draft);
+
 }  // namespace collarmesh::repairing

@@ -1,0 +1,84 @@
+#include "repair/better_places.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "common/distance_tree.h"
+#include "plc/edges.h"
+#include "plc/intersections.h"
+#include "repair/changes.h"
+
+namespace collarmesh::repairing {
+
+namespace {
+
+using namespace build;
+
+// The costs of troubles by the place of the changed triangle that is nearest to them.
+std::vector<double> costs(const Draft& draft, const std::vector<Index>& place_of, Index places,
+                          const std::vector<Trouble>& troubles, double reach) {
+  std::vector<double> cost(places, 0);
+  std::vector<std::array<Point, 3>> triangles;
+  std::vector<Index> place;
+  for (Index t = 0; t < place_of.size(); ++t) {
+    if (place_of[t] == none) continue;
+    triangles.push_back({draft.corner(t, 0), draft.corner(t, 1), draft.corner(t, 2)});
+    place.push_back(place_of[t]);
+  }
+  if (triangles.empty()) return cost;
+  const DistanceTree tree(std::move(triangles));
+  for (const Trouble& trouble : troubles) {
+    const DistanceTree::Nearest nearest = tree.nearest(trouble.where);
+    if (nearest.distance <= reach) cost[place[nearest.triangle]] += trouble.cost;
+  }
+  return cost;
+}
+
+// The places of triangles that intersect.
+std::vector<Index> places_that_meet(Draft draft, const std::vector<Index>& place) {
+  for (Index t = 0; t < draft.origins.size(); ++t) draft.origins[t].facet = t;
+  const EdgeTable edges(draft.triangles, draft.points.size());
+  const Simplices simplices(draft, edges);
+  std::vector<Index> met;
+  for (const auto& [i, j] : intersecting_pairs(draft, simplices))
+    for (const Index k : {i, j})
+      if (k < place.size() && place[k] != none) met.push_back(place[k]);
+  return met;
+}
+
+}  // namespace
+
+BetterPlaces better_places(const Draft& before, const std::vector<Trouble>& troubles_before,
+                           const Draft& after, const std::vector<Trouble>& troubles_after, double reach) {
+  const Changes changes(before, after);
+  const std::vector<double> cost_before =
+      costs(before, changes.place_of_gone(), changes.places(), troubles_before, reach);
+  const std::vector<double> cost_after =
+      costs(after, changes.place_of_come(), changes.places(), troubles_after, reach);
+  std::vector<bool> taken_back(changes.places());
+  for (Index p = 0; p < changes.places(); ++p) taken_back[p] = cost_after[p] > cost_before[p];
+  BetterPlaces result;
+  result.places = changes.places();
+  // Without all of the changes it is as clean as before.
+  constexpr unsigned most_rounds = 8;
+  for (unsigned round = 0;; ++round) {
+    std::vector<Index> place;
+    result.draft = changes.without(taken_back, place);
+    if (std::find(taken_back.begin(), taken_back.end(), true) == taken_back.end()) break;
+    const std::vector<bool> before_round = taken_back;
+    for (const Index p : places_that_meet(result.draft, place)) taken_back[p] = true;
+    if (taken_back == before_round) break;
+    if (round == most_rounds) taken_back.assign(taken_back.size(), true);
+  }
+  std::vector<bool> told(changes.places(), false);
+  for (Index t = 0; t < before.triangles.size(); ++t) {
+    const Index p = changes.place_of_gone()[t];
+    if (p == none || !taken_back[p] || told[p]) continue;
+    told[p] = true;
+    result.taken_back.push_back(before.corner(t, 0));
+  }
+  return result;
+}
+
+}  // namespace collarmesh::repairing

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "common/box_tree.h"
+
+namespace collarmesh::repairing {
+
+template <class Item, class BoxOf>
+std::vector<Box> boxes_of(const std::vector<Item>& items, const BoxOf& box_of) {
+  std::vector<Box> boxes;
+  boxes.reserve(items.size());
+  for (const Item& item : items) boxes.push_back(box_of(item));
+  return boxes;
+}
+
+/// Boxes of items that arise with numbered triangles: a tree of most of them, and one of those that came
+/// later. Items may be gone, or be in both.
+template <class Item>
+class ItemTrees {
+ public:
+  bool empty() const { return !all_.tree; }
+
+  /// Hold the items of all triangles: `items_from(t)` are those of number t and above, `box_of(item)` their
+  /// boxes, `end` is one more than the largest number, `count` how many triangles there are.
+  template <class ItemsFrom, class BoxOf>
+  void renew(Index end, std::size_t count, const ItemsFrom& items_from, const BoxOf& box_of) {
+    if (empty() || few * (end - all_.end) > count) all_.build(items_from(0), box_of, end);
+    if (end > all_.end)
+      late_.build(items_from(all_.end), box_of, end);
+    else
+      late_ = Tree();
+  }
+
+  /// Calls visit(item) for those whose boxes meet this one.
+  template <class Visit>
+  void for_each_meeting(const Box& box, const Visit& visit) const {
+    for (const Tree* part : {&all_, &late_})
+      if (part->tree) part->tree->for_each_meeting(box, [&](Index i) { visit(part->items[i]); });
+  }
+
+ private:
+  static constexpr std::size_t few = 8;  // of those that came later as a share of all
+
+  struct Tree {
+    std::vector<Item> items;
+    std::unique_ptr<BoxTree> tree;
+    Index end = 0;  // it holds those of triangles before
+
+    template <class BoxOf>
+    void build(std::vector<Item> new_items, const BoxOf& box_of, Index new_end) {
+      items = std::move(new_items);
+      end = new_end;
+      tree = std::make_unique<BoxTree>(boxes_of(items, box_of));
+    }
+  };
+
+  Tree all_, late_;
+};
+
+}  // namespace collarmesh::repairing
