@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
+#include <numbers>
 #include <set>
 #include <string>
 #include <vector>
@@ -179,6 +181,31 @@ TEST(Pipeline, ATightBudgetIsNoReasonToWrap) {
   options.mesh.max_vertices = 200;
   EXPECT_EQ(boxes.run(options).result.status, MeshStatus::budget_hit);
   EXPECT_EQ(boxes.built.size(), 1U);
+}
+
+// A box with a slit that opens at this angle: a slab with the angle, turned by it, lies on the box.
+PolygonSoup slit_box(double degrees) {
+  const double a = degrees * std::numbers::pi / 180;
+  PolygonSoup soup = box();
+  for (Point& p : soup.points) p = {10 * p.x, 10 * p.y, 5 * p.z};
+  PolygonSoup slab = box();
+  for (Point& p : slab.points) {
+    const double x = 5 * p.x - 2.5, y = 2 + 5 * p.y, z = p.z;
+    p = {5 + x * std::cos(a) - z * std::sin(a), y, 5 + x * std::sin(a) + z * std::cos(a)};
+  }
+  return testing::joined(soup, slab);
+}
+
+TEST(Pipeline, TakesTheInputAgainWhereTheRefinementExplodes) {
+  const SoupPipelineResult made = run(slit_box(0.01), {});
+  ASSERT_TRUE(made.guarantees_hold()) << made.result.message;
+  EXPECT_TRUE(tells(made, "with 1e-05 the refinement takes more than "));
+  EXPECT_LE(made.repair.largest_distance, made.repair.tolerance);
+  EXPECT_GT(made.repair.largest_distance_of_input, 0);
+  double volume = 0;
+  for (Index r = 1; r < made.plc.regions.size(); ++r) volume += made.plc.regions[r].volume;
+  EXPECT_NEAR(volume, 525, 0.01);
+  EXPECT_LT(made.result.statistics.vertices_inserted, 100000U);
 }
 
 TEST(Pipeline, MovesOntoExactGeometry) {

@@ -70,10 +70,11 @@ class ComplexSource {
 };
 
 /// Mesh the solids of a complex, and certify the mesh against it. Where a guarantee is missed further repairs
-/// are tried (`further_repairs`), then further seeds; of meshes that miss one the first stays. What was tried
-/// is told in `check.notes`. In `RepairMode::wrap` a repaired complex that needs more than 300,000 vertices
-/// and 20 for each cube of the size in its regions is given up for the next repair, unless sizes but for
-/// `size` are given. `execution.progress` is called at the begin of each stage, too
+/// are tried (`further_repairs`), then further seeds; of meshes that miss one the first stays. Where the
+/// refinement takes far more vertices than the sizes ask for, it ends, and coarser repairs are tried
+/// (`coarser_repairs`) that lose no body, region, name or tag but for numbers of CAD faces; where none of
+/// their complexes does better, the first one is meshed as far as the budgets allow. What was tried is told
+/// in `check.notes`. `execution.progress` is called at the begin of each stage, too
 /// (`ProgressReport::begins`), and its fraction is that of all stages. Cancelled or out of time, the result
 /// has that status and no mesh. Throws PlcError for facets that are no complex and cannot be repaired,
 /// OptionError for options that contradict each other and for sizes of tags that the complex does not have.

@@ -18,6 +18,7 @@
 #include <thread>
 #include <utility>
 
+#include "check/findings.h"
 #include "coarsen/coarsen_workpiece.h"
 #include "collarmesh/error.h"
 #include "collarmesh/options.h"
@@ -26,6 +27,8 @@
 #include "common/thread_limit.h"
 #include "improve/improve_workpiece.h"
 #include "improve/thin_shape.h"
+#include "pipeline/lost_parts.h"
+#include "pipeline/vertex_bound.h"
 #include "refine/generate_linked.h"
 
 namespace collarmesh {
@@ -81,15 +84,6 @@ class ThreadCounter {
   std::jthread thread_;
 };
 
-/// Is `size` the one that the number of elements depends on?
-bool has_one_size(const PipelineOptions& options) {
-  const RunOptions given{options}, defaults;
-  return !options.mesh.size_field && options.mesh.bounds.radius_edge >= defaults.mesh.bounds.radius_edge &&
-         std::none_of(option_table().begin(), option_table().end(), [&](const Option& option) {
-           return option.finer && option.get(given) != option.get(defaults);
-         });
-}
-
 /// Of facets.
 class SoupSource : public ComplexSource {
  public:
@@ -142,35 +136,28 @@ class Pipeline {
   }
 
  private:
+  /// How an attempt at a mesh ended.
+  enum class End {
+    holds,     ///< every guarantee
+    missed,    ///< a guarantee
+    exploded,  ///< it took more vertices than its sizes ask for
+    refused    ///< no collar fits between features
+  };
+
   void try_repairs(SoupPipelineResult& all) {
     build(given_.repair, all);
-    const std::vector<RepairOptions> further = further_repairs(given_.repair, all.repair);
-    most_vertices_ = vertices_before_wrap(all, further);
-    bool has_mesh = false, exploded = false;
+    bound_vertices(all.plc);
     std::exception_ptr error;
-    std::string missed;
-    try {
-      mesh(all.plc, given_.mesh.seed);
-      if (made_.guarantees_hold()) return;
-      has_mesh = true;
-      missed = made_.missed();
-    } catch (const Ended&) {
-      exploded = most_vertices_ > 0 && made_.result.status == MeshStatus::budget_hit && !out_of_time();
-      if (!exploded) throw;
-      missed = made_.result.message;
-    } catch (const PlcError& e) {
-      if (further.empty()) throw;
-      error = std::current_exception();
-      missed = e.what();
-    }
-    most_vertices_ = 0;
+    const auto [end, why] = attempt(all.plc, error);
+    if (end == End::holds) return;
     RepairOptions current = given_.repair;
-    bool built_last = true;
-    for (const RepairOptions& repair : further) {
-      if (exploded && !repair.wrap_at_once) continue;
+    bool has_mesh = end == End::missed, built_last = true;
+    for (const RepairOptions& repair : repairs_after(end, all)) {
       SoupPipelineResult other;
+      if (repair.wrap_at_once) most_vertices_ = 0;
       const bool better = find_better(has_mesh, [&] {
         build(repair, other);
+        if (end == End::exploded && !repair.wrap_at_once) require_kept(all, other);
         mesh(other.plc, given_.mesh.seed);
       });
       built_last = better;
@@ -180,11 +167,12 @@ class Pipeline {
       all.repair = std::move(other.repair);
       has_mesh = true;
       made_.check.notes.push_back(all.repair.wrapped
-                                      ? fmt::format("wrapped, as of the complex before {}", missed)
+                                      ? fmt::format("wrapped, as of the complex before {}", why)
                                       : fmt::format("repaired with a tolerance of {:.3g}, as with {:.3g} {}",
-                                                    repair.tolerance, given_.repair.tolerance, missed));
-      if (made_.guarantees_hold()) return;
+                                                    repair.tolerance, given_.repair.tolerance, why));
+      if (made_.guarantees_hold() || end == End::exploded) break;
     }
+    if (made_.guarantees_hold()) return;
     if (!has_mesh && error) std::rethrow_exception(error);
     if (!built_last) {
       try {
@@ -194,8 +182,48 @@ class Pipeline {
         return;
       }
     }
-    if (!has_mesh) mesh(all.plc, given_.mesh.seed);  // as far as the budgets allow
+    if (!has_mesh) {
+      most_vertices_ = 0;
+      mesh(all.plc, given_.mesh.seed);  // as far as the budgets allow
+    }
     try_seeds(all.plc);
+  }
+
+  /// Mesh a complex within the bound on vertices. Also says what kept the guarantees from holding.
+  std::pair<End, std::string> attempt(const Plc& plc, std::exception_ptr& error) {
+    try {
+      mesh(plc, given_.mesh.seed);
+      return {made_.guarantees_hold() ? End::holds : End::missed, made_.missed()};
+    } catch (const Ended&) {
+      if (!hit_bound()) throw;
+      return {End::exploded,
+              fmt::format(
+                  "the refinement takes more than {} vertices, far more than the sizes ask for, around {}",
+                  most_vertices_, checks::At{made_.result.where})};
+    } catch (const PlcError& e) {
+      error = std::current_exception();
+      return {End::refused, e.what()};
+    }
+  }
+
+  std::vector<RepairOptions> repairs_after(End end, const SoupPipelineResult& all) const {
+    std::vector<RepairOptions> repairs = further_repairs(given_.repair, all.repair);
+    if (end != End::exploded) return repairs;
+    std::erase_if(repairs, [](const RepairOptions& repair) { return !repair.wrap_at_once; });
+    const double diagonal = all.plc.bounds.diagonal();
+    std::vector<RepairOptions> coarser =
+        coarser_repairs(given_.repair, smallest_size(given_.mesh, diagonal), diagonal);
+    repairs.insert(repairs.begin(), coarser.begin(), coarser.end());
+    return repairs;
+  }
+
+  /// Throws PlcError unless a coarser repair changes something and loses no part.
+  static void require_kept(const SoupPipelineResult& finer, const SoupPipelineResult& coarser) {
+    const bool same =
+        finer.plc.triangles.size() == coarser.plc.triangles.size() && finer.plc.points == coarser.plc.points;
+    const std::string lost =
+        same ? "nothing would change" : lost_parts(finer.plc, finer.repair, coarser.plc, coarser.repair);
+    if (!lost.empty()) throw PlcError(lost, {});
   }
 
   /// Refinement that does not end at one place with the samples of one seed may well end with those of
@@ -216,7 +244,7 @@ class Pipeline {
     PipelineResult kept = std::exchange(made_, {});
     bool better = false;
     const auto fails = [&] {
-      if (!has_mesh || made_.result.status == MeshStatus::cancelled) throw;
+      if ((!has_mesh && !hit_bound()) || made_.result.status == MeshStatus::cancelled) throw;
     };
     try {
       way();
@@ -242,20 +270,18 @@ class Pipeline {
     all.plc = std::move(built.plc);
   }
 
-  /// How many vertices a repaired complex may take where it can be wrapped instead; 0: any number.
-  std::size_t vertices_before_wrap(const SoupPipelineResult& all,
-                                   const std::vector<RepairOptions>& further) const {
-    constexpr double always = 2e5, per_cube_of_size = 20, sizes_per_diagonal = 20;
-    const MeshOptions& m = given_.mesh;
-    if (further.empty() || !further.back().wrap_at_once || !all.repair.repaired || !has_one_size(given_))
-      return 0;
-    const double size = m.size > 0 ? m.size : all.plc.bounds.diagonal() / sizes_per_diagonal;
-    double vertices = always;
-    for (const Plc::Region& region : all.plc.regions)
-      vertices += per_cube_of_size * region.volume / std::pow(region.size > 0 ? region.size : size, 3);
-    const bool lowers =
-        vertices < 1e9 && (m.max_vertices == 0 || vertices < static_cast<double>(m.max_vertices));
-    return lowers ? static_cast<std::size_t>(vertices) : 0;
+  /// Refinements end beyond far more vertices than the sizes ask for, while there are other repairs to try.
+  void bound_vertices(const Plc& plc) {
+    if (given_.repair.mode == RepairMode::off || given_.repair.wrap_at_once) return;
+    const std::size_t most = most_vertices_expected(plc, given_);
+    most_vertices_ = given_.mesh.max_vertices > 0 && given_.mesh.max_vertices <= most ? 0 : most;
+  }
+
+  /// Did the refinement end at that bound, and not for want of time or memory?
+  bool hit_bound() const {
+    const std::size_t memory = given_.mesh.max_memory;
+    return most_vertices_ > 0 && made_.result.status == MeshStatus::budget_hit && !out_of_time() &&
+           (memory == 0 || made_.result.statistics.peak_bytes <= memory);
   }
 
   template <class Stages>
@@ -426,7 +452,7 @@ class Pipeline {
   const PipelineOptions& given_;
   PipelineOptions options_;          // for the complex at hand
   ComplexSource* source_ = nullptr;  // unless there is one complex only
-  std::size_t most_vertices_ = 0;    // in place of the given budget; 0: that
+  std::size_t most_vertices_ = 0;    // of a refinement, in place of the given budget; 0: that
   const Execution& outer_;
   Execution inner_;
   ThreadCounter counter_;

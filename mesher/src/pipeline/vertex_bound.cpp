@@ -1,0 +1,86 @@
+#include "pipeline/vertex_bound.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collarmesh/options.h"
+#include "predict/vertex_counts.h"
+
+namespace collarmesh {
+
+namespace {
+
+// Of the refinement, before anything is coarsened; real parts need at most a quarter of the bound.
+constexpr double always = 20000, by_feature = 160, by_square = 64, by_cube = 160;
+constexpr double sizes_per_diagonal = 20;  // of the default size
+
+double area_of(const Plc& plc, const Plc::Patch& patch) {
+  double area = 0;
+  for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
+    const auto& [a, b, c] = plc.triangles[t].points;
+    area += 0.5 * norm(cross(plc.points[b] - plc.points[a], plc.points[c] - plc.points[a]));
+  }
+  return area;
+}
+
+// Are there no sizes but a target edge length everywhere and in regions?
+bool plain_sizes(const PipelineOptions& options) {
+  RunOptions given{options};
+  given.mesh.region_size.clear();
+  const RunOptions defaults;
+  return !options.mesh.size_field &&
+         std::none_of(option_table().begin(), option_table().end(), [&](const Option& option) {
+           return option.finer && option.get(given) != option.get(defaults);
+         });
+}
+
+double expected_by_features(const Plc& plc, const MeshOptions& options) {
+  const double diagonal = plc.bounds.diagonal(),
+               everywhere = options.size > 0 ? options.size : diagonal / sizes_per_diagonal;
+  const auto size_of = [&](const Plc::Region& region) {
+    const auto asked = options.region_size.find(region.tag);
+    return std::min(everywhere, asked != options.region_size.end() ? asked->second
+                                : region.size > 0                  ? region.size
+                                                                   : everywhere);
+  };
+  double vertices =
+      by_feature * static_cast<double>(plc.vertices.size() + plc.curves.size() + plc.patches.size());
+  for (Index r = 1; r < plc.regions.size(); ++r)
+    vertices += by_cube * std::fabs(plc.regions[r].volume) / std::pow(size_of(plc.regions[r]), 3);
+  for (const Plc::Patch& patch : plc.patches) {
+    const double size =
+        std::min(size_of(plc.regions[patch.regions[0]]), size_of(plc.regions[patch.regions[1]]));
+    vertices += by_square * area_of(plc, patch) / (size * size);
+  }
+  return vertices;
+}
+
+// Bounds that are tighter than by default ask for more vertices: near smooth surfaces as many as the distance
+// is smaller.
+double by_bounds(const Plc& plc, const MeshOptions& options) {
+  constexpr double power = 4, by_vertex_ratio = 4;
+  const double distance = default_distance(options.size, plc.bounds.diagonal()) / options.bounds.distance;
+  const double ratio = std::pow(Bounds{}.radius_edge / options.bounds.radius_edge, power);
+  return std::max(1.0, distance) * std::max(1.0, ratio) * (options.vertex_ratio > 0 ? by_vertex_ratio : 1);
+}
+
+}  // namespace
+
+double smallest_size(const MeshOptions& options, double diagonal) {
+  double size = options.size > 0 ? options.size : diagonal / sizes_per_diagonal;
+  for (const auto* sizes : {&options.region_size, &options.patch_size, &options.curve_size})
+    for (const auto& [tag, asked] : *sizes) size = std::min(size, asked);
+  return size;
+}
+
+std::size_t most_vertices_expected(const Plc& plc, const PipelineOptions& options) {
+  constexpr double tets_per_vertex = 6, largest = 1e15;
+  MeshOptions mesh = options.mesh;
+  mesh.bounds.distance = distance_of(options, plc.bounds.diagonal());
+  double vertices = expected_by_features(plc, mesh);
+  if (!plain_sizes(options) && plc.regions.size() > 1)
+    vertices += by_cube * prediction::count_tets(prediction::Shape(plc), mesh) / tets_per_vertex;
+  return static_cast<std::size_t>(std::min((always + vertices) * by_bounds(plc, mesh), largest));
+}
+
+}  // namespace collarmesh

@@ -1,0 +1,61 @@
+// How many vertices a refinement may take before other repairs are tried.
+#include "pipeline/vertex_bound.h"
+
+#include <gtest/gtest.h>
+
+#include "support/shapes.h"
+
+namespace collarmesh {
+namespace {
+
+using testing::box;
+
+std::size_t bound(const Plc& plc, const MeshOptions& mesh) {
+  PipelineOptions options;
+  options.mesh = mesh;
+  return most_vertices_expected(plc, options);
+}
+
+Plc boxes_apart(double gap) { return build_plc(std::vector{box(), box({0, 0, 1 + gap}, {1, 1, 2})}); }
+
+TEST(VertexBound, DoesNotGrowWithNearFeatures) {
+  const std::size_t far = bound(boxes_apart(0.1), {.size = 0.1}),
+                    near = bound(boxes_apart(1e-6), {.size = 0.1});
+  EXPECT_NEAR(static_cast<double>(near), static_cast<double>(far), 0.1 * static_cast<double>(far));
+}
+
+TEST(VertexBound, IsFarAboveTheVerticesOfPlainShapes) {
+  const Plc plc = boxes_apart(0.5);
+  for (const double size : {0.5, 0.2, 0.1}) {
+    const MeshResult made = generate(plc, {.size = size});
+    ASSERT_EQ(made.status, MeshStatus::complete);
+    EXPECT_GE(bound(plc, {.size = size}), 4 * made.statistics.vertices_inserted) << size;
+  }
+}
+
+TEST(VertexBound, GrowsWithWhatIsAskedFor) {
+  const Plc plc = boxes_apart(0.5);
+  const MeshOptions plain{.size = 0.2};
+  const std::size_t usual = bound(plc, plain);
+  const auto with = [&](const auto& change) {
+    MeshOptions options = plain;
+    change(options);
+    return bound(plc, options);
+  };
+  EXPECT_GT(with([](MeshOptions& o) { o.size = 0.05; }), 2 * usual);
+  EXPECT_GT(with([](MeshOptions& o) { o.region_size[1] = 0.02; }), 2 * usual);
+  EXPECT_GT(with([](MeshOptions& o) { o.patch_size[1] = 0.005; }), 2 * usual);
+  EXPECT_GT(with([](MeshOptions& o) { o.size_field = [](const Point&) { return 0.02; }; }), 2 * usual);
+  EXPECT_GT(with([](MeshOptions& o) { o.bounds.radius_edge = 1.2; }), 2 * usual);
+  EXPECT_GT(with([](MeshOptions& o) { o.bounds.distance = 1e-3; }), 2 * usual);
+  EXPECT_GT(with([](MeshOptions& o) { o.vertex_ratio = 4; }), 2 * usual);
+}
+
+TEST(VertexBound, TheSmallestSizeIsThatOfAnyFeature) {
+  EXPECT_EQ(smallest_size({}, 20), 1);
+  EXPECT_EQ(smallest_size({.size = 0.5}, 20), 0.5);
+  EXPECT_EQ(smallest_size({.region_size = {{1, 0.3}}, .patch_size = {{4, 0.2}}}, 20), 0.2);
+}
+
+}  // namespace
+}  // namespace collarmesh
