@@ -160,7 +160,7 @@ TEST(Untangling, NodesFollowAnEdgeThatBulges) {
     }
   }
   EXPECT_GT(made, 20U);
-  EXPECT_LT(impossible, made / 3);
+  EXPECT_LT(impossible, made / 2);
 }
 
 }  // namespace
