@@ -54,6 +54,7 @@ struct CadFiles::File {
   std::unique_ptr<brep::CadModel> model;
   double deflection;
   Index first_soup, soup_count;
+  mutable std::optional<brep::CadMeasures> measures = {};  // of these soups, when asked for
 };
 
 CadFiles::CadFiles() = default;
@@ -90,14 +91,29 @@ void CadFiles::tessellate(double finer, std::vector<PolygonSoup>& soups) {
     std::vector<PolygonSoup> own = file.model->tessellate(
         {.deflection = file.deflection / finer, .angle = brep::TessellationOptions().angle / finer});
     std::move(own.begin(), own.end(), soups.begin() + file.first_soup);
+    file.measures.reset();
   }
 }
 
-std::optional<Point> CadFiles::nearest(Index soup, unsigned dimension, Tag number, const Point& p) const {
+const CadFiles::File* CadFiles::file_of(Index soup) const {
   for (const File& file : files_)
-    if (soup >= file.first_soup && soup - file.first_soup < file.soup_count)
-      return file.model->nearest(dimension, number, p);
-  return std::nullopt;
+    if (soup >= file.first_soup && soup - file.first_soup < file.soup_count) return &file;
+  return nullptr;
+}
+
+std::optional<Point> CadFiles::nearest(Index soup, unsigned dimension, Tag number, const Point& p) const {
+  const File* const file = file_of(soup);
+  return file == nullptr ? std::nullopt : file->model->nearest(dimension, number, p);
+}
+
+std::optional<CadFiles::Measured> CadFiles::measures(Index soup) const {
+  const File* const file = file_of(soup);
+  if (file == nullptr) return std::nullopt;
+  if (!file->measures) {
+    const CadWork measuring("measuring its faces", file->model->name());
+    file->measures = file->model->measures();
+  }
+  return Measured{*file->measures, file->first_soup};
 }
 
 std::string CadFiles::names() const {

@@ -11,6 +11,10 @@
 #include "collarmesh/options.h"
 #include "collarmesh/polygon_soup.h"
 
+namespace collarmesh::brep {
+struct CadMeasures;
+}
+
 namespace collarmesh::cli {
 
 /// How CAD files are read.
@@ -47,6 +51,14 @@ class CadFiles {
   /// soups of other files.
   std::optional<Point> nearest(Index soup, unsigned dimension, Tag number, const Point& p) const;
 
+  /// Exact lengths, areas and volumes of the shape in the file that a soup came from, and the first soup of
+  /// that file; nothing for soups of other files.
+  struct Measured {
+    const brep::CadMeasures& measures;
+    Index first_soup;
+  };
+  std::optional<Measured> measures(Index soup) const;
+
   /// "Face3 and Face7 of part.step", of the file whose faces are nearest.
   std::string faces_near(const Point& where) const;
   /// The sub-shapes that OpenCASCADE finds invalid, or empty.
@@ -59,6 +71,8 @@ class CadFiles {
 
  private:
   struct File;
+  const File* file_of(Index soup) const;
+
   std::vector<File> files_;
 };
 

@@ -12,8 +12,14 @@ namespace collarmesh::cli {
 
 namespace {
 
-CheckOptions check_options(const RunOptions& o) {
-  return {.bounds = o.mesh.bounds, .findings_per_guarantee = o.findings, .threads = o.mesh.threads};
+CheckReport check_as_built(const TetMesh& mesh, ComplexInput& input, const RunOptions& o,
+                           const RepairOptions& repair, const Execution& execution) {
+  const Plc plc = input.build(o.complex, repair);
+  const CheckOptions options{.bounds = o.mesh.bounds,
+                             .exact = input.exact_measures(plc),
+                             .findings_per_guarantee = o.findings,
+                             .threads = o.mesh.threads};
+  return check(mesh, plc, options, execution);
 }
 
 /// Finds the repair that the mesh is one of. The report stays where it is one of none.
@@ -21,8 +27,7 @@ void check_against_further(const TetMesh& mesh, ComplexInput& input, const RunOp
                            const Execution& execution, CheckReport& report, RepairReport& repair) {
   for (const RepairOptions& further : further_repairs(options.repair, repair)) {
     try {
-      CheckReport other =
-          check(mesh, input.build(options.complex, further), check_options(options), execution);
+      CheckReport other = check_as_built(mesh, input, options, further, execution);
       if (other.cancelled || !other.passed()) continue;
       report = std::move(other);
     } catch (const PlcError&) {
@@ -43,8 +48,7 @@ void check_against_further(const TetMesh& mesh, ComplexInput& input, const RunOp
 
 CheckReport check_against(const TetMesh& mesh, ComplexInput& input, const RunOptions& options,
                           const Execution& execution) {
-  CheckReport report =
-      check(mesh, input.build(options.complex, options.repair), check_options(options), execution);
+  CheckReport report = check_as_built(mesh, input, options, options.repair, execution);
   RepairReport repair = input.repaired();
   if (!report.passed() && !report.cancelled)
     check_against_further(mesh, input, options, execution, report, repair);

@@ -20,7 +20,11 @@ ExitCode check_command(const CheckArguments& arguments) {
     return arguments.mesh.bounds.distance > 0 ? arguments.mesh.bounds.distance
                                               : default_distance(0, diagonal, mesh.order());
   };
-  ComplexInput input(arguments.inputs, interruptible({{}, distance, arguments.overlap, arguments.names}));
+  const auto tolerance = [&](const Plc& plc) {
+    return tolerance_of(plc, arguments.mesh.bounds, 0, mesh.order());
+  };
+  ComplexInput input(arguments.inputs,
+                     interruptible({{}, distance, tolerance, arguments.overlap, arguments.names}));
   Execution execution;
   execution.cancel = &interrupt_flag();
   const CheckReport report = check_against(mesh, input, arguments, execution);

@@ -10,6 +10,7 @@
 
 #include "collarmesh/error.h"
 #include "collarmesh/name_features.h"
+#include "exact_measures.h"
 #include "input_files.h"
 #include "surface_files.h"
 
@@ -128,7 +129,8 @@ Plc ComplexInput::build_unnamed(const PlcOptions& options, const RepairOptions& 
   for (const double finer : {1.0, 4.0}) {
     tessellate(finer);
     try {
-      return take(remove_noise(build_plc(soups_, options), soups_, options, repair, watched()));
+      Plc plc = build_valid(options, repair);
+      return finer == 1 ? resolved(std::move(plc), options, repair) : std::move(plc);
     } catch (const PlcError& error) {
       if (!first) first = with_names(error, cad_);
       if (!cad_.fused() || !may_be_too_coarse(error)) break;
@@ -141,6 +143,27 @@ Plc ComplexInput::build_unnamed(const PlcOptions& options, const RepairOptions& 
   } catch (const PlcError&) {
     throw with_advice(*first, repair);
   }
+}
+
+Plc ComplexInput::build_valid(const PlcOptions& options, const RepairOptions& repair) {
+  return take(remove_noise(build_plc(soups_, options), soups_, options, repair, watched()));
+}
+
+/// Where the triangles are too coarse for the mesh to come, the complex of finer ones, if that is as good.
+Plc ComplexInput::resolved(Plc plc, const PlcOptions& options, const RepairOptions& repair) {
+  constexpr double finer = 4;
+  if (!reading_.tolerance || built_.repaired.repaired || triangles_resolve(plc, reading_.tolerance(plc)))
+    return plc;
+  Built coarse = std::exchange(built_, {});
+  tessellate(finer);
+  try {
+    Plc fine = build_valid(options, repair);
+    if (!built_.repaired.repaired) return fine;
+  } catch (const PlcError&) {
+  }
+  tessellate(1);
+  built_ = std::move(coarse);
+  return plc;
 }
 
 PlcError ComplexInput::with_advice(const PlcError& error, const RepairOptions& options) const {
@@ -164,6 +187,11 @@ Plc ComplexInput::take(RepairedPlc result) {
   built_.repaired = std::move(result.report);
   built_.soups = std::move(result.soups);
   return std::move(result.plc);
+}
+
+ShapeMeasures ComplexInput::exact_measures(const Plc& plc) const {
+  if (cad_.empty() || built_.repaired.wrapped) return {};  // wrapped, tags are no numbers of faces
+  return measures_behind(plc, {soups_, built_.patch_numbers, built_.curve_numbers}, cad_);
 }
 
 ExactGeometry ComplexInput::exact_geometry(const Plc& plc) const {

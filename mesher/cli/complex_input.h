@@ -12,6 +12,8 @@
 #include "collarmesh/progress.h"
 #include "collarmesh/project_boundary.h"
 #include "collarmesh/repair.h"
+#include "collarmesh/shape_measures.h"
+#include "collarmesh/surface_tolerance.h"
 
 namespace collarmesh::cli {
 
@@ -22,6 +24,9 @@ struct InputReading {
   std::function<double(double diagonal)> distance = [](double diagonal) {
     return default_distance(0, diagonal);
   };
+  /// Of the mesh that will be made of a complex: triangles of CAD shapes that are too coarse for it are cut
+  /// finer. Empty: none is.
+  std::function<SurfaceTolerance(const Plc&)> tolerance = {};
   SolidOverlap overlap = SolidOverlap::first;
   std::string names = {};                     ///< of features: the path of a file, or its text; empty: none
   const std::atomic<bool>* cancel = nullptr;  ///< ends the work when it is set
@@ -55,10 +60,14 @@ class ComplexInput {
   /// The exact edges and faces behind the complex built last, for `run_pipeline`. Both must outlive the
   /// result.
   ExactGeometry exact_geometry(const Plc& plc) const;
+  /// Their lengths, areas and volumes, where they are known.
+  ShapeMeasures exact_measures(const Plc& plc) const;
 
  private:
   void name(const std::string& path, Plc& plc);
   Plc build_unnamed(const PlcOptions& options, const RepairOptions& repair);
+  Plc build_valid(const PlcOptions& options, const RepairOptions& repair);
+  Plc resolved(Plc plc, const PlcOptions& options, const RepairOptions& repair);
   Plc build_repaired(const PlcOptions& options, const RepairOptions& repair);
   PlcError with_advice(const PlcError& error, const RepairOptions& options) const;
   Plc take(RepairedPlc result);

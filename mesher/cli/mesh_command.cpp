@@ -100,7 +100,10 @@ class InputSource : public ComplexSource {
   void adapt(const Plc& plc, PipelineOptions& options) override {
     if (!arguments_.size_field_file.empty())
       options.mesh.size_field = read_size_field(arguments_.size_field_file, plc);
-    if (input_.has_cad()) options.exact = input_.exact_geometry(plc);
+    if (input_.has_cad()) {
+      options.exact = input_.exact_geometry(plc);
+      options.exact_measures = input_.exact_measures(plc);
+    }
     std::string text;
     for (const std::string& warning : option_warnings(arguments_, plc))
       text += fmt::format("warning: {}\n", warning);
@@ -200,6 +203,7 @@ void tell_of(const MeshArguments& arguments, const MeshRun& run) {
   tell("{}", straightened_text(run.second_order,
                                arguments.verbose ? run.second_order.straightened.size() : listed));
   if (arguments.quiet) return;
+  for (const std::string& warning : run.check.warnings) tell("warning: {}\n", warning);
   tell("{}", run_text(arguments, run));
   if (arguments.tell_losses)
     tell("{}", losses_text(lost_by(format_of(arguments.output, arguments.output_format), run.result.mesh)));
@@ -207,9 +211,12 @@ void tell_of(const MeshArguments& arguments, const MeshRun& run) {
 
 std::unique_ptr<ComplexInput> read_inputs(const MeshArguments& arguments) {
   const auto distance = [&](double diagonal) { return distance_of(arguments, diagonal); };
+  const auto tolerance = [&](const Plc& plc) {
+    return tolerance_of(plc, arguments.mesh.bounds, arguments.mesh.size, static_cast<int>(arguments.order));
+  };
   return std::make_unique<ComplexInput>(
       arguments.inputs,
-      interruptible({arguments.input_format, distance, arguments.overlap, arguments.names}));
+      interruptible({arguments.input_format, distance, tolerance, arguments.overlap, arguments.names}));
 }
 
 MadeMesh make_mesh(const MeshArguments& arguments) {

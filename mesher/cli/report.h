@@ -46,7 +46,7 @@ std::string complex_text(const Plc& plc, const PlcSummary& summary);
 std::string predictions_text(const std::vector<Prediction>& predictions);
 /// Empty for a mesh that is not partitioned.
 std::string partitions_text(const PartitionMeasures& measures);
-std::string mesh_text(const TetMesh& mesh, const MeshMeasures& measures);
+std::string mesh_text(const TetMesh& mesh, const MeshMeasures& measures, const CheckReport* judged = nullptr);
 std::string findings_text(const CheckReport& report, std::size_t listed);
 std::string check_text(const CheckReport& report);
 /// "straightened: ..." lines of the nodes that did not stay on their smooth feature, the first ones.

@@ -236,6 +236,17 @@ Json measures_json(const TetMesh& mesh, const MeshMeasures& m) {
             {"radius_edge", {{"bin_width", 0.25}, {"tets", m.radius_edges}}}}}};
 }
 
+/// Of each feature: its number, the measure in the input and in the mesh, and by how much this is off.
+Json kept_json(const std::vector<double>& input, const std::vector<double>& mesh, std::size_t first = 0) {
+  Json all = Json::array();
+  for (std::size_t i = first; i < std::min(input.size(), mesh.size()); ++i)
+    all.push_back({{"number", i},
+                   {"input", number_json(input[i])},
+                   {"mesh", number_json(mesh[i])},
+                   {"percent", number_json(percent_off(mesh[i], input[i]))}});
+  return all;
+}
+
 Json check_json(const CheckReport& r) {
   Json findings = Json::array();
   for (const Finding& finding : r.findings)
@@ -250,6 +261,7 @@ Json check_json(const CheckReport& r) {
           {"findings_total", r.findings_total},
           {"findings", std::move(findings)},
           {"notes", r.notes},
+          {"warnings", r.warnings},
           {"tets", r.tets},
           {"points", r.points},
           {"faces", r.faces},
@@ -263,7 +275,11 @@ Json check_json(const CheckReport& r) {
           {"max_collar_dihedral", r.max_collar_dihedral},
           {"max_surface_distance", number_json(r.max_surface_distance)},
           {"median_edge", r.median_edge},
-          {"region_volumes", by_number(volumes)}};
+          {"region_volumes", by_number(volumes)},
+          {"kept",
+           {{"region_volumes", kept_json(r.of_input.volumes, r.of_mesh.volumes, 1)},
+            {"patch_areas", kept_json(r.of_input.areas, r.of_mesh.areas)},
+            {"curve_lengths", kept_json(r.of_input.lengths, r.of_mesh.lengths)}}}};
 }
 
 Json repair_json(const RepairReport& r) {

@@ -82,6 +82,14 @@ std::string count_text(double count) {
   return count < 1e12 ? fmt::format("{:.0f}", count) : fmt::format("{:.3g}", count);
 }
 
+/// Beside the input's volume.
+std::string off_text(const CheckReport& r, std::size_t region) {
+  if (region >= std::min(r.of_input.volumes.size(), r.of_mesh.volumes.size())) return {};
+  const double input = r.of_input.volumes[region];
+  return fmt::format(", {:+.2f} % of the input's {:.10g}", percent_off(r.of_mesh.volumes[region], input),
+                     input);
+}
+
 }  // namespace
 
 std::string warnings_text(const Plc& plc) {
@@ -136,7 +144,7 @@ std::string partitions_text(const PartitionMeasures& m) {
                      m.cut_faces);
 }
 
-std::string mesh_text(const TetMesh& mesh, const MeshMeasures& m) {
+std::string mesh_text(const TetMesh& mesh, const MeshMeasures& m, const CheckReport* judged) {
   std::string text;
   fmt::format_to(Out(text), "{} tets, {} points, {} boundary and interface triangles, {} curve edges\n",
                  mesh.tets.size(), mesh.points.size(), mesh.faces.size(), mesh.edges.size());
@@ -147,7 +155,8 @@ std::string mesh_text(const TetMesh& mesh, const MeshMeasures& m) {
   std::size_t line = 0;
   for (const auto& [region, volume] : m.region_volumes) {
     if (++line > listed) break;
-    fmt::format_to(Out(text), "  region {}: volume {:.10g}\n", region, volume);
+    fmt::format_to(Out(text), "  region {}: volume {:.10g}{}\n", region, volume,
+                   judged != nullptr ? off_text(*judged, region) : "");
   }
   return text + partitions_text(measure_partitions(mesh));
 }
@@ -165,6 +174,7 @@ std::string findings_text(const CheckReport& r, std::size_t most) {
 std::string check_text(const CheckReport& r) {
   std::string text = findings_text(r, r.findings.size());
   for (const std::string& note : r.notes) fmt::format_to(Out(text), "note: {}\n", note);
+  for (const std::string& warning : r.warnings) fmt::format_to(Out(text), "warning: {}\n", warning);
   fmt::format_to(Out(text), "{} tets, {} points, {} faces, {} edges; {}\n", r.tets, r.points, r.faces,
                  r.edges, shape_text(r.min_dihedral, r.max_dihedral, r.max_radius_edge));
   if (r.thin_tets > 0)
@@ -175,7 +185,7 @@ std::string check_text(const CheckReport& r) {
   fmt::format_to(Out(text), "surface distance at most {:.3g}, median edge {:.6g}\n", r.max_surface_distance,
                  r.median_edge);
   for (std::size_t k = 1; k < std::min(r.region_volumes.size(), listed + 1); ++k)
-    fmt::format_to(Out(text), "region {}: volume {:.10g}\n", k, r.region_volumes[k]);
+    fmt::format_to(Out(text), "region {}: volume {:.10g}{}\n", k, r.region_volumes[k], off_text(r, k));
   text += r.passed() ? "every guarantee holds\n" : fmt::format("{} findings\n", r.findings_total);
   return text;
 }
@@ -219,7 +229,7 @@ std::string straightened_text(const SecondOrderReport& r, std::size_t most) {
 std::string run_text(const MeshArguments& arguments, const MeshRun& run) {
   std::string text = arguments.verbose ? complex_text(run.plc, run.summary) : "";
   text += fmt::format("{}: ", arguments.output == "-" ? "standard output" : arguments.output) +
-          mesh_text(run.result.mesh, run.check.measures);
+          mesh_text(run.result.mesh, run.check.measures, &run.check);
   fmt::format_to(Out(text), "  median edge {:.4g}, surface distance at most {:.3g}\n", run.check.median_edge,
                  run.check.max_surface_distance);
   text += cleanup_text(run.plc.cleanup);

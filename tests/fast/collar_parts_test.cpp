@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <set>
 
@@ -222,55 +221,6 @@ TEST(CollarParts, ACreaseThatIsSplitAheadGetsItsBallsWhenItsEndsAreThere) {
     if (parts.points[point].dormant) {
       EXPECT_EQ(parts.points[point].object, none);
     }
-}
-
-// A dome over a segment of a disc that spans so many degrees: its rim has an inner seed close behind the
-// sphere of each ball at its ends.
-PolygonSoup dome(double span) {
-  constexpr Index around = 24, along = 8;
-  const double half = span * std::numbers::pi / 360;
-  const Point middle{std::cos(half), 0, 0};
-  PolygonSoup soup;
-  for (Index j = 1; j <= along; ++j)
-    for (Index i = 0; i <= around; ++i) {
-      const double turn = half * (2.0 * i / around - 1), t = static_cast<double>(j) / along;
-      Point p = middle + t * (Point{std::cos(turn), std::sin(turn), 0} - middle);
-      p.z = 0.15 * (1 - t * t);
-      soup.points.push_back(p);
-    }
-  soup.points.push_back(middle + Vector{0, 0, 0.15});
-  const auto at = [](Index j, Index i) { return (j - 1) * (around + 1) + i; };
-  const Index top = at(along, around) + 1;
-  std::vector<Index> base, side{top};
-  for (Index i = 0; i <= around; ++i) base.push_back(at(along, around - i));
-  for (Index j = 1; j <= along; ++j) side.push_back(at(j, around));
-  for (Index j = along; j > 0; --j) side.push_back(at(j, 0));
-  soup.add_facet(base, 1);
-  soup.add_facet(side, 2);
-  for (Index i = 0; i < around; ++i) {
-    soup.add_facet(std::array{top, at(1, i), at(1, i + 1)}, 3);
-    for (Index j = 1; j < along; ++j) {
-      soup.add_facet(std::array{at(j, i), at(j + 1, i), at(j + 1, i + 1)}, 3);
-      soup.add_facet(std::array{at(j, i), at(j + 1, i + 1), at(j, i + 1)}, 3);
-    }
-  }
-  return soup;
-}
-
-// Nobody waits for a seed that goes because the ball at an end of its crease nearly holds it.
-TEST(CollarParts, ACreaseWhoseSeedsAreWithdrawnIsComplete) {
-  PlcOptions smooth;
-  smooth.feature_angle = 35;
-  const Plc plc = build_plc(std::vector{dome(130)}, smooth);
-  Parts parts(plc, Parts::with(CollarCreation::in_pass));
-  const auto curves = parts.open_creases.curves();
-  const auto rim =
-      std::find_if(curves.begin(), curves.end(), [&](Index c) { return !plc.curves[c].straight; });
-  ASSERT_NE(rim, curves.end());
-  ASSERT_EQ(parts.pieces_of(*rim).size(), 3U);
-  for (const Index end : plc.curves[*rim].ends) parts.resolve_vertex_with_ball(end);
-  EXPECT_EQ(parts.pieces_of(*rim).size(), 1U);
-  EXPECT_EQ(parts.open_creases.chain(*rim).unresolved, 2U);  // where it leaves the balls
 }
 
 TEST(CollarParts, AChainThatIsSplitBeginsOnTheSphereOfTheBallAtItsEnd) {

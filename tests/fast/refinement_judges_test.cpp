@@ -279,7 +279,7 @@ TEST(RefineCollarCells, CellsAreInsideWhenABallHoldsTheirCircumcentre) {
   KnownMesh known(plc);
   CollarOptions options;
   options.size = [](const Feature&, const Point&) { return 0.2; };
-  options.distance = 0.01;
+  options.tolerance = SurfaceTolerance(0.01);
   known.collars = CollarSystem(plc, known.domain.points, find_creases(plc, 60), options);
   ASSERT_FALSE(known.collars.empty());
   for (Index v = 0; v < known.mesh.vertex_count(); ++v) known.collar_cells.note_near(v);

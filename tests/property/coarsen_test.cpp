@@ -45,7 +45,7 @@ std::vector<Shape> thin_shapes() {
           {"fan", acute::fan(8).soups, 0.3, 0, 8, 1500},
           {"two boxes", {two_boxes()}, 0.3, 0, 8, 750},
           {"dangling facet", {box_with_dangling_facet()}, 0.3, 0, 8, 370},
-          {"torus", {torus(1, 0.1, 60, 12)}, 0.4, 30, 8, 1170},
+          {"torus", {torus(1, 0.1, 60, 12)}, 0.4, 30, 8, 1900},
           {"touching boxes", boxes_touching_in_an_edge(), 0.6, 30, 8, 260}};
 }
 

@@ -75,7 +75,7 @@ struct Placed {
   static CollarOptions options(const Plc& plc) {
     CollarOptions options;
     options.size = [](const Feature&, const Point&) { return size; };
-    options.distance = 1e-3 * plc.bounds.diagonal();
+    options.tolerance = SurfaceTolerance(1e-3 * plc.bounds.diagonal());
     return options;
   }
   static Plc build(const acute::Shape& shape) {

@@ -49,7 +49,8 @@ ImproveOptions options(double angle) {
 /// What detours work with.
 struct Bench {
   explicit Bench(Meshed& meshed, double wanted = wanted_angle)
-      : workpiece(meshed.result.mesh, meshed.plc, default_distance(0, meshed.plc.bounds.diagonal())),
+      : workpiece(meshed.result.mesh, meshed.plc,
+                  SurfaceTolerance(default_distance(0, meshed.plc.bounds.diagonal()))),
         rule(options(wanted).bounds.radius_edge),
         remedies(workpiece, rule, options(wanted)),
         operations(workpiece, rule) {

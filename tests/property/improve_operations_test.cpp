@@ -55,7 +55,7 @@ constexpr std::size_t single_steps = 4;
 /// A complex and its operations on a mesh of its own.
 struct Workbench {
   Workbench(const Meshed& meshed, const TetMesh& of)
-      : mesh(of), workpiece(mesh, meshed.plc, distance), operations(workpiece, rule) {}
+      : mesh(of), workpiece(mesh, meshed.plc, SurfaceTolerance(distance)), operations(workpiece, rule) {}
 
   double worst(std::span<const Index> tets) const {
     double quality = INFINITY;
@@ -333,7 +333,7 @@ TEST(ContractionsOnFeatures, EachPartOfTheLinkConditionForbidsSome) {
     SCOPED_TRACE(name);
     TetMesh mesh = body(tets, points);
     EXPECT_EQ(link_condition(mesh.tets, 0, 1) && link_condition(mesh.faces, 0, 1), allowed);
-    Workpiece workpiece(mesh, plc, distance);
+    Workpiece workpiece(mesh, plc, SurfaceTolerance(distance));
     Operations operations(workpiece, rule);
     Change change;
     operations.contract_edge_anyhow(0, 1, 0, change);

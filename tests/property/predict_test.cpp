@@ -55,7 +55,7 @@ TEST(Predict, Box) {
 TEST(Predict, SphereWithoutCurves) {
   for (const double size : {0.35, 0.17}) {
     SCOPED_TRACE(size);
-    expect_near(testing::icosphere(1, 16), with_size(size));
+    expect_near(testing::icosphere(1, 16), with_size(size), 1.6);  // coarse ones keep their volume
   }
 }
 

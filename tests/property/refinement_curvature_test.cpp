@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "refine/curvature.h"
 #include "support/meshing.h"
 #include "support/shapes.h"
+#include "tolerance/curvature.h"
 
 namespace collarmesh {
 namespace {

@@ -241,11 +241,13 @@ std::multiset<std::array<Index, 4>> sorted_tets(const TetMesh& mesh) {
 // could be.
 TEST(SecondOrder, TetsAreMarkedThinEvenWhereNoneCouldBeReplaced) {
   unsigned none_replaced = 0;
-  for (const double factor : {0.95, 0.9, 0.6}) {
+  for (const double factor : {0.95, 0.9, 0.8, 0.6}) {
     const Meshed meshed = coarsened(cylinder(1, 0.08, 120, 2), 0.7);
     TetMesh mesh = meshed.result.mesh;
     ASSERT_GT(std::count(mesh.tet_thin.begin(), mesh.tet_thin.end(), 1), 0);
     SecondOrderOptions options;
+    options.bounds.distance = 0.01;
+    options.bounds.thin_angle = 30;  // which hardly any replacement has
     options.exact = [&](unsigned dimension, Index, const Point& p) -> std::optional<Point> {
       if (dimension == 1) return std::nullopt;
       return Point{factor * p.x, factor * p.y, p.z};

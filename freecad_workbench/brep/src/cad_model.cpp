@@ -12,6 +12,7 @@
 #include <limits>
 #include <new>
 
+#include "measures.h"
 #include "parts.h"
 
 namespace collarmesh::brep {
@@ -82,10 +83,10 @@ std::vector<std::string> CadModel::notes() const {
 
 std::vector<PolygonSoup> CadModel::tessellate(const TessellationOptions& options) {
   constexpr double relative_deflection = 1e-4;
-  const double deflection =
-      options.deflection > 0 ? options.deflection : relative_deflection * parts_->diagonal;
+  parts_->deflection = options.deflection > 0 ? options.deflection : relative_deflection * parts_->diagonal;
   return on_shape(parts_->name, "cutting faces into triangles", [&] {
-    parts_->tessellation = brep::tessellate(parts_->topology, parts_->name, deflection, options.angle);
+    parts_->tessellation =
+        brep::tessellate(parts_->topology, parts_->name, parts_->deflection, options.angle);
     parts_->exact = std::make_unique<NearestOnShape>(parts_->tessellation);
     return parts_->tessellation.soups;
   });
@@ -112,6 +113,11 @@ std::string CadModel::faces_near(const Point& where) const {
 double CadModel::distance_to(const Point& where) const {
   const auto nearest = faces_by_distance(parts_->tessellation, where);
   return nearest.empty() ? std::numeric_limits<double>::infinity() : nearest[0].first;
+}
+
+CadMeasures CadModel::measures() const {
+  return on_shape(parts_->name, "integrating over faces",
+                  [&] { return measure(parts_->topology, parts_->tessellation, parts_->deflection); });
 }
 
 std::string CadModel::invalid_parts() const {

@@ -12,6 +12,7 @@ struct CadModel::Parts {
   double diagonal = 0;
   Topology topology;
   Tessellation tessellation;
+  double deflection = 0;                  ///< of this tessellation
   std::unique_ptr<NearestOnShape> exact;  ///< of this tessellation
 };
 

@@ -67,6 +67,7 @@ class Tessellator {
     require_triangles();
     bend_single_chords();
     find_features();
+    measure();
     for (const Topology::Solid& solid : topology_.solids) result_.soups.push_back(soup_of(solid));
     if (!topology_.internal_faces.empty()) result_.soups.push_back(internal_soup());
     return std::move(result_);
@@ -360,7 +361,7 @@ class Tessellator {
   }
 
   double area_of(const std::array<Index, 3>& t) const {
-    return norm(cross(points_[t[1]] - points_[t[0]], points_[t[2]] - points_[t[0]]));
+    return 0.5 * norm(cross(points_[t[1]] - points_[t[0]], points_[t[2]] - points_[t[0]]));
   }
   /// Of the three triangles that a point makes with the sides: as large as the triangle if it lies in it.
   double area_with(const std::array<Index, 3>& t, Index p) const {
@@ -428,6 +429,22 @@ class Tessellator {
     for (const TopoDS_Shape& face : subshapes(topology_.all, TopAbs_FACE))
       for (TopExp_Explorer vertex(face, TopAbs_VERTEX, TopAbs_EDGE); vertex.More(); vertex.Next())
         is_vertex_[slot(vertices_.FindIndex(vertex.Current()))] = true;  // amid a face
+  }
+
+  void measure() {
+    for (int e = 1; e <= edges_.Extent(); ++e) {
+      if (!is_feature_[slot(e)]) continue;
+      const auto& points = edge_points_[slot(e)];
+      double length = 0;
+      for (std::size_t i = 0; i + 1 < points.size(); ++i)
+        length += distance(points_[points[i]], points_[points[i + 1]]);
+      result_.lengths.Bind(edges_(e), length);
+    }
+    for (int f = 1; f <= faces_.Extent(); ++f) {
+      double area = 0;
+      for (const auto& triangle : face_triangles_[slot(f)]) area += area_of(triangle);
+      result_.areas.Bind(faces_(f), area);
+    }
   }
 
   /// Where a surface ends in a point, as a cone in its apex, that is a vertex; but not the poles of a sphere.

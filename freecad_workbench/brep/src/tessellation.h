@@ -1,5 +1,6 @@
 #pragma once
 
+#include <TopTools_DataMapOfShapeReal.hxx>
 #include <array>
 #include <map>
 #include <vector>
@@ -21,7 +22,8 @@ struct Samples {
 struct Tessellation {
   std::vector<PolygonSoup> soups;  ///< one per solid, one for the internal faces where there are any
   std::map<int, std::vector<Samples>> edges, faces;  ///< by number
-  std::vector<std::string> notes;                    ///< on faces that were cut in another way, or not at all
+  TopTools_DataMapOfShapeReal lengths, areas;  ///< of the chords of edges that are features, of the triangles
+  std::vector<std::string> notes;              ///< on faces that were cut in another way, or not at all
 };
 
 /// Triangulate all faces; neighbours share the points of their edges, but for faces that notes name.

@@ -29,7 +29,7 @@ const guarantees = [
   ['Conformity: corners, edges and faces of the input are in the mesh',
     ['conforming', 'watertight', 'curve_cover', 'curve_distance', 'patch_area', 'patch_border', 'patch_distance', 'patch_manifold',
       'patch_orientation', 'patch_plane', 'vertex_feature', 'vertex_present', 'listed_edges', 'listed_faces']],
-  ['Regions: volumes are those of the input', ['region_volume', 'region_tag', 'positive_volume', 'distinct_tets']],
+  ['Regions: volumes are those of the input', ['region_volume', 'volume_kept', 'region_tag', 'positive_volume', 'distinct_tets']],
   ['Tags: faces and edges know where they are from', ['curve_tag', 'patch_tag', 'patch_regions', 'face_regions']],
   ['Shape: circumradius over shortest edge is bounded', ['radius_edge']],
   ['Thin tetrahedra have no small or large angle', ['thin_angles']],
@@ -93,6 +93,11 @@ function worst(shown, show) {
   return [element('h2', {}, 'Worst elements'), element('ul', {}, ...shown.worst.map(line))];
 }
 
+function kept(check, region) {
+  const found = check.kept.region_volumes.find(each => each.number === region);
+  return found ? ` (${found.percent < 0 ? '' : '+'}${found.percent.toFixed(2)} % of the input's ${number(found.input)})` : '';
+}
+
 function describe(report, shown, show) {
   const { mesh, check, complex, options } = report, name = report.inputs.map(path => path.split('/').pop()).join(', ');
   document.title = `${name}: mesh report`;
@@ -104,8 +109,8 @@ function describe(report, shown, show) {
   const diagonal = complex.diagonal, size = options.size ?? diagonal / 20;
   const changed = ['region_size', 'patch_size', 'curve_size'].flatMap(kind =>
     Object.entries(options[kind]).map(([tag, value]) => [`Size of ${kind.split('_')[0]} ${tag}`, number(value)]));
-  const regions = complex.regions.map(r => [`Region ${(r.name || String(r.tag)).split('/').pop()}: volume`, number(mesh.region_volumes[r.region])]);
-  const warnings = [...report.warnings, ...complex.warnings.map(w => w.message), ...report.notes, ...check.notes];
+  const regions = complex.regions.map(r => [`Region ${(r.name || String(r.tag)).split('/').pop()}: volume`, number(mesh.region_volumes[r.region]) + kept(check, r.region)]);
+  const warnings = [...report.warnings, ...complex.warnings.map(w => w.message), ...check.warnings, ...report.notes, ...check.notes];
   document.getElementById('facts').append(
     element('h2', {}, 'Asked for'),
     table([['Size', number(size) + (options.size ? '' : ' (a twentieth of the diagonal)')], ...changed,

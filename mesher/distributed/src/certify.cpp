@@ -122,14 +122,13 @@ class Fingerprint {
 struct Expected {
   Expected(const Plc& plc, double distance) {
     const TetMesh nothing;
-    CheckOptions options;
-    options.bounds.distance = distance;
     constexpr double epsilon = 0x1p-52;
     double largest = 0;
     for (std::size_t axis = 0; axis < 3; ++axis)
       largest = std::max({largest, std::fabs(plc.bounds.min[axis]), std::fabs(plc.bounds.max[axis])});
     const double rounding = 1e-12 * plc.bounds.diagonal() + 8 * epsilon * largest;
-    const checks::Subject subject{nothing, plc, options, rounding, {}, {}, nullptr, {}, {}};
+    const checks::Subject subject{nothing, plc, {}, SurfaceTolerance(distance), rounding, {}, {},
+                                  nullptr, {},  {}};
     curve_off = checks::curve_allowances(subject);
     patch_off = checks::patch_allowances(subject);
     measure_curves(plc);

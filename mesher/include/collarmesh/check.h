@@ -7,6 +7,7 @@
 #include "collarmesh/mesh_measures.h"
 #include "collarmesh/plc.h"
 #include "collarmesh/progress.h"
+#include "collarmesh/shape_measures.h"
 #include "collarmesh/tet_mesh.h"
 
 namespace collarmesh {
@@ -15,6 +16,7 @@ struct CheckOptions {
   /// Where a mesh tells which tets are thin only these may be, in memory as well as read from a file. Cells
   /// of a collar are excused at creases only.
   Bounds bounds = {};
+  ShapeMeasures exact = {};  ///< of the exact geometry behind the complex; NaN or missing: the complex's own
   std::size_t findings_per_guarantee = 20;  ///< more are counted, not listed
   unsigned threads = 0;                     ///< at most; 0: as many as there are cores
 };
@@ -32,6 +34,7 @@ struct CheckReport {
   std::size_t findings_total = 0;  ///< with those not listed
   std::vector<std::string>
       notes;  ///< sentences: labels that were not the complex', so that positions decided
+  std::vector<std::string> warnings;  ///< sentences: regions whose volume changed more than one may like
   // What was measured:
   std::size_t tets = 0, points = 0, faces = 0, edges = 0, collar_tets = 0, thin_tets = 0;
   double max_radius_edge = 0;                   ///< outside collars, without thin tets
@@ -40,7 +43,8 @@ struct CheckReport {
   double max_collar_dihedral = 0;
   double max_surface_distance = 0;  ///< two-sided, on smooth patches and curves
   double median_edge = 0;
-  std::vector<double> region_volumes;  ///< by region index, [0] unused
+  std::vector<double> region_volumes;  ///< by region index, [0] unused; of curved elements as they curve
+  ShapeMeasures of_input, of_mesh;     ///< empty when labels or points are not usable
   MeshMeasures measures;               ///< in collars, too; of no tet when labels or points are not usable
 
   bool cancelled = false;  ///< by the execution; then not everything was looked at
@@ -50,7 +54,9 @@ struct CheckReport {
 
 /// Recompute every guarantee from the mesh alone, independently of how it was made: positive
 /// volumes, conformity, watertight regions, region volumes, curves as unions of edges, facets as
-/// unions of faces with equal area, radius-edge ratio or angles, surface distance.
+/// unions of faces with equal area, radius-edge ratio or angles, surface distance. A region may lose or gain
+/// 5% of its volume with elements of first order, 1% with those of second order, unless the bounds ask for a
+/// distance; a warning names regions that are more than 2% off.
 /// A mesh read from a file (no feature indices) is matched to the complex by tags and position; where its
 /// tags are not the complex', or it has no boundary triangles or curve edges, by position alone.
 /// Tets count as a collar's cells only at creases of the complex.

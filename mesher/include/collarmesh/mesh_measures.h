@@ -34,6 +34,9 @@ struct MeshMeasures {
   void add(Index tet, const TetQuality& quality, Index region, Kind kind);
 };
 
+/// Of its corners; the volume is that of the curved tet where the mesh is of second order.
+TetQuality measure_tet(const TetMesh& mesh, Index tet);
+
 /// Of all tets; of a mesh without regions they are those of region 1.
 MeshMeasures measure_mesh(const TetMesh& mesh);
 

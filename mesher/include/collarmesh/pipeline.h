@@ -16,6 +16,7 @@
 #include "collarmesh/project_boundary.h"
 #include "collarmesh/repair.h"
 #include "collarmesh/second_order.h"
+#include "collarmesh/shape_measures.h"
 #include "collarmesh/tet_mesh.h"
 
 /// The whole way from facets to a certified mesh, as the program `collarmesh` goes it: repair, refine,
@@ -37,6 +38,7 @@ struct PipelineOptions {
   /// What the facets approximate, as a CAD shape. The mesh is kept within tighter bounds first, so that its
   /// vertices can move onto this; may be empty.
   ExactGeometry exact = {};
+  ShapeMeasures exact_measures = {};  ///< of the same, for the certificate; may be empty
 };
 
 /// What came out. Only where `result.status` is complete or guarantee_missed is there a mesh, `result.mesh`.

@@ -58,6 +58,9 @@ cli::ComplexInput read(const Inputs& inputs, const Options& options, Watch& watc
   cli::InputReading reading;
   reading.format = options.input_format;
   reading.distance = [&options](double diagonal) { return distance_of(options, diagonal); };
+  reading.tolerance = [&options](const Plc& plc) {
+    return tolerance_of(plc, options.mesh.bounds, options.mesh.size, static_cast<int>(options.order));
+  };
   reading.overlap = options.overlap;
   reading.names = options.names;
   reading.cancel = &watch.flag();
@@ -101,7 +104,10 @@ class InputSource : public ComplexSource {
       options.mesh.size_field = read_size_field(options_.size_field_file, plc);
     if (!options_.size_field_json.empty())
       options.mesh.size_field = size_field_from_json(options_.size_field_json, plc);
-    if (input_.has_cad()) options.exact = input_.exact_geometry(plc);
+    if (input_.has_cad()) {
+      options.exact = input_.exact_geometry(plc);
+      options.exact_measures = input_.exact_measures(plc);
+    }
   }
 
  private:

@@ -25,7 +25,7 @@ std::vector<double> curve_allowances(const Subject& subject) {
                                                            plc.points[curve.points.back()])
                                             .distance);
     allowances.push_back(curve.straight ? flat_allowance(deviation, subject)
-                                        : subject.options.bounds.distance + subject.rounding);
+                                        : subject.tolerance.largest_on_curve(curve) + subject.rounding);
   }
   return allowances;
 }
@@ -41,7 +41,7 @@ std::vector<double> patch_allowances(const Subject& subject) {
   }
   for (Index p = 0; p < plc.patches.size(); ++p)
     allowances.push_back(plc.patches[p].planar ? flat_allowance(deviations[p], subject)
-                                               : subject.options.bounds.distance + subject.rounding);
+                                               : subject.tolerance.largest_on_patch(p) + subject.rounding);
   return allowances;
 }
 

@@ -37,14 +37,13 @@ Subject make_subject(const TetMesh& mesh, const Plc& plc, const CheckOptions& op
   Subject subject{mesh,
                   plc,
                   options,
+                  tolerance_of_any_size(plc, options.bounds),
                   1e-12 * box.diagonal() + 8 * epsilon * largest_coordinate(box),
                   {},
                   {},
                   std::make_shared<RegionLocator>(plc),
                   {},
                   {}};
-  if (!(subject.options.bounds.distance > 0))
-    subject.options.bounds.distance = default_distance(0, box.diagonal());
   subject.curve_allowance = curve_allowances(subject);
   subject.patch_allowance = patch_allowances(subject);
   return subject;
@@ -62,6 +61,9 @@ void take_measures(CheckReport& report, CheckReport&& part) {
   report.median_edge = std::max(report.median_edge, part.median_edge);
   if (part.region_volumes.empty()) return;
   report.region_volumes = std::move(part.region_volumes);
+  report.warnings = std::move(part.warnings);
+  report.of_input = std::move(part.of_input);
+  report.of_mesh = std::move(part.of_mesh);
   report.measures = std::move(part.measures);
 }
 
@@ -76,6 +78,7 @@ void judge(Subject subject, CheckReport& report, Findings& findings, const Execu
   const std::array<Group, 7> groups{[](const Subject& s, CheckReport& r, Findings& f) {
                                       check_tets(s, r, f);
                                       check_region_volumes(s, r, f);
+                                      check_shape_kept(s, r, f);
                                     },
                                     check_conformity,
                                     [](const Subject& s, CheckReport&, Findings& f) {

@@ -69,7 +69,7 @@ class CollarCheck {
       const Point& now = subject_.point(balls_[b].point);
       const double way = distance(centre(b), now);
       const double allowed =
-          subject_.rounding + (feature_of(b).dimension == 0 ? 0 : subject_.options.bounds.distance);
+          subject_.rounding + (feature_of(b).dimension == 0 ? 0 : subject_.tolerance.largest());
       if (way <= allowed) continue;
       findings_.add(
           guarantee::collar_centre, now, {balls_[b].point},

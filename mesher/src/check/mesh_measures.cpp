@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "collarmesh/shape_measures.h"
+
 namespace collarmesh {
 
 namespace {
@@ -42,12 +44,17 @@ void MeshMeasures::add(Index tet, const TetQuality& quality, Index region, Kind 
   insert({quality.max_dihedral, tet}, largest_angles, std::greater<double>());
 }
 
+TetQuality measure_tet(const TetMesh& mesh, Index tet) {
+  const auto& [a, b, c, d] = mesh.tets[tet];
+  TetQuality quality = measure(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]);
+  if (mesh.order() == 2) quality.volume = volume(curved_tet(mesh, tet));
+  return quality;
+}
+
 MeshMeasures measure_mesh(const TetMesh& mesh) {
   MeshMeasures measures;
   for (Index t = 0; t < mesh.tets.size(); ++t) {
-    const auto& [a, b, c, d] = mesh.tets[t];
-    measures.add(t, measure(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]),
-                 t < mesh.tet_region.size() ? mesh.tet_region[t] : 1,
+    measures.add(t, measure_tet(mesh, t), t < mesh.tet_region.size() ? mesh.tet_region[t] : 1,
                  t < mesh.tet_collar.size() && mesh.tet_collar[t] != 0 ? MeshMeasures::Kind::collar
                  : t < mesh.tet_thin.size() && mesh.tet_thin[t] != 0   ? MeshMeasures::Kind::thin
                                                                        : MeshMeasures::Kind::plain);

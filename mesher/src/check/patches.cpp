@@ -40,6 +40,7 @@ class PatchCheck {
         patch_(subject.plc.patches[patch]),
         faces_(first, last),
         allowed_(subject.patch_allowance[patch]),
+        least_allowed_(patch_.planar ? allowed_ : subject.tolerance.least_on_patch(patch) + subject.rounding),
         report_(report),
         findings_(findings) {}
 
@@ -179,8 +180,8 @@ class PatchCheck {
     const auto look_at = [&](Index face, const Point& sample) {
       const auto nearest = patch.nearest(sample, enough(), hint);
       hint = nearest.triangle;
-      measure(nearest.distance, face, sample,
-              "Face {} of patch {} (tag {}) is {:.6g} away from the patch at {}");
+      measure(nearest.distance, subject_.tolerance.at_triangle(patch_.first_triangle + nearest.triangle),
+              face, sample, "Face {} of patch {} (tag {}) is {:.6g} away from the patch at {}");
     };
     SeenSides seen(faces_.size());
     for (const Index face : faces_) {
@@ -203,37 +204,40 @@ class PatchCheck {
     for (const Index face : faces_) triangles.push_back(corners(face));
     const DistanceTree faces(std::move(triangles));
     Index hint = none;
-    const auto look_at = [&](const Point& sample) {
+    const auto look_at = [&](const Point& sample, double tolerance) {
       const auto nearest = faces.nearest(sample, enough(), hint);
       hint = nearest.triangle;
-      measure(nearest.distance, faces_[nearest.triangle], sample,
+      measure(nearest.distance, tolerance, faces_[nearest.triangle], sample,
               "Face {}, the nearest of patch {} (tag {}), is {:.6g} away from the patch's point at {}");
     };
-    for (const Index point : patch_points) look_at(subject_.plc.points[point]);
+    for (const Index point : patch_points)
+      look_at(subject_.plc.points[point], subject_.tolerance.at_point(point));
     for (Index i = 0; i < patch_.triangle_count; ++i) {
       const Plc::Triangle& t = triangle(i);
-      look_at((subject_.plc_corner(t, 0) + subject_.plc_corner(t, 1) + subject_.plc_corner(t, 2)) / 3);
+      look_at((subject_.plc_corner(t, 0) + subject_.plc_corner(t, 1) + subject_.plc_corner(t, 2)) / 3,
+              subject_.tolerance.at_triangle(patch_.first_triangle + i));
     }
   }
 
   /// Distances below this change neither the maximum nor the verdict.
-  double enough() const { return std::fmin(report_.max_surface_distance, allowed_); }
+  double enough() const { return std::fmin(report_.max_surface_distance, least_allowed_); }
 
-  void measure(double distance, Index face, const Point& where,
+  void measure(double distance, double tolerance, Index face, const Point& where,
                fmt::format_string<Index&, Index&, const Tag&, double&, At> what) {
     report_.max_surface_distance = std::fmax(report_.max_surface_distance, distance);
-    if (distance <= allowed_) return;
+    const double allowed = tolerance + subject_.rounding;
+    if (distance <= allowed) return;
     findings_.add(guarantee::patch_distance, where, {id_, face},
                   "{}, allowed is {:.6g}; use a smaller size there or "
                   "allow a larger distance.",
-                  fmt::format(what, face, id_, patch_.tag, distance, At{where}), allowed_);
+                  fmt::format(what, face, id_, patch_.tag, distance, At{where}), allowed);
   }
 
   const Subject& subject_;
   Index id_;
   const Plc::Patch& patch_;
   std::vector<Index> faces_;
-  double allowed_;
+  double allowed_, least_allowed_;
   CheckReport& report_;
   Findings& findings_;
 };

@@ -1,6 +1,6 @@
 // Region volumes of the mesh against those that the complex's triangles enclose.
 #include <cmath>
-#include <optional>
+#include <vector>
 
 #include "check/subject.h"
 
@@ -8,28 +8,21 @@ namespace collarmesh::checks {
 
 namespace {
 
-struct Enclosed {
-  std::optional<Point> origin;  ///< a corner of the region: from afar a tiny one's volume would cancel
-  long double six_volume = 0;
-  double allowed = 0;  ///< how much the volume may differ because the surface may
-};
-
-std::vector<Enclosed> enclosed_by_patches(const Subject& subject) {
+/// How much the volumes may differ because the surface may.
+std::vector<double> allowed_by_distance(const Subject& subject) {
   const Plc& plc = subject.plc;
-  std::vector<Enclosed> regions(plc.regions.size());
-  for (const Plc::Triangle& t : plc.triangles) {
+  std::vector<double> allowed(plc.regions.size(), 0);
+  for (Index i = 0; i < plc.triangles.size(); ++i) {
+    const Plc::Triangle& t = plc.triangles[i];
     const Plc::Patch& patch = plc.patches[t.patch];
     if (patch.regions[0] == patch.regions[1]) continue;
-    const Point &a = subject.plc_corner(t, 0), &b = subject.plc_corner(t, 1), &c = subject.plc_corner(t, 2);
-    for (unsigned side = 0; side < 2; ++side) {
-      Enclosed& region = regions[patch.regions[side]];
-      if (!region.origin) region.origin = a;
-      const double cone = six_volume(*region.origin, a, b, c);
-      region.six_volume += side == 0 ? cone : -cone;
-      region.allowed += subject.patch_allowance[t.patch] * area(a, b, c);
-    }
+    const double allowance =
+        patch.planar ? subject.patch_allowance[t.patch] : subject.tolerance.at_triangle(i) + subject.rounding;
+    for (const Index region : patch.regions)
+      allowed[region] +=
+          allowance * area(subject.plc_corner(t, 0), subject.plc_corner(t, 1), subject.plc_corner(t, 2));
   }
-  return regions;
+  return allowed;
 }
 
 }  // namespace
@@ -38,10 +31,11 @@ std::vector<Enclosed> enclosed_by_patches(const Subject& subject) {
 // first order.
 void check_region_volumes(const Subject& subject, const CheckReport& report, Findings& findings) {
   const Plc& plc = subject.plc;
-  const auto regions = enclosed_by_patches(subject);
+  const std::vector<double> enclosed = collarmesh::measures_of(plc).volumes,
+                            by_distance = allowed_by_distance(subject);
   for (Index r = 1; r < plc.regions.size(); ++r) {
-    const double expected = static_cast<double>(regions[r].six_volume / 6), found = report.region_volumes[r];
-    const double allowed = 1e-12 * std::fabs(expected) + regions[r].allowed;
+    const double expected = enclosed[r], found = report.region_volumes[r];
+    const double allowed = 1e-12 * std::fabs(expected) + by_distance[r];
     if (std::fabs(found - expected) <= allowed) continue;
     findings.add(
         guarantee::region_volume, plc.bounds.centre(), {r},

@@ -28,9 +28,11 @@ struct FeatureMatch {
 struct Subject {
   const TetMesh& mesh;
   const Plc& plc;
-  CheckOptions options;  ///< with the distance filled in
-  double rounding = 0;   ///< absolute: how far rounding may move a point off a straight line or a plane
-  std::vector<double> curve_allowance, patch_allowance;  ///< absolute: how far the mesh may be from each
+  CheckOptions options;
+  SurfaceTolerance tolerance;
+  double rounding = 0;  ///< absolute: how far rounding may move a point off a straight line or a plane
+  /// Absolute: how far the mesh may be from each; from smooth patches, at most (see `tolerance`).
+  std::vector<double> curve_allowance, patch_allowance;
   std::shared_ptr<const RegionLocator> regions;
   FeatureMatch match;
   std::vector<std::uint8_t> collar;  ///< by tet, as TetMesh::tet_collar: what the complex excuses
@@ -125,6 +127,11 @@ void check_watertight(const Subject& subject, Findings& findings);
 
 /// Precondition: report.region_volumes is filled in.
 void check_region_volumes(const Subject& subject, const CheckReport& report, Findings& findings);
+
+/// Volumes, areas and lengths of the mesh and of the input. The volumes differ by 5% at most, with curved
+/// elements by 1%, unless a distance was asked for.
+/// Preconditions: subject.match and report.region_volumes are filled in.
+void check_shape_kept(const Subject& subject, CheckReport& report, Findings& findings);
 
 /// How far the mesh may be from straight curves and planar patches: their own deviation from
 /// straight or planar (a few times, vertices are extrapolated from others) but not more than the

@@ -110,8 +110,7 @@ void check_tets(const Subject& subject, CheckReport& report, Findings& findings)
     const std::size_t count = std::min(in_a_batch, mesh.tets.size() - first);
     parallel_for_ranges(count, measured_at_once, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        const Corners p = corners(first + i);
-        qualities[i] = measure(p.a, p.b, p.c, p.d);
+        qualities[i] = measure_tet(mesh, static_cast<Index>(first + i));
       }
     });
     for (std::size_t i = 0; i < count; ++i) see(static_cast<Index>(first + i), qualities[i]);

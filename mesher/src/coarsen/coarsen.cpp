@@ -440,12 +440,10 @@ CoarsenReport coarsen(improvement::Workpiece& workpiece, const MeshOptions& made
 
 CoarsenReport coarsen(TetMesh& mesh, const Plc& plc, const MeshOptions& made_with,
                       const Execution& execution) {
-  const double distance = made_with.bounds.distance > 0
-                              ? made_with.bounds.distance
-                              : default_distance(made_with.size, plc.bounds.diagonal());
+  const SurfaceTolerance tolerance = tolerance_of(plc, made_with.bounds, made_with.size);
   CoarsenReport report;
   ThreadLimit(made_with.threads).run([&] {
-    improvement::Workpiece workpiece(mesh, plc, distance, made_with.edges_per_hole);
+    improvement::Workpiece workpiece(mesh, plc, tolerance, made_with.edges_per_hole);
     report = coarsen(workpiece, made_with, execution);
     workpiece.complex.store();
     improvement::mark_thin_tets(mesh, made_with.bounds.radius_edge);

@@ -1,11 +1,7 @@
 #pragma once
 
-#include <memory>
-#include <vector>
-
 #include "collarmesh/plc.h"
-#include "collarmesh/tet_mesh.h"
-#include "location/triangle_hierarchy.h"
+#include "tolerance/facing.h"
 
 namespace collarmesh::coarsening {
 
@@ -14,18 +10,15 @@ namespace collarmesh::coarsening {
 class GapWidths {
  public:
   /// Kept by reference.
-  explicit GapWidths(const Plc& plc);
+  explicit GapWidths(const Plc& plc) : plc_(plc), facing_(plc) {}
 
   /// From a point on a patch; `widest` when there is nothing nearer.
   double from(const Point& p, Index patch, double widest);
 
  private:
-  double towards(Index triangle, const Point& x, const Vector& normal, const Vector& way, Index patch,
-                 double widest) const;
-
   const Plc& plc_;
-  TriangleHierarchy triangles_;
-  std::vector<TriangleHierarchy::Crossing> crossings_;
+  const FacingSurfaces facing_;
+  FacingSurfaces::Crossings crossings_;
 };
 
 }  // namespace collarmesh::coarsening

@@ -54,7 +54,7 @@ CollarPlacement::CollarPlacement(const Plc& plc, std::span<const Point> points, 
       features_(*system.features_),
       gap_(gap),
       sheets_(plc, points, system.crease_vertices_, system.crease_curve_),
-      flatness_(plc, features_, paths_, sheets_, options.distance),
+      flatness_(plc, features_, paths_, sheets_, options.tolerance),
       corners_(plc, features_, paths_, sheets_, system.corners_),
       random_state_(options.seed ^ 0x5851f42d4c957f2dULL) {}
 

@@ -11,6 +11,7 @@
 #include "collar/feature_hierarchy.h"
 #include "collarmesh/plc.h"
 #include "collarmesh/plc_builder.h"
+#include "collarmesh/surface_tolerance.h"
 #include "common/large_pages.h"
 #include "location/centred_box.h"
 
@@ -43,8 +44,8 @@ struct CornerPoint {
 struct CollarOptions {
   /// Upper bound on the radius of a ball at a place on this vertex or curve.
   std::function<double(const Feature&, const Point&)> size;
-  /// Absolute: how far what replaces smooth curves and patches inside a ball may be from them.
-  double distance = 0;
+  /// How far what replaces smooth curves and patches inside a ball may be from them.
+  SurfaceTolerance tolerance{0};
   std::uint64_t seed = 0;
   /// Asked now and then, with how many balls there are and will be at least; when it says yes the system
   /// stays incomplete. May be empty.

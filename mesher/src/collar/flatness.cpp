@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace collarmesh {
 
@@ -28,8 +29,8 @@ constexpr int most_steps = 60;
 }  // namespace
 
 Flatness::Flatness(const Plc& plc, const FeatureHierarchy& features, const CurvePaths& paths,
-                   const CreaseSheets& sheets, double distance)
-    : plc_(plc), features_(features), paths_(paths), sheets_(sheets), distance_(distance) {}
+                   const CreaseSheets& sheets, SurfaceTolerance tolerance)
+    : plc_(plc), features_(features), paths_(paths), sheets_(sheets), tolerance_(std::move(tolerance)) {}
 
 bool Flatness::matters_on(Index curve) const {
   const Plc::Curve& c = plc_.curves[curve];
@@ -39,10 +40,10 @@ bool Flatness::matters_on(Index curve) const {
 
 // Of a smooth feature the deviation grows with the square of the radius, at a bend linearly.
 template <class Deviation>
-double Flatness::shrunk(double radius, const Deviation& deviation) const {
+double Flatness::shrunk(double radius, double tolerance, const Deviation& deviation) {
   for (int step = 0; step < most_steps; ++step) {
     const double off = deviation(radius);
-    const double allowed = std::min(deviation_per_distance * distance_, deviation_per_radius * radius);
+    const double allowed = std::min(deviation_per_distance * tolerance, deviation_per_radius * radius);
     if (off <= allowed) break;
     radius *= std::clamp(std::sqrt(allowed / off), 0.25, 0.97);
   }
@@ -175,17 +176,18 @@ double Flatness::other_sheets(Index patch, const Point& centre, double reach,
 double Flatness::radius_on_curve(Index curve, double parameter, double radius) const {
   const Plc::Curve& c = plc_.curves[curve];
   const double length = paths_.length(curve);
+  const std::array<Index, 2> ends = paths_.segment_ends(curve, paths_.segment(curve, parameter));
+  const double tolerance = tolerance_.at_segment(ends[0], ends[1]);
   const auto from = [&](double s) { return c.closed ? s : std::clamp(s, 0.0, length); };
   if (!c.straight) {
     radius = std::min(radius, radius_per_length * length);
-    radius = shrunk(radius, [&](double r) {
+    radius = shrunk(radius, tolerance, [&](double r) {
       return std::max(off_chord(curve, parameter, from(parameter + r)),
                       off_chord(curve, parameter, from(parameter - r)));
     });
     radius = other_arcs(curve, parameter, pieces_per_radius * radius) / pieces_per_radius;
   }
   const Point centre = paths_.point(curve, parameter);
-  const std::array<Index, 2> ends = paths_.segment_ends(curve, paths_.segment(curve, parameter));
   const Vector chord =
       paths_.point(curve, from(parameter + radius)) - paths_.point(curve, from(parameter - radius));
   const Vector along = chord / norm(chord);
@@ -193,7 +195,7 @@ double Flatness::radius_on_curve(Index curve, double parameter, double radius) c
     if (plc_.patches[sheet.patch].planar) continue;
     for (const double lean : {0.0, 1.0, -1.0}) {
       const Vector direction = sheet.direction + lean * along;
-      radius = shrunk(radius, [&](double r) {
+      radius = shrunk(radius, tolerance, [&](double r) {
         return off_patch({sheet.patch, direction / norm(direction)}, centre, r);
       });
     }
@@ -205,6 +207,8 @@ double Flatness::radius_on_curve(Index curve, double parameter, double radius) c
 }
 
 double Flatness::radius_at_vertex(Index vertex, double radius) const {
+  const Index point = plc_.vertices[vertex].point;
+  const double tolerance = tolerance_.at_point(point);
   for (const Index c : plc_.vertices[vertex].curves) {
     const Plc::Curve& curve = plc_.curves[c];
     if (curve.straight) continue;
@@ -212,8 +216,9 @@ double Flatness::radius_at_vertex(Index vertex, double radius) const {
     radius = std::min(radius, radius_per_length * length);
     for (const bool at_start : {true, false}) {
       if (curve.ends[at_start ? 0 : 1] != vertex) continue;
-      radius = shrunk(
-          radius, [&](double r) { return at_start ? off_chord(c, 0, r) : off_chord(c, length, length - r); });
+      radius = shrunk(radius, tolerance, [&](double r) {
+        return at_start ? off_chord(c, 0, r) : off_chord(c, length, length - r);
+      });
       // A loop comes back, and that is right.
       if (curve.ends[0] != curve.ends[1])
         radius = other_arcs(c, at_start ? 0 : length, pieces_per_radius * radius) / pieces_per_radius;
@@ -221,12 +226,11 @@ double Flatness::radius_at_vertex(Index vertex, double radius) const {
   }
   const Point centre = features_.nearest_point({0, vertex}, {});
   for (const Sheet& sheet : sheets_.at_vertex(vertex))
-    radius = shrunk(radius, [&](double r) { return off_patch(sheet, centre, r); });
-  const Index point = plc_.vertices[vertex].point;
+    radius = shrunk(radius, tolerance, [&](double r) { return off_patch(sheet, centre, r); });
   for (const Index patch : plc_.vertices[vertex].patches) {
     if (plc_.patches[patch].planar) continue;
     radius = other_sheets(patch, centre, pieces_per_radius * radius, {point, point}) / pieces_per_radius;
-    radius = shrunk(radius, [&](double r) { return off_arc(patch, centre, r); });
+    radius = shrunk(radius, tolerance, [&](double r) { return off_arc(patch, centre, r); });
   }
   return radius;
 }

@@ -2,6 +2,7 @@
 
 #include "collar/crease_sheets.h"
 #include "collar/feature_hierarchy.h"
+#include "collarmesh/surface_tolerance.h"
 #include "location/curve_paths.h"
 
 namespace collarmesh {
@@ -12,9 +13,9 @@ namespace collarmesh {
 /// patch in one piece, with a third of the distance to whatever else of them there is.
 class Flatness {
  public:
-  /// All are kept by reference. `distance` is absolute.
+  /// All are kept by reference.
   Flatness(const Plc& plc, const FeatureHierarchy& features, const CurvePaths& paths,
-           const CreaseSheets& sheets, double distance);
+           const CreaseSheets& sheets, SurfaceTolerance tolerance);
 
   /// Does anything curved pass through the curve?
   bool matters_on(Index curve) const;
@@ -24,7 +25,7 @@ class Flatness {
 
  private:
   template <class Deviation>
-  double shrunk(double radius, const Deviation& deviation) const;
+  static double shrunk(double radius, double tolerance, const Deviation& deviation);
   double off_chord(Index curve, double from, double to) const;
   double off_patch(const Sheet& sheet, const Point& centre, double radius) const;
   double off_spoke(Index patch, const Point& centre, const Point& end) const;
@@ -37,7 +38,7 @@ class Flatness {
   const FeatureHierarchy& features_;
   const CurvePaths& paths_;
   const CreaseSheets& sheets_;
-  double distance_;
+  SurfaceTolerance tolerance_;
 };
 
 }  // namespace collarmesh

@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/round_curves.h"
 #include "location/triangle_hierarchy.h"
 
 namespace collarmesh::improvement {
 
-CurveSlides::CurveSlides(const Plc& plc, const TetMesh& mesh, double distance, double edges_per_hole)
-    : plc_(plc), mesh_(mesh), squared_distance_(distance * distance), paths_(plc, plc.points) {
+CurveSlides::CurveSlides(const Plc& plc, const TetMesh& mesh, SurfaceTolerance tolerance,
+                         double edges_per_hole)
+    : plc_(plc), mesh_(mesh), tolerance_(std::move(tolerance)), paths_(plc, plc.points) {
   spare_edges_.reserve(plc.curves.size());
   for (const Plc::Curve& curve : plc.curves)
     spare_edges_.push_back(-static_cast<std::ptrdiff_t>(least_edges(plc, curve, edges_per_hole)));
@@ -129,18 +131,25 @@ bool CurveSlides::edge_fits(Index curve, double from, double way, const Point& a
   std::vector<Point> part{a};
   std::size_t segment = paths_.segment(curve, from);
   const double start = plc_.curves[curve].closed ? from - length * std::floor(from / length) : from;
+  const auto tolerance_at = [&](std::size_t i) {
+    const auto [p, q] = paths_.segment_ends(curve, i);
+    return tolerance_.at_segment(p, q);
+  };
+  double tolerance = tolerance_at(segment);
   for (double travelled = lengths[segment + 1] - start; travelled < way;) {
     part.push_back(plc_.points[paths_.segment_ends(curve, segment)[1]]);
     segment = (segment + 1) % count;
+    tolerance = std::min(tolerance, tolerance_at(segment));
     travelled += lengths[segment + 1] - lengths[segment];
   }
   part.push_back(b);
+  const double squared_bound = tolerance * tolerance;
   for (const Point& p : part)
-    if (squared_distance_to_segment(p, a, b) > squared_distance_) return false;
+    if (squared_distance_to_segment(p, a, b) > squared_bound) return false;
   for (const double t : {0.25, 0.5, 0.75}) {
     const Point p = a + t * (b - a);
     std::size_t i = 1;
-    while (i < part.size() && squared_distance_to_segment(p, part[i - 1], part[i]) > squared_distance_) ++i;
+    while (i < part.size() && squared_distance_to_segment(p, part[i - 1], part[i]) > squared_bound) ++i;
     if (i == part.size()) return false;
   }
   return true;

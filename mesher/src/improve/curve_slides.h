@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "collarmesh/plc.h"
+#include "collarmesh/surface_tolerance.h"
 #include "collarmesh/tet_mesh.h"
 #include "improve/undo_log.h"
 #include "location/curve_paths.h"
@@ -12,12 +13,12 @@
 namespace collarmesh::improvement {
 
 /// The curves of a complex and the edges that stand for them: where else on its curve a vertex may be.
-/// A curve and its edges are within the distance tolerance of each other: the polyline's corners from
+/// A curve and its edges are within the tolerance of each other: the polyline's corners from
 /// their edges, points of the edges from their parts of the polyline.
 class CurveSlides {
  public:
-  /// Both are kept by reference. `distance` is absolute. Several threads may ask at once.
-  CurveSlides(const Plc& plc, const TetMesh& mesh, double distance, double edges_per_hole = 0);
+  /// The complex and the mesh are kept by reference. Several threads may ask at once.
+  CurveSlides(const Plc& plc, const TetMesh& mesh, SurfaceTolerance tolerance, double edges_per_hole = 0);
 
   /// Can this vertex, on a curve, be moved at all?
   bool movable(Index vertex) const;
@@ -59,7 +60,7 @@ class CurveSlides {
 
   const Plc& plc_;
   const TetMesh& mesh_;
-  double squared_distance_;
+  SurfaceTolerance tolerance_;
   CurvePaths paths_;
   mutable std::once_flag prepared_;
   mutable std::vector<Place> places_;        // of every vertex there was then; made when first asked for

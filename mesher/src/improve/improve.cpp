@@ -250,11 +250,10 @@ ImproveReport improve(improvement::Workpiece& workpiece, const ImproveOptions& o
 
 ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& options,
                       const Execution& execution) {
-  const double distance =
-      options.bounds.distance > 0 ? options.bounds.distance : default_distance(0, plc.bounds.diagonal());
+  const SurfaceTolerance tolerance = tolerance_of_any_size(plc, options.bounds);
   ImproveReport report;
   ThreadLimit(options.threads).run([&] {
-    improvement::Workpiece workpiece(mesh, plc, distance, options.edges_per_hole);
+    improvement::Workpiece workpiece(mesh, plc, tolerance, options.edges_per_hole);
     report = improve(workpiece, options, execution);
     workpiece.complex.store();
     if (options.bounds.thin_angle > 0) improvement::mark_thin_tets(mesh, options.bounds.radius_edge);

@@ -4,6 +4,8 @@
 #include <cassert>
 #include <utility>
 
+#include "tolerance/triangle_within_tolerance.h"
+
 namespace collarmesh::improvement {
 
 namespace {
@@ -69,8 +71,8 @@ void SmoothSurfaces::share_out(Index patch, Surface& surface) const {
   if (faces.empty()) return;
   const TriangleHierarchy hierarchy(mesh_.points, std::move(corners));
   Index nearest = none;  // the next point is often near the same face
-  const auto add = [&](const Point& p) {
-    const Index hint = std::exchange(nearest, hierarchy.triangle_within(p, squared_distance_, nearest));
+  const auto add = [&](const Point& p, double tolerance) {
+    const Index hint = std::exchange(nearest, hierarchy.triangle_within(p, tolerance * tolerance, nearest));
     if (nearest == none) return;  // nothing to keep
     const Triangle found = hierarchy.corners(nearest);
     if (nearest != hint || !has_foot(p, found))
@@ -78,6 +80,7 @@ void SmoothSurfaces::share_out(Index patch, Surface& surface) const {
     surface.next_sample.push_back(first_sample_[faces[nearest]]);
     first_sample_[faces[nearest]] = static_cast<Index>(surface.samples.size());
     surface.samples.push_back(p);
+    if (tolerance_.varies()) surface.squared_tolerances.push_back(tolerance * tolerance);
   };
   const Plc::Patch& p = plc_.patches[patch];
   const std::size_t most = patch_points_[patch].size() + p.triangle_count;
@@ -85,9 +88,9 @@ void SmoothSurfaces::share_out(Index patch, Surface& surface) const {
   surface.next_sample.reserve(most);
   for (Index t = p.first_triangle; t < p.first_triangle + p.triangle_count; ++t) {
     const auto& v = plc_.triangles[t].points;
-    add((plc_.points[v[0]] + plc_.points[v[1]] + plc_.points[v[2]]) / 3);
+    add((plc_.points[v[0]] + plc_.points[v[1]] + plc_.points[v[2]]) / 3, tolerance_.at_triangle(t));
   }
-  for (const Index point : patch_points_[patch]) add(plc_.points[point]);
+  for (const Index point : patch_points_[patch]) add(plc_.points[point], tolerance_.at_point(point));
 }
 
 SmoothSurfaces::Nearest SmoothSurfaces::nearest(Index patch, const Point& p, double near) const {
@@ -101,7 +104,11 @@ SmoothSurfaces::Nearest SmoothSurfaces::nearest(Index patch, const Point& p, dou
 
 // Some triangle of the patch that p is near to; the hint, when it is.
 Index SmoothSurfaces::triangle_near(Index patch, const Point& p, Index hint) const {
-  return triangles(patch).triangle_within(p, squared_distance_, hint);
+  const Index first = plc_.patches[patch].first_triangle;
+  return triangle_within_tolerance(
+      triangles(patch), p, tolerance_.least_on_patch(patch), tolerance_.largest_on_patch(patch),
+      [&](Index triangle) { return tolerance_.at_triangle(first + triangle); }, hint,
+      [](Index) { return true; });
 }
 
 // At the ends, thirds and the middle. The distance to one triangle is convex: when both ends are near it, all
@@ -182,16 +189,18 @@ bool SmoothSurfaces::fit(std::span<const Index> old, std::span<const Face> creat
     if (!smooth(face)) continue;
     const Index patch = mesh_.face_patch[face];
     const Surface& of = surface(patch);
-    const auto has_face = [&](const Point& sample) {
+    const auto has_face = [&](Index s) {
+      const Point& sample = of.samples[s];
+      const double squared_bound = squared_tolerance(of, s);
       for (std::size_t tried = 0; tried < created.size(); ++tried) {
         const auto& [t, patch_of_face] = created[last];
-        if (patch_of_face == patch && is_within(squared_distance_, sample, t[0], t[1], t[2])) return true;
+        if (patch_of_face == patch && is_within(squared_bound, sample, t[0], t[1], t[2])) return true;
         last = last + 1 < created.size() ? last + 1 : 0;
       }
       return false;
     };
     for (Index s = first_sample_[face]; s != none; s = of.next_sample[s])
-      if (!has_face(of.samples[s])) return false;
+      if (!has_face(s)) return false;
   }
   for (std::size_t i = 0; i < created.size(); ++i)
     if (!is_planar(created[i]) && !edges_near(old, created, i, near[i])) return false;
@@ -242,7 +251,7 @@ void SmoothSurfaces::give_samples(std::span<const Index> faces) {
       const Index face = faces[last];
       if (mesh_.face_patch[face] != patch) continue;
       const Triangle t = corners(face);
-      if (lies_over(sample, t, squared_distance_)) {
+      if (lies_over(sample, t, squared_tolerance(of, s))) {
         nearest = face;
         break;
       }

@@ -5,9 +5,11 @@
 #include <memory>
 #include <mutex>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "collarmesh/plc.h"
+#include "collarmesh/surface_tolerance.h"
 #include "collarmesh/tet_mesh.h"
 #include "common/patch_points.h"
 #include "improve/undo_log.h"
@@ -16,19 +18,19 @@
 namespace collarmesh::improvement {
 
 /// The smooth patches of a complex and the faces that stand for them: whether other faces would, too.
-/// A patch and its faces are within the distance tolerance of each other, in samples: centres and edges of
+/// A patch and its faces are within the tolerance of each other, in samples: centres and edges of
 /// the faces are near the patch; points of the patch belong to faces that they are near to.
 /// Several threads may ask at once.
 class SmoothSurfaces {
  public:
   using Triangle = std::array<Point, 3>;
 
-  /// All are kept by reference. `distance` is absolute.
-  SmoothSurfaces(const Plc& plc, const TetMesh& mesh, double distance)
+  /// The complex and the mesh are kept by reference.
+  SmoothSurfaces(const Plc& plc, const TetMesh& mesh, SurfaceTolerance tolerance)
       : plc_(plc),
         mesh_(mesh),
         patch_points_(plc),
-        squared_distance_(distance * distance),
+        tolerance_(std::move(tolerance)),
         surfaces_(plc.patches.size()),
         first_sample_(mesh.faces.size(), none) {}
 
@@ -68,12 +70,17 @@ class SmoothSurfaces {
     std::once_flag once;
     std::unique_ptr<TriangleHierarchy> triangles;
     std::vector<Point> samples;
-    std::vector<Index> next_sample;  // of the same face
+    std::vector<Index> next_sample;          // of the same face
+    std::vector<double> squared_tolerances;  // of the samples, where the tolerance varies
   };
 
   const TriangleHierarchy& triangles(Index patch) const { return *surface(patch).triangles; }
   Surface& surface(Index patch) const;
   void share_out(Index patch, Surface& surface) const;
+  double squared_tolerance(const Surface& surface, Index sample) const {
+    return tolerance_.varies() ? surface.squared_tolerances[sample]
+                               : tolerance_.largest() * tolerance_.largest();
+  }
   bool smooth(Index face) const;
   Index triangle_near(Index patch, const Point& p, Index hint = none) const;
   bool edge_near(Index patch, const Point& a, const Point& b, Index hint) const;
@@ -85,7 +92,7 @@ class SmoothSurfaces {
   const Plc& plc_;
   const TetMesh& mesh_;
   PatchPoints patch_points_;
-  double squared_distance_;
+  SurfaceTolerance tolerance_;
   mutable std::vector<Surface> surfaces_;
   mutable std::vector<Index> first_sample_;   // of every face, among those of its patch
   std::vector<std::array<Index, 2>> moving_;  // patch and sample

@@ -29,13 +29,13 @@ struct Change {
 /// While nothing is applied several threads may read it.
 class Workpiece {
  public:
-  /// Both are kept by reference. `distance` is absolute. Curves that turn by half a circle or more keep
+  /// The mesh and the complex are kept by reference. Curves that turn by half a circle or more keep
   /// `edges_per_hole` edges to a full circle. `neighbours` as in TetComplex.
-  Workpiece(TetMesh& mesh, const Plc& meant, double distance, double edges_per_hole = 0,
+  Workpiece(TetMesh& mesh, const Plc& meant, const SurfaceTolerance& tolerance, double edges_per_hole = 0,
             const KnownNeighbours& neighbours = {})
       : complex(mesh, neighbours),
-        surfaces(meant, mesh, distance),
-        curves(meant, mesh, distance, edges_per_hole),
+        surfaces(meant, mesh, tolerance),
+        curves(meant, mesh, tolerance, edges_per_hole),
         plc(meant) {}
 
   double quality(Index tet) const;

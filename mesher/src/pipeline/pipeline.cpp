@@ -268,12 +268,23 @@ class Pipeline {
     all.repair = std::move(built.report);
     if (all.repair.cancelled) stop();
     all.plc = std::move(built.plc);
+    tolerance_.reset();
+  }
+
+  const SurfaceTolerance& tolerance(const Plc& plc) {
+    if (!tolerance_)
+      ThreadLimit(given_.mesh.threads).run([&] {
+        tolerance_ = tolerance_of(plc, given_.mesh.bounds, given_.mesh.size, static_cast<int>(given_.order));
+      });
+    return *tolerance_;
   }
 
   /// Refinements end beyond far more vertices than the sizes ask for, while there are other repairs to try.
   void bound_vertices(const Plc& plc) {
     if (given_.repair.mode == RepairMode::off || given_.repair.wrap_at_once) return;
-    const std::size_t most = most_vertices_expected(plc, given_);
+    PipelineOptions options = given_;
+    options.mesh.bounds.tolerance = tolerance(plc);
+    const std::size_t most = most_vertices_expected(plc, options);
     most_vertices_ = given_.mesh.max_vertices > 0 && given_.mesh.max_vertices <= most ? 0 : most;
   }
 
@@ -299,6 +310,7 @@ class Pipeline {
     if (source_ != nullptr) source_->adapt(plc, options_);
     if (most_vertices_ > 0) options_.mesh.max_vertices = most_vertices_;
     require_known_tags(options_.mesh, plc);
+    options_.mesh.bounds.tolerance = tolerance(plc);
     refined_with_ = options_of_refinement();
     refined_with_.seed = seed;
     refine();
@@ -313,7 +325,6 @@ class Pipeline {
   /// The bounds of the finished mesh.
   Bounds bounds() const {
     Bounds bounds = options_.mesh.bounds;
-    bounds.distance = distance_of(options_, plc_->bounds.diagonal());
     if (!made_.coarsening) bounds.thin_angle = 0;
     return bounds;
   }
@@ -321,10 +332,9 @@ class Pipeline {
   /// Keeps the mesh within tighter bounds where its vertices move onto exact geometry afterwards.
   MeshOptions options_of_refinement() const {
     MeshOptions options = options_.mesh;
-    options.bounds.distance = distance_of(options_, plc_->bounds.diagonal());
     options.time_limit = 0;  // one limit for all stages
     if (!exact()) return options;
-    options.bounds.distance *= distance_left;
+    options.bounds.tolerance = tolerance_of(*plc_, options.bounds, 0).scaled(distance_left);
     options.bounds.radius_edge = std::max(1.0, ratio_left * options.bounds.radius_edge);
     options.bounds.reserve = angle_reserve;
     return options;
@@ -349,7 +359,7 @@ class Pipeline {
       begin("improve", 0.7, 0.8);
     TetMesh& mesh = made_.result.mesh;
     ThreadLimit(options_.mesh.threads).run([&] {
-      improvement::Workpiece workpiece(mesh, *plc_, refined_with_.bounds.distance,
+      improvement::Workpiece workpiece(mesh, *plc_, *refined_with_.bounds.tolerance,
                                        options_.coarsen ? refined_with_.edges_per_hole : 0, neighbours_);
       neighbours_ = KnownNeighbours();
       if (options_.coarsen) coarsen_elements(workpiece);
@@ -399,8 +409,9 @@ class Pipeline {
 
   void certify() {
     begin("check", 0.86, given_.partitions > 0 ? 0.96 : 1);
-    made_.check =
-        check(made_.result.mesh, *plc_, {.bounds = bounds(), .threads = options_.mesh.threads}, inner_);
+    made_.check = check(
+        made_.result.mesh, *plc_,
+        {.bounds = bounds(), .exact = options_.exact_measures, .threads = options_.mesh.threads}, inner_);
     stop_if_asked();
   }
 
@@ -460,6 +471,7 @@ class Pipeline {
   MeshOptions refined_with_;
   KnownNeighbours neighbours_;  // of the mesh as it was refined
   const Plc* plc_ = nullptr;
+  std::optional<SurfaceTolerance> tolerance_;  // of the complex at hand
   PipelineResult made_;
   std::string_view stage_;
   double from_ = 0, to_ = 0, fraction_ = 0;  // of the stage in the whole

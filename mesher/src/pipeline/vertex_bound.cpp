@@ -5,6 +5,7 @@
 
 #include "collarmesh/options.h"
 #include "predict/vertex_counts.h"
+#include "tolerance/curvature.h"
 
 namespace collarmesh {
 
@@ -14,13 +15,22 @@ namespace {
 constexpr double always = 20000, by_feature = 160, by_square = 64, by_cube = 160;
 constexpr double sizes_per_diagonal = 20;  // of the default size
 
-double area_of(const Plc& plc, const Plc::Patch& patch) {
-  double area = 0;
-  for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
+/// The patch's area in squares of the size or, where this is shorter, of a chord that keeps the tolerance.
+double squares_on(const Plc& plc, const Plc::Patch& patch, double size, const SurfaceTolerance& tolerance) {
+  const std::vector<Curvature> curvature =
+      patch.planar ? std::vector<Curvature>(patch.triangle_count) : curvatures(plc, patch);
+  constexpr double most_per_square = 1. / 16;  // folds turn very sharply
+  double squares = 0;
+  for (Index i = 0; i < patch.triangle_count; ++i) {
+    const Index t = patch.first_triangle + i;
     const auto& [a, b, c] = plc.triangles[t].points;
-    area += 0.5 * norm(cross(plc.points[b] - plc.points[a], plc.points[c] - plc.points[a]));
+    const double area = 0.5 * norm(cross(plc.points[b] - plc.points[a], plc.points[c] - plc.points[a]));
+    const double squared_chord = 8 * tolerance.at_triangle(t) / curvature[i].largest;
+    squares += area / (curvature[i].largest > 0
+                           ? std::clamp(squared_chord, most_per_square * size * size, size * size)
+                           : size * size);
   }
-  return area;
+  return squares;
 }
 
 // Are there no sizes but a target edge length everywhere and in regions?
@@ -43,6 +53,7 @@ double expected_by_features(const Plc& plc, const MeshOptions& options) {
                                 : region.size > 0                  ? region.size
                                                                    : everywhere);
   };
+  const SurfaceTolerance tolerance = tolerance_of(plc, options.bounds, options.size);
   double vertices =
       by_feature * static_cast<double>(plc.vertices.size() + plc.curves.size() + plc.patches.size());
   for (Index r = 1; r < plc.regions.size(); ++r)
@@ -50,7 +61,7 @@ double expected_by_features(const Plc& plc, const MeshOptions& options) {
   for (const Plc::Patch& patch : plc.patches) {
     const double size =
         std::min(size_of(plc.regions[patch.regions[0]]), size_of(plc.regions[patch.regions[1]]));
-    vertices += by_square * area_of(plc, patch) / (size * size);
+    vertices += by_square * squares_on(plc, patch, size, tolerance);
   }
   return vertices;
 }
@@ -59,7 +70,10 @@ double expected_by_features(const Plc& plc, const MeshOptions& options) {
 // is smaller.
 double by_bounds(const Plc& plc, const MeshOptions& options) {
   constexpr double power = 4, by_vertex_ratio = 4;
-  const double distance = default_distance(options.size, plc.bounds.diagonal()) / options.bounds.distance;
+  const double distance =
+      options.bounds.distance > 0
+          ? default_distance(options.size, plc.bounds.diagonal()) / options.bounds.distance
+          : 1;
   const double ratio = std::pow(Bounds{}.radius_edge / options.bounds.radius_edge, power);
   return std::max(1.0, distance) * std::max(1.0, ratio) * (options.vertex_ratio > 0 ? by_vertex_ratio : 1);
 }
@@ -76,7 +90,6 @@ double smallest_size(const MeshOptions& options, double diagonal) {
 std::size_t most_vertices_expected(const Plc& plc, const PipelineOptions& options) {
   constexpr double tets_per_vertex = 6, largest = 1e15;
   MeshOptions mesh = options.mesh;
-  mesh.bounds.distance = distance_of(options, plc.bounds.diagonal());
   double vertices = expected_by_features(plc, mesh);
   if (!plain_sizes(options) && plc.regions.size() > 1)
     vertices += by_cube * prediction::count_tets(prediction::Shape(plc), mesh) / tets_per_vertex;

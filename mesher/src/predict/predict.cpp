@@ -50,10 +50,10 @@ std::vector<Prediction> predict(const Plc& plc, const PipelineOptions& options,
   for (const double given : sizes) {
     PipelineOptions of_size = with_size(options, given);
     MeshOptions& mesh = of_size.mesh;
-    mesh.bounds.distance = distance_of(of_size, diagonal);
     Prediction& made = predictions.emplace_back();
     made.size = mesh.size > 0 ? mesh.size : diagonal / sizes_per_diagonal;
     if (is_empty) continue;
+    mesh.bounds.tolerance = tolerance_of(plc, mesh.bounds, mesh.size, static_cast<int>(options.order));
     made.tets = std::max(1.0, prediction::count_tets(shape, mesh));
     const double refined = prediction::count_tets(shape, mesh, prediction::model_of_refinement());
     made.seconds = seconds_for(refined, options.order);

@@ -9,7 +9,7 @@
 #include "common/distance_tree.h"
 #include "location/triangle_hierarchy.h"
 #include "predict/solid_angles.h"
-#include "refine/curvature.h"
+#include "tolerance/curvature.h"
 
 namespace collarmesh::prediction {
 

@@ -28,6 +28,7 @@ class Counter {
       : shape_(shape),
         plc_(shape.plc()),
         options_(options),
+        tolerance_(tolerance_of(plc_, options.bounds, options.size)),
         model_(model),
         sizing_(plc_, options, Frame()),
         pieces_(pieces_of_curves()),
@@ -71,20 +72,22 @@ class Counter {
   }
 
   /// The longest chord of a circle of this radius that is near enough to it.
-  double chord(double radius) const {
-    return std::sqrt(8 * radius * model_.chord * options_.bounds.distance);
+  double chord(double radius, double tolerance) const {
+    return std::sqrt(8 * radius * model_.chord * tolerance);
   }
 
   double size_of_segment(Index c, std::size_t i) const {
     const auto [a, b] = shape_.segment(c, i);
+    const std::vector<Index>& points = plc_.curves[c].points;
+    const double tolerance = tolerance_.at_segment(points[i], points[(i + 1) % points.size()]);
     return std::min(sizing_.curve_size(c, i, i, 0.5 * (a + b)),
-                    chord(shape_.radius_of_segment(c, i)) / model_.edge);
+                    chord(shape_.radius_of_segment(c, i), tolerance) / model_.edge);
   }
 
   /// In the direction in which the patch curves most.
   double size_across(Index triangle, const Point& p) const {
     return std::min(sizing_.triangle_size(plc_.triangles[triangle].patch, triangle, p),
-                    chord(shape_.radius_of_triangle(triangle)));
+                    chord(shape_.radius_of_triangle(triangle), tolerance_.at_triangle(triangle)));
   }
 
   double size_of_wall(Index triangle, const Point& p, double size) const {
@@ -268,6 +271,7 @@ class Counter {
   const Shape& shape_;
   const Plc& plc_;
   const MeshOptions& options_;
+  SurfaceTolerance tolerance_;
   const Model& model_;
   Sizing sizing_;
   std::vector<std::vector<CurvePiece>> pieces_;  // by curve

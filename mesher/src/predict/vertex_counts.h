@@ -33,7 +33,7 @@ inline Model model_of_refinement() {
 }
 
 /// The tets of the mesh that will be: by its vertices, and the share of the directions around each that lead
-/// into regions. `options.bounds.distance` is that of the mesh, not 0. Infinite where a double cannot hold
+/// into regions. Infinite where a double cannot hold
 /// it. Cost: grows with the mesh, up to a bound that is linear in the complex.
 double count_tets(const Shape& shape, const MeshOptions& options, const Model& model = {});
 

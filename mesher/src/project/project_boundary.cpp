@@ -24,12 +24,9 @@ class BoundaryProjection {
         limited_(flat_.limit(exact)),
         options_(options),
         execution_(execution),
-        reach_(options.bounds.distance > 0 ? options.bounds.distance
-                                           : default_distance(0, plc.bounds.diagonal())),
+        tolerance_(tolerance_of_any_size(plc, options.bounds)),
         thin_(plc, mesh, options.bounds.thin_angle),
-        room_(mesh, limited_,
-              {options.bounds.radius_edge, options.bounds.collar_angle, thin_.empty() ? nullptr : &thin_,
-               largest_sag * reach_}) {}
+        room_(mesh, limited_, bounds(plc)) {}
 
   ProjectReport run() {
     find_targets();
@@ -59,7 +56,7 @@ class BoundaryProjection {
   }
 
  private:
-  static constexpr double largest_sag = 0.5;  // relative to the reach
+  static constexpr double largest_sag = 0.5;  // relative to the tolerance
   // A way of so many times the shortest edge at the vertex leads through other tets: parts of a CAD file may
   // be off each other by more than what lies between them.
   static constexpr double longest_way = 2;
@@ -74,6 +71,15 @@ class BoundaryProjection {
     std::size_t tried = 0;  // after so many commits, in vain
   };
 
+  projection::Bounds bounds(const Plc& plc) const {
+    projection::Bounds bounds{
+        options_.bounds.radius_edge, options_.bounds.collar_angle, thin_.empty() ? nullptr : &thin_, {}, {}};
+    const SurfaceTolerance tolerance = tolerance_.scaled(largest_sag);
+    for (Index p = 0; p < plc.patches.size(); ++p) bounds.patch_sag.push_back(tolerance.least_on_patch(p));
+    for (const Plc::Curve& curve : plc.curves) bounds.curve_sag.push_back(tolerance.least_on_curve(curve));
+    return bounds;
+  }
+
   void find_targets() {
     slot_of_.assign(mesh_.points.size(), none);
     for (Index p = 0; p < mesh_.features.size(); ++p) {
@@ -85,7 +91,7 @@ class BoundaryProjection {
       ++report_.vertices;
       const double off = distance(*target, mesh_.points[p]);
       const std::optional<Point> place =
-          off <= reach_ ? flat_.keep(dimension, feature, *target) : std::nullopt;
+          off <= tolerance_.largest() ? flat_.keep(dimension, feature, *target) : std::nullopt;
       if (!place) {
         add_exception(p, off);
         continue;
@@ -217,7 +223,7 @@ class BoundaryProjection {
   ExactGeometry limited_;
   const ProjectOptions& options_;
   const Execution& execution_;
-  double reach_;
+  SurfaceTolerance tolerance_;
   improvement::ThinShape thin_;
   projection::Relaxation room_;
   std::vector<Move> moves_;

@@ -294,16 +294,17 @@ bool Relaxation::fits_features(Index vertex, const Point& place) {
   const bool on_course = keeps_course(vertex);
   const double after = on_course ? sag_around(vertex) : 0;
   mesh_.points[vertex] = now;
-  return on_course && (after <= bounds_.sag || after <= sag_around(vertex));
+  return on_course && (after <= 1 || after <= sag_around(vertex));
 }
 
-// The largest distance of a face's or edge's middle from the exact geometry.
+// The largest distance of a face's or edge's middle from the exact geometry, relative to its bound.
 double Relaxation::sag_around(Index vertex) const {
   double most = 0;
   const auto see = [&](unsigned dimension, Index feature, const Point& middle) {
     if (feature == none) return;
+    const double bound = (dimension == 1 ? bounds_.curve_sag : bounds_.patch_sag)[feature];
     if (const auto nearest = exact_(dimension, feature, middle))
-      most = std::max(most, distance(*nearest, middle));
+      most = std::max(most, distance(*nearest, middle) / bound);
   };
   const auto& points = mesh_.points;
   for (const Index f : faces_at_[vertex]) {

@@ -17,7 +17,8 @@ struct Bounds {
   double radius_edge = 2;                        ///< outside collars, but for thin tets
   double collar_angle = 150;                     ///< largest dihedral angle in collars, degrees
   const improvement::ThinShape* thin = nullptr;  ///< null: no tet is thin
-  double sag = 0;  ///< absolute: largest distance of faces and edges from the exact geometry
+  /// Absolute, by patch and by curve: largest distance of faces and edges from the exact geometry.
+  std::vector<double> patch_sag, curve_sag;
 };
 
 /// Makes room for vertices that were put somewhere: the corners of the tets that this spoilt move, inside

@@ -26,7 +26,7 @@ CollarCreator::CollarCreator(const Domain& domain, const RefinedMesh& mesh, cons
 void CollarCreator::start() {
   CollarOptions options;
   options.size = [this](const Feature& feature, const Point& p) { return target_size(feature, p); };
-  options.distance = domain_.distance;
+  options.tolerance = domain_.tolerance;
   options.seed = domain_.options.seed;
   options.stopped = stopped_;
   options.smallest_radius = domain_.floor;

@@ -137,7 +137,8 @@ bool CollarSurface::poorly_represented(const CollarTriangle& t) {
 
 bool CollarSurface::far_from_patch(Index patch, const Point& p) const {
   Index nearest = none;
-  collars_.features().distance_within({2, patch}, p, domain_.distance, nearest, [](Index) { return true; });
+  collars_.features().distance_within({2, patch}, p, domain_.tolerance.least_on_patch(patch), nearest,
+                                      [](Index) { return true; });
   return nearest == none;
 }
 
@@ -164,7 +165,7 @@ bool CollarSurface::bends(CollarTriangle& t) const {
       if (!mesh_.on_patch(i, patch) || !mesh_.on_patch(j, patch)) continue;
       const Point &a = mesh_.point(i), &b = mesh_.point(j);
       const Point middle = 0.5 * (a + b);
-      if (squared_distance(a, b) < domain_.distance * domain_.distance) continue;
+      if (distance(a, b) < domain_.tolerance.least_on_patch(patch)) continue;
       if (!far_from_patch(patch, middle) && !far_from_patch(patch, (a + b + ball.centre) / 3)) continue;
       t.bent_on = patch;
       t.bent_at = middle;
@@ -178,7 +179,7 @@ bool CollarSurface::spans_sheets(const CollarBall& ball, Index a, Index b) const
   constexpr double largest_sagitta = 0.15;  // a turn of 30 degrees makes 0.13
   const Point middle = 0.5 * (mesh_.point(a) + mesh_.point(b));
   const double most = largest_sagitta * distance(mesh_.point(a), mesh_.point(b));
-  if (most >= domain_.distance) return false;
+  if (most >= domain_.tolerance.largest()) return false;
   bool found = false;
   for (const Index patch : patches_through(ball)) {
     if (!mesh_.on_patch(a, patch) || !mesh_.on_patch(b, patch)) continue;
@@ -242,8 +243,10 @@ bool CollarSurface::crosses_patch(const CollarBall& ball, Index a, Index b) {
 // by less than 8 h, where h is half the distance tolerance at most, and less than r / 2.
 bool CollarSurface::on_another_sheet(const CollarBall& ball, const Point& p, Index triangle) const {
   const auto [a, b, c] = nodes_.hierarchy().corners(triangle);
+  const Index patch = domain_.plc.triangles[triangle].patch;
   const Vector normal = cross(b - a, c - a);
-  return std::fabs(dot(p - a, normal)) > std::min(4 * domain_.distance, 0.5 * ball.radius) * norm(normal);
+  return std::fabs(dot(p - a, normal)) >
+         std::min(4 * domain_.tolerance.largest_on_patch(patch), 0.5 * ball.radius) * norm(normal);
 }
 
 bool CollarSurface::poor_book(const CollarTriangle& t, const CollarTriangle& u,
@@ -279,7 +282,7 @@ std::optional<Candidate> CollarSurface::repair(const CollarTriangle& t) const {
     const Index other = collars_.ball_containing(ball.centre + (1 + 1e-9) * (arc - ball.centre));
     if (other != none) continue;
     const double gap = distance(arc, mesh_.point(mesh_.nearest_vertex(arc, v[0])));
-    if (gap < (bent ? bent_clearance * domain_.distance : clearance)) continue;
+    if (gap < (bent ? bent_clearance * domain_.tolerance.least_on_patch(p) : clearance)) continue;
     nearest = off;
     best = arc;
     patch = p;

@@ -220,7 +220,21 @@ bool CurveChains::too_coarse(const Chained& chained) const {
                                                 domain_.paths.segment(s.curve, s.parameters[1]), s.centre);
   const double length =
       Sizing::subsegment_length(std::min(size, sizes_.graded(s.ends, 0.5 * distance(a, b))));
-  return squared_distance(a, b) > length * length || leaves_chord(chained, domain_.distance);
+  return squared_distance(a, b) > length * length || leaves_chord(chained, tolerance_of(s));
+}
+
+// The smallest of its part of the curve.
+double CurveChains::tolerance_of(const Subsegment& s) const {
+  if (!domain_.tolerance.varies()) return domain_.tolerance.largest();
+  const CurvePaths& paths = domain_.paths;
+  const std::size_t count = paths.lengths(s.curve).size() - 1;
+  const std::size_t last = paths.segment(s.curve, s.parameters[1]);
+  double least = domain_.tolerance.largest();
+  for (std::size_t i = paths.segment(s.curve, s.parameters[0]);; i = (i + 1) % count) {
+    const auto [a, b] = paths.segment_ends(s.curve, i);
+    least = std::min(least, domain_.tolerance.at_segment(a, b));
+    if (i == last) return least;
+  }
 }
 
 // Its ball may not hold all of it.

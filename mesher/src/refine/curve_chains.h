@@ -164,6 +164,7 @@ class CurveChains {
   void queue(WorkQueue::Priority priority, Index subsegment);
   bool too_coarse(const Chained& s) const;
   bool turns_too_far(const Chained& s) const;
+  double tolerance_of(const Subsegment& s) const;
   bool leaves_chord(const Chained& s, double sagitta) const;
   bool is_there(const ChainLink& link) const {
     return subsegments_[link.subsegment].alive && subsegments_[link.subsegment].stamp == link.stamp;

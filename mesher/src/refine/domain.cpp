@@ -45,8 +45,7 @@ Domain::Domain(const Plc& complex, const MeshOptions& mesh_options)
       patch_points(plc),
       paths(plc, points),
       diagonal(plc.bounds.diagonal()),
-      distance(distance_reserve * (options.bounds.distance > 0 ? options.bounds.distance
-                                                               : default_distance(options.size, diagonal))),
+      tolerance(tolerance_of(plc, options.bounds, options.size).scaled(distance_reserve)),
       floor(floor_per_diagonal * diagonal),
       box(surrounding_box(framed(plc.bounds, frame))) {}
 

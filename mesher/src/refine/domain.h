@@ -30,10 +30,10 @@ struct Domain {
   const std::vector<Point> points;  ///< of the complex, in the frame
   const PatchPoints patch_points;
   const CurvePaths paths;
-  const double diagonal;  ///< of the complex; lengths here are absolute
-  const double distance;  ///< how far the mesh may be from smooth curves and patches
-  const double floor;     ///< no ball with a smaller radius is destroyed: it ends what would never end
-  const Box box;          ///< around the mesh, well away from the complex; in the frame
+  const double diagonal;             ///< of the complex; lengths here are absolute
+  const SurfaceTolerance tolerance;  ///< how far the mesh may be from smooth curves and patches
+  const double floor;  ///< no ball with a smaller radius is destroyed: it ends what would never end
+  const Box box;       ///< around the mesh, well away from the complex; in the frame
 };
 
 }  // namespace collarmesh

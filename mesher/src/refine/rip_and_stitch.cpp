@@ -176,7 +176,7 @@ bool RipAndStitch::lies_on(const std::array<Index, 3>& face, Index patch) const 
   };
   if (domain_.plc.patches[patch].planar)
     return is_near(centroid(face), std::max(domain_.plc.planar_tolerance, 1e-9 * domain_.diagonal));
-  if (!is_near(centroid(face), domain_.distance)) return false;
+  if (!is_near(centroid(face), domain_.tolerance.largest_on_patch(patch))) return false;
   for (unsigned k = 0; k < 3; ++k) {
     const Point &a = mesh_.point(face[k]), &b = mesh_.point(face[(k + 1) % 3]);
     if (!is_near(0.5 * (a + b), largest_sagitta * distance(a, b))) return false;

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "collarmesh/mesher.h"
-#include "refine/curvature.h"
 #include "refine/frame.h"
+#include "tolerance/curvature.h"
 
 namespace collarmesh {
 

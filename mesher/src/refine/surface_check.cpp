@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "common/found_in_ranges.h"
+#include "tolerance/triangle_within_tolerance.h"
 
 namespace collarmesh {
 
@@ -150,9 +151,22 @@ bool SurfaceCheck::check_patch_topology(const std::vector<FaceId>& faces) {
   return found;
 }
 
+// Is p within the tolerance of the patch? `near`, a triangle of it to begin with, becomes the one that says
+// so.
+bool SurfaceCheck::is_near_patch(const Point& p, Index patch, Index& near) const {
+  const SurfaceTolerance& tolerance = domain_.tolerance;
+  const Index found = triangle_within_tolerance(
+      nodes_.hierarchy(), p, tolerance.least_on_patch(patch), tolerance.largest_on_patch(patch),
+      [&](Index triangle) { return tolerance.at_triangle(triangle); }, near,
+      [&](Index triangle) {
+        return triangle < domain_.plc.triangles.size() && domain_.plc.triangles[triangle].patch == patch;
+      });
+  if (found != none) near = found;
+  return found != none;
+}
+
 // Triangles on smooth patches whose edges or middle leave the patch by more than the tolerance.
 bool SurfaceCheck::refine_distant_triangles(const std::vector<FaceId>& faces) {
-  const double tolerance = domain_.distance * domain_.distance;
   // Edges found near a patch, of which two triangles share most. What takes a place here is only looked at
   // again.
   struct NearEdge {
@@ -167,13 +181,7 @@ bool SurfaceCheck::refine_distant_triangles(const std::vector<FaceId>& faces) {
     const Index patch = surface_.patch(face);
     if (domain_.plc.patches[patch].planar || t.in_collar || notes.given_up || notes.known_near) continue;
     Index near = t.triangle;  // the next sample is often near the same triangle
-    const auto is_near = [&](const Point& p) {
-      const Index other = nodes_.hierarchy().triangle_within(p, tolerance, near, [&](Index triangle) {
-        return triangle < domain_.plc.triangles.size() && domain_.plc.triangles[triangle].patch == patch;
-      });
-      if (other != none) near = other;
-      return other != none;
-    };
+    const auto is_near = [&](const Point& p) { return is_near_patch(p, patch, near); };
     const auto v = mesh_.face_vertices(face);
     notes.known_near = is_near((mesh_.point(v[0]) + mesh_.point(v[1]) + mesh_.point(v[2])) / 3);
     for (unsigned k = 0; k < 3 && notes.known_near; ++k) {
@@ -220,7 +228,6 @@ bool SurfaceCheck::still_near(const TessellationPoint& p, Index patch) const {
 // triangles becomes an unresolved point: the farthest one at each triangle, so that one insertion
 // serves all its neighbours.
 bool SurfaceCheck::resolve_distant_points(const std::vector<FaceId>& faces) {
-  const double tolerance = domain_.distance * domain_.distance;
   if (first_tessellation_point_.empty()) prepare_tessellation();
   std::vector<std::vector<FaceId>> faces_of(domain_.plc.patches.size());
   for (const FaceId face : faces)
@@ -248,7 +255,8 @@ bool SurfaceCheck::resolve_distant_points(const std::vector<FaceId>& faces) {
     Index near = none;  // the next point is often near the same triangle
     for (TessellationPoint* p : lost) {
       const Point& at = domain_.points[p->point];
-      near = surface.triangle_within(at, tolerance, near);
+      const double tolerance = domain_.tolerance.at_point(p->point);
+      near = surface.triangle_within(at, tolerance * tolerance, near);
       if (near != none) {
         p->near = faces_of[patch][near];
         p->generation = mesh_.generation(cell_of(p->near));

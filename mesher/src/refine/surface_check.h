@@ -57,6 +57,7 @@ class SurfaceCheck {
   };
   std::vector<bool> vertices_at_collars() const;
   bool check_patch_topology(const std::vector<FaceId>& faces);
+  bool is_near_patch(const Point& p, Index patch, Index& near) const;
   bool refine_distant_triangles(const std::vector<FaceId>& faces);
   void seed_missed_patch(Index patch);
   void prepare_tessellation();

@@ -3,27 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tolerance/facing.h"
+
 namespace collarmesh {
 
 namespace {
 
 // The insertion of a centre is moved by a pseudo-random offset of this share of its ball's radius.
 constexpr double offset_per_radius = 0.1;
-// The cosine between a surface's normal and that of what it faces across a gap; of parts of the surface
-// that meet elsewhere only what is almost parallel counts, else the gap would close in a wedge.
-constexpr double least_facing = 0.5, least_facing_of_neighbours = 0.966;
-
-bool share(const std::vector<Index>& a, const std::vector<Index>& b) {  // sorted
-  for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
-    if (*i == *j) return true;
-    *i < *j ? ++i : ++j;
-  }
-  return false;
-}
-
-bool meet(const Plc::Patch& a, const Plc::Patch& b) {
-  return share(a.curves, b.curves) || share(a.vertices, b.vertices);
-}
 
 }  // namespace
 
@@ -179,17 +166,9 @@ double TriangleQuality::gap_at(const RestrictedTriangle& t, double widest) {
     const Vector way = side == 0 ? -1 * normal : normal;
     // Not from the plane of its own triangle: that would be one tie after the other.
     nodes_.crossings(t.x + 1e-6 * widest * way, t.x + widest * way, crossings_);
-    for (const auto& [triangle, direction] : crossings_) {
-      const Index other = plc.triangles[triangle].patch;
-      const auto c = nodes_.hierarchy().corners(triangle);
-      const Vector n = cross(c[1] - c[0], c[2] - c[0]);
-      const double towards = dot(n, way);
-      const bool same = other == own;
-      if (same && dot(n, normal) > 0) continue;
-      const bool neighbours = same || meet(patch, plc.patches[other]);
-      if (std::fabs(towards) < (neighbours ? least_facing_of_neighbours : least_facing) * norm(n)) continue;
-      gap = std::min(gap, dot(c[0] - t.x, n) / towards);
-    }
+    for (const auto& [triangle, direction] : crossings_)
+      gap = std::min(
+          gap, facing_distance(plc, own, t.x, normal, way, triangle, nodes_.hierarchy().corners(triangle)));
   }
   return gap;
 }
@@ -197,7 +176,8 @@ double TriangleQuality::gap_at(const RestrictedTriangle& t, double widest) {
 // On a smooth patch: is the triangle's circumcentre farther from the surface than the tolerance?
 bool TriangleQuality::too_far(FaceId face, const RestrictedTriangle& t) const {
   if (domain_.plc.patches[surface_.patch(face)].planar) return false;
-  return squared_distance(surface_.circumcentre(face), t.x) > domain_.distance * domain_.distance;
+  const double tolerance = domain_.tolerance.at_triangle(t.triangle);
+  return squared_distance(surface_.circumcentre(face), t.x) > tolerance * tolerance;
 }
 
 }  // namespace collarmesh

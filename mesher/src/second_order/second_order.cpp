@@ -391,11 +391,10 @@ constexpr unsigned most_rounds = 4;
 /// Takes tets out of a mesh of first order; false when none could be.
 bool replace_in_mesh(TetMesh& mesh, const Plc& plc, std::span<const UnwantedTet> unwanted,
                      const SecondOrderOptions& options) {
-  const double distance =
-      options.bounds.distance > 0 ? options.bounds.distance : default_distance(0, plc.bounds.diagonal());
+  const SurfaceTolerance tolerance = tolerance_of_any_size(plc, options.bounds);
   std::size_t gone = 0;
   ThreadLimit(options.threads).run([&] {
-    improvement::Workpiece workpiece(mesh, plc, distance);
+    improvement::Workpiece workpiece(mesh, plc, tolerance);
     const improvement::ThinShape thin(plc, mesh, options.bounds.thin_angle);
     gone = improvement::replace_tets(workpiece, unwanted, improvement::ThinRule(thin), 1);
     workpiece.complex.store();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,6 +32,19 @@ struct CadOptions {
 struct TessellationOptions {
   double deflection = 0;  ///< largest distance from curved edges and faces, absolute; 0: 1e-4 of the diagonal
   double angle = 20;      ///< degrees that neighbouring chords and triangles turn at most
+};
+
+/// A length, area or volume.
+struct CadMeasure {
+  double exact = 0;
+  double cut = 0;  ///< of the chords or triangles in its place
+};
+
+/// Measures of a shape and of its tessellation. A measure that OpenCASCADE finds no plausible number for is
+/// not there.
+struct CadMeasures {
+  std::map<Tag, CadMeasure> lengths, areas;        ///< by the numbers of edges and faces
+  std::vector<std::optional<CadMeasure>> volumes;  ///< of what each soup bounds
 };
 
 /// The solids of a shape, with the faces that belong to none. Its sub-shapes have the numbers FreeCAD
@@ -85,6 +99,10 @@ class CadModel {
 
   /// From a place to the nearest point of the triangles. Precondition: tessellated.
   virtual double distance_to(const Point& where) const;
+
+  /// Lengths, areas and volumes, by integrals over the exact edges and faces; of seams there are none.
+  /// Precondition: tessellated. Cost: a small part of reading the shape.
+  virtual CadMeasures measures() const;
 
   /// The sub-shapes that OpenCASCADE's own check finds invalid, with places; empty: none.
   virtual std::string invalid_parts() const;

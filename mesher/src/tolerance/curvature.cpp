@@ -1,4 +1,4 @@
-#include "refine/curvature.h"
+#include "tolerance/curvature.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -23,22 +23,25 @@ class PatchCurvature {
     }
   }
 
-  /// The largest principal curvature by triangle, of its corners.
-  std::vector<double> largest_by_triangle() const {
+  /// By triangle, from its corners: the largest of the larger ones, the mean of the sums.
+  std::vector<Curvature> by_triangle() const {
     std::vector<AtPoint> smooth(points_.size());
     for (Index i = 0; i < patch_.triangle_count; ++i) {
       AtPoint sum;
       for (const Index p : triangle(i)) sum.add(points_[number_.at(p)]);
       for (const Index p : triangle(i)) smooth[number_.at(p)].add(sum);
     }
-    std::vector<double> curvature;
-    curvature.reserve(smooth.size());
-    for (const AtPoint& p : smooth) curvature.push_back(largest(p));
-    std::vector<double> result;
+    std::vector<Curvature> at_points;
+    at_points.reserve(smooth.size());
+    for (const AtPoint& p : smooth) at_points.push_back(curvature(p));
+    std::vector<Curvature> result;
     for (Index i = 0; i < patch_.triangle_count; ++i) {
-      double most = 0;
-      for (const Index p : triangle(i)) most = std::max(most, curvature[number_.at(p)]);
-      result.push_back(most);
+      Curvature& of_triangle = result.emplace_back();
+      for (const Index p : triangle(i)) {
+        const Curvature& c = at_points[number_.at(p)];
+        of_triangle.largest = std::max(of_triangle.largest, c.largest);
+        of_triangle.sum += c.sum / 3;
+      }
     }
     return result;
   }
@@ -79,11 +82,11 @@ class PatchCurvature {
     for (const Index p : {a, b}) at(p).tensor += 0.5 * turn * length * e * e.transpose();
   }
 
-  static double largest(const AtPoint& p) {
-    if (!(p.area > 0)) return 0;
+  static Curvature curvature(const AtPoint& p) {
+    if (!(p.area > 0)) return {};
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
     solver.computeDirect(p.tensor / p.area, Eigen::EigenvaluesOnly);
-    return solver.eigenvalues().cwiseAbs().maxCoeff();
+    return {solver.eigenvalues().cwiseAbs().maxCoeff(), p.tensor.trace() / p.area};
   }
 
   const Plc& plc_;
@@ -117,6 +120,10 @@ std::vector<double> largest_by_segment(const Plc& plc, const Plc::Curve& curve) 
 
 }  // namespace
 
+std::vector<Curvature> curvatures(const Plc& plc, const Plc::Patch& patch) {
+  return PatchCurvature(plc, patch).by_triangle();
+}
+
 CurvatureSizes curvature_sizes(const Plc& plc, double elements_per_circle) {
   const auto size = [&](double curvature) {
     return curvature > 0 ? 2 * std::numbers::pi / (curvature * elements_per_circle) : INFINITY;
@@ -125,9 +132,9 @@ CurvatureSizes curvature_sizes(const Plc& plc, double elements_per_circle) {
   sizes.triangle.assign(plc.triangles.size(), INFINITY);
   for (const Plc::Patch& patch : plc.patches) {
     if (patch.planar) continue;
-    const std::vector<double> curvature = PatchCurvature(plc, patch).largest_by_triangle();
+    const std::vector<Curvature> curvature = curvatures(plc, patch);
     for (Index i = 0; i < patch.triangle_count; ++i)
-      sizes.triangle[patch.first_triangle + i] = size(curvature[i]);
+      sizes.triangle[patch.first_triangle + i] = size(curvature[i].largest);
   }
   for (const Plc::Curve& curve : plc.curves) {
     auto& segments = sizes.curve_segment.emplace_back();

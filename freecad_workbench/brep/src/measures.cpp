@@ -1,0 +1,200 @@
+#include "measures.h"
+
+#include <BRepAdaptor_Curve.hxx>
+#include <BRepAdaptor_Surface.hxx>
+#include <BRepGProp.hxx>
+#include <BRepGProp_Domain.hxx>
+#include <BRepGProp_Face.hxx>
+#include <BRepGProp_Sinert.hxx>
+#include <BRepGProp_Vinert.hxx>
+#include <GProp_GProps.hxx>
+#include <NCollection_IndexedDataMap.hxx>
+#include <Standard_Failure.hxx>
+#include <TopTools_ShapeMapHasher.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Face.hxx>
+#include <gp_Pln.hxx>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace collarmesh::brep {
+
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Run OpenCASCADE, which fails on some shapes.
+template <class Integral, class Value>
+Value integrate_or(const Value& otherwise, const Integral& integral) {
+  try {
+    return integral();
+  } catch (const Standard_Failure&) {
+    return otherwise;
+  }
+}
+
+double length_of(const TopoDS_Shape& edge) {
+  const BRepAdaptor_Curve curve(TopoDS::Edge(edge));
+  const double from = curve.FirstParameter(), to = curve.LastParameter();
+  if (curve.GetType() == GeomAbs_Line) return to - from;
+  if (curve.GetType() == GeomAbs_Circle) return (to - from) * curve.Circle().Radius();
+  GProp_GProps properties;
+  BRepGProp::LinearProperties(edge, properties);
+  return properties.Mass();
+}
+
+double area_of_triangles(const PolygonSoup& soup) {
+  double area = 0;
+  for (Index f = 0; f < soup.facet_count(); ++f) {
+    const auto t = soup.polygon(f);
+    area += norm(cross(soup.points[t[1]] - soup.points[t[0]], soup.points[t[2]] - soup.points[t[0]])) / 2;
+  }
+  return area;
+}
+
+double volume_of_triangles(const PolygonSoup& soup) {
+  const Point origin = soup.points.empty() ? Point{} : soup.points.front();
+  double volume = 0;
+  for (Index f = 0; f < soup.facet_count(); ++f) {
+    const auto t = soup.polygon(f);
+    const auto at = [&](std::size_t i) { return soup.points[t[i]] - origin; };
+    volume += dot(at(0), cross(at(1), at(2))) / 6;
+  }
+  return volume;
+}
+
+struct FaceMeasure {
+  double area = 0;
+  double cone = 0;  // over it as it lies in space: positive where its normal looks away from the apex
+};
+
+/// Areas of faces and volumes of the cones over them, with an apex amid the shape. Each face is integrated
+/// once.
+class FaceIntegrals {
+ public:
+  explicit FaceIntegrals(const TopoDS_Shape& shape) {
+    const Point centre = place_of(shape);
+    apex_ = gp_Pnt(centre.x, centre.y, centre.z);
+    for (const TopoDS_Shape& face : subshapes(shape, TopAbs_FACE))
+      measures_.Add(face, integrate_or(FaceMeasure{unknown, unknown}, [&] { return measure(face); }));
+  }
+
+  double area(const TopoDS_Shape& face) const { return measures_.FindFromKey(face).area; }
+  double cone(const TopoDS_Shape& face) const {
+    const double cone = measures_.FindFromKey(face).cone;
+    return face.Orientation() == TopAbs_REVERSED ? -cone : cone;
+  }
+
+ private:
+  FaceMeasure measure(const TopoDS_Shape& face) const {
+    const BRepAdaptor_Surface surface(TopoDS::Face(face), false);
+    if (surface.GetType() == GeomAbs_Plane) {
+      const double area = integrated<BRepGProp_Sinert>(face);
+      const gp_Ax3 axes = surface.Plane().Position();
+      const gp_Vec normal(axes.XDirection().Crossed(axes.YDirection()));
+      return {area, area * normal.Dot(gp_Vec(apex_, axes.Location())) / 3};
+    }
+    return {integrated<BRepGProp_Sinert>(face), integrated<BRepGProp_Vinert>(face)};
+  }
+
+  /// Integrate over a face as it lies in space, whatever its orientation. Integrals that adapt to an error
+  /// are much more exact, and as fast but on splines of many spans, where the fixed ones are exact enough.
+  template <class Integral>
+  double integrated(const TopoDS_Shape& shape) const {
+    constexpr double error = 1e-3;  // as OpenCASCADE estimates it, far above the true one
+    constexpr int many_spans = 8;
+    const TopoDS_Face face = TopoDS::Face(shape.Oriented(TopAbs_FORWARD));
+    BRepGProp_Face surface(face);
+    BRepGProp_Domain domain(face);
+    Integral integral;
+    integral.SetLocation(apex_);
+    if (face.NbChildren() == 0)
+      integral.Perform(surface, error);
+    else if (surface.SUIntSubs() * surface.SVIntSubs() > many_spans)
+      integral.Perform(surface, domain);
+    else
+      integral.Perform(surface, domain, error);
+    return integral.Mass();
+  }
+
+  gp_Pnt apex_;
+  NCollection_IndexedDataMap<TopoDS_Shape, FaceMeasure, TopTools_ShapeMapHasher> measures_;
+};
+
+/// A sum over the parts of one number, and by how much the tessellation may be off.
+struct Sum {
+  CadMeasure measure;
+  double allowed = 0;
+
+  void add(double exact, double cut, double off) {
+    measure.exact += exact;
+    measure.cut += cut;
+    allowed += off;
+  }
+  /// Where they contradict each other one of them is wrong.
+  bool is_plausible() const {
+    constexpr double share = 0.05;  // an arc of 20 degrees is longer than its chord by less than 1%
+    return std::fabs(measure.exact - measure.cut) <= share * measure.cut + allowed;
+  }
+};
+
+std::map<Tag, CadMeasure> plausible(const std::map<Tag, Sum>& sums) {
+  std::map<Tag, CadMeasure> measures;
+  for (const auto& [number, sum] : sums)
+    if (sum.is_plausible()) measures.emplace(number, sum.measure);
+  return measures;
+}
+
+std::map<Tag, CadMeasure> lengths_of(const Topology& topology, const Tessellation& tessellation,
+                                     double deflection) {
+  std::map<Tag, Sum> sums;
+  for (const TopoDS_Shape& edge : subshapes(topology.all, TopAbs_EDGE))
+    if (tessellation.lengths.IsBound(edge))
+      sums[topology.number(edge)].add(integrate_or(unknown, [&] { return length_of(edge); }),
+                                      tessellation.lengths.Find(edge), 2 * deflection);
+  return plausible(sums);
+}
+
+double border_of(const TopoDS_Shape& face, const Tessellation& tessellation) {
+  double length = 0;
+  for (const TopoDS_Shape& edge : subshapes(face, TopAbs_EDGE))
+    if (tessellation.lengths.IsBound(edge)) length += tessellation.lengths.Find(edge);
+  return length;
+}
+
+std::map<Tag, CadMeasure> areas_of(const Topology& topology, const Tessellation& tessellation,
+                                   const FaceIntegrals& integrals, double deflection) {
+  std::map<Tag, Sum> sums;
+  for (const TopoDS_Shape& face : subshapes(topology.all, TopAbs_FACE))
+    sums[topology.number(face)].add(integrals.area(face), tessellation.areas.Find(face),
+                                    2 * deflection * border_of(face, tessellation));
+  return plausible(sums);
+}
+
+std::vector<std::optional<CadMeasure>> volumes_of(const Topology& topology, const Tessellation& tessellation,
+                                                  const FaceIntegrals& integrals, double deflection) {
+  std::vector<std::optional<CadMeasure>> volumes(tessellation.soups.size());
+  for (std::size_t s = 0; s < topology.solids.size(); ++s) {
+    if (topology.solids[s].open) continue;
+    const PolygonSoup& soup = tessellation.soups[s];
+    Sum sum;
+    sum.add(0, volume_of_triangles(soup), 2 * deflection * area_of_triangles(soup));
+    for (const TopoDS_Shape& face : topology.solids[s].faces) sum.add(integrals.cone(face), 0, 0);
+    if (sum.is_plausible()) volumes[s] = sum.measure;
+  }
+  return volumes;
+}
+
+}  // namespace
+
+CadMeasures measure(const Topology& topology, const Tessellation& tessellation, double deflection) {
+  const FaceIntegrals integrals(topology.all);
+  return {lengths_of(topology, tessellation, deflection),
+          areas_of(topology, tessellation, integrals, deflection),
+          volumes_of(topology, tessellation, integrals, deflection)};
+}
+
+}  // namespace collarmesh::brep

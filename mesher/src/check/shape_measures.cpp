@@ -1,0 +1,126 @@
+#include "collarmesh/shape_measures.h"
+
+#include <cmath>
+#include <optional>
+
+namespace collarmesh {
+
+namespace {
+
+/// The derivative of x along a barycentric direction, by the weights of the nodes: 4 lambda - 1 for a corner,
+/// 4 times the other end's lambda for a node amid an edge.
+template <std::size_t corners, std::size_t nodes>
+std::array<Vector, corners> derivatives(const std::array<Point, nodes>& x,
+                                        const std::array<std::array<unsigned, 2>, nodes - corners>& edges,
+                                        const std::array<double, corners>& lambda) {
+  const auto from_first = [&](std::size_t node) { return x[node] - x[0]; };  // for small shapes far from 0
+  std::array<Vector, corners> d{};
+  for (std::size_t i = 0; i < corners; ++i) d[i] = (4 * lambda[i] - 1) * from_first(i);
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const auto& [i, j] = edges[e];
+    d[i] = d[i] + 4 * lambda[j] * from_first(corners + e);
+    d[j] = d[j] + 4 * lambda[i] * from_first(corners + e);
+  }
+  return d;
+}
+
+double six_jacobian(const CurvedTet& nodes, const std::array<double, 4>& lambda) {
+  constexpr std::array<std::array<unsigned, 2>, 6> edges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+  const auto d = derivatives<4>(nodes, edges, lambda);
+  return dot(cross(d[1] - d[0], d[2] - d[0]), d[3] - d[0]);
+}
+
+double doubled_area(const CurvedTriangle& nodes, const std::array<double, 3>& lambda) {
+  constexpr std::array<std::array<unsigned, 2>, 3> edges{{{0, 1}, {1, 2}, {2, 0}}};
+  const auto d = derivatives<3>(nodes, edges, lambda);
+  return norm(cross(d[1] - d[0], d[2] - d[0]));
+}
+
+double triangle_area(const Plc& plc, const Plc::Triangle& t) {
+  const auto& [a, b, c] = t.points;
+  return 0.5 * norm(cross(plc.points[b] - plc.points[a], plc.points[c] - plc.points[a]));
+}
+
+std::vector<double> enclosed_by_patches(const Plc& plc) {
+  struct Enclosed {
+    std::optional<Point> origin;  // a corner of the region: from afar a tiny one's volume would cancel
+    long double six_volume = 0;
+  };
+  std::vector<Enclosed> regions(plc.regions.size());
+  for (const Plc::Triangle& t : plc.triangles) {
+    const Plc::Patch& patch = plc.patches[t.patch];
+    if (patch.regions[0] == patch.regions[1]) continue;
+    const Point &a = plc.points[t.points[0]], &b = plc.points[t.points[1]], &c = plc.points[t.points[2]];
+    for (unsigned side = 0; side < 2; ++side) {
+      Enclosed& region = regions[patch.regions[side]];
+      if (!region.origin) region.origin = a;
+      const double cone = six_volume(*region.origin, a, b, c);
+      region.six_volume += side == 0 ? cone : -cone;
+    }
+  }
+  std::vector<double> volumes;
+  for (const Enclosed& region : regions) volumes.push_back(static_cast<double>(region.six_volume / 6));
+  if (!volumes.empty()) volumes[0] = 0;
+  return volumes;
+}
+
+double polyline_length(const Plc& plc, const Plc::Curve& curve) {
+  double length = 0;
+  const std::size_t count = curve.points.size();
+  for (std::size_t i = curve.closed ? 0 : 1; i < count; ++i)
+    length += distance(plc.points[curve.points[(i + count - 1) % count]], plc.points[curve.points[i]]);
+  return length;
+}
+
+}  // namespace
+
+ShapeMeasures measures_of(const Plc& plc) {
+  ShapeMeasures measures;
+  measures.volumes = enclosed_by_patches(plc);
+  for (const Plc::Patch& patch : plc.patches) {
+    double& area = measures.areas.emplace_back(0);
+    for (Index i = 0; i < patch.triangle_count; ++i)
+      area += triangle_area(plc, plc.triangles[patch.first_triangle + i]);
+  }
+  for (const Plc::Curve& curve : plc.curves) measures.lengths.push_back(polyline_length(plc, curve));
+  return measures;
+}
+
+// The determinant is a cubic polynomial: the rule with five points is exact (Keast, Moderate-degree
+// tetrahedral quadrature formulas, 1986).
+double volume(const CurvedTet& nodes) {
+  double sum = -0.8 * six_jacobian(nodes, {0.25, 0.25, 0.25, 0.25});
+  for (unsigned i = 0; i < 4; ++i) {
+    std::array<double, 4> lambda{1. / 6, 1. / 6, 1. / 6, 1. / 6};
+    lambda[i] = 0.5;
+    sum += 0.45 * six_jacobian(nodes, lambda);
+  }
+  return sum / 6;
+}
+
+// Six points (Dunavant, High degree efficient symmetrical Gaussian quadrature rules for the triangle, 1985).
+double area(const CurvedTriangle& nodes) {
+  double sum = 0;
+  for (const auto& [weight, twice] :
+       {std::array{0.223381589678011, 0.445948490915965}, std::array{0.109951743655322, 0.091576213509771}})
+    for (unsigned i = 0; i < 3; ++i) {
+      std::array<double, 3> lambda{twice, twice, twice};
+      lambda[i] = 1 - 2 * twice;
+      sum += weight * doubled_area(nodes, lambda);
+    }
+  return sum / 2;
+}
+
+double length(const CurvedEdge& nodes) {
+  constexpr std::array<std::array<unsigned, 2>, 1> edges{{{0, 1}}};
+  const double off = std::sqrt(0.15);
+  double sum = 0;
+  for (const auto& [weight, t] :
+       {std::array{5. / 18, 0.5 - off}, std::array{8. / 18, 0.5}, std::array{5. / 18, 0.5 + off}}) {
+    const auto d = derivatives<2>(nodes, edges, {1 - t, t});
+    sum += weight * norm(d[1] - d[0]);
+  }
+  return sum;
+}
+
+}  // namespace collarmesh

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "location/triangle_hierarchy.h"
+
+namespace collarmesh {
+
+/// How far the point x of a patch is, along a unit normal of the patch, from the plane of a triangle that
+/// the ray from x in the direction `way` (the normal or its opposite) crosses; infinite where the triangle
+/// does not face the patch. Of patches that meet elsewhere only what is almost parallel faces each other:
+/// else gaps would close in wedges.
+double facing_distance(const Plc& plc, Index patch, const Point& x, const Vector& normal, const Vector& way,
+                       Index triangle, const std::array<Point, 3>& corners);
+
+/// The surface that faces a point of the surface, across a region, a gap or a cavity.
+class FacingSurfaces {
+ public:
+  /// Kept by reference.
+  explicit FacingSurfaces(const Plc& plc);
+
+  struct Facing {
+    double distance = INFINITY;
+    Index triangle = none;
+  };
+  /// Scratch space of a thread.
+  using Crossings = std::vector<TriangleHierarchy::Crossing>;
+
+  /// From a point x of a triangle to the patch's side 0 (behind) or 1 (in front), not farther than `widest`.
+  Facing from(const Point& x, Index triangle, unsigned side, double widest, Crossings& crossings) const;
+
+  const TriangleHierarchy& triangles() const { return triangles_; }
+
+ private:
+  const Plc& plc_;
+  TriangleHierarchy triangles_;
+};
+
+}  // namespace collarmesh

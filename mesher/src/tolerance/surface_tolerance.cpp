@@ -1,0 +1,242 @@
+#include "collarmesh/surface_tolerance.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collarmesh/bounds.h"
+#include "collarmesh/mesher.h"
+#include "common/parallel_for.h"
+#include "tolerance/curvature.h"
+#include "tolerance/thickness.h"
+
+namespace collarmesh {
+
+namespace {
+
+// The largest distance from the surface as a share of what is there (doc/architecture/tolerance.md has the
+// measurements): of the thickness of the material, where its opposite sides bend away from each other (a rod)
+// or alike (a shell), and of the width of what is empty, likewise.
+constexpr double share_of_rod = 0.05, share_of_shell = 0.15, share_of_hole = 0.1, share_of_slot = 0.5;
+// The share of a region's volume that chords may take or add, by the estimate below; where they would take
+// less, the shares of its thickness may be larger by this factor.
+constexpr double share_of_volume = 0.015, largest_factor = 2;
+// Nothing is resolved that is so much finer than the size asks for; relative to the largest tolerance.
+constexpr double least_share = 5e-4;
+// What chords lose in the mean, as a share of the tolerance (measured: most are nearer than they may be).
+constexpr double mean_of_sagitta = 0.42;
+constexpr double sizes_per_diagonal = 20;  // of the default size, as in refine/sizing.cpp
+
+class LocalTolerance {
+ public:
+  enum class Volumes {
+    kept,    // by the triangles between corners
+    curved,  // by what curved elements enclose
+    any      // for all that is not known of a mesh
+  };
+  LocalTolerance(const Plc& plc, double size)
+      : plc_(plc),
+        size_(size > 0 ? size : plc.bounds.diagonal() / sizes_per_diagonal),
+        largest_(default_distance(size, plc.bounds.diagonal())),
+        thickness_(plc),
+        curvature_(plc.triangles.size()),
+        of_material_(plc.triangles.size(), largest_),
+        of_gap_(plc.triangles.size(), largest_) {}
+
+  SurfaceTolerance run(Volumes volumes) {
+    for (const Plc::Patch& patch : plc_.patches) {
+      if (patch.planar) continue;
+      const std::vector<Curvature> of_patch = curvatures(plc_, patch);
+      std::copy(of_patch.begin(), of_patch.end(), curvature_.begin() + patch.first_triangle);
+    }
+    parallel_for_ranges(plc_.triangles.size(), 256, [&](std::size_t first, std::size_t last) {
+      Thickness::Crossings crossings;
+      for (auto t = static_cast<Index>(first); t < last; ++t)
+        if (!patch_of(t).planar) look_around(t, crossings);
+    });
+    std::vector<double> factors(plc_.regions.size(), volumes == Volumes::any ? largest_factor : 1);
+    if (volumes == Volumes::kept) factors = factors_by_volumes();
+    std::vector<double> triangles(plc_.triangles.size(), largest_);
+    for (Index t = 0; t < triangles.size(); ++t) {
+      const Plc::Patch& patch = patch_of(t);
+      if (!patch.planar) triangles[t] = at(t, std::min(factors[patch.regions[0]], factors[patch.regions[1]]));
+    }
+    return SurfaceTolerance(plc_, std::move(triangles), largest_);
+  }
+
+ private:
+  const Plc::Patch& patch_of(Index triangle) const { return plc_.patches[plc_.triangles[triangle].patch]; }
+
+  void look_around(Index triangle, Thickness::Crossings& crossings) {
+    for (unsigned side = 0; side < 2; ++side) {
+      const Thickness::Opposite opposite = thickness_.at(triangle, side, crossings);
+      if (opposite.triangle == none) continue;
+      const bool empty = patch_of(triangle).regions[side] == 0;
+      const double lost = lost_by(triangle, side, opposite);
+      const double share = empty ? lost * share_of_hole + (1 - lost) * share_of_slot
+                                 : lost * share_of_rod + (1 - lost) * share_of_shell;
+      double& tolerance = (empty ? of_gap_ : of_material_)[triangle];
+      tolerance = std::min(tolerance, share * opposite.distance);
+    }
+  }
+
+  /// With shares of the material's thickness that are so much larger.
+  double at(Index triangle, double factor) const {
+    return std::max(std::min({of_gap_[triangle], factor * of_material_[triangle], largest_}),
+                    least_share * largest_);
+  }
+
+  // Where material is on this side; convex material bends by a positive sum.
+  double bend(Index triangle, unsigned side) const {
+    return side == 0 ? curvature_[triangle].sum : -curvature_[triangle].sum;
+  }
+
+  /// The share of what this side loses that the opposite one does not gain.
+  double lost_by(Index triangle, unsigned side, const Thickness::Opposite& opposite) const {
+    const double own = bend(triangle, side), other = bend(opposite.triangle, opposite.side);
+    return own == 0 ? 1 : std::clamp(1 + other / own, 0.0, 1.0);
+  }
+
+  // A part of a region's surface: what it takes from the region's volume.
+  struct Loss {
+    Index triangle;
+    double area;     // negative where chords add to the volume
+    double sagitta;  // of chords of the target length, which are not farther off
+  };
+
+  double volume_of(const Loss& loss, double factor) const {
+    return mean_of_sagitta * loss.area * std::min(at(loss.triangle, factor), loss.sagitta);
+  }
+
+  std::vector<std::vector<Loss>> losses() const {
+    std::vector<std::vector<Loss>> losses(plc_.regions.size());
+    for (Index t = 0; t < plc_.triangles.size(); ++t) {
+      const Plc::Patch& patch = patch_of(t);
+      if (patch.planar || patch.regions[0] == patch.regions[1]) continue;
+      const auto& [a, b, c] = plc_.triangles[t].points;
+      const double area = 0.5 * norm(cross(plc_.points[b] - plc_.points[a], plc_.points[c] - plc_.points[a]));
+      for (unsigned side = 0; side < 2; ++side)
+        if (const double by = bend(t, side); patch.regions[side] != 0 && by != 0)
+          losses[patch.regions[side]].push_back(
+              {t, by > 0 ? area : -area, size_ * size_ * curvature_[t].largest / 8});
+    }
+    return losses;
+  }
+
+  // Of the shares of thickness around each region, so that it neither loses nor gains too much.
+  std::vector<double> factors_by_volumes() const {
+    const auto losses = this->losses();
+    std::vector<double> factors(plc_.regions.size(), largest_factor);
+    for (Index r = 1; r < plc_.regions.size(); ++r) {
+      const auto lost = [&](double factor) {
+        double sum = 0;
+        for (const Loss& loss : losses[r]) sum += volume_of(loss, factor);
+        return std::fabs(sum);
+      };
+      const double allowed = share_of_volume * std::fabs(plc_.regions[r].volume);
+      for (double& factor = factors[r]; factor > least_share && lost(factor) > allowed;)
+        factor *= std::max(0.5, std::min(0.98, allowed / lost(factor)));
+    }
+    return factors;
+  }
+
+  const Plc& plc_;
+  double size_, largest_;
+  Thickness thickness_;
+  std::vector<Curvature> curvature_;
+  std::vector<double> of_material_, of_gap_;  // by triangle: what its thickness and gaps allow
+};
+
+template <class Better>
+double extreme_on(const SurfaceTolerance& tolerance, const Plc::Curve& curve, const Better& better) {
+  const std::size_t count = curve.points.size();
+  double extreme = tolerance.at_segment(curve.points[0], curve.points[1 % count]);
+  for (std::size_t i = 1; i + (curve.closed ? 0 : 1) < count; ++i)
+    extreme = better(extreme, tolerance.at_segment(curve.points[i], curve.points[(i + 1) % count]));
+  return extreme;
+}
+
+}  // namespace
+
+SurfaceTolerance::SurfaceTolerance(const Plc& plc, std::vector<double> triangles, double largest)
+    : largest_(largest) {
+  Places places;
+  places.points.assign(plc.points.size(), largest);
+  for (Index t = 0; t < plc.triangles.size(); ++t)
+    for (const Index p : plc.triangles[t].points) places.points[p] = std::min(places.points[p], triangles[t]);
+  for (const Plc::Patch& patch : plc.patches) {
+    double least = largest, most = 0;
+    for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
+      most = std::max(most, triangles[t]);
+      for (const Index p : plc.triangles[t].points) least = std::min(least, places.points[p]);
+    }
+    places.least_on_patch.push_back(least);
+    places.largest_on_patch.push_back(patch.triangle_count > 0 ? most : largest);
+  }
+  places.triangles = std::move(triangles);
+  places_ = std::make_shared<const Places>(std::move(places));
+}
+
+bool triangles_resolve(const Plc& plc, const SurfaceTolerance& tolerance) {
+  constexpr double share_of_triangles = 0.25;
+  struct Side {
+    std::array<Index, 2> edge;
+    Index triangle;
+    Vector normal;
+    double height;  // of the triangle above the edge
+  };
+  // A chord of this length between turns of that angle is off its arc by an eighth of both.
+  const auto resolved = [&](const Side& side, double turn) {
+    return side.height * turn / 8 <= share_of_triangles * tolerance.at_triangle(side.triangle);
+  };
+  for (const Plc::Patch& patch : plc.patches) {
+    if (patch.planar) continue;
+    std::vector<Side> sides;
+    for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
+      const auto& p = plc.triangles[t].points;
+      const Vector n = cross(plc.points[p[1]] - plc.points[p[0]], plc.points[p[2]] - plc.points[p[0]]);
+      for (unsigned k = 0; k < 3; ++k)
+        if (const double length = distance(plc.points[p[k]], plc.points[p[(k + 1) % 3]]);
+            length > 0 && norm(n) > 0)
+          sides.push_back({{std::min(p[k], p[(k + 1) % 3]), std::max(p[k], p[(k + 1) % 3])},
+                           t,
+                           n / norm(n),
+                           norm(n) / length});
+    }
+    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.edge < b.edge; });
+    for (std::size_t i = 1; i < sides.size(); ++i) {
+      if (sides[i - 1].edge != sides[i].edge) continue;
+      const double turn = std::acos(std::clamp(dot(sides[i - 1].normal, sides[i].normal), -1.0, 1.0));
+      if (!resolved(sides[i - 1], turn) || !resolved(sides[i], turn)) return false;
+    }
+  }
+  return true;
+}
+
+double SurfaceTolerance::least_on_curve(const Plc::Curve& curve) const {
+  return extreme_on(*this, curve, [](double a, double b) { return std::min(a, b); });
+}
+
+double SurfaceTolerance::largest_on_curve(const Plc::Curve& curve) const {
+  return extreme_on(*this, curve, [](double a, double b) { return std::max(a, b); });
+}
+
+SurfaceTolerance default_tolerance(const Plc& plc, double size, int order) {
+  return LocalTolerance(plc, size).run(order == 1 ? LocalTolerance::Volumes::kept
+                                                  : LocalTolerance::Volumes::curved);
+}
+
+SurfaceTolerance largest_default_tolerance(const Plc& plc) {
+  return LocalTolerance(plc, INFINITY).run(LocalTolerance::Volumes::any);
+}
+
+SurfaceTolerance tolerance_of_any_size(const Plc& plc, const Bounds& bounds) {
+  if (bounds.tolerance) return *bounds.tolerance;
+  return bounds.distance > 0 ? SurfaceTolerance(bounds.distance) : largest_default_tolerance(plc);
+}
+
+SurfaceTolerance tolerance_of(const Plc& plc, const Bounds& bounds, double size, int order) {
+  if (bounds.tolerance) return *bounds.tolerance;
+  return bounds.distance > 0 ? SurfaceTolerance(bounds.distance) : default_tolerance(plc, size, order);
+}
+
+}  // namespace collarmesh

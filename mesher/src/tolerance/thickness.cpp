@@ -1,0 +1,103 @@
+#include "tolerance/thickness.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collarmesh/plc_builder.h"
+
+namespace collarmesh {
+
+namespace {
+
+// The cosine between a ray and the normal of what ends it; of patches that meet, in a wedge perhaps.
+constexpr double least_facing = 0.5, least_facing_of_neighbours = 0.966;
+
+std::vector<std::array<Index, 3>> triangles_of(const Plc& plc) {
+  std::vector<std::array<Index, 3>> triangles;
+  triangles.reserve(plc.triangles.size());
+  for (const Plc::Triangle& t : plc.triangles) triangles.push_back(t.points);
+  return triangles;
+}
+
+bool share(const std::vector<Index>& a, const std::vector<Index>& b) {  // sorted
+  for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
+    if (*i == *j) return true;
+    *i < *j ? ++i : ++j;
+  }
+  return false;
+}
+
+bool meet(const Plc::Patch& a, const Plc::Patch& b) {
+  return share(a.curves, b.curves) || share(a.vertices, b.vertices);
+}
+
+Vector unit(const Vector& v) {
+  const double length = norm(v);
+  return length > 0 ? v / length : Vector{};
+}
+
+// By triangle: the sum of the normals at its corners, each of these the sum of the patch's triangles there by
+// their areas.
+std::vector<Vector> smooth_normals(const Plc& plc) {
+  std::vector<Vector> normals(plc.triangles.size()), at_point(plc.points.size());
+  for (const Plc::Patch& patch : plc.patches) {
+    const Index end = patch.first_triangle + patch.triangle_count;
+    for (Index t = patch.first_triangle; t < end; ++t) {
+      const auto& [a, b, c] = plc.triangles[t].points;
+      normals[t] = cross(plc.points[b] - plc.points[a], plc.points[c] - plc.points[a]);
+      for (const Index p : plc.triangles[t].points) at_point[p] = at_point[p] + normals[t];
+    }
+    std::vector<Vector> sums;
+    for (Index t = patch.first_triangle; t < end; ++t) {
+      Vector sum{};
+      for (const Index p : plc.triangles[t].points) sum = sum + unit(at_point[p]);
+      sums.push_back(patch.planar ? patch.normal : unit(sum));
+    }
+    for (Index t = patch.first_triangle; t < end; ++t) {
+      normals[t] = sums[t - patch.first_triangle];
+      for (const Index p : plc.triangles[t].points) at_point[p] = {};
+    }
+  }
+  return normals;
+}
+
+}  // namespace
+
+Thickness::Thickness(const Plc& plc)
+    : plc_(plc), triangles_(plc.points, triangles_of(plc)), normals_(smooth_normals(plc)) {
+  constexpr double crease_angle = 60;  // the default of Bounds
+  for (const Crease& crease : find_creases(plc, crease_angle))
+    if (crease.kind == Crease::Kind::facets || crease.kind == Crease::Kind::patch_fold)
+      creases_.insert(std::minmax(crease.features[0], crease.features[1]));
+}
+
+Thickness::Opposite Thickness::at(Index triangle, unsigned side, Crossings& crossings) const {
+  Opposite opposite;
+  const Vector way = side == 0 ? -1 * normals_[triangle] : normals_[triangle];
+  if (way == Vector{}) return opposite;
+  const Index patch = plc_.triangles[triangle].patch, region = plc_.patches[patch].regions[side];
+  const auto [a, b, c] = triangles_.corners(triangle);
+  const Point centre = (a + b + c) / 3;
+  const double reach = plc_.bounds.diagonal();
+  const Index root = triangles_.root();
+  // Not from the plane of its own triangle: that would be one tie after the other.
+  triangles_.crossings(centre + 1e-9 * reach * way, centre + reach * way, {&root, 1}, crossings);
+  for (const auto& [other, direction] : crossings) {
+    const Plc::Patch& ends = plc_.patches[plc_.triangles[other].patch];
+    const Vector& n = normals_[other];
+    const double towards = dot(n, way);
+    const unsigned from_side = towards > 0 ? 0 : 1;
+    if (other == triangle || ends.regions[from_side] != region) continue;
+    const Index opposite_patch = plc_.triangles[other].patch;
+    const bool neighbours = opposite_patch == patch || meet(plc_.patches[patch], ends);
+    if (neighbours && creases_.contains(std::minmax(patch, opposite_patch))) continue;
+    if (std::fabs(towards) < (neighbours ? least_facing_of_neighbours : least_facing)) continue;
+    const auto [p, q, r] = triangles_.corners(other);
+    const Vector flat = cross(q - p, r - p);
+    const double distance = dot(p - centre, flat) / dot(way, flat);
+    if (distance > 0 && distance < opposite.distance) opposite = {distance, other, from_side};
+  }
+  return opposite;
+}
+
+}  // namespace collarmesh

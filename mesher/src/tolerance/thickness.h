@@ -1,0 +1,38 @@
+#pragma once
+
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "location/triangle_hierarchy.h"
+
+namespace collarmesh {
+
+/// How thick a region, or the outside between two parts of the surface, is at the triangles of its surface:
+/// along the normal, to where the region ends.
+class Thickness {
+ public:
+  /// Kept by reference. Cost: near linear in the triangles.
+  explicit Thickness(const Plc& plc);
+
+  struct Opposite {
+    double distance = INFINITY;
+    Index triangle = none;  ///< where the region ends; none where it does not, or at a slant
+    unsigned side = 0;      ///< the side of that triangle that the region lies on
+  };
+  /// Scratch space of a thread.
+  using Crossings = std::vector<TriangleHierarchy::Crossing>;
+
+  /// On side 0 (behind) or 1 (in front) of a triangle, from its centre.
+  Opposite at(Index triangle, unsigned side, Crossings& crossings) const;
+
+ private:
+  const Plc& plc_;
+  TriangleHierarchy triangles_;
+  std::set<std::pair<Index, Index>> creases_;  // patches that meet in one: a wedge may be thin
+  std::vector<Vector>
+      normals_;  // by triangle: unit normals of the smooth surface, not of needles of its tessellation
+};
+
+}  // namespace collarmesh

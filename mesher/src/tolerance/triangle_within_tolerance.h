@@ -1,0 +1,21 @@
+#pragma once
+
+#include "location/triangle_hierarchy.h"
+
+namespace collarmesh {
+
+/// A triangle from which p is not farther than the tolerance there: the `hint`, if p is near enough to it,
+/// else any one within the `least` tolerance, else the nearest one; none if there is no such triangle. `at`
+/// gives the tolerance of a triangle, from `least` to `most`; `counts` says which triangles count, the hint
+/// among them.
+template <class At, class Counts>
+Index triangle_within_tolerance(const TriangleHierarchy& triangles, const Point& p, double least, double most,
+                                const At& at, Index hint, const Counts& counts) {
+  const Index close = triangles.triangle_within(p, least * least, hint, counts);
+  if (close != none || least == most) return close;
+  Index nearest = none;
+  const double squared = triangles.squared_distance_to(p, most * most, &nearest, counts);
+  return nearest != none && squared < at(nearest) * at(nearest) ? nearest : none;
+}
+
+}  // namespace collarmesh

@@ -1,0 +1,238 @@
+// Exact lengths, areas and volumes against formulas, and how they reach the complex.
+#include <gtest/gtest.h>
+#include <BRepAlgoAPI_Common.hxx>
+#include <BRepAlgoAPI_Cut.hxx>
+#include <BRepBuilderAPI_Transform.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCone.hxx>
+#include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakeSphere.hxx>
+#include <BRepPrimAPI_MakeTorus.hxx>
+#include <BRepTools.hxx>
+#include <gp_Ax2.hxx>
+#include <gp_Trsf.hxx>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "collarmesh/brep/cad_model.h"
+#include "complex_input.h"
+#include "mesh_command.h"
+#include "shapes.h"
+#include "support/temporary_file.h"
+
+namespace collarmesh::testing {
+namespace {
+
+constexpr double pi = M_PI;
+
+struct Expected {
+  std::vector<double> lengths, areas, volumes;  // in order of size
+};
+
+std::vector<double> exact(const std::map<Tag, brep::CadMeasure>& measures) {
+  std::vector<double> values;
+  for (const auto& [number, measure] : measures) values.push_back(measure.exact);
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+void expect_near(const std::vector<double>& found, const std::vector<double>& expected, const char* what) {
+  ASSERT_EQ(found.size(), expected.size()) << what;
+  for (std::size_t i = 0; i < found.size(); ++i)
+    EXPECT_NEAR(found[i], expected[i], 1e-9 * expected[i]) << what << " " << i;
+}
+
+/// Whatever the tessellation, and wherever the shape is.
+void expect_measures(const TopoDS_Shape& shape, const Expected& expected) {
+  gp_Trsf away;
+  away.SetTranslation(gp_Vec(1000, 2000, 3000));
+  for (const TopoDS_Shape& placed : {shape, BRepBuilderAPI_Transform(shape, away).Shape()})
+    for (const double deflection : {0.3, 0.02}) {
+      brep::CadModel model(placed, "part");
+      model.tessellate({.deflection = deflection});
+      const brep::CadMeasures measures = model.measures();
+      expect_near(exact(measures.lengths), expected.lengths, "length");
+      expect_near(exact(measures.areas), expected.areas, "area");
+      std::vector<double> volumes;
+      for (const auto& volume : measures.volumes) volumes.push_back(volume.value().exact);
+      std::sort(volumes.begin(), volumes.end());
+      expect_near(volumes, expected.volumes, "volume");
+    }
+}
+
+TEST(CadMeasures, OfASphere) {
+  expect_measures(BRepPrimAPI_MakeSphere(5).Shape(), {{}, {4 * pi * 25}, {4. / 3 * pi * 125}});
+}
+
+TEST(CadMeasures, OfATorus) {
+  expect_measures(BRepPrimAPI_MakeTorus(10, 3).Shape(), {{}, {4 * pi * pi * 30}, {2 * pi * pi * 90}});
+}
+
+TEST(CadMeasures, OfACylinder) {
+  expect_measures(BRepPrimAPI_MakeCylinder(3, 7).Shape(),
+                  {{6 * pi, 6 * pi}, {9 * pi, 9 * pi, 42 * pi}, {63 * pi}});
+}
+
+TEST(CadMeasures, OfACone) {
+  expect_measures(BRepPrimAPI_MakeCone(3, 0, 4).Shape(), {{6 * pi}, {9 * pi, 15 * pi}, {12 * pi}});
+}
+
+TEST(CadMeasures, OfAShell) {
+  const TopoDS_Shape outer = BRepPrimAPI_MakeSphere(5).Shape(), inner = BRepPrimAPI_MakeSphere(4.9).Shape();
+  expect_measures(BRepAlgoAPI_Cut(outer, inner).Shape(),
+                  {{}, {4 * pi * 4.9 * 4.9, 4 * pi * 25}, {4. / 3 * pi * (125 - std::pow(4.9, 3))}});
+}
+
+TEST(CadMeasures, OfWhatTwoCylindersHaveInCommon) {
+  const TopoDS_Shape along_x = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(-9, 0, 0), gp::DX()), 3, 18).Shape();
+  const TopoDS_Shape along_z = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(0, 0, -9), gp::DZ()), 3, 18).Shape();
+  brep::CadModel model(BRepAlgoAPI_Common(along_x, along_z).Shape(), "part");
+  model.tessellate({.deflection = 0.1});
+  const brep::CadMeasures measures = model.measures();
+  ASSERT_EQ(measures.volumes.size(), 1U);
+  EXPECT_NEAR(measures.volumes[0].value().exact, 16. / 3 * 27, 1e-9 * 144);
+  const std::vector<double> areas = exact(measures.areas);
+  EXPECT_NEAR(std::accumulate(areas.begin(), areas.end(), 0.), 16 * 9, 1e-9 * 144);
+}
+
+TEST(CadMeasures, OfACapThatNoParameterLinesBound) {
+  const TopoDS_Shape beyond = BRepPrimAPI_MakeBox(gp_Pnt(-9, 2, -9), 18, 9, 18).Shape();
+  brep::CadModel model(BRepAlgoAPI_Common(BRepPrimAPI_MakeSphere(5).Shape(), beyond).Shape(), "part");
+  model.tessellate({.deflection = 0.1});
+  const brep::CadMeasures measures = model.measures();
+  ASSERT_EQ(measures.volumes.size(), 1U);
+  EXPECT_NEAR(measures.volumes[0].value().exact, 36 * pi, 1e-7 * 36 * pi);
+  const std::vector<double> areas = exact(measures.areas);
+  ASSERT_EQ(areas.size(), 2U);
+  EXPECT_NEAR(areas[0], 21 * pi, 1e-7 * 21 * pi);
+  EXPECT_NEAR(areas[1], 30 * pi, 1e-9 * 30 * pi);
+}
+
+TEST(CadMeasures, OfOverlappingSolids) {
+  // A pin half in a plate, which gets the common part.
+  const TopoDS_Shape plate = BRepPrimAPI_MakeBox(gp_Pnt(-10, -10, 0), 20, 20, 4).Shape();
+  const TopoDS_Shape pin = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(0, 0, 2), gp::DZ()), 3, 4).Shape();
+  brep::CadModel model(compound({plate, pin}), "part");
+  model.tessellate({.deflection = 0.3});
+  const brep::CadMeasures measures = model.measures();
+  ASSERT_EQ(measures.volumes.size(), 2U);
+  EXPECT_NEAR(measures.volumes[0].value().exact, 1600, 1e-6);
+  EXPECT_NEAR(measures.volumes[1].value().exact, 18 * pi, 1e-6);
+}
+
+/// The complex that the program makes of a shape, and what it knows of the measures.
+struct Known {
+  Plc plc;
+  ShapeMeasures measures;
+};
+
+Known known_of(const TopoDS_Shape& shape) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("shape.brep");
+  BRepTools::Write(shape, path.c_str());
+  cli::InputReading reading;
+  reading.distance = [](double diagonal) { return 0.01 * diagonal; };
+  cli::ComplexInput input({path}, reading);
+  Known known;
+  known.plc = input.build({});
+  known.measures = input.exact_measures(known.plc);
+  return known;
+}
+
+std::map<Tag, double> by_region(const Known& known) {
+  std::map<Tag, double> volumes;
+  for (Index r = 1; r < known.plc.regions.size(); ++r)
+    volumes[known.plc.regions[r].tag] = known.measures.volumes.at(r);
+  return volumes;
+}
+
+TEST(CadMeasures, ReachTheComplex) {
+  const Known known = known_of(BRepPrimAPI_MakeCylinder(3, 7).Shape());
+  EXPECT_LT(known.plc.regions[1].volume, 62.9 * pi);
+  ASSERT_EQ(known.measures.volumes.size(), 2U);
+  EXPECT_TRUE(std::isnan(known.measures.volumes[0]));
+  EXPECT_NEAR(known.measures.volumes[1], 63 * pi, 1e-9);
+  ASSERT_EQ(known.measures.areas.size(), 3U);
+  for (Index p = 0; p < 3; ++p)
+    EXPECT_NEAR(known.measures.areas[p], known.plc.patches[p].planar ? 9 * pi : 42 * pi, 1e-9);
+  ASSERT_EQ(known.measures.lengths.size(), 2U);
+  for (const double length : known.measures.lengths) EXPECT_NEAR(length, 6 * pi, 1e-9);
+}
+
+TEST(CadMeasures, OfASolidLackWhatLiesInside) {
+  const double ball = 4. / 3 * pi * 8;
+  const Known known = known_of(
+      compound({BRepPrimAPI_MakeSphere(10).Shape(), BRepPrimAPI_MakeSphere(gp_Pnt(5, 0, 0), 2).Shape(),
+                BRepPrimAPI_MakeSphere(gp_Pnt(5, 0, 0), 1).Shape()}));
+  const std::map<Tag, double> volumes = by_region(known);
+  ASSERT_EQ(volumes.size(), 3U);
+  EXPECT_NEAR(volumes.at(1), 4. / 3 * pi * 1000 - ball, 1e-6);
+  EXPECT_NEAR(volumes.at(2), ball * 7 / 8, 1e-6);
+  EXPECT_NEAR(volumes.at(3), ball / 8, 1e-6);
+}
+
+TEST(CadMeasures, OfAFaceThatIsTwoPatches) {
+  // A block stands on a plate: its foot parts the plate's top, whose pieces keep one number.
+  const Known known =
+      known_of(compound({BRepPrimAPI_MakeBox(10, 10, 1).Shape(),
+                         BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(5, 5, 1), gp::DZ()), 2, 3).Shape()}));
+  std::map<Tag, std::vector<double>> areas;
+  for (Index p = 0; p < known.plc.patches.size(); ++p)
+    areas[known.plc.patches[p].tag].push_back(known.measures.areas.at(p));
+  std::size_t several = 0;
+  for (const auto& [face, pieces] : areas) {
+    if (pieces.size() == 1) continue;
+    ++several;
+    EXPECT_NEAR(std::accumulate(pieces.begin(), pieces.end(), 0.), 100, 1e-6);
+    EXPECT_NEAR(*std::min_element(pieces.begin(), pieces.end()), 4 * pi, 0.1);
+  }
+  EXPECT_EQ(several, 1U);
+  const std::map<Tag, double> volumes = by_region(known);
+  EXPECT_NEAR(volumes.at(1), 100, 1e-6);
+  EXPECT_NEAR(volumes.at(2), 12 * pi, 1e-6);
+}
+
+TEST(CadMeasures, AreNotKnownOfOtherFiles) {
+  const TemporaryFolder folder;
+  const std::string block = folder.file("block.brep");
+  BRepTools::Write(BRepPrimAPI_MakeBox(10, 10, 10).Shape(), block.c_str());
+  const std::string corner = folder.write(
+      "corner.off", "OFF\n4 4 0\n20 0 0\n21 0 0\n20 1 0\n20 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
+  cli::ComplexInput input({block, corner});
+  const Plc plc = input.build({});
+  const ShapeMeasures measures = input.exact_measures(plc);
+  for (Index r = 1; r < plc.regions.size(); ++r) {
+    const bool is_block = plc.regions[r].volume > 1;
+    EXPECT_EQ(std::isnan(measures.volumes.at(r)), !is_block);
+    if (is_block) {
+      EXPECT_NEAR(measures.volumes[r], 1000, 1e-9);
+    }
+  }
+  EXPECT_EQ(std::count_if(measures.areas.begin(), measures.areas.end(), [](double a) { return a == a; }), 6);
+  EXPECT_EQ(measures.areas.size(), 10U);
+  EXPECT_EQ(std::count_if(measures.lengths.begin(), measures.lengths.end(), [](double a) { return a == a; }),
+            12);
+  EXPECT_EQ(measures.lengths.size(), 18U);
+}
+
+TEST(CadMeasures, ReachTheCertificate) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("rod.brep");
+  BRepTools::Write(BRepPrimAPI_MakeCylinder(3, 7).Shape(), path.c_str());
+  cli::MeshArguments arguments;
+  arguments.inputs = {path};
+  arguments.mesh.size = 3;
+  const ShapeMeasures exact = cli::make_mesh(arguments).run.check.of_input;
+  ASSERT_EQ(exact.volumes.size(), 2U);
+  EXPECT_NEAR(exact.volumes[1], 63 * pi, 1e-9);
+  EXPECT_EQ(exact.areas.size(), 3U);
+  EXPECT_EQ(exact.lengths.size(), 2U);
+}
+
+}  // namespace
+}  // namespace collarmesh::testing
