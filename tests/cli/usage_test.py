@@ -15,7 +15,7 @@ from program import MODELS, PROGRAM, ProgramTest
 class Usage(ProgramTest):
     def test_help_tells_defaults_and_codes(self):
         run = self.expect(0, "--help")
-        for text in ("1/20 of the diagonal", "1/200 of the diagonal", "--coarsen", "--collar-angle", "--theta", "--improve", "Exit codes", "check", "info"):
+        for text in ("1/20 of the diagonal", "less where the part is thin", "--coarsen", "--collar-angle", "--theta", "--improve", "Exit codes", "check", "info"):
             self.assertIn(text, run.stdout)
         for command in ("check", "info", "convert", "repair"):
             self.assertIn("--feature-angle", self.expect(0, command, "--help").stdout)
