@@ -148,7 +148,9 @@ class Pipeline {
     build(given_.repair, all);
     bound_vertices(all.plc);
     std::exception_ptr error;
-    const auto [end, why] = attempt(all.plc, error);
+    const auto tried = attempt(all.plc, error);
+    const End end = tried.first;
+    const std::string& why = tried.second;
     if (end == End::holds) return;
     RepairOptions current = given_.repair;
     bool has_mesh = end == End::missed, built_last = true;
