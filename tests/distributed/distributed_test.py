@@ -172,7 +172,7 @@ class Bracket(DistributedTest):
 class Acute(DistributedTest):
     def test_collars(self):
         wedge(self.folder / "wedge.off")
-        mesh, report = self.assert_same_on_all_ranks("wedge.off", "--size", "0.3", "--coarsen", "off")
+        mesh, report = self.assert_same_on_all_ranks("wedge.off", "--size", "0.28", "--coarsen", "off")
         self.assert_sound(mesh, report)
         self.assertGreater(int((mesh.collar > 0).sum()), 0)
         self.assertAlmostEqual(mesh.volumes().sum(), 0.5 * math.sin(math.radians(20)), delta=1e-12)
