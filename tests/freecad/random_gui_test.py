@@ -192,7 +192,7 @@ class Sequence:
 
 async def test():
     FreeCADGui.activateWorkbench("FemWorkbench")
-    await w.wait_until(lambda: w.buttons_of(commands.MESH_COMMAND), "the buttons")
+    await w.wait_until(lambda: w.buttons_of(commands.MESH_COMMAND, grey=True), "the buttons")
     for seed in range(SEED, SEED + SEQUENCES):
         print("sequence", seed, flush=True)
         await Sequence(seed)._run()

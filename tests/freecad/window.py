@@ -111,10 +111,10 @@ async def click_command(command):
     await click(buttons_of(command)[0])
 
 
-def buttons_of(command):
-    """Those that a person can click."""
+def buttons_of(command, grey=False):
+    """Those that a person can click; with `grey` those that are seen."""
     return [button for bar in window.findChildren(QtGui.QToolBar) for button in bar.findChildren(QtGui.QToolButton)
-            if button.isVisible() and button.isEnabled() and button.defaultAction() is not None
+            if button.isVisible() and (grey or button.isEnabled()) and button.defaultAction() is not None
             and button.defaultAction().objectName() == command]
 
 
