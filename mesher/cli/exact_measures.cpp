@@ -28,7 +28,7 @@ double corrected(double in_complex, const brep::CadMeasure& measure) {
 struct Source {
   Index file;  // its first soup
   Tag number;
-  friend auto operator<=>(const Source&, const Source&) = default;
+  friend auto operator<=>(const Source&, const Source&) = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// The features that edges or faces became.
