@@ -212,7 +212,10 @@ TEST(Surfaces, ComplexEdgesAreWeldedAgainAndReported) {
     std::vector corners{v[a], v[b], v[c], v[d]};
     auto face = mesh.add_face(corners);
     if (face.is_valid()) continue;
-    for (auto& corner : corners) corner = mesh.add_vertex(mesh.point(corner));
+    for (auto& corner : corners) {
+      const auto place = mesh.point(corner);  // adding moves points
+      corner = mesh.add_vertex(place);
+    }
     face = mesh.add_face(corners);
     ASSERT_TRUE(face.is_valid());
     mesh.status(face).set_fixed_nonmanifold(true);
