@@ -49,7 +49,6 @@ struct Option {
   enum class Unit { number, length, degrees, of_diagonal, ratio, seconds, bytes };
   /// Who takes it, bits: the commands, and programs that call the mesher, as Python and FreeCAD. These do
   /// without options about files that are written and about messages.
-  // NOLINTNEXTLINE(clang-diagnostic-shadow): functions are called like commands
   enum Command : unsigned { mesh = 1, check = 2, info = 4, convert = 8, repair = 16, programs = 32 };
   /// Where in the RunOptions the value stands.
   struct Place {

@@ -59,6 +59,7 @@ std::vector<double> enclosed_by_patches(const Plc& plc) {
     }
   }
   std::vector<double> volumes;
+  volumes.reserve(regions.size());
   for (const Enclosed& region : regions) volumes.push_back(static_cast<double>(region.six_volume / 6));
   if (!volumes.empty()) volumes[0] = 0;
   return volumes;
