@@ -68,6 +68,20 @@ TEST(FeaturesOutside, FinsAreLeftOut) {
   expect_left_out(in_a_point);
 }
 
+// The surface distance goes by the triangles of the whole complex, of which those outside come first here.
+TEST(FeaturesOutside, DistancesAreThoseOfTheTrianglesInside) {
+  PolygonSoup sheet;
+  for (const double x : {-0.5, 0.0, 0.5}) add_triangle(sheet, {x, 2, 2}, {x + 0.3, 2, 2}, {x, 2.3, 2});
+  const PolygonSoup soup =
+      joined(joined(sheet, icosphere(1, 8)), translated(cylinder(0.05, 2, 32), {1.5, 0, 0}));
+  const Plc plc = build_plc({&soup, 1});
+  ASSERT_TRUE(tells_of_outside(plc));
+  MeshOptions options = with_size(0.5);
+  options.bounds.tolerance = default_tolerance(plc, 0.5);
+  ASSERT_TRUE(options.bounds.tolerance->varies());
+  EXPECT_EQ(faults(mesh_of(plc, options)), "");
+}
+
 // The balls of a crease need not keep a distance from them.
 TEST(FeaturesOutside, CollarsAreNoSmallerForThem) {
   const PolygonSoup alone = wedge(20, 1);

@@ -33,7 +33,7 @@ struct PipelineOptions {
   unsigned order = 1;         ///< of the cells, 1 or 2
   /// So many are tried, from `mesh.seed` on, until every guarantee holds; at least 1. The first mesh stays
   /// where none does.
-  unsigned seeds = 4;
+  unsigned seeds = 2;
   unsigned partitions = 0;  ///< the tets are divided among so many ranks (see `partition`); 0: they are not
   /// What the facets approximate, as a CAD shape. The mesh is kept within tighter bounds first, so that its
   /// vertices can move onto this; may be empty.

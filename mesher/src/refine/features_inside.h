@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "collarmesh/plc.h"
+#include "collarmesh/surface_tolerance.h"
 #include "collarmesh/tet_mesh.h"
 
 namespace collarmesh {
@@ -16,6 +17,10 @@ class FeaturesInside {
   explicit FeaturesInside(const Plc& complex);
 
   const Plc& plc() const { return reduced_ ? *reduced_ : complex_; }
+  /// A tolerance of the whole complex, for `plc()`.
+  SurfaceTolerance tolerance(const SurfaceTolerance& whole) const {
+    return reduced_ ? whole.of_patches(complex_, patches_) : whole;
+  }
   /// The features of a mesh of `plc()` become those of the whole complex.
   void restore_numbers(TetMesh& mesh) const;
 

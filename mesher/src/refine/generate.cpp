@@ -42,7 +42,9 @@ MeshResult generate(const Plc& plc, const MeshOptions& options, const Execution&
                     KnownNeighbours& neighbours) {
   require_valid(options);
   const FeaturesInside inside(plc);
-  Refinement refinement(inside.plc(), options, execution);
+  MeshOptions of_inside = options;
+  of_inside.bounds.tolerance = inside.tolerance(tolerance_of(plc, options.bounds, options.size));
+  Refinement refinement(inside.plc(), of_inside, execution);
   MeshResult result;
   result.status = refinement.run();
   result.statistics = refinement.statistics();

@@ -212,6 +212,21 @@ bool triangles_resolve(const Plc& plc, const SurfaceTolerance& tolerance) {
   return true;
 }
 
+SurfaceTolerance SurfaceTolerance::of_patches(const Plc& whole, std::span<const Index> patches) const {
+  if (!varies()) return *this;
+  Places places;
+  places.points = places_->points;
+  for (const Index p : patches) {
+    const auto first = places_->triangles.begin() + whole.patches[p].first_triangle;
+    places.triangles.insert(places.triangles.end(), first, first + whole.patches[p].triangle_count);
+    places.least_on_patch.push_back(places_->least_on_patch[p]);
+    places.largest_on_patch.push_back(places_->largest_on_patch[p]);
+  }
+  SurfaceTolerance of_patches = *this;
+  of_patches.places_ = std::make_shared<const Places>(std::move(places));
+  return of_patches;
+}
+
 double SurfaceTolerance::least_on_curve(const Plc::Curve& curve) const {
   return extreme_on(*this, curve, [](double a, double b) { return std::min(a, b); });
 }
