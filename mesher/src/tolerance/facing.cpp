@@ -6,16 +6,6 @@ namespace collarmesh {
 
 namespace {
 
-// The cosine between a patch's normal and that of what it faces; of patches that meet, in a wedge perhaps.
-constexpr double least_facing = 0.5, least_facing_of_neighbours = 0.966;
-
-std::vector<std::array<Index, 3>> triangles_of(const Plc& plc) {
-  std::vector<std::array<Index, 3>> triangles;
-  triangles.reserve(plc.triangles.size());
-  for (const Plc::Triangle& t : plc.triangles) triangles.push_back(t.points);
-  return triangles;
-}
-
 bool share(const std::vector<Index>& a, const std::vector<Index>& b) {  // sorted
   for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
     if (*i == *j) return true;
@@ -32,19 +22,31 @@ Vector normal_of(const std::array<Point, 3>& t) { return cross(t[1] - t[0], t[2]
 
 }  // namespace
 
+std::vector<std::array<Index, 3>> corners_of_triangles(const Plc& plc) {
+  std::vector<std::array<Index, 3>> triangles;
+  triangles.reserve(plc.triangles.size());
+  for (const Plc::Triangle& t : plc.triangles) triangles.push_back(t.points);
+  return triangles;
+}
+
+bool are_neighbours(const Plc& plc, Index patch, Index other) {
+  return patch == other || meet(plc.patches[patch], plc.patches[other]);
+}
+
+double least_facing(bool neighbours) { return neighbours ? 0.966 : 0.5; }
+
 double facing_distance(const Plc& plc, Index patch, const Point& x, const Vector& normal, const Vector& way,
                        Index triangle, const std::array<Point, 3>& corners) {
   const Index other = plc.triangles[triangle].patch;
   const Vector n = normal_of(corners);
   if (other == patch && dot(n, normal) > 0) return INFINITY;
-  const bool neighbours = other == patch || meet(plc.patches[patch], plc.patches[other]);
   const double towards = dot(n, way);
-  if (std::fabs(towards) < (neighbours ? least_facing_of_neighbours : least_facing) * norm(n))
-    return INFINITY;
+  if (std::fabs(towards) < least_facing(are_neighbours(plc, patch, other)) * norm(n)) return INFINITY;
   return dot(corners[0] - x, n) / towards;
 }
 
-FacingSurfaces::FacingSurfaces(const Plc& plc) : plc_(plc), triangles_(plc.points, triangles_of(plc)) {}
+FacingSurfaces::FacingSurfaces(const Plc& plc)
+    : plc_(plc), triangles_(plc.points, corners_of_triangles(plc)) {}
 
 FacingSurfaces::Facing FacingSurfaces::from(const Point& x, Index triangle, unsigned side, double widest,
                                             Crossings& crossings) const {

@@ -9,6 +9,13 @@
 
 namespace collarmesh {
 
+std::vector<std::array<Index, 3>> corners_of_triangles(const Plc& plc);
+/// Are they one patch, or do they have a curve or a vertex in common?
+bool are_neighbours(const Plc& plc, Index patch, Index other);
+/// The least cosine between a direction and the normal of a surface that faces it: of neighbours larger, as
+/// they may form a wedge.
+double least_facing(bool neighbours);
+
 /// How far the point x of a patch is, along a unit normal of the patch, from the plane of a triangle that
 /// the ray from x in the direction `way` (the normal or its opposite) crosses; infinite where the triangle
 /// does not face the patch. Of patches that meet elsewhere only what is almost parallel faces each other:

@@ -4,32 +4,11 @@
 #include <cmath>
 
 #include "collarmesh/plc_builder.h"
+#include "tolerance/facing.h"
 
 namespace collarmesh {
 
 namespace {
-
-// The cosine between a ray and the normal of what ends it; of patches that meet, in a wedge perhaps.
-constexpr double least_facing = 0.5, least_facing_of_neighbours = 0.966;
-
-std::vector<std::array<Index, 3>> triangles_of(const Plc& plc) {
-  std::vector<std::array<Index, 3>> triangles;
-  triangles.reserve(plc.triangles.size());
-  for (const Plc::Triangle& t : plc.triangles) triangles.push_back(t.points);
-  return triangles;
-}
-
-bool share(const std::vector<Index>& a, const std::vector<Index>& b) {  // sorted
-  for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
-    if (*i == *j) return true;
-    *i < *j ? ++i : ++j;
-  }
-  return false;
-}
-
-bool meet(const Plc::Patch& a, const Plc::Patch& b) {
-  return share(a.curves, b.curves) || share(a.vertices, b.vertices);
-}
 
 Vector unit(const Vector& v) {
   const double length = norm(v);
@@ -64,7 +43,7 @@ std::vector<Vector> smooth_normals(const Plc& plc) {
 }  // namespace
 
 Thickness::Thickness(const Plc& plc)
-    : plc_(plc), triangles_(plc.points, triangles_of(plc)), normals_(smooth_normals(plc)) {
+    : plc_(plc), triangles_(plc.points, corners_of_triangles(plc)), normals_(smooth_normals(plc)) {
   constexpr double crease_angle = 60;  // the default of Bounds
   for (const Crease& crease : find_creases(plc, crease_angle))
     if (crease.kind == Crease::Kind::facets || crease.kind == Crease::Kind::patch_fold)
@@ -89,9 +68,9 @@ Thickness::Opposite Thickness::at(Index triangle, unsigned side, Crossings& cros
     const unsigned from_side = towards > 0 ? 0 : 1;
     if (other == triangle || ends.regions[from_side] != region) continue;
     const Index opposite_patch = plc_.triangles[other].patch;
-    const bool neighbours = opposite_patch == patch || meet(plc_.patches[patch], ends);
+    const bool neighbours = are_neighbours(plc_, patch, opposite_patch);
     if (neighbours && creases_.contains(std::minmax(patch, opposite_patch))) continue;
-    if (std::fabs(towards) < (neighbours ? least_facing_of_neighbours : least_facing)) continue;
+    if (std::fabs(towards) < least_facing(neighbours)) continue;
     const auto [p, q, r] = triangles_.corners(other);
     const Vector flat = cross(q - p, r - p);
     const double distance = dot(p - centre, flat) / dot(way, flat);
