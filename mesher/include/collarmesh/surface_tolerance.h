@@ -45,7 +45,8 @@ class SurfaceTolerance {
     scaled.share_ *= share;
     return scaled;
   }
-  /// The same for a complex that has only some of the patches of `whole`, these in this order, and all points.
+  /// The same for a complex that has only some of the patches of `whole`, these in this order, and all
+  /// points.
   SurfaceTolerance of_patches(const Plc& whole, std::span<const Index> patches) const;
 
  private:
