@@ -55,6 +55,13 @@ struct CadFiles::File {
   double deflection;
   Index first_soup, soup_count;
   mutable std::optional<brep::CadMeasures> measures = {};  // of these soups, when asked for
+
+  /// With other triangles in the places of the former soups.
+  void cut_again(const brep::TessellationOptions& options, std::vector<PolygonSoup>& soups) {
+    std::vector<PolygonSoup> own = model->tessellate(options);
+    std::move(own.begin(), own.end(), soups.begin() + first_soup);
+    measures.reset();
+  }
 };
 
 CadFiles::CadFiles() = default;
@@ -88,10 +95,20 @@ void CadFiles::read(const std::string& path, std::string_view format, const CadR
 void CadFiles::tessellate(double finer, std::vector<PolygonSoup>& soups) {
   for (File& file : files_) {
     const CadWork cutting("cutting faces into finer triangles", file.model->name());
-    std::vector<PolygonSoup> own = file.model->tessellate(
-        {.deflection = file.deflection / finer, .angle = brep::TessellationOptions().angle / finer});
-    std::move(own.begin(), own.end(), soups.begin() + file.first_soup);
-    file.measures.reset();
+    file.cut_again(
+        {.deflection = file.deflection / finer, .angle = brep::TessellationOptions().angle / finer}, soups);
+  }
+}
+
+void CadFiles::tessellate(double finer, const std::set<std::pair<Index, Tag>>& faces,
+                          std::vector<PolygonSoup>& soups) {
+  for (File& file : files_) {
+    brep::TessellationOptions options{.deflection = file.deflection, .finer = finer};
+    for (const auto& [soup, number] : faces)
+      if (file_of(soup) == &file) options.finer_faces.push_back(number);
+    if (options.finer_faces.empty()) continue;
+    const CadWork cutting("cutting faces into finer triangles", file.model->name());
+    file.cut_again(options, soups);
   }
 }
 

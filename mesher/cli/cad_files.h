@@ -3,8 +3,10 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "collarmesh/geometry.h"
@@ -46,6 +48,9 @@ class CadFiles {
 
   /// Make triangles that are finer than the first ones by a factor, in the places of the former soups.
   void tessellate(double finer, std::vector<PolygonSoup>& soups);
+  /// Of some faces alone: by the number of their soup and their own.
+  void tessellate(double finer, const std::set<std::pair<Index, Tag>>& faces,
+                  std::vector<PolygonSoup>& soups);
 
   /// The nearest point of EdgeN (dimension 1) or FaceN (2) of the file that soup came from; nothing for
   /// soups of other files.

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <initializer_list>
 #include <iterator>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "collarmesh/error.h"
 #include "collarmesh/name_features.h"
@@ -149,21 +152,42 @@ Plc ComplexInput::build_valid(const PlcOptions& options, const RepairOptions& re
   return take(remove_noise(build_plc(soups_, options), soups_, options, repair, watched()));
 }
 
-/// Where the triangles are too coarse for the mesh to come, the complex of finer ones, if that is as good.
+/// The complex with finer triangles of the faces whose triangles are too coarse for the mesh to come, if it
+/// is as good. Where one side of a wall is cut finely and the other is not, the wall becomes thinner: then
+/// all faces are.
 Plc ComplexInput::resolved(Plc plc, const PlcOptions& options, const RepairOptions& repair) {
-  constexpr double finer = 4;
-  if (!reading_.tolerance || built_.repaired.repaired || triangles_resolve(plc, reading_.tolerance(plc)))
-    return plc;
+  constexpr double finer = 4, little = 2e-3;
+  if (!reading_.tolerance || built_.repaired.repaired) return plc;
+  std::set<std::pair<Index, Tag>> faces;
+  for (const Index patch : coarse_patches(plc, reading_.tolerance(plc)))
+    faces.emplace(plc.patches[patch].file, plc.patches[patch].tag);
+  if (faces.empty()) return plc;
+  const double most_off = std::max(volume_off(plc), little);
   Built coarse = std::exchange(built_, {});
-  tessellate(finer);
-  try {
-    Plc fine = build_valid(options, repair);
-    if (!built_.repaired.repaired) return fine;
-  } catch (const PlcError&) {
+  for (const bool everywhere : {false, true}) {
+    everywhere ? tessellate(finer) : tessellate(finer, faces);
+    try {
+      Plc fine = build_valid(options, repair);
+      if (!built_.repaired.repaired && volume_off(fine) <= most_off) return fine;
+    } catch (const PlcError&) {
+    }
+    built_ = {};
   }
   tessellate(1);
   built_ = std::move(coarse);
   return plc;
+}
+
+/// By how much the volume of a region differs from the exact one, relatively, at most.
+double ComplexInput::volume_off(const Plc& plc) const {
+  std::vector<Tag> patches, curves;
+  for (const Plc::Patch& patch : plc.patches) patches.push_back(patch.tag);
+  for (const Plc::Curve& curve : plc.curves) curves.push_back(curve.tag);
+  const std::vector<double> exact = measures_behind(plc, {soups(), patches, curves}, cad_).volumes;
+  double most = 0;
+  for (std::size_t r = 1; r < std::min(exact.size(), plc.regions.size()); ++r)
+    if (exact[r] > 0) most = std::max(most, std::fabs(plc.regions[r].volume / exact[r] - 1));
+  return most;
 }
 
 PlcError ComplexInput::with_advice(const PlcError& error, const RepairOptions& options) const {
@@ -176,6 +200,13 @@ void ComplexInput::tessellate(double finer) {
   reading_.stop();
   if (finer_ != finer) cad_.tessellate(finer, soups_);
   finer_ = finer;
+}
+
+/// Some faces alone.
+void ComplexInput::tessellate(double finer, const std::set<std::pair<Index, Tag>>& faces) {
+  reading_.stop();
+  cad_.tessellate(finer, faces, soups_);
+  finer_ = 0;
 }
 
 Plc ComplexInput::build_repaired(const PlcOptions& options, const RepairOptions& repair) {

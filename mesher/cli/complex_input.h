@@ -2,7 +2,9 @@
 
 #include <atomic>
 #include <functional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cad_files.h"
@@ -71,7 +73,9 @@ class ComplexInput {
   Plc build_repaired(const PlcOptions& options, const RepairOptions& repair);
   PlcError with_advice(const PlcError& error, const RepairOptions& options) const;
   Plc take(RepairedPlc result);
+  double volume_off(const Plc& plc) const;
   void tessellate(double finer);
+  void tessellate(double finer, const std::set<std::pair<Index, Tag>>& faces);
 
   Execution watched() const;
 
@@ -85,7 +89,7 @@ class ComplexInput {
   InputReading reading_;
   std::vector<PolygonSoup> soups_;  // as they were read
   CadFiles cad_;
-  double finer_ = 1;  // than the first triangles of CAD shapes
+  double finer_ = 1;  // than the first triangles of CAD shapes; 0 where some faces alone are
   Built built_;
 };
 

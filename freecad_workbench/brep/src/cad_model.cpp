@@ -85,8 +85,9 @@ std::vector<PolygonSoup> CadModel::tessellate(const TessellationOptions& options
   constexpr double relative_deflection = 1e-4;
   parts_->deflection = options.deflection > 0 ? options.deflection : relative_deflection * parts_->diagonal;
   return on_shape(parts_->name, "cutting faces into triangles", [&] {
-    parts_->tessellation =
-        brep::tessellate(parts_->topology, parts_->name, parts_->deflection, options.angle);
+    TessellationOptions absolute = options;
+    absolute.deflection = parts_->deflection;
+    parts_->tessellation = brep::tessellate(parts_->topology, parts_->name, absolute);
     parts_->exact = std::make_unique<NearestOnShape>(parts_->tessellation);
     return parts_->tessellation.soups;
   });

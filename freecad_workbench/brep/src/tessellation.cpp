@@ -10,6 +10,7 @@
 #include <BRepAdaptor_Surface.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <GCPnts_TangentialDeflection.hxx>
 #include <Geom2d_Curve.hxx>
@@ -23,10 +24,12 @@
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopTools_ListOfShape.hxx>
 #include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
 #include <TopoDS_Vertex.hxx>
 
 #include <algorithm>
 #include <numbers>
+#include <set>
 
 namespace collarmesh::brep {
 
@@ -51,19 +54,26 @@ class Tessellator {
     is_vertex_.assign(points_.size(), false);
   }
 
-  Tessellation run(double deflection, double angle) {
-    deflection_ = deflection;
-    angle_ = angle * std::numbers::pi / 180;
+  Tessellation run(const TessellationOptions& options) {
+    finer_faces_.insert(options.finer_faces.begin(), options.finer_faces.end());
     BRepTools::Clean(topology_.all);
-    IMeshTools_Parameters parameters;
-    parameters.Deflection = deflection;
-    parameters.Angle = angle_;
-    parameters.InParallel = true;
-    const BRepMesh_IncrementalMesh mesh(topology_.all, parameters);
+    // Finer ones first: the others take over the chords of edges that they share.
+    if (const TopoDS_Compound finer = finer_faces(); finer.NbChildren() > 0) {
+      set_fineness(options, true);
+      cut(finer);
+    }
+    set_fineness(options, false);
+    cut(topology_.all);
     std::vector<int> failed;
-    for (int f = 1; f <= faces_.Extent(); ++f)
+    for (int f = 1; f <= faces_.Extent(); ++f) {
+      set_fineness(options, is_finer(faces_(f)));
       if (!add_face(TopoDS::Face(faces_(f)), f)) failed.push_back(f);
-    for (const int f : failed) mend(TopoDS::Face(faces_(f)), f);
+    }
+    for (const int f : failed) {
+      set_fineness(options, is_finer(faces_(f)));
+      mend(TopoDS::Face(faces_(f)), f);
+    }
+    set_fineness(options, false);
     require_triangles();
     bend_single_chords();
     find_features();
@@ -77,6 +87,31 @@ class Tessellator {
   static constexpr double straight_ = 1e-13;  // rounding, relative to the diagonal
   static constexpr double seam_gap_ = 1e-3;   // between the ends of edges in the parameter plane, likewise
   static constexpr double flat_ = 1e-3;       // height of a triangle without one, relative to the deflection
+
+  void set_fineness(const TessellationOptions& options, bool finer) {
+    const double by = finer ? options.finer : 1;
+    deflection_ = options.deflection / by;
+    angle_ = options.angle / by * std::numbers::pi / 180;
+  }
+
+  bool is_finer(const TopoDS_Shape& face) const { return finer_faces_.contains(topology_.number(face)); }
+
+  TopoDS_Compound finer_faces() const {
+    TopoDS_Compound faces;
+    BRep_Builder builder;
+    builder.MakeCompound(faces);
+    for (int f = 1; f <= faces_.Extent(); ++f)
+      if (is_finer(faces_(f))) builder.Add(faces, faces_(f));
+    return faces;
+  }
+
+  void cut(const TopoDS_Shape& shape) const {
+    IMeshTools_Parameters parameters;
+    parameters.Deflection = deflection_;
+    parameters.Angle = angle_;
+    parameters.InParallel = true;
+    const BRepMesh_IncrementalMesh mesh(shape, parameters);
+  }
 
   static std::size_t slot(int index) { return static_cast<std::size_t>(index - 1); }
 
@@ -531,14 +566,17 @@ class Tessellator {
   std::vector<std::vector<double>> edge_parameters_;
   std::vector<std::vector<std::array<Index, 3>>> face_triangles_;
   std::vector<bool> is_feature_, is_vertex_;
-  double deflection_ = 0, angle_ = 0, diagonal_ = 0;
+  std::set<Tag> finer_faces_;
+  double deflection_ = 0, angle_ = 0;  // of the faces that are being cut
+  double diagonal_ = 0;
   Tessellation result_;
 };
 
 }  // namespace
 
-Tessellation tessellate(const Topology& topology, const std::string& file, double deflection, double angle) {
-  return Tessellator(topology, file).run(deflection, angle);
+Tessellation tessellate(const Topology& topology, const std::string& file,
+                        const TessellationOptions& options) {
+  return Tessellator(topology, file).run(options);
 }
 
 }  // namespace collarmesh::brep

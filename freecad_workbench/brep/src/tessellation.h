@@ -27,7 +27,8 @@ struct Tessellation {
 };
 
 /// Triangulate all faces; neighbours share the points of their edges, but for faces that notes name.
-/// Throws PlcError when no face has a triangulation.
-Tessellation tessellate(const Topology& topology, const std::string& file, double deflection, double angle);
+/// Throws PlcError when no face has a triangulation. Precondition: the deflection is above 0.
+Tessellation tessellate(const Topology& topology, const std::string& file,
+                        const TessellationOptions& options);
 
 }  // namespace collarmesh::brep

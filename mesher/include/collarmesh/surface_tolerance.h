@@ -69,8 +69,8 @@ SurfaceTolerance default_tolerance(const Plc& plc, double size, int order = 1);
 /// The largest of them by place, of all sizes and orders.
 SurfaceTolerance largest_default_tolerance(const Plc& plc);
 
-/// Are the triangles of the smooth patches nearer to the surfaces that they stand for than a quarter of the
-/// tolerance, as far as the angles between them tell? Cost: near linear in the triangles.
-bool triangles_resolve(const Plc& plc, const SurfaceTolerance& tolerance);
+/// The smooth patches whose triangles are farther from the surfaces that they stand for than a quarter of the
+/// tolerance, as far as the angles between them tell. Cost: near linear in the triangles.
+std::vector<Index> coarse_patches(const Plc& plc, const SurfaceTolerance& tolerance);
 
 }  // namespace collarmesh

@@ -209,10 +209,17 @@ void SurfaceCheck::seed_missed_patch(Index patch) {
 void SurfaceCheck::prepare_tessellation() {
   for (Index patch = 0; patch < domain_.plc.patches.size(); ++patch) {
     first_tessellation_point_.push_back(tessellation_.size());
-    if (domain_.plc.patches[patch].planar) continue;
+    const Plc::Patch& p = domain_.plc.patches[patch];
+    if (p.planar) continue;
+    const auto add = [&](const Point& at, double tolerance) {
+      if (collars_.ball_containing(at) == none) tessellation_.push_back({at, tolerance});
+    };
     for (const Index point : domain_.patch_points[patch])
-      if (collars_.ball_containing(domain_.points[point]) == none)
-        tessellation_.push_back({point, no_face, 0});
+      add(domain_.points[point], domain_.tolerance.at_point(point));
+    for (Index t = p.first_triangle; t < p.first_triangle + p.triangle_count; ++t) {
+      const auto& [a, b, c] = domain_.plc.triangles[t].points;
+      add((domain_.points[a] + domain_.points[b] + domain_.points[c]) / 3, domain_.tolerance.at_triangle(t));
+    }
   }
   first_tessellation_point_.push_back(tessellation_.size());
 }
@@ -251,24 +258,26 @@ bool SurfaceCheck::resolve_distant_points(const std::vector<FaceId>& faces) {
     std::vector<std::array<Index, 3>> corners;
     for (const FaceId face : faces_of[patch]) corners.push_back(mesh_.face_vertices(face));
     const TriangleHierarchy surface(positions, std::move(corners));
-    std::vector<std::pair<double, Index>> farthest(faces_of[patch].size(), {0, none});
+    struct Farthest {
+      double squared_distance = 0;
+      const TessellationPoint* point = nullptr;
+    };
+    std::vector<Farthest> farthest(faces_of[patch].size());
     Index near = none;  // the next point is often near the same triangle
     for (TessellationPoint* p : lost) {
-      const Point& at = domain_.points[p->point];
-      const double tolerance = domain_.tolerance.at_point(p->point);
-      near = surface.triangle_within(at, tolerance * tolerance, near);
+      near = surface.triangle_within(p->at, p->tolerance * p->tolerance, near);
       if (near != none) {
         p->near = faces_of[patch][near];
         p->generation = mesh_.generation(cell_of(p->near));
         continue;
       }
       Index nearest = none;
-      const double d = surface.squared_distance_to(at, INFINITY, &nearest);
-      if (d > farthest[nearest].first) farthest[nearest] = {d, p->point};
+      const double d = surface.squared_distance_to(p->at, INFINITY, &nearest);
+      if (d > farthest[nearest].squared_distance) farthest[nearest] = {d, p};
     }
-    for (const auto& [d, point] : farthest) {
-      if (point == none) continue;
-      points_.add(domain_.points[point], {2, patch});
+    for (const Farthest& f : farthest) {
+      if (f.point == nullptr) continue;
+      points_.add(f.point->at, {2, patch});
       found = true;
     }
   }

@@ -19,8 +19,8 @@ std::vector<Index> spread_points(std::span<const Index> candidates, const std::v
 /// form a manifold that ends at the patch's curves, whether any part of a smooth patch was missed, and flat
 /// cells. Every violation found is queued.
 ///
-/// State: which triangle each point of the smooth patches' tessellation was near to when last looked at, so
-/// that a round looks at what has changed; the number of rounds. The loop asks.
+/// State: which face each corner and centre of the smooth patches' triangles was near to when last looked at,
+/// so that a round looks at what has changed; the number of rounds. The loop asks.
 class SurfaceCheck {
  public:
   /// All are kept by reference.
@@ -49,11 +49,13 @@ class SurfaceCheck {
   bool relabel_flat_cells();
 
  private:
-  /// A point of the complex on a smooth patch, with a triangle of the patch that it was near to.
+  /// A corner or the centre of one of a smooth patch's triangles, as the certificate looks at them, with a
+  /// face of the mesh that it was near to.
   struct TessellationPoint {
-    Index point;
-    FaceId near;
-    std::uint32_t generation;  // of the face's cell
+    Point at;
+    double tolerance;
+    FaceId near = no_face;
+    std::uint32_t generation = 0;  // of the face's cell
   };
   std::vector<bool> vertices_at_collars() const;
   bool check_patch_topology(const std::vector<FaceId>& faces);

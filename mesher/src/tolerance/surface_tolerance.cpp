@@ -176,7 +176,10 @@ SurfaceTolerance::SurfaceTolerance(const Plc& plc, std::vector<double> triangles
   places_ = std::make_shared<const Places>(std::move(places));
 }
 
-bool triangles_resolve(const Plc& plc, const SurfaceTolerance& tolerance) {
+namespace {
+
+// Are the triangles of a smooth patch as near to its surface as `coarse_patches` wants?
+bool triangles_resolve(const Plc& plc, const Plc::Patch& patch, const SurfaceTolerance& tolerance) {
   constexpr double share_of_triangles = 0.25;
   struct Side {
     std::array<Index, 2> edge;
@@ -188,28 +191,34 @@ bool triangles_resolve(const Plc& plc, const SurfaceTolerance& tolerance) {
   const auto resolved = [&](const Side& side, double turn) {
     return side.height * turn / 8 <= share_of_triangles * tolerance.at_triangle(side.triangle);
   };
-  for (const Plc::Patch& patch : plc.patches) {
-    if (patch.planar) continue;
-    std::vector<Side> sides;
-    for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
-      const auto& p = plc.triangles[t].points;
-      const Vector n = cross(plc.points[p[1]] - plc.points[p[0]], plc.points[p[2]] - plc.points[p[0]]);
-      for (unsigned k = 0; k < 3; ++k)
-        if (const double length = distance(plc.points[p[k]], plc.points[p[(k + 1) % 3]]);
-            length > 0 && norm(n) > 0)
-          sides.push_back({{std::min(p[k], p[(k + 1) % 3]), std::max(p[k], p[(k + 1) % 3])},
-                           t,
-                           n / norm(n),
-                           norm(n) / length});
-    }
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.edge < b.edge; });
-    for (std::size_t i = 1; i < sides.size(); ++i) {
-      if (sides[i - 1].edge != sides[i].edge) continue;
-      const double turn = std::acos(std::clamp(dot(sides[i - 1].normal, sides[i].normal), -1.0, 1.0));
-      if (!resolved(sides[i - 1], turn) || !resolved(sides[i], turn)) return false;
-    }
+  std::vector<Side> sides;
+  for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
+    const auto& p = plc.triangles[t].points;
+    const Vector n = cross(plc.points[p[1]] - plc.points[p[0]], plc.points[p[2]] - plc.points[p[0]]);
+    for (unsigned k = 0; k < 3; ++k)
+      if (const double length = distance(plc.points[p[k]], plc.points[p[(k + 1) % 3]]);
+          length > 0 && norm(n) > 0)
+        sides.push_back({{std::min(p[k], p[(k + 1) % 3]), std::max(p[k], p[(k + 1) % 3])},
+                         t,
+                         n / norm(n),
+                         norm(n) / length});
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.edge < b.edge; });
+  for (std::size_t i = 1; i < sides.size(); ++i) {
+    if (sides[i - 1].edge != sides[i].edge) continue;
+    const double turn = std::acos(std::clamp(dot(sides[i - 1].normal, sides[i].normal), -1.0, 1.0));
+    if (!resolved(sides[i - 1], turn) || !resolved(sides[i], turn)) return false;
   }
   return true;
+}
+
+}  // namespace
+
+std::vector<Index> coarse_patches(const Plc& plc, const SurfaceTolerance& tolerance) {
+  std::vector<Index> coarse;
+  for (Index p = 0; p < plc.patches.size(); ++p)
+    if (!plc.patches[p].planar && !triangles_resolve(plc, plc.patches[p], tolerance)) coarse.push_back(p);
+  return coarse;
 }
 
 SurfaceTolerance SurfaceTolerance::of_patches(const Plc& whole, std::span<const Index> patches) const {

@@ -32,6 +32,8 @@ struct CadOptions {
 struct TessellationOptions {
   double deflection = 0;  ///< largest distance from curved edges and faces, absolute; 0: 1e-4 of the diagonal
   double angle = 20;      ///< degrees that neighbouring chords and triangles turn at most
+  std::vector<Tag> finer_faces{};  ///< numbers of faces that are cut more finely
+  double finer = 1;                ///< by this, in both
 };
 
 /// A length, area or volume.
