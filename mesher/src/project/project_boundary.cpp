@@ -26,7 +26,8 @@ class BoundaryProjection {
         execution_(execution),
         tolerance_(tolerance_of_any_size(plc, options.bounds)),
         thin_(plc, mesh, options.bounds.thin_angle),
-        room_(mesh, limited_, bounds(plc)) {}
+        bounds_(bounds(plc)),
+        room_(mesh, limited_, bounds_) {}
 
   ProjectReport run() {
     find_targets();
@@ -56,7 +57,8 @@ class BoundaryProjection {
   }
 
  private:
-  static constexpr double largest_sag = 0.5;  // relative to the tolerance
+  // Relative to the tolerance: of edges and triangles between vertices, and of vertices.
+  static constexpr double largest_sag = 0.5, most_off = 0.75;
   // A way of so many times the shortest edge at the vertex leads through other tets: parts of a CAD file may
   // be off each other by more than what lies between them.
   static constexpr double longest_way = 2;
@@ -80,6 +82,13 @@ class BoundaryProjection {
     return bounds;
   }
 
+  // How far a vertex may go from a feature of the complex. Where this is little, the complex may be farther
+  // off the exact geometry than the mesh may be off the complex.
+  double farthest_from(unsigned dimension, Index feature) const {
+    const double sag = dimension == 1 ? bounds_.curve_sag[feature] : bounds_.patch_sag[feature];
+    return most_off / largest_sag * sag;
+  }
+
   void find_targets() {
     slot_of_.assign(mesh_.points.size(), none);
     for (Index p = 0; p < mesh_.features.size(); ++p) {
@@ -91,7 +100,7 @@ class BoundaryProjection {
       ++report_.vertices;
       const double off = distance(*target, mesh_.points[p]);
       const std::optional<Point> place =
-          off <= tolerance_.largest() ? flat_.keep(dimension, feature, *target) : std::nullopt;
+          off <= farthest_from(dimension, feature) ? flat_.keep(dimension, feature, *target) : std::nullopt;
       if (!place) {
         add_exception(p, off);
         continue;
@@ -225,6 +234,7 @@ class BoundaryProjection {
   const Execution& execution_;
   SurfaceTolerance tolerance_;
   improvement::ThinShape thin_;
+  projection::Bounds bounds_;
   projection::Relaxation room_;
   std::vector<Move> moves_;
   std::vector<Index> slot_of_;           // in moves_, by point
