@@ -20,6 +20,9 @@ ShapeMeasures measures_of(const Plc& plc);
 /// By how much a measure of the mesh differs from the input's, in percent of this; NaN: the input has none.
 inline double percent_off(double mesh, double input) { return 100 * (mesh - input) / input; }
 
+/// By how much the volume of a region may differ from the input's, relatively, for elements of this order.
+constexpr double volume_allowance(int order) { return order == 1 ? 0.05 : 0.01; }
+
 /// The nodes of a triangle of second order: corners a, b, c, then those amid ab, bc, ca.
 using CurvedTriangle = std::array<Point, 6>;
 /// The nodes of an edge of second order: its ends, then the one between.

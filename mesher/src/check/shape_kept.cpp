@@ -43,14 +43,14 @@ void take_exact(const std::vector<double>& exact, std::vector<double>& values) {
 }  // namespace
 
 void check_shape_kept(const Subject& subject, CheckReport& report, Findings& findings) {
-  constexpr double warned_of = 0.02, largest_of_first_order = 0.05, largest_of_second_order = 0.01;
+  constexpr double warned_of = 0.02;
   const Plc& plc = subject.plc;
   report.of_input = collarmesh::measures_of(plc);
   take_exact(subject.options.exact.volumes, report.of_input.volumes);
   take_exact(subject.options.exact.areas, report.of_input.areas);
   take_exact(subject.options.exact.lengths, report.of_input.lengths);
   report.of_mesh = measures_of(subject, report.region_volumes);
-  const double largest = subject.mesh.order() == 1 ? largest_of_first_order : largest_of_second_order;
+  const double largest = volume_allowance(subject.mesh.order());
   const bool asked_for = subject.options.bounds.distance > 0;
   for (Index r = 1; r < plc.regions.size(); ++r) {
     const double input = report.of_input.volumes[r], made = report.of_mesh.volumes[r];

@@ -229,14 +229,29 @@ class Pipeline {
   }
 
   /// Refinement that does not end at one place with the samples of one seed may well end with those of
-  /// another.
+  /// another. Where regions do not keep their volumes the surface distance shrinks, too.
   void try_seeds(const Plc& plc) {
     const std::uint64_t first = given_.mesh.seed;
     for (std::uint64_t seed = first + 1; seed < first + given_.seeds && !made_.guarantees_hold(); ++seed) {
       const std::string missed = made_.missed();
+      if (const double share = share_for_volumes(); share < 1) tolerance_ = tolerance(plc, 1).scaled(share);
       if (find_better(true, [&] { mesh(plc, seed); }))
         made_.check.notes.push_back(fmt::format("made with seed {}, as with {} {}", seed, first, missed));
     }
+  }
+
+  /// Of the surface distance of first order, which is the smaller one, such that regions keep their volumes:
+  /// they lose about in proportion to it.
+  double share_for_volumes() const {
+    constexpr double aim = 0.7, least = 0.25;
+    const std::vector<double>&input = made_.check.of_input.volumes, &mesh = made_.check.of_mesh.volumes;
+    const double allowed = volume_allowance(static_cast<int>(given_.order));
+    double share = 1;
+    if (given_.mesh.bounds.distance > 0) return share;  // as asked for
+    for (std::size_t r = 1; r < std::min(input.size(), mesh.size()); ++r)
+      if (const double off = std::fabs(mesh[r] - input[r]); off > allowed * input[r])
+        share = std::min(share, std::max(least, aim * allowed * input[r] / off));
+    return share;
   }
 
   /// Make something in another way. What there is stays, unless it is no mesh or the other one keeps every
@@ -274,11 +289,16 @@ class Pipeline {
   }
 
   const SurfaceTolerance& tolerance(const Plc& plc) {
-    if (!tolerance_)
-      ThreadLimit(given_.mesh.threads).run([&] {
-        tolerance_ = tolerance_of(plc, given_.mesh.bounds, given_.mesh.size, static_cast<int>(given_.order));
-      });
+    if (!tolerance_) tolerance_ = tolerance(plc, static_cast<int>(given_.order));
     return *tolerance_;
+  }
+
+  SurfaceTolerance tolerance(const Plc& plc, int order) const {
+    std::optional<SurfaceTolerance> found;
+    ThreadLimit(given_.mesh.threads).run([&] {
+      found = tolerance_of(plc, given_.mesh.bounds, given_.mesh.size, order);
+    });
+    return *found;
   }
 
   /// Refinements end beyond far more vertices than the sizes ask for, while there are other repairs to try.
