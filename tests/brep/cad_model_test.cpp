@@ -2,6 +2,7 @@
 #include "collarmesh/brep/cad_model.h"
 
 #include <gtest/gtest.h>
+#include <BRepAlgoAPI_Fuse.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
@@ -16,10 +17,13 @@
 #include <TopoDS_Compound.hxx>
 #include <gp_Lin.hxx>
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "collarmesh/error.h"
 #include "collarmesh/plc_builder.h"
+#include "soup_measures.h"
 #include "support/leaks_allowed.h"
 #include "support/temporary_file.h"
 
@@ -126,6 +130,43 @@ TEST(CadTessellation, KeepsTheDeflection) {
         }
         EXPECT_GT(norm(centroid), radius - 2 * deflection);
       }
+    }
+  }
+}
+
+TEST(CadTessellation, SomeFacesMayBeFiner) {
+  const double radius = 5, deflection = 0.3, finer = 16;
+  CadModel model(BRepAlgoAPI_Fuse(BRepPrimAPI_MakeCylinder(radius, 20).Shape(),
+                                  BRepPrimAPI_MakeSphere(gp_Pnt(0, 0, 20), radius).Shape())
+                     .Shape(),
+                 "pin");
+  // Of the centres of a face's triangles from the cylinder or the ball, at most.
+  const auto off = [&](const PolygonSoup& soup, Tag face) {
+    double off = 0;
+    for (Index f = 0; f < soup.facet_count(); ++f) {
+      if (soup.facet_tag(f) != face) continue;
+      Point centre;
+      for (const Index p : soup.polygon(f)) centre = centre + soup.points[p] / 3;
+      off = std::max(off, radius - norm(Vector{centre.x, centre.y, std::max(0.0, centre.z - 20)}));
+    }
+    return off;
+  };
+  std::set<Tag> curved;
+  const std::vector<PolygonSoup> coarse = model.tessellate({.deflection = deflection, .angle = 60});
+  ASSERT_EQ(coarse.size(), 1U);
+  for (Index f = 0; f < coarse[0].facet_count(); ++f)
+    if (const Tag face = coarse[0].facet_tag(f); off(coarse[0], face) < radius / 2) curved.insert(face);
+  ASSERT_EQ(curved.size(), 2U);
+  for (const Tag face : curved) {
+    const std::vector<PolygonSoup> soups =
+        model.tessellate({.deflection = deflection, .angle = 60, .finer_faces = {face}, .finer = finer});
+    ASSERT_EQ(soups.size(), 1U);
+    EXPECT_EQ(open_sides(soups[0]), 0U);
+    for (const Tag other : curved) {
+      if (other == face)
+        EXPECT_LT(off(soups[0], other), 2 * deflection / finer);
+      else
+        EXPECT_GT(off(soups[0], other), 2 * deflection / finer);
     }
   }
 }
