@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import concurrent.futures
+import contextlib
 import csv
 import json
 import math
@@ -321,21 +322,24 @@ def main() -> None:
     parser.add_argument("--limit", type=float, default=120, help="seconds for one run")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--only", default="", help="names that contain this")
-    parser.add_argument("--out", type=Path, help="keep the rows in this file")
+    parser.add_argument("--out", type=Path,
+                        help="rows as they come: file, order, outcome, CPU seconds, tets, difference")
     options = parser.parse_args()
     if options.action == "write":
         write(options.folder)
         return
     files = [Path(str(f)[:-5]) for f in sorted(options.folder.glob("*.json")) if options.only in f.name]
-    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        rows = list(pool.map(lambda job: measure(job[0], options.program, job[1], options.limit),
-                             [(f, order) for f in files for order in options.orders]))
+    rows: list[Row] = []
+    with contextlib.ExitStack() as stack:
+        out = stack.enter_context(open(options.out, "w", newline="")) if options.out else None
+        pool = stack.enter_context(concurrent.futures.ThreadPoolExecutor(options.jobs))
+        jobs = [(f, order) for f in files for order in options.orders]
+        for row in pool.map(lambda job: measure(job[0], options.program, job[1], options.limit), jobs):
+            rows.append(row)
+            if out:
+                csv.writer(out, delimiter="\t").writerow(vars(row).values())
+                out.flush()
     print_table(rows)
-    if options.out:
-        with open(options.out, "w", newline="") as out:
-            writer = csv.writer(out, delimiter="\t")
-            writer.writerow(Row.__dataclass_fields__)
-            writer.writerows([list(vars(r).values()) for r in rows])
 
 
 if __name__ == "__main__":
