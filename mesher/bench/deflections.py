@@ -129,8 +129,8 @@ def deflection(part: Part, mesh: meshio.Mesh, order: int, folder: Path, limit: f
     if any(len(h[0]) == 0 for h in held) or len(looked_at) == 0:
         raise ProgramFailed("no nodes where it is held or looked at")
     with open(folder / "job.inp", "w") as out:
-        out.write("*NODE, NSET=all\n")
-        out.writelines("%d, %.15g, %.15g, %.15g\n" % (i + 1, *p) for i, p in enumerate(nodes))
+        out.write("*NODE, NSET=all\n")   # of a number CalculiX reads 20 characters
+        out.writelines("%d, %.12g, %.12g, %.12g\n" % (i + 1, *p) for i, p in enumerate(nodes))
         out.write(f"*ELEMENT, TYPE={element}, ELSET=body\n")
         out.writelines(", ".join(map(str, [i + 1, *t])) + "\n" for i, t in enumerate(tets))
         out.write("*NSET, NSET=looked\n" + "".join(f"{i + 1},\n" for i in looked_at))
