@@ -122,7 +122,10 @@ def parts() -> list[Part]:
 
 def deflection(part: Part, mesh: meshio.Mesh, order: int, folder: Path, limit: float) -> float:
     kind, element = {1: ("tetra", "C3D4"), 2: ("tetra10", "C3D10")}[order]
-    tets = np.concatenate([block.data for block in mesh.cells if block.type == kind])
+    blocks = [block.data for block in mesh.cells if block.type == kind]
+    if not blocks:
+        raise ProgramFailed("no tets")
+    tets = np.concatenate(blocks)
     used, tets = np.unique(tets, return_inverse=True)
     tets, nodes = tets.reshape(-1, 4 if order == 1 else 10) + 1, mesh.points[used]
     held, looked_at = part.held(nodes), part.looked_at(nodes)
@@ -141,8 +144,12 @@ def deflection(part: Part, mesh: meshio.Mesh, order: int, folder: Path, limit: f
             out.writelines(f"{i + 1}, {first}, {last}\n" for i in where)
         out.write(f"*DLOAD\nbody, GRAV, {part.weight:g}, 0, 0, -1\n*NODE PRINT, NSET=looked\nU\n*END STEP\n")
     run(["ccx", "-i", "job"], folder, limit)
+    if not (folder / "job.dat").exists():
+        raise ProgramFailed("no deflections")
     rows = [line.split() for line in (folder / "job.dat").read_text().splitlines()]
     moved = [float(r[3]) for r in rows if len(r) == 4 and r[0].isdigit()]
+    if not moved:
+        raise ProgramFailed("no deflections")
     return -sum(moved) / len(moved)
 
 

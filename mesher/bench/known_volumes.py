@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Families of bodies whose volumes are known, at default options: how far each region's volume is off, and with how many
-elements. Lengths are in target edge lengths, a twentieth of the diagonal, so a rod of radius 0.02 is fifty times thinner than
+elements. Most lengths are in target edge lengths, a twentieth of the diagonal, so a rod of radius 0.02 is fifty times thinner than
 the elements that are asked for.
 
 known_volumes.py write FOLDER makes the inputs: surfaces that are cut coarsely (24 edges to a circle) and finely (96), complexes

@@ -160,15 +160,18 @@ Plc ComplexInput::resolved(Plc plc, const PlcOptions& options, const RepairOptio
   if (!reading_.tolerance || built_.repaired.repaired) return plc;
   std::set<std::pair<Index, Tag>> faces;
   for (const Index patch : coarse_patches(plc, reading_.tolerance(plc)))
-    faces.emplace(plc.patches[patch].file, plc.patches[patch].tag);
+    if (cad_.measures(plc.patches[patch].file))  // of a CAD file
+      faces.emplace(plc.patches[patch].file, plc.patches[patch].tag);
   if (faces.empty()) return plc;
   const double most_off = std::max(volume_off(plc), little);
   Built coarse = std::exchange(built_, {});
   for (const bool everywhere : {false, true}) {
-    everywhere ? tessellate(finer) : tessellate(finer, faces);
     try {
+      everywhere ? tessellate(finer) : tessellate(finer, faces);
       Plc fine = build_valid(options, repair);
-      if (!built_.repaired.repaired && volume_off(fine) <= most_off) return fine;
+      if (!built_.repaired.repaired && fine.regions.size() == plc.regions.size() &&
+          volume_off(fine) <= most_off)
+        return fine;
     } catch (const PlcError&) {
     }
     built_ = {};
@@ -178,7 +181,7 @@ Plc ComplexInput::resolved(Plc plc, const PlcOptions& options, const RepairOptio
   return plc;
 }
 
-/// By how much the volume of a region differs from the exact one, relatively, at most.
+/// By how much the volume of a region differs from the exact one where this is known, relatively, at most.
 double ComplexInput::volume_off(const Plc& plc) const {
   std::vector<Tag> patches, curves;
   for (const Plc::Patch& patch : plc.patches) patches.push_back(patch.tag);
@@ -198,15 +201,15 @@ PlcError ComplexInput::with_advice(const PlcError& error, const RepairOptions& o
 
 void ComplexInput::tessellate(double finer) {
   reading_.stop();
-  if (finer_ != finer) cad_.tessellate(finer, soups_);
+  if (std::exchange(finer_, 0) != finer) cad_.tessellate(finer, soups_);
   finer_ = finer;
 }
 
 /// Some faces alone.
 void ComplexInput::tessellate(double finer, const std::set<std::pair<Index, Tag>>& faces) {
   reading_.stop();
-  cad_.tessellate(finer, faces, soups_);
   finer_ = 0;
+  cad_.tessellate(finer, faces, soups_);
 }
 
 Plc ComplexInput::build_repaired(const PlcOptions& options, const RepairOptions& repair) {

@@ -234,20 +234,20 @@ class Pipeline {
     const std::uint64_t first = given_.mesh.seed;
     for (std::uint64_t seed = first + 1; seed < first + given_.seeds && !made_.guarantees_hold(); ++seed) {
       const std::string missed = made_.missed();
-      if (const double share = share_for_volumes(); share < 1) tolerance_ = tolerance(plc, 1).scaled(share);
+      if (const double share = share_for_volumes(); share < 1) nearer_ = tolerance(plc, 1).scaled(share);
       if (find_better(true, [&] { mesh(plc, seed); }))
         made_.check.notes.push_back(fmt::format("made with seed {}, as with {} {}", seed, first, missed));
     }
   }
 
-  /// Of the surface distance of first order, which is the smaller one, such that regions keep their volumes:
-  /// they lose about in proportion to it.
+  /// Of the surface distance of first order, such that regions keep their volumes: they lose about in
+  /// proportion to it.
   double share_for_volumes() const {
     constexpr double aim = 0.7, least = 0.25;
     const std::vector<double>&input = made_.check.of_input.volumes, &mesh = made_.check.of_mesh.volumes;
     const double allowed = volume_allowance(static_cast<int>(given_.order));
     double share = 1;
-    if (given_.mesh.bounds.distance > 0) return share;  // as asked for
+    if (given_.mesh.bounds.distance > 0 || given_.mesh.bounds.tolerance) return share;  // as asked for
     for (std::size_t r = 1; r < std::min(input.size(), mesh.size()); ++r)
       if (const double off = std::fabs(mesh[r] - input[r]); off > allowed * input[r])
         share = std::min(share, std::max(least, aim * allowed * input[r] / off));
@@ -286,6 +286,7 @@ class Pipeline {
     if (all.repair.cancelled) stop();
     all.plc = std::move(built.plc);
     tolerance_.reset();
+    nearer_.reset();
   }
 
   const SurfaceTolerance& tolerance(const Plc& plc) {
@@ -332,7 +333,7 @@ class Pipeline {
     if (source_ != nullptr) source_->adapt(plc, options_);
     if (most_vertices_ > 0) options_.mesh.max_vertices = most_vertices_;
     require_known_tags(options_.mesh, plc);
-    options_.mesh.bounds.tolerance = tolerance(plc);
+    options_.mesh.bounds.tolerance = nearer_ ? *nearer_ : tolerance(plc);
     refined_with_ = options_of_refinement();
     refined_with_.seed = seed;
     refine();
@@ -431,9 +432,11 @@ class Pipeline {
 
   void certify() {
     begin("check", 0.86, given_.partitions > 0 ? 0.96 : 1);
+    Bounds promised = bounds();
+    promised.tolerance = tolerance(*plc_);
     made_.check = check(
         made_.result.mesh, *plc_,
-        {.bounds = bounds(), .exact = options_.exact_measures, .threads = options_.mesh.threads}, inner_);
+        {.bounds = promised, .exact = options_.exact_measures, .threads = options_.mesh.threads}, inner_);
     stop_if_asked();
   }
 
@@ -494,6 +497,7 @@ class Pipeline {
   KnownNeighbours neighbours_;  // of the mesh as it was refined
   const Plc* plc_ = nullptr;
   std::optional<SurfaceTolerance> tolerance_;  // of the complex at hand
+  std::optional<SurfaceTolerance> nearer_;     // what a further try keeps where regions lost volume
   PipelineResult made_;
   std::string_view stage_;
   double from_ = 0, to_ = 0, fraction_ = 0;  // of the stage in the whole

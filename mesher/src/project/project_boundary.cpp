@@ -3,12 +3,16 @@
 #include "collarmesh/project_boundary.h"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <unordered_set>
 
 #include "collarmesh/mesher.h"
 #include "common/flat_features.h"
 #include "common/thread_limit.h"
+#include "location/triangle_hierarchy.h"
 #include "project/relaxation.h"
+#include "tolerance/facing.h"
 
 namespace collarmesh {
 
@@ -19,6 +23,7 @@ class BoundaryProjection {
   BoundaryProjection(TetMesh& mesh, const Plc& plc, const ExactGeometry& exact, const ProjectOptions& options,
                      const Execution& execution)
       : mesh_(mesh),
+        plc_(plc),
         exact_(exact),
         flat_(plc),
         limited_(flat_.limit(exact)),
@@ -26,8 +31,7 @@ class BoundaryProjection {
         execution_(execution),
         tolerance_(tolerance_of_any_size(plc, options.bounds)),
         thin_(plc, mesh, options.bounds.thin_angle),
-        bounds_(bounds(plc)),
-        room_(mesh, limited_, bounds_) {}
+        room_(mesh, limited_, bounds(plc)) {}
 
   ProjectReport run() {
     find_targets();
@@ -57,7 +61,8 @@ class BoundaryProjection {
   }
 
  private:
-  // Relative to the tolerance: of edges and triangles between vertices, and of vertices.
+  // Relative to the tolerance: of edges and triangles between vertices, and of vertices, to the largest one
+  // on their feature.
   static constexpr double largest_sag = 0.5, most_off = 0.75;
   // A way of so many times the shortest edge at the vertex leads through other tets: parts of a CAD file may
   // be off each other by more than what lies between them.
@@ -82,14 +87,19 @@ class BoundaryProjection {
     return bounds;
   }
 
-  // How far a vertex may go from a feature of the complex. Where this is little, the complex may be farther
-  // off the exact geometry than the mesh may be off the complex.
-  double farthest_from(unsigned dimension, Index feature) const {
-    const double sag = dimension == 1 ? bounds_.curve_sag[feature] : bounds_.patch_sag[feature];
-    return most_off / largest_sag * sag;
+  // How far a vertex may go from a feature of the complex. Where the tolerance is little, the complex may be
+  // farther off the exact geometry than the mesh may be off the complex.
+  double farthest_from(unsigned dimension, Index feature, const Point& p) const {
+    if (dimension == 1) return most_off * tolerance_.least_on_curve(plc_.curves[feature]);
+    if (!tolerance_.varies()) return most_off * tolerance_.largest();
+    Index nearest = none;
+    triangles_->squared_distance_to(p, INFINITY, &nearest,
+                                    [&](Index t) { return plc_.triangles[t].patch == feature; });
+    return most_off * tolerance_.at_triangle(nearest);
   }
 
   void find_targets() {
+    if (tolerance_.varies()) triangles_.emplace(plc_.points, corners_of_triangles(plc_));
     slot_of_.assign(mesh_.points.size(), none);
     for (Index p = 0; p < mesh_.features.size(); ++p) {
       const auto [dimension, feature] = mesh_.features[p];
@@ -99,8 +109,9 @@ class BoundaryProjection {
       if (!target) continue;
       ++report_.vertices;
       const double off = distance(*target, mesh_.points[p]);
-      const std::optional<Point> place =
-          off <= farthest_from(dimension, feature) ? flat_.keep(dimension, feature, *target) : std::nullopt;
+      const std::optional<Point> place = off <= farthest_from(dimension, feature, mesh_.points[p])
+                                             ? flat_.keep(dimension, feature, *target)
+                                             : std::nullopt;
       if (!place) {
         add_exception(p, off);
         continue;
@@ -227,14 +238,15 @@ class BoundaryProjection {
   }
 
   TetMesh& mesh_;
+  const Plc& plc_;
   const ExactGeometry& exact_;
   FlatFeatures flat_;
   ExactGeometry limited_;
   const ProjectOptions& options_;
   const Execution& execution_;
   SurfaceTolerance tolerance_;
+  std::optional<TriangleHierarchy> triangles_;  // where the tolerance varies
   improvement::ThinShape thin_;
-  projection::Bounds bounds_;
   projection::Relaxation room_;
   std::vector<Move> moves_;
   std::vector<Index> slot_of_;           // in moves_, by point

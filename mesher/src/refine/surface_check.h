@@ -49,8 +49,8 @@ class SurfaceCheck {
   bool relabel_flat_cells();
 
  private:
-  /// A corner or the centre of one of a smooth patch's triangles, as the certificate looks at them, with a
-  /// face of the mesh that it was near to.
+  /// A corner or the centre of one of a smooth patch's triangles, outside collars as the certificate looks at
+  /// them, with a face of the mesh that it was near to.
   struct TessellationPoint {
     Point at;
     double tolerance;
