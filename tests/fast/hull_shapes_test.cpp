@@ -85,7 +85,7 @@ TEST(HullShapes, QualitiesOfCoarseningAreThoseOfTheAngles) {
   std::mt19937 random(12);
   const Plc plc;
   const TetMesh mesh;
-  const improvement::ThinShape thin(plc, mesh, 8);
+  const improvement::ThinShape thin(plc, mesh, 8, 0, nullptr);
   const std::vector<double> sizes;
   coarsening::CoarseningRule rule(thin, 2, sizes);
   constexpr std::array<Index, 4> corners{0, 1, 2, 3};
@@ -105,7 +105,7 @@ TEST(HullShapes, QualitiesOfCoarseningAreThoseOfTheAngles) {
         const bool last = blunt < 1 && mode != Mode::force;
         const double expected = last ? 1e-6 * blunt * std::min(1.0, sharp) : std::min(blunt, sharp);
         EXPECT_NEAR(rule.quality(p, corners), expected, 1e-5 * expected);
-        EXPECT_NEAR(rule.quality_of(paired, corners), expected, 1e-5 * expected);
+        EXPECT_NEAR(rule.quality_of(paired, p, corners), expected, 1e-5 * expected);
       }
     });
   for (const unsigned count : seen) EXPECT_GT(count, 500U);

@@ -55,7 +55,7 @@ TEST(ShapeRules, WhatSurelyExceedsAQualityExceedsIt) {
   std::mt19937 random(6);
   const Plc plc;
   const TetMesh mesh;
-  const improvement::ThinShape thin(plc, mesh, 8), with_reserve(plc, mesh, 8, 0.05);
+  const improvement::ThinShape thin(plc, mesh, 8, 0, nullptr), with_reserve(plc, mesh, 8, 0.05, nullptr);
   const improvement::SliverRule with_thin(2, &thin), without(2);
   const std::vector<double> sizes;
   const coarsening::CoarseningRule coarse(thin, 2, sizes), coarse_with_reserve(with_reserve, 2, sizes);

@@ -12,6 +12,7 @@
 #include "check/guarantees.h"
 #include "check/region_locator.h"
 #include "collarmesh/check.h"
+#include "tolerance/forced_edges.h"
 
 /// The certificate: one file per group of guarantees, each a function that adds findings. Nothing
 /// here knows how the mesh was made.
@@ -48,7 +49,7 @@ struct Subject {
 /// The tets that may exceed the radius-edge bound if their angles are bounded: dihedral angles from below,
 /// these and those of faces by 150 degrees. Where the mesh marks such tets, the marked ones, of a file
 /// without marks any. Where features meet at less than twice the bound from below it is half the angle they
-/// meet at.
+/// meet at; where a tet has an edge that the input forces to be short, half of the angle that this leaves.
 class ThinCells {
  public:
   static constexpr double largest_angle = 150;  ///< degrees
@@ -58,15 +59,20 @@ class ThinCells {
 
   bool claimed(Index tet) const;
   /// Degrees.
-  double smallest_angle(const std::array<Index, 4>& tet) const;
+  double smallest_angle(Index tet) const;
   /// `face_angle`: the largest of its faces.
-  bool are_bounded(const TetQuality& quality, double face_angle, const std::array<Index, 4>& tet) const;
+  bool are_bounded(const TetQuality& quality, double face_angle, Index tet) const;
 
  private:
+  double smallest_angle_at(const std::array<Index, 4>& corners) const;
+  double forced_angle(Index tet) const;
+
+  const TetMesh& mesh_;
   double smallest_;
   const std::vector<std::uint8_t>& marks_;
   bool all_;
-  std::vector<double> at_point_;  // empty where nothing meets that sharply
+  std::vector<double> at_point_;       // empty where nothing meets that sharply
+  std::optional<ForcedEdges> forced_;  // none where no tet may be thin
 };
 
 /// Items in groups by a key below `groups`; items whose key is none are left out.

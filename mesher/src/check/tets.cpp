@@ -49,16 +49,15 @@ void check_shape(Index tet, const Corners& p, const TetQuality& quality, const S
   if (!within && thin.claimed(tet)) {
     ++report.thin_tets;
     report.max_thin_radius_edge = std::max(report.max_thin_radius_edge, quality.radius_edge);
-    const auto& corners = subject.mesh.tets[tet];
     const double face_angle = largest_face_angle(p.a, p.b, p.c, p.d);
-    if (thin.are_bounded(quality, face_angle, corners)) return;
+    if (thin.are_bounded(quality, face_angle, tet)) return;
     findings.add(
         guarantee::thin_angles, p.centre(), {tet},
         "Tet {} at {} has circumradius / shortest edge {:.6g} and is no thin one: its dihedral angles are "
         "from {:.6g} to {:.6g} degrees, those of its faces at most {:.6g}, allowed are {:.6g} to {:.6g}; "
         "check with the angle that the mesh was made with.",
         tet, At{p.centre()}, quality.radius_edge, quality.min_dihedral, quality.max_dihedral, face_angle,
-        thin.smallest_angle(corners), ThinCells::largest_angle);
+        thin.smallest_angle(tet), ThinCells::largest_angle);
     return;
   }
   report.max_radius_edge = std::max(report.max_radius_edge, quality.radius_edge);

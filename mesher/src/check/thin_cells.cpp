@@ -9,15 +9,34 @@ namespace collarmesh::checks {
 namespace {
 
 constexpr double slack = 1e-9;  // relative
+// Of the angle between the normals of two sides of a patch, which are of the mesh: some 25 degrees.
+constexpr double least_cosine_of_sides = -0.9;
+
+// By point, the one of lowest dimension that the mesh shows it to be on.
+std::vector<TetMesh::VertexFeature> features_of(const Subject& subject) {
+  std::vector<TetMesh::VertexFeature> features(subject.mesh.points.size());
+  for (Index f = 0; f < subject.mesh.faces.size(); ++f)
+    for (const Index p : subject.mesh.faces[f])
+      if (subject.match.face_patch[f] != none) features[p] = {2, subject.match.face_patch[f]};
+  for (Index e = 0; e < subject.mesh.edges.size(); ++e)
+    for (const Index p : subject.mesh.edges[e])
+      if (subject.match.edge_curve[e] != none) features[p] = {1, subject.match.edge_curve[e]};
+  for (Index v = 0; v < subject.match.vertex_point.size(); ++v)
+    if (const Index p = subject.match.vertex_point[v]; p != none) features[p] = {0, v};
+  return features;
+}
 
 }  // namespace
 
 ThinCells::ThinCells(const Subject& subject)
-    : smallest_(subject.options.bounds.thin_angle),
+    : mesh_(subject.mesh),
+      smallest_(subject.options.bounds.thin_angle),
       marks_(subject.mesh.tet_thin),
       all_(marks_.empty() && subject.mesh.features.empty()) {
   if (!(smallest_ > 0) || (marks_.empty() && !all_)) return;
   const Plc& plc = subject.plc;
+  forced_.emplace(plc, features_of(subject), mesh_.points, mesh_.faces, subject.match.face_patch,
+                  least_cosine_of_sides);
   std::vector<double> of_curve(plc.curves.size(), smallest_);
   const auto lower_at_vertex = [&](Index vertex, double bound) {
     if (vertex == none || subject.match.vertex_point[vertex] == none) return;
@@ -44,17 +63,28 @@ bool ThinCells::claimed(Index tet) const {
   return smallest_ > 0 && (all_ || (tet < marks_.size() && marks_[tet] != 0));
 }
 
-double ThinCells::smallest_angle(const std::array<Index, 4>& tet) const {
+double ThinCells::smallest_angle(Index tet) const {
+  return std::min(smallest_angle_at(mesh_.tets[tet]), forced_angle(tet));
+}
+
+double ThinCells::forced_angle(Index tet) const {
+  const auto& [a, b, c, d] = mesh_.tets[tet];
+  return ForcedEdges::smallest_angle(forced_->narrowness(
+      {mesh_.points[a], mesh_.points[b], mesh_.points[c], mesh_.points[d]}, {a, b, c, d}));
+}
+
+double ThinCells::smallest_angle_at(const std::array<Index, 4>& tet) const {
   double least = smallest_;
   if (!at_point_.empty())
     for (const Index p : tet) least = std::min(least, at_point_[p]);
   return least;
 }
 
-bool ThinCells::are_bounded(const TetQuality& quality, double face_angle,
-                            const std::array<Index, 4>& tet) const {
-  return quality.min_dihedral >= smallest_angle(tet) * (1 - slack) &&
-         quality.max_dihedral <= largest_angle * (1 + slack) && face_angle <= largest_angle * (1 + slack);
+bool ThinCells::are_bounded(const TetQuality& quality, double face_angle, Index tet) const {
+  if (!(quality.max_dihedral <= largest_angle * (1 + slack) && face_angle <= largest_angle * (1 + slack)))
+    return false;
+  return quality.min_dihedral >= smallest_angle_at(mesh_.tets[tet]) * (1 - slack) ||
+         quality.min_dihedral >= forced_angle(tet) * (1 - slack);
 }
 
 }  // namespace collarmesh::checks

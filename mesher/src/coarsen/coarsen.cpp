@@ -91,7 +91,7 @@ class Coarsening {
       : workpiece_(workpiece),
         radius_edge_(made_with.bounds.radius_edge),
         sizes_(target_sizes(mesh(), workpiece.plc, sizes_asked_for(made_with))),
-        thin_(workpiece.plc, mesh(), made_with.bounds.thin_angle, made_with.bounds.reserve),
+        thin_(workpiece.plc, mesh(), made_with.bounds.thin_angle, made_with.bounds.reserve, workpiece.forced),
         rule_(thin_, made_with.bounds.radius_edge, sizes_),
         changes_{0, std::vector<std::uint32_t>(mesh().points.size(), 0)},
         proposer_(workpiece_, thin_, radius_edge_, sizes_, changes_),

@@ -26,9 +26,9 @@ class CoarseningRule final : public improvement::AngleRule {
   CoarseningRule(const improvement::ThinShape& thin, double radius_edge, std::span<const double> sizes)
       : thin_(thin), bound_(radius_edge), sizes_(sizes) {}
 
-  double quality_of(const improvement::ExtremeCosines& cosines,
+  double quality_of(const improvement::ExtremeCosines& cosines, const Corners& p,
                     const std::array<Index, 4>& corners) const override {
-    const auto [sharp, blunt] = thin_.squared_margins(cosines, corners);
+    const auto [sharp, blunt] = thin_.squared_margins(cosines, p, corners);
     if (blunt < 0) return -1;
     if (blunt < 1 && mode_ != Mode::force) return beyond * std::sqrt(blunt * std::min(1.0, sharp));
     return std::sqrt(std::min(blunt, sharp));

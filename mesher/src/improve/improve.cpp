@@ -42,7 +42,8 @@ class Improvement {
  public:
   Improvement(Workpiece& workpiece, const ImproveOptions& options, const Execution& execution)
       : workpiece_(workpiece),
-        thin_(workpiece.plc, complex().mesh(), options.bounds.thin_angle, options.bounds.reserve),
+        thin_(workpiece.plc, complex().mesh(), options.bounds.thin_angle, options.bounds.reserve,
+              workpiece.forced),
         rule_(options.bounds.radius_edge, options.bounds.thin_angle > 0 ? &thin_ : nullptr),
         remedies_(workpiece, rule_, options),
         operations_([this] { return Operations(workpiece_, rule_); }),

@@ -25,7 +25,8 @@ double Remedies::poor_quality(Index tet) const {
   if (!complex_[tet].alive || complex_[tet].collar) return INFINITY;
   if (rule_.surely_exceeds(wanted_, complex_.corners(tet))) return INFINITY;
   const double q = quality(tet);
-  return q < wanted_ ? q : INFINITY;
+  if (q >= wanted_ || rule_.is_as_forced(complex_.corners(tet), complex_[tet].corners)) return INFINITY;
+  return q;
 }
 
 Change Remedies::propose(Operations& operations, Index tet) const {

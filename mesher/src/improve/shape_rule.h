@@ -39,9 +39,10 @@ class ShapeRule {
 /// A rule by which the extreme angles of a tet tell its quality.
 class AngleRule : public ShapeRule {
  public:
-  virtual double quality_of(const ExtremeCosines& cosines, const std::array<Index, 4>& corners) const = 0;
+  virtual double quality_of(const ExtremeCosines& cosines, const Corners& p,
+                            const std::array<Index, 4>& corners) const = 0;
   double quality(const Corners& p, const std::array<Index, 4>& corners) const final {
-    return quality_of(extreme_cosines(p), corners);
+    return quality_of(extreme_cosines(p), p, corners);
   }
   const AngleRule* by_angles() const final { return this; }
 };
@@ -65,8 +66,9 @@ class ThinRule final : public AngleRule {
   /// `thin` is kept by reference.
   explicit ThinRule(const ThinShape& thin) : thin_(thin) {}
 
-  double quality_of(const ExtremeCosines& cosines, const std::array<Index, 4>& corners) const override {
-    const auto [sharp, blunt] = thin_.squared_margins(cosines, corners);
+  double quality_of(const ExtremeCosines& cosines, const Corners& p,
+                    const std::array<Index, 4>& corners) const override {
+    const auto [sharp, blunt] = thin_.squared_margins(cosines, p, corners);
     return blunt < 0 ? -1 : std::sqrt(std::min(sharp, blunt));
   }
   bool allows(const Corners&, const std::array<Index, 4>&, double) const override { return true; }
@@ -83,9 +85,10 @@ class SliverRule final : public ShapeRule {
   explicit SliverRule(double radius_edge, const ThinShape* thin = nullptr)
       : bound_(radius_edge), thin_(thin) {}
 
-  double quality(const Corners& p, const std::array<Index, 4>&) const override {
+  double quality(const Corners& p, const std::array<Index, 4>& corners) const override {
     const double sine = shape_quality(p);
-    return thin_ != nullptr && sine > 0 && thin_->is_blunt(p, sine) ? beyond * sine : sine;
+    if (thin_ == nullptr || !(sine > 0)) return sine;
+    return thin_->is_blunt(p, sine) ? beyond * sine : thin_->shape_quality_where_forced(p, corners, sine);
   }
   bool allows(const Corners& p, const std::array<Index, 4>& corners, double) const override {
     return bound_.holds(p) || (thin_ != nullptr && thin_->contains(p, corners));
@@ -99,6 +102,10 @@ class SliverRule final : public ShapeRule {
            surely_between(p, 1 - quality * quality, std::min(1 - of_obtuse * of_obtuse, of_largest));
   }
 
+  /// Is nothing better to be had, as the input forces an edge to be short?
+  bool is_as_forced(const Corners& p, const std::array<Index, 4>& corners) const {
+    return thin_ != nullptr && thin_->is_as_forced(p, corners);
+  }
   double least_gain() const override { return least_gain_; }
   /// For the operations that are asked from now on.
   void set_least_gain(double share) { least_gain_ = share; }

@@ -9,6 +9,9 @@ namespace {
 
 constexpr double radians = std::numbers::pi / 180;
 
+// A little below the one that the certificate judges by, as normals turn while vertices move.
+constexpr double least_cosine_of_sides = -0.92;
+
 double sine_above(double degrees) { return std::sin((degrees + 2 * ThinShape::rounding) * radians); }
 
 // True for most tets, and much cheaper than `measure`. The relative error of the squared radius is some units
@@ -24,13 +27,22 @@ bool well_within(const Corners& p, double radius_edge) {
 
 }  // namespace
 
-ThinShape::ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle, double reserve)
+std::shared_ptr<const ForcedEdges> forced_edges_of(const Plc& plc, const TetMesh& mesh) {
+  if (mesh.features.size() != mesh.points.size()) return nullptr;
+  return std::make_shared<const ForcedEdges>(plc, mesh.features, mesh.points, mesh.faces, mesh.face_patch,
+                                             least_cosine_of_sides);
+}
+
+ThinShape::ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle, double reserve,
+                     std::shared_ptr<const ForcedEdges> forced)
     : smallest_(smallest_angle * (1 + reserve)),
       sine_(sine_above(smallest_)),
       cosine_(
           signed_square(std::cos((180 - (180 - largest_angle) * (1 + reserve) - 2 * rounding) * radians))),
       least_blunt_(sine(cosine_)),
-      inverse_squared_least_blunt_(1 / squared_sine(cosine_)) {
+      inverse_squared_least_blunt_(1 / squared_sine(cosine_)),
+      share_(1 + reserve),
+      forced_(std::move(forced)) {
   if (empty()) return;
   std::vector<double> of_vertex(plc.vertices.size(), smallest_), of_curve(plc.curves.size(), smallest_);
   bool any = false;
@@ -51,6 +63,12 @@ ThinShape::ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle,
     if (dimension == 0) sine_at_vertex_[v] = sine_above(of_vertex[feature]);
     if (dimension == 1) sine_at_vertex_[v] = sine_above(of_curve[feature]);
   }
+}
+
+double ThinShape::forced_sine(const Corners& p, const std::array<Index, 4>& corners) const {
+  if (!forced_) return 1;
+  const double narrowness = forced_->narrowness(p, corners);
+  return narrowness < 1 ? sine_above(share_ * ForcedEdges::smallest_angle(narrowness)) : 1;
 }
 
 void mark_thin_tets(TetMesh& mesh, double radius_edge) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "collarmesh/plc.h"
 #include "collarmesh/tet_mesh.h"
 #include "improve/shape.h"
+#include "tolerance/forced_edges.h"
 
 namespace collarmesh::improvement {
 
@@ -128,25 +130,24 @@ inline ExtremeAngles extreme_angles(const Corners& p) {
 
 /// Which tets are thin: their dihedral angles are bounded from below and above and those of their faces from
 /// above, which is a shape as good as thin places permit. Where features meet at less than twice the
-/// smallest angle, half the angle they meet at is the bound from below.
+/// smallest angle, half the angle they meet at is the bound from below; where a tet has an edge that the
+/// input forces to be short, half of the angle that this leaves.
 class ThinShape {
  public:
   static constexpr double largest_angle = 150;  ///< degrees
   static constexpr double rounding = 1e-6;      ///< degrees, kept free for other ways to compute an angle
 
   /// `smallest_angle` in degrees; 0: no tet is thin. Vertices are those that the mesh has now. `reserve` is
-  /// the share of the bounds, counted from 0 and from 180 degrees, that is kept free.
-  ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle, double reserve = 0);
+  /// the share of the bounds, counted from 0 and from 180 degrees, that is kept free. `forced`: see
+  /// forced_edges_of.
+  ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle, double reserve,
+            std::shared_ptr<const ForcedEdges> forced);
 
   bool empty() const { return !(smallest_ > 0); }
   double squared_cosine_of_largest() const { return -cosine_; }
-  /// The sine of the lower bound on the dihedral angles of a tet with these corners, with room for rounding.
-  double smallest_sine(const std::array<Index, 4>& corners) const {
-    double least = sine_;
-    if (sine_at_vertex_.empty()) return least;
-    for (const Index v : corners)
-      if (v < sine_at_vertex_.size()) least = std::min(least, sine_at_vertex_[v]);
-    return least;
+  /// The sine of the lower bound on the dihedral angles of a tet, with room for rounding.
+  double smallest_sine(const Corners& p, const std::array<Index, 4>& corners) const {
+    return std::min(smallest_sine_at(corners), forced_sine(p, corners));
   }
   /// Has a tet of positive volume an angle above the largest of thin ones? `shape` is its shape_quality,
   /// which tells of most that no dihedral angle is.
@@ -159,29 +160,78 @@ class ThinShape {
   struct SquaredMargins {
     double sharp, blunt;
   };
-  SquaredMargins squared_margins(const ExtremeCosines& cosines, const std::array<Index, 4>& corners) const {
+  SquaredMargins squared_margins(const ExtremeCosines& cosines, const Corners& p,
+                                 const std::array<Index, 4>& corners) const {
     if (!cosines.positive) return {-1, -1};
-    const double least = smallest_sine(corners);
-    return {
-        squared_sine(cosines.smallest_angle) / (least * least),
-        (cosines.largest_angle < 0 ? squared_sine(cosines.largest_angle) : 1) * inverse_squared_least_blunt_};
+    const double least = smallest_sine_at(corners), sharp = squared_sine(cosines.smallest_angle),
+                 blunt = cosines.largest_angle < 0 ? squared_sine(cosines.largest_angle) : 1;
+    double margin = sharp / (least * least);
+    if (forced_ && margin < good_enough)
+      if (const double forced = forced_sine(p, corners); forced < deep)
+        margin = std::max(margin, std::min(good_enough, sharp / (forced * forced)));
+    return {margin, blunt * inverse_squared_least_blunt_};
+  }
+  /// The quality of a tet of positive volume, `sine` by its angles alone (shape_quality). Where edges are
+  /// forced, small angles count by what they leave, so that large ones decide.
+  double shape_quality_where_forced(const Corners& p, const std::array<Index, 4>& corners,
+                                    double sine) const {
+    const double forced = sine < largest_forced_sine ? forced_sine(p, corners) : 1;
+    if (forced >= deep) return sine;
+    const ExtremeCosines cosines = extreme_cosines(p);
+    const double sharp = improvement::sine(cosines.smallest_angle) * sine_ / forced;
+    return cosines.largest_angle < 0
+               ? std::min(sharp, obtuse_weight * improvement::sine(cosines.largest_angle))
+               : sharp;
+  }
+  /// Is a tet of positive volume about as good as its forced edges let it be?
+  bool is_as_forced(const Corners& p, const std::array<Index, 4>& corners) const {
+    if (empty() || !forced_ || forced_sine(p, corners) >= deep) return false;
+    const SquaredMargins margins = squared_margins(extreme_cosines(p), p, corners);
+    return std::min(margins.sharp, margins.blunt) >= good_enough;
   }
   /// Are both margins above this, which is at least 1? False of some that are; much cheaper.
   bool surely_exceeds(double margin, const Corners& p) const {
     const double sharp = margin * sine_, blunt = margin * least_blunt_;
     return blunt < 1 && surely_between(p, 1 - sharp * sharp, 1 - blunt * blunt);
   }
+  /// Is it thin, and only because the input forces an edge to be short?
+  bool is_thin_by_force(const Corners& p, const std::array<Index, 4>& corners) const {
+    return !empty() && forced_ && forced_sine(p, corners) < sine_ && contains(p, corners);
+  }
   bool contains(const Corners& p, const std::array<Index, 4>& corners) const {
     if (empty()) return false;
     const ExtremeCosines cosines = extreme_cosines(p);
-    return cosines.positive && cosines.largest_angle >= cosine_ &&
-           sine(cosines.smallest_angle) >= smallest_sine(corners);
+    if (!cosines.positive || cosines.largest_angle < cosine_) return false;
+    const double smallest = sine(cosines.smallest_angle);
+    return smallest >= smallest_sine_at(corners) || smallest >= forced_sine(p, corners);
   }
 
  private:
+  // The sine of 1.7 degrees: where edges are forced to leave less, nothing is gained by trying for more.
+  // Where they leave more, tets are made as if they were not forced, but need not be.
+  static constexpr double deep = 0.03;
+  // Squared margin: a tet there is no better than that.
+  static constexpr double good_enough = 2;
+  // Tets with a larger smallest angle are good anyway.
+  static constexpr double largest_forced_sine = 0.35;
+
+  double smallest_sine_at(const std::array<Index, 4>& corners) const {
+    double least = sine_;
+    if (sine_at_vertex_.empty()) return least;
+    for (const Index v : corners)
+      if (v < sine_at_vertex_.size()) least = std::min(least, sine_at_vertex_[v]);
+    return least;
+  }
+  double forced_sine(const Corners& p, const std::array<Index, 4>& corners) const;
+
   double smallest_, sine_, cosine_, least_blunt_, inverse_squared_least_blunt_;
+  double share_;                        // of what is forced: one and the reserve
   std::vector<double> sine_at_vertex_;  // empty where no crease is that sharp
+  std::shared_ptr<const ForcedEdges> forced_;
 };
+
+/// Those of a mesh as it is now: its faces must be there.
+std::shared_ptr<const ForcedEdges> forced_edges_of(const Plc& plc, const TetMesh& mesh);
 
 /// Mark the tets outside collars whose circumradius / shortest edge is above the bound.
 void mark_thin_tets(TetMesh& mesh, double radius_edge);

@@ -113,7 +113,9 @@ double Operations::worst_at_vertex(Index vertex) {
   if (rule == nullptr || !std::isinf(cone_.worst)) return worst_of_cone();
   for_each_shape(mesh_.points[vertex], 0, [&](std::size_t i, const ExtremeCosines& cosines) {
     const auto& [b, c, d] = cone_.hull[i];
-    cone_.worst = std::min(cone_.worst, rule->quality_of(cosines, {vertex, b, c, d}));
+    const std::array<Index, 4> corners{vertex, b, c, d};
+    cone_.worst =
+        std::min(cone_.worst, rule->quality_of(cosines, with_apex(mesh_.points[vertex], corners), corners));
     return true;
   });
   return cone_.worst;
@@ -132,7 +134,7 @@ double Operations::quality_by_angles(const AngleRule& rule, const Point& apex, I
     const auto& face = cone_.hull[i];
     if (contains(face, id)) return true;
     const std::array<Index, 4> corners{id, face[0], face[1], face[2]};
-    const double quality = rule.quality_of(cosines, corners);
+    const double quality = rule.quality_of(cosines, with_apex(apex, corners), corners);
     worst = std::min(worst, quality);
     return worst > above && may_be_made(apex, corners, quality);
   });

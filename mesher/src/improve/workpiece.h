@@ -6,6 +6,7 @@
 #include "improve/curve_slides.h"
 #include "improve/smooth_surfaces.h"
 #include "improve/tet_complex.h"
+#include "improve/thin_shape.h"
 
 namespace collarmesh::improvement {
 
@@ -36,7 +37,8 @@ class Workpiece {
       : complex(mesh, neighbours),
         surfaces(meant, mesh, tolerance),
         curves(meant, mesh, tolerance, edges_per_hole),
-        plc(meant) {}
+        plc(meant),
+        forced(forced_edges_of(meant, mesh)) {}
 
   double quality(Index tet) const;
 
@@ -59,6 +61,7 @@ class Workpiece {
   SmoothSurfaces surfaces;
   CurveSlides curves;
   const Plc& plc;
+  std::shared_ptr<const ForcedEdges> forced;
 
  private:
   std::vector<Index> changed_;

@@ -356,6 +356,7 @@ class Pipeline {
   MeshOptions options_of_refinement() const {
     MeshOptions options = options_.mesh;
     options.time_limit = 0;  // one limit for all stages
+    options.leave_narrow_cells = options_.coarsen;
     if (!exact()) return options;
     options.bounds.tolerance = tolerance_of(*plc_, options.bounds, 0).scaled(distance_left);
     options.bounds.radius_edge = std::max(1.0, ratio_left * options.bounds.radius_edge);

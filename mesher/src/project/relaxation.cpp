@@ -119,6 +119,9 @@ double Relaxation::score(Index tet, const Corners& p) const {
       for (unsigned j = i + 1; j < 4; ++j) longest = std::max(longest, squared_distance(p[i], p[j]));
     return longest > 0 ? six / (longest * std::sqrt(longest)) : -1;
   }
+  if (mesh_.tet_collar[tet] == 0 && bounds_.thin != nullptr &&
+      bounds_.thin->is_thin_by_force(p, mesh_.tets[tet]))
+    return 1;
   const Wanted& want = wanted(tet);
   double score = std::min(1., improvement::shape_quality(p) / want.shape);
   if (mesh_.tet_collar[tet] != 0) {
@@ -137,7 +140,7 @@ double Relaxation::angle_score(Index tet, const Corners& p) const {
                    rounding = improvement::ThinShape::rounding;
   const improvement::ExtremeAngles now = improvement::extreme_angles(p),
                                    then = improvement::extreme_angles(corners(tet, origins_));
-  const double bound = std::asin(bounds_.thin->smallest_sine(mesh_.tets[tet])) * 180 / std::numbers::pi,
+  const double bound = std::asin(bounds_.thin->smallest_sine(p, mesh_.tets[tet])) * 180 / std::numbers::pi,
                sharpest = std::min(bound, then.smallest),
                bluntest = std::max(largest - 2 * rounding, then.largest);
   return std::min({1., now.smallest / sharpest, (180 - now.largest) / (180 - bluntest)});

@@ -54,11 +54,10 @@ void CellQuality::judge(Index cell, WorkQueue& queue) const {
   const double bound =
       region == 0 ? std::max(domain_.options.exterior_radius_edge, domain_.options.bounds.radius_edge)
                   : domain_.options.bounds.radius_edge;
-  const bool skinny = r2 > bound * bound * shape.shortest_squared_edge &&
-                      !(region == 0 && facing_sheets_.fills_gap(cell, bound));
+  const bool skinny = r2 > bound * bound * shape.shortest_squared_edge;
   // Cocircular input makes cells whose volume is noise although their radius-edge ratio is not. Those on one
   // patch are seen to when the queue is empty.
-  if (skinny || (shape.flat && region != 0 && !mesh_.on_one_patch(v))) {
+  if ((skinny || (shape.flat && region != 0 && !mesh_.on_one_patch(v))) && !fills_gap(cell, region, bound)) {
     if (domain_.in_box(centre)) queue.push(WorkQueue::skinny_cells, r2, {cell, mesh_.generation(cell)});
     return;
   }
@@ -66,6 +65,11 @@ void CellQuality::judge(Index cell, WorkQueue& queue) const {
   const double size = sizes_.asked().cell_radius(region, centre, sizes_.graded(v, std::sqrt(r2)));
   if (r2 > size * size || uneven_at_vertex(cell))
     queue.push(WorkQueue::large_cells, r2, {cell, mesh_.generation(cell)});
+}
+
+bool CellQuality::fills_gap(Index cell, Index region, double bound) const {
+  return (region == 0 && facing_sheets_.is_within(cell, bound)) ||
+         (domain_.options.leave_narrow_cells && facing_sheets_.fills_gap(cell));
 }
 
 void CellQuality::judge_all() {

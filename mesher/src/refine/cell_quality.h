@@ -49,6 +49,7 @@ class CellQuality {
   std::size_t bytes() const { return shortest_edge_.bytes(); }
 
  private:
+  bool fills_gap(Index cell, Index region, double bound) const;
   bool uneven_at_vertex(Index cell) const;
   void note_edges(const ConflictZone& zone, Index vertex);
 

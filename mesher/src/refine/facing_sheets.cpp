@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tolerance/forced_edges.h"
+
 namespace collarmesh {
 
 namespace {
@@ -16,6 +18,9 @@ constexpr double widest_gap_per_radius = 0.9;
 constexpr double least_spacing_per_radius = 0.35;
 // The least cosine between the way across and the normals of sheets that face each other.
 constexpr double least_facing = 0.97;
+// Cells that are left span gaps that are narrower than this: in wider ones a bounded ratio costs little, and
+// angles are better.
+constexpr double largest_narrowness = 0.3;
 // A curve is split beneath a vertex in this middle part of a subsegment only.
 constexpr double least_part = 0.25;
 
@@ -95,6 +100,13 @@ bool FacingSheets::faces(Index vertex, Index patch, const Vector& normal) const 
   return std::fabs(dot(normal, n)) > least_facing * norm(n);
 }
 
+// Do two vertices lie on features that have no point in common?
+bool FacingSheets::are_apart(Index a, Index b) const {
+  const Feature &low = mesh_.feature(a), &high = mesh_.feature(b);
+  return std::max(low.dimension, high.dimension) < 3 &&
+         !contacts_.touch(low.dimension, low.index, high.dimension, high.index);
+}
+
 // Does a vertex lie on a feature that has no point in common with the curve?
 bool FacingSheets::apart(Index vertex, Index curve) const {
   const Feature& v = mesh_.feature(vertex);
@@ -111,18 +123,30 @@ bool FacingSheets::apart(Index vertex, Index curve) const {
   });
 }
 
+bool FacingSheets::is_pair(Index a, Index b) const { return pairs_.contains(pair_of(a, b)); }
+
 void FacingSheets::note_pair(Index a, Index b) { pairs_.insert(pair_of(a, b)); }
 
 std::size_t FacingSheets::bytes() const { return pairs_.size() * bytes_per_pair; }
 
-bool FacingSheets::within_bound(Index cell, double bound) const {
+bool FacingSheets::is_within(Index cell, double bound) const {
+  if (pairs_.empty()) return false;
   const auto& v = mesh_.corners(cell);
   double shortest = INFINITY;
   for (unsigned i = 0; i < 4; ++i)
     for (unsigned j = 0; j < i; ++j)
-      if (!pairs_.contains(pair_of(v[i], v[j])))
+      if (!is_pair(v[i], v[j]))
         shortest = std::min(shortest, squared_distance(mesh_.point(v[i]), mesh_.point(v[j])));
   return mesh_.squared_radius(cell) <= bound * bound * shortest;
+}
+
+bool FacingSheets::fills_gap(Index cell) const {
+  const auto& v = mesh_.corners(cell);
+  for (const Index corner : v)
+    if (mesh_.feature(corner).dimension == 3) return false;
+  const auto across = [&](unsigned i, unsigned j) { return are_apart(v[i], v[j]) || is_pair(v[i], v[j]); };
+  return narrowness_of({mesh_.point(v[0]), mesh_.point(v[1]), mesh_.point(v[2]), mesh_.point(v[3])},
+                       across) <= largest_narrowness;
 }
 
 }  // namespace collarmesh

@@ -6,6 +6,7 @@
 #include "refine/candidate.h"
 #include "refine/restricted_surface.h"
 #include "refine/subsegment.h"
+#include "tolerance/feature_contacts.h"
 
 namespace collarmesh {
 
@@ -23,7 +24,12 @@ class FacingSheets {
   /// All are kept by reference.
   FacingSheets(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes,
                const CollarSystem& collars, const RestrictedSurface& surface)
-      : domain_(domain), mesh_(mesh), nodes_(nodes), collars_(collars), surface_(surface) {}
+      : domain_(domain),
+        mesh_(mesh),
+        nodes_(nodes),
+        collars_(collars),
+        surface_(surface),
+        contacts_(domain.plc) {}
 
   /// For a restricted triangle with a vertex on another sheet: the point of its patch beneath that vertex.
   std::optional<Candidate> candidate_across(FaceId face);
@@ -35,20 +41,25 @@ class FacingSheets {
   void note_pair(Index a, Index b);
   /// Is a cell within the radius-edge bound but for the edges between vertices of a pair? Several threads may
   /// ask at once, while nobody notes pairs.
-  bool fills_gap(Index cell, double bound) const { return !pairs_.empty() && within_bound(cell, bound); }
+  bool is_within(Index cell, double bound) const;
+  /// Does a cell with corners on features alone span a narrow gap: between vertices of pairs, or of features
+  /// that have no point in common? The same for threads.
+  bool fills_gap(Index cell) const;
 
   std::size_t bytes() const;
 
  private:
   bool faces(Index vertex, Index patch, const Vector& normal) const;
   bool apart(Index vertex, Index curve) const;
-  bool within_bound(Index cell, double bound) const;
+  bool are_apart(Index a, Index b) const;
+  bool is_pair(Index a, Index b) const;
 
   const Domain& domain_;
   const RefinedMesh& mesh_;
   const SurfaceNodes& nodes_;
   const CollarSystem& collars_;
   const RestrictedSurface& surface_;
+  const FeatureContacts contacts_;
   std::unordered_set<std::uint64_t> pairs_;  // of mesh vertices, as edges
   ConflictZone zone_;                        // scratch
 };

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "collarmesh/tet_mesh.h"
+#include "tolerance/feature_contacts.h"
+
+namespace collarmesh {
+
+/// What short edges leave to a tet, over its longest edge: the length of the shortest of those that `forces`
+/// names by corners, or, where these are all that joins two groups of its corners, the distance between what
+/// the groups span: a corner and a plane, or two lines. 1 if there is none.
+double narrowness_of(const std::array<Point, 4>& p, const std::array<unsigned, 4>& across);
+template <class Forces>
+double narrowness_of(const std::array<Point, 4>& p, const Forces& forces) {
+  std::array<unsigned, 4> across{};  // by corner: the corners, as bits, that such an edge joins it to
+  for (unsigned i = 0; i < 4; ++i)
+    for (unsigned j = 0; j < i; ++j)
+      if (forces(i, j)) {
+        across[i] |= 1U << j;
+        across[j] |= 1U << i;
+      }
+  return narrowness_of(p, across);
+}
+
+/// The edges of a mesh whose lengths the input forces: they join features that have no point in common, or
+/// places of one patch, or of two that meet, which face opposite ways. Where these are near to each other, as
+/// on the two sides of a thin wall, at a step or at a strip, no tet can have both long edges and large
+/// angles.
+class ForcedEdges {
+ public:
+  /// Of the vertices that there are now. The complex is kept by reference. `features`: by point, the one of
+  /// lowest dimension; the rest as in a TetMesh. `least_cosine`: of the angle between normals, below which
+  /// they face opposite ways.
+  ForcedEdges(const Plc& plc, std::vector<TetMesh::VertexFeature> features, const std::vector<Point>& points,
+              const std::vector<std::array<Index, 3>>& faces, const std::vector<Index>& face_patch,
+              double least_cosine);
+
+  /// Vertices that came later lie on no feature.
+  bool forces(Index a, Index b) const;
+  /// What they leave to a tet (narrowness_of).
+  double narrowness(const std::array<Point, 4>& p, const std::array<Index, 4>& corners) const;
+  /// The smallest dihedral angle that is asked of a tet of that narrowness, degrees: half of the angle whose
+  /// tangent it is.
+  static double smallest_angle(double narrowness);
+
+ private:
+  FeatureContacts contacts_;
+  std::vector<TetMesh::VertexFeature> features_;
+  std::vector<Vector> normals_;  // by vertex on a patch: unit, of the mesh
+  double least_cosine_;
+};
+
+}  // namespace collarmesh

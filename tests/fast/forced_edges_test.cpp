@@ -1,0 +1,176 @@
+// Which edges the input forces to be short, and what they leave to a tet, by brute force.
+#include "tolerance/forced_edges.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <set>
+
+#include "collarmesh/plc_builder.h"
+#include "improve/thin_shape.h"
+#include "support/shapes.h"
+
+namespace collarmesh {
+namespace {
+
+using Corners = std::array<Point, 4>;
+constexpr std::array<Index, 4> four{0, 1, 2, 3};
+
+// All points that the complex has on a feature and on its border.
+std::set<Index> points_of(const Plc& plc, unsigned dimension, Index feature) {
+  if (dimension == 0) return {plc.vertices[feature].point};
+  if (dimension == 1) return {plc.curves[feature].points.begin(), plc.curves[feature].points.end()};
+  std::set<Index> points;
+  const Plc::Patch& patch = plc.patches[feature];
+  for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t)
+    points.insert(plc.triangles[t].points.begin(), plc.triangles[t].points.end());
+  return points;
+}
+
+void expect_contacts_by_points(const Plc& plc) {
+  const FeatureContacts contacts(plc);
+  const std::array<std::size_t, 3> counts{plc.vertices.size(), plc.curves.size(), plc.patches.size()};
+  unsigned touching = 0, apart = 0;
+  for (unsigned d = 0; d < 3; ++d)
+    for (Index f = 0; f < counts[d]; ++f)
+      for (unsigned e = 0; e < 3; ++e)
+        for (Index g = 0; g < counts[e]; ++g) {
+          const std::set<Index> a = points_of(plc, d, f), b = points_of(plc, e, g);
+          const bool expected = std::any_of(a.begin(), a.end(), [&](Index p) { return b.contains(p); });
+          EXPECT_EQ(contacts.touch(d, f, e, g), expected) << d << ' ' << f << ' ' << e << ' ' << g;
+          ++(expected ? touching : apart);
+        }
+  EXPECT_GT(touching, 0U);
+  EXPECT_GT(apart, 0U);
+}
+
+TEST(FeatureContacts, AreThoseWithACommonPoint) {
+  expect_contacts_by_points(build_plc(testing::two_boxes()));
+  expect_contacts_by_points(build_plc(testing::l_shape()));
+  expect_contacts_by_points(build_plc(testing::cylinder(1, 2, 24), {.feature_angle = 40}));
+  // 80 flat faces meet in its tip, more than are listed as neighbours of each other.
+  expect_contacts_by_points(build_plc(testing::cone(1, 1, 80), {.feature_angle = 0}));
+}
+
+Corners any_corners(std::mt19937& random) {
+  std::uniform_real_distribution<double> place(-1, 1);
+  Corners p;
+  for (Point& corner : p) corner = {place(random), place(random), 0.1 * place(random)};
+  return p;
+}
+
+double longest(const Corners& p) {
+  double most = 0;
+  for (unsigned i = 0; i < 4; ++i)
+    for (unsigned j = 0; j < i; ++j) most = std::max(most, distance(p[i], p[j]));
+  return most;
+}
+
+// The faces of a unit box that two of its opposite corners are on: one pair of them has no point in common.
+struct OppositeFaces {
+  Plc plc = build_plc(testing::box());
+  Index below = none, above = none, beside = none;
+  OppositeFaces() {
+    for (Index p = 0; p < plc.patches.size(); ++p) {
+      const Vector& n = plc.patches[p].normal;
+      const double height = plc.patches[p].origin.z;
+      (std::fabs(n.z) < 0.5 ? beside : height < 0.5 ? below : above) = p;
+    }
+  }
+  ForcedEdges with(const std::array<Index, 4>& patches) const {
+    std::vector<TetMesh::VertexFeature> features;
+    for (const Index p : patches)
+      features.push_back(p == none ? TetMesh::VertexFeature{} : TetMesh::VertexFeature{2, p});
+    return ForcedEdges(plc, features, {}, {}, {}, -0.9);
+  }
+};
+
+TEST(ForcedEdges, BetweenThreeCornersAndOneItIsTheHeight) {
+  const OppositeFaces faces;
+  std::mt19937 random(3);
+  for (unsigned k = 0; k < 2000; ++k) {
+    const Corners p = any_corners(random);
+    const unsigned apex = k % 4;
+    std::array<Index, 4> patches{faces.below, faces.below, faces.below, faces.below};
+    patches[apex] = faces.above;
+    std::array<Point, 3> base;
+    for (unsigned i = 0, n = 0; i < 4; ++i)
+      if (i != apex) base[n++] = p[i];
+    const Vector normal = cross(base[1] - base[0], base[2] - base[0]);
+    const double height = std::fabs(dot(p[apex] - base[0], normal)) / norm(normal);
+    EXPECT_NEAR(faces.with(patches).narrowness(p, four), height / longest(p), 1e-12);
+  }
+}
+
+TEST(ForcedEdges, BetweenTwoCornersAndTwoItIsTheDistanceOfLines) {
+  const OppositeFaces faces;
+  std::mt19937 random(4);
+  for (unsigned k = 0; k < 300; ++k) {
+    const Corners p = any_corners(random);
+    const std::array<Index, 4> patches = k % 2 == 0
+                                             ? std::array{faces.below, faces.above, faces.below, faces.above}
+                                             : std::array{faces.above, faces.above, faces.below, faces.below};
+    std::array<Point, 4> q = k % 2 == 0 ? std::array{p[0], p[2], p[1], p[3]} : p;
+    // The nearest points of two lines, by turns.
+    double s = 0, t = 0;
+    const Vector u = q[1] - q[0], v = q[3] - q[2];
+    for (unsigned step = 0; step < 20000; ++step) {
+      s = dot(q[2] + t * v - q[0], u) / squared_norm(u);
+      t = dot(q[0] + s * u - q[2], v) / squared_norm(v);
+    }
+    const double between = distance(q[0] + s * u, q[2] + t * v);
+    const double sine = norm(cross(u, v)) / (norm(u) * norm(v));
+    if (sine < 0.05) continue;  // the turns take too many
+    EXPECT_NEAR(faces.with(patches).narrowness(p, four), between / longest(p), 1e-9);
+  }
+}
+
+TEST(ForcedEdges, OfOthersItIsTheShortestForcedEdge) {
+  const OppositeFaces faces;
+  std::mt19937 random(5);
+  for (unsigned k = 0; k < 500; ++k) {
+    const Corners p = any_corners(random);
+    const ForcedEdges one = faces.with({faces.below, faces.above, none, faces.beside});
+    EXPECT_TRUE(one.forces(0, 1) && one.forces(1, 0));
+    EXPECT_FALSE(one.forces(0, 2) || one.forces(0, 3) || one.forces(1, 3) || one.forces(2, 3));
+    EXPECT_NEAR(one.narrowness(p, four), distance(p[0], p[1]) / longest(p), 1e-12);
+    EXPECT_EQ(faces.with({faces.below, faces.beside, none, faces.below}).narrowness(p, four), 1);
+    EXPECT_EQ(faces.with({none, none, none, none}).narrowness(p, four), 1);
+  }
+}
+
+TEST(ForcedEdges, TwoSidesOfAPatchFaceOppositeWays) {
+  const Plc plc = build_plc(testing::box());
+  // A wall of one patch, one side above the other: triangles 0 1 2 and 3 5 4.
+  const std::vector<Point> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0.1}, {1, 0, 0.1}, {0, 1, 0.1}};
+  const std::vector<TetMesh::VertexFeature> features(6, {2, 0});
+  const ForcedEdges wall(plc, features, points, {{0, 1, 2}, {3, 5, 4}}, {0, 0}, -0.9);
+  EXPECT_TRUE(wall.forces(0, 3) && wall.forces(1, 5));
+  EXPECT_FALSE(wall.forces(0, 1) || wall.forces(3, 4));
+  EXPECT_FALSE(wall.forces(0, 6)) << "a vertex that came later";
+  const ForcedEdges alike(plc, features, points, {{0, 1, 2}, {3, 4, 5}}, {0, 0}, -0.9);
+  EXPECT_FALSE(alike.forces(0, 3)) << "steps of one side";
+}
+
+TEST(ForcedEdges, ThinTetsMayBeAsSharpAsTheyLeaveThem) {
+  const OppositeFaces faces;
+  TetMesh mesh;
+  mesh.points.resize(4);
+  const auto forced =
+      std::make_shared<const ForcedEdges>(faces.with({faces.below, faces.below, faces.below, faces.above}));
+  const improvement::ThinShape with(faces.plc, mesh, 8, 0, forced), without(faces.plc, mesh, 8, 0, nullptr);
+  for (const double height : {0.3, 0.1, 0.01, 1e-4}) {
+    const Corners prism{Point{0, 0, 0}, Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, height}};
+    EXPECT_TRUE(with.contains(prism, four)) << height;
+    EXPECT_EQ(without.contains(prism, four), height > 0.1) << height;
+    // Beside the triangle, in the plane of one of its sides: blunt, however narrow the place.
+    const Corners blunt{Point{0, 0, 0}, Point{1, 0, 0}, Point{0, 1, 0}, Point{0.6, 0.6, 0.1 * height}};
+    EXPECT_FALSE(with.contains(blunt, four)) << height;
+  }
+}
+
+}  // namespace
+}  // namespace collarmesh

@@ -1,0 +1,88 @@
+// Between features that are much nearer to each other than elements are large: what they cost does not grow
+// as they come nearer, no volume is lost, and every guarantee holds.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "collarmesh/pipeline.h"
+#include "support/meshing.h"
+#include "support/shapes.h"
+
+namespace collarmesh {
+namespace {
+
+using namespace collarmesh::testing;
+
+SoupPipelineResult run(const std::vector<PolygonSoup>& soups, unsigned order, bool coarsen = true) {
+  PipelineOptions options;
+  options.mesh = with_size(0.4, 200'000);
+  options.coarsen = coarsen;
+  options.order = order;
+  return run_pipeline(soups, options);
+}
+
+// Three boxes on each other, the one between of this thickness.
+std::vector<PolygonSoup> layers(double thickness) {
+  return {box({0, 0, 0}, {2, 2, 1}), box({0, 0, 1}, {2, 2, 1 + thickness}),
+          box({0, 0, 1 + thickness}, {2, 2, 2})};
+}
+// A step of this height across a block.
+std::vector<PolygonSoup> step(double height) {
+  const std::vector<Point> outline{{0, 0, 0}, {2, 0, 0},          {2, 1, 0},
+                                   {1, 1, 0}, {1, 1 - height, 0}, {0, 1 - height, 0}};
+  return {extrusion(outline, 2)};
+}
+// A block with a fin of this width on it.
+std::vector<PolygonSoup> fin(double width) {
+  const std::vector<Point> outline{{0, 0, 0},         {2, 0, 0}, {2, 1, 0}, {1 + width, 1, 0},
+                                   {1 + width, 2, 0}, {1, 2, 0}, {1, 1, 0}, {0, 1, 0}};
+  return {extrusion(outline, 2)};
+}
+
+struct Family {
+  std::string name;
+  std::vector<PolygonSoup> (*member)(double);
+  double (*volume)(double);  // of the region that is tested: the last one but for layers
+  std::size_t region;
+};
+
+std::vector<Family> families() {
+  return {{"layers", layers, [](double t) { return 4 * t; }, 2},
+          {"step", step, [](double t) { return 2 * (2 - t); }, 1},
+          {"fin", fin, [](double t) { return 4 + 2 * t; }, 1}};
+}
+
+class NarrowPlaces : public ::testing::TestWithParam<int> {};
+
+TEST_P(NarrowPlaces, CostNoMoreAsTheyGetNarrower) {
+  for (const Family& family : families()) {
+    SCOPED_TRACE(family.name);
+    std::size_t wide = 0;
+    for (const double width : {1e-1, 1e-2, 1e-3}) {
+      SCOPED_TRACE(width);
+      const SoupPipelineResult made = run(family.member(width), static_cast<unsigned>(GetParam()));
+      EXPECT_EQ(made.missed(), "");
+      EXPECT_NEAR(made.check.region_volumes[family.region], family.volume(width), 1e-9);
+      const std::size_t inserted = made.result.statistics.vertices_inserted;
+      if (wide == 0) wide = inserted;
+      EXPECT_LT(inserted, 2 * wide);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Orders, NarrowPlaces, ::testing::Values(1, 2));
+
+// Without coarsening the ratio is bounded everywhere, and a narrow place costs what it is narrow.
+TEST(NarrowPlaces, KeepTheRatioWithoutCoarsening) {
+  for (const Family& family : families()) {
+    SCOPED_TRACE(family.name);
+    const SoupPipelineResult made = run(family.member(0.1), 1, false);
+    EXPECT_EQ(made.missed(), "");
+    EXPECT_LE(made.check.max_radius_edge, 2);
+    EXPECT_EQ(made.check.thin_tets, 0U);
+  }
+}
+
+}  // namespace
+}  // namespace collarmesh
