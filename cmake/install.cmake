@@ -1,4 +1,4 @@
-# `find_package(collarmesh)` gives collarmesh::mesher and, when built, collarmesh::openmesh_io.
+# `find_package(collarmesh)` gives collarmesh::mesher and, when built, collarmesh::files and collarmesh::openmesh_io.
 include(CMakePackageConfigHelpers)
 
 set(COLLARMESH_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/collarmesh)
@@ -9,6 +9,11 @@ if(TARGET collarmesh_openmesh_io)
   set(COLLARMESH_HAS_OPENMESH ON)
   install(TARGETS collarmesh_openmesh_io EXPORT collarmesh_targets)
   install(DIRECTORY openmesh_io/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+endif()
+set(COLLARMESH_HAS_FILES OFF)
+if(TARGET collarmesh_cli)
+  set(COLLARMESH_HAS_FILES ON)
+  install(TARGETS collarmesh_cli EXPORT collarmesh_targets)
 endif()
 install(EXPORT collarmesh_targets NAMESPACE collarmesh:: FILE collarmesh-targets.cmake
   DESTINATION ${COLLARMESH_PACKAGE_DIR})

@@ -2,18 +2,20 @@
 command takes, in a signature as parameters, in a description as text (write_functions.py)."""
 
 import os
-from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple, Union
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _core
 from ._inputs import Input, Path, SizeField, Surface, given, inputs, triangles
 from ._mesh import Mesh
+from ._progress import watching
+from ._types import Info, Prediction
 
 
 def mesh(
     *surfaces: Input,
     # options of mesh
     input_format: Optional[str] = None,
-    progress: Optional[Callable[[str, float], Optional[bool]]] = None,
+    progress: Union[bool, Callable[[str, float], Optional[bool]], None] = None,
 ) -> Mesh:
     """Mesh what surfaces bound, and certify the result.
 
@@ -23,12 +25,32 @@ def mesh(
         mesh, numbered from 1; one inside another and oriented inwards is a cavity.
     # options of mesh
     input_format: extension in place of the files' own, ".stl".
-    progress: called with the stage and the fraction, 0 to 1, that is done of everything; False cancels.
+    progress: True for a bar on standard error; or a callable, which is called with the stage and the fraction that is
+        done of everything, up to 1; if it returns False, the run is cancelled.
 
     Returns a `Mesh`; its `passed` says whether every guarantee holds. Raises the subclasses of `Error` that the
     description of the package lists.
     """
-    return Mesh(_core.mesh(inputs(surfaces), given(locals()), progress))
+    options = given(locals())
+    with watching(progress) as told:
+        return Mesh._of(_core.mesh(inputs(surfaces), options, told))
+
+
+def predict(
+    *surfaces: Input,
+    sizes: Sequence[float],
+    # options of mesh
+    input_format: Optional[str] = None,
+) -> List[Prediction]:
+    """How large meshes will be and how long they will take, without making them.
+
+    surfaces, options: as in `collarmesh.mesh`.
+    sizes: target edge lengths, in the place of `size`.
+
+    Returns a dict for each: "size", "tets", and "seconds", of all stages from the refinement to the certificate, as
+    `collarmesh info --predict --json` prints them. Raises `Error`.
+    """
+    return _core.predict(inputs(surfaces), [float(size) for size in sizes], given(locals()))
 
 
 def read(path: Path, format: str = "") -> Mesh:
@@ -36,7 +58,7 @@ def read(path: Path, format: str = "") -> Mesh:
 
     path: the file. format: an extension such as ".vtu", in place of the file's own. Raises ReadError.
     """
-    return Mesh(_core.read_mesh(os.fspath(path), format))
+    return Mesh._of(_core.read_mesh(os.fspath(path), format))
 
 
 def check(
@@ -61,7 +83,7 @@ def check(
 def info(
     *of: Union[Input, Mesh],
     # options of repair
-) -> Dict[str, Any]:
+) -> Info:
     """Describe surfaces (patches with numbers and names, regions, creases, angles) or a mesh.
 
     of: surfaces as in `collarmesh.mesh`, or one mesh. Options: as in `collarmesh.mesh`.
@@ -70,11 +92,11 @@ def info(
     """
     options = given(locals())
     if len(of) == 1 and isinstance(of[0], Mesh):
-        return of[0].info()
+        return {"mesh": of[0].info()["mesh"]}
     if len(of) == 1 and isinstance(of[0], (str, os.PathLike)):
         arrays = _core.read_mesh_if_there(os.fspath(of[0]), "")
         if arrays is not None:
-            return Mesh(arrays).info()
+            return {"mesh": Mesh._of(arrays).info()["mesh"]}
     return _core.info(inputs(of), options)  # type: ignore[arg-type]
 
 

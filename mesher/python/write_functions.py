@@ -14,8 +14,8 @@ TYPES = {"flag": "bool", "count": "int", "number": "float", "text": "str", "size
 # Python has other values for these than the command line.
 OTHER_TYPES = {"size_field": "SizeField", "names": "Union[Path, Mapping[str, Any]]", "max_memory": "Union[int, str]"}
 MORE = {
-    "size_field": "a path of these; a dict as in such a .json; a tuple (points, tets, values), a mesh with lengths on its "
-                  "points; or a callable of x, y, z that gives a length",
+    "size_field": "a path of these; a dict as in such a .json; a tuple (mesh, values) or (points, tets, values), a "
+                  "mesh with a length for each point or each tet; or a callable of x, y, z that gives a length (see sampled_sizes)",
     "names": 'the path of a JSON file, or its content, {"patches": {"inlet": 3, "walls": [1, {"at": [0, 0, 1]}]}}',
     "partitions": "`Mesh.tet_partition` tells them",
 }

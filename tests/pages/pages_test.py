@@ -98,7 +98,7 @@ class Reader:
                             "OMPI_MCA_rmaps_base_oversubscribe": "1"}
 
     def make_clone(self):
-        """A copy of the sources; numpy, setuptools and pip are the system's, so that nothing is downloaded."""
+        """A copy of the sources; numpy and pip are the system's, so that nothing is downloaded."""
         clone, venv = self.folder / "clone", self.folder / "venv"
         shutil.copytree(self.sources, clone, ignore=shutil.ignore_patterns("build", ".git", "*.egg-info"))
         subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", venv], check=True)
@@ -177,23 +177,32 @@ def run_cpp(sources, build):
         folder = pathlib.Path(folder)
         subprocess.run(["cmake", "--install", build, "--prefix", folder / "prefix"],
                        check=True, stdout=subprocess.DEVNULL)
-        (link,) = [block.code for block in blocks(sources / "mesher/doc/cpp.md") if block.language == "cmake"]
-        text = CMAKE
-        for page, target in (("cpp", "mesher"), ("openmesh", "openmesh_io")):
-            (code,) = [block.code for block in blocks(sources / f"mesher/doc/{page}.md") if block.language == "cpp"]
-            (folder / f"{page}.cpp").write_text(code)
-            text += f"add_executable({page} {page}.cpp)\n"
-            text += link.replace("program", page).replace("::mesher", f"::{target}")
-        text = text.replace("add_executable(openmesh",
-                            "if(NOT TARGET collarmesh::openmesh_io)\n  return()\nendif()\nadd_executable(openmesh")
+        codes = {page: [block.code for block in blocks(sources / f"mesher/doc/{page}.md") if block.language == "cpp"]
+                 for page in ("cpp", "openmesh")}
+        programs = dict(zip(("mesher", "files", "openmesh_io"), codes["cpp"] + codes["openmesh"], strict=True))
+        find, link = [block.code for block in blocks(
+            sources / "mesher/doc/cpp.md") if block.language == "cmake"][0].splitlines()
+        text = CMAKE + find + "\n"
+        for target, code in programs.items():
+            (folder / f"{target}.cpp").write_text(code)
+            linked = link.replace("program", f"on_page_{target}").replace("::mesher", f"::{target}")
+            text += f"if(TARGET collarmesh::{target})\nadd_executable(on_page_{target} {target}.cpp)\n{linked}\nendif()\n"
         (folder / "CMakeLists.txt").write_text(text)
         subprocess.run(["cmake", "-S", folder, "-B", folder / "build",
                        f"-DCMAKE_PREFIX_PATH={folder}/prefix"], check=True)
         subprocess.run(["cmake", "--build", folder / "build"], check=True)
-        shutil.copy(sources / "resources/models/bracket.off", folder)
-        subprocess.run([folder / "build/cpp"], check=True, cwd=folder)
-        if not (folder / "bracket.vtu").exists():
-            raise SystemExit("the program wrote no mesh")
+        unread = subprocess.run([folder / "build/on_page_mesher"], cwd=folder, capture_output=True, text=True)
+        if unread.returncode != 2 or "bracket.off" not in unread.stderr:
+            raise SystemExit(f"the program does not say which file is missing: {unread}")
+        for model in ("bracket.off", "flange.step"):
+            shutil.copy(sources / "resources/models" / model, folder)
+        wanted = {"mesher": "bracket.vtu"}
+        if installed("OpenCASCADE", build):
+            wanted["files"] = "flange.msh"
+        for target, mesh in wanted.items():
+            subprocess.run([folder / f"build/on_page_{target}"], check=True, cwd=folder)
+            if not (folder / mesh).exists():
+                raise SystemExit(f"the program for {target} wrote no mesh")
 
 
 def missing_files(sources):

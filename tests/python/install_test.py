@@ -12,7 +12,7 @@ import sys
 import tempfile
 
 USE = """
-import importlib.metadata, importlib.resources, pathlib, sys
+import importlib.metadata, importlib.resources, os, pathlib, subprocess, sys
 import collarmesh, numpy
 assert sys.prefix in collarmesh.__file__, collarmesh.__file__
 assert collarmesh.__version__ == importlib.metadata.version("collarmesh")
@@ -24,6 +24,16 @@ mesh = collarmesh.mesh(sys.argv[1], size=0.5)
 assert mesh.passed and len(mesh.tets) > 10
 mesh.write("box.vtu")
 assert len(collarmesh.read("box.vtu").tets) == len(mesh.tets)
+for command in ([os.path.join(sys.prefix, "bin", "collarmesh")], [sys.executable, "-m", "collarmesh"]):
+    told = subprocess.run([*command, "--version"], capture_output=True, text=True).stdout
+    assert told.split() == ["collarmesh", collarmesh.__version__], (command, told)
+"""
+LACKING = """
+import os, sys
+sys.path.insert(0, os.path.join(sys.argv[1], "packaging"))
+os.environ["PATH"] = "/nowhere"
+import pip_build
+pip_build.compile_package("/nowhere")
 """
 MODULES = """
 import collarmesh, sys
@@ -51,7 +61,7 @@ def import_from_prefix(build, prefix):
 
 def main():
     sources, build = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
-    for needed in ("venv", "setuptools", "wheel", "pip"):
+    for needed in ("venv", "pip"):
         if importlib.util.find_spec(needed) is None:
             print(f"{needed} is not installed")
             return 77
@@ -61,15 +71,19 @@ def main():
         folder = pathlib.Path(folder)
         copy = folder / "sources"
         shutil.copytree(sources, copy, ignore=shutil.ignore_patterns("build", ".git", "*.egg-info"))
-        # numpy, setuptools and pip are the system's: nothing is downloaded.
+        # numpy and pip are the system's: nothing is downloaded.
         subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", folder / "venv"], check=True)
         python = folder / "venv" / "bin" / "python"
         environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
         environment["COLLARMESH_BUILD_DIR"] = str(build)
-        subprocess.run([python, "-m", "pip", "install", "--no-build-isolation", "--no-index", "--no-deps", copy],
+        subprocess.run([python, "-m", "pip", "install", "--no-index", copy],
                        check=True, env=environment)
         box = sources / "resources/models/box.off"
         subprocess.run([python, "-c", USE, box], check=True, cwd=folder, env=environment)
+        told = subprocess.run([python, "-c", LACKING, copy], env={**environment, "COLLARMESH_BUILD_DIR": ""},
+                              capture_output=True, text=True).stderr
+        if "apt-get install g++ cmake" not in told or "pybind11-dev" not in told:
+            raise SystemExit(f"it is not said which packages are missing: {told}")
         if list(build.glob("lib/collarmesh/collarmesh_hdf5.so")):
             subprocess.run([python, "-c", MODULES, box], check=True, cwd=folder, env=environment)
     return 0

@@ -201,7 +201,8 @@ class Signatures(unittest.TestCase):
     def test_docstrings_tell_every_parameter(self):
         """By themselves, or by that of `mesh` where they refer to it."""
         for function in (collarmesh.mesh, collarmesh.check, collarmesh.info, collarmesh.convert, collarmesh.repair,
-                         collarmesh.read, collarmesh.Complex, collarmesh.Mesh.write, collarmesh.Mesh.partitioned):
+                         collarmesh.read, collarmesh.Complex, collarmesh.Mesh.write, collarmesh.Mesh.partitioned,
+                         collarmesh.Mesh.interpolate, collarmesh.Mesh.to_dolfinx, collarmesh.predict, collarmesh.sampled_sizes):
             text = inspect.getdoc(function)
             if "collarmesh.mesh" in text:
                 text += inspect.getdoc(collarmesh.mesh)

@@ -21,6 +21,10 @@ import numpy
 m: collarmesh.Mesh = collarmesh.mesh(pathlib.Path("box.off"), size=0.5, patch_size={3: 0.1}, size_field=lambda x, y, z: 1.0)
 told: List[str] = m.findings
 m.write(pathlib.Path("box.vtu"))
+tag: int = collarmesh.info("box.off")["complex"]["patch_list"][0]["tag"]
+volume: float = m.info()["mesh"]["region_volumes"]["1"]
+other = collarmesh.mesh("box.off", progress=True, size_field=(m, numpy.ones(len(m.tets))))
+seconds: float = collarmesh.predict("box.off", sizes=[0.5])[0]["seconds"]
 """
 
 
@@ -40,7 +44,9 @@ def main():
         environment = {**os.environ, "MYPYPATH": str(package.parent)}
         subprocess.run([*common, package, use], check=True, cwd=folder, env=environment)
         refused = subprocess.run([*common, wrong], cwd=folder, env=environment, capture_output=True, text=True)
-        if 'incompatible type "str"' not in refused.stdout:
+        wrong.write_text('import collarmesh\nn: str = collarmesh.info("box.off")["complex"]["points"]\n')
+        key = subprocess.run([*common, wrong], cwd=folder, env=environment, capture_output=True, text=True)
+        if 'incompatible type "str"' not in refused.stdout or "Incompatible types in assignment" not in key.stdout:
             raise SystemExit(f"mypy does not see a wrong type:\n{refused.stdout}{refused.stderr}")
     stub = (sources / "mesher/python/collarmesh/_core.pyi").read_text()
     functions = {name for name in vars(core) if not name.startswith("_")}

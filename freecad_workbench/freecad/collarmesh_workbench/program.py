@@ -72,8 +72,8 @@ class Settings:
 
 
 def find_program(preferred=""):
-    """Path of the program: `preferred`, the environment variable COLLARMESH_PROGRAM, the PATH, the folder that the
-    add-on is installed in, or its sources. Raises MesherError when it is nowhere."""
+    """Path of the program: `preferred`, the environment variable COLLARMESH_PROGRAM, the one inside the add-on, the
+    PATH, the folder that the add-on is installed in, or its sources. Raises MesherError when it is nowhere."""
     for candidate in (preferred, os.environ.get("COLLARMESH_PROGRAM", "")):
         if candidate:
             if shutil.which(candidate):
@@ -84,7 +84,8 @@ def find_program(preferred=""):
     beside = [addon.parent / "build" / "release" / "bin" / "collarmesh"]
     if len(addon.parents) > 3:  # installed: WHERE/share/freecad/Mod/collarmesh and WHERE/bin
         beside.append(addon.parents[3] / "bin" / "collarmesh")
-    for candidate in ("collarmesh", *map(str, beside)):
+    inside = addon / "bin" / "collarmesh"
+    for candidate in (str(inside), "collarmesh", *map(str, beside)):
         if shutil.which(candidate):
             return shutil.which(candidate)
     raise MesherError(

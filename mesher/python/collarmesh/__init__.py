@@ -31,8 +31,8 @@ from ._core import (
     WriteError,
     __version__,
 )
-from ._functions import check, info, mesh, read, repair
-from ._inputs import Complex, Input, Path, given, inputs
+from ._functions import check, info, mesh, predict, read, repair
+from ._inputs import Complex, Input, Path, given, inputs, sampled_sizes
 from ._mesh import Mesh
 
 __all__ = [
@@ -50,8 +50,10 @@ __all__ = [
     "convert",
     "info",
     "mesh",
+    "predict",
     "read",
     "repair",
+    "sampled_sizes",
 ]
 
 
@@ -91,7 +93,7 @@ def convert(
     found = source if isinstance(source, Mesh) else None
     if isinstance(source, (str, os.PathLike)):
         arrays = _core.read_mesh_if_there(os.fspath(source), from_kind)
-        found = None if arrays is None else Mesh(arrays)
+        found = None if arrays is None else Mesh._of(arrays)
     if found is not None:
         if not to_surface:
             divided = found if partitions is None else found.partitioned(partitions)

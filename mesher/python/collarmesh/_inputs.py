@@ -17,7 +17,11 @@ else:
 Path = Union[str, "os.PathLike[str]"]
 Surface = Tuple[Array, Array, Array]
 SizeField = Union[
-    Path, Mapping[str, Any], Tuple[ArrayLike, ArrayLike, ArrayLike], Callable[[float, float, float], float]
+    Path,
+    Mapping[str, Any],
+    Tuple[Any, ArrayLike],
+    Tuple[ArrayLike, ArrayLike, ArrayLike],
+    Callable[[float, float, float], float],
 ]
 
 
@@ -48,7 +52,8 @@ def integers(values: ArrayLike, what: str, columns: Optional[int] = None) -> Arr
     return numpy.ascontiguousarray(array, dtype=numpy.int64)
 
 
-def _one_for_each(values: Array, count: int, what: str, of: str) -> Array:
+def one_for_each(values: Array, count: int, what: str, of: str) -> Array:
+    """The values, which are as many as there are things that they are of."""
     if len(values) != count:
         raise OptionError(f"{what} must be an array of shape (n,), one for each {of}: {count}, not {len(values)}")
     return values
@@ -110,12 +115,12 @@ class Complex:
         }
         if facet_tags is not None:
             tags = integers(facet_tags, f"the tags of {name}")
-            self.arrays["facet_tags"] = _one_for_each(tags, len(facet_ends), f"the tags of {name}", "facet")
+            self.arrays["facet_tags"] = one_for_each(tags, len(facet_ends), f"the tags of {name}", "facet")
         if segments is not None:
             self.arrays["segments"] = integers(segments, f"the segments of {name}", 2)
         if segment_tags is not None:
             tags = integers(segment_tags, "segment_tags")
-            self.arrays["segment_tags"] = _one_for_each(
+            self.arrays["segment_tags"] = one_for_each(
                 tags, len(self.arrays.get("segments", ())), "segment_tags", "segment"
             )
         if holes is not None:
@@ -144,7 +149,7 @@ def _triangles(surface: Tuple[Any, ...], name: str) -> Dict[str, Any]:
     }
     if len(surface) == 3:
         tags = integers(surface[2], f"the tags of {name}")
-        arrays["facet_tags"] = _one_for_each(tags, count, f"the tags of {name}", "triangle")
+        arrays["facet_tags"] = one_for_each(tags, count, f"the tags of {name}", "triangle")
     return arrays
 
 
@@ -168,20 +173,78 @@ def inputs(given: Sequence[Input]) -> List[Any]:
     return result
 
 
+def sampled_sizes(
+    function: Callable[[Array, Array, Array], ArrayLike], low: ArrayLike, high: ArrayLike, spacing: float
+) -> Tuple[Array, Array, Array]:
+    """A size field for `collarmesh.mesh` of a function that takes arrays: it is called once, and is linear in between.
+    A callable of one place, which is called millions of times, takes much longer.
+
+    function: of x, y, z, arrays of shape (n,); gives lengths, an array of that shape or one number.
+    low, high: (3,), corners of the box in which it is sampled; outside of it the nearest point of the box counts.
+    spacing: between the samples, absolute, at most.
+
+    Raises OptionError for a function that gives no positive length somewhere, with the place.
+    """
+    corners = reals(numpy.array([low, high]), "low and high", 3)
+    extent = corners[1] - corners[0]
+    if not (spacing > 0 and (extent > 0).all()):
+        raise OptionError(
+            f"sampled_sizes needs a positive spacing and low below high, not {spacing!r}, {low!r}, {high!r}")
+    counts = numpy.maximum(numpy.ceil(extent / spacing).astype(numpy.int64), 1) + 1
+    axes = [numpy.linspace(first, last, count) for first, last, count in zip(*corners, counts)]
+    points = numpy.stack(numpy.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    lengths = numpy.asarray(function(*points.T.copy()), dtype=numpy.float64)
+    if lengths.shape not in ((), (len(points),)):
+        raise OptionError(f"the function gave an array of shape {lengths.shape} for {len(points)} points")
+    lengths = numpy.broadcast_to(lengths, len(points))
+    wrong = numpy.flatnonzero(~(numpy.isfinite(lengths) & (lengths > 0)))
+    if len(wrong):
+        raise OptionError(f"the function gave {lengths[wrong[0]]} at {tuple(points[wrong[0]].tolist())}; it must give "
+                          "positive lengths")
+    numbers = numpy.arange(len(points)).reshape(counts)
+    cell = numbers[:-1, :-1, :-1].reshape(-1, 1)
+    step = (counts[1] * counts[2], counts[2], 1)
+    paths = [(0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (2, 1, 0), (1, 0, 2)]  # along the axes, six tets to a cell
+    tets = []
+    for number, path in enumerate(paths):
+        ends = numpy.cumsum([0, *(step[axis] for axis in path)])
+        tets.append(cell + (ends if number < 3 else ends[[0, 2, 1, 3]]))
+    return points, numpy.vstack(tets), lengths
+
+
+def _on_points(tets: Array, values: Array, count: int) -> Array:
+    """Of values of tetrahedra: at each point the smallest of those around it. Points without a tetrahedron get the
+    smallest of all."""
+    found = numpy.full(count, values.min() if len(values) else 0.0)
+    found[tets.ravel()] = numpy.inf
+    numpy.minimum.at(found, tets.ravel(), numpy.repeat(values, tets.shape[1]))
+    return found
+
+
 def _size_field(field: SizeField) -> Any:
     """A path, a dict, a callable, or the arrays of a mesh with values on its points."""
     if isinstance(field, (str, os.PathLike)):
         return os.fspath(field)
     if callable(field) or isinstance(field, Mapping):
         return dict(field) if isinstance(field, Mapping) else field
-    if not isinstance(field, tuple) or len(field) != 3:
-        raise OptionError("size_field must be a path, a dict, a callable or a tuple (points, tets, values)")
-    points = reals(field[0], "the points of size_field", 3)
-    values = reals([[value] for value in field[2]], "the values of size_field", 1).ravel()  # type: ignore
+    arrays: Any = field
+    if isinstance(arrays, tuple) and len(arrays) == 2 and hasattr(arrays[0], "tets"):
+        arrays = (arrays[0].points, arrays[0]._cells("tets"), arrays[1])
+    if not isinstance(arrays, tuple) or len(arrays) != 3:
+        raise OptionError("size_field must be a path, a dict, a callable, a tuple (mesh, values) or a tuple (points, tets, "
+                          "values)")
+    points = reals(arrays[0], "the points of size_field", 3)
+    cells = numpy.asarray(arrays[1])
+    tets = integers(cells, "the tets of size_field", 10 if cells.ndim == 2 and cells.shape[1] == 10 else 4)
+    values = reals(numpy.reshape(arrays[2], (-1, 1)), "the values of size_field", 1).ravel()
+    if len(values) not in (len(points), len(tets)):
+        raise OptionError(f"size_field has {len(values)} values for {len(points)} points and {len(tets)} tets")
+    if tets.size and not (0 <= tets.min() and tets.max() < len(points)):
+        raise OptionError(f"the tets of size_field have corners from {tets.min()} to {tets.max()}; its points are 0 to "
+                          f"{len(points) - 1}")
     if len(values) != len(points):
-        raise OptionError(f"size_field has {len(values)} values for {len(points)} points")
-    return {"points": points, "tets": integers(field[1], "the tets of size_field", 4), "values": values,
-            "cad_names": False}
+        values = _on_points(tets, values, len(points))
+    return {"points": points, "tets": tets[:, :4], "values": values, "cad_names": False}
 
 
 def given(options: Mapping[str, Any]) -> Dict[str, Any]:

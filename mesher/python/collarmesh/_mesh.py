@@ -1,12 +1,14 @@
 """The mesh: arrays of numpy, and the ways to other programs."""
 
 import os
-from typing import Any, Dict, List, Optional
+from typing import Any, Dict, List, Mapping, Optional, Tuple
 
 import numpy
 
 from . import _core
-from ._inputs import Array, Path
+from ._html import table_of
+from ._inputs import Array, ArrayLike, Path, integers, one_for_each, reals
+from ._types import MeshInfo
 
 _ARRAYS = {
     "points": (numpy.float64, 3),
@@ -36,8 +38,43 @@ _MESHIO_CELLS = {1: ("tetra", "triangle", "line"), 2: ("tetra10", "triangle6", "
 _VTK_CELLS = {1: 10, 2: 24}
 
 
+# The same nodes in the order of dolfinx.
+_DOLFINX_TETS = {1: [0, 1, 2, 3], 2: [0, 1, 2, 3, 9, 8, 5, 7, 6, 4]}
+_DOLFINX_TRIANGLES = {1: [0, 1, 2], 2: [0, 1, 2, 4, 5, 3]}
+# The triangles of a tetrahedron, seen from outside, with its nodes amid their edges.
+_SIDES = [[1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6], [0, 1, 3, 4, 8, 7], [0, 2, 1, 6, 5, 4]]
+
+
+def _cells_with_nodes(cells: ArrayLike, what: str, columns: Tuple[int, int]) -> Array:
+    """Cells of first or second order, by the number of columns."""
+    array = numpy.asarray(cells)
+    return integers(array, what, columns[1] if array.ndim == 2 and array.shape[1] == columns[1] else columns[0])
+
+
+def _sides_between_tags(tets: Array, tags: Array) -> Tuple[Array, Array]:
+    """The boundary of the tets with each tag, and a tag for each pair of tags that lie beside each other."""
+    if len(tets) == 0:
+        return tets[:, :3], tags
+    columns = [side[: 3 if tets.shape[1] == 4 else 6] for side in _SIDES]
+    sides = tets[:, columns].reshape(4 * len(tets), -1)
+    order = numpy.lexsort(numpy.sort(sides[:, :3], axis=1).T)
+    corners = numpy.sort(sides[order, :3], axis=1)
+    twice = numpy.append((corners[1:] == corners[:-1]).all(axis=1), False)
+    first = numpy.flatnonzero(~numpy.insert(twice[:-1], 0, False))
+    tag = tags[order // 4]
+    other = numpy.where(twice[first], tag[numpy.minimum(first + 1, len(order) - 1)], 0)
+    kept = ~twice[first] | (other != tag[first])
+    pairs = numpy.sort(numpy.column_stack([tag[first], other]), axis=1)[kept]
+    pairs = numpy.column_stack([pairs, twice[first][kept]])  # 0 may be a tag, too
+    numbers = numpy.unique(pairs, axis=0, return_inverse=True)[1].reshape(-1) + 1
+    return sides[order[first[kept]]], numbers.astype(numpy.int64)
+
+
 class Mesh:
     """A tetrahedral mesh. Its arrays are not to be written to; indices are int64, rows of `points`.
+
+    `collarmesh.mesh` and `collarmesh.read` make one; `Mesh(points, tets, tags)` makes one of arrays, to check, convert
+    or write the mesh of another program.
 
     points: (n, 3), float64, in the unit of the input.
     tets: (m, 4), positive volume.
@@ -79,9 +116,62 @@ class Mesh:
     feature: Array
     names: Dict[int, Dict[int, str]]
 
-    def __init__(self, arrays: Dict[str, Any]) -> None:
-        """Use `collarmesh.mesh` or `collarmesh.read`."""
-        self.__setstate__(arrays)
+    def __init__(
+        self,
+        points: ArrayLike,
+        tets: ArrayLike,
+        tags: Optional[ArrayLike] = None,
+        *,
+        faces: Optional[ArrayLike] = None,
+        face_tags: Optional[ArrayLike] = None,
+        edges: Optional[ArrayLike] = None,
+        edge_tags: Optional[ArrayLike] = None,
+        names: Optional[Mapping[int, Mapping[int, str]]] = None,
+    ) -> None:
+        """A mesh of arrays. Rows of cells are rows of `points`, with those of second order behind the corners, amid
+        the edges ab, bc, ca, ad, bd, cd.
+
+        points: (n, 3). tets: (m, 4) or (m, 10), turned to positive volume where most are negative. tags: (m,),
+            integers, by which regions are numbered; default 1.
+        faces: (k, 3) or (k, 6), triangles on boundaries and interfaces; face_tags: (k,). Default: the boundary of
+            the tetrahedra with each tag, and a tag for each pair of tags that lie beside each other.
+        edges: (j, 2) or (j, 3), edges on curves; edge_tags: (j,).
+        names: names of tags by dimension, {2: {3: "inlet"}}.
+
+        Raises OptionError for wrong shapes and kinds and for indices out of range.
+        """
+        nodes = _cells_with_nodes(tets, "tets", (4, 10))
+        tet_tag = numpy.ones(len(nodes), dtype=numpy.int64)
+        if tags is not None:
+            tet_tag = one_for_each(integers(tags, "tags"), len(nodes), "tags", "tetrahedron")
+        if faces is None:
+            triangles, face_tag = _sides_between_tags(nodes, tet_tag)
+        else:
+            triangles, face_tag = _cells_with_nodes(faces, "faces", (3, 6)), numpy.empty(0, dtype=numpy.int64)
+        if face_tags is not None:
+            face_tag = one_for_each(integers(face_tags, "face_tags"), len(triangles), "face_tags", "triangle")
+        lines = _cells_with_nodes(() if edges is None else edges, "edges", (2, 3))
+        given = {
+            "points": reals(points, "points", 3), "tets": nodes[:, :4], "tet_tag": tet_tag,
+            "faces": triangles[:, :3], "face_tag": face_tag, "edges": lines[:, :2],
+            "names": {kind: dict(by_tag) for kind, by_tag in (names or {}).items()}, "cad_names": False,
+        }
+        if edge_tags is not None:
+            given["edge_tag"] = one_for_each(integers(edge_tags, "edge_tags"), len(lines), "edge_tags", "edge")
+        if nodes.shape[1] == 10:
+            given["tet_mid_nodes"] = nodes[:, 4:]
+            given.update({"face_mid_nodes": triangles[:, 3:]} if triangles.shape[1] == 6 else {})
+            given.update({"edge_mid_nodes": lines[:, 2]} if lines.shape[1] == 3 else {})
+        elif triangles.shape[1] == 6 or lines.shape[1] == 3:
+            raise _core.OptionError("tets of first order have no faces and edges of second order")
+        self.__setstate__(_core.complete(given))
+
+    @classmethod
+    def _of(cls, arrays: Dict[str, Any]) -> "Mesh":
+        """What the compiled part gives."""
+        mesh = cls.__new__(cls)
+        mesh.__setstate__(arrays)
+        return mesh
 
     def __getstate__(self) -> Dict[str, Any]:
         return {**self._arrays(), "check": self._check, **self._said}
@@ -169,7 +259,7 @@ class Mesh:
                 f"partitions must be a whole number from 1 to {len(self.tets)}, as many as there are "
                 f"tetrahedra, not {partitions!r}")
         state = self.__getstate__()
-        return Mesh({**state, "tet_partition": _core.partition(state, int(partitions))})
+        return Mesh._of({**state, "tet_partition": _core.partition(state, int(partitions))})
 
     def write(self, path: Path, format: str = "", scale: float = 1, ghost_cells: bool = False) -> None:
         """Write a file.
@@ -185,9 +275,49 @@ class Mesh:
             arrays["points"] = scale * self.points
         _core.write_mesh(arrays, os.fspath(path), format, ghost_cells)
 
-    def info(self) -> Dict[str, Any]:
+    def info(self) -> MeshInfo:
         """Counts, angles, volumes and histograms, as `collarmesh info --json` prints them."""
         return _core.measures(self._arrays())
+
+    def interpolate(self, values: ArrayLike, points: ArrayLike, outside: str = "nan") -> Array:
+        """A field of this mesh at other points: linear in tetrahedra, quadratic in those of second order.
+
+        values: (n,) or (n, k), a row for each of `points` of the mesh; or a row for each tetrahedron, which holds in
+            all of it.
+        points: (p, 3), where it is asked for: the points of another mesh.
+        outside: "nan", or "nearest": what points outside of the mesh get; the latter is the value of the nearest point
+            of the mesh, and needs values on points.
+
+        Returns (p,) or (p, k). Raises OptionError for wrong shapes.
+        """
+        given = numpy.asarray(values, dtype=numpy.float64)
+        on_points = given.ndim > 0 and len(given) == len(self.points)
+        if given.ndim not in (1, 2) or not (on_points or len(given) == len(self.tets)):
+            raise _core.OptionError(f"values must have a row for each of the {len(self.points)} points or {len(self.tets)} "
+                                    f"tetrahedra, not the shape {given.shape}")
+        if outside not in ("nan", "nearest") or (outside == "nearest" and not on_points):
+            raise _core.OptionError('outside must be "nan", or for values on points "nearest"')
+        where = {"name": "points", "points": reals(points, "points", 3)}
+        tet, shares, nearest = _core.locate(self._arrays(), where)
+        inside = tet >= 0
+        if on_points:
+            weights = self._weights(shares[inside])
+            nodes = self._cells("tets")[tet[inside]]
+            found = (given[nodes] * weights.reshape(*weights.shape, *[1] * (given.ndim - 1))).sum(axis=1)
+        else:
+            found = given[tet[inside]]
+        result = numpy.full((len(tet), *given.shape[1:]), numpy.nan)
+        result[inside] = found
+        if outside == "nearest":
+            result[~inside] = given[nearest[~inside]]
+        return result
+
+    def _weights(self, shares: Array) -> Array:
+        """Of the nodes of a tetrahedron, at places with these shares of its corners."""
+        if self.order == 1:
+            return shares
+        amid = [4 * shares[:, i] * shares[:, j] for i, j in ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))]
+        return numpy.column_stack([shares * (2 * shares - 1), *amid])
 
     def _cells(self, cells: str) -> Array:
         nodes: Array = getattr(self, cells)
@@ -215,6 +345,19 @@ class Mesh:
         beside = numpy.where(behind > 0, behind, before)
         regions = [self.tet_region, beside, numpy.zeros(len(self.edges), dtype=numpy.int64)]
         return meshio.Mesh(self.points, cells, cell_data={"tag": tags, "region": regions}, cell_sets=sets)
+
+    def to_dolfinx(self, comm: Any = None) -> Tuple[Any, Any, Any]:
+        """A mesh of dolfinx, of the order of this one, and its tags: (mesh, cell_tags, facet_tags), with `tet_tag` and
+        `face_tag`.
+
+        comm: of mpi4py, COMM_WORLD by default. The first rank's mesh is divided among all; that of the others is not
+        looked at. Raises ImportError without dolfinx.
+        """
+        from ._dolfinx import mesh_and_tags
+
+        tets = self._cells("tets")[:, _DOLFINX_TETS[self.order]]
+        faces = self._cells("faces")[:, _DOLFINX_TRIANGLES[self.order]]
+        return mesh_and_tags(comm, self.points, self.order, (tets, self.tet_tag), (faces, self.face_tag))
 
     def to_pyvista(self) -> Any:
         """A pyvista.UnstructuredGrid of the tetrahedra with the data "tag", "region", "collar".
@@ -245,6 +388,11 @@ class Mesh:
         axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
         axes.set_box_aspect(numpy.maximum(high - low, 1e-6 * (high - low).max()))
         return axes
+
+    def _repr_html_(self) -> str:
+        """What notebooks show: the certificate and the figures of the mesh."""
+        return table_of(self.passed if self._check else None, self.findings, self.repairs, self.info()["mesh"],
+                        self._check or {}, lambda number: self.name(3, number))
 
     def __repr__(self) -> str:
         return f"<collarmesh.Mesh: {len(self.tets)} tets, {len(self.points)} points>"

@@ -206,6 +206,17 @@ TetMesh tet_mesh_of(const py::dict& arrays) {
   return mesh;
 }
 
+py::tuple arrays_of(const std::vector<MeshPlace>& places) {
+  std::vector<Index> tet, nearest;
+  std::vector<double> shares;
+  for (const MeshPlace& place : places) {
+    tet.push_back(place.tet);
+    nearest.push_back(place.nearest);
+    shares.insert(shares.end(), place.shares.begin(), place.shares.end());
+  }
+  return py::make_tuple(index_array(tet), owned(std::move(shares), 4), index_array(nearest));
+}
+
 py::array partition_array(const TetMesh& mesh) { return index_array(mesh.tet_partition); }
 
 py::dict arrays_of(TetMesh mesh) {

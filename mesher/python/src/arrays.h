@@ -3,6 +3,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include "collarmesh/locate.h"
 #include "collarmesh/polygon_soup.h"
 #include "collarmesh/tet_mesh.h"
 
@@ -20,6 +21,8 @@ pybind11::dict arrays_of(const PolygonSoup& soup);
 /// dict of dimension to a dict of tag to name, and `cad_names`.
 TetMesh tet_mesh_of(const pybind11::dict& arrays);
 pybind11::dict arrays_of(TetMesh mesh);
+/// The tet, the shares of its corners and the nearest point of each place; -1 for none.
+pybind11::tuple arrays_of(const std::vector<MeshPlace>& places);
 /// `TetMesh::tet_partition` alone.
 pybind11::array partition_array(const TetMesh& mesh);
 

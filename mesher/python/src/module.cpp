@@ -13,11 +13,14 @@
 #include "check_against.h"
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
+#include "collarmesh/locate.h"
 #include "collarmesh/mesh_measures.h"
 #include "collarmesh/partition.h"
 #include "collarmesh/pipeline.h"
+#include "collarmesh/predict.h"
 #include "complex_input.h"
 #include "input_files.h"
+#include "io/complete_mesh.h"
 #include "options.h"
 #include "report.h"
 #include "soup_output.h"
@@ -193,6 +196,29 @@ py::object info(const py::list& inputs, const py::dict& options) {
   return parsed(json);
 }
 
+struct PredictCall {
+  Inputs inputs;
+  Options options;
+  std::vector<double> sizes;
+  Complex complex;
+  std::vector<Prediction> predictions;
+};
+
+py::object predicted(const py::list& inputs, const std::vector<double>& sizes, const py::dict& options) {
+  const auto call = std::make_shared<PredictCall>();
+  call->inputs = inputs_of(inputs);
+  call->options = options_of(options);
+  call->sizes = sizes;
+  const auto work = [call](Watch& watch) {
+    build(call->inputs, call->options, watch, call->complex);
+    const Plc& plc = call->complex.plc;
+    InputSource(call->options, *call->complex.input).adapt(plc, call->options);
+    call->predictions = predict(plc, call->options, call->sizes);
+  };
+  run_watched(work, py::none(), call->options.mesh.time_limit);
+  return parsed(cli::predictions_json(call->predictions));
+}
+
 py::object measures(const py::dict& arrays) {
   const TetMesh mesh = tet_mesh_of(arrays);
   nlohmann::ordered_json json = cli::measures_json(mesh, measure_mesh(mesh));
@@ -268,6 +294,22 @@ py::array partition_mesh(const py::dict& arrays, unsigned partitions) {
   return partition_array(*mesh);
 }
 
+/// What other programs do not know is filled in.
+py::dict complete(const py::dict& arrays) {
+  TetMesh mesh = tet_mesh_of(arrays);
+  io::complete_mesh("the mesh", mesh);
+  return arrays_of(std::move(mesh));
+}
+
+/// (tet or -1, shares of its corners, nearest point or -1), by point.
+py::tuple locate_points(const py::dict& arrays, const py::dict& places) {
+  const auto mesh = std::make_shared<TetMesh>(tet_mesh_of(arrays));
+  const auto points = std::make_shared<std::vector<Point>>(soup_of(places).points);
+  const auto found = std::make_shared<std::vector<MeshPlace>>();
+  run_watched([mesh, points, found](Watch&) { *found = locate(*mesh, *points); }, py::none(), 0);
+  return arrays_of(*found);
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_core, module) {
@@ -283,7 +325,10 @@ PYBIND11_MODULE(_core, module) {
   module.def("mesh", &mesh_of);
   module.def("check", &check_mesh);
   module.def("info", &info);
+  module.def("predict", &predicted);
   module.def("measures", &measures);
+  module.def("locate", &locate_points);
+  module.def("complete", &complete);
   module.def("repaired", &repaired);
   module.def("convert_surfaces", &convert_surfaces);
   module.def("read_mesh", &read_mesh);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <cmath>
 #include <map>
 #include <memory>
 #include <type_traits>
@@ -60,7 +61,17 @@ SizeField field_of(const py::object& callable) {
   const std::shared_ptr<py::object> kept(new py::object(callable), locked);
   return [kept](const Point& p) {
     const py::gil_scoped_acquire acquire;
-    return (*kept)(p.x, p.y, p.z).cast<double>();
+    const py::object given = (*kept)(p.x, p.y, p.z);
+    double size = NAN;
+    try {
+      size = given.cast<double>();
+    } catch (const py::cast_error&) {
+    }
+    if (!(size > 0))
+      throw OptionError(
+          fmt::format("size_field gave {} at ({:.9g}, {:.9g}, {:.9g}); it must give a positive length",
+                      std::string(py::repr(given)), p.x, p.y, p.z));
+    return size;
   };
 }
 

@@ -86,7 +86,8 @@ void run_watched(std::function<void(Watch&)> work, const py::object& progress, d
     stopped = Clock::now();
   };
   std::unique_lock lock(watch->mutex_);
-  for (double told = 0;;) {
+  double told = 0;
+  for (;;) {
     watch->changed_.wait_for(lock, between_looks, [&] { return watch->done_; });
     const std::vector<Watch::News> news = std::exchange(watch->news_, {});
     stage = watch->stage_;
@@ -136,6 +137,10 @@ void run_watched(std::function<void(Watch&)> work, const py::object& progress, d
                     time_limit, stage));
   if (reason == Reason::callback) throw Cancelled(fmt::format("the run was stopped at {}", stage));
   if (failure) std::rethrow_exception(failure);
+  if (!progress.is_none() && told < 1) {  // no stage knows that it is the last one
+    const py::gil_scoped_acquire acquire;
+    progress(stage, 1.0);
+  }
 }
 
 void wait_for_abandoned() {

@@ -58,8 +58,9 @@ class Watch {
 
 /// Do the work in a thread of its own. Meanwhile signals are looked at, so that Ctrl-C is KeyboardInterrupt
 /// within a second, and `progress`, None or a callable, is told of what is new; what it raises ends the work,
-/// and False cancels it. So does the time limit, in seconds; 0: none. What the work throws is thrown here.
-/// The work must own all that it touches. Throws BudgetSpent, Cancelled, and what Python raised.
+/// and False cancels it. It hears 1 at the end. So does the time limit, in seconds; 0: none. What the work
+/// throws is thrown here. The work must own all that it touches. Throws BudgetSpent, Cancelled, and what
+/// Python raised.
 void run_watched(std::function<void(Watch&)> work, const pybind11::object& progress, double time_limit);
 
 /// Wait a while for work that was left behind; for the end of the interpreter.

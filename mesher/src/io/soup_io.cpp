@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 #include <vector>
@@ -32,7 +33,11 @@ const SoupFormat* find_format(const std::string& path, std::string_view format) 
   return nullptr;
 }
 
+constexpr std::array<std::string_view, 6> cad_extensions{".step", ".stp", ".iges", ".igs", ".brep", ".brp"};
+
 std::string unknown(const std::string& path) {
+  if (std::ranges::count(cad_extensions, lower_extension(path)) > 0)
+    return path + ": CAD shapes are no surfaces; programs mesh them with mesh_files (collarmesh::files)";
   return fmt::format("{}: unknown kind of file; surfaces are {}", path, fmt::join(soup_formats(), " "));
 }
 

@@ -1,10 +1,11 @@
-// A size field that is given on the points of a mesh.
+// Places in a mesh, and a size field that is given on its points.
 #include <fmt/format.h>
 
 #include <cmath>
 #include <memory>
 
 #include "collarmesh/error.h"
+#include "collarmesh/locate.h"
 #include "collarmesh/size_field.h"
 #include "common/box_tree.h"
 #include "location/triangle_hierarchy.h"
@@ -15,22 +16,28 @@ namespace {
 
 class BackgroundMesh {
  public:
-  BackgroundMesh(const TetMesh& mesh, const std::vector<double>& values)
+  explicit BackgroundMesh(const TetMesh& mesh)
       : points_(mesh.points),
         tets_(mesh.tets),
-        values_(values),
         boxes_(boxes_of(mesh)),
         nearest_(points_, as_triangles(points_.size())) {}
 
-  double at(const Point& p) const {
-    double found = 0;
+  MeshPlace place_of(const Point& p) const {
+    MeshPlace place;
     boxes_.for_each_near_segment(p, p, [&](Index tet) {
-      if (found == 0) found = value_in(tet, p);
+      if (place.tet == none && shares_in(tet, p, place.shares)) place.tet = tet;
     });
-    if (found > 0) return found;
-    Index nearest = 0;
-    nearest_.squared_distance_to(p, INFINITY, &nearest);
-    return values_[nearest];
+    if (place.tet == none) nearest_.squared_distance_to(p, INFINITY, &place.nearest);
+    return place;
+  }
+
+  /// Of a number at each point: linear in the tets, that of the nearest point outside of them.
+  double value_at(const Point& p, const std::vector<double>& values) const {
+    const MeshPlace place = place_of(p);
+    if (place.tet == none) return values[place.nearest];
+    double value = 0;
+    for (unsigned i = 0; i < 4; ++i) value += place.shares[i] * values[tets_[place.tet][i]];
+    return value;
   }
 
  private:
@@ -50,27 +57,24 @@ class BackgroundMesh {
     return triangles;
   }
 
-  // 0 when p is outside.
-  double value_in(Index tet, const Point& p) const {
+  /// False when p is outside.
+  bool shares_in(Index tet, const Point& p, std::array<double, 4>& shares) const {
     const auto& v = tets_[tet];
     std::array<Point, 4> corners;
     for (unsigned i = 0; i < 4; ++i) corners[i] = points_[v[i]];
     const double volume = six_volume(corners[0], corners[1], corners[2], corners[3]);
-    if (!(volume > 0)) return 0;
-    double value = 0;
+    if (!(volume > 0)) return false;
     for (unsigned i = 0; i < 4; ++i) {
       auto with_p = corners;
       with_p[i] = p;
-      const double share = six_volume(with_p[0], with_p[1], with_p[2], with_p[3]) / volume;
-      if (share < -1e-9) return 0;
-      value += share * values_[v[i]];
+      shares[i] = six_volume(with_p[0], with_p[1], with_p[2], with_p[3]) / volume;
+      if (shares[i] < -1e-9) return false;
     }
-    return value;
+    return true;
   }
 
   std::vector<Point> points_;
   std::vector<std::array<Index, 4>> tets_;
-  std::vector<double> values_;
   BoxTree boxes_;
   TriangleHierarchy nearest_;
 };
@@ -86,8 +90,16 @@ SizeField size_field_on_mesh(const TetMesh& mesh, const std::vector<double>& val
       throw OptionError(
           fmt::format("the size field is {} at point {}, ({:.9g}, {:.9g}, {:.9g}); sizes must be positive",
                       values[i], i, mesh.points[i].x, mesh.points[i].y, mesh.points[i].z));
-  const auto background = std::make_shared<const BackgroundMesh>(mesh, values);
-  return [background](const Point& p) { return background->at(p); };
+  const auto background = std::make_shared<const BackgroundMesh>(mesh);
+  return [background, values](const Point& p) { return background->value_at(p, values); };
+}
+
+std::vector<MeshPlace> locate(const TetMesh& mesh, std::span<const Point> points) {
+  const BackgroundMesh background(mesh);
+  std::vector<MeshPlace> places;
+  places.reserve(points.size());
+  for (const Point& p : points) places.push_back(background.place_of(p));
+  return places;
 }
 
 }  // namespace collarmesh

@@ -1,3 +1,4 @@
+#include <collarmesh/error.h>
 #include <collarmesh/io/soup_io.h>
 #include <collarmesh/io/tet_mesh_io.h>
 #include <collarmesh/pipeline.h>
@@ -5,9 +6,24 @@
 #include <cstdio>
 #include <string>
 
+namespace {
+
+// The library has no CAD shapes, and says who has.
+bool cad_is_told() {
+  try {
+    collarmesh::io::read_soup("part.STEP");
+    return false;
+  } catch (const collarmesh::ReadError& error) {
+    return std::string(error.what()).find("mesh_files") != std::string::npos;
+  }
+}
+
+}  // namespace
+
 // consumer SURFACE MESH: mesh a file, certify the result and write it in every format.
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
+  if (!cad_is_told()) return 3;
   const collarmesh::PolygonSoup soups[] = {collarmesh::io::read_soup(argv[1])};
   const collarmesh::SoupPipelineResult made = collarmesh::run_pipeline(soups);
   const collarmesh::TetMesh& mesh = made.result.mesh;

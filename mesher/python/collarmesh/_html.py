@@ -1,0 +1,41 @@
+"""A mesh in a notebook: a table of the certificate and the figures."""
+
+import html
+from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
+
+from ._types import MeshFigures
+
+_SHOWN = 10  # of a list of sentences
+
+
+def table_of(
+    passed: Optional[bool],
+    findings: List[str],
+    repairs: List[str],
+    figures: MeshFigures,
+    check: Mapping[str, Any],
+    name_of_region: Callable[[int], str],
+) -> str:
+    """passed: None for a mesh that was not made here."""
+    verdict = {True: "every guarantee holds", False: "a guarantee does not hold", None: "not certified"}[passed]
+    rows: List[Tuple[str, str]] = [("Certificate", verdict)]
+    rows += [("Finding", text) for text in _first(findings)] + [("Repair", text) for text in _first(repairs)]
+    rows += [
+        ("Cells", f"{figures['tets']} tetrahedra, {figures['points']} points, {figures['faces']} boundary triangles"),
+        ("Dihedral angles", f"{figures['min_dihedral']:.2f} to {figures['max_dihedral']:.2f} degrees"),
+        ("Median edge", f"{figures['median_edge']:.4g}"),
+    ]
+    kept: Dict[str, Any] = {str(row["number"]): row for row in check.get("kept", {}).get("region_volumes", [])}
+    for number, volume in figures["region_volumes"].items():
+        text = f"volume {volume:.6g}"
+        if number in kept:
+            text += f", {kept[number]['percent']:+.2f} % of the input's {kept[number]['input']:.6g}"
+        rows.append((name_of_region(int(number)), text))
+    lines = "".join(f"<tr><th style='text-align:left'>{html.escape(head)}</th>"
+                    f"<td style='text-align:left'>{html.escape(text)}</td></tr>" for head, text in rows)
+    return f"<table><caption>collarmesh.Mesh</caption>{lines}</table>"
+
+
+def _first(texts: List[str]) -> List[str]:
+    more = len(texts) - _SHOWN
+    return texts[:_SHOWN] + ([f"and {more} more"] if more > 0 else [])

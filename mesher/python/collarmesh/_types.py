@@ -1,0 +1,108 @@
+"""What the dicts have that functions return; the same as the command line prints as JSON."""
+
+from typing import Dict, List, Optional, TypedDict
+
+
+class Region(TypedDict):
+    region: int
+    tag: int
+    name: str
+    volume: float
+
+
+class Patch(TypedDict):
+    tag: int
+    name: Optional[str]
+    patches: int
+    planar: bool
+    area: float
+    where: List[float]
+
+
+class CreaseInfo(TypedDict):
+    kind: str
+    angle: float
+    where: List[float]
+    message: str
+
+
+class Warned(TypedDict):
+    message: str
+    where: Optional[List[float]]
+
+
+class ComplexFigures(TypedDict):
+    points: int
+    triangles: int
+    vertices: int
+    curves: int
+    straight_curves: int
+    patches: int
+    planar_patches: int
+    bounds: List[List[float]]
+    diagonal: float
+    smallest_angle: float
+    shortest_segment: Optional[float]
+    spread: Optional[float]
+    planar_tolerance: float
+    largest_deviation: float
+    regions: List[Region]
+    patch_list: List[Patch]
+    creases: List[CreaseInfo]
+    warnings: List[Warned]
+
+
+class RepairFigures(TypedDict):
+    repaired: bool
+    wrapped: bool
+    tolerance: float
+    largest_distance: float
+    largest_distance_of_input: float
+    messages: List[str]
+
+
+class Histogram(TypedDict):
+    bin_width: float
+    tets: List[int]
+
+
+class Partitions(TypedDict):
+    count: int
+    smallest: int
+    largest: int
+    imbalance: float
+    cut_faces: int
+
+
+class MeshFigures(TypedDict):
+    points: int
+    tets: int
+    faces: int
+    edges: int
+    min_dihedral: float
+    max_dihedral: float
+    max_radius_edge: float
+    max_thin_radius_edge: float
+    max_collar_radius_edge: float
+    region_volumes: Dict[str, float]
+    partitions: Optional[Partitions]
+    histograms: Dict[str, Histogram]
+    median_edge: float
+
+
+class MeshInfo(TypedDict):
+    mesh: MeshFigures
+
+
+class Info(TypedDict, total=False):
+    """Of a surface "complex" and "repair", of a mesh "mesh"."""
+
+    complex: ComplexFigures
+    repair: RepairFigures
+    mesh: MeshFigures
+
+
+class Prediction(TypedDict):
+    size: float
+    tets: float
+    seconds: float
