@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "batch_command.h"
 #include "cad_files.h"
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
@@ -16,6 +17,7 @@
 #include "console.h"
 #include "conversion_report.h"
 #include "file_groups.h"
+#include "help_text.h"
 #include "html_report.h"
 #include "machine.h"
 #include "man_page.h"
@@ -32,6 +34,8 @@ std::string known_formats() {
   return list(surface_formats()) + " or " + list(io::written_tet_mesh_formats());
 }
 
+}  // namespace
+
 std::vector<std::string> all_formats() {
   std::vector<std::string> formats = surface_formats();
   for (auto& more : {io::written_tet_mesh_formats(), io::read_tet_mesh_formats()})
@@ -40,6 +44,8 @@ std::vector<std::string> all_formats() {
   for (const std::string& format : CadFiles::formats()) formats.push_back(format);
   return formats;
 }
+
+namespace {
 
 std::string known_inputs() {
   std::vector<std::string> formats = surface_formats();
@@ -95,6 +101,11 @@ void add_mesh_options(CLI::App& app, MeshArguments& a) {
       ->type_name("FILE");
   app.add_option("-o,--output", a.output, "The mesh to write: " + list(io::written_tet_mesh_formats()))
       ->type_name("FILE");
+  app.add_option(
+         "--batch", a.batch,
+         "In place of --output: each INPUT is a part of its own, and its mesh goes into this folder, with "
+         "the name of the part; --report json and --report html put reports beside it")
+      ->type_name("FOLDER");
   add_output_format(app, a.output_format, "");
   add_options(app, Option::mesh, a);
 }
@@ -162,7 +173,10 @@ CLI::App* add_repair_command(CLI::App& app, RepairArguments& a) {
   return repair;
 }
 
+/// What is wrong with a format that is none.
 std::string extension_list(const std::string& path) {
+  if (const std::string missing = io::missing_library(path); !missing.empty())
+    return "cannot be written: " + missing;
   const std::string extension = std::filesystem::path(path).extension().string();
   return extension.empty() ? "has no extension" : fmt::format("ends in '{}'", extension);
 }
@@ -243,8 +257,30 @@ void check_run_arguments(const MeshArguments& a) {
 
 namespace {
 
+/// Each part is checked as if it were alone.
+void check_mesh_arguments(const MeshArguments& a);
+
+void check_batch(const MeshArguments& a) {
+  if (!a.output.empty()) throw CLI::ValidationError("--batch", "contradicts --output; use one of them");
+  if (!a.cell_decomposition.empty())
+    throw CLI::ValidationError("--batch", "has one --cell-decomposition for several meshes; leave it out");
+  if (a.output_format == ".polymesh")
+    throw CLI::ValidationError("--format", "is of a folder for each mesh; mesh the parts one by one");
+  for (const std::string& report : a.reports)
+    if (report != "json" && report != "html")
+      throw CLI::ValidationError("--report",
+                                 fmt::format("'{}' is not json or html, as --batch asks for", report));
+  if (const std::string both = parts_of_one_name(a); !both.empty())
+    throw CLI::ValidationError("--batch", fmt::format("would write one mesh of {}; rename one", both));
+  for (const std::string& input : a.inputs) check_mesh_arguments(part_of_batch(a, input));
+}
+
 void check_mesh_arguments(const MeshArguments& a) {
   if (a.inputs.empty()) throw CLI::RequiredError("INPUT, a file to mesh,");
+  if (!a.batch.empty()) {
+    check_batch(a);
+    return;
+  }
   if (a.output.empty()) throw CLI::RequiredError("--output, the mesh to write,");
   if (a.output == "-")
     throw CLI::ValidationError(
@@ -253,6 +289,9 @@ void check_mesh_arguments(const MeshArguments& a) {
   if (!io::is_tet_mesh_format(a.output, a.output_format))
     throw CLI::ValidationError("--output", fmt::format("'{}' {}; use {}", a.output, extension_list(a.output),
                                                        list(io::written_tet_mesh_formats())));
+  if (a.order == 2 && is_among(a.output, a.output_format, io::formats_of_first_order()))
+    throw CLI::ValidationError("--order", fmt::format("{} has no elements of second order; use --order 1",
+                                                      format_of(a.output, a.output_format)));
   check_partitions(a, false);
   check_run_arguments(a);
 }
@@ -282,30 +321,17 @@ void check_convert_arguments(const MeshArguments& a) {
                                                        extension_list(a.output), known_formats()));
   check_standard_input(a);
   check_partitions(a, io::is_tet_mesh_format(a.inputs.front(), a.input_format));
-  if (a.output == "-" &&
-      (a.output_format == ".ele" || a.output_format == ".xdmf" || a.output_format == ".pvtu"))
+  if (a.output == "-" && is_of_several_files(a.output_format))
     throw CLI::ValidationError("--format", "is of several files, which standard output cannot take");
   check_run_arguments(a);
 }
 
-/// CLI11's help with our usage lines.
-class HelpText : public CLI::Formatter {
- public:
-  HelpText() { column_width(34); }
-  std::string make_usage(const CLI::App* app, std::string name) const override {
-    if (app->get_parent() != nullptr) return CLI::Formatter::make_usage(app, name);
-    std::string text = "Usage:";
-    for (const char* command : {"", "check", "info", "convert", "repair"})
-      text += fmt::format("{} {} [options]\n", text.size() > 6 ? "      " : "", usage_of(command));
-    return text;
-  }
-};
-
 constexpr const char* footer =
-    "Exit codes: 0 every guarantee holds, 1 internal error, 2 usage, 3 unreadable input,\n"
-    "4 not a valid complex, 5 a budget was hit, 6 cancelled,\n"
-    "7 a guarantee is missed (the mesh is written), 8 cannot write. 1 to 6 and 8 write no mesh.\n"
-    "Lengths are in input units (millimetres for CAD files); 'diagonal' is the bounding box's.";
+    "Exit codes: 0 every guarantee holds, 1 internal error, 2 usage, 3 unreadable\n"
+    "input, 4 not a valid complex, 5 a budget was hit, 6 cancelled, 7 a guarantee is\n"
+    "missed (the mesh is written), 8 cannot write. 1 to 6 and 8 write no mesh.\n"
+    "Lengths are in input units (millimetres for CAD files); 'diagonal' is the\n"
+    "bounding box's.";
 
 }  // namespace
 
@@ -317,6 +343,7 @@ std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
   RepairArguments repair;
   CLI::App app("collarmesh: tetrahedral meshes of piecewise-linear complexes, certified", "collarmesh");
   app.set_version_flag("--version", "collarmesh " COLLARMESH_VERSION);
+  app.set_help_all_flag("--help-all", "Print the help of all commands and exit");
   app.formatter(std::make_shared<HelpText>());
   app.footer(footer);
   app.require_subcommand(0, 1);

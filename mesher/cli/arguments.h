@@ -17,6 +17,7 @@ namespace collarmesh::cli {
 struct MeshArguments : RunOptions {
   std::vector<std::string> inputs;
   std::string output;
+  std::string batch;  ///< a folder: each input is a part of its own, with a mesh there; empty: no batch
   std::string input_format, output_format;  ///< extensions with their dot; empty: those of the files
   bool tell_losses = false;                 ///< say what the output's format has no place for
 };
@@ -54,6 +55,9 @@ using Arguments =
 /// alone cannot tell, which throws CLI::ValidationError.
 void add_run_options(CLI::App& app, MeshArguments& arguments);
 void check_run_arguments(const MeshArguments& arguments);
+
+/// The extensions of everything that is read or written.
+std::vector<std::string> all_formats();
 
 /// Understand a command line. When there is nothing to run (help, version, a mistake) the text has
 /// been printed and the exit code is returned instead.

@@ -12,6 +12,19 @@ namespace collarmesh::cli {
 
 namespace {
 
+/// A note where a mesh is much larger or smaller than what it is checked against.
+std::string note_on_scale(const TetMesh& mesh, const Plc& plc, double scale) {
+  Box box;
+  for (const Point& p : mesh.points) box.add(p);
+  const double ratio = box.diagonal() / plc.bounds.diagonal();
+  if (!(ratio > 0) || (ratio > 0.5 && ratio < 2)) return {};
+  return fmt::format(
+      "the mesh is {:.3g} times as large as the input; if it was written in another unit, give check the "
+      "same "
+      "--scale, which would be {:.3g}",
+      ratio, scale * ratio);
+}
+
 CheckReport check_as_built(const TetMesh& mesh, ComplexInput& input, const RunOptions& o,
                            const RepairOptions& repair, const Execution& execution) {
   const Plc plc = input.build(o.complex, repair);
@@ -19,7 +32,10 @@ CheckReport check_as_built(const TetMesh& mesh, ComplexInput& input, const RunOp
                              .exact = input.exact_measures(plc),
                              .findings_per_guarantee = o.findings,
                              .threads = o.mesh.threads};
-  return check(mesh, plc, options, execution);
+  CheckReport report = check(mesh, plc, options, execution);
+  if (const std::string note = note_on_scale(mesh, plc, o.scale); !report.passed() && !note.empty())
+    report.notes.push_back(note);
+  return report;
 }
 
 /// Finds the repair that the mesh is one of. The report stays where it is one of none.

@@ -15,7 +15,8 @@ namespace collarmesh::cli {
 ExitCode check_command(const CheckArguments& arguments) {
   set_time_limit(arguments.mesh.time_limit);
   limit_memory(memory_of_the_machine() / 2);
-  const TetMesh mesh = read_mesh(arguments.mesh_path);
+  TetMesh mesh = read_mesh(arguments.mesh_path);
+  for (Point& p : mesh.points) p = p / arguments.scale;
   const auto distance = [&](double diagonal) {
     return arguments.mesh.bounds.distance > 0 ? arguments.mesh.bounds.distance
                                               : default_distance(0, diagonal, mesh.order());
@@ -23,8 +24,9 @@ ExitCode check_command(const CheckArguments& arguments) {
   const auto tolerance = [&](const Plc& plc) {
     return tolerance_of(plc, arguments.mesh.bounds, 0, mesh.order());
   };
-  ComplexInput input(arguments.inputs,
-                     interruptible({{}, distance, tolerance, arguments.overlap, arguments.names}));
+  ComplexInput input(
+      arguments.inputs,
+      interruptible({{}, distance, tolerance, arguments.overlap, arguments.names, arguments.given_names}));
   Execution execution;
   execution.cancel = &interrupt_flag();
   const CheckReport report = check_against(mesh, input, arguments, execution);

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 #include <vector>
+
+#include "arguments.h"
 
 namespace collarmesh::cli {
 
@@ -20,10 +23,29 @@ std::string names_of_subcommands(const CLI::App& app) {
   return names;
 }
 
-/// "on|off" are words to choose from; a name in capitals is none.
+/// The numbers that an option of few takes, "0 1 2 3"; empty for others.
+std::string numbers_of(const std::string& name) {
+  constexpr double few = 8;
+  for (const Option& option : option_table())
+    if (option.name == name && option.kind() == Option::Kind::count && option.high - option.low < few) {
+      std::string numbers;
+      for (double number = option.low; number <= option.high; ++number)
+        numbers += fmt::format("{}{}", numbers.empty() ? "" : " ", number);
+      return numbers;
+    }
+  return {};
+}
+
+/// "on|off" are words to choose from; a name in capitals is none, but stands for formats or numbers.
 std::string words_of(const CLI::Option& option) {
   std::string words = option.get_type_name();
-  if (words.find('|') == std::string::npos) return {};
+  if (words == "FORMAT") {
+    words.clear();
+    for (const std::string& format : all_formats()) words += (words.empty() ? "" : " ") + format.substr(1);
+    return words;
+  }
+  if (words.find('|') == std::string::npos)
+    return option.get_lnames().empty() ? std::string() : numbers_of(option.get_lnames().front());
   std::replace(words.begin(), words.end(), '|', ' ');
   return words;
 }
@@ -65,11 +87,16 @@ std::string bash_completion(const CLI::App& app) {
   std::string options, words;
   for (const CLI::App* sub : subcommands(app))
     options += fmt::format("    {}) options='{}' ;;\n", sub->get_name(), long_names(*sub));
-  for (const CLI::Option* option : app.get_options())
-    if (const std::string known = words_of(*option); !known.empty())
-      for (const std::string& name : option->get_lnames())
-        words +=
-            fmt::format("    --{}) COMPREPLY=($(compgen -W '{}' -- \"$word\")); return ;;\n", name, known);
+  std::set<std::string> told;  // options that several commands have
+  std::vector<const CLI::App*> commands = subcommands(app);
+  commands.push_back(&app);
+  for (const CLI::App* command : commands)
+    for (const CLI::Option* option : command->get_options())
+      if (const std::string known = words_of(*option); !known.empty())
+        for (const std::string& name : option->get_lnames())
+          if (told.insert(name).second)
+            words += fmt::format("    --{}) COMPREPLY=($(compgen -W '{}' -- \"$word\")); return ;;\n", name,
+                                 known);
   return fmt::format(
       "# bash completion for collarmesh\n_collarmesh() {{\n  local word=${{COMP_WORDS[COMP_CWORD]}} "
       "before=${{COMP_WORDS[COMP_CWORD-1]}} options\n  COMPREPLY=()\n  case $before in\n{}  esac\n"

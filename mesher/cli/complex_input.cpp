@@ -15,6 +15,7 @@
 #include "collarmesh/name_features.h"
 #include "exact_measures.h"
 #include "input_files.h"
+#include "named_features.h"
 #include "surface_files.h"
 
 namespace collarmesh::cli {
@@ -99,20 +100,22 @@ Plc ComplexInput::build(const PlcOptions& options, const RepairOptions& repair) 
   Plc plc = build_unnamed(options, repair);
   for (const Plc::Patch& patch : plc.patches) built_.patch_numbers.push_back(patch.tag);
   for (const Plc::Curve& curve : plc.curves) built_.curve_numbers.push_back(curve.tag);
-  if (!reading_.names.empty()) name(reading_.names, plc);
+  name(plc);
   return plc;
 }
 
-/// The path of a file, or the text itself.
-void ComplexInput::name(const std::string& path, Plc& plc) {
-  if (path.starts_with('{')) {
-    name_features(path, plc);
+/// By the path of a file, or the text itself, and by what is given beside it.
+void ComplexInput::name(Plc& plc) const {
+  const std::string& path = reading_.names;
+  if (path.empty() && reading_.given_names.empty()) return;
+  if (path.empty() || path.starts_with('{')) {
+    name_features(with_names(path, reading_.given_names), plc);
     return;
   }
   std::ifstream file(existing_file(path));
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   try {
-    name_features(text, plc);
+    name_features(with_names(text, reading_.given_names), plc);
   } catch (const OptionError& error) {
     throw OptionError(fmt::format("{}: {}", path, error.what()));
   }

@@ -31,6 +31,7 @@ struct InputReading {
   std::function<SurfaceTolerance(const Plc&)> tolerance = {};
   SolidOverlap overlap = SolidOverlap::first;
   std::string names = {};                     ///< of features: the path of a file, or its text; empty: none
+  std::vector<std::string> given_names = {};  ///< further ones, "fixed=11"
   const std::atomic<bool>* cancel = nullptr;  ///< ends the work when it is set
   std::function<void()> stop = [] {};         ///< called between steps; throws when the work is to end
 };
@@ -66,7 +67,7 @@ class ComplexInput {
   ShapeMeasures exact_measures(const Plc& plc) const;
 
  private:
-  void name(const std::string& path, Plc& plc);
+  void name(Plc& plc) const;
   Plc build_unnamed(const PlcOptions& options, const RepairOptions& repair);
   Plc build_valid(const PlcOptions& options, const RepairOptions& repair);
   Plc resolved(Plc plc, const PlcOptions& options, const RepairOptions& repair);

@@ -15,6 +15,9 @@ std::string format_of(const std::string& path, const std::string& format);
 std::vector<std::string> lost_by(const std::string& format, const PolygonSoup& soup);
 std::vector<std::string> lost_by(const std::string& format, const TetMesh& mesh);
 
+/// Has this format of meshes a place for the names of groups?
+bool keeps_names(const std::string& format);
+
 // For people, lines of text:
 std::string soup_text(const std::string& path, const PolygonSoup& soup);
 std::string tet_mesh_text(const std::string& path, const TetMesh& mesh);

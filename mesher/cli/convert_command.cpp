@@ -67,6 +67,7 @@ PolygonSoup surface_of(const TetMesh& mesh, const std::string& name) {
   for (const std::size_t f : order) soup.add_facet(mesh.faces[f], mesh.face_tag[f]);
   for (std::size_t e = 0; e < mesh.edges.size(); ++e)
     soup.segments.push_back({mesh.edges[e][0], mesh.edges[e][1], mesh.edge_tag[e]});
+  soup.tag_names = mesh.names;
   if (mesh.faces.empty())
     throw ReadError(fmt::format("{}: the mesh has no boundary triangles that could become a surface", name));
   return soup;
@@ -131,8 +132,10 @@ ExitCode convert_command(const ConvertArguments& a) {
     return ExitCode::success;
   }
   if (!to_surface) return mesh_command(a);
-  ComplexInput input(a.inputs,
-                     interruptible({.format = a.input_format, .overlap = a.overlap, .names = a.names}));
+  ComplexInput input(
+      a.inputs,
+      interruptible(
+          {.format = a.input_format, .overlap = a.overlap, .names = a.names, .given_names = a.given_names}));
   if (a.repairs) repair(a, input);
   write_soup(a, input.soups());
   return ExitCode::success;

@@ -37,6 +37,13 @@ std::vector<fs::path> parts_of_xdmf(const fs::path& path) {
   return files;
 }
 
+std::vector<fs::path> parts_of_polymesh(const fs::path& path) {
+  std::vector<fs::path> files{path};
+  for (const char* name : {"points", "faces", "owner", "neighbour", "cellZones", "faceZones"})
+    files.push_back(path.parent_path() / name);
+  return files;
+}
+
 /// Does this file have the name of a piece that is written with the .pvtu?
 bool is_named_as_piece(const fs::path& file, const fs::path& pvtu) {
   const std::string first = pvtu.stem().string() + "_", stem = file.stem().string();
@@ -74,7 +81,12 @@ std::vector<fs::path> files_written(const fs::path& path, const std::string& for
   if (extension == ".ele") return with_siblings(path, {".ele", ".node", ".face", ".edge"});
   if (extension == ".xdmf") return parts_of_xdmf(path);
   if (extension == ".pvtu") return written_with_pvtu(path);
+  if (extension == ".polymesh") return parts_of_polymesh(path);
   return {path};
+}
+
+bool is_of_several_files(const std::string& format) {
+  return format == ".ele" || format == ".xdmf" || format == ".pvtu" || format == ".polymesh";
 }
 
 bool may_write(const fs::path& path, const std::string& format, const fs::path& file) {

@@ -11,6 +11,9 @@ namespace collarmesh::cli {
 std::vector<std::filesystem::path> files_written(const std::filesystem::path& path,
                                                  const std::string& format = {});
 
+/// Do meshes of this format lie in several files?
+bool is_of_several_files(const std::string& format);
+
 /// May writing `path` make this file, too? Pieces of a .pvtu need not be there yet.
 bool may_write(const std::filesystem::path& path, const std::string& format,
                const std::filesystem::path& file);

@@ -11,6 +11,7 @@
 #include "input_files.h"
 #include "interrupt.h"
 #include "machine.h"
+#include "mesh_groups.h"
 #include "out_of_memory.h"
 #include "report.h"
 
@@ -23,11 +24,14 @@ void print_mesh(const TetMesh& mesh, bool as_json) {
   const MeshMeasures measures = measure_mesh(mesh);
   const double median = median_edge(mesh);
   if (!as_json) {
-    print_result(fmt::format("{}  median edge {:.6g}\n", mesh_text(mesh, measures), median));
+    print_result(
+        fmt::format("{}  median edge {:.6g}\n{}", mesh_text(mesh, measures), median, groups_text(mesh)));
     return;
   }
   nlohmann::ordered_json json{{"mesh", measures_json(mesh, measures)}};
   json["mesh"]["median_edge"] = median;
+  json["mesh"]["patch_list"] = groups_json(patches_of(mesh), "triangles", "area");
+  json["mesh"]["curve_list"] = groups_json(curves_of(mesh), "edges", "length");
   print_result(json_text(json, 1) + "\n");
 }
 
@@ -58,21 +62,24 @@ std::vector<Prediction> predictions(const InfoArguments& arguments, const Plc& p
 void print_complex(const InfoArguments& arguments) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point begin = Clock::now();
-  ComplexInput input(arguments.inputs,
-                     interruptible({.format = {}, .overlap = arguments.overlap, .names = arguments.names}));
+  ComplexInput input(arguments.inputs, interruptible({.format = {},
+                                                      .overlap = arguments.overlap,
+                                                      .names = arguments.names,
+                                                      .given_names = arguments.given_names}));
   const Plc plc = build_any(input, arguments);
   stop_if_interrupted();
   const double read = std::chrono::duration<double>(Clock::now() - begin).count();
   const std::vector<Prediction> predicted = predictions(arguments, plc, read);
   const PlcSummary summary = summarize(plc, arguments.mesh.bounds.crease_angle);
+  const GroupNames names = input.has_cad() ? GroupNames::cad : GroupNames::complex;
   if (arguments.json) {
-    nlohmann::ordered_json json{{"complex", complex_json(plc, summary)},
+    nlohmann::ordered_json json{{"complex", complex_json(plc, summary, names)},
                                 {"repair", repair_json(input.repaired())}};
     if (!predicted.empty()) json["predictions"] = predictions_json(predicted);
     print_result(json_text(json, 1) + "\n");
   } else {
-    print_result(repair_text(input.repaired()) + complex_text(plc, summary) + predictions_text(predicted) +
-                 warnings_text(plc));
+    print_result(repair_text(input.repaired()) + complex_text(plc, summary, names) +
+                 predictions_text(predicted) + warnings_text(plc));
   }
 }
 

@@ -62,6 +62,8 @@ std::string existing_file(const std::string& path) {
 
 TetMesh read_mesh(const std::string& path, const std::string& format) {
   const std::string file = existing_file(path);
+  if (const std::string missing = io::missing_library(path, format); !missing.empty())
+    throw ReadError(fmt::format("{}: {}", path, missing));
   if (!io::is_tet_mesh_format(path, format))
     throw ReadError(fmt::format("{}: its format is not known by its extension '{}'; use {}", path,
                                 fs::path(path).extension().string(),
@@ -70,6 +72,7 @@ TetMesh read_mesh(const std::string& path, const std::string& format) {
 }
 
 std::optional<TetMesh> read_mesh_if_there(const std::string& path, const std::string& format) {
+  if (!io::missing_library(path, format).empty()) return read_mesh(path, format);
   if (!io::is_tet_mesh_format(path, format)) return std::nullopt;
   if (!io::is_mesh_surface_format(path, format)) return read_mesh(path, format);
   try {

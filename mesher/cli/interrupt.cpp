@@ -16,8 +16,10 @@
 #include <string>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include "console.h"
+#include "failure_report.h"
 #include "staged_file.h"
 #include "supervisor.h"
 
@@ -36,7 +38,10 @@ static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_alw
 std::mutex deadline_mutex;  // guards the three below
 double time_limit = 0;
 Clock::time_point deadline = Clock::time_point::max();
-std::string stage_now = "stage: start";
+std::string stage_told = "stage: start";
+
+std::mutex stage_mutex;  // guards the one below; nothing allocates while it is held but a report of a failure
+StageReached stage_now;
 
 extern "C" void on_interrupt(int number) {
   interrupted.store(true, std::memory_order_relaxed);
@@ -80,12 +85,12 @@ Stopped reason_to_stop() {
             fmt::format(
                 "the system's limit of CPU time is reached ({}); nothing was written; raise it (ulimit "
                 "-t), or --size for a coarser mesh; what is much finer than that, --repair wrap leaves out",
-                stage_now)};
+                stage_told)};
   return {ExitCode::budget_hit,
           fmt::format(
               "the time limit of {} s is reached ({}); nothing was written; raise --time-limit, or --size "
               "for a coarser mesh; what is much finer than that, --repair wrap leaves out",
-              time_limit, stage_now)};
+              time_limit, stage_told)};
 }
 
 }  // namespace
@@ -126,9 +131,23 @@ void set_time_limit(double seconds) {
   if (!watched) set_flag_at_the_deadline();
 }
 
-void note_stage(const std::string& stage) {
+void note_stage(StageReached reached, std::string told) {
+  if (told.empty()) {
+    told = "stage: " + reached.stage;
+    if (reached.vertices > 0) told += fmt::format(", {} vertices", reached.vertices);
+    if (reached.tets > 0) told += fmt::format(", {} tets", reached.tets);
+  }
+  {
+    const std::lock_guard lock(stage_mutex);
+    std::swap(stage_now, reached);
+  }
   const std::lock_guard lock(deadline_mutex);
-  stage_now = stage;
+  stage_told = std::move(told);
+}
+
+StageReached stage_reached() {
+  const std::lock_guard lock(stage_mutex);
+  return stage_now;
 }
 
 void stop_if_interrupted() {
@@ -164,6 +183,7 @@ class Watcher {
       if (!abandon_staged_files()) return;
       const Stopped reason = reason_to_stop();
       tell("\ncollarmesh: {}\n", reason.what());
+      report_failure(reason.code, reason.what());
       std::_Exit(static_cast<int>(reason.code));
     }
   }

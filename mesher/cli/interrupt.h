@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -32,8 +33,15 @@ void install_interrupt_handlers();
 /// The command has so many seconds from now on for everything it does; 0: any time.
 void set_time_limit(double seconds);
 
-/// What the command is doing, for the message when its time is up.
-void note_stage(const std::string& stage);
+/// What the command is doing, and how much there is of it.
+struct StageReached {
+  std::string stage = "start";
+  std::size_t vertices = 0, tets = 0;  ///< 0: none yet
+};
+
+/// For the message when the time is up, where `told` says more than the stage, and for reports of failures.
+void note_stage(StageReached reached, std::string told = {});
+StageReached stage_reached();
 
 /// Throws Stopped when the user asked to stop or the time is up.
 void stop_if_interrupted();

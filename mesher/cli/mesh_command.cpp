@@ -36,7 +36,7 @@ class Stages {
 
   void begin(const std::string& phase, double begin, double end, std::size_t tets = 0) {
     stop_if_interrupted();
-    note_stage(tets > 0 ? fmt::format("stage: {}, {} tets", phase, tets) : fmt::format("stage: {}", phase));
+    note_stage({phase, 0, tets});
     times_.begin(phase);
     display_.begin_stage(phase, begin, end);
   }
@@ -48,7 +48,7 @@ class Stages {
       begin(std::string(report.phase), begin_, begin_ + 1, report.tets);
       return;
     }
-    note_stage(fmt::format("stage: {}, {} vertices, {} tets", report.phase, report.vertices, report.tets));
+    note_stage({std::string(report.phase), report.vertices, report.tets});
     report.fraction = fraction - begin_;
     display_.update(report);
   }
@@ -71,10 +71,24 @@ PipelineOptions pipeline_options(const MeshArguments& a) {
 void note_where_it_stopped(const MeshResult& result) {
   const MeshStatistics& reached = result.statistics;
   const Point& p = result.where;
-  note_stage(fmt::format(
-      "stage: refine, {} vertices, {} cells, {:.1f} MB; the last vertex is ({:.9g}, {:.9g}, {:.9g})",
-      reached.vertices_inserted, reached.cells, static_cast<double>(reached.peak_bytes) / 1e6, p.x, p.y,
-      p.z));
+  note_stage(
+      {"refine", reached.vertices_inserted, reached.cells},
+      fmt::format(
+          "stage: refine, {} vertices, {} cells, {:.1f} MB; the last vertex is ({:.9g}, {:.9g}, {:.9g})",
+          reached.vertices_inserted, reached.cells, static_cast<double>(reached.peak_bytes) / 1e6, p.x, p.y,
+          p.z));
+}
+
+/// With the file's name before each line that has none: nothing else says what a quiet run is about.
+std::string each_line_of(const std::string& file, const std::string& text) {
+  std::string named;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
+    const std::string line = text.substr(at, end - at);
+    named += line.find(file) == std::string::npos ? file + ": " + line : line;
+    at = end;
+  }
+  return named;
 }
 
 /// The complexes of the input files. What was done to make each is printed.
@@ -93,13 +107,16 @@ class InputSource : public ComplexSource {
           repair.tolerance));
     RepairedPlc built{input_.build(arguments_.complex, repair), input_.repaired(), {}};
     built_with_ = repair;
-    stages_.print(warnings_text(built.plc) + repair_text(built.report, arguments_.quiet));
+    const std::string told = warnings_text(built.plc) + repair_text(built.report, arguments_.quiet);
+    stages_.print(arguments_.quiet ? each_line_of(arguments_.inputs.front(), told) : told);
     return built;
   }
 
   void adapt(const Plc& plc, PipelineOptions& options) override {
-    if (!arguments_.size_field_file.empty())
-      options.mesh.size_field = read_size_field(arguments_.size_field_file, plc);
+    if (!arguments_.size_field_file.empty()) {
+      size_field_use_ = std::make_shared<SizeFieldUse>(default_size(plc, arguments_.mesh));
+      options.mesh.size_field = read_size_field(arguments_.size_field_file, plc, size_field_use_);
+    }
     if (input_.has_cad()) {
       options.exact = input_.exact_geometry(plc);
       options.exact_measures = input_.exact_measures(plc);
@@ -107,18 +124,31 @@ class InputSource : public ComplexSource {
     std::string text;
     for (const std::string& warning : option_warnings(arguments_, plc))
       text += fmt::format("warning: {}\n", warning);
+    if (arguments_.quiet) text = each_line_of(arguments_.inputs.front(), text);
     if (text != told_of_options_) stages_.print(text);
     told_of_options_ = text;
   }
 
   const RepairOptions& built_with() const { return built_with_; }
 
+  /// Of the size field, after a mesh was made.
+  std::vector<std::string> without_effect() const {
+    std::vector<std::string> told;
+    if (size_field_use_)
+      for (const std::string& source : size_field_use_->without_effect())
+        told.push_back(fmt::format(
+            "--size-field: no effect of {}: nowhere in the part is its size below the {:.6g} of --size.",
+            source, size_field_use_->size()));
+    return told;
+  }
+
  private:
   const MeshArguments& arguments_;
   ComplexInput& input_;
   Stages& stages_;
   RepairOptions built_with_;
-  std::string told_of_options_;  // once, however many meshes are tried
+  std::string told_of_options_;                   // once, however many meshes are tried
+  std::shared_ptr<SizeFieldUse> size_field_use_;  // of the mesh tried last
 };
 
 /// Returns how the complex was repaired.
@@ -140,12 +170,18 @@ RepairOptions mesh(const MeshArguments& arguments, ComplexInput& input, Stages& 
     if (run.times.stages().back().first == "refine") note_where_it_stopped(run.result);
     stop_if_interrupted();
   }
-  if (run.result.status == MeshStatus::budget_hit)
+  if (run.result.status == MeshStatus::budget_hit) {
+    note_where_it_stopped(run.result);
     throw Stopped(ExitCode::budget_hit, run.result.message + "; nothing was written");
+  }
   if (input.has_cad()) run.result.mesh.group_names = GroupNames::cad;
   run.notes = input.notes();
   run.summary = summarize(run.plc, arguments.mesh.bounds.crease_angle);
   run.warnings = option_warnings(arguments, run.plc);
+  for (std::string& warning : source.without_effect()) {
+    stages.print(fmt::format("warning: {}\n", warning));
+    run.warnings.push_back(std::move(warning));
+  }
   return source.built_with();
 }
 
@@ -197,11 +233,14 @@ void write_files(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
 
 void tell_of(const MeshArguments& arguments, const MeshRun& run) {
   if (run.result.status == MeshStatus::guarantee_missed)
-    tell("collarmesh: a guarantee is missed: {}\n", run.result.message);
-  constexpr std::size_t listed = 10;
-  tell("{}", findings_text(run.check, arguments.verbose ? run.check.findings.size() : listed));
-  tell("{}", straightened_text(run.second_order,
-                               arguments.verbose ? run.second_order.straightened.size() : listed));
+    tell("collarmesh: {}a guarantee is missed: {}\n", arguments.quiet ? arguments.output + ": " : "",
+         run.result.message);
+  constexpr std::size_t most = 10;
+  const std::size_t findings = arguments.verbose ? run.check.findings.size() : most,
+                    straightened = arguments.verbose ? run.second_order.straightened.size() : most;
+  const std::string wrong =
+      findings_text(run.check, findings) + straightened_text(run.second_order, straightened);
+  tell("{}", arguments.quiet ? each_line_of(arguments.output, wrong) : wrong);
   if (arguments.quiet) return;
   for (const std::string& warning : run.check.warnings) tell("warning: {}\n", warning);
   tell("{}", run_text(arguments, run));
@@ -215,8 +254,8 @@ std::unique_ptr<ComplexInput> read_inputs(const MeshArguments& arguments) {
     return tolerance_of(plc, arguments.mesh.bounds, arguments.mesh.size, static_cast<int>(arguments.order));
   };
   return std::make_unique<ComplexInput>(
-      arguments.inputs,
-      interruptible({arguments.input_format, distance, tolerance, arguments.overlap, arguments.names}));
+      arguments.inputs, interruptible({arguments.input_format, distance, tolerance, arguments.overlap,
+                                       arguments.names, arguments.given_names}));
 }
 
 MadeMesh make_mesh(const MeshArguments& arguments) {

@@ -6,6 +6,8 @@
 #include <charconv>
 #include <cstdint>
 
+#include "collarmesh/io/tet_mesh_io.h"
+
 namespace collarmesh::cli {
 
 namespace {
@@ -50,6 +52,8 @@ CLI::Validator format_name(const std::vector<std::string>& extensions) {
       [extensions](std::string& text) {
         text = lower(text);
         if (!text.starts_with('.')) text = '.' + text;
+        const std::string missing = io::missing_library({}, text);
+        if (!missing.empty()) return missing;
         return std::find(extensions.begin(), extensions.end(), text) != extensions.end()
                    ? std::string()
                    : fmt::format("'{}' is not known; use {}", text, list(extensions));

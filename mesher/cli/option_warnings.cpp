@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <numbers>
 
+#include "conversion_report.h"
+
 namespace collarmesh::cli {
 
 namespace {
@@ -25,7 +27,7 @@ bool is_smooth_anywhere(const Plc& plc) {
 }  // namespace
 
 std::vector<std::string> option_warnings(const MeshArguments& a, const Plc& plc) {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = sizes_without_effect(plc, a.mesh);
   const double diagonal = plc.bounds.diagonal();
   if (a.mesh.bounds.radius_edge < proved_radius_edge)
     warnings.push_back(
@@ -65,6 +67,10 @@ std::vector<std::string> option_warnings(const MeshArguments& a, const Plc& plc)
                     "{:.6g} from where they were, and the mesh follows the merged ones; a curved face "
                     "stays one without it.",
                     a.complex.planar_tolerance, plc.largest_deviation));
+  if (!(a.names.empty() && a.given_names.empty()) && !keeps_names(format_of(a.output, a.output_format)))
+    warnings.push_back(fmt::format("{}: {} has no place for names; numbers are kept.",
+                                   a.names.empty() ? "--name" : "--names",
+                                   format_of(a.output, a.output_format)));
   return warnings;
 }
 

@@ -13,11 +13,14 @@
 #include <string_view>
 
 #include "exit_code.h"
+#include "failure_report.h"
 #include "staged_file.h"
 
 namespace collarmesh::cli {
 
 namespace {
+
+constexpr std::string_view program = "collarmesh: ";  // messages begin with it
 
 /// Freed when memory is used up, so that there is some for the end.
 std::unique_ptr<char[]> reserve;
@@ -31,6 +34,7 @@ std::unique_ptr<char[]> reserve;
   else if (write(STDERR_FILENO, message.data(), message.size()) < 0) {
     // There is nobody to tell.
   }
+  if (abandoned) report_failure(code, message.substr(program.size(), message.find('\n') - program.size()));
   std::_Exit(static_cast<int>(code));
 }
 

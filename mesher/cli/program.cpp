@@ -9,11 +9,13 @@
 #include <variant>
 
 #include "arguments.h"
+#include "batch_command.h"
 #include "cad_files.h"
 #include "check_command.h"
 #include "collarmesh/error.h"
 #include "console.h"
 #include "convert_command.h"
+#include "failure_report.h"
 #include "info_command.h"
 #include "interrupt.h"
 #include "mesh_command.h"
@@ -33,6 +35,9 @@ struct Execute {
   ExitCode operator()(const RepairArguments& arguments) const { return repair_command(arguments); }
 };
 
+/// In a process of its own where it reads CAD files, which may crash.
+ExitCode execute(const Arguments& arguments);
+
 bool reads_cad(const Arguments& arguments) {
   return std::visit(
       [](const auto& a) {
@@ -48,19 +53,29 @@ bool reads_cad(const Arguments& arguments) {
       arguments);
 }
 
-ExitCode fail(ExitCode code, const std::string& message) {
+ExitCode fail(ExitCode code, const std::string& message, const PlcError* faults = nullptr) {
   tell("collarmesh: {}\n", message);
+  report_failure(code, message, faults);
   return code;
 }
 
 ExitCode fail(const PlcError& error) {
   constexpr std::size_t listed = 10;
-  fail(ExitCode::invalid_complex, error.what());
+  fail(ExitCode::invalid_complex, error.what(), &error);
   const std::string_view said = error.what();
   for (std::size_t k = 0; k < std::min(error.faults.size(), listed); ++k)
     if (said.find(error.faults[k].message) == std::string_view::npos) tell("  {}\n", error.faults[k].message);
   if (error.faults.size() > listed) tell("  ... and {} more\n", error.faults.size() - listed);
   return ExitCode::invalid_complex;
+}
+
+ExitCode execute(const Arguments& arguments) {
+  report_failures_of(arguments);
+  const auto command = [&] {
+    install_interrupt_handlers();
+    return run_interruptible([&] { return guarded([&] { return std::visit(Execute(), arguments); }); });
+  };
+  return reads_cad(arguments) ? run_supervised(command) : command();
 }
 
 }  // namespace
@@ -101,11 +116,9 @@ int run(int argc, const char* const* argv) {
     const std::variant<Arguments, ExitCode> parsed = parse(argc, argv);
     if (const ExitCode* code = std::get_if<ExitCode>(&parsed)) return *code;
     const Arguments& arguments = std::get<Arguments>(parsed);
-    const auto command = [&] {
-      install_interrupt_handlers();
-      return run_interruptible([&] { return guarded([&] { return std::visit(Execute(), arguments); }); });
-    };
-    return reads_cad(arguments) ? run_supervised(command) : command();
+    const auto* mesh = std::get_if<MeshArguments>(&arguments);
+    if (mesh == nullptr || mesh->batch.empty()) return execute(arguments);
+    return batch_command(*mesh, [](const MeshArguments& part) { return execute(Arguments(part)); });
   }));
 }
 

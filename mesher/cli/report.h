@@ -25,7 +25,9 @@ struct MeshRun : SoupPipelineResult {
 };
 
 // For programs (--report, --json):
-nlohmann::ordered_json complex_json(const Plc& plc, const PlcSummary& summary);
+/// `names`: how features without a name are called.
+nlohmann::ordered_json complex_json(const Plc& plc, const PlcSummary& summary,
+                                    GroupNames names = GroupNames::complex);
 nlohmann::ordered_json measures_json(const TetMesh& mesh, const MeshMeasures& measures);
 nlohmann::ordered_json check_json(const CheckReport& report);
 nlohmann::ordered_json repair_json(const RepairReport& report);
@@ -41,7 +43,7 @@ std::string warnings_text(const Plc& plc);
 /// "repaired: ..." lines, the first ones if there are very many. `quiet`: only of what may change the shape
 /// by more than the tolerance.
 std::string repair_text(const RepairReport& report, bool quiet = false);
-std::string complex_text(const Plc& plc, const PlcSummary& summary);
+std::string complex_text(const Plc& plc, const PlcSummary& summary, GroupNames names = GroupNames::complex);
 /// A table; empty where nothing was predicted.
 std::string predictions_text(const std::vector<Prediction>& predictions);
 /// Empty for a mesh that is not partitioned.

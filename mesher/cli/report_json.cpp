@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "mesh_groups.h"
 #include "options_json.h"
 #include "report.h"
 
@@ -166,6 +167,12 @@ Json partitions_json(const PartitionMeasures& m) {
           {"cut_faces", m.cut_faces}};
 }
 
+/// Null where there is none.
+Json name_json(const Plc& plc, GroupNames names, std::size_t dimension, Tag tag) {
+  const std::string name = name_of(plc.names, names, dimension, tag);
+  return name.empty() ? Json(nullptr) : Json(name);
+}
+
 /// Estimates may exceed every integer.
 Json whole_json(double value) {
   constexpr double exact = 9007199254740992;  // 2^53
@@ -174,7 +181,7 @@ Json whole_json(double value) {
 
 }  // namespace
 
-Json complex_json(const Plc& plc, const PlcSummary& s) {
+Json complex_json(const Plc& plc, const PlcSummary& s, GroupNames names) {
   Json regions = Json::array();
   for (std::size_t r = 1; r < plc.regions.size(); ++r)
     regions.push_back({{"region", r},
@@ -184,11 +191,19 @@ Json complex_json(const Plc& plc, const PlcSummary& s) {
   Json patch_list = Json::array();
   for (const PatchSummary& p : summarize_patches(plc))
     patch_list.push_back({{"tag", p.tag},
-                          {"name", p.name.empty() ? Json(nullptr) : Json(p.name)},
+                          {"name", name_json(plc, names, 2, p.tag)},
                           {"patches", p.count},
                           {"planar", p.planar},
                           {"area", p.area},
                           {"where", point_json(p.where)}});
+  Json curve_list = Json::array();
+  for (const CurveSummary& c : summarize_curves(plc))
+    curve_list.push_back({{"tag", c.tag},
+                          {"name", name_json(plc, names, 1, c.tag)},
+                          {"curves", c.count},
+                          {"straight", c.straight},
+                          {"length", c.length},
+                          {"where", point_json(c.where)}});
   Json creases = Json::array();
   for (const Crease& crease : s.creases)
     creases.push_back({{"kind", kind_name(crease.kind)},
@@ -214,6 +229,7 @@ Json complex_json(const Plc& plc, const PlcSummary& s) {
           {"largest_deviation", s.largest_deviation},
           {"regions", std::move(regions)},
           {"patch_list", std::move(patch_list)},
+          {"curve_list", std::move(curve_list)},
           {"creases", std::move(creases)},
           {"warnings", std::move(warnings)}};
 }
@@ -336,7 +352,7 @@ Json run_json(const MeshArguments& arguments, const MeshRun& run) {
           {"message", run.result.message},
           {"guarantees_hold", run.guarantees_hold()},
           {"repair", repair_json(run.repair)},
-          {"complex", complex_json(run.plc, run.summary)},
+          {"complex", complex_json(run.plc, run.summary, run.result.mesh.group_names)},
           {"mesh", measures_json(run.result.mesh, run.check.measures)},
           {"worst", worst_json(run.worst)},
           {"check", check_json(run.check)},

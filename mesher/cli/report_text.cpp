@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "conversion_report.h"
+#include "mesh_groups.h"
 #include "report.h"
 
 namespace collarmesh::cli {
@@ -64,17 +65,31 @@ RepairReport beyond_tolerance(const RepairReport& report) {
   return rest;
 }
 
+std::string in_brackets(const std::string& name) { return name.empty() ? name : fmt::format(" ({})", name); }
+
 /// By number, as sizes and formats name them.
-void append_patches(std::string& text, const Plc& plc) {
+void append_patches(std::string& text, const Plc& plc, GroupNames names) {
   const std::vector<PatchSummary> patches = summarize_patches(plc);
   for (std::size_t k = 0; k < std::min(patches.size(), listed); ++k) {
     const PatchSummary& p = patches[k];
     fmt::format_to(Out(text), "  patch {}{}: {}, area {:.6g}, at ({:.6g}, {:.6g}, {:.6g})\n", p.tag,
-                   p.name.empty() ? "" : fmt::format(" ({})", p.name), p.planar ? "planar" : "smooth", p.area,
+                   in_brackets(name_of(plc.names, names, 2, p.tag)), p.planar ? "planar" : "smooth", p.area,
                    p.where.x, p.where.y, p.where.z);
   }
   if (patches.size() > listed)
     fmt::format_to(Out(text), "  ... and {} more patches (--json lists all)\n", patches.size() - listed);
+}
+
+void append_curves(std::string& text, const Plc& plc, GroupNames names) {
+  const std::vector<CurveSummary> curves = summarize_curves(plc);
+  for (std::size_t k = 0; k < std::min(curves.size(), listed); ++k) {
+    const CurveSummary& c = curves[k];
+    fmt::format_to(Out(text), "  curve {}{}: {}, length {:.6g}, at ({:.6g}, {:.6g}, {:.6g})\n", c.tag,
+                   in_brackets(name_of(plc.names, names, 1, c.tag)), c.straight ? "straight" : "smooth",
+                   c.length, c.where.x, c.where.y, c.where.z);
+  }
+  if (curves.size() > listed)
+    fmt::format_to(Out(text), "  ... and {} more curves (--json lists all)\n", curves.size() - listed);
 }
 
 /// Digits are of no use beyond those of a double.
@@ -110,7 +125,7 @@ std::string repair_text(const RepairReport& report, bool quiet) {
   return text;
 }
 
-std::string complex_text(const Plc& plc, const PlcSummary& s) {
+std::string complex_text(const Plc& plc, const PlcSummary& s, GroupNames names) {
   std::string text;
   fmt::format_to(Out(text),
                  "complex: {} vertices, {} curves ({} straight), {} patches ({} planar), {} region{}\n",
@@ -124,7 +139,8 @@ std::string complex_text(const Plc& plc, const PlcSummary& s) {
                  s.smallest_angle, s.shortest_segment, s.spread);
   fmt::format_to(Out(text), "  merging moved the input by at most {:.3g}\n", s.largest_deviation);
   append_regions(text, plc);
-  append_patches(text, plc);
+  append_patches(text, plc, names);
+  append_curves(text, plc, names);
   append_creases(text, plc, s.creases);
   return text;
 }
@@ -227,7 +243,7 @@ std::string straightened_text(const SecondOrderReport& r, std::size_t most) {
 }
 
 std::string run_text(const MeshArguments& arguments, const MeshRun& run) {
-  std::string text = arguments.verbose ? complex_text(run.plc, run.summary) : "";
+  std::string text = arguments.verbose ? complex_text(run.plc, run.summary, run.result.mesh.group_names) : "";
   text += fmt::format("{}: ", arguments.output == "-" ? "standard output" : arguments.output) +
           mesh_text(run.result.mesh, run.check.measures, &run.check);
   fmt::format_to(Out(text), "  median edge {:.4g}, surface distance at most {:.3g}\n", run.check.median_edge,

@@ -17,6 +17,7 @@
 #include <new>
 
 #include "console.h"
+#include "failure_report.h"
 #include "staged_file.h"
 
 namespace collarmesh::cli {
@@ -127,6 +128,7 @@ int wait_for_child(const ChildSignal& ended_signal, bool& out_of_time) {
 
 ExitCode told(ExitCode code, const std::string& message) {
   tell("collarmesh: {}\n", message);
+  report_failure(code, message);
   return code;
 }
 

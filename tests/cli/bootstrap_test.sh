@@ -34,6 +34,10 @@ stand_in dpkg-query 'case "$*" in *libcli11-dev*|*libdeflate-dev*) exit 1;; esac
 expect "sudo when not root" 0 '^sudo env DEBIAN_FRONTEND=noninteractive apt-get -q update'
 expect "what is missing, only" 0 'install --no-install-recommends libcli11-dev libdeflate-dev$'
 
+stand_in dpkg-query 'case "$*" in *libhdf5-dev*|*libmedc-dev*|*libscotch-dev*) exit 1;; esac; echo installed'
+expect "libraries of formats and partitions come with the first call" 0 \
+  'install --no-install-recommends libhdf5-dev libmedc-dev libscotch-dev$'
+
 stand_in id 'echo 0'
 stand_in sudo "echo sudo >>$work/calls; exit 1"
 expect "no sudo for root" 0 '^apt-get -q update'

@@ -69,6 +69,14 @@ class Convert(ProgramTest):
         self.convert(0, MODELS / "two_boxes.poly", "-o", "a.stl",
                      says=["cut into triangles: 11 facets", "no place for: 22 tags of facets, 2 region points"])
 
+    @unittest.skipIf(HAS_HDF5, "built with HDF5")
+    def test_a_missing_library_is_named(self):
+        self.write("b.med", "")
+        for extension, package in (("med", "libmedc-dev"), ("xdmf", "libhdf5-dev")):
+            self.expect(2, self.box, "-o", f"a.{extension}", says=[f"{extension} needs .*; install .*{package}"])
+            self.convert(2, self.box, "-o", "-", "--format", extension, says=[package])
+        self.convert(3, "b.med", "-o", "b.vtu", says=["b.med: .med needs MED.*libmedc-dev"])
+
     def test_meshes_of_every_format(self):
         self.convert(0, MODELS / "two_boxes.poly", "-o", "a.vtu", "--size", "0.5")
         for extension in ("vtk", "msh", "mesh", "unv", "ele", "vtu", "inp"):

@@ -2,6 +2,7 @@
 
 import json
 import os
+import pathlib
 import pty
 import re
 import select
@@ -9,7 +10,12 @@ import shutil
 import subprocess
 import unittest
 
-from program import MODELS, ProgramTest
+from program import BOX_FACES, MODELS, PROGRAM, ProgramTest, box_points, off_text
+
+MODULES = pathlib.Path(PROGRAM).parents[1] / "lib" / "collarmesh"
+HAS_HDF5 = (MODULES / "collarmesh_hdf5.so").exists()
+HAS_SCOTCH = (MODULES / "collarmesh_scotch.so").exists()
+HAS_CAD = any(MODULES.glob("collarmesh_cad*"))
 
 
 def faces_by_tag(path):
@@ -41,6 +47,43 @@ class Numbers(ProgramTest):
         self.run_program(MODELS / "bracket.off", "-o", self.folder / "bracket.inp", "--size", "6")
         names = set(re.findall(r"SURFACE, NAME=PATCH_(\d+)", (self.folder / "bracket.inp").read_text()))
         self.assertEqual({int(n) for n in names}, set(patches))
+
+    def test_info_lists_curves_of_the_input(self):
+        info = json.loads(self.run_program("info", "--json", self.box).stdout)["complex"]["curve_list"]
+        self.assertEqual([curve["tag"] for curve in info], list(range(1, 13)))
+        self.assertEqual({curve["length"] for curve in info}, {1})
+        listed = self.run_program("info", self.box).stdout
+        for curve in info:
+            place = ", ".join(f"{x:g}" for x in curve["where"])
+            self.assertIn(f"curve {curve['tag']}: straight, length 1, at ({place})", listed)
+
+    def test_these_numbers_of_curves_are_those_of_sizes(self):
+        curve = json.loads(self.run_program("info", "--json", self.box).stdout)["complex"]["curve_list"][6]
+        self.run_program(self.box, "-o", "a.vtu", "--size", "1", "--curve-size", f"{curve['tag']}=0.05")
+        mesh = json.loads(self.run_program("info", "--json", "a.vtu").stdout)["mesh"]
+        finest = max(mesh["curve_list"], key=lambda each: each["edges"])
+        self.assertEqual(finest["tag"], curve["tag"])
+        self.assertAlmostEqual(finest["length"], 1)
+
+    def test_info_lists_faces_and_curves_of_a_mesh(self):
+        self.run_program(self.box, "-o", "a.vtu", "--size", "0.5", "--names", '{"patches": {"fixed": 3}}')
+        mesh = json.loads(self.run_program("info", "--json", "a.vtu").stdout)["mesh"]
+        self.assertEqual([(p["tag"], p["name"]) for p in mesh["patch_list"]],
+                         [(n, "fixed" if n == 3 else None) for n in range(1, 7)])
+        for patch in mesh["patch_list"]:
+            self.assertAlmostEqual(patch["area"], 1)
+        self.assertEqual(sum(p["triangles"] for p in mesh["patch_list"]), mesh["faces"])
+        self.assertEqual(sum(c["edges"] for c in mesh["curve_list"]), mesh["edges"])
+        self.assertIn("patch 3 (fixed): ", self.run_program("info", "a.vtu").stdout)
+
+    @unittest.skipUnless(HAS_CAD, "no OpenCASCADE")
+    def test_cad_shapes_have_names_of_faces_and_edges(self):
+        listed = self.run_program("info", MODELS / "flange.step").stdout
+        self.assertIn("patch 3 (Face3): smooth", listed)
+        self.assertIn("curve 2 (Edge2): ", listed)
+        info = json.loads(self.run_program("info", "--json", MODELS / "flange.step").stdout)["complex"]
+        self.assertEqual({p["name"] for p in info["patch_list"]}, {f"Face{n}" for n in range(1, 13)})
+        self.assertTrue(all(c["name"] == f"Edge{c['tag']}" for c in info["curve_list"]))
 
     def test_patch_sizes_by_these_numbers(self):
         out = self.folder / "box.vtk"
@@ -104,6 +147,119 @@ class Names(ProgramTest):
         path.write_text('{"patches": {"fixed": 99}}')
         self.expect(2, self.box, "-o", self.out, "--names", path, says=["names.json", "patches.fixed", "99"])
         self.expect(3, self.box, "-o", self.out, "--names", "nmaes.json", says=["did you mean names.json"])
+
+
+class GivenNames(ProgramTest):
+    """--name, beside the JSON of --names."""
+
+    def names(self, *arguments):
+        run = self.run_program(self.box, "-o", "a.msh", "--size", "0.5", *arguments)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return set(re.findall(r'^(\d) (\d+) "(.*)"', (self.folder / "a.msh").read_text(), re.M))
+
+    def test_patches_curves_and_regions(self):
+        names = self.names("--name", "fixed=5", "--name", "walls=2,3",
+                           "--name", "rim=curve:4", "--name", "steel=region:1")
+        self.assertLessEqual({("2", "5", "fixed"), ("2", "2", "walls"), ("1", "4", "rim"), ("3", "1", "steel")}, names)
+        self.assertNotIn(("2", "3", "patch_3"), names)
+
+    def test_beside_the_json(self):
+        path = self.write("names.json", '{"patches": {"fixed": 1, "walls": [2]}}')
+        names = self.names("--names", path, "--name", "walls=3", "--name", "top=6")
+        self.assertLessEqual({("2", "1", "fixed"), ("2", "2", "walls"), ("2", "6", "top")}, names)
+        self.assertIn(("2", "5", "inline"), self.names("--names", '{"patches": {"inline": 5}}'))
+
+    def test_mistakes(self):
+        for text in ("fixed", "=3", "fixed=", "fixed=x", "fixed=face:1"):
+            self.expect(2, self.box, "-o", self.out, "--name", text, says=[f"name: '{text}' is not NAME=NUMBER"])
+        self.expect(2, self.box, "-o", self.out, "--name", "fixed=99", says=["patches.fixed", "99"])
+        path = self.write("names.json", '{\n  "patches":\n    {"fixed" 1}\n}')
+        self.expect(2, self.box, "-o", self.out, "--names", path,
+                    says=["names.json: names: line 3, column 14: this is no JSON"])
+        self.expect(2, self.box, "-o", self.out, "--names", path, "--name", "a=1", says=["line 3, column 14"])
+
+
+class NamesThroughFormats(ProgramTest):
+    """A name that a format has a place for is there when the mesh goes on to another one; a lost one is told."""
+    NAMES = {"patches": {"Fixed end": 1, "loaded": {"at": [0.5, 0.5, 1]}}, "curves": {"rim": 4},
+             "regions": {"steel": 1}}
+    KEEP = ["vtu", "vtk", "pvtu", "msh", "msh2", "unv"] + (["med", "xdmf"] if HAS_HDF5 else [])
+
+    def names_in_msh(self, mesh):
+        run = self.run_program("convert", mesh, "-o", "names.msh")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        found = re.findall(r'^(\d) \d+ "(.*)"', (self.folder / "names.msh").read_text(), re.M)
+        return {(int(dimension), name) for dimension, name in found}
+
+    def setUp(self):
+        super().setUp()
+        self.names = self.write("names.json", json.dumps(self.NAMES))
+        self.all = {(2, "Fixed end"), (2, "loaded"), (1, "rim"), (3, "steel")}
+
+    def mesh(self, path):
+        run = self.run_program(self.box, "-o", path, "--size", "0.5", "--names", self.names)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return run.stderr
+
+    def test_from_each_format_to_the_next(self):
+        self.mesh("a.vtu")
+        for extension in self.KEEP:
+            with self.subTest(extension=extension):
+                run = self.run_program("convert", "a.vtu", "-o", f"b.{extension}")
+                self.assertEqual(run.returncode, 0, run.stderr)
+                self.assertNotIn("names", run.stderr)
+                self.assertLessEqual(self.all, self.names_in_msh(f"b.{extension}"))
+
+    def test_of_partitions(self):
+        self.mesh("a.vtu")
+        if HAS_SCOTCH:
+            self.run_program("convert", "a.vtu", "-o", "b.pvtu", "--partitions", "3")
+            self.assertLessEqual(self.all, self.names_in_msh("b.pvtu"))
+
+    def test_abaqus_keeps_names_of_faces_and_regions(self):
+        self.write("two.off", off_text(box_points((0, 0, 1), (1, 1, 2)), BOX_FACES))
+        names = self.write("regions.json", '{"patches": {"bottom": 2}, "regions": {"steel": 1, "copper": 2}}')
+        self.run_program(self.box, "two.off", "-o", "a.inp", "--size", "0.5", "--names", names)
+        found = self.names_in_msh("a.inp")
+        self.assertLessEqual({(2, "BOTTOM"), (3, "STEEL"), (3, "COPPER")}, found)
+        self.assertNotIn("EALL", {name for _, name in found})
+        regions = json.loads(self.run_program("info", "--json", "a.inp").stdout)["mesh"]["region_volumes"]
+        self.assertEqual(len(regions), 2)
+
+    def test_a_loss_is_told(self):
+        self.mesh("a.vtu")
+        for extension in ("mesh", "ele"):
+            run = self.run_program("convert", "a.vtu", "-o", f"b.{extension}")
+            self.assertRegex(run.stderr, "no place for: .*4 names of groups")
+            self.assertIn(f"--names: .{extension} has no place for names", self.mesh(f"c.{extension}"))
+        for extension in ("stl", "off", "ply"):
+            run = self.run_program("convert", "a.vtu", "-o", f"b.{extension}")
+            self.assertRegex(run.stderr, "no place for: .*2 names of patches")
+        self.run_program("convert", "a.vtu", "-o", "b.obj")
+        self.assertIn("g Fixed_end", (self.folder / "b.obj").read_text())
+
+    @unittest.skipUnless(HAS_CAD, "no OpenCASCADE")
+    def test_faces_of_cad_shapes(self):
+        self.run_program(MODELS / "flange.step", "-o", "a.vtu", "--size", "10")
+        for extension in ["vtu", "vtk", "msh", "unv"] + (["med", "xdmf"] if HAS_HDF5 else []):
+            with self.subTest(extension=extension):
+                self.run_program("convert", "a.vtu", "-o", f"b.{extension}")
+                names = self.names_in_msh(f"b.{extension}")
+                self.assertLessEqual({(2, "Face3"), (1, "Edge1"), (3, "Solid1")}, names)
+        self.run_program("convert", "a.vtu", "-o", "b.inp")
+        self.assertIn("SURFACE, NAME=FACE3", (self.folder / "b.inp").read_text())
+
+    def test_meshio_finds_them(self):
+        if not HAS_HDF5:
+            self.skipTest("no HDF5")
+        import meshio
+
+        self.mesh("a.xdmf")
+        data = meshio.read(self.folder / "a.xdmf").field_data
+        self.assertEqual({(int(d), name) for name, (_, d) in data.items()}, self.all)
+        for extension in ("vtu", "vtk"):  # names beside the cells are in nobody's way
+            self.mesh(f"a.{extension}")
+            self.assertGreater(len(meshio.read(self.folder / f"a.{extension}").points), 8)
 
 
 class Surfaces(ProgramTest):

@@ -219,7 +219,7 @@ TEST(TimeLimitDeathTest, EndsAnyStage) {
   testing::FLAGS_gtest_death_test_style = "threadsafe";
   EXPECT_EXIT(run_interruptible([] {
                 set_time_limit(0.05);
-                note_stage("stage: check, 7 tets");
+                note_stage({"check", 0, 7});
                 std::this_thread::sleep_for(std::chrono::minutes(10));
                 return ExitCode::success;
               }),

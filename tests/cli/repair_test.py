@@ -68,7 +68,7 @@ class Repair(ProgramTest):
 
     def test_quiet_tells_what_changes_the_shape(self):
         run = self.expect(0, self.open_box, "-o", self.out, "--size", "1", "-q", writes=True)
-        self.assertRegex(run.stderr, r"\Arepaired: a hole [^\n]*\n\Z")
+        self.assertRegex(run.stderr, r"\A\S*open\.off: repaired: a hole [^\n]*\n\Z")
         run = self.expect(0, "repair", self.overlapping, "-o", "fixed.off", "-q", writes=True)
         self.assertNotIn("cut", run.stderr)
         self.assertIn("removed", run.stderr)

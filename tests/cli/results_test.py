@@ -50,6 +50,39 @@ class Guarantees(ProgramTest):
         self.out.unlink()
         self.expect(0, model, "-o", self.out, writes=True)
 
+    def test_a_failed_run_writes_its_report(self):
+        """Whatever fails: the budget, the input, an option; a mesh is not there, and no earlier report."""
+        tilted = self.write("open.off", off_text(box_points(), BOX_FACES[:3]))
+        for code, status, stage, arguments in (
+                (5, "budget_hit", "refine", [self.box, "--size", "0.01", "--max-vertices", "500"]),
+                (5, "budget_hit", None, [self.box, "--size", "0.002", "--time-limit", "0.5"]),
+                (3, "unreadable", "read", ["missing.off"]),
+                (4, "invalid_complex", "complex", [tilted, "--repair", "none"]),
+                (2, "usage", "complex", [self.box, "--patch-size", "99=0.1"])):
+            with self.subTest(arguments=arguments):
+                report = self.write("report.json", "of an earlier run")
+                page = self.folder / "page.html"
+                run = self.expect(code, *arguments, "-o", self.out, "--report", report, "--report", page)
+                found = json.loads(report.read_text())
+                self.assertEqual((found["status"], found["exit_code"], found["guarantees_hold"]), (status, code, False))
+                self.assertIn(found["message"].splitlines()[0], run.stderr)
+                if stage is not None:
+                    self.assertEqual(found["stage"], stage)
+                if "--max-vertices" in arguments:
+                    self.assertGreater(found["reached"]["vertices"], 0)
+                if status == "invalid_complex":
+                    self.assertEqual(len(found["faults"][0]["where"]), 3)
+                self.assertEqual(found["output"], str(self.out))
+                self.assertIn(f"exit code {code}", page.read_text())
+
+    def test_quiet_runs_say_which_file_is_meant(self):
+        sphere = MODELS / "sphere.off"
+        run = self.run_program(sphere, "-o", self.out, "--size", "1", "--distance", "0.3", "--order", "2", "-q",
+                               "--elements-per-circle", "3")
+        for line in run.stderr.splitlines():
+            self.assertRegex(line, f"^({self.out}|{sphere}): ")
+        self.assertNotEqual(run.stderr, "")
+
     def test_region_volumes_are_exact(self):
         report = self.folder / "report.json"
         self.expect(0, MODELS / "two_boxes.poly", "-o", self.out, "--report", report, writes=True)
@@ -117,7 +150,10 @@ class Reports(ProgramTest):
             self.expect(2, self.box, "-o", self.out, "--report", path, says=["input"])
         self.expect(2, self.box, "-o", self.out, "--report", self.folder / "." / self.out.name, says=["--output"])
         self.assertEqual(self.box.read_bytes(), before)
-        self.expect(8, self.box, "-o", self.out, "--report", "/dev/null", says=["no regular file"])
+        pipe = self.folder / "pipe"
+        os.mkfifo(pipe)
+        self.expect(8, self.box, "-o", self.out, "--report", pipe, says=["no regular file"])
+        self.assertTrue(pipe.is_fifo(), "the report of the failure replaced it")
 
     def test_warnings_of_the_input(self):
         model = self.write("two.poly", (MODELS / "two_boxes.poly").read_text())
@@ -143,11 +179,10 @@ class Reports(ProgramTest):
         self.expect(0, self.box, "-o", self.out, "--size", "0.5", "--report", link, writes=True)
         self.assertTrue(link.is_symlink())
         self.assertTrue(json.loads(named.read_text())["guarantees_hold"])
-
-    def test_no_report_of_a_failure(self):
-        path = self.folder / "report.json"
-        self.expect(5, self.box, "-o", self.out, "--size", "0.02", "--max-vertices", "100", "--report", path)
-        self.assertFalse(path.exists())
+        self.out.unlink()
+        self.expect(5, self.box, "-o", self.out, "--size", "0.02", "--max-vertices", "100", "--report", link)
+        self.assertTrue(link.is_symlink())
+        self.assertFalse(json.loads(named.read_text())["guarantees_hold"])
 
     def test_info(self):
         run = self.expect(0, "info", self.box)

@@ -97,6 +97,31 @@ class Progress(ProgramTest):
         self.assertEqual(run.stdout, "")
         self.assertIn("every guarantee holds", run.stderr)
 
+    def test_help_of_everything_fits_a_terminal(self):
+        help_all = self.run_program("--help-all")
+        self.assertEqual(help_all.returncode, 0, help_all.stderr)
+        for option in ("--size-field", "--against", "--predict", "--input-format", "--json"):
+            self.assertIn(option, help_all.stdout)
+        for arguments in (["--help-all"], ["--help"], *([c, "--help"] for c in ("check", "info", "convert", "repair"))):
+            for line in self.run_program(*arguments).stdout.splitlines():
+                self.assertLessEqual(len(line), 80, line)
+
+    def complete(self, *words):
+        """What bash proposes for the last word."""
+        script = self.run_program("--generate", "bash").stdout
+        line = f"COMP_WORDS=({' '.join(words)} ''); COMP_CWORD={len(words)}; _collarmesh; echo ${{COMPREPLY[@]}}"
+        run = subprocess.run(["bash", "-c", script + line], capture_output=True, text=True, cwd=self.folder)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return set(run.stdout.split())
+
+    def test_values_are_completed(self):
+        self.assertEqual(self.complete("collarmesh", "a.off", "--order"), {"1", "2"})
+        self.assertEqual(self.complete("collarmesh", "a.off", "--improve"), {"0", "1", "2", "3"})
+        self.assertEqual(self.complete("collarmesh", "a.off", "--coarsen"), {"on", "off"})
+        self.assertLessEqual({"vtu", "msh2", "bdf", "polymesh"}, self.complete(
+            "collarmesh", "convert", "a.off", "--format"))
+        self.assertLessEqual({"vtu", "stl"}, self.complete("collarmesh", "convert", "-", "--input-format"))
+
     def test_quiet_and_verbose(self):
         quiet = self.run_program(self.box, "-o", self.out, "--size", "0.3", "-q")
         self.assertEqual((quiet.returncode, quiet.stderr, quiet.stdout), (0, "", ""))

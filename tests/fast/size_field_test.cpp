@@ -104,7 +104,8 @@ TEST(SizeFieldJson, SaysWhatIsWrongAndWhere) {
     return "no error";
   };
   const std::vector<std::pair<std::string, std::string>> cases{
-      {"", "byte"},
+      {"", "line 1, column 1"},
+      {"{\"size\": 1,\n \"sources\": [{]}", "line 2, column 15"},
       {"[]", "object"},
       {"{}", "asks for no size"},
       {R"({"sise": 1})", "'sise' is not known"},

@@ -1,11 +1,16 @@
 // What `generate` makes of the sizes and ratios asked for: each bound recomputed from the mesh.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <queue>
 
+#include "collarmesh/error.h"
+#include "collarmesh/pipeline.h"
+#include "collarmesh/predict.h"
 #include "support/meshing.h"
 #include "support/shapes.h"
 
@@ -158,6 +163,30 @@ TEST(RefinementSizing, FieldBoundsCellsAtTheirCentres) {
   fine.size_field = [](const Point&) { return 0.04; };
   fine.size_min = 0.2;
   EXPECT_LT(mesh_of(testing::box(), fine, 0).result.mesh.tets.size(), mesh.tets.size());
+}
+
+// In every stage that asks for sizes.
+TEST(RefinementSizing, FieldsMustBePositive) {
+  const PolygonSoup soups[] = {testing::box()};
+  const Plc plc = build_plc(soups);
+  for (const double wrong : {0.0, -1.0, double{NAN}, -double{INFINITY}}) {
+    MeshOptions options;
+    options.size_field = [&](const Point& p) { return p.x > 0.9 ? wrong : INFINITY; };
+    PipelineOptions whole;
+    whole.mesh = options;
+    const std::vector<std::function<void()>> stages{[&] { generate(plc, options); },
+                                                    [&] { run_pipeline(plc, whole); },
+                                                    [&] { predict(plc, whole, std::array{0.1}); }};
+    for (const auto& stage : stages) try {
+        stage();
+        ADD_FAILURE() << wrong << " was taken";
+      } catch (const OptionError& error) {
+        const std::string said = error.what();
+        EXPECT_NE(said.find(fmt::format("the size is {} at (", wrong)), std::string::npos) << said;
+        const double x = std::stod(said.substr(said.find('(') + 1));
+        EXPECT_GT(x, 0.9) << said;
+      }
+  }
 }
 
 TEST(RefinementSizing, FieldSeesTheInputsCoordinates) {

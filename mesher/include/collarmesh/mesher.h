@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "collarmesh/bounds.h"
 #include "collarmesh/plc.h"
@@ -57,6 +58,13 @@ struct MeshOptions {
   unsigned threads = 0;     ///< 0: as many as there are cores; any number makes the same mesh
   bool count_work = false;  ///< fill in MeshStatistics::counts, which takes a moment
 };
+
+/// MeshOptions::size, or its default for this complex.
+double default_size(const Plc& plc, const MeshOptions& options);
+
+/// Options of sizes that make nothing finer, a sentence each: sizes by tag that are not below `size`, and so
+/// many elements on a circle that none is shorter. Sizes that depend on the place are not judged.
+std::vector<std::string> sizes_without_effect(const Plc& plc, const MeshOptions& options);
 
 /// The surface distance tolerance unless another one is asked for: a tenth of the target edge length (0: of
 /// its default, as in MeshOptions), at most 1/200 of the diagonal. So a circle of about its radius gets some

@@ -28,8 +28,9 @@ enum class ProgressStyle { automatic, json, off };
 /// What can be asked of a run from files to a file. Strings are paths; empty: none.
 struct RunOptions : PipelineOptions {
   SolidOverlap overlap = SolidOverlap::first;
-  std::string names = {};            ///< of features, by number or place
-  std::string size_field_file = {};  ///< where `mesh.size_field` is read from
+  std::string names = {};                     ///< of features, by number or place
+  std::vector<std::string> given_names = {};  ///< of features, "fixed=11"
+  std::string size_field_file = {};           ///< where `mesh.size_field` is read from
   io::GhostCells ghost_cells = io::GhostCells::none;
   std::string cell_decomposition = {};  ///< OpenFOAM's list of partitions
   double scale = 1;                     ///< of the coordinates that are written

@@ -69,6 +69,18 @@ struct PatchSummary {
 /// By tag. Cost: linear.
 std::vector<PatchSummary> summarize_patches(const Plc& plc);
 
+/// The curves of one tag.
+struct CurveSummary {
+  Tag tag = 0;
+  std::string name;       ///< empty: none
+  std::size_t count = 0;  ///< of curves
+  bool straight = true;   ///< each of them
+  double length = 0;
+  Point where;  ///< a point on the first one: the middle of its longest segment
+};
+/// By tag. Cost: linear.
+std::vector<CurveSummary> summarize_curves(const Plc& plc);
+
 /// One sentence for people: what meets what, where, at which angle.
 std::string describe(const Plc& plc, const Crease& crease);
 

@@ -1,7 +1,12 @@
 #pragma once
 
+#include <atomic>
+#include <cstddef>
+#include <deque>
 #include <functional>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "collarmesh/plc.h"
 #include "collarmesh/tet_mesh.h"
@@ -11,9 +16,32 @@ namespace collarmesh {
 /// A target edge length at every point, absolute, in input units; for `MeshOptions::size_field`.
 using SizeField = std::function<double(const Point&)>;
 
+/// Which sources of a size field made anything finer: those that asked somewhere for less than a size.
+class SizeFieldUse {
+ public:
+  explicit SizeFieldUse(double size) : size_(size) {}
+
+  /// Another source, by what it is called in messages. Returns its number.
+  std::size_t add(std::string source);
+  /// It asks for this size somewhere. Several threads may say so at once.
+  void note(std::size_t source, double asked) {
+    if (asked < size_ && !used_[source].load(std::memory_order_relaxed))
+      used_[source].store(true, std::memory_order_relaxed);
+  }
+  std::vector<std::string> without_effect() const;
+  double size() const { return size_; }
+
+ private:
+  double size_;
+  std::vector<std::string> sources_;
+  std::deque<std::atomic<bool>> used_;
+};
+
 /// Read a size field: .json (a description, see `size_field_from_json`), or .vtu or .msh (a mesh with a
-/// scalar field of target edge lengths on its points). Throws ReadError or OptionError.
-SizeField read_size_field(const std::string& path, const Plc& plc);
+/// scalar field of target edge lengths on its points). `use` is told of what it is asked for, and is kept.
+/// Throws ReadError or OptionError.
+SizeField read_size_field(const std::string& path, const Plc& plc,
+                          const std::shared_ptr<SizeFieldUse>& use = nullptr);
 
 /// The smallest of what some sources ask for: `size` at the source, inside it and `within` a distance of it
 /// (0 unless given), growing by `growth` (0.3 unless given) per unit length beyond.
@@ -28,7 +56,8 @@ SizeField read_size_field(const std::string& path, const Plc& plc);
 ///
 /// `size` outside the list holds everywhere; without it sources are all there is. Curves and patches are
 /// named by their tags. Throws OptionError, with the place in the text.
-SizeField size_field_from_json(const std::string& text, const Plc& plc);
+SizeField size_field_from_json(const std::string& text, const Plc& plc,
+                               const std::shared_ptr<SizeFieldUse>& use = nullptr);
 
 /// Linear in the tets of a background mesh; outside of it the value of its nearest point.
 /// Throws OptionError unless there is one positive value per point.

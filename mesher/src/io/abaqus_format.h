@@ -15,4 +15,7 @@ constexpr std::array<std::array<std::uint8_t, 3>, 4> abaqus_face_mid_nodes{
 /// Our element sets by region of the complex: this and the number.
 constexpr const char* abaqus_volume_prefix = "VOLUME_";
 
+/// The set of all elements, in lower case.
+constexpr const char* abaqus_everything = "eall";
+
 }  // namespace collarmesh::io

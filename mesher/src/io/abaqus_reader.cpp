@@ -78,6 +78,7 @@ class Lines {
 struct Keyword {
   std::string name;
   std::map<std::string, std::string, std::less<>> parameters;
+  std::string set;  ///< the name of the set or surface that it begins, as it is written
 
   explicit Keyword(std::string_view line) {
     std::vector<std::string_view> fields;
@@ -85,11 +86,12 @@ struct Keyword {
     for (std::size_t k = 0; k < fields.size(); ++k) {
       const std::size_t equals = std::min(fields[k].find('='), fields[k].size());
       const std::string key = lower_case(trimmed(fields[k].substr(0, equals)));
+      const std::string_view value = trimmed(fields[k].substr(std::min(equals + 1, fields[k].size())));
+      if (key == "elset" || key == "name") set = value;
       if (k == 0)
         name = key;
       else
-        parameters.emplace(key,
-                           lower_case(trimmed(fields[k].substr(std::min(equals + 1, fields[k].size())))));
+        parameters.emplace(key, lower_case(value));
     }
   }
   std::string_view operator[](std::string_view key) const {
@@ -125,7 +127,7 @@ const ElementType* find_type(std::string_view name) {
 
 /// An element set; `named_apart`: by an *ELSET, not just by its *ELEMENT.
 struct Set {
-  std::string name;
+  std::string name, written;
   std::vector<std::int64_t> members;
   bool named_apart = false;
 };
@@ -233,8 +235,7 @@ class AbaqusReader {
           fmt::format("elements of type {} are not supported, only tetrahedra (C3D4, C3D10), "
                       "triangles (S3, S6, CPS3, ...) and lines (T3D2, B31, ...)",
                       quoted(keyword["type"])));
-    const std::string_view set = keyword["elset"];
-    const std::size_t set_index = set.empty() ? none : index_of_set(set);
+    const std::size_t set_index = keyword.set.empty() ? none : index_of_set(keyword.set);
     // An element may go on over several lines.
     std::vector<std::int64_t> numbers;
     each_line([&](const Fields& fields) {
@@ -282,14 +283,14 @@ class AbaqusReader {
   }
 
   std::size_t index_of_set(std::string_view name) {
-    const auto [found, added] = set_index_.try_emplace(std::string(name), sets_.size());
-    if (added) sets_.push_back({std::string(name), {}, false});
+    const auto [found, added] = set_index_.try_emplace(lower_case(name), sets_.size());
+    if (added) sets_.push_back({lower_case(name), std::string(name), {}, false});
     return found->second;
   }
 
   /// Members are numbers or the names of sets before; with GENERATE first, last and step.
   void read_set(const Keyword& keyword) {
-    const std::size_t set = index_of_set(keyword["elset"]);
+    const std::size_t set = index_of_set(keyword.set);
     sets_[set].named_apart = true;
     const bool generate = keyword.parameters.contains("generate");
     each_line([&](const Fields& fields) {
@@ -344,7 +345,7 @@ class AbaqusReader {
   void read_surface(const Keyword& keyword) {
     const std::string_view type = keyword["type"];
     const bool of_elements = type.empty() || type == "element";
-    if (of_elements) surfaces_.emplace_back(keyword["name"], std::vector<Side>());
+    if (of_elements) surfaces_.emplace_back(keyword.set, std::vector<Side>());
     each_line([&](const Fields& fields) {
       if (!of_elements) return;
       if (fields.size() < 2) lines_.fail("expected an element or element set and its side");
@@ -385,8 +386,8 @@ class AbaqusReader {
     });
   }
 
-  /// Of the sets that a cell is in, one with a name of ours counts, else the first one of an *ELSET,
-  /// else that of its *ELEMENT.
+  /// Of the sets that a cell is in, one with a name of ours counts, else the first one of an *ELSET but that
+  /// of everything, else that of its *ELEMENT.
   void tag_cells() {
     mesh_.tet_tag.assign(mesh_.tets.size(), 0);
     mesh_.face_tag.assign(mesh_.faces.size(), 0);
@@ -399,7 +400,10 @@ class AbaqusReader {
       if (is_ours(set.name)) tag_members(set, tagged);
     for (const bool named_apart : {true, false})
       for (const Set& set : sets_)
-        if (set.named_apart == named_apart && !is_ours(set.name)) tag_members(set, tagged);
+        if (set.named_apart == named_apart && !is_ours(set.name) && set.name != abaqus_everything)
+          tag_members(set, tagged);
+    for (const Set& set : sets_)
+      if (set.name == abaqus_everything) tag_members(set, tagged);
     read_volumes();
   }
 
@@ -413,18 +417,26 @@ class AbaqusReader {
       const auto [dimension, index] = places_[element];
       if (tagged[dimension][index]) continue;
       tagged[dimension][index] = true;
-      const Tag tag = groups_.find(dimension, set.name);
+      const Tag tag = tag_of(dimension, set.written);
       (dimension == 3 ? mesh_.tet_tag : dimension == 2 ? mesh_.face_tag : mesh_.edge_tag)[index] = tag;
     }
   }
 
+  Tag tag_of(std::size_t dimension, const std::string& name) {
+    const Tag tag = groups_.find(dimension, lower_case(name));
+    const bool given = is_given_name(dimension, name) && !lower_case(name).starts_with(volume_prefix_) &&
+                       lower_case(name) != abaqus_everything;
+    if (given) mesh_.names.set(dimension, tag, name);
+    return tag;
+  }
+
   /// Our sets by region.
   void read_volumes() {
-    const std::string prefix = lower_case(abaqus_volume_prefix);
     std::vector<Index> regions(mesh_.tets.size(), none);
     for (const Set& set : sets_) {
       Index region = 0;
-      if (!set.name.starts_with(prefix) || !parse(std::string_view(set.name).substr(prefix.size()), region))
+      if (!set.name.starts_with(volume_prefix_) ||
+          !parse(std::string_view(set.name).substr(volume_prefix_.size()), region))
         continue;
       for (const std::int64_t number : set.members)
         if (const Index element = elements_.find(number); element != none && places_[element].dimension == 3)
@@ -437,7 +449,7 @@ class AbaqusReader {
   void add_surfaces() {
     for (const auto& [name, sides] : surfaces_) {
       if (sides.empty()) continue;
-      const Tag tag = groups_.find(2, name);
+      const Tag tag = tag_of(2, name);
       for (const Side& side : sides) add_side(side, tag);
     }
   }
@@ -460,6 +472,7 @@ class AbaqusReader {
   }
 
   const std::string& path_;
+  const std::string volume_prefix_ = lower_case(abaqus_volume_prefix);
   Lines lines_;
   TetMesh mesh_;
   NumberTable nodes_, elements_;

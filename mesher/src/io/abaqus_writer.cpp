@@ -4,7 +4,6 @@
 // CURVE_7_NODES). EALL and NALL are everything. Numbers take 20 characters at most, as both programs ask.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <map>
 #include <string>
@@ -14,6 +13,7 @@
 #include "io/cell_nodes.h"
 #include "io/face_finder.h"
 #include "io/label_names.h"
+#include "io/node_groups.h"
 #include "io/tet_mesh_formats.h"
 #include "io/write_each.h"
 
@@ -30,31 +30,6 @@ std::string fitted(double value) {
   return text;
 }
 
-/// Whatever belongs to a group, by the group's tag.
-using Groups = std::map<Tag, std::vector<Index>>;
-
-template <class Cells>
-Groups nodes_by_tag(const TetMesh& mesh, const Cells& nodes_of, const std::vector<Tag>& tags) {
-  Groups groups;
-  for (std::size_t i = 0; i < tags.size(); ++i)
-    for (const Index v : nodes_of(mesh, i)) groups[tags[i]].push_back(v + 1);
-  for (auto& [tag, nodes] : groups) {
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  }
-  return groups;
-}
-
-/// Upper case, of letters, digits, `_` and `-`.
-std::string name_of(const TetMesh& mesh, std::size_t dimension, Tag tag) {
-  std::string name = group_name(mesh, dimension, tag);
-  for (char& c : name) {
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - ('a' - 'A'));
-    if (!((c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-')) c = '_';
-  }
-  return name;
-}
-
 void write_numbers(FileWriter& out, const std::vector<Index>& numbers) {
   for (std::size_t i = 0; i < numbers.size(); ++i)
     out << numbers[i] << (i + 1 == numbers.size() || (i + 1) % numbers_a_line == 0 ? ",\n" : ", ");
@@ -62,7 +37,7 @@ void write_numbers(FileWriter& out, const std::vector<Index>& numbers) {
 
 void write_node_sets(FileWriter& out, const TetMesh& mesh, std::size_t dimension, const Groups& groups) {
   for (const auto& [tag, nodes] : groups) {
-    out << "*NSET, NSET=" << name_of(mesh, dimension, tag) << "_NODES\n";
+    out << "*NSET, NSET=" << capital_name(mesh, dimension, tag) << "_NODES\n";
     write_numbers(out, nodes);
   }
 }
@@ -94,7 +69,7 @@ void write_elements(FileWriter& out, const TetMesh& mesh) {
   out << "*ELSET, ELSET=EALL\n";
   for (const auto& volume : volumes) out << abaqus_volume_prefix << volume.first << ",\n";
   for (const auto& [tag, regions] : regions_of_tag) {
-    out << "*ELSET, ELSET=" << name_of(mesh, 3, tag) << '\n';
+    out << "*ELSET, ELSET=" << capital_name(mesh, 3, tag) << '\n';
     for (const Index region : regions) out << abaqus_volume_prefix << region << ",\n";
   }
 }
@@ -119,7 +94,7 @@ void write_surfaces(FileWriter& out, const TetMesh& mesh) {
   for (std::size_t f = 0; f < mesh.faces.size(); ++f)
     if (behind[f].tet != none) surfaces[mesh.face_tag[f]].push_back(behind[f]);
   for (const auto& [tag, sides] : surfaces) {
-    out << "*SURFACE, NAME=" << name_of(mesh, 2, tag) << ", TYPE=ELEMENT\n";
+    out << "*SURFACE, NAME=" << capital_name(mesh, 2, tag) << ", TYPE=ELEMENT\n";
     for (const Side& side : sides) out << side.tet + 1 << ", S" << side.side + 1 << '\n';
   }
 }

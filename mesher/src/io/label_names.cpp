@@ -31,6 +31,20 @@ std::string group_name(const TetMesh& mesh, std::size_t dimension, Tag tag, std:
   return name;
 }
 
+std::string word_name(const TetMesh& mesh, std::size_t dimension, Tag tag) {
+  std::string name = group_name(mesh, dimension, tag);
+  for (char& c : name)
+    if (!((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-')) c = '_';
+  return name;
+}
+
+std::string capital_name(const TetMesh& mesh, std::size_t dimension, Tag tag) {
+  std::string name = word_name(mesh, dimension, tag);
+  for (char& c : name)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - ('a' - 'A'));
+  return name;
+}
+
 std::optional<Tag> tag_of_group_name(std::size_t dimension, std::string_view name) {
   const std::string lower = lower_case(name);
   std::string prefix(group_name_prefix[dimension]);
@@ -42,6 +56,10 @@ std::optional<Tag> tag_of_group_name(std::size_t dimension, std::string_view nam
   Tag tag = 0;
   if (!parse(digits, tag)) return std::nullopt;
   return tag;
+}
+
+bool is_given_name(std::size_t dimension, std::string_view name) {
+  return !tag_of_group_name(dimension, name) || !lower_case(name).starts_with(group_name_prefix[dimension]);
 }
 
 Tag GroupTags::find(std::size_t dimension, const std::string& name) {

@@ -22,8 +22,15 @@ std::string group_name(GroupNames names, std::size_t dimension, Tag tag, std::st
 std::string group_name(const TetMesh& mesh, std::size_t dimension, Tag tag,
                        std::string_view minus = "minus_");
 
+/// As above, of letters, digits, `_` and `-` alone; the second one in capitals.
+std::string word_name(const TetMesh& mesh, std::size_t dimension, Tag tag);
+std::string capital_name(const TetMesh& mesh, std::size_t dimension, Tag tag);
+
 /// The tag that a name of ours stands for, in any case.
 std::optional<Tag> tag_of_group_name(std::size_t dimension, std::string_view name);
+
+/// Is it a name other than that of kind and tag, "patch_7"? Those of CAD shapes are.
+bool is_given_name(std::size_t dimension, std::string_view name);
 
 /// Gives the groups of another program's file tags: of our names what they stand for, others are
 /// numbered from 1 in the order of the file, past the tags that are taken.

@@ -53,7 +53,7 @@ struct Contents {
   std::array<std::map<int, PartitionEntity>, 4> partition_entities;
   std::array<std::map<Tag, Tag>, 4> tag_of_physical;                   ///< where its name says so
   std::vector<std::pair<std::uint64_t, double>> collar, crease, thin;  ///< cell number and value
-  TagNames names;                                                      ///< of physical groups, but ours
+  TagNames names;                                                      ///< of tags, where given
   bool numbers_are_features = false;
 };
 
@@ -144,10 +144,10 @@ void read_physical_names(MshText values, Contents& contents) {
     const int physical = values.integer("the number of a physical group");
     std::string_view name = values.text().rest_of_line();
     if (name.size() >= 2) name = name.substr(1, name.size() - 2);  // the quotes
-    if (const auto tag = tag_of_group_name(dimension, name))
-      contents.tag_of_physical[dimension][physical] = *tag;
-    else if (!name.empty())
-      contents.names.set(dimension, physical, std::string(name));
+    const auto tag = tag_of_group_name(dimension, name);
+    if (tag) contents.tag_of_physical[dimension][physical] = *tag;
+    if (!name.empty() && is_given_name(dimension, name))
+      contents.names.set(dimension, tag.value_or(physical), std::string(name));
   }
 }
 

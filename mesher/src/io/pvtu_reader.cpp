@@ -161,6 +161,7 @@ TetMesh read_pvtu(const std::string& path) {
   VtkPiece whole;
   join_points(pieces, whole);
   join_cells(pieces, whole);
+  if (!pieces.empty()) whole.names = pieces.front().piece.names;  // each has all of them
   TetMesh mesh;
   try {
     add_vtk_piece(whole, mesh);

@@ -83,6 +83,8 @@ class Cutter {
   TetMesh cut(const Members& members) {
     for (std::size_t i = 0; i < members.points.size(); ++i) local_[members.points[i]] = static_cast<Index>(i);
     TetMesh part;
+    part.group_names = mesh_.group_names;
+    part.names = mesh_.names;
     part.points = picked(mesh_.points, members.points);
     part.features = picked(mesh_.features, members.points);
     part.tets = numbered(picked(mesh_.tets, members.tets));

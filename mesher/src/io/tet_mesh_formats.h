@@ -20,6 +20,11 @@ void write_msh2(const std::string& path, const TetMesh& mesh);
 void write_medit(const std::string& path, const TetMesh& mesh);
 void write_abaqus(const std::string& path, const TetMesh& mesh);
 void write_unv(const std::string& path, const TetMesh& mesh);
+void write_nastran(const std::string& path, const TetMesh& mesh);
+void write_ansys(const std::string& path, const TetMesh& mesh);
+void write_mfem(const std::string& path, const TetMesh& mesh);
+void write_su2(const std::string& path, const TetMesh& mesh);
+void write_openfoam(const std::string& path, const TetMesh& mesh);
 void write_tetgen(const std::string& path, const TetMesh& mesh);
 // Parts of the build that are left out where HDF5 or MED are not there:
 void write_xdmf(const std::string& path, const TetMesh& mesh);

@@ -21,6 +21,7 @@ struct TetMeshFormat {
   TetMesh (*read)(const std::string& path);  ///< null: not read
   bool partitions = false;                   ///< has a place for them
   void (*write_with_ghost_cells)(const std::string& path, const TetMesh& mesh) = nullptr;
+  bool second_order = true;
 };
 
 constexpr std::array tet_mesh_formats{
@@ -33,6 +34,11 @@ constexpr std::array tet_mesh_formats{
     TetMeshFormat{".inp", write_abaqus, read_abaqus},
     TetMeshFormat{".unv", write_unv, read_unv},
     TetMeshFormat{".ele", write_tetgen, read_tetgen},
+    TetMeshFormat{".bdf", write_nastran, nullptr},
+    TetMeshFormat{".cdb", write_ansys, nullptr},
+    TetMeshFormat{".mfem", write_mfem, nullptr},
+    TetMeshFormat{".su2", write_su2, nullptr, false, nullptr, false},
+    TetMeshFormat{".polymesh", write_openfoam, nullptr, false, nullptr, false},
 #ifdef COLLARMESH_XDMF
     TetMeshFormat{".xdmf", write_xdmf, read_xdmf, true},
 #endif
@@ -41,8 +47,11 @@ constexpr std::array tet_mesh_formats{
 #endif
 };
 
-std::string unknown(const std::string& path, const std::vector<std::string>& known) {
-  return fmt::format("{}: unknown kind of file; tetrahedral meshes are {}", path, fmt::join(known, " "));
+std::string unknown(const std::string& path, std::string_view format, const std::vector<std::string>& known) {
+  const std::string missing = missing_library(path, format);
+  return missing.empty()
+             ? fmt::format("{}: unknown kind of file; tetrahedral meshes are {}", path, fmt::join(known, " "))
+             : fmt::format("{}: {}", path, missing);
 }
 
 const TetMeshFormat* find_format(const std::string& path, std::string_view format) {
@@ -64,7 +73,7 @@ std::vector<std::string> extensions(bool (*wanted)(const TetMeshFormat&)) {
 void write_tet_mesh(const std::string& path, const TetMesh& mesh, std::string_view format,
                     GhostCells ghost_cells) {
   const TetMeshFormat* found = find_format(path, format);
-  if (found == nullptr) throw WriteError(unknown(path, written_tet_mesh_formats()));
+  if (found == nullptr) throw WriteError(unknown(path, format, written_tet_mesh_formats()));
   const bool with_ghosts = ghost_cells == GhostCells::one_layer;
   if (with_ghosts && found->write_with_ghost_cells == nullptr)
     throw WriteError(
@@ -74,7 +83,8 @@ void write_tet_mesh(const std::string& path, const TetMesh& mesh, std::string_vi
 
 TetMesh read_tet_mesh(const std::string& path, std::string_view format) {
   const TetMeshFormat* found = find_format(path, format);
-  if (found == nullptr || found->read == nullptr) throw ReadError(unknown(path, read_tet_mesh_formats()));
+  if (found == nullptr || found->read == nullptr)
+    throw ReadError(unknown(path, format, read_tet_mesh_formats()));
   return found->read(path);
 }
 
@@ -86,12 +96,24 @@ std::vector<std::string> formats_with_partitions() {
   return extensions([](const TetMeshFormat& format) { return format.partitions; });
 }
 
+std::vector<std::string> formats_of_first_order() {
+  return extensions([](const TetMeshFormat& format) { return !format.second_order; });
+}
+
 std::vector<std::string> formats_with_ghost_cells() {
   return extensions([](const TetMeshFormat& format) { return format.write_with_ghost_cells != nullptr; });
 }
 
 std::vector<std::string> read_tet_mesh_formats() {
   return extensions([](const TetMeshFormat& format) { return format.read != nullptr; });
+}
+
+std::string missing_library(const std::string& path, std::string_view format) {
+  const std::string extension = format.empty() ? lower_extension(path) : std::string(format);
+  const bool med = extension == ".med";
+  if ((!med && extension != ".xdmf") || is_tet_mesh_format(path, format)) return {};
+  return fmt::format("{} needs {}, without which this program was built; install {} and build it again",
+                     extension, med ? "MED" : "HDF5", med ? "libmedc-dev and libhdf5-dev" : "libhdf5-dev");
 }
 
 bool is_tet_mesh_format(const std::string& path, std::string_view format) {

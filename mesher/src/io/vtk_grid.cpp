@@ -14,6 +14,7 @@
 #include "io/cell_nodes.h"
 #include "io/cell_partitions.h"
 #include "io/complete_mesh.h"
+#include "io/names_text.h"
 
 namespace collarmesh::io {
 
@@ -329,6 +330,18 @@ void drop_partial(std::vector<T>& values, std::size_t count) {
 
 VtkGrid make_vtk_grid(const TetMesh& mesh) { return GridMaker(mesh).make(); }
 
+std::vector<VtkArray> names_array(const TetMesh& mesh) {
+  const std::string text = names_text(mesh);
+  if (text.empty()) return {};
+  return {{std::string(vtk_names), std::vector<std::uint8_t>(text.begin(), text.end())}};
+}
+
+std::string names_of(const std::vector<std::int64_t>& bytes) {
+  std::string text;
+  for (const std::int64_t byte : bytes) text += static_cast<char>(byte);
+  return text;
+}
+
 std::vector<VtkArray> take_boundary(const TetMesh& mesh, VtkGrid& grid) {
   const std::size_t tets = mesh.tets.size(), corners = tets * (mesh.order() == 2 ? 10 : 4);
   const auto name_of = [](const VtkArray& array) { return std::string(vtk_boundary_prefix) + array.name; };
@@ -363,6 +376,7 @@ std::vector<VtkArray> take_boundary(const TetMesh& mesh, VtkGrid& grid) {
     return array.name == "region_back" || array.name == "region_front" || array.name == "feature";
   });
   grid.cell_count = tets;
+  for (VtkArray& names : names_array(mesh)) boundary.push_back(std::move(names));
   return boundary;
 }
 
@@ -374,6 +388,7 @@ void add_vtk_piece(const VtkPiece& piece, TetMesh& mesh) {
   const CellKinds kinds = add_cells(piece, first_point, mesh);
   add_read_labels(piece, kinds, mesh);
   add_read_features(piece, mesh);
+  take_names(piece.names, mesh);
 }
 
 void complete_vtk_mesh(const std::string& path, TetMesh& mesh) {

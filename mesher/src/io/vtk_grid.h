@@ -46,12 +46,20 @@ constexpr std::string_view vtk_point_ids = "GlobalPointIds", vtk_cell_ids = "Glo
 /// Leave the tets as cells and give the other cells as data of the whole grid: views that cut or select cells
 /// are then of the volume alone. Arrays: `boundary_` and the name of what they continue, and `boundary_of`,
 /// how many points and tets there are, so that a reader knows that nobody changed these. Cell arrays that say
-/// something about faces and edges alone go.
+/// something about faces and edges alone go. The names of groups are there, too.
 std::vector<VtkArray> take_boundary(const TetMesh& mesh, VtkGrid& grid);
 constexpr std::string_view vtk_boundary_prefix = "boundary_";
 /// The arrays that continue those of cells.
 constexpr std::array<std::string_view, 6> vtk_boundary_arrays{"tag",          "region",  "region_back",
                                                               "region_front", "feature", vtk_cell_ids};
+
+/// Data of the whole grid that has the names of groups, a byte for each character (names_text.h): VTK has
+/// arrays of strings, but not all readers do.
+constexpr std::string_view vtk_names = "names";
+/// It, or nothing where there are no names.
+std::vector<VtkArray> names_array(const TetMesh& mesh);
+/// The text in such an array.
+std::string names_of(const std::vector<std::int64_t>& bytes);
 
 /// What .vtu files call the type of the values: "Float64".
 std::string_view vtu_type(const VtkArray& array);
@@ -65,6 +73,7 @@ struct VtkPiece {
   std::vector<Point> points;
   std::vector<std::int64_t> connectivity, ends, types;
   Arrays point_data, cell_data;  ///< those of `vtk_point_arrays` and `vtk_cell_arrays` that are there
+  std::string names;             ///< of groups, as in names_text.h
 };
 
 /// Arrays that say something about a mesh: ours, and the names that meshio and Gmsh give to labels.

@@ -211,7 +211,10 @@ class LegacyReader {
       const Index components = scan_.count("the number of components", 1),
                   tuples = scan_.count("the number of tuples", 1);
       std::vector<std::int64_t> numbers = values<std::int64_t>(times(tuples, components), read_type());
-      if (tuples == tuples_) keep(name, components, std::move(numbers));
+      if (arrays_ == nullptr && name == vtk_names)
+        piece_.names = names_of(numbers);
+      else if (tuples == tuples_)
+        keep(name, components, std::move(numbers));
     }
   }
 

@@ -49,18 +49,24 @@ void write_cells(FileWriter& out, const VtkGrid& grid) {
   out << '\n';
 }
 
-void write_data(FileWriter& out, std::string_view section, std::size_t count,
-                const std::vector<VtkArray>& arrays) {
+void write_field(FileWriter& out, const std::vector<VtkArray>& arrays) {
   if (arrays.empty()) return;
-  out << section << ' ' << count << "\nFIELD FieldData " << arrays.size() << '\n';
+  out << "FIELD FieldData " << arrays.size() << '\n';
   for (const VtkArray& array : arrays)
     std::visit(
         [&](const auto& values) {
           using T = typename std::decay_t<decltype(values)>::value_type;
-          out << array.name << ' ' << array.components << ' ' << count << ' ' << type_name(T{}) << '\n';
+          out << array.name << ' ' << array.components << ' ' << values.size() << ' ' << type_name(T{})
+              << '\n';
           write_values(out, values);
         },
         array.values);
+}
+
+void write_data(FileWriter& out, std::string_view section, std::size_t count,
+                const std::vector<VtkArray>& arrays) {
+  if (!arrays.empty()) out << section << ' ' << count << '\n';
+  write_field(out, arrays);
 }
 
 }  // namespace
@@ -68,8 +74,9 @@ void write_data(FileWriter& out, std::string_view section, std::size_t count,
 void write_vtk(const std::string& path, const TetMesh& mesh) {
   FileWriter out(path);
   const VtkGrid grid = make_vtk_grid(mesh);
-  out << "# vtk DataFile Version 3.0\nWritten by collarmesh.\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS "
-      << grid.point_count << " double\n";
+  out << "# vtk DataFile Version 3.0\nWritten by collarmesh.\nBINARY\nDATASET UNSTRUCTURED_GRID\n";
+  write_field(out, names_array(mesh));
+  out << "POINTS " << grid.point_count << " double\n";
   write_values(out, std::get<std::vector<double>>(grid.points.values));
   write_cells(out, grid);
   write_data(out, "CELL_DATA", grid.cell_count, grid.cell_data);

@@ -258,6 +258,9 @@ class PieceReader {
     read_arrays(piece_.child("PointData"), vtk_point_arrays, point_count_, piece.point_data);
     read_arrays(piece_.child("CellData"), vtk_cell_arrays, cell_count_, piece.cell_data);
     if (!polygons_) append_boundary(piece);
+    if (const pugi::xml_node names =
+            find_array(piece_.parent().child("FieldData"), std::string(vtk_names).c_str()))
+      piece.names = names_of(file_.values<std::int64_t>(names));
     return piece;
   }
 

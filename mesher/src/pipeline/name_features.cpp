@@ -12,6 +12,7 @@
 #include "check/region_locator.h"
 #include "collarmesh/error.h"
 #include "common/distance_tree.h"
+#include "common/place_in_text.h"
 
 namespace collarmesh {
 
@@ -144,8 +145,14 @@ class Namer {
 }  // namespace
 
 void name_features(const std::string& text, Plc& plc) {
-  const Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded() || !json.is_object())
+  Json json;
+  try {
+    json = Json::parse(text);
+  } catch (const Json::exception& error) {
+    const auto* syntax = dynamic_cast<const Json::parse_error*>(&error);
+    fail(place_in(text, syntax == nullptr ? 1 : syntax->byte), "this is no JSON");
+  }
+  if (!json.is_object())
     throw OptionError("names: expected a JSON object with \"patches\", \"curves\" or \"regions\"");
   for (const auto& [group, names] : json.items()) {
     if (group == "patches")

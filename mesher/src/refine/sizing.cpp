@@ -1,7 +1,10 @@
 #include "refine/sizing.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "collarmesh/error.h"
 #include "common/round_curves.h"
 
 namespace collarmesh {
@@ -23,8 +26,7 @@ Sizing::Sizing(const Plc& plc, const MeshOptions& options, const Frame& frame)
       frame_(frame),
       size_min_(options.size_min) {
   if (options.elements_per_circle > 0) curved_ = curvature_sizes(plc, options.elements_per_circle);
-  const double global =
-      edge_per_size * (options.size > 0 ? options.size : plc.bounds.diagonal() / default_sizes_per_diagonal);
+  const double global = edge_per_size * collarmesh::default_size(plc, options);
   global_size_ = global;
   for (const Plc::Region& region : plc.regions) {
     double size = std::min(global, size_of_tag(options.region_size, region.tag));
@@ -47,6 +49,17 @@ Sizing::Sizing(const Plc& plc, const MeshOptions& options, const Frame& frame)
           std::min(size, length_of(plc, curve) / (subsegment_length_per_edge * static_cast<double>(edges)));
     curve_size_.push_back(std::max(size, size_min_));
   }
+}
+
+double default_size(const Plc& plc, const MeshOptions& options) {
+  return options.size > 0 ? options.size : plc.bounds.diagonal() / default_sizes_per_diagonal;
+}
+
+void Sizing::refuse(double asked, const Point& place) {
+  throw OptionError(fmt::format(
+      "size-field: the size is {} at ({:.9g}, {:.9g}, {:.9g}); sizes must be positive, and infinite "
+      "where none is asked for",
+      asked, place.x, place.y, place.z));
 }
 
 double Sizing::curve_size(Index curve, std::size_t first, std::size_t last, const Point& p) const {

@@ -22,6 +22,7 @@ class Sizing {
   /// size by more; what is asked for as a number of elements, across a gap or on a circle, is not stretched.
   static constexpr double edge_per_size = 1.08;
 
+  /// Functions of a place throw OptionError where the field asks for no positive size; infinite: none.
   Sizing(const Plc& plc, const MeshOptions& options, const Frame& frame);
 
   /// Largest allowed circumradius of a cell of this region at this point; infinite outside.
@@ -68,8 +69,14 @@ class Sizing {
   static constexpr double subsegment_length_per_edge = 1.3;
 
   double limited(double size, const Point& p) const {
-    return field_ ? std::min(size, edge_per_size * std::max(field_(frame_.outside(p)), size_min_)) : size;
+    if (!field_) return size;
+    const Point place = frame_.outside(p);
+    const double asked = field_(place);
+    if (!(asked > 0)) refuse(asked, place);
+    return std::min(size, edge_per_size * std::max(asked, size_min_));
   }
+  /// Throws OptionError.
+  [[noreturn]] static void refuse(double asked, const Point& place);
 
   double at_least_minimum(double size) const { return std::max(size, size_min_); }
 

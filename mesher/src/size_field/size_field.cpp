@@ -11,6 +11,7 @@
 
 #include "collarmesh/error.h"
 #include "collarmesh/io/point_field_io.h"
+#include "common/place_in_text.h"
 #include "io/file_bytes.h"
 #include "location/triangle_hierarchy.h"
 
@@ -170,11 +171,35 @@ Distance distance_of(const Json& source, const std::string& place, const Plc& pl
 struct Source {
   Distance distance;
   double size, growth, within;
+  std::size_t number;  // in SizeFieldUse
+
+  double at(const Point& p) const { return size + growth * std::max(distance(p) - within, 0.0); }
 };
+
+/// "sources[2] (ball)"
+std::string called(std::size_t number, const Json& source) {
+  for (const std::string& kind : kinds)
+    if (source.contains(kind)) return fmt::format("sources[{}] ({})", number, kind);
+  return fmt::format("sources[{}]", number);
+}
 
 }  // namespace
 
-SizeField size_field_from_json(const std::string& text, const Plc& plc) {
+std::size_t SizeFieldUse::add(std::string source) {
+  sources_.push_back(std::move(source));
+  used_.emplace_back(false);
+  return sources_.size() - 1;
+}
+
+std::vector<std::string> SizeFieldUse::without_effect() const {
+  std::vector<std::string> unused;
+  for (std::size_t i = 0; i < sources_.size(); ++i)
+    if (!used_[i].load(std::memory_order_relaxed)) unused.push_back(sources_[i]);
+  return unused;
+}
+
+SizeField size_field_from_json(const std::string& text, const Plc& plc,
+                               const std::shared_ptr<SizeFieldUse>& use) {
   Json json;
   try {
     json = Json::parse(text, [](int depth, Json::parse_event_t, const Json&) {
@@ -184,7 +209,7 @@ SizeField size_field_from_json(const std::string& text, const Plc& plc) {
       return true;
     });
   } catch (const Json::parse_error& error) {
-    throw OptionError(fmt::format("size field: byte {}: this is no JSON", error.byte));
+    throw OptionError(fmt::format("size field: {}: this is no JSON", place_in(text, error.byte)));
   } catch (const Json::out_of_range&) {
     throw OptionError(
         "size field: a number is larger than any double; leave it out where no size is asked for");
@@ -204,23 +229,33 @@ SizeField size_field_from_json(const std::string& text, const Plc& plc) {
     allow_only(list[i], place, keys);
     const double growth = list[i].contains("growth") ? number(list[i], place, "growth", 0) : default_growth;
     const double within = list[i].contains("within") ? number(list[i], place, "within", 0) : 0;
-    sources.push_back({distance_of(list[i], place, plc), positive(list[i], place, "size"), growth, within});
+    sources.push_back({distance_of(list[i], place, plc), positive(list[i], place, "size"), growth, within,
+                       use ? use->add(called(i, list[i])) : 0});
   }
   if (sources.empty() && everywhere == INFINITY)
     fail("the top", "it asks for no size; give 'size' or 'sources'");
   return [=](const Point& p) {
     double size = everywhere;
-    for (const Source& source : sources)
-      size = std::min(size, source.size + source.growth * std::max(source.distance(p) - source.within, 0.0));
+    for (const Source& source : sources) {
+      const double asked = source.at(p);
+      if (use) use->note(source.number, asked);
+      size = std::min(size, asked);
+    }
     return size;
   };
 }
 
-SizeField read_size_field(const std::string& path, const Plc& plc) {
+SizeField read_size_field(const std::string& path, const Plc& plc, const std::shared_ptr<SizeFieldUse>& use) {
   try {
-    if (path.ends_with(".json")) return size_field_from_json(io::read_bytes(path), plc);
-    const io::PointField field = io::read_point_field(path);
-    return size_field_on_mesh(field.mesh, field.values);
+    if (path.ends_with(".json")) return size_field_from_json(io::read_bytes(path), plc, use);
+    const io::PointField read = io::read_point_field(path);
+    SizeField field = size_field_on_mesh(read.mesh, read.values);
+    if (!use) return field;
+    return [field = std::move(field), use, number = use->add("the field")](const Point& p) {
+      const double asked = field(p);
+      use->note(number, asked);
+      return asked;
+    };
   } catch (const OptionError& error) {
     throw OptionError(fmt::format("{}: {}", path, error.what()));
   } catch (const ReadError& error) {

@@ -25,13 +25,20 @@ TetMesh read_tet_mesh(const std::string& path, std::string_view format = {});
 
 /// The extensions: .vtu (VTK), .pvtu (the same, with a .vtu beside it for each partition), .vtk (its legacy
 /// format), .msh (Gmsh; 4.1 is written), .mesh (Medit), .inp (Abaqus, CalculiX), .unv (I-DEAS), .ele (TetGen,
-/// with .node, .face and .edge beside it); written where they are built in: .xdmf (XDMF 3, with .h5 beside
-/// it), .med (SALOME).
+/// with .node, .face and .edge beside it); written alone: .bdf (Nastran), .cdb (Ansys), .mfem (MFEM), .su2
+/// (SU2), .polymesh (OpenFOAM: the file constant/polyMesh/boundary, with the others beside it); written where
+/// they are built in: .xdmf (XDMF 3, with .h5 beside it), .med (SALOME).
 std::vector<std::string> written_tet_mesh_formats();
 std::vector<std::string> read_tet_mesh_formats();
 /// Those of them that have a place for partitions, and for ghost cells around each.
 std::vector<std::string> formats_with_partitions();
 std::vector<std::string> formats_with_ghost_cells();
+/// Those that have no elements of second order.
+std::vector<std::string> formats_of_first_order();
+
+/// What to do about a format that this program was built without, as a sentence that names the library; empty
+/// for all others.
+std::string missing_library(const std::string& path, std::string_view format = {});
 
 /// Does `write_tet_mesh` know this extension or format?
 bool is_tet_mesh_format(const std::string& path, std::string_view format = {});

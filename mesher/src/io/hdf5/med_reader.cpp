@@ -177,7 +177,7 @@ class MedReader {
     const auto found = group_of_family_.find(family);
     if (found == group_of_family_.end()) return 0;
     const Tag tag = tags_.find(dimension, found->second);
-    if (!tag_of_group_name(dimension, found->second)) mesh_.names.set(dimension, tag, found->second);
+    if (is_given_name(dimension, found->second)) mesh_.names.set(dimension, tag, found->second);
     return tag;
   }
 

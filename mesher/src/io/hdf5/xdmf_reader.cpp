@@ -133,6 +133,17 @@ class Grid {
     for (auto& [name, values] : piece.cell_data) values.resize(before + count);
   }
 
+  /// The names that our files and meshio's have.
+  void take_names(TetMesh& mesh) const {
+    pugi::xml_document names;
+    if (!names.load_string(grid_.child("Information").text().as_string())) return;
+    for (const pugi::xml_node& map : names.child("main").children("map")) {
+      const unsigned dimension = map.attribute("dim").as_uint(4);
+      if (dimension <= 3 && *map.attribute("key").value() != '\0')
+        mesh.names.set(dimension, map.text().as_llong(), map.attribute("key").value());
+    }
+  }
+
  private:
   template <std::size_t n>
   static bool is_among(std::string_view name, const std::array<std::string_view, n>& names) {
@@ -230,6 +241,7 @@ TetMesh read_xdmf(const std::string& path) {
   } catch (const VtkPieceError& error) {
     fail(path, error.message);
   }
+  tets.take_names(mesh);
   if (mesh.tets.empty()) fail(path, "expected tetrahedra, found none");
   complete_vtk_mesh(path, mesh);
   return mesh;

@@ -6,6 +6,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -15,6 +16,7 @@
 
 #include "io/cell_nodes.h"
 #include "io/file_writer.h"
+#include "io/label_names.h"
 #include "io/tet_mesh_formats.h"
 #include "io/unfinished_file.h"
 #include "io/vtk_grid.h"
@@ -123,7 +125,8 @@ class GridFile {
         values_name_(std::filesystem::path(path).replace_extension(".h5").filename().string()),
         out_(path.string()) {}
 
-  void write(const VtkGrid& grid, const Cells& cells) {
+  /// `names`: what they are called, as `names_information` has it.
+  void write(const VtkGrid& grid, const Cells& cells, const std::string& names) {
     const std::size_t nodes = cells.count == 0 ? 1 : cells.nodes.size() / cells.count;
     out_ << "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n<Grid Name=\"" << cells.name
          << "\" GridType=\"Uniform\">\n<Topology TopologyType=\"" << cells.topology
@@ -135,6 +138,7 @@ class GridFile {
     for (const std::string_view name : cells.arrays)
       for (const VtkArray& array : grid.cell_data)
         if (array.name == name) write_attribute("Cell", "cell_", array, cells.first, cells.count);
+    out_ << names;
     if (cells.first == 0)
       for (const VtkArray& array : grid.point_data)
         write_attribute("Node", "point_", array, 0, grid.point_count);
@@ -176,6 +180,34 @@ class GridFile {
   FileWriter out_;
 };
 
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) switch (c) {
+      case '&': result += "&amp;"; break;
+      case '<': result += "&lt;"; break;
+      case '>': result += "&gt;"; break;
+      case '"': result += "&quot;"; break;
+      default: result += c;
+    }
+  return result;
+}
+
+/// The names of tags that are not called by their number, in the way that meshio has for its field data.
+std::string names_information(const TetMesh& mesh) {
+  std::string maps;
+  const auto add = [&](std::size_t dimension, const std::vector<Tag>& tags) {
+    for (const Tag tag : std::set<Tag>(tags.begin(), tags.end()))
+      if (const std::string name = group_name(mesh, dimension, tag);
+          name != group_name(GroupNames::complex, dimension, tag))
+        maps += fmt::format("<map key=\"{}\" dim=\"{}\">{}</map>", escaped(name), dimension, tag);
+  };
+  add(1, mesh.edge_tag);
+  add(2, mesh.face_tag);
+  add(3, mesh.tet_tag);
+  if (maps.empty()) return {};
+  return fmt::format("<Information Name=\"names\"><![CDATA[<main>{}</main>]]></Information>\n", maps);
+}
+
 /// NAME.xdmf for the tetrahedra, NAME_faces.xdmf and NAME_edges.xdmf for the others.
 std::filesystem::path path_of(const std::filesystem::path& path, const Cells& cells) {
   if (cells.first == 0 && cells.name == "mesh") return path;
@@ -188,10 +220,11 @@ std::filesystem::path path_of(const std::filesystem::path& path, const Cells& ce
 void write_xdmf(const std::string& path, const TetMesh& mesh) {
   const VtkGrid grid = make_vtk_grid(mesh);
   std::vector<std::unique_ptr<GridFile>> files;
+  const std::string names = names_information(mesh);
   for (const Cells& cells : cells_by_dimension(mesh)) {
     if (cells.count == 0 && cells.name != "mesh") continue;
     files.push_back(std::make_unique<GridFile>(path_of(path, cells)));
-    files.back()->write(grid, cells);
+    files.back()->write(grid, cells, names);
   }
   // The one that was asked for last: who sees it sees the others, too.
   for (auto file = files.rbegin(); file != files.rend(); ++file) (*file)->commit();

@@ -30,4 +30,30 @@ std::vector<PatchSummary> summarize_patches(const Plc& plc) {
   return summaries;
 }
 
+std::vector<CurveSummary> summarize_curves(const Plc& plc) {
+  std::map<Tag, CurveSummary> by_tag;
+  for (const Plc::Curve& curve : plc.curves) {
+    CurveSummary& summary = by_tag[curve.tag];
+    summary.tag = curve.tag;
+    summary.straight = summary.straight && curve.straight;
+    double longest = -1;
+    for (std::size_t i = 1; i < curve.points.size() + (curve.closed ? 1 : 0); ++i) {
+      const Point &a = plc.points[curve.points[i - 1]],
+                  &b = plc.points[curve.points[i % curve.points.size()]];
+      const double length = distance(a, b);
+      summary.length += length;
+      if (summary.count > 0 || length <= longest) continue;
+      longest = length;
+      summary.where = 0.5 * (a + b);
+    }
+    ++summary.count;
+  }
+  std::vector<CurveSummary> summaries;
+  for (auto& [tag, summary] : by_tag) {
+    if (const std::string* name = plc.names.find(1, tag)) summary.name = *name;
+    summaries.push_back(std::move(summary));
+  }
+  return summaries;
+}
+
 }  // namespace collarmesh

@@ -1,0 +1,133 @@
+#include "failure_report.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "console.h"
+#include "html_report.h"
+#include "interrupt.h"
+#include "io/file_writer.h"
+#include "options_json.h"
+
+namespace collarmesh::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+/// What is known before anything fails.
+struct Command {
+  std::vector<std::string> reports;
+  Json json;
+  Clock::time_point begin;
+};
+Command command;
+std::atomic<bool> reported{true};
+
+const char* status_of(ExitCode code) {
+  switch (code) {
+    case ExitCode::success: return "complete";
+    case ExitCode::internal_error: return "internal_error";
+    case ExitCode::usage: return "usage";
+    case ExitCode::unreadable: return "unreadable";
+    case ExitCode::invalid_complex: return "invalid_complex";
+    case ExitCode::budget_hit: return "budget_hit";
+    case ExitCode::cancelled: return "cancelled";
+    case ExitCode::guarantee_missed: return "guarantee_missed";
+    case ExitCode::cannot_write: return "cannot_write";
+  }
+  return "unknown";
+}
+
+Json failure_json(ExitCode code, std::string_view message, const PlcError* error) {
+  const StageReached reached = stage_reached();
+  Json json = command.json;
+  json["status"] = status_of(code);
+  json["exit_code"] = static_cast<int>(code);
+  json["message"] = message;
+  json["guarantees_hold"] = false;
+  json["stage"] = reached.stage;
+  json["reached"] = {{"vertices", reached.vertices}, {"tets", reached.tets}};
+  Json faults = Json::array();
+  if (error != nullptr)
+    for (const PlcFault& fault : error->faults)
+      faults.push_back(
+          {{"message", fault.message}, {"where", {fault.where.x, fault.where.y, fault.where.z}}});
+  json["faults"] = std::move(faults);
+  json["seconds"] = {{"total", std::chrono::duration<double>(Clock::now() - command.begin).count()}};
+  return json;
+}
+
+std::string escaped(std::string_view text) {
+  std::string result;
+  for (const char c : text) switch (c) {
+      case '&': result += "&amp;"; break;
+      case '<': result += "&lt;"; break;
+      default: result += c;
+    }
+  return result;
+}
+
+/// There is no mesh to look at.
+std::string failure_page(const Json& json) {
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>no mesh</title></head><body>\n"
+      "<h1>{}</h1>\n<p><strong>No mesh was written</strong> ({}, exit code {}, in the stage "
+      "{}).</p>\n<p>{}</p>\n"
+      "<pre>{}</pre>\n</body></html>\n",
+      escaped(json_text(json["inputs"])), json["status"].get<std::string>(), json["exit_code"].get<int>(),
+      escaped(json["stage"].get<std::string>()), escaped(json["message"].get<std::string>()),
+      escaped(json_text(json, 1)));
+}
+
+/// What a link names is replaced, but nothing that is no regular file: that may be why the command failed.
+void write(const std::string& path, const Json& json) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path place = fs::is_symlink(path, error) ? fs::weakly_canonical(path) : fs::path(path);
+  if (fs::exists(fs::symlink_status(place)) && !fs::is_regular_file(place)) return;
+  io::FileWriter file(place.string());
+  file << (is_html(path) ? failure_page(json) : json_text(json, 1) + '\n');
+  file.commit();
+}
+
+}  // namespace
+
+void report_failures_of(const Arguments& arguments) {
+  std::visit(
+      []<class A>(const A& a) {
+        if constexpr (std::is_base_of_v<MeshArguments, A>)
+          command = {a.reports,
+                     {{"program", "collarmesh"},
+                      {"version", COLLARMESH_VERSION},
+                      {"inputs", a.inputs},
+                      {"output", a.output},
+                      {"options", options_json(a)}},
+                     Clock::now()};
+      },
+      arguments);
+  reported.store(command.reports.empty());
+}
+
+void report_failure(ExitCode code, std::string_view message, const PlcError* faults) noexcept {
+  if (reported.exchange(true)) return;
+  try {
+    const Json json = failure_json(code, message, faults);
+    for (const std::string& path : command.reports) write(path, json);
+  } catch (...) {
+    // The message has been told, and the exit code says the rest.
+  }
+}
+
+}  // namespace collarmesh::cli

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace collarmesh::cli {
+
+/// The help of CLI11 with our usage lines, wrapped for a terminal of 80 columns.
+class HelpText : public CLI::Formatter {
+ public:
+  HelpText();
+  std::string make_usage(const CLI::App* app, std::string name) const override;
+  std::string make_description(const CLI::App* app) const override;
+  std::string make_option_desc(const CLI::Option* option) const override;
+  std::string make_option_opts(const CLI::Option* option) const override;
+  std::string make_subcommand(const CLI::App* command) const override;
+};
+
+}  // namespace collarmesh::cli
