@@ -1,7 +1,9 @@
 # The FreeCAD add-on where FreeCAD looks for it, and a Debian package of everything (cpack).
 install(DIRECTORY freecad_workbench/ DESTINATION ${CMAKE_INSTALL_DATADIR}/freecad/Mod/collarmesh
   FILES_MATCHING PATTERN "*.py" PATTERN "*.svg" PATTERN "*.qm" PATTERN "package.xml"
-  PATTERN "brep" EXCLUDE PATTERN "bench" EXCLUDE PATTERN "update.py" EXCLUDE PATTERN "__pycache__" EXCLUDE)
+  PATTERN "brep" EXCLUDE PATTERN "bench" EXCLUDE PATTERN "update.py" EXCLUDE PATTERN "make_package.py" EXCLUDE
+  PATTERN "__pycache__" EXCLUDE)
+install(FILES LICENSE freecad_workbench/README.md DESTINATION ${CMAKE_INSTALL_DATADIR}/freecad/Mod/collarmesh)
 
 # Whoever makes packages for others puts in their own name.
 set(COLLARMESH_MAINTAINER "The collarmesh maintainers <collarmesh@example.org>" CACHE STRING "of the Debian package")

@@ -80,6 +80,10 @@
       <translation>Länge des Quaders entlang seiner x-Achse</translation>
     </message>
     <message>
+      <source>Make a volume of a surface that is open, by filling its holes</source>
+      <translation>Aus einer offenen Fläche ein Volumen machen, indem ihre Löcher gefüllt werden</translation>
+    </message>
+    <message>
       <source>Never ask for less than this; 0: none</source>
       <translation>Nie weniger als dies verlangen; 0: keine Grenze</translation>
     </message>
@@ -193,6 +197,10 @@
     <message>
       <source>A guarantee was missed when it was made</source>
       <translation>Eine Zusage war verfehlt, als es entstand</translation>
+    </message>
+    <message>
+      <source>A hole of the shape is filled, with {area} mm²; the list has its place.</source>
+      <translation>Ein Loch der Form ist mit {area} mm² gefüllt; die Liste sagt, wo.</translation>
     </message>
     <message>
       <source>Add the selected</source>
@@ -351,6 +359,14 @@
       <translation>So nah an einer Ebene gilt eine Fläche als eben, relativ zur Diagonale; 0: 1e-6</translation>
     </message>
     <message>
+      <source>Fill holes of open surfaces</source>
+      <translation>Löcher offener Flächen füllen</translation>
+    </message>
+    <message>
+      <source>Fill the holes</source>
+      <translation>Löcher füllen</translation>
+    </message>
+    <message>
       <source>Fine</source>
       <translation>Fein</translation>
     </message>
@@ -455,6 +471,10 @@
       <translation>Ein geprüftes Tetraedernetz des ausgewählten Körpers machen, mit Gruppen für seine Flächen, oder das vorhandene öffnen</translation>
     </message>
     <message>
+      <source>Make a volume of a surface that is open, by filling its holes</source>
+      <translation>Aus einer offenen Fläche ein Volumen machen, indem ihre Löcher gefüllt werden</translation>
+    </message>
+    <message>
       <source>Make the selected mesh of Gmsh or Netgen one of collarmesh, with its sizes and groups</source>
       <translation>Das ausgewählte Netz von Gmsh oder Netgen zu einem von collarmesh machen, mit seinen Größen und Gruppen</translation>
     </message>
@@ -511,6 +531,10 @@
       <translation>Eine Seite mit allen Messwerten und einer Ansicht des Netzes öffnen</translation>
     </message>
     <message>
+      <source>Or set “Fill holes of open surfaces”.</source>
+      <translation>Oder setzen Sie „Löcher offener Flächen füllen“.</translation>
+    </message>
+    <message>
       <source>Order of the elements</source>
       <translation>Ordnung der Elemente</translation>
     </message>
@@ -541,6 +565,14 @@
     <message>
       <source>Refinement of a collarmesh mesh</source>
       <translation>Verfeinerung eines Netzes von collarmesh</translation>
+    </message>
+    <message>
+      <source>Refinements of Gmsh that collarmesh does not have: {names}</source>
+      <translation>Verfeinerungen von Gmsh, die collarmesh nicht hat: {names}</translation>
+    </message>
+    <message>
+      <source>Region {number}</source>
+      <translation>Gebiet {number}</translation>
     </message>
     <message>
       <source>Remove</source>
@@ -585,6 +617,10 @@
     <message>
       <source>Sharp below this angle</source>
       <translation>Spitz unter diesem Winkel</translation>
+    </message>
+    <message>
+      <source>Show sizes</source>
+      <translation>Größen zeigen</translation>
     </message>
     <message>
       <source>Size</source>
@@ -695,6 +731,18 @@
       <translation>Das Programm collarmesh ist nicht zu finden: Installieren Sie es so, dass es im PATH ist, oder nennen Sie seinen Pfad in den Einstellungen.</translation>
     </message>
     <message>
+      <source>The sizes that are asked for, as colours on the part. The mesh is finer where thin places and sharp corners need it</source>
+      <translation>Die verlangten Größen als Farben auf dem Teil. Das Netz ist feiner, wo dünne Stellen und scharfe Ecken es brauchen</translation>
+    </message>
+    <message>
+      <source>The solids touch at {count} faces: they are glued there, and share the nodes ({names}).</source>
+      <translation>Die Körper berühren sich an {count} Flächen: Dort sind sie verklebt und haben die Knoten gemeinsam ({names}).</translation>
+    </message>
+    <message>
+      <source>The solids touch at {names}: they are glued there, and share the nodes.</source>
+      <translation>Die Körper berühren sich an {names}: Dort sind sie verklebt und haben die Knoten gemeinsam.</translation>
+    </message>
+    <message>
       <source>The worst tetrahedron: {angle}°. Click to see it.</source>
       <translation>Das schlechteste Tetraeder: {angle}°. Klicken zeigt es.</translation>
     </message>
@@ -759,6 +807,10 @@
       <translation>Volumen</translation>
     </message>
     <message>
+      <source>Volumes of the shape and of its mesh. A smaller size, or a smaller largest distance from the shape, brings them closer</source>
+      <translation>Volumen der Form und ihres Netzes. Eine kleinere Größe oder ein kleinerer größter Abstand von der Form bringt sie näher zusammen</translation>
+    </message>
+    <message>
       <source>Warnings ({count})</source>
       <translation>Warnungen ({count})</translation>
     </message>
@@ -811,6 +863,10 @@
       <translation>Vorgabe</translation>
     </message>
     <message>
+      <source>difference</source>
+      <translation>Abweichung</translation>
+    </message>
+    <message>
       <source>dihedral angles from {smallest}° to {largest}°, in {time}</source>
       <translation>Diederwinkel von {smallest}° bis {largest}°, in {time}</translation>
     </message>
@@ -837,6 +893,14 @@
     <message>
       <source>improving</source>
       <translation>wird verbessert</translation>
+    </message>
+    <message>
+      <source>in mm³</source>
+      <translation>in mm³</translation>
+    </message>
+    <message>
+      <source>in the mesh</source>
+      <translation>im Netz</translation>
     </message>
     <message>
       <source>it has to be more than 0</source>
@@ -919,8 +983,16 @@
       <translation>{angle}° in Element {number}</translation>
     </message>
     <message>
+      <source>{count} holes of the shape are filled, the largest with {area} mm²; the list has their places.</source>
+      <translation>{count} Löcher der Form sind gefüllt, das größte mit {area} mm²; die Liste sagt, wo.</translation>
+    </message>
+    <message>
       <source>{edge} at {place} is only {length} mm long, the mesh becomes very fine there: remove the edge if it is not meant (Part: Defeaturing)</source>
       <translation>{edge} bei {place} ist nur {length} mm lang, dort wird das Netz sehr fein: entfernen Sie die Kante, wenn sie nicht gewollt ist (Part: Formmerkmal entfernen)</translation>
+    </message>
+    <message>
+      <source>{label} has edges or points only. Meshes of volumes are made here, not of beams: make a solid of it (Part: Sweep), or mesh it by Gmsh.</source>
+      <translation>{label} hat nur Kanten oder Punkte. Hier entstehen Netze von Volumen, nicht von Balken: Machen Sie einen Körper daraus (Part: Sweep), oder vernetzen Sie es mit Gmsh.</translation>
     </message>
     <message>
       <source>{label} has no faces and edges; choose some, or delete it.</source>
@@ -937,6 +1009,14 @@
     <message>
       <source>{label} has no triangles.</source>
       <translation>{label} hat keine Dreiecke.</translation>
+    </message>
+    <message>
+      <source>{label} is a face, which encloses no volume. Meshes of volumes are made here, not of shells: make a solid of it (Part: Extrude), or mesh it by Gmsh.</source>
+      <translation>{label} ist eine Fläche, die kein Volumen umschließt. Hier entstehen Netze von Volumen, nicht von Schalen: Machen Sie einen Körper daraus (Part: Extrudieren), oder vernetzen Sie es mit Gmsh.</translation>
+    </message>
+    <message>
+      <source>{label} is a surface that is open at {count} edges, and encloses no volume. Close it and make a solid of it (Part: Shape builder), or mesh it as a shell by Gmsh.</source>
+      <translation>{label} ist eine Fläche, die an {count} Kanten offen ist und kein Volumen umschließt. Schließen Sie sie und machen Sie einen Körper daraus (Part: Formerstellung), oder vernetzen Sie sie als Schale mit Gmsh.</translation>
     </message>
     <message>
       <source>{label} is no mesh of Gmsh or Netgen.</source>
@@ -963,16 +1043,16 @@
       <translation>{label}: es ist kein Objekt zum Vernetzen gewählt.</translation>
     </message>
     <message>
+      <source>{label}: the mesh has nothing of {name}: it lies inside another solid, or repair has taken it away; choose others.</source>
+      <translation>{label}: Das Netz hat nichts von {name}: Es liegt in einem anderen Körper, oder die Reparatur hat es entfernt; wählen Sie andere.</translation>
+    </message>
+    <message>
       <source>{label}: {name} cannot have a size of its own.</source>
       <translation>{label}: {name} kann keine eigene Größe haben.</translation>
     </message>
     <message>
       <source>{label}: {name} is no face and no edge.</source>
       <translation>{label}: {name} ist keine Fläche und keine Kante.</translation>
-    </message>
-    <message>
-      <source>{label}: {name} is none of the mesh's own, it coincides with one of another solid; choose that one.</source>
-      <translation>{label}: {name} hat das Netz nicht als eigene, sie fällt mit einer eines anderen Körpers zusammen; wählen Sie jene.</translation>
     </message>
     <message>
       <source>{label}: {name} is the seam of a face, which the mesh does not have; choose the face.</source>
@@ -989,6 +1069,10 @@
     <message>
       <source>{label}: {size:g} mm is less than a hundred thousandth of the part, which is {diagonal:.4g} mm large. Choose a larger size.</source>
       <translation>{label}: {size:g} mm sind weniger als ein Hunderttausendstel des Teils, das {diagonal:.4g} mm groß ist. Wählen Sie eine größere Größe.</translation>
+    </message>
+    <message>
+      <source>{material} has no elements: {part} has none of its solids ({names}); choose solids of {part}.</source>
+      <translation>{material} hat keine Elemente: {part} hat keinen seiner Körper ({names}); wählen Sie Körper von {part}.</translation>
     </message>
     <message>
       <source>{n} days</source>

@@ -31,6 +31,25 @@ def actions():
             for action in bar.actions() if action.objectName().startswith("Collarmesh")}
 
 
+async def german_numbers(obj):
+    """With a comma, alone and in sums, in all fields; and so they are shown."""
+    table = w.child("presets")
+    sizes = [table.topLevelItem(i).text(1) for i in range(table.topLevelItemCount())]
+    w.require(any("," in size for size in sizes) and not any("." in size for size in sizes), f"{sizes}")
+    await w.click(w.child("advanced"))
+    for name, text, value in (("CharacteristicLengthMax", "3,5 mm", 3.5), ("CharacteristicLengthMax", "3 mm + 1,25 mm", 4.25),
+                              ("CharacteristicLengthMin", "0,5", 0.5), ("RadiusEdgeRatio",
+                                                                        "1,8", 1.8), ("Gradation", "0,4", 0.4),
+                              ("CreaseAngle", "55,5 °", 55.5)):
+        w.child(name).setText(text)
+        await w.click(w.child("run"))
+        await w.wait_until(lambda: w.child("run").isEnabled(), "the end of the run")
+        stored = getattr(obj, name)
+        w.require(abs(getattr(stored, "Value", stored) - value) < 1e-9, f"{name}: {text} is {stored}; {w.said()}")
+    w.require("Tetraeder" in w.said() and "," in w.child("counts").text(), w.said())
+    await w.click(w.child("advanced"))
+
+
 async def test():
     document = FreeCAD.newDocument("german")
     part = document.addObject("Part::Feature", "Platte")
@@ -46,6 +65,7 @@ async def test():
     for word in ("Vernetzen", "Anhalten", "zweite (gekrümmt, 10 Knoten)", "Ordnung der Elemente"):
         w.require(word in texts, f"{word} is not in {texts}")
     await w.screenshot("freecad_german.png")
+    await german_numbers(obj)
     said = await w.run_mesher("4 mm")
     w.require("Alle Zusagen sind eingehalten" in said and "Tetraeder" in said, said)
     await w.close_panel()

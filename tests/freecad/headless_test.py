@@ -129,8 +129,8 @@ class Headless(unittest.TestCase):
         count = obj.FemMesh.VolumeCount
         sheet = Part.Shell(Part.makeBox(10, 10, 10).Faces[:1])
         for shape, words in (
-            (sheet, ("no solid", "Edge", "Face")),
-            (Part.makeLine((0, 0, 0), (1, 0, 0)), ("no solid",)),
+            (sheet, ("Part", "no volume")),
+            (Part.makeLine((0, 0, 0), (1, 0, 0)), ("Part", "edges")),
             (Part.Shape(), ("no shape",)),
         ):
             part.Shape = shape
@@ -189,6 +189,21 @@ class Headless(unittest.TestCase):
         for i in (1, 2):
             self.assertEqual(group(obj.FemMesh, f"Material{i}_Volumes"), ())
 
+    def test_materials_on_solids_of_other_parts_are_told(self):
+        part = self.add(two_solids())
+        before = self.add(Part.makeBox(3, 3, 3))
+        analysis = ObjectsFem.makeAnalysis(self.document, "Analysis")
+        steel, other = (ObjectsFem.makeMaterialSolid(self.document, name) for name in ("Steel", "Other"))
+        analysis.addObjects([steel, other])
+        steel.References = [(before, "Solid1")]
+        other.References = [(part, "Solid1")]
+        obj = collarmesh_workbench.mesh(part, size=4, analysis=analysis)
+        told = [note for note in mesh_object.remesh(obj)["notes"] if "has no elements" in note]
+        self.assertEqual(told, [f"Steel has no elements: {part.Label} has none of its solids ({before.Label}: Solid1); choose "
+                                f"solids of {part.Label}."])
+        steel.References = [(part, "Solid2")]
+        self.assertFalse([note for note in mesh_object.remesh(obj)["notes"] if "has no elements" in note])
+
     def test_groups_of_deleted_objects_vanish(self):
         part = self.add(Part.makeBox(10, 10, 10))
         obj = collarmesh_workbench.mesh(part, size=4)
@@ -208,7 +223,7 @@ class Headless(unittest.TestCase):
             "ElementsAcrossGap": 2, "Gradation": 0.5, "SurfaceDistance": 0.02, "CreaseAngle": 55, "CollarAngle": 155,
             "PlanarTolerance": 2e-6, "WeldTolerance": 2e-9,
             "RepairTolerance": 2e-5, "RadiusEdgeRatio": 1.9, "Coarsen": False, "ImproveLevel": 3,
-            "MinDihedralAngle": 25, "Seed": 7, "TimeLimit": 60,
+            "MinDihedralAngle": 25, "Seed": 7, "TimeLimit": 60, "FillHoles": True,
         }
         self.assertEqual(set(values), {name for _, name, *_ in mesh_properties.PROPERTIES})
         for name, value in values.items():
@@ -218,7 +233,8 @@ class Headless(unittest.TestCase):
         options = mesh_object.remesh(obj)["options"]
         self.assertEqual(obj.FemMesh.VolumeCount > 0, True)
         for _, name, field, *_ in mesh_properties.PROPERTIES:
-            self.assertEqual(options[field], values[name], name)
+            if name != "FillHoles":  # is asked for before the program runs
+                self.assertEqual(options[field], values[name], name)
 
     def test_kinds_of_repair_reach_the_program(self):
         obj = collarmesh_workbench.mesh(self.add(Part.makeBox(10, 10, 10)), size=4, repair="none")

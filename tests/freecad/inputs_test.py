@@ -137,6 +137,37 @@ class Shapes(WithDocument):
         self.assertEqual([each.Name for each in self.document.Objects], ["Empty", "Open"])
 
 
+class WithoutVolume(WithDocument):
+    """What has no solids."""
+
+    def refused(self, shape, words, **options):
+        with self.assertRaisesRegex(MesherError, words):
+            collarmesh_workbench.mesh(self.add("Part::Feature", "Surface", Shape=shape), size=3, **options)
+
+    def test_faces_and_wires(self):
+        box = Part.makeBox(10, 10, 10)
+        self.refused(box.Faces[0], "Surface[0-9]* is a face.*not of shells")
+        self.refused(box.Faces[0], "is a face", fill_holes=True)
+        self.refused(Part.Wire(box.Faces[0].Edges), "edges or points only.*not of beams")
+        self.refused(Part.Vertex(1, 2, 3), "edges or points only")
+
+    def test_open_surfaces_are_filled_on_request(self):
+        surface = Part.makeShell(Part.makeBox(10, 10, 10).Faces[:5])
+        self.refused(surface, "open at 4 edges.*Fill holes of open surfaces")
+        part = self.add("Part::Feature", "Surface", Shape=surface)
+        obj = collarmesh_workbench.mesh(part, size=3, fill_holes=True)
+        self.assertAlmostEqual(volume(obj.FemMesh), 1000, places=3)
+        self.assertTrue(obj.FillHoles)
+
+    def test_closed_surfaces_are_volumes(self):
+        loose = Part.makeCompound([Part.Face(face.OuterWire) for face in Part.makeBox(10, 10, 10).Faces])
+        for shape in (loose, Part.makeShell(Part.makeBox(10, 10, 10).Faces)):
+            obj = collarmesh_workbench.mesh(self.add("Part::Feature", "Surface", Shape=shape), size=3)
+            self.assertAlmostEqual(volume(obj.FemMesh), 1000, places=3)
+        ball = self.add("Part::Feature", "Ball", Shape=Part.makeSphere(5).Faces[0])
+        self.assertGreater(volume(collarmesh_workbench.mesh(ball, size=2).FemMesh), 500)
+
+
 class Triangles(WithDocument):
     def box(self, segments=()):
         mesh = Mesh.createBox(4, 4, 4)
@@ -338,4 +369,4 @@ class OutOfDate(WithDocument):
             self.assertFalse(up_to_date.same_shape(numbers, up_to_date.shape_numbers(part)), name)
 
 
-run_in_freecad.run(Shapes, Triangles, OutOfDate)
+run_in_freecad.run(Shapes, WithoutVolume, Triangles, OutOfDate)

@@ -39,6 +39,9 @@ def main():
                      "share/zsh/vendor-completions/_collarmesh", "share/fish/vendor_completions.d/collarmesh.fish"):
             if not (usr / file).exists():
                 raise SystemExit(f"the package has no {file}")
+        for file in ("package.xml", "LICENSE"):
+            if not (usr / "share" / "freecad" / "Mod" / "collarmesh" / file).exists():
+                raise SystemExit(f"the add-on has no {file}")
         addon = usr / "share" / "freecad" / "Mod" / "collarmesh"
         return subprocess.run(
             [sys.executable, HERE / "run.py", "", HERE / "installed_test.py", "--addon", addon, "--", usr]

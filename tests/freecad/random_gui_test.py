@@ -11,6 +11,7 @@ import tempfile
 
 import FreeCAD
 import FreeCADGui
+import Part
 from PySide import QtCore, QtGui
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -52,7 +53,7 @@ class Sequence:
         return self.random.choice(found) if found else None
 
     def _part(self):
-        return self._any(lambda each: each.TypeId in ("Part::Box", "Part::Cut"))
+        return self._any(lambda each: each.TypeId in ("Part::Box", "Part::Cut", "Part::Feature"))
 
     def _mesh(self):
         return self._any(mesh_properties.is_ours)
@@ -75,6 +76,14 @@ class Sequence:
         part = document.addObject("Part::Cut", "Plate")
         part.Base, part.Tool = box, hole
         document.recompute()
+
+    async def another_part(self):
+        """Solids that touch, or an open surface."""
+        if FreeCAD.ActiveDocument:
+            box = Part.makeBox(10, 10, 10)
+            part = FreeCAD.ActiveDocument.addObject("Part::Feature", "Another")
+            both = Part.makeCompound([box, Part.makeBox(10, 10, 10, FreeCAD.Vector(10, 0, 0))])
+            part.Shape = self.random.choice((both, Part.makeShell(box.Faces[:5])))
 
     async def close_document(self):
         documents = list(FreeCAD.listDocuments())
@@ -126,6 +135,9 @@ class Sequence:
 
     async def button_of_the_panel(self):
         await self._click("run", "cancel", "report", "advanced", "size_add", "size_remove")
+
+    async def show_sizes(self):
+        await self._click("show_sizes")
 
     async def run(self):
         await self._click("run")

@@ -80,12 +80,12 @@ def shown(name):
 
 async def press(button):
     """A button below the panel."""
-    box = next(
-        each
-        for each in w.window.findChildren(QtGui.QDialogButtonBox)
-        if each.isVisible() and each.button(button)
-    )
-    await w.click(box.button(button))
+    def boxes():
+        found = w.window.findChildren(QtGui.QDialogButtonBox)
+        return [each for each in found if each.isVisible() and each.button(button)]
+
+    await w.wait_until(boxes, "the buttons")
+    await w.click(boxes()[0].button(button))
     await w.wait_until(lambda: w.find("size_panel") is None, "the panel's end")
 
 
@@ -218,6 +218,20 @@ async def a_box_and_a_cylinder(document, part):
     return box
 
 
+async def a_sphere_at_a_hole(document, part):
+    """It is on the axis, though boxes around curved faces are larger than these."""
+    hole = next(i for i, face in enumerate(part.Shape.Faces, 1) if type(face.Surface).__name__ == "Cylinder")
+    before = {each.Name for each in document.Objects}
+    FreeCADGui.Selection.clearSelection()
+    FreeCADGui.Selection.addSelection(part, f"Face{hole}")
+    await w.click_command("Collarmesh_SizeSphere")
+    await w.wait_until(lambda: w.find("size_panel") is not None, "the panel of the sphere")
+    (sphere,) = (each for each in document.Objects if each.Name not in before)
+    away = sphere.Placement.Base - part.Shape.Faces[hole - 1].CenterOfMass
+    w.require(away.Length < 1e-9, f"it is {away} away from the middle of the hole")
+    await press(QtGui.QDialogButtonBox.Cancel)
+
+
 async def transform_by_freecad(box):
     """FreeCAD's own dragger, as "Transform" in the context menu opens it."""
     document = FreeCADGui.ActiveDocument
@@ -303,6 +317,7 @@ async def test():
     box = await a_box_and_a_cylinder(document, part)
     await transform_by_freecad(box)
     await distance_of_selected_faces(document, obj, part)
+    await a_sphere_at_a_hole(document, part)
     the_mesh_has_the_sizes(obj)
     await a_picture_of_all(document, obj, part)
 

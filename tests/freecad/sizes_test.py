@@ -157,21 +157,14 @@ class Sizes(unittest.TestCase):
         self.assertGreater(self.obj.FemMesh.VolumeCount, 0)
 
     def test_what_the_program_finds_wrong_is_told_with_the_object(self):
-        """Touching solids share their faces there in the mesh, under the first one's number."""
-        right = Part.makeBox(10, 10, 10, FreeCAD.Vector(10, 0, 0))
-        self.part.Shape = Part.Compound([Part.makeBox(10, 10, 10), right])
+        self.part.Shape = Part.Compound([Part.makeBox(10, 10, 10), Part.makeBox(2, 2, 2, FreeCAD.Vector(4, 4, 4))])
         size_objects.make(self.obj, "Sphere", SIZE)
         size = size_objects.make(self.obj, "Distance", SIZE)
-        first, second = (
-            f"Face{i}"
-            for i, face in enumerate(self.part.Shape.Faces, 1)
-            if abs(face.CenterOfMass.x - 10) < 1e-6
-        )
-        size.References = [(self.part, (second,))]
-        with self.assertRaisesRegex(MesherError, f"SizeDistance: {second} .*coincides"):
-            mesh_object.remesh(self.obj)
-        size.References = [(self.part, (first,))]
+        size.References = [(self.part, ("Face8",))]  # of the inner box
         mesh_object.remesh(self.obj)
+        said = "sizes.json: size field: sources[1].patches: no patches have the tag 8"
+        self.assertIn("SizeDistance: the mesh has nothing of Face8",
+                      size_objects.with_labels(said, ["A", "SizeDistance"]))
         said = "sizes.json: size field: sources[1].box: 'min' exceeds 'max'"
         self.assertEqual(size_objects.with_labels(said, ["A", "B"]), "B.box: 'min' exceeds 'max'")
         self.assertEqual(size_objects.with_labels("something else", []), "something else")

@@ -174,7 +174,7 @@ class TakeOver(WithPart):
             Type = "Fem::FemMeshNetgen"
 
         old.Proxy = Proxy()
-        refinement = ObjectsFem.makeMeshGroup(self.document, ObjectsFem.makeMeshGmsh(self.document, "Other"))
+        refinement = ObjectsFem.makeMeshRegion(self.document, ObjectsFem.makeMeshGmsh(self.document, "Other"))
         old.MeshRefinementList = [refinement]
         new, _ = take_over.take_over(old)
         self.assertEqual(new.CharacteristicLengthMin.Value, 0.2)

@@ -112,6 +112,65 @@ class Versions(unittest.TestCase):
         self.assertEqual((gmsh.Shape, gmsh.MeshRefinementList), (self.part, [refinement]))
         self.assertEqual(gmsh.CharacteristicLengthMax.Value, 3)
 
+    def refinement(self, kind, **properties):
+        """One of FreeCAD 1.1."""
+        obj = self.document.addObject("App::FeaturePython", kind)
+        obj.Proxy = types.SimpleNamespace(Type=f"Fem::{kind}")
+        types_of = {"ShapeType": "App::PropertyString", "References": "App::PropertyLinkSubList"}
+        for name, value in properties.items():
+            length = "App::PropertyVector" if name.endswith("Center") else "App::PropertyLength"
+            obj.addProperty(types_of.get(name, length), name)
+            setattr(obj, name, value)
+        return obj
+
+    def test_sizes_by_place_of_gmsh(self):
+        gmsh = ObjectsFem.makeMeshGmsh(self.document)
+        gmsh.Part = self.part
+        sizes = {"SizeIn": 1, "SizeOut": 4, "Thickness": 6}
+        plain = ObjectsFem.makeMeshRegion(self.document, gmsh, 2)
+        made = [
+            plain,
+            self.refinement("MeshShape", ShapeType="Sphere",
+                            SphereCenter=FreeCAD.Vector(1, 2, 3), SphereRadius=2, **sizes),
+            self.refinement("MeshShape", ShapeType="Box", BoxCenter=FreeCAD.Vector(5, 4, 3), BoxLength=2, BoxWidth=4, BoxHeight=6,
+                            **sizes),
+            self.refinement("MeshDistance", DistanceMinimum=1, DistanceMaximum=5, SizeMinimum=0.5, SizeMaximum=2.5,
+                            References=[(self.part, ("Face1",))]),
+            self.refinement("MeshTransfiniteCurve", References=[(self.part, ("Edge1",))]),
+        ]
+        labels = [each.Label for each in made]
+        gmsh.MeshRegionList = made
+        ours, notes = take_over.take_over(gmsh)
+        self.assertEqual(ours.MeshRegionList, [plain])
+        ball, box, near = ours.MeshSizeList
+        self.assertEqual([each.Label for each in ours.MeshSizeList], labels[1:4])
+        self.assertEqual((ball.Size.Value, ball.Radius.Value, ball.Growth), (1, 2, 0.5))
+        self.assertEqual(tuple(ball.Placement.Base), (1, 2, 3))
+        self.assertEqual((tuple(box.Placement.Base), box.Width.Value), ((4, 2, 0), 4))
+        self.assertEqual((near.Size.Value, near.Within.Value, near.Growth), (0.5, 1, 0.5))
+        self.assertEqual(notes, [f"Refinements of Gmsh that collarmesh does not have: {labels[4]}"])
+        mesh_object.remesh(ours)
+        self.assertGreater(ours.FemMesh.VolumeCount, 50)
+
+    def test_what_is_suppressed_does_not_count(self):
+        obj = mesh_object.make(self.document, self.part)
+        obj.CharacteristicLengthMax = 4
+        region = ObjectsFem.makeMeshRegion(self.document, obj, 0.5)
+        region.References = [(self.part, "Face1")]
+        sphere = size_objects.make(obj, "Sphere", 0.5)
+        group = ObjectsFem.makeMeshGroup(self.document, obj)
+        group.References = [(self.part, "Face1")]
+        mesh_object.remesh(obj)
+        count = obj.FemMesh.VolumeCount
+        for each in (region, sphere, group):
+            each.addProperty("App::PropertyBool", "Suppressed")
+            each.Suppressed = True
+            self.assertTrue(up_to_date.is_out_of_date(obj), each.Label)
+            mesh_object.remesh(obj)
+            self.assertFalse(up_to_date.is_out_of_date(obj), each.Label)
+        self.assertLess(obj.FemMesh.VolumeCount, count / 2)
+        self.assertNotIn(f"{group.Name}_Faces", [obj.FemMesh.getGroupName(n) for n in obj.FemMesh.Groups])
+
     def test_proxies_save_nothing(self):
         """0.20 asks by the first pair, later versions by the second."""
         proxy = mesh_object.make(self.document, self.part).Proxy

@@ -60,6 +60,8 @@ def sections():
                 tip=translate("collarmesh", "Points closer than this are one, relative to the diagonal; 0: 1e-9")),
             Row("Repair", translate("collarmesh", "Repair of the shape"), choices=repair),
             Row("RepairTolerance", translate("collarmesh", "Tolerance of repair"), zero=default),
+            Row("FillHoles", translate("collarmesh", "Fill holes of open surfaces"),
+                tip=translate("collarmesh", "Make a volume of a surface that is open, by filling its holes")),
         )),
         (translate("collarmesh", "Quality"), (
             Row("ImproveLevel", translate("collarmesh", "Improvement"), choices=preferences.improve_levels(),
@@ -116,6 +118,10 @@ class AdvancedSection(QtGui.QWidget):
                 raise ValueError(f"{text}: {error}") from error
             if value != self._value(name):
                 setattr(self.object, name, value)
+
+    def tick(self, name):
+        """The box of a property."""
+        self.findChild(QtGui.QCheckBox, "collarmesh_" + name).setChecked(True)
 
     def apply_to(self, settings):
         """Into Settings, as far as they can be read."""

@@ -4,13 +4,30 @@ import FreeCADGui
 from PySide import QtGui
 
 GOOD, BAD, CARE, FAINT = range(4)
-_ON_LIGHT = ("#1e7b47", "#b82c2c", "#8a5500", "#707070")
-_ON_DARK = ("#7fd8a0", "#ff8f8f", "#f0b860", "#a8a8a8")
+# Ink and paper.
+_LIGHT = (("#1e7b47", "#e6f4ec"), ("#b82c2c", "#fbe9e9"), ("#8a5500", "#fdf2e0"), ("#606060", "#eeeeee"))
+_DARK = (("#7fd8a0", "#17352a"), ("#ff8f8f", "#3c1d1d"), ("#f0b860", "#3a2c12"), ("#b4b4b4", "#2c2c2c"))
 
 
 def of(kind):
-    """What to write good news, bad ones, warnings and what does not count in."""
-    return (_ON_DARK if is_dark() else _ON_LIGHT)[kind]
+    """What to write good news, bad ones, warnings and what does not count in: ink, and paper. FreeCAD's themes have greys
+    on which no colour can be read, so words bring their paper; without a theme it is "", what is there already."""
+    ink, paper = (_DARK if is_dark() else _LIGHT)[kind]
+    return ink, paper if QtGui.QApplication.instance().styleSheet() else ""
+
+
+def css(kind):
+    """The same for style sheets and rich text."""
+    ink, paper = of(kind)
+    return f"color: {ink}; background-color: {paper}" if paper else f"color: {ink}"
+
+
+def paint(item, column, kind):
+    """A text in a tree or a table."""
+    ink, paper = of(kind)
+    item.setForeground(column, QtGui.QColor(ink))
+    if paper:
+        item.setBackground(column, QtGui.QColor(paper))
 
 
 def is_dark():

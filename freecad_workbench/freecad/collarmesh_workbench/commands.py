@@ -159,11 +159,19 @@ class Size(Command):
         if picked and self.kind == "Distance":
             size.References = picked
         elif picked:
-            bounds = FreeCAD.BoundBox()
-            for part, (name,) in picked:
-                bounds.add(inputs.shape_of(part).getElement(name).BoundBox)
-            size.Placement.Base = bounds.Center - size.Proxy.middle(size)
+            elements = [inputs.shape_of(part).getElement(name) for part, (name,) in picked]
+            size.Placement.Base = middle_of(elements) - size.Proxy.middle(size)
         return size
+
+
+def middle_of(elements):
+    """Of faces and edges together: of a hole a place on its axis. (Boxes around curved faces are larger than these.)"""
+    extents = [each.Area if each.ShapeType == "Face" else each.Length for each in elements]
+    total = sum(extents)
+    middle = FreeCAD.Vector()
+    for each, extent in zip(elements, extents):
+        middle += each.CenterOfMass * (extent / total if total else 1 / len(elements))
+    return middle
 
 
 class SizeSphere(Size):

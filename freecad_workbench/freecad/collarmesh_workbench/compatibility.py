@@ -54,6 +54,35 @@ def set_refinements(mesh_object, refinements):
     setattr(mesh_object, name, refinements)
 
 
+def is_suppressed(obj):
+    """Has the user switched it off? Objects of an analysis have that from FreeCAD 1.0 on."""
+    return bool(getattr(obj, "Suppressed", False))
+
+
+def is_plain_refinement(obj):
+    """A size on sub-shapes. From FreeCAD 1.1 on lists of refinements have other kinds, too."""
+    kind = getattr(getattr(obj, "Proxy", None), "Type", "")
+    return not kind.startswith("Fem::Mesh") or kind in ("Fem::MeshRegion", "Fem::MeshRefinement")
+
+
+def size_by_place(obj):
+    """What refinements by place of FreeCAD 1.1 ask for, (kind, size, size far away, distance to there, properties) for one of
+    ours; None for other objects."""
+    kind = getattr(getattr(obj, "Proxy", None), "Type", "")
+    if kind == "Fem::MeshDistance":
+        between = obj.DistanceMaximum.Value - obj.DistanceMinimum.Value
+        return "Distance", obj.SizeMinimum.Value, obj.SizeMaximum.Value, between, {
+            "References": obj.References, "Within": obj.DistanceMinimum.Value}
+    if kind != "Fem::MeshShape" or obj.ShapeType not in ("Sphere", "Box"):
+        return None
+    sizes = obj.SizeIn.Value, obj.SizeOut.Value, obj.Thickness.Value
+    if obj.ShapeType == "Sphere":
+        return "Sphere", *sizes, {"Radius": obj.SphereRadius.Value, "Placement": FreeCAD.Placement(obj.SphereCenter, FreeCAD.Rotation())}
+    lengths = [getattr(obj, f"Box{name}").Value for name in ("Length", "Width", "Height")]
+    corner = FreeCAD.Placement(obj.BoxCenter - FreeCAD.Vector(*lengths) / 2, FreeCAD.Rotation())
+    return "Box", *sizes, {**dict(zip(("Length", "Width", "Height"), lengths)), "Placement": corner}
+
+
 def mesh_objects(document):
     """FEM's, of all meshers."""
     return document.findObjects("Fem::FemMeshObject")

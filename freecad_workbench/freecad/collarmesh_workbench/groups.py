@@ -8,7 +8,8 @@ on the exact faces."""
 import FreeCAD
 from femmesh import meshtools
 
-from . import compatibility, inputs, mesh_properties
+from . import compatibility, contacts, inputs, mesh_properties
+from .translations import translate
 
 KINDS = {"Solid": "Volume", "Face": "Face", "Edge": "Edge"}
 
@@ -43,6 +44,29 @@ def elements_of(fem_mesh, part, subshapes):
     return kind, sorted(elements)
 
 
+def add_groups_of_contacts(shape, fem_mesh):
+    """Give each face and edge of touching solids its group: the mesh has common parts in that with the smallest number."""
+    here = contacts.of(shape)
+    for kind, find in (("Face", fem_mesh.getFacesByFace), ("Edge", fem_mesh.getEdgesByEdge)):
+        elements_of_name = {name: fem_mesh.getGroupElements(number) for name, number in named(fem_mesh).items()}
+        for number in here.in_contact(kind):
+            elements = set()
+            for tag in here.tags(kind, number):
+                found = set(elements_of_name.get(f"{kind}{tag}", ()))
+                if found and not here.has_all(kind, tag, number):
+                    found &= set(find(shape.getElement(f"{kind}{number}")))
+                elements |= found
+            _set_group(fem_mesh, f"{kind}{number}", kind, elements)
+
+
+def _set_group(fem_mesh, name, kind, elements):
+    before = named(fem_mesh).get(name)
+    if before is not None:
+        fem_mesh.removeGroup(before)
+    if elements:
+        fem_mesh.addGroupElements(fem_mesh.addGroup(name, kind), sorted(elements))
+
+
 def wanted(mesh_object, fem_mesh):
     """What groups the mesh must have besides those of sub-shapes: [(name, kind, elements)]."""
     part = compatibility.meshed_object(mesh_object)
@@ -50,6 +74,8 @@ def wanted(mesh_object, fem_mesh):
         return []
     references = {}
     for group in mesh_object.MeshGroupList:
+        if compatibility.is_suppressed(group):
+            continue
         references.update(meshtools.get_mesh_group_elements(group, part))
     analysis = analysis_of(mesh_object)
     materials = materials_of(analysis)
@@ -62,6 +88,24 @@ def wanted(mesh_object, fem_mesh):
         if elements:
             groups.append((f"{name}_{kind}s", kind, elements))
     return groups
+
+
+def materials_elsewhere(mesh_object):
+    """Messages on materials that refer to solids which the meshed part does not have, so that they get no elements."""
+    part = compatibility.meshed_object(mesh_object)
+    if part is None or inputs.triangles_of(part) is not None:
+        return []
+    shape = inputs.shape_of(part)
+    text = translate(
+        "collarmesh", "{material} has no elements: {part} has none of its solids ({names}); choose solids of {part}.")
+    messages = []
+    for each in materials_of(analysis_of(mesh_object)):
+        found = meshtools.get_reference_group_elements(
+            each, part)[1] if each.References and len(shape.Solids) > 1 else True
+        if not found:
+            names = ", ".join(f"{linked.Label}: {name}" for linked, subs in each.References for name in subs)
+            messages.append(text.format(material=each.Label, part=part.Label, names=names))
+    return messages
 
 
 def add_groups(mesh_object, fem_mesh):

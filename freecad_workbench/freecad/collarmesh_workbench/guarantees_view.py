@@ -41,7 +41,7 @@ class GuaranteesView(QtGui.QWidget):
     def _write(self):
         holds = self._report["guarantees_hold"]
         self.fold.setText(self._heading(holds))
-        self.fold.setStyleSheet(f"color: {self._colour(holds)}; font-weight: bold")
+        self.fold.setStyleSheet(f"{self._css(holds)}; font-weight: bold")
         self.lines.setText("<br>".join(self._line(*each) for each in guarantees(self._report)))
 
     def _heading(self, holds):
@@ -51,13 +51,13 @@ class GuaranteesView(QtGui.QWidget):
         return (translate("collarmesh", "Every guarantee holds") if holds else
                 translate("collarmesh", "A guarantee is missed"))
 
-    def _colour(self, holds):
-        return colours.of(colours.FAINT if self._out_of_date else colours.GOOD if holds else colours.BAD)
+    def _css(self, holds):
+        return colours.css(colours.FAINT if self._out_of_date else colours.GOOD if holds else colours.BAD)
 
     def _line(self, text, broken):
         count = f" ({len(broken)})" if broken else ""
         mark = "✗" if broken else "✓"
-        return f'<span style="color:{self._colour(not broken)}">{mark} {escaped(text)}{count}</span>'
+        return f'<span style="{self._css(not broken)}">{mark} {escaped(text)}{count}</span>'
 
 
 def escaped(text):

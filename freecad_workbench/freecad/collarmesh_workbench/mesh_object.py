@@ -3,7 +3,7 @@
 import Fem
 import FreeCAD
 
-from . import compatibility, groups, inputs, mesh_properties, mesh_undo, preferences, size_check, size_objects, up_to_date, views
+from . import compatibility, contacts, groups, inputs, mesh_properties, mesh_undo, open_shape, preferences, size_check, size_objects, up_to_date, views
 from .program import GUARANTEE_MISSED, Job, MesherError
 from .translations import translate
 
@@ -50,16 +50,22 @@ def start(obj, program="", settings=None):
     settings = settings or mesh_properties.settings_of(obj)
     sources = size_objects.sources_of(obj)
     size_check.check(settings, sources, part)
+    open_shape.check(part, settings.fill_holes)
+    shape = inputs.shape_of(part)
+    settings = contacts.in_mesh_numbers(settings, shape)
     job = Job(settings, program or preferences.program(), preferences.threads(), inputs.file_name(part))
     try:
         inputs.write(part, job.shape)
     except Exception:
         job.__exit__()
         raise
-    job.messages += tiny_edges(inputs.shape_of(part), settings.size)
+    job.messages += tiny_edges(shape, settings.size)
     job.state = state
     labels = [label for label, _ in sources]
     job.explain = lambda text: size_objects.with_labels(text, labels)
+    job.meshed = shape
+    if not shape.isNull():
+        job.names = contacts.of(shape).name
     return job
 
 
@@ -97,8 +103,10 @@ def finish(obj, job, exit_code=0):
                 "collarmesh", "The mesher wrote a mesh without elements; please report it with the shape."
             )
         )
+    groups.add_groups_of_contacts(job.meshed, fem_mesh)
     groups.add_groups(obj, fem_mesh)
     report = job.report()
+    report["notes"] += groups.materials_elsewhere(obj)
     with compatibility.transaction(obj.Document, translate("collarmesh", "Mesh by collarmesh")):
         mesh_undo.replace(obj, fem_mesh)
         up_to_date.remember(obj, job.state)

@@ -96,6 +96,13 @@ PROPERTIES = (
     ),
     (
         "App::PropertyBool",
+        "FillHoles",
+        "fill_holes",
+        FEATURES,
+        doc("Make a volume of a surface that is open, by filling its holes"),
+    ),
+    (
+        "App::PropertyBool",
         "Coarsen",
         "coarsen",
         QUALITY,
@@ -189,6 +196,8 @@ def settings_of(obj):
         values[field] = getattr(value, "Value", value)
     settings = Settings(order=ORDERS.index(obj.ElementOrder) + 1, repair=REPAIRS[obj.Repair], **values)
     for region in obj.MeshRegionList:
+        if compatibility.is_suppressed(region):
+            continue
         add_refinement(region, compatibility.meshed_object(obj), settings)
     settings.size_field = size_objects.field_of(obj)
     return settings

@@ -1,11 +1,17 @@
-"""Numbers as people type them: with a decimal comma or point, with units, and as sums."""
+"""Numbers as people type and read them: with a decimal comma or point, with units, and as sums."""
 
 import math
 import sys
 
 import FreeCAD
+from PySide import QtCore
 
 from .translations import translate
+
+
+def shown(text):
+    """A text of numbers with a decimal point, with the sign that the user's language has for it."""
+    return text.replace(".", QtCore.QLocale().decimalPoint())
 
 
 def number(text):

@@ -55,9 +55,10 @@ def _repairs(repair):
 def _nodes_off_their_faces(report):
     off = []
     for each in (report["projection"] or {}).get("exceptions", ()):
-        name = f"Face{each['face']}" if "face" in each else f"Edge{each['edge']}"
+        name = each.get("name") or (f"Face{each['face']}" if "face" in each else f"Edge{each['edge']}")
         off.append((name, each["where"], each["distance"]))
     for each in (report["second_order"] or {}).get("straightened", ()):
-        off.append((f"{_SHAPE_BY_DIMENSION[each['dimension']]}{each['tag']}", each["where"], each["distance"]))
-    return [Place(OFF_FACE, f"{name}: {distance:.3g} mm" if distance is not None else name, (tuple(where),), (name,))
+        name = each.get("name") or f"{_SHAPE_BY_DIMENSION[each['dimension']]}{each['tag']}"
+        off.append((name, each["where"], each["distance"]))
+    return [told(OFF_FACE, f"{name}: {distance:.3g} mm" if distance is not None else name, [where])
             for name, where, distance in off]

@@ -7,7 +7,7 @@ import pathlib
 
 from PySide import QtCore
 
-from . import compatibility, inputs, mesh_properties, preferences, processes, up_to_date
+from . import compatibility, contacts, inputs, mesh_properties, preferences, processes, up_to_date
 from .program import find_program
 from .work_folder import WorkFolder
 
@@ -59,6 +59,7 @@ class Predictions(QtCore.QObject):
         """The answers that are known already; nothing is asked of the program."""
         self.pause()
         self._look_at_shape()
+        settings = self._in_mesh_numbers(settings)
         self._arguments = tuple(_arguments(settings))
         self._size_field = json.dumps(settings.size_field) if settings.size_field else ""
         sizes = [size for size in sizes if size >= settings.size_min]  # the program refuses others
@@ -91,6 +92,12 @@ class Predictions(QtCore.QObject):
                 self._known = _answers_for(self._numbers)
             except Exception:  # of OpenCASCADE's, too; the run tells what is wrong
                 self._known = {}
+
+    def _in_mesh_numbers(self, settings):
+        try:
+            return contacts.in_mesh_numbers(settings, inputs.shape_of(compatibility.meshed_object(self.object)))
+        except Exception:  # of OpenCASCADE's, too; the run tells what is wrong
+            return settings
 
     def _stop(self):
         process, self._process = self._process, None

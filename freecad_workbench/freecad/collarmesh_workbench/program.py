@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 
+from . import subshape_words
 from .translations import translate
 from .work_folder import WorkFolder
 
@@ -46,6 +47,7 @@ class Settings:
     coarsen: bool = True
     order: int = 2
     repair: str = "auto"  # or "none", or "wrap"
+    fill_holes: bool = False  # of surfaces that are open; else they are refused before the program runs
     solid_sizes: dict = dataclasses.field(default_factory=dict)
     face_sizes: dict = dataclasses.field(default_factory=dict)
     edge_sizes: dict = dataclasses.field(default_factory=dict)
@@ -140,6 +142,7 @@ class Job:
             self.command += ["--size-field", path]
         self.messages = []
         self.explain = lambda text: text  # what the program says, in the caller's terms
+        self.names = None  # of faces, edges and solids by their numbers in the mesh; None: the input has none
 
     def __enter__(self):
         return self
@@ -158,6 +161,7 @@ class Job:
 
     def _for_people(self, text):
         """Without the folder, which is gone when it is read."""
+        text = subshape_words.in_names(text, self.names) if self.names else text
         text = text.replace(self.shape, "the shape").replace(self.folder.name + os.sep, "")
         return re.sub(r"(^|^collarmesh: |\. )the shape\b", r"\1The shape", text)
 
@@ -178,6 +182,8 @@ class Job:
         with open(self._report, encoding="utf-8") as file:
             report = json.load(file)
         report["notes"] = [self._for_people(note) for note in report["notes"]]
+        if self.names:
+            subshape_words.report_in_names(report, self.names)
         return report
 
     def add_page(self):

@@ -59,4 +59,4 @@ class QuantityField:
             self.value()
             self.widget.setStyleSheet("")
         except ValueError:
-            self.widget.setStyleSheet(f"color: {colours.of(colours.BAD)}")
+            self.widget.setStyleSheet(colours.css(colours.BAD))

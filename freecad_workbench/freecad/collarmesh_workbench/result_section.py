@@ -5,6 +5,8 @@ from PySide import QtCore, QtGui
 from . import colours
 from .angle_chart import AngleChart
 from .guarantees_view import GuaranteesView, escaped
+from .numbers_typed import shown
+from .regions_table import RegionsTable
 from .size_presets import duration_text
 from .translations import translate
 
@@ -15,6 +17,7 @@ class ResultSection(QtGui.QWidget):
         self.out_of_date = _label("collarmesh_out_of_date")
         self.message = _label("collarmesh_message")
         self.counts = _label("collarmesh_counts")
+        self.regions = RegionsTable()
         self.guarantees = GuaranteesView()
         self.chart = AngleChart()
         self.out_of_date.hide()
@@ -23,12 +26,12 @@ class ResultSection(QtGui.QWidget):
             "Mesh it again.")))
         layout = QtGui.QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        for widget in (self.out_of_date, self.message, self.counts, self.guarantees, self.chart):
+        for widget in (self.out_of_date, self.message, self.counts, self.regions, self.guarantees, self.chart):
             layout.addWidget(widget)
         self.clear()
 
     def clear(self):
-        for widget in (self.message, self.counts, self.guarantees, self.chart):
+        for widget in (self.message, self.counts, self.regions, self.guarantees, self.chart):
             widget.hide()
 
     def say(self, text, kind):
@@ -57,6 +60,9 @@ class ResultSection(QtGui.QWidget):
     def _show_report(self, report):
         mesh = report["mesh"]
         self.counts.setText(counts_text(report))
+        self.regions.show_report(report)
+        if report["repair"]["filled"]:
+            self.say(filled_text([each["area"] for each in report["repair"]["filled"]]), colours.CARE)
         self.guarantees.show_report(report)
         self.chart.show_report(mesh)
         self.counts.show()
@@ -69,16 +75,26 @@ def counts_text(report):
     counts = translate("collarmesh", "<b>{tets}</b> tetrahedra, <b>{nodes}</b> nodes, <b>{faces}</b> faces")
     angles = translate("collarmesh", "dihedral angles from {smallest}° to {largest}°, in {time}")
     return (counts.format(tets=_exact(mesh["tets"]), nodes=_exact(mesh["points"]), faces=_exact(mesh["faces"])) + "<br>"
-            + angles.format(smallest=f"{mesh['min_dihedral']:.1f}", largest=f"{mesh['max_dihedral']:.1f}",
+            + angles.format(smallest=shown(f"{mesh['min_dihedral']:.1f}"), largest=shown(f"{mesh['max_dihedral']:.1f}"),
                             time=_time(report["seconds"]["total"])))
 
 
+def filled_text(areas):
+    """Of the holes of the shape that repair has filled, mm²."""
+    if len(areas) == 1:
+        text = translate("collarmesh", "A hole of the shape is filled, with {area} mm²; the list has its place.")
+    else:
+        text = translate("collarmesh", "{count} holes of the shape are filled, the largest with {area} mm²; the list has "
+                                       "their places.")
+    return text.format(count=len(areas), area=shown(f"{max(areas):.4g}"))
+
+
 def _time(seconds):
-    return translate("collarmesh", "{n} s").format(n=f"{seconds:.1f}") if seconds < 10 else duration_text(seconds)
+    return translate("collarmesh", "{n} s").format(n=shown(f"{seconds:.1f}")) if seconds < 10 else duration_text(seconds)
 
 
 def _coloured(kind, text):
-    return f'<span style="color:{colours.of(kind)}">{escaped(text)}</span>'
+    return f'<span style="{colours.css(kind)}">{escaped(text)}</span>'
 
 
 def _exact(count):

@@ -43,11 +43,11 @@ class RunSection(QtGui.QWidget):
         layout.addWidget(self.left)
         self.rest()
 
-    def ask(self, text):
-        """Another click is the answer."""
+    def ask(self, text, answer=""):
+        """Another click is the answer, which stands on the button then."""
         self.question.setText(text)
         self.question.show()
-        self.run.setText(translate("collarmesh", "Mesh all the same"))
+        self.run.setText(answer or translate("collarmesh", "Mesh all the same"))
 
     def asked(self):
         """The question that is shown; "" without one."""

@@ -5,7 +5,7 @@ import re
 import FreeCAD
 import Part
 
-from . import compatibility, extent, inputs, views
+from . import compatibility, contacts, extent, inputs, views
 from .program import MesherError
 from .translations import doc, translate
 
@@ -162,7 +162,7 @@ class Distance(Size):
                 wrong = translate(
                     "collarmesh", "{label}: {part} has no {name} any more; choose its faces and edges again."
                 )
-            elif kind == "Edge" and is_seam(shape, shape.Edges[number - 1]):
+            elif kind == "Edge" and contacts.is_seam(shape, shape.Edges[number - 1]):
                 wrong = translate(
                     "collarmesh",
                     "{label}: {name} is the seam of a face, which the mesh does not have; choose the face.",
@@ -197,12 +197,6 @@ def kind_and_number(name):
     """("Face", 7) for Face7, ("", 0) for what is no sub-shape."""
     match = re.fullmatch(r"([A-Za-z]+)([1-9]\d*)", name)
     return (match[1], int(match[2])) if match else ("", 0)
-
-
-def is_seam(shape, edge):
-    return edge.Degenerated or any(
-        edge.isSeam(face) for face in shape.Faces if any(edge.isSame(e) for e in face.Edges)
-    )
 
 
 KINDS = {"Sphere": Sphere, "Box": Box, "Cylinder": Cylinder, "Distance": Distance}
@@ -242,7 +236,7 @@ def sources_of(mesh_object):
     """What the size objects of a mesh object ask for: [(label, source of the program's size field)]. Raises
     MesherError."""
     part = compatibility.meshed_object(mesh_object)
-    objects = getattr(mesh_object, PROPERTY)
+    objects = [obj for obj in getattr(mesh_object, PROPERTY) if not compatibility.is_suppressed(obj)]
     return [(obj.Label, source) for obj in objects for source in obj.Proxy.sources(obj, part)]
 
 
@@ -264,7 +258,7 @@ def with_labels(message, labels):
         return message.replace(match[0], label)
     text = translate(
         "collarmesh",
-        "{label}: {name} is none of the mesh's own, it coincides with one of another solid; choose that one.",
+        "{label}: the mesh has nothing of {name}: it lies inside another solid, or repair has taken it away; choose others.",
     )
     kind = next(kind for kind, tags in Distance.TAGS.items() if tags == match[2])
     return text.format(label=label, name=f"{kind}{match[3]}")

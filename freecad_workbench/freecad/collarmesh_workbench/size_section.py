@@ -2,9 +2,10 @@
 
 from PySide import QtCore, QtGui
 
-from . import size_presets
+from . import numbers_typed, size_presets
 from .quantity_field import POSITIVE, QuantityField
 from .translations import translate
+from .whole_table import WholeTable
 
 NAME, SIZE, ELEMENTS, TIME = range(4)
 
@@ -62,29 +63,15 @@ class SizeSection(QtGui.QWidget):
                 item.setText(TIME, "")
 
     def _table(self):
-        table = QtGui.QTreeWidget()
+        table = WholeTable((translate("collarmesh", "Fineness"), translate("collarmesh", "Size"),
+                            translate("collarmesh", "≈ elements"), translate("collarmesh", "≈ time")))
         table.setObjectName("collarmesh_presets")
-        table.setRootIsDecorated(False)
-        headings = (translate("collarmesh", "Fineness"), translate("collarmesh", "Size"),
-                    translate("collarmesh", "≈ elements"), translate("collarmesh", "≈ time"))
-        table.setHeaderLabels(headings)
         table.setToolTip(translate("collarmesh", "Choose a size; how many elements it makes and how long that takes "
                                                  "is estimated for this shape"))
         for name, size in self.presets:
-            item = QtGui.QTreeWidgetItem(table, [name, f"{size:g} mm" if size else "", "", ""])
+            item = table.add_row([name, _length(size) if size else "", "", ""])
             item.setData(NAME, QtCore.Qt.UserRole, size)
-        QtGui.QTreeWidgetItem(table, [translate("collarmesh", "Custom"), "", "", ""])
-        for row in range(table.topLevelItemCount()):
-            for column in (SIZE, ELEMENTS, TIME):
-                table.topLevelItem(row).setTextAlignment(column, QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter)
-        header = table.header()
-        header.setStretchLastSection(False)
-        for column in range(4):
-            header.setSectionResizeMode(column, QtGui.QHeaderView.ResizeToContents)
-        header.setSectionResizeMode(NAME, QtGui.QHeaderView.Stretch)
-        rows = table.topLevelItemCount()
-        table.setFixedHeight(header.sizeHint().height() + rows * table.sizeHintForRow(0) + 2 * table.frameWidth() + 2)
-        table.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarAlwaysOff)
+        table.add_row([translate("collarmesh", "Custom"), "", "", ""])
         return table
 
     def _custom_row(self):
@@ -101,7 +88,7 @@ class SizeSection(QtGui.QWidget):
         size = self._size_or_zero()
         sizes = [preset for _, preset in self.presets]
         number = sizes.index(size) if size in sizes else len(sizes)
-        self._custom_row().setText(SIZE, f"{size:g} mm" if size > 0 and size not in sizes else "")
+        self._custom_row().setText(SIZE, _length(size) if size > 0 and size not in sizes else "")
         self.table.blockSignals(True)
         self.table.setCurrentItem(self.table.topLevelItem(number))
         self.table.blockSignals(False)
@@ -117,3 +104,7 @@ class SizeSection(QtGui.QWidget):
     def _edited(self):
         self._mark_row()
         self.changed.emit()
+
+
+def _length(size):
+    return numbers_typed.shown(f"{size:g} mm")

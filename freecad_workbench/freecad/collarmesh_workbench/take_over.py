@@ -53,9 +53,11 @@ def take_over(old):
     with compatibility.transaction(document, translate("collarmesh", "Take over by collarmesh")):
         new = mesh_object.make(document, compatibility.meshed_object(old))
         notes = (take_gmsh if mesher == "Gmsh" else take_netgen)(old, new)
-        new.MeshRegionList = compatibility.refinements_of(old)
+        refinements = compatibility.refinements_of(old)
+        new.MeshRegionList = [each for each in refinements if compatibility.is_plain_refinement(each)]
         new.MeshGroupList = getattr(old, "MeshGroupList", [])
         setattr(new, size_objects.PROPERTY, getattr(old, size_objects.PROPERTY, []))
+        notes += take_sizes_by_place([each for each in refinements if each not in new.MeshRegionList], new)
         replace(old, new)
         if new.FemMesh.NodeCount:
             # Its mesh is not of our making, so it is out of date.
@@ -75,6 +77,31 @@ def take_gmsh(old, new):
         )
     ]
     return notes if lost else []
+
+
+def take_sizes_by_place(refinements, new):
+    """Ours in place of what later versions of FreeCAD have for Gmsh; notes on those that have no counterpart, which stay in
+    the document."""
+    lost = []
+    for each in refinements:
+        wanted = compatibility.size_by_place(each)
+        if wanted is None:
+            lost.append(each.Label)
+            continue
+        kind, size, outside, distance, properties = wanted
+        made = size_objects.make(new, kind, size)
+        for name, value in properties.items():
+            setattr(made, name, value)
+        made.Growth = max(0, outside - size) / distance if distance > 0 else size_objects.GROWTH
+        if compatibility.is_suppressed(each):
+            made.addProperty("App::PropertyBool", "Suppressed", "Size")
+            made.Suppressed = True
+        made.recompute()
+        label = each.Label
+        new.Document.removeObject(each.Name)
+        made.Label = label
+    text = translate("collarmesh", "Refinements of Gmsh that collarmesh does not have: {names}")
+    return [text.format(names=", ".join(lost))] if lost else []
 
 
 def take_netgen(old, new):

@@ -6,14 +6,16 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import (colours, compatibility, cost, dock, extent, mesh_properties, meshing_process, new_mesh, places,
+from . import (colours, compatibility, cost, dock, extent, mesh_properties, meshing_process, new_mesh, open_shape, places,
                prediction, up_to_date, views, worst_elements)
 from .advanced_section import AdvancedSection, in_panel_words
+from .contacts_label import ContactsLabel
 from .order_section import OrderSection
 from .places_list import PlacesList
 from .program import MesherError
 from .result_section import ResultSection
 from .run_section import RunSection
+from .size_preview import SizePreview
 from .size_section import SizeSection
 from .time_left import TimeLeft
 from .translations import translate
@@ -61,6 +63,8 @@ class MeshTaskPanel:
         self.size = SizeSection(self.object, diagonal)
         self.order = OrderSection(mesh_properties.ORDERS.index(self.object.ElementOrder) + 1)
         self.advanced = AdvancedSection(self.object)
+        self.preview = SizePreview(self.object, self._settings)
+        self.contacts = ContactsLabel(self.object)
         self.run_section = RunSection()
         self.run_section.run_clicked.connect(self.start)
         self.run_section.cancel_clicked.connect(self.cancel)
@@ -74,7 +78,8 @@ class MeshTaskPanel:
         self.report_button.setToolTip(tip)
         self.report_button.clicked.connect(self.open_report)
         layout = QtGui.QVBoxLayout(self.form)
-        for widget in (self.size, self.order, self.advanced, self.run_section, self.result, self.list, self.report_button):
+        for widget in (self.size, self.preview, self.order, self.advanced, self.contacts, self.run_section, self.result, self.list,
+                       self.report_button):
             layout.addWidget(widget)
         layout.addStretch()
         self.list.hide()
@@ -95,22 +100,32 @@ class MeshTaskPanel:
 
     def _ask(self, *_):
         """After a change."""
+        self.preview.update_soon()
         self.run_section.withdraw()
         self._predict(prediction.WAIT)
 
     def _predict(self, wait):
         """What the sizes will make with what is in the fields, asked after so many milliseconds; None, and while the
         mesher runs: only what is known already."""
-        try:
-            settings = mesh_properties.settings_of(self.object)
-        except MesherError:
+        settings = self._settings()
+        if settings is None:
             return
-        self.advanced.apply_to(settings)
-        settings.order = self.order.order()
         if wait is None or self.run is not None or not settings.coarsen:
             self._show_predictions(self.predictions.known(settings, self.size.sizes()))
         else:
             self._show_predictions(self.predictions.ask(settings, self.size.sizes(), wait), "…")
+
+    def _settings(self):
+        """What is in the fields; None where that makes no sense."""
+        try:
+            settings = mesh_properties.settings_of(self.object)
+        except MesherError:
+            return None
+        with contextlib.suppress(ValueError):
+            settings.size = self.size.size()
+        self.advanced.apply_to(settings)
+        settings.order = self.order.order()
+        return settings
 
     def _show_predictions(self, known, missing=""):
         self.known = known
@@ -121,13 +136,15 @@ class MeshTaskPanel:
     def start(self):
         if self.run is not None:
             return
+        answered = bool(self.run_section.asked())
         try:
+            if answered and self._open_surface():
+                self.advanced.tick("FillHoles")
             self._store()
-            question = self._question()
-            if question and not self.run_section.asked():
-                self.run_section.ask(question)
+            if not answered and self._asks():
                 return
             self._clear()
+            self.preview.button.setChecked(False)
             self._follow(meshing_process.start(self.object, self._time_left()))
         except MesherError as error:
             self._clear()
@@ -139,6 +156,20 @@ class MeshTaskPanel:
         self.list.fill([])
         self.result.clear()
         self.report_button.hide()
+
+    def _asks(self):
+        """What has to be asked before the mesh is made; False where there is nothing."""
+        holes, question = "" if self.object.FillHoles else self._open_surface(), self._question()
+        if holes:
+            self.run_section.ask(" ".join((holes, question)), translate("collarmesh", "Fill the holes"))
+        elif question:
+            self.run_section.ask(question)
+        return bool(holes or question)
+
+    def _open_surface(self):
+        """What to ask of one; "" for other parts."""
+        part = compatibility.meshed_object(self.object)
+        return "" if part is None else open_shape.question(part)
 
     def _question(self):
         """About a mesh that costs much; "" where there is none."""
@@ -251,6 +282,7 @@ class MeshTaskPanel:
         self.predictions.forget()
         with contextlib.suppress(ReferenceError, RuntimeError):  # the object may be gone
             self.marks.clear()
+            self.preview.clear()
 
     def slotChangedObject(self, changed, name):
         if name in WHAT_IS_MESHED and changed is compatibility.meshed_object(self.object):
@@ -264,6 +296,8 @@ class MeshTaskPanel:
     def _ask_anew(self):
         """Of another shape."""
         self.predictions.forget()
+        self.contacts.look_soon()
+        self.preview.update_soon(shape_too=True)
         self._ask()
         self.show_state(up_to_date.is_out_of_date(self.object))
 
@@ -271,6 +305,7 @@ class MeshTaskPanel:
         """The file has the objects as they look without marks."""
         if document is self.object.Document:
             self.marks.clear()
+            self.preview.button.setChecked(False)
 
     def slotDeletedObject(self, deleted):
         if deleted is self.object:

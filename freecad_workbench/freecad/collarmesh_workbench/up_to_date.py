@@ -119,7 +119,7 @@ def state_of(obj):
         )
     groups = [
         [group.Name, [[linked.Name, list(names)] for linked, names in group.References]]
-        for group in obj.MeshGroupList
+        for group in obj.MeshGroupList if not compatibility.is_suppressed(group)
     ]
     return State(shape_numbers(part), settings_text(mesh_properties.settings_of(obj), groups))
 

@@ -1,0 +1,217 @@
+"""Faces and edges that touching solids have in common. The mesh has a common part once, with the smallest of its numbers.
+Works without the GUI."""
+
+import collections
+import dataclasses
+import functools
+
+import numpy
+
+SAME_PLACE = 1e-6  # of the shape's diagonal
+SHARE = 1e-6  # of a face's area, or an edge's length: less is none
+ANALYTIC = ("Plane", "Cylinder", "Cone", "Sphere", "Toroid", "Line", "Circle", "Ellipse")
+KINDS = ("Face", "Edge")
+SOURCES = {"patches": "Face", "curves": "Edge"}  # in the program's size field
+SHAPES = 5  # that are remembered
+
+_known = collections.deque(maxlen=SHAPES)  # Contacts
+
+
+def of(shape):
+    """The Contacts of a shape, which may be null."""
+    if shape.isNull():
+        return Contacts(shape)
+    found = next((each for each in _known if each.shape.isSame(shape)), None)
+    if found is None:
+        found = Contacts(shape)
+        _known.append(found)
+    return found
+
+
+def in_mesh_numbers(settings, shape):
+    """Settings as the mesh numbers faces and edges: sizes of all that a face has parts of."""
+    here = of(shape)
+    sizes = {}
+    for field, kind in (("face_sizes", "Face"), ("edge_sizes", "Edge")):
+        sizes[field] = {}
+        for number, size in getattr(settings, field).items():
+            for tag in here.tags(kind, number):
+                sizes[field][tag] = min(size, sizes[field].get(tag, size))
+    return dataclasses.replace(settings, size_field=_field_in_mesh_numbers(settings.size_field, here), **sizes)
+
+
+def _field_in_mesh_numbers(field, here):
+    if not field:
+        return field
+    sources = [dict(source) for source in field["sources"]]
+    for source in sources:
+        for name, kind in SOURCES.items():
+            if name in source:
+                source[name] = sorted({tag for number in source[name] for tag in here.tags(kind, number)})
+    return {**field, "sources": sources}
+
+
+class Contacts:
+    """Of one shape. Names are FreeCAD's: `kind` is Face or Edge, numbers begin with 1."""
+
+    def __init__(self, shape):
+        self.shape = shape
+        several = not shape.isNull() and len(shape.Solids) > 1
+        self._of_kind = {kind: _ContactsOfKind(shape, kind) for kind in KINDS} if several else {}
+
+    def tags(self, kind, number):
+        """The numbers that the parts of Face7 have in the mesh."""
+        return self._of_kind[kind].tags(number) if kind in self._of_kind else [number]
+
+    def has_all(self, kind, tag, number):
+        """Is all that the mesh has of the number `tag` a part of Face7? Precondition: it is one of its tags."""
+        return tag == number or self._of_kind[kind].has_all(tag, number)
+
+    def names(self, kind, tag):
+        """All that what has this number in the mesh may be a part of: Face7, Face9."""
+        return [f"{kind}{number}" for number in (tag, *self._larger(kind, tag))]
+
+    def in_contact(self, kind):
+        """Numbers of those that have a part with a smaller number in the mesh."""
+        count = len(self._of_kind[kind].elements) if kind in self._of_kind else 0
+        return [number for number in range(1, count + 1) if self.tags(kind, number) != [number]]
+
+    def name(self, kind, tag):
+        """These in one: "Face7 = Face9"."""
+        return " = ".join(self.names(kind, tag))
+
+    def glued_faces(self):
+        """Pairs of numbers of faces with a part in common; twice the same for a face that two solids share already."""
+        if not self._of_kind:
+            return []
+        holders = self._of_kind["Face"].solids
+        return [(number, other) for number, solids in enumerate(holders, 1)
+                for other in (*([number] if len(solids) > 1 else []), *self._larger("Face", number))]
+
+    def _larger(self, kind, number):
+        of_kind = self._of_kind.get(kind)
+        if of_kind is None or number > len(of_kind.elements):
+            return []
+        return [other for other in of_kind.met(number) if other > number]
+
+
+class _ContactsOfKind:
+    """Between faces, or between edges."""
+
+    def __init__(self, shape, kind):
+        self.shape, self.kind = shape, kind
+        self.elements = getattr(shape, kind + "s")
+        self.tolerance = SAME_PLACE * shape.BoundBox.DiagonalLength
+        self._pairs, self._left = {}, {}  # what is known: which have a common part, which have a part of their own
+
+    @functools.cached_property
+    def solids(self):
+        """For each element the solids that it belongs to."""
+        members = collections.defaultdict(list)
+        for i, solid in enumerate(self.shape.Solids):
+            for each in getattr(solid, self.kind + "s"):
+                members[each.hashCode()].append((i, each))
+        return [{i for i, member in members[each.hashCode()] if member.isSame(each)} for each in self.elements]
+
+    @functools.cached_property
+    def boxes(self):
+        """Lower corners, and upper ones with the other sign."""
+        boxes = [each.BoundBox for each in self.elements]
+        return numpy.array([(b.XMin, b.YMin, b.ZMin, -b.XMax, -b.YMax, -b.ZMax) for b in boxes]).reshape(-1, 6)
+
+    def met(self, number):
+        """Numbers of those of other solids that have a part in common with this one."""
+        return [other for other in self._near(number) if self._meet(min(number, other), max(number, other))]
+
+    def tags(self, number):
+        if number > len(self.elements):  # the program says that there is none
+            return [number]
+        tags = [other for other in self.met(number) if other < number and self._is_left(other)]
+        return [*tags, number] if self._is_left(number) else tags
+
+    def has_all(self, tag, number):
+        other = self.elements[tag - 1]
+        return _is_nothing(other.cut(self.elements[number - 1]), other)
+
+    def _is_left(self, number):
+        """Is there a part of it that has its number in the mesh?"""
+        if number not in self._left:
+            element = self.elements[number - 1]
+            smaller = [self.elements[other - 1] for other in self.met(number) if other < number]
+            self._left[number] = not smaller or not _is_nothing(element.cut(smaller), element)
+        return self._left[number]
+
+    def _near(self, number):
+        """Those of other solids whose boxes meet its box."""
+        opposite = -self.boxes[number - 1][[3, 4, 5, 0, 1, 2]]
+        meet = (self.boxes <= opposite + self.tolerance).all(axis=1)
+        mine = self.solids[number - 1]
+        return [int(i) + 1 for i in numpy.flatnonzero(meet) if not self.solids[i] & mine]
+
+    def _meet(self, *numbers):
+        """Have the two a part in common?"""
+        if numbers not in self._pairs:
+            a, b = (self.elements[number - 1] for number in numbers)
+            is_possible = not self._seams & set(numbers) and _may_coincide(a, b, self.tolerance)
+            self._pairs[numbers] = is_possible and not _is_nothing(a.common(b), a)
+        return self._pairs[numbers]
+
+    @functools.cached_property
+    def _seams(self):
+        """Numbers of edges that the mesh does not have."""
+        if self.kind == "Face":
+            return set()
+        seams = collections.defaultdict(list)
+        for face in self.shape.Faces:
+            for edge in face.Edges:
+                if edge.Degenerated or edge.isSeam(face):
+                    seams[edge.hashCode()].append(edge)
+        return {number for number, edge in enumerate(self.elements, 1)
+                if any(edge.isSame(other) for other in seams[edge.hashCode()])}
+
+
+def is_seam(shape, edge):
+    """Of a face, or a degenerate one: the mesh has no such edge."""
+    return edge.Degenerated or any(edge.isSeam(face) for face in shape.Faces if any(edge.isSame(e) for e in face.Edges))
+
+
+def _is_nothing(part, whole):
+    """Has it no area or length to speak of?"""
+    if whole.ShapeType == "Face":
+        return part.Area <= SHARE * whole.Area
+    return part.Length <= SHARE * whole.Length
+
+
+def _may_coincide(a, b, tolerance):
+    """False where points of one are off the surface or the curve of the other. Planes, cylinders and the like coincide
+    with others everywhere or nowhere."""
+    if _is_analytic(a):
+        a, b = b, a
+    if not _is_analytic(b):
+        return True
+    if _is_analytic(a) and type(_geometry(a)) is not type(_geometry(b)):
+        return False
+    return all(_distance(_geometry(b), point) <= tolerance for point in _points(a))
+
+
+def _geometry(element):
+    return element.Curve if element.ShapeType == "Edge" else element.Surface
+
+
+def _is_analytic(element):
+    return type(_geometry(element)).__name__ in ANALYTIC
+
+
+def _distance(geometry, point):
+    """To a surface or a curve, without its ends."""
+    place = geometry.parameter(point)
+    return point.distanceToPoint(geometry.value(*(place if isinstance(place, tuple) else (place,))))
+
+
+def _points(element):
+    shares = (0.1, 0.5, 0.8)
+    if element.ShapeType == "Edge":
+        first, last = element.ParameterRange
+        return [element.valueAt(first + s * (last - first)) for s in shares]
+    u0, u1, v0, v1 = element.ParameterRange
+    return [element.valueAt(u0 + s * (u1 - u0), v0 + t * (v1 - v0)) for s in shares for t in shares]

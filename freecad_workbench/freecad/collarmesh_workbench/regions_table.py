@@ -1,0 +1,67 @@
+"""The table of the solids' volumes in the panel: of the shape, of the mesh, and how far they differ."""
+
+import dataclasses
+
+from PySide import QtCore, QtGui
+
+from . import colours, numbers_typed
+from .translations import translate
+from .whole_table import WholeTable
+
+MOST = 6  # rows that are seen without scrolling
+MUCH = 1  # percent
+DIFFERENCE = 3  # column
+
+
+@dataclasses.dataclass
+class Region:
+    """Volumes in mm³."""
+
+    name: str
+    shape: float
+    mesh: float
+    percent: float
+
+
+def in_report(report):
+    """The Regions of a run."""
+    names = {each["region"]: each["name"] or "" for each in report["complex"]["regions"]}
+    return [Region(_short(names.get(each["number"], ""), each["number"]), each["input"], each["mesh"], each["percent"])
+            for each in report["check"]["kept"]["region_volumes"]]
+
+
+def _short(name, number):
+    """Solid1 for "shape.brep, Solid1"."""
+    solid = name.rpartition(", ")[2]
+    return solid if solid.startswith("Solid") else translate("collarmesh", "Region {number}").format(number=number)
+
+
+def volume_text(volume):
+    if volume >= 1e5:
+        return f"{volume:,.0f}".replace(",", "\u202f")
+    return numbers_typed.shown(f"{volume:.6g}")
+
+
+class RegionsTable(WholeTable):
+    def __init__(self):
+        super().__init__((translate("collarmesh", "in mm³"), translate("collarmesh", "Volume"), translate("collarmesh", "in the mesh"),
+                          translate("collarmesh", "difference")), MOST)
+        self.setObjectName("collarmesh_regions")
+        self.setSelectionMode(QtGui.QAbstractItemView.NoSelection)
+        self.setFocusPolicy(QtCore.Qt.NoFocus)
+        self.setToolTip(translate("collarmesh", "Volumes of the shape and of its mesh. A smaller size, or a smaller largest "
+                                                "distance from the shape, brings them closer"))
+
+    def show_report(self, report):
+        self.clear()
+        for region in in_report(report):
+            row = self.add_row([region.name, volume_text(region.shape),
+                               volume_text(region.mesh), _percent(region)])
+            if abs(region.percent) > MUCH:
+                colours.paint(row, DIFFERENCE, colours.CARE)
+        self.setVisible(self.topLevelItemCount() > 0)
+        self.fit()
+
+
+def _percent(region):
+    return numbers_typed.shown(f"{region.percent:+.2f} %")

@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""The add-on as FreeCAD's Add-on Manager wants it: a folder, or a .zip, with package.xml at its base and the licence inside.
+
+    make_package.py OUTPUT [--site URL] [--maintainer NAME] [--email ADDRESS] [--date YYYY-MM-DD]
+
+OUTPUT ending in .zip holds a folder collarmesh, to be unpacked into FreeCAD's folder Mod. The options replace what package.xml
+of the sources says; its date is that of the last commit, or of SOURCE_DATE_EPOCH. The program is none of the add-on.
+"""
+
+import argparse
+import datetime
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import zipfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+PARTS = ("freecad", "translations", "macros")
+KINDS = {".py", ".svg", ".qm"}
+SITE, MAINTAINER, EMAIL = "https://example.org/collarmesh", "The collarmesh maintainers", "collarmesh@example.org"
+FIRST_DATE = (1980, 1, 1, 0, 0, 0)  # the earliest that a .zip knows
+
+
+def version():
+    """The project's."""
+    text = (HERE.parent / "CMakeLists.txt").read_text(encoding="utf-8")
+    return re.search(r"project\(collarmesh VERSION (\S+)", text)[1]
+
+
+def date():
+    """Of the sources."""
+    seconds = os.environ.get("SOURCE_DATE_EPOCH", "")
+    if not seconds:
+        git = ["git", "-C", HERE, "log", "-1", "--format=%ct"]
+        seconds = subprocess.run(git, check=True, capture_output=True, text=True).stdout
+    return datetime.datetime.fromtimestamp(int(seconds), datetime.timezone.utc).date().isoformat()
+
+
+def metadata(site=SITE, maintainer=MAINTAINER, email=EMAIL, day=""):
+    """The text of package.xml."""
+    text = (HERE / "package.xml").read_text(encoding="utf-8")
+    for pattern, value in ((r"<version>.*?</version>", f"<version>{version()}</version>"),
+                           (r"<date>.*?</date>", f"<date>{day or date()}</date>")):
+        text, count = re.subn(pattern, value, text)
+        if count != 1:
+            raise SystemExit(f"package.xml has {count} times {pattern}")
+    for before, after in ((SITE, site), (MAINTAINER, maintainer), (EMAIL, email)):
+        text = text.replace(before, escaped(after))
+    return text
+
+
+def escaped(text):
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
+
+
+def lay_out(folder, **details):
+    """Write the add-on into a folder, which may be there already; `details`: see `metadata`."""
+    folder = pathlib.Path(folder)
+    for source in sorted(path for part in PARTS for path in (HERE / part).rglob("*")):
+        if source.suffix in KINDS and source.name != "update.py":
+            target = folder / source.relative_to(HERE)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(source, target)
+    shutil.copyfile(HERE.parent / "LICENSE", folder / "LICENSE")
+    shutil.copyfile(HERE / "README.md", folder / "README.md")
+    (folder / "package.xml").write_text(metadata(**details), encoding="utf-8")
+
+
+def pack(folder, output):
+    """The same files give the same bytes."""
+    with zipfile.ZipFile(output, "w", zipfile.ZIP_DEFLATED) as archive:
+        for path in sorted(path for path in folder.rglob("*") if path.is_file()):
+            entry = zipfile.ZipInfo(str(pathlib.Path("collarmesh") / path.relative_to(folder)), FIRST_DATE)
+            entry.compress_type, entry.external_attr = zipfile.ZIP_DEFLATED, 0o644 << 16
+            archive.writestr(entry, path.read_bytes())
+
+
+def main():
+    parser = argparse.ArgumentParser(description="The add-on for FreeCAD's Add-on Manager.")
+    parser.add_argument("output", type=pathlib.Path)
+    parser.add_argument("--site", default=SITE)
+    parser.add_argument("--maintainer", default=MAINTAINER)
+    parser.add_argument("--email", default=EMAIL)
+    parser.add_argument("--date", default="", dest="day")
+    details = vars(parser.parse_args())
+    output = details.pop("output")
+    if output.suffix != ".zip":
+        lay_out(output, **details)
+        return
+    with tempfile.TemporaryDirectory(prefix="collarmesh-addon-") as folder:
+        lay_out(folder, **details)
+        pack(pathlib.Path(folder), output)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,118 @@
+"""What the panel says of parts of several solids, of open ones and of surfaces. Run by run.py --gui."""
+
+import os
+import sys
+
+import FreeCAD
+import FreeCADGui
+import Part
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import window as w  # noqa: E402
+from freecad.collarmesh_workbench import mesh_object  # noqa: E402
+
+
+def hub():
+    """In the bore of a plate."""
+    plate = Part.makeBox(40, 40, 10).cut(Part.makeCylinder(8, 10, FreeCAD.Vector(20, 20, 0)))
+    return Part.makeCompound([plate, Part.makeCylinder(8, 20, FreeCAD.Vector(20, 20, -5))])
+
+
+async def solids_that_touch(document, part, obj):
+    part.Shape = hub()
+    document.recompute()
+    await w.open_panel(obj)
+    await w.wait_until(lambda: w.child("contacts").isVisible(), "the line on solids that touch")
+    w.require("Face7 = Face8" in w.child("contacts").text(), w.child("contacts").text())
+    await w.run_mesher("3 mm")
+    await w.screenshot("contacts.png")
+    part.Shape = w.plate()
+    document.recompute()
+    await w.wait_until(lambda: not w.child("contacts").isVisible(), "the end of that line")
+    boxes = [Part.makeBox(10, 10, 10, FreeCAD.Vector(10 * i, 0, 0)) for i in range(4)]
+    part.Shape = Part.makeCompound(boxes)
+    document.recompute()
+    await w.wait_until(lambda: "3 faces" in w.child("contacts").text(), "the new line")
+    w.require(w.child("contacts").toolTip().count("=") == 3, w.child("contacts").toolTip())
+    await w.close_panel()
+
+
+def volumes():
+    """The rows of the table."""
+    table = w.child("regions")
+    return [[table.topLevelItem(i).text(c) for c in range(4)] for i in range(table.topLevelItemCount())]
+
+
+async def volumes_of_solids(document, part, obj):
+    part.Shape = hub()
+    document.recompute()
+    await w.open_panel(obj)
+    await w.run_mesher("3 mm")
+    w.require(w.child("regions").isVisible(), "the table of volumes")
+    rows = volumes()
+    w.require([row[0] for row in rows] == ["Solid1", "Solid2"], f"{rows}")
+    for row, solid, name in zip(rows, part.Shape.Solids, ("Solid1", "Solid2")):
+        w.require(abs(float(row[1]) / solid.Volume - 1) < 1e-4, f"{row} for {solid.Volume}")
+        w.require(abs(float(row[2]) / volume_of(obj.FemMesh, name) - 1)
+                  < 1e-4, f"{row} for {volume_of(obj.FemMesh, name)}")
+        percent = 100 * (float(row[2]) / float(row[1]) - 1)
+        w.require(abs(float(row[3].removesuffix(" %")) - percent) < 0.01, f"{row} for {percent} percent")
+    await w.screenshot("freecad_volumes.png")
+    await w.close_panel()
+
+
+def volume_of(fem_mesh, group):
+    """Of straight elements; curved ones are near to them."""
+    number = next(n for n in fem_mesh.Groups if fem_mesh.getGroupName(n) == group)
+    total = 0
+    for element in fem_mesh.getGroupElements(number):
+        a, b, c, d = (fem_mesh.getNodeById(n) for n in fem_mesh.getElementNodes(element)[:4])
+        total += abs((b - a).cross(c - a).dot(d - a)) / 6
+    return total
+
+
+async def open_surfaces_are_asked_about(document, part, obj):
+    part.Shape = Part.makeShell(Part.makeBox(10, 10, 10).Faces[:5])
+    document.recompute()
+    before = obj.FemMesh.NodeCount
+    await w.open_panel(obj)
+    w.child("CharacteristicLengthMax").setText("3 mm")
+    await w.click(w.child("run"))
+    w.require("open at 4 edges" in w.child("question").text(), w.child("question").text())
+    w.require(w.child("run").text() == "Fill the holes" and obj.FemMesh.NodeCount == before, "nothing is filled unasked")
+    await w.screenshot("open_surface.png")
+    await w.click(w.child("run"))
+    await w.wait_until(lambda: w.child("message").isVisible(), "the mesh")
+    w.require("A hole of the shape is filled, with 100 mm²" in w.said() and obj.FillHoles, w.said())
+    w.require(abs(volume_of(obj.FemMesh, "Solid1") - 1000) < 1, "it is a whole box")
+    await w.screenshot("open_surface_filled.png")
+    obj.FillHoles = False
+    await w.close_panel(w.QtGui.QDialogButtonBox.Cancel)
+
+
+async def surfaces_and_wires_are_told_from_volumes(document, part, obj):
+    box = Part.makeBox(10, 10, 10)
+    for shape, word in ((box.Faces[0], "not of shells"), (Part.Wire(box.Faces[0].Edges), "not of beams")):
+        part.Shape = shape
+        document.recompute()
+        await w.open_panel(obj)
+        await w.click(w.child("run"))
+        await w.wait_until(lambda: w.child("message").isVisible(), "the message")
+        w.require(word in w.said(), w.said())
+        await w.screenshot(f"no_volume_{word[-6:]}.png")
+        await w.close_panel(w.QtGui.QDialogButtonBox.Cancel)
+
+
+async def test():
+    document = FreeCAD.newDocument("parts")
+    FreeCADGui.activateWorkbench("FemWorkbench")
+    part = document.addObject("Part::Feature", "Assembly")
+    obj = mesh_object.make(document, part)
+    await solids_that_touch(document, part, obj)
+    obj.ElementOrder = "1st"
+    await volumes_of_solids(document, part, obj)
+    await open_surfaces_are_asked_about(document, part, obj)
+    await surfaces_and_wires_are_told_from_volumes(document, part, obj)
+
+
+w.run_test(test)
