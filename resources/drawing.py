@@ -6,6 +6,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 SOLID, EDGES = (0.80, 0.84, 0.90), (0.13, 0.16, 0.20)
+SCALE = 2.7  # widths of lines and sizes of letters are those of a picture 1040 wide
 STAR, BOOK, CREASE = (0.96, 0.62, 0.20), (0.22, 0.50, 0.76), (0.80, 0.08, 0.16)
 
 
@@ -108,16 +109,18 @@ def actor_of(data, colours=None):
     return actor
 
 
-def legend(colours):
+def legend(colours, title="smallest\ndihedral\nangle", numbers="%.0f", log=False):
     bar = vtk.vtkScalarBarActor()
     bar.SetLookupTable(colours)
-    bar.SetTitle("smallest\ndihedral\nangle")
+    bar.SetTitle(title)
     bar.SetNumberOfLabels(5)
-    bar.SetLabelFormat("%.0f")
+    bar.SetLabelFormat("%.2g" if log else numbers)
     bar.SetOrientationToVertical()
-    bar.SetPosition(0.9, 0.52)
-    bar.SetWidth(0.075)
-    bar.SetHeight(0.4)
+    bar.SetPosition(0.85, 0.5)
+    bar.SetWidth(0.1)
+    bar.SetHeight(0.45)
+    bar.SetBarRatio(0.3)
+    bar.SetVerticalTitleSeparation(int(10 * SCALE))
     for text in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
         text.SetColor(0.15, 0.15, 0.18)
         text.SetShadow(False)
@@ -125,9 +128,25 @@ def legend(colours):
         text.SetBold(False)
         text.SetFontFamilyToArial()
     bar.SetUnconstrainedFontSize(True)
-    bar.GetTitleTextProperty().SetFontSize(20)
-    bar.GetLabelTextProperty().SetFontSize(18)
+    bar.GetTitleTextProperty().SetFontSize(int(16 * SCALE))
+    bar.GetLabelTextProperty().SetFontSize(int(15 * SCALE))
     return bar
+
+
+def label(text, place):
+    """Words at a place, which things in front of it hide."""
+    actor = vtk.vtkBillboardTextActor3D()
+    actor.SetInput(text)
+    actor.SetPosition(*place)
+    look = actor.GetTextProperty()
+    look.SetFontSize(int(20 * SCALE))
+    look.SetFontFamilyToArial()
+    look.SetColor(0.08, 0.09, 0.12)
+    look.SetBackgroundColor(1, 1, 1)
+    look.SetBackgroundOpacity(1)
+    look.SetJustificationToCentered()
+    look.SetVerticalJustificationToCentered()
+    return actor
 
 
 def save(window, path):

@@ -20,12 +20,12 @@ import vtk
 from PIL import Image
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
-from drawing import (BOOK, STAR, actor_of, array, centres, crease_edges, extract, legend, palette, save, shrunk,
+from drawing import (BOOK, SCALE, STAR, actor_of, array, centres, crease_edges, extract, label, legend, palette, save, shrunk,
                      split_by_origin, surface_of, tinted, tubes, with_quality)
 
 HERE = pathlib.Path(__file__).resolve().parent
-SIZE = (1040, 780)  # drawn twice as large as it is kept
-COLOURS = 160
+SIZE = (2800, 1960)  # drawn twice as large as it is kept
+COLOURS = 128
 HUES = ((0.36, 0.56, 0.78), (0.93, 0.66, 0.32), (0.50, 0.72, 0.47), (0.80, 0.46, 0.46), (0.62, 0.53, 0.76),
         (0.40, 0.72, 0.74), (0.88, 0.80, 0.40), (0.72, 0.60, 0.50), (0.86, 0.60, 0.74), (0.58, 0.64, 0.70),
         (0.30, 0.62, 0.56), (0.95, 0.75, 0.62), (0.44, 0.44, 0.66), (0.70, 0.82, 0.60), (0.60, 0.32, 0.40))
@@ -161,7 +161,12 @@ def scene(actors, view, zoom, place=(0, 0, 1, 1)):
     renderer.SetViewport(*place)
     renderer.SetBackground(0.98, 0.98, 0.985)
     for actor in actors:
-        renderer.AddActor2D(actor) if actor.IsA("vtkActor2D") else renderer.AddActor(actor)
+        if actor.IsA("vtkActor2D"):
+            renderer.AddActor2D(actor)
+            continue
+        renderer.AddActor(actor)
+        if actor.IsA("vtkActor"):
+            actor.GetProperty().SetLineWidth(SCALE * actor.GetProperty().GetLineWidth())
     camera = renderer.GetActiveCamera()
     camera.SetPosition(*view)
     camera.SetFocalPoint(0, 0, 0)
@@ -202,17 +207,45 @@ def bracket(path):
 
 
 def names(path):
+    """Each face has a colour and its number, as `info` shows it."""
     faces = kind(mesh("bracket.off", "--size", 5), vtk.VTK_TRIANGLE)
-    picture(path, scene(coloured(faces, array(faces, "tag")), FRONT, 1.2))
+    tags = array(faces, "tag")
+    renderer = scene(coloured(faces, tags), FRONT, 1.1)
+    eye = np.array(renderer.GetActiveCamera().GetPosition())
+    locator = vtk.vtkCellLocator()
+    locator.SetDataSet(faces)
+    locator.BuildLocator()
+    for tag in sorted(set(tags)):
+        at = middle(faces, (tags == tag).nonzero()[0])
+        if tags[first_cell(locator, eye, at)] == tag:  # else another face hides it
+            renderer.AddActor(label(str(tag), at + 8 * (eye - at) / np.linalg.norm(eye - at)))
+    picture(path, renderer)
+
+
+def first_cell(locator, eye, at):
+    """The cell that is seen in this direction."""
+    share, cell, part = vtk.mutable(0.0), vtk.mutable(0), vtk.mutable(0)
+    place, within = [0.0] * 3, [0.0] * 3
+    beyond = eye + 1.1 * (at - eye)
+    locator.IntersectWithLine(eye, beyond, 1e-9, share, place, within, part, cell)
+    return int(cell)
+
+
+def middle(grid, cells):
+    """The centre of that cell which is nearest to the middle of these."""
+    places = centres(grid)[cells]
+    return places[np.linalg.norm(places - places.mean(axis=0), axis=1).argmin()]
 
 
 def curved(path):
-    grid = mesh("flange.step", "--size", 4, "--order", 2)
-    faces = kind(grid, vtk.VTK_QUADRATIC_TRIANGLE)
-    actor = actor_of(subdivided(faces))
-    actor.GetProperty().SetEdgeVisibility(False)
-    actor.GetProperty().SetInterpolationToGouraud()
-    picture(path, scene([actor, edges_of(faces)], (1.1, -1.5, 1.6), 1.25))
+    """The same size with straight elements and with curved ones."""
+    options, view = ("--size", 14, "--distance", 1.2), (1.1, -1.5, 1.6)
+    straight = actor_of(surface_of(kind(mesh("flange.step", *options), vtk.VTK_TRIANGLE)))
+    faces = kind(mesh("flange.step", *options, "--order", 2), vtk.VTK_QUADRATIC_TRIANGLE)
+    smooth = actor_of(subdivided(faces))
+    smooth.GetProperty().SetEdgeVisibility(False)
+    smooth.GetProperty().SetInterpolationToGouraud()
+    picture(path, scene([straight], view, 1.05, LEFT), scene([smooth, edges_of(faces)], view, 1.05, RIGHT))
 
 
 def subdivided(faces):
@@ -260,12 +293,50 @@ def tiny(path):
     write_off("inner.off", points, [tuple(reversed(f)) for f in faces])
     run("collarmesh", "outer.off", "inner.off", "-o", "mesh.vtk", "--quiet", "--size", 0.2, "--gradation", 0.4)
     grid = read("mesh.vtk")
-    left, right = (scene(cut_open(grid, (0, -1, 0), 0.5)[:2], (0.4, -1.9, 0.8), 0.8, place) for place in (LEFT, RIGHT))
-    camera = right.GetActiveCamera()
-    camera.SetFocalPoint(0.505, 0.49, 0.505)
-    camera.SetPosition(0.505 + 0.4 * 0.1, 0.49 - 1.9 * 0.1, 0.505 + 0.8 * 0.1)
-    camera.SetClippingRange(0.01, 2)
-    picture(path, left, right)
+    left, right = (scene([section(grid, 0.495)], (0, -1, 0), zoom, place)
+                   for zoom, place in ((0.82, (0, 0, 0.44, 1)), (1, (0.44, 0, 0.88, 1))))
+    right.GetActiveCamera().SetFocalPoint(0.505, 0.49, 0.505)
+    right.GetActiveCamera().SetPosition(0.505, 0.3, 0.505)
+    right.GetActiveCamera().SetClippingRange(0.01, 2)
+    bar = legend(lengths_palette(), "edge\nlength", "%.2f")
+    bar.SetPosition(0.15, 0.3)
+    bar.SetWidth(0.7)
+    picture(path, left, right, scene([bar], FRONT, 1, (0.88, 0, 1, 1)))
+
+
+def lengths_palette():
+    """Edge lengths from short (dark) to long, by their logarithm."""
+    colours = vtk.vtkColorTransferFunction()
+    colours.SetScaleToLog10()
+    for length, rgb in ((0.005, (0.16, 0.30, 0.55)), (0.02, (0.27, 0.60, 0.70)), (0.08, (0.60, 0.82, 0.62)),
+                        (0.25, (0.96, 0.92, 0.66))):
+        colours.AddRGBPoint(length, *rgb)
+    return colours
+
+
+def section(grid, y):
+    """The tets where a plane cuts them, by the edge length of the regular tet of their volume."""
+    sizes = vtk.vtkMeshQuality()
+    sizes.SetInputData(tets(grid))
+    sizes.SetTetQualityMeasureToVolume()
+    sizes.Update()
+    cells = sizes.GetOutput()
+    volume = vtk_to_numpy(cells.GetCellData().GetArray("Quality"))
+    length = numpy_to_vtk((6 * 2**0.5 * np.abs(volume)) ** (1 / 3), deep=True)
+    length.SetName("length")
+    cells.GetCellData().AddArray(length)
+    plane = vtk.vtkPlane()
+    plane.SetOrigin(0, y, 0)
+    plane.SetNormal(0, 1, 0)
+    cut = vtk.vtkCutter()
+    cut.SetInputData(cells)
+    cut.SetCutFunction(plane)
+    cut.GenerateTrianglesOff()
+    cut.Update()
+    actor = actor_of(cut.GetOutput(), lengths_palette())
+    actor.GetMapper().SelectColorArray("length")
+    actor.GetProperty().LightingOff()
+    return actor
 
 
 def regions(path):
@@ -389,6 +460,8 @@ def analysis(path):
     part = surface_of(kind(whole, vtk.VTK_QUADRATIC_TETRA))
     colours = vtk.vtkColorTransferFunction()
     largest = float(np.linalg.norm(ways, axis=1).max())
+    loaded = array(grid, "tag") == 5
+    loaded &= vtk_to_numpy(grid.GetCellTypesArray()) == vtk.VTK_QUADRATIC_TRIANGLE
     for share, rgb in ((0, (0.20, 0.40, 0.70)), (0.5, (0.75, 0.85, 0.72)), (1, (0.85, 0.30, 0.18))):
         colours.AddRGBPoint(share * largest, *rgb)
     actor = actor_of(part)
@@ -396,7 +469,34 @@ def analysis(path):
     actor.GetMapper().SetScalarModeToUsePointData()
     actor.GetMapper().ScalarVisibilityOn()
     actor.GetProperty().SetLineWidth(0.8)
-    picture(path, scene([actor], FRONT, 1.2))
+    arrows = arrows_at(centres(extract(whole, loaded.nonzero()[0]))[::2], (-1, 0, 0), 9)
+    words = [label("pressure", (102, 30, 14)), label("held", (5, 20, 66))]
+    picture(path, scene([actor, arrows, *words, legend(colours, "displacement\n(mm)", "%.3f")], FRONT, 1.2))
+
+
+def arrows_at(places, direction, length):
+    """Arrows that end at these places."""
+    points = vtk.vtkPoints()
+    for place in places:
+        points.InsertNextPoint(place - length * np.array(direction, float))
+    data = vtk.vtkPolyData()
+    data.SetPoints(points)
+    ways = numpy_to_vtk(np.tile(np.array(direction, float), (len(places), 1)), deep=True)
+    ways.SetName("way")
+    data.GetPointData().SetVectors(ways)
+    source = vtk.vtkArrowSource()
+    source.SetTipResolution(20)
+    source.SetShaftResolution(16)
+    glyph = vtk.vtkGlyph3D()
+    glyph.SetInputData(data)
+    glyph.SetSourceConnection(source.GetOutputPort())
+    glyph.SetScaleModeToDataScalingOff()
+    glyph.SetScaleFactor(length)
+    glyph.Update()
+    actor = actor_of(glyph.GetOutput())
+    actor.GetProperty().SetColor(0.75, 0.12, 0.16)
+    actor.GetProperty().SetEdgeVisibility(False)
+    return actor
 
 
 def report(path):

@@ -53,8 +53,9 @@ class Surface:
                       + a[2] * (b[0] * c[1] - b[1] * c[0])) / 6
         return total
 
-    def write_off(self, path):
-        self.check()
+    def write_off(self, path, closed=True):
+        if closed:
+            self.check()
         with open(path, "w") as out:
             out.write(f"OFF\n{len(self.points)} {len(self.triangles)} 0\n")
             for p in self.points:
@@ -179,6 +180,13 @@ def box():
     return surface
 
 
+def open_box():
+    """A box that lacks one triangle."""
+    surface = box()
+    del surface.triangles[-1]
+    return surface
+
+
 def plate_with_hole():
     surface = Surface()
     add_plate(surface, [(0, 0), (40, 0), (40, 40), (0, 40)], [circle((20, 20), 10)], lambda u, v, w: (u, v, w), 4)
@@ -228,6 +236,23 @@ TWO_BOXES = """# Two boxes that share a face: regions 1 (2 x 1 x 1) and 2 (1 x 1
 """
 
 
+CRACKED_BOX = """# A unit cube with a square sheet (tag 7), a segment (tag 20) and a point inside.
+# points
+15 3 0 0
+""" + "".join(f"{k} {x} {y} {z}\n" for k, (x, y, z) in enumerate(
+    [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+    + [(0.3, 0.3, 0.5), (0.7, 0.3, 0.5), (0.7, 0.7, 0.5), (0.3, 0.7, 0.5), (0.2, 0.2, 0.2), (0.8, 0.2, 0.2),
+       (0.5, 0.5, 0.8)])) + """# facets, the marker is the tag; a polygon of two corners is a segment
+8 1
+""" + "".join(f"1 0 {tag}\n{corners}\n" for tag, corners in (
+           (1, "4 0 2 3 1"), (2, "4 4 5 7 6"), (3, "4 0 1 5 4"), (4, "4 2 6 7 3"), (5, "4 0 4 6 2"), (6, "4 1 3 7 5"),
+           (7, "4 8 9 10 11"), (20, "2 12 13"))) + """# hole points
+0
+# region points
+0
+"""
+
+
 FREECAD = "/usr/lib/freecad/lib"
 
 
@@ -256,8 +281,10 @@ def main():
     os.makedirs(folder, exist_ok=True)
     for make in (bracket, box, plate_with_hole, sphere):
         make().write_off(os.path.join(folder, make.__name__ + ".off"))
-    with open(os.path.join(folder, "two_boxes.poly"), "w") as out:
-        out.write(TWO_BOXES)
+    open_box().write_off(os.path.join(folder, "open_box.off"), closed=False)
+    for name, text in (("two_boxes", TWO_BOXES), ("cracked_box", CRACKED_BOX)):
+        with open(os.path.join(folder, name + ".poly"), "w") as out:
+            out.write(text)
     write_flange(os.path.join(folder, "flange.step"))
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Write the table of options into its page, mesher/doc/options.md.
+"""Write the tables of options, one for each group, into their page, mesher/doc/options.md.
 
     options_page.py PROGRAM [PAGE]
 """
@@ -12,7 +12,8 @@ import sys
 
 PAGE = pathlib.Path(__file__).resolve().parents[1] / "mesher" / "doc" / "options.md"
 HEAD = "| option | default | meaning |\n|---|---|---|\n"
-TABLE = re.compile(re.escape(HEAD) + r"(?:\|.*\n)*")
+BEGIN, END = "<!-- options: written by resources/options_page.py -->\n\n", "\n<!-- end of options -->\n"
+TABLES = re.compile(re.escape(BEGIN) + ".*" + re.escape(END), re.S)
 
 
 def code(text, words=()):
@@ -50,12 +51,17 @@ def row(option):
 
 
 def page(text, program):
-    """The text of the page with the table of this program."""
+    """The text of the page with the tables of this program."""
     said = subprocess.run([program, "--generate", "options"], check=True, capture_output=True, text=True).stdout
-    rows = "".join(row(option) for option in json.loads(said) if "mesh" in option["takers"])
-    if not TABLE.search(text):
-        raise SystemExit("the page has no table of options")
-    return TABLE.sub(lambda _: HEAD + rows, text)
+    groups = {}
+    for option in json.loads(said):
+        if "mesh" in option["takers"]:
+            groups.setdefault(option["group"], []).append(row(option))
+    if not TABLES.search(text):
+        raise SystemExit("the page has no tables of options")
+    tables = "\n".join(
+        f"## {group.replace('Options', 'Run')}\n\n{HEAD}{''.join(rows)}" for group, rows in groups.items())
+    return TABLES.sub(lambda _: BEGIN + tables + END, text)
 
 
 def main():

@@ -20,7 +20,7 @@ void append(std::string& bytes, const std::vector<Number>& numbers) {
   bytes.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number));
 }
 
-/// Nothing in it ends the script that it is in.
+/// The text of a script element: no `<` in it can end the script.
 std::string json_in_page(const Json& json) {
   std::string text = json_text(json), safe;
   safe.reserve(text.size());
@@ -34,10 +34,9 @@ Json shown_json(const ShownMesh& shown) {
   for (const ShownMesh::ShownWorst& w : shown.worst)
     worst.push_back(
         {{"tet", w.tet}, {"smallest", w.smallest}, {"largest", w.largest}, {"where", place(w.where)}});
-  return {{"complete", shown.complete},
-          {"centre", place(shown.centre)},
-          {"points", shown.points.size() / 3},
-          {"tets", shown.tets.size() / 4},
+  return {{"complete", shown.complete},        {"centre", place(shown.centre)},
+          {"points", shown.points.size() / 3}, {"tets", shown.tets.size() / 4},
+          {"faces", shown.faces.size() / 4},   {"face_tags", shown.face_tags},
           {"worst", std::move(worst)}};
 }
 
@@ -47,6 +46,7 @@ std::string html_report(const Json& report, const ShownMesh& shown) {
   std::string data;
   append(data, shown.points);
   append(data, shown.tets);
+  append(data, shown.faces);
   append(data, shown.region);
   append(data, shown.marks);
   std::string page;

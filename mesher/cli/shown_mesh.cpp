@@ -38,6 +38,19 @@ bool meets_middle_plane(const TetMesh& mesh, const std::array<Index, 4>& tet, co
   return false;
 }
 
+/// Adds the faces on patches, all of whose points are shown.
+void add_faces(const TetMesh& mesh, const std::vector<std::uint32_t>& point_number, ShownMesh& shown) {
+  shown.face_tags = mesh.face_tag;
+  std::sort(shown.face_tags.begin(), shown.face_tags.end());
+  shown.face_tags.erase(std::unique(shown.face_tags.begin(), shown.face_tags.end()), shown.face_tags.end());
+  shown.faces.reserve(4 * mesh.faces.size());
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    for (const Index p : mesh.faces[f]) shown.faces.push_back(point_number[p]);
+    const auto tag = std::lower_bound(shown.face_tags.begin(), shown.face_tags.end(), mesh.face_tag[f]);
+    shown.faces.push_back(static_cast<std::uint32_t>(tag - shown.face_tags.begin()));
+  }
+}
+
 }  // namespace
 
 ShownMesh shown_mesh(const TetMesh& mesh, const std::vector<WorstTet>& worst, std::size_t most) {
@@ -73,6 +86,7 @@ ShownMesh shown_mesh(const TetMesh& mesh, const std::vector<WorstTet>& worst, st
                thin = !mesh.tet_thin.empty() && mesh.tet_thin[t] != 0;
     shown.marks.push_back(static_cast<std::uint8_t>((collar ? 1 : 0) + (thin ? 2 : 0)));
   }
+  add_faces(mesh, point_number, shown);
   for (const WorstTet& w : worst) {
     Point centre{0, 0, 0};
     for (const Point& p : w.corners) centre = centre + 0.25 * (p - Point{0, 0, 0});

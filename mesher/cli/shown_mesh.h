@@ -8,7 +8,7 @@
 
 namespace collarmesh::cli {
 
-/// What a page shows of a mesh.
+/// The part of a mesh that a page shows.
 struct ShownMesh {
   struct ShownWorst {
     Index tet;                 ///< of those shown
@@ -20,8 +20,10 @@ struct ShownMesh {
   Point centre;                       ///< of the bounding box
   std::vector<float> points;          ///< three numbers for each, relative to the centre
   std::vector<std::uint32_t> tets;    ///< four corners for each
-  std::vector<std::uint16_t> region;  ///< of each
-  std::vector<std::uint8_t> marks;    ///< of each: 1 in a collar, 2 thin
+  std::vector<std::uint32_t> faces;   ///< on patches: three corners and an index into `face_tags` for each
+  std::vector<Tag> face_tags;         ///< sorted
+  std::vector<std::uint16_t> region;  ///< of each tet
+  std::vector<std::uint8_t> marks;    ///< of each tet: 1 in a collar, 2 thin
   std::vector<ShownWorst> worst;      ///< as given
 };
 

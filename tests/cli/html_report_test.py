@@ -6,6 +6,7 @@ Run by ctest with COLLARMESH_PROGRAM set. The browser is chromium, without a win
 import base64
 import html.parser
 import json
+import math
 import os
 import pathlib
 import re
@@ -63,13 +64,13 @@ class Contents(ReportTest):
         self.assertEqual(page.loads, [])
         report, shown = (json.loads(page.scripts[name]) for name in ("report", "shown"))
         data = zlib.decompress(base64.b64decode(page.scripts["data"]))
-        points, tets = shown["points"], shown["tets"]
+        points, tets, faces = shown["points"], shown["tets"], shown["faces"]
         self.assertTrue(shown["complete"])
         self.assertEqual(tets, report["mesh"]["tets"])
-        self.assertEqual(len(data), 12 * points + 19 * tets)
+        self.assertEqual(len(data), 12 * points + 19 * tets + 16 * faces)
         place = [struct.unpack_from("<3f", data, 12 * p) for p in range(points)]
         corners = [struct.unpack_from("<4I", data, 12 * points + 16 * t) for t in range(tets)]
-        region = struct.unpack_from(f"<{tets}H", data, 12 * points + 16 * tets)
+        region = struct.unpack_from(f"<{tets}H", data, 12 * points + 16 * tets + 16 * faces)
 
         def six_volume(tet):
             a, b, c, d = (place[p] for p in tet)
@@ -82,6 +83,23 @@ class Contents(ReportTest):
             self.assertAlmostEqual(made, volume, delta=1e-4 * volume)
         angles = [w["smallest"] for w in shown["worst"]]
         self.assertAlmostEqual(min(angles), report["mesh"]["min_dihedral"], places=9)
+
+    def test_the_faces_are_those_of_the_patches(self):
+        page = Page(self.report(MODELS / "two_boxes.poly").read_text())
+        report, shown = (json.loads(page.scripts[name]) for name in ("report", "shown"))
+        data = zlib.decompress(base64.b64decode(page.scripts["data"]))
+        begin = 12 * shown["points"] + 16 * shown["tets"]
+        areas = dict.fromkeys(shown["face_tags"], 0.0)
+        for f in range(shown["faces"]):
+            *corners, number = struct.unpack_from("<4I", data, begin + 16 * f)
+            a, b, c = (struct.unpack_from("<3f", data, 12 * p) for p in corners)
+            u, v = ([x - y for x, y in zip(q, a)] for q in (b, c))
+            areas[shown["face_tags"][number]] += math.hypot(
+                u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]) / 2
+        expected = {patch["tag"]: patch["area"] for patch in report["complex"]["patch_list"]}
+        self.assertEqual(areas.keys(), expected.keys())
+        for tag, area in expected.items():
+            self.assertAlmostEqual(areas[tag], area, places=4)
 
     def test_json_stays_json(self):
         json.loads(self.report(MODELS / "bracket.off", name="report.json").read_text())
@@ -116,11 +134,11 @@ class Contents(ReportTest):
 
 @unittest.skipUnless(CHROMIUM, "chromium is not installed")
 class InABrowser(ReportTest):
-    def look(self, path, link=""):
+    def look(self, path, link="", size="1000,800"):
         """The attributes of the page's body after it was opened, and the picture's bytes."""
         picture = self.folder / "picture.png"
         common = [CHROMIUM, "--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
-                  "--enable-unsafe-swiftshader", "--window-size=1000,800", "--virtual-time-budget=20000",
+                  "--enable-unsafe-swiftshader", f"--window-size={size}", "--virtual-time-budget=20000",
                   f"--user-data-dir={self.folder / 'profile'}"]
         address = f"{path.as_uri()}{link}"
         dom = subprocess.run([*common, "--dump-dom", address], capture_output=True, text=True, timeout=120).stdout
@@ -144,6 +162,68 @@ class InABrowser(ReportTest):
         marked, dom, _ = self.look(path, "#worst=0")
         self.assertEqual(marked["marked"], "6")  # the edges of a tet
         self.assertIn("dihedral angles", dom)
+
+    def test_every_part_fits_into_the_view(self):
+        for lengths in ((1, 1, 40), (40, 1, 1), (1, 40, 1), (30, 30, 1)):
+            path = self.report(self.box(*lengths), "--size", "4", "--distance", "1")
+            for size in ("1000,800", "600,1100"):
+                with self.subTest(lengths=lengths, size=size):
+                    self.assertEqual(self.look(path, size=size)[0]["whole"], "yes")
+
+    def box(self, *lengths):
+        path = self.folder / "box.off"
+        points = [tuple(low * (k >> axis & 1) for axis, low in enumerate(lengths)) for k in range(8)]
+        faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+        path.write_text("\n".join(["OFF", "8 6 0", *(" ".join(map(str, row)) for row in points),
+                                   *(" ".join(map(str, (4, *face))) for face in faces), ""]))
+        return path
+
+    def test_faces_and_regions_have_their_names(self):
+        names = self.folder / "names.json"
+        names.write_text('{"patches": {"loaded": 3}}')
+        _, dom, _ = self.look(self.report(MODELS / "two_boxes.poly", "--names", names), "#colour=face")
+        spans = re.search(r'<div id="labels">.*?</div>', dom, re.S).group()
+        labels = {text for look, text in re.findall(r"<span([^>]*)>([^<]*)</span>", spans) if "hidden" not in look}
+        self.assertIn("loaded", labels)  # at the end that is seen
+        self.assertNotIn("patch 1", labels)  # at the other one
+        legend = re.search(r'<p id="legend">.*?</p>', dom, re.S).group()
+        for name in ("loaded", "patch 1", "patch 2"):
+            self.assertIn(name, legend)
+        _, dom, _ = self.look(self.folder / "report.html", "#colour=region")
+        legend = re.search(r'<p id="legend">.*?</p>', dom, re.S).group()
+        for name in ("two_boxes.poly 1", "two_boxes.poly 2"):
+            self.assertIn(f"Volume of {name}", dom)
+            self.assertIn(name, legend)
+
+    def test_straightened_nodes_are_marked(self):
+        path = self.report(MODELS / "bracket.off", "--size", "8", "--order", "2")
+        self.assertEqual(self.look(path)[0]["straightened"], "0")
+        node = {"point": 1, "edge": [0, 1], "dimension": 2, "tag": 1, "where": [0, 0, 0], "distance": 0.5}
+        text, count = re.subn(r'"straightened":\s*\[\]', f'"straightened":[{json.dumps(node)}]', path.read_text())
+        self.assertEqual(count, 1)
+        path.write_text(text)
+        attributes, dom, _ = self.look(path)
+        self.assertEqual(attributes["straightened"], "1")
+        self.assertIn("patch 1: 0.5 away", dom)
+
+    def test_ratios_reach_as_far_as_their_histogram(self):
+        path = self.report(MODELS / "bracket.off", "--size", "8")
+        mesh = json.loads(Page(path.read_text()).scripts["report"])["mesh"]
+        self.assertGreater(mesh["max_thin_radius_edge"], mesh["max_radius_edge"])
+        _, dom, _ = self.look(path)
+        self.assertIn(f"{mesh['max_thin_radius_edge']:.4g} (thin tetrahedra)", dom)
+
+    def test_on_a_phone_the_view_comes_first_and_nothing_is_too_wide(self):
+        path = self.report(MODELS / "bracket.off", "--size", "10")
+        measure = """<script>setTimeout(() => {
+          const top = id => document.getElementById(id).getBoundingClientRect().top;
+          document.body.dataset.first = top('view') < top('facts') ? 'view' : 'facts';
+          document.body.dataset.wider = document.documentElement.scrollWidth - window.innerWidth;
+        }, 3000)</script></body>"""
+        path.write_text(path.read_text().replace("</body>", measure))
+        attributes, _, _ = self.look(path, size="420,800")
+        self.assertEqual(attributes["first"], "view")
+        self.assertLessEqual(int(attributes["wider"]), 0)
 
     def test_findings_and_repairs_are_listed(self):
         part = self.folder / "two.off"

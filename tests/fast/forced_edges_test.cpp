@@ -30,6 +30,12 @@ std::set<Index> points_of(const Plc& plc, unsigned dimension, Index feature) {
   return points;
 }
 
+Plc complex_of(const PolygonSoup& soup, double feature_angle = 30) {
+  PlcOptions options;
+  options.feature_angle = feature_angle;
+  return build_plc({&soup, 1}, options);
+}
+
 void expect_contacts_by_points(const Plc& plc) {
   const FeatureContacts contacts(plc);
   const std::array<std::size_t, 3> counts{plc.vertices.size(), plc.curves.size(), plc.patches.size()};
@@ -48,11 +54,11 @@ void expect_contacts_by_points(const Plc& plc) {
 }
 
 TEST(FeatureContacts, AreThoseWithACommonPoint) {
-  expect_contacts_by_points(build_plc(testing::two_boxes()));
-  expect_contacts_by_points(build_plc(testing::l_shape()));
-  expect_contacts_by_points(build_plc(testing::cylinder(1, 2, 24), {.feature_angle = 40}));
+  expect_contacts_by_points(complex_of(testing::two_boxes()));
+  expect_contacts_by_points(complex_of(testing::l_shape()));
+  expect_contacts_by_points(complex_of(testing::cylinder(1, 2, 24), 40));
   // 80 flat faces meet in its tip, more than are listed as neighbours of each other.
-  expect_contacts_by_points(build_plc(testing::cone(1, 1, 80), {.feature_angle = 0}));
+  expect_contacts_by_points(complex_of(testing::cone(1, 1, 80), 0));
 }
 
 Corners any_corners(std::mt19937& random) {
@@ -71,7 +77,7 @@ double longest(const Corners& p) {
 
 // The faces of a unit box that two of its opposite corners are on: one pair of them has no point in common.
 struct OppositeFaces {
-  Plc plc = build_plc(testing::box());
+  Plc plc = complex_of(testing::box());
   Index below = none, above = none, beside = none;
   OppositeFaces() {
     for (Index p = 0; p < plc.patches.size(); ++p) {
@@ -143,7 +149,7 @@ TEST(ForcedEdges, OfOthersItIsTheShortestForcedEdge) {
 }
 
 TEST(ForcedEdges, TwoSidesOfAPatchFaceOppositeWays) {
-  const Plc plc = build_plc(testing::box());
+  const Plc plc = complex_of(testing::box());
   // A wall of one patch, one side above the other: triangles 0 1 2 and 3 5 4.
   const std::vector<Point> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0.1}, {1, 0, 0.1}, {0, 1, 0.1}};
   const std::vector<TetMesh::VertexFeature> features(6, {2, 0});
@@ -162,7 +168,7 @@ TEST(ForcedEdges, ThinTetsMayBeAsSharpAsTheyLeaveThem) {
   const auto forced =
       std::make_shared<const ForcedEdges>(faces.with({faces.below, faces.below, faces.below, faces.above}));
   const improvement::ThinShape with(faces.plc, mesh, 8, 0, forced), without(faces.plc, mesh, 8, 0, nullptr);
-  for (const double height : {0.3, 0.1, 0.01, 1e-4}) {
+  for (const double height : {0.3, 0.09, 0.01, 1e-4}) {
     const Corners prism{Point{0, 0, 0}, Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, height}};
     EXPECT_TRUE(with.contains(prism, four)) << height;
     EXPECT_EQ(without.contains(prism, four), height > 0.1) << height;

@@ -239,10 +239,10 @@ TEST(RefineFacingSheets, CellsBetweenPairsAreSparedByTheRestOfTheirEdges) {
     return std::count(v.begin(), v.end(), a) + std::count(v.begin(), v.end(), a + 1) == 2;
   });
   ASSERT_NE(at_pair, cells.end());
-  EXPECT_FALSE(judges.facing_sheets.fills_gap(*at_pair, 10));
+  EXPECT_FALSE(judges.facing_sheets.is_within(*at_pair, 10));
   judges.facing_sheets.note_pair(a + 1, a);
-  EXPECT_TRUE(judges.facing_sheets.fills_gap(*at_pair, 10));
-  EXPECT_FALSE(judges.facing_sheets.fills_gap(*at_pair, 1e-3));
+  EXPECT_TRUE(judges.facing_sheets.is_within(*at_pair, 10));
+  EXPECT_FALSE(judges.facing_sheets.is_within(*at_pair, 1e-3));
 }
 
 TEST(RefineGradedSizes, SpreadUntilNoneGrowsFasterThanTheGradation) {

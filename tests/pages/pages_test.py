@@ -262,16 +262,13 @@ def options_told(sources, build):
 
 
 def run_readme(sources, build):
-    """The commands of the README, but for the clone: that of its program is the one built."""
+    """The commands of the README; `./collarmesh` is the program that is built."""
     (block,) = blocks(sources / "README.md")
-    clone, *commands = block.lines()
-    if not clone.startswith("git clone") or not commands:
-        raise SystemExit("the README begins with something else than a clone")
     with tempfile.TemporaryDirectory(prefix="collarmesh-page-") as folder:
         reader = Reader(folder, sources, build)
         (reader.folder / "resources").symlink_to(sources / "resources")
         (reader.folder / "collarmesh").symlink_to(build / "bin/collarmesh")
-        reader.run("README.md", Block(block.language, "\n".join(commands)))
+        reader.run("README.md", block)
         if not (reader.folder / "bracket.vtu").exists():
             raise SystemExit("the README's commands make no mesh")
 

@@ -1,4 +1,4 @@
-// What was asked for, made, found and repaired, from the JSON of the run.
+// The text of the page: what was asked for, made, found and repaired, from the JSON of the run.
 'use strict';
 
 function element(tag, attributes = {}, ...children) {
@@ -19,6 +19,17 @@ function table(rows) {
     element('tr', {}, element('th', {}, name), element('td', {}, value))));
 }
 
+// Names of regions and faces, as everywhere on the page: those given, else those of CAD files, else numbers.
+function namesOf(report) {
+  const cad = report.inputs.some(path => /\.(step|stp|iges|igs|brep|brp)$/i.test(path));
+  const regions = new Map(report.complex.regions.map(r => [r.region, r.name.split(/[/,] ?/).pop() || `region ${r.tag}`]));
+  const all = [...regions.values()];
+  for (const { region, tag } of report.complex.regions)  // several of one file
+    if (all.filter(name => name === regions.get(region)).length > 1) regions.set(region, `${regions.get(region)} ${tag}`);
+  const faces = new Map(report.complex.patch_list.map(p => [p.tag, p.name || (cad ? `Face${p.tag}` : `patch ${p.tag}`)]));
+  return { region: number => regions.get(number) || `region ${number}`, face: tag => faces.get(tag) || `patch ${tag}` };
+}
+
 function place(where, show) {
   const text = `(${where.map(number).join(', ')})`;
   return element('a', { class: 'place', onclick: () => show(where) }, text);
@@ -29,7 +40,7 @@ const guarantees = [
   ['Conformity: corners, edges and faces of the input are in the mesh',
     ['conforming', 'watertight', 'curve_cover', 'curve_distance', 'patch_area', 'patch_border', 'patch_distance', 'patch_manifold',
       'patch_orientation', 'patch_plane', 'vertex_feature', 'vertex_present', 'listed_edges', 'listed_faces']],
-  ['Regions: volumes are those of the input', ['region_volume', 'volume_kept', 'region_tag', 'positive_volume', 'distinct_tets']],
+  ['Regions: each tetrahedron lies in one, and volumes are kept', ['region_volume', 'volume_kept', 'region_tag', 'positive_volume', 'distinct_tets']],
   ['Tags: faces and edges know where they are from', ['curve_tag', 'patch_tag', 'patch_regions', 'face_regions']],
   ['Shape: circumradius over shortest edge is bounded', ['radius_edge']],
   ['Thin tetrahedra have no small or large angle', ['thin_angles']],
@@ -93,12 +104,31 @@ function worst(shown, show) {
   return [element('h2', {}, 'Worst elements'), element('ul', {}, ...shown.worst.map(line))];
 }
 
+function straightened(report, names, show) {
+  const nodes = report.second_order ? report.second_order.straightened : [];
+  if (nodes.length === 0) return [];
+  const line = ({ where, distance, dimension, tag }) => element('li', {},
+    `${dimension === 2 ? names.face(tag) : `edge ${tag}`}: ${number(distance)} away, at `, place(where, show));
+  return [element('h2', {}, 'Straightened nodes'),
+    element('p', {}, `${number(nodes.length)} mid-edge nodes stay off their smooth face or edge, as an element would be ` +
+      'inverted otherwise. The view marks them in violet.'),
+    element('ul', {}, ...nodes.slice(0, 50).map(line))];
+}
+
+// The largest ratio of each kind of tetrahedra, so that the histogram of all of them ends where these say.
+function ratios(mesh) {
+  const kinds = [['', mesh.max_radius_edge], [' (thin tetrahedra)', mesh.max_thin_radius_edge],
+    [' (collars)', mesh.max_collar_radius_edge]];
+  return kinds.filter(([, value]) => value !== 0)  // 0: there is no tetrahedron of this kind
+    .map(([text, value]) => `at most ${value === null ? 'infinite' : number(value)}${text}`).join(', ');
+}
+
 function kept(check, region) {
   const found = check.kept.region_volumes.find(each => each.number === region);
   return found ? ` (${found.percent < 0 ? '' : '+'}${found.percent.toFixed(2)} % of the input's ${number(found.input)})` : '';
 }
 
-function describe(report, shown, show) {
+function describe(report, shown, names, show) {
   const { mesh, check, complex, options } = report, name = report.inputs.map(path => path.split('/').pop()).join(', ');
   document.title = `${name}: mesh report`;
   document.getElementById('title').textContent = name;
@@ -109,7 +139,7 @@ function describe(report, shown, show) {
   const diagonal = complex.diagonal, size = options.size ?? diagonal / 20;
   const changed = ['region_size', 'patch_size', 'curve_size'].flatMap(kind =>
     Object.entries(options[kind]).map(([tag, value]) => [`Size of ${kind.split('_')[0]} ${tag}`, number(value)]));
-  const regions = complex.regions.map(r => [`Region ${(r.name || String(r.tag)).split('/').pop()}: volume`, number(mesh.region_volumes[r.region]) + kept(check, r.region)]);
+  const regions = complex.regions.map(r => [`Volume of ${names.region(r.region)}`, number(mesh.region_volumes[r.region]) + kept(check, r.region)]);
   const warnings = [...report.warnings, ...complex.warnings.map(w => w.message), ...check.warnings, ...report.notes, ...check.notes];
   document.getElementById('facts').append(
     element('h2', {}, 'Asked for'),
@@ -120,7 +150,7 @@ function describe(report, shown, show) {
     table([['Tetrahedra', number(mesh.tets)], ['Nodes', number(mesh.points)], ['Boundary triangles', number(mesh.faces)],
       ['Median edge', `${number(check.median_edge)} (${number(check.median_edge / size)} of the size)`],
       ['Dihedral angles', `${number(mesh.min_dihedral)}° to ${number(mesh.max_dihedral)}°`],
-      ['Circumradius / shortest edge', `at most ${number(mesh.max_radius_edge)}`],
+      ['Circumradius / shortest edge', ratios(mesh)],
       ['Thin, in collars', `${number(check.thin_tets)}, ${number(check.collar_tets)}`],
       ['Farthest from smooth surfaces', number(check.max_surface_distance)], ...regions,
       ['Seconds', Object.entries(report.seconds).map(([stage, s]) => `${stage} ${Number(s.toPrecision(2))}`).join(', ')],
@@ -128,7 +158,7 @@ function describe(report, shown, show) {
     element('h2', {}, 'Guarantees'), guaranteeList(report, show),
     ...(warnings.length > 0 ? [element('h2', {}, 'Warnings and notes'),
       element('ul', {}, ...warnings.slice(0, 50).map(text => element('li', {}, text)))] : []),
-    ...repairs(report, show), ...worst(shown, show),
+    ...straightened(report, names, show), ...repairs(report, show), ...worst(shown, show),
     histogram('Smallest dihedral angle of each tetrahedron', mesh.histograms.min_dihedral, '°'),
     histogram('Largest dihedral angle', mesh.histograms.max_dihedral, '°'),
     histogram('Circumradius / shortest edge', mesh.histograms.radius_edge, ''));

@@ -20,12 +20,14 @@ async function open() {
   const json = id => JSON.parse(document.getElementById(id).textContent);
   const report = json('report'), shown = json('shown');
   let view = null;
-  describe(report, shown, (where, tet) => { if (view) view.show(where, tet); });
+  const names = namesOf(report);
+  describe(report, shown, names, (where, tet) => { if (view) view.show(where, tet); });
   if (typeof THREE === 'undefined' || shown.tets === 0) {
     document.getElementById('view').remove();
     return;
   }
-  view = new View(shown, await readMesh(shown, document.getElementById('data').textContent));
+  const mesh = await readMesh(shown, document.getElementById('data').textContent);
+  view = new View(shown, mesh, names, report.second_order ? report.second_order.straightened : []);
   follow(location.hash, view, shown);
   window.addEventListener('hashchange', () => follow(location.hash, view, shown));
 }

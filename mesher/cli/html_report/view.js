@@ -1,4 +1,4 @@
-// A view of the mesh that turns and cuts: of the tetrahedra on one side of a plane the faces that nothing hides.
+// A view of the mesh that turns and cuts: it draws the outer faces of the tetrahedra on one side of a plane.
 'use strict';
 
 const noNeighbour = -1;
@@ -12,12 +12,15 @@ async function inflate(text) {
   return new Response(stream).arrayBuffer();
 }
 
-// Shapes: points 3 per point, relative to shown.centre; tets 4 per tet; region, marks (1 collar, 2 thin) 1 per tet.
+// Shapes: points 3 per point, relative to shown.centre; tets 4 per tet; patches 4 per face on a patch, three corners and
+// the number of its tag in shown.face_tags; region, marks (1 collar, 2 thin) 1 per tet.
 async function readMesh(shown, text) {
-  const data = await inflate(text), { points, tets } = shown;
+  const data = await inflate(text), { points, tets, faces } = shown, end = 12 * points + 16 * tets + 16 * faces;
   const mesh = { points: new Float32Array(data, 0, 3 * points), tets: new Uint32Array(data, 12 * points, 4 * tets),
-    region: new Uint16Array(data, 12 * points + 16 * tets, tets), marks: new Uint8Array(data, 12 * points + 18 * tets, tets) };
+    patches: new Uint32Array(data, 12 * points + 16 * tets, 4 * faces),
+    region: new Uint16Array(data, end, tets), marks: new Uint8Array(data, end + 2 * tets, tets) };
   mesh.neighbours = findNeighbours(mesh.tets);
+  mesh.tagNumber = tagNumbers(mesh.patches);
   mesh.smallest = Float32Array.from({ length: tets }, (_, t) => dihedralAngles(mesh, t)[0]);
   return mesh;
 }
@@ -48,6 +51,20 @@ function findNeighbours(tets) {
   return neighbours;
 }
 
+// The number of the tag by the sorted corners of the face.
+function tagNumbers(patches) {
+  const numbers = new Map();
+  for (let f = 0; f < patches.length; f += 4)
+    numbers.set([patches[f], patches[f + 1], patches[f + 2]].sort((a, b) => a - b).join(), patches[f + 3]);
+  return numbers;
+}
+
+// Undefined for a face that is on no patch.
+function tagNumberOf(mesh, face) {
+  const corners = faceCorners[face & 3].map(i => mesh.tets[4 * (face >> 2) + i]);
+  return mesh.tagNumber.get(corners.sort((a, b) => a - b).join());
+}
+
 function cornersOf(mesh, tet) {
   return [0, 1, 2, 3].map(i => new THREE.Vector3().fromArray(mesh.points, 3 * mesh.tets[4 * tet + i]));
 }
@@ -65,24 +82,41 @@ function dihedralAngles(mesh, tet) {
 const angleColours = [[0, '#b2182b'], [5, '#d6604d'], [10, '#f4a582'], [20, '#fddbc7'], [30, '#d1e5f0'], [40, '#92c5de'], [50, '#4393c3']];
 const regionColours = ['#7fa7c9', '#d9a05b', '#7fb685', '#c98ba6', '#b5a642', '#8f8fc6', '#c77b6b', '#6fb7b7'];
 const markColours = { plain: '#c3cdd8', marked: '#d1495b' };
+const background = 0xf4f6f8;
+// A label is shown for a patch of which this many pixels are in sight, in a small picture of this width.
+const leastPixels = 6, smallWidth = 240;
 
-function colourOf(mesh, tet, by) {
+// Neighbouring numbers get colours far apart: hues by the golden angle.
+function faceColour(number) {
+  return new THREE.Color().setHSL((0.58 + 0.381966 * number) % 1, 0.45, [0.68, 0.58, 0.76][number % 3]);
+}
+
+function colourOf(mesh, face, by) {
+  const tet = face >> 2;
+  if (by === 'face') {
+    const number = tagNumberOf(mesh, face);
+    return number === undefined ? markColours.plain : faceColour(number);
+  }
   if (by === 'region') return regionColours[(mesh.region[tet] + regionColours.length - 1) % regionColours.length];
   if (by === 'angle') return angleColours.filter(([least]) => mesh.smallest[tet] >= least).pop()[1];
   return mesh.marks[tet] & (by === 'collar' ? 1 : 2) ? markColours.marked : markColours.plain;
 }
 
-function legend(mesh, by) {
+function legend(mesh, shown, names, by) {
+  if (by === 'face')
+    return shown.face_tags.map((tag, number) => [`#${faceColour(number).getHexString()}`, names.face(tag)]);
   if (by === 'angle') return angleColours.map(([least, colour]) => [colour, `from ${least}°`]);
   if (by === 'region')
-    return [...new Set(mesh.region)].sort((a, b) => a - b).slice(0, 12).map(r => [regionColours[(r + regionColours.length - 1) % regionColours.length], `region ${r}`]);
+    return [...new Set(mesh.region)].sort((a, b) => a - b)
+      .map(r => [regionColours[(r + regionColours.length - 1) % regionColours.length], names.region(r)]);
   return [[markColours.marked, by === 'collar' ? 'in a collar' : 'thin'], [markColours.plain, 'others']];
 }
 
 class View {
-  constructor(shown, mesh) {
+  constructor(shown, mesh, names, straightened) {
     this.shown = shown;
     this.mesh = mesh;
+    this.names = names;
     this.canvas = document.getElementById('canvas');
     this.box = new THREE.Box3().setFromArray(mesh.points);
     this.diagonal = this.box.getSize(new THREE.Vector3()).length();
@@ -93,7 +127,7 @@ class View {
     lamp.position.set(0.4, 0.7, 1);
     this.camera.add(lamp);
     this.renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
-    this.renderer.setClearColor(0xf4f6f8);
+    this.renderer.setClearColor(background);
     this.canvas.append(this.renderer.domElement);
     this.controls = new THREE.OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener('change', () => this.draw());
@@ -104,16 +138,33 @@ class View {
     this.mark = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial(
       { color: 0xff00aa, depthTest: false }));
     this.mark.renderOrder = 1;
-    this.scene.add(this.surface, this.lines, this.mark);
+    this.scene.add(this.surface, this.lines, this.mark, this.straightened(straightened));
+    this.numbered = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshBasicMaterial({ vertexColors: THREE.VertexColors }));
+    this.numbers = new THREE.Scene();
+    this.numbers.add(this.numbered);
+    this.labels = shown.face_tags.map(tag => element('span', { hidden: '' }, names.face(tag)));
+    document.getElementById('labels').append(...this.labels);
     this.readControls();
-    this.reset();
-    window.addEventListener('resize', () => this.resize());
     this.resize();
+    this.reset();
+    this.controls.addEventListener('start', () => { this.whole = false; this.moves = true; this.placeLabels(); });
+    this.controls.addEventListener('end', () => { this.moves = false; this.placeLabels(); });
+    window.addEventListener('resize', () => { this.resize(); if (this.whole) this.reset(); });
+  }
+
+  // A dot at each node that stays off its face.
+  straightened(nodes) {
+    const geometry = new THREE.BufferGeometry();
+    const at = nodes.flatMap(({ where }) => where.map((x, i) => x - this.shown.centre[i]));
+    geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(at), 3));
+    document.body.dataset.straightened = nodes.length;
+    return new THREE.Points(geometry, new THREE.PointsMaterial({ color: 0x7a2bd0, size: 8, sizeAttenuation: false }));
   }
 
   readControls() {
     const control = id => document.getElementById(id);
     for (const id of ['colour', 'axis', 'position']) control(id).addEventListener('input', () => this.rebuild());
+    control('names').addEventListener('input', () => this.draw());
     control('edges').addEventListener('input', () => { this.lines.visible = control('edges').checked; this.draw(); });
     control('reset').addEventListener('click', () => { control('axis').value = ''; this.reset(); });
     if (!this.shown.complete) control('position').disabled = true;  // cells are there around the middle planes only
@@ -127,11 +178,44 @@ class View {
   reset() {
     const centre = this.box.getCenter(new THREE.Vector3());
     this.controls.target.copy(centre);
-    this.camera.position.copy(centre).addScaledVector(new THREE.Vector3(0.75, -1, 0.6).normalize(), 1.45 * this.diagonal);
     this.camera.up.set(0, 0, 1);
+    this.camera.position.copy(centre).add(new THREE.Vector3(0.75, -1, 0.6));
+    this.camera.lookAt(centre);
+    this.camera.position.copy(centre).addScaledVector(this.backwards(), this.distanceToSeeAll(centre));
+    this.whole = true;
     this.mark.geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(0), 3));
     this.rebuild();
     this.controls.update();
+    document.body.dataset.whole = this.seesAll() ? 'yes' : 'no';
+  }
+
+  backwards() {
+    return new THREE.Vector3(0, 0, 1).applyQuaternion(this.camera.quaternion);
+  }
+
+  // From the middle in this direction, so that every point is in the picture, with a margin of a twentieth.
+  distanceToSeeAll(centre) {
+    const back = this.backwards(), right = new THREE.Vector3(1, 0, 0).applyQuaternion(this.camera.quaternion);
+    const up = new THREE.Vector3(0, 1, 0).applyQuaternion(this.camera.quaternion);
+    const tangent = Math.tan(this.camera.fov * Math.PI / 360) / 1.05, wide = tangent * this.camera.aspect;
+    const p = new THREE.Vector3();
+    let distance = 0;
+    for (let i = 0; i < this.mesh.points.length; i += 3) {
+      p.fromArray(this.mesh.points, i).sub(centre);
+      distance = Math.max(distance, p.dot(back) + Math.max(Math.abs(p.dot(right)) / wide, Math.abs(p.dot(up)) / tangent));
+    }
+    return distance;
+  }
+
+  // Are all points in the picture?
+  seesAll() {
+    this.camera.updateMatrixWorld();
+    const p = new THREE.Vector3();
+    for (let i = 0; i < this.mesh.points.length; i += 3) {
+      p.fromArray(this.mesh.points, i).project(this.camera);
+      if (Math.max(Math.abs(p.x), Math.abs(p.y)) > 1) return false;
+    }
+    return true;
   }
 
   // Which tets lie on the near side of the cut?
@@ -152,10 +236,14 @@ class View {
     for (let face = 0; face < tets.length; ++face)
       if (keep[face >> 2] && (neighbours[face] === noNeighbour || !keep[neighbours[face]])) faces.push(face);
     const position = new Float32Array(9 * faces.length), colour = new Float32Array(9 * faces.length);
-    const line = new Float32Array(18 * faces.length), rgb = new THREE.Color();
+    const line = new Float32Array(18 * faces.length), rgb = new THREE.Color(), numbers = new Float32Array(9 * faces.length);
     faces.forEach((face, f) => {
       const t = face >> 2;
-      rgb.set(colourOf(this.mesh, t, by));
+      rgb.set(colourOf(this.mesh, face, by));
+      const number = tagNumberOf(this.mesh, face);
+      if (number !== undefined) this.numberColour(number).forEach((value, i) => {
+        for (let k = 0; k < 3; ++k) numbers[9 * f + 3 * k + i] = value / 255;
+      });
       faceCorners[face & 3].forEach((corner, k) => {
         const from = 3 * tets[4 * t + corner];
         for (let i = 0; i < 3; ++i) {
@@ -173,12 +261,16 @@ class View {
     this.surface.geometry.setAttribute('position', new THREE.BufferAttribute(position, 3));
     this.surface.geometry.setAttribute('color', new THREE.BufferAttribute(colour, 3));
     this.surface.geometry.computeVertexNormals();
+    this.numbered.geometry.dispose();
+    this.numbered.geometry = new THREE.BufferGeometry();
+    this.numbered.geometry.setAttribute('position', new THREE.BufferAttribute(position, 3));
+    this.numbered.geometry.setAttribute('color', new THREE.BufferAttribute(numbers, 3));
     this.lines.geometry.dispose();
     this.lines.geometry = new THREE.BufferGeometry();
     this.lines.geometry.setAttribute('position', new THREE.BufferAttribute(line, 3));
     document.body.dataset.triangles = faces.length;
-    document.getElementById('legend').replaceChildren(...legend(this.mesh, by).flatMap(([c, text]) =>
-      [element('span', { class: 'swatch', style: `background: ${c}` }), text]));
+    document.getElementById('legend').replaceChildren(...legend(this.mesh, this.shown, this.names, by).map(([c, text]) =>
+      element('span', {}, element('i', { class: 'swatch', style: `background: ${c}` }), text)));
     this.draw();
   }
 
@@ -203,6 +295,7 @@ class View {
     const direction = this.camera.position.clone().sub(this.controls.target).normalize();
     this.controls.target.copy(at);
     this.camera.position.copy(at).addScaledVector(direction, 12 * reach);
+    this.whole = false;
     this.controls.update();
     document.body.dataset.marked = lines.length / 6;
     this.draw();
@@ -213,20 +306,25 @@ class View {
     ray.setFromCamera(new THREE.Vector2(2 * (event.clientX - box.left) / box.width - 1,
       1 - 2 * (event.clientY - box.top) / box.height), this.camera);
     const [hit] = ray.intersectObject(this.surface);
-    if (hit) this.tell(this.faces[hit.faceIndex] >> 2);
+    if (hit) this.tell(this.faces[hit.faceIndex] >> 2, this.faces[hit.faceIndex]);
   }
 
-  tell(tet) {
+  // Says what the tet is, and which face was clicked.
+  tell(tet, face = null) {
     const [smallest, largest] = dihedralAngles(this.mesh, tet), marks = this.mesh.marks[tet];
     const corners = cornersOf(this.mesh, tet).map(p => `(${p.toArray().map((x, i) => number(x + this.shown.centre[i])).join(', ')})`);
-    document.getElementById('selected').textContent = `Region ${this.mesh.region[tet]}, dihedral angles ${number(smallest)}° to ` +
+    const patch = face === null ? undefined : tagNumberOf(this.mesh, face);
+    const on = patch === undefined ? '' : `${this.names.face(this.shown.face_tags[patch])}; `;
+    document.getElementById('selected').textContent = `${on}${this.names.region(this.mesh.region[tet])}, dihedral angles ${number(smallest)}° to ` +
       `${number(largest)}°${marks & 1 ? ', in a collar' : ''}${marks & 2 ? ', thin' : ''}; corners ${corners.join(' ')}`;
   }
 
   turn(degrees) {
-    const offset = this.camera.position.clone().sub(this.controls.target);
-    offset.applyAxisAngle(new THREE.Vector3(0, 0, 1), degrees * Math.PI / 180);
-    this.camera.position.copy(this.controls.target).add(offset);
+    const { target } = this.controls, offset = this.camera.position.clone().sub(target);
+    this.camera.position.copy(target).add(offset.applyAxisAngle(new THREE.Vector3(0, 0, 1), degrees * Math.PI / 180));
+    this.camera.lookAt(target);
+    if (this.whole) this.camera.position.copy(target).addScaledVector(this.backwards(), this.distanceToSeeAll(target));
+    this.whole = false;
     this.controls.update();
     this.draw();
   }
@@ -244,5 +342,49 @@ class View {
     this.camera.far = distance + 2 * this.diagonal;
     this.camera.updateProjectionMatrix();
     this.renderer.render(this.scene, this.camera);
+    this.placeLabels();
+  }
+
+  // The number of a patch as a colour; no patch is black.
+  numberColour(number) {
+    return [(number + 1) >> 16 & 255, (number + 1) >> 8 & 255, (number + 1) & 255];
+  }
+
+  // For each patch in sight its pixels in a small picture, in which the colours are numbers.
+  pixelsInSight() {
+    const width = smallWidth, height = Math.max(1, Math.round(smallWidth / this.camera.aspect));
+    const target = new THREE.WebGLRenderTarget(width, height), pixels = new Uint8Array(4 * width * height);
+    this.renderer.setRenderTarget(target);
+    this.renderer.setClearColor(0);
+    this.renderer.render(this.numbers, this.camera);
+    this.renderer.readRenderTargetPixels(target, 0, 0, width, height, pixels);
+    this.renderer.setRenderTarget(null);
+    this.renderer.setClearColor(background);
+    target.dispose();
+    const inSight = new Map();
+    for (let i = 0; i < width * height; ++i) {
+      const number = (pixels[4 * i] << 16 | pixels[4 * i + 1] << 8 | pixels[4 * i + 2]) - 1;
+      if (number < 0) continue;
+      if (!inSight.has(number)) inSight.set(number, []);
+      inSight.get(number).push([(i % width + 0.5) / width, 1 - (Math.floor(i / width) + 0.5) / height]);
+    }
+    return inSight;
+  }
+
+  // Puts the name of each patch in sight onto its pixel that is nearest to the middle of all its pixels. There are
+  // none while the view moves.
+  placeLabels() {
+    const wanted = !this.moves && document.getElementById('names').checked && document.getElementById('colour').value === 'face';
+    const inSight = wanted ? this.pixelsInSight() : new Map();
+    this.labels.forEach((span, number) => {
+      const pixels = inSight.get(number) || [];
+      span.hidden = pixels.length < leastPixels;
+      if (span.hidden) return;
+      const middle = [0, 1].map(i => pixels.reduce((sum, p) => sum + p[i], 0) / pixels.length);
+      const off = p => Math.hypot(p[0] - middle[0], p[1] - middle[1]);
+      const [x, y] = pixels.reduce((best, p) => off(p) < off(best) ? p : best);
+      span.style.left = `${100 * x}%`;
+      span.style.top = `${100 * y}%`;
+    });
   }
 }

@@ -7,27 +7,28 @@
 
 namespace collarmesh {
 
-/// What every stage keeps and `check` judges by. Angles in degrees.
+/// The bounds that every stage keeps and that `check` judges by. Angles in degrees.
 struct Bounds {
   double radius_edge = 2;  ///< largest circumradius / shortest edge in regions, outside collars; at least 1
-  /// Smallest dihedral angle of thin tets, which may exceed that ratio; at a sharper crease half its angle.
-  /// Their dihedral angles and those of their faces are at most 150. 0: no tet may exceed the ratio.
+  /// Smallest dihedral angle of thin tets, which may exceed that ratio; at a sharper crease half its angle,
+  /// and half of what is left where the input forces edges to be short, as across a thin wall.
+  /// Dihedral and face angles of thin tets are at most 150. 0: no tet may exceed the ratio.
   double thin_angle = 8;
   double collar_angle = 150;  ///< largest dihedral angle in collars; 100 to 175
   double crease_angle = 60;   ///< features that meet below it form a crease and get a collar
   /// Largest distance from smooth patches and curves, absolute; 0: `default_tolerance`.
   double distance = 0;
-  std::optional<SurfaceTolerance> tolerance = {};  ///< by place, instead of the distance
-  /// The share of the bounds on the angles of thin tets, counted from 0 and from 180 degrees, that is kept
-  /// free for what moves vertices afterwards, as `project_boundary` does; 0 to 0.5.
+  std::optional<SurfaceTolerance> tolerance = {};  ///< by place, in place of `distance`
+  /// Share of the bounds on the angles of thin tets, counted from 0 and from 180 degrees, that is kept in
+  /// reserve for stages that move vertices afterwards, such as `project_boundary`; 0 to 0.5.
   double reserve = 0;
 };
 
-/// How far from the smooth patches and curves of a complex these bounds let a mesh be that is made with a
-/// target edge length (0: its default).
+/// Returns the distance that these bounds allow between the smooth patches and curves of a complex and a
+/// mesh made with this target edge length (0: its default).
 SurfaceTolerance tolerance_of(const Plc& plc, const Bounds& bounds, double size, int order = 1);
 
-/// The same for a mesh of which the target edge length is not known: what the largest one lets it be.
+/// The same for a mesh of unknown target edge length: the distance that the largest one allows.
 SurfaceTolerance tolerance_of_any_size(const Plc& plc, const Bounds& bounds);
 
 }  // namespace collarmesh

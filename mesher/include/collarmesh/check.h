@@ -13,12 +13,12 @@
 namespace collarmesh {
 
 struct CheckOptions {
-  /// Where a mesh tells which tets are thin only these may be, in memory as well as read from a file. Cells
-  /// of a collar are excused at creases only.
+  /// If the mesh marks thin tets, only marked ones may be thin, in memory as well as read from a file. Cells
+  /// of a collar are exempt at creases only.
   Bounds bounds = {};
   ShapeMeasures exact = {};  ///< of the exact geometry behind the complex; NaN or missing: the complex's own
   std::size_t findings_per_guarantee = 20;  ///< more are counted, not listed
-  unsigned threads = 0;                     ///< at most; 0: as many as there are cores
+  unsigned threads = 0;                     ///< maximum number; 0: all cores
 };
 
 /// A guarantee that does not hold, and where.
@@ -31,11 +31,10 @@ struct Finding {
 
 struct CheckReport {
   std::vector<Finding> findings;
-  std::size_t findings_total = 0;  ///< with those not listed
-  std::vector<std::string>
-      notes;  ///< sentences: labels that were not the complex', so that positions decided
-  std::vector<std::string> warnings;  ///< sentences: regions whose volume changed more than one may like
-  // What was measured:
+  std::size_t findings_total = 0;     ///< with those not listed
+  std::vector<std::string> notes;     ///< sentences: labels that were not the complex's, so positions decided
+  std::vector<std::string> warnings;  ///< sentences: regions whose volume changed noticeably
+  // Measurements:
   std::size_t tets = 0, points = 0, faces = 0, edges = 0, collar_tets = 0, thin_tets = 0;
   double max_radius_edge = 0;                   ///< outside collars, without thin tets
   double max_thin_radius_edge = 0;              ///< of thin tets
@@ -45,9 +44,9 @@ struct CheckReport {
   double median_edge = 0;
   std::vector<double> region_volumes;  ///< by region index, [0] unused; of curved elements as they curve
   ShapeMeasures of_input, of_mesh;     ///< empty when labels or points are not usable
-  MeshMeasures measures;               ///< in collars, too; of no tet when labels or points are not usable
+  MeshMeasures measures;               ///< with collars; of no tet when labels or points are not usable
 
-  bool cancelled = false;  ///< by the execution; then not everything was looked at
+  bool cancelled = false;  ///< by the execution, so that not everything was checked
 
   bool passed() const { return findings_total == 0 && !cancelled; }
 };
@@ -57,10 +56,10 @@ struct CheckReport {
 /// unions of faces with equal area, radius-edge ratio or angles, surface distance. A region may lose or gain
 /// 5% of its volume with elements of first order, 1% with those of second order, unless the bounds ask for a
 /// distance; a warning names regions that are more than 2% off.
-/// A mesh read from a file (no feature indices) is matched to the complex by tags and position; where its
-/// tags are not the complex', or it has no boundary triangles or curve edges, by position alone.
-/// Tets count as a collar's cells only at creases of the complex.
-/// Cancelling is looked at between groups of guarantees.
+/// A mesh read from a file (no feature indices) is matched to the complex by tags and position; if its tags
+/// are not the complex's, or it has no boundary triangles or curve edges, by position alone.
+/// Tets count as cells of a collar only at creases of the complex.
+/// Cancellation takes effect between groups of guarantees.
 CheckReport check(const TetMesh& mesh, const Plc& plc, const CheckOptions& options = {},
                   const Execution& execution = {});
 

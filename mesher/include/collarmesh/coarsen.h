@@ -11,23 +11,24 @@ namespace collarmesh {
 
 struct CoarsenReport {
   std::size_t tets_before = 0, tets_after = 0;
-  std::size_t contracted_edges = 0;  ///< with those repaired
-  std::size_t repaired = 0;          ///< of these, those that needed changes of the tets around
+  std::size_t contracted_edges = 0;  ///< including those repaired
+  std::size_t repaired = 0;          ///< of these: collapses that needed changes of the tets around
   double seconds = 0;
-  bool cancelled = false;  ///< the mesh is valid, as coarse as it had become
+  bool cancelled = false;  ///< the mesh is valid and partly coarsened
 };
 
 /// Make as few tets as the sizes ask for: edges shorter than 0.8 times the target edge length there (0.75
-/// inside regions) are contracted, within their features, where no new edge exceeds 1.5 times it or is
-/// shorter than all around. A radius-edge bound makes tets as small as the thinnest wall and the smallest
-/// angle; here it may be exceeded by thin tets: dihedral angles of at least `thin_angle` and dihedral and
-/// face angles of at most 150 degrees (the maximum-angle condition: Babuska and Aziz 1976, Krizek 1992).
-/// Collars dissolve as far as their cells can become thin tets or such within the bound. What nearly fits is
-/// repaired at once, by edge removal and by moving vertices, else undone. All other guarantees hold as
-/// before; planar patches stay planar, smooth patches and curves keep the distance. Preconditions: `mesh`
-/// comes from `generate` for `plc` with the options `made_with`, first order. Guarantee: same input and
-/// options, same mesh. Throws OptionError for an angle out of range. Cost: linear in the tets, with local
-/// changes: some microseconds for each tet that vanishes, and several times that where trials of repair fail.
+/// inside regions) are collapsed, within their features, unless a new edge would exceed 1.5 times it or be
+/// shorter than all edges around. A radius-edge bound makes tets as small as the thinnest wall and the
+/// smallest angle; here it may be exceeded by thin tets: dihedral angles of at least `thin_angle` and
+/// dihedral and face angles of at most 150 degrees (the maximum-angle condition: Babuska and Aziz 1976,
+/// Krizek 1992). Collars dissolve as far as their cells can become thin tets or tets within the bound. A
+/// collapse that nearly fits is repaired at once, by edge removal and by moving vertices, else undone. All
+/// other guarantees hold as before; planar patches stay planar, smooth patches and curves keep the distance.
+/// Preconditions: `mesh` comes from `generate` for `plc` with the options `made_with`, first order.
+/// Guarantee: same input and options, same mesh. Throws OptionError for an angle out of range. Cost: linear
+/// in the tets, with local changes: some microseconds for each tet that vanishes, and several times that
+/// where repairs fail.
 CoarsenReport coarsen(TetMesh& mesh, const Plc& plc, const MeshOptions& made_with,
                       const Execution& execution = {});
 

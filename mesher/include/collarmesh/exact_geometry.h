@@ -7,8 +7,8 @@
 
 namespace collarmesh {
 
-/// The geometry that the curves (dimension 1) and patches (2) of a complex approximate: the point of a
-/// feature nearest to a node of the mesh on it, or nothing where the complex itself is what is meant.
+/// The geometry that the curves (dimension 1) and patches (2) of a complex approximate: returns the point of
+/// a feature nearest to a mesh node on it, or nothing where the complex itself is the geometry.
 using ExactGeometry =
     std::function<std::optional<Point>(unsigned dimension, Index feature, const Point& node)>;
 

@@ -10,7 +10,7 @@ namespace collarmesh {
 /// Which facets `merge_soups` cuts into triangles.
 enum class CutFacets {
   nothing,  ///< keep them: for formats of complexes
-  complex,  ///< those of several polygons or with holes, which most surface formats have no place for
+  complex,  ///< facets of several polygons or with holes, which most surface formats cannot hold
   all       ///< every one with more than three corners
 };
 
@@ -19,16 +19,16 @@ struct MergeSoupsOptions {
   CutFacets cut = CutFacets::nothing;
 };
 
-/// What `merge_soups` changed.
+/// Counts of the changes that `merge_soups` made.
 struct MergeReport {
-  Index welded_points = 0;      ///< became one with another
+  Index welded_points = 0;      ///< merged with another one
   Index unused_points = 0;      ///< no facet or segment uses them: dropped, except those of a complex
   Index cut_facets = 0;         ///< became triangles
   Index degenerate_facets = 0;  ///< less than three corners after welding: dropped
   Index repeated_facets = 0;    ///< the corners of another facet in either direction: dropped
 };
 
-/// One soup of several, as they are: nothing is turned, and what intersects or is open stays so. Facets
+/// Joins several soups as they are: reorients nothing, and leaves intersections and open borders. Facets
 /// keep their order and tags; region points, hole points and holes of facets are kept.
 /// Throws PlcError for points that are not finite, indices out of range, and facets to be cut that are not
 /// planar.
@@ -36,7 +36,7 @@ struct MergeReport {
 PolygonSoup merge_soups(std::span<const PolygonSoup> soups, const MergeSoupsOptions& options,
                         MergeReport& report);
 
-/// Replace the region and hole points of a soup by those of a complex that was built from it: one point
+/// Replaces the region and hole points of a soup by those of a complex that was built from it: one point
 /// inside each region with its tag and size, one inside each cavity. A region too thin for a point in
 /// floating-point numbers gets none. Returns how many did not get one.
 /// Cost: O(n log n) for n triangles.

@@ -17,8 +17,8 @@ struct MeshMeasures {
     Index tet;
   };
 
-  double min_dihedral = 180, max_dihedral = 0;    ///< degrees
-  double max_radius_edge = 0;                     ///< outside collars and of no thin tet: where it is bounded
+  double min_dihedral = 180, max_dihedral = 0;  ///< degrees
+  double max_radius_edge = 0;  ///< of tets that are neither thin nor in a collar, for which it is bounded
   double max_thin_radius_edge = 0;                ///< of thin tets; 0: there are none
   double max_collar_radius_edge = 0;              ///< in collars; 0: there are none
   std::array<std::size_t, bins> min_dihedrals{};  ///< tets by their smallest dihedral angle, 10 degrees a bin
@@ -30,14 +30,14 @@ struct MeshMeasures {
   std::vector<Extreme> smallest_angles, largest_angles;
 
   enum class Kind { plain, thin, collar };
-  /// Count a tet of this quality. To be called in the order of the tets.
+  /// Counts a tet of this quality. Call it in the order of the tets.
   void add(Index tet, const TetQuality& quality, Index region, Kind kind);
 };
 
-/// Of its corners; the volume is that of the curved tet where the mesh is of second order.
+/// Measures a tet by its corners; the volume is that of the curved tet if the mesh is of second order.
 TetQuality measure_tet(const TetMesh& mesh, Index tet);
 
-/// Of all tets; of a mesh without regions they are those of region 1.
+/// Measures all tets; those of a mesh without regions are in region 1.
 MeshMeasures measure_mesh(const TetMesh& mesh);
 
 }  // namespace collarmesh

@@ -19,27 +19,27 @@ namespace collarmesh {
 /// crease (paper, section 3.2), or before the first vertex is inserted. The guarantees are the same.
 enum class CollarCreation { in_pass, up_front };
 
-/// What `generate` aims at. Lengths are absolute, in input units, and are target edge lengths:
+/// The goals of `generate`. Lengths are absolute, in input units, and are target edge lengths:
 /// the median edge of a large mesh comes out about a tenth above them, as other meshers' does.
 struct MeshOptions {
-  double size = 0;      ///< target edge length everywhere; 0: 1/20 of the diagonal
-  double size_min = 0;  ///< never ask for less than this because of gradation or fields; 0: none
+  double size = 0;                         ///< target edge length everywhere; 0: 1/20 of the diagonal
+  double size_min = 0;                     ///< smallest target edge length of sizes and fields; 0: none
   std::map<Tag, double> region_size = {};  ///< target edge length by region tag
   std::map<Tag, double> patch_size = {};   ///< by patch tag
   std::map<Tag, double> curve_size = {};   ///< by curve tag
   /// Growth of size per unit length away from a finer patch, curve or region; 0: unlimited.
   double gradation = 0;
   SizeField size_field = {};       ///< target edge length at a point; may be empty
-  double elements_per_circle = 0;  ///< target edge lengths on smooth patches and curves put so many on a full
-                                   ///< circle of their curvature; 0: none
-  /// Smooth curves that turn by half a circle or more get at least so many edges to a full circle: small
-  /// holes stay round. No target edge length otherwise; 0: none.
+  double elements_per_circle = 0;  ///< number of target edge lengths on a full circle of the curvature of
+                                   ///< smooth patches and curves; 0: any
+  /// Minimum number of edges per full circle on smooth curves that turn by half a circle or more, so that
+  /// small holes stay round. It is no target edge length otherwise; 0: none.
   double edges_per_hole = 7;
-  double elements_across_gap = 0;  ///< target edge lengths on patches put so many between them and what they
-                                   ///< face across a region; 0: none
+  double elements_across_gap = 0;  ///< number of target edge lengths between a patch and the feature that it
+                                   ///< faces across a region; 0: any
   Bounds bounds = {};
-  /// The bound on circumradius / shortest edge outside every region, where that is larger; edges straight
-  /// across a gap do not count there.
+  /// Bound on circumradius / shortest edge outside every region, if larger than the bound inside; edges
+  /// straight across a gap do not count there.
   double exterior_radius_edge = 8;
   /// Leave cells of any radius-edge ratio in the regions, too, between features that have no point in common
   /// and are near to each other, as across a thin wall. For meshes that will be coarsened, where angles are
@@ -55,8 +55,8 @@ struct MeshOptions {
   /// Budget in bytes for the mesh structures (a whole run takes about 1.2 times as much); 0: none.
   std::size_t max_memory = 0;
   double time_limit = 0;    ///< budget in seconds; 0: none
-  unsigned threads = 0;     ///< 0: as many as there are cores; any number makes the same mesh
-  bool count_work = false;  ///< fill in MeshStatistics::counts, which takes a moment
+  unsigned threads = 0;     ///< 0: all cores; any number makes the same mesh
+  bool count_work = false;  ///< fill in MeshStatistics::counts, which takes some time
 };
 
 /// MeshOptions::size, or its default for this complex.
@@ -66,12 +66,12 @@ double default_size(const Plc& plc, const MeshOptions& options);
 /// many elements on a circle that none is shorter. Sizes that depend on the place are not judged.
 std::vector<std::string> sizes_without_effect(const Plc& plc, const MeshOptions& options);
 
-/// The surface distance tolerance unless another one is asked for: a tenth of the target edge length (0: of
-/// its default, as in MeshOptions), at most 1/200 of the diagonal. So a circle of about its radius gets some
-/// eight edges of the target length: the chord error is that of edges of the length asked for, and small
-/// curves may be rougher than large ones, but see MeshOptions::edges_per_hole. For cells of second order at
-/// most 1/550 of the diagonal: they are judged by their corners' triangles, which would else be too coarse
-/// to curve without inverting elements. Absolute.
+/// Returns the surface distance tolerance unless another one is asked for: a tenth of the target edge length
+/// (0: of its default, as in MeshOptions), at most 1/200 of the diagonal. So a circle of about its radius
+/// gets some eight edges of the target length: the chord error is that of edges of the length asked for, and
+/// small curves may be rougher than large ones, but see MeshOptions::edges_per_hole. For cells of second
+/// order at most 1/550 of the diagonal: they are judged by the triangles of their corners, which would
+/// otherwise be too coarse to curve without inverting elements. Absolute.
 double default_distance(double size, double diagonal, int order = 1);
 
 enum class MeshStatus {
@@ -81,22 +81,22 @@ enum class MeshStatus {
   cancelled          ///< no mesh
 };
 
-/// What the cost of a refinement consists of: what the paper's analysis bounds. Filled in when asked for
-/// (MeshOptions::count_work).
+/// Counts of the work that the paper's analysis bounds. Filled in if MeshOptions::count_work asks for
+/// them.
 struct WorkCounts {
-  std::size_t located = 0;         ///< points and protective balls that were found from mesh vertices
-  std::size_t relocated = 0;       ///< how often one of them moved to a vertex that was new and nearer
-  std::size_t looks = 0;           ///< at one of them, for the sake of a new vertex or a candidate
-  std::size_t gap_queries = 0;     ///< of the gap size, with collars created in the pass
-  std::size_t gap_cells = 0;       ///< Voronoi cells explored for these
-  std::size_t gap_interviews = 0;  ///< pieces of features whose distance was asked for these
+  std::size_t located = 0;         ///< points and protective balls with a location at a mesh vertex
+  std::size_t relocated = 0;       ///< moves of one of them to a new vertex that is nearer
+  std::size_t looks = 0;           ///< inspections of one of them for a new vertex or a candidate
+  std::size_t gap_queries = 0;     ///< queries of the gap size, with collars created in the pass
+  std::size_t gap_cells = 0;       ///< Voronoi cells that these queries explored
+  std::size_t gap_interviews = 0;  ///< pieces of features whose distance they computed
   std::size_t largest_degree = 0;  ///< neighbours of a new vertex
   std::size_t largest_cavity = 0;  ///< cells that one insertion destroyed
-  /// The same away from vertices and curves of the complex at which very many features meet.
+  /// The same, away from vertices and curves of the complex at which very many features meet.
   std::size_t largest_cavity_outside_hubs = 0;
   double peak_cells_per_vertex = 0;  ///< of the whole triangulation, at any time
-  std::size_t before_quality = 0;    ///< vertices inserted for something else while a skinny cell waited
-  std::size_t ripped_out = 0;        ///< vertices in collars that the result has not (paper, Procedure 5)
+  std::size_t before_quality = 0;    ///< vertices inserted for another reason while a skinny cell waited
+  std::size_t ripped_out = 0;        ///< vertices in collars that are not in the result (paper, Procedure 5)
   /// Extremes of R_v / r_v (paper, section 1.2), the largest circumradius at a vertex over half of its
   /// shortest edge, where all cells at the vertex lie in regions and outside collars; 0 where there is no
   /// such vertex.

@@ -17,15 +17,15 @@
 /// reports, the page about options and the add-on for FreeCAD are made from it.
 namespace collarmesh {
 
-/// Who gets what several solids of a CAD file have in common?
+/// The owner of the common part of several solids of a CAD file.
 enum class SolidOverlap {
   first,  ///< the first one, or the one that lies wholly inside it
-  region  ///< it becomes a region of its own
+  region  ///< the common part becomes a region of its own
 };
 
 enum class ProgressStyle { automatic, json, off };
 
-/// What can be asked of a run from files to a file. Strings are paths; empty: none.
+/// The options of a run from files to a file. Strings are paths; empty: none.
 struct RunOptions : PipelineOptions {
   SolidOverlap overlap = SolidOverlap::first;
   std::string names = {};                     ///< of features, by number or place
@@ -44,14 +44,14 @@ struct RunOptions : PipelineOptions {
 using OptionValue =
     std::variant<bool, std::uint64_t, double, std::string, std::map<Tag, double>, std::vector<std::string>>;
 
-/// An option: its name, what it may be, and what it is for.
+/// An option: its name, range and purpose.
 struct Option {
   enum class Kind { flag, choice, count, number, text, texts, sizes };
   enum class Unit { number, length, degrees, of_diagonal, ratio, seconds, bytes };
-  /// Who takes it, bits: the commands, and programs that call the mesher, as Python and FreeCAD. These do
-  /// without options about files that are written and about messages.
+  /// Bits of the commands that take it; `programs` are callers of the mesher such as Python and FreeCAD,
+  /// which have no options about output files and messages.
   enum Command : unsigned { mesh = 1, check = 2, info = 4, convert = 8, repair = 16, programs = 32 };
-  /// Where in the RunOptions the value stands.
+  /// The member of RunOptions that holds the value.
   struct Place {
     Kind kind;  ///< by its type
     OptionValue (*get)(const Option&, const RunOptions&);
@@ -60,17 +60,18 @@ struct Option {
 
   std::string name;             ///< "size-min"
   char letter = 0;              ///< the short name, if there is one
-  std::string value_name = {};  ///< what its value is called, "LENGTH"
+  std::string value_name = {};  ///< the name of its value, "LENGTH"
   std::vector<std::string> words =
       {};  ///< of a choice, in the order of the enumeration; of a bool: true, false
   Place place;
   Unit unit = Unit::number;
   double low = 0, high = std::numeric_limits<double>::infinity();  ///< range of a number
   bool finer = false;                                              ///< makes some elements finer than `size`
-  bool zero = false;              ///< 0 is allowed, too, although it is out of range
-  std::string default_text = {};  ///< in place of 0 or nothing, where that stands for a default or for none
-  std::string group = {};         ///< a heading
-  std::string help = {};     ///< a clause without a full stop; what follows a semicolon is less important
+  bool zero = false;  ///< 0 is allowed although it is out of range
+  std::string default_text =
+      {};                    ///< shown in place of 0 or nothing, if these stand for a default or for none
+  std::string group = {};    ///< a heading
+  std::string help = {};     ///< a clause without a full stop; text after a semicolon is less important
   std::string details = {};  ///< further clauses, for pages
   unsigned commands = 0;
 
@@ -82,26 +83,26 @@ struct Option {
   bool is_for(Command command) const { return (commands & command) != 0; }
   bool is_repeatable() const { return kind() == Kind::texts || kind() == Kind::sizes; }
 
-  /// Read the value from text; one that may be repeated is added to those before. False if the text does not
+  /// Reads the value from text; appends it if the option may be repeated. Returns false if the text does not
   /// fit.
   bool read(const std::string& text, RunOptions& options) const;
   bool fits(const OptionValue& value) const;
-  /// Describe the values that fit, "a number from 0 to 0.1".
+  /// Describes the values that fit, "a number from 0 to 0.1".
   std::string fitting() const;
-  /// The default as text.
+  /// Returns the default as text.
   std::string default_value() const;
 };
 
 /// All options, in the order of the help. Some have a second row for another command.
 const std::vector<Option>& option_table();
 
-/// Throw OptionError for values out of the range of their option, and for those that contradict each other.
+/// Throws OptionError for values out of the range of their option and for values that contradict each other.
 void validate(const RunOptions& options);
 
-/// "1.5G" in bytes; K, M, G and T are powers of 1024, in either case. Nothing if it is no such size.
+/// Converts "1.5G" to bytes; K, M, G and T are powers of 1024, in either case. Nothing for other text.
 std::optional<std::size_t> read_bytes(std::string_view text);
 
-/// "7=0.25" is {7, 0.25}. Nothing unless that is a whole number and a positive length.
+/// Converts "7=0.25" to {7, 0.25}. Nothing unless it is a whole number and a positive length.
 std::optional<std::pair<Tag, double>> read_tag_value(std::string_view text);
 
 }  // namespace collarmesh

@@ -10,8 +10,8 @@
 namespace collarmesh {
 
 /// A piecewise-linear complex: the features that a mesh has to conform to, and the regions they
-/// bound. Points that are no feature by themselves (the tessellation of smooth curves and patches,
-/// collinear and coplanar points of the input) are in `points` only.
+/// bound. Points that are not features (the tessellation of smooth curves and patches, collinear
+/// and coplanar points of the input) are in `points` only.
 ///
 /// Vertices, curves and patches are closed under taking boundaries. Features meet only in common
 /// features. Made by `build_plc`.
@@ -58,21 +58,21 @@ struct Plc {
   };
 
   struct Region {
-    Tag tag = 0;        ///< region number, or what a region point gave
+    Tag tag = 0;        ///< region number, or the tag of a region point
     double volume = 0;  ///< of the complex, input units cubed
     double size = 0;    ///< target edge length, 0: none given
     std::string name;   ///< for messages: file name or tag
   };
 
-  /// What the builder changed in the input to make it a complex.
+  /// Changes of the builder that made the input a complex.
   struct Cleanup {
-    Index welded_points = 0;         ///< points that became one with another
+    Index welded_points = 0;         ///< points that were merged with another one
     Index degenerate_triangles = 0;  ///< triangles without an area, dropped
-    Index repeated_triangles = 0;    ///< of one soup with the corners of another one, dropped
-    Index shared_triangles = 0;      ///< of several soups with the same corners, which became an interface
+    Index repeated_triangles = 0;    ///< duplicates in one soup, dropped
+    Index shared_triangles = 0;      ///< duplicates of several soups, which became interfaces
   };
 
-  /// Something in the input that has no effect or contradicts something else.
+  /// A part of the input that has no effect or contradicts another part.
   struct Warning {
     std::string message;  ///< full sentence: entity, coordinates, what to do next
     Point where;
@@ -85,8 +85,8 @@ struct Plc {
   std::vector<Triangle> triangles;
   std::vector<Region> regions;  ///< regions[0] is the outside (and every hole)
   TagNames names;               ///< that files gave to tags
-  /// The tags of all patches (curves) are numbers from `number_untagged`: another order of the same facets
-  /// would give others.
+  /// The tags of all patches (curves) come from `number_untagged`, so they depend on the order of the
+  /// facets.
   bool numbered_patches = false, numbered_curves = false;
 
   Box bounds;
@@ -96,7 +96,7 @@ struct Plc {
   Cleanup cleanup;
   std::vector<Warning> warnings;
 
-  /// Is the patch among those that contain this vertex / curve? Cost: logarithmic in the list.
+  /// Returns whether the patch contains this vertex / curve. Cost: logarithmic in the list.
   bool vertex_on_patch(Index vertex, Index patch) const;
   bool curve_on_patch(Index curve, Index patch) const;
   bool vertex_on_curve(Index vertex, Index curve) const;

@@ -13,11 +13,11 @@ struct PlcOptions {
   double feature_angle =
       30;  ///< degrees; edges that deviate more from flat are segments. 0: every non-coplanar edge
   double planar_tolerance = 1e-6;  ///< relative to the bounding-box diagonal; 0: the exact predicate
-  double weld = 1e-9;              ///< relative to the bounding-box diagonal; closer points are one
+  double weld = 1e-9;              ///< relative to the bounding-box diagonal; closer points are merged
   bool require_solid = true;       ///< a complex that bounds no region is an error
 };
 
-/// Build the complex of one or several soups: weld, orient, merge coplanar and collinear
+/// Builds the complex of one or several soups: weld, orient, merge coplanar and collinear
 /// neighbours, find curves, patches and regions, and validate.
 /// Regions are numbered from 1 in soup order (a nested inward-oriented shell is a cavity, an
 /// outward one a region of its own; region and hole points decide for their soup).
@@ -25,9 +25,9 @@ struct PlcOptions {
 /// Cost: O(n log n) for n corners.
 Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options = {});
 
-/// Facets without any tag make patches without one: number these from 1 in their order, and so the curves
-/// where no segment of the soups has a tag. `build_plc` does so; call it with the soups that came in when the
-/// complex is that of repaired ones, where what fills holes has tags.
+/// Numbers the patches from 1 in their order if no facet has a tag, and the curves if no segment has one.
+/// `build_plc` does so. For the complex of repaired soups, call it with the original soups, because the
+/// facets that fill holes have tags.
 void number_untagged(std::span<const PolygonSoup> soups, Plc& plc);
 
 /// Two features that meet at an acute angle (paper, Definition 1).
@@ -44,7 +44,7 @@ struct Crease {
 /// All creases with an angle below the threshold (degrees), smallest angle first.
 std::vector<Crease> find_creases(const Plc& plc, double threshold = 60);
 
-/// What a complex is, for people: counts, angles, sizes.
+/// Counts, angles and sizes of a complex, for people.
 struct PlcSummary {
   Index points = 0, vertices = 0, curves = 0, straight_curves = 0, patches = 0, planar_patches = 0,
         triangles = 0, regions = 0;
@@ -66,7 +66,7 @@ struct PatchSummary {
   double area = 0;        ///< input units squared
   Point where;            ///< a point on the first one: the centre of its largest triangle
 };
-/// By tag. Cost: linear.
+/// Summarizes the patches by tag. Cost: linear.
 std::vector<PatchSummary> summarize_patches(const Plc& plc);
 
 /// The curves of one tag.
@@ -81,7 +81,7 @@ struct CurveSummary {
 /// By tag. Cost: linear.
 std::vector<CurveSummary> summarize_curves(const Plc& plc);
 
-/// One sentence for people: what meets what, where, at which angle.
+/// Returns a sentence for people: the features that meet, where, and at which angle.
 std::string describe(const Plc& plc, const Crease& crease);
 
 }  // namespace collarmesh

@@ -10,7 +10,7 @@
 
 namespace collarmesh {
 
-/// What a file or a program hands over: points, polygonal facets and loose segments, unmerged and
+/// The input of a file or program: points, polygonal facets and loose segments, unmerged and
 /// unchecked. `build_plc` turns one or several soups into a piecewise-linear complex.
 ///
 /// A facet is a set of polygons in one plane, as in TetGen's .poly: polygons of three or more
@@ -44,32 +44,32 @@ class PolygonSoup {
   std::vector<Tag> point_tags;  ///< one per point, or empty
   std::vector<Segment> segments;
   std::vector<Index> vertices;  ///< points that are features by themselves
-  /// Its features are its vertices, its segments, the borders of its tags and folds above 90 degrees.
+  /// If true, the features are the vertices, segments, borders of tags and folds above 90 degrees.
   bool given_features = false;
   std::vector<RegionPoint> region_points;  ///< .poly: with hole_points they decide for their file
   std::vector<Point> hole_points;          ///< the region around each is empty
-  std::vector<RegionPoint> named_regions;  ///< points that name regions, but decide nothing
+  std::vector<RegionPoint> named_regions;  ///< points that name regions, but do not decide what is a region
   std::vector<FacetHole> facet_holes;
-  TagNames tag_names;  ///< that the file gives to tags
+  TagNames tag_names;  ///< names of the file for its tags
   std::optional<Tag>
-      region_tag;  ///< of the regions that this surface is the first to bound; else their number
+      region_tag;  ///< of regions that this surface is the first to bound; default: their number
 
-  /// Start a facet; the polygons added next belong to it.
+  /// Begins a facet; the polygons added next belong to it.
   void begin_facet(Tag tag = 0) { facets_.push_back({polygon_count(), tag}); }
 
-  /// Add a polygon (point indices, in order, first corner not repeated) to the facet begun last.
+  /// Adds a polygon (point indices, in order, first corner not repeated) to the facet begun last.
   void add_polygon(std::span<const Index> corners) {
     corners_.insert(corners_.end(), corners.begin(), corners.end());
     polygon_starts_.push_back(static_cast<Index>(corners_.size()));
   }
 
-  /// A facet that is one polygon.
+  /// Adds a facet of one polygon.
   void add_facet(std::span<const Index> corners, Tag tag = 0) {
     begin_facet(tag);
     add_polygon(corners);
   }
 
-  /// Add a number to the tags of facets and to their names.
+  /// Adds a number to the tags of facets and to their names.
   void shift_facet_tags(Tag by) {
     for (Facet& facet : facets_) facet.tag += by;
     TagNames shifted;
@@ -81,7 +81,7 @@ class PolygonSoup {
   Index facet_count() const { return static_cast<Index>(facets_.size()); }
   Index polygon_count() const { return static_cast<Index>(polygon_starts_.size() - 1); }
   Tag facet_tag(Index facet) const { return facets_[facet].tag; }
-  /// The polygons of a facet: [first, last).
+  /// Returns the polygons of a facet: [first, last).
   std::array<Index, 2> facet_polygons(Index facet) const {
     return {facets_[facet].first_polygon,
             facet + 1 < facets_.size() ? facets_[facet + 1].first_polygon : polygon_count()};

@@ -8,17 +8,17 @@
 
 namespace collarmesh {
 
-/// How large a mesh will be, and how long it will take. Estimates: bench/README.md says how far off they are.
+/// Estimates of the size of a mesh and of its time; bench/README.md says how far off they are.
 struct Prediction {
-  double size = 0;  ///< the target edge length it is for, absolute, input units
+  double size = 0;  ///< the target edge length, absolute, input units
   double tets = 0;  ///< at least 1, infinite beyond what a double holds; 0 where the complex has no region
   double seconds =
       0;  ///< of all stages from the refinement to the certificate, on the machine of the benchmarks
 };
 
-/// Predict what `run_pipeline` makes of a complex with these options at each of these target edge lengths
-/// (input units; 0: `options.mesh.size`), without making it: from the features of the complex, what is wide
-/// enough between them, and the sizes asked for. Sizes by region, patch, curve, curvature, gap, gradation and
+/// Predicts the mesh that `run_pipeline` makes of a complex with these options at each of these target edge
+/// lengths (input units; 0: `options.mesh.size`) without making it: from the features of the complex, the
+/// widths between them and the sizes. Sizes by region, patch, curve, curvature, gap, gradation and
 /// place count; budgets do not. Precondition: the complex comes from `build_plc`.
 /// Throws OptionError for sizes that are negative or below `size_min`, for sizes of tags that the complex
 /// does not have, and where coarsening is switched off. Cost: near linear in the complex, and for each size

@@ -7,7 +7,7 @@
 
 namespace collarmesh {
 
-/// Where a long operation stands. `fraction` never decreases within one operation.
+/// The progress of a long operation. `fraction` never decreases within one operation.
 struct ProgressReport {
   std::string_view phase;  ///< "read", "complex", "refine", "coarsen", "improve", "project", "second order",
                            ///< "check", "write"
@@ -17,11 +17,11 @@ struct ProgressReport {
   bool begins = false;       ///< a stage of a whole run begins (`run_pipeline`)
 };
 
-/// How the caller watches and stops a long operation. Both members may be empty.
+/// The caller's means to watch and stop a long operation. Both members may be empty.
 struct Execution {
   /// Called some times a second from the working thread; returning false cancels.
   std::function<bool(const ProgressReport&)> progress;
-  /// Set to true from anywhere (also a signal handler) to cancel.
+  /// Set it to true from anywhere, even from a signal handler, to cancel.
   const std::atomic<bool>* cancel = nullptr;
 
   bool cancelled() const { return cancel != nullptr && cancel->load(std::memory_order_relaxed); }

@@ -11,9 +11,9 @@
 namespace collarmesh {
 
 struct ProjectOptions {
-  Bounds bounds = {};  ///< which no tet breaks; vertices farther than the distance from their feature stay
-  double tolerance = 1e-9;  ///< absolute: a vertex that stays and is nearer to its feature is no exception
-  unsigned threads = 0;     ///< at most; 0: as many as there are cores
+  Bounds bounds = {};  ///< no tet breaks them; vertices farther than the distance from their feature stay
+  double tolerance = 1e-9;  ///< absolute: a vertex that stays nearer to its feature than this is no exception
+  unsigned threads = 0;     ///< maximum number; 0: all cores
 };
 
 struct ProjectReport {
@@ -27,20 +27,20 @@ struct ProjectReport {
   };
 
   std::size_t vertices = 0;      ///< on features with exact geometry
-  double largest_move = 0;       ///< of those, absolute; with the way along their features
+  double largest_move = 0;       ///< of those vertices, absolute; includes moves along their features
   std::size_t moved_inside = 0;  ///< vertices inside regions that made room
   double largest_distance = 0;   ///< from the features afterwards, exceptions included
   std::vector<Exception> exceptions;
 };
 
-/// Move the vertices on curves and patches onto the exact geometry. No tet is inverted by it, breaks the
-/// radius-edge bound or, in a collar, the bound on its dihedral angles: where one would, its corners make
-/// room by moving inside their region or along their exact features, as little as keeps faces and edges
-/// within half of the distance of the exact geometry. A vertex for which that does not suffice stays where it
-/// is; these are the exceptions. So are vertices on what the complex calls straight or planar where the exact
-/// geometry is not: they go only as near as that permits. Preconditions: `mesh` comes from `generate` for
-/// `plc`, first order; `exact` gives a point that is its own nearest one. Cost: linear in the tets, with a
-/// large factor for those that are spoilt.
+/// Moves the vertices on curves and patches onto the exact geometry. No tet is inverted, breaks the
+/// radius-edge bound or, in a collar, the bound on its dihedral angles: if one would, its corners make room
+/// by moving inside their region or along their exact features, and keep faces and edges within half of the
+/// distance of the exact geometry. A vertex for which that does not suffice stays where it is; the report
+/// lists these exceptions. On curves and patches that are straight or planar in the complex but not in the
+/// exact geometry, vertices go only as near as the complex permits. Preconditions: `mesh` comes from
+/// `generate` for `plc`, first order; `exact` gives a point that is its own nearest one. Cost: linear in the
+/// tets, with a large factor for those that would become invalid.
 ProjectReport project_boundary(TetMesh& mesh, const Plc& plc, const ExactGeometry& exact,
                                const ProjectOptions& options = {}, const Execution& execution = {});
 

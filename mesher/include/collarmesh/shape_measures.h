@@ -14,25 +14,25 @@ struct ShapeMeasures {
   std::vector<double> lengths;  ///< by curve
 };
 
-/// As the complex's triangles and polylines have them.
+/// Measures the complex's triangles and polylines.
 ShapeMeasures measures_of(const Plc& plc);
 
-/// By how much a measure of the mesh differs from the input's, in percent of this; NaN: the input has none.
+/// Returns the deviation of a measure of the mesh from the input's in percent; NaN: the input has none.
 inline double percent_off(double mesh, double input) { return 100 * (mesh - input) / input; }
 
-/// By how much the volume of a region may differ from the input's, relatively, for elements of this order.
+/// Returns the largest relative deviation of a region's volume that elements of this order may have.
 constexpr double volume_allowance(int order) { return order == 1 ? 0.05 : 0.01; }
 
-/// The nodes of a triangle of second order: corners a, b, c, then those amid ab, bc, ca.
+/// The nodes of a triangle of second order: corners a, b, c, then the mid-edge nodes of ab, bc, ca.
 using CurvedTriangle = std::array<Point, 6>;
 /// The nodes of an edge of second order: its ends, then the one between.
 using CurvedEdge = std::array<Point, 3>;
 
-/// Exact but for rounding.
+/// Returns the volume of a curved tet, exact except for rounding.
 double volume(const CurvedTet& nodes);
-/// By quadrature of degree 4; exact where the triangle is straight.
+/// Returns the area by quadrature of degree 4; exact if the triangle is straight.
 double area(const CurvedTriangle& nodes);
-/// By quadrature of degree 5; exact where the edge is straight.
+/// Returns the length by quadrature of degree 5; exact if the edge is straight.
 double length(const CurvedEdge& nodes);
 
 }  // namespace collarmesh

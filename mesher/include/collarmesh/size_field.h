@@ -43,8 +43,8 @@ class SizeFieldUse {
 SizeField read_size_field(const std::string& path, const Plc& plc,
                           const std::shared_ptr<SizeFieldUse>& use = nullptr);
 
-/// The smallest of what some sources ask for: `size` at the source, inside it and `within` a distance of it
-/// (0 unless given), growing by `growth` (0.3 unless given) per unit length beyond.
+/// Returns the smallest of the sizes of some sources: `size` on the source, inside it and `within` a distance
+/// of it (default 0), growing by `growth` (default 0.3) per unit length beyond.
 ///
 ///     {"size": 2, "sources": [
 ///       {"ball": {"centre": [0, 0, 0], "radius": 1}, "size": 0.1, "growth": 0.2},
@@ -59,7 +59,8 @@ SizeField read_size_field(const std::string& path, const Plc& plc,
 SizeField size_field_from_json(const std::string& text, const Plc& plc,
                                const std::shared_ptr<SizeFieldUse>& use = nullptr);
 
-/// Linear in the tets of a background mesh; outside of it the value of its nearest point.
+/// Interpolates linearly in the tets of a background mesh; outside of it returns the value of its nearest
+/// point.
 /// Throws OptionError unless there is one positive value per point.
 SizeField size_field_on_mesh(const TetMesh& mesh, const std::vector<double>& values);
 

@@ -10,42 +10,42 @@
 
 namespace collarmesh {
 
-/// How far a mesh may be from the smooth patches and curves of a complex, by place. Lengths are absolute.
-/// Copies share what they hold.
+/// The largest distance of a mesh from the smooth patches and curves of a complex, by place. Lengths are
+/// absolute. Copies share their data.
 class SurfaceTolerance {
  public:
-  /// The same everywhere.
+  /// Makes a tolerance that is the same everywhere.
   explicit SurfaceTolerance(double distance) : largest_(distance) {}
-  /// By triangle of the complex; none of them exceeds `largest`.
+  /// Makes a tolerance by triangle of the complex; none of them exceeds `largest`.
   SurfaceTolerance(const Plc& plc, std::vector<double> triangles, double largest);
 
-  /// Is it not the same everywhere?
+  /// Returns whether it depends on the place.
   bool varies() const { return places_ != nullptr; }
   double largest() const { return share_ * largest_; }
   double at_triangle(Index triangle) const {
     return share_ * (varies() ? places_->triangles[triangle] : largest_);
   }
-  /// At a point of the complex: the smallest of the triangles there.
+  /// Returns that of a point of the complex: the smallest of its triangles.
   double at_point(Index point) const { return share_ * (varies() ? places_->points[point] : largest_); }
-  /// On the segment between two neighbouring points of a curve.
+  /// Returns that of the segment between two neighbouring points of a curve.
   double at_segment(Index a, Index b) const { return std::min(at_point(a), at_point(b)); }
-  /// The smallest at points of a patch, and the largest of its triangles.
+  /// Return the smallest at points of a patch, and the largest of its triangles.
   double least_on_patch(Index patch) const {
     return share_ * (varies() ? places_->least_on_patch[patch] : largest_);
   }
   double largest_on_patch(Index patch) const {
     return share_ * (varies() ? places_->largest_on_patch[patch] : largest_);
   }
-  /// The smallest and the largest on a curve's segments.
+  /// Return the smallest and the largest on a curve's segments.
   double least_on_curve(const Plc::Curve& curve) const;
   double largest_on_curve(const Plc::Curve& curve) const;
-  /// A share of it, everywhere.
+  /// Returns this tolerance times a factor.
   SurfaceTolerance scaled(double share) const {
     SurfaceTolerance scaled = *this;
     scaled.share_ *= share;
     return scaled;
   }
-  /// The same for a complex that has only some of the patches of `whole`, these in this order, and all
+  /// Returns this tolerance for a complex with some of the patches of `whole`, in this order, and all
   /// points.
   SurfaceTolerance of_patches(const Plc& whole, std::span<const Index> patches) const;
 
@@ -58,19 +58,19 @@ class SurfaceTolerance {
   double largest_, share_ = 1;
 };
 
-/// The tolerance of a run that asks for no distance: a tenth of the target edge length (`size`, 0: its
-/// default), at most 1/200 of the diagonal, and at most a share of what is there: of the thickness of the
-/// material on either side, so that it keeps its volume, and of the width of gaps and holes. Opposite sides
-/// of a wall that bend alike lose and gain the same, so they may be farther off than those of a rod, which
-/// lose both. With elements of second order the triangles between corners may be farther off, as the
+/// Returns the tolerance of a run without a given distance: a tenth of the target edge length (`size`, 0: its
+/// default), at most 1/200 of the diagonal, at most a share of the thickness of the material on either side,
+/// which keeps its volume, and at most a share of the width of gaps and holes. Opposite sides of a wall that
+/// bend alike lose and gain the same volume, so they may be farther off than the sides of a rod, which both
+/// lose. With elements of second order the triangles between corners may be farther off, as the
 /// elements follow the surface. Cost: near linear in the triangles.
 SurfaceTolerance default_tolerance(const Plc& plc, double size, int order = 1);
 
-/// The largest of them by place, of all sizes and orders.
+/// Returns by place the largest tolerance of all sizes and orders.
 SurfaceTolerance largest_default_tolerance(const Plc& plc);
 
-/// The smooth patches whose triangles are farther from the surfaces that they stand for than a quarter of the
-/// tolerance, as far as the angles between them tell. Cost: near linear in the triangles.
+/// Returns the smooth patches whose triangles are farther than a quarter of the tolerance from the surfaces
+/// that they approximate, as estimated from the angles between them. Cost: near linear in the triangles.
 std::vector<Index> coarse_patches(const Plc& plc, const SurfaceTolerance& tolerance);
 
 }  // namespace collarmesh

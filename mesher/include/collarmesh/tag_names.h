@@ -10,11 +10,11 @@
 
 namespace collarmesh {
 
-/// What a file or a user calls tags, by dimension: 0 vertices, 1 curves, 2 patches, 3 regions. Tags without a
-/// name are called by their number.
+/// The names of tags from a file or user, by dimension: 0 vertices, 1 curves, 2 patches, 3 regions. The name
+/// of other tags is their number.
 class TagNames {
  public:
-  /// Null where there is none.
+  /// Returns the name of a tag, null if it has none.
   const std::string* find(std::size_t dimension, Tag tag) const {
     const auto found = names_[dimension].find(tag);
     return found == names_[dimension].end() ? nullptr : &found->second;
@@ -28,7 +28,7 @@ class TagNames {
       if (!names.empty()) return false;
     return true;
   }
-  /// Take the names of others for tags that have none here.
+  /// Adds names from `others` for tags without one.
   void add(const TagNames& others) {
     for (std::size_t d = 0; d < names_.size(); ++d)
       names_[d].insert(others.names_[d].begin(), others.names_[d].end());

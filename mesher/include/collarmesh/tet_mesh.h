@@ -9,7 +9,7 @@
 
 namespace collarmesh {
 
-/// How groups are called in formats that name them.
+/// The style of group names in formats that have them.
 enum class GroupNames {
   complex,  ///< region_1, patch_7, curve_3: kind and tag
   cad       ///< Solid1, Face7, Edge3: the sub-shapes of a CAD shape
@@ -33,10 +33,10 @@ struct TetMesh {
   std::vector<Index> tet_region;         ///< index of the region in the complex, from 1
   std::vector<Tag> tet_tag;              ///< tag of that region
   std::vector<std::uint8_t> tet_collar;  ///< 0 outside collars, 1 star, 2 book
-  /// 1: one that exceeds the radius-edge bound as a thin tet may (see `coarsen`), else 0; empty: not known.
+  /// 1: a thin tet, which may exceed the radius-edge bound (see `coarsen`), else 0; empty: not known.
   std::vector<std::uint8_t> tet_thin;
   std::vector<Tag> tet_crease;  ///< in collars the tag of the crease, a curve or vertex; 0 outside
-  /// The rank that a solver gives it to, from 0 (see `partition`); empty: not partitioned.
+  /// The rank of its partition, from 0 (see `partition`); empty: not partitioned.
   std::vector<Index> tet_partition;
 
   /// Boundary, interface and internal-facet triangles; the normal (b-a) x (c-a) points from
@@ -51,23 +51,23 @@ struct TetMesh {
   std::vector<Index> edge_curve;  ///< index of the curve in the complex, none when unknown
   std::vector<Tag> edge_tag;
 
-  /// Nodes amid the edges of cells of second order, which are points like the corners: of a tet abcd
-  /// amid ab, bc, ca, ad, bd, cd; of a face abc amid ab, bc, ca; of an edge. Empty: first order.
+  /// Mid-edge nodes of cells of second order, which are points like the corners: of a tet abcd those of
+  /// ab, bc, ca, ad, bd, cd; of a face abc those of ab, bc, ca; of an edge. Empty: first order.
   std::vector<std::array<Index, 6>> tet_mid_nodes;
   std::vector<std::array<Index, 3>> face_mid_nodes;
   std::vector<Index> edge_mid_nodes;
 
   GroupNames group_names = GroupNames::complex;
-  TagNames names;  ///< in place of those, for the tags that have one
+  TagNames names;  ///< names that replace those labels
 
   int order() const { return tet_mid_nodes.empty() ? 1 : 2; }
 
-  /// The ball of a collar: what lies in the union of the balls was replaced by stars and books.
+  /// A ball of a collar: stars and books fill the union of the balls.
   struct CollarBall {
     Index point = none;  ///< its centre, on a crease
     double radius = 0;   ///< absolute
-    /// Where that point was when the ball was placed, by distances in the complex; since then the point may
-    /// have moved onto exact geometry.
+    /// The place of that point when the ball was placed; since then the point may have moved onto exact
+    /// geometry.
     Point centre;
   };
   std::vector<CollarBall> collar_balls;  ///< empty when unknown (read from a file)
@@ -80,12 +80,12 @@ struct TetQuality {
   double min_dihedral;  ///< degrees
   double max_dihedral;  ///< degrees
 };
-/// At any scale: squares and products of lengths may be out of a double's range.
+/// Measures a tet at any scale: squares and products of lengths may exceed a double's range.
 TetQuality measure(const Point& a, const Point& b, const Point& c, const Point& d);
-/// The largest angle of a tetrahedron's faces, degrees, at any scale.
+/// Returns the largest angle of a tetrahedron's faces, degrees, at any scale.
 double largest_face_angle(const Point& a, const Point& b, const Point& c, const Point& d);
 
-/// The median length of the edges of the tets, each edge counted once; 0 without tets.
+/// Returns the median length of the edges of the tets, each edge counted once; 0 without tets.
 /// Cost: linear, about 45 bytes per tet for a while.
 double median_edge(const TetMesh& mesh);
 

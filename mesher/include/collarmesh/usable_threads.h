@@ -2,8 +2,8 @@
 
 namespace collarmesh {
 
-/// How many threads parallel parts may use: one for each core, fewer where the system gives no more. Found
-/// once, and TBB kept to it: it ends the program where a thread that it wants cannot be made.
+/// Returns the number of threads that parallel parts may use: one for each core, or fewer if the system
+/// allows no more. The first call limits TBB to it, which would end the program if it cannot make a thread.
 int usable_threads();
 
 }  // namespace collarmesh

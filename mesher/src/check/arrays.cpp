@@ -1,4 +1,4 @@
-// What has to hold before anything else can be looked at.
+// Checks of the arrays that must pass before any other check can run.
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>

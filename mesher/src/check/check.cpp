@@ -67,8 +67,7 @@ void take_measures(CheckReport& report, CheckReport&& part) {
   report.measures = std::move(part.measures);
 }
 
-// Groups of guarantees that have nothing to do with each other are looked at at once, each with a report of
-// its own.
+// Independent groups of guarantees are checked in parallel, each with a report of its own.
 void judge(Subject subject, CheckReport& report, Findings& findings, const Execution& execution) {
   report.faces = subject.mesh.faces.size();
   report.edges = subject.mesh.edges.size();

@@ -1,4 +1,5 @@
-// Which tets may be judged as cells of collars. A mark in a file is no reason: a crease of the complex is.
+// Finds the tets that are judged as cells of collars. A mark in a file does not suffice; it takes a crease of
+// the complex.
 #include <algorithm>
 
 #include "check/subject.h"

@@ -1,4 +1,4 @@
-// The balls of the collars (paper, section 3.2): how large they are and how they lie to each other.
+// Checks of the balls of collars (paper, section 3.2): their sizes and positions.
 #include <algorithm>
 #include <cmath>
 
@@ -55,7 +55,7 @@ class CollarCheck {
     std::array<Index, 3> points;
   };
 
-  // Where it was placed: distances are those of the complex, which projection does not know.
+  // The place of the ball before projection, because distances are those of the complex.
   const Point& centre(Index ball) const { return balls_[ball].centre; }
   double radius(Index ball) const { return balls_[ball].radius; }
   const TetMesh::VertexFeature& feature_of(Index ball) const {
@@ -79,7 +79,7 @@ class CollarCheck {
     }
   }
 
-  // Without features outside all regions: the mesh does not have them.
+  // Leaves out features outside all regions, which are not in the mesh.
   void collect_elements() {
     for (Index v = 0; v < plc_.vertices.size(); ++v) {
       const Index p = plc_.vertices[v].point;
@@ -105,7 +105,7 @@ class CollarCheck {
     return element.dimension == 2 && plc_.curve_on_patch(v.feature, element.feature);
   }
 
-  // Balls, with their gap balls, against features and against each other.
+  // Checks balls, with their gap balls, against features and against each other.
   void look_around() {
     std::vector<Box> boxes;
     for (Index b = 0; b < balls_.size(); ++b) {
@@ -142,7 +142,7 @@ class CollarCheck {
         At{centre(ball)}, radius(ball), gap, kinds[element.dimension], element.feature);
   }
 
-  // Of one crease are a vertex's ball and those on its curves, and those on one curve.
+  // A vertex's ball and the balls on its curves belong to one crease, as do the balls on one curve.
   bool of_one_crease(Index a, Index b) const {
     const auto &f = feature_of(a), &g = feature_of(b);
     if (f.dimension == 1 && g.dimension == 1) return f.feature == g.feature;
@@ -163,7 +163,7 @@ class CollarCheck {
         At{centre(a)}, radius(a), At{centre(b)}, radius(b));
   }
 
-  // Consecutive balls: joined by an edge on their crease.
+  // Finds consecutive balls, which an edge on their crease joins.
   void check_circles() {
     for (const auto& [p, q] : subject_.mesh.edges) {
       const Index a = ball_at_[p], b = ball_at_[q];

@@ -1,4 +1,4 @@
-// Each face of a tet against the other tets at it and against the listed faces.
+// Checks each face of a tet against the other tets at it and against the listed faces.
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
@@ -94,7 +94,8 @@ class ConformityCheck {
           sides_[1].cell, region(sides_[1]));
   }
 
-  // The normal of a tet's side leaves the tet: the tet on a face's first side has it turned alike.
+  // The normal of a tet's side points out of the tet, so the tet on a face's first side has the same
+  // orientation.
   void check_regions(const TriangleUse& listed) {
     std::array<Index, 2> regions{0, 0};
     for (const TriangleUse& side : sides_) regions[side.odd == listed.odd ? 0 : 1] = region(side);
@@ -147,7 +148,7 @@ void add_edges(const std::array<Index, 3>& face, Index region, int direction,
 
 }  // namespace
 
-// All threads look at the vertices; triangles that need a closer look are judged in their order.
+// All threads scan the vertices; triangles that need a closer look are judged in their order.
 void check_conformity(const Subject& subject, CheckReport& report, Findings& findings) {
   const TetMesh& mesh = subject.mesh;
   struct NotPlain {

@@ -24,7 +24,7 @@ class Cubic {
   double least_coefficient() const { return *std::min_element(coefficients_.begin(), coefficients_.end()); }
   double least_corner() const { return std::min({at(0, 0, 0), at(1, 1, 1), at(2, 2, 2), at(3, 3, 3)}); }
 
-  /// On the half whose corner `moved` is the middle of the edge to `other`.
+  /// Returns the polynomial on the half whose corner `moved` is the middle of the edge to `other`.
   Cubic half(unsigned moved, unsigned other) const {
     Cubic c = *this;
     for (unsigned i = 0; i < 4; ++i)

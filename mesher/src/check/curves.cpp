@@ -1,4 +1,4 @@
-// Every curve as a union of mesh edges.
+// Checks that every curve is a union of mesh edges.
 #include <algorithm>
 #include <cmath>
 
@@ -64,7 +64,7 @@ class CurveCheck {
                   curve_.tag, what, At{where});
   }
 
-  // Puts the points of the edges into chain_, in order. False (with findings) if they are no chain.
+  // Puts the points of the edges into chain_, in order. Returns false, with findings, if they form no chain.
   bool find_chain() {
     std::vector<std::array<Index, 2>> ends;  // point, edge
     for (const Index e : edges_)
@@ -115,7 +115,7 @@ class CurveCheck {
     return good;
   }
 
-  // The curve from the first point of the chain, in the chain's direction (the chain is turned).
+  // Returns the curve from the first point of the chain on; turns the chain into the curve's direction.
   Polyline make_polyline() {
     std::vector<Point> points;
     for (const Index i : curve_.points) points.push_back(subject_.plc.points[i]);
@@ -152,7 +152,7 @@ class CurveCheck {
     }
   }
 
-  // Two-sided distance between an edge of the chain and its part of the curve.
+  // Checks the two-sided distance between an edge of the chain and its part of the curve.
   void compare_edge(const Polyline& polyline, double from, double to, std::size_t i) {
     const Point &a = subject_.point(chain_[i - 1]), &b = subject_.point(chain_[i]);
     const auto corners = polyline.corners_between(from, to);

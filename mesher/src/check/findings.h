@@ -18,7 +18,7 @@ struct At {
   Point point;
 };
 
-/// Collects what does not hold. Of each guarantee the first findings are listed, all are counted.
+/// Collects findings: lists the first ones of each guarantee and counts all.
 class Findings {
  public:
   Findings(CheckReport& report, std::size_t listed_per_guarantee)
@@ -33,10 +33,10 @@ class Findings {
         {std::string(guarantee), fmt::format(message, std::forward<Arguments>(arguments)...), ids, where});
   }
 
-  /// Those of a part that was judged on its own.
+  /// Adds the findings of a part that was judged on its own.
   void take(CheckReport& part);
 
-  /// How many were found so far, with those not listed.
+  /// Returns the number of findings so far, including those not listed.
   std::size_t total() const { return report_.findings_total; }
 
  private:

@@ -1,5 +1,5 @@
-// Which features the entities of the mesh belong to. A mesh read from a file has only tags: faces
-// and edges are gathered to pieces that belong to one feature, and each piece goes to the nearest
+// Classification: finds the feature of each entity of the mesh. A mesh read from a file has only tags: faces
+// and edges are collected into pieces that belong to one feature, and each piece gets the nearest
 // feature with its tag.
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@ namespace collarmesh::checks {
 
 namespace {
 
-// The features of one kind with one tag, as something to measure distances to.
+// The features of one kind with one tag, for measuring distances.
 struct TaggedFeatures {
   std::vector<DistanceTree::Triangle> triangles;
   std::vector<Index> feature;  // by triangle
@@ -29,7 +29,7 @@ class NearestFeature {
     features.triangles.push_back(triangle);
     features.feature.push_back(feature);
   }
-  /// The nearest feature with this tag, none if there is no such feature.
+  /// Returns the nearest feature with this tag, none if there is no such feature.
   Index find(Tag tag, const Point& p) {
     const auto found = by_tag_.find(tag);
     if (found == by_tag_.end()) return none;
@@ -49,7 +49,7 @@ class PointSearch {
     std::sort(order_.begin(), order_.end(), [&](Index a, Index b) { return less(points_[a], points_[b]); });
   }
 
-  /// The point nearest to p among those within the tolerance, none if there is none.
+  /// Returns the point nearest to p within the tolerance, none if there is no such point.
   Index find(const Point& p, double tolerance) const {
     const auto exact = std::lower_bound(order_.begin(), order_.end(), p,
                                         [&](Index i, const Point& q) { return less(points_[i], q); });
@@ -75,7 +75,7 @@ class PointSearch {
   std::vector<Index> order_;
 };
 
-// Of each piece its entities vote for the feature nearest to their middle, by their size.
+// Assigns each piece to a feature: its entities vote, by their size, for the feature nearest to their middle.
 class Ballot {
  public:
   void vote(Index piece, Index feature, double weight) {
@@ -109,7 +109,7 @@ class Ballot {
   std::vector<Vote> votes_;
 };
 
-// Edges of one tag that meet in a point where nothing else happens.
+// Joins edges of one tag that meet in a point without other features.
 DisjointSets edge_pieces(const TetMesh& mesh, const std::vector<Index>& vertex_point) {
   std::vector<std::array<Index, 2>> ends;  // point, edge
   for (Index e = 0; e < mesh.edges.size(); ++e)
@@ -127,7 +127,7 @@ DisjointSets edge_pieces(const TetMesh& mesh, const std::vector<Index>& vertex_p
   return pieces;
 }
 
-// Faces of one tag (if they count) and between the same regions that share an edge which is on no curve.
+// Joins faces of one tag (if tags count) between the same regions that share an edge on no curve.
 DisjointSets face_pieces(const TetMesh& mesh, bool by_tag) {
   struct Side {
     std::array<Index, 2> ends;

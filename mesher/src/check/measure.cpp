@@ -44,8 +44,8 @@ struct Measures {
   Real conditioning;  ///< |determinant| / longest edge cubed: rounding is amplified by its inverse
 };
 
-// Of the power of two that the tet is divided by, so that eighth powers of lengths are in range: 0 where they
-// are anyway, as of almost all.
+// Returns the exponent of the power of two to divide the tet by, so that eighth powers of lengths are in
+// range: 0 for almost all tets.
 int exponent_of_size(const Point& a, const Point& b, const Point& c, const Point& d) {
   double largest = 0;
   for (const Point& p : {b, c, d})
@@ -96,7 +96,7 @@ Measures<Real> measure_as(const Point& a, const Point& b, const Point& c, const 
   return {quality, size / (longest * std::sqrt(longest))};
 }
 
-// The largest angle of the triangle abc.
+// Returns the largest angle of the triangle abc.
 template <class Real>
 Direction<Real> largest_angle(const Vector3<Real>& ab, const Vector3<Real>& ac, const Vector3<Real>& bc) {
   const Vector3<Real> normal = cross(ab, ac);

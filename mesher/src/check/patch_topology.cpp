@@ -74,8 +74,8 @@ class TopologyCheck {
     }
   }
 
-  // On a curve of the patch: as many faces as the complex has triangles. Elsewhere: two, which pass
-  // the edge in opposite directions.
+  // Checks that an edge has as many faces as the complex has triangles there if it lies on a curve of the
+  // patch, else two, which pass it in opposite directions.
   void check_edge(std::size_t first, std::size_t last) {
     const PatchEdge& side = sides_[first];
     const Index curve = uses_.curve_of(side.ends);
@@ -108,7 +108,7 @@ class TopologyCheck {
           patch_.tag, last - first, side.ends[0], side.ends[1], At{where});
   }
 
-  // Every edge of the patch's curves has faces of it.
+  // Checks that every edge of the patch's curves has faces of the patch.
   void check_curves() {
     for (const Index curve : patch_.curves) {
       const std::size_t expected = uses_.triangles_at(curve, id_);
@@ -144,7 +144,7 @@ class TopologyCheck {
     }
   }
 
-  // One fan at each point that is no vertex of the complex.
+  // Checks that there is one fan at each point that is no vertex of the complex.
   void check_fans() {
     std::vector<std::array<Index, 2>> fans;  // point, fan
     for (Index place = 0; place < faces_.size(); ++place)

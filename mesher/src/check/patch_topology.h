@@ -24,11 +24,11 @@ class CurveUses {
  public:
   explicit CurveUses(const Subject& subject);
 
-  /// How many triangles of the patch meet at each place of the curve in the complex.
+  /// Returns the number of triangles of the patch at each place of the curve in the complex.
   std::size_t triangles_at(Index curve, Index patch) const;
-  /// The curve of a mesh edge (sorted points), none if it is on none.
+  /// Returns the curve of a mesh edge (sorted points), none if it is on none.
   Index curve_of(const std::array<Index, 2>& edge) const;
-  /// The mesh edges of a curve.
+  /// Returns the mesh edges of a curve.
   const Grouping& edges() const { return edges_by_curve_; }
 
  private:

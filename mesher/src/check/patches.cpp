@@ -1,4 +1,4 @@
-// Every patch as a union of faces: tags, regions, planes, areas and distances.
+// Checks that every patch is a union of faces: tags, regions, planes, areas and distances.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -13,13 +13,13 @@ namespace collarmesh::checks {
 
 namespace {
 
-// Which sides and corners (sides with equal ends) of some faces were seen. Forgets those whose place others
-// take.
+// The sides and corners (sides with equal ends) of faces that were seen; a cache, in which new ones replace
+// old ones.
 class SeenSides {
  public:
   explicit SeenSides(std::size_t faces) : places_(std::bit_ceil(2 * faces + 1), {none, none}) {}
 
-  /// False when it was seen. Sorted ends.
+  /// Records a side with sorted ends; returns false if it was seen.
   bool add(const std::array<Index, 2>& side) {
     auto& place = places_[(number_of(side) * 0x9e3779b97f4a7c15 >> 32U) & (places_.size() - 1)];
     if (place == side) return false;
@@ -132,13 +132,14 @@ class PatchCheck {
     return false;
   }
 
-  // Both areas are those of the projections along the plane's normal, with signs (a finding about a turned
-  // face is told already, so it counts as if it were not). Such an area depends on the border alone: it is
-  // half the sum of dot(normal, cross(a, b)) over its edges ab, to which each inner edge adds nothing, as its
-  // two sides run against each other. How the triangles of a patch that is planar up to a tolerance are
-  // tilted, or folded where they are narrower than that, is no part of it. (The triangles' own areas are:
-  // tilted by an angle t they exceed their projection by t^2 / 2, relatively, needles by anything.) So the
-  // areas differ where the border does: by its length times how far it may move, and by rounding.
+  // Both areas are those of the projections along the plane's normal, with signs (a turned face has a
+  // finding of its own, so here it counts as if it were not turned). Such an area depends on the border
+  // alone: it is half the sum of dot(normal, cross(a, b)) over its edges ab, to which each inner edge adds
+  // nothing, as its two sides run against each other. How the triangles of a patch that is planar up to a
+  // tolerance are tilted, or folded where they are narrower than that, is no part of it. (The triangles' own
+  // areas are: tilted by an angle t they exceed their projection by t^2 / 2, relatively, needles by
+  // anything.) So the areas differ where the border does: by its length times how far it may move, and by
+  // rounding.
   void compare_area(double found) {
     long double sum = 0;
     for (Index i = 0; i < patch_.triangle_count; ++i) {

@@ -1,4 +1,4 @@
-// Labels for a mesh from a file whose own are not the complex', or that has none: from positions.
+// Finds labels by position for a mesh from a file that has none, or labels unknown to the complex.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 using Triangle = std::array<Index, 3>;
 
-// Do most of the entities have a tag that the complex knows?
+// Returns whether most of the entities have a tag of the complex.
 template <class Features>
 bool are_known(const std::vector<Tag>& tags, const Features& features) {
   std::vector<Tag> known;
@@ -28,14 +28,14 @@ bool are_known(const std::vector<Tag>& tags, const Features& features) {
   return 2 * static_cast<std::size_t>(count) >= tags.size();
 }
 
-// Do the tags say more than that the entity lies on some feature?
+// Returns whether the tags say more than that the entity lies on some feature.
 template <class Features>
 bool tell_apart(const Features& features) {
   return std::any_of(features.begin(), features.end(),
                      [&](const auto& feature) { return feature.tag != features.front().tag; });
 }
 
-// Three points that sides of tets and listed faces join.
+// A triangle of three points that are corners of sides of tets or of listed faces.
 struct Side {
   Triangle corners;  // sorted
   Index tet;         // none: a listed face
@@ -46,7 +46,7 @@ struct Side {
   }
 };
 
-// The patches that have a region on both sides.
+// Finds the patches with a region on both sides.
 class InnerPatches {
  public:
   explicit InnerPatches(const Subject& subject)
@@ -55,7 +55,7 @@ class InnerPatches {
         near_(subject.mesh.points.size(), -1) {}
 
   enum class Kind { planar, any };
-  /// Does the triangle lie on one of the kind?
+  /// Returns whether the triangle lies on one of this kind.
   bool hold(const Triangle& corners, Kind kind) {
     if (numbers_.empty()) return false;
     if (!std::all_of(corners.begin(), corners.end(), [&](Index p) { return is_near(p); })) return false;
@@ -64,7 +64,7 @@ class InnerPatches {
     return distance <= subject_.patch_allowance[patch] &&
            (kind == Kind::any || subject_.plc.patches[patch].planar);
   }
-  /// The normal there, of any length.
+  /// Returns the normal there, of any length.
   Vector normal(const Triangle& corners) const {
     const Plc::Triangle& t =
         subject_.plc.triangles[numbers_[triangles_.nearest(subject_.centroid(corners)).triangle]];
@@ -121,8 +121,8 @@ struct CurveSegments {
   std::vector<double> lengths;  // by curve
 };
 
-// Are most of some of the faces and edges on the patches and curves that their tags name? Asked where tags
-// are only numbers, which another order of the facets changes.
+// Returns whether most of a sample of faces and edges lie on the patches and curves of their tags. It matters
+// if tags are only numbers, which another order of the facets changes.
 class Numbers {
  public:
   explicit Numbers(const Subject& subject) : subject_(subject) {}
@@ -201,8 +201,8 @@ class Placement {
   }
 
  private:
-  // Edges of tets that lie on no curve, where no tag says that they should: other programs list those along
-  // which they cut faces. Empty when there are none.
+  // Returns listed edges on no curve without a tag that requires one: other programs list the edges along
+  // which they divide faces. Empty if there are none.
   std::vector<bool> stray_edges() const {
     const TetMesh& mesh = subject_.mesh;
     const bool told = !plc_.numbered_curves && tell_apart(plc_.curves);
@@ -285,7 +285,7 @@ class Placement {
     return side_corners(subject_.mesh.tets[tet], opposite);
   }
 
-  // Of each connected part the largest tet tells where all are.
+  // Places each connected part by its largest tet.
   void place_tets() {
     const TetMesh& mesh = subject_.mesh;
     DisjointSets parts(mesh.tets.size());
@@ -342,13 +342,13 @@ class Placement {
     });
   }
 
-  // Are two triangles of the same corners turned alike?
+  // Returns whether two triangles with the same corners have the same orientation.
   static bool alike(const Triangle& a, const Triangle& b) {
     const auto at = static_cast<std::size_t>(std::find(b.begin(), b.end(), a[0]) - b.begin());
     return b[(at + 1) % 3] == a[1];
   }
 
-  // Where the mesh ends, between regions, and on facets inside of regions.
+  // Makes faces at the border of the mesh, between regions, and on facets inside regions.
   void make_faces() {
     report_.notes.emplace_back(
         mesh_.faces.empty()
@@ -389,7 +389,7 @@ class Placement {
     friend bool operator<(const PlaceOnCurve& a, const PlaceOnCurve& b) { return a.arc < b.arc; }
   };
 
-  // Consecutive points on a curve, where an edge of a tet joins them.
+  // Makes edges between consecutive points on a curve that an edge of a tet joins.
   void make_edges() {
     report_.notes.emplace_back(
         mesh_.edges.empty() ? "The mesh lists no edges: those on curves were found by position."
@@ -441,7 +441,7 @@ class Placement {
     return chains;
   }
 
-  // The points that may be on curves: of faces, or all if a curve is on no patch.
+  // Returns the points that may be on curves: those of faces, or all if a curve is on no patch.
   std::vector<Index> candidates() const {
     std::vector<bool> is_candidate(
         mesh_.points.size(),
@@ -456,7 +456,7 @@ class Placement {
     return points;
   }
 
-  // Of tets, between points on curves; sorted.
+  // Returns the edges of tets between points on curves, sorted.
   std::vector<std::array<Index, 2>> edges_between(
       const std::vector<std::vector<PlaceOnCurve>>& chains) const {
     std::vector<bool> on_curve(mesh_.points.size(), false);

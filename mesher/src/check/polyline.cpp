@@ -9,7 +9,7 @@ NearestOnSegment nearest_on_segment(const Point& p, const Point& a, const Point&
   const Vector ab = b - a;
   const double squared = squared_norm(ab);
   const double t = squared > 0 ? std::clamp(dot(p - a, ab) / squared, 0.0, 1.0) : 0;
-  // From the nearer end: exact where p is that end.
+  // Measures from the nearer end, which is exact if p is that end.
   return {t < 0.5 ? norm((p - a) - t * ab) : norm((p - b) + (1 - t) * ab), t};
 }
 

@@ -25,7 +25,8 @@ class Polyline {
   struct Nearest {
     double arc, distance;
   };
-  /// Of the part between two positions. Cost: linear in that part, plus a bisection.
+  /// Returns the nearest point of the part between two positions. Cost: linear in that part, plus a
+  /// bisection.
   Nearest nearest(const Point& p, double from, double to) const;
   Nearest nearest(const Point& p) const { return nearest(p, 0, length()); }
 
@@ -37,7 +38,7 @@ class Polyline {
   };
   Range corners_between(double from, double to) const;
 
-  /// Of a closed one: the same, started elsewhere.
+  /// Returns this closed polyline with another starting point.
   Polyline started_at(double arc) const;
 
  private:

@@ -35,7 +35,7 @@ struct Meeting {
   bool in_front;  // the way begins on the side that the normal points to
 };
 
-// How the segment from p, which is not on the triangle, to q meets it.
+// The ways in which the segment from p, which is not on the triangle, to q meets it.
 Meeting meet(const Point& p, const Point& q, const Corners& t) {
   const int from = exact_orientation(t[0], t[1], t[2], p), to = exact_orientation(t[0], t[1], t[2], q);
   if (from == 0 && to == 0) return {Crossing::at_border, false};  // within its plane
@@ -51,7 +51,7 @@ Meeting meet(const Point& p, const Point& q, const Corners& t) {
   return {on_border ? Crossing::at_border : Crossing::inside, from > 0};
 }
 
-// Where along pq, from 0 to 1, the plane of the triangle is.
+// Returns the position along pq, from 0 to 1, of the plane of the triangle.
 double place_of_plane(const Point& p, const Point& q, const Corners& t) {
   const double from = std::fabs(six_volume(t[0], t[1], t[2], p)),
                to = std::fabs(six_volume(t[0], t[1], t[2], q));
@@ -67,8 +67,8 @@ const RegionLocator::Trees& RegionLocator::trees() const {
   return *trees_;
 }
 
-// The region that the first triangle on the way from p to twice as far as `target` shows to p; none when the
-// way meets a border.
+// Returns the region on p's side of the first triangle on the way from p through `target` to twice its
+// distance; none if the way meets a border.
 Index RegionLocator::region_on_the_way(const Point& p, const Point& target) const {
   const Point beyond = target + (target - p);
   double first = INFINITY;

@@ -1,4 +1,4 @@
-// Region volumes of the mesh against those that the complex's triangles enclose.
+// Checks region volumes of the mesh against those that the complex's triangles enclose.
 #include <cmath>
 #include <vector>
 
@@ -8,7 +8,7 @@ namespace collarmesh::checks {
 
 namespace {
 
-/// How much the volumes may differ because the surface may.
+/// Returns the difference of volumes that the surface distance allows.
 std::vector<double> allowed_by_distance(const Subject& subject) {
   const Plc& plc = subject.plc;
   std::vector<double> allowed(plc.regions.size(), 0);

@@ -1,4 +1,4 @@
-// Cells of second order: their mid-side nodes and their Jacobian.
+// Checks of cells of second order: mid-edge nodes and the Jacobian.
 #include <algorithm>
 
 #include "check/subject.h"
@@ -9,7 +9,7 @@ namespace collarmesh::checks {
 
 namespace {
 
-/// A mid-side node as a cell of dimension `dimension` gives it.
+/// A mid-edge node of a cell of dimension `dimension`.
 struct MidNode {
   std::array<Index, 2> edge;
   Index node;
@@ -17,7 +17,7 @@ struct MidNode {
   int dimension;
 };
 
-// Of the edges of a tet; the first three are those of its face and of a triangle.
+// The ends of the edges of a tet; the first three are also the edges of a triangle.
 constexpr std::array<std::array<std::size_t, 2>, 6> ends{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
 std::vector<MidNode> mid_nodes_of_tets(const TetMesh& mesh) {
@@ -58,7 +58,7 @@ void check_not_corners(const Subject& subject, Findings& findings) {
             node, At{subject.point(node)}, t);
 }
 
-// One node to an edge, one edge to a node.
+// Checks that each edge has one node and each node one edge.
 void check_shared(const Subject& subject, Findings& findings) {
   std::vector<MidNode> nodes = mid_nodes(subject.mesh);
   const auto report = [&](const MidNode& first, const MidNode& second, const char* what) {
@@ -70,7 +70,7 @@ void check_shared(const Subject& subject, Findings& findings) {
         At{subject.midpoint(first.edge)}, name_of_cell(second.dimension), second.cell, second.node,
         second.edge[0], second.edge[1], what);
   };
-  // Tets first, so that what is unlike them is named.
+  // Tets come first, so that findings name cells that differ from them.
   const auto before = [](const MidNode& a, const MidNode& b) {
     return a.dimension != b.dimension ? a.dimension > b.dimension : a.cell < b.cell;
   };

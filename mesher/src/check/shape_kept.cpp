@@ -34,7 +34,7 @@ ShapeMeasures measures_of(const Subject& subject, const std::vector<double>& vol
   return measures;
 }
 
-/// Values of the complex where nothing better is known.
+/// Replaces values of the complex by exact ones where these are known.
 void take_exact(const std::vector<double>& exact, std::vector<double>& values) {
   for (std::size_t i = 0; i < std::min(exact.size(), values.size()); ++i)
     if (std::isfinite(exact[i])) values[i] = exact[i];

@@ -8,7 +8,7 @@ namespace collarmesh {
 namespace {
 
 /// The derivative of x along a barycentric direction, by the weights of the nodes: 4 lambda - 1 for a corner,
-/// 4 times the other end's lambda for a node amid an edge.
+/// 4 times the other end's lambda for a mid-edge node.
 template <std::size_t corners, std::size_t nodes>
 std::array<Vector, corners> derivatives(const std::array<Point, nodes>& x,
                                         const std::array<std::array<unsigned, 2>, nodes - corners>& edges,

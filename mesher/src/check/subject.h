@@ -18,14 +18,14 @@
 /// here knows how the mesh was made.
 namespace collarmesh::checks {
 
-/// Which feature of the complex the entities of the mesh belong to.
+/// The features of the complex that the entities of the mesh belong to.
 struct FeatureMatch {
   std::vector<Index> face_patch;    ///< by face of the mesh, none if it has no patch
   std::vector<Index> edge_curve;    ///< by edge of the mesh, none if it has no curve
   std::vector<Index> vertex_point;  ///< by vertex of the complex: its mesh point, none if there is none
 };
 
-/// What is judged, and by which measures.
+/// The mesh under test, its complex, and the measures to judge by.
 struct Subject {
   const TetMesh& mesh;
   const Plc& plc;
@@ -47,9 +47,9 @@ struct Subject {
 };
 
 /// The tets that may exceed the radius-edge bound if their angles are bounded: dihedral angles from below,
-/// these and those of faces by 150 degrees. Where the mesh marks such tets, the marked ones, of a file
-/// without marks any. Where features meet at less than twice the bound from below it is half the angle they
-/// meet at; where a tet has an edge that the input forces to be short, half of the angle that this leaves.
+/// and dihedral and face angles by 150 degrees. These are the marked tets, or any tets of a file without
+/// marks. Where features meet at less than twice the lower bound, the bound is half the angle between them.
+/// Where a tet has an edge that the input forces to be short, it is half the angle that this leaves.
 class ThinCells {
  public:
   static constexpr double largest_angle = 150;  ///< degrees
@@ -104,29 +104,29 @@ inline std::uint64_t number_of(const std::array<Index, 2>& ends) {
 
 inline double area(const Point& a, const Point& b, const Point& c) { return 0.5 * norm(cross(b - a, c - a)); }
 
-/// Equal lengths and corners in range. If false, nothing else can be looked at.
+/// Checks that arrays have equal lengths and corners are in range. If false, no other check can run.
 bool check_arrays(const TetMesh& mesh, Findings& findings);
 
-/// Finite, distinct, used by tets. False if one is not finite.
+/// Checks that points are finite, distinct and used by tets. Returns false if one is not finite.
 bool check_points(const Subject& subject, Findings& findings);
 
-/// Of a mesh from a file: what its labels do not tell is found by position. Of tets whose region and tag are
-/// not the complex's the regions, each connected part (up to listed faces and planar patches) by its largest
-/// tet; when most tags of faces or edges are none of the complex', or there are none, those anew from the
-/// tets and the complex. The result has the complex's labels; what was found like that becomes a note. None
-/// when there is nothing to find, or tets lie outside, which is a finding. Precondition: check_arrays and
+/// Finds missing labels of a mesh from a file by position: regions of tets whose region and tag are not the
+/// complex's, each connected part (up to listed faces and planar patches) by its largest tet; and, if most
+/// tags of faces or edges are unknown to the complex or missing, faces and edges anew from the tets and the
+/// complex. The result has the complex's labels; a note says which were found. Returns none if nothing is
+/// missing, or if tets lie outside, which is a finding. Precondition: check_arrays and
 /// check_points hold. Cost: O(n log n).
 std::optional<TetMesh> place_by_position(const Subject& subject, CheckReport& report, Findings& findings);
 
-/// The labels are indices of the complex. If false, nothing else can be looked at.
+/// Checks that the labels are indices of the complex. If false, no other check can run.
 bool check_labels(const TetMesh& mesh, const Plc& plc, Findings& findings);
 
-/// Volumes, shapes and region volumes of all tets.
+/// Checks volumes, shapes and region volumes of all tets.
 /// Precondition: subject.collar is filled in.
 void check_tets(const Subject& subject, CheckReport& report, Findings& findings);
 
-/// Tets against each other and against the listed faces. On the way it meets each edge once, so that it finds
-/// their median length, too.
+/// Checks tets against each other and against the listed faces. It visits each edge once, so it also finds
+/// their median length.
 void check_conformity(const Subject& subject, CheckReport& report, Findings& findings);
 
 void check_watertight(const Subject& subject, Findings& findings);
@@ -139,16 +139,16 @@ void check_region_volumes(const Subject& subject, const CheckReport& report, Fin
 /// Preconditions: subject.match and report.region_volumes are filled in.
 void check_shape_kept(const Subject& subject, CheckReport& report, Findings& findings);
 
-/// How far the mesh may be from straight curves and planar patches: their own deviation from
-/// straight or planar (a few times, vertices are extrapolated from others) but not more than the
-/// complex's planar tolerance; from others the distance tolerance; in each case also the rounding.
+/// Computes the allowed distance from straight curves and planar patches: a few times their own deviation
+/// from straight or planar, because vertices are extrapolated from others, but at most the complex's planar
+/// tolerance; from others the distance tolerance; in each case plus rounding.
 std::vector<double> curve_allowances(const Subject& subject);
 std::vector<double> patch_allowances(const Subject& subject);
 
-/// Find the features by the indices in the mesh; where it has none, by tags and position.
+/// Finds the features by the indices in the mesh; if it has none, by tags and position.
 FeatureMatch match_features(const TetMesh& mesh, const Plc& plc, double rounding);
 
-/// The vertices of the complex in the mesh, by index or position.
+/// Finds the vertices of the complex in the mesh, by index or position.
 std::vector<Index> match_vertices(const TetMesh& mesh, const Plc& plc, double rounding);
 
 /// The patches of the faces that name none: by position, and by tag if the tags are the complex'.
@@ -159,22 +159,22 @@ void check_listed_edges(const Subject& subject, Findings& findings);
 void check_curves(const Subject& subject, CheckReport& report, Findings& findings);
 void check_patches(const Subject& subject, CheckReport& report, Findings& findings);
 
-/// Which tets are cells of collars: stars have one corner on a crease of the complex, books two that an edge
-/// on it joins. Where the mesh marks cells, only the marked ones; a mark without that is a finding.
+/// Finds the cells of collars: stars have one corner on a crease of the complex, books two that an edge on it
+/// joins. If the mesh marks cells, only marked ones count; a mark elsewhere is a finding.
 /// Precondition: subject.match is filled in.
 std::vector<std::uint8_t> collar_cells(const Subject& subject, Findings& findings);
 
-/// The balls of the collars against the features that the mesh has and against each other (paper,
-/// Definitions 6 and 7). Nothing when the mesh does not tell them.
+/// Checks the balls of the collars against the features of the mesh and against each other (paper,
+/// Definitions 6 and 7). Does nothing if the mesh does not have them.
 void check_collars(const Subject& subject, Findings& findings);
 
-/// Give the faces and edges of a mesh of second order the mid-side nodes that tets have there.
+/// Gives the faces and edges of a mesh of second order the mid-edge nodes of the tets there.
 void take_mid_nodes_of_tets(TetMesh& mesh);
 
-/// Mid-side nodes and the sign of the Jacobian. Nothing for a mesh of first order.
+/// Checks mid-edge nodes and the sign of the Jacobian. Does nothing for a mesh of first order.
 void check_second_order(const Subject& subject, CheckReport& report, Findings& findings);
 
-/// Does a feature lie outside all regions, so that the mesh does not have it?
+/// Returns whether a feature lies outside all regions, so that it is not in the mesh.
 bool curve_is_outside(const Subject& subject, Index curve);
 bool vertex_is_outside(const Subject& subject, Index vertex);
 bool patch_is_outside(const Subject& subject, Index patch);

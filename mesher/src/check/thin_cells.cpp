@@ -1,4 +1,5 @@
-// Which tets may exceed the radius-edge bound because their angles are bounded instead, and by what.
+// Finds the tets that may exceed the radius-edge bound because their angles are bounded instead, and the
+// bounds.
 #include <algorithm>
 
 #include "check/subject.h"

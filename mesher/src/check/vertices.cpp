@@ -1,4 +1,4 @@
-// The complex's vertices in the mesh, and what the mesh says its points lie on.
+// Checks that the complex's vertices are in the mesh, and the features that the mesh gives for its points.
 #include "check/subject.h"
 
 namespace collarmesh::checks {

@@ -6,11 +6,11 @@ namespace collarmesh {
 
 namespace {
 
-// Points so close, in radii, are the same one: where a circle passes the edge between two triangles.
+// Points this close, in radii, are the same: a circle that passes the edge between two triangles gives two.
 constexpr double same_point = 1e-6;
 constexpr int most_projections = 40;
 
-// In the plane of a triangle: within it, but for rounding?
+// Returns whether a point in the plane of a triangle lies within it, up to rounding.
 bool within(const Point& p, const std::array<Point, 3>& t, double slack) {
   return squared_distance_to_triangle(p, t[0], t[1], t[2]) <= slack * slack;
 }
@@ -21,7 +21,7 @@ CollarCorners::CollarCorners(const Plc& plc, const FeatureHierarchy& features, c
                              const CreaseSheets& sheets, std::vector<CornerPoint>& corners)
     : plc_(plc), features_(features), paths_(paths), sheets_(sheets), corners_(corners) {}
 
-// Where the circle passes through triangles of the patch.
+// Finds the places where the circle crosses triangles of the patch.
 std::vector<Point> CollarCorners::crossings(Index patch, const Circle& circle) const {
   const Vector any = std::fabs(circle.axis.x) < 0.6 ? Vector{1, 0, 0} : Vector{0, 1, 0};
   const Vector across = cross(circle.axis, any), u = across / norm(across), v = cross(circle.axis, u);

@@ -10,13 +10,13 @@ namespace collarmesh {
 /// Finds the points that the mesh must have on the collar surface.
 class CollarCorners {
  public:
-  /// All are kept by reference.
+  /// Keeps all by reference.
   CollarCorners(const Plc& plc, const FeatureHierarchy& features, const CurvePaths& paths,
                 const CreaseSheets& sheets, std::vector<CornerPoint>& corners);
 
-  /// Where the sheets that meet at a crease pass through the circle of two consecutive balls' spheres.
+  /// Finds the places where the sheets at a crease cross the circle of two consecutive balls' spheres.
   void add_on_circle(const CollarLink& link, const CollarBall& a, const CollarBall& b);
-  /// Three points where a smooth patch that surrounds a crease vertex (a cone its apex) leaves the
+  /// Finds three points where a smooth patch that surrounds a crease vertex (as a cone its apex) leaves the
   /// vertex's ball.
   void add_around(const CollarBall& ball);
 

@@ -1,4 +1,4 @@
-// Where the balls go and how large they are.
+// The places and radii of balls.
 #include "collar/collar_placement.h"
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@ namespace collarmesh {
 namespace {
 
 constexpr double radius_per_gap = 1.0 / 3;
-// So many sizes away nothing matters to the gap size.
+// Features this many sizes away do not affect the gap size.
 constexpr double gap_per_size = 4;
 // Radii are shrunk by a random share of up to this, so that spheres are in general position.
 constexpr double largest_shrinkage = 0.02;
@@ -23,11 +23,11 @@ constexpr double largest_shrinkage = 0.02;
 constexpr double radius_slope = 1.0 / 3;
 constexpr double flat_radius_slope = 0.05;
 constexpr double sample_step = 0.5;  // in radii
-// Consecutive centres are so many radii apart at most: the circle of two balls is then seen from
+// Consecutive centres are at most this many radii apart: the circle of two balls is then seen from
 // both centres under less than 90 degrees, d^2 <= r1^2 + r2^2, shrunk as they may be.
 constexpr double step_per_radius = 1.2;
 
-// Lower what rises by more than the slope from a neighbour, to both sides; around twice when closed.
+// Lowers values that exceed a neighbour's by more than the slope, in both directions; twice around if closed.
 void limit_slope(const std::vector<double>& parameters, double slope, bool closed,
                  std::vector<double>& values) {
   const std::size_t n = values.size();
@@ -161,7 +161,7 @@ double CollarPlacement::Profile::parameter(double step) const {
   return (1 - t) * parameters[after - 1] + t * parameters[after];
 }
 
-// From the first parameter to the last in equal numbers of radii.
+// Returns parameters from the first to the last at equal numbers of radii.
 std::vector<double> CollarPlacement::centres(const Profile& profile) const {
   const double total = profile.steps.back();
   const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(total / step_per_radius)));

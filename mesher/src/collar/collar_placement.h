@@ -13,10 +13,10 @@ namespace collarmesh {
 /// would be smaller than CollarOptions::smallest_radius.
 class CollarPlacement {
  public:
-  /// All are kept by reference. `system` knows its creases, `gap` how large balls may be there.
+  /// Keeps all by reference. `system` knows its creases, `gap` the allowed size of balls there.
   CollarPlacement(const Plc& plc, std::span<const Point> points, GapSize& gap, const CollarOptions& options,
                   CollarSystem& system);
-  /// On all creases. False when it was stopped.
+  /// Places balls on all creases. Returns false if it was stopped.
   bool place_all();
   /// Precondition: the vertex is a crease's and has no ball yet.
   void place_at_vertex(Index vertex);

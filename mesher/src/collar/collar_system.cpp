@@ -33,7 +33,7 @@ CollarSystem::CollarSystem(const Plc& plc, std::span<const Point> points, std::s
   if (!CollarPlacement(plc, points, gap, options, *this).place_all()) balls_.clear();
 }
 
-// A curve's balls come together.
+// Builds the tree over creases. A curve is one leaf, because its balls are added at once.
 void CollarSystem::plant(const Plc& plc, std::span<const Point> points) {
   std::vector<Item> items;
   std::vector<Feature> creases;
@@ -129,7 +129,7 @@ Index CollarSystem::build(std::span<Index> order, std::span<const Item> items, I
   return node;
 }
 
-// Visit the balls below nodes whose box qualifies, until visit_ball returns true.
+// Visits the balls below nodes whose box qualifies, until visit_ball returns true.
 template <class Meets, class Visit>
 void CollarSystem::visit(const Meets& meets_box, const Visit& visit_ball) const {
   std::array<Index, 128> stack;

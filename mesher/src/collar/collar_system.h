@@ -40,19 +40,19 @@ struct CornerPoint {
   Index feature;
 };
 
-/// How large balls may be.
+/// The bounds on the size of balls.
 struct CollarOptions {
-  /// Upper bound on the radius of a ball at a place on this vertex or curve.
+  /// Returns an upper bound on the radius of a ball at a place on this vertex or curve.
   std::function<double(const Feature&, const Point&)> size;
-  /// How far what replaces smooth curves and patches inside a ball may be from them.
+  /// The allowed distance from smooth curves and patches of the cells that replace them inside a ball.
   SurfaceTolerance tolerance{0};
   std::uint64_t seed = 0;
-  /// Asked now and then, with how many balls there are and will be at least; when it says yes the system
+  /// Called from time to time with a lower bound on the final number of balls; if it returns true, the system
   /// stays incomplete. May be empty.
   std::function<bool(std::size_t balls)> stopped = {};
-  /// Absolute: where balls would have to be smaller, features cannot be told apart.
+  /// The smallest radius, absolute: below it features cannot be distinguished.
   double smallest_radius = 0;
-  /// Where a place is in the input, for messages. May be empty.
+  /// Converts a place to input coordinates, for messages. May be empty.
   std::function<Point(const Point&)> outside = {};
 };
 
@@ -61,8 +61,8 @@ struct CollarOptions {
 class CollarSystem {
  public:
   CollarSystem() = default;
-  /// Without balls yet: these creases are to be covered (CollarPlacement). The complex and its points are
-  /// kept by reference.
+  /// Makes a system without balls for these creases, which CollarPlacement covers. Keeps the complex and its
+  /// points by reference.
   CollarSystem(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases);
   /// Place balls on all creases: radius a third of the gap size, never more than the size allows,
   /// shrunk by up to 2% (seeded) so that spheres are generic; on smooth curves and patches small
@@ -73,12 +73,12 @@ class CollarSystem {
                const CollarOptions& options);
 
   bool empty() const { return balls_.empty(); }
-  /// The complex that the balls are placed in. Precondition: it has creases.
+  /// Returns the complex of the balls. Precondition: it has creases.
   const FeatureHierarchy& features() const { return *features_; }
   const std::vector<CollarBall>& balls() const { return balls_; }
   const std::vector<CollarLink>& links() const { return links_; }
   const std::vector<CornerPoint>& corners() const { return corners_; }
-  /// The vertices that get a ball: those of creases and the ends of crease curves.
+  /// Returns the vertices that get a ball: those of creases and the ends of crease curves.
   const std::vector<Index>& crease_vertices() const { return crease_vertices_; }
   bool is_crease_vertex(Index vertex) const {
     return std::binary_search(crease_vertices_.begin(), crease_vertices_.end(), vertex);
@@ -90,8 +90,8 @@ class CollarSystem {
   void complete();
   bool consecutive(Index a, Index b) const { return consecutive_.count(pair_of(a, b)) > 0; }
 
-  /// A ball that contains p in its interior, none if there is none. Several threads may ask at once, while no
-  /// balls come.
+  /// Returns a ball that contains p in its interior, none if there is none. Several threads may call it at
+  /// once while no balls are added.
   Index ball_containing(const Point& p) const;
   bool contains(Index ball, const Point& p) const {
     return squared_distance(p, balls_[ball].centre) < balls_[ball].radius * balls_[ball].radius;
@@ -106,12 +106,12 @@ class CollarSystem {
     CentredBox box;
     Index left, right;  // a leaf has left == none and its ball in right
   };
-  /// What a tree is built over.
+  /// An item that a tree is built over.
   struct Item {
     Point centre;
     Box box;
   };
-  /// Of the tree over creases: the exact box of a node, of the balls that have come.
+  /// A node of the tree over creases, with the exact box of the balls added so far.
   struct Branch {
     Box box;
     Index parent = none;
@@ -119,12 +119,12 @@ class CollarSystem {
   static std::uint64_t pair_of(Index a, Index b) {
     return std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
   }
-  /// A tree over creases: at its leaves grow the trees over their balls. So that there is one tree, however
-  /// late which balls come.
+  /// Builds a tree over creases. The trees over their balls are attached at its leaves, so that there is one
+  /// tree although balls are added later.
   void plant(const Plc& plc, std::span<const Point> points);
   /// Let queries find the balls added since, all of which are on this vertex or curve.
   void index_balls(const Feature& crease);
-  /// A tree over all balls from this one. Returns its root.
+  /// Builds a tree over all balls from this one on. Returns its root.
   Index build_over_balls(Index first, Box& box);
   /// A tree over items, the numbers of which start here. Adds their boxes to the box. Returns its root.
   Index build(std::span<Index> order, std::span<const Item> items, Index first, Box& box);

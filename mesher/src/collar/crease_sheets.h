@@ -17,7 +17,7 @@ struct Sheet {
 /// The triangles at creases.
 class CreaseSheets {
  public:
-  /// `points` are kept by reference. Of vertices and curves only the given ones are known.
+  /// Keeps `points` by reference. Knows only the given vertices and curves.
   CreaseSheets(const Plc& plc, std::span<const Point> points, std::span<const Index> vertices,
                const std::vector<bool>& is_crease_curve);
 

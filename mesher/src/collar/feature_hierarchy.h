@@ -45,7 +45,7 @@ class FeatureHierarchy {
   double distance_within(Feature feature, const Point& p, double bound, Index& nearest,
                          const Counts& counts) const;
 
-  /// The point of the feature nearest to p.
+  /// Returns the point of the feature nearest to p.
   Point nearest_point(Feature feature, const Point& p) const;
 
   /// Calls visit(element) for the elements of the feature whose box meets this one.

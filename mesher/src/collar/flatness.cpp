@@ -20,7 +20,7 @@ constexpr double radius_per_length = 1.0 / 8;
 // than through space.
 constexpr double pieces_per_radius = 3;
 constexpr double detour = 1.5;
-// Where chords are compared with what they stand for.
+// The positions at which chords are compared with the feature.
 constexpr std::array<double, 3> chord_shares{0.25, 0.5, 0.75};
 constexpr std::size_t most_spokes = 16;  // of a patch in a ball
 constexpr double rounding = 1e-6;        // of lengths, relative to the ball
@@ -38,7 +38,7 @@ bool Flatness::matters_on(Index curve) const {
                                     [&](Index patch) { return !plc_.patches[patch].planar; });
 }
 
-// Of a smooth feature the deviation grows with the square of the radius, at a bend linearly.
+// The deviation grows with the square of the radius on a smooth feature, linearly at a bend.
 template <class Deviation>
 double Flatness::shrunk(double radius, double tolerance, const Deviation& deviation) {
   for (int step = 0; step < most_steps; ++step) {
@@ -50,7 +50,7 @@ double Flatness::shrunk(double radius, double tolerance, const Deviation& deviat
   return radius;
 }
 
-// How far the curve between two parameters leaves its chord.
+// Returns the largest distance of the curve between two parameters from its chord.
 double Flatness::off_chord(Index curve, double from, double to) const {
   const Point a = paths_.point(curve, from), b = paths_.point(curve, to);
   double largest = 0;
@@ -60,13 +60,14 @@ double Flatness::off_chord(Index curve, double from, double to) const {
   return std::sqrt(largest);
 }
 
-// How far a patch leaves the chord from the centre to its point in the direction of a sheet.
+// Returns the distance of a patch from the chord between the centre and its point in the direction of a
+// sheet.
 double Flatness::off_patch(const Sheet& sheet, const Point& centre, double radius) const {
   return off_spoke(sheet.patch, centre,
                    features_.nearest_point({2, sheet.patch}, centre + radius * sheet.direction));
 }
 
-// How far the edge from the centre to a point of the patch leaves it.
+// Returns the distance of the patch from the edge between the centre and a point of it.
 double Flatness::off_spoke(Index patch, const Point& centre, const Point& end) const {
   double largest = 0;
   for (const double share : chord_shares) {
@@ -76,8 +77,8 @@ double Flatness::off_spoke(Index patch, const Point& centre, const Point& end) c
   return largest;
 }
 
-// The same for edges to where the patch meets the sphere: at most `most_spokes` points where sides of its
-// triangles leave the ball.
+// Returns the same for edges to points where the patch meets the sphere: at most `most_spokes` points where
+// sides of its triangles leave the ball.
 double Flatness::off_arc(Index patch, const Point& centre, double radius) const {
   Box box;
   box.add(centre - radius * Vector{1, 1, 1});
@@ -219,7 +220,7 @@ double Flatness::radius_at_vertex(Index vertex, double radius) const {
       radius = shrunk(radius, tolerance, [&](double r) {
         return at_start ? off_chord(c, 0, r) : off_chord(c, length, length - r);
       });
-      // A loop comes back, and that is right.
+      // A loop returns to the centre's surroundings legitimately.
       if (curve.ends[0] != curve.ends[1])
         radius = other_arcs(c, at_start ? 0 : length, pieces_per_radius * radius) / pieces_per_radius;
     }

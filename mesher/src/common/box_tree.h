@@ -8,7 +8,7 @@
 
 namespace collarmesh {
 
-/// A hierarchy of boxes that finds the pairs of items whose boxes meet, and the items near a segment.
+/// A hierarchy of boxes that finds pairs of items whose boxes meet, and the items near a segment.
 class BoxTree {
  public:
   /// Items may belong to groups, numbered in any way; without groups each is alone. Cost: O(n).

@@ -12,7 +12,7 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double infinite = std::numeric_limits<double>::infinity();
 // Planes that one curve is on are taken in turns; they hardly differ, or meet in the curve.
 constexpr int most_turns = 20;
-// What is moved back ends safely within its room, relative to that.
+// Points are pulled back to this share of the tolerance, so that rounding cannot leave them outside.
 constexpr double inside = 0.99;
 
 Point nearest_on_segment(const Point& p, const Point& a, const Point& b) {

@@ -8,19 +8,18 @@
 
 namespace collarmesh {
 
-/// What a complex calls straight or planar stays so when its nodes move onto exact geometry, which may
-/// leave the line or plane: by the tolerance of the shape, or by more than the tessellation's points tell.
+/// Keeps straight curves and planar patches flat when their nodes move onto exact geometry, which may leave
+/// the line or plane by the tolerance of the shape, or by more than the tessellation's points show.
 class FlatFeatures {
  public:
-  /// Kept by reference. Cost: linear in the triangles.
+  /// Keeps the complex by reference. Cost: linear in the triangles.
   explicit FlatFeatures(const Plc& plc);
 
-  /// The exact geometry as far as it stays with the straight curves and planar patches that the feature is,
-  /// or is on: a place off a plane by more than the certificate permits (that is min(4 d, planar tolerance)
-  /// and rounding, where d is how far the complex's own points are off), or off a straight curve by more than
-  /// half of that, is moved back towards it. Half, because the edges between nodes must be near the curve's
-  /// own points, too, and those are up to 2 d off the chords. Nothing where there is no such place near.
-  /// This and `exact` are kept by reference.
+  /// Returns the exact geometry restricted to straight curves and planar patches: a place off a plane by more
+  /// than the certificate permits (min(4 d, planar tolerance) plus rounding, where d is the distance of the
+  /// complex's own points), or off a straight curve by more than half of that, is moved back towards it.
+  /// Half, because the edges between nodes must be near the curve's own points, too, which are up to 2 d off
+  /// the chords. Gives no point if no such place is near. Keeps this and `exact` by reference.
   ExactGeometry limit(const ExactGeometry& exact) const;
 
   /// The same for one place on the exact geometry of a curve (dimension 1) or patch (2).

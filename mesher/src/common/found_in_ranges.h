@@ -8,8 +8,8 @@
 
 namespace collarmesh {
 
-/// What `look(i, found)` adds to `found` for all i below `count`, in the order of i. `look` is called by the
-/// threads of the arena that runs the caller.
+/// Collects the items that `look(i, found)` adds to `found` for all i below `count`, in the order of i. The
+/// threads of the caller's arena call `look`.
 template <class Found, class Look>
 std::vector<Found> found_in_ranges(std::size_t count, const Look& look) {
   constexpr std::size_t at_once = 4096;

@@ -46,14 +46,14 @@ class GrowingArray {
     size_ = n;
   }
 
-  /// Grow without setting what is new.
+  /// Grows without initializing the new entries.
   void extend(std::size_t n) {
     if (n > capacity_) reserve(with_room_to_grow(n));
     size_ = n;
   }
 
  private:
-  // Where growing copies nothing, little room is enough.
+  // A block that grows without a copy needs little extra room.
   static std::size_t with_room_to_grow(std::size_t n) {
     return n + n / (grows_in_place(n * sizeof(T)) ? 8 : 2) + 64;
   }

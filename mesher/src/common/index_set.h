@@ -9,14 +9,14 @@
 
 namespace collarmesh {
 
-/// A set of numbers below `none`, most often of few: those need no memory of their own.
+/// A set of numbers below `none`; small sets, which are most frequent, need no memory of their own.
 class IndexSet {
  public:
   IndexSet() { few_.fill(none); }
   IndexSet(const IndexSet&) = delete;
   IndexSet& operator=(const IndexSet&) = delete;
 
-  /// False when it is there already.
+  /// Adds a number; returns false if it is there already.
   bool insert(Index i) {
     if (2 * (size_ + 1) > table_.size()) grow();
     if (!insert_into(table_, i)) return false;

@@ -14,12 +14,12 @@
 
 namespace collarmesh {
 
-/// Large arrays that are visited in no particular order cost less when the system keeps them in large pages:
-/// an address is found without a walk through page tables that are themselves not in the cache.
+/// Support of large pages, which make random access to large arrays cheaper: addresses are translated without
+/// a walk through page tables that are not in the cache themselves.
 inline constexpr std::size_t large_page = std::size_t{2} << 20U;
 inline constexpr std::size_t least_bytes_in_large_pages = large_page / 2;
 
-/// Ask the system for large pages inside this block. Only a wish: nothing depends on it.
+/// Asks the system for large pages inside this block. Nothing depends on whether it complies.
 inline void prefer_large_pages([[maybe_unused]] void* block, [[maybe_unused]] std::size_t bytes) {
 #if defined(__linux__)
   if (bytes < least_bytes_in_large_pages) return;
@@ -38,7 +38,7 @@ inline void prefer_large_pages([[maybe_unused]] void* block, [[maybe_unused]] st
 #define COLLARMESH_REMAPS 0
 #endif
 
-/// Does a block of so many bytes grow without being copied?
+/// Returns whether a block of this many bytes grows without being copied.
 inline bool grows_in_place([[maybe_unused]] std::size_t bytes) {
 #if COLLARMESH_REMAPS
   return bytes >= least_bytes_in_large_pages;
@@ -47,7 +47,7 @@ inline bool grows_in_place([[maybe_unused]] std::size_t bytes) {
 #endif
 }
 
-/// A block that grows: `block`, null at first, with so many bytes, of which the new one keeps as many as fit.
+/// Resizes `block`, null at first, to this many bytes, and keeps as many of its bytes as fit.
 /// Large blocks are remapped by the system instead of being copied. Throws std::bad_alloc.
 inline void* resized_block(void* block, [[maybe_unused]] std::size_t bytes, std::size_t new_bytes) {
 #if COLLARMESH_REMAPS
@@ -81,14 +81,14 @@ inline void free_block(void* block, [[maybe_unused]] std::size_t bytes) {
   std::free(block);
 }
 
-/// Room for so many values of a vector or string of any allocator, in large pages if it is large.
+/// Reserves room for this many values of a vector or string, in large pages if it is large.
 template <class Values>
 void reserve_in_large_pages(Values& values, std::size_t count) {
   values.reserve(count);
   prefer_large_pages(values.data(), values.capacity() * sizeof(values[0]));
 }
 
-/// A vector of so many values.
+/// Resizes a vector, in large pages if it is large.
 template <class T>
 void resize_in_large_pages(std::vector<T>& values, std::size_t count) {
   reserve_in_large_pages(values, count);
@@ -118,7 +118,7 @@ struct LargePageAllocator {
   friend bool operator==(const LargePageAllocator&, const LargePageAllocator&) { return true; }
 };
 
-/// So many values, which nobody has set.
+/// A block of uninitialized values.
 template <class T>
 class LargeBlock {
   static_assert(std::is_trivially_copyable_v<T>);

@@ -5,7 +5,7 @@
 
 namespace collarmesh {
 
-/// The upper one of an even number; 0 of none. The values are put in another order.
+/// Returns the median, the upper one of an even number, 0 of none. Reorders the values.
 inline double median(std::vector<double>& values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

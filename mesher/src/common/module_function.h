@@ -4,8 +4,8 @@
 
 namespace collarmesh {
 
-/// A function of a module: a shared library that is loaded when it is first used, because other runs have no
-/// need of the libraries that it brings. Null, and in `reason` why and what helps, where it cannot be loaded.
+/// Returns a function of a module, a shared library that is loaded on first use, because other runs do not
+/// need its libraries. If it cannot be loaded, returns null, and `reason` says why and what to do.
 void* module_function(const char* module, const char* function, std::string& reason);
 
 }  // namespace collarmesh

@@ -13,7 +13,7 @@
 
 namespace collarmesh {
 
-/// `work(i)` for all i below `count`, by the threads of the arena that runs the caller. Returns when all are
+/// Calls `work(i)` for all i below `count`, by the threads of the caller's arena. Returns when all are
 /// done. With GCC's ThreadSanitizer `work` must not throw.
 template <class Work>
 void parallel_for(std::size_t count, const Work& work) {
@@ -33,7 +33,8 @@ void parallel_for(std::size_t count, const Work& work) {
 #endif
 }
 
-/// `work(first, last)` for all numbers below `count`, in ranges of this length and a shorter one at the end.
+/// Calls `work(first, last)` for all numbers below `count`, in ranges of this length and a shorter one at the
+/// end.
 template <class Work>
 void parallel_for_ranges(std::size_t count, std::size_t length, const Work& work) {
   parallel_for((count + length - 1) / length,

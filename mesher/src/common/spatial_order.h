@@ -8,24 +8,25 @@
 
 namespace collarmesh {
 
-/// An item and its place along a Z-shaped curve through the cells of an octree (Morton 1966): what is near
-/// along the curve is near in space.
+/// An item and its place along a Z-shaped curve through the cells of an octree (Morton 1966): items near
+/// along the curve are near in space.
 struct SpatialKey {
   std::uint64_t place;
   Index item;
 };
 
-/// The items 0, 1, ... at these points in the order of the curve. What shares a cell, of which there are 2^21
-/// along each axis, is ordered by finer ones, and in one point by number; so are all when their extent is out
-/// of a double's range.
+/// The items 0, 1, ... at these points in the order of the curve. Items in one cell, of which there are 2^21
+/// along each axis, are ordered by finer cells, and items at one point by number; so are all items if their
+/// extent is out of a double's range.
 /// Cost: O(n) for every 2^21 in the ratio of the extent and the least distance.
 std::vector<SpatialKey> spatial_order(std::span<const Point> points);
 
-/// Where a hierarchy over ordered items parts them: the first one in the upper half of the smallest octree
-/// cell that holds them all, or the middle when they have one place. Precondition: there are at least two.
+/// Returns the item at which a hierarchy over ordered items splits them: the first one in the upper half of
+/// the smallest octree cell that holds them all, or the middle when they have one place. Precondition: there
+/// are at least two.
 std::size_t spatial_split(std::span<const SpatialKey> keys);
 
-/// No hierarchy made of such splits is deeper.
+/// The maximum depth of a hierarchy made of such splits.
 inline constexpr std::size_t most_spatial_levels = 63 + 32;
 
 }  // namespace collarmesh

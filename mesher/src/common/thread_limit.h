@@ -8,8 +8,8 @@
 
 namespace collarmesh {
 
-/// Runs work whose parallel parts use so many threads at most, and never more than there are cores; 0: as
-/// many as there are, or can be made.
+/// Runs work whose parallel parts use at most this many threads, and never more than there are cores; 0: all
+/// cores, or as many threads as the system allows.
 class ThreadLimit {
  public:
   explicit ThreadLimit(unsigned threads)

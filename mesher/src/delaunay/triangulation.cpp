@@ -113,7 +113,7 @@ Triangulation::Sphere Triangulation::circumsphere(const std::array<Index, 4>& co
   return {centre, squared_radius, 2.83 * relative + 2 * relative * relative + 8 * e};
 }
 
-// What the search reads when it goes on from a cell of the zone.
+// Prefetches the data that the search reads when it continues from a cell of the zone.
 void Triangulation::prefetch_neighbours(Index cell) const {
   for (const FaceId beyond : cells_[cell].neighbours) {
     if (beyond == no_face) continue;
@@ -291,7 +291,8 @@ void Triangulation::adjacent_vertices(Index vertex, std::vector<Index>& adjacent
 }
 
 std::vector<Triangulation::Block> Triangulation::divide(std::span<const Index> insertions, Owners& owners) {
-  // An insertion makes some seven cells more than it destroys, and all of them before it frees any.
+  // An insertion makes about seven more cells than it destroys, and makes all new ones before it frees old
+  // ones.
   constexpr std::size_t cells_per_insertion = 8, cells_for_a_zone = 256;
   std::vector<Block> blocks(insertions.size());
   std::size_t vertices = vertices_.size(), cells = cells_.size();
@@ -353,7 +354,7 @@ Renumbering Triangulation::join(std::vector<Block>& blocks) {
   return renumbering;
 }
 
-// What is read of a cell that others border on does not change.
+// Reads only data of bordering cells that do not change.
 void Triangulation::Block::incident_cells(Index vertex, std::vector<Index>& cells) const {
   cells.assign(1, mesh_->vertices_[vertex].cell);
   IndexSet known;

@@ -33,7 +33,7 @@ struct ConflictZone {
       outer;  ///< after insert: the face beyond border[i], seen from outside; no_face on the hull
 };
 
-/// The most vertices and cells of any zone that was replaced.
+/// The largest numbers of vertices and cells of any replaced zone.
 struct LargestZone {
   std::size_t vertices = 0, cells = 0;
 
@@ -44,7 +44,7 @@ struct LargestZone {
   }
 };
 
-/// How vertices are numbered when blocks have been joined.
+/// The new numbers of vertices after blocks have been joined.
 struct Renumbering {
   struct Moved {
     Index first, end;  ///< vertices that were numbered so
@@ -53,7 +53,7 @@ struct Renumbering {
   std::vector<Moved> moved;  ///< in their order
   Index count;               ///< of all vertices
 
-  /// Of what is kept by vertex.
+  /// Renumbers an array with an entry for each vertex.
   template <class T>
   void apply(GrowingArray<T>& of_vertices) const {
     for (const auto& [first, end, shift] : moved)
@@ -80,16 +80,16 @@ class Triangulation {
   explicit Triangulation(const Box& box);
 
   Index vertex_count() const { return static_cast<Index>(vertices_.size()); }
-  /// Cells in use and free ones: every id is below this.
+  /// Returns the number of cells in use and free ones: every id is below it.
   Index cell_capacity() const { return static_cast<Index>(cells_.size()); }
   Index cell_count() const { return static_cast<Index>(cells_.size() - workspace_.free_cells.size()); }
 
   const Point& point(Index vertex) const { return vertices_[vertex].point; }
-  /// Some cell that has this vertex.
+  /// Returns a cell with this vertex.
   Index incident_cell(Index vertex) const { return vertices_[vertex].cell; }
 
   const std::array<Index, 4>& corners(Index cell) const { return cells_[cell].corners; }
-  /// The same face seen from the other cell; no_face on the hull.
+  /// Returns the same face as seen from the other cell; no_face on the hull.
   FaceId opposite(FaceId face) const { return cells_[cell_of(face)].neighbours[corner_of(face)]; }
   std::array<Index, 3> face_vertices(FaceId face) const {
     const auto& v = corners(cell_of(face));
@@ -97,10 +97,10 @@ class Triangulation {
     return {v[f[0]], v[f[1]], v[f[2]]};
   }
   bool alive(Index cell) const { return cells_[cell].corners[0] != none; }
-  /// Changes whenever the cell is destroyed.
+  /// Returns a number that changes whenever the cell is destroyed.
   std::uint32_t generation(Index cell) const { return states_[cell].generation; }
 
-  /// Of a cell whose corners and generation are asked for soon.
+  /// Prefetches the cell's corners and generation.
   void prefetch(Index cell) const {
     __builtin_prefetch(&states_[cell]);
     __builtin_prefetch(&cells_[cell]);
@@ -109,7 +109,7 @@ class Triangulation {
   const Point& circumcentre(Index cell) const { return spheres_[cell].centre; }
   double squared_radius(Index cell) const { return spheres_[cell].squared_radius; }
 
-  /// Is p strictly inside the cell's circumsphere? Always the exact answer.
+  /// Returns whether p is strictly inside the cell's circumsphere, always exactly.
   bool in_conflict(Index cell, const Point& p) const {
     const Sphere& s = spheres_[cell];
     const double d = squared_distance(p, s.centre);
@@ -122,7 +122,7 @@ class Triangulation {
   /// Cost: linear in the zone. The zone stays valid until the next insertion.
   void find_conflict_zone(const Point& p, Index start, ConflictZone& zone);
 
-  /// A cell around `vertex` that is in conflict with p; none if there is none. If `vertex` is a
+  /// Returns a cell around `vertex` that is in conflict with p; none if there is none. If `vertex` is a
   /// nearest vertex of p there always is one, unless p is a vertex.
   Index conflicting_cell_around(Index vertex, const Point& p);
 
@@ -140,9 +140,9 @@ class Triangulation {
   /// The blocks' vertices are numbered, block by block.
   Renumbering join(std::vector<Block>& blocks);
 
-  /// The cells that have this vertex, in no particular order.
+  /// Finds the cells with this vertex, in no particular order.
   void incident_cells(Index vertex, std::vector<Index>& cells);
-  /// The vertices joined to this one by an edge.
+  /// Finds the vertices joined to this one by an edge.
   void adjacent_vertices(Index vertex, std::vector<Index>& adjacent);
 
   /// A fresh stamp for marking vertices, and the marks.
@@ -177,7 +177,7 @@ class Triangulation {
     std::uint32_t generation;
   };
 
-  /// What a thread that searches and inserts keeps for itself: marks are numbered upwards.
+  /// The marks of one thread that searches and inserts; they are numbered upwards.
   struct Workspace {
     std::uint32_t search = 0;
     std::uint32_t vertex_stamp = 0;
@@ -208,12 +208,12 @@ class Triangulation {
   std::vector<Index> scratch_;
 };
 
-/// Vertices of a triangulation that one thread may insert between, while others do in other blocks.
+/// A block of vertices, between which one thread may insert while others insert in other blocks.
 ///
-/// A zone lies in a block when all its vertices belong to it. What an insertion then writes are the zone's
+/// A zone lies in a block when all its vertices belong to it. An insertion then writes the zone's
 /// cells, the faces towards cells beyond its border, and marks of these. A cell beyond has three vertices of
-/// the block, so that no other block's zone borders on it: no two threads write, or one reads what another
-/// one writes.
+/// the block, so that no other block's zone borders on it: no thread reads or writes data that
+/// another one writes.
 class Triangulation::Block {
  public:
   /// Find all cells in conflict with p, as Triangulation::find_conflict_zone does. False when the zone has a

@@ -77,7 +77,7 @@ void CurveSlides::find_places(Index curve, std::vector<Index>& vertices,
   }
 }
 
-// By arc length, positive.
+// Returns the arc length to a neighbour, positive.
 double CurveSlides::way_to_neighbour(Index vertex, unsigned side) const {
   const Index neighbour = places_[vertex].neighbours[side];
   const Index curve = mesh_.features[vertex].feature;

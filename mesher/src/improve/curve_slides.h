@@ -12,37 +12,37 @@
 
 namespace collarmesh::improvement {
 
-/// The curves of a complex and the edges that stand for them: where else on its curve a vertex may be.
+/// The curves of a complex and the mesh edges on them: decides where else on its curve a vertex may lie.
 /// A curve and its edges are within the tolerance of each other: the polyline's corners from
 /// their edges, points of the edges from their parts of the polyline.
 class CurveSlides {
  public:
-  /// The complex and the mesh are kept by reference. Several threads may ask at once.
+  /// Keeps the complex and the mesh by reference. Several threads may query it at once.
   CurveSlides(const Plc& plc, const TetMesh& mesh, SurfaceTolerance tolerance, double edges_per_hole = 0);
 
-  /// Can this vertex, on a curve, be moved at all?
+  /// Returns whether this vertex on a curve can move at all.
   bool movable(Index vertex) const;
-  /// The point of its curve that lies so far ahead of it, by arc length.
+  /// Returns the point of its curve at this arc length ahead of it.
   Point ahead(Index vertex, double way) const;
-  /// May it be moved there?
+  /// Returns whether the vertex may move there.
   bool fits(Index vertex, double way) const;
-  /// It was.
+  /// Records that the vertex moved there.
   void moved(Index vertex, double way) {
     old_places_.note(places_, vertex);
     places_[vertex].parameter += way;
   }
-  /// The mesh vertices before and after it. Precondition: it is movable.
+  /// Returns the mesh vertices before and after it. Precondition: it is movable.
   const std::array<Index, 2>& neighbours(Index vertex) const { return places_[vertex].neighbours; }
-  /// Could one edge join its neighbours?
+  /// Returns whether one edge could join its neighbours.
   bool may_skip(Index vertex) const;
-  /// One does.
+  /// Records that one edge joins its neighbours.
   void skipped(Index vertex);
 
-  /// Find the places of all vertices now.
+  /// Finds the places of all vertices now.
   void prepare() const {
     std::call_once(prepared_, [this] { find_all_places(); });
   }
-  /// What moves and is skipped from here on can be undone, until it is kept.
+  /// Begins a trial: later moves and skips can be undone until `keep`.
   void begin_trial() { old_places_.begin(places_.size()), old_spare_edges_.begin(spare_edges_.size()); }
   void keep() { old_places_.end(), old_spare_edges_.end(); }
   void undo() { old_places_.undo(places_), old_spare_edges_.undo(spare_edges_); }

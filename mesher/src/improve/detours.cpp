@@ -10,16 +10,17 @@ namespace collarmesh::improvement {
 namespace {
 
 constexpr std::array<std::array<unsigned, 2>, 6> edges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
-// First steps may make tets as poor as this.
+// The lowest quality of tets that first steps may make.
 constexpr double least_quality = 0.02;
 constexpr unsigned most_steps = 30;
-// So many operations may be tried before a first detour is taken, and so many more with each one that is.
+// The number of operations to try before the first detour is taken, and the increase with each one taken.
 constexpr std::size_t first_trials = 2000, trials_per_detour = 200;
 constexpr double least_gain = 1e-3, rounding = 1e-9;
 
 bool contains(const auto& range, Index x) { return std::find(range.begin(), range.end(), x) != range.end(); }
 
-// From the worst up: is the first that differs larger now? Both sorted; one that is missing is good.
+// Compares two sorted lists from the worst up: returns whether the first differing entry is larger now. A
+// missing one is good.
 bool is_better(const std::vector<double>& now, const std::vector<double>& before, double wanted) {
   for (std::size_t i = 0; i < std::max(before.size(), now.size()); ++i) {
     const double was = i < before.size() ? before[i] : wanted, is = i < now.size() ? now[i] : wanted;
@@ -48,7 +49,7 @@ std::size_t Detours::take_all(std::vector<Index> tets, const std::function<bool(
   return taken_;
 }
 
-// Every tet once, worst first. Was any detour taken?
+// Tries every tet once, worst first. Returns whether any detour was taken.
 bool Detours::take_round(std::vector<Index>& tets, Effort effort, const std::function<bool()>& stopped) {
   const auto is_good = [this](Index t) { return remedies_.poor_quality(t) == INFINITY; };
   std::erase_if(tets, is_good);
@@ -70,7 +71,7 @@ bool Detours::take_round(std::vector<Index>& tets, Effort effort, const std::fun
   return taken_ > before;
 }
 
-// Has anything changed at a corner since the tet was asked?
+// Returns whether anything changed at a corner since the tet was tried.
 bool Detours::is_new_to(Index tet, const Asked& asked) const {
   if (tet >= asked.size() || asked[tet] == 0) return true;
   return std::ranges::any_of(complex()[tet].corners, [&](Index v) {
@@ -88,8 +89,9 @@ void Detours::note_changes(std::vector<Index>& tets) {
   }
 }
 
-// By an operation alone, where there is one now, else by the first detour that makes all tets good and no
-// more of them thin than before, else by the one with the best worst tet. True: `changed_` has changed.
+// Improves a tet by a single operation if one helps now, else by the first detour that makes all tets good
+// and no more of them thin than before, else by the one with the best worst tet. Returns whether `changed_`
+// changed.
 bool Detours::help(Index tet, Effort effort) {
   if (Change change = remedies_.propose(operations_, tet); change.kind != Change::Kind::none) {
     ++trials_;
@@ -162,7 +164,7 @@ Change Detours::first_step(const FirstStep& step) {
   return change;
 }
 
-// When it is better, the trial is open afterwards.
+// Tries a first step. If the result is better, the trial stays open.
 Detours::Result Detours::attempt(const FirstStep& step) {
   Change change = first_step(step);
   if (change.kind == Change::Kind::none) return {};
@@ -220,7 +222,7 @@ Detours::Result Detours::result() const {
           now.empty() ? remedies_.wanted() : now.front()};
 }
 
-// A tet is about to change that may have been there before the trial.
+// Records that a tet, which may be older than the trial, is about to change.
 void Detours::see_before(Index tet) {
   if (tet < last_trial_of_.size() && last_trial_of_[tet] == trial_) return;
   set_changed(tet);

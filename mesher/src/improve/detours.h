@@ -10,35 +10,35 @@
 
 namespace collarmesh::improvement {
 
-/// Detours: where no operation helps a tet, one is made all the same, at the tet or beside it, and the tets
-/// that it makes are improved, for some steps. What that comes to is kept if it is better than what was
-/// there, else undone. Better is compared from the worst tet up, so the mesh never returns to an earlier
+/// Detours: if no operation improves a tet, one is applied all the same, at the tet or beside it, and its
+/// tets are improved for some steps. The result is kept if it is better than the mesh before,
+/// else undone. Meshes are compared from the worst tet up, so the mesh never returns to an earlier
 /// state.
 ///
-/// One thread. Precondition: `Remedies::forget` was called; so a trial that is made again comes to the same.
+/// One thread. Precondition: `Remedies::forget` was called; so a repeated trial has the same result.
 class Detours {
  public:
-  /// All are kept by reference. At most `most_trials` operations are tried, and those at one tet.
+  /// Keeps all by reference. Tries at most `most_trials` operations, and finishes those at one tet.
   Detours(Workpiece& workpiece, Remedies& remedies, Operations& operations, std::size_t most_trials);
 
-  /// Take detours for these tets, and for poor ones that detours leave, where the number of vertices may
-  /// change: worst first, at each tet itself before beside any, and again where something has changed at a
-  /// corner, until nothing helps. Returns how many were taken. `stopped` is asked between tets. Precondition:
-  /// the workpiece is prepared for trials.
+  /// Takes detours for these tets, and for poor ones that detours leave, if the number of vertices may
+  /// change there: worst first, at each tet itself before beside any, and again after a change at a
+  /// corner, until nothing helps. Returns the number of detours taken. Calls `stopped` between tets.
+  /// Precondition: the workpiece is prepared for trials.
   std::size_t take_all(std::vector<Index> tets, const std::function<bool()>& stopped);
 
-  /// Operations tried so far.
+  /// Returns the number of operations tried so far.
   std::size_t trials() const { return trials_; }
 
  private:
   enum class Operation : std::uint8_t { contraction, contraction_turned, insertion, removal };
-  /// What a detour begins with: an operation at an edge of a tet.
+  /// The beginning of a detour: an operation at an edge of a tet.
   struct FirstStep {
     Index tet;
     unsigned edge;
     Operation operation;
   };
-  /// What a trial comes to.
+  /// The result of a trial.
   struct Result {
     bool better = false;
     bool more_thin = false;  ///< are there more thin tets than before?
@@ -76,7 +76,7 @@ class Detours {
   std::vector<std::uint32_t> last_detour_at_;  // by vertex: that changed a tet there
   std::array<Asked, 3> asked_;                 // by Effort
 
-  // Of the trial that is made.
+  // State of the current trial.
   std::uint32_t trial_ = 0;
   std::vector<std::uint32_t> last_trial_of_;  // by tet: that changed it
   std::vector<Index> changed_;                // tets, some of them gone again

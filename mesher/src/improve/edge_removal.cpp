@@ -1,4 +1,4 @@
-// Operations on an edge's ring: other tets in its place.
+// Operations that replace the tets around an edge.
 #include <algorithm>
 
 #include "improve/operations.h"
@@ -13,7 +13,7 @@ constexpr double flat_volume = 1e-13;
 
 }  // namespace
 
-// Not above `above` means worthless, whatever the value.
+// A result that is not above `above` counts as worthless, whatever its value.
 double Operations::new_quality(const std::array<Index, 4>& v, double above) const {
   const auto& points = mesh_.points;
   const Corners p{points[v[0]], points[v[1]], points[v[2]], points[v[3]]};
@@ -87,9 +87,9 @@ void Operations::remove_edge_above(Index tet, unsigned i, unsigned j, std::optio
   complex_.ring(tet, a, b, ring_);
   const std::size_t n = ring_.tets.size(), m = ring_.link.size();
   if (n > largest_ring || (ring_.closed && m < 3)) return;
-  // Where among the link vertices do faces that must stay leave the edge?
+  // Finds the link vertices at which faces that must be preserved leave the edge.
   std::vector<std::pair<std::size_t, Index>> kept;
-  // What is better than this tet is better than the worst one at the edge.
+  // A quality above that of this tet is above that of the worst one at the edge.
   const bool known = least || (change.kind != Change::Kind::none && change.quality >= quality(tet));
   double worst = known ? -INFINITY : INFINITY;
   for (std::size_t k = 0; k < n; ++k) {
@@ -153,7 +153,8 @@ void Operations::remove_edge_above(Index tet, unsigned i, unsigned j, std::optio
     change.read = std::move(made.read);
 }
 
-// May a sliver with two faces at the edge ab go to their other side, whose tets must be there?
+// Returns whether this boundary sliver may be given to the region across its two faces at ab, which must have
+// tets.
 bool Operations::may_lose(Index tet, Index a, Index b) const {
   const auto& t = complex_[tet];
   for (const Index v : t.corners)
@@ -167,8 +168,8 @@ bool Operations::may_lose(Index tet, Index a, Index b) const {
   return true;
 }
 
-// May two faces of a patch become these, which share the edge that neither had? Not where that edge has faces
-// already: one of these would be there twice.
+// Returns whether two faces of a patch may become these, which share a new edge. Not if that edge has faces
+// already, as one of them would occur twice.
 bool Operations::may_turn(Change& change) {
   const auto& turned = change.replacement.created_faces;
   std::array<Index, 2> shared{none, none};

@@ -6,7 +6,7 @@ namespace collarmesh::improvement {
 
 namespace {
 
-// Of vectors of numbers, entry by entry.
+// Returns the smaller of two numbers, or of vectors of numbers entry by entry.
 template <class Numbers>
 Numbers smaller(const Numbers& a, const Numbers& b) {
   return a < b ? a : b;
@@ -34,7 +34,8 @@ HullShapes::Two HullShapes::dot(const TwoVectors& a, const TwoVectors& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-// Of the largest angle of faces with these squared sides, squared with its sign; 1 where none is obtuse.
+// Returns the signed squared cosine of the largest angle of faces with these squared sides; 1 if none is
+// obtuse.
 HullShapes::Two HullShapes::least_cosine(const Two& x, const Two& y, const Two& z) {
   const Two least_xy = smaller(x, y), most_xy = larger(x, y);
   const Two longest = larger(most_xy, z), middle = larger(least_xy, smaller(most_xy, z)),

@@ -9,20 +9,21 @@
 
 namespace collarmesh::improvement {
 
-/// The faces of a hull, whose tets with an apex are measured two at a time: `extreme_cosines` for each, in
-/// half the time. What does not depend on the apex is computed once.
+/// The faces of a hull. It measures their tets with an apex two at a time: `extreme_cosines` for each, in
+/// half the time. Terms that do not depend on the apex are computed once.
 class HullShapes {
  public:
   static constexpr std::size_t at_once = 2;
 
   void clear() { pairs_.clear(); }
   bool empty() const { return pairs_.empty(); }
-  /// Each face makes a tet of positive volume with an apex inside. Of an odd number the last one is there
-  /// twice.
+  /// Each face makes a tet of positive volume with an apex inside. The last face of an odd number
+  /// is repeated.
   void assign(std::span<const std::array<Index, 3>> faces, const std::vector<Point>& points);
 
   std::size_t pairs() const { return pairs_.size(); }
-  /// Of the tets on the faces 2 `pair` and 2 `pair` + 1. Of a tet without volume only `positive` tells.
+  /// Measures the tets on the faces 2 `pair` and 2 `pair` + 1. For a tet without volume only `positive`
+  /// counts.
   std::array<ExtremeCosines, at_once> extreme_cosines(std::size_t pair, const Point& apex) const;
 
  private:

@@ -27,8 +27,8 @@ constexpr std::size_t tets_per_proposal = 2000;
 constexpr std::size_t most_proposals = 1024;
 constexpr std::size_t steps_between_reports = 1024;
 constexpr std::size_t tets_at_once = 4096;  // that a thread looks at
-// Tets at walls stay poor however often their vertices move a little. Of the few that detours are for little
-// moves may help.
+// Tets at walls stay poor however often their vertices move a little. Small moves
+// may help the few tets that detours work on.
 constexpr double least_gain = 0.02, least_gain_in_detours = 1e-3;
 // Detours are taken if at most `few` of the tets and 2% need them; else the bound is out of reach.
 constexpr std::size_t few = 50, tets_per_few = 50;

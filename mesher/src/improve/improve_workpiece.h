@@ -5,8 +5,8 @@
 
 namespace collarmesh {
 
-/// As `improve`; the workpiece, which knows the distance, is not stored, thin tets are not marked, and
-/// the threads are those of the arena that runs the caller.
+/// Like `improve`, but works on the caller's workpiece: does not write the mesh back or mark thin tets, and
+/// runs in the caller's arena.
 ImproveReport improve(improvement::Workpiece& workpiece, const ImproveOptions& options,
                       const Execution& execution);
 

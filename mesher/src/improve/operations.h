@@ -11,12 +11,12 @@
 
 namespace collarmesh::improvement {
 
-/// The local operations. Each proposes what it would do when that raises the smallest quality in its
-/// cavity and that of `change`, but for those named "anyhow", and keeps every guarantee; else `change` stays
-/// as it is. Each thread has its own.
+/// The local operations. Each writes its proposal into `change` if it raises the smallest quality in its
+/// cavity above that of `change` and keeps every guarantee; those named "anyhow" need not raise it. Each
+/// thread has its own.
 class Operations {
  public:
-  /// Both are kept by reference.
+  /// Keeps both by reference.
   Operations(const Workpiece& workpiece, const ShapeRule& rule)
       : complex_(workpiece.complex),
         mesh_(workpiece.complex.mesh()),
@@ -29,11 +29,11 @@ class Operations {
   /// An edge inside a patch is removed together with its two triangles there, and a sliver that has both
   /// of them goes to the other side.
   void remove_edge(Index tet, unsigned i, unsigned j, Change& change);
-  /// The same, however good the tets at the edge are now; all new ones are better than `least`.
+  /// Does the same, however good the tets at the edge are now; all new ones are better than `least`.
   void remove_edge_anyhow(Index tet, unsigned i, unsigned j, double least, Change& change);
   /// Move a vertex within its feature to where the worst tet around it is better.
   void move_vertex(Index vertex, Change& change);
-  /// Insert a vertex amid an edge inside a region or a patch, where it serves best, when the tets around it
+  /// Insert a vertex on an edge inside a region or a patch, at the best place, if the tets around it
   /// are all better than `least`.
   void split_edge(Index a, Index b, double least, Change& change);
   /// The same, however good the tets at the edge are now.
@@ -45,13 +45,13 @@ class Operations {
   /// The same, however good the tets around are now; all new ones are better than `least`.
   void contract_edge_anyhow(Index vertex, Index onto, double least, Change& change);
 
-  /// The next questions are about contractions of edges at this vertex, whose star is given. False when it
-  /// has to stay.
+  /// Begins queries about collapses of edges at this vertex, whose star is given. Returns false if it has to
+  /// stay.
   bool begin_contractions(Index vertex, std::span<const Index> star);
-  /// The same contraction for the sake of fewer tets: the rule allows all new ones, and they are no worse
-  /// than `least`; below `enough` no worse than the worst tet of the cavity, either.
+  /// Proposes the same collapse for fewer tets: the rule allows all new ones, and they are no worse than
+  /// `least`, nor, if below `enough`, than the worst tet of the cavity.
   void contract_onto(Index onto, double least, double enough, Change& change);
-  /// The quality of the worst tet at the vertex that contractions were begun with.
+  /// Returns the quality of the worst tet at the vertex of these queries.
   double worst_at_vertex() { return worst_at_vertex(vertex_); }
 
  private:

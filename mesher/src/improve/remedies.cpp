@@ -8,7 +8,7 @@ namespace collarmesh::improvement {
 
 namespace {
 
-// An inserted vertex has to bring the tets around it to this share of the wanted quality.
+// An inserted vertex must raise the tets around it to this share of the wanted quality.
 constexpr double enough = 0.7;
 
 }  // namespace

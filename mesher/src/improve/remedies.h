@@ -8,12 +8,12 @@
 
 namespace collarmesh::improvement {
 
-/// What would help a poor tet: which operations are proposed for it, and in which order.
-/// State: of each vertex whether moving it is known to be of no use. Of the mesh it only reads; several
-/// threads may ask at once, each with operations of its own.
+/// Proposes operations that may improve a poor tet, in the order in which to try them.
+/// State: for each vertex whether moving it is known to be useless. It only reads the mesh; several
+/// threads may call it at once, each with operations of its own.
 class Remedies {
  public:
-  /// Both are kept by reference.
+  /// Keeps both by reference.
   Remedies(const Workpiece& workpiece, const SliverRule& rule, const ImproveOptions& options);
 
   /// The sine of the angle that tets are improved to.
@@ -22,21 +22,21 @@ class Remedies {
   /// Quality of a tet that is to be improved; infinite for others.
   double poor_quality(Index tet) const;
 
-  /// The first that helps of: an edge removed, a corner moved, an edge contracted, a vertex inserted.
+  /// Returns the first operation that helps: removal of an edge, move of a corner, edge collapse, insertion.
   Change propose(Operations& operations, Index tet) const;
-  /// Will the tet be called thin?
+  /// Returns whether the tet counts as thin.
   bool is_thin(Index tet) const { return !thin_above_.holds(complex_.corners(tet)); }
-  /// May the number of vertices change at this tet? In a coarsened mesh walls are one element thick and tets
-  /// at them poor for that; vertices would bring back what has been removed. So only tets beyond the largest
-  /// angle of thin ones may change their number there, and all where no thin tet is near.
+  /// Returns whether the number of vertices may change at this tet. In a coarsened mesh walls are one element
+  /// thick, which makes their tets poor; new vertices would undo coarsening. So only tets beyond the largest
+  /// angle of thin ones may change the number there, and all tets where no thin one is near.
   bool may_change_vertices(Index tet) const;
 
-  /// Nothing helps this tet, as long as nothing changes at its vertices.
+  /// Records that nothing helps this tet as long as nothing changes at its vertices.
   void nothing_helps(Index tet) { set_stays(tet, move_vertices_); }
-  /// The tet is new, or a corner of it has moved.
+  /// Records that the tet is new or that a corner of it has moved.
   void changed(Index tet) { set_stays(tet, false); }
-  /// All may help again, as when the rule asks for less. As long as `nothing_helps` is not called, what is
-  /// proposed depends on the mesh alone.
+  /// Forgets these records, for example because the rule asks for less. Until `nothing_helps` is called,
+  /// proposals depend on the mesh alone.
   void forget() { stays_.clear(); }
 
  private:

@@ -11,7 +11,7 @@ namespace collarmesh::improvement {
 
 namespace {
 
-// What makes a tet worse than this share of what it is to be is not tried.
+// A replacement is not tried if it makes a tet worse than this share of the bound.
 constexpr double mendable = 0.15;
 constexpr unsigned most_repairs = 16;
 

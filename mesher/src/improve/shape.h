@@ -10,7 +10,7 @@ namespace collarmesh::improvement {
 
 using Corners = std::array<Point, 4>;
 
-/// An obtuse dihedral angle counts as if its sine were this much smaller.
+/// The factor by which the sine of an obtuse dihedral angle counts less.
 constexpr double obtuse_weight = 0.7;
 
 /// The smallest sine of a tet's dihedral angles, obtuse ones weighted: from 0 to about 0.94;

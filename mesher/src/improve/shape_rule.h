@@ -9,7 +9,7 @@ namespace collarmesh::improvement {
 
 class AngleRule;
 
-/// How good tets are, and which ones operations may make. Several threads may ask at once.
+/// The quality of tets, and the tets that operations may make. Several threads may query it at once.
 class ShapeRule {
  public:
   ShapeRule() = default;
@@ -19,24 +19,24 @@ class ShapeRule {
 
   /// The larger the better; not positive for a flat or an inverted tet.
   virtual double quality(const Corners& p, const std::array<Index, 4>& corners) const = 0;
-  /// This rule, if it goes by the extreme angles of tets alone, which are measured faster in pairs; else
-  /// null.
+  /// Returns this rule if it depends on the extreme angles of tets alone, which are measured faster in pairs;
+  /// else null.
   virtual const AngleRule* by_angles() const { return nullptr; }
-  /// May an operation make this tet, of positive quality?
+  /// Returns whether an operation may make this tet, of positive quality.
   virtual bool allows(const Corners& p, const std::array<Index, 4>& corners, double quality) const = 0;
-  /// May an operation make an edge between these vertices where there was one of another length?
+  /// Returns whether an operation may make an edge between these vertices in place of one of another length.
   virtual bool allows_edge(Index, Index, double /*squared_length*/, double /*squared_before*/) const {
     return true;
   }
-  /// A move of a vertex that raises the quality by less than this share is not worth it.
+  /// The share by which a move of a vertex must raise the quality to be worth it.
   virtual double least_gain() const { return 1e-3; }
-  /// How many lengths of steps a move tries, each half of the last.
+  /// The number of step lengths that a move tries, each half of the last.
   virtual unsigned step_lengths() const { return 4; }
-  /// May operations replace cells of collars?
+  /// Returns whether operations may replace cells of collars.
   virtual bool dissolves_collars() const { return false; }
 };
 
-/// A rule by which the extreme angles of a tet tell its quality.
+/// A rule in which the extreme angles of a tet determine its quality.
 class AngleRule : public ShapeRule {
  public:
   virtual double quality_of(const ExtremeCosines& cosines, const Corners& p,
@@ -60,7 +60,7 @@ class RadiusEdgeBound {
   double squared_;
 };
 
-/// How far a tet is from being thin: of quality 1 or more are those that are. All may be made.
+/// The rule of thin tets: a quality of 1 or more means that the tet is thin. All tets may be made.
 class ThinRule final : public AngleRule {
  public:
   /// `thin` is kept by reference.
@@ -107,7 +107,7 @@ class SliverRule final : public ShapeRule {
     return thin_ != nullptr && thin_->is_as_forced(p, corners);
   }
   double least_gain() const override { return least_gain_; }
-  /// For the operations that are asked from now on.
+  /// Sets `least_gain` for later operations.
   void set_least_gain(double share) { least_gain_ = share; }
   /// Has a tet of this quality an angle above the largest of thin ones, or none above 0.06 degrees? False
   /// where no tet may be thin.

@@ -17,15 +17,15 @@
 
 namespace collarmesh::improvement {
 
-/// The smooth patches of a complex and the faces that stand for them: whether other faces would, too.
+/// The smooth patches of a complex and the mesh faces on them: decides whether other faces fit them, too.
 /// A patch and its faces are within the tolerance of each other, in samples: centres and edges of
 /// the faces are near the patch; points of the patch belong to faces that they are near to.
-/// Several threads may ask at once.
+/// Several threads may query it at once.
 class SmoothSurfaces {
  public:
   using Triangle = std::array<Point, 3>;
 
-  /// The complex and the mesh are kept by reference.
+  /// Keeps the complex and the mesh by reference.
   SmoothSurfaces(const Plc& plc, const TetMesh& mesh, SurfaceTolerance tolerance)
       : plc_(plc),
         mesh_(mesh),
@@ -38,34 +38,34 @@ class SmoothSurfaces {
     Point point;
     Vector normal;  ///< of the patch's triangle there; of any length
   };
-  /// The point of a smooth patch that is nearest to p. Faster when a point of it is known to be near.
+  /// Returns the point of a smooth patch that is nearest to p. A known point near p makes it faster.
   Nearest nearest(Index patch, const Point& p, double near = INFINITY) const;
   struct Face {
     Triangle corners;
     Index patch;
   };
-  /// Could these take the place of the mesh's faces `old`, turned like the patch as far as they are now?
-  /// Faces on planar patches count for nothing. How well the old ones are turned is computed where it is NaN,
-  /// for a caller who asks about the same ones again.
+  /// Returns whether these can replace the mesh's faces `old`, oriented like the patch as far as the old ones
+  /// are. Faces on planar patches always fit. The orientation of the old ones is computed if it is NaN, for a
+  /// caller who asks about the same ones again.
   bool fit(std::span<const Index> old, std::span<const Face> created, double& agreement_of_old) const;
   bool fit(std::span<const Index> old, std::span<const Face> created) const {
     double agreement_of_old = NAN;
     return fit(old, created, agreement_of_old);
   }
-  /// Before the mesh's faces are replaced or moved: take the points of the patches from these,
+  /// Takes the patches' points from these faces of the mesh; call it before they are replaced or moved.
   void take_samples(std::span<const Index> faces);
-  /// and after it, give them to those that `fit`.
+  /// Gives the points to those faces that `fit`; call it afterwards.
   void give_samples(std::span<const Index> faces);
 
-  /// Give all patches' points to faces now.
+  /// Assigns all points of patches to faces now.
   void prepare() const;
-  /// What is taken and given from here on can be undone, until it is kept.
+  /// Begins a trial: later changes can be undone until `keep`.
   void begin_trial();
   void keep() { old_first_samples_.end(), on_trial_ = false; }
   void undo();
 
  private:
-  /// Made when first asked for, by any thread.
+  /// Built on first use, by any thread.
   struct Surface {
     std::once_flag once;
     std::unique_ptr<TriangleHierarchy> triangles;

@@ -35,7 +35,7 @@ bool has_face(const std::array<Index, 4>& tet, const std::array<Index, 3>& face)
 
 constexpr std::size_t tets_at_once = 8192;  // that a thread looks at
 
-// What is gone, until `store`.
+// Marks of deleted faces and edges, until `store`.
 constexpr std::array<Index, 3> lost_face{none, none, none};
 constexpr std::array<Index, 2> lost_edge{none, none};
 
@@ -137,7 +137,7 @@ std::array<Point, 4> TetComplex::corners(Index tet) const {
   return {mesh_.points[v[0]], mesh_.points[v[1]], mesh_.points[v[2]], mesh_.points[v[3]]};
 }
 
-// Stars are small: it is faster to keep the tets found in a table at hand than to mark them.
+// Stars are small, so a small table of the tets found is faster than marks.
 void TetComplex::star(Index vertex, std::vector<Index>& found) const {
   IndexSet known;
   found.assign(1, vertex_tet_[vertex]);
@@ -163,7 +163,7 @@ void TetComplex::ring(Index tet, Index a, Index b, Ring& ring) const {
       if (v[i] == a) ia = i;
       if (v[i] == b) ib = i;
     }
-    // Of the positive face opposite a, the corner after b comes first.
+    // In the positively oriented face opposite a, begin with the corner after b.
     const auto face = side_corners(v, ia);
     for (unsigned i = 0; i < 3; ++i)
       if (face[i] == v[ib]) return std::array<Index, 2>{face[(i + 1) % 3], face[(i + 2) % 3]};
@@ -285,7 +285,7 @@ std::span<const Index> TetComplex::replace(const Replacement& replacement) {
       open_.pop_back();
     }
   }
-  // What is left of the border has nothing on this side now.
+  // The remaining faces of the border have no tet on this side now.
   for (const OpenFace& open : open_) {
     if (open.tet == none) continue;
     set_neighbour(open.tet, open.corner, none);

@@ -17,7 +17,7 @@
 
 namespace collarmesh::improvement {
 
-/// A mesh's tets with their neighbours, ready for local changes, tied to the faces that must stay:
+/// The mesh's tets with adjacency, ready for local operations, linked to the faces that must be preserved:
 /// boundaries, interfaces and facets inside regions.
 class TetComplex {
  public:
@@ -62,42 +62,42 @@ class TetComplex {
   const TetMesh& mesh() const { return mesh_; }
   std::array<Point, 4> corners(Index tet) const;
   bool on_curve(Index a, Index b) const { return curve_edges_.contains(edge_key(a, b)); }
-  /// Is the edge ab one of a mesh's face? At a pinched vertex a: always.
+  /// Returns whether ab is an edge of a mesh face. At a pinched vertex a: always.
   bool on_faces(Index a, Index b) const;
 
-  /// Is the vertex a corner of any tet?
+  /// Returns whether the vertex is a corner of any tet.
   bool in_use(Index vertex) const { return vertex_tet_[vertex] != none; }
-  /// Do tets at the vertex hang together only in the vertex or in edges, as where bodies touch? Then its star
-  /// is not complete.
+  /// Returns whether some tets at the vertex share only the vertex or edges, as where bodies touch. Then its
+  /// star is not complete.
   bool pinched(Index vertex) const { return pinched_.contains(vertex); }
-  /// Replace `found` by the tets around a vertex that hang together by faces.
+  /// Replaces `found` by the tets around a vertex that are connected by faces.
   void star(Index vertex, std::vector<Index>& found) const;
-  /// A tet with these two corners; none when they are not joined.
+  /// Returns a tet with these two corners; none if they are not joined.
   Index tet_at_edge(Index a, Index b) const;
-  /// Replace `ring` by the ring of the edge ab of a tet.
+  /// Replaces `ring` by the ring of the edge ab of a tet.
   void ring(Index tet, Index a, Index b, Ring& ring) const;
 
-  /// A vertex on a feature; in no tet yet.
+  /// Adds a vertex on a feature, which is in no tet yet.
   Index add_vertex(const Point& p, const TetMesh::VertexFeature& feature);
   /// Returns the new tets' indices until the next call.
   std::span<const Index> replace(const Replacement& replacement);
-  /// The mesh's faces that the last replacement made.
+  /// Returns the mesh faces that the last replacement made.
   std::span<const Index> created_faces() const { return created_faces_; }
-  /// A vertex on a curve between two others there is gone: its edges become the one that joins these.
+  /// Removes a vertex of a curve between two others: its edges become the one that joins these.
   void join_curve_edges(Index before, Index vertex, Index after);
 
-  /// Move a vertex; tets and faces stay connected as they are.
+  /// Moves a vertex; the connections of tets and faces stay.
   void move_vertex(Index vertex, const Point& p);
 
-  /// What changes from here on can be undone, until it is kept.
+  /// Begins a trial: later changes can be undone until `keep`.
   void begin_trial();
   void keep();
   void undo();
 
-  /// A cell of a collar is one no longer.
+  /// Turns a cell of a collar into an ordinary tet.
   void dissolve(Index cell) { tets_[cell].collar = false; }
 
-  /// Write the tets back to the mesh, without vertices and faces that are gone.
+  /// Writes the tets back to the mesh, without removed vertices and faces.
   void store();
 
  private:
@@ -108,7 +108,7 @@ class TetComplex {
     Index face;
   };
 
-  /// All that the mesh tells of a face.
+  /// The data of a mesh face.
   struct FaceRecord {
     std::array<Index, 3> corners;
     Index patch;
@@ -158,7 +158,7 @@ class TetComplex {
   std::vector<Index> lost_vertices_;
   std::vector<OpenFace> open_;
 
-  // What a trial changes.
+  // The state before a trial.
   bool on_trial_ = false;
   UndoLog<Tet, LargeVector<Tet>> old_tets_;
   UndoLog<Index> old_origins_, old_vertex_tets_, old_lost_vertices_;

@@ -24,13 +24,13 @@ struct ExtremeCosines {
 };
 
 inline double signed_square(double x) { return x * std::fabs(x); }
-/// Of an angle whose cosine is given like that.
+/// Returns the squared sine of an angle from its signed squared cosine.
 inline double squared_sine(double signed_square_of_cosine) { return 1 - std::fabs(signed_square_of_cosine); }
 inline double sine(double signed_square_of_cosine) {
   return std::sqrt(squared_sine(signed_square_of_cosine));
 }
 
-/// Of the largest angle of its faces.
+/// Returns the signed squared cosine of the largest angle of its faces.
 inline double least_cosine_of_faces(const Corners& p) {
   const double ab = squared_distance(p[0], p[1]), ac = squared_distance(p[0], p[2]),
                ad = squared_distance(p[0], p[3]), bc = squared_distance(p[1], p[2]),
@@ -70,8 +70,8 @@ inline ExtremeCosines extreme_cosines(const Corners& p) {
   return {std::min(1.0, greatest), std::max(-1.0, std::min(least, least_cosine_of_faces(p))), true};
 }
 
-/// Are all dihedral angles between the two whose squared cosines are given, the second one obtuse, and those
-/// of faces below the second? Without divisions, and false where it is close.
+/// Returns whether all dihedral angles lie between the two whose squared cosines are given, the second one
+/// obtuse, and face angles are below the second. It has no divisions, and returns false in close cases.
 inline bool surely_between(const Corners& p, double squared_cosine, double squared_obtuse_cosine) {
   constexpr double rounding = 1e-9;
   const double sharp = squared_cosine * (1 - rounding), blunt = squared_obtuse_cosine * (1 - rounding);
@@ -113,7 +113,7 @@ inline bool surely_between(const Corners& p, double squared_cosine, double squar
   return beyond == 0;
 }
 
-/// The extreme angles of a tet, degrees.
+/// Returns the extreme angles of a tet, degrees.
 struct ExtremeAngles {
   double smallest;  ///< dihedral; negative for a flat or an inverted tet
   double largest;   ///< dihedral, or of a face
@@ -128,10 +128,10 @@ inline ExtremeAngles extreme_angles(const Corners& p) {
   return {angle(cosines.smallest_angle), angle(cosines.largest_angle)};
 }
 
-/// Which tets are thin: their dihedral angles are bounded from below and above and those of their faces from
-/// above, which is a shape as good as thin places permit. Where features meet at less than twice the
-/// smallest angle, half the angle they meet at is the bound from below; where a tet has an edge that the
-/// input forces to be short, half of the angle that this leaves.
+/// The shape of thin tets: dihedral angles are bounded from below and above and face angles from above, which
+/// is as good as thin places permit. Where features meet at less than twice the smallest angle, the lower
+/// bound is half the angle between them. Where a tet has an edge that the input
+/// forces to be short, it is half the angle that this leaves.
 class ThinShape {
  public:
   static constexpr double largest_angle = 150;  ///< degrees
@@ -149,8 +149,8 @@ class ThinShape {
   double smallest_sine(const Corners& p, const std::array<Index, 4>& corners) const {
     return std::min(smallest_sine_at(corners), forced_sine(p, corners));
   }
-  /// Has a tet of positive volume an angle above the largest of thin ones? `shape` is its shape_quality,
-  /// which tells of most that no dihedral angle is.
+  /// Returns whether a tet of positive volume has an angle above the largest of thin ones. `shape` is its
+  /// shape_quality, which rules out such dihedral angles for most tets.
   bool is_blunt(const Corners& p, double shape) const {
     return shape > obtuse_weight * least_blunt_ + rounding ? least_cosine_of_faces(p) < cosine_
                                                            : extreme_cosines(p).largest_angle < cosine_;
@@ -189,7 +189,8 @@ class ThinShape {
     const SquaredMargins margins = squared_margins(extreme_cosines(p), p, corners);
     return std::min(margins.sharp, margins.blunt) >= good_enough;
   }
-  /// Are both margins above this, which is at least 1? False of some that are; much cheaper.
+  /// Returns true only if both margins are above this, which is at least 1. False for some others, too, but
+  /// much cheaper.
   bool surely_exceeds(double margin, const Corners& p) const {
     const double sharp = margin * sine_, blunt = margin * least_blunt_;
     return blunt < 1 && surely_between(p, 1 - sharp * sharp, 1 - blunt * blunt);
@@ -233,7 +234,7 @@ class ThinShape {
 /// Those of a mesh as it is now: its faces must be there.
 std::shared_ptr<const ForcedEdges> forced_edges_of(const Plc& plc, const TetMesh& mesh);
 
-/// Mark the tets outside collars whose circumradius / shortest edge is above the bound.
+/// Marks the tets outside collars whose circumradius / shortest edge is above the bound.
 void mark_thin_tets(TetMesh& mesh, double radius_edge);
 
 }  // namespace collarmesh::improvement

@@ -6,7 +6,7 @@
 
 namespace collarmesh::improvement {
 
-/// What entries of an array were before they changed, while it is on, so that they can be put back.
+/// The previous values of entries of an array that changed while it is on, so that they can be restored.
 template <class Value, class Values = std::vector<Value>>
 class UndoLog {
  public:
@@ -16,11 +16,11 @@ class UndoLog {
     entries_.clear();
   }
   void end() { on_ = false; }
-  /// This entry is about to change.
+  /// Call this before the entry changes.
   void note(const Values& values, std::size_t i) {
     if (on_ && i < size_) entries_.emplace_back(i, values[i]);
   }
-  /// Put all entries back that there were when it began, drop those added since, and end.
+  /// Restores all entries of the beginning, drops those added since, and ends.
   void undo(Values& values) {
     for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry)
       values[entry->first] = entry->second;
@@ -34,7 +34,7 @@ class UndoLog {
   std::vector<std::pair<std::size_t, Value>> entries_;
 };
 
-/// The same for a stack: what was pushed and popped.
+/// An undo log for a stack: restores pushed and popped entries.
 template <class Value>
 class UndoStack {
  public:

@@ -409,9 +409,9 @@ bool Operations::may_contract(Index vertex, Index onto) {
   return shared == 2;
 }
 
-// What both ends of the edge are joined to, vertices and edges, must be joined to the edge, in the mesh and
-// on its faces: else cells would coincide (link condition). For a vertex inside a region positive volumes
-// tell.
+// Checks the link condition: vertices and edges that are joined to both ends of the edge must be joined to
+// the edge, in the mesh and on its faces, else cells would coincide. For a vertex inside a region, positive
+// volumes imply it.
 bool Operations::keeps_topology(Index vertex, Index onto) {
   if (mesh_.features[vertex].dimension == 3) return true;
   if (complex_.pinched(onto)) return false;

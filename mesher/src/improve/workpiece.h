@@ -10,7 +10,7 @@
 
 namespace collarmesh::improvement {
 
-/// What an operation would do.
+/// A proposed change of the mesh.
 struct Change {
   enum class Kind { none, edge_removal, boundary_flip, move, insertion, contraction };
   /// Stands for the vertex that an insertion makes.
@@ -26,11 +26,11 @@ struct Change {
   TetMesh::VertexFeature feature;       ///< of the inserted vertex
 };
 
-/// A mesh while it is improved, with the smooth surfaces and curves that its faces and edges stand for.
-/// While nothing is applied several threads may read it.
+/// A mesh under improvement, with the smooth surfaces and curves that its faces and edges approximate.
+/// Several threads may read it while no change is applied.
 class Workpiece {
  public:
-  /// The mesh and the complex are kept by reference. Curves that turn by half a circle or more keep
+  /// Keeps the mesh and the complex by reference. Curves that turn by half a circle or more keep
   /// `edges_per_hole` edges to a full circle. `neighbours` as in TetComplex.
   Workpiece(TetMesh& mesh, const Plc& meant, const SurfaceTolerance& tolerance, double edges_per_hole = 0,
             const KnownNeighbours& neighbours = {})
@@ -42,7 +42,7 @@ class Workpiece {
 
   double quality(Index tet) const;
 
-  /// May this contraction still be made? What a curve has to spare is used up by others anywhere on it.
+  /// Returns whether this collapse is still allowed. Others on the same curve use up its spare edges.
   bool curve_can_spare(const Change& change) const {
     return complex.mesh().features[change.vertex].dimension != 1 || curves.may_skip(change.vertex);
   }
@@ -50,9 +50,9 @@ class Workpiece {
   /// Precondition: nothing that the change depends on has changed since it was proposed.
   const std::vector<Index>& apply(Change change);
 
-  /// What is made when first asked for must be made before the first trial.
+  /// Builds the data that is otherwise built on first use; call it before the first trial.
   void prepare() { surfaces.prepare(), curves.prepare(); }
-  /// What is applied from here on can be undone as a whole, until it is kept.
+  /// Begins a trial: all later changes can be undone as a whole until `keep`.
   void begin_trial() { complex.begin_trial(), surfaces.begin_trial(), curves.begin_trial(); }
   void keep() { complex.keep(), surfaces.keep(), curves.keep(); }
   void undo() { complex.undo(), surfaces.undo(), curves.undo(); }

@@ -3,10 +3,10 @@
 #include <array>
 #include <cstdint>
 
-/// What the writer and the reader of .inp files have to agree on; Abaqus Keywords Reference Manual.
+/// The conventions that the writer and the reader of .inp files share; Abaqus Keywords Reference Manual.
 namespace collarmesh::io {
 
-/// The corners of the faces S1 to S4 of C3D4 and C3D10, and the mid nodes amid them.
+/// The corners of the faces S1 to S4 of C3D4 and C3D10, and their mid-edge nodes.
 constexpr std::array<std::array<std::uint8_t, 3>, 4> abaqus_faces{
     {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}};
 constexpr std::array<std::array<std::uint8_t, 3>, 4> abaqus_face_mid_nodes{

@@ -1,6 +1,6 @@
 // Reads the input format of Abaqus and CalculiX (.inp): tetrahedra of solids (C3D4, C3D10 and their
 // kin), triangles and lines of shells, membranes, beams and trusses, surfaces of element sides. Tags
-// come from element sets and surfaces: of our names what they say, else their order in the file.
+// come from element sets and surfaces: from our own names, else from their order in the file.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -49,7 +49,7 @@ class Lines {
  public:
   Lines(const std::string& path, std::string_view text) : path_(path), text_(text) {}
 
-  /// The next line, taken with `next`; false at the end.
+  /// Returns whether there is a next line, which `next` takes.
   bool peek(std::string_view& line) {
     while (at_ < text_.size()) {
       end_ = std::min(text_.find('\n', at_), text_.size());
@@ -377,7 +377,7 @@ class AbaqusReader {
     }
   }
 
-  /// A part that is moved when it is placed would have to be moved here too.
+  /// Rejects a part that is moved when it is placed, which is not supported.
   void read_instance(const Keyword&) {
     each_line([&](const Fields& fields) {
       for (const std::string_view field : fields)

@@ -21,8 +21,8 @@ void turn_tet(TetMesh& mesh, std::size_t tet) {
   std::swap(ca, ad);
 }
 
-/// Programs differ in the order of a tet's corners, so all are turned where most are negative. Those that are
-/// turned against the others are inverted, and stay.
+/// Programs differ in the order of a tet's corners, so if most are negative, turns all of them. Tets
+/// whose orientation differs from the others are inverted, and stay.
 void orient_tets(TetMesh& mesh) {
   std::size_t negative = 0, positive = 0;
   for (const auto& [a, b, c, d] : mesh.tets) {
@@ -39,7 +39,7 @@ void turn_face(TetMesh& mesh, std::size_t face) {
   if (mesh.order() == 2) std::swap(mesh.face_mid_nodes[face][0], mesh.face_mid_nodes[face][2]);
 }
 
-/// The mid nodes of the tets by the ends of their edge.
+/// The mid-edge nodes of the tets by the ends of their edge.
 class MidNodes {
  public:
   MidNodes(const std::string& path, const TetMesh& mesh) : path_(path) {

@@ -23,10 +23,10 @@ class FaceFinder {
     }
   }
 
-  /// Of several faces with these corners the last; none if there is no such face.
+  /// Returns the last face with these corners; none if there is no such face.
   Index find(const Triangle& corners) { return slot(sorted(corners)); }
 
-  /// Do two triangles of the same corners look to the same side?
+  /// Returns whether two triangles with the same corners have the same orientation.
   static bool alike(const Triangle& a, const Triangle& b) {
     const auto at = static_cast<std::size_t>(std::find(b.begin(), b.end(), a[0]) - b.begin());
     return b[(at + 1) % 3] == a[1];

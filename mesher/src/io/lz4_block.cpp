@@ -25,7 +25,7 @@ class Block {
   }
 
  private:
-  /// Is it whole, and its bytes no more than there should be?
+  /// Returns whether it is complete and has no more bytes than expected.
   bool sequence() {
     std::uint8_t token = 0;
     std::size_t literals = 0, match = 0;

@@ -34,7 +34,7 @@ void read_vertices(TextScanner& scan, TetMesh& mesh) {
   }
 }
 
-/// Cells of so many nodes, which `add` puts into the mesh.
+/// Reads cells of this many nodes, which `add` puts into the mesh.
 template <class Add>
 void read_cells(TextScanner& scan, std::string_view what, std::size_t node_count, Add add,
                 std::vector<Tag>& references, TetMesh& mesh) {

@@ -33,7 +33,7 @@ const Format* find_format(const std::string& path, std::string_view format) {
   return nullptr;
 }
 
-/// A point in each body of tets with one tag, which hang together by faces.
+/// Returns a point in each body of tets with one tag that are connected by faces.
 std::vector<PolygonSoup::RegionPoint> points_in_regions(const TetMesh& mesh) {
   if (mesh.tet_tag.size() != mesh.tets.size()) return {};
   std::vector<std::pair<std::array<Index, 3>, Index>> sides;  // corners in order, and the tet

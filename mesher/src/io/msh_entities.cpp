@@ -28,13 +28,13 @@ class EntityTable {
     return last_ = found->second;
   }
 
-  /// The entity of a feature whatever its tag.
+  /// Returns the entity of a feature whatever its tag.
   Index find(Index number) {
     const auto found = by_number_.find(number);
     return found != by_number_.end() ? found->second : find(number, 0);
   }
 
-  /// Number the entities that did not get the number wanted. Returns whether there were any.
+  /// Numbers the entities that did not get the wanted number. Returns whether there were any.
   bool number_the_rest() {
     int next = 1;
     for (const MshEntity& e : entities_) next = std::max(next, e.number + 1);
@@ -48,7 +48,7 @@ class EntityTable {
   }
 
  private:
-  /// Numbers that leave no room for larger ones are not taken.
+  /// Rejects numbers that leave no room for larger ones.
   void add(Index number, Tag tag) {
     constexpr Index limit = std::numeric_limits<int>::max() / 2;
     MshEntity entity;

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-/// What the writer and the reader of .msh files have to agree on.
+/// The conventions that the writer and the reader of .msh files share.
 namespace collarmesh::io {
 
 constexpr int gmsh_point = 15;

@@ -1,6 +1,6 @@
 // Reads Gmsh's formats 4.1 and 2 (text and binary) and 4.0 (text): tetrahedra, triangles and lines of
-// first and second order. Tags are physical groups, or entities where there is none. Of partitioned files
-// ghost elements are not read, nor what lies between partitions.
+// first and second order. Tags are physical groups, or entities where there is none. Skips the
+// ghost elements of partitioned files and the elements between partitions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -62,7 +62,7 @@ Tag tag_of_physical(const Contents& contents, std::size_t dimension, Tag physica
   return named != contents.tag_of_physical[dimension].end() ? named->second : physical;
 }
 
-/// That of which it is a part, or itself.
+/// Returns the entity of which it is a part, or itself.
 int whole_entity(const Contents& contents, std::size_t dimension, int entity) {
   const auto part = contents.partition_entities[dimension].find(entity);
   return part == contents.partition_entities[dimension].end() ? entity : part->second.parent;
@@ -123,7 +123,7 @@ std::size_t read_dimension(Values& values) {
   return static_cast<std::size_t>(dimension);
 }
 
-/// Of dimension 0: points, which are skipped.
+/// The type of points, elements of dimension 0, which are skipped.
 constexpr GmshType point_type{gmsh_point, 0, 1, {0}};
 
 template <class Values>
@@ -359,7 +359,7 @@ void read_elements_2(MshBinary2 values, Contents& contents) {
   }
 }
 
-/// What precedes the values of $NodeData and $ElementData, a text also in binary files.
+/// The head of $NodeData and $ElementData before the values; text even in binary files.
 struct DataHead {
   std::string name;
   int components = 1, count = 0;
@@ -436,7 +436,7 @@ void with_values(const std::string& path, const MshSection& section, const Forma
     read(MshText(path, section));
 }
 
-/// The same of version 2.
+/// Does the same for version 2.
 template <class Read>
 void with_old_values(const std::string& path, const MshSection& section, const Format& format, Read read) {
   if (format.binary)
@@ -487,7 +487,7 @@ void add_cells(const std::vector<Cell>& cells, Add add, std::vector<Tag>& tags, 
 
 Index feature_of(int entity) { return static_cast<Index>(entity) - 1; }
 
-/// Where all tets have one.
+/// Adds partitions if all tets have one.
 void add_partitions(const std::vector<Cell>& tets, TetMesh& mesh) {
   for (const Cell& cell : tets) {
     if (cell.partition == none) {

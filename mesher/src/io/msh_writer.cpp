@@ -2,8 +2,8 @@
 // a volume per region, a surface per patch, a curve per curve, a point per vertex. A physical group
 // holds what has one tag. Cells are numbered in the order tets, faces, edges; $ElementData "collar" and
 // "crease" is given for all of them in the order of the file, as meshio needs it.
-// Of a partitioned mesh the cells and nodes of an entity are divided among its parts, an entity for each
-// partition: Gmsh keeps nothing else when it writes such a mesh again.
+// In a partitioned mesh the cells and nodes of an entity are divided among its parts, an entity for each
+// partition: Gmsh loses other data when it writes such a mesh again.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -88,7 +88,7 @@ void write_partition_entities(FileWriter& out, const MshParts& parts,
   out << "$EndPartitionedEntities\n";
 }
 
-/// The tets of others that partitions are to know.
+/// Writes the ghost tets of partitions.
 void write_ghost_elements(FileWriter& out, const TetMesh& mesh, const MshParts& parts) {
   std::vector<std::pair<Index, Index>> ghosts;  // a tet and a partition it is a ghost of
   const std::vector<std::vector<Index>> tets = ghost_tets(mesh);
@@ -109,7 +109,7 @@ void write_ghost_elements(FileWriter& out, const TetMesh& mesh, const MshParts& 
   out << "$EndGhostElements\n";
 }
 
-/// What is in each entity of one dimension, in the order of the mesh.
+/// The members of each entity of one dimension, in the order of the mesh.
 struct Groups {
   std::vector<Index> starts, members;
 
@@ -208,7 +208,7 @@ void write_elements(FileWriter& out, const TetMesh& mesh, const MshEntities& ent
   out << "$EndElements\n";
 }
 
-// Of tets; 0 for other cells.
+// Writes values of tets; 0 for other cells.
 template <class T>
 void write_data(FileWriter& out, std::string_view name, const std::vector<T>& values,
                 const CellGroups& groups) {

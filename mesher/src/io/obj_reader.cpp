@@ -26,7 +26,7 @@ struct Element {
   std::size_t group, material;  ///< positions among their names
 };
 
-/// Names in the order in which they come first; "" is none.
+/// Names in the order of their first use; "" is none.
 class Names {
  public:
   std::size_t position(std::string_view name) {
@@ -88,7 +88,7 @@ void require_in_range(const std::string& path, const Element& element, std::int6
       .fail(fmt::format("a corner is vertex {}, but the file has {} vertices", corner + 1, size));
 }
 
-/// What the faces are told apart by: groups, where there are several or ours, else materials.
+/// Returns the tags of the faces: by groups, if there are several or our own, else by materials.
 std::vector<Tag> tags_of_faces(const Elements& elements, PolygonSoup& soup) {
   std::set<std::size_t> groups, materials;
   for (const Element& element : elements.list) {

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A piece, and the file it is of.
+/// A piece and its file.
 struct NamedPiece {
   std::string path;
   VtkPiece piece;
@@ -42,7 +42,7 @@ const std::vector<std::int64_t>& numbers(const NamedPiece& named, const VtkPiece
       named.path, name));
 }
 
-/// Points of several pieces that have one number become one.
+/// Merges points of several pieces with the same number.
 void join_points(std::vector<NamedPiece>& pieces, VtkPiece& whole) {
   struct Place {
     std::int64_t number;

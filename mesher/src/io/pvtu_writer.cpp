@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint8_t duplicate = 1;
 
-/// What of a mesh is in one piece; ghosts are among the tets, behind its own.
+/// The members of one piece; ghosts are among the tets, behind its own.
 struct Members {
   std::vector<Index> tets, faces, edges, points;
   std::size_t own_tets = 0;
@@ -220,7 +220,7 @@ void write_pieces(const std::string& path, const TetMesh& mesh, bool told, bool 
   write_list(path, grid, names, with_ghosts);  // last: who sees it sees the pieces, too
 }
 
-/// What is not partitioned is one piece.
+/// Writes the pieces; a mesh that is not partitioned is one piece.
 void write(const std::string& path, const TetMesh& mesh, bool with_ghosts) {
   if (!mesh.tet_partition.empty()) {
     write_pieces(path, mesh, true, with_ghosts);

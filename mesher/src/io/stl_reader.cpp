@@ -27,14 +27,14 @@ bool equal_ignoring_case(std::string_view a, std::string_view lower) {
   return true;
 }
 
-/// Does the size agree with the count of a binary file?
+/// Returns whether the size agrees with the count of a binary file.
 bool has_binary_size(std::string_view bytes) {
   if (bytes.size() < header_bytes) return false;
   const std::uint32_t count = ByteReader("", bytes.substr(80)).get<std::uint32_t>("");
   return bytes.size() == header_bytes + triangle_bytes * std::size_t{count};
 }
 
-/// Binary files may begin with "solid" too; text has no zero bytes.
+/// Returns whether a file is text: binary files may begin with "solid" too, but text has no zero bytes.
 bool is_text(std::string_view bytes) {
   const std::size_t start = bytes.find_first_not_of(" \t\r\n");
   return start != std::string_view::npos && equal_ignoring_case(bytes.substr(start, 5), "solid") &&
@@ -84,7 +84,7 @@ void read_text_solid(TextScanner& scan, PointMerger& merger, std::vector<std::ar
   solids.ends.push_back(triangles.size());
 }
 
-/// Several solids of one file are its patches, with their names; one alone says nothing of its facets.
+/// Several solids of one file are its patches, with their names; a single solid gives no tags.
 void add_solids(const std::vector<std::array<Index, 3>>& triangles, const Solids& solids, PolygonSoup& soup) {
   std::map<std::string, Tag> tags;
   const auto tag_of = [&](std::size_t solid) {

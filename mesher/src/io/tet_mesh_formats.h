@@ -44,7 +44,7 @@ TetMesh read_abaqus(const std::string& path);
 TetMesh read_unv(const std::string& path);
 TetMesh read_tetgen(const std::string& path);
 
-// What is there, tetrahedra or not:
+// These read the cells of a file, with or without tetrahedra:
 TetMesh read_vtu_cells(const std::string& path);
 TetMesh read_vtp_cells(const std::string& path);
 TetMesh read_msh_cells(const std::string& path);

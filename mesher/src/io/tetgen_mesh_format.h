@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-/// What the writer and the reader of TetGen's meshes have to agree on (TetGen 1.5's manual, "File
+/// The conventions that the writer and the reader of TetGen's meshes share (TetGen 1.5's manual, "File
 /// formats"): NAME.node, NAME.ele, NAME.face and NAME.edge belong together.
 namespace collarmesh::io {
 

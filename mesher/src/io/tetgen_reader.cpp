@@ -17,7 +17,7 @@ namespace collarmesh::io {
 
 namespace {
 
-/// Do facet lines end with a marker? Missing flags are 0.
+/// Returns whether facet lines end with a marker. Missing flags are 0.
 bool marker_flag(TextScanner& scan) {
   return !scan.at_line_end() && scan.integer("the flag for boundary markers") != 0;
 }
@@ -34,7 +34,7 @@ std::int64_t read_node_file(const std::string& poly_path, PolygonSoup& soup) {
   return read_tetgen_nodes(scan, read_tetgen_node_header(scan), soup.points, soup.point_tags);
 }
 
-/// What a facet is in the file, before it is known whether it spans anything.
+/// A facet of the file, which may span nothing.
 struct FileFacet {
   Tag tag = 0;
   std::vector<std::vector<Index>> polygons;
@@ -57,7 +57,7 @@ void add_facet(const FileFacet& facet, PolygonSoup& soup) {
   for (const Point& hole : facet.holes) soup.facet_holes.push_back({soup.facet_count() - 1, hole});
 }
 
-/// The corners may go on over several lines.
+/// Reads the corners, which may continue over several lines.
 std::vector<Index> read_polygon(TextScanner& scan, std::int64_t first, const PolygonSoup& soup) {
   const Index n = scan.count("the number of corners of a polygon", 2);
   if (n == 0) scan.fail("expected a polygon of at least 1 corner, found 0");
@@ -134,7 +134,7 @@ void read_regions(TextScanner& scan, PolygonSoup& soup) {
   }
 }
 
-/// The lists of holes and regions may be missing. What follows them is not read, as in TetGen.
+/// Reads the lists of holes and regions, which may be missing. Ignores the rest of the file, as TetGen does.
 void read_holes_and_regions(TextScanner& scan, PolygonSoup& soup) {
   if (scan.at_end()) return;
   const Index count = scan.count("the number of holes", 8);

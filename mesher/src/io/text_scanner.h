@@ -58,7 +58,7 @@ class TextScanner {
   }
 
   double number(std::string_view what);
-  /// A finite number.
+  /// Reads a finite number.
   double coordinate(std::string_view what);
   Point point(std::string_view what) {
     const double x = coordinate(what), y = coordinate(what), z = coordinate(what);
@@ -72,7 +72,7 @@ class TextScanner {
   Index index(std::string_view what, std::int64_t first, std::size_t size);
 
   [[noreturn]] void fail(const std::string& message) const;
-  /// What was expected, and the word found instead.
+  /// Throws ReadError with the expected word and the one found instead.
   [[noreturn]] void fail(std::string_view expected, std::string_view found) const;
 
   std::size_t line() const { return line_; }

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-/// What the writer and the reader of .unv files have to agree on: the Universal File Datasets of SDRC
+/// The conventions that the writer and the reader of .unv files share: the Universal File Datasets of SDRC
 /// I-DEAS (Structural Dynamics Research Lab, University of Cincinnati: "Universal File Datasets Summary").
 namespace collarmesh::io {
 

@@ -27,7 +27,7 @@ struct VtkStorage {
 /// zlib never packs better than 1 to this, LZ4 not even to a quarter of it.
 constexpr std::uint64_t vtk_largest_ratio = 1032;
 
-/// What is wrong with stored values: for the caller to add the file and the place.
+/// A fault of stored values, to which the caller adds the file and the place.
 struct VtkArrayError {
   std::string message;
 };

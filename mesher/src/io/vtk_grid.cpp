@@ -40,7 +40,7 @@ std::vector<T> per_cell(const TetMesh& mesh, OfTet of_tet, OfFace of_face, OfEdg
 
 constexpr auto zero = [](std::size_t) { return 0; };
 
-/// Programs that read the file do not all take infinity.
+/// Replaces infinity, which not all programs accept.
 float finite(double value) {
   return static_cast<float>(std::min(value, double{std::numeric_limits<float>::max()}));
 }
@@ -71,7 +71,7 @@ class GridMaker {
  private:
   static constexpr std::size_t tets_per_task = 1024;
 
-  /// What `values` returns becomes those of the array, which stays where it is.
+  /// Adds the array, in place, and fills it with the values that `values` returns.
   template <class Values>
   void add(VtkArray& array, std::string_view name, Values values) {
     array.name = name;

@@ -39,7 +39,7 @@ struct VtkGrid {
 };
 VtkGrid make_vtk_grid(const TetMesh& mesh);
 
-/// Of pieces of a mesh: numbers of points and cells in the whole, and marks of those that another piece owns.
+/// Arrays of the pieces of a mesh: numbers of points and cells in the whole, and marks of ghosts.
 constexpr std::string_view vtk_point_ids = "GlobalPointIds", vtk_cell_ids = "GlobalCellIds",
                            vtk_ghosts = "vtkGhostType";
 
@@ -61,7 +61,7 @@ std::vector<VtkArray> names_array(const TetMesh& mesh);
 /// The text in such an array.
 std::string names_of(const std::vector<std::int64_t>& bytes);
 
-/// What .vtu files call the type of the values: "Float64".
+/// Returns the name of the values' type in .vtu files: "Float64".
 std::string_view vtu_type(const VtkArray& array);
 /// Write a grid as a .vtu file. Its connectivity, offsets and types are moved out. Arrays that are called
 /// `vtk_point_ids` or `vtk_cell_ids` become the grid's GlobalIds. Throws WriteError.
@@ -85,7 +85,7 @@ constexpr std::array<std::string_view, 14> vtk_cell_arrays{
 /// The pieces of a .vtu file, each with the faces and edges beside its cells. Throws ReadError.
 std::vector<VtkPiece> read_vtu_pieces(const std::string& path);
 
-/// What is wrong with a piece: for the caller to add the file and the place.
+/// A fault of a piece, to which the caller adds the file and the place.
 struct VtkPieceError {
   std::string_view array;
   std::string message;

@@ -1,6 +1,6 @@
 // VTK's XML format for unstructured grids: appended arrays, compressed in blocks, base64. Headers
-// are UInt64. See "VTK File Formats" (VTK User's Guide) and vtkXMLDataReader. What the arrays are:
-// vtk_grid.h. The cells are the tets; faces and edges are in FieldData.
+// are UInt64. See "VTK File Formats" (VTK User's Guide) and vtkXMLDataReader. vtk_grid.h
+// describes the arrays. The cells are the tets; faces and edges are in FieldData.
 #include <tbb/task_arena.h>
 
 #include <array>
@@ -70,7 +70,7 @@ struct Section {
       : name(its_name), arrays(of.begin(), of.end()) {}
 };
 
-/// What of an array a thread turns into text at once.
+/// The part of an array that one thread encodes.
 struct Piece {
   DataArray* array;
   std::string_view bytes;

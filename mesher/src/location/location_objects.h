@@ -8,7 +8,7 @@
 
 namespace collarmesh {
 
-/// What is not in the mesh yet but must be found from it: an unresolved point (radius 0) or the
+/// The objects that are not in the mesh yet but must be found from it: an unresolved point (radius 0) or the
 /// protective ball of a subsegment. Each is kept at the mesh vertex whose Voronoi cell contains its
 /// centre, that is, at its nearest vertex.
 class LocationObjects {
@@ -22,11 +22,11 @@ class LocationObjects {
   };
 
   const Object& operator[](Index object) const { return objects_[object]; }
-  /// First object at a mesh vertex, none if it has none; follow `next`.
+  /// Returns the first object at a mesh vertex, none if it has none; follow `next`.
   Index first_at(Index vertex) const { return vertex < first_.size() ? first_[vertex] : none; }
 
-  /// Look at all objects at a mesh vertex: their numbers, and what they are. The visitor may move or remove
-  /// the object that it is shown, and no other one.
+  /// Visits all objects at a mesh vertex with their numbers. The visitor may move or remove the object that
+  /// it visits, and no other one.
   template <class Visit>
   void visit_at(Index vertex, const Visit& visit) const {
     for (Index o = first_at(vertex), next = none; o != none; o = next) {
@@ -62,7 +62,7 @@ class LocationObjects {
     attach(object, vertex);
   }
 
-  /// Objects added, moves to other vertices, and looks, so far.
+  /// Returns the numbers of objects added, moves to other vertices, and visits so far.
   std::size_t added() const { return added_; }
   std::size_t moved() const { return moved_; }
   std::size_t looks() const { return looks_; }

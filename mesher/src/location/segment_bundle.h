@@ -65,7 +65,7 @@ class SegmentBundle {
     return ~Mask{0} >> (part_size - count);
   }
 
-  /// Those of `candidates` that may meet the box.
+  /// Returns the `candidates` that may meet the box.
   Mask may_meet(const CentredBox& box, std::size_t part, Mask candidates) const {
     std::array<Lanes, 3> c, e;
     const Vector centre = scale_ * (box.centre - centre_);

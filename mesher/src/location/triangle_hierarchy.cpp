@@ -34,7 +34,7 @@ int side(const Point& a, const Point& b, const Point& c, const Point& p) {
   return sign != 0 ? sign : predicates::cross_product_sign_exact(a, b, a, c);
 }
 
-// On which side does the line pq pass the edge ab?
+// Returns the side on which the line pq passes the edge ab.
 int passes(const Point& p, const Point& q, const Point& a, const Point& b) {
   const int sign = predicates::orientation(p, q, a, b);
   return sign != 0 ? sign : predicates::cross_product_sign_exact(p, q, a, b);
@@ -74,7 +74,7 @@ double squared_distance_to_segment(const Point& p, const Point& a, const Point& 
   return squared_distance(p, nearest_point_on_segment(p, a, b));
 }
 
-// Most points are far from the triangle's plane, or above or below it. Of all others the nearest point is on
+// Most points are far from the triangle's plane, or above or below it. For all others the nearest point is on
 // a side that they lie beyond.
 bool is_within(double squared_bound, const Point& p, const Point& a, const Point& b, const Point& c) {
   const Vector u = b - a, w = c - a, n = cross(u, w);

@@ -27,7 +27,7 @@ class TriangleHierarchy {
     int direction;
   };
 
-  /// Which nodes a search has met. Each thread that searches keeps its own.
+  /// The nodes that a search has met. Each thread that searches keeps its own.
   class Marks {
    public:
     std::size_t bytes() const { return of_nodes_.capacity() * sizeof(OfNode); }
@@ -67,7 +67,7 @@ class TriangleHierarchy {
   void crossings(const Point& p, const Point& q, std::span<const Index> nodes,
                  std::vector<Crossing>& found) const;
 
-  /// One of the segments in a bundle crosses a triangle.
+  /// A crossing of a segment of a bundle and a triangle.
   struct BundleCrossing {
     Index segment;
     Crossing crossing;
@@ -147,7 +147,8 @@ std::unique_ptr<TriangleHierarchy> hierarchy_of_patch(const Plc& plc, Index patc
 /// Squared distance from p to the triangle abc, which may be degenerate.
 double squared_distance_to_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
 double squared_distance_to_segment(const Point& p, const Point& a, const Point& b);
-/// Is the squared distance from p to the triangle abc, which may be degenerate, below the bound?
+/// Returns whether the squared distance from p to the triangle abc, which may be degenerate, is below the
+/// bound.
 bool is_within(double squared_bound, const Point& p, const Point& a, const Point& b, const Point& c);
 /// The point of the triangle abc, which may be degenerate, that is nearest to p.
 Point nearest_point_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c);

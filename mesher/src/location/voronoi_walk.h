@@ -10,7 +10,7 @@ namespace collarmesh {
 /// Walks from one Voronoi cell of the mesh to the next.
 class VoronoiWalk {
  public:
-  /// Kept by reference.
+  /// Keeps the mesh by reference.
   explicit VoronoiWalk(Triangulation& mesh) : mesh_(mesh) {}
 
   /// The vertex whose cell contains p, by going to a nearer neighbour from a vertex as long as there is one.

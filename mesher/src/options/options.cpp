@@ -108,7 +108,7 @@ void require(bool holds, const std::string& message) {
   if (!holds) throw OptionError(message);
 }
 
-/// What no option by itself can tell.
+/// Checks the rules that concern several options.
 void require_consistent(const RunOptions& o) {
   require(o.mesh.size == 0 || o.mesh.size_min <= o.mesh.size,
           fmt::format("size-min {} exceeds size {}; make it smaller", o.mesh.size_min, o.mesh.size));

@@ -70,7 +70,7 @@ std::size_t cut_of(const DualGraph& graph, const std::vector<GraphIndex>& partit
   return cut / 2;
 }
 
-/// Of small meshes, where luck matters most and time least, the best of some seeds.
+/// Returns the best partition of several seeds for small meshes, where luck matters most and time least.
 std::vector<GraphIndex> best_by_scotch(ScotchPartition by_scotch, const DualGraph& graph,
                                        unsigned partitions) {
   constexpr std::size_t small = 50'000;

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-/// What `partition` asks of the module with Scotch.
+/// The functions that `partition` calls in the module with Scotch.
 namespace collarmesh {
 
 using GraphIndex = std::int32_t;  // Scotch's own, in Debian's library

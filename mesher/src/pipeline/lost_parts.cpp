@@ -20,7 +20,7 @@ struct Body {
   double thickness() const { return area > 0 ? 2 * volume / area : 0; }
 };
 
-// Those of the regions, largest first.
+// Returns the bodies of the regions, largest first.
 std::vector<Body> bodies_of(const Plc& plc) {
   std::vector<Body> bodies(plc.regions.size());
   for (std::size_t r = 1; r < bodies.size(); ++r) bodies[r].volume = std::fabs(plc.regions[r].volume);
@@ -61,7 +61,7 @@ std::string lost_bodies(const Plc& finer, const Plc& coarser, double tolerance) 
   return {};
 }
 
-// Is there one that was not lost before?
+// Returns whether there is one that was not lost before.
 std::string lost_beyond(const std::vector<Tag>& before, const std::vector<Tag>& after, const char* what) {
   for (const Tag tag : after)
     if (std::find(before.begin(), before.end(), tag) == before.end())

@@ -35,7 +35,8 @@ Point point_of(const Json& value, const std::string& place) {
   return {at[0].get<double>(), at[1].get<double>(), at[2].get<double>()};
 }
 
-/// The feature nearest to a point, by its triangles; a curve's segments are triangles without an area.
+/// Returns the feature nearest to a point, by its triangles; a curve's segments are triangles without an
+/// area.
 class Nearest {
  public:
   void add(const Plc& plc, Index a, Index b, Index c, Index feature) {

@@ -37,14 +37,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Where there is exact geometry the bounds have to hold still when the vertices have moved onto it: its
-// triangles' share of the distance twice, and some room; of the ratio and the angles a little.
+// With exact geometry the bounds must still hold after the vertices moved onto it. So these reserves are
+// kept: twice the triangles' share of the distance and some more, and a little of the ratio and the angles.
 constexpr double distance_left = 0.75, ratio_left = 0.99, angle_reserve = 0.05, dihedral_reserve = 0.02;
 
-/// A stage ended before its end; `PipelineResult::result` says why.
+/// Thrown if a stage stops early; `PipelineResult::result` says why.
 struct Ended {};
 
-/// A flag that is set when another one is or when the time is up.
+/// A flag that is set if another one is set or the time is up.
 class Deadline {
  public:
   Deadline(double seconds, const Execution& execution)
@@ -68,7 +68,7 @@ class Deadline {
   std::jthread watcher_;
 };
 
-/// Counts the threads that there can be while refinement, which is alone, runs.
+/// Determines the number of usable threads in the background while refinement runs.
 class ThreadCounter {
  public:
   explicit ThreadCounter(unsigned threads) {
@@ -76,7 +76,7 @@ class ThreadCounter {
     try {
       thread_ = std::jthread([] { usable_threads(); });
     } catch (const std::system_error&) {
-      // Who needs them counts them.
+      // The first user of threads determines it then.
     }
   }
 
@@ -84,10 +84,10 @@ class ThreadCounter {
   std::jthread thread_;
 };
 
-/// Of facets.
+/// A source of complexes built from facets.
 class SoupSource : public ComplexSource {
  public:
-  /// Both are kept by reference.
+  /// Keeps both by reference.
   SoupSource(std::span<const PolygonSoup> soups, const PlcOptions& options)
       : soups_(soups), options_(options) {}
 
@@ -136,7 +136,7 @@ class Pipeline {
   }
 
  private:
-  /// How an attempt at a mesh ended.
+  /// The outcome of an attempt at a mesh.
   enum class End {
     holds,     ///< every guarantee
     missed,    ///< a guarantee
@@ -191,7 +191,7 @@ class Pipeline {
     try_seeds(all.plc);
   }
 
-  /// Mesh a complex within the bound on vertices. Also says what kept the guarantees from holding.
+  /// Meshes a complex within the bound on vertices. Also returns the reason for a missed guarantee.
   std::pair<End, std::string> attempt(const Plc& plc, std::exception_ptr& error) {
     try {
       mesh(plc, given_.mesh.seed);
@@ -240,8 +240,8 @@ class Pipeline {
     }
   }
 
-  /// Of the surface distance of first order, such that regions keep their volumes: they lose about in
-  /// proportion to it.
+  /// Returns the share of the surface distance of first order with which regions keep their volumes: the loss
+  /// is about proportional to the distance.
   double share_for_volumes() const {
     constexpr double aim = 0.7, least = 0.25;
     const std::vector<double>&input = made_.check.of_input.volumes, &mesh = made_.check.of_mesh.volumes;
@@ -254,7 +254,7 @@ class Pipeline {
     return share;
   }
 
-  /// Make something in another way. What there is stays, unless it is no mesh or the other one keeps every
+  /// Tries another way. The present result stays unless it is no mesh or the other one keeps every
   /// guarantee.
   template <class Way>
   bool find_better(bool has_mesh, const Way& way) {
@@ -311,7 +311,7 @@ class Pipeline {
     most_vertices_ = given_.mesh.max_vertices > 0 && given_.mesh.max_vertices <= most ? 0 : most;
   }
 
-  /// Did the refinement end at that bound, and not for want of time or memory?
+  /// Returns whether the refinement ended at that bound, and not for lack of time or memory.
   bool hit_bound() const {
     const std::size_t memory = given_.mesh.max_memory;
     return most_vertices_ > 0 && made_.result.status == MeshStatus::budget_hit && !out_of_time() &&
@@ -345,7 +345,7 @@ class Pipeline {
 
   bool exact() const { return static_cast<bool>(options_.exact); }
 
-  /// The bounds of the finished mesh.
+  /// Returns the bounds of the finished mesh.
   Bounds bounds() const {
     Bounds bounds = options_.mesh.bounds;
     if (!made_.coarsening) bounds.thin_angle = 0;
@@ -441,7 +441,7 @@ class Pipeline {
     stop_if_asked();
   }
 
-  /// Once, of the mesh that stays.
+  /// Called once, for the mesh that is kept.
   void divide() {
     if (given_.partitions == 0) return;
     begin("partition", 0.96, 1);
@@ -466,7 +466,7 @@ class Pipeline {
     if (inner_.cancelled()) stop();
   }
 
-  /// What a stage reports, as a part of the whole.
+  /// Forwards the progress of a stage, scaled to its share of the whole.
   bool go_on(ProgressReport report) {
     fraction_ = std::max(fraction_, from_ + std::clamp(report.fraction, 0.0, 1.0) * (to_ - from_));
     report.fraction = fraction_;

@@ -11,11 +11,13 @@ namespace collarmesh {
 
 namespace {
 
-// Of the refinement, before anything is coarsened; real parts need at most a quarter of the bound.
+// Coefficients of the bound on the refinement's vertices, before coarsening; real parts need at most a
+// quarter.
 constexpr double always = 20000, by_feature = 160, by_square = 64, by_cube = 160;
 constexpr double sizes_per_diagonal = 20;  // of the default size
 
-/// The patch's area in squares of the size or, where this is shorter, of a chord that keeps the tolerance.
+/// Returns the patch's area in squares of the size or, where this is shorter, of a chord that keeps the
+/// tolerance.
 double squares_on(const Plc& plc, const Plc::Patch& patch, double size, const SurfaceTolerance& tolerance) {
   const std::vector<Curvature> curvature =
       patch.planar ? std::vector<Curvature>(patch.triangle_count) : curvatures(plc, patch);
@@ -33,7 +35,7 @@ double squares_on(const Plc& plc, const Plc::Patch& patch, double size, const Su
   return squares;
 }
 
-// Are there no sizes but a target edge length everywhere and in regions?
+// Returns whether the only sizes are a target edge length everywhere and in regions.
 bool plain_sizes(const PipelineOptions& options) {
   RunOptions given{options};
   given.mesh.region_size.clear();

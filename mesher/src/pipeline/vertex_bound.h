@@ -8,8 +8,8 @@
 
 namespace collarmesh {
 
-/// Far more vertices than the refinement of a complex takes that has no features much finer than the sizes
-/// asked for: sheets that part at a hundredth of a degree, needles and folds make millions. It does not
+/// Returns far more vertices than refinement needs for a complex without features much finer than the sizes.
+/// Sheets that part at a hundredth of a degree, needles and folds make millions. It does not
 /// depend on how near features come to each other. Cost: linear; near linear where more is asked for than
 /// target edge lengths everywhere and in regions.
 std::size_t most_vertices_expected(const Plc& plc, const PipelineOptions& options);

@@ -9,10 +9,10 @@ namespace collarmesh::build {
 namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
-// Below this sine a sector is a ray.
+// A sector with a smaller sine counts as a ray.
 constexpr double narrow = 1e-12;
 
-// A position along a fan: the rays of one sector as start cos(s) + side sin(s).
+// A sector of a fan, whose rays are start cos(s) + side sin(s).
 struct Arc {
   Vector start, side;
   double from, length;  // radians along the fan
@@ -35,7 +35,7 @@ std::vector<Arc> make_arcs(std::span<const Vector> rays, bool closed) {
   return arcs;
 }
 
-// The smallest angle between the rays a.at(a0 + s) and b.at(b0 + s) for s in [0, length].
+// Returns the smallest angle between the rays a.at(a0 + s) and b.at(b0 + s) for s in [0, length].
 double smallest_angle_along(const Arc& a, double a0, const Arc& b, double b0, double length) {
   const Vector ua = a.at(a0), va = a.at(a0 + std::numbers::pi / 2), ub = b.at(b0),
                vb = b.at(b0 + std::numbers::pi / 2);

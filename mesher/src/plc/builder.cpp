@@ -35,7 +35,7 @@ void name_soups(std::span<const PolygonSoup> soups, Draft& draft) {
   }
 }
 
-// Points of a complex that nothing uses are vertices.
+// Adds the unused points of complexes as vertices.
 void add_unused_points(const PointMap& map, Draft& draft) {
   std::vector<bool> used(draft.points.size(), false);
   for (const Corners& t : draft.triangles)
@@ -58,7 +58,7 @@ void require_content(const Draft& draft, Faults& faults) {
                "The input holds no facet with an area; check that these are the right files.", {}, {});
 }
 
-// Why closed facets, or none at all, enclose no region.
+// Reports why the facets enclose no region.
 void report_nothing_solid(const Draft& draft, std::span<const PolygonSoup> soups, Faults& faults) {
   for (Index s = 0; s < soups.size(); ++s)
     if (!soups[s].hole_points.empty()) {
@@ -102,8 +102,8 @@ void require_region(const Draft& draft, const EdgeTable& edges, const Regions& r
              {a, b}, 0.5 * (pa + pb));
 }
 
-// Patches in the complex with their triangles together. A patch between a region in front of it and
-// the outside behind it is turned.
+// Adds the patches to the complex, each with its triangles in one range. Turns a patch between a region in
+// front of it and the outside behind it.
 void add_patches(Draft& draft, const Regions& regions, const std::vector<Index>& patch_of, Index patch_count,
                  Plc& plc) {
   std::vector<std::vector<Index>> triangles(patch_count);
@@ -136,7 +136,7 @@ void sort_unique(std::vector<Index>& list) {
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
-// Curves already know their patches and vertices their curves.
+// Precondition: curves have their patches and vertices their curves.
 void link_patches(const Draft& draft, Plc& plc) {
   for (Index c = 0; c < plc.curves.size(); ++c)
     for (const Index p : plc.curves[c].patches) plc.patches[p].curves.push_back(c);
@@ -169,12 +169,11 @@ void warn_of_patches_outside(Plc& plc) {
     }
   }
   if (count == 0) return;
-  plc.warnings.push_back(
-      {fmt::format(
-           "What lies outside of every region is in no mesh: an area of {:.3g}, triangles: {}, the first one "
-           "at {} on a patch with tag {}. Close the surface there, or remove it.",
-           area, count, text(first), tag),
-       first});
+  plc.warnings.push_back({fmt::format("The surface outside of every region is in no mesh: an area of {:.3g}, "
+                                      "triangles: {}, the first one "
+                                      "at {} on a patch with tag {}. Close the surface there, or remove it.",
+                                      area, count, text(first), tag),
+                          first});
 }
 
 }  // namespace

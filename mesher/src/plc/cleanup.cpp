@@ -38,7 +38,7 @@ class CollinearGroups {
     }
   }
 
-  /// The points that cut the edge from a to b, in order from a.
+  /// Returns the points that cut the edge from a to b, in order from a.
   std::vector<Index> cuts(Index a, Index b) const {
     std::vector<Index> result;
     const auto at = group_of_edge_.find(edge_key(a, b));
@@ -56,7 +56,7 @@ class CollinearGroups {
   std::vector<std::vector<Index>> points_;  // by group
 };
 
-// Cut a triangle at the cuts of its sides. Each step fans the apex opposite one cut side.
+// Cuts a triangle at the cuts of its sides. Each step fans the apex opposite one cut side.
 void add_cut(const Corners& triangle, const Origin& origin, const CollinearGroups& groups, Draft& result) {
   std::vector<Corners> stack{triangle};
   while (!stack.empty()) {
@@ -96,8 +96,8 @@ struct Twin {
   }
 };
 
-// Triangles ordered such that those with the same corners follow each other, the first one first: by counting
-// their lowest corners, then within each.
+// Sorts triangles so that those with the same corners follow each other, in their order: a counting sort by
+// the lowest corner, then a sort within each group.
 std::vector<Twin> sort_by_corners(const Draft& draft) {
   std::vector<Index> next(draft.points.size() + 1, 0);
   for (const Corners& t : draft.triangles) ++next[*std::min_element(t.begin(), t.end()) + 1];
@@ -122,7 +122,7 @@ bool same_orientation(const Corners& a, const Corners& b) {
   return b[(at + 1) % 3] == a[1];
 }
 
-// Remove the marked triangles; claims on the others move with them. Returns how many there were.
+// Removes the marked triangles and renumbers the claims on the others. Returns the number of removed ones.
 Index compact(Draft& draft, const std::vector<bool>& removed) {
   std::vector<Index> moved(draft.triangles.size());
   Index kept = 0;

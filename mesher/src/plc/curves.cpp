@@ -94,7 +94,7 @@ class CurveFinder {
       if (!segments_at(p).empty() && !passes(p)) is_vertex_[p] = true;
   }
 
-  // Points where several fans of triangles meet, or a fan and a segment that is no edge of any.
+  // Finds points where several fans of triangles meet, or a fan and a segment that is not an edge of any.
   void mark_pinched_points() {
     const auto& triangles = draft_.triangles;
     DisjointSets fans(3 * triangles.size());
@@ -117,7 +117,7 @@ class CurveFinder {
         if (s.edge == none && fan_of[p] != none) is_vertex_[p] = true;
   }
 
-  // Does one curve pass this point?
+  // Returns whether one curve passes this point.
   bool passes(Index point) const {
     const auto at = segments_at(point);
     if (at.size() != 2) return false;
@@ -154,7 +154,7 @@ class CurveFinder {
     chains_.push_back(std::move(chain));
   }
 
-  // Where merging neighbour by neighbour has left the straight line: cut at the farthest point.
+  // Cuts chains at the farthest point if merging neighbour by neighbour has left the straight line.
   void cut_bent_chains() {
     std::vector<Chain> pieces;
     for (const Chain& chain : chains_) {

@@ -7,7 +7,7 @@ namespace collarmesh::build {
 
 namespace {
 
-// By insertion where there are few, as at most points.
+// Sorts by insertion if there are few, as at most points.
 void sort_few(std::span<std::pair<Index, Index>> pairs) {
   constexpr std::size_t few = 16;
   if (pairs.size() > few) {

@@ -33,7 +33,7 @@ int planar_orientation(unsigned axis, const Point& a, const Point& b, const Poin
 }
 
 bool collinear(const Point& a, const Point& b, const Point& c) {
-  // Far from collinear is the rule: a bound on the rounding errors of the cross product decides it.
+  // Most triples are far from collinear, which a bound on the rounding errors of the cross product proves.
   const Vector u = b - a, v = c - a;
   const double bound = 1e-14 * norm(u) * norm(v);
   if (squared_norm(cross(u, v)) > bound * bound) return false;

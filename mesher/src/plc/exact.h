@@ -15,10 +15,10 @@ int planar_orientation(unsigned axis, const Point& a, const Point& b, const Poin
 /// Do the three points lie on one line?
 bool collinear(const Point& a, const Point& b, const Point& c);
 
-/// Of three distinct points on one line: is b between a and c?
+/// Returns whether b lies between a and c, for three distinct points on one line.
 bool between(const Point& a, const Point& b, const Point& c);
 
-/// Of four points in one plane, abc not on a line: do c and d lie strictly on one side of the line ab?
+/// Returns whether c and d lie strictly on one side of the line ab, for points in a plane, abc not on a line.
 bool same_side(const Point& a, const Point& b, const Point& c, const Point& d);
 
 /// Sign of t0 - t1, where the line from p to q crosses the plane of the triangle ti at the

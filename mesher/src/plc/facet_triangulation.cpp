@@ -27,7 +27,7 @@ struct Plane {
   Vector normal;  // unit
 };
 
-// Twice the area vector of a polygon.
+// Returns twice the area vector of a polygon.
 Vector area_vector(const std::vector<Point>& points, const std::vector<Index>& loop) {
   Vector sum{};
   for (std::size_t i = 1; i + 1 < loop.size(); ++i)
@@ -37,7 +37,7 @@ Vector area_vector(const std::vector<Point>& points, const std::vector<Index>& l
 
 class FacetTriangulator {
  public:
-  /// With `bent`, facets that are no plane polygons are taken as well as can be instead of being faults.
+  /// With `bent`, facets that are not planar polygons are approximated instead of being faults.
   FacetTriangulator(Draft& draft, Faults& faults, BentFacets* bent)
       : draft_(draft), faults_(faults), bent_(bent) {}
 
@@ -149,7 +149,8 @@ class FacetTriangulator {
     if (bent_->where.size() < most_places) bent_->where.push_back(where);
   }
 
-  // Triangles from the first corner of each loop: they close up with the facets around, whatever its shape.
+  // Makes a fan of triangles from the first corner of each loop, whatever its shape, which matches the facets
+  // around it.
   void fan(const Facet& facet) {
     for (const auto& loop : facet.loops)
       for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
@@ -159,7 +160,7 @@ class FacetTriangulator {
       }
   }
 
-  // The shortcut for the commonest polygon.
+  // Handles the most frequent polygon quickly.
   bool cut_convex_quadrangle(const Facet& facet) {
     if (facet.loops.size() > 1 || facet.loops[0].size() != 4 || !facet.segments.empty() ||
         !facet.points.empty() || !facet.holes.empty())
@@ -204,7 +205,7 @@ class FacetTriangulator {
                                     corners_.begin());
   }
 
-  // Info is true for the faces that are no part of the facet.
+  // `info` is true for faces outside the facet.
   void mark_outside(const Facet& facet, PlaneTriangulation& mesh) {
     for (const auto face : mesh.all_face_handles()) face->info() = false;
     flood(mesh.infinite_face());
@@ -238,7 +239,7 @@ class FacetTriangulator {
       if (!counterclockwise) std::swap(t[1], t[2]);
       draft_.add_triangle(t, {facet.tag, facet.soup, facet.number});
     }
-    // What the facet lies on both sides of is a segment that the input names.
+    // An edge with the facet on both sides is a segment that the input names.
     for (const auto& [face, i] : mesh.finite_edges()) {
       if (!face->is_constrained(i) || face->info() || face->neighbor(i)->info()) continue;
       draft_.segments.push_back(
@@ -254,14 +255,14 @@ class FacetTriangulator {
   std::vector<PlaneTriangulation::Vertex_handle> handles_;  // by position in corners_
 };
 
-// The points that name a soup's facet holes, by facet.
+// The hole points of a soup's facets, by facet.
 class FacetHoles {
  public:
   explicit FacetHoles(const PolygonSoup& soup) : holes_(soup.facet_holes) {
     std::stable_sort(holes_.begin(), holes_.end(),
                      [](const auto& a, const auto& b) { return a.facet < b.facet; });
   }
-  /// To be asked for facet after facet.
+  /// Returns the hole points of a facet; call it for one facet after the other.
   std::vector<Point> take(Index facet) {
     std::vector<Point> points;
     for (; next_ < holes_.size() && holes_[next_].facet <= facet; ++next_)

@@ -15,7 +15,7 @@ namespace collarmesh::build {
 void triangulate_facets(std::span<const PolygonSoup> soups, const PointMap& map, Draft& draft,
                         Faults& faults);
 
-/// What `triangulate_any_facets` could not take as it was.
+/// Counts of facets that `triangulate_any_facets` had to change.
 struct BentFacets {
   Index split = 0;           ///< not planar, or with edges that cross: cut into triangles between its corners
   Index dropped = 0;         ///< without an area

@@ -69,7 +69,7 @@ Index PatchFans::across(Index side) const {
   return sides[0] == side ? sides[1] : sides[0];
 }
 
-// The corner that follows (counterclockwise) or precedes this one in its fan.
+// Returns the corner that follows (counterclockwise) or precedes this one in its fan.
 Index PatchFans::next_corner(Index corner) const {
   return across(corner - corner % 3 + (corner % 3 + 2) % 3);
 }

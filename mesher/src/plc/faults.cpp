@@ -9,7 +9,7 @@ namespace collarmesh::build {
 
 namespace {
 
-// What makes other faults meaningless comes first.
+// Returns the rank of a kind of fault: kinds that make others meaningless come first.
 int rank(PlcFault::Kind kind) {
   using Kind = PlcFault::Kind;
   switch (kind) {

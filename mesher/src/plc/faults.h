@@ -9,7 +9,7 @@
 
 namespace collarmesh::build {
 
-/// The faults found so far. Of each kind the first ones are kept, all are counted.
+/// The faults found so far: keeps the first ones of each kind and counts all.
 class Faults {
  public:
   void add(PlcFault::Kind kind, std::string message, std::vector<Index> points, const Point& where);

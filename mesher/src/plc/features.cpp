@@ -27,7 +27,7 @@ class SegmentTest {
       return true;
     if (clusters_.seed[s] == clusters_.seed[t]) return false;
     const double cosine = dot(clusters_.normal[s], clusters_.normal[t]);
-    // A surface through two sheets that are folded onto each other has no mesh without a curve there.
+    // Two sheets that are folded onto each other need a curve at the fold, else the surface has no mesh.
     if (draft_.soup_gives_features[draft_.origins[s].soup]) return cosine < 0;
     return every_fold_ || cosine < smallest_cosine_;
   }
@@ -46,7 +46,7 @@ struct Extent {
   double low = INFINITY, high = -INFINITY;
 };
 
-// Most of them several times.
+// Most points occur several times.
 std::vector<Index> corners_of(const Draft& draft, const std::vector<Index>& triangles) {
   std::vector<Index> points;
   points.reserve(3 * triangles.size());
@@ -55,7 +55,7 @@ std::vector<Index> corners_of(const Draft& draft, const std::vector<Index>& tria
   return points;
 }
 
-// The largest of all, or the first one above the limit.
+// Returns the largest distance of the points from a plane, or the first one above the limit.
 double deviation_from(const Draft& draft, const std::vector<Index>& points, const Point& origin,
                       const Vector& normal, double limit) {
   double largest = 0;
@@ -135,7 +135,7 @@ void fit_plane(Draft& draft, const std::vector<Index>& triangles, Plc::Patch& pa
     return true;
   };
   if (accept(draft.corner(largest, 0), unit_normal(draft, largest)) || norm(mean) == 0) return;
-  // The mean plane lies nearer to all of them than that of one triangle.
+  // The mean plane is nearer to all triangles than the plane of one of them.
   Extent extent{mean / norm(mean)};
   const Point& base = draft.corner(largest, 0);
   for (const Index p : points) {

@@ -11,10 +11,10 @@ namespace {
 
 // A triangle lower than this many planar tolerances is a needle.
 constexpr double needle_height = 10;
-// One lower than this many may lie in a plane whatever its own normal says.
+// A triangle lower than this many may lie in a plane that its own normal does not fit.
 constexpr double foldable_height = 2;
-// The plane of a triangle says nothing beyond this share of its height: a body smaller than the tolerance has
-// sides, too.
+// The plane of a triangle is not trusted beyond this share of its height: even a body smaller than the
+// tolerance has sides.
 constexpr double share_of_height = 0.1;
 
 double longest_side(const Draft& draft, Index t) {
@@ -41,8 +41,8 @@ class ClusterFinder {
     }
   }
 
-  // Seeds are taken from the largest on. Most triangles of a curved surface have no neighbour in their
-  // plane: they need no turn of their own.
+  // Seeds come in order of decreasing size. Most triangles of a curved surface have no neighbour in their
+  // plane and are skipped.
   FlatClusters run() {
     std::vector<Index> order;
     for (Index t = 0; t < areas_.size(); ++t) {
@@ -63,7 +63,7 @@ class ClusterFinder {
  private:
   bool precedes(Index a, Index b) const { return areas_[a] != areas_[b] ? areas_[a] > areas_[b] : a < b; }
 
-  // The neighbours' sides on common edges where no third triangle is.
+  // Returns the neighbours' sides on common edges of exactly two triangles.
   template <class Visit>
   void for_each_neighbour(Index t, const Visit& visit) const {
     for (unsigned i = 0; i < 3; ++i) {
@@ -88,7 +88,7 @@ class ClusterFinder {
     }
   }
 
-  // Does the triangle of this side, a neighbour of t in the seed's cluster, belong to it, too?
+  // Returns whether the triangle of this side, a neighbour of t in the seed's cluster, belongs to it, too.
   bool joins(Index side, Index t, Index seed) const {
     return same_facet(t, side / 3) || in_plane(side, seed);
   }
@@ -99,7 +99,7 @@ class ClusterFinder {
            draft_.origins[s].facet == draft_.origins[t].facet;
   }
 
-  // Does the triangle lie in the plane of the seed, seen from the same side?
+  // Returns whether the triangle lies in the plane of the seed and faces the same side.
   bool in_plane(Index side, Index seed) const {
     const Point& p = draft_.points[apex(draft_.triangles, side)];
     if (!point_in_plane(p, seed)) return false;

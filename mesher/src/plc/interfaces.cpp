@@ -35,7 +35,7 @@ class InterfaceFinder {
   }
 
  private:
-  // By seed, the triangles of each cluster that has an edge where several soups meet.
+  // The triangles of each cluster with an edge where several soups meet, by seed.
   std::map<Index, std::vector<Index>> clusters_on_common_edges() const {
     std::vector<bool> wanted(draft_.triangles.size(), false);
     for (Index e = 0; e < edges_.size(); ++e) {
@@ -49,7 +49,7 @@ class InterfaceFinder {
     return clusters;
   }
 
-  // The edges that exactly one triangle of the cluster has.
+  // Returns the edges of exactly one triangle of the cluster.
   Border border(Index seed, const std::vector<Index>& triangles) const {
     Border result;
     for (const Index t : triangles)

@@ -59,8 +59,8 @@ class IntersectionFinder {
     return pair;
   }
 
-  // Do they meet in more than their common corners? The first one has at least as many corners, the second
-  // one at most two.
+  // Returns whether they meet in more than their common corners. The first one has at least as many corners,
+  // the second one at most two.
   bool illegal(const Pair& pair) const {
     const auto& f = pair.first.points;
     const auto& s = pair.second.points;
@@ -74,7 +74,7 @@ class IntersectionFinder {
     return segment_illegal(pair);
   }
 
-  // The same of two triangles: of almost all pairs.
+  // Returns the same for two triangles, the most frequent pairs.
   bool triangles_illegal(const Corners& f, const Corners& s) const {
     const auto from = [](const Corners& t, unsigned i) {
       return Corners{t[i % 3], t[(i + 1) % 3], t[(i + 2) % 3]};
@@ -87,13 +87,13 @@ class IntersectionFinder {
           in_f += a;
           in_s += b;
         }
-    // The places of all three corners have the sum 3: of two common ones it tells the third.
+    // The places of all three corners have the sum 3, which gives the third of two common ones.
     if (common == 2) return folded(from(f, 4 - in_f), from(s, 4 - in_s));
     if (common == 1) return fans_meet(from(f, in_f), from(s, in_s));
     return common == 0 && triangles_meet(f, s);
   }
 
-  // Two segments from a that lie on one ray.
+  // Returns whether the segments ab and ac lie on one ray.
   bool overlap(Index a, Index b, Index c) const {
     return collinear(at(a), at(b), at(c)) && !between(at(b), at(a), at(c));
   }
@@ -106,7 +106,7 @@ class IntersectionFinder {
            segments_meet(at(s[0]), at(s[1]), at(f[1]), at(f[2]));
   }
 
-  // Triangles on a common edge that lie on each other.
+  // Returns whether two triangles on a common edge overlap.
   bool folded(const Corners& f, const Corners& s) const {
     return predicates::orientation(at(f[0]), at(f[1]), at(f[2]), at(s[2])) == 0 &&
            same_side(at(f[0]), at(f[1]), at(f[2]), at(s[2]));
@@ -131,7 +131,7 @@ class IntersectionFinder {
     return false;
   }
 
-  // Does the plane of f have all corners of s but the common ones on one side?
+  // Returns whether all corners of s except the common ones lie on one side of the plane of f.
   bool apart(const Corners& f, const Corners& s, unsigned common) const {
     const auto side = [&](Index p) { return predicates::orientation(at(f[0]), at(f[1]), at(f[2]), at(p)); };
     const int first = side(s[common]);
@@ -172,7 +172,7 @@ class IntersectionFinder {
     return fmt::format("facet {} of {}", draft_.origins[i].facet, draft_.soup_names[draft_.origins[i].soup]);
   }
 
-  // A corner of one, not common, that lies on the other.
+  // Finds a corner of one, not common, that lies on the other.
   Index touching_corner(const Pair& pair) const {
     for (unsigned k = pair.common; k < pair.second.size; ++k)
       if (on(pair.second.points[k], pair.first)) return pair.second.points[k];
@@ -201,7 +201,7 @@ class IntersectionFinder {
     return both.centre();
   }
 
-  // Where a side of the first one pierces the second, a triangle.
+  // Returns the place where a side of the first one pierces the second, a triangle.
   std::optional<Point> piercing_point(const Simplex& first, const Simplex& second, unsigned common) const {
     if (first.size < 2 || second.size < 3) return std::nullopt;
     const auto& s = second.points;

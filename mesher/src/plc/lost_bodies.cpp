@@ -12,7 +12,7 @@ namespace collarmesh::build {
 
 namespace {
 
-/// Facets that hang together by corners.
+/// Facets that are connected by corners.
 struct Body {
   Box box;
   Index facets = 0;
@@ -58,7 +58,7 @@ void add_bodies(const PolygonSoup& soup, std::vector<Body>& bodies) {
   });
 }
 
-/// Is there a triangle within the box, or a bit around it?
+/// Returns whether there is a triangle within or near the box.
 class TrianglesByPlace {
  public:
   explicit TrianglesByPlace(const Plc& plc) : plc_(plc), order_(plc.triangles.size()) {

@@ -10,9 +10,9 @@ namespace collarmesh::build {
 
 namespace {
 
-// Shorter edges and lower triangles than this many planar tolerances point anywhere.
+// Edges shorter and triangles lower than this many planar tolerances have no reliable direction.
 constexpr double noise = 10;
-// A patch that folds below this angle in a point has a vertex there (degrees).
+// A patch has a vertex at a point where it folds by less than this angle (degrees).
 constexpr double folded = 90;
 // An end of a curve at a vertex.
 struct Ray {
@@ -59,7 +59,7 @@ class AngleFinder {
   }
   double noise_length() const { return noise * plc_.planar_tolerance; }
 
-  // The polyline's first point that is far enough away tells where an end of a curve heads.
+  // The polyline's first point that is far enough away gives the direction of an end of a curve.
   Ray make_ray(Index curve, std::vector<Index> points) const {
     std::size_t far = 1;
     while (far + 1 < points.size() && distance(at(points[0]), at(points[far])) <= noise_length()) ++far;
@@ -150,7 +150,7 @@ class AngleFinder {
     add(best);
   }
 
-  // A curve and a facet that it is no side of there.
+  // Measures a curve and a facet that does not have it as a side there.
   void measure_segments_and_facets(Index v, const std::vector<Fan>& fans) {
     Crease best = at_vertex(Kind::segment_and_facet, v);
     for (const Ray& ray : rays_[v])
@@ -162,7 +162,7 @@ class AngleFinder {
     add(best);
   }
 
-  // Facets without a common segment there.
+  // Measures facets without a common segment there.
   void measure_facets(Index v, const std::vector<Fan>& fans) {
     Crease best = at_vertex(Kind::facets_in_vertex, v);
     for (std::size_t f = 0; f < fans.size(); ++f)

@@ -11,7 +11,8 @@ namespace {
 
 using predicates::orientation;
 
-// A coordinate to drop without losing the plane of abc; 3 if they lie on one line.
+// Returns a coordinate to drop when projecting abc, so that it stays a triangle; 3 if the points are
+// collinear.
 unsigned projection_axis(const Point& a, const Point& b, const Point& c) {
   unsigned axis = 0;
   while (axis < 3 && planar_orientation(axis, a, b, c) == 0) ++axis;

@@ -103,7 +103,7 @@ class NearTouchingFinder {
         }
   }
 
-  // Between two curves, both ways; nothing if it is above the limit.
+  // Returns the largest distance between two curves, both ways; nothing if it is above the limit.
   std::optional<Nearest> largest_distance(Index c, Index d) const {
     Nearest largest{0, at(plc_.curves[c].points.front())};
     for (const auto& [from, to] : {std::pair(c, d), std::pair(d, c)}) {
@@ -126,8 +126,8 @@ class NearTouchingFinder {
                        [&](Index p) { return std::find(b.points.begin(), end, p) != end; });
   }
 
-  // Is one of two features part of the other, or do they meet in a common one? The first has the lower
-  // dimension.
+  // Returns whether one of two features is part of the other, or they meet in a common one. The first has the
+  // lower dimension.
   bool related(const Element& a, const Element& b) const {
     if (a.dimension == 0) {
       if (b.dimension == 1) return plc_.vertex_on_curve(a.feature, b.feature);
@@ -154,8 +154,8 @@ class NearTouchingFinder {
     if (d < nearest.squared_distance) nearest = {d, 0.5 * (p + q)};
   }
 
-  // Between two segments (Ericson: Real-Time Collision Detection, section 5.1.9): the nearest points of
-  // their lines when they are within both; ends are looked at by others.
+  // Returns the nearest points of two segments (Ericson: Real-Time Collision Detection, section 5.1.9) if
+  // those of their lines are within both; other pairs handle the ends.
   static void keep_nearer_of_lines(Nearest& nearest, const Point& p, const Point& q, const Point& r,
                                    const Point& s) {
     const Vector u = q - p, v = s - r, w = p - r;

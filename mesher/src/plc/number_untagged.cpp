@@ -19,7 +19,7 @@ bool has_segment_tags(const PolygonSoup& soup) {
                      [](const PolygonSoup::Segment& segment) { return segment.tag != 0; });
 }
 
-/// Those without a tag get the smallest numbers that are none yet.
+/// Gives the smallest unused numbers to features without a tag.
 template <class Feature>
 void number(std::vector<Feature>& features) {
   std::set<Tag> taken;

@@ -25,7 +25,7 @@ class Orienter {
  private:
   static constexpr signed char unvisited = -1;
 
-  // As in almost all files; then no triangle needs to be turned.
+  // Returns whether no triangle needs to be turned, as in almost all files.
   bool all_agree() const {
     for (Index e = 0; e < edges_.size(); ++e)
       for (const Index side : edges_.sides(e)) {
@@ -43,7 +43,7 @@ class Orienter {
       for (unsigned i = 0; i < 3; ++i) visit_across(3 * component_[next] + i);
   }
 
-  // The only other side of its soup on the same edge, none if there is no such side.
+  // Returns the only other side of its soup on the same edge, none if there is no such side.
   Index across(Index side) const {
     const Index soup = draft_.origins[side / 3].soup;
     Index other = none;

@@ -65,8 +65,8 @@ class PointPlacer {
     return squared_norm(cross(draft_.corner(triangle, 1) - a, draft_.corner(triangle, 2) - a));
   }
 
-  /// Of each shell the side of its largest triangle, and the volume that the shell encloses seen from
-  /// its space: positive if the space is inside.
+  /// Finds for each shell the side of its largest triangle, and the volume that the shell encloses as seen
+  /// from its space: positive if the space is inside.
   void find_largest_sides() {
     const auto count = static_cast<Index>(2 * draft_.triangles.size());
     largest_.assign(count, none);
@@ -95,7 +95,7 @@ class PointPlacer {
 
   bool encloses_void(Index side) { return volume_[shells_.find(side)] > 0; }
 
-  /// In the middle of the longest of some lines that leave the triangle on this side.
+  /// Returns the middle of the longest of some lines that leave the triangle on this side.
   std::optional<Point> point_in(Index side) const {
     constexpr std::size_t attempts = 12;
     const Index t = side / 2;

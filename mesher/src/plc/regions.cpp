@@ -31,7 +31,7 @@ class Sum {
   double sum_ = 0, lost_ = 0;
 };
 
-// A bounded chamber, that is, one that a component of the surface encloses.
+// A bounded chamber: one that a component of the surface encloses.
 struct Chamber {
   Index inner_shell = none;  // of the component that encloses it
   bool complex = false;
@@ -74,7 +74,7 @@ class RegionFinder {
   }
 
  private:
-  // What a soup has of a chamber's inner shell.
+  // The share of a soup in a chamber's inner shell.
   struct Share {
     double area = 0;
     Index first_triangle = none;
@@ -88,7 +88,7 @@ class RegionFinder {
 
   double reach() const { return 2 * draft_.bounds.diagonal(); }
 
-  // A line through each component tells its outermost shell and what that one sees.
+  // Casts a line through each component to find its outermost shell and what that shell sees.
   void nest_components() {
     std::vector<Index> largest(count_, none);
     std::vector<double> area(count_);
@@ -136,7 +136,7 @@ class RegionFinder {
 
   bool is_outer(Index shell) { return outer_shell_[components_.find(shell / 2)] == shell; }
 
-  // Number the inner shells, and say what the facets on each claim.
+  // Numbers the inner shells and collects the claims of their facets.
   void find_bounded_chambers() {
     chamber_of_shell_.assign(2 * count_, none);
     for (Index side = 0; side < 2 * count_; ++side) {
@@ -162,10 +162,10 @@ class RegionFinder {
     find_owners();
   }
 
-  // The bounded chamber whose inner shell this side is on.
+  // Returns the bounded chamber whose inner shell has this side.
   Index chamber_at(Index side) { return chamber_of_shell_[shells_.find(side)]; }
 
-  // A complex takes both sides of its facets for its own, a surface those behind them for solid.
+  // Claims a side: a complex claims both sides of its facets, a surface the sides behind them as solid.
   void claim(Index side, Index soup) {
     const Index at = chamber_at(side);
     if (at == none) return;
@@ -183,7 +183,7 @@ class RegionFinder {
   }
 
   // Neighbours that share facets of a chamber have less of its shell than the file that encloses it.
-  // Of several that have as much the first one.
+  // The owner is the soup with the largest share, the first one among equals.
   void find_owners() {
     constexpr double clearly_more = 1 + 1e-9;
     double area = 0;
@@ -215,7 +215,7 @@ class RegionFinder {
     }
   }
 
-  // The bounded chamber that a point lies in; none outside of all.
+  // Returns the bounded chamber of a point; none outside of all.
   Index enclosing_chamber(const Point& point, const char* what, Index soup) {
     for (std::size_t attempt = 0; attempt < largest_attempt; ++attempt) {
       const auto crossings = caster_.cast(point, point + reach_to(point) * generic_direction(attempt));
@@ -244,7 +244,7 @@ class RegionFinder {
     return none;
   }
 
-  // From the outside inwards: what encloses a chamber is decided before it.
+  // Goes from the outside inwards, so that the surroundings of a chamber are decided before it.
   void decide() {
     region_of_chamber_.assign(2 * count_ + 1, none);
     region_of_chamber_[chambers_.find(outside_)] = 0;
@@ -265,13 +265,13 @@ class RegionFinder {
     }
   }
 
-  // The chamber around the component that encloses this one.
+  // Returns the chamber around the component that encloses this one.
   Index parent(const Chamber& chamber) {
     return chambers_.find(outer_shell_[components_.find(chamber.inner_shell / 2)]);
   }
 
-  // A cavity that touches the surface around it is behind that one's facets everywhere. What has facets to
-  // the outside, too, is a body beside others that is inside out, as one alone may be.
+  // A cavity that touches the surface around it is behind that one's facets everywhere. A
+  // chamber that also has facets to the outside is a body that is inside out, as a single one may be.
   static bool is_region(const Chamber& chamber, bool inside_region) {
     const bool filled = chamber.claiming_surface != none && chamber.claiming_surface != chamber.hole_soup;
     if (chamber.hole_soup != none) return filled;
@@ -279,7 +279,7 @@ class RegionFinder {
            !(inside_region || (chamber.behind_claimed && !chamber.beside_outside));
   }
 
-  // Regions are numbered from 1 by their first soup, then by their first triangle.
+  // Numbers the regions from 1 by their first soup, then by their first triangle.
   void number() {
     std::vector<Index> order;
     for (Index i = 0; i < list_.size(); ++i)
@@ -316,7 +316,7 @@ class RegionFinder {
     result.warnings = std::move(warnings_);
   }
 
-  // What region points say of their regions; the last one counts.
+  // Takes the parameters of region points; the last point of a region counts.
   void set_parameters(Regions& result) {
     std::map<Index, const PlacedPoint*> last;
     for (const PlacedPoint& p : region_points_) {

@@ -34,7 +34,7 @@ void use(const PolygonSoup& soup, Index point, const char* what, Index number, s
              {point}, {});
 }
 
-// For each point 0 if it is used, else none.
+// Returns for each point 0 if it is used, else none.
 std::vector<Index> find_used(const PolygonSoup& soup, Faults& faults) {
   std::vector<Index> used(soup.points.size(), is_complex(soup) ? 0 : none);
   for (Index f = 0; f < soup.facet_count(); ++f) {
@@ -68,9 +68,9 @@ UsedPoints collect(std::span<const PolygonSoup> soups, PointMap& map, Faults& fa
   return all;
 }
 
-// Coordinates must be able to tell so many places across the input.
+// Coordinates must resolve this many places across the input.
 constexpr double fewest_steps = 4096;
-// Between these, products of lengths that decide anything stay within a double's range.
+// Extents between these keep the products of lengths in all decisions within a double's range.
 constexpr double smallest_extent = 1e-30, largest_coordinate = 1e30;
 
 void require_range(const Box& box, Faults& faults) {
@@ -98,7 +98,7 @@ void require_range(const Box& box, Faults& faults) {
       {}, box.min);
 }
 
-// Sweep along a direction that no real part is square to, so that few points share a position.
+// The sweep direction, to which no real part is orthogonal, so that few points share a position.
 DisjointSets find_close(const std::vector<Point>& points, const Box& bounds, double distance_limit) {
   const Vector direction{0.6180339887, 0.5381966011, 0.5731523012};
   const Point centre = bounds.centre();

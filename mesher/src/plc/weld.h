@@ -8,7 +8,7 @@
 
 namespace collarmesh::build {
 
-/// Where each soup's points went.
+/// The new numbers of each soup's points.
 struct PointMap {
   std::vector<std::vector<Index>> merged;  ///< by soup and point: its index in the draft, none if unused
 };

@@ -7,8 +7,8 @@
 
 namespace collarmesh::prediction {
 
-/// Small edges make what is near them small: the edge length at any point is the least of what some sources
-/// ask for, which grows away from them.
+/// Graded sizes: the edge length at any point is the least one that the sources ask for; it grows with the
+/// distance from them.
 class GradedSize {
  public:
   /// A point, segment or triangle (corners may be equal) with its edge length.

@@ -15,13 +15,14 @@ namespace {
 
 constexpr double sizes_per_diagonal = 20;  // of the default size
 
-// Most of the time goes with the tets there are before coarsening; fitted (bench/predicted_elements.py).
+// Returns the predicted seconds, which are mostly proportional to the tets before coarsening; fitted
+// (bench/predicted_elements.py).
 double seconds_for(double refined_tets, unsigned order) {
   constexpr double of_one = 4.6e-6, power = 1.19, of_second_order = 1.3;
   return of_one * std::pow(refined_tets, power) * (order == 2 ? of_second_order : 1);
 }
 
-/// With another size; 0: its own.
+/// Returns the options with another size; 0: their own.
 PipelineOptions with_size(PipelineOptions options, double size) {
   if (size > 0) options.mesh.size = size;
   return options;

@@ -9,7 +9,7 @@ namespace collarmesh::prediction {
 
 namespace {
 
-// Cosines, as where gaps are measured (coarsen/gap_widths.cpp).
+// Cosines as in the measurement of gaps (coarsen/gap_widths.cpp).
 constexpr double least_facing = 0.5, least_facing_of_neighbours = 0.966;
 
 std::vector<std::array<Index, 3>> triangles_of(const Plc& plc) {
@@ -81,7 +81,7 @@ double Shape::wall_width(const Point& p, Index triangle, double widest) const {
     if (plc_.patches[patch].regions[side] == 0) continue;
     const Vector way = (side == 0 ? -1 : 1) / norm(normal) * normal;
     const Index root = surface_.root();
-    // Not from the plane of its own triangle: that would be one tie after the other.
+    // Start off the plane of its own triangle, which would cause ties.
     surface_.crossings(p + 1e-6 * widest * way, p + widest * way, {&root, 1}, crossings);
     for (const auto& [other, direction] : crossings) {
       if (other == triangle || patches_meet(patch, plc_.triangles[other].patch)) continue;
@@ -114,7 +114,7 @@ bool Shape::curves_meet(Index curve, Index other) const {
   return std::any_of(a.begin(), a.end(), [&](Index v) { return v != none && (v == b[0] || v == b[1]); });
 }
 
-// In a curve: between them the region is a wedge, not a wall.
+// Returns whether the patches meet in a curve: then the region between them is a wedge, not a wall.
 bool Shape::patches_meet(Index patch, Index other) const {
   if (patch == other) return false;
   const auto &a = plc_.patches[patch].curves, &b = plc_.patches[other].curves;

@@ -13,11 +13,11 @@
 
 namespace collarmesh::prediction {
 
-/// What there is to know about a complex for predictions of any size: how strongly it curves, how wide it is
-/// and how far away its features are.
+/// The properties of a complex that predictions of any size use: its curvature, its widths and the distances
+/// of its features.
 class Shape {
  public:
-  /// Kept by reference. Cost: near linear.
+  /// Keeps the complex by reference. Cost: near linear.
   explicit Shape(const Plc& plc);
 
   const Plc& plc() const { return plc_; }

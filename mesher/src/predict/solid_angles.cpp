@@ -22,7 +22,7 @@ Edge middle_segment(const Plc::Curve& curve) {
   return edge(curve.points[first], curve.points[(first + 1) % curve.points.size()]);
 }
 
-/// The triangles at an edge and where they lie around it.
+/// The triangles at an edge and their angles around it.
 class Wheel {
  public:
   Wheel(const Plc& plc, const Edge& axis) : plc_(plc), from_(axis.first), to_(axis.second) {
@@ -46,7 +46,7 @@ class Wheel {
     }
   }
 
-  /// Angles in regions, radians, and the number of wedges that they are of.
+  /// Returns the angles within regions, radians, and the number of their wedges.
   std::pair<double, int> inside() {
     std::sort(spokes_.begin(), spokes_.end());
     std::pair<double, int> sum{0, 0};

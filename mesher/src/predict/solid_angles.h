@@ -6,13 +6,13 @@
 
 namespace collarmesh::prediction {
 
-/// Which part of the directions around a feature leads into regions, from 0 to 1: 1/2 on a patch that bounds
-/// one region, 1/4 at an edge of a box, 1/8 at its corner.
+/// The share of the directions around a feature that lead into regions, from 0 to 1: 1/2 on a patch that
+/// bounds one region, 1/4 at an edge of a box, 1/8 at its corner.
 struct SolidAngles {
   std::vector<double> of_patch, of_curve, of_vertex;
 };
 
-/// Of curves in their middle. Cost: linear.
+/// Computes solid angles, those of curves in their middle. Cost: linear.
 SolidAngles solid_angles(const Plc& plc);
 
 }  // namespace collarmesh::prediction

@@ -14,12 +14,12 @@ namespace collarmesh::prediction {
 
 namespace {
 
-// Where there would be more, what is left is judged as it is.
+// Beyond this number the remaining pieces are not divided.
 constexpr std::size_t most_pieces = 40000, most_cubes = 80000;
 constexpr double most_pieces_of_segment = 1000, most_pieces_of_curves = 40000;  // beyond one for each segment
 constexpr double least_share = 0.002;  // of the size: what walls and strips make of it at most
 
-/// From 0 to 1 between two bounds.
+/// Rises from 0 to 1 between two bounds.
 double ramp(double x, double from, double to) { return std::clamp((x - from) / (to - from), 0.0, 1.0); }
 
 class Counter {
@@ -53,7 +53,7 @@ class Counter {
     Index triangle;
     std::array<Point, 3> corners;
   };
-  /// Of an octree. Its region is known, unless it may meet the surface.
+  /// A cube of an octree. Its region is known, unless it may meet the surface.
   struct Cube {
     Point centre;
     double half;
@@ -71,7 +71,7 @@ class Counter {
     return options_.elements_across_gap > 0 ? growth_in_gaps : by_model;
   }
 
-  /// The longest chord of a circle of this radius that is near enough to it.
+  /// Returns the longest chord of a circle of this radius that is within the tolerance.
   double chord(double radius, double tolerance) const {
     return std::sqrt(8 * radius * model_.chord * tolerance);
   }
@@ -84,7 +84,7 @@ class Counter {
                     chord(shape_.radius_of_segment(c, i), tolerance) / model_.edge);
   }
 
-  /// In the direction in which the patch curves most.
+  /// Returns the size in the direction in which the patch curves most.
   double size_across(Index triangle, const Point& p) const {
     return std::min(sizing_.triangle_size(plc_.triangles[triangle].patch, triangle, p),
                     chord(shape_.radius_of_triangle(triangle), tolerance_.at_triangle(triangle)));
@@ -128,7 +128,7 @@ class Counter {
     return all;
   }
 
-  /// A curve has at least one edge, a loop three.
+  /// Rounds the number of edges of a curve, which is at least one, of a loop three.
   double whole(Index c, double edges) const {
     const Plc::Curve& curve = plc_.curves[c];
     const bool loop = curve.closed || curve.ends[0] == curve.ends[1];
@@ -164,7 +164,7 @@ class Counter {
     add(whole(c, edges) - (has_vertex ? 1 : 0), shape_.angles().of_curve[c]);
   }
 
-  /// Triangles are cut in two until one size will do for each piece.
+  /// Counts the vertices of a patch: halves triangles until one size fits each piece.
   void count_on_patches() {
     std::deque<Piece> pieces;
     for (Index t = 0; t < plc_.triangles.size(); ++t) pieces.push_back({t, shape_.corners(t)});
@@ -221,7 +221,7 @@ class Counter {
     pieces.push_back({piece.triangle, {middle, b, c}});
   }
 
-  /// The bounding box is cut into cubes until one size will do for each.
+  /// Counts the vertices of regions: divides the bounding box into cubes until one size fits each.
   void count_inside() {
     const Vector extent = plc_.bounds.max - plc_.bounds.min;
     std::deque<Cube> cubes{{plc_.bounds.centre(), 0.5 * std::max({extent.x, extent.y, extent.z})}};

@@ -5,7 +5,7 @@
 
 namespace collarmesh::prediction {
 
-/// What the predictions were fitted to (bench/predicted_elements.py). Lengths are in target edge lengths.
+/// The fitted coefficients of predictions (bench/predicted_elements.py). Lengths are in target edge lengths.
 struct Model {
   double edge = 1.04;          ///< length of an edge on a curve
   double area = 0.65;          ///< of a patch to a vertex
@@ -23,7 +23,8 @@ struct Model {
   double tets_per_vertex = 6;  ///< that is inside; 24 tets meet there and have four corners each
 };
 
-/// The mesh before it is coarsened: bounds on radius-edge ratios make tets as small as walls and strips.
+/// Returns the model of the mesh before it is coarsened: bounds on radius-edge ratios make tets as small as
+/// walls and strips.
 inline Model model_of_refinement() {
   Model model;
   model.wall = model.strip = 1.2;

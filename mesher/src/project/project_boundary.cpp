@@ -1,5 +1,5 @@
-// Boundary vertices onto exact geometry: all at once; then room is made where that spoils tets, and who finds
-// none goes back.
+// Moves boundary vertices onto exact geometry, all at once; then makes room where that spoils tets, and moves
+// vertices without room back.
 #include "collarmesh/project_boundary.h"
 
 #include <algorithm>
@@ -64,8 +64,8 @@ class BoundaryProjection {
   // Relative to the tolerance: of edges and triangles between vertices, and of vertices, to the largest one
   // on their feature.
   static constexpr double largest_sag = 0.5, most_off = 0.75;
-  // A way of so many times the shortest edge at the vertex leads through other tets: parts of a CAD file may
-  // be off each other by more than what lies between them.
+  // A move of more than this many times the shortest edge at the vertex leads through other tets: the faces
+  // of a CAD file may be farther from their edges than the features are apart.
   static constexpr double longest_way = 2;
   static constexpr int retries = 2;
 
@@ -87,8 +87,8 @@ class BoundaryProjection {
     return bounds;
   }
 
-  // How far a vertex may go from a feature of the complex. Where the tolerance is little, the complex may be
-  // farther off the exact geometry than the mesh may be off the complex.
+  // Returns the allowed distance of a vertex from a feature of the complex. If the tolerance is small, the
+  // complex may be farther from the exact geometry than the mesh may be from the complex.
   double farthest_from(unsigned dimension, Index feature, const Point& p) const {
     if (dimension == 1) return most_off * tolerance_.least_on_curve(plc_.curves[feature]);
     if (!tolerance_.varies()) return most_off * tolerance_.largest();
@@ -126,15 +126,16 @@ class BoundaryProjection {
 
   double way_of(Index slot) const { return distance(room_.origin(moves_[slot].point), moves_[slot].to); }
 
-  // On its feature a vertex may slide along it, unless it is the centre of a ball.
+  // Records whether a vertex is on its exact feature; then it may slide along it, unless it is the centre of
+  // a ball.
   void set_done(Index slot, bool done) {
     moves_[slot].done = done;
     room_.set_free(moves_[slot].point, done && is_centre_.count(moves_[slot].point) == 0);
   }
 
   // Where exact curves end beside their vertices, as tolerances of CAD files allow, a vertex near the end may
-  // have gone past it: of such an edge's ends the one with the longer way goes back, until none is left.
-  // Returns the tets around what went back.
+  // have gone past it: the end of such an edge with the longer way moves back, until none is left.
+  // Returns the tets around the vertices that moved back.
   std::vector<Index> keep_courses() {
     std::vector<Index> around;
     for (bool turned = true; turned;) {
@@ -159,8 +160,8 @@ class BoundaryProjection {
     return around;
   }
 
-  // In each spoilt tet the vertex with the longest way goes back, or else all that moved do. Returns what is
-  // spoilt then.
+  // In each spoilt tet moves the vertex with the longest way back, or all moved ones. Returns the tets that
+  // are spoilt then.
   std::vector<Index> give_way(const std::vector<Index>& spoilt) {
     std::vector<Index> around;
     const auto go_back = [&](Index p) {
@@ -188,8 +189,8 @@ class BoundaryProjection {
     return room_.relax(std::move(around));
   }
 
-  // One by one, what went back may go now, if there is room, and again where something has changed since.
-  // True: something did.
+  // Tries the vertices that moved back one by one, as there may be room now or after later changes. Returns
+  // whether something changed.
   bool retry(bool again) {
     bool any = false;
     for (Index slot = 0; slot < moves_.size() && !execution_.cancelled(); ++slot) {

@@ -11,7 +11,7 @@ namespace collarmesh::projection {
 
 namespace {
 
-// Sweeps go on while they help: what tets lack becomes so much less within so many sweeps.
+// Sweeps continue while they help: the penalty must fall to this share within this number of sweeps.
 constexpr unsigned sweeps = 50, idle_sweeps = 3;
 constexpr double worthwhile = 0.9;
 // Vertices move by steps from this share of their shortest edge down, halved so often.
@@ -101,7 +101,7 @@ void Relaxation::roll_back() {
   }
 }
 
-// Was there no better place for it when its surroundings were as they are?
+// Returns whether a search found no better place for it with unchanged surroundings.
 bool Relaxation::in_vain(Index vertex) const {
   if (stuck_[vertex] == 0) return false;
   for (const Index t : tets_at_[vertex])
@@ -160,7 +160,8 @@ const Relaxation::Wanted& Relaxation::wanted(Index tet) const {
   return want;
 }
 
-// What the tets at the vertex lack, in sum; anything not below `below` when it is not below that.
+// Returns the sum of the penalties of the tets at the vertex, or any value >= `below` if the sum is not
+// smaller.
 double Relaxation::lack_around(std::span<const Index> tets, Index vertex, const Point& place,
                                double below) const {
   double lack = 0;
@@ -184,10 +185,10 @@ std::optional<Point> Relaxation::on_feature(Index vertex, const Point& wish) con
   return dimension == 3 ? wish : exact_(dimension, feature, wish);
 }
 
-// Pattern search for the place where the tets around the vertex lack least.
+// Searches by patterns for the place with the least penalty of the tets around the vertex.
 bool Relaxation::improve(Index vertex) {
   const Point start = mesh_.points[vertex];
-  // Most places do not help the worst tets: these are asked first.
+  // Most places do not help the worst tets, so evaluate these first.
   worst_first_.clear();
   for (const Index t : tets_at_[vertex]) worst_first_.emplace_back(-lack_of(t, corners(t, mesh_.points)), t);
   std::sort(worst_first_.begin(), worst_first_.end());
@@ -288,7 +289,7 @@ bool Relaxation::keeps_course(Index vertex) {
   return std::all_of(edges.begin(), edges.end(), [&](Index edge) { return on_course(edge); });
 }
 
-// Faces and edges on smooth features follow the vertices that slide along them.
+// Updates faces and edges on smooth features after vertices slid along them.
 bool Relaxation::fits_features(Index vertex, const Point& place) {
   if (mesh_.features[vertex].dimension == 3) return true;
   find_features_around();
@@ -300,7 +301,7 @@ bool Relaxation::fits_features(Index vertex, const Point& place) {
   return on_course && (after <= 1 || after <= sag_around(vertex));
 }
 
-// The largest distance of a face's or edge's middle from the exact geometry, relative to its bound.
+// Returns the largest distance of a face's or edge's middle from the exact geometry, relative to its bound.
 double Relaxation::sag_around(Index vertex) const {
   double most = 0;
   const auto see = [&](unsigned dimension, Index feature, const Point& middle) {

@@ -21,46 +21,46 @@ struct Bounds {
   std::vector<double> patch_sag, curve_sag;
 };
 
-/// Makes room for vertices that were put somewhere: the corners of the tets that this spoilt move, inside
-/// their regions or along their exact features, until the tets keep their bounds again. What was done since
-/// the last `commit` can be taken back.
+/// Makes room for vertices that were placed: the corners of the tets that this spoilt move, inside
+/// their regions or along their exact features, until the tets keep their bounds again. Changes since
+/// the last `commit` can be undone.
 class Relaxation {
  public:
-  /// The mesh is kept by reference. What misses a bound now may go on missing it, but not by more.
+  /// Keeps the mesh by reference. A tet that misses a bound now may still miss it, but not by more.
   Relaxation(TetMesh& mesh, const ExactGeometry& exact, const Bounds& bounds);
 
   const CellsAtVertices& tets_at() const { return tets_at_; }
-  /// Where the vertex was at the beginning.
+  /// Returns the initial place of the vertex.
   const Point& origin(Index vertex) const { return origins_[vertex]; }
-  /// At the vertex, in the beginning.
+  /// Returns the initial shortest edge at the vertex.
   double shortest_edge(Index vertex) const;
-  /// Is the tet positive and within its bound?
+  /// Returns whether the tet is positive and within its bound.
   bool good(Index tet) const;
 
-  /// Does a mesh edge of a curve turn by less than 60 degrees from where it was? Where it turns by more, a
-  /// vertex has run past its neighbour.
+  /// Returns whether a mesh edge of a curve has turned by less than 60 degrees. If it turned by more, a
+  /// vertex has passed its neighbour.
   bool on_course(Index edge) const;
-  /// All those at the vertex.
+  /// Returns that for all such edges at the vertex.
   bool keeps_course(Index vertex);
 
   void put(Index vertex, const Point& place);
-  /// Say whether `relax` may move a vertex; at first it may move those inside regions only.
+  /// Sets whether `relax` may move a vertex; at first it may move those inside regions only.
   void set_free(Index vertex, bool is_free) { free_[vertex] = is_free; }
 
-  /// Move vertices of spoilt tets, each to where the worst tet around it is better, sweep by sweep. Returns
-  /// those that are not good in the end, of `tets` and of all tets around what moved.
+  /// Moves vertices of spoilt tets sweep by sweep, each to a place where the worst tet around it is better.
+  /// Returns the tets that still miss a bound, among `tets` and all tets around moved vertices.
   std::vector<Index> relax(std::vector<Index> tets);
 
   void commit();
   void roll_back();
-  /// How often something was committed; and whether that changed a tet at the vertex after so many times.
+  /// Return the number of commits, and whether commits after that number changed a tet at the vertex.
   std::size_t commits() const { return commits_; }
   bool changed_around(Index vertex, std::size_t since) const;
 
  private:
   using Corners = std::array<Point, 4>;
 
-  /// What a tet is asked for: its bound, or what it was at the beginning if that was poorer.
+  /// The target of a tet: its bound, or its initial shape if that was poorer.
   struct Wanted {
     double shape = -1;  // negative until it is known
     double bound = 0;   // on its dihedral angles in collars, elsewhere on its radius-edge ratio

@@ -19,7 +19,7 @@ class JacobianCoefficients {
 
   const Values& values() const { return values_; }
   double least() const { return *std::min_element(values_.begin(), values_.end()); }
-  /// The gradient of their sum with these weights, by the six mid-side nodes.
+  /// Returns the gradient of their sum with these weights, by the six mid-edge nodes.
   std::array<Vector, 6> gradient(const Values& weights) const;
 
  private:

@@ -9,7 +9,7 @@
 namespace collarmesh::second_order {
 
 /// The edges of a mesh, sorted, each with the feature it lies on: those of its tets, and in a mesh that
-/// misses a guarantee those of faces and curves that are in no tet. The mid-side node of the edge e is the
+/// misses a guarantee those of faces and curves that are in no tet. The mid-edge node of the edge e is the
 /// point first_node() + e.
 class MeshEdges {
  public:
@@ -30,7 +30,7 @@ class MeshEdges {
   Index first_node_;
 };
 
-/// Give the mesh a node at the middle of each of its edges.
+/// Gives each edge of the mesh a node in its middle.
 void add_mid_nodes(const MeshEdges& edges, TetMesh& mesh);
 
 }  // namespace collarmesh::second_order

@@ -9,10 +9,10 @@
 
 namespace collarmesh::second_order {
 
-/// The nearest points of the curves and patches of a complex, as they are tessellated.
+/// Finds the nearest points of the tessellated curves and patches of a complex.
 class NearestOnFeatures {
  public:
-  /// Kept by reference.
+  /// Keeps the complex by reference.
   explicit NearestOnFeatures(const Plc& plc)
       : plc_(plc), curves_(plc.curves.size()), patches_(plc.patches.size()) {}
 

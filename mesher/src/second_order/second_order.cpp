@@ -1,4 +1,5 @@
-// Mid-side nodes: put amid the edges, moved onto smooth features, drawn back where a tet would be inverted.
+// Mid-edge nodes: placed in the middles of edges, moved onto smooth features, moved back where a tet would be
+// inverted.
 #include "collarmesh/second_order.h"
 
 #include <algorithm>
@@ -33,7 +34,7 @@ constexpr double farthest = 0.5;
 // tangent.
 constexpr double least_turn = 0.15;
 
-// Nodes go back by such steps, and from this share of their way to the middle of their edge.
+// Nodes move back by these steps, and below this share of their way go to the middle of their edge.
 constexpr double step = 0.8, least_share = 0.1, forward_precision = 0.04;
 constexpr unsigned steps_per_try = 3;  // after which nodes inside may find room again
 
@@ -54,16 +55,16 @@ class Curving {
         exact_(options.exact ? flat_.limit(options.exact) : ExactGeometry{}),
         untangling_(mesh, edges_, plc, options.least_jacobian) {}
 
-  /// First: where do the nodes belong? False when cancelled.
+  /// First step: finds the places of the nodes on features. Returns false if cancelled.
   bool find_nodes() {
     find_moves();
     return !execution_.cancelled();
   }
 
-  /// Tets that would be flat at a corner, with the edge to split there. Two curved edges that have one
+  /// Finds tets that would be flat at a corner, with the edge to split there. Two curved edges that have one
   /// tangent, or three with tangents in one plane, as at a corner inside a smooth patch, leave no Jacobian
-  /// determinant, however small they are. What joins their other ends, inside a region or on a planar patch,
-  /// is to be split.
+  /// determinant, however small they are. Edges that join their other ends, inside a region or on a planar
+  /// patch, have to be split.
   std::vector<UnwantedTet> flat_at_corners() const {
     std::vector<UnwantedTet> found;
     if (moves_.empty()) return found;
@@ -76,8 +77,8 @@ class Curving {
     return found;
   }
 
-  /// Give the mesh its nodes, and move those on no smooth feature where that makes tets valid. Returns the
-  /// tets that are not valid then.
+  /// Gives the mesh its nodes, and moves those on no smooth feature if that makes tets valid. Returns the
+  /// tets that are still invalid.
   std::vector<UnwantedTet> place_nodes() {
     add_mid_nodes(edges_, mesh_);
     for (const auto& [edge, way] : slight_moves_) mesh_.points[edges_.first_node() + edge] = home(edge);
@@ -98,7 +99,7 @@ class Curving {
     mesh_.tet_mid_nodes.clear(), mesh_.face_mid_nodes.clear(), mesh_.edge_mid_nodes.clear();
   }
 
-  /// Draw nodes back where tets are not valid.
+  /// Moves nodes back where tets are invalid.
   SecondOrderReport finish() {
     SecondOrderReport report;
     draw_back();
@@ -121,7 +122,7 @@ class Curving {
     double share = 1;  ///< of the way that it goes
   };
 
-  /// The same on a planar patch, by little more than rounding: it always goes all of its way.
+  /// A node on a planar patch that moves by little more than rounding, and always goes all of its way.
   struct SlightMove {
     Index edge;
     Vector way;
@@ -157,7 +158,7 @@ class Curving {
     }
   }
 
-  // Where a node belongs that is not curved.
+  // Returns the place of a node that is not curved.
   Point home(Index edge) const {
     const auto [a, b] = edges_.ends(edge);
     const Point middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
@@ -195,7 +196,7 @@ class Curving {
       const Vector straight = mesh_.points[tet[k]] - mesh_.points[at];
       const Move* move = move_of(edge);
       const bool is_fixed = !untangling_.may_move(edge);
-      // Of the quadratic curve through the ends and a node so far off the middle.
+      // Tangent of the quadratic curve through the ends and a node this far off the middle.
       sides[n++] = {tet[k], straight,
                     move != nullptr && move->share > 0 ? straight + 4 * move->way : straight, is_fixed};
       fixed += is_fixed ? 1 : 0;
@@ -224,7 +225,7 @@ class Curving {
     }
     return found;
   }
-  // Inside a region or a planar patch, where it changes no surface.
+  // Returns whether the edge is inside a region or a planar patch, where splitting it changes no surface.
   bool may_split(Index a, Index b) const {
     return untangling_.may_move(edges_.node(a, b) - edges_.first_node());
   }
@@ -235,7 +236,7 @@ class Curving {
   }
   void place(const Move& move) { mesh_.points[edges_.first_node() + move.edge] = place_of(move); }
 
-  // The moves of a tet's nodes; none where a node has no move.
+  // Returns the moves of a tet's nodes; none for a node without a move.
   std::array<Index, 6> moves_of(Index tet) const {
     std::array<Index, 6> found;
     for (std::size_t k = 0; k < 6; ++k) {
@@ -264,8 +265,8 @@ class Curving {
     return moved > 0;
   }
 
-  // Any order ends in valid tets: curved nodes are only drawn nearer to the middle of their edge, and a node
-  // inside that was put back there stays.
+  // Any order ends with valid tets: curved nodes only move nearer to the middle of their edge, and a node
+  // inside that was moved back stays there.
   void draw_back() {
     std::vector<Index> work = curved_;
     while (!work.empty() && !execution_.cancelled()) {
@@ -286,7 +287,7 @@ class Curving {
     }
   }
 
-  // Others that went back later may have made room.
+  // Tries again: nodes that moved back later may have made room.
   void put_forward() {
     std::vector<Index> drawn;
     for (Index m = 0; m < moves_.size(); ++m)
@@ -317,7 +318,7 @@ class Curving {
 
   bool is_valid(const CurvedTet& nodes) const { return jacobian_exceeds(nodes, options_.least_jacobian); }
 
-  // A tet whose curved edges are straight again: its nodes inside go back, too, and stay there.
+  // If the curved edges of a tet are straight again, moves its nodes inside back for good.
   void put_back_inside(Index tet, std::vector<Index>& work) {
     for (const Index node : mesh_.tet_mid_nodes[tet]) {
       const Index edge = node - edges_.first_node();
@@ -331,8 +332,8 @@ class Curving {
 
   static void step_back(Move& move) { move.share = move.share > least_share ? step * move.share : 0; }
 
-  // The one with the shortest way whose next step back makes the tet valid, else the one that goes farthest;
-  // none when all its edges are straight.
+  // Returns the move with the shortest way whose next step back makes the tet valid, else the longest move;
+  // none if all its edges are straight.
   Index move_at_fault(Index tet) const {
     const CurvedTet nodes = curved_tet(mesh_, tet);
     const std::array<Index, 6> moves = moves_of(tet);
@@ -384,11 +385,11 @@ class Curving {
   Untangling untangling_;
 };
 
-// What takes the place of one tet may be no better: another round follows as long as there are fewer, at most
-// so many times.
+// Maximum number of rounds. The replacements of a tet may be no better, so another round follows as long as
+// the number of poor tets falls.
 constexpr unsigned most_rounds = 4;
 
-/// Takes tets out of a mesh of first order; false when none could be.
+/// Removes tets from a mesh of first order; returns false if none could be removed.
 bool replace_in_mesh(TetMesh& mesh, const Plc& plc, std::span<const UnwantedTet> unwanted,
                      const SecondOrderOptions& options) {
   const SurfaceTolerance tolerance = tolerance_of_any_size(plc, options.bounds);

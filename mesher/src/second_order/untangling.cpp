@@ -11,13 +11,13 @@ namespace collarmesh::second_order {
 
 namespace {
 
-// The barrier is so far below the least coefficient, relative to the straight tet's, or this share of its
-// distance from 1.
+// The distance of the barrier below the least coefficient, relative to the straight tet's, or as a share of
+// its distance from 1.
 constexpr double barrier_gap = 0.02, barrier_share = 0.1;
 constexpr unsigned most_barriers = 12, steps_per_barrier = 15, remembered_steps = 6, most_halvings = 12;
-// What rises by less with one barrier has no room.
+// Nodes without room: the objective rises by less than this with one barrier.
 constexpr double least_rise = 0.01;
-// Moving nodes farther around costs some milliseconds: no more after so many times in vain.
+// Moving nodes in a wider neighbourhood costs some milliseconds: stop after this many failures.
 constexpr std::size_t most_wide_failures = 100;
 // The first step moves no node farther than this share of the shortest edge.
 constexpr double first_step = 0.05;
@@ -116,8 +116,8 @@ std::size_t Untangling::untangle_within(Index tet, bool wide) {
   return 0;
 }
 
-// The nodes that may move of the tet and of all that share an edge with it, and the tets that have one of
-// them.
+// Collects the free nodes of the tet and of all tets that share an edge with it, and the tets at these
+// nodes.
 void Untangling::gather(Index tet, bool wide) {
   std::vector<Index> near;
   if (wide)
@@ -172,7 +172,7 @@ double Untangling::least_coefficient() const {
   return least;
 }
 
-// Infinite where a coefficient is not above the barrier.
+// Returns the objective; infinite if a coefficient is not above the barrier.
 double Untangling::objective(double barrier, std::vector<Vector>* gradient) const {
   if (gradient != nullptr) gradient->assign(free_.size(), {});
   double sum = 0;

@@ -13,25 +13,25 @@
 namespace collarmesh::second_order {
 
 /// Makes curved tets valid by moving nodes that lie on no smooth feature: those inside regions anywhere,
-/// those on planar patches in their planes. They follow the curved edges beside them, as far as it takes. The
-/// sum of squares of a barrier and of what the Jacobian's coefficients differ from those of the straight tet
-/// is lowered, the barrier just below the least of them, until that is high enough (Toulorge, Geuzaine,
-/// Remacle and Lambrechts, Robust untangling of curvilinear meshes, 2013).
+/// those on planar patches in their planes. They follow the curved edges beside them, as far as necessary. It
+/// minimizes the sum of squares of a barrier and of the differences of the Jacobian's coefficients from those
+/// of the straight tet, with the barrier just below the least one, until that is high enough (Toulorge,
+/// Geuzaine, Remacle and Lambrechts, Robust untangling of curvilinear meshes, 2013).
 class Untangling {
  public:
-  /// All are kept by reference. The mesh has its nodes already.
+  /// Keeps all by reference. Precondition: the mesh has its nodes.
   Untangling(TetMesh& mesh, const MeshEdges& edges, const Plc& plc, double least_jacobian);
 
-  /// Make a tet valid, and none invalid. How many nodes were moved for that; 0: that was not possible, and
-  /// all are where they were.
+  /// Makes a tet valid, and none invalid. Returns the number of moved nodes; 0: it was not possible, and all
+  /// nodes are at their old places.
   std::size_t untangle(Index tet) { return untangle_within(tet, false); }
-  /// The same with more nodes around, at some times the cost; not after many times in vain.
+  /// Does the same with a wider neighbourhood, at some times the cost; gives up after many failures.
   std::size_t untangle_farther(Index tet);
-  /// Is the node of this edge inside a region or on a planar patch?
+  /// Returns whether the node of this edge is inside a region or on a planar patch.
   bool is_free(Index edge) const;
-  /// May it be moved?
+  /// Returns whether the node may move.
   bool may_move(Index edge) const { return is_free(edge) && !kept_.contains(edge); }
-  /// It may not, from here on.
+  /// Fixes the node from now on.
   void keep(Index edge) { kept_.insert(edge); }
   std::vector<Index> tets_at(Index edge);
 
@@ -57,7 +57,7 @@ class Untangling {
   std::unordered_set<Index> kept_;  // edges
   std::size_t wide_failures_ = 0;
 
-  // Of the tet at hand:
+  // State of the current tet:
   std::vector<Free> free_;
   std::unordered_map<Index, Index> free_at_;        // in free_, by node
   std::vector<Index> tets_;                         // all that have a free node

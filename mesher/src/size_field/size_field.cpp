@@ -124,7 +124,7 @@ Distance distance_from_cylinder(const Json& cylinder, const std::string& place) 
   };
 }
 
-// Of the features with these tags; a curve's segments are triangles without an area.
+// Returns the distance from the features with these tags; a curve's segments are triangles without an area.
 template <class Features, class Add>
 Distance distance_from_features(const Json& tags, const std::string& place, const std::string& kind,
                                 const Plc& plc, const Features& features, const Add& add) {

@@ -23,7 +23,7 @@ class PatchCurvature {
     }
   }
 
-  /// By triangle, from its corners: the largest of the larger ones, the mean of the sums.
+  /// Returns by triangle, from its corners, the largest of the larger curvatures and the mean of the sums.
   std::vector<Curvature> by_triangle() const {
     std::vector<AtPoint> smooth(points_.size());
     for (Index i = 0; i < patch_.triangle_count; ++i) {
@@ -96,7 +96,7 @@ class PatchCurvature {
   std::unordered_map<std::uint64_t, Vector> normal_at_;  // of an edge: the first triangle's
 };
 
-// By segment: the larger curvature of its ends.
+// Returns by segment the larger curvature of its ends.
 std::vector<double> largest_by_segment(const Plc& plc, const Plc::Curve& curve) {
   const auto& p = curve.points;
   const std::size_t count = p.size(), segments = curve.closed ? count : count - 1;

@@ -6,7 +6,7 @@
 
 namespace collarmesh {
 
-/// Of a smooth patch at a triangle, per length unit.
+/// The curvature of a smooth patch at a triangle, per length unit.
 struct Curvature {
   double largest = 0;  ///< the larger of the principal curvatures' absolute values
   double sum = 0;      ///< of both: positive where the surface bends away from the side its normals point to
@@ -17,7 +17,7 @@ struct Curvature {
 /// cycle, 2003). Cost: linear.
 std::vector<Curvature> curvatures(const Plc& plc, const Plc::Patch& patch);
 
-/// Target edge lengths, absolute, that put so many elements on a full circle of the curvature.
+/// Returns target edge lengths, absolute, that put N elements on a full circle of the curvature.
 struct CurvatureSizes {
   std::vector<double> triangle;                    ///< of every triangle of the complex; infinite where flat
   std::vector<std::vector<double>> curve_segment;  ///< of every segment of every curve's polyline

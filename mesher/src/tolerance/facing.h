@@ -10,23 +10,23 @@
 namespace collarmesh {
 
 std::vector<std::array<Index, 3>> corners_of_triangles(const Plc& plc);
-/// Are they one patch, or do they have a curve or a vertex in common?
+/// Returns whether they are one patch, or have a curve or a vertex in common.
 bool are_neighbours(const Plc& plc, Index patch, Index other);
 /// The least cosine between a direction and the normal of a surface that faces it: of neighbours larger, as
 /// they may form a wedge.
 double least_facing(bool neighbours);
 
-/// How far the point x of a patch is, along a unit normal of the patch, from the plane of a triangle that
-/// the ray from x in the direction `way` (the normal or its opposite) crosses; infinite where the triangle
-/// does not face the patch. Of patches that meet elsewhere only what is almost parallel faces each other:
-/// else gaps would close in wedges.
+/// Returns the distance of the point x of a patch, along a unit normal of the patch, from the plane of a
+/// triangle that the ray from x in the direction `way` (the normal or its opposite) crosses; infinite where
+/// the triangle does not face the patch. Patches that meet elsewhere face each other only where they are
+/// almost parallel: else gaps would close in wedges.
 double facing_distance(const Plc& plc, Index patch, const Point& x, const Vector& normal, const Vector& way,
                        Index triangle, const std::array<Point, 3>& corners);
 
 /// The surface that faces a point of the surface, across a region, a gap or a cavity.
 class FacingSurfaces {
  public:
-  /// Kept by reference.
+  /// Keeps the complex by reference.
   explicit FacingSurfaces(const Plc& plc);
 
   struct Facing {

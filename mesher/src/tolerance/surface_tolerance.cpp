@@ -13,16 +13,16 @@ namespace collarmesh {
 
 namespace {
 
-// The largest distance from the surface as a share of what is there (doc/architecture/tolerance.md has the
-// measurements): of the thickness of the material, where its opposite sides bend away from each other (a rod)
-// or alike (a shell), and of the width of what is empty, likewise.
+// The largest distance from the surface as a share (doc/architecture/tolerance.md has the measurements) of
+// the thickness of the material, where its opposite sides bend away from each other (a rod) or alike (a
+// shell), and of the width of gaps, likewise.
 constexpr double share_of_rod = 0.05, share_of_shell = 0.15, share_of_hole = 0.1, share_of_slot = 0.5;
 // The share of a region's volume that chords may take or add, by the estimate below; where they would take
 // less, the shares of its thickness may be larger by this factor.
 constexpr double share_of_volume = 0.015, largest_factor = 2;
-// Nothing is resolved that is so much finer than the size asks for; relative to the largest tolerance.
+// The smallest tolerance, relative to the largest one: finer details are not resolved.
 constexpr double least_share = 5e-4;
-// What chords lose in the mean, as a share of the tolerance (measured: most are nearer than they may be).
+// The mean loss of chords as a share of the tolerance; most chords are nearer than the tolerance allows.
 constexpr double mean_of_sagitta = 0.42;
 constexpr double sizes_per_diagonal = 20;  // of the default size, as in refine/sizing.cpp
 
@@ -79,7 +79,7 @@ class LocalTolerance {
     }
   }
 
-  /// With shares of the material's thickness that are so much larger.
+  /// Returns the tolerance with shares of the material's thickness larger by these factors.
   double at(Index triangle, double factor) const {
     return std::max(std::min({of_gap_[triangle], factor * of_material_[triangle], largest_}),
                     least_share * largest_);
@@ -90,13 +90,13 @@ class LocalTolerance {
     return side == 0 ? curvature_[triangle].sum : -curvature_[triangle].sum;
   }
 
-  /// The share of what this side loses that the opposite one does not gain.
+  /// Returns the share of this side's loss that the opposite side does not gain.
   double lost_by(Index triangle, unsigned side, const Thickness::Opposite& opposite) const {
     const double own = bend(triangle, side), other = bend(opposite.triangle, opposite.side);
     return own == 0 ? 1 : std::clamp(1 + other / own, 0.0, 1.0);
   }
 
-  // A part of a region's surface: what it takes from the region's volume.
+  // The loss of a region's volume at a part of its surface.
   struct Loss {
     Index triangle;
     double area;     // negative where chords add to the volume
@@ -122,7 +122,7 @@ class LocalTolerance {
     return losses;
   }
 
-  // Of the shares of thickness around each region, so that it neither loses nor gains too much.
+  // Returns factors of the shares of thickness around each region with which it keeps its volume.
   std::vector<double> factors_by_volumes() const {
     const auto losses = this->losses();
     std::vector<double> factors(plc_.regions.size(), largest_factor);
@@ -178,7 +178,7 @@ SurfaceTolerance::SurfaceTolerance(const Plc& plc, std::vector<double> triangles
 
 namespace {
 
-// Are the triangles of a smooth patch as near to its surface as `coarse_patches` wants?
+// Returns whether the triangles of a smooth patch are as near to its surface as `coarse_patches` requires.
 bool triangles_resolve(const Plc& plc, const Plc::Patch& patch, const SurfaceTolerance& tolerance) {
   constexpr double share_of_triangles = 0.25;
   struct Side {

@@ -9,11 +9,11 @@
 
 namespace collarmesh {
 
-/// How thick a region, or the outside between two parts of the surface, is at the triangles of its surface:
-/// along the normal, to where the region ends.
+/// The thickness of a region, or of the outside between two parts of the surface, at the triangles of its
+/// surface: along the normal to the end of the region.
 class Thickness {
  public:
-  /// Kept by reference. Cost: near linear in the triangles.
+  /// Keeps the complex by reference. Cost: near linear in the triangles.
   explicit Thickness(const Plc& plc);
 
   struct Opposite {

@@ -8,12 +8,12 @@
 
 namespace collarmesh::io {
 
-/// Read the tagged triangles and lines of a mesh file, with the names of their groups, as a surface: .msh
-/// .mesh .vtu .vtp, by extension or as `format` says. Tetrahedra that are there as well are left out, but
-/// name their regions by their tags; nodes amid edges are left out, too. Throws ReadError.
+/// Reads the tagged triangles and lines of a mesh file, with the names of their groups, as a surface: .msh
+/// .mesh .vtu .vtp, by extension or as `format` says. Tetrahedra in the file are left out, but their tags
+/// name the regions; mid-edge nodes are left out, too. Throws ReadError.
 PolygonSoup read_mesh_surface(const std::string& path, std::string_view format = {});
 
-/// Does `read_mesh_surface` know this extension or format?
+/// Returns whether `read_mesh_surface` knows this extension or format.
 bool is_mesh_surface_format(const std::string& path, std::string_view format = {});
 
 std::vector<std::string> mesh_surface_formats();

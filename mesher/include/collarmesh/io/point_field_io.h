@@ -14,8 +14,8 @@ struct PointField {
   std::vector<double> values;  ///< one per point
 };
 
-/// Read a mesh with a scalar field on its points: .vtu (an array of PointData) or .msh (a view,
-/// $NodeData). Without a name the only field there is.
+/// Reads a mesh with a scalar field on its points: .vtu (an array of PointData) or .msh (a view,
+/// $NodeData). Without a name, reads the only field.
 /// Throws ReadError (path, line or byte), which lists the fields when the choice is not clear.
 PointField read_point_field(const std::string& path, const std::string& name = {});
 

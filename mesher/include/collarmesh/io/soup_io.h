@@ -8,23 +8,23 @@
 
 namespace collarmesh::io {
 
-/// Read a surface or PLC file by its extension (any case): .off .obj .stl .ply .poly .smesh, or as
+/// Reads a surface or PLC file by its extension (any case): .off .obj .stl .ply .poly .smesh, or as
 /// `format` (one of those, lower case) says. Coordinates are doubles. Throws ReadError (path, line or
 /// byte) for a file that is missing, malformed, truncated or whose counts exceed what its size can hold.
 /// .poly and .smesh: the attribute of a region is its tag, its largest volume v becomes the target size of
 /// the regular tetrahedron of that volume, (6 sqrt 2 v)^(1/3).
 PolygonSoup read_soup(const std::string& path, std::string_view format = {});
 
-/// Write a surface or PLC by the extension or format. Only .poly holds facets of several polygons or with
+/// Writes a surface or PLC by the extension or format. Only .poly holds facets of several polygons or with
 /// holes, only .poly and .smesh region and hole points; .stl holds triangles in 32-bit numbers.
 /// `merge_soups` cuts facets as a format needs it.
 /// Throws WriteError.
 void write_soup(const std::string& path, const PolygonSoup& soup, std::string_view format = {});
 
-/// Do `read_soup` and `write_soup` know this extension or format?
+/// Return whether `read_soup` and `write_soup` know this extension or format.
 bool is_soup_format(const std::string& path, std::string_view format = {});
 
-/// The extensions.
+/// Return the extensions.
 std::vector<std::string> soup_formats();
 
 }  // namespace collarmesh::io

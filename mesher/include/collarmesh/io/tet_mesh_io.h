@@ -11,14 +11,14 @@ namespace collarmesh::io {
 /// Whether each partition of a file comes with the tets of others that share a vertex with it.
 enum class GhostCells { none, one_layer };
 
-/// Write a mesh by the extension of `path`, or as `format` (an extension with its dot, lower case) says.
+/// Writes a mesh by the extension of `path`, or as `format` (an extension with its dot, lower case) says.
 /// Each file is written under another name and renamed: a reader never sees half a file. Formats keep
-/// what they have a place for; what that is their sources say (src/io/*_writer.cpp).
+/// the data that they can hold, as described in their sources (src/io/*_writer.cpp).
 /// Throws WriteError, also for ghost cells where the format has no place for them.
 void write_tet_mesh(const std::string& path, const TetMesh& mesh, std::string_view format = {},
                     GhostCells ghost_cells = GhostCells::none);
 
-/// Read what `write_tet_mesh` writes and, as far as they carry tetrahedra, triangles and lines of first
+/// Reads the files of `write_tet_mesh` and, as far as they carry tetrahedra, triangles and lines of first
 /// or second order, other programs' files of these formats.
 /// Throws ReadError (path, line or byte).
 TetMesh read_tet_mesh(const std::string& path, std::string_view format = {});
@@ -30,7 +30,7 @@ TetMesh read_tet_mesh(const std::string& path, std::string_view format = {});
 /// they are built in: .xdmf (XDMF 3, with .h5 beside it), .med (SALOME).
 std::vector<std::string> written_tet_mesh_formats();
 std::vector<std::string> read_tet_mesh_formats();
-/// Those of them that have a place for partitions, and for ghost cells around each.
+/// Return the extensions of formats that can hold partitions, and ghost cells.
 std::vector<std::string> formats_with_partitions();
 std::vector<std::string> formats_with_ghost_cells();
 /// Those that have no elements of second order.
@@ -40,7 +40,7 @@ std::vector<std::string> formats_of_first_order();
 /// for all others.
 std::string missing_library(const std::string& path, std::string_view format = {});
 
-/// Does `write_tet_mesh` know this extension or format?
+/// Returns whether `write_tet_mesh` knows this extension or format.
 bool is_tet_mesh_format(const std::string& path, std::string_view format = {});
 
 }  // namespace collarmesh::io

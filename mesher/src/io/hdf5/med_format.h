@@ -1,6 +1,6 @@
 #pragma once
 
-/// What the writer and the reader of .med files have to agree on.
+/// The conventions that the writer and the reader of .med files share.
 namespace collarmesh::io {
 
 constexpr const char* med_partition_field = "partition";  // whole numbers on the cells

@@ -1,4 +1,4 @@
-// What the module offers to hdf5_formats.cpp, by name.
+// The functions that hdf5_formats.cpp loads from the module by name.
 #include <hdf5.h>
 
 #include "io/tet_mesh_formats.h"

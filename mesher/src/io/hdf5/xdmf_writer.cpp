@@ -1,5 +1,5 @@
 // XDMF 3 with its values in HDF5 (www.xdmf.org, "XDMF Model and Format"), as uniform grids of one kind of
-// cells each, one in a file, which is what dolfinx and meshio read. What the arrays are: vtk_grid.h.
+// cells each, one in a file, as dolfinx and meshio read them. vtk_grid.h describes the arrays.
 #include <fmt/format.h>
 #include <hdf5.h>
 
@@ -76,7 +76,7 @@ class ValueFile {
   hid_t file_ = -1;
 };
 
-/// What one file shows: the cells of one dimension, as a uniform grid.
+/// The contents of one file: the cells of one dimension, as a uniform grid.
 struct Cells {
   std::string_view name;      ///< of the grid, and of its topology in the HDF5 file
   std::string_view topology;  ///< XDMF's name of the kind of cells
@@ -226,7 +226,7 @@ void write_xdmf(const std::string& path, const TetMesh& mesh) {
     files.push_back(std::make_unique<GridFile>(path_of(path, cells)));
     files.back()->write(grid, cells, names);
   }
-  // The one that was asked for last: who sees it sees the others, too.
+  // Commit the requested file last: a reader who sees it sees the others, too.
   for (auto file = files.rbegin(); file != files.rend(); ++file) (*file)->commit();
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 static_assert(sizeof(SCOTCH_Num) == sizeof(collarmesh::GraphIndex));
 
-/// Of Scotch's own structures, which it ends only where they have begun.
+/// Scotch's structures; the destructor ends those that were begun.
 struct Work {
   SCOTCH_Context context;
   SCOTCH_Graph graph, bound;
