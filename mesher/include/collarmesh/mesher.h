@@ -42,8 +42,8 @@ struct MeshOptions {
   /// straight across a gap do not count there.
   double exterior_radius_edge = 8;
   /// Leave cells of any radius-edge ratio in the regions, too, between features that have no point in common
-  /// and are near to each other, as across a thin wall. For meshes that will be coarsened, where angles are
-  /// bounded instead of the ratio (Bounds::thin_angle).
+  /// and are nearer to each other than a tenth of the size, as across a thin wall. For meshes that will be
+  /// coarsened, where angles are bounded instead of the ratio (Bounds::thin_angle).
   bool leave_narrow_cells = false;
   double vertex_ratio = 0;  ///< bound on largest circumradius / shortest edge at a vertex in the regions
                             ///< (paper, section 1.2); 0: none, else > 2 sqrt 2

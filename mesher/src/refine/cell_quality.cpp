@@ -11,6 +11,9 @@ namespace {
 constexpr double offset_per_radius = 0.05;
 // A cell whose volume is below this share of its longest edge cubed is flat.
 constexpr double flat_volume = 1e-11;
+// Cells are left in gaps that are narrower than this share of the target edge length: in wider ones a bounded
+// ratio costs little, and angles are better.
+constexpr double widest_gap_per_size = 0.1;
 
 struct Shape {
   double shortest_squared_edge;
@@ -68,8 +71,21 @@ void CellQuality::judge(Index cell, WorkQueue& queue) const {
 }
 
 bool CellQuality::fills_gap(Index cell, Index region, double bound) const {
-  return (region == 0 && facing_sheets_.is_within(cell, bound)) ||
-         (domain_.options.leave_narrow_cells && facing_sheets_.fills_gap(cell));
+  if (region == 0 && facing_sheets_.is_within(cell, bound)) return true;
+  if (!domain_.options.leave_narrow_cells) return false;
+  const double gap = facing_sheets_.gap_across(cell);
+  return gap < INFINITY && gap < widest_gap_per_size * target_size(cell, region);
+}
+
+// The smallest that is asked for at the cell, gradation aside.
+double CellQuality::target_size(Index cell, Index region) const {
+  const Sizing& sizing = sizes_.asked();
+  const Point& centre = mesh_.circumcentre(cell);
+  double size = std::min(sizing.default_size(centre), sizing.region_size(region, centre));
+  for (const Index v : mesh_.corners(cell))
+    if (const auto& [dimension, feature] = mesh_.feature(v); dimension == 1 || dimension == 2)
+      size = std::min(size, sizing.feature_size(dimension, feature, mesh_.point(v)));
+  return size;
 }
 
 void CellQuality::judge_all() {

@@ -50,6 +50,7 @@ class CellQuality {
 
  private:
   bool fills_gap(Index cell, Index region, double bound) const;
+  double target_size(Index cell, Index region) const;
   bool uneven_at_vertex(Index cell) const;
   void note_edges(const ConflictZone& zone, Index vertex);
 

@@ -18,11 +18,19 @@ constexpr double widest_gap_per_radius = 0.9;
 constexpr double least_spacing_per_radius = 0.35;
 // The least cosine between the way across and the normals of sheets that face each other.
 constexpr double least_facing = 0.97;
-// Cells that are left span gaps that are narrower than this: in wider ones a bounded ratio costs little, and
-// angles are better.
-constexpr double largest_narrowness = 0.3;
+// Cells that span a gap are flatter than this.
+constexpr double largest_narrowness = 0.5;
 // A curve is split beneath a vertex in this middle part of a subsegment only.
 constexpr double least_part = 0.25;
+
+using Corners = std::array<Point, 4>;
+
+double longest_edge(const Corners& p) {
+  double longest = 0;
+  for (unsigned i = 0; i < 4; ++i)
+    for (unsigned j = 0; j < i; ++j) longest = std::max(longest, squared_distance(p[i], p[j]));
+  return std::sqrt(longest);
+}
 
 std::uint64_t pair_of(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
 
@@ -140,13 +148,14 @@ bool FacingSheets::is_within(Index cell, double bound) const {
   return mesh_.squared_radius(cell) <= bound * bound * shortest;
 }
 
-bool FacingSheets::fills_gap(Index cell) const {
+double FacingSheets::gap_across(Index cell) const {
   const auto& v = mesh_.corners(cell);
   for (const Index corner : v)
-    if (mesh_.feature(corner).dimension == 3) return false;
-  const auto across = [&](unsigned i, unsigned j) { return are_apart(v[i], v[j]) || is_pair(v[i], v[j]); };
-  return narrowness_of({mesh_.point(v[0]), mesh_.point(v[1]), mesh_.point(v[2]), mesh_.point(v[3])},
-                       across) <= largest_narrowness;
+    if (mesh_.feature(corner).dimension == 3) return INFINITY;
+  const Corners p{mesh_.point(v[0]), mesh_.point(v[1]), mesh_.point(v[2]), mesh_.point(v[3])};
+  const double narrowness =
+      narrowness_of(p, [&](unsigned i, unsigned j) { return are_apart(v[i], v[j]) || is_pair(v[i], v[j]); });
+  return narrowness < largest_narrowness ? narrowness * longest_edge(p) : INFINITY;
 }
 
 }  // namespace collarmesh

@@ -42,9 +42,9 @@ class FacingSheets {
   /// Is a cell within the radius-edge bound but for the edges between vertices of a pair? Several threads may
   /// ask at once, while nobody notes pairs.
   bool is_within(Index cell, double bound) const;
-  /// Does a cell with corners on features alone span a narrow gap: between vertices of pairs, or of features
-  /// that have no point in common? The same for threads.
-  bool fills_gap(Index cell) const;
+  /// How wide the gap is that a flat cell with corners on features alone spans: between vertices of pairs, or
+  /// of features that have no point in common; infinite if it spans none. The same for threads.
+  double gap_across(Index cell) const;
 
   std::size_t bytes() const;
 
