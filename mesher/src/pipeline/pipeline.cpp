@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "check/findings.h"
+#include "check/guarantees.h"
 #include "coarsen/coarsen_workpiece.h"
 #include "collarmesh/error.h"
 #include "collarmesh/options.h"
@@ -238,6 +239,29 @@ class Pipeline {
       if (find_better(true, [&] { mesh(plc, seed); }))
         made_.check.notes.push_back(fmt::format("made with seed {}, as with {} {}", seed, first, missed));
     }
+    try_without_narrow_cells(plc);
+  }
+
+  /// Cells that were left in narrow places may keep large angles. Then the ratio is bounded there, too, if
+  /// that takes not many times the vertices.
+  void try_without_narrow_cells(const Plc& plc) {
+    constexpr std::size_t times = 10, more = 100'000;
+    const auto& findings = made_.check.findings;
+    if (!given_.coarsen || std::ranges::none_of(findings, [](const Finding& finding) {
+          return finding.guarantee == guarantee::thin_angles;
+        }))
+      return;
+    const std::string missed = made_.missed();
+    std::size_t most = times * made_.result.statistics.vertices_inserted + more;
+    for (const std::size_t bound : {most_vertices_, given_.mesh.max_vertices})
+      if (bound > 0) most = std::min(most, bound);
+    const std::size_t before = std::exchange(most_vertices_, most);
+    leave_narrow_cells_ = false;
+    if (find_better(true, [&] { mesh(plc, given_.mesh.seed); }))
+      made_.check.notes.push_back(
+          fmt::format("made with a bounded ratio in narrow places, too, as without that {}", missed));
+    leave_narrow_cells_ = true;
+    most_vertices_ = before;
   }
 
   /// Returns the share of the surface distance of first order with which regions keep their volumes: the loss
@@ -356,7 +380,7 @@ class Pipeline {
   MeshOptions options_of_refinement() const {
     MeshOptions options = options_.mesh;
     options.time_limit = 0;  // one limit for all stages
-    options.leave_narrow_cells = options_.coarsen;
+    options.leave_narrow_cells = options_.coarsen && leave_narrow_cells_;
     if (!exact()) return options;
     options.bounds.tolerance = tolerance_of(*plc_, options.bounds, 0).scaled(distance_left);
     options.bounds.radius_edge = std::max(1.0, ratio_left * options.bounds.radius_edge);
@@ -489,6 +513,7 @@ class Pipeline {
   const PipelineOptions& given_;
   PipelineOptions options_;          // for the complex at hand
   ComplexSource* source_ = nullptr;  // unless there is one complex only
+  bool leave_narrow_cells_ = true;   // until a guarantee is missed there
   std::size_t most_vertices_ = 0;    // of a refinement, in place of the given budget; 0: that
   const Execution& outer_;
   Execution inner_;

@@ -63,8 +63,9 @@ bool ForcedEdges::forces(Index a, Index b) const {
   const auto& [dimension, feature] = features_[a];
   const auto& [other_dimension, other] = features_[b];
   if (std::max(dimension, other_dimension) > 2 || feature == none || other == none) return false;
-  return dot(normals_[a], normals_[b]) < least_cosine_ ||
-         !contacts_.touch(dimension, feature, other_dimension, other);
+  if (dimension == 2 && other_dimension == 2 && feature == other)
+    return dot(normals_[a], normals_[b]) < least_cosine_;
+  return !contacts_.touch(dimension, feature, other_dimension, other);
 }
 
 double ForcedEdges::narrowness(const std::array<Point, 4>& p, const std::array<Index, 4>& corners) const {

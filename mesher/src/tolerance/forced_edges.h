@@ -26,7 +26,7 @@ double narrowness_of(const std::array<Point, 4>& p, const Forces& forces) {
 }
 
 /// The edges of a mesh whose lengths the input forces: they join features that have no point in common, or
-/// places of one patch, or of two that meet, which face opposite ways. Where these are near to each other, as
+/// places of one patch that face opposite ways. Where these are near to each other, as
 /// on the two sides of a thin wall, at a step or at a strip, no tet can have both long edges and large
 /// angles.
 class ForcedEdges {

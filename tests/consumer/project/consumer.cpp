@@ -29,7 +29,8 @@ int main(int argc, char** argv) {
   const collarmesh::TetMesh& mesh = made.result.mesh;
   collarmesh::io::write_tet_mesh(argv[2], mesh);
   for (const std::string& format : collarmesh::io::written_tet_mesh_formats())
-    collarmesh::io::write_tet_mesh(argv[2] + format, mesh);
+    if (format != ".polymesh")  // files of their own names
+      collarmesh::io::write_tet_mesh(argv[2] + format, mesh);
   std::printf("%zu tets, %zu findings\n", mesh.tets.size(), made.check.findings_total);
   return made.guarantees_hold() ? 0 : 1;
 }
