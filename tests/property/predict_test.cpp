@@ -61,7 +61,7 @@ TEST(Predict, SphereWithoutCurves) {
 
 TEST(Predict, HoleInAPlate) { expect_near(testing::plate_with_hole(0.5, 48), with_size(0.5)); }
 
-// Edges grow to some times the width of a wall only, whatever size is asked for.
+// Edges grow to some times the width of a wall only, unless it is narrower than a tenth of the size.
 TEST(Predict, ThinPlate) {
   const PolygonSoup plate = box({0, 0, 0}, {10, 10, 0.2});
   for (const double size : {1.0, 4.0}) {

@@ -41,6 +41,8 @@ class Operations {
   /// Move a vertex along an edge within its feature onto the other end, so that the tets at the edge vanish.
   /// No edge becomes longer than the longest one of the cavity.
   void contract_edge(Index vertex, Index onto, Change& change);
+  /// The same, though edges may become longer than those before.
+  void contract_edge_to_any_length(Index vertex, Index onto, Change& change);
 
   /// The same, however good the tets around are now; all new ones are better than `least`.
   void contract_edge_anyhow(Index vertex, Index onto, double least, Change& change);
@@ -123,7 +125,8 @@ class Operations {
   Point back_on_feature(const Point& p, const Point& from, const Freedom& freedom);
   std::pair<Point, double> best_place(const Point& start, Index id, const Freedom& freedom, double best);
   std::pair<double, double> best_way(Index vertex, double best);
-  void contract_edge_above(Index vertex, Index onto, std::optional<double> least, Change& change);
+  void contract_edge_above(Index vertex, Index onto, std::optional<double> least, bool any_length,
+                           Change& change);
   bool may_contract(Index vertex, Index onto);
   bool keeps_topology(Index vertex, Index onto);
   bool keeps_lengths(Index vertex, Index onto) const;

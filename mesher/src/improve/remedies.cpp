@@ -45,6 +45,11 @@ Change Remedies::propose(Operations& operations, Index tet) const {
   for (unsigned i = 0; i < 4 && !found(); ++i)
     for (unsigned j = i + 1; j < 4 && !found(); ++j)
       operations.split_edge(corners[i], corners[j], enough * wanted_, change);
+  if (found() || !rule_.is_blunt(quality(tet))) return change;
+  // Flat, as between the pairs of a wall: longer edges are better than a guarantee that is missed.
+  for (const Index v : corners)
+    for (const Index w : corners)
+      if (v != w) operations.contract_edge_to_any_length(v, w, change);
   return change;
 }
 

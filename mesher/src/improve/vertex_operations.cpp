@@ -344,18 +344,23 @@ void Operations::insert_in_cone(Index a, Index b, double least, Change& change) 
 }
 
 void Operations::contract_edge(Index vertex, Index onto, Change& change) {
-  contract_edge_above(vertex, onto, std::nullopt, change);
+  contract_edge_above(vertex, onto, std::nullopt, false, change);
+}
+
+void Operations::contract_edge_to_any_length(Index vertex, Index onto, Change& change) {
+  contract_edge_above(vertex, onto, std::nullopt, true, change);
 }
 
 void Operations::contract_edge_anyhow(Index vertex, Index onto, double least, Change& change) {
-  contract_edge_above(vertex, onto, least, change);
+  contract_edge_above(vertex, onto, least, false, change);
 }
 
 // All new tets are better than `least`; without it, than the worst one at the vertex and than `change`.
-void Operations::contract_edge_above(Index vertex, Index onto, std::optional<double> least, Change& change) {
+void Operations::contract_edge_above(Index vertex, Index onto, std::optional<double> least, bool any_length,
+                                     Change& change) {
   if (mesh_.features[vertex].dimension == 0) return;
   if (!find_cone_of_vertex(vertex) || !may_contract(vertex, onto)) return;
-  if (!keeps_lengths(vertex, onto) || !keeps_topology(vertex, onto)) return;
+  if ((!any_length && !keeps_lengths(vertex, onto)) || !keeps_topology(vertex, onto)) return;
   worst_at_vertex(vertex);
   const Point& place = mesh_.points[onto];
   const double above = least.value_or(std::max(cone_.worst, change.quality));

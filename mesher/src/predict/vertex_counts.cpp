@@ -93,6 +93,7 @@ class Counter {
   double size_of_wall(Index triangle, const Point& p, double size) const {
     const double widest = std::max(size / model_.wall, sizing_.widest_gap(size));
     const double width = shape_.wall_width(p, triangle, widest);
+    if (width < Sizing::narrow_gap_per_size * size) return std::min(size, sizing_.gap_size(width));
     return width < widest
                ? std::min({size, std::max(model_.wall * width, least_share * size), sizing_.gap_size(width)})
                : size;
@@ -121,7 +122,8 @@ class Counter {
         for (double k = 1; k <= count; ++k) {
           const Point to = a + k / count * (b - a);
           const double width = shape_.strip_width(0.5 * (from + to), c, b - a, size / model_.strip);
-          all[c].push_back({from, to, std::max(model_.strip * width, least_share * size)});
+          const bool narrow = width < Sizing::narrow_gap_per_size * size;
+          all[c].push_back({from, to, narrow ? size : std::max(model_.strip * width, least_share * size)});
           from = to;
         }
       }

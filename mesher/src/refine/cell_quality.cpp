@@ -11,9 +11,6 @@ namespace {
 constexpr double offset_per_radius = 0.05;
 // A cell whose volume is below this share of its longest edge cubed is flat.
 constexpr double flat_volume = 1e-11;
-// Cells are left in gaps that are narrower than this share of the target edge length: in wider ones a bounded
-// ratio costs little, and angles are better.
-constexpr double widest_gap_per_size = 0.1;
 
 struct Shape {
   double shortest_squared_edge;
@@ -74,7 +71,7 @@ bool CellQuality::fills_gap(Index cell, Index region, double bound) const {
   if (region == 0 && facing_sheets_.is_within(cell, bound)) return true;
   if (!domain_.options.leave_narrow_cells) return false;
   const double gap = facing_sheets_.gap_across(cell);
-  return gap < INFINITY && gap < widest_gap_per_size * target_size(cell, region);
+  return gap < INFINITY && gap < Sizing::narrow_gap_per_size * target_size(cell, region);
 }
 
 // The smallest that is asked for at the cell, gradation aside.

@@ -21,6 +21,9 @@ class Sizing {
   /// The target edge length where a size is asked for. The median edge of other meshers' meshes exceeds the
   /// size by more; what is asked for as a number of elements, across a gap or on a circle, is not stretched.
   static constexpr double edge_per_size = 1.08;
+  /// Cells are left in gaps that are narrower than this share of the target edge length, if the mesh will be
+  /// coarsened: in wider ones a bounded ratio costs little, and angles are better.
+  static constexpr double narrow_gap_per_size = 0.1;
 
   /// Functions of a place throw OptionError where the field asks for no positive size; infinite: none.
   Sizing(const Plc& plc, const MeshOptions& options, const Frame& frame);
