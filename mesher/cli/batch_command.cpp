@@ -148,7 +148,7 @@ MeshArguments part_of_batch(const MeshArguments& batch, const std::string& input
   part.batch.clear();
   part.inputs = {input};
   part.output = place.string() + (batch.output_format.empty() ? ".vtu" : batch.output_format);
-  for (std::string& report : part.reports) report = place.string() + "." + report;
+  for (std::string& report : part.reports) report.insert(0, place.string() + ".");
   return part;
 }
 

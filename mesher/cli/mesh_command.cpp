@@ -85,7 +85,8 @@ std::string each_line_of(const std::string& file, const std::string& text) {
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
     const std::string line = text.substr(at, end - at);
-    named += line.find(file) == std::string::npos ? file + ": " + line : line;
+    if (line.find(file) == std::string::npos) named.append(file).append(": ");
+    named += line;
     at = end;
   }
   return named;
