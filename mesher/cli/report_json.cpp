@@ -286,6 +286,8 @@ Json check_json(const CheckReport& r) {
           {"thin_tets", r.thin_tets},
           {"max_radius_edge", number_json(r.max_radius_edge)},
           {"max_thin_radius_edge", number_json(r.max_thin_radius_edge)},
+          {"forced_tets", r.forced_tets},
+          {"min_forced_dihedral", r.min_forced_dihedral},
           {"min_dihedral", r.min_dihedral},
           {"max_dihedral", r.max_dihedral},
           {"max_collar_dihedral", r.max_collar_dihedral},

@@ -160,6 +160,13 @@ std::string partitions_text(const PartitionMeasures& m) {
                      m.cut_faces);
 }
 
+std::string forced_text(const CheckReport& r) {
+  if (r.forced_tets == 0) return {};
+  return fmt::format(
+      "narrow places: {} tet{} with angles down to {:.2f} degrees, as edges are short there in the input\n",
+      r.forced_tets, r.forced_tets == 1 ? "" : "s", r.min_forced_dihedral);
+}
+
 std::string mesh_text(const TetMesh& mesh, const MeshMeasures& m, const CheckReport* judged) {
   std::string text;
   fmt::format_to(Out(text), "{} tets, {} points, {} boundary and interface triangles, {} curve edges\n",
@@ -168,6 +175,7 @@ std::string mesh_text(const TetMesh& mesh, const MeshMeasures& m, const CheckRep
       Out(text), "  {}{}{}\n", shape_text(m.min_dihedral, m.max_dihedral, m.max_radius_edge),
       m.max_thin_radius_edge > 0 ? fmt::format(" (of thin tets {:.4g})", m.max_thin_radius_edge) : "",
       m.max_collar_radius_edge > 0 ? fmt::format(" (in collars {:.4g})", m.max_collar_radius_edge) : "");
+  if (judged != nullptr && judged->forced_tets > 0) text += "  " + forced_text(*judged);
   std::size_t line = 0;
   for (const auto& [region, volume] : m.region_volumes) {
     if (++line > listed) break;
@@ -195,6 +203,7 @@ std::string check_text(const CheckReport& r) {
                  r.edges, shape_text(r.min_dihedral, r.max_dihedral, r.max_radius_edge));
   if (r.thin_tets > 0)
     fmt::format_to(Out(text), "thin: {} tets, radius-edge to {:.4g}\n", r.thin_tets, r.max_thin_radius_edge);
+  text += forced_text(r);
   if (r.collar_tets > 0)
     fmt::format_to(Out(text), "in collars: {} tets, dihedral angles to {:.2f} degrees\n", r.collar_tets,
                    r.max_collar_dihedral);

@@ -61,7 +61,7 @@ TEST(NarrowPlaces, TakeNoMoreVerticesAsTheyGetNarrower) {
     for (const double width : {1e-2, 1e-3, 1e-4, 1e-5}) {
       SCOPED_TRACE(width);
       MeshOptions options = with_size(0.4, 20'000);
-      options.leave_narrow_cells = true;
+      options.narrow_cells = NarrowCells::left;
       const Meshed made = mesh_of(family.member(width), options, 30);
       EXPECT_EQ(made.result.status, MeshStatus::complete);
       EXPECT_NEAR(made.report.region_volumes[family.region], family.volume(width), 1e-9);
@@ -72,11 +72,43 @@ TEST(NarrowPlaces, TakeNoMoreVerticesAsTheyGetNarrower) {
   }
 }
 
+// Where bounded ratios cost little, angles are as large as elsewhere.
+TEST(NarrowPlaces, AreRefinedWhereThatIsCheap) {
+  for (const double width : {5e-2, 2e-3}) {
+    SCOPED_TRACE(width);
+    // The pad is as thin, but takes a small part of the block.
+    const std::vector<PolygonSoup> pad{box({0, 0, 0}, {2, 2, 1}),
+                                       box({1, 1, 1}, {1 + 4 * width, 1 + 4 * width, 1 + width})};
+    const SoupPipelineResult small = run(pad, 1), large = run(layers(width), 1);
+    EXPECT_EQ(small.missed(), "");
+    EXPECT_FALSE(small.result.has_narrow_cells);
+    EXPECT_EQ(small.check.forced_tets, 0U);
+    EXPECT_EQ(large.missed(), "");
+    EXPECT_EQ(large.result.has_narrow_cells, width < 1e-2);
+    EXPECT_EQ(large.check.forced_tets > 0, width < 1e-2);
+  }
+}
+
+// What is not narrow is made as if nothing could be.
+TEST(NarrowPlaces, ElsewhereChangeNothing) {
+  const std::vector<PolygonSoup> block{box({0, 0, 0}, {2, 2, 1})};
+  const Plc plc = build_plc(block);
+  const auto made = [&](NarrowCells narrow) {
+    MeshOptions options = with_size(0.4, 20'000);
+    options.narrow_cells = narrow;
+    return generate(plc, options).mesh;
+  };
+  const TetMesh bounded = made(NarrowCells::bounded);
+  for (const NarrowCells narrow : {NarrowCells::left, NarrowCells::bounded_if_cheap})
+    EXPECT_EQ(made(narrow).tets, bounded.tets);
+}
+
 class NarrowPlacesOfOrder : public ::testing::TestWithParam<int> {};
 
 TEST_P(NarrowPlacesOfOrder, KeepEveryGuarantee) {
   for (const Family& family : families())
-    for (const double width : {1e-1, 1e-2}) {
+    for (const double width : {1e-1, 1e-2, 2e-3, 1e-4}) {
+      if (family.name == "fin" && width < 1e-2) continue;  // its rim takes what it is narrow
       SCOPED_TRACE(family.name);
       SCOPED_TRACE(width);
       const SoupPipelineResult made = run(family.member(width), static_cast<unsigned>(GetParam()));

@@ -115,6 +115,12 @@ function straightened(report, names, show) {
     element('ul', {}, ...nodes.slice(0, 50).map(line))];
 }
 
+// Tetrahedra whose small angles are due to short edges of the input.
+function forced(check) {
+  return check.forced_tets > 0
+    ? ` (${number(check.forced_tets)} of them smaller than asked for, in narrow places of the input)` : '';
+}
+
 // The largest ratio of each kind of tetrahedra, so that the histogram of all of them ends where these say.
 function ratios(mesh) {
   const kinds = [['', mesh.max_radius_edge], [' (thin tetrahedra)', mesh.max_thin_radius_edge],
@@ -149,7 +155,7 @@ function describe(report, shown, names, show) {
     element('h2', {}, 'Made'),
     table([['Tetrahedra', number(mesh.tets)], ['Nodes', number(mesh.points)], ['Boundary triangles', number(mesh.faces)],
       ['Median edge', `${number(check.median_edge)} (${number(check.median_edge / size)} of the size)`],
-      ['Dihedral angles', `${number(mesh.min_dihedral)}° to ${number(mesh.max_dihedral)}°`],
+      ['Dihedral angles', `${number(mesh.min_dihedral)}° to ${number(mesh.max_dihedral)}°` + forced(check)],
       ['Circumradius / shortest edge', ratios(mesh)],
       ['Thin, in collars', `${number(check.thin_tets)}, ${number(check.collar_tets)}`],
       ['Farthest from smooth surfaces', number(check.max_surface_distance)], ...regions,

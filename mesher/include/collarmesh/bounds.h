@@ -22,6 +22,9 @@ struct Bounds {
   /// Share of the bounds on the angles of thin tets, counted from 0 and from 180 degrees, that is kept in
   /// reserve for stages that move vertices afterwards, such as `project_boundary`; 0 to 0.5.
   double reserve = 0;
+  /// Let edges that the input forces to be short lower the smallest angle of thin tets. A mesh that was made
+  /// without this is within the bounds with it.
+  bool lower_where_forced = true;
 };
 
 /// Returns the distance that these bounds allow between the smooth patches and curves of a complex and a

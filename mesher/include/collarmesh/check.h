@@ -36,8 +36,10 @@ struct CheckReport {
   std::vector<std::string> warnings;  ///< sentences: regions whose volume changed noticeably
   // Measurements:
   std::size_t tets = 0, points = 0, faces = 0, edges = 0, collar_tets = 0, thin_tets = 0;
-  double max_radius_edge = 0;                   ///< outside collars, without thin tets
-  double max_thin_radius_edge = 0;              ///< of thin tets
+  double max_radius_edge = 0;       ///< outside collars, without thin tets
+  double max_thin_radius_edge = 0;  ///< of thin tets
+  std::size_t forced_tets = 0;  ///< thin tets within their bounds only because the input forces short edges
+  double min_forced_dihedral = 180;             ///< of these
   double min_dihedral = 180, max_dihedral = 0;  ///< outside collars
   double max_collar_dihedral = 0;
   double max_surface_distance = 0;  ///< two-sided, on smooth patches and curves

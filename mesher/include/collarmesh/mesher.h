@@ -19,6 +19,16 @@ namespace collarmesh {
 /// crease (paper, section 3.2), or before the first vertex is inserted. The guarantees are the same.
 enum class CollarCreation { in_pass, up_front };
 
+/// Whether cells in the regions keep the bound on their radius-edge ratio between features that have no point
+/// in common and are nearer to each other than a tenth of the size, as across a thin wall. Cells may be left
+/// there in meshes that will be coarsened, where angles are bounded instead of the ratio
+/// (Bounds::thin_angle).
+enum class NarrowCells {
+  bounded,
+  left,
+  bounded_if_cheap  ///< where that takes at most about twice the vertices; else all are left
+};
+
 /// The goals of `generate`. Lengths are absolute, in input units, and are target edge lengths:
 /// the median edge of a large mesh comes out about a tenth above them, as other meshers' does.
 struct MeshOptions {
@@ -41,10 +51,7 @@ struct MeshOptions {
   /// Bound on circumradius / shortest edge outside every region, if larger than the bound inside; edges
   /// straight across a gap do not count there.
   double exterior_radius_edge = 8;
-  /// Leave cells of any radius-edge ratio in the regions, too, between features that have no point in common
-  /// and are nearer to each other than a tenth of the size, as across a thin wall. For meshes that will be
-  /// coarsened, where angles are bounded instead of the ratio (Bounds::thin_angle).
-  bool leave_narrow_cells = false;
+  NarrowCells narrow_cells = NarrowCells::bounded;
   double vertex_ratio = 0;  ///< bound on largest circumradius / shortest edge at a vertex in the regions
                             ///< (paper, section 1.2); 0: none, else > 2 sqrt 2
   double theta = 0.3;  ///< warp distance relative to a gap ball's radius (paper, Procedure 2); 0: never warp
@@ -120,6 +127,7 @@ struct MeshResult {
   Point where;
   TetMesh mesh;
   MeshStatistics statistics;
+  bool has_narrow_cells = false;  ///< some were left (MeshOptions::narrow_cells)
 };
 
 /// Mesh a complex: Sparse Voronoi Refinement (paper, Procedure 1).

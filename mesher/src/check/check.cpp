@@ -52,6 +52,8 @@ Subject make_subject(const TetMesh& mesh, const Plc& plc, const CheckOptions& op
 void take_measures(CheckReport& report, CheckReport&& part) {
   report.collar_tets += part.collar_tets;
   report.thin_tets += part.thin_tets;
+  report.forced_tets += part.forced_tets;
+  report.min_forced_dihedral = std::min(report.min_forced_dihedral, part.min_forced_dihedral);
   report.max_thin_radius_edge = std::max(report.max_thin_radius_edge, part.max_thin_radius_edge);
   report.max_radius_edge = std::max(report.max_radius_edge, part.max_radius_edge);
   report.min_dihedral = std::min(report.min_dihedral, part.min_dihedral);

@@ -62,6 +62,8 @@ class ThinCells {
   double smallest_angle(Index tet) const;
   /// `face_angle`: the largest of its faces.
   bool are_bounded(const TetQuality& quality, double face_angle, Index tet) const;
+  /// Are its angles that small only because it has a forced edge? Precondition: they are bounded.
+  bool is_forced(const TetQuality& quality, Index tet) const;
 
  private:
   double smallest_angle_at(const std::array<Index, 4>& corners) const;

@@ -50,7 +50,12 @@ void check_shape(Index tet, const Corners& p, const TetQuality& quality, const S
     ++report.thin_tets;
     report.max_thin_radius_edge = std::max(report.max_thin_radius_edge, quality.radius_edge);
     const double face_angle = largest_face_angle(p.a, p.b, p.c, p.d);
-    if (thin.are_bounded(quality, face_angle, tet)) return;
+    if (thin.are_bounded(quality, face_angle, tet)) {
+      if (!thin.is_forced(quality, tet)) return;
+      ++report.forced_tets;
+      report.min_forced_dihedral = std::min(report.min_forced_dihedral, quality.min_dihedral);
+      return;
+    }
     findings.add(
         guarantee::thin_angles, p.centre(), {tet},
         "Tet {} at {} has circumradius / shortest edge {:.6g} and is no thin one: its dihedral angles are "

@@ -84,8 +84,11 @@ double ThinCells::smallest_angle_at(const std::array<Index, 4>& tet) const {
 bool ThinCells::are_bounded(const TetQuality& quality, double face_angle, Index tet) const {
   if (!(quality.max_dihedral <= largest_angle * (1 + slack) && face_angle <= largest_angle * (1 + slack)))
     return false;
-  return quality.min_dihedral >= smallest_angle_at(mesh_.tets[tet]) * (1 - slack) ||
-         quality.min_dihedral >= forced_angle(tet) * (1 - slack);
+  return !is_forced(quality, tet) || quality.min_dihedral >= forced_angle(tet) * (1 - slack);
+}
+
+bool ThinCells::is_forced(const TetQuality& quality, Index tet) const {
+  return quality.min_dihedral < smallest_angle_at(mesh_.tets[tet]) * (1 - slack);
 }
 
 }  // namespace collarmesh::checks

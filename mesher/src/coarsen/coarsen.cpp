@@ -443,7 +443,8 @@ CoarsenReport coarsen(TetMesh& mesh, const Plc& plc, const MeshOptions& made_wit
   const SurfaceTolerance tolerance = tolerance_of(plc, made_with.bounds, made_with.size);
   CoarsenReport report;
   ThreadLimit(made_with.threads).run([&] {
-    improvement::Workpiece workpiece(mesh, plc, tolerance, made_with.edges_per_hole);
+    improvement::Workpiece workpiece(mesh, plc, tolerance, made_with.edges_per_hole,
+                                     made_with.bounds.lower_where_forced);
     report = coarsen(workpiece, made_with, execution);
     workpiece.complex.store();
     improvement::mark_thin_tets(mesh, made_with.bounds.radius_edge);

@@ -254,7 +254,8 @@ ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& optio
   const SurfaceTolerance tolerance = tolerance_of_any_size(plc, options.bounds);
   ImproveReport report;
   ThreadLimit(options.threads).run([&] {
-    improvement::Workpiece workpiece(mesh, plc, tolerance, options.edges_per_hole);
+    improvement::Workpiece workpiece(mesh, plc, tolerance, options.edges_per_hole,
+                                     options.bounds.lower_where_forced);
     report = improve(workpiece, options, execution);
     workpiece.complex.store();
     if (options.bounds.thin_angle > 0) improvement::mark_thin_tets(mesh, options.bounds.radius_edge);

@@ -31,6 +31,9 @@ class Operations {
   void remove_edge(Index tet, unsigned i, unsigned j, Change& change);
   /// Does the same, however good the tets at the edge are now; all new ones are better than `least`.
   void remove_edge_anyhow(Index tet, unsigned i, unsigned j, double least, Change& change);
+  /// Remove an edge of a tet and another one beside it: the room of all tets at these is filled anew. Helps
+  /// where no way to remove one edge leaves positive tets, as between two prisms of a thin wall.
+  void reconnect(Index tet, Change& change);
   /// Move a vertex within its feature to where the worst tet around it is better.
   void move_vertex(Index vertex, Change& change);
   /// Insert a vertex on an edge inside a region or a patch, at the best place, if the tets around it
@@ -103,6 +106,10 @@ class Operations {
   bool flat(Index a, Index b, Index c, Index d) const;
   bool may_turn(Change& change);
   bool may_lose(Index tet, Index a, Index b) const;
+
+  // Reconnection.
+  std::optional<std::vector<std::array<Index, 3>>> hull_of(std::span<const Index> cavity) const;
+  void refill(const std::vector<Index>& cavity, Change& change) const;
 
   // Cones.
   bool find_cone_of_vertex(Index vertex);

@@ -27,8 +27,8 @@ bool well_within(const Corners& p, double radius_edge) {
 
 }  // namespace
 
-std::shared_ptr<const ForcedEdges> forced_edges_of(const Plc& plc, const TetMesh& mesh) {
-  if (mesh.features.size() != mesh.points.size()) return nullptr;
+std::shared_ptr<const ForcedEdges> forced_edges_of(const Plc& plc, const TetMesh& mesh, bool lower_bounds) {
+  if (!lower_bounds || mesh.features.size() != mesh.points.size()) return nullptr;
   return std::make_shared<const ForcedEdges>(plc, mesh.features, mesh.points, mesh.faces, mesh.face_patch,
                                              least_cosine_of_sides);
 }

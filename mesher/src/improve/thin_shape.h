@@ -232,7 +232,8 @@ class ThinShape {
 };
 
 /// Those of a mesh as it is now: its faces must be there.
-std::shared_ptr<const ForcedEdges> forced_edges_of(const Plc& plc, const TetMesh& mesh);
+/// None unless they may lower the bounds.
+std::shared_ptr<const ForcedEdges> forced_edges_of(const Plc& plc, const TetMesh& mesh, bool lower_bounds);
 
 /// Marks the tets outside collars whose circumradius / shortest edge is above the bound.
 void mark_thin_tets(TetMesh& mesh, double radius_edge);

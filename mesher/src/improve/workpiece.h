@@ -31,14 +31,15 @@ struct Change {
 class Workpiece {
  public:
   /// Keeps the mesh and the complex by reference. Curves that turn by half a circle or more keep
-  /// `edges_per_hole` edges to a full circle. `neighbours` as in TetComplex.
+  /// `edges_per_hole` edges to a full circle. `neighbours` as in TetComplex, `lower_where_forced` as in
+  /// Bounds.
   Workpiece(TetMesh& mesh, const Plc& meant, const SurfaceTolerance& tolerance, double edges_per_hole = 0,
-            const KnownNeighbours& neighbours = {})
+            bool lower_where_forced = true, const KnownNeighbours& neighbours = {})
       : complex(mesh, neighbours),
         surfaces(meant, mesh, tolerance),
         curves(meant, mesh, tolerance, edges_per_hole),
         plc(meant),
-        forced(forced_edges_of(meant, mesh)) {}
+        forced(forced_edges_of(meant, mesh, lower_where_forced)) {}
 
   double quality(Index tet) const;
 

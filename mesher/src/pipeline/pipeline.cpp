@@ -239,12 +239,12 @@ class Pipeline {
       if (find_better(true, [&] { mesh(plc, seed); }))
         made_.check.notes.push_back(fmt::format("made with seed {}, as with {} {}", seed, first, missed));
     }
-    try_without_narrow_cells(plc);
+    try_narrow_places_otherwise(plc);
   }
 
   /// Cells that were left in narrow places may keep large angles. Then the ratio is bounded there, too, if
-  /// that takes not many times the vertices.
-  void try_without_narrow_cells(const Plc& plc) {
+  /// that takes not many times the vertices. Where it was bounded, they are left.
+  void try_narrow_places_otherwise(const Plc& plc) {
     constexpr std::size_t times = 10, more = 100'000;
     const auto& findings = made_.check.findings;
     if (!given_.coarsen || std::ranges::none_of(findings, [](const Finding& finding) {
@@ -252,16 +252,19 @@ class Pipeline {
         }))
       return;
     const std::string missed = made_.missed();
-    std::size_t most = times * made_.result.statistics.vertices_inserted + more;
-    for (const std::size_t bound : {most_vertices_, given_.mesh.max_vertices})
-      if (bound > 0) most = std::min(most, bound);
-    const std::size_t before = std::exchange(most_vertices_, most);
-    leave_narrow_cells_ = false;
+    const bool were_left = made_.result.has_narrow_cells;
+    const std::size_t before = most_vertices_;
+    if (were_left) {
+      most_vertices_ = times * made_.result.statistics.vertices_inserted + more;
+      for (const std::size_t bound : {before, given_.mesh.max_vertices})
+        if (bound > 0) most_vertices_ = std::min(most_vertices_, bound);
+    }
+    narrow_cells_ = were_left ? NarrowCells::bounded : NarrowCells::left;
     if (find_better(true, [&] { mesh(plc, given_.mesh.seed); }))
-      made_.check.notes.push_back(
-          fmt::format("made with a bounded ratio in narrow places, too, as without that {}", missed));
-    leave_narrow_cells_ = true;
+      made_.check.notes.push_back(fmt::format("made with {} narrow places, as otherwise {}",
+                                              were_left ? "a bounded ratio in" : "any ratio in", missed));
     most_vertices_ = before;
+    narrow_cells_ = NarrowCells::bounded_if_cheap;
   }
 
   /// Returns the share of the surface distance of first order with which regions keep their volumes: the loss
@@ -358,8 +361,8 @@ class Pipeline {
     if (most_vertices_ > 0) options_.mesh.max_vertices = most_vertices_;
     require_known_tags(options_.mesh, plc);
     options_.mesh.bounds.tolerance = nearer_ ? *nearer_ : tolerance(plc);
+    options_.mesh.seed = seed;
     refined_with_ = options_of_refinement();
-    refined_with_.seed = seed;
     refine();
     reshape();
     project();
@@ -372,6 +375,7 @@ class Pipeline {
   /// Returns the bounds of the finished mesh.
   Bounds bounds() const {
     Bounds bounds = options_.mesh.bounds;
+    bounds.lower_where_forced = made_.result.has_narrow_cells;
     if (!made_.coarsening) bounds.thin_angle = 0;
     return bounds;
   }
@@ -380,7 +384,7 @@ class Pipeline {
   MeshOptions options_of_refinement() const {
     MeshOptions options = options_.mesh;
     options.time_limit = 0;  // one limit for all stages
-    options.leave_narrow_cells = options_.coarsen && leave_narrow_cells_;
+    if (options_.coarsen) options.narrow_cells = narrow_cells_;
     if (!exact()) return options;
     options.bounds.tolerance = tolerance_of(*plc_, options.bounds, 0).scaled(distance_left);
     options.bounds.radius_edge = std::max(1.0, ratio_left * options.bounds.radius_edge);
@@ -393,6 +397,7 @@ class Pipeline {
     MeshResult& result = made_.result = generate(*plc_, refined_with_, inner_, neighbours_);
     if (result.status == MeshStatus::cancelled && out_of_time()) stop();
     if (result.status == MeshStatus::cancelled || result.status == MeshStatus::budget_hit) throw Ended();
+    refined_with_.bounds.lower_where_forced = result.has_narrow_cells;
   }
 
   /// Coarsening and improvement work on one data structure.
@@ -408,7 +413,8 @@ class Pipeline {
     TetMesh& mesh = made_.result.mesh;
     ThreadLimit(options_.mesh.threads).run([&] {
       improvement::Workpiece workpiece(mesh, *plc_, *refined_with_.bounds.tolerance,
-                                       options_.coarsen ? refined_with_.edges_per_hole : 0, neighbours_);
+                                       options_.coarsen ? refined_with_.edges_per_hole : 0,
+                                       refined_with_.bounds.lower_where_forced, neighbours_);
       neighbours_ = KnownNeighbours();
       if (options_.coarsen) coarsen_elements(workpiece);
       if (options_.improve > 0) improve_elements(workpiece);
@@ -513,8 +519,8 @@ class Pipeline {
   const PipelineOptions& given_;
   PipelineOptions options_;          // for the complex at hand
   ComplexSource* source_ = nullptr;  // unless there is one complex only
-  bool leave_narrow_cells_ = true;   // until a guarantee is missed there
-  std::size_t most_vertices_ = 0;    // of a refinement, in place of the given budget; 0: that
+  NarrowCells narrow_cells_ = NarrowCells::bounded_if_cheap;
+  std::size_t most_vertices_ = 0;  // of a refinement, in place of the given budget; 0: that
   const Execution& outer_;
   Execution inner_;
   ThreadCounter counter_;

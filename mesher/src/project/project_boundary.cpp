@@ -30,7 +30,8 @@ class BoundaryProjection {
         options_(options),
         execution_(execution),
         tolerance_(tolerance_of_any_size(plc, options.bounds)),
-        thin_(plc, mesh, options.bounds.thin_angle, 0, improvement::forced_edges_of(plc, mesh)),
+        thin_(plc, mesh, options.bounds.thin_angle, 0,
+              improvement::forced_edges_of(plc, mesh, options.bounds.lower_where_forced)),
         room_(mesh, limited_, bounds(plc)) {}
 
   ProjectReport run() {

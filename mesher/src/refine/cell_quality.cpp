@@ -40,7 +40,8 @@ CellQuality::CellQuality(const Domain& domain, const RefinedMesh& mesh, const Co
       sizes_(sizes),
       facing_sheets_(facing_sheets),
       random_(random),
-      queue_(queue) {
+      queue_(queue),
+      leaves_narrow_cells_(domain.options.narrow_cells != NarrowCells::bounded) {
   if (domain_.options.vertex_ratio > 0) shortest_edge_.resize(mesh_.vertex_count(), INFINITY);
 }
 
@@ -69,7 +70,10 @@ void CellQuality::judge(Index cell, WorkQueue& queue) const {
 
 bool CellQuality::fills_gap(Index cell, Index region, double bound) const {
   if (region == 0 && facing_sheets_.is_within(cell, bound)) return true;
-  if (!domain_.options.leave_narrow_cells) return false;
+  return leaves_narrow_cells_ && is_narrow(cell, region);
+}
+
+bool CellQuality::is_narrow(Index cell, Index region) const {
   const double gap = facing_sheets_.gap_across(cell);
   return gap < INFINITY && gap < Sizing::narrow_gap_per_size * target_size(cell, region);
 }
@@ -88,6 +92,14 @@ double CellQuality::target_size(Index cell, Index region) const {
 void CellQuality::judge_all() {
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell)
     if (mesh_.alive(cell)) judge(cell, queue_);
+}
+
+bool CellQuality::bound_narrow_cells() {
+  if (!std::exchange(leaves_narrow_cells_, false)) return false;
+  const std::size_t before = queue_.pushed();
+  for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell)
+    if (mesh_.alive(cell) && is_narrow(cell, surface_.region(cell))) judge(cell, queue_);
+  return queue_.pushed() > before;
 }
 
 void CellQuality::cells_made(const ConflictZone& zone, Index vertex) {

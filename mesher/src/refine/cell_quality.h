@@ -45,11 +45,15 @@ class CellQuality {
   void judge(Index cell, WorkQueue& queue) const;
   /// At the start, and when sizes have changed everywhere.
   void judge_all();
+  /// From now on narrow cells keep the bound on the ratio, too. Queues those that were left and returns
+  /// whether there are any.
+  bool bound_narrow_cells();
 
   std::size_t bytes() const { return shortest_edge_.bytes(); }
 
  private:
   bool fills_gap(Index cell, Index region, double bound) const;
+  bool is_narrow(Index cell, Index region) const;
   double target_size(Index cell, Index region) const;
   bool uneven_at_vertex(Index cell) const;
   void note_edges(const ConflictZone& zone, Index vertex);
@@ -62,6 +66,7 @@ class CellQuality {
   const FacingSheets& facing_sheets_;
   RandomOffsets& random_;
   WorkQueue& queue_;
+  bool leaves_narrow_cells_;
   GrowingArray<double> shortest_edge_;  // by vertex; empty without a vertex ratio
   std::vector<Index> cells_;            // scratch
 };

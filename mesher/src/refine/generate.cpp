@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "collarmesh/error.h"
@@ -44,14 +45,20 @@ MeshResult generate(const Plc& plc, const MeshOptions& options, const Execution&
   const FeaturesInside inside(plc);
   MeshOptions of_inside = options;
   of_inside.bounds.tolerance = inside.tolerance(tolerance_of(plc, options.bounds, options.size));
-  Refinement refinement(inside.plc(), of_inside, execution);
+  std::optional<Refinement> refinement(std::in_place, inside.plc(), of_inside, execution);
   MeshResult result;
-  result.status = refinement.run();
-  result.statistics = refinement.statistics();
-  result.message = refinement.message();
-  if (!result.message.empty()) result.where = refinement.where();
+  result.status = refinement->run();
+  if (refinement->narrow_cells_are_dear()) {
+    of_inside.narrow_cells = NarrowCells::left;
+    refinement.emplace(inside.plc(), of_inside, execution);
+    result.status = refinement->run();
+  }
+  result.has_narrow_cells = of_inside.narrow_cells == NarrowCells::left;
+  result.statistics = refinement->statistics();
+  result.message = refinement->message();
+  if (!result.message.empty()) result.where = refinement->where();
   if (result.status == MeshStatus::complete || result.status == MeshStatus::guarantee_missed) {
-    Extracted extracted = refinement.extract();
+    Extracted extracted = refinement->extract();
     result.mesh = std::move(extracted.mesh);
     neighbours = std::move(extracted.neighbours);
     inside.restore_numbers(result.mesh);

@@ -98,7 +98,9 @@ MeshStatus Refinement::run() {
       continue;
     }
     stitching_.stitch();
-    if (outcome_.given_up() || !by_all_threads([&] { return topology_.check(); })) break;
+    if (outcome_.given_up()) break;
+    if (by_all_threads([&] { return topology_.check(); }) || bound_narrow_cells()) continue;
+    break;
   }
   if (outcome_.stopped()) return outcome_.status();
   if (by_all_threads([&] { return surface_check_.relabel_flat_cells(); })) stitching_.stitch();
@@ -285,9 +287,23 @@ bool Refinement::check_gradation() {
   return queue_.pushed() > before;
 }
 
+bool Refinement::bound_narrow_cells() {
+  constexpr std::size_t times = 2, more = 5000;
+  if (domain_.options.narrow_cells != NarrowCells::bounded_if_cheap || !cells_.bound_narrow_cells())
+    return false;
+  most_with_narrow_cells_ = times * mesh_.vertex_count() + more;
+  return true;
+}
+
 bool Refinement::check_collars() { return !outcome_.given_up() && collar_review_.check(); }
 
 bool Refinement::stopped(std::size_t planned_vertices) {
+  if (most_with_narrow_cells_ > 0 && mesh_.vertex_count() > most_with_narrow_cells_) {
+    narrow_cells_are_dear_ = true;
+    outcome_.stop(MeshStatus::budget_hit, mesh_.point(mesh_.last_vertex()),
+                  "narrow places take too many vertices", "leave them");
+    return true;
+  }
   return budget_.spent({.vertices = mesh_.vertex_count(),
                         .cells = mesh_.cell_count(),
                         .bytes = bytes() + planned_vertices * bytes_of_ball,

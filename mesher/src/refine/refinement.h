@@ -42,6 +42,8 @@ class Refinement {
 
   /// Refine until nothing is left to do, a budget is spent or the caller cancels.
   MeshStatus run();
+  /// After run() returned budget_hit: did the bound on the ratio in narrow cells take too many vertices?
+  bool narrow_cells_are_dear() const { return narrow_cells_are_dear_; }
   /// After run() returned complete or guarantee_missed.
   Extracted extract() const;
 
@@ -84,6 +86,8 @@ class Refinement {
   }
   bool check_gradation();
   bool check_collars();
+  /// When nothing else is left to do. Returns whether there is more to do now.
+  bool bound_narrow_cells();
   /// Is a budget spent when so many vertices more will come at least?
   bool stopped(std::size_t planned_vertices = 0);
   std::size_t bytes() const;
@@ -125,6 +129,8 @@ class Refinement {
   WorkQueue::Priority working_on_ = WorkQueue::priority_count;
   std::size_t steps_ = 0, warps_ = 0, yields_ = 0;
   double seconds_ = 0;
+  std::size_t most_with_narrow_cells_ = 0;  // vertices, once their ratio is to be bounded
+  bool narrow_cells_are_dear_ = false;
   std::function<void()> observer_;
 };
 

@@ -395,7 +395,7 @@ bool replace_in_mesh(TetMesh& mesh, const Plc& plc, std::span<const UnwantedTet>
   const SurfaceTolerance tolerance = tolerance_of_any_size(plc, options.bounds);
   std::size_t gone = 0;
   ThreadLimit(options.threads).run([&] {
-    improvement::Workpiece workpiece(mesh, plc, tolerance);
+    improvement::Workpiece workpiece(mesh, plc, tolerance, 0, options.bounds.lower_where_forced);
     const improvement::ThinShape thin(plc, mesh, options.bounds.thin_angle, 0, workpiece.forced);
     gone = improvement::replace_tets(workpiece, unwanted, improvement::ThinRule(thin), 1);
     workpiece.complex.store();
