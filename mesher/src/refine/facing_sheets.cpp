@@ -72,7 +72,7 @@ std::optional<Candidate> FacingSheets::candidate_across(FaceId face) {
 
 std::optional<double> FacingSheets::parameter_across(const Subsegment& s, const Vector& along,
                                                      Index vertex) const {
-  if (!apart(vertex, s.curve)) return std::nullopt;
+  if (!are_apart(mesh_.feature(vertex), {1, s.curve})) return std::nullopt;
   const Point& p = mesh_.point(vertex);
   if (squared_distance(p, s.centre) > s.squared_radius) return std::nullopt;
   const double length = s.parameters[1] - s.parameters[0];
@@ -108,27 +108,9 @@ bool FacingSheets::faces(Index vertex, Index patch, const Vector& normal) const 
   return std::fabs(dot(normal, n)) > least_facing * norm(n);
 }
 
-// Do two vertices lie on features that have no point in common?
-bool FacingSheets::are_apart(Index a, Index b) const {
-  const Feature &low = mesh_.feature(a), &high = mesh_.feature(b);
-  return std::max(low.dimension, high.dimension) < 3 &&
-         !contacts_.touch(low.dimension, low.index, high.dimension, high.index);
-}
-
-// Does a vertex lie on a feature that has no point in common with the curve?
-bool FacingSheets::apart(Index vertex, Index curve) const {
-  const Feature& v = mesh_.feature(vertex);
-  if (v.dimension == 3) return false;
-  if (v.dimension == 0) return true;
-  if (v.index == curve && v.dimension == 1) return false;
-  if (v.dimension == 2 && domain_.plc.curve_on_patch(curve, v.index)) return false;
-  const auto& ends = domain_.plc.curves[curve].ends;
-  return std::none_of(ends.begin(), ends.end(), [&](Index end) {
-    if (end == none) return false;
-    if (v.dimension == 2) return domain_.plc.vertex_on_patch(end, v.index);
-    const auto& others = domain_.plc.curves[v.index].ends;
-    return end == others[0] || end == others[1];
-  });
+bool FacingSheets::are_apart(const Feature& a, const Feature& b) const {
+  return std::max(a.dimension, b.dimension) < 3 &&
+         !contacts_.touch(a.dimension, a.index, b.dimension, b.index);
 }
 
 bool FacingSheets::is_pair(Index a, Index b) const { return pairs_.contains(pair_of(a, b)); }
@@ -153,8 +135,9 @@ double FacingSheets::gap_across(Index cell) const {
   for (const Index corner : v)
     if (mesh_.feature(corner).dimension == 3) return INFINITY;
   const Corners p{mesh_.point(v[0]), mesh_.point(v[1]), mesh_.point(v[2]), mesh_.point(v[3])};
-  const double narrowness =
-      narrowness_of(p, [&](unsigned i, unsigned j) { return are_apart(v[i], v[j]) || is_pair(v[i], v[j]); });
+  const double narrowness = narrowness_of(p, [&](unsigned i, unsigned j) {
+    return are_apart(mesh_.feature(v[i]), mesh_.feature(v[j])) || is_pair(v[i], v[j]);
+  });
   return narrowness < largest_narrowness ? narrowness * longest_edge(p) : INFINITY;
 }
 

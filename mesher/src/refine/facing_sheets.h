@@ -50,8 +50,8 @@ class FacingSheets {
 
  private:
   bool faces(Index vertex, Index patch, const Vector& normal) const;
-  bool apart(Index vertex, Index curve) const;
-  bool are_apart(Index a, Index b) const;
+  /// Do two features have no point in common?
+  bool are_apart(const Feature& a, const Feature& b) const;
   bool is_pair(Index a, Index b) const;
 
   const Domain& domain_;
