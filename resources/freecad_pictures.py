@@ -19,6 +19,7 @@ PAGE = {  # by the test that makes them
     "panel_test.py": ("freecad_panel", "freecad_worst_elements", "freecad_message", "freecad_advanced"),
     "preview_gui_test.py": ("freecad_size_colours",),
     "parts_gui_test.py": ("freecad_volumes",),
+    "triangles_gui_test.py": ("freecad_groups",),
     "sizes_gui_test.py": ("freecad_size_handles", "freecad_sizes"),
     "document_gui_test.py": ("freecad_out_of_date", "freecad_menu", "freecad_statistics"),
 }

@@ -124,6 +124,14 @@
       <translation>Angestrebte Kantenlänge; 0: 1/20 der Diagonale</translation>
     </message>
     <message>
+      <source>The group of each face</source>
+      <translation>Die Gruppe jeder Fläche</translation>
+    </message>
+    <message>
+      <source>The mesh whose groups these faces stand for</source>
+      <translation>Das Netz, für dessen Gruppen diese Flächen stehen</translation>
+    </message>
+    <message>
       <source>The object whose shape is meshed</source>
       <translation>Das Objekt, dessen Form vernetzt wird</translation>
     </message>
@@ -353,6 +361,14 @@
     <message>
       <source>FEM mesh from shape by collarmesh</source>
       <translation>FEM-Netz aus einer Form mit collarmesh</translation>
+    </message>
+    <message>
+      <source>Faces for constraints</source>
+      <translation>Flächen für Randbedingungen</translation>
+    </message>
+    <message>
+      <source>Faces of {part}</source>
+      <translation>Flächen von {part}</translation>
     </message>
     <message>
       <source>Faces this near to a plane are planar, relative to the diagonal; 0: 1e-6</source>
@@ -617,6 +633,10 @@
     <message>
       <source>Sharp below this angle</source>
       <translation>Spitz unter diesem Winkel</translation>
+    </message>
+    <message>
+      <source>Show a face for each group of this mesh of triangles, for the constraints of FEM</source>
+      <translation>Für jede Gruppe dieses Dreiecksnetzes eine Fläche zeigen, für die Randbedingungen von FEM</translation>
     </message>
     <message>
       <source>Show sizes</source>
@@ -983,6 +1003,10 @@
       <translation>{angle}° in Element {number}</translation>
     </message>
     <message>
+      <source>{constraint} is on the group {name}, which the new mesh does not have; choose another one.</source>
+      <translation>{constraint} liegt auf der Gruppe {name}, die das neue Netz nicht hat; wählen Sie eine andere.</translation>
+    </message>
+    <message>
       <source>{count} holes of the shape are filled, the largest with {area} mm²; the list has their places.</source>
       <translation>{count} Löcher der Form sind gefüllt, das größte mit {area} mm²; die Liste sagt, wo.</translation>
     </message>
@@ -997,6 +1021,10 @@
     <message>
       <source>{label} has no faces and edges; choose some, or delete it.</source>
       <translation>{label} hat keine Flächen und Kanten; wählen Sie welche oder löschen Sie es.</translation>
+    </message>
+    <message>
+      <source>{label} has no group of faces called {name}; it has {names}.</source>
+      <translation>{label} hat keine Gruppe von Flächen namens {name}; es hat {names}.</translation>
     </message>
     <message>
       <source>{label} has no mesh yet.</source>
@@ -1041,6 +1069,10 @@
     <message>
       <source>{label}: no object is chosen to be meshed.</source>
       <translation>{label}: es ist kein Objekt zum Vernetzen gewählt.</translation>
+    </message>
+    <message>
+      <source>{label}: only a mesh of triangles needs faces for constraints, and it must be made first.</source>
+      <translation>{label}: nur ein Dreiecksnetz braucht Flächen für Randbedingungen, und es muss zuerst vernetzt sein.</translation>
     </message>
     <message>
       <source>{label}: the mesh has nothing of {name}: it lies inside another solid, or repair has taken it away; choose others.</source>

@@ -65,16 +65,21 @@ class Analysis:
         load = self._add(ObjectsFem.makeConstraintForce(self.document, "Force"))
         load.References = self.faces(place)
         load.Force = force
+        load.Direction = self.edge_along(direction)
+        self.document.recompute()
+        load.Reversed = load.DirectionVector.dot(FreeCAD.Vector(*direction)) < 0
+
+    def edge_along(self, direction, owner=None):
+        """As FreeCAD's references have it; `owner`: of the edge, that of the faces where none is given."""
+        owner = owner or self.faces((0, 0, 0))[0][0]
         number = next(
             i
-            for i, edge in enumerate(self.part.Shape.Edges, 1)
+            for i, edge in enumerate(owner.Shape.Edges, 1)
             if isinstance(edge.Curve, Part.Line)
             for tangent in [edge.tangentAt(edge.FirstParameter)]
             if abs(abs(tangent.dot(FreeCAD.Vector(*direction))) - 1) < 1e-9
         )
-        load.Direction = (self.part, [f"Edge{number}"])
-        self.document.recompute()
-        load.Reversed = load.DirectionVector.dot(FreeCAD.Vector(*direction)) < 0
+        return owner, [f"Edge{number}"]
 
     def press(self, place, pressure):
         """A pressure (MPa) on the face at a place."""

@@ -11,12 +11,15 @@ import tempfile
 
 import FreeCAD
 import FreeCADGui
+import Mesh
+import ObjectsFem
 import Part
 from PySide import QtCore, QtGui
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import window as w  # noqa: E402
-from freecad.collarmesh_workbench import commands, mesh_menu, mesh_properties, size_objects, take_over  # noqa: E402
+from freecad.collarmesh_workbench import (  # noqa: E402
+    commands, constraint_faces, constraint_faces_view, mesh_menu, mesh_properties, size_objects, take_over)
 
 SEQUENCES = int(os.environ.get("COLLARMESH_SEQUENCES", 20))
 SEED = int(os.environ.get("COLLARMESH_SEED", 1))
@@ -53,7 +56,28 @@ class Sequence:
         return self.random.choice(found) if found else None
 
     def _part(self):
-        return self._any(lambda each: each.TypeId in ("Part::Box", "Part::Cut", "Part::Feature"))
+        return self._any(lambda each: each.TypeId in ("Part::Box", "Part::Cut", "Part::Feature", "Mesh::Feature"))
+
+    async def triangles(self):
+        if FreeCAD.ActiveDocument:
+            part = FreeCAD.ActiveDocument.addObject("Mesh::Feature", "Triangles")
+            part.Mesh = self.random.choice((Mesh.createBox(10, 8, 6), Mesh.createSphere(5, 20)))
+
+    async def faces_for_constraints(self):
+        """By the panel, or the menu; a constraint on some of them; or they go."""
+        await self._click("constraint_faces")
+        obj = self._any(lambda each: mesh_properties.is_ours(each) and constraint_faces.can_be_made(each))
+        if obj is None:
+            return
+        constraint_faces_view.show(obj)
+        faces, document = constraint_faces.of(obj), obj.Document
+        document.openTransaction("Constraint")
+        if self.random.random() < 0.2:
+            document.removeObject(faces.Name)
+        else:
+            names = [f"Face{self.random.randrange(len(faces.Groups)) + 1}" for _ in range(3)]
+            ObjectsFem.makeConstraintFixed(document).References = [(faces, names)]
+        document.commitTransaction()
 
     def _mesh(self):
         return self._any(mesh_properties.is_ours)

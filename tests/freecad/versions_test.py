@@ -205,6 +205,12 @@ class Versions(unittest.TestCase):
         ):
             compatibility.extend_context_menus(None)
 
+    def test_forces(self):
+        """A number in N, later a quantity."""
+        self.assertEqual(compatibility.force_of(types.SimpleNamespace(Force=5.0)), 5)
+        force = compatibility.force_of(types.SimpleNamespace(Force=FreeCAD.Units.Quantity("5 kN")))
+        self.assertEqual(force.Value, 5000)
+
     def test_transactions(self):
         self.document.UndoMode = 1
         with compatibility.transaction(self.document, "outer"):

@@ -50,4 +50,13 @@ def meshed_object(mesh_object):
     return compatibility.meshed_object(mesh_object)
 
 
-__all__ = ["MesherError", "Settings", "add_size", "find_program", "mesh", "meshed_object", "remesh"]
+def references_to_groups(mesh_object, *names):
+    """What constraints on groups of faces of a triangle mesh's mesh have as `References`: the names are those of the groups, as
+    in "patch_2" and "Segment1"."""
+    from . import constraint_faces
+
+    return constraint_faces.references(mesh_object, names)
+
+
+__all__ = ["MesherError", "Settings", "add_size", "find_program",
+           "mesh", "meshed_object", "references_to_groups", "remesh"]

@@ -5,6 +5,7 @@ import importlib
 
 import FreeCAD
 import ObjectsFem
+from femmesh import meshtools
 
 
 class Stateless:
@@ -121,6 +122,39 @@ def transaction(document, name):
         document.commitTransaction()
     finally:
         _in_transaction.discard(document.Name)
+
+
+def write_constraints_on(elements_of):
+    """FreeCAD's writers for solvers look for the nodes of constraints by place. Have them take the nodes of the elements
+    that `elements_of(fem_mesh, object, name of a face)` gives, where it is not None."""
+    by_place, loads_by_place = meshtools.get_femnodes_by_refshape, meshtools.get_force_obj_face_nodeload_table
+
+    def nodes(fem_mesh, reference):
+        found = []
+        for name in reference[1]:
+            elements = elements_of(fem_mesh, reference[0], name)
+            if elements is None:
+                found += by_place(fem_mesh, (reference[0], (name,)))
+            else:
+                found += sorted({node for each in elements for node in fem_mesh.getElementNodes(each)})
+        return found
+
+    def loads(fem_mesh, element_table, nodes_of_mesh, force):
+        elements = [elements_of(fem_mesh, obj, name) for obj, names in force.References for name in names]
+        if None in elements:
+            return loads_by_place(fem_mesh, element_table, nodes_of_mesh, force)
+        table = {each: fem_mesh.getElementNodes(each) for each in set().union(*elements)}
+        areas = meshtools.get_ref_shape_node_sum_geom_table(meshtools.get_ref_facenodes_areas(nodes_of_mesh, table))
+        per_area = force_of(force) / sum(areas.values())
+        return [("node loads on groups of the mesh", {node: area * per_area for node, area in areas.items()})]
+
+    meshtools.get_femnodes_by_refshape, meshtools.get_force_obj_face_nodeload_table = nodes, loads
+
+
+def force_of(constraint):
+    """In N, a quantity where the property is one, from FreeCAD 0.21 on, as its writer then wants it."""
+    force = constraint.Force
+    return FreeCAD.Units.Quantity(force.getValueAs("N")) if hasattr(force, "getValueAs") else force
 
 
 def extend_context_menus(fill):

@@ -3,7 +3,7 @@
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import compatibility, mesh_file, statistics_dialog, take_over
+from . import compatibility, constraint_faces, constraint_faces_view, mesh_file, statistics_dialog, take_over
 from .messages import say
 from .program import MesherError
 from .translations import translate
@@ -17,6 +17,8 @@ def fill(menu, obj):
         ("mesh_again", translate("collarmesh", "Mesh again"), mesh_again, True),
         ("export", translate("collarmesh", "Export mesh..."), export, has_mesh),
         ("statistics", translate("collarmesh", "Statistics..."), statistics, has_mesh),
+        ("constraint_faces", translate("collarmesh", "Faces for constraints"),
+         constraint_faces_view.show, constraint_faces.can_be_made(obj)),
         ("hand_over", translate("collarmesh", "Hand over to Gmsh"), hand_over, True),
     ):
         _add(menu, name, text, action, obj).setEnabled(enabled)

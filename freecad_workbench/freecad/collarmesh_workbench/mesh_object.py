@@ -3,7 +3,7 @@
 import Fem
 import FreeCAD
 
-from . import compatibility, contacts, groups, inputs, mesh_properties, mesh_undo, open_shape, preferences, size_check, size_objects, up_to_date, views
+from . import compatibility, constraint_faces, contacts, groups, inputs, mesh_properties, mesh_undo, open_shape, preferences, size_check, size_objects, up_to_date, views
 from .program import GUARANTEE_MISSED, Job, MesherError
 from .translations import translate
 
@@ -110,6 +110,7 @@ def finish(obj, job, exit_code=0):
     with compatibility.transaction(obj.Document, translate("collarmesh", "Mesh by collarmesh")):
         mesh_undo.replace(obj, fem_mesh)
         up_to_date.remember(obj, job.state)
+        report["notes"] += constraint_faces.refresh(obj)
     up_to_date.show(obj)
     said = job.messages if exit_code == GUARANTEE_MISSED else [*job.warnings(), *report["notes"]]
     if said:

@@ -6,7 +6,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import (colours, compatibility, cost, dock, extent, mesh_properties, meshing_process, new_mesh, open_shape, places,
+from . import (colours, compatibility, constraint_faces, constraint_faces_view, cost, dock, extent, mesh_properties, meshing_process, new_mesh, open_shape, places,
                prediction, up_to_date, views, worst_elements)
 from .advanced_section import AdvancedSection, in_panel_words
 from .contacts_label import ContactsLabel
@@ -77,9 +77,14 @@ class MeshTaskPanel:
         tip = translate("collarmesh", "Open a page with all measurements and a view of the mesh")
         self.report_button.setToolTip(tip)
         self.report_button.clicked.connect(self.open_report)
+        self.faces_button = QtGui.QPushButton(translate("collarmesh", "Faces for constraints"))
+        self.faces_button.setObjectName("collarmesh_constraint_faces")
+        tip = translate("collarmesh", "Show a face for each group of this mesh of triangles, for the constraints of FEM")
+        self.faces_button.setToolTip(tip)
+        self.faces_button.clicked.connect(self.show_constraint_faces)
         layout = QtGui.QVBoxLayout(self.form)
         for widget in (self.size, self.preview, self.order, self.advanced, self.contacts, self.run_section, self.result, self.list,
-                       self.report_button):
+                       self.report_button, self.faces_button):
             layout.addWidget(widget)
         layout.addStretch()
         self.list.hide()
@@ -235,6 +240,7 @@ class MeshTaskPanel:
                 found += places.in_report(outcome.report, outcome.warnings)
                 found += worst_elements.in_report(self.object.FemMesh, outcome.report)
         self.report_button.setVisible(outcome is not None and bool(outcome.page))
+        self.faces_button.setVisible(constraint_faces.can_be_made(self.object))
         self.list.fill(found)
 
     def show_worst(self):
@@ -245,6 +251,11 @@ class MeshTaskPanel:
         if not QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(page)):
             text = translate("collarmesh", "No program shows pages; the report is {path}")
             self.result.say(text.format(path=page), colours.BAD)
+
+    def show_constraint_faces(self):
+        self.marks.clear()
+        self.preview.button.setChecked(False)
+        constraint_faces_view.show(self.object)
 
     def getStandardButtons(self):
         return compatibility.as_number(QtGui.QDialogButtonBox.Ok | QtGui.QDialogButtonBox.Cancel)

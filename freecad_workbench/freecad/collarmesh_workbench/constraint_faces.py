@@ -1,0 +1,176 @@
+"""Faces to choose for constraints on a mesh of triangles, whose part has none: an object with planar faces in place of
+each group of the mesh's faces. FEM's panels take them as they take a part's. Face1 is of the first group, Face2 of the
+second one, and so on; more follow where a group is not plane. Each stands for all of its group: when constraints are
+written for a solver, the nodes are those of the group."""
+
+import FreeCAD
+import numpy
+import Part
+
+from . import compatibility, inputs, planar_pieces, views
+from .program import MesherError
+from .translations import doc, translate
+
+TYPE = "Collarmesh::ConstraintFaces"
+MESH, GROUPS = "MeshObject", "Groups"
+REFERENCES = "References"
+
+
+class Proxy(compatibility.Stateless):
+    Type = TYPE
+
+    def __init__(self, obj):
+        obj.Proxy = self
+        for kind, name, text in (("App::PropertyLink", MESH, doc("The mesh whose groups these faces stand for")),
+                                 ("App::PropertyStringList", GROUPS, doc("The group of each face"))):
+            obj.addProperty(kind, name, "Base", text)
+            obj.setEditorMode(name, 1)  # to look at only
+
+    def execute(self, _obj):
+        """Nothing: the faces change with the mesh only."""
+
+
+def is_ours(obj):
+    return getattr(getattr(obj, "Proxy", None), "Type", "") == TYPE
+
+
+def can_be_made(mesh_object):
+    """Is it a mesh of triangles, with elements?"""
+    part = compatibility.meshed_object(mesh_object)
+    return part is not None and mesh_object.FemMesh.VolumeCount > 0 and inputs.triangles_of(part) is not None
+
+
+def of(mesh_object):
+    """The object with the faces of a mesh; None: there is none yet."""
+    return next((each for each in mesh_object.InList if is_ours(each)), None)
+
+
+def make(mesh_object):
+    """The object with the faces, a new one if there is none yet. Raises MesherError."""
+    if not can_be_made(mesh_object):
+        text = translate(
+            "collarmesh", "{label}: only a mesh of triangles needs faces for constraints, and it must be made first.")
+        raise MesherError(text.format(label=mesh_object.Label))
+    there = of(mesh_object)
+    if there is not None:
+        return there
+    document, part = mesh_object.Document, compatibility.meshed_object(mesh_object)
+    with compatibility.transaction(document, translate("collarmesh", "Faces for constraints")):
+        obj = document.addObject("Part::FeaturePython", "ConstraintFaces")
+        Proxy(obj)
+        obj.Label = translate("collarmesh", "Faces of {part}").format(part=part.Label)
+        views.show(TYPE, obj)
+        setattr(obj, MESH, mesh_object)
+        _fill(obj, mesh_object.FemMesh)
+    return obj
+
+
+def references(mesh_object, names):
+    """What a constraint on groups of these names has as `References`. Raises MesherError."""
+    obj = make(mesh_object)
+    groups = getattr(obj, GROUPS)
+    for name in names:
+        if name not in groups:
+            text = translate("collarmesh", "{label} has no group of faces called {name}; it has {names}.")
+            raise MesherError(text.format(label=mesh_object.Label, name=name, names=", ".join(dict.fromkeys(groups))))
+    return [(obj, tuple(_face_of(groups, name) for name in names))]
+
+
+def refresh(mesh_object):
+    """After the mesh was made anew: faces of its groups, and constraints on the same groups as before. Returns messages
+    on constraints whose group is gone."""
+    obj = of(mesh_object)
+    if obj is None:
+        return []
+    before, messages = getattr(obj, GROUPS), []
+    _fill(obj, mesh_object.FemMesh)
+    groups = getattr(obj, GROUPS)
+    text = translate(
+        "collarmesh", "{constraint} is on the group {name}, which the new mesh does not have; choose another one.")
+    for constraint in _constraints_on(obj):
+        kept = []
+        for linked, names in constraint.References:
+            wanted = [_group_of(before, name) if linked is obj else None for name in names]
+            messages += [text.format(constraint=constraint.Label, name=name)
+                         for name in wanted if name and name not in groups]
+            names = [name if group is None else _face_of(groups, group) for name, group in zip(names, wanted)
+                     if group is None or group in groups]
+            kept += [(linked, tuple(names))] if names else []
+        _set_references(constraint, kept)
+    return messages
+
+
+def _fill(obj, fem_mesh):
+    """Give the object the faces of a mesh's groups."""
+    nodes = fem_mesh.Nodes
+    numbers = numpy.array(sorted(nodes))
+    points = numpy.array([tuple(nodes[number]) for number in numbers.tolist()])
+    first, further = [], []
+    for name, elements in _groups_of_faces(fem_mesh).items():
+        triangles = numpy.array([fem_mesh.getElementNodes(each)[:3] for each in elements])
+        faces = planar_pieces.faces(points, numpy.searchsorted(numbers, triangles))
+        first.append((name, faces[0]))
+        further += [(name, face) for face in faces[1:]]
+    obj.Shape = Part.makeCompound([face for _, face in first + further])
+    setattr(obj, GROUPS, [name for name, _ in first + further])
+
+
+def _groups_of_faces(fem_mesh):
+    found = {}
+    for number in fem_mesh.Groups:
+        if fem_mesh.getGroupElementType(number) == "Face" and fem_mesh.getGroupElements(number):
+            found[fem_mesh.getGroupName(number)] = fem_mesh.getGroupElements(number)
+    return found
+
+
+def _face_of(groups, name):
+    """The face that a constraint on a group refers to, whichever of its faces was chosen."""
+    return f"Face{groups.index(name) + 1}"
+
+
+def _group_of(groups, face):
+    """The group of a face; None for edges and vertices."""
+    number = int(face[4:]) if face.startswith("Face") else 0
+    return groups[number - 1] if 0 < number <= len(groups) else None
+
+
+def _constraints_on(obj):
+    return [each for each in obj.InList if hasattr(each, REFERENCES) and any(linked is obj for linked, _ in each.References)]
+
+
+def _set_references(constraint, wanted):
+    if wanted != [(linked, tuple(names)) for linked, names in constraint.References]:
+        constraint.References = wanted
+
+
+def elements_of(fem_mesh, obj, name):
+    """The face elements of the group that a face stands for; None for other objects, for edges, and in a mesh without
+    that group."""
+    if not is_ours(obj):
+        return None
+    group = _group_of(getattr(obj, GROUPS), name)
+    return None if group is None else _groups_of_faces(fem_mesh).get(group)
+
+
+class _Observer:
+    """Makes each constraint refer to a group once, by its first face."""
+
+    def slotChangedObject(self, changed, name):
+        document = changed.Document
+        if name != REFERENCES or document.Restoring or document.Transacting:
+            return
+        if not any(is_ours(linked) for linked, _ in changed.References):
+            return
+        wanted = []
+        for linked, names in changed.References:
+            if is_ours(linked):
+                groups = getattr(linked, GROUPS)
+                of_groups = [(name, _group_of(groups, name)) for name in names]
+                names = dict.fromkeys(name if group is None else _face_of(groups, group) for name, group in of_groups)
+            wanted.append((linked, tuple(names)))
+        _set_references(changed, wanted)
+
+
+def observe():
+    FreeCAD.addDocumentObserver(_Observer())
+    compatibility.write_constraints_on(elements_of)

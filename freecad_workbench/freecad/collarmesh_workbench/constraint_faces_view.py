@@ -1,0 +1,45 @@
+"""How faces for constraints look: each group has its colour."""
+
+import colorsys
+import os
+
+from . import compatibility, constraint_faces, views
+
+ICON = os.path.join(views.ICONS, "group.svg")
+STEP = 0.381966  # of the circle of colours: of any few in a row none are alike
+
+
+class ConstraintFacesViewProvider(compatibility.Stateless):
+    def __init__(self, view):
+        view.Proxy = self
+        view.DisplayMode = "Flat Lines"
+        view.LineWidth = 1
+
+    def attach(self, view):
+        self.ViewObject = view
+        self.Object = view.Object
+
+    def getIcon(self):
+        return ICON
+
+    def updateData(self, obj, name):
+        if name == constraint_faces.GROUPS:  # set after the shape
+            obj.ViewObject.DiffuseColor = colours(getattr(obj, name))
+
+
+def colours(groups):
+    """For each face that of its group."""
+    hues = {name: STEP * number % 1 for number, name in enumerate(dict.fromkeys(groups))}
+    return [(*colorsys.hsv_to_rgb(hues[name], 0.35, 0.95), 0.0) for name in groups]
+
+
+def show(mesh_object):
+    """The faces, made if there are none yet, in place of the mesh and its part. Raises MesherError."""
+    faces = constraint_faces.make(mesh_object)
+    for each in (mesh_object, compatibility.meshed_object(mesh_object)):
+        each.ViewObject.Visibility = False
+    faces.ViewObject.Visibility = True
+
+
+def register():
+    views.register(constraint_faces.TYPE, ConstraintFacesViewProvider)

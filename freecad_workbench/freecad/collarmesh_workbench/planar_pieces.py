@@ -1,0 +1,106 @@
+"""Triangles as few planar faces: those that lie in one plane are one face, with its holes."""
+
+import math
+
+import numpy
+import Part
+
+FLAT = 0.1  # degrees: triangles that differ by less are in one plane
+COARSER = 5  # times as much at a time, until there are few enough faces
+MOST = 2000
+
+
+def faces(points, triangles):
+    """Faces for triangles (numbers of `points`, counterclockwise seen from outside), the largest first. Of a surface that
+    is curved so finely that it has too many planes, the faces are only near the triangles."""
+    normals = numpy.cross(points[triangles[:, 1]] - points[triangles[:, 0]],
+                          points[triangles[:, 2]] - points[triangles[:, 0]])
+    areas = numpy.linalg.norm(normals, axis=1)
+    normals /= numpy.maximum(areas, 1e-300)[:, None]
+    neighbours, angle = _neighbours(triangles), FLAT
+    pieces = _pieces(normals, areas, neighbours, angle)
+    while len(pieces) > MOST and angle < 45:
+        angle *= COARSER
+        pieces = _pieces(normals, areas, neighbours, angle)
+    pieces.sort(key=lambda piece: -areas[piece].sum())
+    return [_face(points, triangles[piece], normals[piece[0]]) for piece in pieces[:MOST]]
+
+
+def _neighbours(triangles):
+    """For each triangle those across its edges."""
+    at_edge = {}
+    for number, corners in enumerate(triangles.tolist()):
+        for a, b in zip(corners, corners[1:] + corners[:1]):
+            at_edge.setdefault((min(a, b), max(a, b)), []).append(number)
+    neighbours = [[] for _ in triangles]
+    for numbers in at_edge.values():
+        for number in numbers:
+            neighbours[number] += [other for other in numbers if other != number]
+    return neighbours
+
+
+def _pieces(normals, areas, neighbours, angle):
+    """Connected triangles whose normals are within `angle` of that of the first one, the largest triangles first."""
+    least, free, pieces = math.cos(math.radians(angle)), numpy.ones(len(normals), dtype=bool), []
+    for seed in numpy.argsort(-areas, kind="stable").tolist():
+        if not free[seed]:
+            continue
+        near = normals @ normals[seed] > least if angle > FLAT else None
+        free[seed] = False
+        piece = [seed]
+        for number in piece:  # grows meanwhile
+            for other in neighbours[number]:
+                if free[other] and (near[other] if near is not None else normals[other] @ normals[seed] > least):
+                    free[other] = False
+                    piece.append(other)
+        pieces.append(piece)
+    return pieces
+
+
+def _face(points, triangles, normal):
+    """The face with the outline of triangles, in the plane of the first one."""
+    origin = points[triangles[0, 0]]
+    try:
+        wires = [_wire(points[loop], origin, normal) for loop in _loops(triangles.tolist())]
+        face = Part.makeFace(wires, "Part::FaceMakerBullseye")
+        if face.ShapeType != "Face" or not face.isValid():
+            raise ValueError
+    except (Part.OCCError, ValueError):  # an outline that touches itself, or crosses itself in the plane
+        face = Part.Face(_wire(points[triangles[0]], origin, normal))
+    if numpy.dot(face.normalAt(*(sum(face.ParameterRange[i:i + 2]) / 2 for i in (0, 2))), normal) < 0:
+        face.reverse()
+    return face
+
+
+def _wire(corners, origin, normal):
+    flat = corners - numpy.outer((corners - origin) @ normal, normal)
+    along = flat - numpy.roll(flat, 1, axis=0)
+    along /= numpy.maximum(numpy.linalg.norm(along, axis=1), 1e-300)[:, None]
+    turns = (along * numpy.roll(along, -1, axis=0)).sum(axis=1) < math.cos(math.radians(FLAT))
+    flat = flat[turns] if turns.sum() > 2 else flat
+    return Part.makePolygon([tuple(each) for each in (*flat, flat[0])])
+
+
+def _loops(triangles):
+    """The outlines of triangles, none of which meets a point twice."""
+    edges = {(a, b) for corners in triangles for a, b in zip(corners, corners[1:] + corners[:1])}
+    after = {}
+    for a, b in sorted(edges):
+        if (b, a) not in edges:
+            after.setdefault(a, []).append(b)
+    loops, at = [], None
+    path = {}  # points in order, each once
+    while after or path:
+        if not path:
+            at = next(iter(after))
+        path[at] = True
+        following = after[at].pop()
+        if not after[at]:
+            del after[at]
+        at = following
+        if at in path:
+            passed = list(path)
+            loops.append(passed[passed.index(at):])
+            for each in loops[-1]:
+                del path[each]
+    return loops
