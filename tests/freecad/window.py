@@ -41,6 +41,9 @@ def follow(coroutine, ended):
     """Run a coroutine from the main loop; `ended` gets what it raised, or None."""
 
     def step():
+        if any(document.Recomputing for document in FreeCAD.listDocuments().values()):  # timers run, clicks do not
+            QtCore.QTimer.singleShot(EVERY, step)
+            return
         try:
             wait = coroutine.send(None)
         except StopIteration:

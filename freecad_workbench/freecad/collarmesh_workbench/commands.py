@@ -4,9 +4,9 @@ import os
 
 import FreeCAD
 import FreeCADGui
-from PySide import QtCore
 
 from . import compatibility, inputs, mesh_menu, mesh_object, mesh_properties, new_mesh, other_panel, size_objects, take_over
+from .later import later
 from .size_view import icon_of
 from .translations import mark, translate
 from .view_provider import ICON
@@ -49,9 +49,9 @@ class Command:
 
     def Activated(self):
         target = self.target()
-        document = target.Document
-        if other_panel.is_in_the_way():
+        if target is None or other_panel.is_in_the_way():  # it may have gone since the click
             return
+        document = target.Document
         document.openTransaction(self.text())
         try:
             obj = self.create(document, target)
@@ -77,7 +77,8 @@ class MeshFromShape(Command):
         return selected_part()
 
     def Activated(self):
-        there = mesh_of(self.target())
+        part = self.target()
+        there = None if part is None else mesh_of(part)
         if there is None:
             super().Activated()
         else:
@@ -139,7 +140,7 @@ class Size(Command):
 
     def Activated(self):
         # FreeCAD ends its transactions with the command, so this waits until that has ended.
-        QtCore.QTimer.singleShot(0, super().Activated)
+        later(super().Activated)
 
     def target(self):
         ours = [each for each in compatibility.mesh_objects(FreeCAD.ActiveDocument) if mesh_properties.is_ours(each)]
@@ -225,7 +226,7 @@ class TakeOver(Command):
 
     def Activated(self):
         target = self.target()
-        QtCore.QTimer.singleShot(0, lambda: mesh_menu.take(target))  # see Size
+        later(lambda: mesh_menu.take(target))  # see Size
 
 
 COMMANDS = {

@@ -4,6 +4,7 @@ import FreeCADGui
 from PySide import QtCore, QtGui
 
 from . import compatibility, constraint_faces, constraint_faces_view, mesh_file, statistics_dialog, take_over
+from .later import later
 from .messages import say
 from .program import MesherError
 from .translations import translate
@@ -33,7 +34,7 @@ def _add(menu, name, text, action, obj):
     entry = menu.addAction(text)
     entry.setObjectName("collarmesh_" + name)
     # Later, when the menu is closed: the object of the menu may be removed.
-    entry.triggered.connect(lambda: QtCore.QTimer.singleShot(0, lambda: _run(action, obj)))
+    entry.triggered.connect(lambda: later(lambda: _run(action, obj)))
     return entry
 
 

@@ -13,6 +13,7 @@ import FreeCADGui
 from PySide import QtCore, QtGui
 
 from . import compatibility, mesh_object, mesh_undo, processes, up_to_date
+from .later import later
 from .program import MesherError, Progress
 from .time_left import TimeLeft
 from .translations import translate
@@ -118,7 +119,7 @@ class MeshingProcess(QtCore.QObject):
         self._read()
         self.progress = Progress("load", 1, self.progress.tets if self.progress else 0)
         self.advanced.emit(self.progress)
-        QtCore.QTimer.singleShot(20, lambda: self._end(exit_code))  # after the window shows that
+        later(lambda: self._end(exit_code), 20)  # after the window shows that
 
     def _end(self, exit_code):
         if self._abandoned:
@@ -126,7 +127,7 @@ class MeshingProcess(QtCore.QObject):
         if self._something_else_is_edited():
             text = translate("collarmesh", "{object}: the mesh is made and shows when the other panel is closed")
             _say(text.format(object=self.object.Label), 5 * WAIT)
-            QtCore.QTimer.singleShot(WAIT, lambda: self._end(exit_code))
+            later(lambda: self._end(exit_code), WAIT)
             return
         key = _key(self.object)
         try:

@@ -10,6 +10,7 @@ from . import (colours, compatibility, constraint_faces, constraint_faces_view, 
                prediction, up_to_date, views, worst_elements)
 from .advanced_section import AdvancedSection, in_panel_words
 from .contacts_label import ContactsLabel
+from .later import later
 from .order_section import OrderSection
 from .places_list import PlacesList
 from .program import MesherError
@@ -278,7 +279,7 @@ class MeshTaskPanel:
         self._close()
         if not is_wanted:
             key = self.object.Document.Name, self.object.Name
-            QtCore.QTimer.singleShot(0, lambda: new_mesh.take_back(*key))  # when the panel has gone
+            later(lambda: new_mesh.take_back(*key))  # when the panel has gone
         return True
 
     def _close(self):
