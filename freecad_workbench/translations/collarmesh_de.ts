@@ -89,7 +89,7 @@
     </message>
     <message>
       <source>Order of the elements</source>
-      <translation>Ordnung der Elemente</translation>
+      <translation>Elementordnung</translation>
     </message>
     <message>
       <source>Points closer than this are one, relative to the diagonal; 0: 1e-9</source>
@@ -552,7 +552,7 @@
     </message>
     <message>
       <source>Order of the elements</source>
-      <translation>Ordnung der Elemente</translation>
+      <translation>Elementordnung</translation>
     </message>
     <message>
       <source>Points closer than this are one, relative to the diagonal; 0: 1e-9</source>

@@ -62,7 +62,7 @@ async def test():
     obj = mesh_object.make(document, part)
     await w.open_panel(obj)
     texts = texts_of(w.child("panel"))
-    for word in ("Vernetzen", "Anhalten", "zweite (gekrümmt, 10 Knoten)", "Ordnung der Elemente"):
+    for word in ("Vernetzen", "Anhalten", "zweite (gekrümmt, 10 Knoten)", "Elementordnung"):
         w.require(word in texts, f"{word} is not in {texts}")
     await w.screenshot("freecad_german.png")
     await german_numbers(obj)

@@ -57,6 +57,12 @@ def require_whole_texts(panel, theme):
     for button in panel.findChildren(QtGui.QPushButton):
         width = button.fontMetrics().boundingRect(button.text()).width()
         w.require(not button.isVisible() or button.width() >= width, f"{theme}: {button.text()} is cut")
+    order = w.child("ElementOrder")
+    widest = max(order.fontMetrics().boundingRect(order.itemText(i)).width() for i in range(order.count()))
+    option = QtGui.QStyleOptionComboBox()
+    order.initStyleOption(option)
+    field = order.style().subControlRect(QtGui.QStyle.CC_ComboBox, option, QtGui.QStyle.SC_ComboBoxEditField, order)
+    w.require(field.width() >= widest, f"{theme}: the orders are cut: {widest} pixels of text in {field.width()}")
     for label in panel.findChildren(QtGui.QLabel):
         if label.isVisible() and label.text():
             w.require(label.height() >= label.heightForWidth(label.width()), f"{theme}: {label.text()} is cut")

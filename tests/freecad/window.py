@@ -169,7 +169,7 @@ async def screenshot(name, fit=True, size=(1200, 900)):
     if find("presets") is not None and child("run").isEnabled():
         await wait_until(lambda: "…" not in "".join(column_of(child("presets"), 2)), "the numbers of elements")
     for dock in window.findChildren(QtGui.QDockWidget):
-        if dock.windowTitle() == "Report view":
+        if "Report" in dock.objectName():
             dock.hide()
     screen = QtGui.QApplication.primaryScreen()
     window.setGeometry(0, 0, *(int(length / screen.devicePixelRatio()) for length in size))

@@ -2,7 +2,6 @@
 
 from PySide import QtCore, QtGui
 
-from .advanced_section import narrow_combo
 from .translations import translate
 
 
@@ -13,7 +12,7 @@ class OrderSection(QtGui.QWidget):
 
     def __init__(self, order):
         super().__init__()
-        self.combo = narrow_combo()
+        self.combo = QtGui.QComboBox()
         self.combo.setObjectName("collarmesh_ElementOrder")
         self.combo.addItems([translate("collarmesh", "first (straight, 4 nodes)"),
                              translate("collarmesh", "second (curved, 10 nodes)")])
@@ -24,6 +23,7 @@ class OrderSection(QtGui.QWidget):
         self.note.setObjectName("collarmesh_order_note")
         self.note.setWordWrap(True)
         row = QtGui.QFormLayout()
+        row.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
         row.addRow(translate("collarmesh", "Order of the elements"), self.combo)
         layout = QtGui.QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
