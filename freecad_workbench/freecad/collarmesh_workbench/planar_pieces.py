@@ -6,7 +6,7 @@ import numpy
 import Part
 
 FLAT = 0.1  # degrees: triangles that differ by less are in one plane
-COARSER = 5  # times as much at a time, until there are few enough faces
+COARSE = 1  # degrees, and twice as much again and again, where there would be too many faces
 MOST = 2000
 
 
@@ -20,7 +20,7 @@ def faces(points, triangles):
     neighbours, angle = _neighbours(triangles), FLAT
     pieces = _pieces(normals, areas, neighbours, angle)
     while len(pieces) > MOST and angle < 45:
-        angle *= COARSER
+        angle = max(COARSE, 2 * angle)
         pieces = _pieces(normals, areas, neighbours, angle)
     pieces.sort(key=lambda piece: -areas[piece].sum())
     return [_face(points, triangles[piece], normals[piece[0]]) for piece in pieces[:MOST]]
@@ -41,18 +41,21 @@ def _neighbours(triangles):
 
 def _pieces(normals, areas, neighbours, angle):
     """Connected triangles whose normals are within `angle` of that of the first one, the largest triangles first."""
-    least, free, pieces = math.cos(math.radians(angle)), numpy.ones(len(normals), dtype=bool), []
+    least, free, pieces = math.cos(math.radians(angle)), [True] * len(normals), []
+    vectors = normals.tolist()
     for seed in numpy.argsort(-areas, kind="stable").tolist():
         if not free[seed]:
             continue
-        near = normals @ normals[seed] > least if angle > FLAT else None
         free[seed] = False
+        x, y, z = vectors[seed]
         piece = [seed]
         for number in piece:  # grows meanwhile
             for other in neighbours[number]:
-                if free[other] and (near[other] if near is not None else normals[other] @ normals[seed] > least):
-                    free[other] = False
-                    piece.append(other)
+                if free[other]:
+                    u, v, w = vectors[other]
+                    if x * u + y * v + z * w > least:
+                        free[other] = False
+                        piece.append(other)
         pieces.append(piece)
     return pieces
 
