@@ -48,6 +48,8 @@ constexpr std::array meshes{
     MeshKept{.format = ".cdb", .edges = false, .curve_nodes = true},
     MeshKept{
         .format = ".mfem", .edges = false, .loose_triangles = false, .names = patch_names | region_names},
+    MeshKept{.format = ".exo", .edges = false, .curve_nodes = true, .loose_triangles = false},
+    MeshKept{.format = ".cgns"},
     MeshKept{.format = ".su2",
              .edges = false,
              .regions = false,
@@ -176,7 +178,7 @@ std::string merge_text(const MergeReport& report) {
 
 std::string cleanup_text(const Plc::Cleanup& cleanup) {
   return counts_text("welded", {{cleanup.welded_points, "points to others"}}) +
-         counts_text("merged", {{cleanup.shared_triangles, "triangles of two files into interfaces"}}) +
+         counts_text("merged", {{cleanup.shared_triangles, "triangles of two surfaces into interfaces"}}) +
          counts_text("dropped", {{cleanup.degenerate_triangles, "triangles without an area"},
                                  {cleanup.repeated_triangles, "triangles that repeat another one"}});
 }

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""Formats of solvers that we only write, read by others: Nastran and SU2 by meshio, OpenFOAM by checkMesh, Ansys and
-MFEM by readers of their own, which follow the formats' descriptions.
+"""Formats of solvers that we only write, read by others: Nastran and SU2 by meshio, OpenFOAM by checkMesh, Exodus and
+CGNS by VTK, CGNS also by its library's cgnscheck where it is installed, Ansys and MFEM by readers of their own, which
+follow the formats' descriptions.
 
-    solver_formats_test.py PROGRAM MODELS (nastran|su2|ansys|mfem|openfoam)
+    solver_formats_test.py PROGRAM MODELS (nastran|su2|ansys|mfem|exodus|cgns|openfoam)
 
 Exit code 77: the judge is not installed.
 """
@@ -60,11 +61,19 @@ class Sample:
                     if blocks else np.zeros((0, 2), int))
             setattr(self, name[:-1] + "_tag",
                     np.concatenate([mesh.cell_data["tag"][i] for i in blocks]) if blocks else np.zeros(0, int))
+        of_faces = [i for i, block in enumerate(mesh.cells) if block.type == pick["faces"]]
+        self.face_inside = np.concatenate([(mesh.cell_data["region_back"][i] != 0) & (mesh.cell_data["region_front"][i] != 0)
+                                           for i in of_faces])
         self.region = np.concatenate([mesh.cell_data["region"][i]
                                      for i, b in enumerate(mesh.cells) if b.type == pick["tets"]])
 
     def convert(self, name, *options):
         return run(self.folder, PROGRAM, "convert", "a.vtk", "-o", name, *options)
+
+    def name_of_patch(self, tag):
+        x = self.points[self.faces[self.face_tag == tag]][:, :3, 0]
+        named = len(np.unique(self.region)) == 2
+        return "Wall left" if named and (x == 0).all() else "outlet" if named and (x == 3).all() else f"patch_{tag}"
 
     def nodes_of_patch(self, x):
         """Those of the faces in the plane of this x."""
@@ -305,12 +314,146 @@ def openfoam(folder):
     expect(re.search(r"cell zones: +2\b", said) and re.search(r"face zones: +1\b", said), said[-3000:])
 
 
+def leaves(data):
+    """Names and grids of VTK's blocks."""
+    if not data.IsA("vtkMultiBlockDataSet"):
+        return []
+    found = []
+    for i in range(data.GetNumberOfBlocks()):
+        block = data.GetBlock(i)
+        info = data.GetMetaData(i) if data.HasMetaData(i) else None
+        name = info.Get(data.NAME()) if info is not None and info.Has(data.NAME()) else ""
+        if block is not None:
+            found += leaves(block) if block.IsA("vtkMultiBlockDataSet") else [(name, block)]
+    return found
+
+
+def cells_of(grid):
+    """Points, and rows of nodes by VTK's type."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    kinds, cells = vtk_to_numpy(grid.GetCellTypesArray()), vtk_to_numpy(grid.GetCells().GetConnectivityArray())
+    starts = vtk_to_numpy(grid.GetCells().GetOffsetsArray())
+    points = vtk_to_numpy(grid.GetPoints().GetData())
+    return points, {int(kind): np.array([cells[starts[i]:starts[i + 1]] for i in np.flatnonzero(kinds == kind)])
+                    for kind in np.unique(kinds)}
+
+
+def expect_regions(grids, sample):
+    """A grid of tetrahedra for each region, by its name."""
+    named = {1: "steel", 2: "air"} if len(np.unique(sample.region)) == 2 else {1: "region_1"}
+    expect(set(grids) == set(named.values()), f"blocks {set(grids)}")
+    for region, name in named.items():
+        points, cells = cells_of(grids[name])
+        expect(set(cells) == {(10, 24)[sample.order - 1]}, f"kinds of cells {set(cells)}")
+        theirs, ours = points[next(iter(cells.values()))], sample.points[sample.tets[sample.region == region]]
+        expect(np.allclose(theirs, ours, rtol=0, atol=1e-6), f"nodes of the tetrahedra of {name}")  # VTK has 32 bits
+
+
+def exodus(folder):
+    from vtkmodules.vtkIOExodus import vtkExodusIIReader
+
+    for sample in samples(folder):
+        told = sample.convert("a.exo")
+        expect("edges on curves (node sets are kept)" in told or len(sample.edges) == 0, told)
+        reader = vtkExodusIIReader()
+        reader.SetFileName(str(folder / "a.exo"))
+        reader.UpdateInformation()
+        for kind in (reader.SIDE_SET, reader.NODE_SET):
+            for i in range(reader.GetNumberOfObjects(kind)):
+                reader.SetObjectStatus(kind, i, 1)
+        reader.Update()
+        grids = dict(leaves(reader.GetOutput()))
+        sides = {reader.GetObjectName(reader.SIDE_SET, i) for i in range(reader.GetNumberOfObjects(reader.SIDE_SET))}
+        nodes = {reader.GetObjectName(reader.NODE_SET, i) for i in range(reader.GetNumberOfObjects(reader.NODE_SET))}
+        expect_regions({name: grid for name, grid in grids.items() if name not in sides | nodes}, sample)
+        expect(len(nodes) == len(np.unique(sample.edge_tag)) and all(
+            name.startswith("curve_") for name in nodes), nodes)
+        for tag in np.unique(sample.face_tag):
+            faces = sample.faces[sample.face_tag == tag]
+            at = sample.points[faces]
+            name = sample.name_of_patch(tag)
+            points, cells = cells_of(grids[name])
+            expect(set(cells) == {(5, 22)[sample.order - 1]}, f"kinds of sides {set(cells)}")
+            theirs = points[next(iter(cells.values()))].mean(axis=1)
+            expect(np.allclose(theirs, at.mean(axis=1), rtol=0, atol=1e-6), f"sides of {name}")
+        expect_coordinates(folder / "a.exo", sample)
+    run(folder, PROGRAM, "info", "a.exo", code=3)
+
+
+def expect_coordinates(path, sample):
+    """All digits, by a reader of NetCDF."""
+    try:
+        from scipy.io import netcdf_file
+    except ImportError:
+        return
+    with netcdf_file(path, "r", mmap=False) as file:
+        for axis, name in enumerate(("coordx", "coordy", "coordz")):
+            expect(np.array_equal(file.variables[name][:], sample.points[:, axis]), name)
+        expect(file.variables["eb_prop2"].name == b"TAG" and len(file.variables["time_whole"][:]) == 0, "properties")
+
+
+def cgns(folder):
+    if not any((PROGRAM.parents[1] / "lib/collarmesh").glob("collarmesh_hdf5*")):
+        print("this program was built without HDF5")
+        sys.exit(77)
+    from vtkmodules.vtkIOCGNSReader import vtkCGNSReader
+
+    for sample in samples(folder):
+        sample.convert("a.cgns")
+        reader = vtkCGNSReader()
+        reader.SetFileName(str(folder / "a.cgns"))
+        reader.LoadBndPatchOn()
+        reader.LoadMeshOn()
+        reader.UpdateInformation()
+        reader.EnableAllBases()
+        reader.EnableAllFamilies()
+        reader.Update()
+        grids = dict(leaves(reader.GetOutput()))
+        points, cells = cells_of(grids.pop("Internal"))
+        expect(np.array_equal(points, sample.points), "points")
+        order = np.argsort(sample.region, kind="stable")
+        expect(np.array_equal(*cells.values(), sample.tets[order]), "tetrahedra, region by region")
+        outside = {sample.name_of_patch(tag): sample.faces[sample.face_tag == tag]
+                   for tag in np.unique(sample.face_tag[~sample.face_inside])}
+        expect(set(grids) == set(outside), f"boundary conditions {set(grids)}")
+        for name, faces in outside.items():
+            expect(np.array_equal(*cells_of(grids[name])[1].values(), faces), f"faces of {name}")
+        expect_sections(folder / "a.cgns", sample)
+        if shutil.which("cgnscheck"):
+            said = run(folder, "cgnscheck", "-v", "a.cgns")
+            expect("checking complete" in said and "warning" not in said.lower() and "error" not in said.lower(), said)
+
+
+def expect_sections(path, sample):
+    """Elements of each region, face and curve, by name."""
+    import h5py
+
+    with h5py.File(path) as file:
+        zone = file["Base/Zone"]
+        sections = {name: np.array(node["ElementConnectivity/ data"]) for name, node in zone.items()
+                    if node.attrs.get("label", b"").startswith(b"Elements_t")}
+    named = {1: "steel", 2: "air"} if len(np.unique(sample.region)) == 2 else {1: "region_1"}
+    expected = {name: sample.tets[sample.region == region] for region, name in named.items()}
+    expected |= {sample.name_of_patch(tag): sample.faces[sample.face_tag == tag] for tag in np.unique(sample.face_tag)}
+    expected |= {f"curve_{tag}": sample.edges[sample.edge_tag == tag] for tag in np.unique(sample.edge_tag)}
+    expect(set(sections) == set(expected), f"sections {set(sections)}")
+    for name, cells in expected.items():
+        expect(np.array_equal(sections[name], cells.ravel() + 1), f"nodes of {name}")
+
+
 if __name__ == "__main__":
-    if KIND in ("nastran", "su2", "ansys", "mfem", "openfoam"):
+    if KIND in ("nastran", "su2", "ansys", "mfem", "exodus", "cgns", "openfoam"):
         try:
             import meshio  # noqa: F401
         except ImportError:
             print("python3-meshio is not installed")
+            sys.exit(77)
+    if KIND in ("exodus", "cgns"):
+        try:
+            import vtkmodules.vtkIOExodus  # noqa: F401
+        except ImportError:
+            print("python3-vtk9 is not installed")
             sys.exit(77)
     with tempfile.TemporaryDirectory() as work:
         globals()[KIND](pathlib.Path(work))

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -57,16 +56,14 @@ void write_elements(FileWriter& out, const TetMesh& mesh) {
 }
 
 /// A name that no component has yet, without hyphens.
-std::string new_name(const TetMesh& mesh, std::size_t dimension, Tag tag, std::set<std::string>& known) {
-  std::string name = capital_name(mesh, dimension, tag).substr(0, longest_name - 4);
+std::string new_name(const TetMesh& mesh, std::size_t dimension, Tag tag, DistinctNames& known) {
+  std::string name = capital_name(mesh, dimension, tag);
   std::replace(name.begin(), name.end(), '-', '_');
-  std::string tried = name;
-  for (std::size_t k = 2; !known.insert(tried).second; ++k) tried = fmt::format("{}_{}", name, k);
-  return tried;
+  return known.add(name);
 }
 
 void write_components(FileWriter& out, const TetMesh& mesh, std::size_t dimension, const Groups& groups,
-                      std::set<std::string>& known) {
+                      DistinctNames& known) {
   for (const auto& [tag, members] : groups) {
     out << fmt::format("CMBLOCK,{},{},{:8}\n(8i10)\n", new_name(mesh, dimension, tag, known),
                        dimension == 3 ? "ELEM" : "NODE", members.size());
@@ -83,7 +80,7 @@ void write_ansys(const std::string& path, const TetMesh& mesh) {
   out << "/COM,Written by collarmesh.\n/PREP7\nET,1," << (mesh.order() == 2 ? 187 : 285) << '\n';
   write_nodes(out, mesh);
   write_elements(out, mesh);
-  std::set<std::string> known;
+  DistinctNames known(longest_name);
   Groups regions;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     regions[mesh.tet_tag[t]].push_back(static_cast<Index>(t + 1));

@@ -39,6 +39,10 @@ void write_xdmf(const std::string& path, const TetMesh& mesh) {
   write_by_module("collarmesh_write_xdmf", path, mesh);
 }
 
+void write_cgns(const std::string& path, const TetMesh& mesh) {
+  write_by_module("collarmesh_write_cgns", path, mesh);
+}
+
 void write_med(const std::string& path, const TetMesh& mesh) {
   write_by_module("collarmesh_write_med", path, mesh);
 }

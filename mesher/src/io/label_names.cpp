@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <utility>
 
 #include "io/number_text.h"
 
@@ -31,18 +32,26 @@ std::string group_name(const TetMesh& mesh, std::size_t dimension, Tag tag, std:
   return name;
 }
 
-std::string word_name(const TetMesh& mesh, std::size_t dimension, Tag tag) {
-  std::string name = group_name(mesh, dimension, tag);
-  for (char& c : name)
+std::string word(std::string text) {
+  for (char& c : text)
     if (!((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-')) c = '_';
-  return name;
+  return text;
+}
+
+std::string capital_word(std::string text) {
+  text = word(std::move(text));
+  for (char& c : text)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - ('a' - 'A'));
+  return text;
+}
+
+std::string word_name(const TetMesh& mesh, std::size_t dimension, Tag tag) {
+  return word(group_name(mesh, dimension, tag));
 }
 
 std::string capital_name(const TetMesh& mesh, std::size_t dimension, Tag tag) {
-  std::string name = word_name(mesh, dimension, tag);
-  for (char& c : name)
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - ('a' - 'A'));
-  return name;
+  const std::string name = capital_word(group_name(mesh, dimension, tag));
+  return !name.empty() && name.front() >= 'A' && name.front() <= 'Z' ? name : "N_" + name;
 }
 
 std::optional<Tag> tag_of_group_name(std::size_t dimension, std::string_view name) {
@@ -60,6 +69,27 @@ std::optional<Tag> tag_of_group_name(std::size_t dimension, std::string_view nam
 
 bool is_given_name(std::size_t dimension, std::string_view name) {
   return !tag_of_group_name(dimension, name) || !lower_case(name).starts_with(group_name_prefix[dimension]);
+}
+
+namespace {
+
+/// Without half a character of UTF-8 at the end.
+std::string cut(const std::string& text, std::size_t longest) {
+  if (text.size() <= longest) return text;
+  std::size_t end = longest;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+  return text.substr(0, end);
+}
+
+}  // namespace
+
+std::string DistinctNames::add(const std::string& name) {
+  std::string tried = cut(name, longest_);
+  for (std::size_t k = 2; !known_.insert(tried).second; ++k) {
+    const std::string number = fmt::format("_{}", k);
+    tried = cut(name, longest_ - number.size()) + number;
+  }
+  return tried;
 }
 
 Tag GroupTags::find(std::size_t dimension, const std::string& name) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -22,7 +23,12 @@ std::string group_name(GroupNames names, std::size_t dimension, Tag tag, std::st
 std::string group_name(const TetMesh& mesh, std::size_t dimension, Tag tag,
                        std::string_view minus = "minus_");
 
-/// As above, of letters, digits, `_` and `-` alone; the second one in capitals.
+/// A text with `_` for all but letters of ASCII, digits and `-`; the second one in capitals.
+std::string word(std::string text);
+std::string capital_word(std::string text);
+
+/// As above, of letters, digits, `_` and `-` alone; the second one in capitals and with a letter in front,
+/// which Abaqus and Ansys ask for.
 std::string word_name(const TetMesh& mesh, std::size_t dimension, Tag tag);
 std::string capital_name(const TetMesh& mesh, std::size_t dimension, Tag tag);
 
@@ -41,6 +47,18 @@ class GroupTags {
  private:
   std::array<std::map<std::string, Tag>, 4> known_;
   std::array<Tag, 4> next_{1, 1, 1, 1};
+};
+
+/// Names that are all different and not too long: "a", "a_2".
+class DistinctNames {
+ public:
+  /// `longest`: bytes.
+  explicit DistinctNames(std::size_t longest) : longest_(longest) {}
+  std::string add(const std::string& name);
+
+ private:
+  std::size_t longest_;
+  std::set<std::string> known_;
 };
 
 std::string lower_case(std::string_view text);

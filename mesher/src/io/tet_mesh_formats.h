@@ -23,12 +23,14 @@ void write_unv(const std::string& path, const TetMesh& mesh);
 void write_nastran(const std::string& path, const TetMesh& mesh);
 void write_ansys(const std::string& path, const TetMesh& mesh);
 void write_mfem(const std::string& path, const TetMesh& mesh);
+void write_exodus(const std::string& path, const TetMesh& mesh);
 void write_su2(const std::string& path, const TetMesh& mesh);
 void write_openfoam(const std::string& path, const TetMesh& mesh);
 void write_tetgen(const std::string& path, const TetMesh& mesh);
 // Parts of the build that are left out where HDF5 or MED are not there:
 void write_xdmf(const std::string& path, const TetMesh& mesh);
 void write_med(const std::string& path, const TetMesh& mesh);
+void write_cgns(const std::string& path, const TetMesh& mesh);
 
 TetMesh read_xdmf(const std::string& path);
 TetMesh read_med(const std::string& path);

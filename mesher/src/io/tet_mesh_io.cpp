@@ -37,10 +37,12 @@ constexpr std::array tet_mesh_formats{
     TetMeshFormat{".bdf", write_nastran, nullptr},
     TetMeshFormat{".cdb", write_ansys, nullptr},
     TetMeshFormat{".mfem", write_mfem, nullptr},
+    TetMeshFormat{".exo", write_exodus, nullptr},
     TetMeshFormat{".su2", write_su2, nullptr, false, nullptr, false},
     TetMeshFormat{".polymesh", write_openfoam, nullptr, false, nullptr, false},
 #ifdef COLLARMESH_XDMF
     TetMeshFormat{".xdmf", write_xdmf, read_xdmf, true},
+    TetMeshFormat{".cgns", write_cgns, nullptr},
 #endif
 #ifdef COLLARMESH_MED
     TetMeshFormat{".med", write_med, read_med, true},
@@ -110,8 +112,8 @@ std::vector<std::string> read_tet_mesh_formats() {
 
 std::string missing_library(const std::string& path, std::string_view format) {
   const std::string extension = format.empty() ? lower_extension(path) : std::string(format);
-  const bool med = extension == ".med";
-  if ((!med && extension != ".xdmf") || is_tet_mesh_format(path, format)) return {};
+  const bool med = extension == ".med", hdf5 = extension == ".xdmf" || extension == ".cgns";
+  if ((!med && !hdf5) || is_tet_mesh_format(path, format)) return {};
   return fmt::format("{} needs {}, without which this program was built; install {} and build it again",
                      extension, med ? "MED" : "HDF5", med ? "libmedc-dev and libhdf5-dev" : "libhdf5-dev");
 }

@@ -25,9 +25,9 @@ TetMesh read_tet_mesh(const std::string& path, std::string_view format = {});
 
 /// The extensions: .vtu (VTK), .pvtu (the same, with a .vtu beside it for each partition), .vtk (its legacy
 /// format), .msh (Gmsh; 4.1 is written), .mesh (Medit), .inp (Abaqus, CalculiX), .unv (I-DEAS), .ele (TetGen,
-/// with .node, .face and .edge beside it); written alone: .bdf (Nastran), .cdb (Ansys), .mfem (MFEM), .su2
-/// (SU2), .polymesh (OpenFOAM: the file constant/polyMesh/boundary, with the others beside it); written where
-/// they are built in: .xdmf (XDMF 3, with .h5 beside it), .med (SALOME).
+/// with .node, .face and .edge beside it); written alone: .bdf (Nastran), .cdb (Ansys), .mfem (MFEM), .exo
+/// (Exodus II), .su2 (SU2), .polymesh (OpenFOAM: the file constant/polyMesh/boundary, with the others beside
+/// it); where they are built in: .xdmf (XDMF 3, with .h5 beside it), .med (SALOME) and, written alone, .cgns.
 std::vector<std::string> written_tet_mesh_formats();
 std::vector<std::string> read_tet_mesh_formats();
 /// Return the extensions of formats that can hold partitions, and ghost cells.

@@ -107,8 +107,9 @@ class MedFile {
         families_.try_emplace({dimension, tag}, -1 - static_cast<med_int>(families_.size()));
     if (added) {
       const std::string group = group_name(mesh_, dimension, tag, "-");
-      require(MEDfamilyCr(file_, name_.c_str(), fmt::format("FAM_{}_{}", -found->second, group).c_str(),
-                          found->second, 1, padded(group, MED_LNAME_SIZE).c_str()));
+      const std::string name = fmt::format("FAM_{}_{}", -found->second, group).substr(0, MED_NAME_SIZE);
+      require(MEDfamilyCr(file_, name_.c_str(), name.c_str(), found->second, 1,
+                          padded(group, MED_LNAME_SIZE).c_str()));
     }
     return found->second;
   }

@@ -22,6 +22,10 @@ __attribute__((visibility("default"))) void collarmesh_read_xdmf(const std::stri
                                                                  collarmesh::TetMesh& mesh) {
   mesh = collarmesh::io::read_xdmf(path);
 }
+__attribute__((visibility("default"))) void collarmesh_write_cgns(const std::string& path,
+                                                                  const collarmesh::TetMesh& mesh) {
+  collarmesh::io::write_cgns(path, mesh);
+}
 #endif
 
 #ifdef COLLARMESH_MED

@@ -1,0 +1,261 @@
+// CGNS (cgns.github.io, "SIDS-to-HDF5 File Mapping Manual") in HDF5: one unstructured zone. A section of
+// elements for each region, each tag of patches and each tag of curves, with their names; patches on the
+// boundary are boundary conditions, too, whose families have the names.
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "collarmesh/error.h"
+#include "io/cell_nodes.h"
+#include "io/label_names.h"
+#include "io/tet_mesh_formats.h"
+#include "io/unfinished_file.h"
+
+namespace collarmesh::io {
+
+namespace {
+
+constexpr std::size_t longest_name = 32;
+
+/// CGNS' numbers of element types, by order and dimension.
+constexpr std::array<std::array<std::int32_t, 4>, 2> element_types{{{0, 3, 5, 10}, {0, 4, 6, 11}}};
+
+/// A file of CGNS' nodes: groups of HDF5 with attributes, and their values in a data set.
+class CgnsFile {
+ public:
+  explicit CgnsFile(std::string path) : target_(std::move(path)) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are ours to tell
+    const hid_t of_file = H5Pcreate(H5P_FILE_CREATE);
+    of_group_ = H5Pcreate(H5P_GROUP_CREATE);
+    for (const hid_t properties : {of_file, of_group_})
+      H5Pset_link_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+    file_ = H5Fcreate(target_.temporary().c_str(), H5F_ACC_TRUNC, of_file, H5P_DEFAULT);
+    H5Pclose(of_file);
+    require(file_ >= 0);
+    describe_root();
+  }
+  ~CgnsFile() {
+    H5Pclose(of_group_);
+    if (file_ >= 0) H5Fclose(file_);
+  }
+  CgnsFile(const CgnsFile&) = delete;
+  CgnsFile& operator=(const CgnsFile&) = delete;
+
+  /// Returns the path of the node. Nodes without values have the type MT.
+  std::string add(const std::string& parent, const std::string& name, const char* label) {
+    return add_node(parent, name, label, "MT");
+  }
+  std::string add(const std::string& parent, const std::string& name, const char* label,
+                  const std::string& text) {
+    const std::string path = add_node(parent, name, label, "C1");
+    write(path, H5T_NATIVE_CHAR, {text.size()}, text.data());
+    return path;
+  }
+  /// `size`: in the order of Fortran; empty: a list.
+  template <class Number>
+  std::string add(const std::string& parent, const std::string& name, const char* label,
+                  const std::vector<Number>& values, std::vector<hsize_t> size = {}) {
+    constexpr bool whole = std::is_same_v<Number, std::int32_t>, small = std::is_same_v<Number, float>;
+    const std::string path = add_node(parent, name, label, whole ? "I4" : small ? "R4" : "R8");
+    std::reverse(size.begin(), size.end());
+    if (size.empty()) size = {values.size()};
+    write(path, whole ? H5T_NATIVE_INT32 : small ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE, size, values.data());
+    return path;
+  }
+
+  void commit() {
+    require(H5Fclose(std::exchange(file_, -1)) >= 0);
+    target_.commit();
+  }
+  void require(bool done) const {
+    if (!done) target_.fail(0);
+  }
+
+ private:
+  void describe_root() {
+    const hid_t root = H5Gopen2(file_, "/", H5P_DEFAULT);
+    require(root >= 0);
+    set_text(root, "name", "HDF5 MotherNode", longest_name);
+    set_text(root, "label", "Root Node of HDF5 File", longest_name);
+    set_text(root, "type", "MT", 2);
+    H5Gclose(root);
+    const bool little = H5Tget_order(H5T_NATIVE_INT) == H5T_ORDER_LE;
+    write_text("/ format", little ? "IEEE_LITTLE_32" : "IEEE_BIG_32", 20);
+    unsigned major = 0, minor = 0, patch = 0;
+    H5get_libversion(&major, &minor, &patch);
+    write_text("/ hdf5version", fmt::format("HDF5 Version {}.{}.{}", major, minor, patch), 32);
+  }
+
+  std::string add_node(const std::string& parent, const std::string& name, const char* label,
+                       const char* type) {
+    const std::string path = parent + "/" + name;
+    const hid_t group = H5Gcreate2(file_, path.c_str(), H5P_DEFAULT, of_group_, H5P_DEFAULT);
+    require(group >= 0);
+    set_text(group, "name", name, longest_name);
+    set_text(group, "label", label, longest_name);
+    set_text(group, "type", type, 2);
+    const hsize_t one = 1;
+    const hid_t space = H5Screate_simple(1, &one, nullptr);
+    const hid_t flags = H5Acreate2(group, "flags", H5T_NATIVE_INT, space, H5P_DEFAULT, H5P_DEFAULT);
+    const int flag = 1;
+    const bool written = flags >= 0 && H5Awrite(flags, H5T_NATIVE_INT, &flag) >= 0;
+    if (flags >= 0) H5Aclose(flags);
+    H5Sclose(space);
+    H5Gclose(group);
+    require(written);
+    return path;
+  }
+
+  /// Attributes have a fixed size.
+  void set_text(hid_t object, const char* name, std::string text, std::size_t size) const {
+    text.resize(size + 1, '\0');
+    const hid_t type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, size + 1);
+    const hid_t space = H5Screate(H5S_SCALAR);
+    const hid_t attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+    const bool written = attribute >= 0 && H5Awrite(attribute, type, text.data()) >= 0;
+    if (attribute >= 0) H5Aclose(attribute);
+    H5Sclose(space);
+    H5Tclose(type);
+    require(written);
+  }
+
+  void write_text(const std::string& path, std::string text, std::size_t size) const {
+    text.resize(size + 1, '\0');
+    write_set(path, H5T_NATIVE_CHAR, {text.size()}, text.data());
+  }
+
+  void write(const std::string& node, hid_t type, const std::vector<hsize_t>& size,
+             const void* values) const {
+    write_set(node + "/ data", type, size, values);
+  }
+
+  void write_set(const std::string& path, hid_t type, const std::vector<hsize_t>& size,
+                 const void* values) const {
+    const hid_t space = H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr);
+    const hid_t set = H5Dcreate2(file_, path.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    const bool written = set >= 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0;
+    if (set >= 0) H5Dclose(set);
+    if (space >= 0) H5Sclose(space);
+    require(written);
+  }
+
+  UnfinishedFile target_;
+  hid_t file_ = -1, of_group_ = -1;
+};
+
+/// The cells of one section.
+struct Section {
+  std::size_t dimension;
+  std::string name;
+  std::vector<Index> cells;
+  bool is_boundary = false;  // all of it
+};
+
+std::vector<Section> sections_of(const TetMesh& mesh) {
+  std::map<Index, std::vector<Index>> regions;
+  for (Index t = 0; t < mesh.tets.size(); ++t) regions[mesh.tet_region[t]].push_back(t);
+  std::map<Tag, std::vector<Index>> patches, curves;
+  for (Index f = 0; f < mesh.faces.size(); ++f) patches[mesh.face_tag[f]].push_back(f);
+  for (Index e = 0; e < mesh.edges.size(); ++e) curves[mesh.edge_tag[e]].push_back(e);
+  std::vector<Section> sections;
+  for (auto& [region, tets] : regions) {
+    std::string name = group_name(mesh, 3, mesh.tet_tag[tets.front()]);
+    sections.push_back({3, std::move(name), std::move(tets)});
+  }
+  for (auto& [tag, faces] : patches) {
+    const bool outside = std::all_of(faces.begin(), faces.end(), [&](Index f) {
+      return (mesh.face_regions[f][0] == 0) != (mesh.face_regions[f][1] == 0);
+    });
+    sections.push_back({2, group_name(mesh, 2, tag), std::move(faces), outside});
+  }
+  for (auto& [tag, edges] : curves) sections.push_back({1, group_name(mesh, 1, tag), std::move(edges)});
+  DistinctNames names(longest_name);
+  for (const char* reserved : {".", "..", "ZoneType", "GridCoordinates", "ZoneBC", "Zone", "DataClass"})
+    names.add(reserved);
+  for (Section& section : sections) {
+    std::replace(section.name.begin(), section.name.end(), '/', '_');
+    section.name = names.add(section.name);
+  }
+  return sections;
+}
+
+std::vector<std::int32_t> nodes_of(const TetMesh& mesh, const Section& section) {
+  const std::array<CellNodes (*)(const TetMesh&, std::size_t), 3> of_dimension{nodes_of_edge, nodes_of_face,
+                                                                               nodes_of_tet};
+  std::vector<std::int32_t> nodes;
+  for (const Index cell : section.cells)
+    for (const Index v : of_dimension[section.dimension - 1](mesh, cell))
+      nodes.push_back(static_cast<std::int32_t>(v + 1));
+  return nodes;
+}
+
+/// Lengths in a unit that the file does not know.
+void write_points(CgnsFile& file, const std::string& zone, const std::vector<Point>& points) {
+  const std::string grid = file.add(zone, "GridCoordinates", "GridCoordinates_t");
+  const std::vector<float> length{0, 1, 0, 0, 0};  // exponents of mass, length, time, temperature, angle
+  std::vector<double> values(points.size());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < points.size(); ++i) values[i] = points[i][axis];
+    const std::string array = file.add(grid, fmt::format("Coordinate{}", "XYZ"[axis]), "DataArray_t", values);
+    file.add(array, "DimensionalExponents", "DimensionalExponents_t", length);
+  }
+}
+
+void write_boundary(CgnsFile& file, const std::string& conditions, const Section& section,
+                    const std::vector<std::int32_t>& range) {
+  const std::string condition = file.add(conditions, section.name, "BC_t", std::string("FamilySpecified"));
+  file.add(condition, "PointRange", "IndexRange_t", range, {1, 2});
+  file.add(condition, "GridLocation", "GridLocation_t", std::string("FaceCenter"));
+  file.add(condition, "FamilyName", "FamilyName_t", section.name);
+}
+
+}  // namespace
+
+void write_cgns(const std::string& path, const TetMesh& mesh) {
+  const std::vector<Section> sections = sections_of(mesh);
+  std::size_t cells = 0;
+  for (const Section& section : sections) cells += section.cells.size();
+  if (std::max(cells, mesh.points.size()) > std::numeric_limits<std::int32_t>::max())
+    throw WriteError(
+        fmt::format("{}: the mesh has more cells than the format has numbers for; write .vtu", path));
+  const auto whole = [](std::size_t value) { return static_cast<std::int32_t>(value); };
+  CgnsFile file(path);
+  file.add("", "CGNSLibraryVersion", "CGNSLibraryVersion_t", std::vector<float>{3.4F});
+  const std::string base = file.add("", "Base", "CGNSBase_t", std::vector<std::int32_t>{3, 3});
+  file.add(base, "DataClass", "DataClass_t", std::string("NormalizedByUnknownDimensional"));
+  const std::string zone =
+      file.add(base, "Zone", "Zone_t",
+               std::vector<std::int32_t>{whole(mesh.points.size()), whole(mesh.tets.size()), 0}, {1, 3});
+  file.add(zone, "ZoneType", "ZoneType_t", std::string("Unstructured"));
+  write_points(file, zone, mesh.points);
+  std::string conditions;
+  std::size_t first = 1;
+  for (const Section& section : sections) {
+    const std::vector<std::int32_t> range{whole(first), whole(first + section.cells.size() - 1)};
+    const std::string elements =
+        file.add(zone, section.name, "Elements_t",
+                 std::vector<std::int32_t>{
+                     element_types[static_cast<std::size_t>(mesh.order()) - 1][section.dimension], 0});
+    file.add(elements, "ElementRange", "IndexRange_t", range);
+    file.add(elements, "ElementConnectivity", "DataArray_t", nodes_of(mesh, section));
+    first += section.cells.size();
+    if (!section.is_boundary) continue;
+    if (conditions.empty()) conditions = file.add(zone, "ZoneBC", "ZoneBC_t");
+    write_boundary(file, conditions, section, range);
+    file.add(base, section.name, "Family_t");
+  }
+  file.commit();
+}
+
+}  // namespace collarmesh::io
