@@ -139,6 +139,11 @@ std::string CadFiles::names() const {
   return names;
 }
 
+const brep::CadLabels* CadFiles::labels(std::size_t soups) const {
+  const bool alone = files_.size() == 1 && files_.front().soup_count == soups;
+  return alone ? &files_.front().model->labels() : nullptr;
+}
+
 std::string CadFiles::faces_near(const Point& where) const {
   const auto nearest = std::min_element(files_.begin(), files_.end(), [&](const File& a, const File& b) {
     return a.model->distance_to(where) < b.model->distance_to(where);

@@ -14,8 +14,9 @@
 #include "collarmesh/polygon_soup.h"
 
 namespace collarmesh::brep {
+struct CadLabels;
 struct CadMeasures;
-}
+}  // namespace collarmesh::brep
 
 namespace collarmesh::cli {
 
@@ -45,6 +46,9 @@ class CadFiles {
   bool empty() const;
   /// Of the files, for people.
   std::string names() const;
+  /// Names and colours of the file that all these soups came from; null where there is none: the numbers of
+  /// several files are the same.
+  const brep::CadLabels* labels(std::size_t soups) const;
 
   /// Make triangles that are finer than the first ones by a factor, in the places of the former soups.
   void tessellate(double finer, std::vector<PolygonSoup>& soups);

@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "cad_labels.h"
 #include "collarmesh/error.h"
 #include "collarmesh/name_features.h"
 #include "exact_measures.h"
@@ -101,8 +102,16 @@ Plc ComplexInput::build(const PlcOptions& options, const RepairOptions& repair) 
   for (const Plc::Patch& patch : plc.patches) built_.patch_numbers.push_back(patch.tag);
   for (const Plc::Curve& curve : plc.curves) built_.curve_numbers.push_back(curve.tag);
   name(plc);
+  if (labels() != nullptr) name_regions(*labels(), plc);
   return plc;
 }
+
+const brep::CadLabels* ComplexInput::labels() const {
+  return built_.repaired.wrapped ? nullptr
+                                 : cad_.labels(soups_.size());  // wrapped, tags are no numbers of faces
+}
+
+TagColours ComplexInput::colours() const { return labels() == nullptr ? TagColours() : labels()->colours; }
 
 /// By the path of a file, or the text itself, and by what is given beside it.
 void ComplexInput::name(Plc& plc) const {
@@ -227,7 +236,7 @@ Plc ComplexInput::take(RepairedPlc result) {
 }
 
 ShapeMeasures ComplexInput::exact_measures(const Plc& plc) const {
-  if (cad_.empty() || built_.repaired.wrapped) return {};  // wrapped, tags are no numbers of faces
+  if (cad_.empty() || built_.repaired.wrapped) return {};
   return measures_behind(plc, {soups_, built_.patch_numbers, built_.curve_numbers}, cad_);
 }
 

@@ -16,6 +16,7 @@
 #include "collarmesh/repair.h"
 #include "collarmesh/shape_measures.h"
 #include "collarmesh/surface_tolerance.h"
+#include "collarmesh/tag_colours.h"
 
 namespace collarmesh::cli {
 
@@ -57,6 +58,8 @@ class ComplexInput {
   /// finer ones are tried first.
   /// Throws PlcError; with CAD faces the messages name them.
   Plc build(const PlcOptions& options, const RepairOptions& repair = {});
+  /// Returns the colours that a CAD file gives to the tags of the complex built last.
+  TagColours colours() const;
   /// What was done to the facets of the complex built last.
   const RepairReport& repaired() const { return built_.repaired; }
 
@@ -68,6 +71,7 @@ class ComplexInput {
 
  private:
   void name(Plc& plc) const;
+  const brep::CadLabels* labels() const;
   Plc build_unnamed(const PlcOptions& options, const RepairOptions& repair);
   Plc build_valid(const PlcOptions& options, const RepairOptions& repair);
   Plc resolved(Plc plc, const PlcOptions& options, const RepairOptions& repair);

@@ -73,7 +73,7 @@ void print_complex(const InfoArguments& arguments) {
   const PlcSummary summary = summarize(plc, arguments.mesh.bounds.crease_angle);
   const GroupNames names = input.has_cad() ? GroupNames::cad : GroupNames::complex;
   if (arguments.json) {
-    nlohmann::ordered_json json{{"complex", complex_json(plc, summary, names)},
+    nlohmann::ordered_json json{{"complex", complex_json(plc, summary, names, input.colours())},
                                 {"repair", repair_json(input.repaired())}};
     if (!predicted.empty()) json["predictions"] = predictions_json(predicted);
     print_result(json_text(json, 1) + "\n");

@@ -177,6 +177,7 @@ RepairOptions mesh(const MeshArguments& arguments, ComplexInput& input, Stages& 
   }
   if (input.has_cad()) run.result.mesh.group_names = GroupNames::cad;
   run.notes = input.notes();
+  run.colours = input.colours();
   run.summary = summarize(run.plc, arguments.mesh.bounds.crease_angle);
   run.warnings = option_warnings(arguments, run.plc);
   for (std::string& warning : source.without_effect()) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "io/label_names.h"
 
@@ -81,6 +82,16 @@ std::vector<MeshGroup> curves_of(const TetMesh& mesh) {
 std::string name_of(const TagNames& given, GroupNames names, std::size_t dimension, Tag tag) {
   if (const std::string* name = given.find(dimension, tag)) return *name;
   return names == GroupNames::cad ? io::group_name(names, dimension, tag) : std::string();
+}
+
+std::map<Index, std::string> names_of_regions(const TetMesh& mesh) {
+  std::map<Index, Tag> tags;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) tags.try_emplace(mesh.tet_region[t], mesh.tet_tag[t]);
+  std::map<Index, std::string> names;
+  for (const auto& [region, tag] : tags)
+    if (std::string name = name_of(mesh.names, mesh.group_names, 3, tag); !name.empty())
+      names.emplace(region, std::move(name));
+  return names;
 }
 
 std::string groups_text(const TetMesh& mesh) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -24,6 +25,9 @@ std::vector<MeshGroup> curves_of(const TetMesh& mesh);
 
 /// How a tag is called, where it has a name: the one that it was given, or that of a CAD shape; else empty.
 std::string name_of(const TagNames& given, GroupNames names, std::size_t dimension, Tag tag);
+
+/// How regions are called, by their numbers: those whose tag has a name.
+std::map<Index, std::string> names_of_regions(const TetMesh& mesh);
 
 /// For people, a line each, the first ones if there are very many; and for programs.
 std::string groups_text(const TetMesh& mesh);

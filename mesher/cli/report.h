@@ -10,6 +10,7 @@
 #include "collarmesh/pipeline.h"
 #include "collarmesh/plc_builder.h"
 #include "collarmesh/predict.h"
+#include "collarmesh/tag_colours.h"
 #include "stage_times.h"
 #include "worst_tets.h"
 
@@ -20,14 +21,15 @@ struct MeshRun : SoupPipelineResult {
   PlcSummary summary;
   std::vector<std::string> warnings;  ///< of options; those of the input are in the complex
   std::vector<std::string> notes;     ///< on CAD shapes, a line each
+  TagColours colours;                 ///< of CAD shapes
   std::vector<WorstTet> worst;
   StageTimes times;
 };
 
 // For programs (--report, --json):
-/// `names`: how features without a name are called.
+/// `names`: how features without a name are called. `colours`: by their tags.
 nlohmann::ordered_json complex_json(const Plc& plc, const PlcSummary& summary,
-                                    GroupNames names = GroupNames::complex);
+                                    GroupNames names = GroupNames::complex, const TagColours& colours = {});
 nlohmann::ordered_json measures_json(const TetMesh& mesh, const MeshMeasures& measures);
 nlohmann::ordered_json check_json(const CheckReport& report);
 nlohmann::ordered_json repair_json(const RepairReport& report);

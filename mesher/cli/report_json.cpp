@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "mesh_groups.h"
@@ -16,8 +18,8 @@ Json point_json(const Point& p) { return Json::array({p.x, p.y, p.z}); }
 Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 /// Keys that are all different: added by name, each would be compared with all before it.
-template <class Number>
-Json by_number(const std::map<Number, double>& values) {
+template <class Number, class Value>
+Json by_number(const std::map<Number, Value>& values) {
   Json::object_t object;
   for (const auto& [number, value] : values) object.emplace_back(std::to_string(number), value);
   return object;
@@ -173,6 +175,12 @@ Json name_json(const Plc& plc, GroupNames names, std::size_t dimension, Tag tag)
   return name.empty() ? Json(nullptr) : Json(name);
 }
 
+/// Null where a file gave none; "#rrggbb" as pages have it.
+Json colour_json(const std::map<Tag, Colour>& colours, Tag tag) {
+  const auto found = colours.find(tag);
+  return found == colours.end() ? Json(nullptr) : Json(fmt::format("#{:06x}", found->second));
+}
+
 /// Estimates may exceed every integer.
 Json whole_json(double value) {
   constexpr double exact = 9007199254740992;  // 2^53
@@ -181,17 +189,20 @@ Json whole_json(double value) {
 
 }  // namespace
 
-Json complex_json(const Plc& plc, const PlcSummary& s, GroupNames names) {
+Json complex_json(const Plc& plc, const PlcSummary& s, GroupNames names, const TagColours& colours) {
   Json regions = Json::array();
   for (std::size_t r = 1; r < plc.regions.size(); ++r)
     regions.push_back({{"region", r},
                        {"tag", plc.regions[r].tag},
-                       {"name", plc.regions[r].name},
+                       {"name", name_json(plc, names, 3, plc.regions[r].tag)},
+                       {"input", plc.regions[r].name},
+                       {"colour", colour_json(colours.regions, plc.regions[r].tag)},
                        {"volume", plc.regions[r].volume}});
   Json patch_list = Json::array();
   for (const PatchSummary& p : summarize_patches(plc))
     patch_list.push_back({{"tag", p.tag},
                           {"name", name_json(plc, names, 2, p.tag)},
+                          {"colour", colour_json(colours.patches, p.tag)},
                           {"patches", p.count},
                           {"planar", p.planar},
                           {"area", p.area},
@@ -245,6 +256,7 @@ Json measures_json(const TetMesh& mesh, const MeshMeasures& m) {
           {"max_thin_radius_edge", number_json(m.max_thin_radius_edge)},
           {"max_collar_radius_edge", number_json(m.max_collar_radius_edge)},
           {"region_volumes", by_number(m.region_volumes)},
+          {"region_names", by_number(names_of_regions(mesh))},
           {"partitions", partitions_json(measure_partitions(mesh))},
           {"histograms",
            {{"min_dihedral", {{"bin_width", 10}, {"tets", m.min_dihedrals}}},
@@ -354,7 +366,7 @@ Json run_json(const MeshArguments& arguments, const MeshRun& run) {
           {"message", run.result.message},
           {"guarantees_hold", run.guarantees_hold()},
           {"repair", repair_json(run.repair)},
-          {"complex", complex_json(run.plc, run.summary, run.result.mesh.group_names)},
+          {"complex", complex_json(run.plc, run.summary, run.result.mesh.group_names, run.colours)},
           {"mesh", measures_json(run.result.mesh, run.check.measures)},
           {"worst", worst_json(run.worst)},
           {"check", check_json(run.check)},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 
 #include "conversion_report.h"
 #include "mesh_groups.h"
@@ -17,11 +18,13 @@ using Out = std::back_insert_iterator<std::string>;
 /// Lists longer than this are cut; --json has them all.
 constexpr std::size_t listed = 20;
 
-void append_regions(std::string& text, const Plc& plc) {
+std::string in_brackets(const std::string& name) { return name.empty() ? name : fmt::format(" ({})", name); }
+
+void append_regions(std::string& text, const Plc& plc, GroupNames names) {
   for (std::size_t r = 1; r < std::min(plc.regions.size(), listed + 1); ++r)
-    fmt::format_to(Out(text), "  region {}: tag {}, volume {:.10g}{}\n", r, plc.regions[r].tag,
-                   plc.regions[r].volume,
-                   plc.regions[r].name.empty() ? "" : " (" + plc.regions[r].name + ")");
+    fmt::format_to(Out(text), "  region {}{}: tag {}, volume {:.10g}{}\n", r,
+                   in_brackets(name_of(plc.names, names, 3, plc.regions[r].tag)), plc.regions[r].tag,
+                   plc.regions[r].volume, in_brackets(plc.regions[r].name));
   if (plc.regions.size() > listed + 1)
     fmt::format_to(Out(text), "  ... and {} more regions\n", plc.regions.size() - listed - 1);
 }
@@ -37,9 +40,10 @@ void append_creases(std::string& text, const Plc& plc, const std::vector<Crease>
   if (creases.size() > listed) fmt::format_to(Out(text), "    ... and {} more\n", creases.size() - listed);
 }
 
+/// `max_radius_edge`: 0 where there are only thin tets and collars.
 std::string shape_text(double min_dihedral, double max_dihedral, double max_radius_edge) {
-  return fmt::format("dihedral angles from {:.2f} to {:.2f} degrees, radius-edge at most {:.4g}",
-                     min_dihedral, max_dihedral, max_radius_edge);
+  return fmt::format("dihedral angles from {:.2f} to {:.2f} degrees{}", min_dihedral, max_dihedral,
+                     max_radius_edge > 0 ? fmt::format(", radius-edge at most {:.4g}", max_radius_edge) : "");
 }
 
 std::string times_text(const StageTimes& times) {
@@ -64,8 +68,6 @@ RepairReport beyond_tolerance(const RepairReport& report) {
   rest.repaired = std::max(report.largest_distance, report.largest_distance_of_input) > report.tolerance;
   return rest;
 }
-
-std::string in_brackets(const std::string& name) { return name.empty() ? name : fmt::format(" ({})", name); }
 
 /// By number, as sizes and formats name them.
 void append_patches(std::string& text, const Plc& plc, GroupNames names) {
@@ -138,7 +140,7 @@ std::string complex_text(const Plc& plc, const PlcSummary& s, GroupNames names) 
   fmt::format_to(Out(text), "  smallest angle {:.4g} degrees, shortest segment {:.4g}, spread {:.4g}\n",
                  s.smallest_angle, s.shortest_segment, s.spread);
   fmt::format_to(Out(text), "  merging moved the input by at most {:.3g}\n", s.largest_deviation);
-  append_regions(text, plc);
+  append_regions(text, plc, names);
   append_patches(text, plc, names);
   append_curves(text, plc, names);
   append_creases(text, plc, s.creases);
@@ -171,15 +173,19 @@ std::string mesh_text(const TetMesh& mesh, const MeshMeasures& m, const CheckRep
   std::string text;
   fmt::format_to(Out(text), "{} tets, {} points, {} boundary and interface triangles, {} curve edges\n",
                  mesh.tets.size(), mesh.points.size(), mesh.faces.size(), mesh.edges.size());
-  fmt::format_to(
-      Out(text), "  {}{}{}\n", shape_text(m.min_dihedral, m.max_dihedral, m.max_radius_edge),
-      m.max_thin_radius_edge > 0 ? fmt::format(" (of thin tets {:.4g})", m.max_thin_radius_edge) : "",
-      m.max_collar_radius_edge > 0 ? fmt::format(" (in collars {:.4g})", m.max_collar_radius_edge) : "");
+  fmt::format_to(Out(text), "  {}{}{}\n", shape_text(m.min_dihedral, m.max_dihedral, m.max_radius_edge),
+                 m.max_thin_radius_edge > 0
+                     ? fmt::format(", of thin tets radius-edge at most {:.4g}", m.max_thin_radius_edge)
+                     : "",
+                 m.max_collar_radius_edge > 0
+                     ? fmt::format(", in collars radius-edge at most {:.4g}", m.max_collar_radius_edge)
+                     : "");
   if (judged != nullptr && judged->forced_tets > 0) text += "  " + forced_text(*judged);
+  std::map<Index, std::string> names = names_of_regions(mesh);
   std::size_t line = 0;
   for (const auto& [region, volume] : m.region_volumes) {
     if (++line > listed) break;
-    fmt::format_to(Out(text), "  region {}: volume {:.10g}{}\n", region, volume,
+    fmt::format_to(Out(text), "  region {}{}: volume {:.10g}{}\n", region, in_brackets(names[region]), volume,
                    judged != nullptr ? off_text(*judged, region) : "");
   }
   return text + partitions_text(measure_partitions(mesh));
@@ -240,7 +246,8 @@ std::string straightened_text(const SecondOrderReport& r, std::size_t most) {
     const auto& s = r.straightened[k];
     fmt::format_to(
         Out(text),
-        "straightened: node {} amid points {} and {} at ({:.9g}, {:.9g}, {:.9g}), on the smooth {} with "
+        "straightened: the mid-edge node {} between points {} and {} at ({:.9g}, {:.9g}, {:.9g}), on the "
+        "smooth {} with "
         "tag {}, is {:.3g} off it: a tet there would be inverted or nearly so; a smaller size there "
         "or --elements-per-circle avoids that\n",
         s.point, s.edge[0], s.edge[1], s.where.x, s.where.y, s.where.z,
@@ -280,7 +287,7 @@ std::string run_text(const MeshArguments& arguments, const MeshRun& run) {
                    i.boundary_flips, i.moved_vertices, i.contracted_edges, i.inserted_vertices, i.detours);
   if (arguments.order == 2)
     fmt::format_to(Out(text),
-                   "  second order: {} nodes amid edges, {} of them on smooth features, {} inside moved, {} "
+                   "  second order: {} mid-edge nodes, {} of them on smooth features, {} inside moved, {} "
                    "straightened\n",
                    run.second_order.nodes, run.second_order.curved, run.second_order.moved_inside,
                    run.second_order.straightened.size());

@@ -13,12 +13,18 @@ import re
 import shutil
 import struct
 import subprocess
+import sys
 import tempfile
 import unittest
 import zlib
 
+SOURCES = pathlib.Path(__file__).resolve().parents[2]
+sys.path.append(str(SOURCES / "tests/support"))
+from step_file import StepFile  # noqa: E402
+
 PROGRAM = os.environ["COLLARMESH_PROGRAM"]
-MODELS = pathlib.Path(__file__).resolve().parents[2] / "resources" / "models"
+MODELS = SOURCES / "resources" / "models"
+HAS_CAD = any((pathlib.Path(PROGRAM).parents[1] / "lib/collarmesh").glob("collarmesh_cad*"))
 CHROMIUM = shutil.which("chromium")
 
 
@@ -194,6 +200,21 @@ class InABrowser(ReportTest):
         for name in ("two_boxes.poly 1", "two_boxes.poly 2"):
             self.assertIn(f"Volume of {name}", dom)
             self.assertIn(name, legend)
+
+    @unittest.skipUnless(HAS_CAD, "no OpenCASCADE")
+    def test_names_and_colours_of_step(self):
+        file = StepFile()
+        file.product("Lid </script>", file.box((0, 0, 0), (1, 1, 1), colour=(1, 0, 0), face_colours={5: (0, 0, 1)}))
+        path = self.report(file.write(self.folder / "a.step"), "--size", "0.5")
+        _, dom, picture = self.look(path, "#colour=file")
+        legend = re.search(r'<p id="legend">.*?</p>', dom, re.S).group()
+        colours = re.findall(r"background: (#\w+)[^>]*></i>([^<]*)<", legend)
+        self.assertEqual(colours, [("#ff0000", "Face1, Face2, Face3 and 2 more"), ("#0000ff", "Face6")])
+        self.assertNotRegex(dom, r'<option value="file" hidden')
+        self.assertIn("Volume of Lid &lt;/script&gt;", dom)
+        self.assertNotEqual(picture, self.look(path, "#colour=face")[2])
+        _, dom, _ = self.look(self.report(MODELS / "box.off", "--size", "1"), "#colour=face")
+        self.assertRegex(dom, r'<option value="file" hidden')
 
     def test_straightened_nodes_are_marked(self):
         path = self.report(MODELS / "bracket.off", "--size", "8", "--order", "2")

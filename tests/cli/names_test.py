@@ -8,9 +8,13 @@ import re
 import select
 import shutil
 import subprocess
+import sys
 import unittest
 
-from program import BOX_FACES, MODELS, PROGRAM, ProgramTest, box_points, off_text
+from program import BOX_FACES, MODELS, PROGRAM, SOURCES, ProgramTest, box_points, off_text
+
+sys.path.append(str(SOURCES / "tests/support"))
+from step_file import StepFile  # noqa: E402
 
 MODULES = pathlib.Path(PROGRAM).parents[1] / "lib" / "collarmesh"
 HAS_HDF5 = (MODULES / "collarmesh_hdf5.so").exists()
@@ -177,6 +181,86 @@ class GivenNames(ProgramTest):
         self.expect(2, self.box, "-o", self.out, "--names", path,
                     says=["names.json: names: line 3, column 14: this is no JSON"])
         self.expect(2, self.box, "-o", self.out, "--names", path, "--name", "a=1", says=["line 3, column 14"])
+
+
+@unittest.skipUnless(HAS_CAD, "no OpenCASCADE")
+class NamesOfStep(ProgramTest):
+    def complex_of(self, path, *options):
+        return json.loads(self.run_program("info", "--json", path, *options).stdout)["complex"]
+
+    def names(self, path, *options):
+        return [region["name"] for region in self.complex_of(path, *options)["regions"]]
+
+    def two_solids(self):
+        file = StepFile()
+        file.product("Base plate", file.box((0, 0, 0), (4, 3, 1), colour=(1, 0, 0), face_colours={5: (0, 0, 1)}))
+        file.product("Rib", file.box((0, 1, 1), (4, 2, 2), colour=(0, 0.5, 0)))
+        return file.write(self.folder / "two.step")
+
+    def test_solids_have_the_names_of_their_products(self):
+        path = self.two_solids()
+        self.assertEqual(self.names(path), ["Base plate", "Rib"])
+        self.assertRegex(self.run_program("info", path).stdout, r"region 1 \(Base plate\): tag 1, volume 12 ")
+        run = self.run_program(path, "-o", "a.vtu", "--report", "a.json", "--size", "1")
+        self.assertRegex(run.stdout + run.stderr, r"region 2 \(Rib\): volume 4,")
+        report = json.loads((self.folder / "a.json").read_text())
+        self.assertEqual(report["mesh"]["region_names"], {"1": "Base plate", "2": "Rib"})
+        self.assertIn("region 1 (Base plate): ", self.run_program("info", "a.vtu").stdout)
+
+    def test_every_format_with_names_has_them(self):
+        self.run_program(self.two_solids(), "-o", "a.vtu", "--size", "1")
+        expected = {"vtk": "Base plate", "msh": '"Base plate"', "msh2": '"Base plate"', "inp": "ELSET=BASE_PLATE",
+                    "unv": "Base plate", "bdf": '"Base plate"', "cdb": "BASE_PLATE", "mfem": "Base plate",
+                    "exo": "Base plate", **({"xdmf": "Base plate", "cgns": "Base plate"} if HAS_HDF5 else {})}
+        for extension, name in expected.items():
+            with self.subTest(extension=extension):
+                self.assertEqual(self.run_program("convert", "a.vtu", "-o", f"a.{extension}").returncode, 0)
+                self.assertIn(name.encode(), (self.folder / f"a.{extension}").read_bytes())
+
+    def test_colours_are_in_reports(self):
+        complex_ = self.complex_of(self.two_solids())
+        self.assertEqual([region["colour"] for region in complex_["regions"]], ["#ff0000", "#008000"])
+        colours = {patch["tag"]: patch["colour"] for patch in complex_["patch_list"]}
+        self.assertEqual([colours[n] for n in range(1, 7)], ["#ff0000"] * 5 + ["#0000ff"])
+        self.assertEqual({colour for n, colour in colours.items() if n > 6}, {"#008000"})
+        plain = self.complex_of(MODELS / "flange.step")
+        self.assertEqual({each["colour"] for each in plain["patch_list"] + plain["regions"]}, {None})
+
+    def test_solids_of_one_product(self):
+        file = StepFile()
+        file.product("Rig", file.box((0, 0, 0), (1, 1, 1), "Body1"), file.box((2, 0, 0), (3, 1, 1), "Body2"))
+        self.assertEqual(self.names(file.write(self.folder / "a.step")), ["Body1", "Body2"])
+        file.product("Pin", file.box((4, 0, 0), (5, 1, 1), "Body1"))
+        self.assertEqual(self.names(file.write(self.folder / "a.step")), ["Rig Body1", "Rig Body2", "Pin"])
+
+    def test_parts_of_assemblies(self):
+        file = StepFile()
+        bolt = file.product("Bolt", file.box((0, 0, 0), (1, 1, 1)))
+        pair = file.assembly("Pair", (bolt, (0, 0, 0)), (bolt, (2, 0, 0)))
+        file.assembly("Rig", (file.assembly("Row", (pair, (0, 0, 0)), (pair, (0, 2, 0))), (5, 0, 0)))
+        self.assertEqual(self.names(file.write(self.folder / "a.step")), ["Bolt", "Bolt_2", "Bolt_3", "Bolt_4"])
+
+    def test_given_names_win(self):
+        path = self.two_solids()
+        self.assertEqual(self.names(path, "--name", "steel=region:2"), ["Base plate", "steel"])
+        self.assertEqual(self.names(path, "--name", "base_plate=region:2"), ["Base plate_2", "base_plate"])
+
+    def test_names_that_say_nothing_or_cannot_be_written(self):
+        file = StepFile()
+        names = ["", "Solid3", "patch_1", "a\"b", "  x  ", "caf\\X\\E9", "\udc80\udcff", "y" * 200, "O''Hara", "X"]
+        for k, name in enumerate(names):
+            file.product(name, file.box((2 * k, 0, 0), (2 * k + 1, 1, 1)))
+        found = self.names(file.write(self.folder / "a.step"))
+        self.assertEqual(found, ["Solid1", "Solid2", "Solid3", "a_b", "x", "café", "\x80ÿ", "y" * 60, "O'Hara", "X_2"])
+        self.run_program(self.folder / "a.step", "-o", "a.vtu", "--size", "2")
+        for extension in ("msh", "inp", "cdb", "exo", *(("med", "xdmf", "cgns") if HAS_HDF5 else ())):
+            with self.subTest(extension=extension):
+                self.assertEqual(self.run_program("convert", "a.vtu", "-o", f"a.{extension}").returncode, 0)
+
+    def test_numbers_of_several_files_have_no_names(self):
+        file = StepFile()
+        file.product("Other", file.box((9, 0, 0), (10, 1, 1)))
+        self.assertEqual(set(self.names(self.two_solids(), file.write(self.folder / "b.step"))), {"Solid1", "Solid2"})
 
 
 class NamesThroughFormats(ProgramTest):

@@ -19,6 +19,9 @@ import unittest
 import collarmesh
 import numpy
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from step_file import StepFile  # noqa: E402
+
 
 def box(low, high):
     """Points and outward triangles, two for each face, tagged 1 to 6 as -x +x -y +y -z +z."""
@@ -109,7 +112,7 @@ class Module(unittest.TestCase):
         self.assertAlmostEqual(volumes(mesh).sum(), 1, places=12)
         self.assertEqual(len(mesh.repairs), 2)
         self.assertRegex(mesh.repairs[0], "hole of 3 edges")
-        self.assertRegex(mesh.repairs[1], "within 0 of the input")
+        self.assertEqual(mesh.repairs[1], "repair moved nothing")
         with self.assertRaisesRegex(collarmesh.Error, "open"):
             collarmesh.mesh((points, triangles[:-1]), repair="none")
         with self.assertRaisesRegex(collarmesh.Error, "repair must be"):
@@ -151,6 +154,28 @@ class Inputs(unittest.TestCase):
             self.skipTest(str(error))
         self.assertTrue(mesh.passed, mesh.findings)
         self.assertEqual(mesh.name(2, 1), "Face1")
+
+    def test_names_and_colours_of_step(self):
+        file = StepFile()
+        file.product("Base", file.box((0, 0, 0), (2, 2, 1), colour=(1, 0, 0), face_colours={0: (0, 0, 1)}))
+        with tempfile.TemporaryDirectory() as folder:
+            try:
+                mesh = collarmesh.mesh(file.write(pathlib.Path(folder) / "a.step"), size=1)
+            except collarmesh.ReadError as error:
+                self.skipTest(str(error))
+        self.assertEqual(mesh.name(3, 1), "Base")
+        self.assertEqual(mesh.colours, {2: {1: "#0000ff", **{n: "#ff0000" for n in range(2, 7)}}, 3: {1: "#ff0000"}})
+        self.assertEqual(pickle.loads(pickle.dumps(mesh)).colours, mesh.colours)
+        self.assertEqual(mesh.info()["mesh"]["region_names"], {"1": "Base"})
+        self.assertIn("Base</th>", mesh._repr_html_())
+        try:
+            import matplotlib
+        except ImportError:
+            self.skipTest("matplotlib is not installed")
+        matplotlib.use("agg")
+        drawn = mesh.plot().collections[0].get_facecolor()
+        for colour, tags in (((0, 0, 1, 1), [1]), ((1, 0, 0, 1), [2, 3, 4, 5, 6])):
+            self.assertEqual((drawn == colour).all(axis=1).sum(), numpy.isin(mesh.face_tag, tags).sum())
 
     def test_a_complex_with_a_hole_a_region_and_an_open_facet(self):
         outer, _, _ = box((0, 0, 0), (3, 3, 3))

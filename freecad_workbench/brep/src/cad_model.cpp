@@ -55,9 +55,10 @@ std::vector<std::pair<double, int>> faces_by_distance(const Tessellation& tessel
 
 }  // namespace
 
-CadModel::CadModel(const TopoDS_Shape& shape, std::string name, const CadOptions& options)
+CadModel::CadModel(const TopoDS_Shape& shape, std::string name, const CadOptions& options, CadLabels labels)
     : parts_(std::make_unique<Parts>()) {
   parts_->name = std::move(name);
+  parts_->labels = std::move(labels);
   on_shape(parts_->name, "finding solids", [&] {
     // A copy: the triangles that the caller's shape has stay as they are.
     const TopoDS_Shape copy =
@@ -72,6 +73,7 @@ CadModel::CadModel(CadModel&&) noexcept = default;
 CadModel& CadModel::operator=(CadModel&&) noexcept = default;
 
 const std::string& CadModel::name() const { return parts_->name; }
+const CadLabels& CadModel::labels() const { return parts_->labels; }
 double CadModel::diagonal() const { return parts_->diagonal; }
 bool CadModel::fused() const { return parts_->topology.fused; }
 const std::string& CadModel::open_edges_text() const { return parts_->topology.open_text; }

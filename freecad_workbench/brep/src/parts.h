@@ -9,6 +9,7 @@ namespace collarmesh::brep {
 
 struct CadModel::Parts {
   std::string name;
+  CadLabels labels;
   double diagonal = 0;
   Topology topology;
   Tessellation tessellation;

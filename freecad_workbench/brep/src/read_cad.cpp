@@ -16,6 +16,7 @@
 #include <new>
 
 #include "collarmesh/brep/cad_model.h"
+#include "step_labels.h"
 #include "topology.h"
 
 namespace collarmesh::brep {
@@ -62,10 +63,8 @@ TopoDS_Shape read_brep(const std::string& path) {
   return shape;
 }
 
-template <class Reader>
-TopoDS_Shape read_exchange(const std::string& path, const char* format) {
+TopoDS_Shape read_exchange(const std::string& path, const char* format, XSControl_Reader& reader) {
   Interface_Static::SetCVal("xstep.cascade.unit", "MM");
-  Reader reader;
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
     throw ReadError(fmt::format("{}: this is no {} file, or it ends early", path, format));
   reader.TransferRoots();
@@ -75,13 +74,36 @@ TopoDS_Shape read_exchange(const std::string& path, const char* format) {
   return shape;
 }
 
-TopoDS_Shape read_shape(const std::string& path, CadFormat format) {
+/// Returns no labels where OpenCASCADE fails at them: the shape alone matters.
+CadLabels labels_of(const STEPControl_Reader& reader, const TopoDS_Shape& shape) {
+  try {
+    return step_labels(reader, shape);
+  } catch (const Standard_OutOfMemory&) {
+    throw;
+  } catch (const Standard_Failure&) {
+    return {};
+  }
+}
+
+TopoDS_Shape read_step(const std::string& path, CadLabels& labels) {
+  STEPControl_Reader reader;
+  TopoDS_Shape shape = read_exchange(path, "STEP", reader);
+  labels = labels_of(reader, shape);
+  return shape;
+}
+
+TopoDS_Shape read_iges(const std::string& path) {
+  IGESControl_Reader reader;
+  return read_exchange(path, "IGES", reader);
+}
+
+TopoDS_Shape read_shape(const std::string& path, CadFormat format, CadLabels& labels) {
   Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
   try {
     switch (format) {
       case CadFormat::brep: return read_brep(path);
-      case CadFormat::step: return read_exchange<STEPControl_Reader>(path, "STEP");
-      case CadFormat::iges: return read_exchange<IGESControl_Reader>(path, "IGES");
+      case CadFormat::step: return read_step(path, labels);
+      case CadFormat::iges: return read_iges(path);
       case CadFormat::other: break;
     }
   } catch (const Standard_OutOfMemory&) {
@@ -95,7 +117,9 @@ TopoDS_Shape read_shape(const std::string& path, CadFormat format) {
 }  // namespace
 
 CadModel read_cad(const std::string& path, std::string_view format, const CadOptions& options) {
-  return {read_shape(path, cad_format_of(path, format)), path, options};
+  CadLabels labels;
+  const TopoDS_Shape shape = read_shape(path, cad_format_of(path, format), labels);
+  return {shape, path, options, std::move(labels)};
 }
 
 }  // namespace collarmesh::brep

@@ -22,12 +22,20 @@ function table(rows) {
 // Names of regions and faces, as everywhere on the page: those given, else those of CAD files, else numbers.
 function namesOf(report) {
   const cad = report.inputs.some(path => /\.(step|stp|iges|igs|brep|brp)$/i.test(path));
-  const regions = new Map(report.complex.regions.map(r => [r.region, r.name.split(/[/,] ?/).pop() || `region ${r.tag}`]));
+  const regions = new Map(report.complex.regions.map(r => [r.region, r.name || r.input.split('/').pop() || `region ${r.tag}`]));
   const all = [...regions.values()];
   for (const { region, tag } of report.complex.regions)  // several of one file
     if (all.filter(name => name === regions.get(region)).length > 1) regions.set(region, `${regions.get(region)} ${tag}`);
   const faces = new Map(report.complex.patch_list.map(p => [p.tag, p.name || (cad ? `Face${p.tag}` : `patch ${p.tag}`)]));
   return { region: number => regions.get(number) || `region ${number}`, face: tag => faces.get(tag) || `patch ${tag}` };
+}
+
+// Returns the colours of the file: of faces by number in face_tags, of regions by theirs. Undefined where it has none.
+function coloursOf(report, shown) {
+  const faces = new Map(report.complex.patch_list.map(p => [p.tag, p.colour]));
+  const regions = new Map(report.complex.regions.map(r => [r.region, r.colour]));
+  const found = { faces: shown.face_tags.map(tag => faces.get(tag)), regions };
+  return [...found.faces, ...regions.values()].some(Boolean) ? found : undefined;
 }
 
 function place(where, show) {

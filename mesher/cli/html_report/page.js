@@ -27,6 +27,7 @@ async function open() {
     return;
   }
   const mesh = await readMesh(shown, document.getElementById('data').textContent);
+  mesh.colours = coloursOf(report, shown);
   view = new View(shown, mesh, names, report.second_order ? report.second_order.straightened : []);
   follow(location.hash, view, shown);
   window.addEventListener('hashchange', () => follow(location.hash, view, shown));

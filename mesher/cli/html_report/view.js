@@ -91,18 +91,35 @@ function faceColour(number) {
   return new THREE.Color().setHSL((0.58 + 0.381966 * number) % 1, 0.45, [0.68, 0.58, 0.76][number % 3]);
 }
 
+// Inside of a region its own.
+function fileColour(mesh, number, region) {
+  return mesh.colours && (mesh.colours.faces[number] || mesh.colours.regions.get(region)) || markColours.plain;
+}
+
 function colourOf(mesh, face, by) {
   const tet = face >> 2;
   if (by === 'face') {
     const number = tagNumberOf(mesh, face);
     return number === undefined ? markColours.plain : faceColour(number);
   }
+  if (by === 'file') return fileColour(mesh, tagNumberOf(mesh, face), mesh.region[tet]);
   if (by === 'region') return regionColours[(mesh.region[tet] + regionColours.length - 1) % regionColours.length];
   if (by === 'angle') return angleColours.filter(([least]) => mesh.smallest[tet] >= least).pop()[1];
   return mesh.marks[tet] & (by === 'collar' ? 1 : 2) ? markColours.marked : markColours.plain;
 }
 
+// The faces with each colour.
+function fileLegend(mesh, shown, names) {
+  const named = new Map();
+  mesh.colours.faces.forEach((colour, number) => {
+    const key = colour || markColours.plain;
+    named.set(key, [...(named.get(key) || []), names.face(shown.face_tags[number])]);
+  });
+  return [...named].map(([colour, faces]) => [colour, faces.length > 4 ? `${faces.slice(0, 3).join(', ')} and ${faces.length - 3} more` : faces.join(', ')]);
+}
+
 function legend(mesh, shown, names, by) {
+  if (by === 'file') return mesh.colours ? fileLegend(mesh, shown, names) : [];
   if (by === 'face')
     return shown.face_tags.map((tag, number) => [`#${faceColour(number).getHexString()}`, names.face(tag)]);
   if (by === 'angle') return angleColours.map(([least, colour]) => [colour, `from ${least}°`]);
@@ -117,6 +134,7 @@ class View {
     this.shown = shown;
     this.mesh = mesh;
     this.names = names;
+    document.querySelector('#colour option[value=file]').hidden = !mesh.colours;
     this.canvas = document.getElementById('canvas');
     this.box = new THREE.Box3().setFromArray(mesh.points);
     this.diagonal = this.box.getSize(new THREE.Vector3()).length();

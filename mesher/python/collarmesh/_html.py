@@ -1,7 +1,7 @@
 """A mesh in a notebook: a table of the certificate and the figures."""
 
 import html
-from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
+from typing import Any, Dict, List, Mapping, Optional, Tuple
 
 from ._types import MeshFigures
 
@@ -14,7 +14,6 @@ def table_of(
     repairs: List[str],
     figures: MeshFigures,
     check: Mapping[str, Any],
-    name_of_region: Callable[[int], str],
 ) -> str:
     """passed: None for a mesh that was not made here."""
     verdict = {True: "every guarantee holds", False: "a guarantee does not hold", None: "not certified"}[passed]
@@ -30,7 +29,7 @@ def table_of(
         text = f"volume {volume:.6g}"
         if number in kept:
             text += f", {kept[number]['percent']:+.2f} % of the input's {kept[number]['input']:.6g}"
-        rows.append((name_of_region(int(number)), text))
+        rows.append((figures["region_names"].get(number, f"region_{number}"), text))
     lines = "".join(f"<tr><th style='text-align:left'>{html.escape(head)}</th>"
                     f"<td style='text-align:left'>{html.escape(text)}</td></tr>" for head, text in rows)
     return f"<table><caption>collarmesh.Mesh</caption>{lines}</table>"

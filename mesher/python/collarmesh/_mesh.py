@@ -91,7 +91,9 @@ class Mesh:
     tet_mid_nodes (m, 6), face_mid_nodes (k, 3), edge_mid_nodes (j,): nodes amid the edges ab, bc, ca, ad, bd, cd;
         empty for first order.
     feature_dimension, feature: (n,), the vertex (0), curve (1) or patch (2) that a point is on; 3, -1: none.
-    names: names of tags by dimension, {2: {3: "inlet"}} for patch 3; 1 curves, 3 regions.
+    names: names of tags by dimension, {2: {3: "inlet"}} for patch 3; 1 curves, 3 regions. Solids of STEP files have
+        those of their products.
+    colours: of a mesh made of a STEP file, in the same way: {2: {3: "#ff0000"}}.
     """
 
     points: Array
@@ -115,6 +117,7 @@ class Mesh:
     feature_dimension: Array
     feature: Array
     names: Dict[int, Dict[int, str]]
+    colours: Dict[int, Dict[int, str]]
 
     def __init__(
         self,
@@ -174,7 +177,7 @@ class Mesh:
         return mesh
 
     def __getstate__(self) -> Dict[str, Any]:
-        return {**self._arrays(), "check": self._check, **self._said}
+        return {**self._arrays(), "check": self._check, "colours": self.colours, **self._said}
 
     def __setstate__(self, state: Dict[str, Any]) -> None:
         arrays = {"tet_partition": numpy.empty(0, dtype=numpy.int64), **state}  # earlier versions had none
@@ -183,6 +186,7 @@ class Mesh:
             array.setflags(write=False)  # pickle gives arrays that can be written to
             setattr(self, name, array)
         self.names = state["names"]
+        self.colours = state.get("colours", {})
         self._cad_names = bool(state["cad_names"])
         self._check: Optional[Dict[str, Any]] = state.get("check")
         self._said = {key: state.get(key, []) for key in ("repairs", "notes", "warnings")}
@@ -373,8 +377,9 @@ class Mesh:
         return grid
 
     def plot(self, axes: Any = None) -> Any:
-        """Draw the boundary with matplotlib, a colour for each tag; on `axes` of three dimensions, or new ones,
-        which are returned. Raises ImportError without matplotlib."""
+        """Draw the boundary with matplotlib, in the colours of the STEP file or with one for each tag; on `axes` of
+        three dimensions, or new ones, which are returned. Raises ImportError without matplotlib."""
+        import matplotlib.colors
         import matplotlib.pyplot
         from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
@@ -382,6 +387,8 @@ class Mesh:
             axes = matplotlib.pyplot.figure().add_subplot(projection="3d")
         tags, colour = numpy.unique(self.face_tag, return_inverse=True)
         colours = matplotlib.pyplot.get_cmap("tab20")(colour % 20)
+        for tag, given in self.colours.get(2, {}).items():
+            colours[self.face_tag == tag] = matplotlib.colors.to_rgba(given)
         triangles = self.points[self.faces]
         axes.add_collection3d(Poly3DCollection(triangles, facecolors=colours, edgecolors="k", linewidths=0.2))
         low, high = self.points.min(axis=0), self.points.max(axis=0)
@@ -392,7 +399,7 @@ class Mesh:
     def _repr_html_(self) -> str:
         """What notebooks show: the certificate and the figures of the mesh."""
         return table_of(self.passed if self._check else None, self.findings, self.repairs, self.info()["mesh"],
-                        self._check or {}, lambda number: self.name(3, number))
+                        self._check or {})
 
     def __repr__(self) -> str:
         return f"<collarmesh.Mesh: {len(self.tets)} tets, {len(self.points)} points>"

@@ -85,6 +85,7 @@ class MeshFigures(TypedDict):
     max_thin_radius_edge: float
     max_collar_radius_edge: float
     region_volumes: Dict[str, float]
+    region_names: Dict[str, str]
     partitions: Optional[Partitions]
     histograms: Dict[str, Histogram]
     median_edge: float

@@ -117,6 +117,18 @@ Names names_of(const TagNames& names) {
 
 }  // namespace
 
+py::dict colours_of(const TagColours& colours) {
+  py::dict result;
+  const auto add = [&](int dimension, const std::map<Tag, Colour>& by_tag) {
+    std::map<Tag, std::string> texts;
+    for (const auto& [tag, colour] : by_tag) texts.emplace(tag, fmt::format("#{:06x}", colour));
+    if (!texts.empty()) result[py::int_(dimension)] = texts;
+  };
+  add(2, colours.patches);
+  add(3, colours.regions);
+  return result;
+}
+
 PolygonSoup soup_of(const py::dict& arrays) {
   PolygonSoup soup;
   soup.name = arrays["name"].cast<std::string>();

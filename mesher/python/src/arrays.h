@@ -5,6 +5,7 @@
 
 #include "collarmesh/locate.h"
 #include "collarmesh/polygon_soup.h"
+#include "collarmesh/tag_colours.h"
 #include "collarmesh/tet_mesh.h"
 
 /// Arrays of numpy to and from the library's types. The Python side has looked at their shapes and kinds.
@@ -14,6 +15,8 @@ namespace collarmesh::python {
 /// (s, 2), segment_tags (s,); holes (h, 3); regions (r, 5): place, tag, size; facet_holes (k, 4): facet,
 /// place. Throws OptionError for corners out of range.
 PolygonSoup soup_of(const pybind11::dict& arrays);
+/// A dict of dimension to a dict of tag to "#rrggbb".
+pybind11::dict colours_of(const TagColours& colours);
 /// The facets as triangles and polygons, in the same keys.
 pybind11::dict arrays_of(const PolygonSoup& soup);
 

@@ -141,6 +141,7 @@ py::dict mesh_of(const py::list& inputs, const py::dict& options, const py::obje
   arrays["check"] = parsed(cli::check_json(call->run.check));
   arrays["repairs"] = describe(call->run.repair);
   arrays["notes"] = call->input->notes();
+  arrays["colours"] = colours_of(call->input->colours());
   std::vector<std::string> warnings;
   for (const Plc::Warning& warning : call->run.plc.warnings) warnings.push_back(warning.message);
   arrays["warnings"] = warnings;

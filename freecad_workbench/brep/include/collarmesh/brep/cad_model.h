@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "collarmesh/brep/cad_formats.h"
+#include "collarmesh/brep/cad_labels.h"
 #include "collarmesh/geometry.h"
 #include "collarmesh/polygon_soup.h"
 
@@ -65,14 +66,17 @@ struct CadMeasures {
 /// (module.cpp).
 class CadModel {
  public:
-  /// Throws PlcError for a shape without solids and faces. The result does not depend on the number of cores.
-  CadModel(const TopoDS_Shape& shape, std::string name, const CadOptions& options = {});
+  /// `labels`: of the shape's sub-shapes. Throws PlcError for a shape without solids and faces. The result
+  /// does not depend on the number of cores.
+  CadModel(const TopoDS_Shape& shape, std::string name, const CadOptions& options = {},
+           CadLabels labels = {});
   virtual ~CadModel();
   CadModel(CadModel&&) noexcept;
   CadModel& operator=(CadModel&&) noexcept;
 
   virtual const std::string& name() const;
   virtual double diagonal() const;  ///< of the box around it
+  virtual const CadLabels& labels() const;
 
   /// Triangles of all faces: one soup for each solid and a last one for the faces that belong to none.
   /// Neighbouring faces share the points of their edges. Vertices, edges and faces of the shape are

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "collarmesh/brep/cad_labels.h"
+
+class STEPControl_Reader;
+class TopoDS_Shape;
+
+namespace collarmesh::brep {
+
+/// Reads names of products and solids and colours of faces and solids. Their numbers are those of `shape`,
+/// which the reader has made of all roots. Cost: linear in the entities of the file.
+CadLabels step_labels(const STEPControl_Reader& reader, const TopoDS_Shape& shape);
+
+}  // namespace collarmesh::brep

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+
+#include "collarmesh/geometry.h"
+
+namespace collarmesh {
+
+/// 0xRRGGBB, as screens take it (sRGB).
+using Colour = std::uint32_t;
+
+/// Colours that a CAD file gives to the tags of patches and regions.
+struct TagColours {
+  std::map<Tag, Colour> patches, regions;
+  bool empty() const { return patches.empty() && regions.empty(); }
+};
+
+}  // namespace collarmesh
