@@ -45,8 +45,13 @@ foreach(pair ${PROJECT_BINARY_DIR}/package/changelog.Debian,changelog.Debian ${P
   list(GET pair 0 source)
   list(GET pair 1 name)
   execute_process(COMMAND gzip -9n -c ${source} OUTPUT_FILE ${PROJECT_BINARY_DIR}/package/${name}.gz)
-  install(FILES ${PROJECT_BINARY_DIR}/package/${name}.gz DESTINATION ${CMAKE_INSTALL_DOCDIR})
 endforeach()
+install(FILES ${PROJECT_BINARY_DIR}/package/changelog.gz DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# Debian's is of use in a package alone, which installs into /usr.
+install(CODE "if(CMAKE_INSTALL_PREFIX MATCHES \"/usr/?$\")
+  file(INSTALL DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR}\" TYPE FILE
+    FILES \"${PROJECT_BINARY_DIR}/package/changelog.Debian.gz\")
+endif()")
 install(FILES ${PROJECT_BINARY_DIR}/package/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 set(CPACK_GENERATOR DEB)

@@ -81,16 +81,18 @@ Stopped reason_to_stop() {
   if (signals.load(std::memory_order_relaxed) > 0) return Cancelled();
   const std::lock_guard lock(deadline_mutex);
   if (out_of_processor_time.load(std::memory_order_relaxed))
-    return {ExitCode::budget_hit,
-            fmt::format(
-                "the system's limit of CPU time is reached ({}); nothing was written; raise it (ulimit "
-                "-t), or --size for a coarser mesh; what is much finer than that, --repair wrap leaves out",
-                stage_told)};
-  return {ExitCode::budget_hit,
-          fmt::format(
-              "the time limit of {} s is reached ({}); nothing was written; raise --time-limit, or --size "
-              "for a coarser mesh; what is much finer than that, --repair wrap leaves out",
-              time_limit, stage_told)};
+    return {
+        ExitCode::budget_hit,
+        fmt::format(
+            "the system's limit of CPU time is reached ({}); nothing was written; raise it (ulimit -t), or "
+            "--size for a coarser mesh, or use --repair wrap, which ignores detail much finer than the size",
+            stage_told)};
+  return {
+      ExitCode::budget_hit,
+      fmt::format(
+          "the time limit of {} s is reached ({}); nothing was written; raise --time-limit, or --size for a "
+          "coarser mesh, or use --repair wrap, which ignores detail much finer than the size",
+          time_limit, stage_told)};
 }
 
 }  // namespace

@@ -62,13 +62,13 @@ void check_not_corners(const Subject& subject, Findings& findings) {
 void check_shared(const Subject& subject, Findings& findings) {
   std::vector<MidNode> nodes = mid_nodes(subject.mesh);
   const auto report = [&](const MidNode& first, const MidNode& second, const char* what) {
-    findings.add(
-        guarantee::mid_nodes, subject.midpoint(second.edge), {first.node, second.node},
-        "{} {} has the node {} amid the edge of points {} and {} at {}, {} {} has the node {} amid that of "
-        "{} and {}: {}.",
-        name_of_cell(first.dimension), first.cell, first.node, first.edge[0], first.edge[1],
-        At{subject.midpoint(first.edge)}, name_of_cell(second.dimension), second.cell, second.node,
-        second.edge[0], second.edge[1], what);
+    findings.add(guarantee::mid_nodes, subject.midpoint(second.edge), {first.node, second.node},
+                 "{} {} has the mid-edge node {} between points {} and {} at {}, {} {} has the mid-edge node "
+                 "{} between "
+                 "{} and {}: {}.",
+                 name_of_cell(first.dimension), first.cell, first.node, first.edge[0], first.edge[1],
+                 At{subject.midpoint(first.edge)}, name_of_cell(second.dimension), second.cell, second.node,
+                 second.edge[0], second.edge[1], what);
   };
   // Tets come first, so that findings name cells that differ from them.
   const auto before = [](const MidNode& a, const MidNode& b) {

@@ -80,7 +80,7 @@ std::vector<Option> size_options() {
        .place = in_mesh<&MeshOptions::size>,
        .unit = Unit::length,
        .default_text = "1/20 of the diagonal",
-       .help = "Target edge length everywhere"},
+       .help = "Target edge length everywhere; 0: the default"},
       {.name = "size-min LENGTH",
        .place = in_mesh<&MeshOptions::size_min>,
        .unit = Unit::length,

@@ -15,6 +15,16 @@ std::string first_place(const RepairPlaces& places) {
 
 const char* plural(std::size_t count) { return count == 1 ? "" : "s"; }
 
+/// How far the facets are from the input.
+std::string moved_text(const RepairReport& r) {
+  if (r.largest_distance == 0 && r.largest_distance_of_input == 0) return "repair moved nothing";
+  return fmt::format(
+      "the repaired surface is within {:.3g} of the input, and the input, except for parts inside solids, "
+      "within "
+      "{:.3g} of the repaired surface",
+      r.largest_distance, r.largest_distance_of_input);
+}
+
 }  // namespace
 
 std::vector<std::string> describe(const RepairReport& r) {
@@ -68,11 +78,7 @@ std::vector<std::string> describe(const RepairReport& r) {
   if (!r.lost_tags.empty())
     lines.push_back(fmt::format("nothing is left of the facets with tag{} {}", plural(r.lost_tags.size()),
                                 fmt::join(r.lost_tags, ", ")));
-  if (r.repaired && !r.wrapped)
-    lines.push_back(
-        fmt::format("the repaired facets are within {:.3g} of the input, and the input, but for what lies "
-                    "inside of them, within {:.3g} of them",
-                    r.largest_distance, r.largest_distance_of_input));
+  if (r.repaired && !r.wrapped) lines.push_back(moved_text(r));
   if (r.wrapped)
     lines.push_back(
         fmt::format("a closed surface was wrapped around everything; it keeps within {:.3g} of the input",
