@@ -1,6 +1,6 @@
-# Optional formats on HDF5: .xdmf (package libhdf5-dev) and .med (package libmedc-dev). Debian builds MED
+# Optional formats on HDF5: .xdmf and .cgns (package libhdf5-dev) and .med (package libmedc-dev). Debian builds MED
 # with the HDF5 of OpenMPI; a program must not hold two of them, so then XDMF takes that one too.
-option(COLLARMESH_HDF5_FORMATS "Write .xdmf and .med where HDF5 and MED are found" ${PROJECT_IS_TOP_LEVEL})
+option(COLLARMESH_HDF5_FORMATS "Write .xdmf, .cgns and .med where HDF5 and MED are found" ${PROJECT_IS_TOP_LEVEL})
 
 set(COLLARMESH_HAS_XDMF OFF)
 set(COLLARMESH_HAS_MED OFF)
@@ -23,4 +23,4 @@ if(COLLARMESH_HDF5_FORMATS)
     endif()
   endif()
 endif()
-message(STATUS "Formats on HDF5: .xdmf ${COLLARMESH_HAS_XDMF}, .med ${COLLARMESH_HAS_MED}")
+message(STATUS "Formats on HDF5: .xdmf and .cgns ${COLLARMESH_HAS_XDMF}, .med ${COLLARMESH_HAS_MED}")
