@@ -173,9 +173,9 @@ class Inputs(unittest.TestCase):
         except ImportError:
             self.skipTest("matplotlib is not installed")
         matplotlib.use("agg")
-        drawn = mesh.plot().collections[0].get_facecolor()
+        drawn = numpy.array(mesh.plot().collections[0].get_facecolor())
         for colour, tags in (((0, 0, 1, 1), [1]), ((1, 0, 0, 1), [2, 3, 4, 5, 6])):
-            self.assertEqual((drawn == colour).all(axis=1).sum(), numpy.isin(mesh.face_tag, tags).sum())
+            self.assertEqual((drawn == numpy.array(colour)).all(axis=1).sum(), numpy.isin(mesh.face_tag, tags).sum())
 
     def test_a_complex_with_a_hole_a_region_and_an_open_facet(self):
         outer, _, _ = box((0, 0, 0), (3, 3, 3))

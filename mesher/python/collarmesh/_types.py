@@ -6,13 +6,16 @@ from typing import Dict, List, Optional, TypedDict
 class Region(TypedDict):
     region: int
     tag: int
-    name: str
+    name: Optional[str]
+    input: str
+    colour: Optional[str]
     volume: float
 
 
 class Patch(TypedDict):
     tag: int
     name: Optional[str]
+    colour: Optional[str]
     patches: int
     planar: bool
     area: float
