@@ -4,46 +4,32 @@
     make_package.py OUTPUT [--site URL] [--maintainer NAME] [--email ADDRESS] [--date YYYY-MM-DD]
 
 OUTPUT ending in .zip holds a folder collarmesh, to be unpacked into FreeCAD's folder Mod. The options replace what package.xml
-of the sources says; its date is that of the last commit, or of SOURCE_DATE_EPOCH. The program is none of the add-on.
+of the sources says; its date is that of the last commit, or of SOURCE_DATE_EPOCH. The program is none of
+the add-on; packaging/make_archive.py makes an archive with it inside.
 """
 
 import argparse
-import datetime
-import os
 import pathlib
 import re
 import shutil
-import subprocess
+import sys
 import tempfile
 import zipfile
 
 HERE = pathlib.Path(__file__).resolve().parent
+sys.path.append(str(HERE.parent / "packaging"))
+import project  # noqa: E402
 PARTS = ("freecad", "translations", "macros")
 KINDS = {".py", ".svg", ".qm"}
 SITE, MAINTAINER, EMAIL = "https://example.org/collarmesh", "The collarmesh maintainers", "collarmesh@example.org"
 FIRST_DATE = (1980, 1, 1, 0, 0, 0)  # the earliest that a .zip knows
 
 
-def version():
-    """The project's."""
-    text = (HERE.parent / "CMakeLists.txt").read_text(encoding="utf-8")
-    return re.search(r"project\(collarmesh VERSION (\S+)", text)[1]
-
-
-def date():
-    """Of the sources."""
-    seconds = os.environ.get("SOURCE_DATE_EPOCH", "")
-    if not seconds:
-        git = ["git", "-C", HERE, "log", "-1", "--format=%ct"]
-        seconds = subprocess.run(git, check=True, capture_output=True, text=True).stdout
-    return datetime.datetime.fromtimestamp(int(seconds), datetime.timezone.utc).date().isoformat()
-
-
 def metadata(site=SITE, maintainer=MAINTAINER, email=EMAIL, day=""):
     """The text of package.xml."""
     text = (HERE / "package.xml").read_text(encoding="utf-8")
-    for pattern, value in ((r"<version>.*?</version>", f"<version>{version()}</version>"),
-                           (r"<date>.*?</date>", f"<date>{day or date()}</date>")):
+    for pattern, value in ((r"<version>.*?</version>", f"<version>{project.version()}</version>"),
+                           (r"<date>.*?</date>", f"<date>{day or project.date()}</date>")):
         text, count = re.subn(pattern, value, text)
         if count != 1:
             raise SystemExit(f"package.xml has {count} times {pattern}")
@@ -78,13 +64,18 @@ def pack(folder, output):
             archive.writestr(entry, path.read_bytes())
 
 
-def main():
-    parser = argparse.ArgumentParser(description="The add-on for FreeCAD's Add-on Manager.")
-    parser.add_argument("output", type=pathlib.Path)
+def add_details(parser):
+    """Options for what `metadata` takes."""
     parser.add_argument("--site", default=SITE)
     parser.add_argument("--maintainer", default=MAINTAINER)
     parser.add_argument("--email", default=EMAIL)
     parser.add_argument("--date", default="", dest="day")
+
+
+def main():
+    parser = argparse.ArgumentParser(description="The add-on for FreeCAD's Add-on Manager.")
+    parser.add_argument("output", type=pathlib.Path)
+    add_details(parser)
     details = vars(parser.parse_args())
     output = details.pop("output")
     if output.suffix != ".zip":

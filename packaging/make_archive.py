@@ -1,20 +1,24 @@
 #!/usr/bin/env python3
 """Archives of the program that run without installing anything: unpack, and run bin/collarmesh.
 
-    make_archive.py BUILD OUTPUT    BUILD: a folder in which collarmesh_product was built; OUTPUT: a folder
+    make_archive.py BUILD OUTPUT [options]    BUILD: a folder in which collarmesh_product was built; OUTPUT: a folder
 
-Two are written: collarmesh-...tar.gz, and collarmesh-freecad-...tar.gz, which is unpacked into FreeCAD's folder Mod.
-Needs patchelf, and ldd and objdump of the system that built the program.
+Two are written: collarmesh-...tar.gz, and collarmesh-freecad-...tar.gz, which is unpacked into FreeCAD's folder Mod. The
+options are those of freecad_workbench/make_package.py. Needs patchelf, and ldd and objdump of the system that built the program.
 """
 
+import argparse
 import pathlib
-import re
 import shutil
 import subprocess
 import sys
 import tempfile
 
+import project
 import self_contained
+
+sys.path.append(str(project.SOURCES / "freecad_workbench"))
+import make_package  # noqa: E402
 
 README = """collarmesh {version}, with its libraries, for Linux on x86-64 with the GNU C library {glibc} or newer.
 
@@ -23,10 +27,9 @@ The licence is in LICENSE; those of the libraries are in share/doc/collarmesh/li
 """
 
 
-def installed(build, prefix):
-    """`cmake --install`, without what programs of C++ and Python need."""
+def install(build, prefix):
+    """`cmake --install`."""
     subprocess.run(["cmake", "--install", build, "--prefix", prefix, "--strip"], check=True, stdout=subprocess.DEVNULL)
-    return prefix / "share/freecad/Mod/collarmesh"
 
 
 def copy_program(prefix, root):
@@ -42,14 +45,6 @@ def copy_program(prefix, root):
     shutil.copy2(next(prefix.glob("share/doc/**/LICENSE")), root)
 
 
-def add_addon(addon, root):
-    """FreeCAD's add-on at the base, as the Add-on Manager has it."""
-    shutil.copytree(addon, root, dirs_exist_ok=True)
-    described = root / "package.xml"
-    text = described.read_text(encoding="utf-8")
-    described.write_text(re.sub(r'file="[^"]*LICENSE"', 'file="LICENSE"', text), encoding="utf-8")
-
-
 def packed(root, output):
     """The same files give the same archive."""
     subprocess.run(["tar", "--sort=name", "--mtime=@0", "--owner=0", "--group=0", "--numeric-owner", "-C", root.parent,
@@ -58,22 +53,25 @@ def packed(root, output):
 
 
 def main():
-    build, output = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
+    parser = argparse.ArgumentParser(description="Archives of the program that run without installing anything.")
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("output", type=pathlib.Path)
+    make_package.add_details(parser)
+    details = vars(parser.parse_args())
+    build, output = details.pop("build").resolve(), details.pop("output").resolve()
     output.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="collarmesh-archive-") as folder:
         folder = pathlib.Path(folder)
-        addon = installed(build, folder / "prefix")
+        install(build, folder / "prefix")
         root = folder / "collarmesh"
         copy_program(folder / "prefix", root)
         libraries = self_contained.carry_libraries(root, root / "lib")
         self_contained.add_licences(libraries, root / "share/doc/collarmesh/libraries")
         glibc = ".".join(map(str, self_contained.glibc_needed(root)))
-        version = subprocess.run([root / "bin/collarmesh", "--version"], check=True, capture_output=True,
-                                 text=True).stdout.split()[-1]
-        (root / "README").write_text(README.format(version=version, glibc=glibc), encoding="utf-8")
-        name = f"{version}-linux-x86_64-glibc{glibc}.tar.gz"
+        (root / "README").write_text(README.format(version=project.version(), glibc=glibc), encoding="utf-8")
+        name = f"{project.version()}-linux-x86_64-glibc{glibc}.tar.gz"
         packed(root, output / f"collarmesh-{name}")
-        add_addon(addon, root)
+        make_package.lay_out(root, **details)
         packed(root, output / f"collarmesh-freecad-{name}")
 
 

@@ -9,7 +9,6 @@ import base64
 import hashlib
 import os
 import pathlib
-import re
 import shutil
 import subprocess
 import sys
@@ -17,7 +16,9 @@ import sysconfig
 import tempfile
 import zipfile
 
-SOURCES = pathlib.Path(__file__).resolve().parents[1]
+import project
+
+SOURCES = project.SOURCES
 MEMORY_OF_A_COMPILER = 1 << 31  # bytes
 PLATFORM = f"linux_{os.uname().machine}"
 METADATA = """Metadata-Version: 2.1
@@ -31,10 +32,6 @@ Requires-Dist: numpy
 """
 
 
-def version():
-    return re.search(r"project\(collarmesh VERSION ([\d.]+)", (SOURCES / "CMakeLists.txt").read_text())[1]
-
-
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     """pip's entry; returns the name of the wheel."""
     with tempfile.TemporaryDirectory(prefix="collarmesh-wheel-") as folder:
@@ -46,7 +43,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
 
 def build_sdist(sdist_directory, config_settings=None):
     """pip's entry; returns the name of an archive of the sources."""
-    name = f"collarmesh-{version()}"
+    name = f"collarmesh-{project.version()}"
     subprocess.run(["git", "-C", SOURCES, "archive", f"--prefix={name}/", "-o",
                     pathlib.Path(sdist_directory).resolve() / f"{name}.tar.gz", "HEAD"], check=True)
     return f"{name}.tar.gz"
@@ -100,18 +97,18 @@ def packages_needed():
 
 def describe(root):
     """Write what pip wants to know of the wheel; returns its name."""
-    information = root / f"collarmesh-{version()}.dist-info"
+    information = root / f"collarmesh-{project.version()}.dist-info"
     information.mkdir()
     python = "cp" + sysconfig.get_config_var("py_version_nodot")
     tag = f"{python}-{python}-{PLATFORM}"
     readme = (SOURCES / "README.md").read_text(encoding="utf-8")
     for name, text in {
-            "METADATA": f"{METADATA.format(version=version())}Description-Content-Type: text/markdown\n\n{readme}",
+            "METADATA": f"{METADATA.format(version=project.version())}Description-Content-Type: text/markdown\n\n{readme}",
             "WHEEL": f"Wheel-Version: 1.0\nGenerator: collarmesh\nRoot-Is-Purelib: false\nTag: {tag}\n",
             "entry_points.txt": "[console_scripts]\ncollarmesh = collarmesh.__main__:main\n"}.items():
         (information / name).write_text(text, encoding="utf-8")
     shutil.copyfile(SOURCES / "LICENSE", information / "LICENSE")
-    return f"collarmesh-{version()}-{tag}.whl"
+    return f"collarmesh-{project.version()}-{tag}.whl"
 
 
 def pack(root, wheel):
