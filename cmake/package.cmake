@@ -8,8 +8,8 @@ install(FILES LICENSE freecad_workbench/README.md DESTINATION ${CMAKE_INSTALL_DA
 # Whoever makes packages for others puts in their own name.
 set(COLLARMESH_MAINTAINER "The collarmesh maintainers <collarmesh@example.org>" CACHE STRING "of the Debian package")
 
-# What Debian asks for beside the files: who may copy it, and what changed.
-file(WRITE ${PROJECT_BINARY_DIR}/package/copyright "Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
+# What Debian asks for beside the files: who may copy it, and what changed. `cmake --install` leaves it out.
+file(WRITE ${PROJECT_BINARY_DIR}/package/doc/copyright "Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
 Upstream-Name: collarmesh
 
 Files: *
@@ -44,15 +44,8 @@ foreach(pair ${PROJECT_BINARY_DIR}/package/changelog.Debian,changelog.Debian ${P
   string(REPLACE "," ";" pair ${pair})
   list(GET pair 0 source)
   list(GET pair 1 name)
-  execute_process(COMMAND gzip -9n -c ${source} OUTPUT_FILE ${PROJECT_BINARY_DIR}/package/${name}.gz)
+  execute_process(COMMAND gzip -9n -c ${source} OUTPUT_FILE ${PROJECT_BINARY_DIR}/package/doc/${name}.gz)
 endforeach()
-install(FILES ${PROJECT_BINARY_DIR}/package/changelog.gz DESTINATION ${CMAKE_INSTALL_DOCDIR})
-# Debian's is of use in a package alone, which installs into /usr.
-install(CODE "if(CMAKE_INSTALL_PREFIX MATCHES \"/usr/?$\")
-  file(INSTALL DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR}\" TYPE FILE
-    FILES \"${PROJECT_BINARY_DIR}/package/changelog.Debian.gz\")
-endif()")
-install(FILES ${PROJECT_BINARY_DIR}/package/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME collarmesh)
@@ -67,6 +60,7 @@ The package has the program, an add-on for FreeCAD, a Python module where it
 was built, and a C++ library to link with.")
 set(CPACK_PACKAGE_CONTACT ${COLLARMESH_MAINTAINER})
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_INSTALLED_DIRECTORIES ${PROJECT_BINARY_DIR}/package/doc ${CPACK_PACKAGING_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR})
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
