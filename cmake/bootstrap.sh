@@ -5,6 +5,7 @@
 build_dir=$root/build/release
 binary=$build_dir/bin/collarmesh
 stamp=$build_dir/.collarmesh-built
+package_lists=/var/lib/dpkg/info
 
 complain() {
   printf 'collarmesh: %s\n' "$@" >&2
@@ -61,6 +62,18 @@ install_packages() {
   return 1
 }
 
+# Was a package that the program is built with installed or upgraded since?
+packages_changed() {
+  local group package list
+  while read -r group package; do
+    [ "$group" = build ] || continue
+    for list in "$package_lists/$package".list "$package_lists/$package":*.list; do
+      [ "$list" -nt "$stamp" ] && return 0
+    done
+  done <"$root/cmake/packages.txt"
+  return 1
+}
+
 # Is the program newer than every file it is made of?
 up_to_date() {
   [ -x "$binary" ] && [ -f "$stamp" ] || return 1
@@ -69,7 +82,7 @@ up_to_date() {
   [ -d "$root/freecad_workbench/brep" ] && parts+=("$root/freecad_workbench/brep")
   newer=$(find "${parts[@]}" \( -path "$root/mesher/doc" -o -path "$root/mesher/bench" -o -name __pycache__ \) -prune \
     -o -newer "$stamp" -print -quit)
-  [ -z "$newer" ]
+  [ -z "$newer" ] && ! packages_changed
 }
 
 # build TARGET [CMAKE OPTION...]: configure and build in $build_dir, one process at a time.

@@ -49,4 +49,23 @@ stand_in apt-get 'echo "E: no network"; exit 100'
 expect "a failure shows why" 1 'E: no network'
 expect "a failure says what to do" 1 'apt-get install .*libcgal-dev'
 
+# built_anew DESCRIPTION EXIT-CODE PACKAGE: is the program built anew (1) once this package was installed?
+built_anew() {
+  local code=0
+  : >"$work/info/$3"
+  (. "$root/cmake/bootstrap.sh" && binary=/bin/true stamp=$work/stamp package_lists=$work/info && up_to_date) || code=$?
+  if [ "$code" -ne "$2" ]; then
+    printf 'FAILED: %s: exit code %d\n' "$1" "$code"
+    failures=$((failures + 1))
+  fi
+  rm "$work/info/$3"
+}
+
+mkdir "$work/info"
+: >"$work/stamp"
+sleep 0.1
+built_anew "a package of another use" 0 gmsh.list
+built_anew "a library that comes later" 1 libmedc-dev.list
+built_anew "a library for several architectures" 1 libhdf5-dev:amd64.list
+
 [ $failures -eq 0 ]
