@@ -474,6 +474,13 @@ class Meshes(unittest.TestCase):
         matplotlib.use("agg")
         axes = self.mesh.plot()
         self.assertEqual(len(axes.collections), 1)
+        numbers = {str(tag) for tag in self.mesh.face_tag}
+        self.assertEqual({text.get_text() for text in axes.texts}, numbers)
+        named = collarmesh.mesh(MODELS / "box.off", size=0.5, names={"patches": {"loaded": 2}}).plot(curves=True)
+        self.assertEqual(sorted(text.get_text() for text in named.texts if text.get_color() == "k"),
+                         ["1", "3", "4", "5", "6", "loaded"])
+        self.assertEqual(len([text for text in named.texts if text.get_color() == "b"]), 12)
+        self.assertEqual(list(self.mesh.plot(labels=False).texts), [])
         with tempfile.TemporaryDirectory() as folder:
             axes.figure.savefig(os.path.join(folder, "box.png"))
 

@@ -376,9 +376,13 @@ class Mesh:
         grid.cell_data["collar"] = self.tet_collar
         return grid
 
-    def plot(self, axes: Any = None) -> Any:
+    def plot(self, axes: Any = None, *, labels: bool = True, curves: bool = False) -> Any:
         """Draw the boundary with matplotlib, in the colours of the STEP file or with one for each tag; on `axes` of
-        three dimensions, or new ones, which are returned. Raises ImportError without matplotlib."""
+        three dimensions, or new ones, which are returned. Raises ImportError without matplotlib.
+
+        labels: the numbers of faces, or their names.
+        curves: the numbers of edges, too.
+        """
         import matplotlib.colors
         import matplotlib.pyplot
         from mpl_toolkits.mplot3d.art3d import Poly3DCollection
@@ -394,7 +398,20 @@ class Mesh:
         low, high = self.points.min(axis=0), self.points.max(axis=0)
         axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
         axes.set_box_aspect(numpy.maximum(high - low, 1e-6 * (high - low).max()))
+        if labels:
+            self._label(axes, 2, triangles.mean(axis=1), self.face_tag)
+        if curves:
+            self._label(axes, 1, self.points[self.edges].mean(axis=1), self.edge_tag)
         return axes
+
+    def _label(self, axes: Any, dimension: int, centres: Array, tags: Array) -> None:
+        """Write what each tag is called at the middle one of its triangles or edges."""
+        for tag in numpy.unique(tags):
+            here = centres[tags == tag]
+            middle = here[numpy.linalg.norm(here - here.mean(axis=0), axis=1).argmin()]
+            given = self.names.get(dimension, {}).get(int(tag), str(tag))
+            axes.text(*middle, given, color="k" if dimension == 2 else "b", fontsize=8, ha="center", va="center",
+                      zorder=1e6, bbox={"boxstyle": "round,pad=0.15", "facecolor": "w", "edgecolor": "none", "alpha": 0.7})
 
     def _repr_html_(self) -> str:
         """What notebooks show: the certificate and the figures of the mesh."""
