@@ -178,7 +178,7 @@ std::string merge_text(const MergeReport& report) {
 
 std::string cleanup_text(const Plc::Cleanup& cleanup) {
   return counts_text("welded", {{cleanup.welded_points, "points to others"}}) +
-         counts_text("merged", {{cleanup.shared_triangles, "triangles of two surfaces into interfaces"}}) +
+         counts_text("merged", {{cleanup.shared_triangles, "triangles that parts have in common"}}) +
          counts_text("dropped", {{cleanup.degenerate_triangles, "triangles without an area"},
                                  {cleanup.repeated_triangles, "triangles that repeat another one"}});
 }

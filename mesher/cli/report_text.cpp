@@ -40,10 +40,11 @@ void append_creases(std::string& text, const Plc& plc, const std::vector<Crease>
   if (creases.size() > listed) fmt::format_to(Out(text), "    ... and {} more\n", creases.size() - listed);
 }
 
-/// `max_radius_edge`: 0 where there are only thin tets and collars.
+/// A ratio of 0 is that of no tetrahedron.
 std::string shape_text(double min_dihedral, double max_dihedral, double max_radius_edge) {
-  return fmt::format("dihedral angles from {:.2f} to {:.2f} degrees{}", min_dihedral, max_dihedral,
-                     max_radius_edge > 0 ? fmt::format(", radius-edge at most {:.4g}", max_radius_edge) : "");
+  return fmt::format("dihedral angles from {:.2f} to {:.2f} degrees, {}", min_dihedral, max_dihedral,
+                     max_radius_edge > 0 ? fmt::format("radius-edge at most {:.4g}", max_radius_edge)
+                                         : std::string("all tets thin or in collars"));
 }
 
 std::string times_text(const StageTimes& times) {
@@ -173,13 +174,13 @@ std::string mesh_text(const TetMesh& mesh, const MeshMeasures& m, const CheckRep
   std::string text;
   fmt::format_to(Out(text), "{} tets, {} points, {} boundary and interface triangles, {} curve edges\n",
                  mesh.tets.size(), mesh.points.size(), mesh.faces.size(), mesh.edges.size());
-  fmt::format_to(Out(text), "  {}{}{}\n", shape_text(m.min_dihedral, m.max_dihedral, m.max_radius_edge),
-                 m.max_thin_radius_edge > 0
-                     ? fmt::format(", of thin tets radius-edge at most {:.4g}", m.max_thin_radius_edge)
-                     : "",
-                 m.max_collar_radius_edge > 0
-                     ? fmt::format(", in collars radius-edge at most {:.4g}", m.max_collar_radius_edge)
-                     : "");
+  const char* const ratio = m.max_radius_edge > 0 ? "" : "radius-edge ";
+  fmt::format_to(
+      Out(text), "  {}{}{}\n", shape_text(m.min_dihedral, m.max_dihedral, m.max_radius_edge),
+      m.max_thin_radius_edge > 0 ? fmt::format(" ({}of thin tets {:.4g})", ratio, m.max_thin_radius_edge)
+                                 : "",
+      m.max_collar_radius_edge > 0 ? fmt::format(" ({}in collars {:.4g})", ratio, m.max_collar_radius_edge)
+                                   : "");
   if (judged != nullptr && judged->forced_tets > 0) text += "  " + forced_text(*judged);
   std::map<Index, std::string> names = names_of_regions(mesh);
   std::size_t line = 0;

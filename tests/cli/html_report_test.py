@@ -160,6 +160,7 @@ class InABrowser(ReportTest):
         whole, dom, picture = self.look(path)
         self.assertEqual(int(whole["triangles"]), report["mesh"]["faces"])
         self.assertIn("Every guarantee holds", dom)
+        self.assertRegex(dom, r"56,\d{3}\.\d+ \([+-]0\.\d\d % of the input's 56,390\.56\)")
         cut, _, picture_of_cut = self.look(path, "#cut=x,0.5&colour=region")
         self.assertNotEqual(cut["triangles"], whole["triangles"])
         self.assertNotEqual(picture, picture_of_cut)

@@ -33,6 +33,11 @@ class Guarantees(ProgramTest):
         self.assertGreater(len(report["findings"]), 0)
         self.assertTrue(all(f["message"] and len(f["where"]) == 3 for f in report["findings"]))
 
+    def test_where_all_tets_are_thin_no_ratio_of_others_is_told(self):
+        plate = self.write("plate.off", off_text(box_points(high=(30, 30, 0.2)), BOX_FACES))
+        run = self.expect(0, plate, "-o", self.out, "--size", "6", writes=True)
+        self.assertRegex(run.stderr, r"degrees, all tets thin or in collars \(radius-edge of thin tets \d+")
+
     def test_a_mesh_that_misses_a_guarantee_is_written(self):
         """A segment that leaves a corner at a small angle, without a collar: edges there become ever shorter."""
         points = box_points() + [(0.5, 0.05, 0.05)]

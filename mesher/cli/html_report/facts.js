@@ -14,6 +14,11 @@ function number(value) {
   return Number.isInteger(value) ? value.toLocaleString('en') : String(Number(value.toPrecision(4)));
 }
 
+// With enough digits to compare.
+function volume(value) {
+  return value.toLocaleString('en', { maximumSignificantDigits: 7 });
+}
+
 function table(rows) {
   return element('table', {}, ...rows.map(([name, value]) =>
     element('tr', {}, element('th', {}, name), element('td', {}, value))));
@@ -139,7 +144,7 @@ function ratios(mesh) {
 
 function kept(check, region) {
   const found = check.kept.region_volumes.find(each => each.number === region);
-  return found ? ` (${found.percent < 0 ? '' : '+'}${found.percent.toFixed(2)} % of the input's ${number(found.input)})` : '';
+  return found ? ` (${found.percent < 0 ? '' : '+'}${found.percent.toFixed(2)} % of the input's ${volume(found.input)})` : '';
 }
 
 function describe(report, shown, names, show) {
@@ -153,7 +158,7 @@ function describe(report, shown, names, show) {
   const diagonal = complex.diagonal, size = options.size ?? diagonal / 20;
   const changed = ['region_size', 'patch_size', 'curve_size'].flatMap(kind =>
     Object.entries(options[kind]).map(([tag, value]) => [`Size of ${kind.split('_')[0]} ${tag}`, number(value)]));
-  const regions = complex.regions.map(r => [`Volume of ${names.region(r.region)}`, number(mesh.region_volumes[r.region]) + kept(check, r.region)]);
+  const regions = complex.regions.map(r => [`Volume of ${names.region(r.region)}`, volume(mesh.region_volumes[r.region]) + kept(check, r.region)]);
   const warnings = [...report.warnings, ...complex.warnings.map(w => w.message), ...check.warnings, ...report.notes, ...check.notes];
   document.getElementById('facts').append(
     element('h2', {}, 'Asked for'),
