@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <set>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "collarmesh/io/tet_mesh_io.h"
 #include "collarmesh/partition.h"
@@ -176,9 +178,24 @@ std::string merge_text(const MergeReport& report) {
                                  {report.repeated_facets, "facets that repeat another one"}});
 }
 
+namespace {
+
+// Where parts touch: "; there patch 7 is patch 2, 9 is 3".
+std::string replaced_text(const std::vector<std::pair<Tag, Tag>>& replaced) {
+  constexpr std::size_t listed = 20;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(replaced.size(), listed); ++k)
+    text += text.empty() ? fmt::format("; there patch {} is patch {}", replaced[k].first, replaced[k].second)
+                         : fmt::format(", {} is {}", replaced[k].first, replaced[k].second);
+  return replaced.size() > listed ? fmt::format("{} and {} more", text, replaced.size() - listed) : text;
+}
+
+}  // namespace
+
 std::string cleanup_text(const Plc::Cleanup& cleanup) {
+  const std::string merged = "triangles that parts have in common" + replaced_text(cleanup.replaced_tags);
   return counts_text("welded", {{cleanup.welded_points, "points to others"}}) +
-         counts_text("merged", {{cleanup.shared_triangles, "triangles that parts have in common"}}) +
+         counts_text("merged", {{cleanup.shared_triangles, merged}}) +
          counts_text("dropped", {{cleanup.degenerate_triangles, "triangles without an area"},
                                  {cleanup.repeated_triangles, "triangles that repeat another one"}});
 }

@@ -99,6 +99,20 @@ class Numbers(ProgramTest):
             before = counts
         self.expect(2, self.box, "-o", self.out, "--patch-size", "7=0.1", says=["7", "1, 2, 3, 4, 5, 6"])
 
+    def test_where_parts_touch_one_number_stays(self):
+        """It is told which, in the summary and to those who use the other one."""
+        parts = []
+        for first, low in ((1, 0), (7, 1)):
+            points = box_points((low, 0, 0), (low + 1, 1, 1))
+            lines = [f"{len(points)} 3 0 0", *(f"{k} {p[0]} {p[1]} {p[2]}" for k, p in enumerate(points)), "6 1"]
+            lines += [f"1 0 {first + k}\n4 " + " ".join(map(str, face)) for k, face in enumerate(BOX_FACES)]
+            parts.append(self.write(f"{first}.poly", "\n".join([*lines, "0", "0"]) + "\n"))
+        run = self.expect(0, *parts, "-o", self.out, "--size", "1", writes=True)
+        self.assertIn("merged: 2 triangles that parts have in common; there patch 12 is patch 4\n", run.stderr)
+        self.out.unlink()
+        self.expect(2, *parts, "-o", self.out, "--patch-size", "12=0.2",
+                    says=["patch 12 lies on patch 4 of another part, whose number both have; use 4"])
+
     def test_a_mesh_with_numbers_passes_check(self):
         self.expect(0, self.box, "-o", self.out, "--size", "0.5", writes=True)
         run = self.run_program("check", self.out, "--against", self.box)

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "collarmesh/geometry.h"
@@ -70,6 +71,8 @@ struct Plc {
     Index degenerate_triangles = 0;  ///< triangles without an area, dropped
     Index repeated_triangles = 0;    ///< duplicates in one soup, dropped
     Index shared_triangles = 0;      ///< duplicates of several soups, which became interfaces
+    /// Of these triangles, sorted: the tag that is gone and the one in its place.
+    std::vector<std::pair<Tag, Tag>> replaced_tags;
   };
 
   /// A part of the input that has no effect or contradicts another part.

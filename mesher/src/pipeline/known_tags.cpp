@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <string>
 
@@ -31,11 +32,25 @@ void require_tags(const std::map<Tag, double>& sizes, const Features& features, 
   }
 }
 
+// Throws OptionError for a face that another one stands for, as both are where parts touch.
+void refuse_replaced_patches(const std::map<Tag, double>& sizes, const Plc& plc) {
+  for (const auto& [gone, stays] : plc.cleanup.replaced_tags) {
+    const auto found = sizes.find(gone);
+    const bool there = std::any_of(plc.patches.begin(), plc.patches.end(),
+                                   [gone = gone](const Plc::Patch& patch) { return patch.tag == gone; });
+    if (found != sizes.end() && !there)
+      throw OptionError(fmt::format(
+          "patch-size {}={}: patch {} lies on patch {} of another part, whose number both have; use {}", gone,
+          found->second, gone, stays, stays));
+  }
+}
+
 }  // namespace
 
 void require_known_tags(const MeshOptions& options, const Plc& plc) {
   const std::vector<Plc::Region> solids(
       plc.regions.begin() + std::min<std::ptrdiff_t>(1, std::ssize(plc.regions)), plc.regions.end());
+  refuse_replaced_patches(options.patch_size, plc);
   require_tags(options.region_size, solids, "region-size", "region");
   require_tags(options.patch_size, plc.patches, "patch-size", "patch");
   require_tags(options.curve_size, plc.curves, "curve-size", "curve");

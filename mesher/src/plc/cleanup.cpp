@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <set>
+#include <utility>
 
 #include "common/disjoint_sets.h"
 #include "plc/exact.h"
@@ -174,6 +176,7 @@ void remove_twins_within_soups(Draft& draft) {
 void merge_twins_across_soups(Draft& draft) {
   const std::vector<Twin> order = sort_by_corners(draft);
   std::vector<bool> removed(draft.triangles.size(), false);
+  std::set<std::pair<Tag, Tag>> replaced;
   for (std::size_t i = 1, first = 0; i < order.size(); ++i) {
     if (order[i].key != order[first].key) {
       first = i;
@@ -182,11 +185,14 @@ void merge_twins_across_soups(Draft& draft) {
     const Index kept = order[first].triangle, dropped = order[i].triangle;
     removed[dropped] = true;
     const Origin& origin = draft.origins[dropped];
+    const Tag tag = draft.origins[kept].tag;
+    if (origin.tag != tag) replaced.insert({origin.tag, tag});
     if (!origin.oriented && !draft.soup_is_complex[origin.soup]) continue;
     const bool alike = same_orientation(draft.triangles[kept], draft.triangles[dropped]);
     draft.claims.push_back({alike ? back_side(kept) : front_side(kept), origin.soup});
   }
   draft.cleanup.shared_triangles += compact(draft, removed);
+  draft.cleanup.replaced_tags.assign(replaced.begin(), replaced.end());
 }
 
 }  // namespace collarmesh::build
