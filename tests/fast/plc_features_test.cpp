@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "collarmesh/plc_builder.h"
 #include "support/plc_shapes.h"
@@ -45,6 +47,29 @@ TEST(PlcFeatures, CoplanarTrianglesAndCollinearPointsMerge) {
     EXPECT_EQ(plc.patches.size(), 6U);
     for (const auto& curve : plc.curves) EXPECT_EQ(curve.points.size(), 8U);
   }
+}
+
+// Triangles of CAD faces may be needles along an edge, which lie in the planes of both its faces within the
+// tolerance. Where the faces meet at an acute angle a needle is no fold of its own face.
+TEST(PlcFeatures, NeedlesAlongEdgesOfGivenFacesMakeNoSegments) {
+  constexpr double near = 1e-9;
+  PolygonSoup soup;
+  soup.given_features = true;
+  soup.points = {{0, 0, 0},
+                 {2, 0, 0},
+                 {0.5, 0.8, 0},
+                 {0, 0, 1},
+                 {2, 0, 1},
+                 {0.5, 0.8, 1},
+                 {0.5 * near, 0.8 * near, 0.5}};
+  soup.point_tags.assign(soup.points.size(), 0);
+  const std::vector<std::pair<std::vector<Index>, Tag>> facets{
+      {{0, 2, 1}, 1}, {{3, 4, 5}, 2}, {{0, 1, 4, 3}, 3}, {{1, 2, 5, 4}, 4},
+      {{0, 3, 6}, 5}, {{3, 5, 6}, 5}, {{5, 2, 6}, 5},    {{2, 0, 6}, 5}};
+  for (const auto& [corners, tag] : facets) soup.add_facet(corners, tag);
+  const Plc plc = build(soup);
+  EXPECT_EQ(plc.patches.size(), 5U);
+  EXPECT_EQ(plc.curves.size(), 9U);
 }
 
 TEST(PlcFeatures, PointsOffTheirPlaneWithinTheToleranceMakeNoSegments) {

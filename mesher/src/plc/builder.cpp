@@ -210,7 +210,8 @@ Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options) {
   if (options.require_solid) require_region(draft, edges, regions, soups, faults);
   faults.raise();
 
-  const auto segments = find_segments(draft, edges, find_flat_clusters(draft, edges), options.feature_angle);
+  const auto segments = find_segments(
+      draft, edges, find_flat_clusters(draft, edges, ClusterBorder::given_features), options.feature_angle);
   std::vector<Index> patch_of;
   const Index patch_count = find_patches(draft, edges, segments, patch_of);
   Plc plc;

@@ -25,9 +25,10 @@ double longest_side(const Draft& draft, Index t) {
 
 class ClusterFinder {
  public:
-  ClusterFinder(const Draft& draft, const EdgeTable& edges)
+  ClusterFinder(const Draft& draft, const EdgeTable& edges, ClusterBorder border)
       : draft_(draft),
         edges_(edges),
+        border_(border),
         areas_(draft.triangles.size()),
         heights_(draft.triangles.size()),
         grows_(draft.triangles.size(), false) {
@@ -90,7 +91,16 @@ class ClusterFinder {
 
   // Returns whether the triangle of this side, a neighbour of t in the seed's cluster, belongs to it, too.
   bool joins(Index side, Index t, Index seed) const {
-    return same_facet(t, side / 3) || in_plane(side, seed);
+    return same_facet(t, side / 3) || (!divided(t, side / 3) && in_plane(side, seed));
+  }
+
+  // Returns whether a given feature lies between two neighbours. A needle along it lies in the planes of both
+  // faces, but the normal that fits it is its own face's.
+  bool divided(Index s, Index t) const {
+    if (border_ == ClusterBorder::none) return false;
+    const Origin &a = draft_.origins[s], &b = draft_.origins[t];
+    return (a.soup != b.soup || a.tag != b.tag) &&
+           (draft_.soup_gives_features[a.soup] || draft_.soup_gives_features[b.soup]);
   }
 
   // A polygon is one plane, whatever rounding has done to its corners.
@@ -119,6 +129,7 @@ class ClusterFinder {
 
   const Draft& draft_;
   const EdgeTable& edges_;
+  ClusterBorder border_;
   std::vector<double> areas_, heights_;
   std::vector<bool> grows_;  // as a seed, when no other one was before
   std::vector<Index> stack_;
@@ -134,8 +145,8 @@ Vector unit_normal(const Draft& draft, Index triangle) {
   return length > 0 ? n / length : Vector{};
 }
 
-FlatClusters find_flat_clusters(const Draft& draft, const EdgeTable& edges) {
-  return ClusterFinder(draft, edges).run();
+FlatClusters find_flat_clusters(const Draft& draft, const EdgeTable& edges, ClusterBorder border) {
+  return ClusterFinder(draft, edges, border).run();
 }
 
 }  // namespace collarmesh::build

@@ -15,8 +15,15 @@ struct FlatClusters {
   std::vector<Vector> normal;  ///< by triangle, unit; of itself, or of its seed if it is a needle
 };
 
+/// Where a cluster ends besides.
+enum class ClusterBorder {
+  none,           ///< only where it leaves its plane
+  given_features  ///< between facets of different tags in soups that give their features
+};
+
 /// Cost: O(n log n).
-FlatClusters find_flat_clusters(const Draft& draft, const EdgeTable& edges);
+FlatClusters find_flat_clusters(const Draft& draft, const EdgeTable& edges,
+                                ClusterBorder border = ClusterBorder::none);
 
 /// Unit normal of a triangle of the draft.
 Vector unit_normal(const Draft& draft, Index triangle);
