@@ -14,6 +14,7 @@
 #include "cad_labels.h"
 #include "collarmesh/error.h"
 #include "collarmesh/name_features.h"
+#include "collarmesh/noise.h"
 #include "exact_measures.h"
 #include "input_files.h"
 #include "named_features.h"
@@ -164,6 +165,17 @@ Plc ComplexInput::build_valid(const PlcOptions& options, const RepairOptions& re
   return take(remove_noise(build_plc(soups_, options), soups_, options, repair, watched()));
 }
 
+/// As `build_valid`, or throws PlcError where there is noise and none is allowed: before its repair, which is
+/// the most work.
+Plc ComplexInput::build_finer(const PlcOptions& options, const RepairOptions& repair, bool with_noise) {
+  if (with_noise) return build_valid(options, repair);
+  Plc plc = build_plc(soups_, options);
+  if (has_noise(plc, repair)) throw PlcError("Finer triangles have features below the tolerance.", {});
+  RepairOptions none = repair;
+  none.mode = RepairMode::off;
+  return take(remove_noise(std::move(plc), soups_, options, none, watched()));
+}
+
 /// The complex with finer triangles of the faces whose triangles are too coarse for the mesh to come, if it
 /// is as good. Where one side of a wall is cut finely and the other is not, the wall becomes thinner: then
 /// all faces are.
@@ -176,11 +188,12 @@ Plc ComplexInput::resolved(Plc plc, const PlcOptions& options, const RepairOptio
       faces.emplace(plc.patches[patch].file, plc.patches[patch].tag);
   if (faces.empty()) return plc;
   const double most_off = std::max(volume_off(plc), little);
+  const bool noisy = has_noise(plc, repair);
   Built coarse = std::exchange(built_, {});
   for (const bool everywhere : {false, true}) {
     try {
       everywhere ? tessellate(finer) : tessellate(finer, faces);
-      Plc fine = build_valid(options, repair);
+      Plc fine = build_finer(options, repair, noisy);
       if (!built_.repaired.repaired && fine.regions.size() == plc.regions.size() &&
           volume_off(fine) <= most_off)
         return fine;

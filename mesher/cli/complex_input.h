@@ -74,6 +74,7 @@ class ComplexInput {
   const brep::CadLabels* labels() const;
   Plc build_unnamed(const PlcOptions& options, const RepairOptions& repair);
   Plc build_valid(const PlcOptions& options, const RepairOptions& repair);
+  Plc build_finer(const PlcOptions& options, const RepairOptions& repair, bool with_noise);
   Plc resolved(Plc plc, const PlcOptions& options, const RepairOptions& repair);
   Plc build_repaired(const PlcOptions& options, const RepairOptions& repair);
   PlcError with_advice(const PlcError& error, const RepairOptions& options) const;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "collarmesh/error.h"
+#include "collarmesh/noise.h"
 #include "collarmesh/repair.h"
 #include "support/repair_shapes.h"
 #include "support/shapes.h"
@@ -55,6 +56,19 @@ TEST(RepairBounds, GivesUpBeyondItsWork) {
   // Wrapping needs none of it.
   options.mode = RepairMode::wrap;
   EXPECT_TRUE(build_repaired_plc({&soup, 1}, {}, options).report.wrapped);
+}
+
+// Whether there is anything to remove is known before the work of removing it.
+TEST(RepairBounds, NoiseIsKnownBeforeItsRepair) {
+  RepairOptions off;
+  off.mode = RepairMode::off;
+  for (const double width : {1e-1, 1e-7}) {
+    const PolygonSoup slotted = slotted_box(width);
+    const Plc plc = build_plc({&slotted, 1}, {});
+    EXPECT_EQ(has_noise(plc), width < RepairOptions{}.tolerance) << width;
+    EXPECT_FALSE(has_noise(plc, off)) << width;
+    EXPECT_EQ(remove_noise(plc, {&slotted, 1}).report.repaired, has_noise(plc)) << width;
+  }
 }
 
 // A valid complex with features that cannot be removed within the work stays, with a warning.

@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 
+#include "collarmesh/noise.h"
 #include "plc/cleanup.h"
 #include "plc/draft.h"
 #include "plc/edges.h"
@@ -408,6 +409,10 @@ RepairResult repair(std::span<const PolygonSoup> soups, const RepairOptions& opt
   RepairResult result = repairer.run();
   if (result.report.repaired) repairer.measure(result.report);
   return result;
+}
+
+bool has_noise(const Plc& plc, const RepairOptions& options) {
+  return options.mode != RepairMode::off && find_noise(plc, options.tolerance * plc.bounds.diagonal());
 }
 
 RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcOptions& options,
