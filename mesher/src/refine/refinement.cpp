@@ -288,7 +288,7 @@ bool Refinement::check_gradation() {
 }
 
 bool Refinement::bound_narrow_cells() {
-  constexpr std::size_t times = 2, more = 5000;
+  constexpr std::size_t times = 2, more = 300;
   if (domain_.options.narrow_cells != NarrowCells::bounded_if_cheap || !cells_.bound_narrow_cells())
     return false;
   most_with_narrow_cells_ = times * mesh_.vertex_count() + more;
