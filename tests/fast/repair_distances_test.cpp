@@ -113,7 +113,7 @@ TEST(RepairDistances, OfAFinThatVanishes) {
   EXPECT_LT(r.report.largest_distance, r.report.tolerance);
   EXPECT_NEAR(r.report.largest_distance_of_input, 0.5, 1e-6);
   const auto lines = describe(r.report);
-  EXPECT_NE(lines.back().find("within 0.5 of them"), std::string::npos) << lines.back();
+  EXPECT_NE(lines.back().find("within 0.5 of the repaired surface"), std::string::npos) << lines.back();
 }
 
 }  // namespace
