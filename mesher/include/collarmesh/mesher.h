@@ -127,7 +127,7 @@ struct MeshResult {
   Point where;
   TetMesh mesh;
   MeshStatistics statistics;
-  bool has_narrow_cells = false;  ///< some were left (MeshOptions::narrow_cells)
+  bool has_narrow_cells = false;  ///< cells may have been left (MeshOptions::narrow_cells)
 };
 
 /// Mesh a complex: Sparse Voronoi Refinement (paper, Procedure 1).

@@ -33,7 +33,7 @@ bool Budget::spent(const Usage& now) {
     stop(MeshStatus::budget_hit, now,
          fmt::format("the memory budget of {} bytes is spent", options_.max_memory),
          fmt::format(more, "max-memory"));
-  else if (options_.time_limit > 0 && elapsed() > options_.time_limit)
+  else if (is_out_of_time())
     stop(MeshStatus::budget_hit, now, fmt::format("the time limit of {} s is reached", options_.time_limit),
          fmt::format(more, "time-limit"));
   return outcome_.stopped();

@@ -26,6 +26,7 @@ class Budget {
   /// Is something spent, or the caller no longer interested? Then the outcome says so.
   bool spent(const Usage& now);
 
+  bool is_out_of_time() const { return options_.time_limit > 0 && elapsed() > options_.time_limit; }
   /// Seconds since the start.
   double elapsed() const;
   std::size_t peak_bytes() const { return peak_bytes_; }

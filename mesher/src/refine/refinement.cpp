@@ -298,12 +298,16 @@ bool Refinement::bound_narrow_cells() {
 bool Refinement::check_collars() { return !outcome_.given_up() && collar_review_.check(); }
 
 bool Refinement::stopped(std::size_t planned_vertices) {
-  if (most_with_narrow_cells_ > 0 && mesh_.vertex_count() > most_with_narrow_cells_) {
-    narrow_cells_are_dear_ = true;
+  if (most_with_narrow_cells_ > 0 && mesh_.vertex_count() > most_with_narrow_cells_)
     outcome_.stop(MeshStatus::budget_hit, mesh_.point(mesh_.last_vertex()),
                   "narrow places take too many vertices", "leave them");
-    return true;
-  }
+  const bool spent = outcome_.stopped() || is_budget_spent(planned_vertices);
+  narrow_cells_are_dear_ =
+      most_with_narrow_cells_ > 0 && outcome_.status() == MeshStatus::budget_hit && !budget_.is_out_of_time();
+  return spent;
+}
+
+bool Refinement::is_budget_spent(std::size_t planned_vertices) {
   return budget_.spent({.vertices = mesh_.vertex_count(),
                         .cells = mesh_.cell_count(),
                         .bytes = bytes() + planned_vertices * bytes_of_ball,

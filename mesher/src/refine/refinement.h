@@ -42,7 +42,8 @@ class Refinement {
 
   /// Refine until nothing is left to do, a budget is spent or the caller cancels.
   MeshStatus run();
-  /// After run() returned budget_hit: did the bound on the ratio in narrow cells take too many vertices?
+  /// After run() returned budget_hit: was it within the budget until the ratio was bounded in narrow cells,
+  /// too?
   bool narrow_cells_are_dear() const { return narrow_cells_are_dear_; }
   /// After run() returned complete or guarantee_missed.
   Extracted extract() const;
@@ -90,6 +91,7 @@ class Refinement {
   bool bound_narrow_cells();
   /// Is a budget spent when so many vertices more will come at least?
   bool stopped(std::size_t planned_vertices = 0);
+  bool is_budget_spent(std::size_t planned_vertices);
   std::size_t bytes() const;
   bool too_early();
   WorkCounts work_counts() const;
