@@ -151,6 +151,38 @@ class Groups(unittest.TestCase):
             self.assertEqual(constraint.References, [(faces, (several[0],))])
             self.assertEqual(self.nodes_of(constraint), self.nodes_of_group(name))
 
+    def test_other_references(self):
+        """A plain list of links that has the name of constraints' references stays as it is."""
+        faces = constraint_faces.make(self.obj)
+        other = self.document.addObject("App::FeaturePython", "Other")
+        other.addProperty("App::PropertyLinkList", "References")
+        constraint = self.fixed((faces, ("Face2",)))
+        other.References = [faces, self.part]
+        constraint_faces._Observer().slotChangedObject(other, "References")
+        self.obj.CharacteristicLengthMax = 4
+        mesh_object.remesh(self.obj)
+        self.assertEqual(other.References, [faces, self.part])
+        self.assertEqual(self.nodes_of(constraint), self.nodes_of_group(faces.Groups[1]))
+
+    def test_force_on_a_group_and_a_face_of_a_part(self):
+        """Each gets its share by area, and the group on all of its faces."""
+        faces, fem_mesh = constraint_faces.make(self.obj), self.obj.FemMesh
+        curved = max(faces.Groups, key=faces.Groups.count)
+        box = self.document.addObject("Part::Box", "Box")
+        box.Length, box.Width, box.Height = LENGTH, WIDTH, HEIGHT
+        self.document.recompute()
+        bottom = next(i for i, each in enumerate(box.Shape.Faces, 1) if each.CenterOfMass.z == 0)
+        force = ObjectsFem.makeConstraintForce(self.document, "Force")
+        force.Force = FORCE
+        force.References = [(faces, (f"Face{faces.Groups.index(curved) + 1}",)), (box, (f"Face{bottom}",))]
+        tables = [table for _, table in meshtools.get_force_obj_face_nodeload_table(
+            fem_mesh, meshtools.get_femelement_table(fem_mesh), fem_mesh.Nodes, force)]
+        of_group, of_face = sorted(tables, key=lambda table: -max(fem_mesh.Nodes[node].z for node in table))
+        self.assertEqual(set(of_group), self.nodes_of_group(curved))
+        areas = [sum(face.Area for face, name in zip(faces.Shape.Faces, faces.Groups) if name == curved), LENGTH * WIDTH]
+        for table, area in zip((of_group, of_face), areas):
+            self.assertAlmostEqual(sum(map(float, table.values())) / FORCE, area / sum(areas), delta=1e-3)
+
     def test_edges_are_those_of_the_faces(self):
         faces = constraint_faces.make(self.obj)
         edge = next(i for i, each in enumerate(faces.Shape.Edges, 1) if each.Length > LENGTH - 1e-3)

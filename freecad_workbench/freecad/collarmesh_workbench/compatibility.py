@@ -2,6 +2,7 @@
 
 import contextlib
 import importlib
+import types
 
 import FreeCAD
 import ObjectsFem
@@ -125,8 +126,8 @@ def transaction(document, name):
 
 
 def write_constraints_on(elements_of):
-    """FreeCAD's writers for solvers look for the nodes of constraints by place. Have them take the nodes of the elements
-    that `elements_of(fem_mesh, object, name of a face)` gives, where it is not None."""
+    """FreeCAD's writers for solvers look for the nodes of constraints by place. Have them take the nodes of the
+    elements that `elements_of(fem_mesh, object, name of a face)` gives, where it is not None."""
     by_place, loads_by_place = meshtools.get_femnodes_by_refshape, meshtools.get_force_obj_face_nodeload_table
 
     def nodes(fem_mesh, reference):
@@ -140,13 +141,23 @@ def write_constraints_on(elements_of):
         return found
 
     def loads(fem_mesh, element_table, nodes_of_mesh, force):
-        elements = [elements_of(fem_mesh, obj, name) for obj, names in force.References for name in names]
-        if None in elements:
+        faces = [(obj, name) for obj, names in force.References for name in names]
+        elements = [elements_of(fem_mesh, *face) for face in faces]
+        others = [face for face, found in zip(faces, elements) if found is None]
+        if len(others) == len(faces):
             return loads_by_place(fem_mesh, element_table, nodes_of_mesh, force)
-        table = {each: fem_mesh.getElementNodes(each) for each in set().union(*elements)}
+        table = {each: fem_mesh.getElementNodes(each) for each in set().union(*filter(None, elements))}
         areas = meshtools.get_ref_shape_node_sum_geom_table(meshtools.get_ref_facenodes_areas(nodes_of_mesh, table))
-        per_area = force_of(force) / sum(areas.values())
-        return [("node loads on groups of the mesh", {node: area * per_area for node, area in areas.items()})]
+        area_of_others = sum(obj.Shape.getElement(name).Area for obj, name in others)
+        area = sum(areas.values()) + area_of_others
+        per_area = force_of(force) / area
+        found = [("node loads on groups of the mesh", {node: part * per_area for node, part in areas.items()})]
+        if others:
+            on_others = types.SimpleNamespace(
+                Name=force.Name, Force=force.Force, References=[(obj, (name,)) for obj, name in others])
+            for title, of_nodes in loads_by_place(fem_mesh, element_table, nodes_of_mesh, on_others):
+                found.append((title, {node: load * (area_of_others / area) for node, load in of_nodes.items()}))
+        return found
 
     meshtools.get_femnodes_by_refshape, meshtools.get_force_obj_face_nodeload_table = nodes, loads
 

@@ -135,7 +135,14 @@ def _group_of(groups, face):
 
 
 def _constraints_on(obj):
-    return [each for each in obj.InList if hasattr(each, REFERENCES) and any(linked is obj for linked, _ in each.References)]
+    return [each for each in obj.InList
+            if _has_references(each) and any(linked is obj for linked, _ in each.References)]
+
+
+def _has_references(obj):
+    """To sub-shapes, as constraints have them; objects of other add-ons may call other properties so."""
+    return (REFERENCES in obj.PropertiesList
+            and obj.getTypeIdOfProperty(REFERENCES).startswith("App::PropertyLinkSubList"))
 
 
 def _set_references(constraint, wanted):
@@ -159,7 +166,7 @@ class _Observer:
         document = changed.Document
         if name != REFERENCES or document.Restoring or document.Transacting:
             return
-        if not any(is_ours(linked) for linked, _ in changed.References):
+        if not _has_references(changed) or not any(is_ours(linked) for linked, _ in changed.References):
             return
         wanted = []
         for linked, names in changed.References:
