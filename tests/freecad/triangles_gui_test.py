@@ -4,6 +4,7 @@ run.py --gui."""
 import os
 import sys
 
+import Fem
 import FemGui
 import FreeCADGui
 import Mesh
@@ -36,6 +37,15 @@ async def mesh_and_faces(part, obj):
     w.require(len(colours) == len(faces.Groups), f"{len(colours)} colours")
     w.require(len(set(colours)) == len(set(faces.Groups)), "each group has its colour")
     return faces
+
+
+async def click_without_mesh(obj):
+    """Faces of a mesh that goes while the panel is open."""
+    await w.open_panel(obj)
+    obj.FemMesh = Fem.FemMesh()
+    await w.click(w.child("constraint_faces"))
+    w.require("it must be made first" in w.said(), w.said())
+    await w.close_panel()
 
 
 async def constrain(command, faces, face, picture):
@@ -87,6 +97,7 @@ async def test():
     w.require(result["displacement"] > 0, "a displacement")
     FreeCADGui.activeDocument().ActiveView.viewIsometric()
     await w.screenshot("constrained.png")
+    await click_without_mesh(study.mesh_object)
 
 
 w.run_test(test)

@@ -6,8 +6,8 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import (colours, compatibility, constraint_faces, constraint_faces_view, cost, dock, extent, mesh_properties, meshing_process, new_mesh, open_shape, places,
-               prediction, up_to_date, views, worst_elements)
+from . import (colours, compatibility, constraint_faces, constraint_faces_view, cost, dock, extent, mesh_properties,
+               meshing_process, new_mesh, open_shape, places, prediction, up_to_date, views, worst_elements)
 from .advanced_section import AdvancedSection, in_panel_words
 from .contacts_label import ContactsLabel
 from .later import later
@@ -256,7 +256,10 @@ class MeshTaskPanel:
     def show_constraint_faces(self):
         self.marks.clear()
         self.preview.button.setChecked(False)
-        constraint_faces_view.show(self.object)
+        try:
+            constraint_faces_view.show(self.object)
+        except MesherError as error:  # an undo took the mesh
+            self.result.say(str(error), colours.BAD)
 
     def getStandardButtons(self):
         return compatibility.as_number(QtGui.QDialogButtonBox.Ok | QtGui.QDialogButtonBox.Cancel)
