@@ -25,15 +25,13 @@ class Region:
 
 def in_report(report):
     """The Regions of a run."""
-    names = {each["region"]: each["name"] or "" for each in report["complex"]["regions"]}
-    return [Region(_short(names.get(each["number"], ""), each["number"]), each["input"], each["mesh"], each["percent"])
+    names = {each["region"]: each["name"] for each in report["complex"]["regions"]}
+    return [Region(names.get(each["number"]) or _numbered(each["number"]), each["input"], each["mesh"], each["percent"])
             for each in report["check"]["kept"]["region_volumes"]]
 
 
-def _short(name, number):
-    """Solid1 for "shape.brep, Solid1"."""
-    solid = name.rpartition(", ")[2]
-    return solid if solid.startswith("Solid") else translate("collarmesh", "Region {number}").format(number=number)
+def _numbered(number):
+    return translate("collarmesh", "Region {number}").format(number=number)
 
 
 def volume_text(volume):
