@@ -3,8 +3,8 @@
 
     make_package.py OUTPUT [--site URL] [--maintainer NAME] [--email ADDRESS] [--date YYYY-MM-DD]
 
-OUTPUT ending in .zip holds a folder collarmesh, to be unpacked into FreeCAD's folder Mod. The options replace what package.xml
-of the sources says; its date is that of the last commit, or of SOURCE_DATE_EPOCH. The program is none of
+OUTPUT ending in .zip holds a folder collarmesh, to be unpacked into FreeCAD's folder Mod. The options replace what
+package.xml of the sources says; its date is that of the last commit, or of SOURCE_DATE_EPOCH. The program is not in
 the add-on; packaging/make_archive.py makes an archive with it inside.
 """
 

@@ -5,7 +5,8 @@ import os
 import FreeCAD
 import FreeCADGui
 
-from . import compatibility, inputs, mesh_menu, mesh_object, mesh_properties, new_mesh, other_panel, size_objects, take_over
+from . import (compatibility, inputs, mesh_menu, mesh_object, mesh_properties, new_mesh, other_panel, size_objects,
+               take_over)
 from .later import later
 from .size_view import icon_of
 from .translations import mark, translate
@@ -69,8 +70,8 @@ class MeshFromShape(Command):
     icon = ICON
     menu_text = new_mesh.CREATION
     tool_tip = mark(
-        "collarmesh", "Make a tetrahedral mesh of the selected solid, certified, with groups for its faces, or open the "
-        "one that is there"
+        "collarmesh", "Make a tetrahedral mesh of the selected solid, certified, with groups for its faces, or open "
+        "the one that is there"
     )
 
     def target(self):

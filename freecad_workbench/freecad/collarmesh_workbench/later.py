@@ -1,5 +1,5 @@
-"""Actions from Qt's main loop. FreeCAD's progress bar lets timers run in the middle of a recompute, when no document may be
-changed: a recompute within another one, or an object that goes meanwhile, can end FreeCAD."""
+"""Actions from Qt's main loop. FreeCAD's progress bar lets timers run in the middle of a recompute, when no document
+may be changed: a recompute within another one, or an object that goes meanwhile, can end FreeCAD."""
 
 import FreeCAD
 from PySide import QtCore

@@ -3,7 +3,8 @@
 import Fem
 import FreeCAD
 
-from . import compatibility, constraint_faces, contacts, groups, inputs, mesh_properties, mesh_undo, open_shape, preferences, size_check, size_objects, up_to_date, views
+from . import (compatibility, constraint_faces, contacts, groups, inputs, mesh_properties, mesh_undo, open_shape,
+               preferences, size_check, size_objects, up_to_date, views)
 from .program import GUARANTEE_MISSED, Job, MesherError
 from .translations import translate
 
