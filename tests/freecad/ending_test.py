@@ -91,8 +91,8 @@ def ends_cleanly(program, by_its_button):
                     raise SystemExit("the mesher does not run")
                 os.kill(freecad, signal.SIGKILL)
             wait_until(lambda: not is_running(freecad), "FreeCAD's end")
-            wait_until(lambda: not any(map(is_running, [mesher, *workers])), "the mesher's end", 5)
-            wait_until(lambda: not pathlib.Path(folder).exists(), f"the end of {folder}", 5)
+            wait_until(lambda: not any(map(is_running, [mesher, *workers])), "the mesher's end", 15)
+            wait_until(lambda: not pathlib.Path(folder).exists(), f"the end of {folder}", 15)
         finally:
             if screen.poll() is None:
                 os.killpg(screen.pid, signal.SIGKILL)
