@@ -23,6 +23,30 @@ PROGRAM, MODELS, KIND = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.ar
 EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))  # of the mid nodes of a tetrahedron in .vtk
 NAMES = {"patches": {"Wall left": {"at": [0, 0.5, 0.5]}, "outlet": {"at": [3, 0.5, 0.5]}},
          "regions": {"steel": 1, "air": 2}}
+# A rib on a plate whose top, of the tag 6, touches the rib in its middle alone; the tags of both regions are left open.
+RIB = """16 3 0 0
+1 0 0 0\n2 3 0 0\n3 3 1 0\n4 0 1 0
+5 0 0 1\n6 1 0 1\n7 2 0 1\n8 3 0 1\n9 3 1 1\n10 2 1 1\n11 1 1 1\n12 0 1 1
+13 1 0 2\n14 2 0 2\n15 2 1 2\n16 1 1 2
+13 1
+1 0 1\n4 1 2 3 4
+1 0 2\n6 1 2 8 7 6 5
+1 0 3\n4 2 3 9 8
+1 0 4\n6 3 4 12 11 10 9
+1 0 5\n4 4 1 5 12
+1 0 6\n4 5 6 11 12
+1 0 6\n4 6 7 10 11
+1 0 6\n4 7 8 9 10
+1 0 7\n4 6 7 14 13
+1 0 8\n4 7 10 15 14
+1 0 9\n4 10 11 16 15
+1 0 10\n4 11 6 13 16
+1 0 11\n4 13 14 15 16
+0
+2
+1 0.5 0.5 0.5 {}
+2 1.5 0.5 1.5 {}
+"""
 
 
 def run(folder, *command, code=0, env=None):
@@ -43,13 +67,13 @@ def volumes(points, tets):
 
 
 class Sample:
-    """Two boxes with names, or a sphere, and what is to be found in their mesh."""
+    """Two boxes or a rib on a plate with names, or a sphere, and what is to be found in their mesh."""
 
     def __init__(self, folder, model, order, size):
         import meshio
 
         self.folder, self.order = folder, order
-        named = [] if model != "two_boxes.poly" else ["--names", json.dumps(NAMES)]
+        named = [] if model == "sphere.off" else ["--names", json.dumps(NAMES)]
         run(folder, PROGRAM, MODELS / model, "-o", "a.vtk", "--size", size, "--order", order, *named)
         mesh = meshio.read(folder / "a.vtk")
         pick = dict(zip(("tets", "faces", "edges"), (("tetra", "triangle", "line"),
@@ -85,6 +109,8 @@ def samples(folder):
     for order in (1, 2):
         yield Sample(folder, "two_boxes.poly", order, 0.4)
         yield Sample(folder, "sphere.off", order, 0.5)
+        (folder / "rib.poly").write_text(RIB.format(1, 2))
+        yield Sample(folder, folder / "rib.poly", order, 0.4)
 
 
 def nastran(folder):
@@ -378,7 +404,12 @@ def exodus(folder):
             theirs = points[next(iter(cells.values()))].mean(axis=1)
             expect(np.allclose(theirs, at.mean(axis=1), rtol=0, atol=1e-6), f"sides of {name}")
         expect_coordinates(folder / "a.exo", sample)
+        expect(b"eb_prop2" in (folder / "a.exo").read_bytes(), "tags")
     run(folder, PROGRAM, "info", "a.exo", code=3)
+    (folder / "long.poly").write_text(RIB.format(1, 2**32 + 2))
+    run(folder, PROGRAM, "long.poly", "-o", "long.exo", "--size", "0.5")
+    written = (folder / "long.exo").read_bytes()
+    expect(b"region_4294967298" in written and b"eb_prop2" not in written, "no tags that are cut off")
 
 
 def expect_coordinates(path, sample):
@@ -414,7 +445,7 @@ def cgns(folder):
         expect(np.array_equal(points, sample.points), "points")
         order = np.argsort(sample.region, kind="stable")
         expect(np.array_equal(*cells.values(), sample.tets[order]), "tetrahedra, region by region")
-        outside = {sample.name_of_patch(tag): sample.faces[sample.face_tag == tag]
+        outside = {sample.name_of_patch(tag): sample.faces[(sample.face_tag == tag) & ~sample.face_inside]
                    for tag in np.unique(sample.face_tag[~sample.face_inside])}
         expect(set(grids) == set(outside), f"boundary conditions {set(grids)}")
         for name, faces in outside.items():
@@ -435,7 +466,9 @@ def expect_sections(path, sample):
                     if node.attrs.get("label", b"").startswith(b"Elements_t")}
     named = {1: "steel", 2: "air"} if len(np.unique(sample.region)) == 2 else {1: "region_1"}
     expected = {name: sample.tets[sample.region == region] for region, name in named.items()}
-    expected |= {sample.name_of_patch(tag): sample.faces[sample.face_tag == tag] for tag in np.unique(sample.face_tag)}
+    outside_first = np.argsort(sample.face_inside, kind="stable")
+    faces, face_tag = sample.faces[outside_first], sample.face_tag[outside_first]
+    expected |= {sample.name_of_patch(tag): faces[face_tag == tag] for tag in np.unique(face_tag)}
     expected |= {f"curve_{tag}": sample.edges[sample.edge_tag == tag] for tag in np.unique(sample.edge_tag)}
     expect(set(sections) == set(expected), f"sections {set(sections)}")
     for name, cells in expected.items():

@@ -50,14 +50,9 @@ std::vector<Side> sides_of_faces(const TetMesh& mesh) {
   return found;
 }
 
-/// The tags themselves where they can be numbers of sets.
-std::map<Tag, std::size_t> numbers_of(const std::vector<Tag>& tags) {
-  std::map<Tag, std::size_t> numbers = numbered_tags(tags);
-  if (std::all_of(numbers.begin(), numbers.end(), [](const auto& each) {
-        return each.first > 0 && each.first <= std::numeric_limits<std::int32_t>::max();
-      }))
-    for (auto& [tag, number] : numbers) number = static_cast<std::size_t>(tag);
-  return numbers;
+/// Can it be the value of a property?
+bool fits(Tag tag) {
+  return tag >= std::numeric_limits<std::int32_t>::min() && tag <= std::numeric_limits<std::int32_t>::max();
 }
 
 class ExodusFile {
@@ -68,6 +63,7 @@ class ExodusFile {
       block.tag = mesh.tet_tag[t];
       block.tets.push_back(t);
     }
+    tags_fit_ = std::all_of(mesh.tet_tag.begin(), mesh.tet_tag.end(), fits);
     number_in_file_.resize(mesh.tets.size());
     std::int32_t number = 0;
     for (const auto& [region, block] : blocks_)
@@ -106,8 +102,8 @@ class ExodusFile {
       node_names_.push_back(node_sets.add(group_name(mesh_, 1, tag)));
     for (const auto* names : {&block_names_, &side_names_, &node_names_})
       for (const std::string& name : *names) name_length_ = std::max(name_length_, name.size());
-    side_numbers_ = numbers_of(mesh_.face_tag);
-    node_numbers_ = numbers_of(mesh_.edge_tag);
+    side_numbers_ = positive_numbers(mesh_.face_tag);
+    node_numbers_ = positive_numbers(mesh_.edge_tag);
   }
 
   void describe() {
@@ -130,7 +126,7 @@ class ExodusFile {
     const std::size_t count = out_.add_dimension("num_el_blk", blocks_.size());
     out_.add_whole("eb_status", {count});
     out_.add_whole("eb_prop1", {count}, {NetcdfWriter::text("name", "ID")});
-    out_.add_whole("eb_prop2", {count}, {NetcdfWriter::text("name", "TAG")});
+    if (tags_fit_) out_.add_whole("eb_prop2", {count}, {NetcdfWriter::text("name", "TAG")});
     out_.add_text("eb_names", {count, name_dimension_});
     describe_sets("side", "ss", side_sets_.size());
     std::size_t k = 0;
@@ -183,7 +179,7 @@ class ExodusFile {
   void write_blocks() {
     write_wholes(blocks_, [](const auto&) { return 1; });
     write_wholes(blocks_, [](const auto& each) { return each.first; });
-    write_wholes(blocks_, [](const auto& each) { return each.second.tag; });
+    if (tags_fit_) write_wholes(blocks_, [](const auto& each) { return each.second.tag; });
     write_names(block_names_);
   }
 
@@ -215,6 +211,7 @@ class ExodusFile {
   const TetMesh& mesh_;
   NetcdfWriter out_;
   std::map<Index, Block> blocks_;
+  bool tags_fit_ = true;
   std::vector<std::int32_t> number_in_file_;  // of tets, block by block
   std::map<Tag, std::vector<Side>> side_sets_;
   Groups node_sets_;

@@ -3,9 +3,7 @@
 // what each attribute is called. Curved elements are a function of second order on the vertices and edges.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <string>
@@ -22,17 +20,6 @@ namespace collarmesh::io {
 namespace {
 
 constexpr int triangle = 2, tetrahedron = 4;
-
-/// The tags themselves where they can be attributes.
-std::map<Tag, std::size_t> attributes_of(const std::vector<Tag>& tags) {
-  std::map<Tag, std::size_t> attributes = numbered_tags(tags);
-  const bool fit = std::all_of(attributes.begin(), attributes.end(), [](const auto& each) {
-    return each.first > 0 && each.first <= std::numeric_limits<std::int32_t>::max();
-  });
-  if (fit)
-    for (auto& [tag, attribute] : attributes) attribute = static_cast<std::size_t>(tag);
-  return attributes;
-}
 
 /// Corners first, and the mid nodes in the order in which MFEM numbers edges: as they come, element by
 /// element.
@@ -98,7 +85,7 @@ void write_mfem(const std::string& path, const TetMesh& mesh) {
   std::iota(tets.begin(), tets.end(), Index{0});
   for (Index f = 0; f < mesh.faces.size(); ++f)  // others bound nothing
     if (mesh.face_regions[f] != std::array<Index, 2>{0, 0}) faces.push_back(f);
-  const std::map<Tag, std::size_t> attributes = attributes_of(mesh.face_tag);
+  const std::map<Tag, std::size_t> attributes = positive_numbers(mesh.face_tag);
   FileWriter out(path);
   out << "MFEM mesh v1.0\n\n# Written by collarmesh.\n";
   write_names(out, mesh, attributes);

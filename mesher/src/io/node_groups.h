@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -30,6 +32,16 @@ inline std::map<Tag, std::size_t> numbered_tags(const std::vector<Tag>& tags, st
   std::map<Tag, std::size_t> numbers;
   for (const Tag tag : tags) numbers.try_emplace(tag, 0);
   for (auto& [tag, number] : numbers) number = first++;
+  return numbers;
+}
+
+/// The tags themselves where all are positive numbers of 32 bits, else numbered as above.
+inline std::map<Tag, std::size_t> positive_numbers(const std::vector<Tag>& tags) {
+  std::map<Tag, std::size_t> numbers = numbered_tags(tags);
+  if (std::all_of(numbers.begin(), numbers.end(), [](const auto& each) {
+        return each.first > 0 && each.first <= std::numeric_limits<std::int32_t>::max();
+      }))
+    for (auto& [tag, number] : numbers) number = static_cast<std::size_t>(tag);
   return numbers;
 }
 

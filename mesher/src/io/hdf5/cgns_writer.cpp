@@ -1,6 +1,6 @@
 // CGNS (cgns.github.io, "SIDS-to-HDF5 File Mapping Manual") in HDF5: one unstructured zone. A section of
-// elements for each region, each tag of patches and each tag of curves, with their names; patches on the
-// boundary are boundary conditions, too, whose families have the names.
+// elements for each region, each tag of patches and each tag of curves, with their names; the faces of a
+// patch that are on the boundary are a boundary condition, too, whose family has the name.
 #include <fmt/format.h>
 #include <hdf5.h>
 
@@ -159,7 +159,7 @@ struct Section {
   std::size_t dimension;
   std::string name;
   std::vector<Index> cells;
-  bool is_boundary = false;  // all of it
+  std::size_t outside = 0;  // how many of them are on the boundary; they come first
 };
 
 std::vector<Section> sections_of(const TetMesh& mesh) {
@@ -174,9 +174,10 @@ std::vector<Section> sections_of(const TetMesh& mesh) {
     sections.push_back({3, std::move(name), std::move(tets)});
   }
   for (auto& [tag, faces] : patches) {
-    const bool outside = std::all_of(faces.begin(), faces.end(), [&](Index f) {
+    const auto inside = std::stable_partition(faces.begin(), faces.end(), [&](Index f) {
       return (mesh.face_regions[f][0] == 0) != (mesh.face_regions[f][1] == 0);
     });
+    const auto outside = static_cast<std::size_t>(inside - faces.begin());
     sections.push_back({2, group_name(mesh, 2, tag), std::move(faces), outside});
   }
   for (auto& [tag, edges] : curves) sections.push_back({1, group_name(mesh, 1, tag), std::move(edges)});
@@ -249,10 +250,11 @@ void write_cgns(const std::string& path, const TetMesh& mesh) {
                      element_types[static_cast<std::size_t>(mesh.order()) - 1][section.dimension], 0});
     file.add(elements, "ElementRange", "IndexRange_t", range);
     file.add(elements, "ElementConnectivity", "DataArray_t", nodes_of(mesh, section));
+    const std::vector<std::int32_t> outside{whole(first), whole(first + section.outside - 1)};
     first += section.cells.size();
-    if (!section.is_boundary) continue;
+    if (section.outside == 0) continue;
     if (conditions.empty()) conditions = file.add(zone, "ZoneBC", "ZoneBC_t");
-    write_boundary(file, conditions, section, range);
+    write_boundary(file, conditions, section, outside);
     file.add(base, section.name, "Family_t");
   }
   file.commit();
