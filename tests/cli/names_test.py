@@ -18,6 +18,8 @@ from step_file import StepFile  # noqa: E402
 
 MODULES = pathlib.Path(PROGRAM).parents[1] / "lib" / "collarmesh"
 HAS_HDF5 = (MODULES / "collarmesh_hdf5.so").exists()
+HAS_MED = "needs MED" not in subprocess.run([PROGRAM, "no input.off", "-o", "a.med"], capture_output=True,
+                                            text=True).stderr
 HAS_SCOTCH = (MODULES / "collarmesh_scotch.so").exists()
 HAS_CAD = any(MODULES.glob("collarmesh_cad*"))
 
@@ -267,7 +269,7 @@ class NamesOfStep(ProgramTest):
         found = self.names(file.write(self.folder / "a.step"))
         self.assertEqual(found, ["Solid1", "Solid2", "Solid3", "a_b", "x", "café", "\x80ÿ", "y" * 60, "O'Hara", "X_2"])
         self.run_program(self.folder / "a.step", "-o", "a.vtu", "--size", "2")
-        for extension in ("msh", "inp", "cdb", "exo", *(("med", "xdmf", "cgns") if HAS_HDF5 else ())):
+        for extension in ["msh", "inp", "cdb", "exo"] + ["xdmf", "cgns"] * HAS_HDF5 + ["med"] * HAS_MED:
             with self.subTest(extension=extension):
                 self.assertEqual(self.run_program("convert", "a.vtu", "-o", f"a.{extension}").returncode, 0)
 
@@ -281,7 +283,7 @@ class NamesThroughFormats(ProgramTest):
     """A name that a format has a place for is there when the mesh goes on to another one; a lost one is told."""
     NAMES = {"patches": {"Fixed end": 1, "loaded": {"at": [0.5, 0.5, 1]}}, "curves": {"rim": 4},
              "regions": {"steel": 1}}
-    KEEP = ["vtu", "vtk", "pvtu", "msh", "msh2", "unv"] + (["med", "xdmf"] if HAS_HDF5 else [])
+    KEEP = ["vtu", "vtk", "pvtu", "msh", "msh2", "unv"] + ["xdmf"] * HAS_HDF5 + ["med"] * HAS_MED
 
     def names_in_msh(self, mesh):
         run = self.run_program("convert", mesh, "-o", "names.msh")
@@ -324,6 +326,26 @@ class NamesThroughFormats(ProgramTest):
         regions = json.loads(self.run_program("info", "--json", "a.inp").stdout)["mesh"]["region_volumes"]
         self.assertEqual(len(regions), 2)
 
+    def test_sets_of_abaqus_are_all_different(self):
+        self.write("two.off", off_text(box_points((0, 0, 1), (1, 1, 2)), BOX_FACES))
+        pairs = {("1st part", "N 1st part"): ["N_1ST_PART", "N_1ST_PART_2"],
+                 ("EALL", "steel"): ["EALL_2", "STEEL"], ("Volume_2", "x"): ["VOLUME_2_2", "X"],
+                 ("x", "Volume_9"): ["X", "VOLUME_9_2"]}
+        for pair, sets in pairs.items():
+            with self.subTest(pair=pair):
+                names = self.write("regions.json", json.dumps({
+                    "patches": {"rim": 2}, "curves": {"rim": 4}, "regions": {pair[0]: 1, pair[1]: 2}}))
+                run = self.run_program(self.box, "two.off", "-o", "a.inp", "--size", "0.5", "--names", names)
+                self.assertEqual(run.returncode, 0, run.stderr)
+                text = (self.folder / "a.inp").read_text()
+                found = re.findall(r"ELSET=(\w+)$", text, re.M)
+                self.assertEqual(found, ["VOLUME_1", "VOLUME_2", "EALL", *sets])
+                nodes = re.findall(r"NSET=(\w+)$", text, re.M)
+                self.assertEqual(len(nodes), len(set(nodes)))
+                self.assertLessEqual({"RIM_NODES", "RIM_2_NODES"}, set(nodes))
+                mesh = json.loads(self.run_program("info", "--json", "a.inp").stdout)["mesh"]
+                self.assertEqual(list(mesh["region_volumes"]), ["1", "2"])
+
     def test_a_loss_is_told(self):
         self.mesh("a.vtu")
         for extension in ("mesh", "ele"):
@@ -339,7 +361,7 @@ class NamesThroughFormats(ProgramTest):
     @unittest.skipUnless(HAS_CAD, "no OpenCASCADE")
     def test_faces_of_cad_shapes(self):
         self.run_program(MODELS / "flange.step", "-o", "a.vtu", "--size", "10")
-        for extension in ["vtu", "vtk", "msh", "unv"] + (["med", "xdmf"] if HAS_HDF5 else []):
+        for extension in ["vtu", "vtk", "msh", "unv"] + ["xdmf"] * HAS_HDF5 + ["med"] * HAS_MED:
             with self.subTest(extension=extension):
                 self.run_program("convert", "a.vtu", "-o", f"b.{extension}")
                 names = self.names_in_msh(f"b.{extension}")

@@ -7,6 +7,7 @@
 #include <array>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/abaqus_format.h"
@@ -14,6 +15,7 @@
 #include "io/face_finder.h"
 #include "io/label_names.h"
 #include "io/node_groups.h"
+#include "io/number_text.h"
 #include "io/tet_mesh_formats.h"
 #include "io/write_each.h"
 
@@ -35,9 +37,35 @@ void write_numbers(FileWriter& out, const std::vector<Index>& numbers) {
     out << numbers[i] << (i + 1 == numbers.size() || (i + 1) % numbers_a_line == 0 ? ",\n" : ", ");
 }
 
-void write_node_sets(FileWriter& out, const TetMesh& mesh, std::size_t dimension, const Groups& groups) {
+using Names = std::map<Tag, std::string>;
+
+/// Names of sets, all different from each other and from those that are known.
+Names names_of(const TetMesh& mesh, std::size_t dimension, const std::vector<Tag>& tags,
+               DistinctNames& known) {
+  Names names;
+  for (const auto& each : numbered_tags(tags))
+    names[each.first] = known.add(capital_name(mesh, dimension, each.first));
+  return names;
+}
+
+bool is_volume(std::string_view name) {
+  Index region = 0;
+  const std::string_view prefix = abaqus_volume_prefix;
+  return name.starts_with(prefix) && parse(name.substr(prefix.size()), region);
+}
+
+/// As above, and different from those of our own sets of elements.
+Names names_of_regions(const TetMesh& mesh) {
+  DistinctNames known(std::string::npos);
+  known.add(capital_word(abaqus_everything));
+  for (const auto& each : numbered_tags(mesh.tet_tag))
+    if (const std::string name = capital_name(mesh, 3, each.first); is_volume(name)) known.add(name);
+  return names_of(mesh, 3, mesh.tet_tag, known);
+}
+
+void write_node_sets(FileWriter& out, const Groups& groups, const Names& names) {
   for (const auto& [tag, nodes] : groups) {
-    out << "*NSET, NSET=" << capital_name(mesh, dimension, tag) << "_NODES\n";
+    out << "*NSET, NSET=" << names.at(tag) << "_NODES\n";
     write_numbers(out, nodes);
   }
 }
@@ -68,14 +96,15 @@ void write_elements(FileWriter& out, const TetMesh& mesh) {
   }
   out << "*ELSET, ELSET=EALL\n";
   for (const auto& volume : volumes) out << abaqus_volume_prefix << volume.first << ",\n";
+  const Names names = names_of_regions(mesh);
   for (const auto& [tag, regions] : regions_of_tag) {
-    out << "*ELSET, ELSET=" << capital_name(mesh, 3, tag) << '\n';
+    out << "*ELSET, ELSET=" << names.at(tag) << '\n';
     for (const Index region : regions) out << abaqus_volume_prefix << region << ",\n";
   }
 }
 
 /// The element and its side that lie behind each face.
-void write_surfaces(FileWriter& out, const TetMesh& mesh) {
+void write_surfaces(FileWriter& out, const TetMesh& mesh, const Names& names) {
   struct Side {
     std::size_t tet, side;
   };
@@ -94,7 +123,7 @@ void write_surfaces(FileWriter& out, const TetMesh& mesh) {
   for (std::size_t f = 0; f < mesh.faces.size(); ++f)
     if (behind[f].tet != none) surfaces[mesh.face_tag[f]].push_back(behind[f]);
   for (const auto& [tag, sides] : surfaces) {
-    out << "*SURFACE, NAME=" << capital_name(mesh, 2, tag) << ", TYPE=ELEMENT\n";
+    out << "*SURFACE, NAME=" << names.at(tag) << ", TYPE=ELEMENT\n";
     for (const Side& side : sides) out << side.tet + 1 << ", S" << side.side + 1 << '\n';
   }
 }
@@ -106,9 +135,12 @@ void write_abaqus(const std::string& path, const TetMesh& mesh) {
   out << "*HEADING\nWritten by collarmesh.\n";
   write_nodes(out, mesh);
   write_elements(out, mesh);
-  write_surfaces(out, mesh);
-  write_node_sets(out, mesh, 2, nodes_by_tag(mesh, nodes_of_face, mesh.face_tag));
-  write_node_sets(out, mesh, 1, nodes_by_tag(mesh, nodes_of_edge, mesh.edge_tag));
+  DistinctNames known(std::string::npos);
+  const Names patches = names_of(mesh, 2, mesh.face_tag, known),
+              curves = names_of(mesh, 1, mesh.edge_tag, known);
+  write_surfaces(out, mesh, patches);
+  write_node_sets(out, nodes_by_tag(mesh, nodes_of_face, mesh.face_tag), patches);
+  write_node_sets(out, nodes_by_tag(mesh, nodes_of_edge, mesh.edge_tag), curves);
   out.commit();
 }
 
