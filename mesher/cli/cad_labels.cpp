@@ -28,8 +28,8 @@ std::size_t character_length(std::string_view text) {
   for (std::size_t i = 1; i < length; ++i)
     if ((byte(i) & 0xC0) != 0x80) return 0;
   if (length < 3) return length;
-  const unsigned second =
-      byte(1);  // the rest: too long for its character, half of a pair, or past the last one
+  // Not valid: overlong forms (after E0 and F0), surrogates (ED), numbers above U+10FFFF (F4).
+  const unsigned second = byte(1);
   const bool valid = byte(0) == 0xE0   ? second >= 0xA0
                      : byte(0) == 0xED ? second < 0xA0
                      : byte(0) == 0xF0 ? second >= 0x90
