@@ -80,7 +80,7 @@ class StepNames {
   /// The name of the innermost product; of several solids in it, that of the solid, too.
   std::string find(const TopoDS_Shape& solid) const {
     const auto found = own_.find(geometry_of(solid));
-    const std::string own = found == own_.end() ? std::string() : found->second;
+    std::string own = found == own_.end() ? std::string() : found->second;
     const auto in = product_of_.find(geometry_of(solid));
     if (in == product_of_.end() || products_[in->second].name.empty()) return own;
     const Product& product = products_[in->second];

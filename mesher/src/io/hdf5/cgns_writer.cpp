@@ -57,7 +57,7 @@ class CgnsFile {
   }
   std::string add(const std::string& parent, const std::string& name, const char* label,
                   const std::string& text) {
-    const std::string path = add_node(parent, name, label, "C1");
+    std::string path = add_node(parent, name, label, "C1");
     write(path, H5T_NATIVE_CHAR, {text.size()}, text.data());
     return path;
   }
@@ -66,7 +66,7 @@ class CgnsFile {
   std::string add(const std::string& parent, const std::string& name, const char* label,
                   const std::vector<Number>& values, std::vector<hsize_t> size = {}) {
     constexpr bool whole = std::is_same_v<Number, std::int32_t>, small = std::is_same_v<Number, float>;
-    const std::string path = add_node(parent, name, label, whole ? "I4" : small ? "R4" : "R8");
+    std::string path = add_node(parent, name, label, whole ? "I4" : small ? "R4" : "R8");
     std::reverse(size.begin(), size.end());
     if (size.empty()) size = {values.size()};
     write(path, whole ? H5T_NATIVE_INT32 : small ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE, size, values.data());
@@ -98,7 +98,7 @@ class CgnsFile {
 
   std::string add_node(const std::string& parent, const std::string& name, const char* label,
                        const char* type) {
-    const std::string path = parent + "/" + name;
+    std::string path = parent + "/" + name;
     const hid_t group = H5Gcreate2(file_, path.c_str(), H5P_DEFAULT, of_group_, H5P_DEFAULT);
     require(group >= 0);
     set_text(group, "name", name, longest_name);
