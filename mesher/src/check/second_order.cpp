@@ -64,8 +64,7 @@ void check_shared(const Subject& subject, Findings& findings) {
   const auto report = [&](const MidNode& first, const MidNode& second, const char* what) {
     findings.add(guarantee::mid_nodes, subject.midpoint(second.edge), {first.node, second.node},
                  "{} {} has the mid-edge node {} between points {} and {} at {}, {} {} has the mid-edge node "
-                 "{} between "
-                 "{} and {}: {}.",
+                 "{} between {} and {}: {}.",
                  name_of_cell(first.dimension), first.cell, first.node, first.edge[0], first.edge[1],
                  At{subject.midpoint(first.edge)}, name_of_cell(second.dimension), second.cell, second.node,
                  second.edge[0], second.edge[1], what);

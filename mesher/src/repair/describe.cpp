@@ -20,8 +20,7 @@ std::string moved_text(const RepairReport& r) {
   if (r.largest_distance == 0 && r.largest_distance_of_input == 0) return "repair moved nothing";
   return fmt::format(
       "the repaired surface is within {:.3g} of the input, and the input, except for parts inside solids, "
-      "within "
-      "{:.3g} of the repaired surface",
+      "within {:.3g} of the repaired surface",
       r.largest_distance, r.largest_distance_of_input);
 }
 
