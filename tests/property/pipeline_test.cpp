@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -204,6 +205,53 @@ TEST(Pipeline, TakesTheInputAgainWhereTheRefinementExplodes) {
   for (Index r = 1; r < made.plc.regions.size(); ++r) volume += made.plc.regions[r].volume;
   EXPECT_NEAR(volume, 525, 0.01);
   EXPECT_LT(made.result.statistics.vertices_inserted, 100000U);
+}
+
+// A box of 10 x 10 x 10 with a slit from one side to its middle that opens to 1e-7.
+PolygonSoup box_with_a_slit() {
+  constexpr std::array<std::array<double, 2>, 7> profile{
+      {{0, 0}, {10, 0}, {10, 4}, {5, 4}, {10, 4 + 1e-7}, {10, 10}, {0, 10}}};
+  constexpr Index n = profile.size();
+  PolygonSoup soup;
+  for (const double y : {0., 10.})
+    for (const auto& [x, z] : profile) soup.points.push_back({x, y, z});
+  std::vector<Index> front, back;
+  for (Index i = 0; i < n; ++i) {
+    const Index next = (i + 1) % n;
+    front.push_back(i);
+    back.push_back(2 * n - 1 - i);
+    soup.add_facet({{i, i + n, next + n, next}});
+  }
+  soup.add_facet(front);
+  soup.add_facet(back);
+  return soup;
+}
+
+// Ends with the place of the explosion, what is near it, and what to do.
+void expect_bounded(const PipelineResult& made) {
+  EXPECT_EQ(made.result.status, MeshStatus::budget_hit);
+  EXPECT_TRUE(made.result.mesh.tets.empty());
+  EXPECT_NEAR(made.result.where.z, 4, 1);
+  EXPECT_GT(made.result.where.x, 4);
+  for (const char* part : {"far more than the sizes ask for", "around (", " of patches ", "max-vertices"})
+    EXPECT_NE(made.result.message.find(part), std::string::npos) << made.result.message;
+}
+
+TEST(Pipeline, EndsWhereTheRefinementExplodesAndNoOtherRepairMayBeTried) {
+  PipelineOptions options = with_size(10);
+  options.repair.mode = RepairMode::off;
+  expect_bounded(run(box_with_a_slit(), options));
+}
+
+// A coarser repair would lose the material of a thin plate elsewhere.
+TEST(Pipeline, EndsWhereTheRefinementExplodesAndNoOtherRepairHelps) {
+  std::array<PolygonSoup, 2> soups{box_with_a_slit(), box()};
+  for (Point& p : soups[1].points) p = {p.x, p.y, -4 + 1e-3 * p.z};
+  soups[0].region_tag = 1;
+  soups[1].region_tag = 2;
+  PipelineOptions options = with_size(10);
+  options.repair.tolerance = 1e-9;
+  expect_bounded(run_pipeline(soups, options));
 }
 
 TEST(Pipeline, MovesOntoExactGeometry) {

@@ -75,8 +75,9 @@ class ComplexSource {
 /// repairs (`further_repairs`), then further seeds; if no mesh passes, the first one is kept. A refinement
 /// that takes far more vertices than the sizes ask for ends early, and coarser repairs are tried
 /// (`coarser_repairs`) that lose no body, region, name or tag except numbers of CAD faces; if none of their
-/// complexes does better, the first one is meshed as far as the budgets allow. `check.notes` lists the
-/// attempts. `execution.progress` is also called at the beginning of each stage
+/// complexes does better, the first one is meshed as far as the budgets allow, or twice that many
+/// vertices where none is given. `check.notes` lists the attempts. `execution.progress` is also called at the
+/// beginning of each stage
 /// (`ProgressReport::begins`), and its fraction is that of all stages. Cancelled or out of time, the result
 /// has that status and no mesh. Throws PlcError for facets that are no complex and cannot be repaired,
 /// OptionError for options that contradict each other and for sizes of tags that the complex does not have.
@@ -87,7 +88,8 @@ SoupPipelineResult run_pipeline(ComplexSource& source, const PipelineOptions& op
 SoupPipelineResult run_pipeline(std::span<const PolygonSoup> soups, const PipelineOptions& options = {},
                                 const Execution& execution = {});
 
-/// Meshes a complex that exists already, with further seeds but no further repairs.
+/// Meshes a complex that exists already, with further seeds but no further repairs. A refinement that takes
+/// far more vertices than the sizes ask for ends with the status `budget_hit` unless a budget is given.
 PipelineResult run_pipeline(const Plc& plc, const PipelineOptions& options = {},
                             const Execution& execution = {});
 

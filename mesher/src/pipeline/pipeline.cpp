@@ -18,7 +18,6 @@
 #include <thread>
 #include <utility>
 
-#include "check/findings.h"
 #include "check/guarantees.h"
 #include "coarsen/coarsen_workpiece.h"
 #include "collarmesh/error.h"
@@ -28,6 +27,7 @@
 #include "common/thread_limit.h"
 #include "improve/improve_workpiece.h"
 #include "improve/thin_shape.h"
+#include "pipeline/explosion.h"
 #include "pipeline/lost_parts.h"
 #include "pipeline/vertex_bound.h"
 #include "refine/generate_linked.h"
@@ -129,6 +129,7 @@ class Pipeline {
 
   PipelineResult run(const Plc& plc) {
     until_ended([&] {
+      bound_vertices(Ways::none);
       mesh(plc, given_.mesh.seed);
       try_seeds(plc);
       divide();
@@ -145,9 +146,12 @@ class Pipeline {
     refused    ///< no collar fits between features
   };
 
+  /// Whether anything else is tried where a refinement explodes.
+  enum class Ways { others, none };
+
   void try_repairs(SoupPipelineResult& all) {
     build(given_.repair, all);
-    bound_vertices(all.plc);
+    bound_vertices(Ways::others);
     std::exception_ptr error;
     const auto tried = attempt(all.plc, error);
     const End end = tried.first;
@@ -157,9 +161,9 @@ class Pipeline {
     bool has_mesh = end == End::missed, built_last = true;
     for (const RepairOptions& repair : repairs_after(end, all)) {
       SoupPipelineResult other;
-      if (repair.wrap_at_once) most_vertices_ = 0;
       const bool better = find_better(has_mesh, [&] {
         build(repair, other);
+        if (repair.wrap_at_once) bound_vertices(Ways::none);
         if (end == End::exploded && !repair.wrap_at_once) require_kept(all, other);
         mesh(other.plc, given_.mesh.seed);
       });
@@ -186,8 +190,8 @@ class Pipeline {
       }
     }
     if (!has_mesh) {
-      most_vertices_ = 0;
-      mesh(all.plc, given_.mesh.seed);  // as far as the budgets allow
+      bound_vertices(Ways::none);
+      mesh(all.plc, given_.mesh.seed);
     }
     try_seeds(all.plc);
   }
@@ -199,10 +203,7 @@ class Pipeline {
       return {made_.guarantees_hold() ? End::holds : End::missed, made_.missed()};
     } catch (const Ended&) {
       if (!hit_bound()) throw;
-      return {End::exploded,
-              fmt::format(
-                  "the refinement takes more than {} vertices, far more than the sizes ask for, around {}",
-                  most_vertices_, checks::At{made_.result.where})};
+      return {End::exploded, describe_explosion(plc, most_vertices_, made_.result.where)};
     } catch (const PlcError& e) {
       error = std::current_exception();
       return {End::refused, e.what()};
@@ -329,13 +330,23 @@ class Pipeline {
     return *found;
   }
 
-  /// Refinements end beyond far more vertices than the sizes ask for, while there are other repairs to try.
-  void bound_vertices(const Plc& plc) {
-    if (given_.repair.mode == RepairMode::off || given_.repair.wrap_at_once) return;
-    PipelineOptions options = given_;
-    options.mesh.bounds.tolerance = tolerance(plc);
-    const std::size_t most = most_vertices_expected(plc, options);
-    most_vertices_ = given_.mesh.max_vertices > 0 && given_.mesh.max_vertices <= most ? 0 : most;
+  /// The next refinement, and those after it, end beyond far more vertices than the sizes ask for: soon while
+  /// there are other ways, later where there are none.
+  void bound_vertices(Ways ways) {
+    ways_ = given_.repair.mode == RepairMode::off || given_.repair.wrap_at_once ? Ways::none : ways;
+    knows_bound_ = false;
+  }
+
+  /// Finds that bound. A budget that was given takes the place of the last one, and of any that is larger.
+  void find_bound() {
+    constexpr std::size_t times_without_other_ways = 2;
+    const std::size_t given = given_.mesh.max_vertices;
+    knows_bound_ = true;
+    most_vertices_ = 0;
+    if (ways_ == Ways::none && given > 0) return;
+    const std::size_t most =
+        most_vertices_expected(*plc_, options_) * (ways_ == Ways::none ? times_without_other_ways : 1);
+    if (given == 0 || given > most) most_vertices_ = most;
   }
 
   /// Returns whether the refinement ended at that bound, and not for lack of time or memory.
@@ -358,9 +369,10 @@ class Pipeline {
     plc_ = &plc;
     options_ = given_;
     if (source_ != nullptr) source_->adapt(plc, options_);
-    if (most_vertices_ > 0) options_.mesh.max_vertices = most_vertices_;
     require_known_tags(options_.mesh, plc);
     options_.mesh.bounds.tolerance = nearer_ ? *nearer_ : tolerance(plc);
+    if (!knows_bound_) find_bound();
+    if (most_vertices_ > 0) options_.mesh.max_vertices = most_vertices_;
     options_.mesh.seed = seed;
     refined_with_ = options_of_refinement();
     refine();
@@ -396,6 +408,10 @@ class Pipeline {
     begin("refine", 0.06, options_.coarsen ? 0.6 : 0.7);
     MeshResult& result = made_.result = generate(*plc_, refined_with_, inner_, neighbours_);
     if (result.status == MeshStatus::cancelled && out_of_time()) stop();
+    if (hit_bound())
+      result.message =
+          describe_explosion(*plc_, most_vertices_, result.where) +
+          "; mend what nearly meets there, wrap it (repair wrap), or let it go on (max-vertices)";
     if (result.status == MeshStatus::cancelled || result.status == MeshStatus::budget_hit) throw Ended();
     refined_with_.bounds.lower_where_forced = result.has_narrow_cells;
   }
@@ -520,6 +536,8 @@ class Pipeline {
   PipelineOptions options_;          // for the complex at hand
   ComplexSource* source_ = nullptr;  // unless there is one complex only
   NarrowCells narrow_cells_ = NarrowCells::bounded_if_cheap;
+  Ways ways_ = Ways::none;         // that are left
+  bool knows_bound_ = false;       // for them, on vertices
   std::size_t most_vertices_ = 0;  // of a refinement, in place of the given budget; 0: that
   const Execution& outer_;
   Execution inner_;
