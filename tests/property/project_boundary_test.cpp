@@ -170,7 +170,9 @@ TEST(ProjectBoundary, KeepsFlatFeaturesFlat) {
 
 // The exact rims leave the planes of the caps.
 TEST(ProjectBoundary, KeepsCapsFlatAtCurvedRims) {
-  Meshed meshed = mesh_of(cylinder(Index{64}, 1.0, 1.0), with_size(0.3));
+  MeshOptions options = with_size(0.3);
+  options.bounds.distance = 0.01;
+  Meshed meshed = mesh_of(cylinder(Index{64}, 1.0, 1.0), options);
   ASSERT_EQ(faults(meshed), "");
   const ExactGeometry exact = [](unsigned, Index, const Point& p) -> std::optional<Point> {
     const double radius = std::hypot(p.x, p.y);
@@ -189,6 +191,25 @@ TEST(ProjectBoundary, KeepsCapsFlatAtCurvedRims) {
     EXPECT_NEAR(std::hypot(now.x, now.y), 1, 1e-9);
   }
   EXPECT_GT(on_rims, 20U);
+}
+
+// Faces sag below vertices, and these may lie below the complex by nearly as much as is allowed.
+TEST(ProjectBoundary, KeepsFacesWithinTheToleranceOfTheComplex) {
+  const double tolerance = 0.025, radius = 1 - 0.7 * tolerance;
+  MeshOptions options = with_size(0.3);
+  options.bounds.distance = 0.7 * tolerance;
+  Meshed meshed = mesh_of(icosphere(1, 12), options);
+  ASSERT_EQ(faults(meshed), "");
+  const ExactGeometry smaller = [&](unsigned, Index, const Point& p) -> std::optional<Point> {
+    return radius * (p / norm(p));
+  };
+  const ProjectReport report =
+      project_boundary(meshed.result.mesh, meshed.plc, smaller, {.bounds = without_thin(tolerance)});
+  CheckOptions limits;
+  limits.bounds = without_thin(tolerance);
+  EXPECT_EQ(check(meshed.result.mesh, meshed.plc, limits).findings.size(), 0U);
+  EXPECT_GT(report.exceptions.size(), 0U);
+  EXPECT_LT(report.exceptions.size(), report.vertices);
 }
 
 // The balls of a collar are placed by distances in the complex; projection has nothing to say about them.

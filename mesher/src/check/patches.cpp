@@ -1,35 +1,16 @@
 // Checks that every patch is a union of faces: tags, regions, planes, areas and distances.
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "check/patch_topology.h"
 #include "check/polyline.h"
 #include "check/subject.h"
-#include "common/distance_tree.h"
+#include "common/patch_distance.h"
 #include "common/patch_points.h"
 
 namespace collarmesh::checks {
 
 namespace {
-
-// The sides and corners (sides with equal ends) of faces that were seen; a cache, in which new ones replace
-// old ones.
-class SeenSides {
- public:
-  explicit SeenSides(std::size_t faces) : places_(std::bit_ceil(2 * faces + 1), {none, none}) {}
-
-  /// Records a side with sorted ends; returns false if it was seen.
-  bool add(const std::array<Index, 2>& side) {
-    auto& place = places_[(number_of(side) * 0x9e3779b97f4a7c15 >> 32U) & (places_.size() - 1)];
-    if (place == side) return false;
-    place = side;
-    return true;
-  }
-
- private:
-  std::vector<std::array<Index, 2>> places_;
-};
 
 class PatchCheck {
  public:
@@ -54,8 +35,7 @@ class PatchCheck {
       check_plane();
       check_area();
     } else {
-      check_faces_against_patch();
-      check_patch_against_faces(patch_points);
+      check_distances(patch_points);
     }
   }
 
@@ -169,69 +149,29 @@ class PatchCheck {
     return sum;
   }
 
-  // Corners, centres, and two points on each side, each of them once.
-  void check_faces_against_patch() {
-    std::vector<DistanceTree::Triangle> triangles;
-    triangles.reserve(patch_.triangle_count);
-    for (Index i = 0; i < patch_.triangle_count; ++i)
-      triangles.push_back({subject_.plc_corner(triangle(i), 0), subject_.plc_corner(triangle(i), 1),
-                           subject_.plc_corner(triangle(i), 2)});
-    const DistanceTree patch(std::move(triangles));
-    Index hint = none;
-    const auto look_at = [&](Index face, const Point& sample) {
-      const auto nearest = patch.nearest(sample, enough(), hint);
-      hint = nearest.triangle;
-      measure(nearest.distance, subject_.tolerance.at_triangle(patch_.first_triangle + nearest.triangle),
-              face, sample, "Face {} of patch {} (tag {}) is {:.6g} away from the patch at {}");
-    };
-    SeenSides seen(faces_.size());
-    for (const Index face : faces_) {
-      const auto& f = subject_.mesh.faces[face];
-      look_at(face, subject_.centroid(f));
-      for (unsigned k = 0; k < 3; ++k) {
-        const Point &a = subject_.point(f[k]), &b = subject_.point(f[(k + 1) % 3]);
-        if (seen.add({f[k], f[k]})) look_at(face, a);
-        if (!seen.add(sorted(f[k], f[(k + 1) % 3]))) continue;
-        look_at(face, (2 * a + b) / 3);
-        look_at(face, (a + 2 * b) / 3);
-      }
-    }
-  }
-
-  // Corners and centres.
-  void check_patch_against_faces(std::span<const Index> patch_points) {
-    std::vector<DistanceTree::Triangle> triangles;
-    triangles.reserve(faces_.size());
-    for (const Index face : faces_) triangles.push_back(corners(face));
-    const DistanceTree faces(std::move(triangles));
-    Index hint = none;
-    const auto look_at = [&](const Point& sample, double tolerance) {
-      const auto nearest = faces.nearest(sample, enough(), hint);
-      hint = nearest.triangle;
-      measure(nearest.distance, tolerance, faces_[nearest.triangle], sample,
-              "Face {}, the nearest of patch {} (tag {}), is {:.6g} away from the patch's point at {}");
-    };
-    for (const Index point : patch_points)
-      look_at(subject_.plc.points[point], subject_.tolerance.at_point(point));
-    for (Index i = 0; i < patch_.triangle_count; ++i) {
-      const Plc::Triangle& t = triangle(i);
-      look_at((subject_.plc_corner(t, 0) + subject_.plc_corner(t, 1) + subject_.plc_corner(t, 2)) / 3,
-              subject_.tolerance.at_triangle(patch_.first_triangle + i));
-    }
+  void check_distances(std::span<const Index> patch_points) {
+    PatchDistance(subject_.mesh, subject_.plc, subject_.tolerance, id_, faces_, patch_points)
+        .visit([&] { return enough(); },
+               [&](const PatchDistance::Sample& sample, bool on_face) { measure(sample, on_face); });
   }
 
   /// Distances below this change neither the maximum nor the verdict.
   double enough() const { return std::fmin(report_.max_surface_distance, least_allowed_); }
 
-  void measure(double distance, double tolerance, Index face, const Point& where,
-               fmt::format_string<Index&, Index&, const Tag&, double&, At> what) {
-    report_.max_surface_distance = std::fmax(report_.max_surface_distance, distance);
-    const double allowed = tolerance + subject_.rounding;
-    if (distance <= allowed) return;
-    findings_.add(guarantee::patch_distance, where, {id_, face},
-                  "{}, allowed is {:.6g}; use a smaller size there or "
-                  "allow a larger distance.",
-                  fmt::format(what, face, id_, patch_.tag, distance, At{where}), allowed);
+  void measure(const PatchDistance::Sample& sample, bool on_face) {
+    report_.max_surface_distance = std::fmax(report_.max_surface_distance, sample.distance);
+    const double allowed = sample.tolerance + subject_.rounding;
+    if (sample.distance <= allowed) return;
+    const std::string what =
+        on_face ? fmt::format("Face {} of patch {} (tag {}) is {:.6g} away from the patch at {}", sample.face,
+                              id_, patch_.tag, sample.distance, At{sample.place})
+                : fmt::format(
+                      "Face {}, the nearest of patch {} (tag {}), is {:.6g} away from the patch's "
+                      "point at {}",
+                      sample.face, id_, patch_.tag, sample.distance, At{sample.place});
+    findings_.add(guarantee::patch_distance, sample.place, {id_, sample.face},
+                  "{}, allowed is {:.6g}; use a smaller size there or allow a larger distance.", what,
+                  allowed);
   }
 
   const Subject& subject_;

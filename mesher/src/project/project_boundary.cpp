@@ -1,5 +1,5 @@
 // Moves boundary vertices onto exact geometry, all at once; then makes room where that spoils tets, and moves
-// vertices without room back.
+// vertices back that have no room or take faces too far from the complex.
 #include "collarmesh/project_boundary.h"
 
 #include <algorithm>
@@ -9,6 +9,8 @@
 
 #include "collarmesh/mesher.h"
 #include "common/flat_features.h"
+#include "common/patch_distance.h"
+#include "common/patch_points.h"
 #include "common/thread_limit.h"
 #include "location/triangle_hierarchy.h"
 #include "project/relaxation.h"
@@ -46,13 +48,10 @@ class BoundaryProjection {
     keep_courses();
     for (Index t = 0; t < mesh_.tets.size(); ++t)
       if (!room_.good(t)) tets.push_back(t);
-    do {
-      for (tets = room_.relax(std::move(tets)); !tets.empty();) tets = give_way(tets);
-      tets = keep_courses();
-    } while (!tets.empty());
-    room_.commit();
+    make_room(std::move(tets));
     for (int pass = 0; pass < retries && retry(pass > 0); ++pass) {
     }
+    while (!(tets = keep_distances()).empty()) make_room(std::move(tets));
     finish();
     if (!thin_.empty())
       ThreadLimit(options_.threads).run([&] {
@@ -125,6 +124,15 @@ class BoundaryProjection {
     for (const TetMesh::CollarBall& ball : mesh_.collar_balls) is_centre_.insert(ball.point);
   }
 
+  // Makes these tets good.
+  void make_room(std::vector<Index> tets) {
+    do {
+      for (tets = room_.relax(std::move(tets)); !tets.empty();) tets = give_way(tets);
+      tets = keep_courses();
+    } while (!tets.empty());
+    room_.commit();
+  }
+
   double way_of(Index slot) const { return distance(room_.origin(moves_[slot].point), moves_[slot].to); }
 
   // Records whether a vertex is on its exact feature; then it may slide along it, unless it is the centre of
@@ -151,26 +159,55 @@ class BoundaryProjection {
         }
         if (farthest == none) continue;
         set_done(farthest, false);
-        const Index point = moves_[farthest].point;
-        room_.put(point, room_.origin(point));
-        const auto tets = room_.tets_at()[point];
-        around.insert(around.end(), tets.begin(), tets.end());
+        go_back(moves_[farthest].point, around);
         turned = true;
       }
     }
     return around;
   }
 
+  // The exact geometry may be nearly as far from the complex as the mesh may be. Where faces and a smooth
+  // patch are farther apart, the corner that has moved most goes back. Returns the tets around such corners.
+  std::vector<Index> keep_distances() {
+    std::vector<Index> around;
+    const PatchPoints points_of(plc_);
+    std::vector<std::vector<Index>> faces_of(plc_.patches.size());
+    for (Index f = 0; f < mesh_.faces.size(); ++f)
+      if (mesh_.face_patch[f] != none) faces_of[mesh_.face_patch[f]].push_back(f);
+    for (Index patch = 0; patch < plc_.patches.size(); ++patch) {
+      const std::vector<Index>& faces = faces_of[patch];
+      if (plc_.patches[patch].planar || faces.empty()) continue;
+      const double enough = tolerance_.least_on_patch(patch);
+      PatchDistance(mesh_, plc_, tolerance_, patch, faces, points_of[patch])
+          .visit([&] { return enough; },
+                 [&](const PatchDistance::Sample& sample, bool) {
+                   if (sample.distance > sample.tolerance) move_farthest_back(sample.face, around);
+                 });
+    }
+    return around;
+  }
+
+  void move_farthest_back(Index face, std::vector<Index>& around) {
+    const auto moved = [&](Index p) { return distance(mesh_.points[p], room_.origin(p)); };
+    const auto& f = mesh_.faces[face];
+    const Index farthest =
+        *std::max_element(f.begin(), f.end(), [&](Index a, Index b) { return moved(a) < moved(b); });
+    if (moved(farthest) == 0) return;
+    if (const Index slot = slot_of_[farthest]; slot != none) set_done(slot, false);
+    go_back(farthest, around);
+  }
+
+  void go_back(Index p, std::vector<Index>& around) {
+    room_.set_free(p, false);
+    room_.put(p, room_.origin(p));
+    const auto tets = room_.tets_at()[p];
+    around.insert(around.end(), tets.begin(), tets.end());
+  }
+
   // In each spoilt tet moves the vertex with the longest way back, or all moved ones. Returns the tets that
   // are spoilt then.
   std::vector<Index> give_way(const std::vector<Index>& spoilt) {
     std::vector<Index> around;
-    const auto go_back = [&](Index p) {
-      room_.set_free(p, false);
-      room_.put(p, room_.origin(p));
-      const auto tets = room_.tets_at()[p];
-      around.insert(around.end(), tets.begin(), tets.end());
-    };
     for (const Index t : spoilt) {
       Index farthest = none;
       for (const Index p : mesh_.tets[t]) {
@@ -182,9 +219,9 @@ class BoundaryProjection {
       if (room_.good(t)) continue;
       if (farthest != none) {
         set_done(farthest, false);
-        go_back(moves_[farthest].point);
+        go_back(moves_[farthest].point, around);
       } else {
-        for (const Index p : mesh_.tets[t]) go_back(p);
+        for (const Index p : mesh_.tets[t]) go_back(p, around);
       }
     }
     return room_.relax(std::move(around));
