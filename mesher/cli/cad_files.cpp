@@ -9,7 +9,7 @@
 
 #include "collarmesh/brep/cad_model.h"
 #include "collarmesh/error.h"
-#include "collarmesh/usable_threads.h"
+#include "common/thread_limit.h"
 #include "supervisor.h"
 
 namespace collarmesh::cli {
@@ -53,12 +53,14 @@ double patience_with(const std::string& path) {
 struct CadFiles::File {
   std::unique_ptr<brep::CadModel> model;
   double deflection;
+  unsigned threads;
   Index first_soup, soup_count;
   mutable std::optional<brep::CadMeasures> measures = {};  // of these soups, when asked for
 
   /// With other triangles in the places of the former soups.
   void cut_again(const brep::TessellationOptions& options, std::vector<PolygonSoup>& soups) {
-    std::vector<PolygonSoup> own = model->tessellate(options);
+    std::vector<PolygonSoup> own;
+    ThreadLimit(threads).run([&] { own = model->tessellate(options); });
     std::move(own.begin(), own.end(), soups.begin() + first_soup);
     measures.reset();
   }
@@ -79,16 +81,18 @@ void CadFiles::read(const std::string& path, std::string_view format, const CadR
                     std::vector<PolygonSoup>& soups) {
   const brep::Overlap overlap =
       reading.overlap == SolidOverlap::region ? brep::Overlap::region : brep::Overlap::first;
-  usable_threads();  // OpenCASCADE would ask TBB for more
   const double patience = patience_with(path);
   std::optional<CadWork> work(std::in_place, "reading it and finding its solids", path, patience);
-  std::unique_ptr<brep::CadModel> model = read_by_module(path, format, {.overlap = overlap});
+  std::unique_ptr<brep::CadModel> model;
+  ThreadLimit limit(reading.threads);  // heeded by OpenCASCADE, whose threads are those of TBB
+  limit.run([&] { model = read_by_module(path, format, {.overlap = overlap}); });
   const double absolute = reading.deflection(model->diagonal());
   work.reset();
   work.emplace("cutting faces into triangles", path, patience);
-  std::vector<PolygonSoup> own = model->tessellate({.deflection = absolute});
-  files_.push_back(
-      {std::move(model), absolute, static_cast<Index>(soups.size()), static_cast<Index>(own.size())});
+  std::vector<PolygonSoup> own;
+  limit.run([&] { own = model->tessellate({.deflection = absolute}); });
+  files_.push_back({std::move(model), absolute, reading.threads, static_cast<Index>(soups.size()),
+                    static_cast<Index>(own.size())});
   std::move(own.begin(), own.end(), std::back_inserter(soups));
 }
 

@@ -25,6 +25,7 @@ struct CadReading {
   std::function<double(double diagonal)>
       deflection;  ///< of the triangles, absolute, from the shape's diagonal
   SolidOverlap overlap = SolidOverlap::first;
+  unsigned threads = 0;  ///< at most; 0: all cores
 };
 
 /// The CAD files among the inputs. The first one loads the module with OpenCASCADE.

@@ -24,9 +24,13 @@ ExitCode check_command(const CheckArguments& arguments) {
   const auto tolerance = [&](const Plc& plc) {
     return tolerance_of(plc, arguments.mesh.bounds, 0, mesh.order());
   };
-  ComplexInput input(
-      arguments.inputs,
-      interruptible({{}, distance, tolerance, arguments.overlap, arguments.names, arguments.given_names}));
+  ComplexInput input(arguments.inputs, interruptible({{},
+                                                      distance,
+                                                      tolerance,
+                                                      arguments.overlap,
+                                                      arguments.mesh.threads,
+                                                      arguments.names,
+                                                      arguments.given_names}));
   Execution execution;
   execution.cancel = &interrupt_flag();
   const CheckReport report = check_against(mesh, input, arguments, execution);

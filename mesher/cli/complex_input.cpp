@@ -73,7 +73,7 @@ std::string advice(const PlcError& error, const RepairOptions& options) {
 ComplexInput::ComplexInput(const std::vector<std::string>& paths, InputReading reading)
     : reading_(std::move(reading)) {
   const CadReading cad{[&](double diagonal) { return share_of_triangles * reading_.distance(diagonal); },
-                       reading_.overlap};
+                       reading_.overlap, reading_.threads};
   Tag largest_named = 0;  // numbers of names are those of their file
   for (const std::string& path : paths) {
     reading_.stop();

@@ -31,6 +31,7 @@ struct InputReading {
   /// finer. Empty: none is.
   std::function<SurfaceTolerance(const Plc&)> tolerance = {};
   SolidOverlap overlap = SolidOverlap::first;
+  unsigned threads = 0;                       ///< for CAD shapes, at most; 0: all cores
   std::string names = {};                     ///< of features: the path of a file, or its text; empty: none
   std::vector<std::string> given_names = {};  ///< further ones, "fixed=11"
   const std::atomic<bool>* cancel = nullptr;  ///< ends the work when it is set

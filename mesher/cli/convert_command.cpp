@@ -132,10 +132,11 @@ ExitCode convert_command(const ConvertArguments& a) {
     return ExitCode::success;
   }
   if (!to_surface) return mesh_command(a);
-  ComplexInput input(
-      a.inputs,
-      interruptible(
-          {.format = a.input_format, .overlap = a.overlap, .names = a.names, .given_names = a.given_names}));
+  ComplexInput input(a.inputs, interruptible({.format = a.input_format,
+                                              .overlap = a.overlap,
+                                              .threads = a.mesh.threads,
+                                              .names = a.names,
+                                              .given_names = a.given_names}));
   if (a.repairs) repair(a, input);
   write_soup(a, input.soups());
   return ExitCode::success;

@@ -64,6 +64,7 @@ void print_complex(const InfoArguments& arguments) {
   const Clock::time_point begin = Clock::now();
   ComplexInput input(arguments.inputs, interruptible({.format = {},
                                                       .overlap = arguments.overlap,
+                                                      .threads = arguments.mesh.threads,
                                                       .names = arguments.names,
                                                       .given_names = arguments.given_names}));
   const Plc plc = build_any(input, arguments);

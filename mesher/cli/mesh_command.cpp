@@ -257,7 +257,7 @@ std::unique_ptr<ComplexInput> read_inputs(const MeshArguments& arguments) {
   };
   return std::make_unique<ComplexInput>(
       arguments.inputs, interruptible({arguments.input_format, distance, tolerance, arguments.overlap,
-                                       arguments.names, arguments.given_names}));
+                                       arguments.mesh.threads, arguments.names, arguments.given_names}));
 }
 
 MadeMesh make_mesh(const MeshArguments& arguments) {

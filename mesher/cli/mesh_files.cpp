@@ -17,6 +17,7 @@ cli::InputReading reading_of(const RunOptions& options, const std::string& forma
     return tolerance_of(plc, options.mesh.bounds, options.mesh.size, static_cast<int>(options.order));
   };
   reading.overlap = options.overlap;
+  reading.threads = options.mesh.threads;
   reading.names = options.names;
   reading.cancel = execution.cancel;
   return reading;

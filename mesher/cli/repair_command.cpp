@@ -53,10 +53,11 @@ ExitCode repair_command(const RepairArguments& a) {
   limit_memory(memory_of_the_machine() / 2);
   require_writable(a.output, a.output_format);
   for (const std::string& report : a.reports) require_writable(report);
-  ComplexInput input(
-      a.inputs,
-      interruptible(
-          {.format = a.input_format, .overlap = a.overlap, .names = a.names, .given_names = a.given_names}));
+  ComplexInput input(a.inputs, interruptible({.format = a.input_format,
+                                              .overlap = a.overlap,
+                                              .threads = a.mesh.threads,
+                                              .names = a.names,
+                                              .given_names = a.given_names}));
   const Plc plc = input.build(a.complex, a.repair);
   stop_if_interrupted();
   const nlohmann::ordered_json told =

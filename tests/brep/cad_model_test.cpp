@@ -2,6 +2,7 @@
 #include "collarmesh/brep/cad_model.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <BRepAlgoAPI_Fuse.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
@@ -19,10 +20,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <filesystem>
+#include <iterator>
 #include <set>
+#include <thread>
 
 #include "collarmesh/error.h"
 #include "collarmesh/plc_builder.h"
+#include "complex_input.h"
 #include "soup_measures.h"
 #include "support/leaks_allowed.h"
 #include "support/temporary_file.h"
@@ -89,6 +96,36 @@ TEST(CadFiles, IgesHoldsFacesThatAreSewn) {
   CadModel model = brep::read_cad(path);
   EXPECT_EQ(model.notes().size(), 1U);
   EXPECT_NEAR(volume_in(std::move(model)), 6000, 1e-6);
+}
+
+std::ptrdiff_t count_threads() {
+  return std::distance(std::filesystem::directory_iterator("/proc/self/task"),
+                       std::filesystem::directory_iterator());
+}
+
+// Threads that OpenCASCADE starts stay. In processes of their own, as earlier tests may have started some.
+TEST(CadFilesDeathTest, AreReadWithTheThreadsThatAreAllowed) {
+  if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "there is one core";
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const TemporaryFolder folder;
+  const std::string path = folder.file("box.brep");
+  BRepTools::Write(box(), path.c_str());
+  const auto read = [&](unsigned threads) {
+    cli::InputReading reading;
+    reading.threads = threads;
+    const cli::ComplexInput input({path}, reading);
+    std::exit(static_cast<int>(count_threads()));
+  };
+  int with_one = 0, with_all = 0;
+  const auto keep = [](int& count) {
+    return [&count](int status) {
+      count = WEXITSTATUS(status);
+      return WIFEXITED(status);
+    };
+  };
+  EXPECT_EXIT(read(1), keep(with_one), "");
+  EXPECT_EXIT(read(0), keep(with_all), "");
+  EXPECT_LT(with_one, with_all);
 }
 
 TEST(CadFiles, ThatAreNoneAreReadErrors) {

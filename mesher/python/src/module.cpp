@@ -65,6 +65,7 @@ cli::ComplexInput read(const Inputs& inputs, const Options& options, Watch& watc
     return tolerance_of(plc, options.mesh.bounds, options.mesh.size, static_cast<int>(options.order));
   };
   reading.overlap = options.overlap;
+  reading.threads = options.mesh.threads;
   reading.names = options.names;
   reading.cancel = &watch.flag();
   reading.stop = [&watch] { watch.stop_if_asked(); };
