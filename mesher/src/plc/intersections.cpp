@@ -24,7 +24,7 @@ struct Pair {
 class IntersectionFinder {
  public:
   IntersectionFinder(const Draft& draft, const Simplices& simplices)
-      : draft_(draft), boxes_(simplices.boxes()), simplices_(simplices.list()) {}
+      : draft_(draft), boxes_(simplices.boxes_for_pairs()), simplices_(simplices.list()) {}
 
   std::vector<std::pair<Index, Index>> pairs(const std::vector<bool>& settled = {}) const {
     std::vector<std::pair<Index, Index>> found;

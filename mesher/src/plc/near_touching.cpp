@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "common/box_frame.h"
 #include "common/box_tree.h"
 
 namespace collarmesh::build {
@@ -23,7 +25,19 @@ struct Element {
   unsigned size;
   unsigned dimension;
   Index feature;
+  std::array<Vector, 2> axes{};  // of a triangle: its normal, and across its longest side, units
 };
+
+constexpr double roundings = 32;
+
+std::array<Vector, 2> axes_of(const Point& a, const Point& b, const Point& c) {
+  Vector longest;
+  for (const Vector& side : {b - a, c - b, a - c})
+    if (squared_norm(side) > squared_norm(longest)) longest = side;
+  const Vector normal = cross(b - a, c - a), across = cross(normal, longest);
+  if (!(norm(normal) > 0 && norm(across) > 0)) return {};
+  return {normal / norm(normal), across / norm(across)};
+}
 
 struct Nearest {
   double squared_distance = INFINITY;
@@ -48,20 +62,23 @@ class NearTouchingFinder {
       for (std::size_t i = 0; i + 1 < p.size() + (plc.curves[c].closed ? 1 : 0); ++i)
         elements_.push_back({{p[i], p[(i + 1) % p.size()], p[i]}, 2, 1, c});
     }
-    for (const Plc::Triangle& t : plc.triangles) elements_.push_back({t.points, 3, 2, t.patch});
+    for (const Plc::Triangle& t : plc.triangles)
+      elements_.push_back(
+          {t.points, 3, 2, t.patch, axes_of(at(t.points[0]), at(t.points[1]), at(t.points[2]))});
   }
 
   void run(Faults& faults) {
+    std::vector<std::array<Index, 3>> triangles;
+    for (const Plc::Triangle& t : plc_.triangles) triangles.push_back(t.points);
+    const BoxFrame frame(plc_.points, triangles);
     std::vector<Box> boxes(elements_.size());
-    const Vector reach = 0.5 * limit_ * Vector{1, 1, 1};
     for (std::size_t e = 0; e < elements_.size(); ++e)
-      for (unsigned i = 0; i < elements_[e].size; ++i) {
-        boxes[e].add(at(elements_[e].points[i]) - reach);
-        boxes[e].add(at(elements_[e].points[i]) + reach);
-      }
+      for (unsigned i = 0; i < elements_[e].size; ++i)
+        frame.add(boxes[e], at(elements_[e].points[i]), 0.5 * limit_);
+    margin_ = limit_ + roundings * std::numeric_limits<double>::epsilon() * plc_.bounds.diagonal();
     BoxTree(boxes, features()).for_each_pair([&](Index i, Index j) {
       const Element &a = elements_[std::min(i, j)], &b = elements_[std::max(i, j)];
-      if (have_common_point(a, b) || related(a, b)) return;
+      if (have_common_point(a, b) || apart(a, b) || apart(b, a) || related(a, b)) return;
       const Nearest nearest = nearest_of(a, b);
       if (nearest.squared_distance > limit_ * limit_) return;
       Nearest& known = found_[{a.dimension, a.feature, b.dimension, b.feature}];
@@ -124,6 +141,24 @@ class NearTouchingFinder {
     const auto end = b.points.begin() + b.size;
     return std::any_of(a.points.begin(), a.points.begin() + a.size,
                        [&](Index p) { return std::find(b.points.begin(), end, p) != end; });
+  }
+
+  // Returns whether b surely keeps its distance from a triangle. Boxes of needles meet by the million.
+  bool apart(const Element& a, const Element& b) const {
+    return a.size == 3 && std::any_of(a.axes.begin(), a.axes.end(), [&](const Vector& axis) {
+             double low = INFINITY, high = -INFINITY, low_of_a = 0, high_of_a = 0;
+             for (unsigned i = 1; i < a.size; ++i) {
+               const double along = dot(axis, at(a.points[i]) - at(a.points[0]));
+               low_of_a = std::min(low_of_a, along);
+               high_of_a = std::max(high_of_a, along);
+             }
+             for (unsigned i = 0; i < b.size; ++i) {
+               const double along = dot(axis, at(b.points[i]) - at(a.points[0]));
+               low = std::min(low, along);
+               high = std::max(high, along);
+             }
+             return low > high_of_a + margin_ || high < low_of_a - margin_;
+           });
   }
 
   // Returns whether one of two features is part of the other, or they meet in a common one. The first has the
@@ -219,7 +254,7 @@ class NearTouchingFinder {
   }
 
   const Plc& plc_;
-  double limit_;
+  double limit_, margin_ = 0;  // beyond the margin what is measured is above the limit, too
   std::vector<Element> elements_;
   std::map<Pair, Nearest> found_;
 };

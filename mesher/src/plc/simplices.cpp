@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "common/box_frame.h"
+
 namespace collarmesh::build {
 
 namespace {
@@ -21,10 +23,11 @@ std::vector<Simplex> collect(const Draft& draft, const EdgeTable& edges) {
   return simplices;
 }
 
-std::vector<Box> boxes_of(const Draft& draft, std::span<const Simplex> simplices) {
+std::vector<Box> boxes_of(const Draft& draft, std::span<const Simplex> simplices,
+                          const BoxFrame& frame = {}) {
   std::vector<Box> boxes(simplices.size());
   for (std::size_t i = 0; i < boxes.size(); ++i)
-    for (const Index p : simplices[i].corners()) boxes[i].add(draft.points[p]);
+    for (const Index p : simplices[i].corners()) frame.add(boxes[i], draft.points[p]);
   return boxes;
 }
 
@@ -45,6 +48,9 @@ std::vector<Index> facets_of(const Draft& draft, std::span<const Simplex> simpli
 }  // namespace
 
 Simplices::Simplices(const Draft& draft, const EdgeTable& edges)
-    : list_(collect(draft, edges)), boxes_(boxes_of(draft, list_), facets_of(draft, list_)) {}
+    : list_(collect(draft, edges)), boxes_(boxes_of(draft, list_), facets_of(draft, list_)) {
+  if (const BoxFrame frame(draft.points, draft.triangles); frame.turned())
+    turned_.emplace(boxes_of(draft, list_, frame), facets_of(draft, list_));
+}
 
 }  // namespace collarmesh::build

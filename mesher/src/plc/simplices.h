@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,10 +26,13 @@ class Simplices {
   std::span<const Simplex> list() const { return list_; }
   /// The triangles of a facet, which come from one triangulation, are a group; all else is alone.
   const BoxTree& boxes() const { return boxes_; }
+  /// To find pairs: the same, along any axes.
+  const BoxTree& boxes_for_pairs() const { return turned_ ? *turned_ : boxes_; }
 
  private:
   std::vector<Simplex> list_;
   BoxTree boxes_;
+  std::optional<BoxTree> turned_;  // where boxes along other axes are much smaller
 };
 
 }  // namespace collarmesh::build

@@ -7,7 +7,7 @@ namespace collarmesh::repairing {
 using namespace build;
 
 ChangingTriangles::ChangingTriangles(Draft& draft, double reach, Work& work)
-    : draft_(draft), reach_(reach), work_(work) {
+    : draft_(draft), reach_(reach), work_(work), frame_(draft.points, draft.triangles) {
   alive_.assign(draft.triangles.size(), true);
   count_ = draft.triangles.size();
   normals_.resize(count_);
@@ -96,12 +96,8 @@ std::vector<Edge> ChangingTriangles::edges_of(const std::vector<Index>& triangle
 }
 
 Box ChangingTriangles::box_around(std::span<const Index> points) const {
-  const Vector margin = 0.5 * reach_ * Vector{1, 1, 1};
   Box box;
-  for (const Index p : points) {
-    box.add(draft_.points[p] - margin);
-    box.add(draft_.points[p] + margin);
-  }
+  for (const Index p : points) frame_.add(box, draft_.points[p], 0.5 * reach_);
   return box;
 }
 

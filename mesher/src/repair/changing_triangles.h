@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/box_frame.h"
 #include "common/box_tree.h"
 #include "plc/draft.h"
 #include "repair/item_trees.h"
@@ -19,9 +20,9 @@ namespace collarmesh::repairing {
 /// Holds between calls: the draft's points may have grown, its triangles change by these functions alone.
 class ChangingTriangles {
  public:
-  /// Triangles are near each other where their boxes, larger by half of `reach` (absolute) on all sides,
-  /// meet, and each comes within `reach` of the plane of the other. Pairs of boxes that meet are spent from
-  /// `work`.
+  /// Triangles are near each other where their boxes, along the axes of a frame and larger by half of
+  /// `reach` (absolute) on all sides, meet, and each comes within `reach` of the plane of the other. Pairs of
+  /// boxes that meet are spent from `work`.
   ChangingTriangles(build::Draft& draft, double reach, Work& work);
 
   /// How many there are.
@@ -141,6 +142,7 @@ class ChangingTriangles {
   build::Draft& draft_;
   double reach_;
   Work& work_;
+  const BoxFrame frame_;                                        // of the boxes
   bool searched_triangles_ = false, searched_corners_ = false;  // for a few changed ones, without trees
   std::size_t count_ = 0;
   std::vector<bool> alive_;

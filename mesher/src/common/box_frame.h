@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "collarmesh/geometry.h"
+
+namespace collarmesh {
+
+/// Axes along which the boxes of triangles are small: those of the coordinates, or, where most triangles are
+/// long and parallel to none of these, those of the triangles. Boxes of parallel needles meet by the million
+/// otherwise.
+class BoxFrame {
+ public:
+  /// The axes of the coordinates.
+  BoxFrame() = default;
+  /// Cost: O(n).
+  BoxFrame(std::span<const Point> points, std::span<const std::array<Index, 3>> triangles);
+
+  bool turned() const { return turned_; }
+
+  /// Adds what lies within `reach` of a point along each axis, with all errors of rounding.
+  void add(Box& box, const Point& p, double reach = 0) const {
+    const Point q =
+        turned_ ? Point{dot(axes_[0], p - origin_), dot(axes_[1], p - origin_), dot(axes_[2], p - origin_)}
+                : p;
+    const double margin = reach + error_;
+    box.add(q - Vector{margin, margin, margin});
+    box.add(q + Vector{margin, margin, margin});
+  }
+
+ private:
+  bool turned_ = false;
+  Point origin_;
+  std::array<Vector, 3> axes_;
+  double error_ = 0;
+};
+
+}  // namespace collarmesh
