@@ -600,6 +600,33 @@ TEST(KeepOneSide, OfABoxIsTheBox) {
   EXPECT_GT(repaired.report.second_sides, 0U);
 }
 
+// All faces but one are cut at their sides' middles: the corners of that one alone meet those of the others.
+TEST(KeepOneSide, OfFacesThatMeetInNoCommonEdgeIsTheBox) {
+  const PolygonSoup box = soup_of({{0, 0, 0}, {1, 2, 3}});
+  PolygonSoup soup;
+  const auto add = [&](const Point& a, const Point& b, const Point& c) {
+    const auto first = static_cast<Index>(soup.points.size());
+    soup.points.insert(soup.points.end(), {a, b, c});
+    soup.add_facet(std::array{first, first + 1, first + 2}, 1);
+    soup.add_facet(std::array{first + 2, first + 1, first}, 1);
+  };
+  for (Index f = 0; f < box.facet_count(); ++f) {
+    const auto c = box.polygon(box.facet_polygons(f)[0]);
+    const auto at = [&](Index i) { return box.points[c[i % 4]]; };
+    const Point centre = 0.5 * (at(0) + at(2));
+    for (Index i = 0; i < 4 && f > 0; ++i) {
+      const Point middle = 0.5 * (at(i) + at(i + 1));
+      add(at(i), middle, centre);
+      add(middle, at(i + 1), centre);
+    }
+    for (Index i = 0; i < 3 && f == 0; i += 2) add(at(i), at(i + 1), at(i + 2));
+  }
+  const RepairedPlc repaired = build_repaired_plc({&soup, 1});
+  ASSERT_EQ(repaired.plc.regions.size(), 2U);
+  EXPECT_NEAR(repaired.plc.regions[1].volume, 6, 1e-9);
+  EXPECT_EQ(repaired.report.flakes.count, 0U);
+}
+
 // A sheet with two sides encloses nothing with one of them either.
 TEST(KeepOneSide, SheetsAreLeft) {
   PolygonSoup pillow;

@@ -174,8 +174,10 @@ class Repairer {
       orient_components(draft_, edges, one_sided);
       report_.filled = fill_holes(draft_, next_tag(), &work_);
     }
-    const FlakeReport flakes = drop_flakes(draft_, tolerance_);
-    add_places(report_.flakes, flakes.places.size(), flakes.volume, flakes.places);
+    if (!is_two_sided(draft_)) {  // else its faces alone may be closed, as two sides of nothing
+      const FlakeReport flakes = drop_flakes(draft_, tolerance_);
+      add_places(report_.flakes, flakes.places.size(), flakes.volume, flakes.places);
+    }
     const TurnReport turned = turn_components(draft_);
     add_places(report_.turned, turned.turned_components, 0, turned.places);
   }
