@@ -235,6 +235,8 @@ bool Refinement::join(const CurveChains::Split& split) {
 void Refinement::insert_point(Index index) {
   const UnresolvedPoints::Unresolved p = points_[index];
   Index vertex = points_.vertex_near(index);
+  if (distance(p.point, mesh_.point(vertex)) < p.apart && mesh_.on_patch(vertex, p.feature.index))
+    return points_.resolve(index, vertex);
   const Index cell = mesh_.conflicting_cell_around(vertex, p.point);
   if (cell == none) {  // a vertex is there already: it takes over the feature
     mesh_.lower_feature(vertex, p.feature);

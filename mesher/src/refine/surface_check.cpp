@@ -231,6 +231,18 @@ bool SurfaceCheck::still_near(const TessellationPoint& p, Index patch) const {
   return mesh_.alive(cell, p.generation) && surface_.is_marked(p.near) && surface_.patch(p.near) == patch;
 }
 
+// Makes the surface come nearer to a point of a patch; `nearest` is the nearest of the patch's triangles.
+void SurfaceCheck::resolve(const TessellationPoint& p, Index patch, FaceId nearest) {
+  constexpr double same_place = 0.1;  // of the tolerance
+  const Index vertex = mesh_.nearest_vertex(p.at, mesh_.face_vertices(nearest)[0]);
+  const double apart = same_place * p.tolerance;
+  // A vertex that is not one of the surface yet: a second one beside it would not be either.
+  if (distance(mesh_.point(vertex), p.at) < apart)
+    triangles_.split(nearest);
+  else
+    points_.add({.point = p.at, .feature = {2, patch}, .apart = apart}, vertex);
+}
+
 // A tessellation point of a smooth patch that is farther than the tolerance from the patch's
 // triangles becomes an unresolved point: the farthest one at each triangle, so that one insertion
 // serves all its neighbours.
@@ -275,9 +287,9 @@ bool SurfaceCheck::resolve_distant_points(const std::vector<FaceId>& faces) {
       const double d = surface.squared_distance_to(p->at, INFINITY, &nearest);
       if (d > farthest[nearest].squared_distance) farthest[nearest] = {d, p};
     }
-    for (const Farthest& f : farthest) {
-      if (f.point == nullptr) continue;
-      points_.add(f.point->at, {2, patch});
+    for (Index i = 0; i < farthest.size(); ++i) {
+      if (farthest[i].point == nullptr) continue;
+      resolve(*farthest[i].point, patch, faces_of[patch][i]);
       found = true;
     }
   }

@@ -65,6 +65,7 @@ class SurfaceCheck {
   void prepare_tessellation();
   bool still_near(const TessellationPoint& p, Index patch) const;
   bool resolve_distant_points(const std::vector<FaceId>& faces);
+  void resolve(const TessellationPoint& p, Index patch, FaceId nearest);
   std::vector<Index> cells_on_surface() const;
   bool flat_on_patch(Index cell) const;
   bool has_no_volume(Index cell) const;

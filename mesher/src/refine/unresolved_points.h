@@ -24,6 +24,7 @@ class UnresolvedPoints {
     Index vertex = none;   ///< the mesh vertex that it became
     Index across = none;   ///< the mesh vertex that it faces across a gap
     bool dormant = false;  ///< comes in only when a candidate warps to it
+    double apart = 0;      ///< a vertex of the same patch that is nearer than this serves as well
   };
 
   /// All are kept by reference. `theta`: how far to warp (paper, Procedure 2).
