@@ -167,6 +167,15 @@ std::string CadFiles::invalid_parts() const {
   return parts;
 }
 
+std::vector<std::pair<Tag, Tag>> CadFiles::replaced_faces() const {
+  std::vector<std::pair<Tag, Tag>> replaced;
+  for (const File& file : files_) {
+    const auto& own = file.model->replaced_faces();
+    replaced.insert(replaced.end(), own.begin(), own.end());
+  }
+  return replaced;
+}
+
 bool CadFiles::fused() const {
   return std::all_of(files_.begin(), files_.end(), [](const File& file) { return file.model->fused(); });
 }

@@ -73,6 +73,8 @@ class CadFiles {
   std::string faces_near(const Point& where) const;
   /// The sub-shapes that OpenCASCADE finds invalid, or empty.
   std::string invalid_parts() const;
+  /// Faces that became one with others: the number that is gone and the one in its place.
+  std::vector<std::pair<Tag, Tag>> replaced_faces() const;
   /// False: solids that touch or overlap could not be fused, so their soups intersect, however fine.
   bool fused() const;
   /// Which solids are open, at which edges and where; or empty.

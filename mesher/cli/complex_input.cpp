@@ -102,9 +102,18 @@ Plc ComplexInput::build(const PlcOptions& options, const RepairOptions& repair) 
   Plc plc = build_unnamed(options, repair);
   for (const Plc::Patch& patch : plc.patches) built_.patch_numbers.push_back(patch.tag);
   for (const Plc::Curve& curve : plc.curves) built_.curve_numbers.push_back(curve.tag);
+  if (!built_.repaired.wrapped) add_replaced_faces(plc);
   name(plc);
   if (labels() != nullptr) name_regions(*labels(), plc);
   return plc;
+}
+
+/// Adds the numbers that went where solids of a file touch to those of the complex.
+void ComplexInput::add_replaced_faces(Plc& plc) const {
+  std::vector<std::pair<Tag, Tag>>& all = plc.cleanup.replaced_tags;
+  std::ranges::copy(cad_.replaced_faces(), std::back_inserter(all));
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
 }
 
 const brep::CadLabels* ComplexInput::labels() const {

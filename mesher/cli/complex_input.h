@@ -71,6 +71,7 @@ class ComplexInput {
   ShapeMeasures exact_measures(const Plc& plc) const;
 
  private:
+  void add_replaced_faces(Plc& plc) const;
   void name(Plc& plc) const;
   const brep::CadLabels* labels() const;
   Plc build_unnamed(const PlcOptions& options, const RepairOptions& repair);

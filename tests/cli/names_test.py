@@ -115,6 +115,21 @@ class Numbers(ProgramTest):
         self.expect(2, *parts, "-o", self.out, "--patch-size", "12=0.2",
                     says=["patch 12 lies on patch 4 of another part, whose number both have; use 4"])
 
+    @unittest.skipUnless(HAS_CAD, "no OpenCASCADE")
+    def test_where_solids_of_a_file_touch_one_number_stays(self):
+        file = StepFile()
+        file.product("Left", file.box((0, 0, 0), (1, 1, 1)))
+        file.product("Right", file.box((1, 0, 0), (2, 1, 1)))
+        file.product("Top", file.box((0, 0, 1), (1, 1, 2)))
+        part = file.write(self.folder / "touching.step")
+        out = self.folder / "touching.vtu"
+        run = self.run_program(part, "-o", out, "--size", "1")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("triangles that parts have in common; there patch 7 is patch 2, 17 is 6\n", run.stderr)
+        use = "patch {} of another part, whose number both have; use {}"
+        self.expect(2, part, "-o", self.out, "--patch-size", "7=0.2", says=["patch 7 lies on " + use.format(2, 2)])
+        self.expect(2, part, "-o", self.out, "--name", "contact=17", says=["it lies on " + use.format(6, 6)])
+
     def test_a_mesh_with_numbers_passes_check(self):
         self.expect(0, self.box, "-o", self.out, "--size", "0.5", writes=True)
         run = self.run_program("check", self.out, "--against", self.box)

@@ -76,6 +76,9 @@ const std::string& CadModel::name() const { return parts_->name; }
 const CadLabels& CadModel::labels() const { return parts_->labels; }
 double CadModel::diagonal() const { return parts_->diagonal; }
 bool CadModel::fused() const { return parts_->topology.fused; }
+const std::vector<std::pair<Tag, Tag>>& CadModel::replaced_faces() const {
+  return parts_->topology.replaced_faces;
+}
 const std::string& CadModel::open_edges_text() const { return parts_->topology.open_text; }
 std::vector<std::string> CadModel::notes() const {
   std::vector<std::string> notes = parts_->topology.notes;

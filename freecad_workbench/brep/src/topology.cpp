@@ -114,7 +114,10 @@ void carry_numbers(const TopoDS_Shape& before, const TopoDS_Shape& after, const 
     int next = by_number.empty() ? 1 : by_number.rbegin()->first + 1;
     for (const auto& [number, old] : by_number)
       for (const TopoDS_Shape& part : parts_of(old))
-        if (!numbers.IsBound(part)) numbers.Bind(part, number);
+        if (!numbers.IsBound(part))
+          numbers.Bind(part, number);
+        else if (kind == TopAbs_FACE && numbers.Find(part) != number)
+          topology.replaced_faces.emplace_back(number, numbers.Find(part));
     for (const TopoDS_Shape& part : subshapes(after, kind))
       if (!numbers.IsBound(part)) numbers.Bind(part, next++);
   }

@@ -25,10 +25,11 @@ struct Topology {
     bool open = false;                ///< edges border one face only
   };
 
-  std::vector<Solid> solids;                 ///< parts of one solid have the same number
-  std::vector<TopoDS_Shape> internal_faces;  ///< that belong to no solid, or lie inside one
-  TopoDS_Shape all;                          ///< what is tessellated
-  TopTools_DataMapOfShapeInteger numbers;    ///< of solids, faces, edges and vertices
+  std::vector<Solid> solids;                        ///< parts of one solid have the same number
+  std::vector<TopoDS_Shape> internal_faces;         ///< that belong to no solid, or lie inside one
+  TopoDS_Shape all;                                 ///< what is tessellated
+  TopTools_DataMapOfShapeInteger numbers;           ///< of solids, faces, edges and vertices
+  std::vector<std::pair<Tag, Tag>> replaced_faces;  ///< number that is gone, number in its place
   std::vector<std::string> notes;
   bool fused = true;      ///< all that touch or overlap
   std::string open_text;  ///< which solids are open, at which edges; empty: none
@@ -57,7 +58,7 @@ std::vector<TopoDS_Shape> boundary_of(const TopoDS_Shape& solid);
 using PartsOf = std::function<TopTools_ListOfShape(const TopoDS_Shape&)>;
 
 /// Numbers for the parts that the sub-shapes of `before` became in `after`, the smallest where several became
-/// one; and the next free ones for parts that come from none.
+/// one; and the next free ones for parts that come from none. Records the numbers of faces that went.
 void carry_numbers(const TopoDS_Shape& before, const TopoDS_Shape& after, const PartsOf& parts_of,
                    Topology& topology);
 

@@ -131,7 +131,18 @@ class Namer {
     const std::size_t before = members.size();
     for (Index f = first_; f < features_.size(); ++f)
       if (features_[f].tag == tag) members.push_back(f);
-    if (members.size() == before) fail(place, fmt::format("no {} has the number {}", what_, tag));
+    if (members.size() == before)
+      fail(place, fmt::format("no {} has the number {}{}", what_, tag, in_place_of(tag)));
+  }
+
+  /// Tells the number that is used where parts touch, if the input had this one.
+  std::string in_place_of(Tag tag) const {
+    if (dimension_ != 2) return {};
+    for (const auto& [gone, stays] : plc_.cleanup.replaced_tags)
+      if (gone == tag)
+        return fmt::format(": it lies on patch {} of another part, whose number both have; use {}", stays,
+                           stays);
+    return {};
   }
 
   Plc& plc_;

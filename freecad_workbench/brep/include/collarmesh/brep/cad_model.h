@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "collarmesh/brep/cad_formats.h"
@@ -86,6 +87,10 @@ class CadModel {
 
   /// What was done to the shape (faces sewn, overlaps, faces that were mended, ...), for people.
   virtual std::vector<std::string> notes() const;
+
+  /// Where faces of solids that touch or were sewn became one: the number that is gone and the one in its
+  /// place.
+  virtual const std::vector<std::pair<Tag, Tag>>& replaced_faces() const;
 
   /// False: solids that touch or overlap were left as they are, so their soups intersect, however fine.
   virtual bool fused() const;
