@@ -15,7 +15,7 @@ namespace collarmesh::prediction {
 namespace {
 
 // Beyond this number the remaining pieces are not divided.
-constexpr std::size_t most_pieces = 40000, most_cubes = 80000;
+constexpr std::size_t most_pieces = 40000, most_cubes = 20000;
 constexpr double most_pieces_of_segment = 1000, most_pieces_of_curves = 40000;  // beyond one for each segment
 constexpr double least_share = 0.002;  // of the size: what walls and strips make of it at most
 
