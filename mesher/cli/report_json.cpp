@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "colour_text.h"
 #include "mesh_groups.h"
 #include "options_json.h"
 #include "report.h"
@@ -175,10 +176,10 @@ Json name_json(const Plc& plc, GroupNames names, std::size_t dimension, Tag tag)
   return name.empty() ? Json(nullptr) : Json(name);
 }
 
-/// Null where a file gave none; "#rrggbb" as pages have it.
+/// Null where a file gave none.
 Json colour_json(const std::map<Tag, Colour>& colours, Tag tag) {
   const auto found = colours.find(tag);
-  return found == colours.end() ? Json(nullptr) : Json(fmt::format("#{:06x}", found->second));
+  return found == colours.end() ? Json(nullptr) : Json(colour_text(found->second));
 }
 
 /// Estimates may exceed every integer.

@@ -12,10 +12,10 @@
 
 #include "io/abaqus_format.h"
 #include "io/cell_nodes.h"
-#include "io/face_finder.h"
 #include "io/label_names.h"
 #include "io/node_groups.h"
 #include "io/number_text.h"
+#include "io/sides_of_faces.h"
 #include "io/tet_mesh_formats.h"
 #include "io/write_each.h"
 
@@ -105,26 +105,14 @@ void write_elements(FileWriter& out, const TetMesh& mesh) {
 
 /// The element and its side that lie behind each face.
 void write_surfaces(FileWriter& out, const TetMesh& mesh, const Names& names) {
-  struct Side {
-    std::size_t tet, side;
-  };
-  std::vector<Side> behind(mesh.faces.size(), {none, 0});
-  FaceFinder finder(mesh.faces);
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-    for (std::size_t s = 0; s < abaqus_faces.size(); ++s) {
-      // Abaqus' faces look inwards.
-      const auto& [i, j, k] = abaqus_faces[s];
-      const FaceFinder::Triangle outward{mesh.tets[t][i], mesh.tets[t][k], mesh.tets[t][j]};
-      const Index face = finder.find(outward);
-      if (face != none && (FaceFinder::alike(mesh.faces[face], outward) || behind[face].tet == none))
-        behind[face] = {t, s};
-    }
-  std::map<Tag, std::vector<Side>> surfaces;
+  std::map<Tag, std::vector<SideOfTet>> surfaces;
+  const std::vector<SideOfTet> sides = sides_of_faces(mesh);
   for (std::size_t f = 0; f < mesh.faces.size(); ++f)
-    if (behind[f].tet != none) surfaces[mesh.face_tag[f]].push_back(behind[f]);
-  for (const auto& [tag, sides] : surfaces) {
+    if (sides[f].tet != none) surfaces[mesh.face_tag[f]].push_back(sides[f]);
+  for (const auto& [tag, members] : surfaces) {
     out << "*SURFACE, NAME=" << names.at(tag) << ", TYPE=ELEMENT\n";
-    for (const Side& side : sides) out << side.tet + 1 << ", S" << side.side + 1 << '\n';
+    for (const SideOfTet& side : members)
+      out << side.tet + 1 << ", S" << abaqus_face_opposite[side.opposite] << '\n';
   }
 }
 

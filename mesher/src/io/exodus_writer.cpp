@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "io/cell_nodes.h"
-#include "io/face_finder.h"
 #include "io/label_names.h"
 #include "io/netcdf_writer.h"
 #include "io/node_groups.h"
+#include "io/sides_of_faces.h"
 #include "io/tet_mesh_formats.h"
 
 namespace collarmesh::io {
@@ -23,32 +23,13 @@ namespace {
 
 constexpr std::size_t longest_name = 255, usual_name = 32;
 
-/// Corners of Exodus' sides of a tetrahedron.
-constexpr std::array<std::array<std::size_t, 3>, 4> sides{{{0, 1, 3}, {1, 2, 3}, {0, 2, 3}, {0, 1, 2}}};
+/// Exodus' numbers of the sides of a tetrahedron, by the corner opposite.
+constexpr std::array<std::int32_t, 4> side_opposite{2, 3, 1, 4};
 
 struct Block {
   Tag tag = 0;
   std::vector<Index> tets;
 };
-
-struct Side {
-  Index tet = none;
-  std::int32_t side = 0;
-};
-
-/// Finds a side of a tet for each face: of the tet behind it, if there is one.
-std::vector<Side> sides_of_faces(const TetMesh& mesh) {
-  FaceFinder finder(mesh.faces);
-  std::vector<Side> found(mesh.faces.size());
-  for (Index t = 0; t < mesh.tets.size(); ++t)
-    for (std::size_t s = 0; s < sides.size(); ++s) {
-      const auto& [a, b, c] = sides[s];
-      const Index face = finder.find({mesh.tets[t][a], mesh.tets[t][b], mesh.tets[t][c]});
-      if (face != none && (found[face].tet == none || mesh.tet_region[t] == mesh.face_regions[face][0]))
-        found[face] = {t, static_cast<std::int32_t>(s + 1)};
-    }
-  return found;
-}
 
 /// Can it be the value of a property?
 bool fits(Tag tag) {
@@ -68,7 +49,7 @@ class ExodusFile {
     std::int32_t number = 0;
     for (const auto& [region, block] : blocks_)
       for (const Index t : block.tets) number_in_file_[t] = ++number;
-    const std::vector<Side> found = sides_of_faces(mesh);
+    const std::vector<SideOfTet> found = sides_of_faces(mesh);
     for (Index f = 0; f < found.size(); ++f)
       if (found[f].tet != none) side_sets_[mesh.face_tag[f]].push_back(found[f]);
     node_sets_ = nodes_by_tag(mesh, nodes_of_edge, mesh.edge_tag);
@@ -81,8 +62,8 @@ class ExodusFile {
     write_blocks();
     write_sets(side_sets_, side_numbers_, side_names_);
     for (const auto& [tag, members] : side_sets_) {
-      write_wholes(members, [&](const Side& each) { return number_in_file_[each.tet]; });
-      write_wholes(members, [](const Side& each) { return each.side; });
+      write_wholes(members, [&](const SideOfTet& each) { return number_in_file_[each.tet]; });
+      write_wholes(members, [](const SideOfTet& each) { return side_opposite[each.opposite]; });
     }
     write_sets(node_sets_, node_numbers_, node_names_);
     for (const auto& [tag, members] : node_sets_) write_wholes(members, [](Index node) { return node; });
@@ -213,7 +194,7 @@ class ExodusFile {
   std::map<Index, Block> blocks_;
   bool tags_fit_ = true;
   std::vector<std::int32_t> number_in_file_;  // of tets, block by block
-  std::map<Tag, std::vector<Side>> side_sets_;
+  std::map<Tag, std::vector<SideOfTet>> side_sets_;
   Groups node_sets_;
   std::map<Tag, std::size_t> side_numbers_, node_numbers_;
   std::vector<std::string> block_names_, side_names_, node_names_;

@@ -107,7 +107,7 @@ class MedFile {
         families_.try_emplace({dimension, tag}, -1 - static_cast<med_int>(families_.size()));
     if (added) {
       const std::string group = group_name(mesh_, dimension, tag, "-");
-      const std::string name = fmt::format("FAM_{}_{}", -found->second, group).substr(0, MED_NAME_SIZE);
+      const std::string name = names_of_families_.add(fmt::format("FAM_{}_{}", -found->second, group));
       require(MEDfamilyCr(file_, name_.c_str(), name.c_str(), found->second, 1,
                           padded(group, MED_LNAME_SIZE).c_str()));
     }
@@ -123,6 +123,7 @@ class MedFile {
   const TetMesh& mesh_;
   med_idt file_;
   std::map<std::pair<std::size_t, Tag>, med_int> families_;
+  DistinctNames names_of_families_{MED_NAME_SIZE};
 };
 
 }  // namespace
