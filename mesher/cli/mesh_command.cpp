@@ -9,7 +9,7 @@
 
 #include "cell_decomposition.h"
 #include "collarmesh/error.h"
-#include "collarmesh/io/tet_mesh_io.h"
+#include "collarmesh/io/interfaces_io.h"
 #include "collarmesh/partition.h"
 #include "common/thread_limit.h"
 #include "complex_input.h"
@@ -211,7 +211,8 @@ void write_files(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
   StagedFile mesh(arguments.output);
   mesh.write([&](const std::string& path) {
     ThreadLimit(arguments.mesh.threads).run([&] {
-      io::write_tet_mesh(path, run.result.mesh, arguments.output_format, arguments.ghost_cells);
+      io::write_tet_mesh(path, run.result.mesh, run.split ? run.split->interfaces : Interfaces(),
+                         arguments.output_format, arguments.ghost_cells);
     });
   });
   run.times.end();
@@ -273,6 +274,7 @@ ExitCode mesh_command(const MeshArguments& arguments) {
   set_time_limit(arguments.mesh.time_limit);
   limit_memory(arguments.mesh.max_memory);
   require_writable(arguments.output, arguments.output_format);
+  io::require_place_for_interfaces(arguments.output, arguments.split, arguments.output_format);
   for (const std::string& report : arguments.reports) require_writable(report);
   if (!arguments.cell_decomposition.empty()) require_writable(arguments.cell_decomposition);
   if (arguments.partitions > 0) require_partitioner();  // before long work

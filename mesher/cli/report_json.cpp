@@ -6,6 +6,7 @@
 #include "mesh_groups.h"
 #include "options_json.h"
 #include "report.h"
+#include "split_report.h"
 
 namespace collarmesh::cli {
 
@@ -377,6 +378,7 @@ Json run_json(const MeshArguments& arguments, const MeshRun& run) {
           {"coarsening", run.coarsening ? coarsening_json(*run.coarsening) : Json(nullptr)},
           {"improvement", improvement_json(run.improvement)},
           {"second_order", arguments.order == 2 ? second_order_json(run.second_order) : Json(nullptr)},
+          {"split", run.split ? split_json(*run.split) : Json(nullptr)},
           {"seconds", std::move(seconds)}};
 }
 

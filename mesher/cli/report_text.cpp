@@ -8,6 +8,7 @@
 #include "conversion_report.h"
 #include "mesh_groups.h"
 #include "report.h"
+#include "split_report.h"
 
 namespace collarmesh::cli {
 
@@ -292,6 +293,7 @@ std::string run_text(const MeshArguments& arguments, const MeshRun& run) {
                    "straightened\n",
                    run.second_order.nodes, run.second_order.curved, run.second_order.moved_inside,
                    run.second_order.straightened.size());
+  if (run.split) text += split_text(*run.split);
   if (run.guarantees_hold()) text += "  every guarantee holds\n";
   fmt::format_to(Out(text), "  {:.2f} s ({})\n", run.times.total(), times_text(run.times));
   return text;

@@ -10,7 +10,8 @@ import textwrap
 
 WIDTH = 118
 PLACE = re.compile(r"^( +)# options of (\w+)\n", re.M)
-TYPES = {"flag": "bool", "count": "int", "number": "float", "text": "str", "sizes": "Mapping[int, float]"}
+TYPES = {"flag": "bool", "count": "int", "number": "float", "text": "str", "sizes": "Mapping[int, float]",
+         "texts": "Sequence[str]"}
 # Python has other values for these than the command line.
 OTHER_TYPES = {"size_field": "SizeField", "names": "Union[Path, Mapping[str, Any]]", "max_memory": "Union[int, str]"}
 MORE = {

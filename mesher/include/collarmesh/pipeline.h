@@ -17,10 +17,11 @@
 #include "collarmesh/repair.h"
 #include "collarmesh/second_order.h"
 #include "collarmesh/shape_measures.h"
+#include "collarmesh/split.h"
 #include "collarmesh/tet_mesh.h"
 
 /// The stages from facets to a certified mesh, as the program `collarmesh` runs them: repair, refine,
-/// coarsen, improve, project onto exact geometry, raise the order, check.
+/// coarsen, improve, project onto exact geometry, raise the order, check, split.
 namespace collarmesh {
 
 struct PipelineOptions {
@@ -34,6 +35,7 @@ struct PipelineOptions {
   /// Number of seeds to try, from `mesh.seed` on, until every guarantee holds; at least 1. The first mesh is
   /// kept if no seed succeeds.
   unsigned seeds = 2;
+  SplitOptions split = {};  ///< internal patches that get nodes of their own on each side, after the check
   unsigned partitions = 0;  ///< number of ranks to divide the tets among (see `partition`); 0: do not
   /// The geometry that the facets approximate, such as a CAD shape. The mesh keeps tighter bounds at first,
   /// so that its vertices can move onto this geometry; may be empty.
@@ -49,6 +51,7 @@ struct PipelineResult {
   std::optional<ProjectReport> projection;  ///< nothing without exact geometry
   SecondOrderReport second_order;
   CheckReport check;
+  std::optional<SplitReport> split;  ///< nothing unless something was to be split
 
   bool guarantees_hold() const { return result.status == MeshStatus::complete && check.passed(); }
   /// Returns a sentence about the first missed guarantee; empty if all hold.

@@ -28,11 +28,12 @@ namespace {
 const char* type_of(const OptionValue& value) {
   return std::visit(
       []<class T>(const T&) {
-        return std::is_same_v<T, bool>                    ? "True or False"
-               : std::is_same_v<T, double>                ? "a number"
-               : std::is_same_v<T, std::uint64_t>         ? "a whole number that is not negative"
-               : std::is_same_v<T, std::map<Tag, double>> ? "a dict of tags and lengths, {3: 0.1}"
-                                                          : "text";
+        return std::is_same_v<T, bool>                       ? "True or False"
+               : std::is_same_v<T, double>                   ? "a number"
+               : std::is_same_v<T, std::uint64_t>            ? "a whole number that is not negative"
+               : std::is_same_v<T, std::map<Tag, double>>    ? "a dict of tags and lengths, {3: 0.1}"
+               : std::is_same_v<T, std::vector<std::string>> ? "a list of texts"
+                                                             : "text";
       },
       value);
 }

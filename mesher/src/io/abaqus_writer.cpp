@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "io/abaqus_format.h"
+#include "io/abaqus_interfaces.h"
 #include "io/cell_nodes.h"
 #include "io/label_names.h"
 #include "io/node_groups.h"
@@ -118,7 +119,9 @@ void write_surfaces(FileWriter& out, const TetMesh& mesh, const Names& names) {
 
 }  // namespace
 
-void write_abaqus(const std::string& path, const TetMesh& mesh) {
+void write_abaqus(const std::string& path, const TetMesh& mesh) { write_abaqus(path, mesh, {}); }
+
+void write_abaqus(const std::string& path, const TetMesh& mesh, const Interfaces& interfaces) {
   FileWriter out(path);
   out << "*HEADING\nWritten by collarmesh.\n";
   write_nodes(out, mesh);
@@ -129,6 +132,7 @@ void write_abaqus(const std::string& path, const TetMesh& mesh) {
   write_surfaces(out, mesh, patches);
   write_node_sets(out, nodes_by_tag(mesh, nodes_of_face, mesh.face_tag), patches);
   write_node_sets(out, nodes_by_tag(mesh, nodes_of_edge, mesh.edge_tag), curves);
+  write_abaqus_interfaces(out, mesh, interfaces, patches);
   out.commit();
 }
 

@@ -112,6 +112,8 @@ void require(bool holds, const std::string& message) {
 void require_consistent(const RunOptions& o) {
   require(o.mesh.size == 0 || o.mesh.size_min <= o.mesh.size,
           fmt::format("size-min {} exceeds size {}; make it smaller", o.mesh.size_min, o.mesh.size));
+  require(o.split.any() || (o.split.interaction == Interaction::free && !o.split.cohesive),
+          "interaction and cohesive are for patches that are split; add split or keep-apart");
   require(!o.coarsen || o.mesh.bounds.thin_angle > 0,
           "thin-angle 0 is for meshes that are not coarsened; make it at least 0.1, or coarsen off");
 }

@@ -223,6 +223,28 @@ std::vector<Option> element_options() {
            .commands = sizing}};
 }
 
+std::vector<Option> split_options() {
+  return {
+      {.name = "split NAME",
+       .place = at<&RunOptions::split, &SplitOptions::patches>,
+       .help =
+           "Give both sides of this internal patch (name or number) nodes of their own: a crack, a contact",
+       .details = "see [Cracks](embedded.md#open-the-crack)"},
+      {.name = "keep-apart",
+       .place = at<&RunOptions::split, &SplitOptions::keep_apart>,
+       .help = "Do the same with all patches between two regions"},
+      {.name = "interaction",
+       .words = {"free", "tie", "contact"},
+       .place = choice_at<&RunOptions::split, &SplitOptions::interaction>,
+       .help = "Join the sides of split patches in .inp by ties, or by contact pairs",
+       .details = "the job defines the contact pairs' interaction by the name CONTACT",
+       .commands = Option::mesh},
+      {.name = "cohesive",
+       .place = at<&RunOptions::split, &SplitOptions::cohesive>,
+       .help = "Put cohesive elements of no thickness between the sides of split patches, in .inp",
+       .commands = Option::mesh}};
+}
+
 std::vector<Option> partition_options() {
   return {
       {.name = "partitions N",
@@ -387,6 +409,7 @@ std::vector<Option> made_table() {
   append(table, size_options(), size_group, sizing);
   append(table, quality_options(), quality_group, meshing);
   append(table, element_options(), "Elements", sizing);
+  append(table, split_options(), "Sides of their own (contact, cracks)", Option::mesh | Option::programs);
   append(table, partition_options(), partitions_group, meshing);
   append(table, complex_options(), complex_group, everywhere);
   append(table, budget_options(), budget_group, meshing);

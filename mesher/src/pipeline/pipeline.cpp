@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "check/guarantees.h"
+#include "check/split.h"
 #include "coarsen/coarsen_workpiece.h"
 #include "collarmesh/error.h"
 #include "collarmesh/options.h"
@@ -119,6 +120,7 @@ class Pipeline {
     until_ended([&] {
       try_repairs(all);
       divide();
+      split_patches();
     });
     if (all.repair.repaired)
       made_.check.notes.push_back(fmt::format("the mesh was judged against the {} complex",
@@ -133,6 +135,7 @@ class Pipeline {
       mesh(plc, given_.mesh.seed);
       try_seeds(plc);
       divide();
+      split_patches();
     });
     return std::move(made_);
   }
@@ -370,6 +373,7 @@ class Pipeline {
     options_ = given_;
     if (source_ != nullptr) source_->adapt(plc, options_);
     require_known_tags(options_.mesh, plc);
+    require_known_patches(options_.split, plc);
     options_.mesh.bounds.tolerance = nearer_ ? *nearer_ : tolerance(plc);
     if (!knows_bound_) find_bound();
     if (most_vertices_ > 0) options_.mesh.max_vertices = most_vertices_;
@@ -492,6 +496,18 @@ class Pipeline {
     if (given_.partitions == 0) return;
     begin("partition", 0.96, 1);
     partition(made_.result.mesh, given_.partitions);
+    stop_if_asked();
+  }
+
+  /// Called once, after the mesh was certified as it is before.
+  void split_patches() {
+    if (!given_.split.any()) return;
+    begin("split", 0.98, 1);
+    TetMesh& mesh = made_.result.mesh;
+    const checks::SplitMeasures before = checks::measure_before_split(mesh);
+    if (exact()) mesh.group_names = GroupNames::cad;  // for the names of the sides
+    made_.split = split(mesh, options_.split);
+    checks::check_split(mesh, made_.split->interfaces.sides, before, made_.check);
     stop_if_asked();
   }
 

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "collarmesh/split.h"
+#include "io/file_writer.h"
+
+namespace collarmesh::io {
+
+/// As `write_abaqus` of the mesh alone, with what is between the sides.
+void write_abaqus(const std::string& path, const TetMesh& mesh, const Interfaces& interfaces);
+
+/// Writes the elements and conditions between the sides of split patches to an .inp file. `names`: of the
+/// surfaces of patches.
+void write_abaqus_interfaces(FileWriter& out, const TetMesh& mesh, const Interfaces& interfaces,
+                             const std::map<Tag, std::string>& names);
+
+}  // namespace collarmesh::io
