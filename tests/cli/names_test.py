@@ -294,6 +294,24 @@ class NamesOfStep(ProgramTest):
         self.assertEqual(set(self.names(self.two_solids(), file.write(self.folder / "b.step"))), {"Solid1", "Solid2"})
 
 
+@unittest.skipUnless(HAS_MED, "no MED")
+class NamesInMed(ProgramTest):
+    def test_families_end_at_a_character(self):
+        try:
+            import h5py
+        except ImportError:
+            self.skipTest("no h5py")
+        for first in ("y", "yy"):
+            run = self.run_program(self.box, "-o", "a.med", "--size", "1", "--name", f"{first}{'é' * 40}=1")
+            self.assertEqual(run.returncode, 0, run.stderr)
+            names = []
+            with h5py.File(self.folder / "a.med") as file:
+                file["FAS"].visit(names.append)
+            self.assertTrue(any("FAM_" in name and "éé" in name for name in names), names)
+            for name in names:
+                name.encode()  # half a character cannot be
+
+
 class NamesThroughFormats(ProgramTest):
     """A name that a format has a place for is there when the mesh goes on to another one; a lost one is told."""
     NAMES = {"patches": {"Fixed end": 1, "loaded": {"at": [0.5, 0.5, 1]}}, "curves": {"rim": 4},
