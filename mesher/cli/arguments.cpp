@@ -132,6 +132,25 @@ CLI::App* add_convert_command(CLI::App& app, MeshArguments& a) {
   return convert;
 }
 
+CLI::App* add_remesh_command(CLI::App& app, RemeshArguments& a) {
+  CLI::App* remesh = app.add_subcommand(
+      "remesh",
+      "Adapt a mesh to sizes, finer and coarser; its regions, surfaces, edges, names and numbers stay");
+  remesh->add_option("MESH", a.inputs, "The mesh: " + list(io::read_tet_mesh_formats()))
+      ->required()
+      ->expected(1)
+      ->type_name("FILE");
+  remesh->add_option("-o,--output", a.output, "The mesh to write: " + list(io::written_tet_mesh_formats()))
+      ->type_name("FILE");
+  add_output_format(*remesh, a.output_format, "");
+  remesh->add_option("--input-format", a.input_format, "Of the mesh")
+      ->transform(format_name(io::read_tet_mesh_formats()))
+      ->type_name("FORMAT")
+      ->default_str("by extension");
+  add_options(*remesh, Option::remesh, a);
+  return remesh;
+}
+
 CLI::App* add_check_command(CLI::App& app, CheckArguments& a) {
   CLI::App* check = app.add_subcommand("check", "Certify a mesh against the input it was made from");
   check->add_option("MESH", a.mesh_path, "The mesh: " + list(io::read_tet_mesh_formats()))
@@ -341,6 +360,7 @@ std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
   InfoArguments info;
   ConvertArguments convert;
   RepairArguments repair;
+  RemeshArguments remesh;
   CLI::App app("collarmesh: tetrahedral meshes of piecewise-linear complexes, certified", "collarmesh");
   app.set_version_flag("--version", "collarmesh " COLLARMESH_VERSION);
   app.set_help_all_flag("--help-all", "Print the help of all commands and exit");
@@ -348,6 +368,7 @@ std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
   app.footer(footer);
   app.require_subcommand(0, 1);
   add_mesh_options(app, mesh);
+  CLI::App* const remesh_command = add_remesh_command(app, remesh);
   CLI::App* const check_command = add_check_command(app, check);
   CLI::App* const info_command = add_info_command(app, info);
   CLI::App* const convert_command = add_convert_command(app, convert);
@@ -376,6 +397,7 @@ std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
           convert.meshing_options.push_back(option->get_name());
     }
     if (repair_command->parsed()) check_repair_arguments(repair);
+    if (remesh_command->parsed()) check_mesh_arguments(remesh);
     if (subcommand && (!mesh.inputs.empty() || !mesh.output.empty())) throw CLI::HorribleError("");
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) {  // --help, --version
@@ -388,13 +410,14 @@ std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
         !app.get_subcommands().empty() && (!mesh.inputs.empty() || !mesh.output.empty());
     tell("collarmesh: {}\nRun with --help for more information.\n",
          subcommand_last ? "a subcommand comes first: collarmesh check MESH ..., info INPUT ..., "
-                           "convert IN ..., repair IN ..."
+                           "convert IN ..., repair IN ..., remesh MESH ..."
                          : usage_message(app, error));
     return ExitCode::usage;
   }
   if (check_command->parsed()) return Arguments(check);
   if (info_command->parsed()) return Arguments(info);
   if (repair_command->parsed()) return Arguments(repair);
+  if (remesh_command->parsed()) return Arguments(remesh);
   if (convert_command->parsed()) {
     convert.tell_losses = true;
     return Arguments(convert);

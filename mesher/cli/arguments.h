@@ -48,8 +48,11 @@ struct RepairArguments : MeshArguments {
   bool json = false;
 };
 
-using Arguments =
-    std::variant<MeshArguments, CheckArguments, InfoArguments, ConvertArguments, RepairArguments>;
+/// `collarmesh remesh MESH -o OUT`
+struct RemeshArguments : MeshArguments {};
+
+using Arguments = std::variant<MeshArguments, CheckArguments, InfoArguments, ConvertArguments,
+                               RepairArguments, RemeshArguments>;
 
 /// Add the options of meshing, all but the files, for another program that meshes; and check what one of them
 /// alone cannot tell, which throws CLI::ValidationError.

@@ -41,7 +41,7 @@ HelpText::HelpText() { column_width(first_column); }
 std::string HelpText::make_usage(const CLI::App* app, std::string name) const {
   if (app->get_parent() != nullptr) return CLI::Formatter::make_usage(app, name);
   std::string text = "Usage:";
-  for (const char* command : {"", "check", "info", "convert", "repair"})
+  for (const char* command : {"", "remesh", "check", "info", "convert", "repair"})
     text += fmt::format("{} {} [options]\n", text.size() > 6 ? "      " : "", usage_of(command));
   return text;
 }

@@ -19,7 +19,6 @@
 #include "interrupt.h"
 #include "option_warnings.h"
 #include "out_of_memory.h"
-#include "progress_display.h"
 #include "report.h"
 #include "scale.h"
 #include "staged_file.h"
@@ -28,37 +27,6 @@
 namespace collarmesh::cli {
 
 namespace {
-
-/// Begins stages, both in the display and in the timing.
-class Stages {
- public:
-  Stages(ProgressStyle style, StageTimes& times) : display_(style), times_(times) {}
-
-  void begin(const std::string& phase, double begin, double end, std::size_t tets = 0) {
-    stop_if_interrupted();
-    note_stage({phase, 0, tets});
-    times_.begin(phase);
-    display_.begin_stage(phase, begin, end);
-  }
-  /// One of those between building the complex and writing, with what is told in it.
-  void update(ProgressReport report) {
-    const double fraction = 0.08 + 0.85 * report.fraction;
-    if (report.begins) {
-      begin_ = fraction;
-      begin(std::string(report.phase), begin_, begin_ + 1, report.tets);
-      return;
-    }
-    note_stage({std::string(report.phase), report.vertices, report.tets});
-    report.fraction = fraction - begin_;
-    display_.update(report);
-  }
-  void print(const std::string& text) { display_.print(text); }
-
- private:
-  ProgressDisplay display_;
-  StageTimes& times_;
-  double begin_ = 0;
-};
 
 PipelineOptions pipeline_options(const MeshArguments& a) {
   PipelineOptions options = a;
@@ -270,7 +238,7 @@ MadeMesh make_mesh(const MeshArguments& arguments) {
   return made;
 }
 
-ExitCode mesh_command(const MeshArguments& arguments) {
+ExitCode make_and_write(const MeshArguments& arguments, const std::function<void(Stages&, MeshRun&)>& make) {
   set_time_limit(arguments.mesh.time_limit);
   limit_memory(arguments.mesh.max_memory);
   require_writable(arguments.output, arguments.output_format);
@@ -282,12 +250,18 @@ ExitCode mesh_command(const MeshArguments& arguments) {
   {
     Stages stages(progress_of(arguments), run.times);
     stages.begin("read", 0, 0.02);
-    const std::unique_ptr<ComplexInput> input = read_inputs(arguments);
-    mesh(arguments, *input, stages, run);
+    make(stages, run);
     write_files(arguments, stages, run);
   }
   tell_of(arguments, run);
   return run.guarantees_hold() ? ExitCode::success : ExitCode::guarantee_missed;
+}
+
+ExitCode mesh_command(const MeshArguments& arguments) {
+  return make_and_write(arguments, [&](Stages& stages, MeshRun& run) {
+    const std::unique_ptr<ComplexInput> input = read_inputs(arguments);
+    mesh(arguments, *input, stages, run);
+  });
 }
 
 }  // namespace collarmesh::cli

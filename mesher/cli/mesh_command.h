@@ -1,15 +1,21 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "arguments.h"
 #include "complex_input.h"
 #include "report.h"
+#include "stages.h"
 
 namespace collarmesh::cli {
 
 /// Read, build the complex, mesh, certify, write. Throws what the library throws.
 ExitCode mesh_command(const MeshArguments& arguments);
+
+/// Has a mesh made and written, with reports, and says what it is like: what all commands have in common that
+/// make one.
+ExitCode make_and_write(const MeshArguments& arguments, const std::function<void(Stages&, MeshRun&)>& make);
 
 /// A mesh in memory, for programs that go on with it.
 struct MadeMesh {

@@ -20,6 +20,7 @@
 #include "interrupt.h"
 #include "mesh_command.h"
 #include "out_of_memory.h"
+#include "remesh_command.h"
 #include "repair_command.h"
 #include "supervisor.h"
 
@@ -33,6 +34,7 @@ struct Execute {
   ExitCode operator()(const InfoArguments& arguments) const { return info_command(arguments); }
   ExitCode operator()(const ConvertArguments& arguments) const { return convert_command(arguments); }
   ExitCode operator()(const RepairArguments& arguments) const { return repair_command(arguments); }
+  ExitCode operator()(const RemeshArguments& arguments) const { return remesh_command(arguments); }
 };
 
 /// In a process of its own where it reads CAD files, which may crash.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "collarmesh/pipeline.h"
 #include "collarmesh/plc_builder.h"
 #include "collarmesh/predict.h"
+#include "collarmesh/remesh.h"
 #include "collarmesh/tag_colours.h"
 #include "stage_times.h"
 #include "worst_tets.h"
@@ -23,6 +25,7 @@ struct MeshRun : SoupPipelineResult {
   std::vector<std::string> notes;     ///< on CAD shapes, a line each
   TagColours colours;                 ///< of CAD shapes
   std::vector<WorstTet> worst;
+  std::optional<RemeshReport> remeshing;  ///< nothing unless a mesh was adapted
   StageTimes times;
 };
 

@@ -353,33 +353,47 @@ Json predictions_json(const std::vector<Prediction>& predictions) {
   return list;
 }
 
+namespace {
+
+Json remeshing_json(const RemeshReport& r) {
+  return {{"tets_before", r.tets_before},
+          {"min_dihedral_before", number_json(r.smallest_angle_before)},
+          {"max_dihedral_before", number_json(r.largest_angle_before)},
+          {"divided_edges", r.divided_edges},
+          {"contracted_edges", r.contracted_edges},
+          {"rounds", r.rounds}};
+}
+
+}  // namespace
+
 Json run_json(const MeshArguments& arguments, const MeshRun& run) {
   Json seconds = Json::object();
   for (const auto& [stage, time] : run.times.stages())  // some come twice
     seconds[stage] = seconds.value(stage, 0.0) + time;
   seconds["total"] = run.times.total();
-  return {{"program", "collarmesh"},
-          {"version", COLLARMESH_VERSION},
-          {"inputs", arguments.inputs},
-          {"output", arguments.output},
-          {"options", options_json(arguments)},
-          {"warnings", run.warnings},
-          {"status", status_name(run.result.status)},
-          {"message", run.result.message},
-          {"guarantees_hold", run.guarantees_hold()},
-          {"repair", repair_json(run.repair)},
-          {"complex", complex_json(run.plc, run.summary, run.result.mesh.group_names, run.colours)},
-          {"mesh", measures_json(run.result.mesh, run.check.measures)},
-          {"worst", worst_json(run.worst)},
-          {"check", check_json(run.check)},
-          {"statistics", statistics_json(run.result.statistics)},
-          {"notes", run.notes},
-          {"projection", run.projection ? projection_json(run.plc, *run.projection) : Json(nullptr)},
-          {"coarsening", run.coarsening ? coarsening_json(*run.coarsening) : Json(nullptr)},
-          {"improvement", improvement_json(run.improvement)},
-          {"second_order", arguments.order == 2 ? second_order_json(run.second_order) : Json(nullptr)},
-          {"split", run.split ? split_json(*run.split) : Json(nullptr)},
-          {"seconds", std::move(seconds)}};
+  Json json{{"program", "collarmesh"},
+            {"version", COLLARMESH_VERSION},
+            {"inputs", arguments.inputs},
+            {"output", arguments.output},
+            {"options", options_json(arguments)},
+            {"warnings", run.warnings},
+            {"status", status_name(run.result.status)},
+            {"message", run.result.message},
+            {"guarantees_hold", run.guarantees_hold()},
+            {"repair", repair_json(run.repair)},
+            {"complex", complex_json(run.plc, run.summary, run.result.mesh.group_names, run.colours)},
+            {"mesh", measures_json(run.result.mesh, run.check.measures)},
+            {"worst", worst_json(run.worst)},
+            {"check", check_json(run.check)},
+            {"statistics", statistics_json(run.result.statistics)},
+            {"notes", run.notes},
+            {"projection", run.projection ? projection_json(run.plc, *run.projection) : Json(nullptr)},
+            {"coarsening", run.coarsening ? coarsening_json(*run.coarsening) : Json(nullptr)},
+            {"improvement", improvement_json(run.improvement)},
+            {"second_order", arguments.order == 2 ? second_order_json(run.second_order) : Json(nullptr)},
+            {"seconds", std::move(seconds)}};
+  if (run.remeshing) json["remeshing"] = remeshing_json(*run.remeshing);
+  return json;
 }
 
 }  // namespace collarmesh::cli

@@ -266,6 +266,12 @@ std::string run_text(const MeshArguments& arguments, const MeshRun& run) {
           mesh_text(run.result.mesh, run.check.measures, &run.check);
   fmt::format_to(Out(text), "  median edge {:.4g}, surface distance at most {:.3g}\n", run.check.median_edge,
                  run.check.max_surface_distance);
+  if (const auto& r = run.remeshing)
+    fmt::format_to(
+        Out(text),
+        "  before {} tets, dihedral angles from {:.1f} to {:.1f}; {} edges divided, {} contracted\n",
+        r->tets_before, r->smallest_angle_before, r->largest_angle_before, r->divided_edges,
+        r->contracted_edges);
   text += cleanup_text(run.plc.cleanup);
   const MeshStatistics& s = run.result.statistics;
   if (arguments.verbose)

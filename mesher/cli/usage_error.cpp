@@ -59,6 +59,7 @@ std::string usage_of(const std::string& command) {
   if (command == "info") return "collarmesh info INPUT...";
   if (command == "convert") return "collarmesh convert IN... -o OUT";
   if (command == "repair") return "collarmesh repair IN... -o OUT";
+  if (command == "remesh") return "collarmesh remesh MESH -o OUT";
   return "collarmesh INPUT... -o OUT";
 }
 
@@ -67,7 +68,7 @@ std::string mistaken_command(const std::string& word) {
   if (word.find_first_of("./-") != std::string::npos || std::filesystem::exists(word, ignored)) return {};
   std::string found;
   std::size_t nearest = 3;
-  for (const char* command : {"check", "info", "convert", "repair"}) {
+  for (const char* command : {"check", "info", "convert", "repair", "remesh"}) {
     const std::size_t distance = edit_distance(word, command);
     if (distance == 0) return {};
     if (distance >= nearest) continue;

@@ -5,7 +5,7 @@ import os
 from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _core
-from ._inputs import Input, Path, SizeField, Surface, given, inputs, triangles
+from ._inputs import ArrayLike, Input, Path, SizeField, Surface, given, inputs, sized, triangles
 from ._mesh import Mesh
 from ._progress import watching
 from ._types import Info, Prediction
@@ -34,6 +34,30 @@ def mesh(
     options = given(locals())
     with watching(progress) as told:
         return Mesh._of(_core.mesh(inputs(surfaces), options, told))
+
+
+def remesh(
+    mesh: Union[Mesh, Path],
+    size: Union[float, SizeField, ArrayLike, None] = None,
+    # options of remesh
+    progress: Union[bool, Callable[[str, float], Optional[bool]], None] = None,
+) -> Mesh:
+    """Adapt a mesh to target edge lengths, finer and coarser, and certify the result. Its regions, surfaces, edges, names and
+    tags stay, and it follows its own surface: no volume moves by more than the certificate says.
+
+    mesh: a `Mesh`, of this or another program, or the path of one. Of a mesh of second order the corners count; with
+        `order=2` the result is of second order again.
+    size: a length; lengths for each point or each tetrahedron of the mesh, as `sizes_from_errors` gives them; or a size field,
+        as `size_field` in `collarmesh.mesh`. None: tetrahedra get better, lengths stay as they are.
+    # options of remesh
+    progress: as in `collarmesh.mesh`.
+
+    Returns a `Mesh`; its `passed` says whether every guarantee holds. Raises `Error`; ComplexError for tetrahedra that
+    do not fit each other.
+    """
+    options = given(sized(locals()))
+    with watching(progress) as told:
+        return Mesh._of(_core.remesh(options.pop("mesh")._arrays(), options, told))
 
 
 def predict(

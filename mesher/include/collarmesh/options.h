@@ -50,7 +50,15 @@ struct Option {
   enum class Unit { number, length, degrees, of_diagonal, ratio, seconds, bytes };
   /// Bits of the commands that take it; `programs` are callers of the mesher such as Python and FreeCAD,
   /// which have no options about output files and messages.
-  enum Command : unsigned { mesh = 1, check = 2, info = 4, convert = 8, repair = 16, programs = 32 };
+  enum Command : unsigned {
+    mesh = 1,
+    check = 2,
+    info = 4,
+    convert = 8,
+    repair = 16,
+    programs = 32,
+    remesh = 64
+  };
   /// The member of RunOptions that holds the value.
   struct Place {
     Kind kind;  ///< by its type

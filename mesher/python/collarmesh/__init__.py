@@ -31,7 +31,8 @@ from ._core import (
     WriteError,
     __version__,
 )
-from ._functions import check, info, mesh, predict, read, repair
+from ._errors import estimated_errors, sizes_from_errors
+from ._functions import check, info, mesh, predict, read, remesh, repair
 from ._inputs import Complex, Input, Path, given, inputs, sampled_sizes
 from ._mesh import Mesh
 
@@ -48,12 +49,15 @@ __all__ = [
     "__version__",
     "check",
     "convert",
+    "estimated_errors",
     "info",
     "mesh",
     "predict",
     "read",
+    "remesh",
     "repair",
     "sampled_sizes",
+    "sizes_from_errors",
 ]
 
 

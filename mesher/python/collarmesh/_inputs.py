@@ -262,6 +262,22 @@ def given(options: Mapping[str, Any]) -> Dict[str, Any]:
     return found
 
 
+def sized(options: Mapping[str, Any]) -> Dict[str, Any]:
+    """The options of `remesh` with the mesh read, and with a size that is no number as a size field."""
+    found = dict(options)
+    if isinstance(found["mesh"], (str, os.PathLike)):
+        from ._functions import read
+
+        found["mesh"] = read(found["mesh"])
+    size = found["size"]
+    if size is None or isinstance(size, (int, float, numpy.number)):
+        return found
+    if found.get("size_field") is not None:
+        raise OptionError("size is a size field, and so is size_field; give one of them")
+    known = isinstance(size, (str, os.PathLike, Mapping, tuple)) or callable(size)
+    return {**found, "size": None, "size_field": size if known else (found["mesh"], size)}
+
+
 def triangles(soup: Dict[str, Any]) -> Surface:
     """A soup of triangles, with polygons of four and more corners cut into fans."""
     corners: List[Tuple[int, int, int]] = []

@@ -251,6 +251,16 @@ class Mesh:
         kinds = ("Vertex", "Edge", "Face", "Solid") if self._cad_names else ours
         return f"{kinds[dimension]}{tag}"
 
+    def adapt(self, size: Any = None, **options: Any) -> "Mesh":
+        """The mesh with other edge lengths, finer and coarser, and better tetrahedra: `collarmesh.remesh` of it.
+
+        size: a length; lengths for each point or each tetrahedron, as `sizes_from_errors` gives them; or a size
+            field, as in `collarmesh.mesh`. options: those of `collarmesh.remesh`.
+        """
+        from ._functions import remesh
+
+        return remesh(self, size, **options)
+
     def partitioned(self, partitions: int) -> "Mesh":
         """The same mesh with its tetrahedra divided among so many ranks, evenly and with few shared faces.
 

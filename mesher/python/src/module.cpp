@@ -18,6 +18,7 @@
 #include "collarmesh/partition.h"
 #include "collarmesh/pipeline.h"
 #include "collarmesh/predict.h"
+#include "collarmesh/remesh.h"
 #include "complex_input.h"
 #include "input_files.h"
 #include "io/complete_mesh.h"
@@ -146,6 +147,40 @@ py::dict mesh_of(const py::list& inputs, const py::dict& options, const py::obje
   std::vector<std::string> warnings;
   for (const Plc::Warning& warning : call->run.plc.warnings) warnings.push_back(warning.message);
   arrays["warnings"] = warnings;
+  return arrays;
+}
+
+struct RemeshCall {
+  TetMesh mesh;
+  Options options;
+  RemeshResult run;
+};
+
+void remesh(RemeshCall& call, Watch& watch) {
+  watch.begin_stage("complex");
+  PipelineOptions options = call.options;
+  options.mesh.time_limit = 0;  // the watch looks at it
+  const auto adapt = [&](const Plc& plc, PipelineOptions& adapted) {
+    if (!call.options.size_field_file.empty())
+      adapted.mesh.size_field = read_size_field(call.options.size_field_file, plc);
+    if (!call.options.size_field_json.empty())
+      adapted.mesh.size_field = size_field_from_json(call.options.size_field_json, plc);
+  };
+  call.run = collarmesh::remesh(call.mesh, options, adapt, watch.execution());
+  const MeshResult& result = call.run.result;
+  if (result.status == MeshStatus::budget_hit) throw BudgetSpent(result.message);
+  if (result.status == MeshStatus::cancelled) throw Cancelled(result.message);
+}
+
+py::dict remesh_mesh(const py::dict& mesh, const py::dict& options, const py::object& progress) {
+  const auto call = std::make_shared<RemeshCall>();
+  call->mesh = tet_mesh_of(mesh);
+  call->options = options_of(options);
+  const double time_limit = call->options.mesh.time_limit;
+  run_watched([call](Watch& watch) { remesh(*call, watch); }, progress, time_limit);
+  py::dict arrays = arrays_of(std::move(call->run.result.mesh));
+  arrays["status_message"] = call->run.result.message;
+  arrays["check"] = parsed(cli::check_json(call->run.check));
   return arrays;
 }
 
@@ -325,6 +360,7 @@ PYBIND11_MODULE(_core, module) {
   py::register_exception<BudgetSpent>(module, "BudgetError", error.ptr());
   py::register_exception<Cancelled>(module, "CancelledError", error.ptr());
   module.def("mesh", &mesh_of);
+  module.def("remesh", &remesh_mesh);
   module.def("check", &check_mesh);
   module.def("info", &info);
   module.def("predict", &predicted);

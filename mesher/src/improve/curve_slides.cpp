@@ -123,6 +123,39 @@ void CurveSlides::skipped(Index vertex) {
   join(after, 0, before);
 }
 
+// Is this the vertex that comes next on the curve? Precondition: a mesh edge on it joins both.
+bool CurveSlides::follows(Index curve, Index vertex, Index next) const {
+  if (mesh_.features[vertex].dimension == 1) return places_[vertex].neighbours[1] == next;
+  if (mesh_.features[next].dimension == 1) return places_[next].neighbours[0] == vertex;
+  return mesh_.features[vertex].feature == plc_.curves[curve].ends[0];
+}
+
+std::optional<CurveSlides::Middle> CurveSlides::middle(Index curve, Index a, Index b) const {
+  prepare();
+  if (!follows(curve, a, b)) std::swap(a, b);
+  if (!follows(curve, a, b)) return std::nullopt;
+  const double length = paths_.length(curve);
+  const double from = mesh_.features[a].dimension == 1 ? places_[a].parameter : 0;
+  double to = mesh_.features[b].dimension == 1 ? places_[b].parameter : length;
+  if (plc_.curves[curve].closed) to -= length * std::floor((to - from) / length);
+  if (!(to > from)) return std::nullopt;
+  return Middle{{a, b}, 0.5 * (from + to)};
+}
+
+void CurveSlides::divided(Index vertex, const Middle& middle) {
+  const Index curve = mesh_.features[vertex].feature;
+  old_spare_edges_.note(spare_edges_, curve);
+  ++spare_edges_[curve];
+  places_.resize(std::max<std::size_t>(places_.size(), vertex + 1));
+  places_[vertex] = {middle.parameter, middle.ends};
+  for (unsigned side = 0; side < 2; ++side) {
+    const Index end = middle.ends[side];
+    if (mesh_.features[end].dimension != 1) continue;
+    old_places_.note(places_, end);
+    places_[end].neighbours[1 - side] = vertex;
+  }
+}
+
 // The edge ab and the part of a curve that starts at `from` and is `way` long.
 bool CurveSlides::edge_fits(Index curve, double from, double way, const Point& a, const Point& b) const {
   const auto& lengths = paths_.lengths(curve);

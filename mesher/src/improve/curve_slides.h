@@ -2,6 +2,7 @@
 
 #include <array>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "collarmesh/plc.h"
@@ -38,6 +39,17 @@ class CurveSlides {
   /// Records that one edge joins its neighbours.
   void skipped(Index vertex);
 
+  /// The middle of an edge on a curve.
+  struct Middle {
+    std::array<Index, 2> ends{none, none};  ///< of the edge, in the order of the curve
+    double parameter = 0;
+  };
+  /// Returns the middle of this mesh edge, by arc length; nothing where the edge's place is not known.
+  std::optional<Middle> middle(Index curve, Index a, Index b) const;
+  Point place(Index curve, const Middle& middle) const { return paths_.point(curve, middle.parameter); }
+  /// Records that a new vertex there divides the edge.
+  void divided(Index vertex, const Middle& middle);
+
   /// Finds the places of all vertices now.
   void prepare() const {
     std::call_once(prepared_, [this] { find_all_places(); });
@@ -55,6 +67,7 @@ class CurveSlides {
 
   void find_all_places() const;
   void find_places(Index curve, std::vector<Index>& vertices, const std::array<Index, 2>& ends) const;
+  bool follows(Index curve, Index vertex, Index next) const;
   double way_to_neighbour(Index vertex, unsigned side) const;
   bool edge_fits(Index curve, double from, double way, const Point& a, const Point& b) const;
 

@@ -41,6 +41,9 @@ class Operations {
   void split_edge(Index a, Index b, double least, Change& change);
   /// The same, however good the tets at the edge are now.
   void split_edge_anyhow(Index a, Index b, double least, Change& change);
+  /// Insert a vertex in the middle of an edge, inside a region, in a patch or on a curve, however many tets
+  /// are there, if all new ones are better than `least`.
+  void divide_edge(Index a, Index b, double least, Change& change);
   /// Move a vertex along an edge within its feature onto the other end, so that the tets at the edge vanish.
   /// No edge becomes longer than the longest one of the cavity.
   void contract_edge(Index vertex, Index onto, Change& change);
@@ -115,6 +118,10 @@ class Operations {
   bool find_cone_of_vertex(Index vertex);
   bool make_cone_of_vertex(Index vertex);
   bool find_cone_of_edge(Index a, Index b);
+  bool make_cone_of_edge(Index a, Index b);
+  bool faces_are_of_one_patch() const;
+  bool find_whole_ring(Index a, Index b);
+  void divide_curve_edge(Index a, Index b, double least, Change& change);
   void insert_in_cone(Index a, Index b, double least, Change& change);
   void add_to_rim(Index face, Index apex);
   double quality_around(const Point& apex, Index id, double above);

@@ -346,8 +346,8 @@ void TetComplex::join_curve_edges(Index before, Index vertex, Index after) {
              second = curve_edges_.find(edge_key(vertex, after));
   const Index kept = first->second, gone = second->second;
   if (on_trial_)
-    joined_.push_back({first->first, second->first, edge_key(before, after), kept, gone, mesh_.edges[kept],
-                       mesh_.edges[gone]});
+    old_edges_.push_back({true, first->first, second->first, edge_key(before, after), kept, gone,
+                          mesh_.edges[kept], mesh_.edges[gone]});
   // The edge keeps its direction.
   for (Index& end : mesh_.edges[kept])
     if (end == vertex) end = after;
@@ -355,6 +355,23 @@ void TetComplex::join_curve_edges(Index before, Index vertex, Index after) {
   curve_edges_.erase(edge_key(before, vertex));
   curve_edges_.erase(edge_key(vertex, after));
   curve_edges_.emplace(edge_key(before, after), kept);
+}
+
+void TetComplex::divide_curve_edge(Index before, Index vertex, Index after) {
+  const std::uint64_t whole = edge_key(before, after);
+  const Index kept = curve_edges_.at(whole), added = static_cast<Index>(mesh_.edges.size());
+  const std::array<Index, 2> ends = mesh_.edges[kept];
+  if (on_trial_)
+    old_edges_.push_back(
+        {false, edge_key(before, vertex), edge_key(vertex, after), whole, kept, added, ends, {}});
+  // Both keep its direction.
+  mesh_.edges[kept] = {ends[0], vertex};
+  mesh_.edges.push_back({vertex, ends[1]});
+  mesh_.edge_curve.push_back(Index{mesh_.edge_curve[kept]});
+  mesh_.edge_tag.push_back(Tag{mesh_.edge_tag[kept]});
+  curve_edges_.erase(whole);
+  curve_edges_.emplace(edge_key(ends[0], vertex), kept);
+  curve_edges_.emplace(edge_key(vertex, ends[1]), added);
 }
 
 void TetComplex::set_neighbour(Index tet, unsigned corner, Index neighbour) {
@@ -399,7 +416,8 @@ void TetComplex::begin_trial() {
   free_face_steps_.begin();
   old_faces_.clear();
   face_count_ = mesh_.faces.size();
-  joined_.clear();
+  edge_count_ = mesh_.edges.size();
+  old_edges_.clear();
 }
 
 void TetComplex::keep() {
@@ -430,13 +448,26 @@ void TetComplex::undo() {
   mesh_.face_patch.resize(face_count_);
   mesh_.face_tag.resize(face_count_);
   mesh_.face_regions.resize(face_count_);
-  for (auto edges = joined_.rbegin(); edges != joined_.rend(); ++edges) {
-    curve_edges_.erase(edges->joined);
-    curve_edges_.emplace(edges->first, edges->kept);
-    curve_edges_.emplace(edges->second, edges->gone);
+  undo_curve_edges();
+}
+
+void TetComplex::undo_curve_edges() {
+  for (auto edges = old_edges_.rbegin(); edges != old_edges_.rend(); ++edges) {
     mesh_.edges[edges->kept] = edges->kept_ends;
-    mesh_.edges[edges->gone] = edges->gone_ends;
+    if (edges->joined) {
+      curve_edges_.erase(edges->whole);
+      curve_edges_.emplace(edges->first, edges->kept);
+      curve_edges_.emplace(edges->second, edges->other);
+      mesh_.edges[edges->other] = edges->other_ends;
+    } else {
+      curve_edges_.erase(edges->first);
+      curve_edges_.erase(edges->second);
+      curve_edges_.emplace(edges->whole, edges->kept);
+    }
   }
+  mesh_.edges.resize(edge_count_);
+  mesh_.edge_curve.resize(edge_count_);
+  mesh_.edge_tag.resize(edge_count_);
 }
 
 void TetComplex::store() {

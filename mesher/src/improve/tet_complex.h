@@ -85,6 +85,10 @@ class TetComplex {
   std::span<const Index> created_faces() const { return created_faces_; }
   /// Removes a vertex of a curve between two others: its edges become the one that joins these.
   void join_curve_edges(Index before, Index vertex, Index after);
+  /// Puts a vertex of a curve between two others: the edge that joins these becomes two.
+  void divide_curve_edge(Index before, Index vertex, Index after);
+  /// Returns which of the mesh's edges on curves joins these vertices. Precondition: on_curve(a, b).
+  Index curve_edge(Index a, Index b) const { return curve_edges_.at(edge_key(a, b)); }
 
   /// Moves a vertex; the connections of tets and faces stay.
   void move_vertex(Index vertex, const Point& p);
@@ -115,10 +119,12 @@ class TetComplex {
     Tag tag;
     std::array<Index, 2> regions;
   };
+  // Two edges on a curve that became one, or one that became two.
   struct CurveEdges {
-    std::uint64_t first, second, joined;  // keys
-    Index kept, gone;                     // edges of the mesh
-    std::array<Index, 2> kept_ends, gone_ends;
+    bool joined;
+    std::uint64_t first, second, whole;  // keys
+    Index kept, other;                   // edges of the mesh
+    std::array<Index, 2> kept_ends, other_ends;
   };
 
   static std::uint64_t edge_key(Index a, Index b) {
@@ -133,6 +139,7 @@ class TetComplex {
   void set_vertex_tet(Index vertex, Index tet);
   FaceRecord face_record(Index face) const;
   void set_face_record(Index face, const FaceRecord& record);
+  void undo_curve_edges();
   void drop_lost_faces_and_edges();
   void drop_lost_vertices();
   unsigned corner_across(Index tet, const std::array<Index, 3>& sorted_face) const;
@@ -165,8 +172,8 @@ class TetComplex {
   UndoLog<Point> old_points_;
   UndoStack<Index> free_steps_, free_face_steps_;
   std::vector<std::pair<Index, FaceRecord>> old_faces_;
-  std::size_t face_count_ = 0;
-  std::vector<CurveEdges> joined_;
+  std::size_t face_count_ = 0, edge_count_ = 0;
+  std::vector<CurveEdges> old_edges_;
 };
 
 }  // namespace collarmesh::improvement

@@ -50,8 +50,12 @@ bool Operations::find_cone_of_edge(Index a, Index b) {
   const Index at = complex_.tet_at_edge(a, b);
   if (at == none) return false;
   complex_.ring(at, a, b, ring_);
+  return ring_.tets.size() <= largest_ring && make_cone_of_edge(a, b) && faces_are_of_one_patch();
+}
+
+// From its ring.
+bool Operations::make_cone_of_edge(Index a, Index b) {
   const std::size_t n = ring_.tets.size(), m = ring_.link.size();
-  if (n > largest_ring) return false;
   cone_.clear();
   cone_.tets = ring_.tets;
   for (std::size_t k = 0; k < n; ++k) {
@@ -70,6 +74,11 @@ bool Operations::find_cone_of_edge(Index a, Index b) {
       cone_.faces.pop_back();
     }
   }
+  return true;
+}
+
+// Or is there none, inside a region?
+bool Operations::faces_are_of_one_patch() const {
   if (cone_.faces.empty()) return ring_.closed;
   const auto& patches = mesh_.face_patch;
   return cone_.faces.size() == 2 && patches[cone_.faces[0]] != none &&
@@ -340,6 +349,51 @@ void Operations::insert_in_cone(Index a, Index b, double least, Change& change) 
   change.quality = quality;
   change.place = place;
   if (patch != none) change.feature = {2, patch};
+  fill(Change::inserted, change);
+}
+
+void Operations::divide_edge(Index a, Index b, double least, Change& change) {
+  if (!find_whole_ring(a, b) || !make_cone_of_edge(a, b)) return;
+  if (complex_.on_curve(a, b)) return divide_curve_edge(a, b, least, change);
+  if (!faces_are_of_one_patch()) return;
+  const Index patch = cone_.faces.empty() ? none : mesh_.face_patch[cone_.faces[0]];
+  const Freedom where = patch == none ? everywhere : Freedom{{}, 0, patch};
+  const Point place = back_on_feature(0.5 * (mesh_.points[a] + mesh_.points[b]), mesh_.points[a], where);
+  const double quality = quality_around(place, none, least);
+  if (quality < 0 || !surfaces_allow(place, none)) return insert_in_cone(a, b, least, change);
+  change = {};
+  change.kind = Change::Kind::insertion;
+  change.quality = quality;
+  change.place = place;
+  if (patch != none) change.feature = {2, patch};
+  fill(Change::inserted, change);
+}
+
+// The tets at an edge; false where they are not one ring, as where bodies touch.
+bool Operations::find_whole_ring(Index a, Index b) {
+  const Index from = complex_.pinched(a) ? b : a, to = from == a ? b : a;
+  if (complex_.pinched(from)) return false;
+  complex_.star(from, star_);
+  std::erase_if(star_, [&](Index t) { return !contains(complex_[t].corners, to); });
+  if (star_.empty()) return false;
+  complex_.ring(star_.front(), a, b, ring_);
+  return ring_.tets.size() == star_.size();
+}
+
+void Operations::divide_curve_edge(Index a, Index b, double least, Change& change) {
+  const Index curve = mesh_.edge_curve[complex_.curve_edge(a, b)];
+  if (curve == none) return;
+  const auto middle = curves_.middle(curve, a, b);
+  if (!middle) return;
+  const Point place = curves_.place(curve, *middle);
+  const double quality = quality_around(place, none, least);
+  if (quality < 0 || !surfaces_allow(place, none)) return;
+  change = {};
+  change.kind = Change::Kind::insertion;
+  change.quality = quality;
+  change.place = place;
+  change.feature = {1, curve};
+  change.middle = *middle;
   fill(Change::inserted, change);
 }
 

@@ -23,6 +23,10 @@ const std::vector<Index>& Workpiece::apply(Change change) {
     for (auto& tet : created) std::replace(tet.corners.begin(), tet.corners.end(), Change::inserted, vertex);
     for (auto& face : created_faces)
       std::replace(face.corners.begin(), face.corners.end(), Change::inserted, vertex);
+    if (change.feature.dimension == 1) {
+      complex.divide_curve_edge(change.middle.ends[0], vertex, change.middle.ends[1]);
+      curves.divided(vertex, change.middle);
+    }
   }
   if (change.kind == Change::Kind::contraction && complex.mesh().features[change.vertex].dimension == 1) {
     const auto [before, after] = curves.neighbours(change.vertex);

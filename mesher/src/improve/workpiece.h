@@ -24,6 +24,8 @@ struct Change {
   Point place{};                        ///< of the moved or inserted vertex
   double way = 0;                       ///< that a vertex on a curve slides
   TetMesh::VertexFeature feature;       ///< of the inserted vertex
+  /// Where a vertex is inserted on a curve: the edge that it divides and the arc length there.
+  CurveSlides::Middle middle = {};
 };
 
 /// A mesh under improvement, with the smooth surfaces and curves that its faces and edges approximate.

@@ -1,0 +1,48 @@
+#include "remesh_command.h"
+
+#include <utility>
+
+#include "collarmesh/error.h"
+#include "collarmesh/remesh.h"
+#include "input_files.h"
+#include "interrupt.h"
+#include "mesh_command.h"
+#include "out_of_memory.h"
+
+namespace collarmesh::cli {
+
+namespace {
+
+void adapt(const RemeshArguments& arguments, const Plc& plc, PipelineOptions& options) {
+  if (!arguments.size_field_file.empty())
+    options.mesh.size_field = read_size_field(arguments.size_field_file, plc);
+}
+
+void remesh_file(const RemeshArguments& arguments, Stages& stages, MeshRun& run) {
+  const TetMesh mesh = read_mesh(arguments.inputs.front(), arguments.input_format);
+  PipelineOptions options = arguments;
+  options.mesh.time_limit = 0;  // one limit for everything, from reading to writing: the interrupt flag
+  Execution execution;
+  execution.cancel = &interrupt_flag();
+  execution.progress = [&](const ProgressReport& report) {
+    stages.update(report);
+    return true;
+  };
+  RemeshResult made = remesh(
+      mesh, options, [&](const Plc& plc, PipelineOptions& o) { adapt(arguments, plc, o); }, execution);
+  run.remeshing = made.remeshing;
+  static_cast<SoupPipelineResult&>(run) = std::move(made);
+  if (run.result.status == MeshStatus::cancelled) stop_if_interrupted();
+  if (run.result.status == MeshStatus::budget_hit)
+    throw Stopped(ExitCode::budget_hit, run.result.message + "; nothing was written");
+  run.summary = summarize(run.plc, arguments.mesh.bounds.crease_angle);
+}
+
+}  // namespace
+
+ExitCode remesh_command(const RemeshArguments& arguments) {
+  return make_and_write(arguments,
+                        [&](Stages& stages, MeshRun& run) { remesh_file(arguments, stages, run); });
+}
+
+}  // namespace collarmesh::cli

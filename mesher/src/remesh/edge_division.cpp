@@ -1,0 +1,113 @@
+#include "remesh/edge_division.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/found_in_ranges.h"
+
+namespace collarmesh::remeshing {
+
+using improvement::Change;
+
+namespace {
+
+// New tets are at least this share of the worst one at the edge. Halves of a tet have about half of its
+// smallest angle, and later improvement joins what fits better.
+constexpr double least_share = 0.4;
+// Tets that are this good may become as bad as that share of it at most.
+constexpr double good = 1;
+constexpr std::size_t steps_between_reports = 4096;
+
+}  // namespace
+
+EdgeDivision::EdgeDivision(improvement::Workpiece& workpiece, const MeshOptions& options,
+                           std::vector<double> sizes)
+    : workpiece_(workpiece),
+      options_(options),
+      sizing_(workpiece.plc, options, Frame()),
+      sizes_(std::move(sizes)),
+      thin_(workpiece.plc, mesh(), options.bounds.thin_angle, options.bounds.reserve, workpiece.forced),
+      rule_(thin_),
+      operations_(workpiece, rule_) {
+  workpiece_.prepare();
+}
+
+std::size_t EdgeDivision::divide_all(double longest, std::size_t most_vertices, const Execution& execution) {
+  std::size_t count = 0, step = 0;
+  for (const LongEdge& edge : long_edges(longest)) {
+    if (most_vertices > 0 && mesh().points.size() >= most_vertices) break;
+    if (execution.cancelled()) break;
+    if (++step % steps_between_reports == 0 && execution.progress &&
+        !execution.progress({"remesh", 0, mesh().points.size(), complex().size()}))
+      break;
+    if (divide(edge.a, edge.b)) ++count;
+  }
+  return count;
+}
+
+double EdgeDivision::ratio(Index a, Index b) const {
+  return distance(mesh().points[a], mesh().points[b]) / (0.5 * (sizes_[a] + sizes_[b]));
+}
+
+// A field may ask for less between vertices than at them.
+double EdgeDivision::ratio_by_field(const LongEdge& edge) const {
+  const Point &a = mesh().points[edge.a], &b = mesh().points[edge.b];
+  return std::max(edge.ratio, distance(a, b) / sizing_.default_size(0.5 * (a + b)));
+}
+
+// The field may be the caller's, who expects one call at a time.
+std::vector<EdgeDivision::LongEdge> EdgeDivision::long_edges(double longest) const {
+  const bool all = sizing_.has_field();
+  std::vector<LongEdge> edges =
+      found_in_ranges<LongEdge>(complex().size(), [&](std::size_t i, std::vector<LongEdge>& found) {
+        const auto& tet = complex()[static_cast<Index>(i)];
+        if (!tet.alive) return;
+        for (unsigned k = 0; k < 4; ++k)
+          for (unsigned l = k + 1; l < 4; ++l) {
+            const Index a = std::min(tet.corners[k], tet.corners[l]),
+                        b = std::max(tet.corners[k], tet.corners[l]);
+            if (const double relative = ratio(a, b); all || relative > longest)
+              found.push_back({relative, a, b});
+          }
+      });
+  std::sort(edges.begin(), edges.end(),
+            [](const LongEdge& x, const LongEdge& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; });
+  edges.erase(std::unique(edges.begin(), edges.end(),
+                          [](const LongEdge& x, const LongEdge& y) { return x.a == y.a && x.b == y.b; }),
+              edges.end());
+  if (all) {
+    for (LongEdge& edge : edges)
+      if (edge.ratio <= longest) edge.ratio = ratio_by_field(edge);
+    std::erase_if(edges, [longest](const LongEdge& edge) { return edge.ratio <= longest; });
+  }
+  std::stable_sort(edges.begin(), edges.end(),
+                   [](const LongEdge& x, const LongEdge& y) { return x.ratio > y.ratio; });
+  return edges;
+}
+
+bool EdgeDivision::divide(Index a, Index b) {
+  if (!complex().in_use(a) || !complex().in_use(b)) return false;
+  const Index at = complex().tet_at_edge(a, b);
+  if (at == none) return false;
+  improvement::TetComplex::Ring ring;
+  complex().ring(at, a, b, ring);
+  double worst = good;
+  for (const Index t : ring.tets)
+    worst = std::min(worst, rule_.quality(complex().corners(t), complex()[t].corners));
+  Change change;
+  operations_.divide_edge(a, b, std::max(0.0, least_share * worst), change);
+  if (change.kind == Change::Kind::none) return false;
+  const double size =
+      std::min(0.5 * (sizes_[a] + sizes_[b]), size_at(change.feature, complex()[at].region, change.place));
+  workpiece_.apply(std::move(change));
+  sizes_.push_back(size);
+  return true;
+}
+
+double EdgeDivision::size_at(const TetMesh::VertexFeature& feature, Index region, const Point& p) const {
+  return feature.dimension == 3 ? sizing_.region_size(region, p)
+                                : sizing_.feature_size(feature.dimension, feature.feature, p);
+}
+
+}  // namespace collarmesh::remeshing

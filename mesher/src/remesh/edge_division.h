@@ -1,0 +1,47 @@
+#pragma once
+
+#include <vector>
+
+#include "collarmesh/mesher.h"
+#include "collarmesh/progress.h"
+#include "improve/operations.h"
+#include "refine/sizing.h"
+
+namespace collarmesh::remeshing {
+
+/// Divides the edges of a mesh that are longer than its sizes ask for: on curves, in patches and inside
+/// regions.
+class EdgeDivision {
+ public:
+  /// The workpiece and the options are kept by reference; `sizes`: targets at the vertices that there are.
+  EdgeDivision(improvement::Workpiece& workpiece, const MeshOptions& options, std::vector<double> sizes);
+
+  /// Divides each edge once that is longer than `longest` times its target now, the longest by that first,
+  /// and returns how many it divided. Edges where the new tets would be much worse than those before stay.
+  /// `most_vertices`: ends there; 0: no bound.
+  std::size_t divide_all(double longest, std::size_t most_vertices, const Execution& execution);
+
+ private:
+  struct LongEdge {
+    double ratio;  // to the target
+    Index a, b;
+  };
+
+  const improvement::TetComplex& complex() const { return workpiece_.complex; }
+  const TetMesh& mesh() const { return workpiece_.complex.mesh(); }
+  std::vector<LongEdge> long_edges(double longest) const;
+  double ratio(Index a, Index b) const;
+  double ratio_by_field(const LongEdge& edge) const;
+  bool divide(Index a, Index b);
+  double size_at(const TetMesh::VertexFeature& feature, Index region, const Point& p) const;
+
+  improvement::Workpiece& workpiece_;
+  const MeshOptions& options_;
+  Sizing sizing_;
+  std::vector<double> sizes_;  // by vertex
+  improvement::ThinShape thin_;
+  improvement::ThinRule rule_;
+  improvement::Operations operations_;
+};
+
+}  // namespace collarmesh::remeshing

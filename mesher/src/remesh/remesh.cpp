@@ -1,0 +1,322 @@
+#include "collarmesh/remesh.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "coarsen/coarsen_workpiece.h"
+#include "coarsen/coarsening_rule.h"
+#include "coarsen/target_sizes.h"
+#include "collarmesh/error.h"
+#include "collarmesh/options.h"
+#include "collarmesh/partition.h"
+#include "collarmesh/second_order.h"
+#include "common/thread_limit.h"
+#include "improve/improve_workpiece.h"
+#include "remesh/edge_division.h"
+#include "remesh/mesh_complex.h"
+
+namespace collarmesh {
+
+namespace remeshing {
+namespace {
+
+using improvement::Workpiece;
+
+// Each round at least halves the longest edges of most tets; far finer sizes are not reached by halving
+// alone.
+constexpr unsigned most_rounds = 40, most_passes = 3;
+// A pass of divisions that changes a smaller share of the vertices is the last one.
+constexpr double least_share = 0.01;
+// Edges longer than this times the target are divided: first so that halves are no shorter than an edge that
+// coarsening contracts, then those longer than any that coarsening makes.
+constexpr double longest_at_first = 1.4142, longest_later = coarsening::CoarseningRule::longest_new;
+// Larger than any ratio: then nothing but the worst tet around forbids an operation.
+constexpr double any_ratio = 1e12;
+// Smaller than any ratio: then angles alone decide, and slivers of a small ratio are none that may be made.
+constexpr double no_ratio = 0.1;
+// Degrees: a mesh of this smallest angle, away from creases and narrow places, keeps it.
+constexpr double good_angle = 15;
+
+/// Thrown if a stage stops early; the result says why.
+struct Ended {};
+
+class Remeshing {
+ public:
+  Remeshing(const TetMesh& given, const PipelineOptions& options, const AdaptOptions& adapt,
+            const Execution& execution)
+      : given_(given), options_(options), adapt_(adapt), outer_(execution) {
+    validate({options});
+    if (options.partitions > 0) require_partitioner();
+    inner_.cancel = execution.cancel;
+    inner_.progress = [this](const ProgressReport& report) { return go_on(report); };
+  }
+
+  RemeshResult run() {
+    try {
+      begin("complex", 0, 0.06);
+      build();
+      ThreadLimit(options_.mesh.threads).run([&] { reshape(); });
+      raise_order();
+      certify();
+      forget_numbers();
+      divide();
+    } catch (const Ended&) {
+      made_.result.mesh = {};
+    }
+    return std::move(made_);
+  }
+
+ private:
+  TetMesh& mesh() { return made_.result.mesh; }
+
+  void build() {
+    MeshComplex built = complex_of(given_, options_.complex);
+    made_.plc = std::move(built.plc);
+    mesh() = std::move(built.mesh);
+    if (adapt_) adapt_(made_.plc, options_);
+    require_known_tags(options_.mesh, made_.plc);
+    made_.remeshing.tets_before = mesh().tets.size();
+    measure_before();
+    choose_size();
+    options_.mesh.edges_per_hole = 0;  // those that are there may be all that a hole has
+    if (!options_.mesh.bounds.tolerance)
+      options_.mesh.bounds.tolerance = tolerance_of(made_.plc, options_.mesh.bounds, largest_size_);
+    choose_bounds();
+  }
+
+  /// Chooses the bounds that operations keep: a mesh whose angles are all within some stays within these.
+  void choose_bounds() {
+    kept_ = options_.mesh.bounds;
+    for (const double angle : {good_angle, kept_.thin_angle})
+      if (angle >= kept_.thin_angle && angles_are_within(angle)) {
+        kept_.thin_angle = angle;
+        kept_.radius_edge = no_ratio;
+        return;
+      }
+  }
+
+  bool angles_are_within(double smallest) {
+    const improvement::ThinShape thin(
+        made_.plc, mesh(), smallest, 0,
+        improvement::forced_edges_of(made_.plc, mesh(), options_.mesh.bounds.lower_where_forced));
+    const auto& p = mesh().points;
+    return std::all_of(mesh().tets.begin(), mesh().tets.end(), [&](const std::array<Index, 4>& v) {
+      return thin.contains({p[v[0]], p[v[1]], p[v[2]], p[v[3]]}, v);
+    });
+  }
+
+  void measure_before() {
+    RemeshReport& report = made_.remeshing;
+    report.smallest_angle_before = 180;
+    for (const auto& [a, b, c, d] : mesh().tets) {
+      const auto& p = mesh().points;
+      const TetQuality quality = measure(p[a], p[b], p[c], p[d]);
+      report.smallest_angle_before = std::min(report.smallest_angle_before, quality.min_dihedral);
+      report.largest_angle_before = std::max(report.largest_angle_before, quality.max_dihedral);
+    }
+  }
+
+  /// Without a size that of the field holds alone, and without a field the lengths that the mesh has.
+  void choose_size() {
+    MeshOptions& options = options_.mesh;
+    const double diagonal = made_.plc.bounds.diagonal();
+    if (options.size == 0) {
+      if (!options.size_field) options.size_field = size_field_on_mesh(mesh(), lengths_at_vertices());
+      options.size = diagonal;
+    }
+    const std::vector<double> sizes = target_sizes();
+    largest_size_ = std::min(diagonal, *std::max_element(sizes.begin(), sizes.end()));
+  }
+
+  /// Returns the mean length of the edges at each vertex.
+  std::vector<double> lengths_at_vertices() {
+    std::vector<double> sum(mesh().points.size(), 0), count(sum);
+    for (const auto& tet : mesh().tets)
+      for (const Index v : tet)
+        for (const Index w : tet)
+          if (v != w) {
+            sum[v] += distance(mesh().points[v], mesh().points[w]);
+            count[v] += 1;
+          }
+    for (std::size_t v = 0; v < sum.size(); ++v) sum[v] /= Sizing::edge_per_size * count[v];
+    return sum;
+  }
+
+  std::vector<double> target_sizes() { return coarsening::target_sizes(mesh(), made_.plc, options_.mesh); }
+
+  void reshape() {
+    for (unsigned pass = 0; pass < most_passes; ++pass) {
+      const double from = 0.06 + 0.24 * pass;
+      begin("remesh", from, from + 0.12);
+      const std::size_t divided = refine(pass == 0);
+      begin("coarsen", from + 0.12, from + 0.24);
+      coarsen_and_improve();
+      if (static_cast<double>(divided) < least_share * static_cast<double>(mesh().points.size())) break;
+    }
+    improvement::mark_thin_tets(mesh(), options_.mesh.bounds.radius_edge);
+  }
+
+  Workpiece workpiece() {
+    return Workpiece(mesh(), made_.plc, *options_.mesh.bounds.tolerance, options_.mesh.edges_per_hole,
+                     options_.mesh.bounds.lower_where_forced);
+  }
+
+  /// Returns the options with the bounds that operations keep.
+  MeshOptions options_kept() const {
+    MeshOptions options = options_.mesh;
+    options.bounds = kept_;
+    return options;
+  }
+
+  /// Divides long edges until there are none, or none that can be divided.
+  std::size_t refine(bool first) {
+    Workpiece piece = workpiece();
+    if (first) improve_shapes(piece, false);
+    const MeshOptions options = options_kept();
+    EdgeDivision division(piece, options, target_sizes());
+    std::size_t all = 0;
+    for (unsigned round = 0; round < most_rounds; ++round) {
+      const std::size_t divided =
+          division.divide_all(first ? longest_at_first : longest_later, options_.mesh.max_vertices, inner_);
+      stop_if_asked();
+      require_budget();
+      if (divided == 0) break;
+      all += divided;
+      ++made_.remeshing.rounds;
+      improve_shapes(piece, true);
+    }
+    made_.remeshing.divided_edges += all;
+    piece.complex.store();
+    return all;
+  }
+
+  /// Makes tets better that are poor, by whatever does not make the worst one around worse. `keep_vertices`:
+  /// vertices go and come only where an angle is above the largest of thin tets.
+  void improve_shapes(Workpiece& piece, bool keep_vertices) {
+    ImproveOptions options = improve_options(2);
+    options.bounds = kept_;
+    options.bounds.radius_edge = any_ratio;
+    options.thin_above = keep_vertices ? 1e-3 : any_ratio;
+    options.keep_vertices = keep_vertices;
+    if (keep_vertices) options.passes = 1;
+    add(improve(piece, options, inner_));
+  }
+
+  void coarsen_and_improve() {
+    Workpiece piece = workpiece();
+    made_.coarsening = coarsen(piece, options_kept(), inner_);
+    stop_if_asked(made_.coarsening->cancelled);
+    made_.remeshing.contracted_edges += made_.coarsening->contracted_edges;
+    if (options_.improve > 0) {
+      ImproveOptions options = improve_options(options_.improve);
+      options.bounds = kept_;
+      options.thin_above = options_.mesh.bounds.radius_edge;
+      options.keep_vertices = true;
+      if (options_.min_dihedral > 0) options.min_dihedral = options_.min_dihedral;
+      add(improve(piece, options, inner_));
+    }
+    piece.complex.store();
+  }
+
+  void add(const ImproveReport& report) {
+    stop_if_asked(report.cancelled);
+    made_.improvement = report;
+  }
+
+  void raise_order() {
+    if (options_.order == 1) return;
+    begin("second order", 0.8, 0.86);
+    made_.second_order = make_second_order(
+        mesh(), made_.plc, {.bounds = options_.mesh.bounds, .threads = options_.mesh.threads}, inner_);
+    stop_if_asked(made_.second_order.cancelled);
+  }
+
+  void certify() {
+    begin("check", 0.86, 0.96);
+    made_.check =
+        check(mesh(), made_.plc, {.bounds = options_.mesh.bounds, .threads = options_.mesh.threads}, inner_);
+    stop_if_asked(made_.check.cancelled);
+  }
+
+  /// Features are told by tags, as in a mesh from a file: their numbers would be those of this complex.
+  void forget_numbers() {
+    for (TetMesh::VertexFeature& feature : mesh().features) feature.feature = none;
+    std::fill(mesh().face_patch.begin(), mesh().face_patch.end(), none);
+    std::fill(mesh().edge_curve.begin(), mesh().edge_curve.end(), none);
+  }
+
+  void divide() {
+    if (options_.partitions == 0) return;
+    begin("partition", 0.96, 1);
+    partition(mesh(), options_.partitions);
+  }
+
+  void require_budget() {
+    const std::size_t most = options_.mesh.max_vertices;
+    if (most == 0 || mesh().points.size() < most) return;
+    made_.result.status = MeshStatus::budget_hit;
+    made_.result.message =
+        fmt::format("{} vertices were reached; raise --max-vertices, or the sizes for a coarser mesh", most);
+    throw Ended();
+  }
+
+  void begin(std::string_view stage, double from, double to) {
+    from_ = from;
+    to_ = to;
+    stop_if_asked();
+    if (!go_on({.phase = stage,
+                .fraction = 0,
+                .vertices = mesh().points.size(),
+                .tets = mesh().tets.size(),
+                .begins = true}))
+      stop_if_asked(true);
+  }
+
+  bool go_on(ProgressReport report) {
+    fraction_ = std::max(fraction_, from_ + std::clamp(report.fraction, 0.0, 1.0) * (to_ - from_));
+    report.fraction = fraction_;
+    if (outer_.progress && !outer_.progress(report)) stopped_ = true;
+    const double limit = options_.mesh.time_limit;
+    if (limit > 0 && std::chrono::duration<double>(Clock::now() - started_).count() > limit)
+      out_of_time_ = true;
+    return !stopped_ && !out_of_time_;
+  }
+
+  void stop_if_asked(bool asked = false) {
+    if (!asked && !stopped_ && !out_of_time_ && !outer_.cancelled()) return;
+    made_.result.status = out_of_time_ ? MeshStatus::budget_hit : MeshStatus::cancelled;
+    made_.result.message =
+        out_of_time_ ? fmt::format("the time limit of {} s is reached; raise it, or size for a coarser mesh",
+                                   options_.mesh.time_limit)
+                     : "the run was stopped";
+    throw Ended();
+  }
+
+  using Clock = std::chrono::steady_clock;
+
+  const TetMesh& given_;
+  PipelineOptions options_;
+  const AdaptOptions& adapt_;
+  const Execution& outer_;
+  Execution inner_;
+  RemeshResult made_;
+  double largest_size_ = 0;
+  Bounds kept_;  // by operations
+  Clock::time_point started_ = Clock::now();
+  double from_ = 0, to_ = 0, fraction_ = 0;
+  bool stopped_ = false, out_of_time_ = false;
+};
+
+}  // namespace
+}  // namespace remeshing
+
+RemeshResult remesh(const TetMesh& mesh, const PipelineOptions& options, const AdaptOptions& adapt,
+                    const Execution& execution) {
+  return remeshing::Remeshing(mesh, options, adapt, execution).run();
+}
+
+}  // namespace collarmesh

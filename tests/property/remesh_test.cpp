@@ -1,0 +1,381 @@
+// Meshes are adapted to sizes, finer and coarser: lengths are reached, everything else stays.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "collarmesh/error.h"
+#include "collarmesh/mesh_measures.h"
+#include "collarmesh/remesh.h"
+#include "improve/operations.h"
+#include "remesh/mesh_complex.h"
+#include "support/meshes.h"
+#include "support/shapes.h"
+#include "support/tet_mesh_comparison.h"
+
+namespace collarmesh {
+namespace {
+
+using namespace testing;
+
+PipelineOptions of_size(double size, unsigned threads = 0) {
+  PipelineOptions options;
+  options.mesh.size = size;
+  options.mesh.threads = threads;
+  options.mesh.max_vertices = 300'000;
+  return options;
+}
+
+PipelineOptions of_field(SizeField field) {
+  PipelineOptions options = of_size(0);
+  options.mesh.size_field = std::move(field);
+  return options;
+}
+
+std::string faults(const RemeshResult& made) {
+  return made.guarantees_hold() ? std::string() : "not certified: " + made.missed();
+}
+
+/// Each edge over its target, sorted.
+std::vector<double> relative_lengths(const TetMesh& mesh, const SizeField& size) {
+  std::set<std::pair<Index, Index>> edges;
+  for (const auto& tet : mesh.tets)
+    for (const Index v : tet)
+      for (const Index w : tet)
+        if (v < w) edges.emplace(v, w);
+  std::vector<double> lengths;
+  for (const auto& [v, w] : edges) {
+    const Point &a = mesh.points[v], &b = mesh.points[w];
+    lengths.push_back(distance(a, b) / size(0.5 * (a + b)));
+  }
+  std::sort(lengths.begin(), lengths.end());
+  return lengths;
+}
+
+void expect_lengths(const TetMesh& mesh, const SizeField& size) {
+  const std::vector<double> lengths = relative_lengths(mesh, size);
+  EXPECT_GT(lengths[lengths.size() / 2], 0.8);
+  EXPECT_LT(lengths[lengths.size() / 2], 1.2);
+  EXPECT_LT(lengths[lengths.size() * 95 / 100], 1.6);
+}
+
+std::map<Tag, double> volumes(const TetMesh& mesh) {
+  std::map<Tag, double> volumes;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const auto& [a, b, c, d] = mesh.tets[t];
+    volumes[mesh.tet_tag[t]] +=
+        six_volume(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]) / 6;
+  }
+  return volumes;
+}
+
+std::map<Tag, double> areas(const TetMesh& mesh) {
+  std::map<Tag, double> areas;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto& [a, b, c] = mesh.faces[f];
+    areas[mesh.face_tag[f]] +=
+        0.5 * norm(cross(mesh.points[b] - mesh.points[a], mesh.points[c] - mesh.points[a]));
+  }
+  return areas;
+}
+
+std::map<Tag, double> curve_lengths(const TetMesh& mesh) {
+  std::map<Tag, double> lengths;
+  for (std::size_t e = 0; e < mesh.edges.size(); ++e)
+    lengths[mesh.edge_tag[e]] += distance(mesh.points[mesh.edges[e][0]], mesh.points[mesh.edges[e][1]]);
+  return lengths;
+}
+
+void expect_near(const std::map<Tag, double>& before, const std::map<Tag, double>& after, double share) {
+  ASSERT_EQ(before.size(), after.size());
+  for (const auto& [tag, value] : before) {
+    ASSERT_TRUE(after.contains(tag)) << tag;
+    EXPECT_NEAR(after.at(tag), value, share * value) << tag;
+  }
+}
+
+void expect_parts_kept(const TetMesh& before, const TetMesh& after, double share) {
+  expect_near(volumes(before), volumes(after), share);
+  expect_near(areas(before), areas(after), share);
+  expect_near(curve_lengths(before), curve_lengths(after), share);
+}
+
+TetMesh meshed(const std::vector<PolygonSoup>& soups, double size, double feature_angle = 30) {
+  PipelineOptions options = of_size(size);
+  options.complex.feature_angle = feature_angle;
+  SoupPipelineResult made = run_pipeline(soups, options);
+  EXPECT_TRUE(made.guarantees_hold()) << made.missed();
+  return without_features(std::move(made.result.mesh));
+}
+
+struct Shape {
+  std::string name;
+  std::vector<PolygonSoup> soups;
+  double size;
+  double allowed;  // share by which volumes, areas and lengths of curves may change
+};
+
+std::vector<Shape> shapes() {
+  return {{"box", {box()}, 0.2, 1e-9},
+          {"L", {l_shape()}, 0.3, 1e-9},
+          {"two boxes", {two_boxes()}, 0.25, 1e-9},
+          {"touching boxes", touching_boxes(), 0.25, 1e-9},
+          {"cavity", {box_with_cavity(0.3)}, 0.2, 1e-9},
+          {"dangling facet", {box_with_dangling_facet()}, 0.2, 1e-9},
+          {"plate with a hole", {plate_with_hole(1, 32)}, 0.5, 0.03},
+          {"ball", {icosphere(1, 8)}, 0.3, 0.05},
+          {"ball in a box", {box({-1, -1, -1}, {1, 1, 1}), icosphere(0.6, 8)}, 0.3, 0.05}};
+}
+
+class RemeshedShape : public ::testing::TestWithParam<Shape> {};
+
+TEST_P(RemeshedShape, ReachesFinerAndCoarserSizes) {
+  const auto& [name, soups, size, allowed] = GetParam();
+  const TetMesh mesh = meshed(soups, size);
+  for (const double factor : {0.5, 1.8}) {
+    SCOPED_TRACE(factor);
+    const RemeshResult made = remesh(mesh, of_size(factor * size));
+    ASSERT_EQ(faults(made), "");
+    expect_parts_kept(mesh, made.result.mesh, allowed);
+    if (factor < 1) expect_lengths(made.result.mesh, [&](const Point&) { return factor * size; });
+  }
+}
+
+TEST_P(RemeshedShape, KeepsItsPartsOverSixLoops) {
+  const auto& [name, soups, size, allowed] = GetParam();
+  const TetMesh first = meshed(soups, size);
+  TetMesh mesh = first;
+  for (unsigned loop = 0; loop < 6; ++loop) {
+    RemeshResult made = remesh(mesh, of_size(loop % 2 == 0 ? 0.6 * size : 1.3 * size));
+    ASSERT_EQ(faults(made), "") << loop;
+    EXPECT_GT(made.check.min_dihedral, 8) << loop;
+    EXPECT_LT(made.check.max_dihedral, 151) << loop;
+    mesh = without_features(std::move(made.result.mesh));
+  }
+  expect_parts_kept(first, mesh, allowed);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, RemeshedShape, ::testing::ValuesIn(shapes()), [](const auto& shape) {
+  std::string name = shape.param.name;
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
+});
+
+TEST(Remesh, FollowsAField) {
+  const SizeField field = [](const Point& p) { return 0.04 + 0.3 * norm(p); };
+  const TetMesh mesh = meshed({box()}, 0.3);
+  const RemeshResult made = remesh(mesh, of_field(field));
+  ASSERT_EQ(faults(made), "");
+  expect_lengths(made.result.mesh, field);
+  // From there to where the field is fine at the other end.
+  const SizeField other = [](const Point& p) { return 0.04 + 0.3 * distance(p, {1, 1, 1}); };
+  const RemeshResult again = remesh(made.result.mesh, of_field(other));
+  ASSERT_EQ(faults(again), "");
+  expect_lengths(again.result.mesh, other);
+}
+
+// The vertices of the first mesh do not see the fine place.
+TEST(Remesh, SeesAFieldBetweenVertices) {
+  const SizeField field = [](const Point& p) {
+    return std::min(0.5, 0.03 + 0.4 * distance(p, {0.37, 0.41, 0.43}));
+  };
+  const RemeshResult made = remesh(meshed({box()}, 0.5), of_field(field));
+  ASSERT_EQ(faults(made), "");
+  double shortest = INFINITY;
+  for (const auto& [a, b, c, d] : made.result.mesh.tets)
+    shortest = std::min(shortest, distance(made.result.mesh.points[a], made.result.mesh.points[b]));
+  EXPECT_LT(shortest, 0.06);
+}
+
+TEST(Remesh, DoesNotDependOnThreads) {
+  const TetMesh mesh = meshed({box({-1, -1, -1}, {1, 1, 1}), icosphere(0.6, 8)}, 0.35);
+  const RemeshResult one = remesh(mesh, of_size(0.2, 1));
+  ASSERT_EQ(faults(one), "");
+  expect_same(one.result.mesh, remesh(mesh, of_size(0.2, 1)).result.mesh);
+  expect_same(one.result.mesh, remesh(mesh, of_size(0.2, 4)).result.mesh);
+}
+
+TEST(Remesh, KeepsLengthsWithoutASize) {
+  const TetMesh mesh = meshed({l_shape()}, 0.2);
+  const RemeshResult made = remesh(mesh, of_size(0));
+  ASSERT_EQ(faults(made), "");
+  EXPECT_NEAR(static_cast<double>(made.result.mesh.tets.size()), static_cast<double>(mesh.tets.size()),
+              0.3 * static_cast<double>(mesh.tets.size()));
+}
+
+TEST(Remesh, TakesSecondOrderAndMakesIt) {
+  PipelineOptions options = of_size(0.4);
+  options.order = 2;
+  const SoupPipelineResult first = run_pipeline(std::vector{icosphere(1, 8)}, options);
+  ASSERT_TRUE(first.guarantees_hold());
+  options.mesh.size = 0.3;
+  const RemeshResult made = remesh(without_features(first.result.mesh), options);
+  ASSERT_EQ(faults(made), "");
+  EXPECT_EQ(made.result.mesh.order(), 2);
+  EXPECT_GT(made.second_order.curved, 0U);
+}
+
+/// A mesh whose inner vertices are moved about, so that many tets are nearly flat; none is inverted.
+TetMesh shaken(Index n) {
+  TetMesh mesh = meshed_box(n).mesh;
+  std::uint32_t state = 1;
+  const auto random = [&state] {
+    return static_cast<double>((state = state * 1664525 + 1013904223) >> 8) / 0x1p24 - 0.5;
+  };
+  const auto smallest_at = [&](Index v) {
+    double least = INFINITY;
+    for (const auto& tet : mesh.tets)
+      if (std::find(tet.begin(), tet.end(), v) != tet.end())
+        least = std::min(least, six_volume(mesh.points[tet[0]], mesh.points[tet[1]], mesh.points[tet[2]],
+                                           mesh.points[tet[3]]));
+    return least;
+  };
+  for (Index v = 0; v < mesh.points.size(); ++v) {
+    if (mesh.features[v].dimension != 3) continue;
+    const Point before = mesh.points[v];
+    const Vector way{random(), random(), random()};
+    for (double share = 4; share > 0.01; share *= 0.9) {
+      mesh.points[v] = before + (share / n) * way;
+      if (smallest_at(v) > 1e-9) break;
+      mesh.points[v] = before;
+    }
+  }
+  return without_features(std::move(mesh));
+}
+
+TEST(Remesh, MakesBadTetsGood) {
+  const TetMesh mesh = shaken(5);
+  const MeshMeasures before = measure_mesh(mesh);
+  ASSERT_LT(before.min_dihedral, 3) << "the test needs bad tets";
+  const RemeshResult made = remesh(mesh, of_size(0.2));
+  ASSERT_EQ(faults(made), "");
+  EXPECT_GT(made.check.min_dihedral, 12);
+  EXPECT_LT(made.check.max_dihedral, 150);
+  EXPECT_EQ(made.remeshing.smallest_angle_before, before.min_dihedral);
+}
+
+TEST(Remesh, FindsFeaturesOfAMeshWithoutTags) {
+  TetMesh mesh = meshed({l_shape()}, 0.3);
+  const double volume = volumes(mesh).begin()->second;
+  mesh.faces.clear(), mesh.face_tag.clear(), mesh.face_patch.clear(), mesh.face_regions.clear();
+  mesh.edges.clear(), mesh.edge_tag.clear(), mesh.edge_curve.clear();
+  const RemeshResult made = remesh(mesh, of_size(0.2));
+  ASSERT_EQ(faults(made), "");
+  EXPECT_EQ(made.plc.patches.size(), 8U);
+  EXPECT_EQ(made.plc.curves.size(), 18U);
+  EXPECT_NEAR(volumes(made.result.mesh).begin()->second, volume, 1e-9);
+}
+
+TEST(Remesh, NamesWhatDoesNotFit) {
+  const TetMesh mesh = meshed({box()}, 0.5);
+  const auto message = [](const TetMesh& wrong) -> std::string {
+    try {
+      remesh(wrong, of_size(0.4));
+    } catch (const PlcError& error) {
+      return error.what();
+    }
+    return "nothing is wrong";
+  };
+  TetMesh twice = mesh;
+  twice.tets.push_back(mesh.tets[0]);
+  twice.tet_tag.push_back(1), twice.tet_region.push_back(1);
+  EXPECT_NE(message(twice).find("is a side of 3 tetrahedra"), std::string::npos) << message(twice);
+  TetMesh cracked = mesh;
+  cracked.points.push_back(mesh.points[mesh.tets[0][0]]);
+  cracked.tets[0][0] = static_cast<Index>(mesh.points.size());
+  EXPECT_NE(message(cracked).find("merge such nodes"), std::string::npos) << message(cracked);
+  TetMesh strange = mesh;
+  strange.faces.push_back({mesh.faces[0][0], mesh.faces[1][1], mesh.faces[mesh.faces.size() / 2][2]});
+  strange.face_tag.push_back(9);
+  EXPECT_NE(message(strange).find("is no side of a tetrahedron"), std::string::npos) << message(strange);
+  EXPECT_NE(message({}).find("no tetrahedra"), std::string::npos) << message({});
+  EXPECT_THROW(remesh(mesh,
+                      [] {
+                        PipelineOptions options = of_size(0.4);
+                        options.mesh.patch_size[77] = 0.1;
+                        return options;
+                      }()),
+               OptionError);
+}
+
+TEST(Remesh, EndsAtABudget) {
+  PipelineOptions options = of_size(0.02);
+  options.mesh.max_vertices = 2000;
+  const RemeshResult made = remesh(meshed({box()}, 0.5), options);
+  EXPECT_EQ(made.result.status, MeshStatus::budget_hit);
+  EXPECT_TRUE(made.result.mesh.tets.empty());
+  EXPECT_NE(made.result.message.find("2000"), std::string::npos);
+}
+
+// All edges of a mesh are divided on trial, and all of it is undone.
+TEST(DividedEdges, AreUndone) {
+  using namespace improvement;
+  for (const TetMesh& mesh : {meshed_two_boxes(3).mesh, meshed({icosphere(1, 6)}, 0.5)}) {
+    remeshing::MeshComplex given = remeshing::complex_of(mesh, {});
+    const TetMesh before = given.mesh;
+    Workpiece workpiece(given.mesh, given.plc, tolerance_of(given.plc, {}, 0.3));
+    workpiece.prepare();
+    const ThinShape thin(given.plc, given.mesh, 8, 0, workpiece.forced);
+    const ThinRule rule(thin);
+    Operations operations(workpiece, rule);
+    const auto divide_all = [&] {
+      std::map<unsigned, unsigned> divided;
+      std::set<std::pair<Index, Index>> edges;
+      for (const auto& tet : before.tets)
+        for (const Index v : tet)
+          for (const Index w : tet)
+            if (v < w) edges.emplace(v, w);
+      for (const auto& [a, b] : edges) {
+        if (workpiece.complex.tet_at_edge(a, b) == none) continue;
+        Change change;
+        operations.divide_edge(a, b, 0, change);
+        if (change.kind == Change::Kind::none) continue;
+        ++divided[change.feature.dimension];
+        workpiece.apply(std::move(change));
+      }
+      return divided;
+    };
+    workpiece.begin_trial();
+    const auto first = divide_all();
+    workpiece.undo();
+    EXPECT_EQ(given.mesh.points, before.points);
+    EXPECT_EQ(given.mesh.edges, before.edges);
+    workpiece.begin_trial();
+    EXPECT_EQ(divide_all(), first);
+    workpiece.undo();
+    workpiece.complex.store();
+    expect_same(given.mesh, before);
+    for (const unsigned dimension : {1U, 2U, 3U})
+      if (dimension > 1 || !before.edges.empty()) EXPECT_GT(first.at(dimension), 0U) << dimension;
+  }
+}
+
+TEST(DividedEdges, KeepCurvesWhole) {
+  remeshing::MeshComplex given = remeshing::complex_of(meshed({plate_with_hole(1, 24)}, 0.6), {});
+  const auto before = curve_lengths(given.mesh);
+  improvement::Workpiece workpiece(given.mesh, given.plc, tolerance_of(given.plc, {}, 0.6));
+  workpiece.prepare();
+  const improvement::ThinShape thin(given.plc, given.mesh, 8, 0, workpiece.forced);
+  const improvement::ThinRule rule(thin);
+  improvement::Operations operations(workpiece, rule);
+  std::size_t divided = 0;
+  for (unsigned round = 0; round < 3; ++round)
+    for (const auto& [a, b] : std::vector(given.mesh.edges)) {
+      improvement::Change change;
+      operations.divide_edge(a, b, 0, change);
+      if (change.kind == improvement::Change::Kind::none) continue;
+      ++divided;
+      workpiece.apply(std::move(change));
+    }
+  workpiece.complex.store();
+  EXPECT_GT(divided, 6 * before.size());
+  expect_near(before, curve_lengths(given.mesh), 1e-12);
+  EXPECT_TRUE(check(given.mesh, given.plc, {.bounds = {.radius_edge = 1e9}}).passed());
+}
+
+}  // namespace
+}  // namespace collarmesh
