@@ -9,7 +9,7 @@ from ._inputs import Array, ArrayLike, one_for_each
 from ._mesh import Mesh
 
 # The volume of a tetrahedron of a mesh that was made for a target edge length is in the mean this share of the length's cube.
-_VOLUME_PER_CUBE = 0.14
+_VOLUME_PER_CUBE = 0.125
 
 
 def _volumes(mesh: Mesh) -> Array:

@@ -21,6 +21,10 @@ std::string text(const Point& p) { return fmt::format("({:.9g}, {:.9g}, {:.9g})"
   throw PlcError(message, {{kind, message, std::move(points), at}});
 }
 
+using Ends = std::array<Index, 2>;
+
+Ends ends_of(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
+
 bool less(const Point& a, const Point& b) {
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
@@ -98,6 +102,7 @@ class ComplexBuilder {
     if (mesh_.tets.empty())
       refuse(PlcFault::Kind::empty, "The mesh has no tetrahedra; name a file that has some.", {}, {});
     const Places places(mesh_.points);
+    require_edges();
     build();
     for (const Point& p : plc_.points) point_of_.push_back(places.find(p));
     find_triangles();
@@ -109,6 +114,23 @@ class ComplexBuilder {
 
  private:
   Tag tag_of(const MeshSide& side) const { return side.face == none ? 0 : mesh_.face_tag[side.face]; }
+
+  /// Lines between nodes that no tet joins could not be kept.
+  void require_edges() const {
+    if (mesh_.edges.empty()) return;
+    std::vector<Ends> joined;
+    for (const auto& tet : mesh_.tets)
+      for (unsigned i = 0; i < 4; ++i)
+        for (unsigned j = i + 1; j < 4; ++j) joined.push_back(ends_of(tet[i], tet[j]));
+    std::sort(joined.begin(), joined.end());
+    for (const auto& [a, b] : mesh_.edges)
+      if (!std::binary_search(joined.begin(), joined.end(), ends_of(a, b)))
+        refuse(PlcFault::Kind::intersection,
+               fmt::format("The line of the nodes {} and {} at {} is listed but is no edge of a tetrahedron; "
+                           "remove it from the file.",
+                           a, b, text(mesh_.points[a])),
+               {a, b}, mesh_.points[a]);
+  }
 
   void build() {
     PolygonSoup soup;
@@ -131,18 +153,16 @@ class ComplexBuilder {
   bool edges_are_complete() const {
     if (mesh_.edges.empty()) return false;
     struct EdgeUse {
-      std::array<Index, 2> ends;
+      Ends ends;
       Tag tag;
     };
-    std::vector<std::array<Index, 2>> listed;
-    for (const auto& [a, b] : mesh_.edges) listed.push_back({std::min(a, b), std::max(a, b)});
+    std::vector<Ends> listed;
+    for (const auto& [a, b] : mesh_.edges) listed.push_back(ends_of(a, b));
     std::sort(listed.begin(), listed.end());
     std::vector<EdgeUse> uses;
     for (const MeshSide& side : found_.sides)
-      for (unsigned i = 0; i < 3; ++i) {
-        const Index a = side.corners[i], b = side.corners[(i + 1) % 3];
-        uses.push_back({{std::min(a, b), std::max(a, b)}, tag_of(side)});
-      }
+      for (unsigned i = 0; i < 3; ++i)
+        uses.push_back({ends_of(side.corners[i], side.corners[(i + 1) % 3]), tag_of(side)});
     std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
       return a.ends != b.ends ? a.ends < b.ends : a.tag < b.tag;
     });
