@@ -100,4 +100,7 @@ def sizes_from_errors(
         middle = numpy.sqrt(low * high)
         low, high = (middle, high) if excess(middle) > 0 else (low, middle)
     wanted = lengths * factors(numpy.sqrt(low * high))
-    return numpy.exp(_at_points(mesh, volumes, numpy.log(wanted)[:, None])[:, 0])
+    at_points = numpy.exp(_at_points(mesh, volumes, numpy.log(wanted)[:, None])[:, 0])
+    # The mean at the points evens out lengths, which changes how many tetrahedra they make.
+    made = (volumes / at_points[mesh.tets].mean(axis=1) ** 3).sum()
+    return at_points * numpy.cbrt(made / (volumes / wanted**3).sum())
