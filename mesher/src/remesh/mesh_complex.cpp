@@ -96,15 +96,14 @@ TetMesh corners_of(const TetMesh& mesh) {
 class ComplexBuilder {
  public:
   ComplexBuilder(const TetMesh& mesh, const PlcOptions& options)
-      : mesh_(corners_of(mesh)), options_(options), found_(mesh_) {}
+      : mesh_(corners_of(mesh)), options_(options), places_(mesh_.points), found_(mesh_) {}
 
   MeshComplex run() {
     if (mesh_.tets.empty())
       refuse(PlcFault::Kind::empty, "The mesh has no tetrahedra; name a file that has some.", {}, {});
-    const Places places(mesh_.points);
     require_edges();
     build();
-    for (const Point& p : plc_.points) point_of_.push_back(places.find(p));
+    for (const Point& p : plc_.points) point_of_.push_back(places_.find(p));
     find_triangles();
     number_regions();
     set_regions_of_patches();
@@ -307,6 +306,7 @@ class ComplexBuilder {
 
   TetMesh mesh_;
   const PlcOptions& options_;
+  const Places places_;
   const MeshSides found_;
   Plc plc_;
   std::vector<Index> point_of_;  // by point of the complex: that of the mesh
