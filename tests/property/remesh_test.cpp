@@ -165,6 +165,20 @@ INSTANTIATE_TEST_SUITE_P(Shapes, RemeshedShape, ::testing::ValuesIn(shapes()), [
   return name;
 });
 
+// Its labels are those of the input that the first mesh was made of.
+TEST(Remesh, IsAMeshOfTheFirstInput) {
+  for (const PolygonSoup& soup : {two_boxes(), plate_with_hole(1, 32), box_with_dangling_facet()}) {
+    const SoupPipelineResult first = run_pipeline(std::vector{soup}, of_size(0.4));
+    ASSERT_TRUE(first.guarantees_hold()) << first.missed();
+    for (const TetMesh& mesh : {first.result.mesh, without_features(first.result.mesh)}) {
+      const RemeshResult made = remesh(mesh, of_size(0.3));
+      ASSERT_EQ(faults(made), "");
+      const CheckReport report = check(made.result.mesh, first.plc);
+      EXPECT_TRUE(report.passed()) << report.findings.front().message;
+    }
+  }
+}
+
 TEST(Remesh, FollowsAField) {
   const SizeField field = [](const Point& p) { return 0.04 + 0.3 * norm(p); };
   const TetMesh mesh = meshed({box()}, 0.3);
