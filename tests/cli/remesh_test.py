@@ -59,7 +59,7 @@ class Remeshing(ProgramTest):
         self.expect(2, "remesh", "first.vtu", says=["--output"])
         self.expect(2, "remesh", "first.vtu", "-o", "first.vtu", says=["would overwrite"])
         self.expect(2, "remesh", "first.vtu", "-o", "next.vtu", "--patch-size", "99=0.1", says=["99"])
-        self.expect(2, "remesh", "first.vtu", "-o", "next.vtu", "--seed", "3", says=["--seed"])
+        self.expect(2, "remesh", "first.vtu", "-o", "next.vtu", "--seed=3", says=["--seed"])
         self.expect(5, "remesh", "first.vtu", "-o", "next.vtu", "--size", "0.01", "--max-vertices", "3000",
                     says=["3000 vertices"])
 
