@@ -304,6 +304,7 @@ Json check_json(const CheckReport& r) {
           {"min_forced_dihedral", r.min_forced_dihedral},
           {"min_dihedral", r.min_dihedral},
           {"max_dihedral", r.max_dihedral},
+          {"min_collar_dihedral", r.collar_tets > 0 ? Json(r.min_collar_dihedral) : Json(nullptr)},
           {"max_collar_dihedral", r.max_collar_dihedral},
           {"max_surface_distance", number_json(r.max_surface_distance)},
           {"median_edge", r.median_edge},

@@ -43,6 +43,7 @@ void append_creases(std::string& text, const Plc& plc, const std::vector<Crease>
 
 /// A ratio of 0 is that of no tetrahedron.
 std::string shape_text(double min_dihedral, double max_dihedral, double max_radius_edge) {
+  if (max_dihedral == 0) return "all tets in collars";
   return fmt::format("dihedral angles from {:.2f} to {:.2f} degrees, {}", min_dihedral, max_dihedral,
                      max_radius_edge > 0 ? fmt::format("radius-edge at most {:.4g}", max_radius_edge)
                                          : std::string("all tets thin or in collars"));
@@ -213,8 +214,8 @@ std::string check_text(const CheckReport& r) {
     fmt::format_to(Out(text), "thin: {} tets, radius-edge to {:.4g}\n", r.thin_tets, r.max_thin_radius_edge);
   text += forced_text(r);
   if (r.collar_tets > 0)
-    fmt::format_to(Out(text), "in collars: {} tets, dihedral angles to {:.2f} degrees\n", r.collar_tets,
-                   r.max_collar_dihedral);
+    fmt::format_to(Out(text), "in collars: {} tets, dihedral angles from {:.2f} to {:.2f} degrees\n",
+                   r.collar_tets, r.min_collar_dihedral, r.max_collar_dihedral);
   fmt::format_to(Out(text), "surface distance at most {:.3g}, median edge {:.6g}\n", r.max_surface_distance,
                  r.median_edge);
   for (std::size_t k = 1; k < std::min(r.region_volumes.size(), listed + 1); ++k)

@@ -132,14 +132,28 @@ class Creases(ProgramTest):
 
     def test_bounds_that_coarsening_does_not_keep(self):
         wedge = self.write("wedge.off", wedge_text(40))
-        for option, value in (("--collar-angle", "140"), ("--vertex-ratio", "6")):
-            for coarsen, warns in (("on", True), ("off", False)):
-                with self.subTest(option=option, coarsen=coarsen):
-                    run = self.expect(0, wedge, "-o", self.out, option, value, "--coarsen", coarsen, writes=True)
-                    warning = [line for line in run.stderr.splitlines() if line.startswith("warning: " + option)]
-                    self.assertEqual(["--coarsen off" in line for line in warning], [True] if warns else [])
-        # Where there is no crease no collar dissolves.
-        run = self.expect(0, self.box, "-o", self.out, "--collar-angle", "140", writes=True)
+        for coarsen, warns in (("on", True), ("off", False)):
+            with self.subTest(coarsen=coarsen):
+                run = self.expect(0, wedge, "-o", self.out, "--vertex-ratio", "6", "--coarsen", coarsen, writes=True)
+                warning = [line for line in run.stderr.splitlines() if line.startswith("warning: --vertex-ratio")]
+                self.assertEqual(["--coarsen off" in line for line in warning], [True] if warns else [])
+
+    def test_bounds_that_coarsening_keeps(self):
+        wedge = self.write("wedge.off", wedge_text(20))
+        report = self.folder / "report.json"
+        for option, value in (("--collar-angle", "115"), ("--radius-edge", "1.6")):
+            with self.subTest(option=option):
+                run = self.expect(0, wedge, "-o", self.out, option, value, "--report", report, writes=True)
+                check = json.loads(report.read_text())["check"]
+                self.assertGreater(check["collar_tets"], 0)
+                self.expect(0, "check", self.out, "--against", wedge, option, value, writes=True)
+                self.assertNotIn("every guarantee holds", self.expect(
+                    7, "check", self.out, "--against", wedge, "--collar-angle", "100", writes=True).stdout)
+        self.assertLessEqual(check["max_radius_edge"], 1.6)
+        self.assertIn("warning: --collar-angle 115: collars need not reach",
+                      self.run_program(wedge, "-o", self.out, "--collar-angle", "115").stderr)
+        # Where there is no crease there is no collar.
+        run = self.expect(0, self.box, "-o", self.out, "--collar-angle", "115", writes=True)
         self.assertNotIn("warning", run.stderr)
 
     def test_a_sharp_wedge_gets_thin_tets_in_the_place_of_many(self):

@@ -87,7 +87,8 @@ TEST(HullShapes, QualitiesOfCoarseningAreThoseOfTheAngles) {
   const TetMesh mesh;
   const improvement::ThinShape thin(plc, mesh, 8, 0, nullptr);
   const std::vector<double> sizes;
-  coarsening::CoarseningRule rule(thin, 2, sizes);
+  const improvement::CellBounds cells(plc, mesh, {});
+  coarsening::CoarseningRule rule(thin, cells, 2, sizes);
   constexpr std::array<Index, 4> corners{0, 1, 2, 3};
   constexpr double radians = std::numbers::pi / 180;
   std::array<unsigned, 3> seen{};  // without volume, with an angle too large, others

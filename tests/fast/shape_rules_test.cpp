@@ -58,7 +58,9 @@ TEST(ShapeRules, WhatSurelyExceedsAQualityExceedsIt) {
   const improvement::ThinShape thin(plc, mesh, 8, 0, nullptr), with_reserve(plc, mesh, 8, 0.05, nullptr);
   const improvement::SliverRule with_thin(2, &thin), without(2);
   const std::vector<double> sizes;
-  const coarsening::CoarseningRule coarse(thin, 2, sizes), coarse_with_reserve(with_reserve, 2, sizes);
+  const improvement::CellBounds cells(plc, mesh, {});
+  const coarsening::CoarseningRule coarse(thin, cells, 2, sizes),
+      coarse_with_reserve(with_reserve, cells, 2, sizes);
   constexpr std::array<Index, 4> corners{0, 1, 2, 3};
   std::array<unsigned, 4> sure{};
   for (unsigned i = 0; i < 200000; ++i) {

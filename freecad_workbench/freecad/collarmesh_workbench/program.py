@@ -58,7 +58,7 @@ class Settings:
         arguments = []
         for field in dataclasses.fields(self)[: list(self.__dataclass_fields__).index("improve")]:
             value = getattr(self, field.name)
-            if value:
+            if value and value != field.default:
                 arguments += ["--" + field.name.replace("_", "-"), repr(field.type(value))]
         arguments += ["--improve", str(int(self.improve))]
         if not self.coarsen:

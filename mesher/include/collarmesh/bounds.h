@@ -14,6 +14,9 @@ struct Bounds {
   /// and half of what is left where the input forces edges to be short, as across a thin wall.
   /// Dihedral and face angles of thin tets are at most 150. 0: no tet may exceed the ratio.
   double thin_angle = 8;
+  /// Tets may be thin only at creases and in narrow places, where features that have no point in common or
+  /// meet in a crease are nearer to each other than the longest edge over `radius_edge`; else anywhere.
+  bool thin_in_narrow_places_only = false;
   double collar_angle = 150;  ///< largest dihedral angle in collars; 100 to 175
   double crease_angle = 60;   ///< features that meet below it form a crease and get a collar
   /// Largest distance from smooth patches and curves, absolute; 0: `default_tolerance`.

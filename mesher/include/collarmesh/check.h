@@ -42,6 +42,7 @@ struct CheckReport {
   double min_forced_dihedral = 180;             ///< of these
   double min_dihedral = 180, max_dihedral = 0;  ///< outside collars
   double max_collar_dihedral = 0;
+  double min_collar_dihedral = 180;
   double max_surface_distance = 0;  ///< two-sided, on smooth patches and curves
   double median_edge = 0;
   std::vector<double> region_volumes;  ///< by region index, [0] unused; of curved elements as they curve

@@ -22,8 +22,8 @@ struct CoarsenReport {
 /// shorter than all edges around. A radius-edge bound makes tets as small as the thinnest wall and the
 /// smallest angle; here it may be exceeded by thin tets: dihedral angles of at least `thin_angle` and
 /// dihedral and face angles of at most 150 degrees (the maximum-angle condition: Babuska and Aziz 1976,
-/// Krizek 1992). Collars dissolve as far as their cells can become thin tets or tets within the bound. A
-/// collapse that nearly fits is repaired at once, by edge removal and by moving vertices, else undone. All
+/// Krizek 1992). Collars are the tets that touch a crease afterwards, with angles of `collar_angle` at most.
+/// A collapse that nearly fits is repaired at once, by edge removal and by moving vertices, else undone. All
 /// other guarantees hold as before; planar patches stay planar, smooth patches and curves keep the distance.
 /// Preconditions: `mesh` comes from `generate` for `plc` with the options `made_with`, first order.
 /// Guarantee: same input and options, same mesh. Throws OptionError for an angle out of range. Cost: linear

@@ -59,6 +59,7 @@ void take_measures(CheckReport& report, CheckReport&& part) {
   report.min_dihedral = std::min(report.min_dihedral, part.min_dihedral);
   report.max_dihedral = std::max(report.max_dihedral, part.max_dihedral);
   report.max_collar_dihedral = std::max(report.max_collar_dihedral, part.max_collar_dihedral);
+  report.min_collar_dihedral = std::min(report.min_collar_dihedral, part.min_collar_dihedral);
   report.max_surface_distance = std::max(report.max_surface_distance, part.max_surface_distance);
   report.median_edge = std::max(report.median_edge, part.median_edge);
   if (part.region_volumes.empty()) return;
@@ -74,7 +75,7 @@ void judge(Subject subject, CheckReport& report, Findings& findings, const Execu
   report.faces = subject.mesh.faces.size();
   report.edges = subject.mesh.edges.size();
   subject.match = match_features(subject.mesh, subject.plc, subject.rounding);
-  subject.collar = collar_cells(subject, findings);
+  find_collar_cells(subject, findings);
   using Group = void (*)(const Subject&, CheckReport&, Findings&);
   const std::array<Group, 7> groups{[](const Subject& s, CheckReport& r, Findings& f) {
                                       check_tets(s, r, f);

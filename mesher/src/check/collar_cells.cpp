@@ -34,43 +34,76 @@ class CreaseCorners {
     std::sort(edges_.begin(), edges_.end());
   }
 
-  /// 1: a star, 2: a book, 0: neither.
-  std::uint8_t kind(const std::array<Index, 4>& tet) const {
+  /// Returns 1 for a star, 2 for a book, 0 for neither: each vertex on a crease is the centre of a ball,
+  /// whose cells have no other corner there but a neighbour on the crease.
+  std::uint8_t kind_in_balls(const std::array<Index, 4>& tet) const {
     std::array<Index, 4> corners;
     const auto end =
         std::copy_if(tet.begin(), tet.end(), corners.begin(), [&](Index p) { return on_crease_[p]; });
     if (end - corners.begin() == 1) return 1;
     if (end - corners.begin() != 2) return 0;
-    return std::binary_search(edges_.begin(), edges_.end(), sorted(corners[0], corners[1])) ? 2 : 0;
+    return is_edge(corners[0], corners[1]) ? 2 : 0;
+  }
+  /// Returns the same for a coarsened mesh, where all cells that touch a crease are its collar.
+  std::uint8_t kind_of_touching(const std::array<Index, 4>& tet) const {
+    if (std::none_of(tet.begin(), tet.end(), [&](Index p) { return on_crease_[p]; })) return 0;
+    for (unsigned i = 0; i < 4; ++i)
+      for (unsigned j = 0; j < i; ++j)
+        if (on_crease_[tet[i]] && on_crease_[tet[j]] && is_edge(tet[i], tet[j])) return 2;
+    return 1;
   }
 
  private:
+  bool is_edge(Index a, Index b) const {
+    return std::binary_search(edges_.begin(), edges_.end(), sorted(a, b));
+  }
+
   std::vector<bool> on_crease_;              // by mesh point
   std::vector<std::array<Index, 2>> edges_;  // on crease curves, sorted
 };
 
+bool any_of(const std::vector<std::uint8_t>& marks) {
+  return std::any_of(marks.begin(), marks.end(), [](auto mark) { return mark != 0; });
+}
+
+bool is_coarsened(const TetMesh& mesh, const CreaseCorners& creases) {
+  if (!mesh.collar_balls.empty()) return false;
+  if (any_of(mesh.tet_thin)) return true;
+  for (Index t = 0; t < mesh.tet_collar.size(); ++t)
+    if (mesh.tet_collar[t] != 0 && creases.kind_in_balls(mesh.tets[t]) != mesh.tet_collar[t] &&
+        creases.kind_of_touching(mesh.tets[t]) == mesh.tet_collar[t])
+      return true;
+  return false;
+}
+
+void add_wrong_mark(const Subject& subject, Index tet, std::uint8_t kind, Findings& findings) {
+  constexpr std::array names{"no cell", "a star", "a book"};
+  const Point where =
+      0.5 * (subject.point(subject.mesh.tets[tet][0]) + subject.point(subject.mesh.tets[tet][1]));
+  findings.add(guarantee::collar_cells, where, {tet},
+               "Tet {} at {} is marked as {} of a collar, but is {} around a crease of the complex where "
+               "features meet below {:.6g} degrees; give the crease angle that the mesh was made with, or "
+               "correct the mark.",
+               tet, At{where}, names[std::min<std::size_t>(subject.mesh.tet_collar[tet], 2)],
+               kind == 0 ? "none" : names[kind], subject.options.bounds.crease_angle);
+}
+
 }  // namespace
 
-std::vector<std::uint8_t> collar_cells(const Subject& subject, Findings& findings) {
+void find_collar_cells(Subject& subject, Findings& findings) {
   const TetMesh& mesh = subject.mesh;
-  const bool marked =
-      std::any_of(mesh.tet_collar.begin(), mesh.tet_collar.end(), [](auto k) { return k != 0; });
-  std::vector<std::uint8_t> cells(mesh.tets.size(), 0);
-  if (!marked && !mesh.features.empty()) return cells;  // the mesh knows of none
+  const bool marked = any_of(mesh.tet_collar);
+  subject.collar.assign(mesh.tets.size(), 0);
+  if (!marked && !mesh.features.empty() && !any_of(mesh.tet_thin)) return;  // the mesh knows of none
   const CreaseCorners creases(subject);
+  subject.coarsened = is_coarsened(mesh, creases);
   for (Index t = 0; t < mesh.tets.size(); ++t) {
-    if (marked && mesh.tet_collar[t] == 0) continue;
-    cells[t] = creases.kind(mesh.tets[t]);
-    if (!marked || cells[t] == mesh.tet_collar[t]) continue;
-    const Point where = 0.5 * (subject.point(mesh.tets[t][0]) + subject.point(mesh.tets[t][1]));
-    findings.add(
-        guarantee::collar_cells, where, {t},
-        "Tet {} at {} is marked as a {} of a collar, but is none around a crease of the complex where "
-        "features meet below {:.6g} degrees; give the crease angle that the mesh was made with, or "
-        "take the mark off.",
-        t, At{where}, mesh.tet_collar[t] == 1 ? "star" : "book", subject.options.bounds.crease_angle);
+    if (marked && mesh.tet_collar[t] == 0 && !subject.coarsened) continue;
+    subject.collar[t] =
+        subject.coarsened ? creases.kind_of_touching(mesh.tets[t]) : creases.kind_in_balls(mesh.tets[t]);
+    if (marked && subject.collar[t] != mesh.tet_collar[t])
+      add_wrong_mark(subject, t, subject.collar[t], findings);
   }
-  return cells;
 }
 
 }  // namespace collarmesh::checks

@@ -493,10 +493,10 @@ std::optional<TetMesh> place_by_position(const Subject& subject, CheckReport& re
   std::fill(unplaced.face_patch.begin(), unplaced.face_patch.end(), none);
   std::fill(unplaced.edge_curve.begin(), unplaced.edge_curve.end(), none);
   std::optional<TetMesh> placed =
-      Placement(
-          {unplaced, subject.plc, subject.options, subject.tolerance, subject.rounding,
-           subject.curve_allowance, subject.patch_allowance, subject.regions, subject.match, subject.collar},
-          report, findings)
+      Placement({unplaced, subject.plc, subject.options, subject.tolerance, subject.rounding,
+                 subject.curve_allowance, subject.patch_allowance, subject.regions, subject.match,
+                 subject.collar, subject.coarsened},
+                report, findings)
           .run();
   return placed ? std::move(placed) : std::optional(std::move(unplaced));
 }

@@ -13,6 +13,7 @@
 #include "check/region_locator.h"
 #include "collarmesh/check.h"
 #include "tolerance/forced_edges.h"
+#include "tolerance/narrow_places.h"
 
 /// The certificate: one file per group of guarantees, each a function that adds findings. Nothing
 /// here knows how the mesh was made.
@@ -37,6 +38,7 @@ struct Subject {
   std::shared_ptr<const RegionLocator> regions;
   FeatureMatch match;
   std::vector<std::uint8_t> collar;  ///< by tet, as TetMesh::tet_collar: what the complex excuses
+  bool coarsened = false;            ///< cells of collars keep the bounds of other tets, too, and may be thin
 
   const Point& point(Index i) const { return mesh.points[i]; }
   Point centroid(const std::array<Index, 3>& f) const {
@@ -58,6 +60,8 @@ class ThinCells {
   explicit ThinCells(const Subject& subject);
 
   bool claimed(Index tet) const;
+  /// May a tet be thin here?
+  bool has_place(Index tet) const;
   /// Degrees.
   double smallest_angle(Index tet) const;
   /// `face_angle`: the largest of its faces.
@@ -70,11 +74,13 @@ class ThinCells {
   double forced_angle(Index tet) const;
 
   const TetMesh& mesh_;
+  const Subject& subject_;
   double smallest_;
   const std::vector<std::uint8_t>& marks_;
   bool all_;
-  std::vector<double> at_point_;       // empty where nothing meets that sharply
-  std::optional<ForcedEdges> forced_;  // none where no tet may be thin
+  std::vector<double> at_point_;        // empty where nothing meets that sharply
+  std::optional<ForcedEdges> forced_;   // none where no tet may be thin
+  std::optional<NarrowPlaces> narrow_;  // none unless thin tets have to be there
 };
 
 /// Items in groups by a key below `groups`; items whose key is none are left out.
@@ -162,9 +168,10 @@ void check_curves(const Subject& subject, CheckReport& report, Findings& finding
 void check_patches(const Subject& subject, CheckReport& report, Findings& findings);
 
 /// Finds the cells of collars: stars have one corner on a crease of the complex, books two that an edge on it
-/// joins. If the mesh marks cells, only marked ones count; a mark elsewhere is a finding.
+/// joins. If the mesh marks cells, only marked ones count; a mark elsewhere is a finding. Where others at a
+/// crease are marked or tets are thin, the mesh was coarsened: all cells that touch a crease are its collar.
 /// Precondition: subject.match is filled in.
-std::vector<std::uint8_t> collar_cells(const Subject& subject, Findings& findings);
+void find_collar_cells(Subject& subject, Findings& findings);
 
 /// Checks the balls of the collars against the features of the mesh and against each other (paper,
 /// Definitions 6 and 7). Does nothing if the mesh does not have them.

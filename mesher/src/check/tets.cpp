@@ -41,15 +41,26 @@ void check_shape(Index tet, const Corners& p, const TetQuality& quality, const S
           "Tet {} of a collar at {} has a dihedral angle of {:.6g} degrees, allowed are {:.6g}; a smaller "
           "size there resolves the crease better.",
           tet, At{p.centre()}, quality.max_dihedral, options.bounds.collar_angle);
-    return;
+    report.min_collar_dihedral = std::min(report.min_collar_dihedral, quality.min_dihedral);
+    if (!subject.coarsened) return;
+  } else {
+    report.min_dihedral = std::min(report.min_dihedral, quality.min_dihedral);
+    report.max_dihedral = std::max(report.max_dihedral, quality.max_dihedral);
   }
-  report.min_dihedral = std::min(report.min_dihedral, quality.min_dihedral);
-  report.max_dihedral = std::max(report.max_dihedral, quality.max_dihedral);
   const bool within = quality.radius_edge <= options.bounds.radius_edge * slack;
   if (!within && thin.claimed(tet)) {
-    ++report.thin_tets;
-    report.max_thin_radius_edge = std::max(report.max_thin_radius_edge, quality.radius_edge);
+    if (subject.collar[tet] == 0) {
+      ++report.thin_tets;
+      report.max_thin_radius_edge = std::max(report.max_thin_radius_edge, quality.radius_edge);
+    }
     const double face_angle = largest_face_angle(p.a, p.b, p.c, p.d);
+    if (!thin.has_place(tet))
+      findings.add(
+          guarantee::radius_edge, p.centre(), {tet},
+          "Tet {} at {} has circumradius / shortest edge {:.9g}, allowed is {:.9g} but in narrow places and "
+          "at "
+          "creases; let it be thin anywhere by leaving out that bound, or make the size smaller there.",
+          tet, At{p.centre()}, quality.radius_edge, options.bounds.radius_edge);
     if (thin.are_bounded(quality, face_angle, tet)) {
       if (!thin.is_forced(quality, tet)) return;
       ++report.forced_tets;
@@ -65,7 +76,8 @@ void check_shape(Index tet, const Corners& p, const TetQuality& quality, const S
         thin.smallest_angle(tet), ThinCells::largest_angle);
     return;
   }
-  report.max_radius_edge = std::max(report.max_radius_edge, quality.radius_edge);
+  if (subject.collar[tet] == 0)
+    report.max_radius_edge = std::max(report.max_radius_edge, quality.radius_edge);
   if (!within)
     findings.add(
         guarantee::radius_edge, p.centre(), {tet},

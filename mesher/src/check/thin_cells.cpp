@@ -31,13 +31,17 @@ std::vector<TetMesh::VertexFeature> features_of(const Subject& subject) {
 
 ThinCells::ThinCells(const Subject& subject)
     : mesh_(subject.mesh),
+      subject_(subject),
       smallest_(subject.options.bounds.thin_angle),
       marks_(subject.mesh.tet_thin),
       all_(marks_.empty() && subject.mesh.features.empty()) {
-  if (!(smallest_ > 0) || (marks_.empty() && !all_)) return;
+  if (!(smallest_ > 0) || (marks_.empty() && !all_ && !subject.coarsened)) return;
   const Plc& plc = subject.plc;
   forced_.emplace(plc, features_of(subject), mesh_.points, mesh_.faces, subject.match.face_patch,
                   least_cosine_of_sides);
+  const Bounds& bounds = subject.options.bounds;
+  if (bounds.thin_in_narrow_places_only)
+    narrow_.emplace(plc, features_of(subject), *forced_, bounds.crease_angle, 1 / bounds.radius_edge);
   std::vector<double> of_curve(plc.curves.size(), smallest_);
   const auto lower_at_vertex = [&](Index vertex, double bound) {
     if (vertex == none || subject.match.vertex_point[vertex] == none) return;
@@ -61,7 +65,14 @@ ThinCells::ThinCells(const Subject& subject)
 }
 
 bool ThinCells::claimed(Index tet) const {
-  return smallest_ > 0 && (all_ || (tet < marks_.size() && marks_[tet] != 0));
+  return smallest_ > 0 && (all_ || (tet < marks_.size() && marks_[tet] != 0) ||
+                           (subject_.coarsened && subject_.collar[tet] != 0));
+}
+
+bool ThinCells::has_place(Index tet) const {
+  if (!narrow_ || subject_.collar[tet] != 0) return true;
+  const auto& [a, b, c, d] = mesh_.tets[tet];
+  return narrow_->contain({mesh_.points[a], mesh_.points[b], mesh_.points[c], mesh_.points[d]}, {a, b, c, d});
 }
 
 double ThinCells::smallest_angle(Index tet) const {

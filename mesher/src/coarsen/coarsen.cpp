@@ -21,6 +21,7 @@ namespace collarmesh {
 namespace coarsening {
 namespace {
 
+using improvement::CellBounds;
 using improvement::Change;
 using improvement::TetComplex;
 using improvement::ThinShape;
@@ -92,10 +93,11 @@ class Coarsening {
         radius_edge_(made_with.bounds.radius_edge),
         sizes_(target_sizes(mesh(), workpiece.plc, sizes_asked_for(made_with))),
         thin_(workpiece.plc, mesh(), made_with.bounds.thin_angle, made_with.bounds.reserve, workpiece.forced),
-        rule_(thin_, made_with.bounds.radius_edge, sizes_),
+        cells_(workpiece.plc, mesh(), made_with.bounds),
+        rule_(thin_, cells_, made_with.bounds.radius_edge, sizes_),
         changes_{0, std::vector<std::uint32_t>(mesh().points.size(), 0)},
-        proposer_(workpiece_, thin_, radius_edge_, sizes_, changes_),
-        proposers_([this] { return Proposer(workpiece_, thin_, radius_edge_, sizes_, changes_); }),
+        proposer_(workpiece_, thin_, cells_, radius_edge_, sizes_, changes_),
+        proposers_([this] { return Proposer(workpiece_, thin_, cells_, radius_edge_, sizes_, changes_); }),
         execution_(execution) {}
 
   // Holes stay round all the same.
@@ -293,7 +295,8 @@ class Coarsening {
     for (const Index t : touched_) {
       if (!complex()[t].alive) continue;
       const double q = trial_qualities_[t];
-      if (q >= 1 || (q >= floor && rule_.keeps_guarantee(complex().corners(t), q))) continue;
+      if (q >= 1 || (q >= floor && rule_.keeps_guarantee(complex().corners(t), complex()[t].corners, q)))
+        continue;
       ++found.count;
       if (q >= least) continue;
       least = q;
@@ -398,12 +401,9 @@ class Coarsening {
     }
   }
 
+  // The cells of collars are not what they were.
   void finish() {
-    workpiece_.complex.mesh().collar_balls.clear();  // their cells are not what they were
-    for (Index t = 0; t < complex().size(); ++t)
-      if (complex()[t].alive && complex()[t].collar &&
-          rule_.keeps_guarantee(complex().corners(t), quality(t)))
-        workpiece_.complex.dissolve(t);
+    workpiece_.complex.forget_balls();
     report_.tets_after = tets_;
   }
 
@@ -411,6 +411,7 @@ class Coarsening {
   double radius_edge_;
   std::vector<double> sizes_;
   ThinShape thin_;
+  CellBounds cells_;
   CoarseningRule rule_;
   Changes changes_;
   Proposer proposer_;  // of the thread that does it
@@ -447,7 +448,7 @@ CoarsenReport coarsen(TetMesh& mesh, const Plc& plc, const MeshOptions& made_wit
                                      made_with.bounds.lower_where_forced);
     report = coarsen(workpiece, made_with, execution);
     workpiece.complex.store();
-    improvement::mark_thin_tets(mesh, made_with.bounds.radius_edge);
+    improvement::mark_cells(mesh, plc, made_with.bounds);
   });
   return report;
 }

@@ -22,21 +22,24 @@ class CoarseningRule final : public improvement::AngleRule {
   /// No operation makes an edge longer than this times the target length and than what was there.
   static constexpr double longest_new = 1.5;
 
-  /// `thin` and `sizes`, by vertex, are kept by reference.
-  CoarseningRule(const improvement::ThinShape& thin, double radius_edge, std::span<const double> sizes)
-      : thin_(thin), bound_(radius_edge), sizes_(sizes) {}
+  /// `thin`, `cells` and `sizes`, by vertex, are kept by reference.
+  CoarseningRule(const improvement::ThinShape& thin, const improvement::CellBounds& cells, double radius_edge,
+                 std::span<const double> sizes)
+      : thin_(thin), cells_(cells), bound_(radius_edge), sizes_(sizes) {}
 
   double quality_of(const improvement::ExtremeCosines& cosines, const Corners& p,
                     const std::array<Index, 4>& corners) const override {
     const auto [sharp, blunt] = thin_.squared_margins(cosines, p, corners);
     if (blunt < 0) return -1;
     if (blunt < 1 && mode_ != Mode::force) return beyond * std::sqrt(blunt * std::min(1.0, sharp));
-    return std::sqrt(std::min(blunt, sharp));
+    const double quality = std::sqrt(std::min(blunt, sharp));
+    const bool fits = mode_ == Mode::force || !cells_.forbid_thin_tets() || cells_.allow(p, corners);
+    return fits ? quality : improvement::CellBounds::forbidden * std::min(1.0, quality);
   }
   /// Is the quality above this, which is at least 1? False of some that are; much cheaper.
   bool surely_exceeds(double quality, const Corners& p) const { return thin_.surely_exceeds(quality, p); }
-  bool allows(const Corners& p, const std::array<Index, 4>&, double quality) const override {
-    return mode_ != Mode::final || keeps_guarantee(p, quality);
+  bool allows(const Corners& p, const std::array<Index, 4>& corners, double quality) const override {
+    return mode_ != Mode::final || keeps_guarantee(p, corners, quality);
   }
   bool allows_edge(Index a, Index b, double squared_length, double squared_before) const override {
     return squared_length <= squared_before ||
@@ -47,7 +50,9 @@ class CoarseningRule final : public improvement::AngleRule {
   unsigned step_lengths() const override { return 2; }
   bool dissolves_collars() const override { return true; }
 
-  bool keeps_guarantee(const Corners& p, double quality) const { return quality >= 1 || bound_.holds(p); }
+  bool keeps_guarantee(const Corners& p, const std::array<Index, 4>& corners, double quality) const {
+    return quality >= 1 || (bound_.holds(p) && cells_.allow(p, corners));
+  }
 
   void set_mode(Mode mode) { mode_ = mode; }
   /// Squared length of an edge by the target there.
@@ -64,6 +69,7 @@ class CoarseningRule final : public improvement::AngleRule {
   }
 
   const improvement::ThinShape& thin_;
+  const improvement::CellBounds& cells_;
   improvement::RadiusEdgeBound bound_;
   std::span<const double> sizes_;
   Mode mode_ = Mode::final;

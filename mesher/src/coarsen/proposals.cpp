@@ -35,10 +35,11 @@ bool contains(const auto& range, Index v) { return std::find(range.begin(), rang
 }  // namespace
 
 Proposer::Proposer(const improvement::Workpiece& workpiece, const improvement::ThinShape& thin,
-                   double radius_edge, std::span<const double> sizes, const Changes& changes)
+                   const improvement::CellBounds& cells, double radius_edge, std::span<const double> sizes,
+                   const Changes& changes)
     : workpiece_(workpiece),
       changes_(changes),
-      rule_(thin, radius_edge, sizes),
+      rule_(thin, cells, radius_edge, sizes),
       operations_(workpiece, rule_),
       stamps_(workpiece.complex.mesh().points.size(), 0),
       stayed_(stamps_) {}

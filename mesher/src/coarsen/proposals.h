@@ -31,8 +31,9 @@ class Proposer {
   using Mode = CoarseningRule::Mode;
 
   /// All but the number are kept by reference; those between are the rule's.
-  Proposer(const improvement::Workpiece& workpiece, const improvement::ThinShape& thin, double radius_edge,
-           std::span<const double> sizes, const Changes& changes);
+  Proposer(const improvement::Workpiece& workpiece, const improvement::ThinShape& thin,
+           const improvement::CellBounds& cells, double radius_edge, std::span<const double> sizes,
+           const Changes& changes);
   Proposer(const Proposer&) = delete;
   Proposer& operator=(const Proposer&) = delete;
 

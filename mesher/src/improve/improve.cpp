@@ -44,7 +44,9 @@ class Improvement {
       : workpiece_(workpiece),
         thin_(workpiece.plc, complex().mesh(), options.bounds.thin_angle, options.bounds.reserve,
               workpiece.forced),
-        rule_(options.bounds.radius_edge, options.bounds.thin_angle > 0 ? &thin_ : nullptr),
+        cells_(workpiece.plc, complex().mesh(), options.bounds),
+        rule_(options.bounds.radius_edge, options.bounds.thin_angle > 0 ? &thin_ : nullptr,
+              options.bounds.thin_angle > 0 ? &cells_ : nullptr),
         remedies_(workpiece, rule_, options),
         operations_([this] { return Operations(workpiece_, rule_); }),
         execution_(execution),
@@ -215,6 +217,7 @@ class Improvement {
 
   Workpiece& workpiece_;
   ThinShape thin_;
+  CellBounds cells_;
   SliverRule rule_;
   Remedies remedies_;
   tbb::enumerable_thread_specific<Operations> operations_;
@@ -258,7 +261,7 @@ ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& optio
                                      options.bounds.lower_where_forced);
     report = improve(workpiece, options, execution);
     workpiece.complex.store();
-    if (options.bounds.thin_angle > 0) improvement::mark_thin_tets(mesh, options.bounds.radius_edge);
+    if (options.bounds.thin_angle > 0) improvement::mark_cells(mesh, plc, options.bounds);
   });
   return report;
 }

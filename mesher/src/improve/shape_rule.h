@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "improve/cell_bounds.h"
 #include "improve/shape.h"
 #include "improve/thin_shape.h"
 
@@ -60,42 +61,50 @@ class RadiusEdgeBound {
   double squared_;
 };
 
-/// The rule of thin tets: a quality of 1 or more means that the tet is thin. All tets may be made.
+/// The rule of thin tets: a quality of 1 or more means that the tet is thin, in a place where it may be. All
+/// tets may be made.
 class ThinRule final : public AngleRule {
  public:
-  /// `thin` is kept by reference.
-  explicit ThinRule(const ThinShape& thin) : thin_(thin) {}
+  /// Both are kept by reference.
+  ThinRule(const ThinShape& thin, const CellBounds& bounds) : thin_(thin), bounds_(bounds) {}
 
   double quality_of(const ExtremeCosines& cosines, const Corners& p,
                     const std::array<Index, 4>& corners) const override {
     const auto [sharp, blunt] = thin_.squared_margins(cosines, p, corners);
-    return blunt < 0 ? -1 : std::sqrt(std::min(sharp, blunt));
+    if (blunt < 0) return -1;
+    const double quality = std::sqrt(std::min(sharp, blunt));
+    const bool fits = !bounds_.forbid_thin_tets() || bounds_.allow(p, corners);
+    return fits ? quality : CellBounds::forbidden * std::min(1.0, quality);
   }
   bool allows(const Corners&, const std::array<Index, 4>&, double) const override { return true; }
 
  private:
   const ThinShape& thin_;
+  const CellBounds& bounds_;
 };
 
 /// The rule of improvement: the smallest sine of the dihedral angles, within the bound. Where tets may be
 /// thin those with an angle above the largest of thin ones are worse than all others.
 class SliverRule final : public ShapeRule {
  public:
-  /// `thin` is kept by reference; null: no tet exceeds the bound.
-  explicit SliverRule(double radius_edge, const ThinShape* thin = nullptr)
-      : bound_(radius_edge), thin_(thin) {}
+  /// `thin` and `cells` are kept by reference; null: no tet exceeds the bound.
+  explicit SliverRule(double radius_edge, const ThinShape* thin = nullptr, const CellBounds* cells = nullptr)
+      : bound_(radius_edge), thin_(thin), cells_(cells) {}
 
   double quality(const Corners& p, const std::array<Index, 4>& corners) const override {
     const double sine = shape_quality(p);
     if (thin_ == nullptr || !(sine > 0)) return sine;
+    if (forbids_thin_tets() && !cells_->allow(p, corners)) return CellBounds::forbidden * sine;
     return thin_->is_blunt(p, sine) ? beyond * sine : thin_->shape_quality_where_forced(p, corners, sine);
   }
   bool allows(const Corners& p, const std::array<Index, 4>& corners, double) const override {
-    return bound_.holds(p) || (thin_ != nullptr && thin_->contains(p, corners));
+    return (bound_.holds(p) || (thin_ != nullptr && thin_->contains(p, corners))) &&
+           (cells_ == nullptr || cells_->allow(p, corners));
   }
 
   /// Is the quality above this, which is positive? False of some that are; much cheaper.
   bool surely_exceeds(double quality, const Corners& p) const {
+    if (forbids_thin_tets()) return false;
     const double of_obtuse = quality / obtuse_weight;
     const double of_largest = thin_ != nullptr ? thin_->squared_cosine_of_largest() : 1;
     return of_obtuse < 1 &&
@@ -116,8 +125,11 @@ class SliverRule final : public ShapeRule {
  private:
   static constexpr double beyond = 1e-3;
 
+  bool forbids_thin_tets() const { return cells_ != nullptr && cells_->forbid_thin_tets(); }
+
   RadiusEdgeBound bound_;
   const ThinShape* thin_;
+  const CellBounds* cells_;
   double least_gain_ = 1e-3;
 };
 

@@ -57,12 +57,14 @@ void drop(const Cell& lost, std::vector<Cell>& cells, std::vector<Of>&... of_cel
 TetComplex::TetComplex(TetMesh& mesh, const KnownNeighbours& neighbours) : mesh_(mesh) {
   tets_.resize(mesh.tets.size());
   origin_.resize(mesh.tets.size());
+  const bool has_balls = !mesh.collar_balls.empty();
   vertex_tet_.assign(mesh.points.size(), none);
   constexpr std::array<Index, 4> nothing{none, none, none, none};
   parallel_for_ranges(mesh.tets.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
     for (std::size_t t = first; t < last; ++t) {
       const auto& across = neighbours.empty() ? nothing : neighbours[t];
-      tets_[t] = {mesh.tets[t], across, nothing, mesh.tet_region[t], 0, true, mesh.tet_collar[t] != 0};
+      tets_[t] = {
+          mesh.tets[t], across, nothing, mesh.tet_region[t], 0, true, has_balls && mesh.tet_collar[t] != 0};
       origin_[t] = static_cast<Index>(t);
     }
   });
@@ -468,6 +470,11 @@ void TetComplex::undo_curve_edges() {
   mesh_.edges.resize(edge_count_);
   mesh_.edge_curve.resize(edge_count_);
   mesh_.edge_tag.resize(edge_count_);
+}
+
+void TetComplex::forget_balls() {
+  mesh_.collar_balls.clear();
+  for (Tet& tet : tets_) tet.collar = false;
 }
 
 void TetComplex::store() {

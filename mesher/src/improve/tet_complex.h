@@ -98,8 +98,8 @@ class TetComplex {
   void keep();
   void undo();
 
-  /// Turns a cell of a collar into an ordinary tet.
-  void dissolve(Index cell) { tets_[cell].collar = false; }
+  /// Turns the cells in the balls of collars into ordinary tets.
+  void forget_balls();
 
   /// Writes the tets back to the mesh, without removed vertices and faces.
   void store();

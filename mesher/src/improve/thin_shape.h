@@ -49,7 +49,8 @@ inline double least_cosine_of_faces(const Corners& p) {
   return least;
 }
 
-inline ExtremeCosines extreme_cosines(const Corners& p) {
+/// Returns the extreme dihedral angles.
+inline ExtremeCosines dihedral_cosines(const Corners& p) {
   const Vector ab = p[1] - p[0], ac = p[2] - p[0], ad = p[3] - p[0], bc = p[2] - p[1], bd = p[3] - p[1];
   const Vector n_a = cross(bc, bd), n_b = cross(ad, ac), n_c = cross(ab, ad), n_d = cross(ac, ab);
   if (!(-dot(n_d, ad) > 0)) return {1, -1, false};
@@ -67,7 +68,14 @@ inline ExtremeCosines extreme_cosines(const Corners& p) {
     least = std::min(least, squares[i]);
     greatest = std::max(greatest, squares[i]);
   }
-  return {std::min(1.0, greatest), std::max(-1.0, std::min(least, least_cosine_of_faces(p))), true};
+  return {std::min(1.0, greatest), std::max(-1.0, least), true};
+}
+
+inline ExtremeCosines extreme_cosines(const Corners& p) {
+  ExtremeCosines cosines = dihedral_cosines(p);
+  if (cosines.positive)
+    cosines.largest_angle = std::max(-1.0, std::min(cosines.largest_angle, least_cosine_of_faces(p)));
+  return cosines;
 }
 
 /// Returns whether all dihedral angles lie between the two whose squared cosines are given, the second one

@@ -64,6 +64,13 @@ constexpr Option::Place in_mesh = at<&RunOptions::mesh, member>;
 template <auto member>
 constexpr Option::Place in_bounds = at<&RunOptions::mesh, &MeshOptions::bounds, member>;
 
+/// The bound on the radius-edge ratio. Tets may be thin anywhere unless it is asked for.
+constexpr Option::Place asked_ratio{Kind::number, in_bounds<&Bounds::radius_edge>.get,
+                                    [](const Option&, RunOptions& options, const OptionValue& value) {
+                                      options.mesh.bounds.radius_edge = std::get<double>(value);
+                                      options.mesh.bounds.thin_in_narrow_places_only = true;
+                                    }};
+
 constexpr unsigned writing = Option::mesh | Option::convert | Option::remesh,
                    refining = Option::mesh | Option::convert | Option::programs,
                    meshing = writing | Option::programs, judging = meshing | Option::check,
@@ -138,11 +145,14 @@ std::vector<Option> size_options() {
 std::vector<Option> quality_options() {
   return {
       {.name = "radius-edge RHO",
-       .place = in_bounds<&Bounds::radius_edge>,
+       .place = asked_ratio,
        .unit = Unit::ratio,
        .low = 1,
        .help = "Bound on circumradius / shortest edge of a tetrahedron that is not thin",
-       .details = "below sqrt 2 refinement need not end",
+       .details =
+           "if it is given, tetrahedra may be thin only at creases and in narrow places, where parts of "
+           "the shape that do not touch, or meet in a crease, are nearer than the longest edge / RHO; "
+           "else anywhere; below sqrt 2 refinement need not end",
        .commands = judging},
       {.name = "vertex-ratio TAU",
        .place = in_mesh<&MeshOptions::vertex_ratio>,
@@ -153,16 +163,16 @@ std::vector<Option> quality_options() {
        .default_text = "none",
        .help = "Refine until largest circumradius / shortest edge at each vertex is below this, more "
                "than 2 sqrt 2",
-       .details = "not certified, and coarsening and improvement may exceed it",
+       .details = "not certified: coarsening and improvement may exceed it, so a warning asks for "
+                  "`--coarsen off`",
        .commands = refining},
       {.name = "collar-angle DEGREES",
        .place = in_bounds<&Bounds::collar_angle>,
        .unit = Unit::degrees,
        .low = 100,
        .high = 175,
-       .help = "Bound on dihedral angles in the collars around creases",
-       .details = "130 and more were reached on all shapes tried; coarsening dissolves collars, and the "
-                  "bound with them",
+       .help = "Bound on dihedral angles in the collars around creases, the tetrahedra that touch one",
+       .details = "130 and more were reached on all shapes tried, 110 on most if the mesh is coarsened",
        .commands = refining | Option::check},
       {.name = "collar-creation",
        .words = {"in-pass", "up-front"},

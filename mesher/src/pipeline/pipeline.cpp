@@ -26,8 +26,8 @@
 #include "collarmesh/partition.h"
 #include "collarmesh/usable_threads.h"
 #include "common/thread_limit.h"
+#include "improve/cell_bounds.h"
 #include "improve/improve_workpiece.h"
-#include "improve/thin_shape.h"
 #include "pipeline/explosion.h"
 #include "pipeline/lost_parts.h"
 #include "pipeline/vertex_bound.h"
@@ -42,6 +42,9 @@ using Clock = std::chrono::steady_clock;
 // With exact geometry the bounds must still hold after the vertices moved onto it. So these reserves are
 // kept: twice the triangles' share of the distance and some more, and a little of the ratio and the angles.
 constexpr double distance_left = 0.75, ratio_left = 0.99, angle_reserve = 0.05, dihedral_reserve = 0.02;
+
+// Refinement ended with this bound in collars on all shapes tried. Coarsening and improvement reach less.
+constexpr double reached_collar_angle = 130;
 
 /// Thrown if a stage stops early; `PipelineResult::result` says why.
 struct Ended {};
@@ -410,7 +413,10 @@ class Pipeline {
 
   void refine() {
     begin("refine", 0.06, options_.coarsen ? 0.6 : 0.7);
-    MeshResult& result = made_.result = generate(*plc_, refined_with_, inner_, neighbours_);
+    MeshOptions options = refined_with_;
+    if (options_.coarsen)
+      options.bounds.collar_angle = std::max(options.bounds.collar_angle, reached_collar_angle);
+    MeshResult& result = made_.result = generate(*plc_, options, inner_, neighbours_);
     if (result.status == MeshStatus::cancelled && out_of_time()) stop();
     if (hit_bound())
       result.message =
@@ -439,7 +445,7 @@ class Pipeline {
       if (options_.coarsen) coarsen_elements(workpiece);
       if (options_.improve > 0) improve_elements(workpiece);
       workpiece.complex.store();
-      if (options_.coarsen) improvement::mark_thin_tets(mesh, refined_with_.bounds.radius_edge);
+      if (options_.coarsen) improvement::mark_cells(mesh, *plc_, refined_with_.bounds);
     });
   }
 

@@ -34,6 +34,7 @@ class BoundaryProjection {
         tolerance_(tolerance_of_any_size(plc, options.bounds)),
         thin_(plc, mesh, options.bounds.thin_angle, 0,
               improvement::forced_edges_of(plc, mesh, options.bounds.lower_where_forced)),
+        cells_(plc, mesh, options.bounds),
         room_(mesh, limited_, bounds(plc)) {}
 
   ProjectReport run() {
@@ -79,8 +80,12 @@ class BoundaryProjection {
   };
 
   projection::Bounds bounds(const Plc& plc) const {
-    projection::Bounds bounds{
-        options_.bounds.radius_edge, options_.bounds.collar_angle, thin_.empty() ? nullptr : &thin_, {}, {}};
+    projection::Bounds bounds{options_.bounds.radius_edge,
+                              options_.bounds.collar_angle,
+                              thin_.empty() ? nullptr : &thin_,
+                              &cells_,
+                              {},
+                              {}};
     const SurfaceTolerance tolerance = tolerance_.scaled(largest_sag);
     for (Index p = 0; p < plc.patches.size(); ++p) bounds.patch_sag.push_back(tolerance.least_on_patch(p));
     for (const Plc::Curve& curve : plc.curves) bounds.curve_sag.push_back(tolerance.least_on_curve(curve));
@@ -286,6 +291,7 @@ class BoundaryProjection {
   SurfaceTolerance tolerance_;
   std::optional<TriangleHierarchy> triangles_;  // where the tolerance varies
   improvement::ThinShape thin_;
+  improvement::CellBounds cells_;
   projection::Relaxation room_;
   std::vector<Move> moves_;
   std::vector<Index> slot_of_;           // in moves_, by point

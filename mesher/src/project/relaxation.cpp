@@ -65,9 +65,10 @@ bool Relaxation::good(Index tet) const {
   if (predicates::orientation(now[0], now[1], now[2], now[3]) <= 0) return false;
   const TetQuality quality = measure(now[0], now[1], now[2], now[3]);
   const auto before = [&] { return measure(then[0], then[1], then[2], then[3]); };
-  if (mesh_.tet_collar[tet] != 0)
+  if (in_ball(tet))
     return quality.max_dihedral <= bounds_.collar_angle || quality.max_dihedral <= before().max_dihedral;
   if (bounds_.thin != nullptr) {
+    if (!may_be_thin(tet, now) && may_be_thin(tet, then)) return false;
     if (is_thin(tet, now)) return true;
     if (is_thin(tet, then) || angle_score(tet, now) < 1) return false;
   }
@@ -119,19 +120,25 @@ double Relaxation::score(Index tet, const Corners& p) const {
       for (unsigned j = i + 1; j < 4; ++j) longest = std::max(longest, squared_distance(p[i], p[j]));
     return longest > 0 ? six / (longest * std::sqrt(longest)) : -1;
   }
-  if (mesh_.tet_collar[tet] == 0 && bounds_.thin != nullptr &&
-      bounds_.thin->is_thin_by_force(p, mesh_.tets[tet]))
+  if (!in_ball(tet) && bounds_.thin != nullptr && bounds_.thin->is_thin_by_force(p, mesh_.tets[tet]) &&
+      may_be_thin(tet, p))
     return 1;
   const Wanted& want = wanted(tet);
   double score = std::min(1., improvement::shape_quality(p) / want.shape);
-  if (mesh_.tet_collar[tet] != 0) {
-    const double angle = measure(p[0], p[1], p[2], p[3]).max_dihedral;
-    return angle <= bounds_.collar_angle ? score : std::min(score, (180 - angle) / (180 - want.bound));
+  if (in_ball(tet)) return std::min(score, collar_score(tet, p));
+  if (bounds_.thin != nullptr) {
+    score = std::min(score, angle_score(tet, p));
+    if (mesh_.tet_collar[tet] != 0 && bounds_.cells->forbid_thin_tets())
+      score = std::min(score, collar_score(tet, p));
   }
-  if (bounds_.thin != nullptr) score = std::min(score, angle_score(tet, p));
   if (want.thin) return score;
   const double ratio = radius_edge(p), most = bounds_.radius_edge * (1 - margin);
-  return ratio <= most ? score : std::min(score, want.bound / ratio);
+  return ratio <= most ? score : std::min(score, want.ratio / ratio);
+}
+
+double Relaxation::collar_score(Index tet, const Corners& p) const {
+  const double angle = measure(p[0], p[1], p[2], p[3]).max_dihedral;
+  return angle <= bounds_.collar_angle ? 1 : (180 - angle) / (180 - wanted(tet).angle);
 }
 
 // 1 for angles within the bounds of thin tets, or no farther beyond them than at the beginning.
@@ -151,12 +158,10 @@ const Relaxation::Wanted& Relaxation::wanted(Index tet) const {
   if (want.shape >= 0) return want;
   const Corners before = corners(tet, origins_);
   want.shape = std::min(good_shape, improvement::shape_quality(before));
-  if (mesh_.tet_collar[tet] != 0)
-    want.bound = (1 - margin) * std::max(bounds_.collar_angle,
-                                         measure(before[0], before[1], before[2], before[3]).max_dihedral);
-  else
-    want.bound = (1 - margin) * std::max(bounds_.radius_edge, radius_edge(before));
-  want.thin = mesh_.tet_collar[tet] == 0 && is_thin(tet, before);
+  want.angle = (1 - margin) * std::max(bounds_.collar_angle,
+                                       measure(before[0], before[1], before[2], before[3]).max_dihedral);
+  want.ratio = (1 - margin) * std::max(bounds_.radius_edge, radius_edge(before));
+  want.thin = !in_ball(tet) && is_thin(tet, before);
   return want;
 }
 

@@ -9,14 +9,16 @@
 #include "collarmesh/exact_geometry.h"
 #include "collarmesh/tet_mesh.h"
 #include "common/cells_at_vertices.h"
+#include "improve/cell_bounds.h"
 #include "improve/thin_shape.h"
 
 namespace collarmesh::projection {
 
 struct Bounds {
-  double radius_edge = 2;                        ///< outside collars, but for thin tets
-  double collar_angle = 150;                     ///< largest dihedral angle in collars, degrees
-  const improvement::ThinShape* thin = nullptr;  ///< null: no tet is thin
+  double radius_edge = 2;                          ///< outside collars, but for thin tets
+  double collar_angle = 150;                       ///< largest dihedral angle in collars, degrees
+  const improvement::ThinShape* thin = nullptr;    ///< null: no tet is thin
+  const improvement::CellBounds* cells = nullptr;  ///< where there are thin ones
   /// Absolute, by patch and by curve: largest distance of faces and edges from the exact geometry.
   std::vector<double> patch_sag, curve_sag;
 };
@@ -63,15 +65,22 @@ class Relaxation {
   /// The target of a tet: its bound, or its initial shape if that was poorer.
   struct Wanted {
     double shape = -1;  // negative until it is known
-    double bound = 0;   // on its dihedral angles in collars, elsewhere on its radius-edge ratio
+    double ratio = 0;
+    double angle = 0;   // at creases
     bool thin = false;  // its angles are bounded, the ratio need not be
   };
 
   const Wanted& wanted(Index tet) const;
   Corners corners(Index tet, const std::vector<Point>& points) const;
   bool is_thin(Index tet, const Corners& p) const {
-    return bounds_.thin != nullptr && bounds_.thin->contains(p, mesh_.tets[tet]);
+    return bounds_.thin != nullptr && bounds_.thin->contains(p, mesh_.tets[tet]) && may_be_thin(tet, p);
   }
+  bool may_be_thin(Index tet, const Corners& p) const {
+    return !bounds_.cells->forbid_thin_tets() || bounds_.cells->allow(p, mesh_.tets[tet]);
+  }
+  // Of a collar that has not been coarsened: only its obtuse angles are bounded.
+  bool in_ball(Index tet) const { return mesh_.tet_collar[tet] != 0 && !mesh_.collar_balls.empty(); }
+  double collar_score(Index tet, const Corners& p) const;
   double score(Index tet, const Corners& p) const;
   double angle_score(Index tet, const Corners& p) const;
   double lack_of(Index tet, const Corners& p) const;

@@ -397,9 +397,10 @@ bool replace_in_mesh(TetMesh& mesh, const Plc& plc, std::span<const UnwantedTet>
   ThreadLimit(options.threads).run([&] {
     improvement::Workpiece workpiece(mesh, plc, tolerance, 0, options.bounds.lower_where_forced);
     const improvement::ThinShape thin(plc, mesh, options.bounds.thin_angle, 0, workpiece.forced);
-    gone = improvement::replace_tets(workpiece, unwanted, improvement::ThinRule(thin), 1);
+    const improvement::CellBounds cells(plc, mesh, options.bounds);
+    gone = improvement::replace_tets(workpiece, unwanted, improvement::ThinRule(thin, cells), 1);
     workpiece.complex.store();
-    improvement::mark_thin_tets(mesh, options.bounds.radius_edge);
+    improvement::mark_cells(mesh, plc, options.bounds);
   });
   return gone > 0;
 }

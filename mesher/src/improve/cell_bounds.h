@@ -1,0 +1,68 @@
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "collarmesh/bounds.h"
+#include "improve/thin_shape.h"
+#include "tolerance/narrow_places.h"
+
+namespace collarmesh::improvement {
+
+/// The vertices of a mesh that lie on creases of the complex. The cells that touch these are the
+/// collars of a coarsened mesh.
+class CreaseCells {
+ public:
+  /// Of the vertices that there are now, which know their features.
+  CreaseCells(const Plc& plc, const std::vector<TetMesh::VertexFeature>& features, double crease_angle);
+
+  bool touch(const std::array<Index, 4>& corners) const {
+    return any_ && std::any_of(corners.begin(), corners.end(), [this](Index v) { return at(v); });
+  }
+  bool at(Index vertex) const { return any_ && vertex < on_crease_.size() && on_crease_[vertex] != 0; }
+  bool is_crease(Index curve) const { return curve != none && is_crease_[curve]; }
+  bool any() const { return any_; }
+
+ private:
+  std::vector<bool> is_crease_;          // by curve
+  std::vector<std::uint8_t> on_crease_;  // by mesh vertex
+  bool any_ = false;
+};
+
+/// The bounds of a coarsened mesh that depend on the place: the largest dihedral angle of cells that touch a
+/// crease, and, if a radius-edge ratio was asked for, the ratio away from creases and narrow places. Other
+/// rules know the bounds of thin tets and the ratio as such.
+class CellBounds {
+ public:
+  /// A tet that `allow` forbids counts this share of its quality, so that others in its place are better.
+  static constexpr double forbidden = 1e-3;
+
+  CellBounds(const Plc& plc, const TetMesh& mesh, const Bounds& bounds);
+
+  /// May a tet be made here? Thin ones of a default run always.
+  bool allow(const Corners& p, const std::array<Index, 4>& corners) const {
+    if (creases_.touch(corners)) return dihedral_cosines(p).largest_angle >= cosine_;
+    return !narrow_ || ratio_holds(p) || narrow_->contain(p, corners);
+  }
+  /// Is there a thin tet that `allow` forbids?
+  bool forbid_thin_tets() const { return narrow_.has_value() || tight_; }
+
+ private:
+  bool ratio_holds(const Corners& p) const {
+    const Circumsphere sphere = circumsphere(p);
+    return sphere.squared_radius <= squared_ratio_ * sphere.shortest_squared_edge;
+  }
+
+  CreaseCells creases_;
+  double cosine_;  // of the largest angle at creases, a signed square
+  bool tight_;     // is it below that of thin tets?
+  double squared_ratio_;
+  std::optional<NarrowPlaces> narrow_;  // nothing if tets may be thin anywhere
+};
+
+/// Marks the cells that touch a crease as its collar: 2 with an edge on it, else 1. A mesh that knows the
+/// balls of its collars keeps its marks. Then marks thin tets.
+void mark_cells(TetMesh& mesh, const Plc& plc, const Bounds& bounds);
+
+}  // namespace collarmesh::improvement
