@@ -37,13 +37,13 @@ function(collarmesh_html_report_page folder source)
     math(EXPR at "${at} + 16000")
   endwhile()
   file(CONFIGURE OUTPUT ${source} @ONLY CONTENT
-"#include \"html_report_page.h\"
+"#include \"report/html_report_page.h\"
 
-namespace collarmesh::cli {
+namespace collarmesh::report {
 
 const std::string_view html_report_page =
 @literals@;
 
-}  // namespace collarmesh::cli
+}  // namespace collarmesh::report
 ")
 endfunction()

@@ -11,9 +11,9 @@ if(TARGET collarmesh_openmesh_io)
   install(DIRECTORY openmesh_io/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
 endif()
 set(COLLARMESH_HAS_FILES OFF)
-if(TARGET collarmesh_cli)
+if(TARGET collarmesh_files)
   set(COLLARMESH_HAS_FILES ON)
-  install(TARGETS collarmesh_cli EXPORT collarmesh_targets)
+  install(TARGETS collarmesh_files EXPORT collarmesh_targets)
 endif()
 install(EXPORT collarmesh_targets NAMESPACE collarmesh:: FILE collarmesh-targets.cmake
   DESTINATION ${COLLARMESH_PACKAGE_DIR})
@@ -24,6 +24,6 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/collarmesh-config-version
   COMPATIBILITY SameMinorVersion)
 install(FILES
   ${PROJECT_BINARY_DIR}/collarmesh-config.cmake ${PROJECT_BINARY_DIR}/collarmesh-config-version.cmake
-  cmake/FindLibDeflate.cmake
+  cmake/FindLibDeflate.cmake cmake/FindLZ4.cmake
   DESTINATION ${COLLARMESH_PACKAGE_DIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -152,27 +152,27 @@ class FeatureSize {
     };
     double least = 180;
     for (const Vector& u : ways(f))
-      for (const Vector& v : ways(g)) least = std::min(least, build::angle_between(u, v));
+      for (const Vector& v : ways(g)) least = std::min(least, plc::angle_between(u, v));
     return least;
   }
 
   double angle_at_vertex(const Feature& f, const Feature& g, Index vertex) const {
     const Point p = plc_.points[plc_.vertices[vertex].point];
     double least = 180;
-    for (const build::Sector& s : sectors(f, p))
-      for (const build::Sector& t : sectors(g, p)) {
+    for (const plc::Sector& s : sectors(f, p))
+      for (const plc::Sector& t : sectors(g, p)) {
         const bool ray = f.dimension == 1, other_ray = g.dimension == 1;
-        least = std::min(least, ray && other_ray ? build::angle_between(s.u, t.u)
-                                : ray            ? build::angle_between(s.u, t)
-                                : other_ray      ? build::angle_between(t.u, s)
-                                                 : build::angle_between(s, t));
+        least = std::min(least, ray && other_ray ? plc::angle_between(s.u, t.u)
+                                : ray            ? plc::angle_between(s.u, t)
+                                : other_ray      ? plc::angle_between(t.u, s)
+                                                 : plc::angle_between(s, t));
       }
     return least;
   }
 
   // Between the rays to the other corners of the feature's triangles at a point.
-  static std::vector<build::Sector> sectors(const Feature& f, const Point& p) {
-    std::vector<build::Sector> found;
+  static std::vector<plc::Sector> sectors(const Feature& f, const Point& p) {
+    std::vector<plc::Sector> found;
     for (const auto& t : f.triangles)
       for (std::size_t k = 0; k < 3; ++k)
         if (t[k] == p && t[(k + 1) % 3] != p)

@@ -10,20 +10,21 @@
 #include <string_view>
 
 #include "batch_command.h"
-#include "cad_files.h"
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
 #include "completions.h"
-#include "console.h"
-#include "conversion_report.h"
-#include "file_groups.h"
+#include "files/cad_files.h"
+#include "files/file_groups.h"
+#include "files/surface_files.h"
 #include "help_text.h"
-#include "html_report.h"
-#include "machine.h"
 #include "man_page.h"
 #include "option_values.h"
-#include "options_json.h"
-#include "surface_files.h"
+#include "process/console.h"
+#include "process/machine.h"
+#include "report/conversion_report.h"
+#include "report/html_report.h"
+#include "report/json_text.h"
+#include "report/options_json.h"
 #include "usage_error.h"
 
 namespace collarmesh::cli {
@@ -31,25 +32,25 @@ namespace collarmesh::cli {
 namespace {
 
 std::string known_formats() {
-  return list(surface_formats()) + " or " + list(io::written_tet_mesh_formats());
+  return list(files::surface_formats()) + " or " + list(io::written_tet_mesh_formats());
 }
 
 }  // namespace
 
 std::vector<std::string> all_formats() {
-  std::vector<std::string> formats = surface_formats();
+  std::vector<std::string> formats = files::surface_formats();
   for (auto& more : {io::written_tet_mesh_formats(), io::read_tet_mesh_formats()})
     for (const std::string& format : more)
       if (std::find(formats.begin(), formats.end(), format) == formats.end()) formats.push_back(format);
-  for (const std::string& format : CadFiles::formats()) formats.push_back(format);
+  for (const std::string& format : files::CadFiles::formats()) formats.push_back(format);
   return formats;
 }
 
 namespace {
 
 std::string known_inputs() {
-  std::vector<std::string> formats = surface_formats();
-  for (const std::string& format : CadFiles::formats()) formats.push_back(format);
+  std::vector<std::string> formats = files::surface_formats();
+  for (const std::string& format : files::CadFiles::formats()) formats.push_back(format);
   return list(formats);
 }
 
@@ -79,7 +80,7 @@ CLI::Option* add(CLI::App& app, const Option& option, RunOptions& options) {
 
 /// Adds the options of the table that a command takes.
 void add_options(CLI::App& app, Option::Command command, RunOptions& options) {
-  options.mesh.max_memory = memory_of_the_machine() / 2;
+  options.mesh.max_memory = process::memory_of_the_machine() / 2;
   for (const Option& option : option_table())
     if (option.is_for(command)) add(app, option, options);
 }
@@ -210,9 +211,9 @@ std::vector<std::string> all_inputs(const MeshArguments& a) {
 /// Of a run that writes a mesh, a file beside it.
 void check_second_output(const char* option, const std::string& file, const MeshArguments& a) {
   if (file.empty()) return;
-  if (may_write(a.output, a.output_format, file))
+  if (files::may_write(a.output, a.output_format, file))
     throw CLI::ValidationError(option, "names a file of --output; choose another");
-  const std::string lost = overwritten({file}, all_inputs(a), a.input_format);
+  const std::string lost = files::overwritten({file}, all_inputs(a), a.input_format);
   if (!lost.empty())
     throw CLI::ValidationError(option, fmt::format("would overwrite {}; choose another", lost));
 }
@@ -220,7 +221,7 @@ void check_second_output(const char* option, const std::string& file, const Mesh
 /// No output takes the place of an input, or of another output.
 void check_outputs(const MeshArguments& a) {
   const std::string in_the_way =
-      overwritten(files_written(a.output, a.output_format), all_inputs(a), a.input_format);
+      files::overwritten(files::files_written(a.output, a.output_format), all_inputs(a), a.input_format);
   if (!in_the_way.empty())
     throw CLI::ValidationError(
         "--output",
@@ -228,24 +229,24 @@ void check_outputs(const MeshArguments& a) {
   std::vector<std::string> others;
   for (const std::string& report : a.reports) {
     check_second_output("--report", report, a);
-    if (!overwritten({report}, others, {}).empty())
+    if (!files::overwritten({report}, others, {}).empty())
       throw CLI::ValidationError("--report", fmt::format("names {} twice; choose another", report));
     others.push_back(report);
   }
   check_second_output("--cell-decomposition", a.cell_decomposition, a);
-  if (!a.cell_decomposition.empty() && !overwritten({a.cell_decomposition}, others, {}).empty())
+  if (!a.cell_decomposition.empty() && !files::overwritten({a.cell_decomposition}, others, {}).empty())
     throw CLI::ValidationError("--cell-decomposition", "names the file of --report; choose another");
 }
 
 bool is_among(const std::string& path, const std::string& format, const std::vector<std::string>& formats) {
-  return std::find(formats.begin(), formats.end(), format_of(path, format)) != formats.end();
+  return std::find(formats.begin(), formats.end(), report::format_of(path, format)) != formats.end();
 }
 
 /// Partitions are for formats that keep them. `from_mesh`: one that may be partitioned already.
 void check_partitions(const MeshArguments& a, bool from_mesh) {
   if (a.partitions > 0 && !is_among(a.output, a.output_format, io::formats_with_partitions()))
     throw CLI::ValidationError("--partitions", fmt::format("{} has no place for partitions; use {}",
-                                                           format_of(a.output, a.output_format),
+                                                           report::format_of(a.output, a.output_format),
                                                            list(io::formats_with_partitions())));
   if (!a.cell_decomposition.empty() && !io::is_tet_mesh_format(a.output, a.output_format))
     throw CLI::ValidationError("--cell-decomposition", "is of a mesh, but the output is a surface");
@@ -254,7 +255,7 @@ void check_partitions(const MeshArguments& a, bool from_mesh) {
   if (a.ghost_cells == io::GhostCells::none) return;
   if (!is_among(a.output, a.output_format, io::formats_with_ghost_cells()))
     throw CLI::ValidationError("--ghost-cells", fmt::format("{} has no place for ghost cells; use {}",
-                                                            format_of(a.output, a.output_format),
+                                                            report::format_of(a.output, a.output_format),
                                                             list(io::formats_with_ghost_cells())));
   if (a.partitions == 0 && !from_mesh)
     throw CLI::ValidationError("--ghost-cells", "is of partitions; say how many with --partitions");
@@ -310,7 +311,7 @@ void check_mesh_arguments(const MeshArguments& a) {
                                                        list(io::written_tet_mesh_formats())));
   if (a.order == 2 && is_among(a.output, a.output_format, io::formats_of_first_order()))
     throw CLI::ValidationError("--order", fmt::format("{} has no elements of second order; use --order 1",
-                                                      format_of(a.output, a.output_format)));
+                                                      report::format_of(a.output, a.output_format)));
   check_partitions(a, false);
   check_run_arguments(a);
 }
@@ -323,24 +324,25 @@ void check_standard_input(const MeshArguments& a) {
 }
 
 void check_repair_arguments(const RepairArguments& a) {
-  if (!is_surface_format(a.output, a.output_format))
-    throw CLI::ValidationError("--output", fmt::format("'{}' {}; use {}, or name one with --format", a.output,
-                                                       extension_list(a.output), list(surface_formats())));
+  if (!files::is_surface_format(a.output, a.output_format))
+    throw CLI::ValidationError("--output",
+                               fmt::format("'{}' {}; use {}, or name one with --format", a.output,
+                                           extension_list(a.output), list(files::surface_formats())));
   if (a.output == "-" && a.json)
     throw CLI::ValidationError("--json", "has no place on standard output beside the file; use --report");
-  if (!a.reports.empty() && is_html(a.reports.front()))
+  if (!a.reports.empty() && report::is_html(a.reports.front()))
     throw CLI::ValidationError("--report", "is JSON here; pages (.html) are made of meshes");
   check_standard_input(a);
   check_outputs(a);
 }
 
 void check_convert_arguments(const MeshArguments& a) {
-  if (a.output_format.empty() && !is_surface_format(a.output) && !io::is_tet_mesh_format(a.output))
+  if (a.output_format.empty() && !files::is_surface_format(a.output) && !io::is_tet_mesh_format(a.output))
     throw CLI::ValidationError("--output", fmt::format("'{}' {}; use {}, or name one with --format", a.output,
                                                        extension_list(a.output), known_formats()));
   check_standard_input(a);
   check_partitions(a, io::is_tet_mesh_format(a.inputs.front(), a.input_format));
-  if (a.output == "-" && is_of_several_files(a.output_format))
+  if (a.output == "-" && files::is_of_several_files(a.output_format))
     throw CLI::ValidationError("--format", "is of several files, which standard output cannot take");
   check_run_arguments(a);
 }
@@ -376,7 +378,7 @@ std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
   if (argc == 3 && argv[1] == std::string_view("--generate")) {  // when it is built; not for users
     const std::string_view kind = argv[2];
     fmt::print("{}", kind == "man"       ? man_page(app, COLLARMESH_VERSION, footer)
-                     : kind == "options" ? json_text(option_table_json(), 1) + '\n'
+                     : kind == "options" ? report::json_text(report::option_table_json(), 1) + '\n'
                                          : completion(app, kind));
     return ExitCode::success;
   }
@@ -403,15 +405,15 @@ std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
     if (error.get_exit_code() == 0) {  // --help, --version
       std::ostringstream text, nothing;
       app.exit(error, text, nothing);
-      print_result(text.str());
+      process::print_result(text.str());
       return ExitCode::success;
     }
     const bool subcommand_last =
         !app.get_subcommands().empty() && (!mesh.inputs.empty() || !mesh.output.empty());
-    tell("collarmesh: {}\nRun with --help for more information.\n",
-         subcommand_last ? "a subcommand comes first: collarmesh check MESH ..., info INPUT ..., "
-                           "convert IN ..., repair IN ..., remesh MESH ..."
-                         : usage_message(app, error));
+    process::tell("collarmesh: {}\nRun with --help for more information.\n",
+                  subcommand_last ? "a subcommand comes first: collarmesh check MESH ..., info INPUT ..., "
+                                    "convert IN ..., repair IN ..., remesh MESH ..."
+                                  : usage_message(app, error));
     return ExitCode::usage;
   }
   if (check_command->parsed()) return Arguments(check);

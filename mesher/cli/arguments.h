@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "collarmesh/options.h"
-#include "exit_code.h"
+#include "process/exit_code.h"
+#include "report/report.h"
 
 namespace CLI {
 class App;
@@ -13,10 +14,10 @@ class App;
 
 namespace collarmesh::cli {
 
+using process::ExitCode;
+
 /// `collarmesh INPUT... -o OUT`
-struct MeshArguments : RunOptions {
-  std::vector<std::string> inputs;
-  std::string output;
+struct MeshArguments : report::RequestedRun {
   std::string batch;  ///< a folder: each input is a part of its own, with a mesh there; empty: no batch
   std::string input_format, output_format;  ///< extensions with their dot; empty: those of the files
   bool tell_losses = false;                 ///< say what the output's format has no place for

@@ -15,7 +15,7 @@
 #include <system_error>
 
 #include "collarmesh/error.h"
-#include "console.h"
+#include "process/console.h"
 
 namespace collarmesh::cli {
 
@@ -173,7 +173,7 @@ ExitCode batch_command(const MeshArguments& batch,
   for (const std::string& input : batch.inputs) {
     results.push_back({input, ExitCode::cancelled, {}});
     if (asked_to_stop != 0) continue;
-    if (!batch.quiet) tell("{}:\n", input);
+    if (!batch.quiet) process::tell("{}:\n", input);
     MeshArguments part = part_of_batch(batch, input);
     const fs::path report = folder.file("report.json");
     part.reports.push_back(report.string());
@@ -181,7 +181,7 @@ ExitCode batch_command(const MeshArguments& batch,
     results.back().report = read_report(report);
     fs::remove(report, error);
   }
-  print_result(table_of(results));
+  process::print_result(table_of(results));
   return code_of(results);
 }
 

@@ -2,20 +2,22 @@
 
 #include <fmt/format.h>
 
-#include "check_against.h"
-#include "console.h"
-#include "input_files.h"
-#include "interrupt.h"
-#include "machine.h"
-#include "out_of_memory.h"
-#include "report.h"
+#include "files/check_against.h"
+#include "files/input_files.h"
+#include "interruptible.h"
+#include "process/console.h"
+#include "process/interrupt.h"
+#include "process/machine.h"
+#include "process/out_of_memory.h"
+#include "report/json_text.h"
+#include "report/report.h"
 
 namespace collarmesh::cli {
 
 ExitCode check_command(const CheckArguments& arguments) {
-  set_time_limit(arguments.mesh.time_limit);
-  limit_memory(memory_of_the_machine() / 2);
-  TetMesh mesh = read_mesh(arguments.mesh_path);
+  process::set_time_limit(arguments.mesh.time_limit);
+  process::limit_memory(process::memory_of_the_machine() / 2);
+  TetMesh mesh = files::read_mesh(arguments.mesh_path);
   for (Point& p : mesh.points) p = p / arguments.scale;
   const auto distance = [&](double diagonal) {
     return arguments.mesh.bounds.distance > 0 ? arguments.mesh.bounds.distance
@@ -24,21 +26,21 @@ ExitCode check_command(const CheckArguments& arguments) {
   const auto tolerance = [&](const Plc& plc) {
     return tolerance_of(plc, arguments.mesh.bounds, 0, mesh.order());
   };
-  ComplexInput input(arguments.inputs, interruptible({{},
-                                                      distance,
-                                                      tolerance,
-                                                      arguments.overlap,
-                                                      arguments.mesh.threads,
-                                                      arguments.names,
-                                                      arguments.given_names}));
+  files::ComplexInput input(arguments.inputs, interruptible({{},
+                                                             distance,
+                                                             tolerance,
+                                                             arguments.overlap,
+                                                             arguments.mesh.threads,
+                                                             arguments.names,
+                                                             arguments.given_names}));
   Execution execution;
-  execution.cancel = &interrupt_flag();
-  const CheckReport report = check_against(mesh, input, arguments, execution);
-  stop_if_interrupted();
+  execution.cancel = &process::interrupt_flag();
+  const CheckReport report = files::check_against(mesh, input, arguments, execution);
+  process::stop_if_interrupted();
   if (arguments.json)
-    print_result(json_text(check_json(report), 1) + "\n");
+    process::print_result(report::json_text(report::check_json(report), 1) + "\n");
   else
-    print_result(check_text(report));
+    process::print_result(report::check_text(report));
   return report.passed() ? ExitCode::success : ExitCode::guarantee_missed;
 }
 

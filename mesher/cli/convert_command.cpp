@@ -7,30 +7,32 @@
 #include <numeric>
 #include <optional>
 
-#include "cell_decomposition.h"
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
 #include "collarmesh/partition.h"
 #include "common/thread_limit.h"
-#include "complex_input.h"
-#include "console.h"
-#include "conversion_report.h"
-#include "input_files.h"
-#include "interrupt.h"
+#include "files/cell_decomposition.h"
+#include "files/complex_input.h"
+#include "files/file_groups.h"
+#include "files/input_files.h"
+#include "files/surface_files.h"
+#include "interruptible.h"
 #include "mesh_command.h"
-#include "out_of_memory.h"
-#include "report.h"
+#include "process/console.h"
+#include "process/interrupt.h"
+#include "process/out_of_memory.h"
+#include "process/staged_file.h"
+#include "report/conversion_report.h"
+#include "report/report.h"
+#include "report/soup_output.h"
 #include "scale.h"
-#include "soup_output.h"
-#include "staged_file.h"
-#include "surface_files.h"
 
 namespace collarmesh::cli {
 
 namespace {
 
 void tell_unless_quiet(const MeshArguments& a, const std::string& text) {
-  if (!a.quiet) tell_text(text);
+  if (!a.quiet) process::tell_text(text);
 }
 
 void scale_soup(PolygonSoup& soup, double factor) {
@@ -45,12 +47,12 @@ void scale_soup(PolygonSoup& soup, double factor) {
 }
 
 void write_soup(const MeshArguments& a, const std::vector<PolygonSoup>& soups) {
-  MergedSoup merged = merge_for_output(soups, a.output, a.output_format, a.complex);
+  report::MergedSoup merged = report::merge_for_output(soups, a.output, a.output_format, a.complex);
   scale_soup(merged.soup, a.scale);
-  stop_if_interrupted();
-  StagedFile file(a.output);
-  file.write([&](const std::string& path) { write_surface(path, merged.soup, a.output_format); });
-  StagedFile::commit({&file});
+  process::stop_if_interrupted();
+  process::StagedFile file(a.output);
+  file.write([&](const std::string& path) { files::write_surface(path, merged.soup, a.output_format); });
+  process::StagedFile::commit({&file});
   tell_unless_quiet(a, merged.told);
 }
 
@@ -88,55 +90,58 @@ void convert_mesh(const MeshArguments& a, TetMesh& mesh) {
   if (a.inputs.size() > 1)
     throw OptionError(
         fmt::format("{} is a mesh, of which one at a time is converted; name it alone", a.inputs.front()));
-  if (is_surface_format(a.output, a.output_format)) {
+  if (files::is_surface_format(a.output, a.output_format)) {
     write_soup(a, {surface_of(mesh, a.inputs.front())});
     return;
   }
   scale(mesh.points, a.scale);
   divide(a, mesh);
-  stop_if_interrupted();
-  StagedFile file(a.output);
+  process::stop_if_interrupted();
+  process::StagedFile file(a.output);
   file.write([&](const std::string& path) {
     ThreadLimit(a.mesh.threads).run([&] { io::write_tet_mesh(path, mesh, a.output_format, a.ghost_cells); });
   });
-  std::optional<StagedFile> decomposition;
+  std::optional<process::StagedFile> decomposition;
   if (!a.cell_decomposition.empty()) {
     decomposition.emplace(a.cell_decomposition);
-    decomposition->write([&](const std::string& path) { write_cell_decomposition(path, mesh); });
+    decomposition->write([&](const std::string& path) { files::write_cell_decomposition(path, mesh); });
   }
-  StagedFile::commit({&file, decomposition ? &*decomposition : nullptr});
-  tell_unless_quiet(a, tet_mesh_text(a.output, mesh) + partitions_text(measure_partitions(mesh)));
-  tell_unless_quiet(a, losses_text(lost_by(format_of(a.output, a.output_format), mesh)));
+  process::StagedFile::commit({&file, decomposition ? &*decomposition : nullptr});
+  tell_unless_quiet(
+      a, report::tet_mesh_text(a.output, mesh) + report::partitions_text(measure_partitions(mesh)));
+  tell_unless_quiet(a,
+                    report::losses_text(report::lost_by(report::format_of(a.output, a.output_format), mesh)));
 }
 
 /// The soups become those of a complex that encloses something; unless it can be one, PlcError is thrown.
-void repair(const MeshArguments& a, ComplexInput& input) {
+void repair(const MeshArguments& a, files::ComplexInput& input) {
   const Plc plc = input.build(a.complex, a.repair);
-  tell("{}{}", warnings_text(plc), repair_text(input.repaired(), a.quiet));
+  process::tell("{}{}", report::warnings_text(plc), report::repair_text(input.repaired(), a.quiet));
 }
 
 }  // namespace
 
 ExitCode convert_command(const ConvertArguments& a) {
-  set_time_limit(a.mesh.time_limit);
-  limit_memory(a.mesh.max_memory);
-  require_writable(a.output, a.output_format);
-  if (!a.cell_decomposition.empty()) require_writable(a.cell_decomposition);
-  const bool to_surface = is_surface_format(a.output, a.output_format);
-  std::optional<TetMesh> mesh = read_mesh_if_there(a.inputs.front(), a.input_format);
+  process::set_time_limit(a.mesh.time_limit);
+  process::limit_memory(a.mesh.max_memory);
+  process::require_writable(a.output, files::files_written(a.output, a.output_format));
+  if (!a.cell_decomposition.empty()) process::require_writable(a.cell_decomposition);
+  const bool to_surface = files::is_surface_format(a.output, a.output_format);
+  std::optional<TetMesh> mesh = files::read_mesh_if_there(a.inputs.front(), a.input_format);
   const bool from_mesh = mesh.has_value();
   if ((to_surface || from_mesh) && !a.meshing_options.empty())
-    tell("warning: {}: no effect, since nothing is meshed here.\n", fmt::join(a.meshing_options, " "));
+    process::tell("warning: {}: no effect, since nothing is meshed here.\n",
+                  fmt::join(a.meshing_options, " "));
   if (from_mesh) {
     convert_mesh(a, *mesh);
     return ExitCode::success;
   }
   if (!to_surface) return mesh_command(a);
-  ComplexInput input(a.inputs, interruptible({.format = a.input_format,
-                                              .overlap = a.overlap,
-                                              .threads = a.mesh.threads,
-                                              .names = a.names,
-                                              .given_names = a.given_names}));
+  files::ComplexInput input(a.inputs, interruptible({.format = a.input_format,
+                                                     .overlap = a.overlap,
+                                                     .threads = a.mesh.threads,
+                                                     .names = a.names,
+                                                     .given_names = a.given_names}));
   if (a.repairs) repair(a, input);
   write_soup(a, input.soups());
   return ExitCode::success;

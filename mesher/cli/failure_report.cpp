@@ -13,11 +13,12 @@
 #include <variant>
 #include <vector>
 
-#include "console.h"
-#include "html_report.h"
-#include "interrupt.h"
 #include "io/file_writer.h"
-#include "options_json.h"
+#include "process/failure.h"
+#include "process/interrupt.h"
+#include "report/html_report.h"
+#include "report/json_text.h"
+#include "report/options_json.h"
 
 namespace collarmesh::cli {
 
@@ -53,7 +54,7 @@ const char* status_of(ExitCode code) {
 }
 
 Json failure_json(ExitCode code, std::string_view message, const PlcError* error) {
-  const StageReached reached = stage_reached();
+  const process::StageReached reached = process::stage_reached();
   Json json = command.json;
   json["status"] = status_of(code);
   json["exit_code"] = static_cast<int>(code);
@@ -88,9 +89,9 @@ std::string failure_page(const Json& json) {
       "<h1>{}</h1>\n<p><strong>No mesh was written</strong> ({}, exit code {}, in the stage "
       "{}).</p>\n<p>{}</p>\n"
       "<pre>{}</pre>\n</body></html>\n",
-      escaped(json_text(json["inputs"])), json["status"].get<std::string>(), json["exit_code"].get<int>(),
-      escaped(json["stage"].get<std::string>()), escaped(json["message"].get<std::string>()),
-      escaped(json_text(json, 1)));
+      escaped(report::json_text(json["inputs"])), json["status"].get<std::string>(),
+      json["exit_code"].get<int>(), escaped(json["stage"].get<std::string>()),
+      escaped(json["message"].get<std::string>()), escaped(report::json_text(json, 1)));
 }
 
 /// What a link names is replaced, but nothing that is no regular file: that may be why the command failed.
@@ -100,7 +101,7 @@ void write(const std::string& path, const Json& json) {
   const fs::path place = fs::is_symlink(path, error) ? fs::weakly_canonical(path) : fs::path(path);
   if (fs::exists(fs::symlink_status(place)) && !fs::is_regular_file(place)) return;
   io::FileWriter file(place.string());
-  file << (is_html(path) ? failure_page(json) : json_text(json, 1) + '\n');
+  file << (report::is_html(path) ? failure_page(json) : report::json_text(json, 1) + '\n');
   file.commit();
 }
 
@@ -115,11 +116,12 @@ void report_failures_of(const Arguments& arguments) {
                       {"version", COLLARMESH_VERSION},
                       {"inputs", a.inputs},
                       {"output", a.output},
-                      {"options", options_json(a)}},
+                      {"options", report::options_json(a)}},
                      Clock::now()};
       },
       arguments);
   reported.store(command.reports.empty());
+  process::on_failure([](ExitCode code, std::string_view message) { report_failure(code, message); });
 }
 
 void report_failure(ExitCode code, std::string_view message, const PlcError* faults) noexcept {

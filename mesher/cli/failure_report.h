@@ -4,7 +4,7 @@
 
 #include "arguments.h"
 #include "collarmesh/error.h"
-#include "exit_code.h"
+#include "process/exit_code.h"
 
 namespace collarmesh::cli {
 

@@ -7,22 +7,26 @@
 #include <fstream>
 #include <optional>
 
-#include "cell_decomposition.h"
 #include "collarmesh/error.h"
 #include "collarmesh/io/interfaces_io.h"
 #include "collarmesh/partition.h"
 #include "common/thread_limit.h"
-#include "complex_input.h"
-#include "console.h"
-#include "conversion_report.h"
-#include "html_report.h"
-#include "interrupt.h"
+#include "files/cell_decomposition.h"
+#include "files/complex_input.h"
+#include "files/file_groups.h"
+#include "interruptible.h"
 #include "option_warnings.h"
-#include "out_of_memory.h"
-#include "report.h"
+#include "process/console.h"
+#include "process/interrupt.h"
+#include "process/out_of_memory.h"
+#include "process/staged_file.h"
+#include "process/supervisor.h"
+#include "progress_display.h"
+#include "report/conversion_report.h"
+#include "report/html_report.h"
+#include "report/json_text.h"
+#include "report/report.h"
 #include "scale.h"
-#include "staged_file.h"
-#include "supervisor.h"
 
 namespace collarmesh::cli {
 
@@ -39,7 +43,7 @@ PipelineOptions pipeline_options(const MeshArguments& a) {
 void note_where_it_stopped(const MeshResult& result) {
   const MeshStatistics& reached = result.statistics;
   const Point& p = result.where;
-  note_stage(
+  process::note_stage(
       {"refine", reached.vertices_inserted, reached.cells},
       fmt::format(
           "stage: refine, {} vertices, {} cells, {:.1f} MB; the last vertex is ({:.9g}, {:.9g}, {:.9g})",
@@ -64,7 +68,7 @@ std::string each_line_of(const std::string& file, const std::string& text) {
 class InputSource : public ComplexSource {
  public:
   /// All are kept by reference.
-  InputSource(const MeshArguments& arguments, ComplexInput& input, Stages& stages)
+  InputSource(const MeshArguments& arguments, files::ComplexInput& input, Stages& stages)
       : arguments_(arguments), input_(input), stages_(stages) {}
 
   RepairedPlc build(const RepairOptions& repair, const Execution&) override {
@@ -76,7 +80,8 @@ class InputSource : public ComplexSource {
           repair.tolerance));
     RepairedPlc built{input_.build(arguments_.complex, repair), input_.repaired(), {}};
     built_with_ = repair;
-    const std::string told = warnings_text(built.plc) + repair_text(built.report, arguments_.quiet);
+    const std::string told =
+        report::warnings_text(built.plc) + report::repair_text(built.report, arguments_.quiet);
     stages_.print(arguments_.quiet ? each_line_of(arguments_.inputs.front(), told) : told);
     return built;
   }
@@ -113,7 +118,7 @@ class InputSource : public ComplexSource {
 
  private:
   const MeshArguments& arguments_;
-  ComplexInput& input_;
+  files::ComplexInput& input_;
   Stages& stages_;
   RepairOptions built_with_;
   std::string told_of_options_;                   // once, however many meshes are tried
@@ -121,10 +126,11 @@ class InputSource : public ComplexSource {
 };
 
 /// Returns how the complex was repaired.
-RepairOptions mesh(const MeshArguments& arguments, ComplexInput& input, Stages& stages, MeshRun& run) {
+RepairOptions mesh(const MeshArguments& arguments, files::ComplexInput& input, Stages& stages,
+                   report::MeshRun& run) {
   Execution execution;
-  execution.cancel = &interrupt_flag();
-  std::optional<CadWork> projecting;
+  execution.cancel = &process::interrupt_flag();
+  std::optional<process::CadWork> projecting;
   execution.progress = [&](const ProgressReport& report) {
     if (!input.has_cad() || (report.phase != "project" && report.phase != "second order"))
       projecting.reset();
@@ -137,11 +143,11 @@ RepairOptions mesh(const MeshArguments& arguments, ComplexInput& input, Stages& 
   static_cast<SoupPipelineResult&>(run) = run_pipeline(source, pipeline_options(arguments), execution);
   if (run.result.status == MeshStatus::cancelled) {
     if (run.times.stages().back().first == "refine") note_where_it_stopped(run.result);
-    stop_if_interrupted();
+    process::stop_if_interrupted();
   }
   if (run.result.status == MeshStatus::budget_hit) {
     note_where_it_stopped(run.result);
-    throw Stopped(ExitCode::budget_hit, run.result.message + "; nothing was written");
+    throw process::Stopped(ExitCode::budget_hit, run.result.message + "; nothing was written");
   }
   if (input.has_cad()) run.result.mesh.group_names = GroupNames::cad;
   run.notes = input.notes();
@@ -160,23 +166,23 @@ ProgressStyle progress_of(const MeshArguments& arguments) {
 }
 
 /// `shown`: for pages.
-void write_report(const std::string& path, const MeshArguments& arguments, const MeshRun& run,
-                  const std::optional<ShownMesh>& shown) {
+void write_report(const std::string& path, const MeshArguments& arguments, const report::MeshRun& run,
+                  const std::optional<report::ShownMesh>& shown) {
   std::ofstream file(path);
-  const nlohmann::ordered_json report = run_json(arguments, run);
-  file << (is_html(path) ? html_report(report, *shown) : json_text(report, 1) + '\n');
+  const nlohmann::ordered_json report = report::run_json(arguments, run);
+  file << (report::is_html(path) ? report::html_report(report, *shown) : report::json_text(report, 1) + '\n');
   file.close();
   if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path));
 }
 
-void write_files(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
+void write_files(const MeshArguments& arguments, Stages& stages, report::MeshRun& run) {
   stages.begin("write", 0.93, 1, run.result.mesh.tets.size());
-  if (!arguments.reports.empty()) run.worst = worst_tets(run.result.mesh, run.check.measures);
-  std::optional<ShownMesh> shown;  // reports are in the input's unit
-  if (std::any_of(arguments.reports.begin(), arguments.reports.end(), is_html))
-    shown = shown_mesh(run.result.mesh, run.worst);
+  if (!arguments.reports.empty()) run.worst = report::worst_tets(run.result.mesh, run.check.measures);
+  std::optional<report::ShownMesh> shown;  // reports are in the input's unit
+  if (std::any_of(arguments.reports.begin(), arguments.reports.end(), report::is_html))
+    shown = report::shown_mesh(run.result.mesh, run.worst);
   scale(run.result.mesh.points, arguments.scale);
-  StagedFile mesh(arguments.output);
+  process::StagedFile mesh(arguments.output);
   mesh.write([&](const std::string& path) {
     ThreadLimit(arguments.mesh.threads).run([&] {
       io::write_tet_mesh(path, run.result.mesh, run.split ? run.split->interfaces : Interfaces(),
@@ -184,47 +190,49 @@ void write_files(const MeshArguments& arguments, Stages& stages, MeshRun& run) {
     });
   });
   run.times.end();
-  std::vector<StagedFile*> files{&mesh};
-  std::deque<StagedFile> reports;
+  std::vector<process::StagedFile*> files{&mesh};
+  std::deque<process::StagedFile> reports;
   for (const std::string& target : arguments.reports) {
     reports.emplace_back(target).write(
         [&](const std::string& path) { write_report(path, arguments, run, shown); });
     files.push_back(&reports.back());
   }
-  std::optional<StagedFile> decomposition;
+  std::optional<process::StagedFile> decomposition;
   if (!arguments.cell_decomposition.empty()) {
     decomposition.emplace(arguments.cell_decomposition);
-    decomposition->write([&](const std::string& path) { write_cell_decomposition(path, run.result.mesh); });
+    decomposition->write(
+        [&](const std::string& path) { files::write_cell_decomposition(path, run.result.mesh); });
     files.push_back(&*decomposition);
   }
-  StagedFile::commit(files);
+  process::StagedFile::commit(files);
 }
 
 }  // namespace
 
-void tell_of(const MeshArguments& arguments, const MeshRun& run) {
+void tell_of(const MeshArguments& arguments, const report::MeshRun& run) {
   if (run.result.status == MeshStatus::guarantee_missed)
-    tell("collarmesh: {}a guarantee is missed: {}\n", arguments.quiet ? arguments.output + ": " : "",
-         run.result.message);
+    process::tell("collarmesh: {}a guarantee is missed: {}\n", arguments.quiet ? arguments.output + ": " : "",
+                  run.result.message);
   constexpr std::size_t most = 10;
   const std::size_t findings = arguments.verbose ? run.check.findings.size() : most,
                     straightened = arguments.verbose ? run.second_order.straightened.size() : most;
   const std::string wrong =
-      findings_text(run.check, findings) + straightened_text(run.second_order, straightened);
-  tell("{}", arguments.quiet ? each_line_of(arguments.output, wrong) : wrong);
+      report::findings_text(run.check, findings) + report::straightened_text(run.second_order, straightened);
+  process::tell("{}", arguments.quiet ? each_line_of(arguments.output, wrong) : wrong);
   if (arguments.quiet) return;
-  for (const std::string& warning : run.check.warnings) tell("warning: {}\n", warning);
-  tell("{}", run_text(arguments, run));
+  for (const std::string& warning : run.check.warnings) process::tell("warning: {}\n", warning);
+  process::tell("{}", report::run_text(arguments, run));
   if (arguments.tell_losses)
-    tell("{}", losses_text(lost_by(format_of(arguments.output, arguments.output_format), run.result.mesh)));
+    process::tell("{}", report::losses_text(report::lost_by(
+                            report::format_of(arguments.output, arguments.output_format), run.result.mesh)));
 }
 
-std::unique_ptr<ComplexInput> read_inputs(const MeshArguments& arguments) {
+std::unique_ptr<files::ComplexInput> read_inputs(const MeshArguments& arguments) {
   const auto distance = [&](double diagonal) { return distance_of(arguments, diagonal); };
   const auto tolerance = [&](const Plc& plc) {
     return tolerance_of(plc, arguments.mesh.bounds, arguments.mesh.size, static_cast<int>(arguments.order));
   };
-  return std::make_unique<ComplexInput>(
+  return std::make_unique<files::ComplexInput>(
       arguments.inputs, interruptible({arguments.input_format, distance, tolerance, arguments.overlap,
                                        arguments.mesh.threads, arguments.names, arguments.given_names}));
 }
@@ -238,15 +246,17 @@ MadeMesh make_mesh(const MeshArguments& arguments) {
   return made;
 }
 
-ExitCode make_and_write(const MeshArguments& arguments, const std::function<void(Stages&, MeshRun&)>& make) {
-  set_time_limit(arguments.mesh.time_limit);
-  limit_memory(arguments.mesh.max_memory);
-  require_writable(arguments.output, arguments.output_format);
+ExitCode make_and_write(const MeshArguments& arguments,
+                        const std::function<void(Stages&, report::MeshRun&)>& make) {
+  process::set_time_limit(arguments.mesh.time_limit);
+  process::limit_memory(arguments.mesh.max_memory);
+  process::require_writable(arguments.output,
+                            files::files_written(arguments.output, arguments.output_format));
   io::require_place_for_interfaces(arguments.output, arguments.split, arguments.output_format);
-  for (const std::string& report : arguments.reports) require_writable(report);
-  if (!arguments.cell_decomposition.empty()) require_writable(arguments.cell_decomposition);
+  for (const std::string& report : arguments.reports) process::require_writable(report);
+  if (!arguments.cell_decomposition.empty()) process::require_writable(arguments.cell_decomposition);
   if (arguments.partitions > 0) require_partitioner();  // before long work
-  MeshRun run;
+  report::MeshRun run;
   {
     Stages stages(progress_of(arguments), run.times);
     stages.begin("read", 0, 0.02);
@@ -258,8 +268,8 @@ ExitCode make_and_write(const MeshArguments& arguments, const std::function<void
 }
 
 ExitCode mesh_command(const MeshArguments& arguments) {
-  return make_and_write(arguments, [&](Stages& stages, MeshRun& run) {
-    const std::unique_ptr<ComplexInput> input = read_inputs(arguments);
+  return make_and_write(arguments, [&](Stages& stages, report::MeshRun& run) {
+    const std::unique_ptr<files::ComplexInput> input = read_inputs(arguments);
     mesh(arguments, *input, stages, run);
   });
 }

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "arguments.h"
-#include "complex_input.h"
-#include "report.h"
+#include "files/complex_input.h"
+#include "report/report.h"
 #include "stages.h"
 
 namespace collarmesh::cli {
@@ -15,12 +15,13 @@ ExitCode mesh_command(const MeshArguments& arguments);
 
 /// Has a mesh made and written, with reports, and says what it is like: what all commands have in common that
 /// make one.
-ExitCode make_and_write(const MeshArguments& arguments, const std::function<void(Stages&, MeshRun&)>& make);
+ExitCode make_and_write(const MeshArguments& arguments,
+                        const std::function<void(Stages&, report::MeshRun&)>& make);
 
 /// A mesh in memory, for programs that go on with it.
 struct MadeMesh {
-  std::unique_ptr<ComplexInput> input;  ///< has the complex of the run, and its exact geometry
-  MeshRun run;
+  std::unique_ptr<files::ComplexInput> input;  ///< has the complex of the run, and its exact geometry
+  report::MeshRun run;
   RepairOptions repair;  ///< with these that complex was built
 };
 
@@ -28,9 +29,9 @@ struct MadeMesh {
 MadeMesh make_mesh(const MeshArguments& arguments);
 
 /// The files of the input as `make_mesh` reads them.
-std::unique_ptr<ComplexInput> read_inputs(const MeshArguments& arguments);
+std::unique_ptr<files::ComplexInput> read_inputs(const MeshArguments& arguments);
 
 /// On standard error: what is wrong with a mesh, then, unless it is to be quiet, what it is like.
-void tell_of(const MeshArguments& arguments, const MeshRun& run);
+void tell_of(const MeshArguments& arguments, const report::MeshRun& run);
 
 }  // namespace collarmesh::cli

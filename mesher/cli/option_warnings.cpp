@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "conversion_report.h"
+#include "report/conversion_report.h"
 
 namespace collarmesh::cli {
 
@@ -67,10 +67,11 @@ std::vector<std::string> option_warnings(const MeshArguments& a, const Plc& plc)
                     "{:.6g} from where they were, and the mesh follows the merged ones; a curved face "
                     "stays one without it.",
                     a.complex.planar_tolerance, plc.largest_deviation));
-  if (!(a.names.empty() && a.given_names.empty()) && !keeps_names(format_of(a.output, a.output_format)))
+  if (!(a.names.empty() && a.given_names.empty()) &&
+      !report::keeps_names(report::format_of(a.output, a.output_format)))
     warnings.push_back(fmt::format("{}: {} has no place for names; numbers are kept.",
                                    a.names.empty() ? "--name" : "--names",
-                                   format_of(a.output, a.output_format)));
+                                   report::format_of(a.output, a.output_format)));
   return warnings;
 }
 

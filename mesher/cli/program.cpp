@@ -10,19 +10,19 @@
 
 #include "arguments.h"
 #include "batch_command.h"
-#include "cad_files.h"
 #include "check_command.h"
 #include "collarmesh/error.h"
-#include "console.h"
 #include "convert_command.h"
 #include "failure_report.h"
+#include "files/cad_files.h"
 #include "info_command.h"
-#include "interrupt.h"
 #include "mesh_command.h"
-#include "out_of_memory.h"
+#include "process/console.h"
+#include "process/interrupt.h"
+#include "process/out_of_memory.h"
+#include "process/supervisor.h"
 #include "remesh_command.h"
 #include "repair_command.h"
-#include "supervisor.h"
 
 namespace collarmesh::cli {
 
@@ -45,7 +45,7 @@ bool reads_cad(const Arguments& arguments) {
       [](const auto& a) {
         const auto any = [](const auto& inputs, const std::string& format) {
           return std::any_of(inputs.begin(), inputs.end(),
-                             [&](const std::string& path) { return CadFiles::knows(path, format); });
+                             [&](const std::string& path) { return files::CadFiles::knows(path, format); });
         };
         if constexpr (requires { a.input_format; })
           return any(a.inputs, a.input_format);
@@ -56,7 +56,7 @@ bool reads_cad(const Arguments& arguments) {
 }
 
 ExitCode fail(ExitCode code, const std::string& message, const PlcError* faults = nullptr) {
-  tell("collarmesh: {}\n", message);
+  process::tell("collarmesh: {}\n", message);
   report_failure(code, message, faults);
   return code;
 }
@@ -66,18 +66,20 @@ ExitCode fail(const PlcError& error) {
   fail(ExitCode::invalid_complex, error.what(), &error);
   const std::string_view said = error.what();
   for (std::size_t k = 0; k < std::min(error.faults.size(), listed); ++k)
-    if (said.find(error.faults[k].message) == std::string_view::npos) tell("  {}\n", error.faults[k].message);
-  if (error.faults.size() > listed) tell("  ... and {} more\n", error.faults.size() - listed);
+    if (said.find(error.faults[k].message) == std::string_view::npos)
+      process::tell("  {}\n", error.faults[k].message);
+  if (error.faults.size() > listed) process::tell("  ... and {} more\n", error.faults.size() - listed);
   return ExitCode::invalid_complex;
 }
 
 ExitCode execute(const Arguments& arguments) {
   report_failures_of(arguments);
   const auto command = [&] {
-    install_interrupt_handlers();
-    return run_interruptible([&] { return guarded([&] { return std::visit(Execute(), arguments); }); });
+    process::install_interrupt_handlers();
+    return process::run_interruptible(
+        [&] { return guarded([&] { return std::visit(Execute(), arguments); }); });
   };
-  return reads_cad(arguments) ? run_supervised(command) : command();
+  return reads_cad(arguments) ? process::run_supervised(command) : command();
 }
 
 }  // namespace
@@ -93,7 +95,7 @@ ExitCode guarded(const std::function<ExitCode()>& command) {
     return fail(error);
   } catch (const WriteError& error) {
     return fail(ExitCode::cannot_write, error.what());
-  } catch (const Stopped& stopped) {
+  } catch (const process::Stopped& stopped) {
     return fail(stopped.code, stopped.what());
   } catch (const std::bad_alloc&) {
     return fail(
@@ -112,8 +114,8 @@ ExitCode guarded(const std::function<ExitCode()>& command) {
 }
 
 int run(int argc, const char* const* argv) {
-  replace_closed_streams();
-  end_when_memory_is_used_up();
+  process::replace_closed_streams();
+  process::end_when_memory_is_used_up();
   return static_cast<int>(guarded([&] {
     const std::variant<Arguments, ExitCode> parsed = parse(argc, argv);
     if (const ExitCode* code = std::get_if<ExitCode>(&parsed)) return *code;

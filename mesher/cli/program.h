@@ -2,9 +2,11 @@
 
 #include <functional>
 
-#include "exit_code.h"
+#include "process/exit_code.h"
 
 namespace collarmesh::cli {
+
+using process::ExitCode;
 
 /// The whole program; returns its exit code (exit_code.h).
 int run(int argc, const char* const* argv);

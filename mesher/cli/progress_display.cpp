@@ -1,5 +1,6 @@
 #include "progress_display.h"
-#include "console.h"
+#include "process/console.h"
+#include "report/json_text.h"
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
@@ -80,7 +81,7 @@ void ProgressDisplay::begin_stage(std::string phase, double begin, double end) {
 void ProgressDisplay::print(const std::string& text) {
   if (text.empty()) return;
   const std::lock_guard lock(mutex_);
-  tell("{}{}", form_ == Form::bar ? "\r\033[K" : "", text);
+  process::tell("{}{}", form_ == Form::bar ? "\r\033[K" : "", text);
 }
 
 void ProgressDisplay::update(const ProgressReport& report) {
@@ -101,18 +102,18 @@ void ProgressDisplay::print_json() {
                                     {"vertices", vertices_},
                                     {"tets", tets_},
                                     {"seconds", json_printed_}};
-  tell("{}\n", json_text(line));
+  process::tell("{}\n", report::json_text(line));
 }
 
 void ProgressDisplay::redraw() {
   if (phase_.empty()) return;
-  tell("\r{}\033[K", progress_line(phase_, fraction_, tets_, seconds(), terminal_width() - 1));
+  process::tell("\r{}\033[K", progress_line(phase_, fraction_, tets_, seconds(), terminal_width() - 1));
 }
 
 void ProgressDisplay::keep_drawing() {
   std::unique_lock lock(mutex_);
   while (!wake_.wait_for(lock, std::chrono::milliseconds(150), [this] { return finished_; })) redraw();
-  tell("\r\033[K");
+  process::tell("\r\033[K");
 }
 
 }  // namespace collarmesh::cli

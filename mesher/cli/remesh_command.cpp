@@ -4,10 +4,10 @@
 
 #include "collarmesh/error.h"
 #include "collarmesh/remesh.h"
-#include "input_files.h"
-#include "interrupt.h"
+#include "files/input_files.h"
 #include "mesh_command.h"
-#include "out_of_memory.h"
+#include "process/interrupt.h"
+#include "process/out_of_memory.h"
 
 namespace collarmesh::cli {
 
@@ -18,12 +18,12 @@ void adapt(const RemeshArguments& arguments, const Plc& plc, PipelineOptions& op
     options.mesh.size_field = read_size_field(arguments.size_field_file, plc);
 }
 
-void remesh_file(const RemeshArguments& arguments, Stages& stages, MeshRun& run) {
-  const TetMesh mesh = read_mesh(arguments.inputs.front(), arguments.input_format);
+void remesh_file(const RemeshArguments& arguments, Stages& stages, report::MeshRun& run) {
+  const TetMesh mesh = files::read_mesh(arguments.inputs.front(), arguments.input_format);
   PipelineOptions options = arguments;
   options.mesh.time_limit = 0;  // one limit for everything, from reading to writing: the interrupt flag
   Execution execution;
-  execution.cancel = &interrupt_flag();
+  execution.cancel = &process::interrupt_flag();
   execution.progress = [&](const ProgressReport& report) {
     stages.update(report);
     return true;
@@ -32,9 +32,9 @@ void remesh_file(const RemeshArguments& arguments, Stages& stages, MeshRun& run)
       mesh, options, [&](const Plc& plc, PipelineOptions& o) { adapt(arguments, plc, o); }, execution);
   run.remeshing = made.remeshing;
   static_cast<SoupPipelineResult&>(run) = std::move(made);
-  if (run.result.status == MeshStatus::cancelled) stop_if_interrupted();
+  if (run.result.status == MeshStatus::cancelled) process::stop_if_interrupted();
   if (run.result.status == MeshStatus::budget_hit)
-    throw Stopped(ExitCode::budget_hit, run.result.message + "; nothing was written");
+    throw process::Stopped(process::ExitCode::budget_hit, run.result.message + "; nothing was written");
   run.summary = summarize(run.plc, arguments.mesh.bounds.crease_angle);
 }
 
@@ -42,7 +42,7 @@ void remesh_file(const RemeshArguments& arguments, Stages& stages, MeshRun& run)
 
 ExitCode remesh_command(const RemeshArguments& arguments) {
   return make_and_write(arguments,
-                        [&](Stages& stages, MeshRun& run) { remesh_file(arguments, stages, run); });
+                        [&](Stages& stages, report::MeshRun& run) { remesh_file(arguments, stages, run); });
 }
 
 }  // namespace collarmesh::cli

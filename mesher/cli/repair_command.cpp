@@ -6,15 +6,18 @@
 #include <optional>
 
 #include "collarmesh/error.h"
-#include "complex_input.h"
-#include "console.h"
-#include "interrupt.h"
-#include "machine.h"
-#include "out_of_memory.h"
-#include "report.h"
-#include "soup_output.h"
-#include "staged_file.h"
-#include "surface_files.h"
+#include "files/complex_input.h"
+#include "files/file_groups.h"
+#include "files/surface_files.h"
+#include "interruptible.h"
+#include "process/console.h"
+#include "process/interrupt.h"
+#include "process/machine.h"
+#include "process/out_of_memory.h"
+#include "process/staged_file.h"
+#include "report/json_text.h"
+#include "report/report.h"
+#include "report/soup_output.h"
 
 namespace collarmesh::cli {
 
@@ -23,7 +26,7 @@ namespace {
 /// What a file says when it is read again: coordinates may have lost digits, and interfaces their regions.
 std::string read_again(const std::string& path, const RepairArguments& a) {
   try {
-    const PolygonSoup soups[] = {read_surface(path, a.output_format)};
+    const PolygonSoup soups[] = {files::read_surface(path, a.output_format)};
     build_plc(soups, a.complex);
   } catch (const PlcError& error) {
     return fmt::format(
@@ -36,48 +39,49 @@ std::string read_again(const std::string& path, const RepairArguments& a) {
 
 void write_report(const std::string& path, const nlohmann::ordered_json& report) {
   std::ofstream file(path);
-  file << json_text(report, 1) << '\n';
+  file << report::json_text(report, 1) << '\n';
   file.close();
   if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path));
 }
 
 std::string repairs_text(const RepairReport& report, const RepairArguments& a) {
-  if (report.repaired || a.quiet) return repair_text(report, a.quiet);
+  if (report.repaired || a.quiet) return report::repair_text(report, a.quiet);
   return "valid: nothing had to be repaired, the input is written as it is\n";
 }
 
 }  // namespace
 
 ExitCode repair_command(const RepairArguments& a) {
-  set_time_limit(a.mesh.time_limit);
-  limit_memory(memory_of_the_machine() / 2);
-  require_writable(a.output, a.output_format);
-  for (const std::string& report : a.reports) require_writable(report);
-  ComplexInput input(a.inputs, interruptible({.format = a.input_format,
-                                              .overlap = a.overlap,
-                                              .threads = a.mesh.threads,
-                                              .names = a.names,
-                                              .given_names = a.given_names}));
+  process::set_time_limit(a.mesh.time_limit);
+  process::limit_memory(process::memory_of_the_machine() / 2);
+  process::require_writable(a.output, files::files_written(a.output, a.output_format));
+  for (const std::string& report : a.reports) process::require_writable(report);
+  files::ComplexInput input(a.inputs, interruptible({.format = a.input_format,
+                                                     .overlap = a.overlap,
+                                                     .threads = a.mesh.threads,
+                                                     .names = a.names,
+                                                     .given_names = a.given_names}));
   const Plc plc = input.build(a.complex, a.repair);
-  stop_if_interrupted();
+  process::stop_if_interrupted();
   const nlohmann::ordered_json told =
-      repair_run_json(a, plc, summarize(plc, a.mesh.bounds.crease_angle), input.repaired());
-  const MergedSoup merged = merge_for_output(input.soups(), a.output, a.output_format, a.complex);
+      report::repair_run_json(a, plc, summarize(plc, a.mesh.bounds.crease_angle), input.repaired());
+  const report::MergedSoup merged =
+      report::merge_for_output(input.soups(), a.output, a.output_format, a.complex);
   std::string warning;
-  StagedFile surface(a.output);
+  process::StagedFile surface(a.output);
   surface.write([&](const std::string& path) {
-    write_surface(path, merged.soup, a.output_format);
+    files::write_surface(path, merged.soup, a.output_format);
     warning = read_again(path, a);
   });
-  std::optional<StagedFile> report;
+  std::optional<process::StagedFile> report;
   if (!a.reports.empty()) {
     report.emplace(a.reports.front());
     report->write([&](const std::string& path) { write_report(path, told); });
   }
-  StagedFile::commit({&surface, report ? &*report : nullptr});
-  tell("{}{}{}{}", warnings_text(plc), repairs_text(input.repaired(), a), a.quiet ? "" : merged.told,
-       warning);
-  if (a.json) print_result(json_text(told, 1) + "\n");
+  process::StagedFile::commit({&surface, report ? &*report : nullptr});
+  process::tell("{}{}{}{}", report::warnings_text(plc), repairs_text(input.repaired(), a),
+                a.quiet ? "" : merged.told, warning);
+  if (a.json) process::print_result(report::json_text(told, 1) + "\n");
   return ExitCode::success;
 }
 

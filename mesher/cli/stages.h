@@ -3,20 +3,20 @@
 #include <string>
 
 #include "collarmesh/progress.h"
-#include "interrupt.h"
+#include "process/interrupt.h"
 #include "progress_display.h"
-#include "stage_times.h"
+#include "report/stage_times.h"
 
 namespace collarmesh::cli {
 
 /// Begins stages, both in the display and in the timing.
 class Stages {
  public:
-  Stages(ProgressStyle style, StageTimes& times) : display_(style), times_(times) {}
+  Stages(ProgressStyle style, report::StageTimes& times) : display_(style), times_(times) {}
 
   void begin(const std::string& phase, double begin, double end, std::size_t tets = 0) {
-    stop_if_interrupted();
-    note_stage({phase, 0, tets});
+    process::stop_if_interrupted();
+    process::note_stage({phase, 0, tets});
     times_.begin(phase);
     display_.begin_stage(phase, begin, end);
   }
@@ -28,7 +28,7 @@ class Stages {
       begin(std::string(report.phase), begin_, begin_ + 1, report.tets);
       return;
     }
-    note_stage({std::string(report.phase), report.vertices, report.tets});
+    process::note_stage({std::string(report.phase), report.vertices, report.tets});
     report.fraction = fraction - begin_;
     display_.update(report);
   }
@@ -36,7 +36,7 @@ class Stages {
 
  private:
   ProgressDisplay display_;
-  StageTimes& times_;
+  report::StageTimes& times_;
   double begin_ = 0;
 };
 

@@ -6,7 +6,7 @@
 #include <system_error>
 #include <vector>
 
-#include "edit_distance.h"
+#include "files/edit_distance.h"
 
 namespace collarmesh::cli {
 
@@ -23,7 +23,7 @@ std::string similar_option(const CLI::App& command, const std::string& wanted) {
   std::string found;
   for (const CLI::Option* option : command.get_options())
     for (const std::string& name : option->get_lnames()) {
-      const std::size_t distance = edit_distance(wanted, "--" + name);
+      const std::size_t distance = files::edit_distance(wanted, "--" + name);
       if (distance > nearest || (distance == nearest && !found.empty())) continue;
       nearest = distance;
       found = "--" + name;
@@ -69,7 +69,7 @@ std::string mistaken_command(const std::string& word) {
   std::string found;
   std::size_t nearest = 3;
   for (const char* command : {"check", "info", "convert", "repair", "remesh"}) {
-    const std::size_t distance = edit_distance(word, command);
+    const std::size_t distance = files::edit_distance(word, command);
     if (distance == 0) return {};
     if (distance >= nearest) continue;
     nearest = distance;

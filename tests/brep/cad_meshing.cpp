@@ -21,7 +21,7 @@
 #include <set>
 
 #include "collarmesh/pipeline.h"
-#include "complex_input.h"
+#include "files/complex_input.h"
 #include "support/temporary_file.h"
 
 namespace collarmesh::testing {
@@ -57,9 +57,9 @@ double distance_to_face(const gp_Pnt& p, const TopoDS_Face& face) {
 
 CadMeshed mesh_of_cad_file(const std::string& path, double relative_size, int order) {
   constexpr double relative_distance = 1e-3;
-  cli::InputReading reading;
+  files::InputReading reading;
   reading.distance = [](double diagonal) { return relative_distance * diagonal; };
-  cli::ComplexInput input({path}, reading);
+  files::ComplexInput input({path}, reading);
   CadMeshed meshed;
   meshed.plc = input.build({});
   PipelineOptions options;

@@ -29,7 +29,7 @@
 
 #include "collarmesh/error.h"
 #include "collarmesh/plc_builder.h"
-#include "complex_input.h"
+#include "files/complex_input.h"
 #include "soup_measures.h"
 #include "support/leaks_allowed.h"
 #include "support/temporary_file.h"
@@ -111,9 +111,9 @@ TEST(CadFilesDeathTest, AreReadWithTheThreadsThatAreAllowed) {
   const std::string path = folder.file("box.brep");
   BRepTools::Write(box(), path.c_str());
   const auto read = [&](unsigned threads) {
-    cli::InputReading reading;
+    files::InputReading reading;
     reading.threads = threads;
-    const cli::ComplexInput input({path}, reading);
+    const files::ComplexInput input({path}, reading);
     std::exit(static_cast<int>(count_threads()));
   };
   int with_one = 0, with_all = 0;

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "collarmesh/brep/cad_model.h"
-#include "complex_input.h"
+#include "files/complex_input.h"
 #include "mesh_command.h"
 #include "shapes.h"
 #include "support/temporary_file.h"
@@ -135,9 +135,9 @@ Known known_of(const TopoDS_Shape& shape) {
   const TemporaryFolder folder;
   const std::string path = folder.file("shape.brep");
   BRepTools::Write(shape, path.c_str());
-  cli::InputReading reading;
+  files::InputReading reading;
   reading.distance = [](double diagonal) { return 0.01 * diagonal; };
-  cli::ComplexInput input({path}, reading);
+  files::ComplexInput input({path}, reading);
   Known known;
   known.plc = input.build({});
   known.measures = input.exact_measures(known.plc);
@@ -203,7 +203,7 @@ TEST(CadMeasures, AreNotKnownOfOtherFiles) {
   BRepTools::Write(BRepPrimAPI_MakeBox(10, 10, 10).Shape(), block.c_str());
   const std::string corner = folder.write(
       "corner.off", "OFF\n4 4 0\n20 0 0\n21 0 0\n20 1 0\n20 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
-  cli::ComplexInput input({block, corner});
+  files::ComplexInput input({block, corner});
   const Plc plc = input.build({});
   const ShapeMeasures measures = input.exact_measures(plc);
   for (Index r = 1; r < plc.regions.size(); ++r) {

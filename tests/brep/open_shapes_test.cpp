@@ -15,7 +15,7 @@
 #include "collarmesh/brep/cad_model.h"
 #include "collarmesh/error.h"
 #include "collarmesh/plc_builder.h"
-#include "complex_input.h"
+#include "files/complex_input.h"
 #include "shapes.h"
 #include "soup_measures.h"
 #include "support/temporary_file.h"
@@ -124,7 +124,7 @@ TEST(CadHoles, AreInTheMessageWhenNoComplexCanBeMade) {
   const TemporaryFolder folder;
   const std::string path = folder.file("sheet.brep");
   BRepTools::Write(faces_of(box()).front(), path.c_str());
-  cli::ComplexInput input({path});
+  files::ComplexInput input({path});
   try {
     input.build({});
     FAIL() << "a sheet is no complex";

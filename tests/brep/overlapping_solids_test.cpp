@@ -18,7 +18,7 @@
 #include "cad_meshing.h"
 #include "collarmesh/brep/cad_model.h"
 #include "collarmesh/plc_builder.h"
-#include "complex_input.h"
+#include "files/complex_input.h"
 #include "shapes.h"
 #include "soup_measures.h"
 #include "support/temporary_file.h"
@@ -180,7 +180,7 @@ TEST(CadOverlaps, OptionOfTheProgram) {
     words.insert(words.end(), options.begin(), options.end());
     const auto parsed = cli::parse(static_cast<int>(words.size()), words.data());
     const auto& info = std::get<cli::InfoArguments>(std::get<cli::Arguments>(parsed));
-    cli::ComplexInput input(info.inputs, {.format = {}, .overlap = info.overlap});
+    files::ComplexInput input(info.inputs, {.format = {}, .overlap = info.overlap});
     return volumes_of(input.soups());
   };
   const Volumes first{{1, 6000}, {2, 6000 - 1875}}, region{{1, 6000 - 1875}, {2, 6000 - 1875}, {3, 1875}};
@@ -192,8 +192,8 @@ TEST(CadOverlaps, OptionOfTheProgram) {
   expect_near(volumes({"--overlap", "first"}), first);
   expect_near(volumes({"--overlap", "region"}), region);
   const std::array wrong{"collarmesh", "info", path.c_str(), "--overlap", "both"};
-  EXPECT_EQ(std::get<cli::ExitCode>(cli::parse(static_cast<int>(wrong.size()), wrong.data())),
-            cli::ExitCode::usage);
+  EXPECT_EQ(std::get<process::ExitCode>(cli::parse(static_cast<int>(wrong.size()), wrong.data())),
+            process::ExitCode::usage);
 }
 
 bool same(const std::vector<PolygonSoup>& a, const std::vector<PolygonSoup>& b) {

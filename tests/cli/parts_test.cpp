@@ -14,12 +14,12 @@
 #include "arguments.h"
 #include "collarmesh/error.h"
 #include "collarmesh/mesh_measures.h"
-#include "input_files.h"
-#include "interrupt.h"
+#include "files/input_files.h"
+#include "process/interrupt.h"
+#include "process/staged_file.h"
 #include "program.h"
 #include "progress_display.h"
-#include "report.h"
-#include "staged_file.h"
+#include "report/report.h"
 
 namespace collarmesh::cli {
 namespace {
@@ -57,10 +57,10 @@ TEST(ProgressLine, FitsTheTerminal) { EXPECT_EQ(progress_line("refine", 1, 10, 3
 TEST_F(StagedFileTest, AppearsOnCommitOnly) {
   const fs::path target = folder / "a.txt";
   {
-    StagedFile file(target);
+    process::StagedFile file(target);
     file.write([](const std::string& path) { write(path, "text"); });
     EXPECT_FALSE(fs::exists(target));
-    StagedFile::commit({&file, nullptr});
+    process::StagedFile::commit({&file, nullptr});
     EXPECT_TRUE(fs::exists(target));
   }
   EXPECT_EQ(entries(), 1U);
@@ -68,14 +68,14 @@ TEST_F(StagedFileTest, AppearsOnCommitOnly) {
 
 TEST_F(StagedFileTest, DisappearsWithoutCommit) {
   {
-    StagedFile file(folder / "a.txt");
+    process::StagedFile file(folder / "a.txt");
     file.write([](const std::string& path) { write(path, "text"); });
   }
   EXPECT_EQ(entries(), 0U);
 }
 
 TEST_F(StagedFileTest, ErrorsNameTheTarget) {
-  StagedFile file(folder / "a.txt");
+  process::StagedFile file(folder / "a.txt");
   try {
     file.write([](const std::string& path) { throw WriteError(path + ": disk full"); });
     FAIL();
@@ -86,13 +86,13 @@ TEST_F(StagedFileTest, ErrorsNameTheTarget) {
 
 TEST_F(StagedFileTest, TwoOutputsOfOnePlaceAreAnError) {
   write(folder / "a.txt", "before");
-  StagedFile first(folder / "a.txt"), second(folder / "." / "b.txt");
+  process::StagedFile first(folder / "a.txt"), second(folder / "." / "b.txt");
   first.write([](const std::string& path) { write(path, "first"); });
   second.write([](const std::string& path) {
     write(path, "second");
     write(fs::path(path).replace_filename("a.txt"), "beside it");
   });
-  EXPECT_THROW(StagedFile::commit({&first, &second}), WriteError);
+  EXPECT_THROW(process::StagedFile::commit({&first, &second}), WriteError);
   EXPECT_FALSE(fs::exists(folder / "b.txt"));
   std::string text;
   std::ifstream(folder / "a.txt") >> text;
@@ -100,18 +100,18 @@ TEST_F(StagedFileTest, TwoOutputsOfOnePlaceAreAnError) {
 }
 
 TEST_F(StagedFileTest, MissingFolderIsAnError) {
-  EXPECT_THROW(require_writable(folder / "no" / "a.txt"), WriteError);
-  EXPECT_THROW(require_writable(folder), WriteError);
-  EXPECT_NO_THROW(require_writable(folder / "a.txt"));
+  EXPECT_THROW(process::require_writable(folder / "no" / "a.txt"), WriteError);
+  EXPECT_THROW(process::require_writable(folder), WriteError);
+  EXPECT_NO_THROW(process::require_writable(folder / "a.txt"));
 }
 
 TEST_F(SimilarFileTest, FindsTypos) {
   write(folder / "bracket.off", "");
   write(folder / "box.off", "");
-  EXPECT_EQ(similar_file(folder / "bracet.off"), folder / "bracket.off");
-  EXPECT_EQ(similar_file(folder / "BOX.OFF"), folder / "box.off");
-  EXPECT_EQ(similar_file(folder / "quite_different.stl"), "");
-  EXPECT_EQ(similar_file(folder / "no" / "box.off"), "");
+  EXPECT_EQ(files::similar_file(folder / "bracet.off"), folder / "bracket.off");
+  EXPECT_EQ(files::similar_file(folder / "BOX.OFF"), folder / "box.off");
+  EXPECT_EQ(files::similar_file(folder / "quite_different.stl"), "");
+  EXPECT_EQ(files::similar_file(folder / "no" / "box.off"), "");
 }
 
 TEST(MeshMeasures, OfOneTet) {
@@ -130,22 +130,23 @@ TEST(MeshMeasures, OfOneTet) {
 }
 
 template <class Thrown>
-void expect_code(ExitCode code, const Thrown& thrown, const std::string& told) {
+void expect_code(process::ExitCode code, const Thrown& thrown, const std::string& told) {
   testing::internal::CaptureStderr();
-  EXPECT_EQ(guarded([&]() -> ExitCode { throw thrown; }), code);
+  EXPECT_EQ(guarded([&]() -> process::ExitCode { throw thrown; }), code);
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_NE(said.find(told), std::string::npos) << said;
 }
 
 TEST(Guarded, EveryErrorHasItsCode) {
-  EXPECT_EQ(guarded([] { return ExitCode::guarantee_missed; }), ExitCode::guarantee_missed);
-  expect_code(ExitCode::internal_error, std::logic_error("a bug"), "internal error: a bug; please report it");
-  expect_code(ExitCode::usage, OptionError("bad option"), "collarmesh: bad option");
-  expect_code(ExitCode::unreadable, ReadError("a.off: line 3"), "a.off: line 3");
-  expect_code(ExitCode::invalid_complex, PlcError("open", {}), "open");
-  expect_code(ExitCode::cannot_write, WriteError("disk full"), "disk full");
-  expect_code(ExitCode::budget_hit, std::bad_alloc(), "raise --max-memory, or --size");
-  expect_code(ExitCode::cancelled, Cancelled(), "cancelled");
+  EXPECT_EQ(guarded([] { return process::ExitCode::guarantee_missed; }), process::ExitCode::guarantee_missed);
+  expect_code(process::ExitCode::internal_error, std::logic_error("a bug"),
+              "internal error: a bug; please report it");
+  expect_code(process::ExitCode::usage, OptionError("bad option"), "collarmesh: bad option");
+  expect_code(process::ExitCode::unreadable, ReadError("a.off: line 3"), "a.off: line 3");
+  expect_code(process::ExitCode::invalid_complex, PlcError("open", {}), "open");
+  expect_code(process::ExitCode::cannot_write, WriteError("disk full"), "disk full");
+  expect_code(process::ExitCode::budget_hit, std::bad_alloc(), "raise --max-memory, or --size");
+  expect_code(process::ExitCode::cancelled, process::Cancelled(), "cancelled");
 }
 
 template <class Kind, std::size_t n>
@@ -192,7 +193,7 @@ RepairReport every_kind_of_repair() {
 }
 
 TEST(RepairReports, HaveEveryKind) {
-  const auto json = repair_json(every_kind_of_repair());
+  const auto json = report::repair_json(every_kind_of_repair());
   for (const char* kind : {"repeated", "turned", "stitched", "collapsed", "cut", "merged"}) {
     EXPECT_EQ(json[kind]["count"], 2) << kind;
     EXPECT_EQ(json[kind]["where"].size(), 2U) << kind;
@@ -204,8 +205,8 @@ TEST(RepairReports, HaveEveryKind) {
 }
 
 TEST(RepairReports, QuietOnesLeaveOutWhatIsWithinTheTolerance) {
-  const std::string all = repair_text(every_kind_of_repair()),
-                    quiet = repair_text(every_kind_of_repair(), true);
+  const std::string all = report::repair_text(every_kind_of_repair()),
+                    quiet = report::repair_text(every_kind_of_repair(), true);
   for (const char* word : {"stitched", "collapsed", "repeated", "cut"})
     EXPECT_EQ(quiet.find(word), std::string::npos) << word;
   for (const char* word : {"a hole", "removed", "inside out", "nothing is left", "wrapped"}) {
@@ -217,11 +218,11 @@ TEST(RepairReports, QuietOnesLeaveOutWhatIsWithinTheTolerance) {
 // Also a stage that never looks at the clock.
 TEST(TimeLimitDeathTest, EndsAnyStage) {
   testing::FLAGS_gtest_death_test_style = "threadsafe";
-  EXPECT_EXIT(run_interruptible([] {
-                set_time_limit(0.05);
-                note_stage({"check", 0, 7});
+  EXPECT_EXIT(process::run_interruptible([] {
+                process::set_time_limit(0.05);
+                process::note_stage({"check", 0, 7});
                 std::this_thread::sleep_for(std::chrono::minutes(10));
-                return ExitCode::success;
+                return process::ExitCode::success;
               }),
               testing::ExitedWithCode(5),
               "time limit of 0.05 s is reached .stage: check, 7 tets.*--time-limit");
@@ -230,12 +231,12 @@ TEST(TimeLimitDeathTest, EndsAnyStage) {
 TEST(TimeLimitDeathTest, IsWatched) {
   testing::FLAGS_gtest_death_test_style = "threadsafe";
   const auto wait = [] {
-    set_time_limit(0.05);
-    while (!interrupt_flag()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    stop_if_interrupted();
-    return ExitCode::success;
+    process::set_time_limit(0.05);
+    while (!process::interrupt_flag()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    process::stop_if_interrupted();
+    return process::ExitCode::success;
   };
-  EXPECT_EXIT(std::exit(static_cast<int>(guarded([&] { return run_interruptible(wait); }))),
+  EXPECT_EXIT(std::exit(static_cast<int>(guarded([&] { return process::run_interruptible(wait); }))),
               testing::ExitedWithCode(5), "time limit of 0.05 s");
 }
 

@@ -182,20 +182,20 @@ TEST(FoldAngle, OfFlatFansIsNeverAcute) {
   };
   for (const double total : {10.0, 90.0, 170.0, 180.0, 181.0, 270.0, 350.0})
     for (const int n : {3, 7, 20})
-      EXPECT_GE(build::fold_angle(fan(total, n), false), 90 - 1e-9) << total << " " << n;
+      EXPECT_GE(plc::fold_angle(fan(total, n), false), 90 - 1e-9) << total << " " << n;
   auto closed = fan(360, 11);
   closed.pop_back();
-  EXPECT_NEAR(build::fold_angle(closed, true), 180, 1e-6);
+  EXPECT_NEAR(plc::fold_angle(closed, true), 180, 1e-6);
 }
 
 TEST(SectorAngles, AgreeWithSampling) {
-  const build::Sector s{{1, 0, 0}, {0, 1, 0}};
-  EXPECT_NEAR(build::angle_between(Vector{std::sqrt(0.5), 0, std::sqrt(0.5)}, s), 45, 1e-9);
-  EXPECT_NEAR(build::angle_between(Vector{-std::sqrt(0.5), 0, std::sqrt(0.5)}, s), 90, 1e-9);
-  EXPECT_NEAR(build::angle_between(Vector{0, 0, 1}, s), 90, 1e-9);
+  const plc::Sector s{{1, 0, 0}, {0, 1, 0}};
+  EXPECT_NEAR(plc::angle_between(Vector{std::sqrt(0.5), 0, std::sqrt(0.5)}, s), 45, 1e-9);
+  EXPECT_NEAR(plc::angle_between(Vector{-std::sqrt(0.5), 0, std::sqrt(0.5)}, s), 90, 1e-9);
+  EXPECT_NEAR(plc::angle_between(Vector{0, 0, 1}, s), 90, 1e-9);
   const double c = std::cos(0.2), d = std::sin(0.2);
-  EXPECT_NEAR(build::angle_between(s, {{c * std::sqrt(0.5), c * std::sqrt(0.5), d}, {0, 0, 1}}),
-              0.2 * 180 / pi, 1e-9);
+  EXPECT_NEAR(plc::angle_between(s, {{c * std::sqrt(0.5), c * std::sqrt(0.5), d}, {0, 0, 1}}), 0.2 * 180 / pi,
+              1e-9);
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 #include <array>
 
 #include "collarmesh/plc_builder.h"
-#include "plc/cleanup.h"
-#include "plc/edges.h"
+#include "facets/cleanup.h"
+#include "facets/edges.h"
 #include "support/plc_shapes.h"
 
 namespace collarmesh {
@@ -162,16 +162,16 @@ TEST(PlcFacets, CollinearTrianglesAreReplacedByCuts) {
 }
 
 TEST(EdgeTable, ListsTheSidesOfEachEdge) {
-  const std::vector<build::Corners> triangles{{0, 1, 2}, {2, 1, 3}, {1, 2, 4}};
-  const build::EdgeTable edges(triangles, 5);
+  const std::vector<facets::Corners> triangles{{0, 1, 2}, {2, 1, 3}, {1, 2, 4}};
+  const facets::EdgeTable edges(triangles, 5);
   EXPECT_EQ(edges.size(), 7U);
   const Index common = edges.find(2, 1);
   ASSERT_NE(common, none);
   EXPECT_EQ(edges.sides(common).size(), 3U);
   for (const Index side : edges.sides(common)) EXPECT_EQ(edges.edge_of(side), common);
   EXPECT_EQ(edges.find(0, 3), none);
-  EXPECT_TRUE(build::ascending(triangles, edges.sides(common)[0]));
-  EXPECT_FALSE(build::ascending(triangles, edges.sides(common)[1]));
+  EXPECT_TRUE(facets::ascending(triangles, edges.sides(common)[0]));
+  EXPECT_FALSE(facets::ascending(triangles, edges.sides(common)[1]));
 }
 
 }  // namespace

@@ -10,12 +10,15 @@
 #include "collarmesh/plc_builder.h"
 #include "common/patch_points.h"
 #include "delaunay/predicates.h"
-#include "plc/edges.h"
-#include "plc/flat_clusters.h"
-#include "plc/orientation.h"
+#include "facets/edges.h"
+#include "facets/flat_clusters.h"
+#include "facets/orientation.h"
 #include "support/shapes.h"
 
-namespace collarmesh::build {
+namespace collarmesh::plc {
+
+using namespace facets;
+
 namespace {
 
 // A grid of n x n squares, each cut in two, over which `height` says how high it is.
@@ -192,4 +195,4 @@ TEST(PatchPoints, HasTheCornersOfEachPatchOnce) {
 }
 
 }  // namespace
-}  // namespace collarmesh::build
+}  // namespace collarmesh::plc

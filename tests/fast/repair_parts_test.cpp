@@ -12,7 +12,7 @@
 #include <set>
 
 #include "collarmesh/repair.h"
-#include "plc/edges.h"
+#include "facets/edges.h"
 #include "repair/arrangement.h"
 #include "repair/better_places.h"
 #include "repair/changes.h"
@@ -28,7 +28,7 @@
 namespace collarmesh::repairing {
 namespace {
 
-using namespace build;
+using namespace facets;
 using namespace testing::faulty;
 
 // A draft of surfaces as the stage takes them; equal points are one, unless `torn`.

@@ -8,7 +8,8 @@ import pathlib
 import re
 import sys
 
-PARTS = ("mesher/cli", "mesher/python", "mesher/distributed", "mesher/include", "openmesh_io", "freecad_workbench/brep")
+PARTS = ("mesher/cli", "mesher/files", "mesher/process", "mesher/report", "mesher/python", "mesher/distributed/program",
+         "mesher/distributed", "mesher/include", "openmesh_io", "freecad_workbench/brep")
 
 
 def allowed(root):
@@ -32,7 +33,8 @@ def target_of(root, source, name):
     """The folder of an included header; None for headers of other projects."""
     if name.startswith("collarmesh/"):
         return "mesher/include"
-    for folder in (root / source.parent, root / "mesher" / "src", root / "mesher" / "cli"):
+    for folder in (root / source.parent, root / "mesher" / "src", root / "mesher", root / "mesher" / "cli",
+                   root / "mesher" / "distributed" / "src"):
         if (folder / name).exists():
             return folder_of((folder / name).resolve().relative_to(root.resolve()))
     return None

@@ -334,7 +334,8 @@ TEST(DividedEdges, AreUndone) {
     Workpiece workpiece(given.mesh, given.plc, tolerance_of(given.plc, {}, 0.3));
     workpiece.prepare();
     const ThinShape thin(given.plc, given.mesh, 8, 0, workpiece.forced);
-    const ThinRule rule(thin);
+    const CellBounds cells(given.plc, given.mesh, {});
+    const ThinRule rule(thin, cells);
     Operations operations(workpiece, rule);
     const auto divide_all = [&] {
       std::map<unsigned, unsigned> divided;
@@ -374,7 +375,8 @@ TEST(DividedEdges, KeepCurvesWhole) {
   improvement::Workpiece workpiece(given.mesh, given.plc, tolerance_of(given.plc, {}, 0.6));
   workpiece.prepare();
   const improvement::ThinShape thin(given.plc, given.mesh, 8, 0, workpiece.forced);
-  const improvement::ThinRule rule(thin);
+  const improvement::CellBounds cells(given.plc, given.mesh, {});
+  const improvement::ThinRule rule(thin, cells);
   improvement::Operations operations(workpiece, rule);
   std::size_t divided = 0;
   for (unsigned round = 0; round < 3; ++round)

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <sstream>
 
-#include "console.h"
-#include "html_report.h"
 #include "option_values.h"
+#include "process/console.h"
+#include "report/html_report.h"
 #include "usage_error.h"
 
 namespace collarmesh::distributed {
@@ -30,7 +30,7 @@ void check(const DistributedArguments& a) {
     throw CLI::ValidationError("--output",
                                fmt::format("'{}' ends in '{}'; use .h5 or .pvtu", a.mesh.output, extension));
   for (const std::string& report : a.mesh.reports)
-    if (cli::is_html(report))
+    if (report::is_html(report))
       throw CLI::ValidationError("--report", "is JSON here; pages (.html) are made by collarmesh");
   if (a.mesh.reports.size() > 1) throw CLI::ValidationError("--report", "is given twice; use it once");
   if (a.mesh.partitions > 0 || !a.mesh.cell_decomposition.empty())
@@ -44,7 +44,7 @@ bool writes_pieces(const DistributedArguments& arguments) {
   return extension_of(arguments.mesh.output) == ".pvtu";
 }
 
-std::variant<DistributedArguments, cli::ExitCode> parse(int argc, const char* const* argv) {
+std::variant<DistributedArguments, process::ExitCode> parse(int argc, const char* const* argv) {
   DistributedArguments arguments;
   CLI::App app(
       "collarmesh-mpi: a certified coarse mesh, distributed, refined and projected onto its shape on all "
@@ -78,11 +78,12 @@ std::variant<DistributedArguments, cli::ExitCode> parse(int argc, const char* co
     if (error.get_exit_code() == 0) {  // --help, --version
       std::ostringstream text, nothing;
       app.exit(error, text, nothing);
-      cli::print_result(text.str());
-      return cli::ExitCode::success;
+      process::print_result(text.str());
+      return process::ExitCode::success;
     }
-    cli::tell("collarmesh-mpi: {}\nRun with --help for more information.\n", cli::usage_message(app, error));
-    return cli::ExitCode::usage;
+    process::tell("collarmesh-mpi: {}\nRun with --help for more information.\n",
+                  cli::usage_message(app, error));
+    return process::ExitCode::usage;
   }
   return arguments;
 }

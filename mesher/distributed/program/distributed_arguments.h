@@ -14,7 +14,7 @@ struct DistributedArguments {
 
 /// Understand a command line. When there is nothing to run (help, version, a mistake) the text has been
 /// printed and the exit code is returned instead.
-std::variant<DistributedArguments, cli::ExitCode> parse(int argc, const char* const* argv);
+std::variant<DistributedArguments, process::ExitCode> parse(int argc, const char* const* argv);
 
 /// Is it .pvtu and pieces that are to be written? Else it is .h5.
 bool writes_pieces(const DistributedArguments& arguments);

@@ -19,23 +19,24 @@
 
 #include "calls.h"
 #include "collarmesh/distributed.h"
-#include "complex_input.h"
-#include "console.h"
 #include "distributed_arguments.h"
-#include "file_groups.h"
-#include "input_files.h"
-#include "interrupt.h"
+#include "files/complex_input.h"
+#include "files/file_groups.h"
+#include "files/input_files.h"
 #include "mesh_command.h"
-#include "out_of_memory.h"
+#include "process/console.h"
+#include "process/interrupt.h"
+#include "process/out_of_memory.h"
+#include "process/staged_file.h"
 #include "program.h"
-#include "staged_file.h"
+#include "report/json_text.h"
 
 namespace collarmesh::distributed {
 
 namespace {
 
-using cli::ExitCode;
-using cli::tell;
+using process::ExitCode;
+using process::tell;
 
 /// MPI and PETSc for as long as it lives.
 class Session {
@@ -50,11 +51,11 @@ class Session {
 };
 
 /// Ranks are out of step: one of them says why and ends all.
-[[noreturn]] void end_all(ExitCode code, const std::string& message) {
+[[noreturn]] void end_all(process::ExitCode code, const std::string& message) {
   const Ranks ranks(MPI_COMM_WORLD);
   // Of several that fail at once the first one speaks: it ends the others before they do.
   std::this_thread::sleep_for(std::chrono::milliseconds(200) * ranks.rank);
-  cli::abandon_staged_files();
+  process::abandon_staged_files();
   const std::string text = fmt::format("collarmesh: {}\n", message);
   if (write(STDERR_FILENO, text.data(), text.size()) < 0) {
     // There is nobody to tell.
@@ -65,8 +66,8 @@ class Session {
 
 /// HDF5 and MPI may crash where they get no memory. mpirun ends the other ranks.
 [[noreturn]] void end_after_crash(int) {
-  const bool short_of_memory = cli::memory_is_short();
-  cli::abandon_staged_files();
+  const bool short_of_memory = process::memory_is_short();
+  process::abandon_staged_files();
   const std::string_view text =
       short_of_memory
           ? "collarmesh: a library has crashed, as some do when memory is used up; raise --max-memory, or "
@@ -75,12 +76,13 @@ class Session {
   if (write(STDERR_FILENO, text.data(), text.size()) < 0) {
     // There is nobody to tell.
   }
-  std::_Exit(static_cast<int>(short_of_memory ? ExitCode::budget_hit : ExitCode::internal_error));
+  std::_Exit(
+      static_cast<int>(short_of_memory ? process::ExitCode::budget_hit : process::ExitCode::internal_error));
 }
 
 [[noreturn]] void end_without_memory(const PetscOutOfMemory& failure) {
   end_all(
-      ExitCode::budget_hit,
+      process::ExitCode::budget_hit,
       fmt::format("there is not enough memory ({}); raise --max-memory, use more ranks, or make fewer levels",
                   failure.what()));
 }
@@ -89,11 +91,11 @@ class Session {
 /// first of them tells why.
 void together(const std::function<void()>& work) {
   std::exception_ptr thrown;
-  std::optional<cli::Stopped> stopped;
+  std::optional<process::Stopped> stopped;
   agree(MPI_COMM_WORLD, [&] {
     try {
       work();
-    } catch (const cli::Stopped& reason) {
+    } catch (const process::Stopped& reason) {
       stopped = reason;
     }
   });
@@ -108,7 +110,7 @@ void together(const std::function<void()>& work) {
   MPI_Bcast(&length, 1, MPI_INT, first, MPI_COMM_WORLD);
   message.resize(static_cast<std::size_t>(length));
   MPI_Bcast(message.data(), length, MPI_CHAR, first, MPI_COMM_WORLD);
-  throw cli::Stopped(static_cast<ExitCode>(code), message);
+  throw process::Stopped(static_cast<process::ExitCode>(code), message);
 }
 
 /// FNV-1a.
@@ -160,7 +162,7 @@ void require_equal_files(const DistributedArguments& arguments) {
   for (const std::string& path : paths) {
     Hash hash;
     together([&] {
-      std::ifstream file(cli::existing_file(path), std::ios::binary);
+      std::ifstream file(files::existing_file(path), std::ios::binary);
       std::vector<char> block(1 << 16);
       while (file.read(block.data(), static_cast<std::streamsize>(block.size())), file.gcount() > 0)
         hash.add(block.data(), static_cast<std::size_t>(file.gcount()));
@@ -340,7 +342,7 @@ class Timer {
 
 void write_report(const std::string& path, const Report& report) {
   std::ofstream file(path);
-  file << cli::json_text(report.json(), 1) << '\n';
+  file << report::json_text(report.json(), 1) << '\n';
   file.close();
   if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path));
 }
@@ -360,7 +362,7 @@ std::string with_name(std::string message, const std::filesystem::path& from,
 void write_files(const DistributedArguments& arguments, const ParallelMesh& mesh, Report& report) {
   const bool first = Ranks(MPI_COMM_WORLD).rank == 0;
   const Timer timer;
-  std::optional<cli::StagedFile> staged, staged_report;
+  std::optional<process::StagedFile> staged, staged_report;
   std::string place;
   together([&] {
     if (!first) return;
@@ -373,8 +375,8 @@ void write_files(const DistributedArguments& arguments, const ParallelMesh& mesh
   } catch (const PetscOutOfMemory& failure) {
     end_without_memory(failure);
   } catch (const PetscFailure& failure) {
-    end_all(ExitCode::cannot_write, fmt::format("{}: cannot be written ({}); is the disk full?",
-                                                arguments.mesh.output, failure.what()));
+    end_all(process::ExitCode::cannot_write, fmt::format("{}: cannot be written ({}); is the disk full?",
+                                                         arguments.mesh.output, failure.what()));
   } catch (const WriteError& error) {  // of all ranks, with the temporary name
     const std::filesystem::path target = arguments.mesh.output;
     throw WriteError(
@@ -388,28 +390,28 @@ void write_files(const DistributedArguments& arguments, const ParallelMesh& mesh
       staged_report.emplace(arguments.mesh.reports.front());
       staged_report->write([&](const std::string& path) { write_report(path, report); });
     }
-    cli::StagedFile::commit({&*staged, staged_report ? &*staged_report : nullptr});
+    process::StagedFile::commit({&*staged, staged_report ? &*staged_report : nullptr});
   });
 }
 
 void require_places(const DistributedArguments& arguments) {
-  cli::require_writable(arguments.mesh.output);
-  for (const std::string& report : arguments.mesh.reports) cli::require_writable(report);
+  process::require_writable(arguments.mesh.output, files::files_written(arguments.mesh.output));
+  for (const std::string& report : arguments.mesh.reports) process::require_writable(report);
 }
 
-ExitCode mesh_distributed(const DistributedArguments& arguments) {
+process::ExitCode mesh_distributed(const DistributedArguments& arguments) {
   const Ranks ranks(MPI_COMM_WORLD);
-  cli::set_time_limit(arguments.mesh.mesh.time_limit);
-  cli::limit_memory(arguments.mesh.mesh.max_memory);
+  process::set_time_limit(arguments.mesh.mesh.time_limit);
+  process::limit_memory(arguments.mesh.mesh.max_memory);
   together([&] {
     if (ranks.rank == 0) require_places(arguments);
   });
   require_equal_files(arguments);
   Coarse coarse = make_coarse(arguments);
-  const auto stop = [] { together([] { cli::stop_if_interrupted(); }); };
+  const auto stop = [] { together([] { process::stop_if_interrupted(); }); };
   if (!arguments.mesh.quiet && ranks.rank == 0)
-    tell("coarse mesh: {} tets; {}\n", coarse.made.run.result.mesh.tets.size(),
-         coarse.made.run.guarantees_hold() ? "every guarantee holds" : coarse.made.run.missed());
+    process::tell("coarse mesh: {} tets; {}\n", coarse.made.run.result.mesh.tets.size(),
+                  coarse.made.run.guarantees_hold() ? "every guarantee holds" : coarse.made.run.missed());
   int holds = coarse.made.run.guarantees_hold() ? 1 : 0;
   MPI_Bcast(&holds, 1, MPI_INT, 0, MPI_COMM_WORLD);
   const Shape shape = coarse.shape();
@@ -422,12 +424,12 @@ ExitCode mesh_distributed(const DistributedArguments& arguments) {
   for (unsigned level = 0; level < arguments.levels; ++level) {
     stop();
     report.levels.push_back(mesh.refine(shape));
-    if (!arguments.mesh.quiet) tell("{}", text_of(report.levels.back(), level + 1));
+    if (!arguments.mesh.quiet) process::tell("{}", text_of(report.levels.back(), level + 1));
   }
   stop();
   if (arguments.mesh.order == 2) report.order = mesh.raise_order(shape);
   if (report.order && !arguments.mesh.quiet)
-    tell(
+    process::tell(
         "second order: {} nodes, {} of them off the middles of their edges; {} went back, by at most "
         "{:.3g}\n",
         report.order->nodes, report.order->curved, report.order->straightened, report.order->farthest_off);
@@ -439,32 +441,33 @@ ExitCode mesh_distributed(const DistributedArguments& arguments) {
   stop();
   write_files(arguments, mesh, report);
   for (const Finding& finding : report.certificate.findings)
-    tell("{}: {}\n", finding.guarantee, finding.message);
-  if (!arguments.mesh.quiet) tell("{}", text_of(report.certificate, report.coarse));
-  return report.certificate.passed() && holds != 0 ? ExitCode::success : ExitCode::guarantee_missed;
+    process::tell("{}: {}\n", finding.guarantee, finding.message);
+  if (!arguments.mesh.quiet) process::tell("{}", text_of(report.certificate, report.coarse));
+  return report.certificate.passed() && holds != 0 ? process::ExitCode::success
+                                                   : process::ExitCode::guarantee_missed;
 }
 
 }  // namespace
 
-ExitCode run(int argc, char** argv) {
+process::ExitCode run(int argc, char** argv) {
   // Before MPI begins: it writes files of its own, and one that grows too large must not end the program.
-  cli::install_interrupt_handlers();
+  process::install_interrupt_handlers();
   const Session session;
-  if (Ranks(MPI_COMM_WORLD).rank != 0) cli::be_silent();
+  if (Ranks(MPI_COMM_WORLD).rank != 0) process::be_silent();
   std::signal(SIGSEGV, end_after_crash);  // in place of PETSc's
   // Watched only until the result is known: when a rank has ended with an error, which has been reported by
   // then, mpirun asks those that are still in MPI_Finalize to stop.
-  const ExitCode result = cli::run_interruptible([&] {
-    return cli::guarded([&]() -> ExitCode {
+  const process::ExitCode result = process::run_interruptible([&] {
+    return cli::guarded([&]() -> process::ExitCode {
       try {
         require_equal_command_lines(argc, argv);
-        const std::variant<DistributedArguments, ExitCode> parsed = parse(argc, argv);
-        if (const ExitCode* code = std::get_if<ExitCode>(&parsed)) return *code;
+        const std::variant<DistributedArguments, process::ExitCode> parsed = parse(argc, argv);
+        if (const process::ExitCode* code = std::get_if<process::ExitCode>(&parsed)) return *code;
         return mesh_distributed(std::get<DistributedArguments>(parsed));
       } catch (const PetscOutOfMemory& failure) {
         end_without_memory(failure);
       } catch (const PetscFailure& failure) {
-        end_all(ExitCode::internal_error, failure.what());
+        end_all(process::ExitCode::internal_error, failure.what());
       }
     });
   });

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "exit_code.h"
+#include "process/exit_code.h"
 
 namespace collarmesh::distributed {
 
 /// `mpirun -n P collarmesh-mpi INPUT... -o OUT.h5`, on each rank: all of them return the same, and one of
 /// them says what is wrong. Initializes MPI and PETSc and finalizes them.
-cli::ExitCode run(int argc, char** argv);
+process::ExitCode run(int argc, char** argv);
 
 }  // namespace collarmesh::distributed

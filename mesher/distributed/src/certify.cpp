@@ -14,6 +14,7 @@
 #include "check/subject.h"
 #include "collarmesh/curved_tet.h"
 #include "collarmesh/distributed.h"
+#include "common/split_mix.h"
 #include "delaunay/predicates.h"
 #include "local_mesh.h"
 #include "mid_nodes.h"
@@ -88,27 +89,21 @@ double length_of(const Point& a, const Point& b, const Point& mid) {
   return (5 * speed(-x) + 8 * speed(0) + 5 * speed(x)) / 9;
 }
 
-std::uint64_t mixed(std::uint64_t h) {  // the finalizer of SplitMix64
-  h += 0x9e3779b97f4a7c15ULL;
-  h = (h ^ (h >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-  h = (h ^ (h >> 27U)) * 0x94d049bb133111ebULL;
-  return h ^ (h >> 31U);
-}
-
 /// Two sums of numbers that are made of cells.
 class Fingerprint {
  public:
   static std::uint64_t of(const Point& p) {
     std::uint64_t h = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) h = mixed(h ^ std::bit_cast<std::uint64_t>(p[axis] + 0.0));
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      h = mixed(split_mix_step + (h ^ std::bit_cast<std::uint64_t>(p[axis] + 0.0)));
     return h;
   }
   template <std::size_t n>
   void add(std::array<std::uint64_t, n> points, std::uint64_t label) {
     std::sort(points.begin(), points.end());
     for (std::size_t s = 0; s < sums_.size(); ++s) {
-      std::uint64_t h = mixed(label + (s + 1) * n);
-      for (const std::uint64_t p : points) h = mixed(h ^ p);
+      std::uint64_t h = mixed(split_mix_step + label + (s + 1) * n);
+      for (const std::uint64_t p : points) h = mixed(split_mix_step + (h ^ p));
       sums_[s] += h;
     }
   }

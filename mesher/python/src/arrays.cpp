@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "collarmesh/error.h"
-#include "colour_text.h"
+#include "report/colour_text.h"
 
 namespace py = pybind11;
 
@@ -122,7 +122,7 @@ py::dict colours_of(const TagColours& colours) {
   py::dict result;
   const auto add = [&](int dimension, const std::map<Tag, Colour>& by_tag) {
     std::map<Tag, std::string> texts;
-    for (const auto& [tag, colour] : by_tag) texts.emplace(tag, cli::colour_text(colour));
+    for (const auto& [tag, colour] : by_tag) texts.emplace(tag, report::colour_text(colour));
     if (!texts.empty()) result[py::int_(dimension)] = texts;
   };
   add(2, colours.patches);

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "arrays.h"
-#include "check_against.h"
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
 #include "collarmesh/locate.h"
@@ -19,13 +18,14 @@
 #include "collarmesh/pipeline.h"
 #include "collarmesh/predict.h"
 #include "collarmesh/remesh.h"
-#include "complex_input.h"
-#include "input_files.h"
+#include "files/check_against.h"
+#include "files/complex_input.h"
+#include "files/input_files.h"
+#include "files/surface_files.h"
 #include "io/complete_mesh.h"
 #include "options.h"
-#include "report.h"
-#include "soup_output.h"
-#include "surface_files.h"
+#include "report/report.h"
+#include "report/soup_output.h"
 #include "watched.h"
 
 namespace py = pybind11;
@@ -53,13 +53,13 @@ Inputs inputs_of(const py::list& given) {
 
 /// A complex and where it came from; what refers to the other stays beside it.
 struct Complex {
-  std::optional<cli::ComplexInput> input;
+  std::optional<files::ComplexInput> input;
   Plc plc;
 };
 
-cli::ComplexInput read(const Inputs& inputs, const Options& options, Watch& watch) {
+files::ComplexInput read(const Inputs& inputs, const Options& options, Watch& watch) {
   watch.begin_stage("read");
-  cli::InputReading reading;
+  files::InputReading reading;
   reading.format = options.input_format;
   reading.distance = [&options](double diagonal) { return distance_of(options, diagonal); };
   reading.tolerance = [&options](const Plc& plc) {
@@ -70,7 +70,7 @@ cli::ComplexInput read(const Inputs& inputs, const Options& options, Watch& watc
   reading.names = options.names;
   reading.cancel = &watch.flag();
   reading.stop = [&watch] { watch.stop_if_asked(); };
-  cli::ComplexInput input(inputs.paths, reading);
+  files::ComplexInput input(inputs.paths, reading);
   for (const PolygonSoup& soup : inputs.soups) input.add(soup);
   return input;
 }
@@ -90,7 +90,7 @@ py::object parsed(const nlohmann::ordered_json& json) {
 struct MeshCall {
   Inputs inputs;
   Options options;
-  std::optional<cli::ComplexInput> input;
+  std::optional<files::ComplexInput> input;
   SoupPipelineResult run;
 };
 
@@ -98,7 +98,7 @@ struct MeshCall {
 class InputSource : public ComplexSource {
  public:
   /// All are kept by reference.
-  InputSource(const Options& options, cli::ComplexInput& input) : options_(options), input_(input) {}
+  InputSource(const Options& options, files::ComplexInput& input) : options_(options), input_(input) {}
 
   RepairedPlc build(const RepairOptions& repair, const Execution&) override {
     return {input_.build(options_.complex, repair), input_.repaired(), {}};
@@ -117,7 +117,7 @@ class InputSource : public ComplexSource {
 
  private:
   const Options& options_;
-  cli::ComplexInput& input_;
+  files::ComplexInput& input_;
 };
 
 void mesh(MeshCall& call, Watch& watch) {
@@ -140,7 +140,7 @@ py::dict mesh_of(const py::list& inputs, const py::dict& options, const py::obje
   run_watched([call](Watch& watch) { mesh(*call, watch); }, progress, time_limit);
   py::dict arrays = arrays_of(std::move(call->run.result.mesh));
   arrays["status_message"] = call->run.result.message;
-  arrays["check"] = parsed(cli::check_json(call->run.check));
+  arrays["check"] = parsed(report::check_json(call->run.check));
   arrays["repairs"] = describe(call->run.repair);
   arrays["notes"] = call->input->notes();
   arrays["colours"] = colours_of(call->input->colours());
@@ -180,7 +180,7 @@ py::dict remesh_mesh(const py::dict& mesh, const py::dict& options, const py::ob
   run_watched([call](Watch& watch) { remesh(*call, watch); }, progress, time_limit);
   py::dict arrays = arrays_of(std::move(call->run.result.mesh));
   arrays["status_message"] = call->run.result.message;
-  arrays["check"] = parsed(cli::check_json(call->run.check));
+  arrays["check"] = parsed(report::check_json(call->run.check));
   return arrays;
 }
 
@@ -188,7 +188,7 @@ struct CheckCall {
   TetMesh mesh;
   Inputs inputs;
   Options options;
-  std::optional<cli::ComplexInput> input;
+  std::optional<files::ComplexInput> input;
   CheckReport report;
 };
 
@@ -200,11 +200,11 @@ py::object check_mesh(const py::dict& mesh, const py::list& against, const py::d
   const auto work = [call](Watch& watch) {
     call->input.emplace(read(call->inputs, call->options, watch));
     watch.begin_stage("check");
-    call->report = cli::check_against(call->mesh, *call->input, call->options, watch.execution());
+    call->report = files::check_against(call->mesh, *call->input, call->options, watch.execution());
     watch.stop_if_asked();
   };
   run_watched(work, py::none(), call->options.mesh.time_limit);
-  return parsed(cli::check_json(call->report));
+  return parsed(report::check_json(call->report));
 }
 
 struct ComplexCall {
@@ -228,8 +228,8 @@ py::object info(const py::list& inputs, const py::dict& options) {
     call->summary = summarize(call->complex.plc, call->options.mesh.bounds.crease_angle);
   };
   run_watched(work, py::none(), call->options.mesh.time_limit);
-  nlohmann::ordered_json json{{"complex", cli::complex_json(call->complex.plc, call->summary)},
-                              {"repair", cli::repair_json(call->complex.input->repaired())}};
+  nlohmann::ordered_json json{{"complex", report::complex_json(call->complex.plc, call->summary)},
+                              {"repair", report::repair_json(call->complex.input->repaired())}};
   return parsed(json);
 }
 
@@ -253,12 +253,12 @@ py::object predicted(const py::list& inputs, const std::vector<double>& sizes, c
     call->predictions = predict(plc, call->options, call->sizes);
   };
   run_watched(work, py::none(), call->options.mesh.time_limit);
-  return parsed(cli::predictions_json(call->predictions));
+  return parsed(report::predictions_json(call->predictions));
 }
 
 py::object measures(const py::dict& arrays) {
   const TetMesh mesh = tet_mesh_of(arrays);
-  nlohmann::ordered_json json = cli::measures_json(mesh, measure_mesh(mesh));
+  nlohmann::ordered_json json = report::measures_json(mesh, measure_mesh(mesh));
   json["median_edge"] = median_edge(mesh);
   return parsed({{"mesh", json}});
 }
@@ -290,10 +290,10 @@ std::string convert_surfaces(const py::list& inputs, const std::string& output, 
   call->options = options_of(options);
   call->output = output;
   const auto work = [call](Watch& watch) {
-    const cli::ComplexInput input = read(call->inputs, call->options, watch);
-    const cli::MergedSoup merged = cli::merge_for_output(input.soups(), call->output,
-                                                         call->options.output_format, call->options.complex);
-    cli::write_surface(call->output, merged.soup, call->options.output_format);
+    const files::ComplexInput input = read(call->inputs, call->options, watch);
+    const report::MergedSoup merged = report::merge_for_output(
+        input.soups(), call->output, call->options.output_format, call->options.complex);
+    files::write_surface(call->output, merged.soup, call->options.output_format);
     call->told = merged.told;
   };
   run_watched(work, py::none(), call->options.mesh.time_limit);
@@ -302,14 +302,15 @@ std::string convert_surfaces(const py::list& inputs, const std::string& output, 
 
 py::dict read_mesh(const std::string& path, const std::string& format) {
   const auto mesh = std::make_shared<TetMesh>();
-  run_watched([mesh, path, format](Watch&) { *mesh = cli::read_mesh(path, format); }, py::none(), 0);
+  run_watched([mesh, path, format](Watch&) { *mesh = files::read_mesh(path, format); }, py::none(), 0);
   return arrays_of(std::move(*mesh));
 }
 
 /// None for a surface.
 py::object read_mesh_if_there(const std::string& path, const std::string& format) {
   const auto mesh = std::make_shared<std::optional<TetMesh>>();
-  run_watched([mesh, path, format](Watch&) { *mesh = cli::read_mesh_if_there(path, format); }, py::none(), 0);
+  run_watched([mesh, path, format](Watch&) { *mesh = files::read_mesh_if_there(path, format); }, py::none(),
+              0);
   if (!*mesh) return py::none();
   return arrays_of(std::move(**mesh));
 }
@@ -376,7 +377,7 @@ PYBIND11_MODULE(_core, module) {
   module.def("formats_with_partitions", &io::formats_with_partitions);
   module.def("formats_with_ghost_cells", &io::formats_with_ghost_cells);
   module.def("is_surface_format", [](const std::string& path, const std::string& format) {
-    return cli::is_surface_format(path, format);
+    return files::is_surface_format(path, format);
   });
   py::module_::import("atexit").attr("register")(py::cpp_function(&wait_for_abandoned));
 }

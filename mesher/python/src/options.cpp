@@ -13,7 +13,7 @@
 
 #include "arrays.h"
 #include "collarmesh/error.h"
-#include "machine.h"
+#include "process/machine.h"
 
 namespace py = pybind11;
 
@@ -94,7 +94,7 @@ void take_size_field(const py::object& field, Options& options) {
 
 Options options_of(const py::dict& given) {
   Options options;
-  options.mesh.max_memory = cli::memory_of_the_machine() / 2;
+  options.mesh.max_memory = process::memory_of_the_machine() / 2;
   for (const Option& option : option_table()) {
     if (!option.is_for(Option::programs) || !given.contains(option.key())) continue;
     const py::object value = given[py::str(option.key())];

@@ -4,6 +4,7 @@
 
 #include "check/subject.h"
 #include "common/box_tree.h"
+#include "common/distances.h"
 
 namespace collarmesh::checks {
 
@@ -12,20 +13,8 @@ namespace {
 constexpr double gap_per_radius = 3;  // paper, Procedure 4
 constexpr double slack = 1 - 1e-9;    // of distances, relative
 
-double to_segment(const Point& p, const Point& a, const Point& b) {
-  const Vector d = b - a;
-  const double length = squared_norm(d);
-  return distance(p, a + (length > 0 ? std::clamp(dot(p - a, d) / length, 0.0, 1.0) : 0.0) * d);
-}
-
 double to_triangle(const Point& p, const std::array<Point, 3>& t) {
-  const double border =
-      std::min({to_segment(p, t[0], t[1]), to_segment(p, t[1], t[2]), to_segment(p, t[2], t[0])});
-  const Vector n = cross(t[1] - t[0], t[2] - t[0]);
-  if (squared_norm(n) == 0) return border;
-  for (unsigned i = 0; i < 3; ++i)
-    if (dot(cross(t[(i + 1) % 3] - t[i], p - t[i]), n) < 0) return border;
-  return std::min(border, std::fabs(dot(p - t[0], n)) / norm(n));
+  return std::sqrt(squared_distance_to_triangle(p, t[0], t[1], t[2]));
 }
 
 class CollarCheck {

@@ -1,14 +1,16 @@
 #include "check/polyline.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+
+#include "common/distances.h"
 
 namespace collarmesh::checks {
 
 NearestOnSegment nearest_on_segment(const Point& p, const Point& a, const Point& b) {
   const Vector ab = b - a;
-  const double squared = squared_norm(ab);
-  const double t = squared > 0 ? std::clamp(dot(p - a, ab) / squared, 0.0, 1.0) : 0;
+  const double t = parameter_on_segment(p, a, b);
   // Measures from the nearer end, which is exact if p is that end.
   return {t < 0.5 ? norm((p - a) - t * ab) : norm((p - b) + (1 - t) * ab), t};
 }
@@ -16,6 +18,7 @@ NearestOnSegment nearest_on_segment(const Point& p, const Point& a, const Point&
 Polyline::Polyline(std::vector<Point> points) : points_(std::move(points)), arc_(1, 0) {
   for (std::size_t i = 1; i < points_.size(); ++i)
     arc_.push_back(arc_.back() + distance(points_[i - 1], points_[i]));
+  assert(points_.size() >= 2);
 }
 
 std::size_t Polyline::segment_at(double arc) const {

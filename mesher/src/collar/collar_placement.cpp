@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <string>
 
 #include "collarmesh/error.h"
-#include "plc/faults.h"
+#include "common/edge_key.h"
+#include "common/split_mix.h"
+#include "facets/faults.h"
 
 namespace collarmesh {
 
@@ -70,11 +73,13 @@ bool CollarPlacement::place_all() {
 }
 
 void CollarPlacement::place_at_vertex(Index vertex) {
+  assert(system_.is_crease_vertex(vertex) && system_.ball_at_vertex(vertex) == none);
   add_at_vertex(vertex);
   system_.index_balls({0, vertex});
 }
 
 void CollarPlacement::place_on_curve(Index curve) {
+  assert(system_.is_crease_curve(curve));
   add_on_curve(curve);
   system_.index_balls({1, curve});
 }
@@ -89,16 +94,11 @@ void CollarPlacement::require_room(double radius, const Point& where) const {
   const std::string message = fmt::format(
       "Features come so near to each other at {} that nothing fits between them: {:.3g}; move them apart, or "
       "remove one.",
-      build::text(p), radius / radius_per_gap);
+      facets::text(p), radius / radius_per_gap);
   throw PlcError(message, {{PlcFault::Kind::intersection, message, {}, p}});
 }
 
-double CollarPlacement::shrink() {
-  std::uint64_t z = (random_state_ += 0x9e3779b97f4a7c15ULL);
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  return 1 - largest_shrinkage * (static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53);
-}
+double CollarPlacement::shrink() { return 1 - largest_shrinkage * next_unit(random_state_); }
 
 void CollarPlacement::add_at_vertex(Index vertex) {
   const Point& centre = points_[plc_.vertices[vertex].point];
@@ -208,7 +208,7 @@ void CollarPlacement::add_on_curve(Index curve) {
 
 void CollarPlacement::link(Index a, Index b, Index curve, double from, double to) {
   system_.links_.push_back({{a, b}, curve, {from, to}});
-  system_.consecutive_.insert(CollarSystem::pair_of(a, b));
+  system_.consecutive_.insert(edge_key(a, b));
   corners_.add_on_circle(system_.links_.back(), system_.balls_[a], system_.balls_[b]);
 }
 

@@ -1,6 +1,7 @@
 #include "collar/collar_system.h"
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 
 #include "collar/collar_placement.h"
@@ -78,6 +79,7 @@ void CollarSystem::complete() {
 
 // Precondition: it is not complete.
 void CollarSystem::index_balls(const Feature& crease) {
+  assert(!branches_.empty());
   if (indexed_ == balls_.size()) return;
   Box box;
   const Index root = build_over_balls(indexed_, box), leaf = leaf_of(crease);
@@ -172,13 +174,9 @@ void CollarSystem::balls_meeting(const Point& p, double radius, std::size_t most
 void CollarSystem::balls_on_segment(const Point& p, const Point& q, std::vector<Index>& found) const {
   found.clear();
   const SegmentAgainstBoxes segment(p, q);
-  const Vector d = q - p;
-  const double length = squared_norm(d);
   visit([&](const CentredBox& box) { return segment.may_meet(box); },
         [&](Index ball) {
-          const Point& centre = balls_[ball].centre;
-          const double t = length > 0 ? std::clamp(dot(centre - p, d) / length, 0.0, 1.0) : 0.0;
-          if (contains(ball, p + t * d)) found.push_back(ball);
+          if (contains(ball, nearest_point_on_segment(balls_[ball].centre, p, q))) found.push_back(ball);
           return false;
         });
 }

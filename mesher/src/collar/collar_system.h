@@ -12,6 +12,7 @@
 #include "collarmesh/plc.h"
 #include "collarmesh/plc_builder.h"
 #include "collarmesh/surface_tolerance.h"
+#include "common/edge_key.h"
 #include "common/large_pages.h"
 #include "location/centred_box.h"
 
@@ -88,7 +89,7 @@ class CollarSystem {
   Index ball_at_vertex(Index vertex) const { return vertex_ball_.empty() ? none : vertex_ball_[vertex]; }
   /// No more balls will come: a tree over all of them, whatever crease they are on.
   void complete();
-  bool consecutive(Index a, Index b) const { return consecutive_.count(pair_of(a, b)) > 0; }
+  bool consecutive(Index a, Index b) const { return consecutive_.count(edge_key(a, b)) > 0; }
 
   /// Returns a ball that contains p in its interior, none if there is none. Several threads may call it at
   /// once while no balls are added.
@@ -116,9 +117,6 @@ class CollarSystem {
     Box box;
     Index parent = none;
   };
-  static std::uint64_t pair_of(Index a, Index b) {
-    return std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
-  }
   /// Builds a tree over creases. The trees over their balls are attached at its leaves, so that there is one
   /// tree although balls are added later.
   void plant(const Plc& plc, std::span<const Point> points);

@@ -3,41 +3,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/distances.h"
+
 namespace collarmesh {
 
 namespace {
 
-double squared_distance_to_segment(const Point& p, const Point& a, const Point& b) {
-  const Vector ab = b - a, ap = p - a;
-  const double squared = squared_norm(ab), along = dot(ap, ab);
-  if (along <= 0 || !(squared > 0)) return squared_norm(ap);
-  if (along >= squared) return squared_distance(p, b);
-  return squared_norm(ap - along / squared * ab);
-}
-
 double squared_distance_to_triangle(const Point& p, const DistanceTree::Triangle& t) {
-  const auto& [a, b, c] = t;
-  const Vector ab = b - a, bc = c - b, ca = a - c;
-  const Vector n = cross(ab, Point{} - ca);
-  const double longest = std::max({squared_norm(ab), squared_norm(bc), squared_norm(ca)});
-  const double nn = squared_norm(n);
-  // The normal of a needle is noise; its edges are as near as its inside.
-  if (nn > 1e-24 * longest * longest && dot(cross(ab, p - a), n) >= 0 && dot(cross(bc, p - b), n) >= 0 &&
-      dot(cross(ca, p - c), n) >= 0) {
-    const double h = dot(p - a, n);
-    return h * h / nn;
-  }
-  return std::min({squared_distance_to_segment(p, a, b), squared_distance_to_segment(p, b, c),
-                   squared_distance_to_segment(p, c, a)});
-}
-
-double squared_distance_to_box(const Point& p, const Box& box) {
-  const auto beyond = [](double x, double low, double high) {
-    return x < low ? low - x : x > high ? x - high : 0;
-  };
-  const Vector d{beyond(p.x, box.min.x, box.max.x), beyond(p.y, box.min.y, box.max.y),
-                 beyond(p.z, box.min.z, box.max.z)};
-  return squared_norm(d);
+  return collarmesh::squared_distance_to_triangle(p, t[0], t[1], t[2]);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/distances.h"
+
 namespace collarmesh {
 
 namespace {
@@ -15,16 +17,10 @@ constexpr int most_turns = 20;
 // Points are pulled back to this share of the tolerance, so that rounding cannot leave them outside.
 constexpr double inside = 0.99;
 
-Point nearest_on_segment(const Point& p, const Point& a, const Point& b) {
-  const Vector d = b - a;
-  const double length = squared_norm(d);
-  return length > 0 ? a + std::clamp(dot(p - a, d) / length, 0.0, 1.0) * d : a;
-}
-
 Point nearest_on_chain(const std::vector<Point>& points, const std::vector<Index>& chain, const Point& p) {
   Point nearest = points[chain.front()];
   for (std::size_t i = 1; i < chain.size(); ++i) {
-    const Point q = nearest_on_segment(p, points[chain[i - 1]], points[chain[i]]);
+    const Point q = nearest_point_on_segment(p, points[chain[i - 1]], points[chain[i]]);
     if (squared_distance(p, q) < squared_distance(p, nearest)) nearest = q;
   }
   return nearest;
@@ -49,8 +45,7 @@ FlatFeatures::FlatFeatures(const Plc& plc)
     double deviation = 0;
     for (const Index i : chain)
       deviation = std::max(
-          deviation, distance(plc.points[i], nearest_on_segment(plc.points[i], plc.points[chain.front()],
-                                                                plc.points[chain.back()])));
+          deviation, distance_to_segment(plc.points[i], plc.points[chain.front()], plc.points[chain.back()]));
     curve_room_[c] = 0.5 * permitted(deviation) + rounding;
   }
   for (Index k = 0; k < plc.patches.size(); ++k) {

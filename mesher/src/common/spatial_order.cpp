@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <boost/sort/spreadsort/integer_sort.hpp>
+#include <cassert>
 #include <cmath>
 
 namespace collarmesh {
@@ -66,6 +67,7 @@ std::vector<SpatialKey> spatial_order(std::span<const Point> points) {
 }
 
 std::size_t spatial_split(std::span<const SpatialKey> keys) {
+  assert(keys.size() >= 2);
   const std::uint64_t differing = keys.front().place ^ keys.back().place;
   if (differing == 0) return keys.size() / 2;
   const std::uint64_t upper_half = std::bit_floor(differing);

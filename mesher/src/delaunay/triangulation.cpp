@@ -176,6 +176,30 @@ Index Triangulation::conflicting_cell_around(Index vertex, const Point& p) {
   return none;
 }
 
+// Are the new cells as an insertion leaves them: positively oriented around the vertex, joined to their
+// neighbours from both sides, and Delaunay?
+[[maybe_unused]] static bool consistent(const Triangulation& mesh, const ConflictZone& zone, Index vertex) {
+  for (std::size_t i = 0; i < zone.created.size(); ++i) {
+    const Index cell = zone.created[i];
+    const auto& v = mesh.corners(cell);
+    if (!mesh.alive(cell) || v[corner_of(zone.border[i])] != vertex ||
+        predicates::orientation(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])) <= 0)
+      return false;
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      const FaceId face = face_id(cell, corner), beyond = mesh.opposite(face);
+      if (beyond == no_face) continue;
+      auto ours = mesh.face_vertices(face), theirs = mesh.face_vertices(beyond);
+      std::sort(ours.begin(), ours.end());
+      std::sort(theirs.begin(), theirs.end());
+      if (mesh.opposite(beyond) != face || ours != theirs ||
+          mesh.in_conflict(cell, mesh.point(mesh.corners(cell_of(beyond))[corner_of(beyond)])))
+        return false;
+    }
+  }
+  return std::all_of(zone.vertices.begin(), zone.vertices.end(),
+                     [&](Index v) { return mesh.alive(mesh.incident_cell(v)); });
+}
+
 template <class NewCell>
 void Triangulation::replace_zone(ConflictZone& zone, Index vertex, Workspace& workspace,
                                  const NewCell& new_cell) {
@@ -211,6 +235,7 @@ void Triangulation::replace_zone(ConflictZone& zone, Index vertex, Workspace& wo
     ++states_[cell].generation;
     workspace.free_cells.push_back(cell);
   }
+  assert(consistent(*this, zone, vertex));
 }
 
 Index Triangulation::insert(ConflictZone& zone) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "collarmesh/error.h"
+#include "common/edge_key.h"
 #include "common/tet_sides.h"
 #include "io/face_finder.h"
 
@@ -47,10 +48,11 @@ class MidNodes {
         {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
     for (std::size_t t = 0; t < mesh.tets.size(); ++t)
       for (std::size_t e = 0; e < ends.size(); ++e)
-        nodes_.emplace(key(mesh.tets[t][ends[e][0]], mesh.tets[t][ends[e][1]]), mesh.tet_mid_nodes[t][e]);
+        nodes_.emplace(edge_key(mesh.tets[t][ends[e][0]], mesh.tets[t][ends[e][1]]),
+                       mesh.tet_mid_nodes[t][e]);
   }
   Index find(Index a, Index b) const {
-    const auto found = nodes_.find(key(a, b));
+    const auto found = nodes_.find(edge_key(a, b));
     if (found == nodes_.end())
       throw ReadError(path_ +
                       ": a triangle or line of first order is no face or edge of a tetrahedron of second "
@@ -59,8 +61,6 @@ class MidNodes {
   }
 
  private:
-  static std::uint64_t key(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
-
   const std::string& path_;
   std::unordered_map<std::uint64_t, Index> nodes_;
 };

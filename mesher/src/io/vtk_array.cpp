@@ -104,13 +104,8 @@ void unpack_block(VtkCompression compression, std::string_view packed, std::uint
   const bool lz4 = compression == VtkCompression::lz4;
   if (size / (lz4 ? lz4_largest_ratio : vtk_largest_ratio) > packed.size())
     throw VtkArrayError{fmt::format("a block of {} compressed bytes cannot hold {}", packed.size(), size)};
-  if (!lz4) {
-    if (!zlib_unpack(packed, size, bytes)) throw VtkArrayError{"a compressed block is damaged"};
-    return;
-  }
-  const std::optional<std::string> block = lz4_unpack(packed, size);
-  if (!block) throw VtkArrayError{"a compressed block is damaged"};
-  bytes += *block;
+  if (!(lz4 ? lz4_unpack : zlib_unpack)(packed, size, bytes))
+    throw VtkArrayError{"a compressed block is damaged"};
 }
 
 /// The number of blocks, their size, the size of the last one if it is smaller, the compressed

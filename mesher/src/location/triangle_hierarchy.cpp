@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 
 #include "delaunay/predicates.h"
 
 namespace collarmesh {
 
 namespace {
-
-// Height over longest side below which a triangle is a needle, squared.
-constexpr double squared_needle = 1e-12;
 
 // Does the box lie on one side of the triangle's plane? Conservative: the terms that are compared are off by
 // some 16 roundings of the sum of products that the slack is a share of.
@@ -21,12 +19,6 @@ bool misses_plane(const CentredBox& box, const std::array<Point, 3>& t) {
       std::fabs(n.x) * box.half.x + std::fabs(n.y) * box.half.y + std::fabs(n.z) * box.half.z;
   const double slack = 1e-14 * sum(u) * sum(v) * (sum(d) + sum(box.half));
   return std::fabs(dot(n, d)) > reach + slack;
-}
-
-Point nearest_point_on_segment(const Point& p, const Point& a, const Point& b) {
-  const Vector u = b - a;
-  const double length = squared_norm(u);
-  return a + (length > 0 ? std::clamp(dot(p - a, u) / length, 0.0, 1.0) : 0.0) * u;
 }
 
 int side(const Point& a, const Point& b, const Point& c, const Point& p) {
@@ -51,46 +43,6 @@ int crossing_direction(const Point& p, const Point& q, const std::array<Point, 3
 }
 
 }  // namespace
-
-Point nearest_point_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
-  const Vector u = b - a, w = c - a, n = cross(u, w);
-  const double nn = squared_norm(n), longest = std::max(squared_norm(u), squared_norm(w));
-  const bool inside = nn > 0 && dot(cross(u, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 &&
-                      dot(cross(a - c, p - c), n) >= 0;
-  const Point foot = inside ? p - (dot(p - a, n) / nn) * n : p;
-  if (inside && nn > squared_needle * longest * longest) return foot;
-  Point best = nearest_point_on_segment(p, a, b);
-  for (const Point& q : {nearest_point_on_segment(p, b, c), nearest_point_on_segment(p, c, a)})
-    if (squared_distance(p, q) < squared_distance(p, best)) best = q;
-  // The normal of a needle is noise: the border bounds the distance from above.
-  return inside && squared_distance(p, foot) < squared_distance(p, best) ? foot : best;
-}
-
-double squared_distance_to_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
-  return squared_distance(p, nearest_point_on_triangle(p, a, b, c));
-}
-
-double squared_distance_to_segment(const Point& p, const Point& a, const Point& b) {
-  return squared_distance(p, nearest_point_on_segment(p, a, b));
-}
-
-// Most points are far from the triangle's plane, or above or below it. For all others the nearest point is on
-// a side that they lie beyond.
-bool is_within(double squared_bound, const Point& p, const Point& a, const Point& b, const Point& c) {
-  const Vector u = b - a, w = c - a, n = cross(u, w);
-  const double nn = squared_norm(n), longest = std::max(squared_norm(u), squared_norm(w));
-  if (!(nn > squared_needle * longest * longest))
-    return squared_distance_to_triangle(p, a, b, c) < squared_bound;
-  const double height = dot(p - a, n);
-  if (height * height >= squared_bound * nn) return false;
-  bool inside = true;
-  const auto is_near_side = [&](const Point& from, const Point& to) {
-    if (dot(cross(to - from, p - from), n) >= 0) return false;
-    inside = false;
-    return squared_distance_to_segment(p, from, to) < squared_bound;
-  };
-  return is_near_side(a, b) || is_near_side(b, c) || is_near_side(c, a) || inside;
-}
 
 TriangleHierarchy::TriangleHierarchy(std::span<const Point> points,
                                      std::vector<std::array<Index, 3>> triangles)
@@ -127,6 +79,7 @@ Index TriangleHierarchy::build(std::span<const SpatialKey> keys, Index parent, B
 
 // Children come after their parents.
 std::vector<Index> TriangleHierarchy::common_labels(std::span<const Index> label_of_triangle) const {
+  assert(label_of_triangle.size() == triangles_.size());
   std::vector<Index> labels(nodes_.size());
   for (std::size_t i = nodes_.size(); i-- > 0;) {
     const Node& node = nodes_[i];

@@ -8,6 +8,7 @@
 
 #include "collarmesh/geometry.h"
 #include "collarmesh/plc.h"
+#include "common/distances.h"
 #include "common/large_pages.h"
 #include "common/spatial_order.h"
 #include "location/centred_box.h"
@@ -143,25 +144,6 @@ class TriangleHierarchy {
 
 /// Over the triangles of one patch. The complex's points are kept by reference.
 std::unique_ptr<TriangleHierarchy> hierarchy_of_patch(const Plc& plc, Index patch);
-
-/// Squared distance from p to the triangle abc, which may be degenerate.
-double squared_distance_to_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
-double squared_distance_to_segment(const Point& p, const Point& a, const Point& b);
-/// Returns whether the squared distance from p to the triangle abc, which may be degenerate, is below the
-/// bound.
-bool is_within(double squared_bound, const Point& p, const Point& a, const Point& b, const Point& c);
-/// The point of the triangle abc, which may be degenerate, that is nearest to p.
-Point nearest_point_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
-/// Squared distance from p to the box; 0 inside.
-inline double squared_distance_to_box(const Point& p, const Box& box) {
-  const auto beyond = [](double from, double at, double to) {
-    const double below = from - at, above = at - to;
-    const double d = below > above ? below : above;
-    return d > 0 ? d : 0;
-  };
-  return squared_norm({beyond(box.min.x, p.x, box.max.x), beyond(box.min.y, p.y, box.max.y),
-                       beyond(box.min.z, p.z, box.max.z)});
-}
 
 template <class Skips, class Counts>
 double TriangleHierarchy::squared_distance_to(const Point& p, double bound, Index* nearest,

@@ -1,6 +1,7 @@
 #include "partition/level_partitions.h"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 #include <queue>
 #include <span>
@@ -128,6 +129,7 @@ class Levelling {
 
 void level_partitions(const DualGraph& graph, std::size_t partitions, std::size_t most,
                       std::vector<GraphIndex>& partition_of) {
+  assert(partition_of.size() >= partitions && most * partitions >= partition_of.size());
   Levelling(graph, partitions, most, partition_of).run();
 }
 

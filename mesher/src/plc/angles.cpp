@@ -4,7 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-namespace collarmesh::build {
+namespace collarmesh::plc {
+
+using namespace facets;
 
 namespace {
 
@@ -106,4 +108,4 @@ double fold_angle(std::span<const Vector> rays, bool closed) {
   return best;
 }
 
-}  // namespace collarmesh::build
+}  // namespace collarmesh::plc

@@ -7,7 +7,7 @@
 #include "plc/features.h"
 
 /// Angles between rays and facets at a common point. Directions are unit vectors, angles degrees.
-namespace collarmesh::build {
+namespace collarmesh::plc {
 
 /// In [0, 180], accurate near both ends.
 double angle_between(const Vector& u, const Vector& v);
@@ -35,4 +35,4 @@ std::vector<Index> find_folds(std::span<const Point> points, const Plc& plc,
 /// The smallest angle of each kind at each curve and vertex of the complex.
 std::vector<Crease> measure_angles(const Plc& plc);
 
-}  // namespace collarmesh::build
+}  // namespace collarmesh::plc

@@ -6,26 +6,27 @@
 
 #include "collarmesh/options.h"
 #include "collarmesh/plc_builder.h"
+#include "facets/cleanup.h"
+#include "facets/facet_triangulation.h"
+#include "facets/faults.h"
+#include "facets/flat_clusters.h"
+#include "facets/intersections.h"
+#include "facets/near_touching.h"
+#include "facets/orientation.h"
+#include "facets/weld.h"
 #include "plc/angles.h"
-#include "plc/cleanup.h"
 #include "plc/curves.h"
-#include "plc/facet_triangulation.h"
-#include "plc/faults.h"
 #include "plc/features.h"
-#include "plc/flat_clusters.h"
 #include "plc/interfaces.h"
-#include "plc/intersections.h"
 #include "plc/lost_bodies.h"
-#include "plc/near_touching.h"
-#include "plc/orientation.h"
 #include "plc/regions.h"
-#include "plc/weld.h"
 
 namespace collarmesh {
 
 namespace {
 
-using namespace build;
+using namespace facets;
+using namespace plc;
 
 void name_soups(std::span<const PolygonSoup> soups, Draft& draft) {
   for (Index s = 0; s < soups.size(); ++s) {

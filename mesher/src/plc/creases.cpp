@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "collarmesh/plc_builder.h"
+#include "facets/faults.h"
 #include "plc/angles.h"
-#include "plc/faults.h"
 
 namespace collarmesh {
 
@@ -48,7 +48,7 @@ std::string meet(const char* first_kind, const std::string& first, const char* s
 }  // namespace
 
 std::vector<Crease> find_creases(const Plc& plc, double threshold) {
-  return below(build::measure_angles(plc), threshold);
+  return below(plc::measure_angles(plc), threshold);
 }
 
 PlcSummary summarize(const Plc& plc, double crease_threshold) {
@@ -65,7 +65,7 @@ PlcSummary summarize(const Plc& plc, double crease_threshold) {
   summary.shortest_segment = shortest_segment(plc);
   if (summary.shortest_segment > 0) summary.spread = summary.diagonal / summary.shortest_segment;
   summary.largest_deviation = plc.largest_deviation;
-  std::vector<Crease> angles = build::measure_angles(plc);
+  std::vector<Crease> angles = plc::measure_angles(plc);
   for (const Crease& c : angles) summary.smallest_angle = std::min(summary.smallest_angle, c.angle);
   summary.creases = below(std::move(angles), crease_threshold);
   return summary;
@@ -73,7 +73,7 @@ PlcSummary summarize(const Plc& plc, double crease_threshold) {
 
 std::string describe(const Plc& plc, const Crease& crease) {
   const auto [f, g] = crease.features;
-  const std::string where = build::text(crease.where);
+  const std::string where = facets::text(crease.where);
   switch (crease.kind) {
     case Crease::Kind::facets:
       return fmt::format("{} along {} at {:.2f} degrees near {}.",

@@ -5,17 +5,13 @@
 #include <numbers>
 
 #include "common/disjoint_sets.h"
+#include "common/distances.h"
 
-namespace collarmesh::build {
+namespace collarmesh::plc {
+
+using namespace facets;
 
 namespace {
-
-double distance_to_chord(const Point& p, const Point& a, const Point& b) {
-  const Vector d = b - a;
-  const double squared = squared_norm(d);
-  const double t = squared > 0 ? std::clamp(dot(p - a, d) / squared, 0.0, 1.0) : 0.0;
-  return distance(p, a + t * d);
-}
 
 class CurveFinder {
  public:
@@ -128,7 +124,7 @@ class CurveFinder {
     const Point &here = draft_.points[point], &before = draft_.points[other_end(at[0], point)],
                 &after = draft_.points[other_end(at[1], point)];
     const Vector u = here - before, v = after - here;
-    if (exact_) return dot(u, v) > 0 && distance_to_chord(here, before, after) <= draft_.planar_tolerance;
+    if (exact_) return dot(u, v) > 0 && distance_to_segment(here, before, after) <= draft_.planar_tolerance;
     return std::atan2(norm(cross(u, v)), dot(u, v)) <= largest_turn_;
   }
 
@@ -183,8 +179,8 @@ class CurveFinder {
   }
 
   double deviation(const Chain& chain, std::size_t at, std::size_t first, std::size_t last) const {
-    return distance_to_chord(draft_.points[chain.points[at]], draft_.points[chain.points[first]],
-                             draft_.points[chain.points[last]]);
+    return distance_to_segment(draft_.points[chain.points[at]], draft_.points[chain.points[first]],
+                               draft_.points[chain.points[last]]);
   }
 
   std::size_t farthest_from_chord(const Chain& chain, std::size_t first, std::size_t last) const {
@@ -221,7 +217,7 @@ class CurveFinder {
       double largest = 0;
       for (const Index p : chain.points)
         largest = std::fmax(largest,
-                            distance_to_chord(draft_.points[p], draft_.points[first], draft_.points[last]));
+                            distance_to_segment(draft_.points[p], draft_.points[first], draft_.points[last]));
       // Two points that a fold cut off a given curve do not say whether it is straight.
       const bool cut_off = segments_[chain.segment].given && (is_fold_[first] || is_fold_[last]);
       curve.straight = chain.points.size() == 2 ? !cut_off : largest <= draft_.planar_tolerance;
@@ -258,4 +254,4 @@ void find_curves(Draft& draft, const EdgeTable& edges, const std::vector<Feature
   CurveFinder(draft, edges, segments, patch_of, folds, feature_angle, plc).run();
 }
 
-}  // namespace collarmesh::build
+}  // namespace collarmesh::plc

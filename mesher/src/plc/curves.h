@@ -3,11 +3,11 @@
 #include <vector>
 
 #include "collarmesh/plc.h"
-#include "plc/draft.h"
-#include "plc/edges.h"
+#include "facets/draft.h"
+#include "facets/edges.h"
 #include "plc/features.h"
 
-namespace collarmesh::build {
+namespace collarmesh::plc {
 
 /// Chain the segments to curves and find the vertices that end them. Fills plc.vertices and
 /// plc.curves with everything but Vertex::patches; `patch_of` gives the patch of each triangle.
@@ -15,8 +15,8 @@ namespace collarmesh::build {
 /// same tag, turn by less than the feature angle (degrees; 0: only within the planar tolerance of a
 /// straight line), and where the surface is one fan of triangles. The points in `folds` are vertices
 /// too.
-void find_curves(Draft& draft, const EdgeTable& edges, const std::vector<FeatureSegment>& segments,
-                 const std::vector<Index>& patch_of, const std::vector<Index>& folds, double feature_angle,
-                 Plc& plc);
+void find_curves(facets::Draft& draft, const facets::EdgeTable& edges,
+                 const std::vector<FeatureSegment>& segments, const std::vector<Index>& patch_of,
+                 const std::vector<Index>& folds, double feature_angle, Plc& plc);
 
-}  // namespace collarmesh::build
+}  // namespace collarmesh::plc

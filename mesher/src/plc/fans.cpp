@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
-namespace collarmesh::build {
+namespace collarmesh::plc {
+
+using namespace facets;
 
 namespace {
 
@@ -108,4 +110,4 @@ double PatchFans::fold(Index point, const Fan& fan, double noise) const {
   return too_small || too_flat_to_fold(fan) ? 180 : fold_angle(fan.rays, fan.closed);
 }
 
-}  // namespace collarmesh::build
+}  // namespace collarmesh::plc

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "collarmesh/plc.h"
+#include "facets/edges.h"
 #include "plc/angles.h"
-#include "plc/edges.h"
 
-namespace collarmesh::build {
+namespace collarmesh::plc {
 
 /// The triangles of one patch around a point, between segments.
 struct Fan {
@@ -28,8 +28,8 @@ class PatchFans {
   PatchFans(std::span<const Point> points, const std::vector<Plc::Triangle>& triangles,
             const std::vector<Plc::Patch>& patches, std::span<const std::array<Index, 2>> segments);
 
-  const std::vector<Corners>& triangles() const { return triangles_; }
-  const EdgeTable& edges() const { return edges_; }
+  const std::vector<facets::Corners>& triangles() const { return triangles_; }
+  const facets::EdgeTable& edges() const { return edges_; }
   Index patch_of(Index side) const { return patch_of_[side / 3]; }
 
   /// The fans around a point, of smooth patches only or of all.
@@ -48,12 +48,12 @@ class PatchFans {
 
   std::span<const Point> points_;
   const std::vector<Plc::Patch>& patches_;
-  std::vector<Corners> triangles_;
+  std::vector<facets::Corners> triangles_;
   std::vector<Index> patch_of_;  // by triangle
-  EdgeTable edges_;
+  facets::EdgeTable edges_;
   std::vector<bool> is_segment_;               // by edge
   std::vector<Index> first_corner_, corners_;  // corners (3 t + i) at each point
   std::vector<bool> visited_;                  // corners that are in a fan already
 };
 
-}  // namespace collarmesh::build
+}  // namespace collarmesh::plc

@@ -6,7 +6,9 @@
 
 #include "common/disjoint_sets.h"
 
-namespace collarmesh::build {
+namespace collarmesh::plc {
+
+using namespace facets;
 
 namespace {
 
@@ -146,4 +148,4 @@ void fit_plane(Draft& draft, const std::vector<Index>& triangles, Plc::Patch& pa
   accept(base + 0.5 * (extent.low + extent.high) * extent.normal, extent.normal);
 }
 
-}  // namespace collarmesh::build
+}  // namespace collarmesh::plc

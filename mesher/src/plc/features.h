@@ -3,11 +3,11 @@
 #include <vector>
 
 #include "collarmesh/plc.h"
-#include "plc/draft.h"
-#include "plc/edges.h"
-#include "plc/flat_clusters.h"
+#include "facets/draft.h"
+#include "facets/edges.h"
+#include "facets/flat_clusters.h"
 
-namespace collarmesh::build {
+namespace collarmesh::plc {
 
 /// A straight piece of the curves to be.
 struct FeatureSegment {
@@ -20,16 +20,16 @@ struct FeatureSegment {
 /// The segments: edges that the input names, that are not shared by exactly two triangles, between
 /// different tags or soups, or where a surface that does not give its features turns by more than the
 /// feature angle (degrees).
-std::vector<FeatureSegment> find_segments(const Draft& draft, const EdgeTable& edges,
-                                          const FlatClusters& clusters, double feature_angle);
+std::vector<FeatureSegment> find_segments(const facets::Draft& draft, const facets::EdgeTable& edges,
+                                          const facets::FlatClusters& clusters, double feature_angle);
 
 /// For each triangle its patch: connected across the edges that are no segments. Numbered by first
 /// triangle. Returns the number of patches.
-Index find_patches(const Draft& draft, const EdgeTable& edges, const std::vector<FeatureSegment>& segments,
-                   std::vector<Index>& patch_of);
+Index find_patches(const facets::Draft& draft, const facets::EdgeTable& edges,
+                   const std::vector<FeatureSegment>& segments, std::vector<Index>& patch_of);
 
 /// A plane that all points of the patch lie in within the tolerance: then sets planar, normal,
 /// origin. Raises the draft's deviation.
-void fit_plane(Draft& draft, const std::vector<Index>& triangles, Plc::Patch& patch);
+void fit_plane(facets::Draft& draft, const std::vector<Index>& triangles, Plc::Patch& patch);
 
-}  // namespace collarmesh::build
+}  // namespace collarmesh::plc

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <map>
 
-#include "plc/edges.h"
-#include "plc/flat_clusters.h"
+#include "facets/edges.h"
+#include "facets/flat_clusters.h"
 
-namespace collarmesh::build {
+namespace collarmesh::plc {
+
+using namespace facets;
 
 namespace {
 
@@ -93,4 +95,4 @@ class InterfaceFinder {
 
 void unify_interfaces(Draft& draft) { InterfaceFinder(draft).run(); }
 
-}  // namespace collarmesh::build
+}  // namespace collarmesh::plc

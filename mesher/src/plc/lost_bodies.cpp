@@ -6,9 +6,11 @@
 #include <numeric>
 
 #include "common/disjoint_sets.h"
-#include "plc/faults.h"
+#include "facets/faults.h"
 
-namespace collarmesh::build {
+namespace collarmesh::plc {
+
+using namespace facets;
 
 namespace {
 
@@ -122,4 +124,4 @@ std::vector<Plc::Warning> lost_bodies(std::span<const PolygonSoup> soups, const 
   return warnings;
 }
 
-}  // namespace collarmesh::build
+}  // namespace collarmesh::plc

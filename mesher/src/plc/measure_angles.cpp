@@ -6,7 +6,9 @@
 
 #include "plc/fans.h"
 
-namespace collarmesh::build {
+namespace collarmesh::plc {
+
+using namespace facets;
 
 namespace {
 
@@ -270,4 +272,4 @@ std::vector<Index> find_folds(std::span<const Point> points, const Plc& plc,
   return folds;
 }
 
-}  // namespace collarmesh::build
+}  // namespace collarmesh::plc

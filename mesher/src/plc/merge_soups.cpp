@@ -4,16 +4,16 @@
 #include <unordered_map>
 #include <vector>
 
-#include "plc/draft.h"
-#include "plc/facet_triangulation.h"
-#include "plc/faults.h"
-#include "plc/weld.h"
+#include "facets/draft.h"
+#include "facets/facet_triangulation.h"
+#include "facets/faults.h"
+#include "facets/weld.h"
 
 namespace collarmesh {
 
 namespace {
 
-using namespace build;
+using namespace facets;
 
 /// The polygons of a facet with the merged points.
 struct MergedFacet {

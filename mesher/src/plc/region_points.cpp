@@ -4,16 +4,16 @@
 #include <vector>
 
 #include "collarmesh/merge_soups.h"
-#include "plc/draft.h"
-#include "plc/edges.h"
-#include "plc/shells.h"
-#include "plc/simplices.h"
+#include "facets/draft.h"
+#include "facets/edges.h"
+#include "facets/shells.h"
+#include "facets/simplices.h"
 
 namespace collarmesh {
 
 namespace {
 
-using namespace build;
+using namespace facets;
 
 class PointPlacer {
  public:

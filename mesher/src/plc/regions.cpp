@@ -9,9 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "plc/shells.h"
+#include "facets/shells.h"
 
-namespace collarmesh::build {
+namespace collarmesh::plc {
+
+using namespace facets;
 
 namespace {
 
@@ -393,4 +395,4 @@ Regions find_regions(const Draft& draft, const EdgeTable& edges, const BoxTree& 
   return RegionFinder(draft, edges, boxes, faults).run(soups);
 }
 
-}  // namespace collarmesh::build
+}  // namespace collarmesh::plc

@@ -5,11 +5,11 @@
 
 #include "collarmesh/plc.h"
 #include "common/box_tree.h"
-#include "plc/draft.h"
-#include "plc/edges.h"
-#include "plc/faults.h"
+#include "facets/draft.h"
+#include "facets/edges.h"
+#include "facets/faults.h"
 
-namespace collarmesh::build {
+namespace collarmesh::plc {
 
 struct Regions {
   std::vector<Plc::Region> list;  ///< [0] is the outside
@@ -24,7 +24,7 @@ struct Regions {
 /// A region is named after the soup that most of its boundary comes from.
 /// Faults: region and hole points on a facet. Warnings: those without effect.
 /// The triangles are the first items of the tree, in their order.
-Regions find_regions(const Draft& draft, const EdgeTable& edges, const BoxTree& boxes,
-                     std::span<const PolygonSoup> soups, Faults& faults);
+Regions find_regions(const facets::Draft& draft, const facets::EdgeTable& edges, const BoxTree& boxes,
+                     std::span<const PolygonSoup> soups, facets::Faults& faults);
 
-}  // namespace collarmesh::build
+}  // namespace collarmesh::plc

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/parallel_for.h"
+#include "common/split_mix.h"
 #include "common/thread_limit.h"
 
 namespace collarmesh {
@@ -24,12 +25,6 @@ constexpr std::size_t most_insertions_of_a_round = std::size_t{1} << 18;
 // Where blocks are cut: shares of a sample.
 constexpr double first_share = 0.4, last_share = 0.6;
 
-std::uint64_t mixed(std::uint64_t z) {
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  return z ^ (z >> 31);
-}
-
 bool of_cells(WorkQueue::Priority priority) {
   return priority == WorkQueue::skinny_cells || priority == WorkQueue::large_cells;
 }
@@ -41,7 +36,7 @@ bool of_triangles(WorkQueue::Priority priority) {
 // The same for the same cell or triangle, whoever destroys it.
 std::uint64_t seed_at(const Point& centre, std::uint64_t seed) {
   for (std::size_t axis = 0; axis < 3; ++axis)
-    seed = mixed(seed + 0x9e3779b97f4a7c15ULL + std::bit_cast<std::uint64_t>(centre[axis]));
+    seed = mixed(seed + split_mix_step + std::bit_cast<std::uint64_t>(centre[axis]));
   return seed;
 }
 
@@ -179,7 +174,7 @@ void BlockRefinement::cut(std::size_t node, std::span<Point> sample) {
   for (const Point& p : sample) box.add(p);
   const Vector extent = box.max - box.min;
   const std::size_t axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-  const double any = static_cast<double>(mixed(rounds_ * most_blocks + node + 1) >> 11) * 0x1p-53;
+  const double any = unit(mixed(rounds_ * most_blocks + node + 1));
   const double share = first_share + (last_share - first_share) * any;
   const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(sample.size()));
   std::nth_element(sample.begin(), sample.begin() + place, sample.end(),

@@ -1,6 +1,7 @@
 #include "refine/collar_creator.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "collarmesh/plc_builder.h"
@@ -81,6 +82,7 @@ void CollarCreator::create_if_isolated(Index at) {
 
 // The curves that end at the vertex do not reach beyond its ball's sphere any more.
 void CollarCreator::create_at_vertex(Index vertex, Index near) {
+  assert(collars_.ball_at_vertex(vertex) == none);
   gap_size().start_near(near);
   placement_->place_at_vertex(vertex);
   for (const Index curve : domain_.plc.vertices[vertex].curves)

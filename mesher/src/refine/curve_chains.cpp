@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/distances.h"
+
 namespace collarmesh {
 
 namespace {
@@ -248,10 +250,8 @@ bool CurveChains::leaves_chord(const Chained& chained, double sagitta) const {
   const Subsegment& s = chained.piece;
   if (domain_.plc.curves[s.curve].straight) return false;
   const Point a = place(chained, 0), b = place(chained, 1);
-  const double chord = squared_distance(a, b);
   const auto leaves = [&](const Point& p) {
-    const double t = chord > 0 ? std::clamp(dot(p - a, b - a) / chord, 0.0, 1.0) : 0.0;
-    return squared_distance(p, a + t * (b - a)) > sagitta * sagitta;
+    return squared_distance_to_segment(p, a, b) > sagitta * sagitta;
   };
   const auto& lengths = domain_.paths.lengths(s.curve);
   const auto first = std::upper_bound(lengths.begin(), lengths.end(), s.parameters[0]);

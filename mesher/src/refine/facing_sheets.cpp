@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/edge_key.h"
 #include "tolerance/forced_edges.h"
 
 namespace collarmesh {
@@ -31,8 +32,6 @@ double longest_edge(const Corners& p) {
     for (unsigned j = 0; j < i; ++j) longest = std::max(longest, squared_distance(p[i], p[j]));
   return std::sqrt(longest);
 }
-
-std::uint64_t pair_of(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
 
 }  // namespace
 
@@ -113,9 +112,9 @@ bool FacingSheets::are_apart(const Feature& a, const Feature& b) const {
          !contacts_.touch(a.dimension, a.index, b.dimension, b.index);
 }
 
-bool FacingSheets::is_pair(Index a, Index b) const { return pairs_.contains(pair_of(a, b)); }
+bool FacingSheets::is_pair(Index a, Index b) const { return pairs_.contains(edge_key(a, b)); }
 
-void FacingSheets::note_pair(Index a, Index b) { pairs_.insert(pair_of(a, b)); }
+void FacingSheets::note_pair(Index a, Index b) { pairs_.insert(edge_key(a, b)); }
 
 std::size_t FacingSheets::bytes() const { return pairs_.size() * bytes_per_pair; }
 

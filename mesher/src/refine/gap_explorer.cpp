@@ -4,15 +4,10 @@
 #include <unordered_map>
 #include <utility>
 
+#include "common/edge_key.h"
 #include "refine/elements.h"
 
 namespace collarmesh {
-
-namespace {
-
-std::uint64_t segment_key(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32U | std::max(a, b); }
-
-}  // namespace
 
 GapExplorer::GapExplorer(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes)
     : plc_(domain.plc),
@@ -28,7 +23,7 @@ void GapExplorer::find_borders() {
   std::unordered_map<std::uint64_t, Index> curve_of;
   for (Index v = 0; v < plc_.vertices.size(); ++v) vertex_at[plc_.vertices[v].point] = v;
   for (Index c = 0; c < plc_.curves.size(); ++c)
-    visit_segments(plc_.curves[c], [&](Index a, Index b) { curve_of[segment_key(a, b)] = c; });
+    visit_segments(plc_.curves[c], [&](Index a, Index b) { curve_of[edge_key(a, b)] = c; });
   const TriangleHierarchy& hierarchy = nodes_.hierarchy();
   border_of_.assign(hierarchy.triangle_count(), none);
   std::vector<Index> patch_of(hierarchy.triangle_count(), none);
@@ -38,7 +33,7 @@ void GapExplorer::find_borders() {
     bool any = false;
     for (unsigned k = 0; k < 3; ++k) {
       border.vertices[k] = vertex_at[e[k]];
-      const auto curve = curve_of.find(segment_key(e[k], e[(k + 1) % 3]));
+      const auto curve = curve_of.find(edge_key(e[k], e[(k + 1) % 3]));
       if (curve != curve_of.end()) border.curves[k] = curve->second;
       any = any || border.vertices[k] != none || border.curves[k] != none;
     }

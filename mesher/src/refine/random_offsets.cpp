@@ -1,5 +1,7 @@
 #include "refine/random_offsets.h"
 
+#include "common/split_mix.h"
+
 namespace collarmesh {
 
 namespace {
@@ -9,14 +11,8 @@ constexpr int most_offsets = 16, offsets_of_full_length = 8;
 
 }  // namespace
 
-// splitmix64 (Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014).
 Vector RandomOffsets::in_cube() {
-  const auto next = [this] {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ULL);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
-  };
+  const auto next = [this] { return 2 * next_unit(state_) - 1; };
   const double x = next(), y = next();
   return {x, y, next()};
 }

@@ -2,6 +2,7 @@
 #include "refine/restricted_surface.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "common/found_in_ranges.h"
@@ -224,6 +225,18 @@ void RestrictedSurface::cells_vanish(const ConflictZone& zone, Workspace& w) {
     });
 }
 
+// Are the cell's faces marked, with one record, from both of their cells or from none?
+[[maybe_unused]] static bool consistent(const RestrictedSurface& surface, const RefinedMesh& mesh,
+                                        Index cell) {
+  for (unsigned corner = 0; corner < 4; ++corner) {
+    const FaceId face = face_id(cell, corner), other = mesh.opposite(face);
+    const bool marked = surface.is_marked(face), marked_beyond = other != no_face && surface.is_marked(other);
+    if (marked != marked_beyond || (marked && &surface.triangle(face) != &surface.triangle(other)))
+      return false;
+  }
+  return true;
+}
+
 void RestrictedSurface::cells_made(const ConflictZone& zone, Index vertex) {
   fit_mesh();
   cells_made(zone, vertex, workspace_);
@@ -232,6 +245,8 @@ void RestrictedSurface::cells_made(const ConflictZone& zone, Index vertex) {
 void RestrictedSurface::cells_made(const ConflictZone& zone, Index vertex, Workspace& w) {
   label_created_cells(zone, vertex, w);
   mark_border_faces(zone, vertex, w);
+  assert(std::all_of(zone.created.begin(), zone.created.end(),
+                     [&](Index cell) { return consistent(*this, mesh_, cell); }));
 }
 
 void RestrictedSurface::fit_mesh() {
@@ -351,6 +366,7 @@ void RestrictedSurface::note_ball(Index cell, const CollarBall& ball) {
 }
 
 void RestrictedSurface::give_outside(Index cell) {
+  assert(labels_[cell].marked != 0);
   Record boundary;
   visit_marked(cell, [&](FaceId face) { boundary = record(face); });
   labels_[cell].region = 0;

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
+#include "common/edge_key.h"
 #include "common/found_in_ranges.h"
 #include "tolerance/triangle_within_tolerance.h"
 
@@ -32,8 +34,6 @@ struct EdgeUse {
   }
   bool same_place(const EdgeUse& other) const { return edge == other.edge && patch == other.patch; }
 };
-
-std::uint64_t edge_between(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
 
 bool has_use(const std::vector<EdgeUse>& sorted, const EdgeUse& wanted) {
   const auto first = std::lower_bound(sorted.begin(), sorted.end(), EdgeUse{wanted.edge, wanted.patch, 0});
@@ -121,13 +121,13 @@ bool SurfaceCheck::check_patch_topology(const std::vector<FaceId>& faces) {
   for (const FaceId face : faces) {
     const auto v = mesh_.face_vertices(face);
     const Index patch = surface_.patch(face);
-    for (unsigned i = 0; i < 3; ++i) uses.push_back({edge_between(v[i], v[(i + 1) % 3]), patch, face});
+    for (unsigned i = 0; i < 3; ++i) uses.push_back({edge_key(v[i], v[(i + 1) % 3]), patch, face});
   }
   sort_by_edge(uses, mesh_.vertex_count());
   bool found = false;
   curves_.visit([&](Index s, const Subsegment& subsegment) {
     for (const Index patch : domain_.plc.curves[subsegment.curve].patches) {
-      on_curves.push_back({edge_between(subsegment.ends[0], subsegment.ends[1]), patch, s});
+      on_curves.push_back({edge_key(subsegment.ends[0], subsegment.ends[1]), patch, s});
       if (has_use(uses, on_curves.back())) continue;
       curves_.encroach(s);
       found = true;
@@ -185,7 +185,7 @@ bool SurfaceCheck::refine_distant_triangles(const std::vector<FaceId>& faces) {
     const auto v = mesh_.face_vertices(face);
     notes.known_near = is_near((mesh_.point(v[0]) + mesh_.point(v[1]) + mesh_.point(v[2])) / 3);
     for (unsigned k = 0; k < 3 && notes.known_near; ++k) {
-      const std::uint64_t edge = edge_between(v[k], v[(k + 1) % 3]);
+      const std::uint64_t edge = edge_key(v[k], v[(k + 1) % 3]);
       NearEdge& known = near_edges[edge * 0x9e3779b97f4a7c15 >> 32 & (near_edges.size() - 1)];
       if (known.edge == edge && known.patch == patch) continue;
       const Point &a = mesh_.point(v[k]), &b = mesh_.point(v[(k + 1) % 3]);
@@ -309,6 +309,7 @@ std::vector<Index> SurfaceCheck::cells_on_surface() const {
 
 // Precondition: it is one of `cells_on_surface`.
 bool SurfaceCheck::flat_on_patch(Index cell) const {
+  assert(mesh_.alive(cell));
   const auto& corners = mesh_.corners(cell);
   const bool without_volume = has_no_volume(cell);
   bool found = false;

@@ -1,6 +1,7 @@
 #include "refine/unresolved_points.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace collarmesh {
@@ -21,6 +22,7 @@ Index UnresolvedPoints::add(Unresolved point, Index near) {
 }
 
 void UnresolvedPoints::withdraw(Index point) {
+  assert(!resolved(point));
   objects_.remove(points_[point].object);
   points_[point].object = none;
 }

@@ -28,7 +28,8 @@ EdgeDivision::EdgeDivision(improvement::Workpiece& workpiece, const MeshOptions&
       sizing_(workpiece.plc, options, Frame()),
       sizes_(std::move(sizes)),
       thin_(workpiece.plc, mesh(), options.bounds.thin_angle, options.bounds.reserve, workpiece.forced),
-      rule_(thin_),
+      cells_(workpiece.plc, mesh(), options.bounds),
+      rule_(thin_, cells_),
       operations_(workpiece, rule_) {
   workpiece_.prepare();
 }

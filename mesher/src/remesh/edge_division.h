@@ -4,6 +4,7 @@
 
 #include "collarmesh/mesher.h"
 #include "collarmesh/progress.h"
+#include "improve/cell_bounds.h"
 #include "improve/operations.h"
 #include "refine/sizing.h"
 
@@ -40,6 +41,7 @@ class EdgeDivision {
   Sizing sizing_;
   std::vector<double> sizes_;  // by vertex
   improvement::ThinShape thin_;
+  improvement::CellBounds cells_;
   improvement::ThinRule rule_;
   improvement::Operations operations_;
 };

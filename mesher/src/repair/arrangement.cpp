@@ -16,18 +16,18 @@
 #include <utility>
 
 #include "delaunay/predicates.h"
-#include "plc/cleanup.h"
-#include "plc/edges.h"
-#include "plc/exact.h"
-#include "plc/intersections.h"
-#include "plc/simplices.h"
+#include "facets/cleanup.h"
+#include "facets/edges.h"
+#include "facets/exact.h"
+#include "facets/intersections.h"
+#include "facets/simplices.h"
 #include "repair/snapping.h"
 
 namespace collarmesh::repairing {
 
 namespace {
 
-using namespace build;
+using namespace facets;
 
 using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
 using ExactPoint = Kernel::Point_3;
@@ -104,7 +104,7 @@ class Cutter {
 
   // Where the sides of s pierce t. False where a corner of one is in the plane of the other or a side meets
   // an edge: those are taken by their constructions.
-  bool find_piercings(const build::Corners& s, const build::Corners& t, Index number,
+  bool find_piercings(const facets::Corners& s, const facets::Corners& t, Index number,
                       std::vector<ExactPoint>& found) {
     const auto at = [&](Index p) -> const Point& { return draft_.points[p]; };
     const auto shared = [&](Index p) { return p == t[0] || p == t[1] || p == t[2]; };
@@ -130,7 +130,7 @@ class Cutter {
   }
 
   // Once for all triangles at the edge.
-  ExactPoint piercing(const Edge& edge, const build::Corners& t, Index number) {
+  ExactPoint piercing(const Edge& edge, const facets::Corners& t, Index number) {
     const auto [at, added] = piercings_.try_emplace({edge[0], edge[1], number});
     if (!added) return at->second;
     const ExactPoint p = exact(edge[0]), q = exact(edge[1]), origin = exact(t[0]);
@@ -142,7 +142,7 @@ class Cutter {
   }
 
   // Two triangles that cross each other in general position, with no common corner or one.
-  bool add_crossing(const build::Corners& s, Index i, const build::Corners& t, Index j) {
+  bool add_crossing(const facets::Corners& s, Index i, const facets::Corners& t, Index j) {
     std::vector<ExactPoint> ends;
     std::size_t common = 0;
     for (const Index p : s)
@@ -158,7 +158,7 @@ class Cutter {
   }
 
   // Two triangles in one plane: the sides of each cut the other.
-  bool add_coplanar(const build::Corners& s, Index i, const build::Corners& t, Index j) {
+  bool add_coplanar(const facets::Corners& s, Index i, const facets::Corners& t, Index j) {
     const auto at = [&](Index p) -> const Point& { return draft_.points[p]; };
     for (const Index p : t)
       if (predicates::orientation(at(s[0]), at(s[1]), at(s[2]), at(p)) != 0) return false;
@@ -177,7 +177,7 @@ class Cutter {
 
   // What an edge in the plane of a triangle has in common with it: nothing, a point or a segment, of which
   // the ends are ends of the edge, corners, or crossings with the sides.
-  void clip(const Edge& e, const build::Corners& t, Index number, unsigned axis) {
+  void clip(const Edge& e, const facets::Corners& t, Index number, unsigned axis) {
     if (!clipped_.insert({number, e}).second) return;
     const auto turn = [&](Index p, Index q, Index r) {
       return planar_orientation(axis, draft_.points[p], draft_.points[q], draft_.points[r]);
@@ -209,7 +209,7 @@ class Cutter {
   }
 
   // The end of an edge, if it is in the triangle.
-  void add_end(Index p, const build::Corners& t, const std::array<int, 3>& within,
+  void add_end(Index p, const facets::Corners& t, const std::array<int, 3>& within,
                std::vector<ExactPoint>& common) {
     if (*std::min_element(within.begin(), within.end()) < 0) return;
     common.push_back(exact(p));
@@ -309,9 +309,9 @@ class Cutter {
   }
 
   void cut_triangles() {
-    std::vector<build::Corners> triangles;
+    std::vector<facets::Corners> triangles;
     std::vector<Origin> origins;
-    std::vector<build::Corners> before = std::move(draft_.triangles);
+    std::vector<facets::Corners> before = std::move(draft_.triangles);
     std::vector<Origin> origins_before = std::move(draft_.origins);
     draft_.triangles.clear();
     draft_.origins.clear();
@@ -324,7 +324,7 @@ class Cutter {
     }
   }
 
-  void cut_triangle(const build::Corners& t, const Origin& origin, const Cuts& cuts) {
+  void cut_triangle(const facets::Corners& t, const Origin& origin, const Cuts& cuts) {
     const Kernel::Plane_3 plane(exact(t[0]), exact(t[1]), exact(t[2]));
     const std::array<double, 3> normal{std::fabs(CGAL::to_double(plane.a())),
                                        std::fabs(CGAL::to_double(plane.b())),
@@ -384,9 +384,9 @@ class Cutter {
       if (ids_[info - 1] == none) ids_[info - 1] = add_rounded(inserted_[info - 1]);
     }
     for (const auto face : mesh.finite_face_handles()) {
-      build::Corners corners{ids_[face->vertex(0)->info().number - 1],
-                             ids_[face->vertex(1)->info().number - 1],
-                             ids_[face->vertex(2)->info().number - 1]};
+      facets::Corners corners{ids_[face->vertex(0)->info().number - 1],
+                              ids_[face->vertex(1)->info().number - 1],
+                              ids_[face->vertex(2)->info().number - 1]};
       if (turned) std::swap(corners[1], corners[2]);
       draft_.add_triangle(corners, origin);
     }
@@ -511,7 +511,7 @@ void unify_equal_points(Draft& draft) {
         i > 0 && draft.points[order[i]] == draft.points[order[i - 1]] ? merged[order[i - 1]] : order[i];
   std::size_t kept = 0;
   for (Index t = 0; t < draft.triangles.size(); ++t) {
-    build::Corners corners = draft.triangles[t];
+    facets::Corners corners = draft.triangles[t];
     for (Index& c : corners) c = merged[c];
     if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
     draft.triangles[kept] = corners;

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "plc/draft.h"
+#include "facets/draft.h"
 #include "repair/work.h"
 
 namespace collarmesh::repairing {
@@ -26,9 +26,9 @@ struct ArrangementReport {
 /// the draft is then of no use. Pieces keep their triangle's origin, but for `Origin::facet`, which is
 /// renumbered. Cost: O(n log n) and for k intersecting pairs O(k log k) exact constructions, some 0.1 ms
 /// each.
-ArrangementReport arrange(build::Draft& draft, double grain, Work* work = nullptr, bool cancel_twins = true);
+ArrangementReport arrange(facets::Draft& draft, double grain, Work* work = nullptr, bool cancel_twins = true);
 
 /// Make points with equal coordinates one, and drop the triangles and segments that lose a corner in this.
-void unify_equal_points(build::Draft& draft);
+void unify_equal_points(facets::Draft& draft);
 
 }  // namespace collarmesh::repairing

@@ -5,15 +5,15 @@
 #include <utility>
 
 #include "common/distance_tree.h"
-#include "plc/edges.h"
-#include "plc/intersections.h"
+#include "facets/edges.h"
+#include "facets/intersections.h"
 #include "repair/changes.h"
 
 namespace collarmesh::repairing {
 
 namespace {
 
-using namespace build;
+using namespace facets;
 
 // The costs of troubles by the place of the changed triangle that is nearest to them.
 std::vector<double> costs(const Draft& draft, const std::vector<Index>& place_of, Index places,

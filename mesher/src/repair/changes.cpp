@@ -11,7 +11,7 @@ namespace collarmesh::repairing {
 
 namespace {
 
-using namespace build;
+using namespace facets;
 
 // A triangle from its smallest corner on, with its soup and tag.
 struct Key {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "plc/draft.h"
+#include "facets/draft.h"
 
 namespace collarmesh::repairing {
 
@@ -12,7 +12,7 @@ class Changes {
  public:
   /// The later state has the points of the earlier one, with the same numbers. Both are kept by reference.
   /// Cost: O(n log n).
-  Changes(const build::Draft& before, const build::Draft& after);
+  Changes(const facets::Draft& before, const facets::Draft& after);
 
   Index places() const { return places_; }
   /// By triangle of the earlier or later state; none: both have it.
@@ -21,16 +21,16 @@ class Changes {
 
   /// The later state, but for the places that are taken back. `place` becomes where its triangles are from;
   /// none: both states have them.
-  build::Draft without(const std::vector<bool>& taken_back, std::vector<Index>& place) const;
+  facets::Draft without(const std::vector<bool>& taken_back, std::vector<Index>& place) const;
 
  private:
   void match();
   void find_places();
   Index place_at(Index a, Index b) const;
-  void mix_segments(const std::vector<bool>& taken_back, build::Draft& mixed) const;
-  void mix_loose_points(const std::vector<bool>& taken_back, build::Draft& mixed) const;
+  void mix_segments(const std::vector<bool>& taken_back, facets::Draft& mixed) const;
+  void mix_loose_points(const std::vector<bool>& taken_back, facets::Draft& mixed) const;
 
-  const build::Draft &before_, &after_;
+  const facets::Draft &before_, &after_;
   std::vector<Index> of_gone_, of_come_;
   std::vector<std::pair<std::array<Index, 2>, Index>> edges_;  // of these triangles, and their places; sorted
   Index places_ = 0;

@@ -1,10 +1,11 @@
 #include "repair/changing_triangles.h"
 
+#include <cassert>
 #include <cmath>
 
 namespace collarmesh::repairing {
 
-using namespace build;
+using namespace facets;
 
 ChangingTriangles::ChangingTriangles(Draft& draft, double reach, Work& work)
     : draft_(draft), reach_(reach), work_(work), frame_(draft.points, draft.triangles) {
@@ -39,10 +40,24 @@ Index ChangingTriangles::add(const Corners& corners, const Origin& origin) {
   degree_.resize(draft_.points.size(), 0);
   next_.resize(next_.size() + 3, none);
   link(end() - 1);
+  assert(consistent(corners));
   return end() - 1;
 }
 
+bool ChangingTriangles::consistent(const Corners& corners) const {
+  return std::all_of(corners.begin(), corners.end(), [&](Index point) {
+    Index length = 0;
+    bool good = true;
+    for_each_at(point, [&](Index side) {
+      ++length;
+      good = good && alive_[side / 3] && draft_.triangles[side / 3][side % 3] == point;
+    });
+    return good && length == degree_[point];
+  });
+}
+
 void ChangingTriangles::remove(Index t) {
+  assert(alive_[t]);
   alive_[t] = false;
   --count_;
   for (unsigned i = 0; i < 3; ++i) {
@@ -51,6 +66,7 @@ void ChangingTriangles::remove(Index t) {
     while (*at != 3 * t + i) at = &next_[*at];
     *at = next_[3 * t + i];
   }
+  assert(consistent(draft_.triangles[t]));
 }
 
 std::vector<Index> ChangingTriangles::sides(const Edge& edge) const {

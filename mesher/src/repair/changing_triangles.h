@@ -8,7 +8,7 @@
 
 #include "common/box_frame.h"
 #include "common/box_tree.h"
-#include "plc/draft.h"
+#include "facets/draft.h"
 #include "repair/item_trees.h"
 #include "repair/polygon_cutter.h"
 #include "repair/work.h"
@@ -23,7 +23,7 @@ class ChangingTriangles {
   /// Triangles are near each other where their boxes, along the axes of a frame and larger by half of
   /// `reach` (absolute) on all sides, meet, and each comes within `reach` of the plane of the other. Pairs of
   /// boxes that meet are spent from `work`.
-  ChangingTriangles(build::Draft& draft, double reach, Work& work);
+  ChangingTriangles(facets::Draft& draft, double reach, Work& work);
 
   /// How many there are.
   std::size_t count() const { return count_; }
@@ -32,7 +32,7 @@ class ChangingTriangles {
   bool alive(Index triangle) const { return alive_[triangle]; }
 
   /// Its number.
-  Index add(const build::Corners& corners, const build::Origin& origin);
+  Index add(const facets::Corners& corners, const facets::Origin& origin);
   void remove(Index triangle);
 
   /// Calls visit(side) with the sides (3 t + i) that start in this point. Nothing may change meanwhile.
@@ -121,7 +121,7 @@ class ChangingTriangles {
   }
 
   /// The draft without gaps: triangles stay in order, but have other numbers there.
-  build::Draft compacted() const;
+  facets::Draft compacted() const;
 
  private:
   static constexpr std::size_t few = 8;  // changed ones of which each is looked for alone, as a share of all
@@ -131,15 +131,17 @@ class ChangingTriangles {
   // What these have, each once.
   std::vector<Index> corners_of(const std::vector<Index>& triangles) const;
   std::vector<Edge> edges_of(const std::vector<Index>& triangles) const;
-  static std::array<Edge, 3> edges_of(const build::Corners& c) {
+  static std::array<Edge, 3> edges_of(const facets::Corners& c) {
     return {edge_key(c[0], c[1]), edge_key(c[1], c[2]), edge_key(c[2], c[0])};
   }
   Box box_around(std::span<const Index> points) const;
   // Does t keep its distance from the plane of s?
   bool beyond(Index s, Index t) const;
   void link(Index triangle);
+  /// Do the lists at these points hold sides of triangles that are there, as many as they should?
+  bool consistent(const facets::Corners& corners) const;
 
-  build::Draft& draft_;
+  facets::Draft& draft_;
   double reach_;
   Work& work_;
   const BoxFrame frame_;                                        // of the boxes

@@ -7,13 +7,13 @@
 #include <map>
 
 #include "common/disjoint_sets.h"
-#include "plc/edges.h"
+#include "facets/edges.h"
 
 namespace collarmesh::repairing {
 
 namespace {
 
-using namespace build;
+using namespace facets;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 constexpr std::size_t most_edges_for_cubic_time = 200;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "collarmesh/repair.h"
-#include "plc/draft.h"
+#include "facets/draft.h"
 #include "repair/work.h"
 
 namespace collarmesh::repairing {
@@ -15,11 +15,11 @@ namespace collarmesh::repairing {
 /// of the surface around it: then it is no hole, but an open sheet. Neither holes nor tags depend on the
 /// order of points and facets. Throws WorkStopped; the draft is then of no use. Cost: for a hole of k edges
 /// O(k^2) in practice.
-std::vector<FilledHole> fill_holes(build::Draft& draft, Tag first_tag, Work* work = nullptr,
+std::vector<FilledHole> fill_holes(facets::Draft& draft, Tag first_tag, Work* work = nullptr,
                                    double largest_share = 0.6);
 
 /// How many edges have one triangle of a soup only (more precisely: are not run through as often in one
 /// direction as in the other).
-std::size_t count_open_edges(const build::Draft& draft);
+std::size_t count_open_edges(const facets::Draft& draft);
 
 }  // namespace collarmesh::repairing

@@ -7,15 +7,15 @@
 #include <utility>
 
 #include "common/disjoint_sets.h"
-#include "plc/edges.h"
-#include "plc/shells.h"
+#include "facets/edges.h"
+#include "facets/shells.h"
 #include "repair/winding_number.h"
 
 namespace collarmesh::repairing {
 
 namespace {
 
-using namespace build;
+using namespace facets;
 
 constexpr std::size_t most_places = 100;
 constexpr std::size_t most_asked =

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "plc/draft.h"
+#include "facets/draft.h"
 
 namespace collarmesh::repairing {
 
@@ -11,7 +11,7 @@ namespace collarmesh::repairing {
 /// corners only, or are copies of each other. True is certain: nothing is left when triangles with an edge of
 /// their own are taken away one after the other, as closed surfaces have none. Only that is looked at, so
 /// false is not. Cost: O(n).
-bool peels_away(const build::Draft& draft);
+bool peels_away(const facets::Draft& draft);
 
 /// What `turn_components` did.
 struct TurnReport {
@@ -22,7 +22,7 @@ struct TurnReport {
 /// Turn those closed components of surfaces whose orientation contradicts the rest: those oriented inwards
 /// that lie in nothing, and those inside a component that is turned. A component is what is connected by
 /// edges that two triangles of one soup share. Cost: O(n log n).
-TurnReport turn_components(build::Draft& draft);
+TurnReport turn_components(facets::Draft& draft);
 
 /// What `drop_flakes` did.
 struct FlakeReport {
@@ -33,7 +33,7 @@ struct FlakeReport {
 /// Drop closed components thinner than `thickness` (absolute: twice the volume by the area) with hardly any
 /// of the volume of all. Components are those of `turn_components`; of complexes none is dropped. Cost: O(n
 /// log n).
-FlakeReport drop_flakes(build::Draft& draft, double thickness);
+FlakeReport drop_flakes(facets::Draft& draft, double thickness);
 
 /// What `keep_boundaries` did.
 struct InsideReport {
@@ -54,6 +54,6 @@ struct InsideReport {
 /// coincide have many between them, becomes part of what it has most of its area in common with.
 /// Precondition: triangles meet in common edges and corners only, or are copies of each other.
 /// Cost: O(n log n).
-InsideReport keep_boundaries(build::Draft& draft, double thickness);
+InsideReport keep_boundaries(facets::Draft& draft, double thickness);
 
 }  // namespace collarmesh::repairing

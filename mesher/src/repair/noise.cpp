@@ -4,8 +4,8 @@
 #include <numbers>
 
 #include "collarmesh/plc_builder.h"
-#include "plc/faults.h"
-#include "plc/near_touching.h"
+#include "facets/faults.h"
+#include "facets/near_touching.h"
 
 namespace collarmesh::repairing {
 
@@ -43,8 +43,8 @@ std::optional<Point> find_noise(const Plc& plc, double tolerance) {
     if (is_short(plc, curve, tolerance)) return plc.points[curve.points.front()];
   for (const Crease& crease : find_creases(plc, flat_angle))
     if (is_slit(plc, crease, tolerance)) return crease.where;
-  build::Faults faults;
-  build::find_near_touching(plc, tolerance, faults);
+  facets::Faults faults;
+  facets::find_near_touching(plc, tolerance, faults);
   if (faults.empty()) return std::nullopt;
   return faults.list().front().where;
 }
@@ -57,8 +57,8 @@ std::vector<Trouble> find_troubles(const Plc& plc, double tolerance) {
       troubles.push_back({plc.points[curve.points.front()], of_short_curve});
   for (const Crease& crease : find_creases(plc, flat_angle))
     troubles.push_back({crease.where, flat_angle / std::max(crease.angle, least_angle)});
-  build::Faults faults;
-  build::find_near_touching(plc, tolerance, faults);
+  facets::Faults faults;
+  facets::find_near_touching(plc, tolerance, faults);
   for (const PlcFault& fault : faults.list()) troubles.push_back({fault.where, of_near_features});
   return troubles;
 }

@@ -4,13 +4,13 @@
 #include <map>
 #include <set>
 
-#include "plc/plane_triangulation.h"
+#include "facets/plane_triangulation.h"
 
 namespace collarmesh::repairing {
 
 namespace {
 
-using build::PlaneTriangulation;
+using facets::PlaneTriangulation;
 
 class PolygonCutter {
  public:
@@ -21,7 +21,7 @@ class PolygonCutter {
     turned_ = normal[axis_] < 0;
   }
 
-  std::optional<std::vector<build::Corners>> run() {
+  std::optional<std::vector<facets::Corners>> run() {
     try {
       for (const auto* list : {&cuts_.border, &cuts_.inside})
         for (const Index p : *list)
@@ -76,12 +76,12 @@ class PolygonCutter {
   }
 
   // Nothing unless they have the polygon for a border.
-  std::optional<std::vector<build::Corners>> triangles() const {
-    std::vector<build::Corners> result;
+  std::optional<std::vector<facets::Corners>> triangles() const {
+    std::vector<facets::Corners> result;
     std::set<Edge> sides;  // directed
     for (const auto face : mesh_.finite_face_handles()) {
       if (face->info()) continue;
-      build::Corners t{face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()};
+      facets::Corners t{face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()};
       if (turned_) std::swap(t[1], t[2]);
       result.push_back(t);
       for (unsigned i = 0; i < 3; ++i) sides.insert({t[i], t[(i + 1) % 3]});
@@ -101,8 +101,8 @@ class PolygonCutter {
 
 }  // namespace
 
-std::optional<std::vector<build::Corners>> cut_polygon(const std::vector<Point>& points, const Vector& normal,
-                                                       const PolygonCuts& cuts) {
+std::optional<std::vector<facets::Corners>> cut_polygon(const std::vector<Point>& points,
+                                                        const Vector& normal, const PolygonCuts& cuts) {
   return PolygonCutter(points, normal, cuts).run();
 }
 

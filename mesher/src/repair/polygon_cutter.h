@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "plc/draft.h"
+#include "facets/draft.h"
 
 namespace collarmesh::repairing {
 
@@ -23,7 +23,7 @@ struct PolygonCuts {
 /// The constrained Delaunay triangulation of a polygon that is nearly planar, seen along `normal`, with the
 /// points and edges inside. The triangles are oriented like the polygon. Nothing where points coincide or
 /// edges cross, seen along the normal.
-std::optional<std::vector<build::Corners>> cut_polygon(const std::vector<Point>& points, const Vector& normal,
-                                                       const PolygonCuts& cuts);
+std::optional<std::vector<facets::Corners>> cut_polygon(const std::vector<Point>& points,
+                                                        const Vector& normal, const PolygonCuts& cuts);
 
 }  // namespace collarmesh::repairing

@@ -11,14 +11,14 @@
 #include <set>
 
 #include "collarmesh/noise.h"
-#include "plc/cleanup.h"
-#include "plc/draft.h"
-#include "plc/edges.h"
-#include "plc/facet_triangulation.h"
-#include "plc/faults.h"
+#include "facets/cleanup.h"
+#include "facets/draft.h"
+#include "facets/edges.h"
+#include "facets/facet_triangulation.h"
+#include "facets/faults.h"
+#include "facets/orientation.h"
+#include "facets/weld.h"
 #include "plc/lost_bodies.h"
-#include "plc/orientation.h"
-#include "plc/weld.h"
 #include "repair/arrangement.h"
 #include "repair/better_places.h"
 #include "repair/distances.h"
@@ -36,7 +36,8 @@ namespace collarmesh {
 
 namespace {
 
-using namespace build;
+using namespace facets;
+using namespace plc;
 using namespace repairing;
 
 constexpr std::size_t most_places = 100;
@@ -382,7 +383,7 @@ RepairedPlc judged(const Repairer& repairer, RepairResult result, const PlcOptio
   number_untagged(repairer.input(), complex.plc);
   repairer.measure(complex.report);
   if (complex.report.repaired)
-    std::ranges::copy(build::lost_bodies(repairer.input(), complex.plc, repairer.tolerance()),
+    std::ranges::copy(plc::lost_bodies(repairer.input(), complex.plc, repairer.tolerance()),
                       std::back_inserter(complex.plc.warnings));
   return with_lost_regions(std::move(complex), repairer.input());
 }

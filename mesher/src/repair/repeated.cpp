@@ -6,13 +6,13 @@
 #include <tuple>
 
 #include "common/disjoint_sets.h"
-#include "plc/edges.h"
+#include "facets/edges.h"
 
 namespace collarmesh::repairing {
 
 namespace {
 
-using namespace build;
+using namespace facets;
 
 constexpr std::size_t most_places = 100;
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "plc/draft.h"
+#include "facets/draft.h"
 
 namespace collarmesh::repairing {
 
@@ -14,6 +14,6 @@ struct RepeatedReport {
 
 /// Drop repeated triangles: those of one soup with the same corners and orientation, where that does not open
 /// the surface (two solids may share a facet), and in complexes all copies but one. Cost: O(n log n).
-RepeatedReport drop_repeated(build::Draft& draft);
+RepeatedReport drop_repeated(facets::Draft& draft);
 
 }  // namespace collarmesh::repairing

@@ -9,7 +9,8 @@
 #include <unordered_map>
 #include <utility>
 
-#include "plc/edges.h"
+#include "common/distances.h"
+#include "facets/edges.h"
 #include "repair/changes.h"
 #include "repair/changing_triangles.h"
 #include "repair/point_grid.h"
@@ -20,7 +21,7 @@ namespace collarmesh::repairing {
 
 namespace {
 
-using namespace build;
+using namespace facets;
 
 constexpr std::size_t most_rounds = 50, most_rounds_after_overlay = 12;
 constexpr std::size_t most_places = 100;
@@ -28,17 +29,6 @@ constexpr std::size_t most_overlays = 10, few_crossings = 100;
 
 // What has not been looked at yet, in `Origin::facet`, which means nothing else here.
 constexpr Index unseen_by_corners = 1, unseen_by_overlay = 2, unseen = 3;
-
-struct NearestOnSegment {
-  double distance, parameter;
-};
-
-NearestOnSegment nearest_on_segment(const Point& p, const Point& a, const Point& b) {
-  const Vector d = b - a;
-  const double length = squared_norm(d);
-  const double t = length > 0 ? std::clamp(dot(p - a, d) / length, 0.0, 1.0) : 0;
-  return {distance(p, a + t * d), t};
-}
 
 // Each round looks at the triangles that the one before has changed.
 class Snapper {
@@ -171,7 +161,7 @@ class Snapper {
 
   // --- Triangles that come and go ---
 
-  void put(const build::Corners& corners, Origin origin) {
+  void put(const facets::Corners& corners, Origin origin) {
     origin.facet = unseen;
     const Index t = triangles_.add(corners, origin);
     for (auto& list : unseen_) list.push_back(t);
@@ -206,11 +196,11 @@ class Snapper {
     if (!cancel_) return;
     for (const Index t : std::exchange(added_, {})) {
       if (!triangles_.alive(t)) continue;
-      const build::Corners& corners = draft_.triangles[t];
+      const facets::Corners& corners = draft_.triangles[t];
       const Index soup = draft_.origins[t].soup;
       std::vector<Twin> twins;
       triangles_.for_each_at(corners[0], [&](Index side) {
-        const build::Corners& c = draft_.triangles[side / 3];
+        const facets::Corners& c = draft_.triangles[side / 3];
         if (draft_.origins[side / 3].soup == soup && std::find(c.begin(), c.end(), corners[1]) != c.end() &&
             std::find(c.begin(), c.end(), corners[2]) != c.end())
           twins.push_back({is_odd(c), side / 3});
@@ -240,7 +230,7 @@ class Snapper {
     return border;
   }
   bool has_border(Index t) const {
-    const build::Corners& c = draft_.triangles[t];
+    const facets::Corners& c = draft_.triangles[t];
     return is_border(edge_key(c[0], c[1])) || is_border(edge_key(c[1], c[2])) ||
            is_border(edge_key(c[2], c[0]));
   }
@@ -310,8 +300,8 @@ class Snapper {
     std::sort(changed.begin(), changed.end());
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
     for (const Index t : changed) {
-      const build::Corners before = draft_.triangles[t];
-      const build::Corners corners{renamed(before[0]), renamed(before[1]), renamed(before[2])};
+      const facets::Corners before = draft_.triangles[t];
+      const facets::Corners corners{renamed(before[0]), renamed(before[1]), renamed(before[2])};
       const Origin origin = draft_.origins[t];
       take(t);
       if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0])
@@ -422,7 +412,8 @@ class Snapper {
     const double ll = squared_norm(along), d1 = dot(to, along);
     if (!(d1 > 0 && d1 < ll)) return;
     if (squared_norm(cross(along, to)) > beyond_plane * beyond_plane * limit_ * limit_ * ll) return;
-    const auto [d, parameter] = nearest_on_segment(at(p), at(edge[0]), at(edge[1]));
+    const double parameter = parameter_on_segment(at(p), at(edge[0]), at(edge[1]));
+    const double d = distance(at(p), at(edge[0]) + parameter * along);
     if (d > limit_ || !(parameter > 0 && parameter < 1) || !may_snap(edge) || !triangles_.uses(p)) return;
     if (triangles_.sides(edge).empty()) return;  // it is gone
     found.push_back({std::sqrt(ll), d, edge, {parameter, p}});
@@ -474,7 +465,7 @@ class Snapper {
 
   // Those corners of s that t does not have.
   void find_near_corners(Index s, Index t) {
-    const build::Corners& corners = draft_.triangles[t];
+    const facets::Corners& corners = draft_.triangles[t];
     for (unsigned k = 0; k < 3; ++k) {
       const Index p = draft_.triangles[s][k];
       if (std::find(corners.begin(), corners.end(), p) != corners.end() || !consider_inside(t, p)) continue;
@@ -551,8 +542,9 @@ class Snapper {
     crossing_.insert(key);
     const Index point = crossing_at(on_e, on_f);
     for (const Edge& edge : {e, f}) {
-      const auto [moved, parameter] = nearest_on_segment(at(point), at(edge[0]), at(edge[1]));
-      add_on_edge(edge, {parameter, point}, moved);
+      const double parameter = parameter_on_segment(at(point), at(edge[0]), at(edge[1]));
+      const Point foot = at(edge[0]) + parameter * (at(edge[1]) - at(edge[0]));
+      add_on_edge(edge, {parameter, point}, distance(at(point), foot));
     }
     return true;
   }
@@ -586,7 +578,7 @@ class Snapper {
     affected.erase(std::unique(affected.begin(), affected.end()), affected.end());
     work_.spend(affected.size());
     for (const Index t : affected) {
-      const build::Corners corners = draft_.triangles[t];
+      const facets::Corners corners = draft_.triangles[t];
       const Origin origin = draft_.origins[t];
       take(t);
       cut(t, corners, origin);
@@ -606,7 +598,7 @@ class Snapper {
     draft_.segments = std::move(segments);
   }
 
-  void cut(Index t, const build::Corners& corners, const Origin& origin) {
+  void cut(Index t, const facets::Corners& corners, const Origin& origin) {
     PolygonCuts cuts;
     for (unsigned i = 0; i < 3; ++i) {
       const std::vector<Index> points = chain(corners[i], corners[(i + 1) % 3]);
@@ -622,17 +614,17 @@ class Snapper {
       const Vector normal = cross(at(corners[1]) - at(corners[0]), at(corners[2]) - at(corners[0]));
       cuts.edges = constraints(t, corners);
       if (const auto pieces = cut_polygon(draft_.points, normal, cuts)) {
-        for (const build::Corners& piece : *pieces) put(piece, origin);
+        for (const facets::Corners& piece : *pieces) put(piece, origin);
         return;
       }
     }
-    std::vector<build::Corners> pieces{corners};
+    std::vector<facets::Corners> pieces{corners};
     for (const Index p : cuts.inside) insert(p, pieces);
-    for (const build::Corners& piece : pieces) add_cut(piece, origin);
+    for (const facets::Corners& piece : pieces) add_cut(piece, origin);
   }
 
   // The pieces of other triangles' edges that run along a triangle, inside it.
-  std::vector<Edge> constraints(Index t, const build::Corners& corners) const {
+  std::vector<Edge> constraints(Index t, const facets::Corners& corners) const {
     std::vector<Edge> result;
     const auto found = along_.find(t);
     if (found == along_.end()) return result;
@@ -657,7 +649,7 @@ class Snapper {
   }
 
   // A corner for the piece that it is in, seen along its normal.
-  void insert(Index p, std::vector<build::Corners>& pieces) const {
+  void insert(Index p, std::vector<facets::Corners>& pieces) const {
     std::size_t best = 0;
     double depth = -INFINITY;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -674,7 +666,7 @@ class Snapper {
       depth = least;
       best = i;
     }
-    const build::Corners t = pieces[best];
+    const facets::Corners t = pieces[best];
     pieces[best] = {t[0], t[1], p};
     pieces.push_back({t[1], t[2], p});
     pieces.push_back({t[2], t[0], p});
@@ -692,8 +684,8 @@ class Snapper {
   }
 
   // Each step fans the apex opposite one cut side.
-  void add_cut(const build::Corners& triangle, const Origin& origin) {
-    std::vector<std::pair<build::Corners, unsigned>> stack{{triangle, 0}};  // and which sides are done
+  void add_cut(const facets::Corners& triangle, const Origin& origin) {
+    std::vector<std::pair<facets::Corners, unsigned>> stack{{triangle, 0}};  // and which sides are done
     while (!stack.empty()) {
       const auto [t, done] = stack.back();
       stack.pop_back();

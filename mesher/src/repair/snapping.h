@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "plc/draft.h"
+#include "facets/draft.h"
 #include "repair/work.h"
 
 namespace collarmesh::repairing {
@@ -37,7 +37,7 @@ enum class SnapWhat {
 /// on others turned the other way vanish with them, unless `cancel` is false. Throws WorkStopped; the draft
 /// is then of no use. Cost: O(n log n + k) for k pairs of near neighbours; each round after the first one
 /// looks at what the one before has changed.
-SnapReport snap_near_features(build::Draft& draft, double distance, SnapWhat what = SnapWhat::all,
+SnapReport snap_near_features(facets::Draft& draft, double distance, SnapWhat what = SnapWhat::all,
                               Work* work = nullptr, const std::vector<bool>& known = {}, bool cancel = true);
 
 }  // namespace collarmesh::repairing

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <set>
 
-#include "plc/edges.h"
-#include "plc/flat_clusters.h"
+#include "facets/edges.h"
+#include "facets/flat_clusters.h"
 
 namespace collarmesh::repairing {
 
 namespace {
 
-using namespace build;
+using namespace facets;
 
 class SoupMaker {
  public:

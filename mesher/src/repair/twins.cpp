@@ -5,14 +5,14 @@
 #include <tuple>
 
 #include "common/disjoint_sets.h"
-#include "plc/edges.h"
-#include "plc/faults.h"
-#include "plc/orientation.h"
+#include "facets/edges.h"
+#include "facets/faults.h"
+#include "facets/orientation.h"
 #include "repair/inside.h"
 
 namespace collarmesh::repairing {
 
-using namespace build;
+using namespace facets;
 
 bool is_odd(const Corners& c) { return (c[0] > c[1]) != ((c[1] > c[2]) != (c[0] > c[2])); }
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "plc/draft.h"
+#include "facets/draft.h"
 
 namespace collarmesh::repairing {
 
@@ -20,7 +20,7 @@ struct Twin {
 };
 
 /// Is it an odd permutation of its sorted corners?
-bool is_odd(const build::Corners& corners);
+bool is_odd(const facets::Corners& corners);
 
 /// Which of these triangles with the same corners, all those of one soup, cancel each other: pairs that are
 /// turned against each other; in a complex, where orientation means nothing, all but one.
@@ -28,13 +28,13 @@ std::vector<Index> cancelled_among(std::vector<Twin> twins, bool in_complex);
 
 /// Drop those of all triangles, and tell how many.
 /// Cost: O(n log n).
-std::size_t cancel_twins(build::Draft& draft);
+std::size_t cancel_twins(facets::Draft& draft);
 
 /// Does a surface enclose no volume by its orientation, as one with two sides everywhere?
-bool is_two_sided(const build::Draft& draft);
+bool is_two_sided(const facets::Draft& draft);
 
 /// Of closed surfaces whose triangles have copies turned against them keep one of each two, turned alike.
 /// Returns how many were dropped. Cost: O(n log n).
-std::size_t keep_one_side(build::Draft& draft);
+std::size_t keep_one_side(facets::Draft& draft);
 
 }  // namespace collarmesh::repairing

@@ -14,10 +14,10 @@
 #include <set>
 #include <vector>
 
-#include "plc/draft.h"
-#include "plc/facet_triangulation.h"
-#include "plc/faults.h"
-#include "plc/weld.h"
+#include "facets/draft.h"
+#include "facets/facet_triangulation.h"
+#include "facets/faults.h"
+#include "facets/weld.h"
 
 namespace collarmesh::repairing {
 
@@ -36,22 +36,22 @@ Point3 to_cgal(const Point& p) { return {p.x, p.y, p.z}; }
 
 struct Triangles {
   std::vector<Point3> points;
-  std::vector<build::Corners> corners;
+  std::vector<facets::Corners> corners;
   double diagonal = 0;
 };
 
 // All facets, cut into triangles; those without an area are left out.
 Triangles triangles_of(std::span<const PolygonSoup> soups) {
-  build::Draft draft;
-  build::Faults faults;
-  const build::PointMap map = build::weld_points(soups, 0, draft, faults);
+  facets::Draft draft;
+  facets::Faults faults;
+  const facets::PointMap map = facets::weld_points(soups, 0, draft, faults);
   faults.raise();
   draft.planar_tolerance = draft.rounding();
-  build::triangulate_any_facets(soups, map, draft);
+  facets::triangulate_any_facets(soups, map, draft);
   Triangles result;
   result.diagonal = draft.bounds.diagonal();
   for (const Point& p : draft.points) result.points.push_back(to_cgal(p));
-  for (const build::Corners& t : draft.triangles)
+  for (const facets::Corners& t : draft.triangles)
     if (!CGAL::collinear(result.points[t[0]], result.points[t[1]], result.points[t[2]]))
       result.corners.push_back(t);
   return result;
@@ -107,7 +107,7 @@ double largest_distance_from(std::span<const PolygonSoup> soups, const PolygonSo
   using Primitive = CGAL::AABB_triangle_primitive<Kernel, std::vector<Triangle3>::const_iterator>;
   const Triangles input = triangles_of(soups);
   std::vector<Triangle3> triangles;
-  for (const build::Corners& t : input.corners)
+  for (const facets::Corners& t : input.corners)
     triangles.emplace_back(input.points[t[0]], input.points[t[1]], input.points[t[2]]);
   if (triangles.empty()) return 0;
   CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>> tree(triangles.cbegin(), triangles.cend());

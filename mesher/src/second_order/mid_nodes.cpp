@@ -1,23 +1,21 @@
 #include "second_order/mid_nodes.h"
 
 #include <algorithm>
+#include <cassert>
+
+#include "common/edge_key.h"
 
 namespace collarmesh::second_order {
-
-namespace {
-
-std::uint64_t key(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32U | std::max(a, b); }
-
-}  // namespace
 
 MeshEdges::MeshEdges(const TetMesh& mesh) : first_node_(static_cast<Index>(mesh.points.size())) {
   keys_.reserve(6 * mesh.tets.size() + 3 * mesh.faces.size() + mesh.edges.size());
   for (const auto& [a, b, c, d] : mesh.tets)
-    for (const std::uint64_t each : {key(a, b), key(b, c), key(c, a), key(a, d), key(b, d), key(c, d)})
+    for (const std::uint64_t each :
+         {edge_key(a, b), edge_key(b, c), edge_key(c, a), edge_key(a, d), edge_key(b, d), edge_key(c, d)})
       keys_.push_back(each);
   for (const auto& [a, b, c] : mesh.faces)
-    for (const std::uint64_t each : {key(a, b), key(b, c), key(c, a)}) keys_.push_back(each);
-  for (const auto& [a, b] : mesh.edges) keys_.push_back(key(a, b));
+    for (const std::uint64_t each : {edge_key(a, b), edge_key(b, c), edge_key(c, a)}) keys_.push_back(each);
+  for (const auto& [a, b] : mesh.edges) keys_.push_back(edge_key(a, b));
   std::sort(keys_.begin(), keys_.end());
   keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
   keys_.shrink_to_fit();
@@ -30,7 +28,8 @@ MeshEdges::MeshEdges(const TetMesh& mesh) : first_node_(static_cast<Index>(mesh.
 }
 
 Index MeshEdges::node(Index a, Index b) const {
-  const auto found = std::lower_bound(keys_.begin(), keys_.end(), key(a, b));
+  const auto found = std::lower_bound(keys_.begin(), keys_.end(), edge_key(a, b));
+  assert(found != keys_.end() && *found == edge_key(a, b));
   return first_node_ + static_cast<Index>(found - keys_.begin());
 }
 

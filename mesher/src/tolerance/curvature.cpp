@@ -6,6 +6,8 @@
 #include <numbers>
 #include <unordered_map>
 
+#include "common/edge_key.h"
+
 namespace collarmesh {
 
 namespace {
@@ -71,8 +73,7 @@ class PatchCurvature {
 
   // The second triangle at an edge bends it against the first.
   void add_edge(Index a, Index b, const Vector& n) {
-    const auto key = std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
-    const auto [entry, fresh] = normal_at_.try_emplace(key, n);
+    const auto [entry, fresh] = normal_at_.try_emplace(edge_key(a, b), n);
     if (fresh) return;
     const Vector edge = plc_.points[b] - plc_.points[a];
     const double length = norm(edge);

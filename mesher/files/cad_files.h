@@ -1,0 +1,101 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "collarmesh/geometry.h"
+#include "collarmesh/options.h"
+#include "collarmesh/polygon_soup.h"
+
+namespace collarmesh::brep {
+struct CadLabels;
+struct CadMeasures;
+}  // namespace collarmesh::brep
+
+namespace collarmesh::files {
+
+/// How CAD files are read.
+struct CadReading {
+  std::function<double(double diagonal)>
+      deflection;  ///< of the triangles, absolute, from the shape's diagonal
+  SolidOverlap overlap = SolidOverlap::first;
+  unsigned threads = 0;  ///< at most; 0: all cores
+};
+
+/// Tells whoever guards this process what OpenCASCADE is about to do to a file, and for how many seconds it
+/// may (0: any time). The work is over when what is returned is destroyed.
+using CadGuard =
+    std::function<std::shared_ptr<void>(std::string_view doing, std::string_view file, double seconds)>;
+
+/// The CAD files among the inputs. The first one loads the module with OpenCASCADE.
+class CadFiles {
+ public:
+  explicit CadFiles(CadGuard guard = {});
+  ~CadFiles();
+  CadFiles(CadFiles&&) noexcept;
+  CadFiles& operator=(CadFiles&&) noexcept;
+
+  static std::vector<std::string> formats();
+  /// Is it a CAD file by its extension, or as `format` says?
+  static bool knows(const std::string& path, std::string_view format);
+
+  /// Read a file and append its soups.
+  /// Throws ReadError and PlcError.
+  void read(const std::string& path, std::string_view format, const CadReading& reading,
+            std::vector<PolygonSoup>& soups);
+  bool empty() const;
+  /// Of the files, for people.
+  std::string names() const;
+  /// Names and colours of the file that all these soups came from; null where there is none: the numbers of
+  /// several files are the same.
+  const brep::CadLabels* labels(std::size_t soups) const;
+
+  /// Make triangles that are finer than the first ones by a factor, in the places of the former soups.
+  void tessellate(double finer, std::vector<PolygonSoup>& soups);
+  /// Of some faces alone: by the number of their soup and their own.
+  void tessellate(double finer, const std::set<std::pair<Index, Tag>>& faces,
+                  std::vector<PolygonSoup>& soups);
+
+  /// The nearest point of EdgeN (dimension 1) or FaceN (2) of the file that soup came from; nothing for
+  /// soups of other files.
+  std::optional<Point> nearest(Index soup, unsigned dimension, Tag number, const Point& p) const;
+
+  /// Exact lengths, areas and volumes of the shape in the file that a soup came from, and the first soup of
+  /// that file; nothing for soups of other files.
+  struct Measured {
+    const brep::CadMeasures& measures;
+    Index first_soup;
+  };
+  std::optional<Measured> measures(Index soup) const;
+
+  /// "Face3 and Face7 of part.step", of the file whose faces are nearest.
+  std::string faces_near(const Point& where) const;
+  /// The sub-shapes that OpenCASCADE finds invalid, or empty.
+  std::string invalid_parts() const;
+  /// Faces that became one with others: the number that is gone and the one in its place.
+  std::vector<std::pair<Tag, Tag>> replaced_faces() const;
+  /// False: solids that touch or overlap could not be fused, so their soups intersect, however fine.
+  bool fused() const;
+  /// Which solids are open, at which edges and where; or empty.
+  std::string open_edges() const;
+  std::vector<std::string> notes() const;
+
+ private:
+  struct File;
+  const File* file_of(Index soup) const;
+
+  std::shared_ptr<void> guarded(std::string_view doing, std::string_view file, double seconds = 0) const {
+    return guard_ ? guard_(doing, file, seconds) : nullptr;
+  }
+
+  CadGuard guard_;
+  std::vector<File> files_;
+};
+
+}  // namespace collarmesh::files

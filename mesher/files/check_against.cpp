@@ -1,0 +1,78 @@
+#include "files/check_against.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "collarmesh/error.h"
+
+namespace collarmesh::files {
+
+namespace {
+
+/// A note where a mesh is much larger or smaller than what it is checked against.
+std::string note_on_scale(const TetMesh& mesh, const Plc& plc, double scale) {
+  Box box;
+  for (const Point& p : mesh.points) box.add(p);
+  const double ratio = box.diagonal() / plc.bounds.diagonal();
+  if (!(ratio > 0) || (ratio > 0.5 && ratio < 2)) return {};
+  return fmt::format(
+      "the mesh is {:.3g} times as large as the input; if it was written in another unit, give check the "
+      "same "
+      "--scale, which would be {:.3g}",
+      ratio, scale * ratio);
+}
+
+CheckReport check_as_built(const TetMesh& mesh, ComplexInput& input, const RunOptions& o,
+                           const RepairOptions& repair, const Execution& execution) {
+  const Plc plc = input.build(o.complex, repair);
+  const CheckOptions options{.bounds = o.mesh.bounds,
+                             .exact = input.exact_measures(plc),
+                             .findings_per_guarantee = o.findings,
+                             .threads = o.mesh.threads};
+  CheckReport report = check(mesh, plc, options, execution);
+  if (const std::string note = note_on_scale(mesh, plc, o.scale); !report.passed() && !note.empty())
+    report.notes.push_back(note);
+  return report;
+}
+
+/// Finds the repair that the mesh is one of. The report stays where it is one of none.
+void check_against_further(const TetMesh& mesh, ComplexInput& input, const RunOptions& options,
+                           const Execution& execution, CheckReport& report, RepairReport& repair) {
+  for (const RepairOptions& further : further_repairs(options.repair, repair)) {
+    try {
+      CheckReport other = check_as_built(mesh, input, options, further, execution);
+      if (other.cancelled || !other.passed()) continue;
+      report = std::move(other);
+    } catch (const PlcError&) {
+      continue;
+    } catch (const OptionError&) {  // of names that a surface around everything does not have
+      continue;
+    }
+    repair = input.repaired();
+    report.notes.push_back(
+        repair.wrapped
+            ? "the mesh is one of a surface around everything"
+            : fmt::format("the mesh is one of a repair with --repair-tolerance {:.3g}", further.tolerance));
+    return;
+  }
+}
+
+}  // namespace
+
+CheckReport check_against(const TetMesh& mesh, ComplexInput& input, const RunOptions& options,
+                          const Execution& execution) {
+  CheckReport report = check_as_built(mesh, input, options, options.repair, execution);
+  RepairReport repair = input.repaired();
+  if (!report.passed() && !report.cancelled)
+    check_against_further(mesh, input, options, execution, report, repair);
+  if (repair.repaired)
+    report.notes.emplace_back(
+        "the mesh was judged against the repaired complex, and that against the input:");
+  for (const std::string& line : describe(repair)) report.notes.push_back("the input was repaired: " + line);
+  return report;
+}
+
+}  // namespace collarmesh::files

@@ -1,0 +1,277 @@
+#include "files/complex_input.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <initializer_list>
+#include <iterator>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "collarmesh/error.h"
+#include "collarmesh/name_features.h"
+#include "collarmesh/noise.h"
+#include "files/cad_labels.h"
+#include "files/exact_measures.h"
+#include "files/input_files.h"
+#include "files/named_features.h"
+#include "files/surface_files.h"
+
+namespace collarmesh::files {
+
+namespace {
+
+constexpr double share_of_triangles = 0.1;  // of the distance that the mesh may keep from the shape
+
+bool may_be_too_coarse(const PlcError& error) {
+  return std::all_of(error.faults.begin(), error.faults.end(), [](const PlcFault& fault) {
+    return fault.kind == PlcFault::Kind::intersection || fault.kind == PlcFault::Kind::not_orientable;
+  });
+}
+
+PlcError with_names(const PlcError& error, const CadFiles& cad) {
+  std::vector<PlcFault> faults = error.faults;
+  for (PlcFault& fault : faults)
+    fault.message += fmt::format(" The nearest faces are {}.", cad.faces_near(fault.where));
+  const std::string open = cad.open_edges(), invalid = cad.invalid_parts();
+  return {
+      fmt::format("{}{}{}", faults.empty() ? error.what() : faults.front().message,
+                  open.empty() ? "" : fmt::format(" {}", open),
+                  invalid.empty() ? "" : fmt::format(" OpenCASCADE finds the shape invalid: {}.", invalid)),
+      faults};
+}
+
+bool has_fault(const PlcError& error, std::initializer_list<PlcFault::Kind> kinds) {
+  return std::any_of(error.faults.begin(), error.faults.end(), [&](const PlcFault& fault) {
+    return std::find(kinds.begin(), kinds.end(), fault.kind) != kinds.end();
+  });
+}
+
+/// A sentence on what may help where the repair did not.
+std::string advice(const PlcError& error, const RepairOptions& options) {
+  using Kind = PlcFault::Kind;
+  if (has_fault(error, {Kind::bad_point})) return {};
+  const std::string wider = fmt::format("a larger --repair-tolerance than {:.3g}", options.tolerance);
+  switch (options.mode) {
+    case RepairMode::off: return " Without --repair none this would be repaired as far as possible.";
+    case RepairMode::wrap:
+      return fmt::format(
+          " A closed surface around everything failed, too; {} or another --wrap-offset may help.", wider);
+    case RepairMode::automatic: break;
+  }
+  const bool open = has_fault(error, {Kind::open_boundary, Kind::empty});
+  return fmt::format(
+      " It could not be repaired: {}try {}, or --repair wrap, which puts a closed surface around everything.",
+      open ? "close the surface, " : "", wider);
+}
+
+}  // namespace
+
+ComplexInput::ComplexInput(const std::vector<std::string>& paths, InputReading reading)
+    : reading_(std::move(reading)), cad_(reading_.guard) {
+  const CadReading cad{[&](double diagonal) { return share_of_triangles * reading_.distance(diagonal); },
+                       reading_.overlap, reading_.threads};
+  Tag largest_named = 0;  // numbers of names are those of their file
+  for (const std::string& path : paths) {
+    reading_.stop();
+    const std::string file = existing_file(path);
+    if (CadFiles::knows(file, reading_.format)) {
+      cad_.read(file, reading_.format, cad, soups_);
+      continue;
+    }
+    PolygonSoup soup = read_surface(file, reading_.format);
+    if (!soup.tag_names.of(2).empty()) {
+      soup.shift_facet_tags(largest_named);
+      largest_named = soup.tag_names.of(2).rbegin()->first;
+    }
+    soups_.push_back(std::move(soup));
+  }
+}
+
+Execution ComplexInput::watched() const {
+  Execution execution;
+  execution.cancel = reading_.cancel;
+  return execution;
+}
+
+Plc ComplexInput::build(const PlcOptions& options, const RepairOptions& repair) {
+  built_ = {};
+  Plc plc = build_unnamed(options, repair);
+  for (const Plc::Patch& patch : plc.patches) built_.patch_numbers.push_back(patch.tag);
+  for (const Plc::Curve& curve : plc.curves) built_.curve_numbers.push_back(curve.tag);
+  if (!built_.repaired.wrapped) add_replaced_faces(plc);
+  name(plc);
+  if (labels() != nullptr) name_regions(*labels(), plc);
+  return plc;
+}
+
+/// Adds the numbers that went where solids of a file touch to those of the complex.
+void ComplexInput::add_replaced_faces(Plc& plc) const {
+  std::vector<std::pair<Tag, Tag>>& all = plc.cleanup.replaced_tags;
+  std::ranges::copy(cad_.replaced_faces(), std::back_inserter(all));
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+}
+
+const brep::CadLabels* ComplexInput::labels() const {
+  return built_.repaired.wrapped ? nullptr
+                                 : cad_.labels(soups_.size());  // wrapped, tags are no numbers of faces
+}
+
+TagColours ComplexInput::colours() const { return labels() == nullptr ? TagColours() : labels()->colours; }
+
+/// By the path of a file, or the text itself, and by what is given beside it.
+void ComplexInput::name(Plc& plc) const {
+  const std::string& path = reading_.names;
+  if (path.empty() && reading_.given_names.empty()) return;
+  if (path.empty() || path.starts_with('{')) {
+    name_features(with_names(path, reading_.given_names), plc);
+    return;
+  }
+  std::ifstream file(existing_file(path));
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  try {
+    name_features(with_names(text, reading_.given_names), plc);
+  } catch (const OptionError& error) {
+    throw OptionError(fmt::format("{}: {}", path, error.what()));
+  }
+}
+
+Plc ComplexInput::build_unnamed(const PlcOptions& options, const RepairOptions& repair) {
+  if (cad_.empty() || repair.wrap_at_once) {
+    if (!cad_.empty()) tessellate(1);
+    try {
+      return build_repaired(options, repair);
+    } catch (const PlcError& error) {
+      throw with_advice(error, repair);
+    }
+  }
+  // Triangles of faces that nearly touch may meet where finer ones do not.
+  std::optional<PlcError> first;
+  for (const double finer : {1.0, 4.0}) {
+    tessellate(finer);
+    try {
+      Plc plc = build_valid(options, repair);
+      return finer == 1 ? resolved(std::move(plc), options, repair) : std::move(plc);
+    } catch (const PlcError& error) {
+      if (!first) first = with_names(error, cad_);
+      if (!cad_.fused() || !may_be_too_coarse(error)) break;
+    }
+  }
+  if (repair.mode == RepairMode::off) throw with_advice(*first, repair);
+  tessellate(may_be_too_coarse(*first) ? 2 : 1);  // of finer ones fewer meet, and there is less to cut
+  try {
+    return build_repaired(options, repair);
+  } catch (const PlcError&) {
+    throw with_advice(*first, repair);
+  }
+}
+
+Plc ComplexInput::build_valid(const PlcOptions& options, const RepairOptions& repair) {
+  return take(remove_noise(build_plc(soups_, options), soups_, options, repair, watched()));
+}
+
+/// As `build_valid`, or throws PlcError where there is noise and none is allowed: before its repair, which is
+/// the most work.
+Plc ComplexInput::build_finer(const PlcOptions& options, const RepairOptions& repair, bool with_noise) {
+  if (with_noise) return build_valid(options, repair);
+  Plc plc = build_plc(soups_, options);
+  if (has_noise(plc, repair)) throw PlcError("Finer triangles have features below the tolerance.", {});
+  RepairOptions none = repair;
+  none.mode = RepairMode::off;
+  return take(remove_noise(std::move(plc), soups_, options, none, watched()));
+}
+
+/// The complex with finer triangles of the faces whose triangles are too coarse for the mesh to come, if it
+/// is as good. Where one side of a wall is cut finely and the other is not, the wall becomes thinner: then
+/// all faces are.
+Plc ComplexInput::resolved(Plc plc, const PlcOptions& options, const RepairOptions& repair) {
+  constexpr double finer = 4, little = 2e-3;
+  if (!reading_.tolerance || built_.repaired.repaired) return plc;
+  std::set<std::pair<Index, Tag>> faces;
+  for (const Index patch : coarse_patches(plc, reading_.tolerance(plc)))
+    if (cad_.measures(plc.patches[patch].file))  // of a CAD file
+      faces.emplace(plc.patches[patch].file, plc.patches[patch].tag);
+  if (faces.empty()) return plc;
+  const double most_off = std::max(volume_off(plc), little);
+  const bool noisy = has_noise(plc, repair);
+  Built coarse = std::exchange(built_, {});
+  for (const bool everywhere : {false, true}) {
+    try {
+      everywhere ? tessellate(finer) : tessellate(finer, faces);
+      Plc fine = build_finer(options, repair, noisy);
+      if (!built_.repaired.repaired && fine.regions.size() == plc.regions.size() &&
+          volume_off(fine) <= most_off)
+        return fine;
+    } catch (const PlcError&) {
+    }
+    built_ = {};
+  }
+  tessellate(1);
+  built_ = std::move(coarse);
+  return plc;
+}
+
+/// By how much the volume of a region differs from the exact one where this is known, relatively, at most.
+double ComplexInput::volume_off(const Plc& plc) const {
+  std::vector<Tag> patches, curves;
+  for (const Plc::Patch& patch : plc.patches) patches.push_back(patch.tag);
+  for (const Plc::Curve& curve : plc.curves) curves.push_back(curve.tag);
+  const std::vector<double> exact = measures_behind(plc, {soups(), patches, curves}, cad_).volumes;
+  double most = 0;
+  for (std::size_t r = 1; r < std::min(exact.size(), plc.regions.size()); ++r)
+    if (exact[r] > 0) most = std::max(most, std::fabs(plc.regions[r].volume / exact[r] - 1));
+  return most;
+}
+
+PlcError ComplexInput::with_advice(const PlcError& error, const RepairOptions& options) const {
+  const bool has_facets = std::any_of(soups_.begin(), soups_.end(),
+                                      [](const PolygonSoup& soup) { return soup.facet_count() > 0; });
+  return {error.what() + (has_facets ? advice(error, options) : std::string()), error.faults};
+}
+
+void ComplexInput::tessellate(double finer) {
+  reading_.stop();
+  if (std::exchange(finer_, 0) != finer) cad_.tessellate(finer, soups_);
+  finer_ = finer;
+}
+
+/// Some faces alone.
+void ComplexInput::tessellate(double finer, const std::set<std::pair<Index, Tag>>& faces) {
+  reading_.stop();
+  finer_ = 0;
+  cad_.tessellate(finer, faces, soups_);
+}
+
+Plc ComplexInput::build_repaired(const PlcOptions& options, const RepairOptions& repair) {
+  return take(build_repaired_plc(soups_, options, repair, watched()));
+}
+
+Plc ComplexInput::take(RepairedPlc result) {
+  if (result.report.cancelled) reading_.stop();
+  built_.repaired = std::move(result.report);
+  built_.soups = std::move(result.soups);
+  return std::move(result.plc);
+}
+
+ShapeMeasures ComplexInput::exact_measures(const Plc& plc) const {
+  if (cad_.empty() || built_.repaired.wrapped) return {};
+  return measures_behind(plc, {soups_, built_.patch_numbers, built_.curve_numbers}, cad_);
+}
+
+ExactGeometry ComplexInput::exact_geometry(const Plc& plc) const {
+  return [this, &plc](unsigned dimension, Index feature, const Point& p) -> std::optional<Point> {
+    if (built_.repaired.wrapped) return std::nullopt;  // its tags are no numbers of faces
+    const Index patch = dimension == 2                        ? feature
+                        : plc.curves[feature].patches.empty() ? none
+                                                              : plc.curves[feature].patches.front();
+    if (patch == none) return std::nullopt;
+    const Tag number = dimension == 2 ? built_.patch_numbers[feature] : built_.curve_numbers[feature];
+    return cad_.nearest(plc.patches[patch].file, dimension, number, p);
+  };
+}
+
+}  // namespace collarmesh::files

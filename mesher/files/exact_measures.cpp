@@ -1,0 +1,213 @@
+#include "files/exact_measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "collarmesh/brep/cad_model.h"
+
+namespace collarmesh::files {
+
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Correct what is left of a CAD measure in the complex by what the tessellation lacks. NaN if it is another
+/// one's.
+double corrected(double in_complex, const brep::CadMeasure& measure) {
+  constexpr double share = 1e-4;  // that repair may change without a word
+  if (!(std::fabs(in_complex - measure.cut) <= share * measure.cut)) return unknown;
+  return in_complex + (measure.exact - measure.cut);
+}
+
+/// The edge or face of a file.
+struct Source {
+  Index file;  // its first soup
+  Tag number;
+  friend auto operator<=>(const Source&, const Source&) = default;  // NOLINT(modernize-use-nullptr)
+};
+
+/// The features that edges or faces became.
+class Origins {
+ public:
+  explicit Origins(std::size_t features) : exact_(features, unknown) {}
+
+  void add(Index file, Tag number, const std::map<Tag, brep::CadMeasure>& measures, Index feature,
+           double size) {
+    const auto found = measures.find(number);
+    if (found == measures.end()) return;
+    Group& group = groups_[{file, number}];
+    group.parts.push_back({feature, size});
+    group.size += size;
+    group.measure = &found->second;
+  }
+
+  /// By feature.
+  std::vector<double> corrected_sizes() {
+    for (const auto& [source, group] : groups_) {
+      const double stretch = corrected(group.size, *group.measure) / group.size;
+      for (const Part& part : group.parts) exact_[part.feature] = stretch * part.size;
+    }
+    return exact_;
+  }
+
+ private:
+  struct Part {
+    Index feature;
+    double size;
+  };
+  struct Group {
+    std::vector<Part> parts;
+    double size = 0;
+    const brep::CadMeasure* measure = nullptr;
+  };
+
+  std::vector<double> exact_;
+  std::map<Source, Group> groups_;
+};
+
+class Measures {
+ public:
+  Measures(const Plc& plc, const FeatureSources& sources, const CadFiles& cad)
+      : plc_(plc), sources_(sources), cad_(cad) {
+    for (Index p = 0; p < plc.patches.size(); ++p) areas_.push_back(area_of(p));
+    for (Index s = 0; s < sources.soups.size(); ++s) {
+      std::set<Tag> faces;
+      for (Index f = 0; f < sources.soups[s].facet_count(); ++f) faces.insert(sources.soups[s].facet_tag(f));
+      if (const auto cad_file = cad.measures(s))
+        for (const Tag face : faces) soups_with_[{cad_file->first_soup, face}].push_back(s);
+    }
+  }
+
+  std::vector<double> lengths() const {
+    Origins origins(plc_.curves.size());
+    for (Index c = 0; c < plc_.curves.size(); ++c) {
+      const Plc::Curve& curve = plc_.curves[c];
+      if (curve.patches.empty()) continue;
+      if (const auto cad = cad_.measures(plc_.patches[curve.patches.front()].file))
+        origins.add(cad->first_soup, sources_.curves[c], cad->measures.lengths, c, length_of(curve));
+    }
+    return origins.corrected_sizes();
+  }
+
+  std::vector<double> areas() const {
+    Origins origins(plc_.patches.size());
+    for (Index p = 0; p < plc_.patches.size(); ++p)
+      if (const auto cad = cad_.measures(plc_.patches[p].file))
+        origins.add(cad->first_soup, sources_.patches[p], cad->measures.areas, p, areas_[p]);
+    return origins.corrected_sizes();
+  }
+
+  std::vector<double> volumes() const {
+    std::vector<double> result(plc_.regions.size(), unknown);
+    const auto boundaries = boundaries_of_regions();
+    const std::vector<double> soup_areas = areas_of_soups();
+    for (Index r = 1; r < plc_.regions.size(); ++r)
+      if (const auto own = soup_that_bounds(boundaries[r], soup_areas))
+        if (const auto solid = solid_without_others(*own, boundaries[r]))
+          result[r] = corrected(plc_.regions[r].volume, *solid);
+    return result;
+  }
+
+ private:
+  double length_of(const Plc::Curve& curve) const {
+    double length = 0;
+    const std::size_t count = curve.points.size();
+    for (std::size_t i = 0; i + (curve.closed ? 0 : 1) < count; ++i)
+      length += distance(plc_.points[curve.points[i]], plc_.points[curve.points[(i + 1) % count]]);
+    return length;
+  }
+
+  double area_of(Index patch) const {
+    double area = 0;
+    const Plc::Patch& of = plc_.patches[patch];
+    for (Index t = of.first_triangle; t < of.first_triangle + of.triangle_count; ++t) {
+      const auto& [a, b, c] = plc_.triangles[t].points;
+      area += norm(cross(plc_.points[b] - plc_.points[a], plc_.points[c] - plc_.points[a])) / 2;
+    }
+    return area;
+  }
+
+  /// The patches around each region.
+  std::vector<std::vector<Index>> boundaries_of_regions() const {
+    std::vector<std::vector<Index>> boundaries(plc_.regions.size());
+    for (Index p = 0; p < plc_.patches.size(); ++p) {
+      const auto& sides = plc_.patches[p].regions;
+      if (sides[0] == sides[1]) continue;
+      for (const Index r : sides) boundaries[r].push_back(p);
+    }
+    return boundaries;
+  }
+
+  /// The soups of a CAD file that have the face which became a patch: solids share faces.
+  const std::vector<Index>& soups_with(Index patch) const {
+    static const std::vector<Index> no_soups;
+    const auto cad = cad_.measures(plc_.patches[patch].file);
+    if (!cad) return no_soups;
+    const auto found = soups_with_.find({cad->first_soup, sources_.patches[patch]});
+    return found == soups_with_.end() ? no_soups : found->second;
+  }
+
+  /// In the complex.
+  std::vector<double> areas_of_soups() const {
+    std::vector<double> areas(sources_.soups.size(), 0);
+    for (Index p = 0; p < plc_.patches.size(); ++p)
+      for (const Index soup : soups_with(p)) areas[soup] += areas_[p];
+    return areas;
+  }
+
+  /// The soup that differs least from a region's boundary.
+  std::optional<Index> soup_that_bounds(const std::vector<Index>& patches,
+                                        const std::vector<double>& soup_areas) const {
+    std::map<Index, double> common;
+    for (const Index p : patches)
+      for (const Index soup : soups_with(p)) common[soup] += areas_[p];
+    if (common.empty()) return std::nullopt;
+    const auto lacks = [&](const auto& shared) { return soup_areas[shared.first] - 2 * shared.second; };
+    return std::min_element(common.begin(), common.end(),
+                            [&](const auto& a, const auto& b) { return lacks(a) < lacks(b); })
+        ->first;
+  }
+
+  std::optional<brep::CadMeasure> solid(Index soup) const {
+    const auto cad = cad_.measures(soup);
+    return cad ? cad->measures.volumes[soup - cad->first_soup] : std::nullopt;
+  }
+
+  /// A solid without those that lie in it: they bound its region by faces that are none of it.
+  std::optional<brep::CadMeasure> solid_without_others(Index own, const std::vector<Index>& boundary) const {
+    std::optional<brep::CadMeasure> result = solid(own);
+    if (!result) return result;
+    std::set<Index> others;
+    for (const Index p : boundary) {
+      const std::vector<Index>& soups = soups_with(p);
+      if (std::find(soups.begin(), soups.end(), own) == soups.end()) others.insert(plc_.patches[p].file);
+    }
+    for (const Index soup : others) {
+      const auto other = solid(soup);
+      if (!other) return std::nullopt;
+      result->exact -= other->exact;
+      result->cut -= other->cut;
+    }
+    return result;
+  }
+
+  const Plc& plc_;
+  const FeatureSources& sources_;
+  const CadFiles& cad_;
+  std::vector<double> areas_;                        // of patches
+  std::map<Source, std::vector<Index>> soups_with_;  // by face
+};
+
+}  // namespace
+
+ShapeMeasures measures_behind(const Plc& plc, const FeatureSources& sources, const CadFiles& cad) {
+  const Measures measures(plc, sources, cad);
+  return {.volumes = measures.volumes(), .areas = measures.areas(), .lengths = measures.lengths()};
+}
+
+}  // namespace collarmesh::files

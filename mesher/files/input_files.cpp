@@ -1,0 +1,87 @@
+#include "files/input_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <string_view>
+
+#include "collarmesh/error.h"
+#include "collarmesh/io/mesh_surface_io.h"
+#include "collarmesh/io/tet_mesh_io.h"
+#include "files/edit_distance.h"
+
+namespace collarmesh::files {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+void require_file(const std::string& path) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored))
+    throw ReadError(fmt::format("{}: is a folder; name a file in it", path));
+  if (fs::exists(path, ignored)) return;
+  const std::string similar = similar_file(path);
+  throw ReadError(similar.empty() ? fmt::format("{}: no such file; check the name and the folder", path)
+                                  : fmt::format("{}: no such file; did you mean {}?", path, similar));
+}
+
+/// The system's name of "-".
+std::string opened(const std::string& path) { return path == "-" ? "/dev/stdin" : path; }
+
+}  // namespace
+
+std::string similar_file(const std::string& path) {
+  const fs::path wanted(path);
+  const fs::path folder = wanted.has_parent_path() ? wanted.parent_path() : fs::path(".");
+  const std::string name = lower(wanted.filename().string());
+  std::size_t nearest = 1 + name.size() / 3;
+  std::string found;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string candidate = entry->path().filename().string();
+    const std::size_t distance = edit_distance(name, lower(candidate));
+    if (distance > nearest || (distance == nearest && !found.empty())) continue;
+    nearest = distance;
+    found = (wanted.parent_path() / candidate).string();
+  }
+  return found;
+}
+
+std::string existing_file(const std::string& path) {
+  require_file(opened(path));
+  return opened(path);
+}
+
+TetMesh read_mesh(const std::string& path, const std::string& format) {
+  const std::string file = existing_file(path);
+  if (const std::string missing = io::missing_library(path, format); !missing.empty())
+    throw ReadError(fmt::format("{}: {}", path, missing));
+  if (!io::is_tet_mesh_format(path, format))
+    throw ReadError(fmt::format("{}: its format is not known by its extension '{}'; use {}", path,
+                                fs::path(path).extension().string(),
+                                fmt::join(io::read_tet_mesh_formats(), " ")));
+  return io::read_tet_mesh(file, format);
+}
+
+std::optional<TetMesh> read_mesh_if_there(const std::string& path, const std::string& format) {
+  if (!io::missing_library(path, format).empty()) return read_mesh(path, format);
+  if (!io::is_tet_mesh_format(path, format)) return std::nullopt;
+  if (!io::is_mesh_surface_format(path, format)) return read_mesh(path, format);
+  try {
+    return read_mesh(path, format);
+  } catch (const ReadError& error) {
+    if (std::string_view(error.what()).find("expected tetrahedra, found none") == std::string_view::npos)
+      throw;
+    return std::nullopt;
+  }
+}
+
+}  // namespace collarmesh::files

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "collarmesh/tet_mesh.h"
+
+namespace collarmesh::files {
+
+/// The system's name of an input file; "-" is standard input.
+/// Throws ReadError; for a file that does not exist it proposes the most similar name.
+std::string existing_file(const std::string& path);
+
+/// Read a tetrahedral mesh. `format` overrides the extension. Throws ReadError.
+TetMesh read_mesh(const std::string& path, const std::string& format = {});
+
+/// The same for a file that may hold a surface instead: nothing then, which is also the answer for surface
+/// formats. Throws ReadError.
+std::optional<TetMesh> read_mesh_if_there(const std::string& path, const std::string& format = {});
+
+/// The entry of the folder of `path` whose name is most like it, or empty when none is near.
+std::string similar_file(const std::string& path);
+
+}  // namespace collarmesh::files

@@ -1,0 +1,61 @@
+#include "collarmesh/mesh_files.h"
+
+#include "collarmesh/size_field.h"
+#include "collarmesh/surface_tolerance.h"
+#include "files/complex_input.h"
+
+namespace collarmesh {
+
+namespace {
+
+files::InputReading reading_of(const RunOptions& options, const std::string& format,
+                               const Execution& execution) {
+  files::InputReading reading;
+  reading.format = format;
+  reading.distance = [&options](double diagonal) { return distance_of(options, diagonal); };
+  reading.tolerance = [&options](const Plc& plc) {
+    return tolerance_of(plc, options.mesh.bounds, options.mesh.size, static_cast<int>(options.order));
+  };
+  reading.overlap = options.overlap;
+  reading.threads = options.mesh.threads;
+  reading.names = options.names;
+  reading.cancel = execution.cancel;
+  return reading;
+}
+
+/// Complexes of files, one for each repair.
+class FilesSource : public ComplexSource {
+ public:
+  /// Both are kept by reference.
+  FilesSource(const RunOptions& options, files::ComplexInput& input) : options_(options), input_(input) {}
+
+  RepairedPlc build(const RepairOptions& repair, const Execution&) override {
+    return {input_.build(options_.complex, repair), input_.repaired(), {}};
+  }
+
+  void adapt(const Plc& plc, PipelineOptions& options) override {
+    if (!options_.size_field_file.empty())
+      options.mesh.size_field = read_size_field(options_.size_field_file, plc);
+    if (!input_.has_cad()) return;
+    options.exact = input_.exact_geometry(plc);
+    options.exact_measures = input_.exact_measures(plc);
+  }
+
+ private:
+  const RunOptions& options_;
+  files::ComplexInput& input_;
+};
+
+}  // namespace
+
+FilesResult mesh_files(const std::vector<std::string>& paths, const RunOptions& options,
+                       const std::string& format, const Execution& execution) {
+  files::ComplexInput input(paths, reading_of(options, format, execution));
+  FilesSource source(options, input);
+  FilesResult result{run_pipeline(source, options, execution), {}};
+  if (input.has_cad()) result.result.mesh.group_names = GroupNames::cad;
+  result.notes = input.notes();
+  return result;
+}
+
+}  // namespace collarmesh

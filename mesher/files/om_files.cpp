@@ -1,0 +1,48 @@
+#include "files/om_files.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "collarmesh/error.h"
+#include "common/module_function.h"
+
+namespace collarmesh::files {
+
+namespace {
+
+constexpr const char* module = "collarmesh_openmesh.so";
+
+}  // namespace
+
+bool is_om([[maybe_unused]] const std::string& path, [[maybe_unused]] std::string_view format) {
+#ifdef COLLARMESH_OPENMESH
+  std::string extension =
+      format.empty() ? std::filesystem::path(path).extension().string() : std::string(format);
+  for (char& c : extension)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
+  return extension == ".om";
+#else
+  return false;
+#endif
+}
+
+PolygonSoup read_om(const std::string& path) {
+  std::string reason;
+  void* const found = module_function(module, "collarmesh_read_om", reason);
+  if (found == nullptr)
+    throw ReadError(fmt::format("{}: cannot be read, because {}, or use another format", path, reason));
+  PolygonSoup soup;
+  reinterpret_cast<void (*)(const std::string&, PolygonSoup&)>(found)(path, soup);
+  return soup;
+}
+
+void write_om(const std::string& path, const PolygonSoup& soup) {
+  std::string reason;
+  void* const found = module_function(module, "collarmesh_write_om", reason);
+  if (found == nullptr)
+    throw WriteError(fmt::format("{}: cannot be written, because {}, or write .off", path, reason));
+  reinterpret_cast<void (*)(const std::string&, const PolygonSoup&)>(found)(path, soup);
+}
+
+}  // namespace collarmesh::files

@@ -1,0 +1,44 @@
+#include "files/surface_files.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "collarmesh/error.h"
+#include "collarmesh/io/mesh_surface_io.h"
+#include "collarmesh/io/soup_io.h"
+#include "files/cad_files.h"
+#include "files/om_files.h"
+
+namespace collarmesh::files {
+
+bool is_surface_format(const std::string& path, std::string_view format) {
+  return is_om(path, format) || io::is_soup_format(path, format);
+}
+
+std::vector<std::string> surface_formats() {
+  std::vector<std::string> formats = io::soup_formats();
+  if (is_om("", ".om")) formats.emplace_back(".om");
+  return formats;
+}
+
+PolygonSoup read_surface(const std::string& path, std::string_view format) {
+  if (is_om(path, format)) return read_om(path);
+  if (io::is_mesh_surface_format(path, format)) return io::read_mesh_surface(path, format);
+  if (!io::is_soup_format(path, format))
+    throw ReadError(fmt::format("{}: its format is not known by its extension '{}'; use {}{}{}", path,
+                                std::filesystem::path(path).extension().string(),
+                                fmt::join(surface_formats(), " "), CadFiles::formats().empty() ? "" : " ",
+                                fmt::join(CadFiles::formats(), " ")));
+  return io::read_soup(path, format);
+}
+
+void write_surface(const std::string& path, const PolygonSoup& soup, std::string_view format) {
+  if (is_om(path, format)) {
+    write_om(path, soup);
+    return;
+  }
+  io::write_soup(path, soup, format);
+}
+
+}  // namespace collarmesh::files

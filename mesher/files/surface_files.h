@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "collarmesh/polygon_soup.h"
+
+namespace collarmesh::files {
+
+/// The formats of io/soup_io.h and, when built with OpenMesh, .om. `format` overrides the extension.
+bool is_surface_format(const std::string& path, std::string_view format = {});
+std::vector<std::string> surface_formats();
+
+/// These, and the tagged triangles of mesh files (io/mesh_surface_io.h). Throws ReadError.
+PolygonSoup read_surface(const std::string& path, std::string_view format = {});
+/// Throws WriteError.
+void write_surface(const std::string& path, const PolygonSoup& soup, std::string_view format = {});
+
+}  // namespace collarmesh::files

@@ -1,0 +1,43 @@
+#include "process/console.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "collarmesh/error.h"
+
+namespace collarmesh::process {
+
+void replace_closed_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(stream, F_GETFD) != -1 || errno != EBADF) continue;
+    // The lowest free number is that of the stream. The wrong direction keeps it unusable.
+    const int opened = open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+    if (opened != stream && opened >= 0) close(opened);
+  }
+}
+
+namespace {
+bool silent = false;
+}
+
+void be_silent() { silent = true; }
+
+void tell_text(const std::string& text) noexcept {
+  if (silent) return;
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
+void print_result(const std::string& text) {
+  if (silent) return;
+  errno = 0;
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    throw WriteError(fmt::format("standard output: cannot be written ({})",
+                                 errno == 0 ? "no reason given" : std::strerror(errno)));
+}
+
+}  // namespace collarmesh::process

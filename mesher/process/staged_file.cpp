@@ -1,0 +1,312 @@
+#include "process/staged_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <mutex>
+#include <set>
+#include <string_view>
+#include <vector>
+
+#include "collarmesh/error.h"
+#include "process/interrupt.h"
+#include "process/supervisor.h"
+
+namespace collarmesh::process {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* standard_output = "-";
+constexpr const char* folder_prefix = ".collarmesh-";
+constexpr std::string_view kept_prefix = "kept-";
+
+std::mutex staged_mutex;  // guards what follows
+
+/// Holds that mutex. A thread may hold it already: memory may be used up while it does.
+class StagedLock {
+ public:
+  StagedLock() {
+    if (held_++ == 0) staged_mutex.lock();
+  }
+  ~StagedLock() {
+    if (--held_ == 0) staged_mutex.unlock();
+  }
+  StagedLock(const StagedLock&) = delete;
+  StagedLock& operator=(const StagedLock&) = delete;
+  /// For good: the program is about to end.
+  static void keep() { ++held_; }
+
+ private:
+  static thread_local int held_;
+};
+thread_local int StagedLock::held_ = 0;
+
+std::vector<std::string> staged_folders;
+bool committed = false;
+bool keep_folders = false;  // what was there before could not be put back from them
+
+/// What a commit has done so far, to be taken back.
+struct Done {
+  fs::path place, kept;
+};
+std::vector<Done> done;
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+fs::path folder_of(const fs::path& target) {
+  return target.has_parent_path() ? target.parent_path() : fs::path(".");
+}
+
+std::string reason() { return std::strerror(errno); }
+
+void require_place(const fs::path& target) {
+  std::error_code ignored;
+  if (fs::is_directory(target, ignored))
+    throw WriteError(fmt::format("{}: is a folder; name a file in another place", target.string()));
+  if (fs::exists(target, ignored) && !fs::is_regular_file(target, ignored))
+    throw WriteError(fmt::format("{}: is no regular file; name one, or - with --format", target.string()));
+}
+
+/// Those of runs that were killed: nobody holds their locks. Younger ones may be about to be locked.
+void remove_dead_folders(const fs::path& parent) {
+  using namespace std::chrono_literals;
+  std::error_code error;
+  for (fs::directory_iterator entry(parent, error), end; !error && entry != end; entry.increment(error)) {
+    const fs::path& folder = entry->path();
+    std::error_code ignored;
+    struct stat status = {};
+    if (!folder.filename().string().starts_with(folder_prefix) || lstat(folder.c_str(), &status) != 0 ||
+        !S_ISDIR(status.st_mode) || status.st_uid != geteuid() ||
+        fs::file_time_type::clock::now() - fs::last_write_time(folder, ignored) < 1min)
+      continue;
+    const int lock = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW);
+    if (lock < 0) continue;
+    if (flock(lock, LOCK_EX | LOCK_NB) == 0) remove_dead_folder(folder);
+    close(lock);
+  }
+}
+
+/// Where standard output is made before it is copied.
+fs::path temporary_place() {
+  std::error_code error;
+  for (const fs::path& place : {fs::temp_directory_path(error), fs::path("/tmp"), fs::path("/var/tmp")})
+    if (!place.empty() && access(place.c_str(), W_OK | X_OK) == 0) return place;
+  return ".";
+}
+
+fs::path make_folder_beside(const fs::path& target) {
+  const fs::path parent = target == standard_output ? temporary_place() : folder_of(target);
+  std::error_code ignored;
+  if (!fs::exists(parent, ignored))
+    throw WriteError(
+        fmt::format("{}: its folder {} does not exist; create it first", target.string(), parent.string()));
+  if (!fs::is_directory(parent, ignored))
+    throw WriteError(
+        fmt::format("{}: {} is not a folder; choose another place", target.string(), parent.string()));
+  if (target != standard_output) require_place(target);
+  remove_dead_folders(parent);
+  // In the list before it is there: memory may be used up at any time.
+  staged_folders.push_back((parent / fmt::format("{}XXXXXX", folder_prefix)).string());
+  if (mkdtemp(staged_folders.back().data()) == nullptr) {
+    const std::string why = reason();
+    staged_folders.pop_back();
+    throw WriteError(
+        fmt::format("{}: cannot write to the folder {} ({}); choose another or change its permissions",
+                    target.string(), parent.string(), why));
+  }
+  return staged_folders.back();
+}
+
+/// File systems that cannot flush say so by these numbers.
+bool flushed(int file) { return fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP; }
+
+void flush(const fs::path& path, const fs::path& place) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool good = file >= 0 && flushed(file);
+  const std::string why = reason();
+  if (file >= 0) close(file);
+  if (!good) throw WriteError(fmt::format("{}: cannot be written to the disk ({})", place.string(), why));
+}
+
+/// Names that were given or taken, too. The files are in place by now: nothing is lost when it fails.
+void flush_folder(const fs::path& folder) {
+  const int file = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file < 0) return;
+  flushed(file);
+  close(file);
+}
+
+void keep_mode_and_owner(const fs::path& before, const fs::path& staged) {
+  struct stat status = {};
+  if (stat(before.c_str(), &status) != 0) return;
+  if (chown(staged.c_str(), status.st_uid, status.st_gid) != 0 &&
+      chown(staged.c_str(), -1, status.st_gid) != 0) {
+    // Only root gives files away.
+  }
+  if (chmod(staged.c_str(), status.st_mode & 07777) != 0)
+    throw WriteError(fmt::format("{}: cannot keep its mode ({})", before.string(), reason()));
+}
+
+/// A second name for a file, or, where there are no links, another one.
+bool keep(const fs::path& place, const fs::path& kept) {
+  return link(place.c_str(), kept.c_str()) == 0 || rename(place.c_str(), kept.c_str()) == 0;
+}
+
+void take_back() noexcept {
+  for (; !done.empty(); done.pop_back()) {
+    const Done& last = done.back();
+    if ((last.kept.empty() ? unlink(last.place.c_str()) : rename(last.kept.c_str(), last.place.c_str())) != 0)
+      keep_folders = true;
+  }
+}
+
+}  // namespace
+
+// What a symbolic link names is replaced, not the link.
+StagedFile::StagedFile(fs::path target) : target_(std::move(target)) {
+  std::error_code error;
+  if (fs::is_symlink(target_, error))
+    if (fs::path named = fs::weakly_canonical(target_, error); !error) target_ = std::move(named);
+  const StagedLock lock;
+  folder_ = make_folder_beside(target_);
+  lock_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (lock_ >= 0) flock(lock_, LOCK_EX | LOCK_NB);
+  supervise_folder(folder_.string());
+}
+
+StagedFile::~StagedFile() {
+  const StagedLock lock;
+  std::error_code ignored;
+  if (!keep_folders) fs::remove_all(folder_, ignored);
+  if (lock_ >= 0) close(lock_);
+  std::erase(staged_folders, folder_.native());
+}
+
+void StagedFile::write(const std::function<void(const std::string&)>& write) {
+  try {
+    write((folder_ / target_.filename()).string());
+  } catch (const WriteError& error) {
+    const fs::path parent = target_.parent_path();
+    throw WriteError(
+        replaced(error.what(), folder_.string() + "/", parent.empty() ? "" : parent.string() + "/"));
+  }
+}
+
+std::vector<StagedFile::Move> StagedFile::moves() const {
+  std::set<fs::path> names;
+  for (const auto& entry : fs::directory_iterator(folder_)) names.insert(entry.path().filename());
+  names.erase(target_.filename());
+  std::vector<fs::path> ordered(names.begin(), names.end());
+  ordered.push_back(target_.filename());  // the target last: who sees it sees the others too
+  std::vector<Move> moves;
+  for (const fs::path& name : ordered) {
+    const fs::path place = target_.parent_path() / name;
+    std::error_code ignored;
+    const bool there = fs::exists(fs::symlink_status(place, ignored));
+    moves.push_back(
+        {folder_ / name, place, there ? folder_ / (std::string(kept_prefix) + name.string()) : fs::path()});
+  }
+  return moves;
+}
+
+void StagedFile::copy_to_standard_output() const {
+  std::ifstream file(folder_ / target_.filename(), std::ios::binary);
+  std::vector<char> block(1 << 16);
+  const auto fail = [] {
+    throw WriteError(
+        fmt::format("standard output: cannot be written ({}); name a file with --output", reason()));
+  };
+  while (file.read(block.data(), static_cast<std::streamsize>(block.size())), file.gcount() > 0)
+    if (std::fwrite(block.data(), 1, static_cast<std::size_t>(file.gcount()), stdout) !=
+        static_cast<std::size_t>(file.gcount()))
+      fail();
+  if (std::fflush(stdout) != 0) fail();
+}
+
+void StagedFile::commit(const std::vector<StagedFile*>& files) {
+  const StagedLock lock;
+  stop_if_interrupted();
+  std::vector<Move> all;
+  for (const StagedFile* file : files)
+    if (file != nullptr && file->target_ != standard_output)
+      for (Move& move : file->moves()) all.push_back(std::move(move));
+  std::set<fs::path> places;
+  for (const Move& move : all) {
+    std::error_code error;
+    if (!places.insert(fs::weakly_canonical(folder_of(move.to), error) / move.to.filename()).second)
+      throw WriteError(
+          fmt::format("{}: two outputs would be this file; choose another name", move.to.string()));
+    require_place(move.to);
+    if (!move.kept.empty()) keep_mode_and_owner(move.to, move.from);
+    flush(move.from, move.to);
+  }
+  for (const StagedFile* file : files)
+    if (file != nullptr && file->target_ == standard_output) file->copy_to_standard_output();
+  done.reserve(all.size());
+  for (const Move& move : all) {
+    Done next{move.to, move.kept};
+    if ((!move.kept.empty() && !keep(move.to, move.kept)) ||
+        (done.push_back(std::move(next)), rename(move.from.c_str(), move.to.c_str()) != 0)) {
+      const std::string why = reason();
+      if (move.kept.empty()) done.pop_back();  // what is there now, if anything, is somebody else's
+      take_back();
+      throw WriteError(fmt::format(
+          "{}: cannot be replaced ({}); choose another name{}", move.to.string(), why,
+          keep_folders ? fmt::format("; nor can files be put back: what was there before is in {}",
+                                     move.from.parent_path().string())
+                       : ""));
+    }
+  }
+  committed = true;
+  done.clear();
+  std::set<fs::path> folders;
+  for (const Move& move : all) folders.insert(folder_of(move.to));
+  for (const fs::path& folder : folders) flush_folder(folder);
+}
+
+void require_writable(const fs::path& target, const std::vector<fs::path>& beside) {
+  const StagedFile probe(target);
+  for (const fs::path& file : beside) require_place(file);
+}
+
+void remove_dead_folder(const fs::path& folder) {
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    std::error_code ignored;
+    if (!name.starts_with(kept_prefix)) continue;
+    const fs::path place = folder.parent_path() / name.substr(kept_prefix.size());
+    if (!fs::exists(fs::symlink_status(place, ignored))) fs::rename(entry->path(), place, ignored);
+  }
+  fs::remove_all(folder, error);
+}
+
+bool abandon_staged_files() {
+  const StagedLock lock;
+  if (!committed) {
+    StagedLock::keep();
+    take_back();
+  }
+  std::error_code ignored;
+  if (!keep_folders)
+    for (const std::string& folder : staged_folders) fs::remove_all(folder, ignored);
+  return !committed;
+}
+
+}  // namespace collarmesh::process

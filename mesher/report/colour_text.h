@@ -1,0 +1,14 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "collarmesh/tag_colours.h"
+
+namespace collarmesh::report {
+
+/// "#rrggbb", as pages have it.
+inline std::string colour_text(Colour colour) { return fmt::format("#{:06x}", colour); }
+
+}  // namespace collarmesh::report

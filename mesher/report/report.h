@@ -1,0 +1,69 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "collarmesh/check.h"
+#include "collarmesh/options.h"
+#include "collarmesh/partition.h"
+#include "collarmesh/pipeline.h"
+#include "collarmesh/plc_builder.h"
+#include "collarmesh/predict.h"
+#include "collarmesh/remesh.h"
+#include "collarmesh/tag_colours.h"
+#include "report/stage_times.h"
+#include "report/worst_tets.h"
+
+namespace collarmesh::report {
+
+/// A run, as it was asked for.
+struct RequestedRun : RunOptions {
+  std::vector<std::string> inputs;
+  std::string output;
+};
+
+/// Everything one run of the mesher found out.
+struct MeshRun : SoupPipelineResult {
+  PlcSummary summary;
+  std::vector<std::string> warnings;  ///< of options; those of the input are in the complex
+  std::vector<std::string> notes;     ///< on CAD shapes, a line each
+  TagColours colours;                 ///< of CAD shapes
+  std::vector<WorstTet> worst;
+  std::optional<RemeshReport> remeshing;  ///< nothing unless a mesh was adapted
+  StageTimes times;
+};
+
+// For programs (--report, --json):
+/// `names`: how features without a name are called. `colours`: by their tags.
+nlohmann::ordered_json complex_json(const Plc& plc, const PlcSummary& summary,
+                                    GroupNames names = GroupNames::complex, const TagColours& colours = {});
+nlohmann::ordered_json measures_json(const TetMesh& mesh, const MeshMeasures& measures);
+nlohmann::ordered_json check_json(const CheckReport& report);
+nlohmann::ordered_json repair_json(const RepairReport& report);
+nlohmann::ordered_json predictions_json(const std::vector<Prediction>& predictions);
+nlohmann::ordered_json run_json(const RequestedRun& arguments, const MeshRun& run);
+/// Of `collarmesh repair`.
+nlohmann::ordered_json repair_run_json(const RequestedRun& arguments, const Plc& plc,
+                                       const PlcSummary& summary, const RepairReport& report);
+
+// For people, lines of text:
+/// "warning: ..." lines of the input, the first ones if there are very many.
+std::string warnings_text(const Plc& plc);
+/// "repaired: ..." lines, the first ones if there are very many. `quiet`: only of what may change the shape
+/// by more than the tolerance.
+std::string repair_text(const RepairReport& report, bool quiet = false);
+std::string complex_text(const Plc& plc, const PlcSummary& summary, GroupNames names = GroupNames::complex);
+/// A table; empty where nothing was predicted.
+std::string predictions_text(const std::vector<Prediction>& predictions);
+/// Empty for a mesh that is not partitioned.
+std::string partitions_text(const PartitionMeasures& measures);
+std::string mesh_text(const TetMesh& mesh, const MeshMeasures& measures, const CheckReport* judged = nullptr);
+std::string findings_text(const CheckReport& report, std::size_t listed);
+std::string check_text(const CheckReport& report);
+/// "straightened: ..." lines of the nodes that did not stay on their smooth feature, the first ones.
+std::string straightened_text(const SecondOrderReport& report, std::size_t listed);
+std::string run_text(const RequestedRun& arguments, const MeshRun& run);
+
+}  // namespace collarmesh::report

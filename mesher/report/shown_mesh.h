@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "collarmesh/tet_mesh.h"
+#include "report/worst_tets.h"
+
+namespace collarmesh::report {
+
+/// The part of a mesh that a page shows.
+struct ShownMesh {
+  struct ShownWorst {
+    Index tet;                 ///< of those shown
+    double smallest, largest;  ///< dihedral angles, degrees
+    Point where;               ///< its centre
+  };
+
+  bool complete = true;               ///< all tets are there
+  Point centre;                       ///< of the bounding box
+  std::vector<float> points;          ///< three numbers for each, relative to the centre
+  std::vector<std::uint32_t> tets;    ///< four corners for each
+  std::vector<std::uint32_t> faces;   ///< on patches: three corners and an index into `face_tags` for each
+  std::vector<Tag> face_tags;         ///< sorted
+  std::vector<std::uint16_t> region;  ///< of each tet
+  std::vector<std::uint8_t> marks;    ///< of each tet: 1 in a collar, 2 thin
+  std::vector<ShownWorst> worst;      ///< as given
+};
+
+/// All tets up to `most`; of more those with a face on the boundary or an interface, those that meet the
+/// planes through the centre, and the worst. Cost: linear.
+ShownMesh shown_mesh(const TetMesh& mesh, const std::vector<WorstTet>& worst, std::size_t most = 100000);
+
+}  // namespace collarmesh::report

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "collarmesh/split.h"
+
+namespace collarmesh::report {
+
+/// A line for each patch, and one for its nodes.
+std::string split_text(const SplitReport& report);
+nlohmann::ordered_json split_json(const SplitReport& report);
+
+}  // namespace collarmesh::report

@@ -1,0 +1,198 @@
+#include "facets/cleanup.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include "common/disjoint_sets.h"
+#include "facets/exact.h"
+
+namespace collarmesh::facets {
+
+namespace {
+
+using Edge = std::array<Index, 2>;
+
+Edge edge_key(Index a, Index b) { return a < b ? Edge{a, b} : Edge{b, a}; }
+
+// Collinear triangles that share edges lie on one line: a group. Their edges are cut at every point
+// of the group in between.
+class CollinearGroups {
+ public:
+  CollinearGroups(const Draft& draft, const std::vector<Index>& flat) : draft_(draft), points_(flat.size()) {
+    DisjointSets sets(flat.size());
+    for (Index i = 0; i < flat.size(); ++i)
+      for (unsigned side = 0; side < 3; ++side) {
+        const Corners& t = draft.triangles[flat[i]];
+        const auto [at, added] = group_of_edge_.try_emplace(edge_key(t[side], t[(side + 1) % 3]), i);
+        if (!added) sets.unite(at->second, i);
+      }
+    for (auto& [edge, group] : group_of_edge_) group = sets.find(group);
+    for (Index i = 0; i < flat.size(); ++i) {
+      auto& group = points_[sets.find(i)];
+      group.insert(group.end(), draft.triangles[flat[i]].begin(), draft.triangles[flat[i]].end());
+    }
+    for (auto& group : points_) {
+      std::sort(group.begin(), group.end());
+      group.erase(std::unique(group.begin(), group.end()), group.end());
+    }
+  }
+
+  /// Returns the points that cut the edge from a to b, in order from a.
+  std::vector<Index> cuts(Index a, Index b) const {
+    std::vector<Index> result;
+    const auto at = group_of_edge_.find(edge_key(a, b));
+    if (at == group_of_edge_.end()) return result;
+    const auto& p = draft_.points;
+    for (const Index c : points_[at->second])
+      if (c != a && c != b && between(p[a], p[c], p[b])) result.push_back(c);
+    std::sort(result.begin(), result.end(), [&](Index c, Index d) { return between(p[a], p[c], p[d]); });
+    return result;
+  }
+
+ private:
+  const Draft& draft_;
+  std::map<Edge, Index> group_of_edge_;
+  std::vector<std::vector<Index>> points_;  // by group
+};
+
+// Cuts a triangle at the cuts of its sides. Each step fans the apex opposite one cut side.
+void add_cut(const Corners& triangle, const Origin& origin, const CollinearGroups& groups, Draft& result) {
+  std::vector<Corners> stack{triangle};
+  while (!stack.empty()) {
+    const Corners t = stack.back();
+    stack.pop_back();
+    bool cut = false;
+    for (unsigned side = 0; side < 3 && !cut; ++side) {
+      std::vector<Index> chain = groups.cuts(t[side], t[(side + 1) % 3]);
+      if (chain.empty()) continue;
+      cut = true;
+      chain.insert(chain.begin(), t[side]);
+      chain.push_back(t[(side + 1) % 3]);
+      for (std::size_t i = 0; i + 1 < chain.size(); ++i)
+        stack.push_back({chain[i], chain[i + 1], t[(side + 2) % 3]});
+    }
+    if (!cut) result.add_triangle(t, origin);
+  }
+}
+
+void add_cut(const Segment& segment, const CollinearGroups& groups, Draft& result) {
+  Segment piece = segment;
+  for (const Index cut : groups.cuts(segment.a, segment.b)) {
+    piece.b = cut;
+    result.segments.push_back(piece);
+    piece.a = cut;
+  }
+  piece.b = segment.b;
+  result.segments.push_back(piece);
+}
+
+struct Twin {
+  Corners key;  // sorted corners
+  Index triangle;
+
+  friend bool operator<(const Twin& a, const Twin& b) {
+    return a.key != b.key ? a.key < b.key : a.triangle < b.triangle;
+  }
+};
+
+// Sorts triangles so that those with the same corners follow each other, in their order: a counting sort by
+// the lowest corner, then a sort within each group.
+std::vector<Twin> sort_by_corners(const Draft& draft) {
+  std::vector<Index> next(draft.points.size() + 1, 0);
+  for (const Corners& t : draft.triangles) ++next[*std::min_element(t.begin(), t.end()) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<Twin> order(draft.triangles.size());
+  for (Index t = 0; t < order.size(); ++t) {
+    Twin twin{draft.triangles[t], t};
+    std::sort(twin.key.begin(), twin.key.end());
+    order[next[twin.key[0]]++] = twin;
+  }
+  auto first = order.begin();
+  for (std::size_t point = 0; point < draft.points.size(); ++point) {
+    const auto last = order.begin() + next[point];
+    std::sort(first, last);
+    first = last;
+  }
+  return order;
+}
+
+bool same_orientation(const Corners& a, const Corners& b) {
+  const auto at = static_cast<std::size_t>(std::find(b.begin(), b.end(), a[0]) - b.begin());
+  return b[(at + 1) % 3] == a[1];
+}
+
+// Removes the marked triangles and renumbers the claims on the others. Returns the number of removed ones.
+Index compact(Draft& draft, const std::vector<bool>& removed) {
+  std::vector<Index> moved(draft.triangles.size());
+  Index kept = 0;
+  for (Index t = 0; t < draft.triangles.size(); ++t) {
+    moved[t] = kept;
+    if (removed[t]) continue;
+    draft.triangles[kept] = draft.triangles[t];
+    draft.origins[kept++] = draft.origins[t];
+  }
+  const auto count = static_cast<Index>(draft.triangles.size()) - kept;
+  draft.triangles.resize(kept);
+  draft.origins.resize(kept);
+  for (Claim& claim : draft.claims) claim.side = 2 * moved[claim.side / 2] + claim.side % 2;
+  return count;
+}
+
+}  // namespace
+
+void remove_collinear_triangles(Draft& draft) {
+  std::vector<Index> flat;
+  for (Index t = 0; t < draft.triangles.size(); ++t)
+    if (collinear(draft.corner(t, 0), draft.corner(t, 1), draft.corner(t, 2))) flat.push_back(t);
+  draft.cleanup.degenerate_triangles += static_cast<Index>(flat.size());
+  if (flat.empty()) return;
+  const CollinearGroups groups(draft, flat);
+  Draft result;
+  for (Index t = 0, next = 0; t < draft.triangles.size(); ++t) {
+    if (next < flat.size() && flat[next] == t)
+      ++next;
+    else
+      add_cut(draft.triangles[t], draft.origins[t], groups, result);
+  }
+  for (const Segment& segment : draft.segments) add_cut(segment, groups, result);
+  draft.triangles = std::move(result.triangles);
+  draft.segments = std::move(result.segments);
+  draft.origins = std::move(result.origins);
+}
+
+void remove_twins_within_soups(Draft& draft) {
+  const std::vector<Twin> order = sort_by_corners(draft);
+  std::vector<bool> removed(draft.triangles.size(), false);
+  for (std::size_t i = 1; i < order.size(); ++i)
+    removed[order[i].triangle] =
+        order[i].key == order[i - 1].key &&
+        draft.origins[order[i].triangle].soup == draft.origins[order[i - 1].triangle].soup;
+  draft.cleanup.repeated_triangles += compact(draft, removed);
+}
+
+void merge_twins_across_soups(Draft& draft) {
+  const std::vector<Twin> order = sort_by_corners(draft);
+  std::vector<bool> removed(draft.triangles.size(), false);
+  std::set<std::pair<Tag, Tag>> replaced;
+  for (std::size_t i = 1, first = 0; i < order.size(); ++i) {
+    if (order[i].key != order[first].key) {
+      first = i;
+      continue;
+    }
+    const Index kept = order[first].triangle, dropped = order[i].triangle;
+    removed[dropped] = true;
+    const Origin& origin = draft.origins[dropped];
+    const Tag tag = draft.origins[kept].tag;
+    if (origin.tag != tag) replaced.insert({origin.tag, tag});
+    if (!origin.oriented && !draft.soup_is_complex[origin.soup]) continue;
+    const bool alike = same_orientation(draft.triangles[kept], draft.triangles[dropped]);
+    draft.claims.push_back({alike ? back_side(kept) : front_side(kept), origin.soup});
+  }
+  draft.cleanup.shared_triangles += compact(draft, removed);
+  draft.cleanup.replaced_tags.assign(replaced.begin(), replaced.end());
+}
+
+}  // namespace collarmesh::facets

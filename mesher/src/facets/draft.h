@@ -1,0 +1,83 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "collarmesh/geometry.h"
+#include "collarmesh/plc.h"
+#include "collarmesh/polygon_soup.h"
+
+/// The complex while `build_plc` makes it: welded points, triangles, explicit segments and points.
+/// Each step of the builder is one file beside this one.
+namespace collarmesh::facets {
+
+/// The corners of a triangle. Its side i is the edge from corner i to corner i + 1.
+using Corners = std::array<Index, 3>;
+
+/// Where a triangle comes from.
+struct Origin {
+  Tag tag = 0;
+  Index soup = 0;
+  Index facet = 0;
+  bool oriented = true;  ///< its orientation says on which side its soup's solid is
+};
+
+/// An edge that the input names as a segment.
+struct Segment {
+  Index a = 0, b = 0;
+  Tag tag = 0;
+  Index soup = 0;
+};
+
+/// A soup whose triangle was dropped for its twin takes this side of the twin for solid.
+struct Claim {
+  Index side = 0;  ///< 2 t behind triangle t, 2 t + 1 in front of it
+  Index soup = 0;
+};
+
+struct Draft {
+  std::vector<Point> points;
+  std::vector<Tag> point_tags;
+  std::vector<Corners> triangles;
+  std::vector<Origin> origins;  ///< one per triangle
+  std::vector<Segment> segments;
+  std::vector<Index> loose_points;  ///< points that the input names as vertices
+  std::vector<Claim> claims;
+
+  std::vector<std::string> soup_names;
+  std::vector<bool> soup_is_complex;      ///< PolygonSoup::Kind::complex, by soup
+  std::vector<bool> soup_gives_features;  ///< PolygonSoup::given_features, by soup
+
+  Box bounds;
+  double planar_tolerance = 0;   ///< absolute
+  double largest_deviation = 0;  ///< absolute
+  Plc::Cleanup cleanup;
+
+  /// How far rounding alone may move points off a plane.
+  double rounding() const {
+    const auto reach = [](const Point& p) {
+      return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+    };
+    return 32 * 2.2e-16 * std::max(reach(bounds.min), reach(bounds.max));
+  }
+  const Point& corner(Index triangle, unsigned i) const { return points[triangles[triangle][i]]; }
+  void add_triangle(const Corners& corners, const Origin& origin) {
+    triangles.push_back(corners);
+    origins.push_back(origin);
+  }
+};
+
+/// Half the cross product of two sides.
+inline Vector area_vector(const Draft& draft, const Corners& t) {
+  return 0.5 * cross(draft.points[t[1]] - draft.points[t[0]], draft.points[t[2]] - draft.points[t[0]]);
+}
+inline double area_of(const Draft& draft, const Corners& t) { return norm(area_vector(draft, t)); }
+
+inline Index back_side(Index triangle) { return 2 * triangle; }
+inline Index front_side(Index triangle) { return 2 * triangle + 1; }
+
+}  // namespace collarmesh::facets

@@ -1,0 +1,152 @@
+#include "facets/flat_clusters.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "delaunay/predicates.h"
+
+namespace collarmesh::facets {
+
+namespace {
+
+// A triangle lower than this many planar tolerances is a needle.
+constexpr double needle_height = 10;
+// A triangle lower than this many may lie in a plane that its own normal does not fit.
+constexpr double foldable_height = 2;
+// The plane of a triangle is not trusted beyond this share of its height: even a body smaller than the
+// tolerance has sides.
+constexpr double share_of_height = 0.1;
+
+double longest_side(const Draft& draft, Index t) {
+  return std::max({distance(draft.corner(t, 0), draft.corner(t, 1)),
+                   distance(draft.corner(t, 1), draft.corner(t, 2)),
+                   distance(draft.corner(t, 2), draft.corner(t, 0))});
+}
+
+class ClusterFinder {
+ public:
+  ClusterFinder(const Draft& draft, const EdgeTable& edges, ClusterBorder border)
+      : draft_(draft),
+        edges_(edges),
+        border_(border),
+        areas_(draft.triangles.size()),
+        heights_(draft.triangles.size()),
+        grows_(draft.triangles.size(), false) {
+    result_.seed.assign(draft.triangles.size(), none);
+    result_.normal.resize(draft.triangles.size());
+    for (Index t = 0; t < areas_.size(); ++t) {
+      areas_[t] =
+          0.5 * norm(cross(draft.corner(t, 1) - draft.corner(t, 0), draft.corner(t, 2) - draft.corner(t, 0)));
+      heights_[t] = 2 * areas_[t] / longest_side(draft, t);
+      result_.normal[t] = unit_normal(draft, t);
+    }
+  }
+
+  // Seeds come in order of decreasing size. Most triangles of a curved surface have no neighbour in their
+  // plane and are skipped.
+  FlatClusters run() {
+    std::vector<Index> order;
+    for (Index t = 0; t < areas_.size(); ++t) {
+      for_each_neighbour(t, [&](Index side) { grows_[t] = grows_[t] || joins(side, t, t); });
+      if (grows_[t]) order.push_back(t);
+    }
+    std::sort(order.begin(), order.end(), [this](Index a, Index b) { return precedes(a, b); });
+    for (const Index t : order)
+      if (result_.seed[t] == none) grow(t);
+    for (Index t = 0; t < areas_.size(); ++t) {
+      if (result_.seed[t] == none) result_.seed[t] = t;
+      if (heights_[t] <= needle_height * draft_.planar_tolerance)
+        result_.normal[t] = result_.normal[result_.seed[t]];
+    }
+    return std::move(result_);
+  }
+
+ private:
+  bool precedes(Index a, Index b) const { return areas_[a] != areas_[b] ? areas_[a] > areas_[b] : a < b; }
+
+  // Returns the neighbours' sides on common edges of exactly two triangles.
+  template <class Visit>
+  void for_each_neighbour(Index t, const Visit& visit) const {
+    for (unsigned i = 0; i < 3; ++i) {
+      const auto sides = edges_.sides(edges_.edge_of(3 * t + i));
+      if (sides.size() == 2) visit(sides[0] / 3 == t ? sides[1] : sides[0]);
+    }
+  }
+
+  void grow(Index seed) {
+    result_.seed[seed] = seed;
+    stack_.assign(1, seed);
+    while (!stack_.empty()) {
+      const Index t = stack_.back();
+      stack_.pop_back();
+      for_each_neighbour(t, [&](Index side) {
+        const Index other = side / 3;
+        const bool had_its_turn = !grows_[other] && precedes(other, seed);
+        if (had_its_turn || result_.seed[other] != none || !joins(side, t, seed)) return;
+        result_.seed[other] = seed;
+        stack_.push_back(other);
+      });
+    }
+  }
+
+  // Returns whether the triangle of this side, a neighbour of t in the seed's cluster, belongs to it, too.
+  bool joins(Index side, Index t, Index seed) const {
+    return same_facet(t, side / 3) || (!divided(t, side / 3) && in_plane(side, seed));
+  }
+
+  // Returns whether a given feature lies between two neighbours. A needle along it lies in the planes of both
+  // faces, but the normal that fits it is its own face's.
+  bool divided(Index s, Index t) const {
+    if (border_ == ClusterBorder::none) return false;
+    const Origin &a = draft_.origins[s], &b = draft_.origins[t];
+    return (a.soup != b.soup || a.tag != b.tag) &&
+           (draft_.soup_gives_features[a.soup] || draft_.soup_gives_features[b.soup]);
+  }
+
+  // A polygon is one plane, whatever rounding has done to its corners.
+  bool same_facet(Index s, Index t) const {
+    return draft_.origins[s].soup == draft_.origins[t].soup &&
+           draft_.origins[s].facet == draft_.origins[t].facet;
+  }
+
+  // Returns whether the triangle lies in the plane of the seed and faces the same side.
+  bool in_plane(Index side, Index seed) const {
+    const Point& p = draft_.points[apex(draft_.triangles, side)];
+    if (!point_in_plane(p, seed)) return false;
+    return dot(result_.normal[side / 3], result_.normal[seed]) > 0 ||
+           heights_[side / 3] <= foldable_height * tolerance(seed);
+  }
+
+  double tolerance(Index seed) const {
+    return std::min(draft_.planar_tolerance, std::max(share_of_height * heights_[seed], draft_.rounding()));
+  }
+
+  bool point_in_plane(const Point& p, Index seed) const {
+    const Point& a = draft_.corner(seed, 0);
+    if (draft_.planar_tolerance > 0) return std::fabs(dot(result_.normal[seed], p - a)) <= tolerance(seed);
+    return predicates::orientation(a, draft_.corner(seed, 1), draft_.corner(seed, 2), p) == 0;
+  }
+
+  const Draft& draft_;
+  const EdgeTable& edges_;
+  ClusterBorder border_;
+  std::vector<double> areas_, heights_;
+  std::vector<bool> grows_;  // as a seed, when no other one was before
+  std::vector<Index> stack_;
+  FlatClusters result_;
+};
+
+}  // namespace
+
+Vector unit_normal(const Draft& draft, Index triangle) {
+  const Vector n = cross(draft.corner(triangle, 1) - draft.corner(triangle, 0),
+                         draft.corner(triangle, 2) - draft.corner(triangle, 0));
+  const double length = norm(n);
+  return length > 0 ? n / length : Vector{};
+}
+
+FlatClusters find_flat_clusters(const Draft& draft, const EdgeTable& edges, ClusterBorder border) {
+  return ClusterFinder(draft, edges, border).run();
+}
+
+}  // namespace collarmesh::facets

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "collarmesh/geometry.h"
+
+/// Do two simplices meet? Closed sets, exact decisions. All corners are distinct points, triangles
+/// have an area.
+namespace collarmesh::facets {
+
+bool point_on_segment(const Point& p, const Point& a, const Point& b);
+bool point_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
+bool segments_meet(const Point& a, const Point& b, const Point& c, const Point& d);
+bool segment_meets_triangle(const Point& p, const Point& q, const Point& a, const Point& b, const Point& c);
+
+}  // namespace collarmesh::facets
