@@ -1,10 +1,7 @@
 #include "collarmesh/surface_tolerance.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
-#include <utility>
 
 #include "collarmesh/bounds.h"
 #include "collarmesh/mesher.h"
@@ -25,9 +22,6 @@ constexpr double share_of_rod = 0.05, share_of_shell = 0.15, share_of_hole = 0.1
 constexpr double share_of_volume = 0.015, largest_factor = 2;
 // The smallest tolerance, relative to the largest one: finer details are not resolved.
 constexpr double least_share = 5e-4;
-// The least thickness of a wedge as a share of its largest one: a quarter of the thickness is a sixteenth of
-// the volume.
-constexpr double share_of_wedge = 0.25;
 // The mean loss of chords as a share of the tolerance; most chords are nearer than the tolerance allows.
 constexpr double mean_of_sagitta = 0.42;
 constexpr double sizes_per_diagonal = 20;  // of the default size, as in refine/sizing.cpp
@@ -54,16 +48,11 @@ class LocalTolerance {
       const std::vector<Curvature> of_patch = curvatures(plc_, patch);
       std::copy(of_patch.begin(), of_patch.end(), curvature_.begin() + patch.first_triangle);
     }
-    std::vector<Sides> opposite(plc_.triangles.size());
     parallel_for_ranges(plc_.triangles.size(), 256, [&](std::size_t first, std::size_t last) {
       Thickness::Crossings crossings;
       for (auto t = static_cast<Index>(first); t < last; ++t)
-        for (unsigned side = 0; side < 2 && !patch_of(t).planar; ++side)
-          opposite[t][side] = thickness_.at(t, side, crossings);
+        if (!patch_of(t).planar) look_around(t, crossings);
     });
-    widen_wedges(opposite);
-    for (Index t = 0; t < opposite.size(); ++t)
-      for (unsigned side = 0; side < 2; ++side) look_across(t, side, opposite[t][side]);
     std::vector<double> factors(plc_.regions.size(), volumes == Volumes::any ? largest_factor : 1);
     if (volumes == Volumes::kept) factors = factors_by_volumes();
     std::vector<double> triangles(plc_.triangles.size(), largest_);
@@ -75,38 +64,19 @@ class LocalTolerance {
   }
 
  private:
-  using Sides = std::array<Thickness::Opposite, 2>;
-
   const Plc::Patch& patch_of(Index triangle) const { return plc_.patches[plc_.triangles[triangle].patch]; }
 
-  // Towards its edge a wedge becomes ever thinner, and has ever less volume: there it counts as thick as at a
-  // share of its thickest place.
-  void widen_wedges(std::vector<Sides>& opposite) const {
-    const auto visit = [&](const auto& look) {
-      for (Index t = 0; t < opposite.size(); ++t)
-        for (Thickness::Opposite& of_side : opposite[t])
-          if (of_side.in_wedge)
-            look(std::minmax(plc_.triangles[t].patch, plc_.triangles[of_side.triangle].patch),
-                 of_side.distance);
-    };
-    std::map<std::pair<Index, Index>, double> thickest;
-    visit([&](const std::pair<Index, Index>& patches, double distance) {
-      double& largest = thickest[patches];
-      largest = std::max(largest, distance);
-    });
-    visit([&](const std::pair<Index, Index>& patches, double& distance) {
-      distance = std::max(distance, share_of_wedge * thickest[patches]);
-    });
-  }
-
-  void look_across(Index triangle, unsigned side, const Thickness::Opposite& opposite) {
-    if (opposite.triangle == none) return;
-    const bool empty = patch_of(triangle).regions[side] == 0;
-    const double lost = lost_by(triangle, side, opposite);
-    const double share = empty ? lost * share_of_hole + (1 - lost) * share_of_slot
-                               : lost * share_of_rod + (1 - lost) * share_of_shell;
-    double& tolerance = (empty ? of_gap_ : of_material_)[triangle];
-    tolerance = std::min(tolerance, share * opposite.distance);
+  void look_around(Index triangle, Thickness::Crossings& crossings) {
+    for (unsigned side = 0; side < 2; ++side) {
+      const Thickness::Opposite opposite = thickness_.at(triangle, side, crossings);
+      if (opposite.triangle == none) continue;
+      const bool empty = patch_of(triangle).regions[side] == 0;
+      const double lost = lost_by(triangle, side, opposite);
+      const double share = empty ? lost * share_of_hole + (1 - lost) * share_of_slot
+                                 : lost * share_of_rod + (1 - lost) * share_of_shell;
+      double& tolerance = (empty ? of_gap_ : of_material_)[triangle];
+      tolerance = std::min(tolerance, share * opposite.distance);
+    }
   }
 
   /// Returns the tolerance with shares of the material's thickness larger by these factors.

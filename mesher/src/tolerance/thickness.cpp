@@ -69,13 +69,12 @@ Thickness::Opposite Thickness::at(Index triangle, unsigned side, Crossings& cros
     if (other == triangle || ends.regions[from_side] != region) continue;
     const Index opposite_patch = plc_.triangles[other].patch;
     const bool neighbours = are_neighbours(plc_, patch, opposite_patch);
+    if (neighbours && creases_.contains(std::minmax(patch, opposite_patch))) continue;
     if (std::fabs(towards) < least_facing(neighbours)) continue;
     const auto [p, q, r] = triangles_.corners(other);
     const Vector flat = cross(q - p, r - p);
     const double distance = dot(p - centre, flat) / dot(way, flat);
-    if (distance > 0 && distance < opposite.distance)
-      opposite = {distance, other, from_side,
-                  neighbours && creases_.contains(std::minmax(patch, opposite_patch))};
+    if (distance > 0 && distance < opposite.distance) opposite = {distance, other, from_side};
   }
   return opposite;
 }

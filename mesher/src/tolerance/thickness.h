@@ -20,7 +20,6 @@ class Thickness {
     double distance = INFINITY;
     Index triangle = none;  ///< where the region ends; none where it does not, or at a slant
     unsigned side = 0;      ///< the side of that triangle that the region lies on
-    bool in_wedge = false;  ///< the two sides meet in a crease
   };
   /// Scratch space of a thread.
   using Crossings = std::vector<TriangleHierarchy::Crossing>;
