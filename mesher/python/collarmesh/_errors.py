@@ -14,7 +14,8 @@ _VOLUME_PER_CUBE = 0.125
 
 def _volumes(mesh: Mesh) -> Array:
     a, b, c, d = numpy.moveaxis(mesh.points[mesh.tets], 1, 0)
-    return abs(numpy.einsum("ij,ij->i", b - a, numpy.cross(c - a, d - a))) / 6
+    volumes: Array = abs(numpy.einsum("ij,ij->i", b - a, numpy.cross(c - a, d - a))) / 6
+    return volumes
 
 
 def _at_points(mesh: Mesh, weights: Array, values: Array) -> Array:
@@ -24,7 +25,8 @@ def _at_points(mesh: Mesh, weights: Array, values: Array) -> Array:
     for corner in mesh.tets.T:
         numpy.add.at(sums, corner, weights[:, None] * values)
         numpy.add.at(total, corner, weights)
-    return sums / numpy.where(total > 0, total, 1)[:, None]
+    means: Array = sums / numpy.where(total > 0, total, 1)[:, None]
+    return means
 
 
 def estimated_errors(mesh: Mesh, values: ArrayLike) -> Array:
@@ -47,7 +49,8 @@ def estimated_errors(mesh: Mesh, values: ArrayLike) -> Array:
     off = recovered - gradients[:, None]
     # The exact integral of the square of what is linear between the corners.
     squares = (off**2).sum(axis=(1, 2)) + (off.sum(axis=1) ** 2).sum(axis=1)
-    return numpy.sqrt(volumes * squares / 20)
+    errors: Array = numpy.sqrt(volumes * squares / 20)
+    return errors
 
 
 def sizes_from_errors(
@@ -103,4 +106,5 @@ def sizes_from_errors(
     at_points = numpy.exp(_at_points(mesh, volumes, numpy.log(wanted)[:, None])[:, 0])
     # The mean at the points evens out lengths, which changes how many tetrahedra they make.
     made = (volumes / at_points[mesh.tets].mean(axis=1) ** 3).sum()
-    return at_points * numpy.cbrt(made / (volumes / wanted**3).sum())
+    sizes: Array = at_points * numpy.cbrt(made / (volumes / wanted**3).sum())
+    return sizes
