@@ -72,6 +72,16 @@ ExitCode fail(const PlcError& error) {
   return ExitCode::invalid_complex;
 }
 
+ExitCode fail_without_threads() {
+  return fail(ExitCode::budget_hit,
+              "no thread can be made; nothing was written; raise the limit of threads or memory");
+}
+
+// TBB tells with a message alone that it got no thread.
+bool is_of_threads(const std::exception& error) {
+  return std::string_view(error.what()).find("pthread_create") != std::string_view::npos;
+}
+
 ExitCode execute(const Arguments& arguments) {
   report_failures_of(arguments);
   const auto command = [&] {
@@ -103,10 +113,10 @@ ExitCode guarded(const std::function<ExitCode()>& command) {
         "the memory is used up; nothing was written; raise --max-memory, or --size for a coarser mesh");
   } catch (const std::system_error& error) {
     return error.code() == std::errc::resource_unavailable_try_again
-               ? fail(ExitCode::budget_hit,
-                      "no thread can be made; nothing was written; raise the limit of threads or memory")
+               ? fail_without_threads()
                : fail(ExitCode::cannot_write, error.what());
   } catch (const std::exception& error) {
+    if (is_of_threads(error)) return fail_without_threads();
     return fail(
         ExitCode::internal_error,
         fmt::format("internal error: {}; please report it with the input and the options", error.what()));
