@@ -207,7 +207,8 @@ class Measures {
 
 ShapeMeasures measures_behind(const Plc& plc, const FeatureSources& sources, const CadFiles& cad) {
   const Measures measures(plc, sources, cad);
-  return {.volumes = measures.volumes(), .areas = measures.areas(), .lengths = measures.lengths()};
+  return {
+      .volumes = measures.volumes(), .areas = measures.areas(), .lengths = measures.lengths(), .shells = {}};
 }
 
 }  // namespace collarmesh::files

@@ -311,6 +311,7 @@ Json check_json(const CheckReport& r) {
           {"region_volumes", by_number(volumes)},
           {"kept",
            {{"region_volumes", kept_json(r.of_input.volumes, r.of_mesh.volumes, 1)},
+            {"shell_volumes", kept_json(r.of_input.shells, r.of_mesh.shells)},
             {"patch_areas", kept_json(r.of_input.areas, r.of_mesh.areas)},
             {"curve_lengths", kept_json(r.of_input.lengths, r.of_mesh.lengths)}}}};
 }

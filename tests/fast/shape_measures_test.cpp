@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
+#include <vector>
 
+#include "collarmesh/plc_builder.h"
 #include "collarmesh/tet_mesh.h"
 #include "support/shapes.h"
 
@@ -72,6 +75,39 @@ TEST(ShapeMeasures, ACurvedTetHasWhatItsFacesEnclose) {
     for (std::size_t i = 4; i < 10; ++i) nodes[i] = nodes[i] + Vector{off(random), off(random), off(random)};
     EXPECT_NEAR(volume(nodes), volume_by_faces(nodes), 1e-6);
   }
+}
+
+TEST(ShapeMeasures, VolumesBelowTheFacesOfACurvedTetAddUpToItsOwn) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> off(-0.1, 0.1);
+  for (int round = 0; round < 20; ++round) {
+    CurvedTet nodes = straight_tet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1});
+    for (std::size_t i = 4; i < 10; ++i) nodes[i] = nodes[i] + Vector{off(random), off(random), off(random)};
+    const auto& [a, b, c, d, ab, bc, ca, ad, bd, cd] = nodes;
+    double sum = 0;
+    for (const CurvedTriangle& face :
+         {CurvedTriangle{a, c, b, ca, bc, ab}, CurvedTriangle{a, b, d, ab, bd, ad},
+          CurvedTriangle{b, c, d, bc, cd, bd}, CurvedTriangle{c, a, d, ca, ad, cd}})
+      sum += volume_below({3, 2, -1}, face);
+    EXPECT_NEAR(sum, volume(nodes), 1e-12);
+  }
+}
+
+/// A box with a void, another box on top, and one that stands alone.
+TEST(ShapeMeasures, ShellsAreWhatBoundsMoreOrLessThanARegion) {
+  using testing::box;
+  const PolygonSoup with_void =
+      testing::joined(box({0, 0, 0}, {4, 4, 4}), testing::inverted(box({1, 1, 1}, {2, 3, 3})));
+  const std::vector<PolygonSoup> soups{with_void, box({0, 0, 4}, {4, 4, 5}), box({9, 0, 0}, {10, 1, 1})};
+  const Plc plc = build_plc(soups);
+  const ShapeMeasures measures = measures_of(plc);
+  ASSERT_EQ(measures.shells.size(), shells_of(plc).size());
+  std::vector<double> enclosed = measures.shells;
+  std::sort(enclosed.begin(), enclosed.end());
+  ASSERT_EQ(enclosed.size(), 3U);  // the void, the lower box with it, both boxes
+  EXPECT_NEAR(enclosed[0], 4, 1e-12);
+  EXPECT_NEAR(enclosed[1], 64, 1e-12);
+  EXPECT_NEAR(enclosed[2], 80, 1e-12);
 }
 
 TEST(ShapeMeasures, ACurvedTriangleInAPlaneGainsParabolas) {

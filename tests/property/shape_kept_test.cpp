@@ -1,8 +1,10 @@
 // Small and thin regions keep their volume at default options, and the certificate says how much of it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -121,6 +123,125 @@ TEST(ShapeKept, AreasAndLengthsAreThoseOfFacesAndEdges) {
       EXPECT_NEAR(length, 24, 1e-11);
     }
   }
+}
+
+// Two bodies of one region, and a void: what each closed surface encloses.
+TEST(ShapeKept, EveryClosedSurfaceIsJudged) {
+  const PolygonSoup soup = testing::joined(
+      testing::joined(testing::box({-1, -1, -1}, {1, 1, 1}), testing::inverted(testing::icosphere(0.05, 8))),
+      testing::translated(testing::icosphere(0.03, 8), {3, 0, 0}));
+  const double void_volume = enclosed_by(testing::icosphere(0.05, 8)),
+               ball = enclosed_by(testing::icosphere(0.03, 8));
+  for (const unsigned order : {1U, 2U}) {
+    PipelineOptions options;
+    options.mesh = with_size(0.4);
+    options.order = order;
+    const SoupPipelineResult made = run_pipeline({&soup, 1}, options);
+    ASSERT_EQ(made.missed(), "");
+    const double most = order == 1 ? 0.05 : 0.01;
+    std::vector<double> input = made.check.of_input.shells, mesh = made.check.of_mesh.shells;
+    ASSERT_EQ(input.size(), shells_of(made.plc).size());
+    std::sort(input.begin(), input.end());
+    std::sort(mesh.begin(), mesh.end());
+    ASSERT_GE(input.size(), 2U);
+    EXPECT_NEAR(mesh.front(), input.front(), most * input.front());
+    EXPECT_TRUE(
+        std::any_of(input.begin(), input.end(), [&](double v) { return std::fabs(v - void_volume) < 1e-9; }));
+    for (std::size_t i = 0; i < input.size(); ++i) EXPECT_NEAR(mesh[i], input[i], most * input[i]);
+    EXPECT_NEAR(made.check.of_mesh.volumes[1] +
+                    (made.check.of_mesh.volumes.size() > 2 ? made.check.of_mesh.volumes[2] : 0),
+                8 - void_volume + ball, 0.05 * (void_volume + ball));
+  }
+}
+
+TEST(ShapeKept, AVoidThatIsLostIsAFinding) {
+  const PolygonSoup soup =
+      testing::joined(testing::box({-1, -1, -1}, {1, 1, 1}), testing::inverted(testing::icosphere(0.05, 8)));
+  PipelineOptions options;
+  options.mesh = with_size(0.4);
+  options.mesh.bounds.distance = 0.02;
+  const SoupPipelineResult made = run_pipeline({&soup, 1}, options);
+  ASSERT_EQ(made.missed(), "");
+  ASSERT_FALSE(made.check.warnings.empty());
+  CheckOptions judge;
+  judge.bounds.tolerance = SurfaceTolerance(0.02);
+  const CheckReport report = check(made.result.mesh, made.plc, judge);
+  ASSERT_FALSE(report.findings.empty());
+  EXPECT_EQ(report.findings[0].guarantee, "volume_kept");
+  EXPECT_NE(report.findings[0].message.find("closed surface"), std::string::npos);
+}
+
+/// A block with a blade on one side, thickest in the middle: two arcs that meet in a sharp edge.
+std::vector<Point> outline_of_a_blade(double length, double thickness) {
+  constexpr unsigned steps = 32;
+  const auto half_thickness = [&](double x) { return thickness / 2 * (0.2 + 4 * x) * (1 - x); };
+  std::vector<Point> outline{{-10, -10, 0}, {0, -10, 0}};
+  for (unsigned i = 0; i <= steps; ++i) {
+    const double x = static_cast<double>(i) / steps;
+    outline.push_back({x * length, -half_thickness(x), 0});
+  }
+  for (unsigned i = steps; i-- > 0;) {
+    const double x = static_cast<double>(i) / steps;
+    outline.push_back({x * length, half_thickness(x), 0});
+  }
+  outline.push_back({0, 10, 0});
+  outline.push_back({-10, 10, 0});
+  return outline;
+}
+
+PolygonSoup blade_on_a_block(double length, double thickness, double height) {
+  const std::vector<Point> outline = outline_of_a_blade(length, thickness);
+  const PolygonSoup faces = testing::extrusion(outline, height);
+  PolygonSoup blade;
+  blade.points = faces.points;
+  const auto corners_on_arc = [&](std::span<const Index> corners, double sign) {
+    return std::ranges::all_of(corners, [&](Index i) {
+      const Point& p = faces.points[i];
+      return p.x >= 0 && sign * p.y >= 0 && std::fabs(p.y) < thickness;
+    });
+  };
+  for (Index p = 0; p < faces.polygon_count(); ++p) {
+    const auto corners = faces.polygon(p);
+    const Tag tag = corners_on_arc(corners, -1)  ? 1001
+                    : corners_on_arc(corners, 1) ? 1002
+                                                 : faces.facet_tag(p);
+    blade.add_facet(corners, tag);
+  }
+  return blade;
+}
+
+// The region is so large that its volume tells nothing of the blade.
+TEST(ShapeKept, ABladeOnABlockKeepsItsThickness) {
+  const double height = 2;
+  const PolygonSoup soup = blade_on_a_block(1, 0.08, height);
+  const double block = 200 * height, blade = enclosed_by(soup) - block;
+  for (const unsigned order : {1U, 2U}) {
+    PipelineOptions options;
+    options.mesh = with_size(2);
+    options.order = order;
+    const SoupPipelineResult made = run_pipeline({&soup, 1}, options);
+    ASSERT_EQ(made.missed(), "");
+    EXPECT_NEAR(made.check.of_mesh.volumes[1] - block, blade, (order == 1 ? 0.05 : 0.01) * blade);
+  }
+}
+
+TEST(ShapeKept, ABladeThatIsFlattenedIsAFinding) {
+  const PolygonSoup soup = blade_on_a_block(1, 0.08, 2);
+  PipelineOptions options;
+  options.mesh = with_size(2);
+  SoupPipelineResult made = run_pipeline({&soup, 1}, options);
+  const auto finds = [&](double distance) {
+    CheckOptions judge;
+    judge.bounds.distance = distance;
+    const CheckReport report = check(made.result.mesh, made.plc, judge);
+    return std::ranges::any_of(report.findings,
+                               [](const Finding& finding) { return finding.guarantee == "thickness_kept"; });
+  };
+  EXPECT_FALSE(finds(0));
+  for (Point& p : made.result.mesh.points)
+    if (p.x > 1e-9) p.y *= 0.6;
+  EXPECT_TRUE(finds(0));
+  EXPECT_FALSE(finds(0.1));
 }
 
 }  // namespace

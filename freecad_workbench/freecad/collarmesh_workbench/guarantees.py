@@ -25,7 +25,7 @@ def _groups():
           "patch_manifold", "patch_orientation", "patch_plane", "vertex_feature", "vertex_present", "listed_edges",
           "listed_faces")),
         (translate("collarmesh", "Each solid has its volume, no element is inverted"),
-         ("region_volume", "volume_kept", "region_tag", "positive_volume", "distinct_tets")),
+         ("region_volume", "volume_kept", "thickness_kept", "region_tag", "positive_volume", "distinct_tets")),
         (translate("collarmesh", "Elements know their faces and edges"),
          ("curve_tag", "patch_tag", "patch_regions", "face_regions")),
         (translate("collarmesh", "Circumradius / shortest edge is bounded"), ("radius_edge",)),

@@ -58,7 +58,8 @@ struct CheckReport {
 /// volumes, conformity, watertight regions, region volumes, curves as unions of edges, facets as
 /// unions of faces with equal area, radius-edge ratio or angles, surface distance. A region may lose or gain
 /// 5% of its volume with elements of first order, 1% with those of second order, unless the bounds ask for a
-/// distance; a warning names regions that are more than 2% off.
+/// distance; a warning names regions that are more than 2% off. So may closed surfaces inside or around them;
+/// walls keep their thickness, and gaps their width, in the mean of a patch.
 /// A mesh read from a file (no feature indices) is matched to the complex by tags and position; if its tags
 /// are not the complex's, or it has no boundary triangles or curve edges, by position alone.
 /// Tets count as cells of a collar only at creases of the complex.

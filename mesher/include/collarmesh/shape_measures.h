@@ -12,7 +12,19 @@ struct ShapeMeasures {
   std::vector<double> volumes;  ///< by region; [0], the outside, is 0
   std::vector<double> areas;    ///< by patch
   std::vector<double> lengths;  ///< by curve
+  std::vector<double> shells;   ///< what they enclose, in the order of `shells_of`
 };
+
+/// A closed surface that bounds a region or the outside but is not all of one region's boundary: around a
+/// void, around one of several bodies of a region, around several regions that touch.
+struct Shell {
+  Index region = none;  ///< that it bounds, 0: the outside
+  std::vector<Index> patches;
+};
+
+/// Returns the connected parts of the boundaries of regions and of the outside, without those that bound
+/// one region alone, whose volume is the region's. Cost: near linear in the features.
+std::vector<Shell> shells_of(const Plc& plc);
 
 /// Measures the complex's triangles and polylines.
 ShapeMeasures measures_of(const Plc& plc);
@@ -30,6 +42,10 @@ using CurvedEdge = std::array<Point, 3>;
 
 /// Returns the volume of a curved tet, exact except for rounding.
 double volume(const CurvedTet& nodes);
+/// Returns the signed volume of the curved tet between a triangle and a point, whose edges to the point are
+/// straight; positive where the triangle's normal (b-a) x (c-a) looks away from the point. Over a closed
+/// surface the sum is what it encloses.
+double volume_below(const Point& apex, const CurvedTriangle& nodes);
 /// Returns the area by quadrature of degree 4; exact if the triangle is straight.
 double area(const CurvedTriangle& nodes);
 /// Returns the length by quadrature of degree 5; exact if the edge is straight.

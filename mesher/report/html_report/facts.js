@@ -53,7 +53,7 @@ const guarantees = [
   ['Conformity: corners, edges and faces of the input are in the mesh',
     ['conforming', 'watertight', 'curve_cover', 'curve_distance', 'patch_area', 'patch_border', 'patch_distance', 'patch_manifold',
       'patch_orientation', 'patch_plane', 'vertex_feature', 'vertex_present', 'listed_edges', 'listed_faces']],
-  ['Regions: each tetrahedron lies in one, and volumes are kept', ['region_volume', 'volume_kept', 'region_tag', 'positive_volume', 'distinct_tets']],
+  ['Regions: each tetrahedron lies in one, and volumes are kept', ['region_volume', 'volume_kept', 'thickness_kept', 'region_tag', 'positive_volume', 'distinct_tets']],
   ['Tags: faces and edges know where they are from', ['curve_tag', 'patch_tag', 'patch_regions', 'face_regions']],
   ['Shape: circumradius over shortest edge is bounded', ['radius_edge']],
   ['Thin tetrahedra have no small or large angle', ['thin_angles']],

@@ -62,9 +62,9 @@ void take_measures(CheckReport& report, CheckReport&& part) {
   report.min_collar_dihedral = std::min(report.min_collar_dihedral, part.min_collar_dihedral);
   report.max_surface_distance = std::max(report.max_surface_distance, part.max_surface_distance);
   report.median_edge = std::max(report.median_edge, part.median_edge);
+  report.warnings.insert(report.warnings.end(), part.warnings.begin(), part.warnings.end());
   if (part.region_volumes.empty()) return;
   report.region_volumes = std::move(part.region_volumes);
-  report.warnings = std::move(part.warnings);
   report.of_input = std::move(part.of_input);
   report.of_mesh = std::move(part.of_mesh);
   report.measures = std::move(part.measures);
@@ -77,7 +77,7 @@ void judge(Subject subject, CheckReport& report, Findings& findings, const Execu
   subject.match = match_features(subject.mesh, subject.plc, subject.rounding);
   find_collar_cells(subject, findings);
   using Group = void (*)(const Subject&, CheckReport&, Findings&);
-  const std::array<Group, 7> groups{[](const Subject& s, CheckReport& r, Findings& f) {
+  const std::array<Group, 8> groups{[](const Subject& s, CheckReport& r, Findings& f) {
                                       check_tets(s, r, f);
                                       check_region_volumes(s, r, f);
                                       check_shape_kept(s, r, f);
@@ -89,6 +89,7 @@ void judge(Subject subject, CheckReport& report, Findings& findings, const Execu
                                       check_listed_edges(s, f);
                                     },
                                     check_curves,
+                                    check_thickness_kept,
                                     check_patches,
                                     [](const Subject& s, CheckReport&, Findings& f) { check_collars(s, f); },
                                     check_second_order};

@@ -33,6 +33,7 @@ inline constexpr char face_regions[] = "face_regions";    ///< a face's regions 
 inline constexpr char watertight[] = "watertight";        ///< the faces around a region form a closed surface
 inline constexpr char region_volume[] = "region_volume";  ///< is the complex's own
 inline constexpr char volume_kept[] = "volume_kept";      ///< and so much of it that results can be trusted
+inline constexpr char thickness_kept[] = "thickness_kept";  ///< thin places of large regions are there
 
 // The complex's vertices and curves
 inline constexpr char vertex_present[] = "vertex_present";  ///< each is a mesh vertex

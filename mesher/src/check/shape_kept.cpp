@@ -1,5 +1,6 @@
 // Volumes, areas and lengths of the mesh beside those of the input.
 #include <cmath>
+#include <string>
 
 #include "check/subject.h"
 
@@ -13,18 +14,50 @@ double length_of_edge(const TetMesh& mesh, Index edge) {
   return length(CurvedEdge{mesh.points[a], mesh.points[b], mesh.points[mesh.edge_mid_nodes[edge]]});
 }
 
-double area_of_face(const TetMesh& mesh, Index face) {
+CurvedTriangle curved_face(const TetMesh& mesh, Index face) {
   const auto& [a, b, c] = mesh.faces[face];
-  const Point &p = mesh.points[a], &q = mesh.points[b], &r = mesh.points[c];
-  if (mesh.order() == 1) return 0.5 * norm(cross(q - p, r - p));
-  const auto& [pq, qr, rp] = mesh.face_mid_nodes[face];
-  return area(CurvedTriangle{p, q, r, mesh.points[pq], mesh.points[qr], mesh.points[rp]});
+  const auto& [ab, bc, ca] = mesh.face_mid_nodes[face];
+  return {mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[ab], mesh.points[bc], mesh.points[ca]};
 }
 
-ShapeMeasures measures_of(const Subject& subject, const std::vector<double>& volumes) {
+double area_of_face(const TetMesh& mesh, Index face) {
+  const auto& [a, b, c] = mesh.faces[face];
+  return mesh.order() == 1 ? area(mesh.points[a], mesh.points[b], mesh.points[c])
+                           : area(curved_face(mesh, face));
+}
+
+double volume_below_face(const TetMesh& mesh, const Point& apex, Index face) {
+  const auto& [a, b, c] = mesh.faces[face];
+  return mesh.order() == 1 ? six_volume(apex, mesh.points[a], mesh.points[b], mesh.points[c]) / 6
+                           : volume_below(apex, curved_face(mesh, face));
+}
+
+/// A point of the shell in the complex: seen from afar a small volume would cancel.
+Point point_of(const Plc& plc, const Shell& shell) {
+  return plc.points[plc.triangles[plc.patches[shell.patches[0]].first_triangle].points[0]];
+}
+
+std::vector<double> enclosed_by(const std::vector<Shell>& shells, const Subject& subject) {
+  const TetMesh& mesh = subject.mesh;
+  const Grouping faces(subject.match.face_patch, subject.plc.patches.size());
+  std::vector<double> volumes;
+  for (const Shell& shell : shells) {
+    const Point apex = point_of(subject.plc, shell);
+    double volume = 0;
+    for (const Index patch : shell.patches)
+      for (const Index* face = faces.begin(patch); face != faces.end(patch); ++face)
+        volume +=
+            volume_below_face(mesh, apex, *face) * (mesh.face_regions[*face][0] == shell.region ? 1 : -1);
+    volumes.push_back(std::fabs(volume));
+  }
+  return volumes;
+}
+
+ShapeMeasures measures_of(const Subject& subject, const std::vector<double>& volumes,
+                          const std::vector<Shell>& shells) {
   const TetMesh& mesh = subject.mesh;
   ShapeMeasures measures{volumes, std::vector<double>(subject.plc.patches.size(), 0),
-                         std::vector<double>(subject.plc.curves.size(), 0)};
+                         std::vector<double>(subject.plc.curves.size(), 0), enclosed_by(shells, subject)};
   for (Index face = 0; face < mesh.faces.size(); ++face)
     if (const Index patch = subject.match.face_patch[face]; patch != none)
       measures.areas[patch] += area_of_face(mesh, face);
@@ -40,30 +73,51 @@ void take_exact(const std::vector<double>& exact, std::vector<double>& values) {
     if (std::isfinite(exact[i])) values[i] = exact[i];
 }
 
+/// Judges a volume beside that of the input.
+void judge_volume(const Subject& subject, const std::string& what, double made, double input,
+                  const Point& where, Index id, CheckReport& report, Findings& findings) {
+  constexpr double warned_of = 0.02;
+  const double largest = volume_allowance(subject.mesh.order()), off = std::fabs(made - input);
+  if (!(off > std::min(warned_of, largest) * input)) return;
+  const std::string found =
+      fmt::format("{} has a volume of {:.6g} in the mesh and of {:.6g} in the input, {:+.2f} %", what, made,
+                  input, percent_off(made, input));
+  if (off > largest * input && subject.options.bounds.distance <= 0)
+    findings.add(guarantee::volume_kept, where, {id},
+                 "{}; allowed are {:.0f} %. Ask for a smaller size or distance.", found, 100 * largest);
+  else
+    report.warnings.push_back(found + "; a smaller size or distance brings it nearer.");
+}
+
+/// Names a closed surface by its first patches.
+std::string name_of(const Plc& plc, const Shell& shell) {
+  constexpr std::size_t listed = 5;
+  std::string tags;
+  for (std::size_t i = 0; i < std::min(listed, shell.patches.size()); ++i)
+    tags += fmt::format("{}{}", i == 0 ? "" : ", ", plc.patches[shell.patches[i]].tag);
+  const Point where = point_of(plc, shell);
+  return fmt::format(
+      "The {} inside the closed surface of the patches with tags {}{}, at ({:.6g}, {:.6g}, {:.6g}),",
+      shell.region == 0 ? "shape or void" : "part", tags, shell.patches.size() > listed ? ", ..." : "",
+      where.x, where.y, where.z);
+}
+
 }  // namespace
 
 void check_shape_kept(const Subject& subject, CheckReport& report, Findings& findings) {
-  constexpr double warned_of = 0.02;
   const Plc& plc = subject.plc;
   report.of_input = collarmesh::measures_of(plc);
   take_exact(subject.options.exact.volumes, report.of_input.volumes);
   take_exact(subject.options.exact.areas, report.of_input.areas);
   take_exact(subject.options.exact.lengths, report.of_input.lengths);
-  report.of_mesh = measures_of(subject, report.region_volumes);
-  const double largest = volume_allowance(subject.mesh.order());
-  const bool asked_for = subject.options.bounds.distance > 0;
-  for (Index r = 1; r < plc.regions.size(); ++r) {
-    const double input = report.of_input.volumes[r], made = report.of_mesh.volumes[r];
-    const double off = std::fabs(made - input);
-    const std::string found = fmt::format(
-        "Region {} (tag {}) has a volume of {:.6g} in the mesh and of {:.6g} in the input, {:+.2f} %", r,
-        plc.regions[r].tag, made, input, percent_off(made, input));
-    if (off > largest * input && !asked_for)
-      findings.add(guarantee::volume_kept, plc.bounds.centre(), {r},
-                   "{}; allowed are {:.0f} %. Ask for a smaller size or distance.", found, 100 * largest);
-    else if (off > std::min(warned_of, largest) * input)
-      report.warnings.push_back(found + "; a smaller size or distance brings it nearer.");
-  }
+  const std::vector<Shell> shells = shells_of(plc);
+  report.of_mesh = measures_of(subject, report.region_volumes, shells);
+  for (Index r = 1; r < plc.regions.size(); ++r)
+    judge_volume(subject, fmt::format("Region {} (tag {})", r, plc.regions[r].tag), report.of_mesh.volumes[r],
+                 report.of_input.volumes[r], plc.bounds.centre(), r, report, findings);
+  for (std::size_t i = 0; i < shells.size(); ++i)
+    judge_volume(subject, name_of(plc, shells[i]), report.of_mesh.shells[i], report.of_input.shells[i],
+                 point_of(plc, shells[i]), shells[i].region, report, findings);
 }
 
 }  // namespace collarmesh::checks

@@ -1,7 +1,12 @@
 #include "collarmesh/shape_measures.h"
 
 #include <cmath>
+#include <map>
 #include <optional>
+#include <set>
+#include <utility>
+
+#include "common/disjoint_sets.h"
 
 namespace collarmesh {
 
@@ -41,27 +46,51 @@ double triangle_area(const Plc& plc, const Plc::Triangle& t) {
   return 0.5 * norm(cross(plc.points[b] - plc.points[a], plc.points[c] - plc.points[a]));
 }
 
+/// The volume that oriented triangles enclose, seen from one of their corners: from afar a tiny one would
+/// cancel.
+class Enclosed {
+ public:
+  void add(const Point& a, const Point& b, const Point& c, bool is_outward) {
+    if (!origin_) origin_ = a;
+    const double cone = six_volume(*origin_, a, b, c);
+    six_volume_ += is_outward ? cone : -cone;
+  }
+  double volume() const { return static_cast<double>(six_volume_ / 6); }
+
+ private:
+  std::optional<Point> origin_;
+  long double six_volume_ = 0;
+};
+
 std::vector<double> enclosed_by_patches(const Plc& plc) {
-  struct Enclosed {
-    std::optional<Point> origin;  // a corner of the region: from afar a tiny one's volume would cancel
-    long double six_volume = 0;
-  };
   std::vector<Enclosed> regions(plc.regions.size());
   for (const Plc::Triangle& t : plc.triangles) {
     const Plc::Patch& patch = plc.patches[t.patch];
     if (patch.regions[0] == patch.regions[1]) continue;
-    const Point &a = plc.points[t.points[0]], &b = plc.points[t.points[1]], &c = plc.points[t.points[2]];
-    for (unsigned side = 0; side < 2; ++side) {
-      Enclosed& region = regions[patch.regions[side]];
-      if (!region.origin) region.origin = a;
-      const double cone = six_volume(*region.origin, a, b, c);
-      region.six_volume += side == 0 ? cone : -cone;
-    }
+    for (unsigned side = 0; side < 2; ++side)
+      regions[patch.regions[side]].add(plc.points[t.points[0]], plc.points[t.points[1]],
+                                       plc.points[t.points[2]], side == 0);
   }
   std::vector<double> volumes;
   volumes.reserve(regions.size());
-  for (const Enclosed& region : regions) volumes.push_back(static_cast<double>(region.six_volume / 6));
+  for (const Enclosed& region : regions) volumes.push_back(region.volume());
   if (!volumes.empty()) volumes[0] = 0;
+  return volumes;
+}
+
+std::vector<double> enclosed_by_shells(const Plc& plc) {
+  std::vector<double> volumes;
+  for (const Shell& shell : shells_of(plc)) {
+    Enclosed enclosed;
+    for (const Index p : shell.patches) {
+      const Plc::Patch& patch = plc.patches[p];
+      for (Index i = patch.first_triangle; i < patch.first_triangle + patch.triangle_count; ++i) {
+        const auto& [a, b, c] = plc.triangles[i].points;
+        enclosed.add(plc.points[a], plc.points[b], plc.points[c], patch.regions[0] == shell.region);
+      }
+    }
+    volumes.push_back(std::fabs(enclosed.volume()));
+  }
   return volumes;
 }
 
@@ -73,11 +102,47 @@ double polyline_length(const Plc& plc, const Plc::Curve& curve) {
   return length;
 }
 
+/// Sides of patches that bound the same region and meet in a curve have one representative. The side of a
+/// patch has twice its index, plus one in front of it.
+DisjointSets connected_sides(const Plc& plc) {
+  DisjointSets sides(2 * plc.patches.size());
+  std::map<Index, Index> first_side;  // at a curve, by region
+  for (const Plc::Curve& curve : plc.curves) {
+    first_side.clear();
+    for (const Index p : curve.patches)
+      for (Index side = 0; side < 2; ++side)
+        sides.unite(2 * p + side,
+                    first_side.emplace(plc.patches[p].regions[side], 2 * p + side).first->second);
+  }
+  return sides;
+}
+
 }  // namespace
+
+std::vector<Shell> shells_of(const Plc& plc) {
+  DisjointSets sides = connected_sides(plc);
+  std::map<std::pair<Index, Index>, std::vector<Index>> parts;  // by region and representative
+  std::vector<std::vector<Index>> boundaries(plc.regions.size());
+  for (Index p = 0; p < plc.patches.size(); ++p) {
+    const Plc::Patch& patch = plc.patches[p];
+    if (patch.regions[0] == patch.regions[1]) continue;
+    for (Index side = 0; side < 2; ++side) {
+      parts[{patch.regions[side], sides.find(2 * p + side)}].push_back(p);
+      boundaries[patch.regions[side]].push_back(p);
+    }
+  }
+  std::set<std::vector<Index>> known;
+  for (std::size_t r = 1; r < boundaries.size(); ++r) known.insert(std::move(boundaries[r]));
+  std::vector<Shell> shells;
+  for (auto& [part, patches] : parts)
+    if (known.insert(patches).second) shells.push_back({part.first, std::move(patches)});
+  return shells;
+}
 
 ShapeMeasures measures_of(const Plc& plc) {
   ShapeMeasures measures;
   measures.volumes = enclosed_by_patches(plc);
+  measures.shells = enclosed_by_shells(plc);
   for (const Plc::Patch& patch : plc.patches) {
     double& area = measures.areas.emplace_back(0);
     for (Index i = 0; i < patch.triangle_count; ++i)
@@ -110,6 +175,11 @@ double area(const CurvedTriangle& nodes) {
       sum += weight * doubled_area(nodes, lambda);
     }
   return sum / 2;
+}
+
+double volume_below(const Point& apex, const CurvedTriangle& nodes) {
+  const auto& [a, b, c, ab, bc, ca] = nodes;
+  return -volume(CurvedTet{a, b, c, apex, ab, bc, ca, 0.5 * (a + apex), 0.5 * (b + apex), 0.5 * (c + apex)});
 }
 
 double length(const CurvedEdge& nodes) {

@@ -253,11 +253,7 @@ class Pipeline {
   /// that takes not many times the vertices. Where it was bounded, they are left.
   void try_narrow_places_otherwise(const Plc& plc) {
     constexpr std::size_t times = 10, more = 100'000;
-    const auto& findings = made_.check.findings;
-    if (!given_.coarsen || std::ranges::none_of(findings, [](const Finding& finding) {
-          return finding.guarantee == guarantee::thin_angles;
-        }))
-      return;
+    if (!given_.coarsen || !missed(guarantee::thin_angles)) return;
     const std::string missed = made_.missed();
     const bool were_left = made_.result.has_narrow_cells;
     const std::size_t before = most_vertices_;
@@ -274,17 +270,28 @@ class Pipeline {
     narrow_cells_ = NarrowCells::bounded_if_cheap;
   }
 
-  /// Returns the share of the surface distance of first order with which regions keep their volumes: the loss
-  /// is about proportional to the distance.
+  bool missed(const char* guarantee) const {
+    return std::ranges::any_of(made_.check.findings,
+                               [&](const Finding& finding) { return finding.guarantee == guarantee; });
+  }
+
+  /// Returns the share of the surface distance of first order with which regions keep their volumes and thin
+  /// places their thickness: the loss is about proportional to the distance.
   double share_for_volumes() const {
     constexpr double aim = 0.7, least = 0.25;
-    const std::vector<double>&input = made_.check.of_input.volumes, &mesh = made_.check.of_mesh.volumes;
     const double allowed = volume_allowance(static_cast<int>(given_.order));
     double share = 1;
     if (given_.mesh.bounds.distance > 0 || given_.mesh.bounds.tolerance) return share;  // as asked for
-    for (std::size_t r = 1; r < std::min(input.size(), mesh.size()); ++r)
-      if (const double off = std::fabs(mesh[r] - input[r]); off > allowed * input[r])
-        share = std::min(share, std::max(least, aim * allowed * input[r] / off));
+    const ShapeMeasures &input = made_.check.of_input, &mesh = made_.check.of_mesh;
+    const auto keep = [&](double given, double made) {
+      if (const double off = std::fabs(made - given); off > allowed * given)
+        share = std::min(share, std::max(least, aim * allowed * given / off));
+    };
+    for (std::size_t r = 1; r < std::min(input.volumes.size(), mesh.volumes.size()); ++r)
+      keep(input.volumes[r], mesh.volumes[r]);
+    for (std::size_t i = 0; i < std::min(input.shells.size(), mesh.shells.size()); ++i)
+      keep(input.shells[i], mesh.shells[i]);
+    if (missed(guarantee::thickness_kept)) share = least;
     return share;
   }
 

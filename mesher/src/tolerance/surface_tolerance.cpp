@@ -2,11 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <queue>
+#include <utility>
 
 #include "collarmesh/bounds.h"
 #include "collarmesh/mesher.h"
+#include "collarmesh/shape_measures.h"
+#include "common/cells_at_vertices.h"
 #include "common/parallel_for.h"
 #include "tolerance/curvature.h"
+#include "tolerance/facing.h"
 #include "tolerance/thickness.h"
 
 namespace collarmesh {
@@ -20,6 +26,10 @@ constexpr double share_of_rod = 0.05, share_of_shell = 0.15, share_of_hole = 0.1
 // The share of a region's volume that chords may take or add, by the estimate below; where they would take
 // less, the shares of its thickness may be larger by this factor.
 constexpr double share_of_volume = 0.015, largest_factor = 2;
+// The share of the volume below a patch in a wedge that chords may take, where they would take much of it.
+constexpr double share_of_wedge = 0.035, much_of_wedge = 0.25;
+// The growth of the tolerance with the distance from there: collars do not bear a leap.
+constexpr double slope_beside_wedges = 0.1;
 // The smallest tolerance, relative to the largest one: finer details are not resolved.
 constexpr double least_share = 5e-4;
 // The mean loss of chords as a share of the tolerance; most chords are nearer than the tolerance allows.
@@ -40,7 +50,8 @@ class LocalTolerance {
         thickness_(plc),
         curvature_(plc.triangles.size()),
         of_material_(plc.triangles.size(), largest_),
-        of_gap_(plc.triangles.size(), largest_) {}
+        of_gap_(plc.triangles.size(), largest_),
+        of_wedge_(plc.triangles.size(), INFINITY) {}
 
   SurfaceTolerance run(Volumes volumes) {
     for (const Plc::Patch& patch : plc_.patches) {
@@ -53,12 +64,12 @@ class LocalTolerance {
       for (auto t = static_cast<Index>(first); t < last; ++t)
         if (!patch_of(t).planar) look_around(t, crossings);
     });
-    std::vector<double> factors(plc_.regions.size(), volumes == Volumes::any ? largest_factor : 1);
+    keep_wedges();
+    std::vector<double> factors(plc_.patches.size(), volumes == Volumes::any ? largest_factor : 1);
     if (volumes == Volumes::kept) factors = factors_by_volumes();
     std::vector<double> triangles(plc_.triangles.size(), largest_);
     for (Index t = 0; t < triangles.size(); ++t) {
-      const Plc::Patch& patch = patch_of(t);
-      if (!patch.planar) triangles[t] = at(t, std::min(factors[patch.regions[0]], factors[patch.regions[1]]));
+      if (!patch_of(t).planar) triangles[t] = at(t, factors[plc_.triangles[t].patch]);
     }
     return SurfaceTolerance(plc_, std::move(triangles), largest_);
   }
@@ -68,7 +79,8 @@ class LocalTolerance {
 
   void look_around(Index triangle, Thickness::Crossings& crossings) {
     for (unsigned side = 0; side < 2; ++side) {
-      const Thickness::Opposite opposite = thickness_.at(triangle, side, crossings);
+      const auto [opposite, first, is_wedge] = thickness_.at(triangle, side, crossings);
+      if (is_wedge) of_wedge_[triangle] = std::min(of_wedge_[triangle], first.distance);
       if (opposite.triangle == none) continue;
       const bool empty = patch_of(triangle).regions[side] == 0;
       const double lost = lost_by(triangle, side, opposite);
@@ -77,6 +89,65 @@ class LocalTolerance {
       double& tolerance = (empty ? of_gap_ : of_material_)[triangle];
       tolerance = std::min(tolerance, share * opposite.distance);
     }
+  }
+
+  // Where a patch meets the other side of a thin place in a crease, a share of the thickness would vanish
+  // towards the crease: a share of the volume below the patch in all of that place does not.
+  void keep_wedges() {
+    std::vector<double> at_points(plc_.points.size(), INFINITY);
+    bool any = false;
+    for (const Plc::Patch& patch : plc_.patches) {
+      if (patch.planar) continue;
+      const double allowed = allowed_in_wedges(patch);
+      if (allowed >= largest_) continue;
+      any = true;
+      for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t)
+        if (!std::isinf(of_wedge_[t]))
+          for (const Index p : plc_.triangles[t].points) at_points[p] = std::min(at_points[p], allowed);
+    }
+    if (!any) return;
+    grow(at_points);
+    for (Index t = 0; t < plc_.triangles.size(); ++t)
+      for (const Index p : plc_.triangles[t].points) of_gap_[t] = std::min(of_gap_[t], at_points[p]);
+  }
+
+  // Infinite where a wedge is a small part of a patch, as at a fold.
+  double allowed_in_wedges(const Plc::Patch& patch) const {
+    double all = 0, area = 0, volume = 0;
+    for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
+      const double own = area_of(t);
+      all += own;
+      if (std::isinf(of_wedge_[t])) continue;
+      area += own;
+      volume += own * of_wedge_[t] / 2;
+    }
+    const double lost = mean_of_sagitta * largest_ * area;
+    if (area < all / 2 || lost < much_of_wedge * volume) return INFINITY;
+    return largest_ * share_of_wedge * volume / lost;
+  }
+
+  // Lets values at points grow with the distance along edges of triangles, at most by this slope.
+  void grow(std::vector<double>& at_points) const {
+    using Item = std::pair<double, Index>;
+    std::priority_queue<Item, std::vector<Item>, std::greater<>> next;
+    for (Index p = 0; p < at_points.size(); ++p)
+      if (at_points[p] < largest_) next.emplace(at_points[p], p);
+    const CellsAtVertices triangles(corners_of_triangles(plc_), plc_.points.size());
+    while (!next.empty()) {
+      const auto [value, p] = next.top();
+      next.pop();
+      if (value > at_points[p]) continue;
+      for (const Index t : triangles[p])
+        for (const Index q : plc_.triangles[t].points)
+          if (const double there = value + slope_beside_wedges * distance(plc_.points[p], plc_.points[q]);
+              there < std::min(at_points[q], largest_))
+            next.emplace(at_points[q] = there, q);
+    }
+  }
+
+  double area_of(Index triangle) const {
+    const auto& [a, b, c] = plc_.triangles[triangle].points;
+    return 0.5 * norm(cross(plc_.points[b] - plc_.points[a], plc_.points[c] - plc_.points[a]));
   }
 
   /// Returns the tolerance with shares of the material's thickness larger by these factors.
@@ -107,35 +178,64 @@ class LocalTolerance {
     return mean_of_sagitta * loss.area * std::min(at(loss.triangle, factor), loss.sagitta);
   }
 
-  std::vector<std::vector<Loss>> losses() const {
-    std::vector<std::vector<Loss>> losses(plc_.regions.size());
-    for (Index t = 0; t < plc_.triangles.size(); ++t) {
-      const Plc::Patch& patch = patch_of(t);
-      if (patch.planar || patch.regions[0] == patch.regions[1]) continue;
-      const auto& [a, b, c] = plc_.triangles[t].points;
-      const double area = 0.5 * norm(cross(plc_.points[b] - plc_.points[a], plc_.points[c] - plc_.points[a]));
-      for (unsigned side = 0; side < 2; ++side)
-        if (const double by = bend(t, side); patch.regions[side] != 0 && by != 0)
-          losses[patch.regions[side]].push_back(
-              {t, by > 0 ? area : -area, size_ * size_ * curvature_[t].largest / 8});
+  std::vector<std::vector<Index>> boundaries_of_regions() const {
+    std::vector<std::vector<Index>> boundaries(plc_.regions.size());
+    for (Index p = 0; p < plc_.patches.size(); ++p) {
+      const auto& sides = plc_.patches[p].regions;
+      if (sides[0] == sides[1]) continue;
+      for (const Index r : sides)
+        if (r != 0) boundaries[r].push_back(p);
+    }
+    return boundaries;
+  }
+
+  // Where chords take from, or add to, what these patches enclose, on their side of a region.
+  std::vector<Loss> losses_on(const std::vector<Index>& patches, Index region) const {
+    std::vector<Loss> losses;
+    for (const Index p : patches) {
+      const Plc::Patch& patch = plc_.patches[p];
+      if (patch.planar) continue;
+      const unsigned side = patch.regions[0] == region ? 0 : 1;
+      for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
+        const double area = area_of(t);
+        if (const double by = bend(t, side); by != 0)
+          losses.push_back({t, by > 0 ? area : -area, size_ * size_ * curvature_[t].largest / 8});
+      }
     }
     return losses;
   }
 
-  // Returns factors of the shares of thickness around each region with which it keeps its volume.
+  // Returns a factor of the shares of thickness with which these losses stay small beside the volume.
+  double factor_by_volume(const std::vector<Loss>& losses, double volume) const {
+    const auto lost = [&](double factor) {
+      double sum = 0;
+      for (const Loss& loss : losses) sum += volume_of(loss, factor);
+      return std::fabs(sum);
+    };
+    const double allowed = share_of_volume * volume;
+    double factor = largest_factor;
+    while (factor > least_share && lost(factor) > allowed)
+      factor *= std::max(0.5, std::min(0.98, allowed / lost(factor)));
+    return factor;
+  }
+
+  // Returns factors of the shares of thickness, by patch, with which regions and shells keep their volumes.
   std::vector<double> factors_by_volumes() const {
-    const auto losses = this->losses();
-    std::vector<double> factors(plc_.regions.size(), largest_factor);
-    for (Index r = 1; r < plc_.regions.size(); ++r) {
-      const auto lost = [&](double factor) {
-        double sum = 0;
-        for (const Loss& loss : losses[r]) sum += volume_of(loss, factor);
-        return std::fabs(sum);
-      };
-      const double allowed = share_of_volume * std::fabs(plc_.regions[r].volume);
-      for (double& factor = factors[r]; factor > least_share && lost(factor) > allowed;)
-        factor *= std::max(0.5, std::min(0.98, allowed / lost(factor)));
-    }
+    std::vector<double> factors(plc_.patches.size(), largest_factor);
+    const auto keep = [&](const std::vector<Index>& patches, Index region, double volume) {
+      const double factor = factor_by_volume(losses_on(patches, region), volume);
+      for (const Index p : patches) factors[p] = std::min(factors[p], factor);
+      return factor;
+    };
+    const auto boundaries = boundaries_of_regions();
+    std::vector<double> of_regions(plc_.regions.size(), largest_factor);
+    for (Index r = 1; r < plc_.regions.size(); ++r)
+      of_regions[r] = keep(boundaries[r], r, std::fabs(plc_.regions[r].volume));
+    for (Index p = 0; p < plc_.patches.size(); ++p)  // sheets inside a region, too
+      factors[p] = std::min(factors[p], of_regions[plc_.patches[p].regions[0]]);
+    const std::vector<Shell> shells = shells_of(plc_);
+    const std::vector<double> enclosed = measures_of(plc_).shells;
+    for (std::size_t i = 0; i < shells.size(); ++i) keep(shells[i].patches, shells[i].region, enclosed[i]);
     return factors;
   }
 
@@ -144,6 +244,7 @@ class LocalTolerance {
   Thickness thickness_;
   std::vector<Curvature> curvature_;
   std::vector<double> of_material_, of_gap_;  // by triangle: what its thickness and gaps allow
+  std::vector<double> of_wedge_;              // by triangle: thickness between patches that meet in a crease
 };
 
 template <class Better>

@@ -50,33 +50,39 @@ Thickness::Thickness(const Plc& plc)
       creases_.insert(std::minmax(crease.features[0], crease.features[1]));
 }
 
-Thickness::Opposite Thickness::at(Index triangle, unsigned side, Crossings& crossings) const {
-  Opposite opposite;
-  const Vector way = side == 0 ? -1 * normals_[triangle] : normals_[triangle];
-  if (way == Vector{}) return opposite;
-  const Index patch = plc_.triangles[triangle].patch, region = plc_.patches[patch].regions[side];
+Thickness::Ray Thickness::ray(Index triangle, unsigned side) const {
   const auto [a, b, c] = triangles_.corners(triangle);
-  const Point centre = (a + b + c) / 3;
+  return {(a + b + c) / 3, side == 0 ? -1 * normals_[triangle] : normals_[triangle]};
+}
+
+Thickness::Opposites Thickness::at(Index triangle, unsigned side, Crossings& crossings) const {
+  Opposites opposites;
+  const auto [centre, way] = ray(triangle, side);
+  if (way == Vector{}) return opposites;
+  const Index patch = plc_.triangles[triangle].patch, region = plc_.patches[patch].regions[side];
   const double reach = plc_.bounds.diagonal();
   const Index root = triangles_.root();
   // Not from the plane of its own triangle: that would be one tie after the other.
   triangles_.crossings(centre + 1e-9 * reach * way, centre + reach * way, {&root, 1}, crossings);
   for (const auto& [other, direction] : crossings) {
-    const Plc::Patch& ends = plc_.patches[plc_.triangles[other].patch];
-    const Vector& n = normals_[other];
-    const double towards = dot(n, way);
-    const unsigned from_side = towards > 0 ? 0 : 1;
-    if (other == triangle || ends.regions[from_side] != region) continue;
     const Index opposite_patch = plc_.triangles[other].patch;
-    const bool neighbours = are_neighbours(plc_, patch, opposite_patch);
-    if (neighbours && creases_.contains(std::minmax(patch, opposite_patch))) continue;
-    if (std::fabs(towards) < least_facing(neighbours)) continue;
+    const double towards = dot(normals_[other], way);
+    const unsigned from_side = towards > 0 ? 0 : 1;
+    if (other == triangle || plc_.patches[opposite_patch].regions[from_side] != region) continue;
     const auto [p, q, r] = triangles_.corners(other);
     const Vector flat = cross(q - p, r - p);
     const double distance = dot(p - centre, flat) / dot(way, flat);
-    if (distance > 0 && distance < opposite.distance) opposite = {distance, other, from_side};
+    if (!(distance > 0)) continue;
+    const bool neighbours = are_neighbours(plc_, patch, opposite_patch);
+    const bool is_wedge = neighbours && creases_.contains(std::minmax(patch, opposite_patch));
+    if (distance < opposites.first.distance) {
+      opposites.first = {distance, other, from_side};
+      opposites.is_wedge = is_wedge;
+    }
+    if (!is_wedge && std::fabs(towards) >= least_facing(neighbours) && distance < opposites.apart.distance)
+      opposites.apart = {distance, other, from_side};
   }
-  return opposite;
+  return opposites;
 }
 
 }  // namespace collarmesh

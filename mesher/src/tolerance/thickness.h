@@ -16,16 +16,27 @@ class Thickness {
   /// Keeps the complex by reference. Cost: near linear in the triangles.
   explicit Thickness(const Plc& plc);
 
+  /// From the centre of a triangle along its smooth normal.
+  struct Ray {
+    Point from;
+    Vector way;  ///< unit; zero where the normal is not known
+  };
   struct Opposite {
     double distance = INFINITY;
     Index triangle = none;  ///< where the region ends; none where it does not, or at a slant
     unsigned side = 0;      ///< the side of that triangle that the region lies on
   };
+  struct Opposites {
+    Opposite apart;         ///< nearest one of a patch that does not meet the triangle's patch in a crease
+    Opposite first;         ///< where the region ends first, at whatever patch and slant
+    bool is_wedge = false;  ///< the patches meet in a crease there
+  };
   /// Scratch space of a thread.
   using Crossings = std::vector<TriangleHierarchy::Crossing>;
 
-  /// On side 0 (behind) or 1 (in front) of a triangle, from its centre.
-  Opposite at(Index triangle, unsigned side, Crossings& crossings) const;
+  /// To side 0 (behind) or 1 (in front).
+  Ray ray(Index triangle, unsigned side) const;
+  Opposites at(Index triangle, unsigned side, Crossings& crossings) const;
 
  private:
   const Plc& plc_;

@@ -1,0 +1,164 @@
+// Thickness of walls and width of gaps in the mesh beside those of the complex: a thin place of a large
+// region may vanish while the region keeps its volume.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "check/subject.h"
+#include "common/parallel_for.h"
+#include "tolerance/thickness.h"
+
+namespace collarmesh::checks {
+
+namespace {
+
+/// The faces of the mesh, curved ones as four flat triangles.
+struct Faces {
+  std::vector<std::array<Index, 3>> triangles;
+  std::vector<Index> face;  ///< by triangle
+
+  explicit Faces(const TetMesh& mesh) {
+    for (Index f = 0; f < mesh.faces.size(); ++f) {
+      const auto& [a, b, c] = mesh.faces[f];
+      if (mesh.order() == 1) {
+        add(f, {a, b, c});
+        continue;
+      }
+      const auto& [ab, bc, ca] = mesh.face_mid_nodes[f];
+      add(f, {a, ab, ca});
+      add(f, {b, bc, ab});
+      add(f, {c, ca, bc});
+      add(f, {ab, bc, ca});
+    }
+  }
+
+ private:
+  void add(Index of_face, const std::array<Index, 3>& corners) {
+    triangles.push_back(corners);
+    face.push_back(of_face);
+  }
+};
+
+/// Sums over rays from a side of a patch, weighted by areas.
+struct Thicknesses {
+  double input = 0, mesh = 0;
+  Point where;            // the ray that differs most
+  double farthest = 0;    // by this
+  Index opposite = none;  // the patch where that ray ends
+};
+
+class ThicknessKept {
+ public:
+  explicit ThicknessKept(const Subject& subject)
+      : subject_(subject),
+        thickness_(subject.plc),
+        faces_(subject.mesh),
+        hierarchy_(subject.mesh.points, faces_.triangles) {}
+
+  void judge(CheckReport& report, Findings& findings) const {
+    const std::size_t count = subject_.plc.patches.size();
+    std::vector<std::array<Thicknesses, 2>> sides(count);
+    parallel_for(count, [&](std::size_t p) {
+      if (subject_.plc.patches[p].planar) return;
+      for (unsigned side = 0; side < 2; ++side) sides[p][side] = along(static_cast<Index>(p), side);
+    });
+    for (Index p = 0; p < count; ++p)
+      for (unsigned side = 0; side < 2; ++side) judge(p, side, sides[p][side], report, findings);
+  }
+
+ private:
+  static constexpr double share_of_wall = 0.25, share_of_gap = 0.5;  // that may be lost or gained
+  static constexpr Index most_rays = 2000;                           // of a patch
+
+  Thicknesses along(Index patch, unsigned side) const {
+    const Plc::Patch& of = subject_.plc.patches[patch];
+    const Index stride = 1 + of.triangle_count / most_rays;
+    Thicknesses sums;
+    Thickness::Crossings crossings;
+    for (Index t = of.first_triangle; t < of.first_triangle + of.triangle_count; t += stride)
+      add(t, side, crossings, sums);
+    return sums;
+  }
+
+  void add(Index triangle, unsigned side, Thickness::Crossings& crossings, Thicknesses& sums) const {
+    const Plc& plc = subject_.plc;
+    const Thickness::Ray ray = thickness_.ray(triangle, side);
+    const Thickness::Opposite opposite = thickness_.at(triangle, side, crossings).first;
+    if (opposite.triangle == none) return;
+    const Index patch = plc.triangles[triangle].patch, other = plc.triangles[opposite.triangle].patch,
+                region = plc.patches[patch].regions[side];
+    const double found = between(ray, opposite.distance, patch, other, region, crossings);
+    if (std::isnan(found)) return;
+    const Plc::Triangle& t = plc.triangles[triangle];
+    const double weight =
+        area(subject_.plc_corner(t, 0), subject_.plc_corner(t, 1), subject_.plc_corner(t, 2));
+    sums.input += weight * opposite.distance;
+    sums.mesh += weight * found;
+    const double off = std::fabs(found - opposite.distance);
+    if (off <= sums.farthest) return;
+    sums.farthest = off;
+    sums.where = ray.from;
+    sums.opposite = other;
+  }
+
+  /// Returns the distance along a ray from where it enters the region through faces of one patch to where it
+  /// leaves it through faces of another one, nearest to where it should; NaN: it meets none.
+  double between(const Thickness::Ray& ray, double distance, Index patch, Index other, Index region,
+                 Thickness::Crossings& crossings) const {
+    const TetMesh& mesh = subject_.mesh;
+    const Index root = hierarchy_.root();
+    hierarchy_.crossings(ray.from - distance * ray.way, ray.from + 2 * distance * ray.way, {&root, 1},
+                         crossings);
+    double entered = INFINITY, left = INFINITY;  // off the places in the complex
+    for (const auto& [triangle, direction] : crossings) {
+      const Index face = faces_.face[triangle], of = subject_.match.face_patch[face];
+      const auto& regions = mesh.face_regions[face];
+      const Index behind = regions[direction > 0 ? 0 : 1], ahead = regions[direction > 0 ? 1 : 0];
+      const double at = place_on(ray, triangle);
+      if (of == patch && ahead == region && std::fabs(at) < std::fabs(entered)) entered = at;
+      if (of == other && behind == region && std::fabs(at - distance) < std::fabs(left)) left = at - distance;
+    }
+    return std::isinf(entered) || std::isinf(left) ? NAN : distance + left - entered;
+  }
+
+  double place_on(const Thickness::Ray& ray, Index triangle) const {
+    const auto [a, b, c] = hierarchy_.corners(triangle);
+    const Vector normal = cross(b - a, c - a);
+    return dot(a - ray.from, normal) / dot(ray.way, normal);
+  }
+
+  void judge(Index patch, unsigned side, const Thicknesses& sums, CheckReport& report,
+             Findings& findings) const {
+    const Plc& plc = subject_.plc;
+    const bool is_gap = plc.patches[patch].regions[side] == 0;
+    const double allowed = is_gap ? share_of_gap : share_of_wall;
+    if (!(std::fabs(sums.mesh - sums.input) > allowed * sums.input)) return;
+    const std::string found = fmt::format(
+        "The {} between the patches with tags {} and {}, near ({:.6g}, {:.6g}, {:.6g}), is {:.0f} % {} in "
+        "the mesh "
+        "than in the input",
+        is_gap ? "gap" : "wall", plc.patches[patch].tag, plc.patches[sums.opposite].tag, sums.where.x,
+        sums.where.y, sums.where.z, 100 * std::fabs(sums.mesh / sums.input - 1),
+        sums.mesh < sums.input ? "thinner" : "thicker");
+    if (subject_.options.bounds.distance <= 0)
+      findings.add(guarantee::thickness_kept, sums.where, {patch},
+                   "{}; allowed are {:.0f} %. Ask for a smaller size or distance.", found, 100 * allowed);
+    else
+      report.warnings.push_back(found + "; a smaller size or distance brings it nearer.");
+  }
+
+  const Subject& subject_;
+  Thickness thickness_;
+  Faces faces_;
+  TriangleHierarchy hierarchy_;
+};
+
+}  // namespace
+
+void check_thickness_kept(const Subject& subject, CheckReport& report, Findings& findings) {
+  const auto& patches = subject.plc.patches;
+  if (std::ranges::all_of(patches, [](const Plc::Patch& patch) { return patch.planar; })) return;
+  ThicknessKept(subject).judge(report, findings);
+}
+
+}  // namespace collarmesh::checks
