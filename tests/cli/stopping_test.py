@@ -44,9 +44,9 @@ class Budgets(ProgramTest):
 
     def test_time(self):
         begin = time.monotonic()
-        self.expect(5, self.box, "-o", self.out, "--size", "0.002", "--time-limit", "0.5",
-                    says=["time limit of 0.5 s .*stage: refine, .* vertices", COORDINATES, "raise --time-limit"])
-        self.assertLess(time.monotonic() - begin, 10)
+        self.expect(5, self.box, "-o", self.out, "--size", "0.002", "--time-limit", "3",
+                    says=["time limit of 3 s .*stage: refine, .* vertices", COORDINATES, "raise --time-limit"])
+        self.assertLess(time.monotonic() - begin, 60)
 
     def test_time_limits_every_stage(self):
         endless = self.folder / "endless.off"

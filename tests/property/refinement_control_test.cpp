@@ -165,5 +165,11 @@ TEST(RefinementOptions, BadOnesAreRefused) {
   }
 }
 
+TEST(RefinementOptions, WithoutThinTetsAMeshIsRefinedButNotCoarsened) {
+  MeshOptions options = with_size(0.5);
+  options.bounds.thin_angle = 0;
+  EXPECT_EQ(generate(box_complex(), options).status, MeshStatus::complete);
+}
+
 }  // namespace
 }  // namespace collarmesh
