@@ -16,6 +16,7 @@
 #include "files/cad_files.h"
 #include "files/file_groups.h"
 #include "files/surface_files.h"
+#include "files/trace_files.h"
 #include "help_text.h"
 #include "man_page.h"
 #include "option_values.h"
@@ -236,6 +237,7 @@ void check_outputs(const MeshArguments& a) {
   check_second_output("--cell-decomposition", a.cell_decomposition, a);
   if (!a.cell_decomposition.empty() && !files::overwritten({a.cell_decomposition}, others, {}).empty())
     throw CLI::ValidationError("--cell-decomposition", "names the file of --report; choose another");
+  check_second_output("--trace", files::trace_file(a.trace_folder), a);
 }
 
 bool is_among(const std::string& path, const std::string& format, const std::vector<std::string>& formats) {
@@ -284,6 +286,8 @@ void check_batch(const MeshArguments& a) {
   if (!a.output.empty()) throw CLI::ValidationError("--batch", "contradicts --output; use one of them");
   if (!a.cell_decomposition.empty())
     throw CLI::ValidationError("--batch", "has one --cell-decomposition for several meshes; leave it out");
+  if (!a.trace_folder.empty())
+    throw CLI::ValidationError("--batch", "has one --trace for several meshes; leave it out");
   if (a.output_format == ".polymesh")
     throw CLI::ValidationError("--format", "is of a folder for each mesh; mesh the parts one by one");
   for (const std::string& report : a.reports)

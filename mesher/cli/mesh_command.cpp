@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <filesystem>
 #include <fstream>
 #include <optional>
 
@@ -14,6 +15,7 @@
 #include "files/cell_decomposition.h"
 #include "files/complex_input.h"
 #include "files/file_groups.h"
+#include "files/trace_files.h"
 #include "interruptible.h"
 #include "option_warnings.h"
 #include "process/console.h"
@@ -35,6 +37,7 @@ namespace {
 PipelineOptions pipeline_options(const MeshArguments& a) {
   PipelineOptions options = a;
   options.mesh.count_work = !a.reports.empty();
+  options.trace = !a.trace_folder.empty();
   options.mesh.time_limit = 0;  // one limit for everything, from reading to writing: the interrupt flag
   return options;
 }
@@ -125,6 +128,16 @@ class InputSource : public ComplexSource {
   std::shared_ptr<SizeFieldUse> size_field_use_;  // of the mesh tried last
 };
 
+/// Makes the files of a run's steps, if they are asked for. They appear when they are committed.
+std::unique_ptr<process::StagedFile> staged_trace(const MeshArguments& arguments, const Trace& trace) {
+  if (arguments.trace_folder.empty() || trace.empty()) return nullptr;
+  auto staged = std::make_unique<process::StagedFile>(files::trace_file(arguments.trace_folder));
+  staged->write([&](const std::string& path) {
+    ThreadLimit(arguments.mesh.threads).run([&] { files::write_trace(path, trace); });
+  });
+  return staged;
+}
+
 /// Returns how the complex was repaired.
 RepairOptions mesh(const MeshArguments& arguments, files::ComplexInput& input, Stages& stages,
                    report::MeshRun& run) {
@@ -147,6 +160,7 @@ RepairOptions mesh(const MeshArguments& arguments, files::ComplexInput& input, S
   }
   if (run.result.status == MeshStatus::budget_hit) {
     note_where_it_stopped(run.result);
+    process::StagedFile::commit({staged_trace(arguments, run.trace).get()});
     throw process::Stopped(ExitCode::budget_hit, run.result.message + "; nothing was written");
   }
   if (input.has_cad()) run.result.mesh.group_names = GroupNames::cad;
@@ -165,12 +179,19 @@ ProgressStyle progress_of(const MeshArguments& arguments) {
   return arguments.quiet ? ProgressStyle::off : arguments.progress;
 }
 
+/// What pages show, in the input's unit.
+struct Shown {
+  report::ShownMesh mesh;
+  std::vector<report::ShownStep> trace;
+};
+
 /// `shown`: for pages.
 void write_report(const std::string& path, const MeshArguments& arguments, const report::MeshRun& run,
-                  const std::optional<report::ShownMesh>& shown) {
+                  const std::optional<Shown>& shown) {
   std::ofstream file(path);
   const nlohmann::ordered_json report = report::run_json(arguments, run);
-  file << (report::is_html(path) ? report::html_report(report, *shown) : report::json_text(report, 1) + '\n');
+  file << (report::is_html(path) ? report::html_report(report, shown->mesh, shown->trace)
+                                 : report::json_text(report, 1) + '\n');
   file.close();
   if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path));
 }
@@ -178,9 +199,11 @@ void write_report(const std::string& path, const MeshArguments& arguments, const
 void write_files(const MeshArguments& arguments, Stages& stages, report::MeshRun& run) {
   stages.begin("write", 0.93, 1, run.result.mesh.tets.size());
   if (!arguments.reports.empty()) run.worst = report::worst_tets(run.result.mesh, run.check.measures);
-  std::optional<report::ShownMesh> shown;  // reports are in the input's unit
-  if (std::any_of(arguments.reports.begin(), arguments.reports.end(), report::is_html))
-    shown = report::shown_mesh(run.result.mesh, run.worst);
+  std::optional<Shown> shown;
+  if (std::any_of(arguments.reports.begin(), arguments.reports.end(), report::is_html)) {
+    shown.emplace(report::shown_mesh(run.result.mesh, run.worst));
+    shown->trace = report::shown_trace(run.trace, shown->mesh);
+  }
   scale(run.result.mesh.points, arguments.scale);
   process::StagedFile mesh(arguments.output);
   mesh.write([&](const std::string& path) {
@@ -204,7 +227,18 @@ void write_files(const MeshArguments& arguments, Stages& stages, report::MeshRun
         [&](const std::string& path) { files::write_cell_decomposition(path, run.result.mesh); });
     files.push_back(&*decomposition);
   }
+  const auto trace = staged_trace(arguments, run.trace);
+  files.push_back(trace.get());
   process::StagedFile::commit(files);
+}
+
+/// Before long work.
+void require_trace_folder(const std::string& folder) {
+  if (folder.empty()) return;
+  std::error_code error;
+  std::filesystem::create_directory(folder, error);
+  if (error) throw WriteError(fmt::format("{}: cannot be made: {}", folder, error.message()));
+  process::require_writable(files::trace_file(folder));
 }
 
 }  // namespace
@@ -255,6 +289,7 @@ ExitCode make_and_write(const MeshArguments& arguments,
   io::require_place_for_interfaces(arguments.output, arguments.split, arguments.output_format);
   for (const std::string& report : arguments.reports) process::require_writable(report);
   if (!arguments.cell_decomposition.empty()) process::require_writable(arguments.cell_decomposition);
+  require_trace_folder(arguments.trace_folder);
   if (arguments.partitions > 0) require_partitioner();  // before long work
   report::MeshRun run;
   {

@@ -28,6 +28,38 @@ std::string json_in_page(const Json& json) {
   return safe;
 }
 
+std::string packed(const std::string& bytes) { return io::base64_encode(io::zlib_pack(bytes, 6)); }
+
+std::string packed_cells(const ShownMesh& shown) {
+  std::string data;
+  append(data, shown.points);
+  append(data, shown.tets);
+  append(data, shown.faces);
+  append(data, shown.region);
+  append(data, shown.marks);
+  return packed(data);
+}
+
+Json trace_json(const std::vector<ShownStep>& trace) {
+  Json steps = Json::array();
+  for (const ShownStep& step : trace) {
+    std::string extras;
+    append(extras, step.lines);
+    append(extras, step.balls);
+    steps.push_back({{"stage", step.stage},
+                     {"detail", step.detail},
+                     {"complete", step.cells.complete},
+                     {"points", step.cells.points.size() / 3},
+                     {"tets", step.cells.tets.size() / 4},
+                     {"faces", step.cells.faces.size() / 4},
+                     {"segments", step.lines.size() / 6},
+                     {"balls", step.balls.size() / 4},
+                     {"data", packed_cells(step.cells)},
+                     {"extras", packed(extras)}});
+  }
+  return steps;
+}
+
 Json shown_json(const ShownMesh& shown) {
   const auto place = [](const Point& p) { return Json::array({p.x, p.y, p.z}); };
   Json worst = Json::array();
@@ -42,13 +74,7 @@ Json shown_json(const ShownMesh& shown) {
 
 }  // namespace
 
-std::string html_report(const Json& report, const ShownMesh& shown) {
-  std::string data;
-  append(data, shown.points);
-  append(data, shown.tets);
-  append(data, shown.faces);
-  append(data, shown.region);
-  append(data, shown.marks);
+std::string html_report(const Json& report, const ShownMesh& shown, const std::vector<ShownStep>& trace) {
   std::string page;
   std::string_view rest = html_report_page;
   const auto fill = [&](std::string_view mark, const std::string& text) {
@@ -59,7 +85,8 @@ std::string html_report(const Json& report, const ShownMesh& shown) {
   };
   fill("<!--report-->", json_in_page(report));
   fill("<!--shown-->", json_in_page(shown_json(shown)));
-  fill("<!--data-->", io::base64_encode(io::zlib_pack(data, 6)));
+  fill("<!--data-->", packed_cells(shown));
+  fill("<!--trace-->", json_in_page(trace_json(trace)));
   return page.append(rest);
 }
 

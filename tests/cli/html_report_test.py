@@ -217,6 +217,35 @@ class InABrowser(ReportTest):
         _, dom, _ = self.look(self.report(MODELS / "box.off", "--size", "1"), "#colour=face")
         self.assertRegex(dom, r'<option value="file" hidden')
 
+    def test_a_slider_goes_through_the_steps_of_the_run(self):
+        plain = self.report(MODELS / "box.off", "--size", "1")
+        self.assertNotIn("steps", self.look(plain)[0])
+        size = plain.stat().st_size
+        path = self.report(self.wedge(), "--size", "0.3", "--trace", self.folder / "steps")
+        steps = json.loads(Page(path.read_text()).scripts["steps"])
+        self.assertEqual((steps[0]["stage"], steps[-1]["stage"]), ("box", "improve"))
+        self.assertLess(path.stat().st_size, size + 3e6)
+        seen, dom, last = self.look(path)
+        self.assertEqual(int(seen["steps"]), len(steps) + 1)
+        self.assertNotRegex(dom, '<form id="trace" hidden')
+        stages = [step["stage"] for step in steps]
+        pictures = {last}
+        for number in (0, stages.index("rip"), stages.index("stitch")):
+            seen, dom, picture = self.look(path, f"#step={number}&colour=collar")
+            self.assertIn(f"{number + 1} of {len(steps) + 1}, {stages[number]}", dom)
+            self.assertNotIn(picture, pictures)
+            pictures.add(picture)
+        self.assertGreater(int(seen["balls"]), 2)
+
+    def wedge(self):
+        path = self.folder / "wedge.off"
+        corners = [(0, 0), (1, 0), (0.9, 0.42)]
+        points = [(x, y, z) for z in (0, 1) for x, y in corners]
+        faces = [(0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)]
+        path.write_text("\n".join(["OFF", "6 5 0", *(" ".join(map(str, row)) for row in points),
+                                   *(" ".join(map(str, (len(face), *face))) for face in faces), ""]))
+        return path
+
     def test_straightened_nodes_are_marked(self):
         path = self.report(MODELS / "bracket.off", "--size", "8", "--order", "2")
         self.assertEqual(self.look(path)[0]["straightened"], "0")

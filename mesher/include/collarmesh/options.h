@@ -35,6 +35,7 @@ struct RunOptions : PipelineOptions {
   std::string cell_decomposition = {};  ///< OpenFOAM's list of partitions
   double scale = 1;                     ///< of the coordinates that are written
   std::vector<std::string> reports = {};
+  std::string trace_folder = {};  ///< for the steps of the run
   ProgressStyle progress = ProgressStyle::automatic;
   bool verbose = false, quiet = false;
   std::size_t findings = 20;  ///< listed for each guarantee, by `check`

@@ -19,6 +19,7 @@
 #include "collarmesh/shape_measures.h"
 #include "collarmesh/split.h"
 #include "collarmesh/tet_mesh.h"
+#include "collarmesh/trace.h"
 
 /// The stages from facets to a certified mesh, as the program `collarmesh` runs them: repair, refine,
 /// coarsen, improve, project onto exact geometry, raise the order, check, split.
@@ -36,6 +37,7 @@ struct PipelineOptions {
   /// kept if no seed succeeds.
   unsigned seeds = 2;
   SplitOptions split = {};  ///< internal patches that get nodes of their own on each side, after the check
+  bool trace = false;       ///< fill in PipelineResult::trace
   unsigned partitions = 0;  ///< number of ranks to divide the tets among (see `partition`); 0: do not
   /// The geometry that the facets approximate, such as a CAD shape. The mesh keeps tighter bounds at first,
   /// so that its vertices can move onto this geometry; may be empty.
@@ -52,6 +54,7 @@ struct PipelineResult {
   SecondOrderReport second_order;
   CheckReport check;
   std::optional<SplitReport> split;  ///< nothing unless something was to be split
+  Trace trace;                       ///< of the run that made the mesh, or of a refinement that ended early
 
   bool guarantees_hold() const { return result.status == MeshStatus::complete && check.passed(); }
   /// Returns a sentence about the first missed guarantee; empty if all hold.

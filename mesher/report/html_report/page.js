@@ -1,7 +1,7 @@
 // A link to the page may say how to look at the mesh: report.html#cut=x,0.4&colour=region&turn=30&worst=0
 'use strict';
 
-function follow(link, view, shown) {
+async function follow(link, view, shown) {
   const wishes = new URLSearchParams(link.replace(/^#/, ''));
   const set = (id, value) => { document.getElementById(id).value = value; };
   if (wishes.has('colour')) set('colour', wishes.get('colour'));
@@ -12,6 +12,7 @@ function follow(link, view, shown) {
   }
   if (wishes.has('colour') || wishes.has('cut')) view.rebuild();
   if (wishes.has('turn')) view.turn(Number(wishes.get('turn')));
+  if (wishes.has('step')) await view.showStep(Number(wishes.get('step')));
   const worst = shown.worst[Number(wishes.get('worst') ?? -1)];
   if (worst) view.show(worst.where, worst.tet);
 }
@@ -29,7 +30,8 @@ async function open() {
   const mesh = await readMesh(shown, document.getElementById('data').textContent);
   mesh.colours = coloursOf(report, shown);
   view = new View(shown, mesh, names, report.second_order ? report.second_order.straightened : []);
-  follow(location.hash, view, shown);
+  view.offerSteps(json('steps'));
+  await follow(location.hash, view, shown);
   window.addEventListener('hashchange', () => follow(location.hash, view, shown));
 }
 

@@ -25,6 +25,15 @@ async function readMesh(shown, text) {
   return mesh;
 }
 
+// A step of the run: as a mesh, with the segments of its curves (two points each) and its collars' balls (a centre and a
+// radius each).
+async function readStep(step) {
+  const mesh = await readMesh(step, step.data), extras = await inflate(step.extras);
+  mesh.lines = new Float32Array(extras, 0, 6 * step.segments);
+  mesh.balls = new Float32Array(extras, 24 * step.segments, 4 * step.balls);
+  return Object.assign(mesh, { title: `${step.stage}${step.detail && `: ${step.detail}`}`, complete: step.complete });
+}
+
 // By a hash table of faces, each in the place of the first tet that has it.
 function findNeighbours(tets) {
   const neighbours = new Int32Array(tets.length).fill(noNeighbour);
@@ -81,7 +90,7 @@ function dihedralAngles(mesh, tet) {
 
 const angleColours = [[0, '#b2182b'], [5, '#d6604d'], [10, '#f4a582'], [20, '#fddbc7'], [30, '#d1e5f0'], [40, '#92c5de'], [50, '#4393c3']];
 const regionColours = ['#7fa7c9', '#d9a05b', '#7fb685', '#c98ba6', '#b5a642', '#8f8fc6', '#c77b6b', '#6fb7b7'];
-const markColours = { plain: '#c3cdd8', marked: '#d1495b' };
+const markColours = { plain: '#c3cdd8', marked: '#d1495b', ripped: '#e3a72f' };
 const background = 0xf4f6f8;
 // A label is shown for a patch of which this many pixels are in sight, in a small picture of this width.
 const leastPixels = 6, smallWidth = 240;
@@ -105,6 +114,7 @@ function colourOf(mesh, face, by) {
   if (by === 'file') return fileColour(mesh, tagNumberOf(mesh, face), mesh.region[tet]);
   if (by === 'region') return regionColours[(mesh.region[tet] + regionColours.length - 1) % regionColours.length];
   if (by === 'angle') return angleColours.filter(([least]) => mesh.smallest[tet] >= least).pop()[1];
+  if (by === 'collar' && mesh.marks[tet] & 4) return markColours.ripped;
   return mesh.marks[tet] & (by === 'collar' ? 1 : 2) ? markColours.marked : markColours.plain;
 }
 
@@ -126,7 +136,23 @@ function legend(mesh, shown, names, by) {
   if (by === 'region')
     return [...new Set(mesh.region)].sort((a, b) => a - b)
       .map(r => [regionColours[(r + regionColours.length - 1) % regionColours.length], names.region(r)]);
+  const ripped = by === 'collar' && mesh.marks.some(mark => mark & 4);
+  if (ripped) return [[markColours.ripped, 'about to be ripped out'], [markColours.plain, 'others']];
   return [[markColours.marked, by === 'collar' ? 'in a collar' : 'thin'], [markColours.plain, 'others']];
+}
+
+// Three great circles of each ball, as the ends of segments.
+function circlesOf(balls) {
+  const ends = [], pieces = 24;
+  for (let b = 0; b < balls.length; b += 4)
+    for (let axis = 0; axis < 3; ++axis)
+      for (let i = 0; i < 2 * pieces; ++i) {
+        const turn = 2 * Math.PI * ((i + 1) >> 1) / pieces, end = [balls[b], balls[b + 1], balls[b + 2]];
+        end[(axis + 1) % 3] += balls[b + 3] * Math.cos(turn);
+        end[(axis + 2) % 3] += balls[b + 3] * Math.sin(turn);
+        ends.push(...end);
+      }
+  return ends;
 }
 
 class View {
@@ -156,7 +182,9 @@ class View {
     this.mark = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial(
       { color: 0xff00aa, depthTest: false }));
     this.mark.renderOrder = 1;
-    this.scene.add(this.surface, this.lines, this.mark, this.straightened(straightened));
+    this.curves = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x0b5cad }));
+    this.balls = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0xd1495b }));
+    this.scene.add(this.surface, this.lines, this.curves, this.balls, this.mark, this.straightened(straightened));
     this.numbered = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshBasicMaterial({ vertexColors: THREE.VertexColors }));
     this.numbers = new THREE.Scene();
     this.numbers.add(this.numbered);
@@ -168,6 +196,41 @@ class View {
     this.controls.addEventListener('start', () => { this.whole = false; this.moves = true; this.placeLabels(); });
     this.controls.addEventListener('end', () => { this.moves = false; this.placeLabels(); });
     window.addEventListener('resize', () => { this.resize(); if (this.whole) this.reset(); });
+  }
+
+  // A slider over the steps of the run, the last of which is the mesh. A step is read when it is asked for.
+  offerSteps(packed) {
+    if (packed.length === 0) return;
+    const last = Object.assign(this.mesh, { title: 'the mesh', complete: this.shown.complete, lines: [], balls: [] });
+    this.steps = [...packed.map(step => () => readStep(step)), () => last];
+    const slider = document.getElementById('step');
+    slider.max = packed.length;
+    slider.value = packed.length;
+    slider.addEventListener('input', () => this.showStep(Number(slider.value)));
+    document.getElementById('trace').hidden = false;
+    document.getElementById('stage').textContent = 'the mesh';
+    document.body.dataset.steps = this.steps.length;
+  }
+
+  async showStep(number) {
+    if (!this.steps || !this.steps[number]) return;
+    this.wanted = number;
+    const step = await this.steps[number]();
+    if (this.wanted !== number) return;  // the slider has moved on
+    this.steps[number] = () => step;
+    this.mesh = Object.assign(step, { colours: this.mesh.colours });
+    document.getElementById('step').value = number;
+    document.getElementById('stage').textContent = `${number + 1} of ${this.steps.length}, ${step.title}`;
+    document.getElementById('position').disabled = !step.complete;
+    const draws = (lines, points) => {
+      lines.geometry.dispose();
+      lines.geometry = new THREE.BufferGeometry();
+      lines.geometry.setAttribute('position', new THREE.BufferAttribute(Float32Array.from(points), 3));
+    };
+    draws(this.curves, step.lines);
+    draws(this.balls, circlesOf(step.balls));
+    document.body.dataset.balls = step.balls.length / 4;
+    this.rebuild();
   }
 
   // A dot at each node that stays off its face.

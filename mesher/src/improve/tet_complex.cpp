@@ -508,6 +508,12 @@ void TetComplex::store() {
   drop_lost_vertices();
 }
 
+TetMesh TetComplex::stored() const {
+  TetMesh copy = mesh_;
+  TetComplex(copy, *this).store();
+  return copy;
+}
+
 void TetComplex::drop_lost_faces_and_edges() {
   drop(lost_face, mesh_.faces, mesh_.face_patch, mesh_.face_tag, mesh_.face_regions);
   drop(lost_edge, mesh_.edges, mesh_.edge_curve, mesh_.edge_tag);

@@ -103,8 +103,14 @@ class TetComplex {
 
   /// Writes the tets back to the mesh, without removed vertices and faces.
   void store();
+  /// Returns what `store` would write, and leaves the mesh as it is.
+  TetMesh stored() const;
 
  private:
+  /// Makes one of another mesh's copy that can be stored, and nothing else.
+  TetComplex(TetMesh& copy, const TetComplex& of)
+      : mesh_(copy), tets_(of.tets_), origin_(of.origin_), lost_vertices_(of.lost_vertices_) {}
+
   struct OpenFace {
     std::array<Index, 3> key;  // sorted
     Index tet;

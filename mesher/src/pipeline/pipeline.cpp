@@ -26,6 +26,7 @@
 #include "collarmesh/partition.h"
 #include "collarmesh/usable_threads.h"
 #include "common/thread_limit.h"
+#include "common/traced_mesh.h"
 #include "improve/cell_bounds.h"
 #include "improve/improve_workpiece.h"
 #include "pipeline/explosion.h"
@@ -423,7 +424,8 @@ class Pipeline {
     MeshOptions options = refined_with_;
     if (options_.coarsen)
       options.bounds.collar_angle = std::max(options.bounds.collar_angle, reached_collar_angle);
-    MeshResult& result = made_.result = generate(*plc_, options, inner_, neighbours_);
+    MeshResult& result = made_.result =
+        generate(*plc_, options, inner_, neighbours_, options_.trace ? &made_.trace : nullptr);
     if (result.status == MeshStatus::cancelled && out_of_time()) stop();
     if (hit_bound())
       result.message =
@@ -454,11 +456,21 @@ class Pipeline {
       workpiece.complex.store();
       if (options_.coarsen) improvement::mark_cells(mesh, *plc_, refined_with_.bounds);
     });
+    trace(options_.improve > 0 ? "improve" : "coarsen", mesh);
   }
 
   void coarsen_elements(improvement::Workpiece& workpiece) {
     made_.coarsening = coarsen(workpiece, refined_with_, inner_);
     if (made_.coarsening->cancelled) stop();
+    if (!options_.trace || options_.improve == 0) return;
+    TetMesh coarsened = workpiece.complex.stored();
+    improvement::mark_cells(coarsened, *plc_, refined_with_.bounds);
+    trace("coarsen", coarsened);
+  }
+
+  /// Adds a mesh to the trace, if there is to be one.
+  void trace(std::string_view stage, const TetMesh& mesh) {
+    if (options_.trace) made_.trace.push_back(traced_mesh(mesh, std::string(stage)));
   }
 
   void improve_elements(improvement::Workpiece& workpiece) {
@@ -483,6 +495,7 @@ class Pipeline {
     begin("project", 0.8, 0.83);
     const ProjectOptions options{.bounds = bounds(), .threads = options_.mesh.threads};
     made_.projection = project_boundary(made_.result.mesh, *plc_, options_.exact, options, inner_);
+    trace("project", made_.result.mesh);
   }
 
   void raise_order() {

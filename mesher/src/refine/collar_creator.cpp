@@ -43,7 +43,7 @@ void CollarCreator::start() {
   collars_ = CollarSystem(domain_.plc, domain_.points, creases, options);
   if (collars_.empty()) return;
   for (Index v = 0; v < mesh_.vertex_count(); ++v) collar_cells_.note_near(v);
-  take_up_balls(none, {none, none});
+  take_up_balls(none, {none, none}, BallReason::up_front);
 }
 
 // The smallest target edge length of what is at this place of a vertex or curve.
@@ -77,18 +77,18 @@ void CollarCreator::create_if_isolated(Index at) {
   const Index only = points_.only_vertex_at(at);
   if (only == none || !waits_for_ball(only)) return;
   if (!points_.medial(only)) return;
-  if (gap_size().isolated({0, only}, at)) create_at_vertex(only, at);
+  if (gap_size().isolated({0, only}, at)) create_at_vertex(only, at, BallReason::vertex_isolated);
 }
 
 // The curves that end at the vertex do not reach beyond its ball's sphere any more.
-void CollarCreator::create_at_vertex(Index vertex, Index near) {
+void CollarCreator::create_at_vertex(Index vertex, Index near, BallReason reason) {
   assert(collars_.ball_at_vertex(vertex) == none);
   gap_size().start_near(near);
   placement_->place_at_vertex(vertex);
   for (const Index curve : domain_.plc.vertices[vertex].curves)
     for (const bool at_start : {true, false})
       if (domain_.plc.curves[curve].ends[at_start ? 0 : 1] == vertex) curves_.clip(curve, at_start, near);
-  take_up_balls(near, {none, none});
+  take_up_balls(near, {none, none}, reason);
 }
 
 // Every cell that a subsegment crosses is that of one of its ends, as its protective ball is empty.
@@ -108,37 +108,37 @@ void CollarCreator::create_on_isolated_curves() {
       const Subsegment* s = curves_.find(chain.links[isolated]);
       if (s != nullptr && !std::all_of(s->ends.begin(), s->ends.end(), is_isolated)) break;
     }
-    if (isolated == chain.links.size()) create_on_curve(curve);
+    if (isolated == chain.links.size()) create_on_curve(curve, BallReason::curve_isolated);
   }
 }
 
 bool CollarCreator::create_at_subsegment(Index subsegment) {
   const Index curve = curves_.curve_of(subsegment);
   if (!open_creases_.is_open(curve) || open_creases_.chain(curve).unresolved > 0) return false;
-  create_on_curve(curve);
+  create_on_curve(curve, BallReason::curve_would_divide);
   return true;
 }
 
 bool CollarCreator::create_remaining() {
   std::vector<Index> curves = open_creases_.curves();
   std::sort(curves.begin(), curves.end());
-  for (const Index curve : curves) create_on_curve(curve);
+  for (const Index curve : curves) create_on_curve(curve, BallReason::curve_left);
   return !curves.empty();
 }
 
-void CollarCreator::create_on_curve(Index curve) {
+void CollarCreator::create_on_curve(Index curve, BallReason reason) {
   const OpenCreases::Chain chain = open_creases_.close(curve);
   isolated_.erase(curve);
   const Index at_chain = curves_.remove_chain(curve),
               near = at_chain == none ? mesh_.last_vertex() : at_chain;
   gap_size().start_near(near);
   placement_->place_on_curve(curve);
-  take_up_balls(near, chain.ends);
+  take_up_balls(near, chain.ends, reason);
 }
 
 // Of the balls placed last the first and the last one may have their centres among the unresolved points
 // already.
-void CollarCreator::take_up_balls(Index near, const std::array<Index, 2>& ends) {
+void CollarCreator::take_up_balls(Index near, const std::array<Index, 2>& ends, BallReason reason) {
   const auto first = static_cast<Index>(ball_points_.size());
   const auto count = static_cast<Index>(collars_.balls().size());
   for (Index b = first; b < count; ++b) {
@@ -149,6 +149,7 @@ void CollarCreator::take_up_balls(Index near, const std::array<Index, 2>& ends) 
       if (point == none) point = points_.add(ball.centre, {1, ball.feature}, near);
     }
     ball_points_.push_back(point);
+    reasons_.push_back(reason);
     near = points_.vertex_near(point);
     if (placement_) find_inside(ball, near);
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "collar/collar_placement.h"
+#include "collarmesh/trace.h"
 #include "refine/collar_cells.h"
 #include "refine/curve_chains.h"
 #include "refine/gap_explorer.h"
@@ -37,6 +38,9 @@ class CollarCreator {
   /// The mesh vertex at a ball's centre; none as long as it is unresolved.
   Index vertex_of(Index ball) const { return points_[ball_points_[ball]].vertex; }
 
+  /// Why a ball is there.
+  BallReason reason(Index ball) const { return reasons_[ball]; }
+
   // In the pass:
   /// Is an unresolved point a vertex of the complex that is to get a ball?
   bool waits_for_ball(Index point) const {
@@ -44,7 +48,7 @@ class CollarCreator {
   }
   /// Paper, Procedure 4. `near`: the mesh vertex whose cell contains the vertex. Precondition: it waits for
   /// its ball.
-  void create_at_vertex(Index vertex, Index near);
+  void create_at_vertex(Index vertex, Index near, BallReason reason);
   /// Is any crease vertex or curve isolated now? Vertices get their balls at once; curves when
   /// `create_on_isolated_curves` is called. Precondition: all other parts know the new cells.
   void cells_made(const ConflictZone& zone, Index vertex);
@@ -67,8 +71,8 @@ class CollarCreator {
  private:
   double target_size(const Feature& feature, const Point& p) const;
   void create_if_isolated(Index at);
-  void create_on_curve(Index curve);
-  void take_up_balls(Index near, const std::array<Index, 2>& ends);
+  void create_on_curve(Index curve, BallReason reason);
+  void take_up_balls(Index near, const std::array<Index, 2>& ends, BallReason reason);
   void find_inside(const CollarBall& ball, Index near);
 
   const Domain& domain_;
@@ -86,6 +90,7 @@ class CollarCreator {
   std::unique_ptr<CollarPlacement> placement_;       // in the pass only
   std::unordered_map<Index, std::size_t> isolated_;  // by curve: the first so many links of its chain are
   std::vector<Index> ball_points_;                   // unresolved points at the balls' centres
+  std::vector<BallReason> reasons_;                  // of the balls
   std::size_t corners_taken_up_ = 0;
   std::function<void(const CollarBall&)> observer_;
   std::vector<Index> scratch_;

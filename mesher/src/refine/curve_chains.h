@@ -108,6 +108,12 @@ class CurveChains {
     for (Index s = 0; s < subsegments_.size(); ++s)
       if (subsegments_[s].alive) visit(s, subsegments_[s].piece);
   }
+  /// Visit what all subsegments are, with the places of their ends.
+  template <class Visit>
+  void visit_places(const Visit& visit) const {
+    for (Index i = 0; i < subsegments_.size(); ++i)
+      if (const Chained& s = subsegments_[i]; s.alive) visit(s.piece, std::array{place(s, 0), place(s, 1)});
+  }
   const std::vector<ClippedEnd>& clipped_ends() const { return clipped_ends_; }
 
   // For collars that are created in the pass:

@@ -8,6 +8,7 @@
 #include "refine/features_inside.h"
 #include "refine/generate_linked.h"
 #include "refine/refinement.h"
+#include "refine/trace_recorder.h"
 
 namespace collarmesh {
 
@@ -40,28 +41,32 @@ MeshResult generate(const Plc& plc, const MeshOptions& options, const Execution&
 }
 
 MeshResult generate(const Plc& plc, const MeshOptions& options, const Execution& execution,
-                    KnownNeighbours& neighbours) {
+                    KnownNeighbours& neighbours, Trace* trace) {
   require_valid(options);
   const FeaturesInside inside(plc);
   MeshOptions of_inside = options;
   of_inside.bounds.tolerance = inside.tolerance(tolerance_of(plc, options.bounds, options.size));
   std::optional<Refinement> refinement(std::in_place, inside.plc(), of_inside, execution);
+  if (trace != nullptr) refinement->record_steps();
   MeshResult result;
   result.status = refinement->run();
   if (refinement->narrow_cells_are_dear()) {
     of_inside.narrow_cells = NarrowCells::left;
     refinement.emplace(inside.plc(), of_inside, execution);
+    if (trace != nullptr) refinement->record_steps();
     result.status = refinement->run();
   }
   result.has_narrow_cells = of_inside.narrow_cells == NarrowCells::left;
   result.statistics = refinement->statistics();
   result.message = refinement->message();
+  if (trace != nullptr) *trace = refinement->trace();
   if (!result.message.empty()) result.where = refinement->where();
   if (result.status == MeshStatus::complete || result.status == MeshStatus::guarantee_missed) {
     Extracted extracted = refinement->extract();
     result.mesh = std::move(extracted.mesh);
     neighbours = std::move(extracted.neighbours);
     inside.restore_numbers(result.mesh);
+    if (trace != nullptr) trace->push_back(stitched_step(result.mesh, trace->back()));
   }
   return result;
 }

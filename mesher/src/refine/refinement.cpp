@@ -73,6 +73,7 @@ MeshStatus Refinement::run() {
   bool mending_collars = false;
   // Until then nobody looks at the collar surface, which blocks tell nothing.
   bool first_pass = true;
+  if (trace_) trace_->record("box");
   while (!outcome_.stopped()) {
     for (;;) {
       if (first_pass && blocks_.due()) {
@@ -85,6 +86,7 @@ MeshStatus Refinement::run() {
       if (observer_ && item.priority > WorkQueue::skinny_cells) observer_();
       if (item.priority > WorkQueue::encroached_subsegments) collar_creator_.create_on_isolated_curves();
       process(item);
+      if (trace_ && trace_->due()) trace_->record("refine", working_on_);
       if (++steps_ % steps_between_stops == 0 && stopped()) return outcome_.status();
     }
     first_pass = false;
@@ -107,6 +109,7 @@ MeshStatus Refinement::run() {
   if (const auto& open = stitching_.result().open; !open.empty())
     outcome_.give_up(mesh_.point(open[0]), "a collar could not be stitched to its surroundings",
                      "try a smaller size or another seed");
+  if (trace_) trace_->record("rip");
   seconds_ = budget_.elapsed();
   return outcome_.given_up() ? MeshStatus::guarantee_missed : MeshStatus::complete;
 }
@@ -248,7 +251,8 @@ void Refinement::insert_point(Index index) {
     if (p.across != none) facing_sheets_.note_pair(p.across, mesh_.vertex_count());
     vertex = force_insert(p.feature);
   }
-  if (collar_creator_.waits_for_ball(index)) collar_creator_.create_at_vertex(index, vertex);
+  if (collar_creator_.waits_for_ball(index))
+    collar_creator_.create_at_vertex(index, vertex, BallReason::vertex_inserted);
   curves_.point_resolved(index);
 }
 
@@ -324,9 +328,11 @@ std::size_t Refinement::bytes() const {
          collar_review_.bytes() + blocks_.bytes();
 }
 
-Extracted Refinement::extract() const {
-  return collarmesh::extract({domain_, mesh_, nodes_, collars_, collar_cells_, surface_, curves_,
-                              collar_creator_, stitching_.result()});
+Extracted Refinement::extract() const { return collarmesh::extract(refined()); }
+
+Refined Refinement::refined() const {
+  return {domain_,  mesh_,   nodes_,          collars_,           collar_cells_,
+          surface_, curves_, collar_creator_, stitching_.result()};
 }
 
 MeshStatistics Refinement::statistics() const {

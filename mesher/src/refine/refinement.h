@@ -27,6 +27,7 @@
 #include "refine/surface_check.h"
 #include "refine/surface_nodes.h"
 #include "refine/surface_topology.h"
+#include "refine/trace_recorder.h"
 #include "refine/triangle_quality.h"
 #include "refine/unresolved_points.h"
 #include "refine/work_counter.h"
@@ -61,6 +62,10 @@ class Refinement {
   /// The gap size as the mesh is now.
   GapExplorer& gap_size() { return collar_creator_.gap_size(); }
 
+  /// Before run(): record steps.
+  void record_steps() { trace_.emplace(refined()); }
+  /// The steps recorded.
+  Trace trace() const { return trace_ ? trace_->trace() : Trace(); }
   const std::string& message() const { return outcome_.message(); }
   Point where() const { return domain_.frame.outside(outcome_.where()); }
   MeshStatistics statistics() const;
@@ -96,6 +101,7 @@ class Refinement {
   bool too_early();
   WorkCounts work_counts() const;
   std::size_t ripped_out() const;
+  Refined refined() const;
 
   const Domain domain_;
   Outcome outcome_;
@@ -128,6 +134,7 @@ class Refinement {
 
   ConflictZone zone_;
   std::optional<WorkCounter> counter_;  // for those who ask
+  std::optional<TraceRecorder> trace_;
   WorkQueue::Priority working_on_ = WorkQueue::priority_count;
   std::size_t steps_ = 0, warps_ = 0, yields_ = 0;
   double seconds_ = 0;

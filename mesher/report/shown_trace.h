@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "collarmesh/trace.h"
+#include "report/shown_mesh.h"
+
+namespace collarmesh::report {
+
+/// A step of a trace, as a page shows it beside the mesh.
+struct ShownStep {
+  std::string stage, detail;
+  ShownMesh cells;           ///< relative to the centre of the mesh shown, with its face tags; marks: 1 in a
+                             ///< collar, 2 thin, 4 about to be ripped out
+  std::vector<float> lines;  ///< two points, six numbers, for each segment of a curve
+  std::vector<float> balls;  ///< of collars: a centre and a radius, four numbers for each
+};
+
+/// The steps that have few enough tets to be shown, at most `most` each: of larger ones those at the surface
+/// and at the planes through the centre. Cells outside of all regions are shown where there are no others.
+std::vector<ShownStep> shown_trace(const Trace& trace, const ShownMesh& mesh, std::size_t most = 20000);
+
+}  // namespace collarmesh::report
