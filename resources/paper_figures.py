@@ -19,7 +19,8 @@ import vtk
 from PIL import Image
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
-from drawing import BOOK, CREASE, EDGES, SCALE, STAR, actor_of, array, centres, extract, legend, palette, save, surface_of, tinted, tubes, with_quality
+from drawing import (BOOK, CREASE, EDGES, SCALE, STAR, actor_of, array, centres, extract, legend, palette, save, surface_of, tinted,
+                     tubes, with_quality)
 from gallery import write_off
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -349,7 +350,8 @@ def how_5_surface(path):
 
 
 def how_6_quality(path):
-    draw(path, [*sliced(last(the_run(), "rip"), SECTION, 0.6), *outline(0.6)], view=FRONT, around=((1.5, 0.6, 0.7), 1.1))
+    grid = last(the_run(), "rip")
+    draw(path, [*sliced(grid, SECTION, 0.6), *outline(0.6)], view=FRONT, around=((1.5, 0.6, 0.7), 1.1))
 
 
 def how_7_rip(path):
@@ -368,12 +370,14 @@ def how_9_coarsen(path):
 
 
 def how_10_improve(path):
-    before, after = last(the_run(), "coarsen"), last(the_run(), "improve")
+    before, after = last(the_run(), "stitch"), last(the_run(), "improve")
     panels = []
     for grid in (before, after):
         angles = extract(grid, ((array(grid, "kind") == TET) & (centres(grid)[:, 1] <= 0.75)).nonzero()[0])
         panels.append([by_angle(angles)])
-    panels[1].append(legend(palette()))
+    bar = legend(palette())
+    bar.SetPosition(0.06, 0.48)
+    panels[1].append(bar)
     draw(path, *panels, size=(2800, 1100), zoom=1.3)
 
 
