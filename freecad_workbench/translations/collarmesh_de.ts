@@ -44,6 +44,10 @@
       <translation>Feinere Teile des Netzes</translation>
     </message>
     <message>
+      <source>Give each solid nodes of its own where solids touch, for contact; otherwise they are glued</source>
+      <translation>Jedem Körper eigene Knoten geben, wo Körper sich berühren, für Kontakt; sonst sind sie verklebt</translation>
+    </message>
+    <message>
       <source>Give up after so many seconds; 0: never</source>
       <translation>Nach so vielen Sekunden aufgeben; 0: nie</translation>
     </message>
@@ -399,6 +403,10 @@
       <translation>Gmsh kann in FreeCAD keine Dreiecksnetze vernetzen.</translation>
     </message>
     <message>
+      <source>Give each solid nodes of its own where solids touch, for contact and tie constraints; otherwise they are glued</source>
+      <translation>Jedem Körper eigene Knoten geben, wo Körper sich berühren, für Kontakt- und Verbindungsbedingungen; sonst sind sie verklebt</translation>
+    </message>
+    <message>
       <source>Give up after so many seconds; 0: never</source>
       <translation>Nach so vielen Sekunden aufgeben; 0: nie</translation>
     </message>
@@ -461,6 +469,10 @@
     <message>
       <source>Improvement of new meshes</source>
       <translation>Verbesserung neuer Netze</translation>
+    </message>
+    <message>
+      <source>Keep touching solids apart</source>
+      <translation>Körper, die sich berühren, getrennt lassen</translation>
     </message>
     <message>
       <source>Largest angle in collars</source>
@@ -533,6 +545,10 @@
     <message>
       <source>No program shows pages; the report is {path}</source>
       <translation>Kein Programm zeigt Seiten an; der Bericht ist {path}</translation>
+    </message>
+    <message>
+      <source>No two solids touch, so there is nothing to keep apart.</source>
+      <translation>Keine zwei Körper berühren sich, es gibt also nichts getrennt zu lassen.</translation>
     </message>
     <message>
       <source>Nodes</source>
@@ -683,6 +699,10 @@
       <translation>Kleinste Größe</translation>
     </message>
     <message>
+      <source>Solids that are kept apart share no node, and their faces fit</source>
+      <translation>Getrennte Körper haben keinen Knoten gemeinsam, und ihre Flächen passen aufeinander</translation>
+    </message>
+    <message>
       <source>Statistics of {label}</source>
       <translation>Statistik von {label}</translation>
     </message>
@@ -755,12 +775,12 @@
       <translation>Die verlangten Größen als Farben auf dem Teil. Das Netz ist feiner, wo dünne Stellen und scharfe Ecken es brauchen</translation>
     </message>
     <message>
-      <source>The solids touch at {count} faces: they are glued there, and share the nodes ({names}).</source>
-      <translation>Die Körper berühren sich an {count} Flächen: Dort sind sie verklebt und haben die Knoten gemeinsam ({names}).</translation>
+      <source>The solids touch at {count} faces ({names}):</source>
+      <translation>Die Körper berühren sich an {count} Flächen ({names}):</translation>
     </message>
     <message>
-      <source>The solids touch at {names}: they are glued there, and share the nodes.</source>
-      <translation>Die Körper berühren sich an {names}: Dort sind sie verklebt und haben die Knoten gemeinsam.</translation>
+      <source>The solids touch at {names}:</source>
+      <translation>Die Körper berühren sich an {names}:</translation>
     </message>
     <message>
       <source>The worst tetrahedron: {angle}°. Click to see it.</source>
@@ -989,6 +1009,14 @@
     <message>
       <source>there is no value</source>
       <translation>es steht kein Wert da</translation>
+    </message>
+    <message>
+      <source>they are glued there, and share the nodes.</source>
+      <translation>sie sind dort verklebt und haben die Knoten gemeinsam.</translation>
+    </message>
+    <message>
+      <source>they are kept apart there, each with nodes of its own.</source>
+      <translation>sie bleiben dort getrennt, jeder mit eigenen Knoten.</translation>
     </message>
     <message>
       <source>wrap where it fails</source>

@@ -216,7 +216,8 @@ class Headless(unittest.TestCase):
         self.assertGreater(len(group(obj.FemMesh, "Face1")), 0)
 
     def test_every_property_reaches_the_program(self):
-        part = self.add(Part.makeBox(10, 10, 10))
+        boxes = [Part.makeBox(10, 10, 10, FreeCAD.Vector(10 * i, 0, 0)) for i in range(2)]
+        part = self.add(Part.makeCompound(boxes))
         obj = mesh_object.make(self.document, part)
         values = {
             "CharacteristicLengthMax": 4, "CharacteristicLengthMin": 0.5, "MeshSizeFromCurvature": 12,
@@ -224,6 +225,7 @@ class Headless(unittest.TestCase):
             "PlanarTolerance": 2e-6, "WeldTolerance": 2e-9,
             "RepairTolerance": 2e-5, "RadiusEdgeRatio": 1.9, "Coarsen": False, "ImproveLevel": 3,
             "MinDihedralAngle": 25, "Seed": 7, "TimeLimit": 60, "FillHoles": True,
+            "KeepApart": True,
         }
         self.assertEqual(set(values), {name for _, name, *_ in mesh_properties.PROPERTIES})
         for name, value in values.items():

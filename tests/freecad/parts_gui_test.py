@@ -1,5 +1,6 @@
 """What the panel says of parts of several solids, of open ones and of surfaces. Run by run.py --gui."""
 
+import collections
 import os
 import sys
 
@@ -29,12 +30,48 @@ async def solids_that_touch(document, part, obj):
     part.Shape = w.plate()
     document.recompute()
     await w.wait_until(lambda: not w.child("contacts").isVisible(), "the end of that line")
+    w.require(not w.child("KeepApart").isVisible(), "nothing to keep apart")
     boxes = [Part.makeBox(10, 10, 10, FreeCAD.Vector(10 * i, 0, 0)) for i in range(4)]
     part.Shape = Part.makeCompound(boxes)
     document.recompute()
     await w.wait_until(lambda: "3 faces" in w.child("contacts").text(), "the new line")
     w.require(w.child("contacts").toolTip().count("=") == 3, w.child("contacts").toolTip())
     await w.close_panel()
+
+
+async def solids_are_kept_apart(document, part, obj):
+    part.Shape = hub()
+    document.recompute()
+    await w.open_panel(obj)
+    await w.run_mesher("3 mm")
+    glued = obj.FemMesh.NodeCount
+    w.require(nodes_twice(obj.FemMesh) == 0, "they are glued")
+    await w.click(w.child("KeepApart"))
+    w.require("Face7 = Face8: they are kept apart" in w.child("contacts").text(), w.child("contacts").text())
+    await w.run_mesher("3 mm")
+    doubled = nodes_twice(obj.FemMesh)
+    w.require(obj.KeepApart and doubled > 50, f"{doubled} nodes are there twice")
+    w.require(obj.FemMesh.NodeCount == glued + doubled, f"{glued} nodes and {doubled}, {obj.FemMesh.NodeCount} in all")
+    w.require("Every guarantee holds" in w.said() and not w.child("out_of_date").isVisible(), w.said())
+    await w.click(w.child("guarantees_fold"))
+    w.require("✓ Solids that are kept apart share no node" in w.said(), w.said())
+    await w.click(w.child("guarantees_fold"))
+    await w.screenshot("freecad_apart.png")
+    await w.click(w.child("KeepApart"))
+    w.require("they are glued" in w.child("contacts").text(), w.child("contacts").text())
+    await w.close_panel()
+    document.recompute()
+    await w.open_panel(obj)
+    w.require(not obj.KeepApart and w.child("out_of_date").isVisible(), "the mesh is another one's")
+    await w.run_mesher("3 mm")
+    w.require(obj.FemMesh.NodeCount == glued, "they are glued again")
+    await w.close_panel()
+
+
+def nodes_twice(fem_mesh):
+    """How many places have several nodes."""
+    places = collections.Counter(tuple(round(x, 9) for x in point) for point in fem_mesh.Nodes.values())
+    return sum(count > 1 for count in places.values())
 
 
 def volumes():
@@ -109,6 +146,7 @@ async def test():
     part = document.addObject("Part::Feature", "Assembly")
     obj = mesh_object.make(document, part)
     await solids_that_touch(document, part, obj)
+    await solids_are_kept_apart(document, part, obj)
     obj.ElementOrder = "1st"
     await volumes_of_solids(document, part, obj)
     await open_surfaces_are_asked_about(document, part, obj)

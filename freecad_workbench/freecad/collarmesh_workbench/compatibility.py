@@ -125,10 +125,13 @@ def transaction(document, name):
         _in_transaction.discard(document.Name)
 
 
-def write_constraints_on(elements_of):
+def write_constraints_on(*finders):
     """FreeCAD's writers for solvers look for the nodes of constraints by place. Have them take the nodes of the
-    elements that `elements_of(fem_mesh, object, name of a face)` gives, where it is not None."""
+    elements that a finder gives for (mesh, object, name of a face), where it is not None."""
     by_place, loads_by_place = meshtools.get_femnodes_by_refshape, meshtools.get_force_obj_face_nodeload_table
+
+    def elements_of(*reference):
+        return next((found for found in (find(*reference) for find in finders) if found is not None), None)
 
     def nodes(fem_mesh, reference):
         found = []

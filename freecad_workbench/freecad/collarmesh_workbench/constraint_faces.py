@@ -180,4 +180,3 @@ class _Observer:
 
 def observe():
     FreeCAD.addDocumentObserver(_Observer())
-    compatibility.write_constraints_on(elements_of)

@@ -29,7 +29,8 @@ def of(shape):
 
 
 def in_mesh_numbers(settings, shape):
-    """Settings as the mesh numbers faces and edges: sizes of all that a face has parts of."""
+    """Settings as the mesh numbers faces and edges: sizes of all that a face has parts of. Where no solids touch, none are
+    kept apart."""
     here = of(shape)
     sizes = {}
     for field, kind in (("face_sizes", "Face"), ("edge_sizes", "Edge")):
@@ -37,7 +38,8 @@ def in_mesh_numbers(settings, shape):
         for number, size in getattr(settings, field).items():
             for tag in here.tags(kind, number):
                 sizes[field][tag] = min(size, sizes[field].get(tag, size))
-    return dataclasses.replace(settings, size_field=_field_in_mesh_numbers(settings.size_field, here), **sizes)
+    return dataclasses.replace(settings, size_field=_field_in_mesh_numbers(settings.size_field, here),
+                               keep_apart=settings.keep_apart and bool(here.glued_faces()), **sizes)
 
 
 def _field_in_mesh_numbers(field, here):
@@ -71,10 +73,17 @@ class Contacts:
         """All that what has this number in the mesh may be a part of: Face7, Face9."""
         return [f"{kind}{number}" for number in (tag, *self._larger(kind, tag))]
 
+    def numbers(self, kind):
+        """Those of all faces or edges; none in a shape of one solid."""
+        return range(1, len(self._of_kind[kind].elements) + 1) if kind in self._of_kind else ()
+
     def in_contact(self, kind):
         """Numbers of those that have a part with a smaller number in the mesh."""
-        count = len(self._of_kind[kind].elements) if kind in self._of_kind else 0
-        return [number for number in range(1, count + 1) if self.tags(kind, number) != [number]]
+        return [number for number in self.numbers(kind) if self.tags(kind, number) != [number]]
+
+    def solids(self, kind, number):
+        """The numbers of the solids that Face7 belongs to. Precondition: there are several solids."""
+        return sorted(solid + 1 for solid in self._of_kind[kind].solids[number - 1])
 
     def name(self, kind, tag):
         """These in one: "Face7 = Face9"."""

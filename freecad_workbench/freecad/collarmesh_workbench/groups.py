@@ -5,6 +5,8 @@ It believes a volume group called `<material>_...` instead. Those are kept right
 anew when a material's references, or what belongs to the analysis, change. Constraints need no groups: the nodes lie
 on the exact faces."""
 
+import re
+
 import FreeCAD
 from femmesh import meshtools
 
@@ -30,13 +32,12 @@ def materials_of(analysis):
 
 
 def elements_of(fem_mesh, part, subshapes):
-    """The kind of group and the elements for names like Face7. Faces and edges of parts with several solids are
-    looked up by place, as two faces that coincide have one group."""
+    """The kind of group and the elements for names like Face7; by place where the mesh has no such group."""
     groups, kind, elements = named(fem_mesh), "", set()
     for name in subshapes:
         kind = next((value for key, value in KINDS.items() if name.startswith(key)), "")
-        if kind == "Volume" or (kind and len(inputs.shape_of(part).Solids) == 1 and name in groups):
-            elements.update(fem_mesh.getGroupElements(groups[name]) if name in groups else ())
+        if kind and name in groups:
+            elements.update(fem_mesh.getGroupElements(groups[name]))
         elif kind == "Face":
             elements.update(fem_mesh.getFacesByFace(inputs.shape_of(part).getElement(name)))
         elif kind == "Edge":
@@ -44,27 +45,29 @@ def elements_of(fem_mesh, part, subshapes):
     return kind, sorted(elements)
 
 
-def add_groups_of_contacts(shape, fem_mesh):
-    """Give each face and edge of touching solids its group: the mesh has common parts in that with the smallest number."""
-    here = contacts.of(shape)
-    for kind, find in (("Face", fem_mesh.getFacesByFace), ("Edge", fem_mesh.getEdgesByEdge)):
-        elements_of_name = {name: fem_mesh.getGroupElements(number) for name, number in named(fem_mesh).items()}
-        for number in here.in_contact(kind):
-            elements = set()
-            for tag in here.tags(kind, number):
-                found = set(elements_of_name.get(f"{kind}{tag}", ()))
-                if found and not here.has_all(kind, tag, number):
-                    found &= set(find(shape.getElement(f"{kind}{number}")))
-                elements |= found
-            _set_group(fem_mesh, f"{kind}{number}", kind, elements)
+def names_in(part, references):
+    """The names that the sub-shapes of references have in a part, where it has all of them; else empty. FreeCAD looks for them by
+    place, and takes the first of two that coincide."""
+    names = [name_in(part, obj, name) for obj, subshapes in references for name in subshapes]
+    return sorted(names) if all(names) else []
 
 
-def _set_group(fem_mesh, name, kind, elements):
-    before = named(fem_mesh).get(name)
-    if before is not None:
-        fem_mesh.removeGroup(before)
-    if elements:
-        fem_mesh.addGroupElements(fem_mesh.addGroup(name, kind), sorted(elements))
+def name_in(part, obj, name):
+    """The name that a sub-shape of an object has in a part, as that of a compound; "" where the part does not have it."""
+    if obj is part:
+        return name
+    kind, number = re.fullmatch(r"([A-Za-z]*)(\d*)", name).groups()
+    of_object, of_part = (getattr(inputs.shape_of(each), kind + "s", ()) for each in (obj, part))
+    if not number or int(number) > len(of_object):
+        return ""
+    wanted_one = of_object[int(number) - 1]
+    return next((f"{kind}{i}" for i, each in enumerate(of_part, 1) if _is_same(each, wanted_one)), "")
+
+
+def _is_same(first, second):
+    """Is it one sub-shape, at one place?"""
+    near = contacts.SAME_PLACE * second.BoundBox.DiagonalLength
+    return first.isPartner(second) and first.BoundBox.Center.distanceToPoint(second.BoundBox.Center) <= near
 
 
 def wanted(mesh_object, fem_mesh):
@@ -76,7 +79,8 @@ def wanted(mesh_object, fem_mesh):
     for group in mesh_object.MeshGroupList:
         if compatibility.is_suppressed(group):
             continue
-        references.update(meshtools.get_mesh_group_elements(group, part))
+        references.update({key: names_in(part, group.References) or names
+                           for key, names in meshtools.get_mesh_group_elements(group, part).items()})
     analysis = analysis_of(mesh_object)
     materials = materials_of(analysis)
     if len(inputs.shape_of(part).Solids) > 1 and materials:

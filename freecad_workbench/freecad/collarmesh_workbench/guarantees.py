@@ -8,6 +8,9 @@ def guarantees(report):
     groups = _groups()
     if report["options"]["order"] != 2:
         groups = groups[:-1]
+    if report["split"]:
+        groups.append((translate("collarmesh", "Solids that are kept apart share no node, and their faces fit"),
+                       ("split_nodes", "split_pairs", "split_sectors", "split_measures")))
     findings = report["check"]["findings"]
     known = {name for _, names in groups for name in names}
     lines = [(text, [f["message"] for f in findings if f["guarantee"] in names]) for text, names in groups]

@@ -1,7 +1,8 @@
 """Loaded by FreeCAD when it starts, with and without its window."""
 
-from . import constraint_faces, groups, mesh_undo
+from . import compatibility, constraint_faces, contact_groups, groups, mesh_undo
 
 constraint_faces.observe()
+compatibility.write_constraints_on(constraint_faces.elements_of, contact_groups.elements_of)
 groups.observe()
 mesh_undo.observe()

@@ -3,7 +3,7 @@
 import Fem
 import FreeCAD
 
-from . import (compatibility, constraint_faces, contacts, groups, inputs, mesh_properties, mesh_undo, open_shape,
+from . import (compatibility, constraint_faces, contact_groups, contacts, groups, inputs, mesh_properties, mesh_undo, open_shape,
                preferences, size_check, size_objects, up_to_date, views)
 from .program import GUARANTEE_MISSED, Job, MesherError
 from .translations import translate
@@ -53,6 +53,7 @@ def start(obj, program="", settings=None):
     size_check.check(settings, sources, part)
     open_shape.check(part, settings.fill_holes)
     shape = inputs.shape_of(part)
+    is_to_be_apart = settings.keep_apart
     settings = contacts.in_mesh_numbers(settings, shape)
     job = Job(settings, program or preferences.program(), preferences.threads(), inputs.file_name(part))
     try:
@@ -61,6 +62,10 @@ def start(obj, program="", settings=None):
         job.__exit__()
         raise
     job.messages += tiny_edges(shape, settings.size)
+    job.apart = settings.keep_apart
+    if is_to_be_apart and not job.apart:
+        job.messages.append("warning: " + translate("collarmesh",
+                            "No two solids touch, so there is nothing to keep apart."))
     job.state = state
     labels = [label for label, _ in sources]
     job.explain = lambda text: size_objects.with_labels(text, labels)
@@ -104,7 +109,7 @@ def finish(obj, job, exit_code=0):
                 "collarmesh", "The mesher wrote a mesh without elements; please report it with the shape."
             )
         )
-    groups.add_groups_of_contacts(job.meshed, fem_mesh)
+    contact_groups.add(job.meshed, fem_mesh, job.apart)
     groups.add_groups(obj, fem_mesh)
     report = job.report()
     report["notes"] += groups.materials_elsewhere(obj)

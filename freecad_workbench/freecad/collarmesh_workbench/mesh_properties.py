@@ -103,6 +103,13 @@ PROPERTIES = (
     ),
     (
         "App::PropertyBool",
+        "KeepApart",
+        "keep_apart",
+        FEATURES,
+        doc("Give each solid nodes of its own where solids touch, for contact; otherwise they are glued"),
+    ),
+    (
+        "App::PropertyBool",
         "Coarsen",
         "coarsen",
         QUALITY,

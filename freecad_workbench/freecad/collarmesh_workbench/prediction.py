@@ -1,6 +1,7 @@
 """How many elements sizes will make, and how long that takes, asked of the program before meshing."""
 
 import collections
+import dataclasses
 import json
 import os
 import pathlib
@@ -171,6 +172,6 @@ class Predictions(QtCore.QObject):
 
 def _arguments(settings):
     """Those of the command line that the number of elements depends on, but for the size, which is asked about."""
-    arguments = settings.arguments()
+    arguments = dataclasses.replace(settings, keep_apart=False).arguments()  # without a flag: pairs of option and value
     pairs = zip(arguments[::2], arguments[1::2])
     return [word for pair in pairs if pair[0] in COUNTING for word in pair]

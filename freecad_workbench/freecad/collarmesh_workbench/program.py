@@ -48,6 +48,7 @@ class Settings:
     order: int = 2
     repair: str = "auto"  # or "none", or "wrap"
     fill_holes: bool = False  # of surfaces that are open; else they are refused before the program runs
+    keep_apart: bool = False  # solids that touch get nodes of their own there, for contact; else they share them
     solid_sizes: dict = dataclasses.field(default_factory=dict)
     face_sizes: dict = dataclasses.field(default_factory=dict)
     edge_sizes: dict = dataclasses.field(default_factory=dict)
@@ -67,6 +68,8 @@ class Settings:
             arguments += ["--order", str(self.order)]
         if self.repair != "auto":
             arguments += ["--repair", self.repair]
+        if self.keep_apart:
+            arguments.append("--keep-apart")
         for option, sizes in (("region", self.solid_sizes), ("patch", self.face_sizes), ("curve", self.edge_sizes)):
             for number, size in sorted(sizes.items()):
                 arguments += [f"--{option}-size", f"{number}={float(size)!r}"]

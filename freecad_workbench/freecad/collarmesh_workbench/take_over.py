@@ -70,6 +70,7 @@ def take_gmsh(old, new):
     for name in COMMON:
         if name in old.PropertiesList:
             setattr(new, name, getattr(old, name))
+    new.KeepApart = not getattr(old, "CoherenceMesh", True)
     lost = [name for name, unused in ONLY_GMSH if getattr(old, name, unused) != unused]
     notes = [
         translate("collarmesh", "Settings of Gmsh that collarmesh does not have: {names}").format(
@@ -133,6 +134,8 @@ def hand_over(old):
         for name in COMMON:
             if name in new.PropertiesList:
                 setattr(new, name, getattr(old, name))
+        if "CoherenceMesh" in new.PropertiesList:
+            new.CoherenceMesh = not old.KeepApart
         if "SecondOrderLinear" in new.PropertiesList:
             new.SecondOrderLinear = False
         compatibility.set_refinements(new, old.MeshRegionList)

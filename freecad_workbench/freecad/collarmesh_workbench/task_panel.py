@@ -9,7 +9,7 @@ from PySide import QtCore, QtGui
 from . import (colours, compatibility, constraint_faces, constraint_faces_view, cost, dock, extent, mesh_properties,
                meshing_process, new_mesh, open_shape, places, prediction, up_to_date, views, worst_elements)
 from .advanced_section import AdvancedSection, in_panel_words
-from .contacts_label import ContactsLabel
+from .contacts_section import ContactsSection
 from .later import later
 from .order_section import OrderSection
 from .places_list import PlacesList
@@ -42,6 +42,7 @@ class MeshTaskPanel:
         self.size.changed.connect(self._ask)
         self.advanced.changed.connect(self._ask)
         self.order.changed.connect(self._ask)
+        self.contacts.changed.connect(self._ask)
         if meshing_process.run_of(obj) is not None:
             self._follow(meshing_process.run_of(obj))
         else:
@@ -65,7 +66,7 @@ class MeshTaskPanel:
         self.order = OrderSection(mesh_properties.ORDERS.index(self.object.ElementOrder) + 1)
         self.advanced = AdvancedSection(self.object)
         self.preview = SizePreview(self.object, self._settings)
-        self.contacts = ContactsLabel(self.object)
+        self.contacts = ContactsSection(self.object)
         self.run_section = RunSection()
         self.run_section.run_clicked.connect(self.start)
         self.run_section.cancel_clicked.connect(self.cancel)
@@ -103,6 +104,7 @@ class MeshTaskPanel:
         order = mesh_properties.ORDERS[self.order.order() - 1]
         if order != self.object.ElementOrder:
             self.object.ElementOrder = order
+        self.contacts.store()
 
     def _ask(self, *_):
         """After a change."""
@@ -131,6 +133,7 @@ class MeshTaskPanel:
             settings.size = self.size.size()
         self.advanced.apply_to(settings)
         settings.order = self.order.order()
+        self.contacts.apply_to(settings)
         return settings
 
     def _show_predictions(self, known, missing=""):

@@ -129,6 +129,12 @@ def remember(obj, state):
     setattr(obj, SETTINGS, state.settings)
 
 
+def is_kept_apart(obj):
+    """Was the mesh made with nodes of their own for solids that touch?"""
+    made_with = getattr(obj, SETTINGS, "")
+    return made_with.startswith("{") and json.loads(made_with).get("keep_apart", False)
+
+
 def is_out_of_date(obj):
     """Was the mesh made of something else than what is there now? False without a mesh."""
     made_with = getattr(obj, SETTINGS, "")

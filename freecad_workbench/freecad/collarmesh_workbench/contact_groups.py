@@ -1,0 +1,79 @@
+"""Groups of the faces and edges at which solids touch, and the elements that constraints on them mean. Works without
+the GUI."""
+
+import re
+
+from . import compatibility, contacts, mesh_properties, mesh_undo, up_to_date
+from .groups import name_in, named
+
+SIDES = ("_minus", "_plus")  # of a face at which solids are kept apart, as the program names them
+
+
+def add(shape, fem_mesh, apart):
+    """Give each face and edge of touching solids its group: the mesh has common parts in that with the smallest number,
+    and where solids are kept apart, there is one for each of two sides."""
+    here = contacts.of(shape)
+    owners = _Owners(here, fem_mesh) if apart else None
+    for kind, find in (("Face", fem_mesh.getFacesByFace), ("Edge", fem_mesh.getEdgesByEdge)):
+        elements_of_tag = _elements_of_tags(fem_mesh, kind)
+        for number in here.numbers(kind) if apart else here.in_contact(kind):
+            elements = set()
+            for tag in here.tags(kind, number):
+                found = elements_of_tag.get(tag, set())
+                if found and not here.has_all(kind, tag, number):
+                    found = found & set(find(shape.getElement(f"{kind}{number}")))
+                elements |= found
+            _set_group(fem_mesh, f"{kind}{number}", kind, owners.own(kind, number, elements) if apart else elements)
+            if apart and len(here.solids(kind, number)) == 1:
+                for side in SIDES:
+                    _set_group(fem_mesh, f"{kind}{number}{side}", kind, ())
+
+
+def elements_of(fem_mesh, obj, name):
+    """The elements of a face, an edge or a solid in a mesh that keeps solids apart: places do not tell one solid's nodes
+    from those of another there. None for other meshes."""
+    for mesh_object in filter(mesh_properties.is_ours, compatibility.mesh_objects(obj.Document)):
+        part = compatibility.meshed_object(mesh_object)
+        if part is not None and up_to_date.is_kept_apart(mesh_object) and mesh_undo.same(mesh_object.FemMesh, fem_mesh):
+            group = named(fem_mesh).get(name_in(part, obj, name))
+            return None if group is None else fem_mesh.getGroupElements(group)
+    return None
+
+
+class _Owners:
+    """Which elements belong to which solids, by their nodes."""
+
+    def __init__(self, here, fem_mesh):
+        self.here, self.fem_mesh = here, fem_mesh
+        self._solids = {name: fem_mesh.getGroupElements(number) for name, number in named(fem_mesh).items()
+                        if re.fullmatch(r"Solid\d+", name)}
+        self._nodes = {}
+
+    def own(self, kind, number, elements):
+        """Those that belong to the solids of Face7."""
+        nodes = [self._nodes_of(solid) for solid in self.here.solids(kind, number)]
+        return {each for each in elements if any(set(self.fem_mesh.getElementNodes(each)) <= those for those in nodes)}
+
+    def _nodes_of(self, solid):
+        if solid not in self._nodes:
+            elements = self._solids.get(f"Solid{solid}", ())
+            self._nodes[solid] = {node for each in elements for node in self.fem_mesh.getElementNodes(each)}
+        return self._nodes[solid]
+
+
+def _elements_of_tags(fem_mesh, kind):
+    """By the number that faces or edges have in the mesh, those of both sides together."""
+    found = {}
+    for name, number in named(fem_mesh).items():
+        match = re.fullmatch(rf"{kind}(\d+)({'|'.join(SIDES)})?", name)
+        if match:
+            found.setdefault(int(match[1]), set()).update(fem_mesh.getGroupElements(number))
+    return found
+
+
+def _set_group(fem_mesh, name, kind, elements):
+    before = named(fem_mesh).get(name)
+    if before is not None:
+        fem_mesh.removeGroup(before)
+    if elements:
+        fem_mesh.addGroupElements(fem_mesh.addGroup(name, kind), sorted(elements))

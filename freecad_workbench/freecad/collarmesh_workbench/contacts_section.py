@@ -1,0 +1,84 @@
+"""The part of the panel that tells at which faces solids touch, and asks whether they are kept apart there."""
+
+from PySide import QtCore, QtGui
+
+from . import compatibility, contacts, inputs
+from .translations import translate
+
+MOST = 3  # faces that are named; the tool tip has all
+
+
+class ContactsSection(QtGui.QWidget):
+    """Hidden where no solids touch. `changed` is emitted when the box is ticked or unticked."""
+
+    changed = QtCore.Signal()
+
+    def __init__(self, obj):
+        super().__init__()
+        self.object = obj
+        self._names = []
+        self.label = QtGui.QLabel()
+        self.label.setObjectName("collarmesh_contacts")
+        self.label.setWordWrap(True)
+        self.box = QtGui.QCheckBox(translate("collarmesh", "Keep touching solids apart"))
+        self.box.setObjectName("collarmesh_KeepApart")
+        self.box.setToolTip(translate("collarmesh", "Give each solid nodes of its own where solids touch, for contact and "
+                                                    "tie constraints; otherwise they are glued"))
+        self.box.setChecked(obj.KeepApart)
+        self.box.toggled.connect(self._toggled)
+        layout = QtGui.QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.label)
+        layout.addWidget(self.box)
+        self.hide()
+        self._timer = QtCore.QTimer(self, singleShot=True)
+        self._timer.timeout.connect(self._look)
+        self.look_soon()
+
+    def look_soon(self):
+        """At the shape, when the window has shown what is there already."""
+        self._timer.start()
+
+    def store(self):
+        """Into the object's property."""
+        if self.box.isChecked() != self.object.KeepApart:
+            self.object.KeepApart = self.box.isChecked()
+
+    def apply_to(self, settings):
+        settings.keep_apart = self.box.isChecked()
+
+    def _toggled(self, _checked):
+        self._show()
+        self.changed.emit()
+
+    def _look(self):
+        self._names = self._names_of_faces()
+        self._show()
+
+    def _show(self):
+        self.label.setText(_text(self._names, self.box.isChecked()))
+        self.label.setToolTip("\n".join(self._names))
+        self.setVisible(bool(self._names))
+
+    def _names_of_faces(self):
+        part = compatibility.meshed_object(self.object)
+        if part is None:
+            return []
+        try:
+            pairs = contacts.of(inputs.shape_of(part)).glued_faces()
+        except Exception:  # of OpenCASCADE's, too; the run tells what is wrong
+            return []
+        return [f"Face{first}" if first == second else f"Face{first} = Face{second}" for first, second in pairs]
+
+
+def _text(names, apart):
+    named = ", ".join(names[:MOST]) + (", ..." if len(names) > MOST else "")
+    if len(names) == 1:
+        places = translate("collarmesh", "The solids touch at {names}:")
+    else:
+        places = translate("collarmesh", "The solids touch at {count} faces ({names}):")
+    if apart:
+        held = translate("collarmesh", "they are kept apart there, each with nodes of its own.")
+    else:
+        held = translate("collarmesh", "they are glued there, and share the nodes.")
+    return f"{places.format(count=len(names), names=named)} {held}"
