@@ -16,7 +16,8 @@ TYPES = {"flag": "bool", "count": "int", "number": "float", "text": "str", "size
 OTHER_TYPES = {"size_field": "SizeField", "names": "Union[Path, Mapping[str, Any]]", "max_memory": "Union[int, str]"}
 MORE = {
     "size_field": "a path of these; a dict as in such a .json; a tuple (mesh, values) or (points, tets, values), a "
-                  "mesh with a length for each point or each tet; or a callable of x, y, z that gives a length (see sampled_sizes)",
+                  "mesh with a length for each point or each tet; a callable of one argument, places of shape (n, 3), that gives lengths of "
+                  "shape (n,); or a callable of x, y, z that gives a length, which takes longer",
     "names": 'the path of a JSON file, or its content, {"patches": {"inlet": 3, "walls": [1, {"at": [0, 0, 1]}]}}',
     "partitions": "`Mesh.tet_partition` tells them",
 }

@@ -36,6 +36,94 @@ class Callables(unittest.TestCase):
         numpy.testing.assert_array_equal(free.points, bound.points)
 
 
+class CallablesOfArrays(unittest.TestCase):
+    """Of one argument, places of shape (n, 3)."""
+
+    def sizes(self, places):
+        self.calls.append(len(places))
+        self.assertEqual(places.shape, (len(places), 3))
+        self.assertTrue(((places >= 0) & (places <= 1)).all())  # of the part's box
+        return 0.05 + 0.3 * places[:, 2]
+
+    def setUp(self):
+        self.calls = []
+
+    def test_it_is_called_seldom_and_is_linear_in_between(self):
+        of_arrays = collarmesh.mesh(CUBE, size=1, size_field=self.sizes)
+        one_by_one = []
+
+        def size(x, y, z):
+            one_by_one.append(z)
+            return 0.05 + 0.3 * z
+
+        of_places = collarmesh.mesh(CUBE, size=1, size_field=size)
+        self.assertTrue(of_arrays.passed)
+        self.assertLess(len(self.calls), len(one_by_one) / 100)
+        self.assertAlmostEqual(len(of_arrays.tets) / len(of_places.tets), 1, delta=0.02)
+        below, above = median_lengths(of_arrays)
+        self.assertLess(below, 0.7 * above)
+
+    def test_it_is_sampled_as_finely_as_it_asks_for(self):
+        """A small ball of far smaller sizes within the coarsest cells, and none elsewhere."""
+        middle = numpy.array([0.52, 0.53, 0.54])
+
+        def near(places):
+            self.calls.append(len(places))
+            return numpy.maximum(0.004, 0.3 * numpy.linalg.norm(places - middle, axis=1))
+
+        mesh = collarmesh.mesh(CUBE, size=1, size_field=near)
+        self.assertGreater(len(self.calls), 1)
+        ends = mesh.points[mesh.tets]
+        centres = numpy.linalg.norm(ends.mean(axis=1) - middle, axis=1)
+        lengths = numpy.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+        self.assertLess(numpy.median(lengths[centres < 0.01]), 0.008)
+        self.assertGreater(numpy.median(lengths[centres > 0.4]), 0.08)
+
+    def test_threads_change_nothing(self):
+        one, several = (collarmesh.mesh(CUBE, size=1, size_field=lambda p: 0.03 + 0.1 * p[:, 0], threads=threads)
+                        for threads in (1, 4))
+        numpy.testing.assert_array_equal(one.points, several.points)
+        numpy.testing.assert_array_equal(one.tets, several.tets)
+
+    def test_objects_methods_and_defaults(self):
+        class Field:
+            def __call__(self, places, method=None, *, extra=None):
+                return numpy.full(len(places), 0.3)
+
+        def scaled(places, scale=0.3):
+            return scale + 0 * places[:, 0]
+
+        expected = collarmesh.mesh(CUBE, size_field=lambda x, y, z: 0.3)
+        for field in (Field(), Field().__call__, scaled):
+            numpy.testing.assert_array_equal(collarmesh.mesh(CUBE, size_field=field).points, expected.points)
+
+    def test_infinite_is_no_wish(self):
+        free, bound = (collarmesh.mesh(CUBE, size=0.3, **more)
+                       for more in ({}, {"size_field": lambda p: numpy.full(len(p), math.inf)}))
+        numpy.testing.assert_array_equal(free.points, bound.points)
+
+    def test_mistakes_are_told_with_the_place(self):
+        for wrong, words in ((0.0, "gave 0 at"), (-1.5, r"gave -1\.5 at"), (math.nan, "gave nan at")):
+            with self.assertRaisesRegex(collarmesh.OptionError, rf"size_field {words} \((0\.[5-9]\d*|1), \S+, \S+\)"):
+                collarmesh.mesh(CUBE, size=0.5, size_field=lambda p: numpy.where(p[:, 0] > 0.5, wrong, 0.4))
+        for field, words in ((lambda p: p, r"shape \(n,\) for places of shape \(n, 3\), not one of shape"),
+                             (lambda p: 0.3, "not one of shape"), (lambda p: None, "not one of shape|not None"),
+                             (lambda p: "fine", "'fine'|not one of shape")):
+            with self.assertRaisesRegex(collarmesh.OptionError, words):
+                collarmesh.mesh(CUBE, size_field=field)
+        with self.assertRaises(ZeroDivisionError):
+            collarmesh.mesh(CUBE, size_field=lambda p: 1 / 0)
+
+    def test_remesh_and_predict_take_it(self):
+        mesh = collarmesh.mesh(CUBE, size=0.5)
+        finer = collarmesh.remesh(mesh, size=lambda p: 0.08 + 0.3 * p[:, 2])
+        below, above = median_lengths(finer)
+        self.assertLess(below, 0.7 * above)
+        coarse, fine = (collarmesh.predict(CUBE, sizes=[0.5], size_field=lambda p: numpy.full(len(p), size))[0]["tets"]
+                        for size in (0.5, 0.1))
+        self.assertGreater(fine, 10 * coarse)
+
+
 class Fields(unittest.TestCase):
     def setUp(self):
         self.background = collarmesh.mesh(CUBE, size=0.3)

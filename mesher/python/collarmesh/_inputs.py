@@ -1,5 +1,6 @@
 """What can be meshed: files, surfaces of arrays, complexes with holes and regions; and the values of options."""
 
+import inspect
 import os
 from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
@@ -22,6 +23,7 @@ SizeField = Union[
     Tuple[Any, ArrayLike],
     Tuple[ArrayLike, ArrayLike, ArrayLike],
     Callable[[float, float, float], float],
+    Callable[[Array], ArrayLike],
 ]
 
 
@@ -210,6 +212,17 @@ def sampled_sizes(
         ends = numpy.cumsum([0, *(step[axis] for axis in path)])
         tets.append(cell + (ends if number < 3 else ends[[0, 2, 1, 3]]))
     return points, numpy.vstack(tets), lengths
+
+
+def takes_arrays(function: Callable[..., Any]) -> bool:
+    """Does a size field take one argument, places of shape (n, 3), rather than x, y and z?"""
+    try:
+        parameters = inspect.signature(function).parameters.values()
+    except (TypeError, ValueError):  # of a function that is compiled
+        return False
+    needed = [each for each in parameters if each.kind in (each.POSITIONAL_ONLY, each.POSITIONAL_OR_KEYWORD)
+              and each.default is each.empty]
+    return len(needed) == 1 and all(each.kind != each.VAR_POSITIONAL for each in parameters)
 
 
 def _on_points(tets: Array, values: Array, count: int) -> Array:

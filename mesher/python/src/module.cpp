@@ -105,10 +105,7 @@ class InputSource : public ComplexSource {
   }
 
   void adapt(const Plc& plc, PipelineOptions& options) override {
-    if (!options_.size_field_file.empty())
-      options.mesh.size_field = read_size_field(options_.size_field_file, plc);
-    if (!options_.size_field_json.empty())
-      options.mesh.size_field = size_field_from_json(options_.size_field_json, plc);
+    if (SizeField field = size_field_for(plc, options_)) options.mesh.size_field = std::move(field);
     if (input_.has_cad()) {
       options.exact = input_.exact_geometry(plc);
       options.exact_measures = input_.exact_measures(plc);
@@ -161,10 +158,7 @@ void remesh(RemeshCall& call, Watch& watch) {
   PipelineOptions options = call.options;
   options.mesh.time_limit = 0;  // the watch looks at it
   const auto adapt = [&](const Plc& plc, PipelineOptions& adapted) {
-    if (!call.options.size_field_file.empty())
-      adapted.mesh.size_field = read_size_field(call.options.size_field_file, plc);
-    if (!call.options.size_field_json.empty())
-      adapted.mesh.size_field = size_field_from_json(call.options.size_field_json, plc);
+    if (SizeField field = size_field_for(plc, call.options)) adapted.mesh.size_field = std::move(field);
   };
   call.run = collarmesh::remesh(call.mesh, options, adapt, watch.execution());
   const MeshResult& result = call.run.result;

@@ -1,6 +1,7 @@
 #include "options.h"
 
 #include <fmt/format.h>
+#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include <cmath>
@@ -53,27 +54,58 @@ void take(const Option& option, const py::handle& given, Options& options) {
   option.set(options, value);
 }
 
+/// Keeps an object of Python, and lets it go with the lock of the interpreter held.
+std::shared_ptr<py::object> kept(const py::object& object) {
+  return {new py::object(object), [](py::object* held) {
+            const py::gil_scoped_acquire acquire;
+            delete held;
+          }};
+}
+
+[[noreturn]] void refuse_size(const std::string& given, const Point& p) {
+  throw OptionError(
+      fmt::format("size_field gave {} at ({:.9g}, {:.9g}, {:.9g}); it must give a positive length", given,
+                  p.x, p.y, p.z));
+}
+
 /// A callable of a place, called with the lock of the interpreter held.
 SizeField field_of(const py::object& callable) {
-  const auto locked = [](py::object* object) {
+  return [function = kept(callable)](const Point& p) {
     const py::gil_scoped_acquire acquire;
-    delete object;
-  };
-  const std::shared_ptr<py::object> kept(new py::object(callable), locked);
-  return [kept](const Point& p) {
-    const py::gil_scoped_acquire acquire;
-    const py::object given = (*kept)(p.x, p.y, p.z);
+    const py::object given = (*function)(p.x, p.y, p.z);
     double size = NAN;
     try {
       size = given.cast<double>();
     } catch (const py::cast_error&) {
     }
-    if (!(size > 0))
-      throw OptionError(
-          fmt::format("size_field gave {} at ({:.9g}, {:.9g}, {:.9g}); it must give a positive length",
-                      std::string(py::repr(given)), p.x, p.y, p.z));
+    if (!(size > 0)) refuse_size(py::repr(given), p);
     return size;
   };
+}
+
+/// A callable of an array of places, one in each row, that gives an array of sizes.
+SizesAt sizes_of_arrays(const py::object& callable) {
+  return [function = kept(callable)](const std::vector<Point>& places) {
+    const py::gil_scoped_acquire acquire;
+    const auto count = static_cast<py::ssize_t>(places.size());
+    const py::object rows = py::array_t<double>({count, py::ssize_t{3}}, &places.front().x);
+    const py::object given = (*function)(rows);
+    const auto sizes = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
+    if (!sizes) PyErr_Clear();
+    if (!sizes || sizes.ndim() != 1 || sizes.size() != count)
+      throw OptionError(
+          fmt::format("size_field must give an array of shape (n,) for places of shape (n, 3), not {}",
+                      sizes ? "one of shape " + std::string(py::str(sizes.attr("shape")))
+                            : std::string(py::repr(given))));
+    for (py::ssize_t i = 0; i < count; ++i)
+      if (!(sizes.at(i) > 0)) refuse_size(fmt::format("{}", sizes.at(i)), places[i]);
+    return std::vector<double>(sizes.data(), sizes.data() + count);
+  };
+}
+
+/// Does it take one argument, the places, rather than x, y and z?
+bool takes_arrays(const py::object& callable) {
+  return py::module_::import("collarmesh._inputs").attr("takes_arrays")(callable).cast<bool>();
 }
 
 void take_size_field(const py::object& field, Options& options) {
@@ -85,12 +117,21 @@ void take_size_field(const py::object& field, Options& options) {
     options.size_field_json = py::module_::import("json").attr("dumps")(field).cast<std::string>();
   } else if (py::isinstance<py::str>(field)) {
     options.size_field_file = field.cast<std::string>();
+  } else if (takes_arrays(field)) {
+    options.sizes_at = sizes_of_arrays(field);
   } else {
     options.mesh.size_field = field_of(field);
   }
 }
 
 }  // namespace
+
+SizeField size_field_for(const Plc& plc, const Options& options) {
+  if (!options.size_field_file.empty()) return read_size_field(options.size_field_file, plc);
+  if (!options.size_field_json.empty()) return size_field_from_json(options.size_field_json, plc);
+  if (options.sizes_at) return sampled_sizes(options.sizes_at, plc.bounds);
+  return {};
+}
 
 Options options_of(const py::dict& given) {
   Options options;
