@@ -58,7 +58,7 @@ async def menu_of(label, choose=None, picture=""):
             QtCore.QTimer.singleShot(100, look)
             return
         if picture and w.PICTURES:
-            menu.grab().save(os.path.join(w.PICTURES, picture))
+            w.save_screen(picture)
         texts.extend(action.text() for action in menu.actions())
         entry = next(
             (action for action in menu.actions() if action.objectName() == f"collarmesh_{choose}"), None
@@ -70,6 +70,7 @@ async def menu_of(label, choose=None, picture=""):
     QtCore.QTimer.singleShot(100, look)
     tree = item.treeWidget()
     place = tree.visualItemRect(item).center()
+    QtGui.QCursor.setPos(tree.viewport().mapToGlobal(place))  # where FreeCAD opens it
     event = QtGui.QContextMenuEvent(QtGui.QContextMenuEvent.Mouse, place, tree.viewport().mapToGlobal(place))
     QtGui.QApplication.sendEvent(tree.viewport(), event)
     await w.wait_until(lambda: texts, "the menu")
@@ -88,7 +89,7 @@ async def a_changed_shape_marks_its_mesh(document, part, obj):
     w.require(obj.ViewObject.Proxy.getIcon() == view_provider.OUT_OF_DATE_ICON, "by the mark")
     w.require(obj.FemMesh.VolumeCount == count, "nothing is meshed by a recompute")
     FreeCADGui.ActiveDocument.ActiveView.viewIsometric()
-    await w.screenshot("freecad_out_of_date.png", size=(900, 600))
+    await w.screenshot("freecad_out_of_date.png")
     part.Radius = 6
     document.recompute()
     await w.wait_until(lambda: icon_of(obj.Label) == fresh, "the mark goes when the shape is as before", 10)
@@ -104,7 +105,10 @@ async def a_changed_shape_marks_its_mesh(document, part, obj):
 async def mesh_again_by_the_menu(document, part, obj):
     part.Radius = 8
     document.recompute()
+    if w.PICTURES:
+        await w.make_small()
     entries = await menu_of(obj.Label, "mesh_again", "freecad_menu.png")
+    w.window.setGeometry(*w.WIDE)
     for text in ("Edit mesh", "Mesh again", "Export mesh...", "Statistics...", "Hand over to Gmsh"):
         w.require(text in entries, f"{text} is not in {entries}")
     await w.wait_until(lambda: w.find("run") is not None, "the panel")
@@ -115,13 +119,17 @@ async def mesh_again_by_the_menu(document, part, obj):
 
 
 async def statistics_and_export(obj):
+    if w.PICTURES:
+        await w.make_small()
     await menu_of(obj.Label, "statistics")
     await w.wait_until(lambda: w.find("statistics") is not None, "the statistics")
     text = w.find("statistics").findChild(QtGui.QTextBrowser).toPlainText()
     for word in (str(obj.FemMesh.VolumeCount), str(obj.FemMesh.NodeCount), "Face7", "Solid1"):
         w.require(word in text, f"{word} is not in {text}")
     if w.PICTURES:
-        w.find("statistics").grab().save(os.path.join(w.PICTURES, "freecad_statistics.png"))
+        await w.pause(500)
+        w.save_screen("freecad_statistics.png")
+        w.window.setGeometry(*w.WIDE)
     w.find("statistics").close()
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "plate.inp")

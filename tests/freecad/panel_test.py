@@ -254,7 +254,7 @@ async def advanced_settings_reach_the_program():
     child("ImproveLevel").setCurrentIndex(child("ImproveLevel").findText("best"))
     child("Repair").setCurrentIndex(child("Repair").findText("wrap where it fails"))
     child("ElementOrder").setCurrentIndex(1)
-    await screenshot("freecad_advanced.png", size=(1200, 1000))
+    await screenshot("freecad_advanced.png")
     child("Coarsen").setChecked(False)
     await run_mesher("4 mm")
     options = meshing_process.outcome_of(obj).report["options"]
@@ -385,7 +385,7 @@ async def the_result_is_told():
     lines = child("guarantees").text()
     require("✗" not in lines and lines.count("✓") == 7 and child("guarantees").isVisible(), lines)
     await click(child("guarantees_fold"))
-    await screenshot("freecad_panel.png", size=(1200, 1000))
+    await screenshot("freecad_panel.png")
     x, y = int(chart._x(chart.extremes[0])), int(chart._frame().bottom())
     picture = chart.grab().toImage()
     colours = {picture.pixelColor(x + i, y - j).name() for i in range(-3, 4) for j in range(2, 12)}
@@ -484,7 +484,7 @@ async def the_worst_elements_show():
     await click_at(chart, QtCore.QPoint(int(chart._x(chart.extremes[0])), int(chart._frame().bottom()) - 8))
     require(marks_of(obj) is not None and view.getCamera() != before, "the worst element is marked and looked at")
     require(obj.ViewObject.Transparency > 50 and not part.ViewObject.Visibility, "it can be seen")
-    await screenshot("freecad_worst_elements.png", fit=False, size=(1200, 1000))
+    await screenshot("freecad_worst_elements.png", fit=False)
     report = meshing_process.outcome_of(obj).report
     worst = next(items for heading, items in rows(child("places")).items() if heading.startswith("Worst elements"))
     smallest, rest = worst[0].text(0).split("° to ")
@@ -594,7 +594,7 @@ async def cancel_tells_and_time_left_shows():
     await click(child("run"))
     require(not child("run").isEnabled() and child("progress").isVisible(), "a run is under way")
     await wait_until(lambda: "left" in left.text() and "elements so far" in left.text(), "the time left")
-    await screenshot("freecad_progress.png", size=(1200, 1000))
+    await screenshot("freecad_progress.png")
     await click(child("cancel"))
     await wait_until(lambda: child("run").isEnabled(), "the end")
     require("Cancelled" in said() and obj.FemMesh.VolumeCount == count, said())

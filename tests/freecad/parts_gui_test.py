@@ -94,6 +94,7 @@ async def volumes_of_solids(document, part, obj):
                   < 1e-4, f"{row} for {volume_of(obj.FemMesh, name)}")
         percent = 100 * (float(row[2]) / float(row[1]) - 1)
         w.require(abs(float(row[3].removesuffix(" %")) - percent) < 0.01, f"{row} for {percent} percent")
+    FreeCADGui.ActiveDocument.ActiveView.viewIsometric()
     await w.screenshot("freecad_volumes.png")
     await w.close_panel()
 

@@ -18,6 +18,7 @@ PICTURES = os.environ.get("COLLARMESH_TEST_ARGUMENT", "")  # a folder for screen
 EVERY = 20  # milliseconds between two looks at what a test waits for
 window = FreeCADGui.getMainWindow()
 WIDE = (0, 0, 2600, 1000)  # enough for all buttons of FEM
+PICTURE = (1400, 980)  # pixels
 window.setGeometry(*WIDE)
 if PICTURES:  # on white
     view_settings = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/View")
@@ -162,24 +163,34 @@ async def close_panel(button=QtGui.QDialogButtonBox.Ok):
     await wait_until(lambda: find("run") is None, "the panel's end")
 
 
-async def screenshot(name, fit=True, size=(1200, 900)):
+async def screenshot(name, fit=True, size=PICTURE):
     """A picture of the window, made small for it: `size` in pixels; `fit`: with all of the document in view."""
     if not PICTURES:
         return
     if find("presets") is not None and child("run").isEnabled():
         await wait_until(lambda: "…" not in "".join(column_of(child("presets"), 2)), "the numbers of elements")
+    await make_small(fit, size)
+    save_screen(name, size)
+    window.setGeometry(*WIDE)
+
+
+async def make_small(fit=True, size=PICTURE):
+    """The window, as pictures show it."""
     for dock in window.findChildren(QtGui.QDockWidget):
         if "Report" in dock.objectName():
             dock.hide()
-    screen = QtGui.QApplication.primaryScreen()
-    window.setGeometry(0, 0, *(int(length / screen.devicePixelRatio()) for length in size))
+    ratio = QtGui.QApplication.primaryScreen().devicePixelRatio()
+    window.setGeometry(0, 0, *(int(length / ratio) for length in size))
     for _ in range(2):
         await pause(400)
         if fit:
             FreeCADGui.SendMsgToActiveView("ViewFit")
     await pause(400)
-    screen.grabWindow(0).copy(0, 0, *size).save(os.path.join(PICTURES, name))
-    window.setGeometry(*WIDE)
+
+
+def save_screen(name, size=PICTURE):
+    """All that shows where the small window is."""
+    QtGui.QApplication.primaryScreen().grabWindow(0).copy(0, 0, *size).save(os.path.join(PICTURES, name))
 
 
 def plate():
