@@ -100,6 +100,8 @@ class Sequence:
         part = document.addObject("Part::Cut", "Plate")
         part.Base, part.Tool = box, hole
         document.recompute()
+        if self.random.random() < 0.3:
+            await self.another_part()
 
     async def another_part(self):
         """Solids that touch, or an open surface."""
@@ -159,6 +161,9 @@ class Sequence:
 
     async def button_of_the_panel(self):
         await self._click("run", "cancel", "report", "advanced", "size_add", "size_remove")
+
+    async def keep_apart(self):
+        await self._click("KeepApart")
 
     async def show_sizes(self):
         await self._click("show_sizes")
