@@ -52,7 +52,7 @@ struct Parts : testing::KnownCurves {
     const Point p = points[vertex].point;
     points.resolve(vertex, mesh.vertex_count());
     insert_and_tell(p, {0, vertex});
-    creator.create_at_vertex(vertex, mesh.last_vertex());
+    creator.create_at_vertex(vertex, mesh.last_vertex(), BallReason::vertex_inserted);
     chains.point_resolved(vertex);
   }
   // Split all subsegments whose balls hold vertices, as the loop does.
@@ -163,7 +163,7 @@ TEST(CollarParts, InThePassNoBallIsPlacedAtTheStart) {
   const Point p = parts.points[end].point;
   parts.points.resolve(end, parts.mesh.vertex_count());
   parts.insert_and_tell(p, {0, end});
-  parts.creator.create_at_vertex(end, parts.mesh.last_vertex());
+  parts.creator.create_at_vertex(end, parts.mesh.last_vertex(), BallReason::vertex_inserted);
   EXPECT_EQ(observed, 1U);
   EXPECT_FALSE(parts.creator.waits_for_ball(end));
   EXPECT_NE(parts.open_creases.chain(open[0]).ends[0], none);  // it leaves the ball
