@@ -1,0 +1,99 @@
+"""How long the panel's table of predictions takes: from opening the panel to the chosen size's row, and to all rows.
+
+    tests/freecad/run.py PROGRAM freecad_workbench/bench/predicted_table.py --gui -- FOLDER
+
+FOLDER has STEP parts; some are taken, spread by size. Seconds are those on the clock and those of processors, of FreeCAD and the
+mesher, which tell more on a machine with other work. An import in FreeCAD is not part of it."""
+
+import os
+import pathlib
+import resource
+import sys
+import time
+
+import FreeCAD
+import FreeCADGui
+import numpy
+import Part
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tests" / "freecad"))
+import window as w  # noqa: E402
+from freecad.collarmesh_workbench import mesh_object, task_panel, view_provider  # noqa: E402
+
+PARTS = int(os.environ.get("COLLARMESH_BENCH_PARTS", 21))
+LIMIT = 120  # seconds for a table
+
+
+def spread(paths):
+    """So many of them, from the smallest file to the largest."""
+    paths = sorted(paths, key=lambda path: path.stat().st_size)
+    return [paths[i * (len(paths) - 1) // (PARTS - 1)] for i in range(PARTS)] if len(paths) > PARTS else paths
+
+
+def now():
+    """Seconds on the clock, of FreeCAD's processor, and of the mesher's."""
+    used = [resource.getrusage(kind) for kind in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return numpy.array([time.monotonic(), *(each.ru_utime + each.ru_stime for each in used)])
+
+
+class Watched(task_panel.MeshTaskPanel):
+    """Remembers when the table got its numbers, for which sizes."""
+
+    told = []
+
+    def _show_predictions(self, known, missing=""):
+        super()._show_predictions(known, missing)
+        self.told.append((now(), set(known), self.size.size(), {size for _, size in self.size.presets}))
+
+
+view_provider.MeshTaskPanel = Watched
+
+
+def first_when(condition):
+    """None: never."""
+    return next((moment for moment, *what in Watched.told if condition(*what)), None)
+
+
+def chosen(known, size, _presets):
+    return size in known
+
+
+def complete(known, _size, presets):
+    return presets <= known
+
+
+async def measured(path):
+    """The number of faces; `now()` since the opening of the panel when the chosen size's row is there, and when all are."""
+    shape = Part.read(str(path))
+    document = FreeCAD.newDocument("part")
+    part = document.addObject("Part::Feature", "Part")
+    part.Shape = shape
+    obj = mesh_object.make(document, part)
+    document.recompute()
+    await w.pause(500)
+    Watched.told.clear()
+    begin = now()
+    FreeCADGui.getDocument(document.Name).setEdit(obj.Name)
+    while first_when(complete) is None and now()[0] < begin[0] + LIMIT:
+        await w.pause(200)
+    found = len(shape.Faces), first_when(chosen), first_when(complete)
+    await w.close_panel(w.QtGui.QDialogButtonBox.Cancel)
+    FreeCAD.closeDocument(document.Name)
+    return found[0], *(None if each is None else each - begin for each in found[1:])
+
+
+async def test():
+    FreeCADGui.activateWorkbench("FemWorkbench")
+    folder = pathlib.Path(os.environ["COLLARMESH_TEST_ARGUMENT"])
+    w.PICTURES = ""
+    rows = []
+    for path in spread([each for each in folder.iterdir() if each.suffix.lower() in (".step", ".stp")]):
+        faces, first, whole = await measured(path)
+        print(f"{path.name[:40]:40} {faces:5} faces:", "no table" if whole is None else
+              "chosen {:.2f} s, all {:.2f} s, processors: FreeCAD {:.2f} s, mesher {:.2f} s".format(first[0], *whole), flush=True)
+        rows += [] if whole is None else [(first[0], *whole)]
+    print("{} tables, medians: chosen {:.2f} s, all {:.2f} s, processors: FreeCAD {:.2f} s, mesher {:.2f} s".format(
+        len(rows), *numpy.median(rows, axis=0)), flush=True)
+
+
+w.run_test(test)
