@@ -94,6 +94,29 @@ class InvalidComplex(ProgramTest):
         self.assertIn(self.run_program(self.write("none.off", "OFF\n0 0 0\n"), "-o", self.out).returncode, (3, 4))
 
 
+class InABox(ProgramTest):
+    """Inputs that enclose nothing: points, segments, an open surface."""
+
+    WIRES = "4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0.5 0.4 0.2\n4 0.5 0.4 0.9\n2 1\n1 0 5\n2 1 2\n1 0 6\n2 3 4\n0\n0\n"
+
+    def meshed(self, path):
+        self.expect(0, path, "-o", self.out, "--domain", "box", says=[r"1 region\b"], writes=True)
+        self.expect(0, "check", self.out, "--against", path, "--domain", "box")
+
+    def test_points(self):
+        self.meshed(self.write("points.poly", "3 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 0.5 0.2\n0 0\n0\n0\n"))
+
+    def test_wires(self):
+        path = self.write("wires.poly", self.WIRES)
+        self.meshed(path)
+        self.expect(4, path, "-o", self.folder / "none.vtu", says=["enclose"])
+        info = json.loads(self.run_program("info", path, "--json", "--domain", "box", "--box-margin", "2").stdout)
+        self.assertAlmostEqual(info["complex"]["regions"][0]["volume"], 5 * 4.4 * 4.9)
+
+    def test_open_surface(self):
+        self.meshed(self.write("sheet.off", off_text([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2, 3)])))
+
+
 class MeshesOfOtherPrograms(ProgramTest):
     """They pass, or fail for their elements, not for their labels."""
 

@@ -9,7 +9,16 @@
 
 namespace collarmesh {
 
+/// The space that a complex divides.
+enum class DomainShape {
+  enclosed,  ///< what its facets enclose
+  box        ///< a box around everything: its points, segments and facets need not enclose anything
+};
+
 struct PlcOptions {
+  DomainShape domain = DomainShape::enclosed;
+  /// Distance of the box from what is in it, relative to the largest side of its bounding box.
+  double box_margin = 1;
   double feature_angle =
       30;  ///< degrees; edges that deviate more from flat are segments. 0: every non-coplanar edge
   double planar_tolerance = 1e-6;  ///< relative to the bounding-box diagonal; 0: the exact predicate

@@ -6,6 +6,7 @@
 
 #include "collarmesh/options.h"
 #include "collarmesh/plc_builder.h"
+#include "facets/box_around.h"
 #include "facets/cleanup.h"
 #include "facets/facet_triangulation.h"
 #include "facets/faults.h"
@@ -181,6 +182,7 @@ void warn_of_patches_outside(Plc& plc) {
 
 Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options) {
   validate({{.complex = options}});
+  if (options.domain == DomainShape::box) return build_plc(with_box(soups, options), enclosed(options));
   Draft draft;
   Faults faults;
   name_soups(soups, draft);

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "collarmesh/noise.h"
+#include "facets/box_around.h"
 #include "facets/cleanup.h"
 #include "facets/draft.h"
 #include "facets/edges.h"
@@ -408,6 +409,8 @@ PlcError given_up(const PlcError& error, const RepairOptions& options) {
 
 RepairResult repair(std::span<const PolygonSoup> soups, const RepairOptions& options,
                     const PlcOptions& complex, const Execution& execution) {
+  if (complex.domain == DomainShape::box)
+    return repair(facets::with_box(soups, complex), options, facets::enclosed(complex), execution);
   Repairer repairer(soups, options, complex, execution);
   RepairResult result = repairer.run();
   if (result.report.repaired) repairer.measure(result.report);
@@ -420,6 +423,9 @@ bool has_noise(const Plc& plc, const RepairOptions& options) {
 
 RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcOptions& options,
                          const RepairOptions& repair_options, const Execution& execution) {
+  if (options.domain == DomainShape::box)
+    return remove_noise(std::move(plc), facets::with_box(soups, options), facets::enclosed(options),
+                        repair_options, execution);
   if (repair_options.mode == RepairMode::off) return with_lost_regions({std::move(plc), {}, {}}, soups);
   const double tolerance = repair_options.tolerance * plc.bounds.diagonal();
   const std::optional<Point> noise = find_noise(plc, tolerance);
@@ -449,6 +455,9 @@ RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcO
 
 RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOptions& options,
                                const RepairOptions& repair_options, const Execution& execution) {
+  if (options.domain == DomainShape::box)
+    return build_repaired_plc(facets::with_box(soups, options), facets::enclosed(options), repair_options,
+                              execution);
   if (repair_options.mode == RepairMode::wrap && repair_options.wrap_at_once) {
     if (auto wrapped = build_wrapped_plc(soups, options, repair_options)) return *std::move(wrapped);
     throw PlcError("The closed surface around everything is no complex; try another wrap offset.", {});
