@@ -13,6 +13,7 @@
 
 #include "collarmesh/error.h"
 #include "collarmesh/pipeline.h"
+#include "support/acute_shapes.h"
 #include "support/shapes.h"
 
 namespace collarmesh {
@@ -74,7 +75,6 @@ class Boxes : public ComplexSource {
   RepairedPlc build(const RepairOptions& repair, const Execution&) override {
     built.push_back(repair);
     if (throws_after_first && built.size() > 1) throw PlcError("no complex", {});
-    const PolygonSoup soup = box();
     RepairedPlc made{build_plc({&soup, 1}), {}, {}};
     made.report.repaired = true;
     made.report.wrapped = repair.wrap_at_once;
@@ -97,6 +97,7 @@ class Boxes : public ComplexSource {
 
   std::size_t right = 0;  // the number of the build that is right, from 1; 0: none
   bool throws_after_first = false, refuses_after_first = false;
+  PolygonSoup soup = box();
   std::vector<RepairOptions> built;
   unsigned adapted = 0;
 
@@ -117,6 +118,21 @@ TEST(Pipeline, RepairsFurtherWhereAGuaranteeIsMissed) {
   ASSERT_EQ(boxes.built.size(), 2U);
   EXPECT_DOUBLE_EQ(made.repair.tolerance, 3 * RepairOptions{}.tolerance);
   EXPECT_TRUE(tells(made, "repaired with a tolerance of 3e-05"));
+}
+
+// Nothing that repair changes makes angles in collars smaller.
+TEST(Pipeline, DoesNotRepairForTheSakeOfCollars) {
+  Boxes wedges;
+  wedges.soup = testing::acute::wedge(37).soups[0];
+  wedges.right = 1;
+  PipelineOptions options = with_size(0.3);
+  options.mesh.bounds.collar_angle = 100;
+  options.repair.mode = RepairMode::wrap;
+  const SoupPipelineResult made = wedges.run(options);
+  EXPECT_FALSE(made.guarantees_hold());
+  for (const Finding& finding : made.check.findings)
+    EXPECT_NE(finding.message.find("of a collar"), std::string::npos) << finding.message;
+  EXPECT_EQ(wedges.built.size(), 1U);
 }
 
 TEST(Pipeline, WrapsLast) {

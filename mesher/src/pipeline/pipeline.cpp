@@ -218,6 +218,7 @@ class Pipeline {
   }
 
   std::vector<RepairOptions> repairs_after(End end, const SoupPipelineResult& all) const {
+    if (end == End::missed && misses_collar_angle_only()) return {};
     std::vector<RepairOptions> repairs = further_repairs(given_.repair, all.repair);
     if (end != End::exploded) return repairs;
     std::erase_if(repairs, [](const RepairOptions& repair) { return !repair.wrap_at_once; });
@@ -226,6 +227,14 @@ class Pipeline {
         coarser_repairs(given_.repair, smallest_size(given_.mesh, diagonal), diagonal);
     repairs.insert(repairs.begin(), coarser.begin(), coarser.end());
     return repairs;
+  }
+
+  /// The angles in collars are those of creases, which repair leaves as they are.
+  bool misses_collar_angle_only() const {
+    return made_.result.status == MeshStatus::complete &&
+           std::ranges::all_of(made_.check.findings, [](const Finding& finding) {
+             return finding.guarantee == guarantee::collar_dihedral;
+           });
   }
 
   /// Throws PlcError unless a coarser repair changes something and loses no part.
