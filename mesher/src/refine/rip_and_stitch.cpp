@@ -33,7 +33,7 @@ void RipAndStitch::stitch() {
     const Index region = surface_.region(cell_of(t.face));
     if (region == 0 || t.several) continue;
     const auto v = mesh_.face_vertices(t.face);
-    stitched_.tets.push_back({{v[0], v[1], v[2], creator_.vertex_of(t.ball)}, region, 1, crease_tag(t.ball)});
+    add({{v[0], v[1], v[2], creator_.vertex_of(t.ball)}, region, 1, crease_tag(t.ball)});
   }
   stitch_books(triangles);
   stitch_faces(triangles);
@@ -42,6 +42,17 @@ void RipAndStitch::stitch() {
         {{creator_.vertex_of(link.balls[0]), creator_.vertex_of(link.balls[1])}, link.curve});
   for (const CurveChains::ClippedEnd& end : curves_.clipped_ends())
     stitched_.edges.push_back({{creator_.vertex_of(end.ball), points_[end.point].vertex}, end.curve});
+}
+
+// Where the review has been given up, a triangle may have the centre of its own ball as a corner. No cell is
+// made of it, and the collar stays open there.
+void RipAndStitch::add(const Stitched::Tet& tet) {
+  std::array<Index, 4> sorted = tet.corners;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end())
+    stitched_.tets.push_back(tet);
+  else
+    stitched_.open.push_back(tet.corners[0]);
 }
 
 Tag RipAndStitch::crease_tag(Index ball) const {
@@ -81,8 +92,7 @@ void RipAndStitch::stitch_books(const std::vector<CollarTriangle>& triangles) {
   for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
     const Side &s = sides[i], &other = sides[i + 1];
     if (s.key != other.key || s.ball == other.ball) continue;
-    stitched_.tets.push_back(
-        {{s.edge[1], s.edge[0], creator_.vertex_of(other.ball), creator_.vertex_of(s.ball)},
+    add({{s.edge[1], s.edge[0], creator_.vertex_of(other.ball), creator_.vertex_of(s.ball)},
          s.region,
          2,
          tag_between(s.ball, other.ball)});

@@ -27,7 +27,8 @@ struct Stitched {
   std::vector<Tet> tets;
   std::vector<Face> faces;
   std::vector<Edge> edges;
-  std::vector<Index> open;  ///< mesh vertices of faces between regions that lie on no patch between them
+  std::vector<Index> open;  ///< mesh vertices of faces between regions that lie on no patch between them, and
+                            ///< of cells that would have a corner twice
 };
 
 /// Rip and stitch (paper, Procedure 5). `extract` drops the cells inside the collars; this makes what takes
@@ -57,6 +58,7 @@ class RipAndStitch {
   const Stitched& result() const { return stitched_; }
 
  private:
+  void add(const Stitched::Tet& tet);
   Tag crease_tag(Index ball) const;
   void stitch_books(const std::vector<CollarTriangle>& triangles);
   void stitch_faces(const std::vector<CollarTriangle>& triangles);
