@@ -77,6 +77,7 @@ def main() -> int:
     parser.add_argument("what", nargs="*", default=["number", "spread"], help="number, spread")
     parser.add_argument("--build", type=Path, default=root / "build" / "bench")
     parser.add_argument("--before", type=Path, help="an older version's program")
+    parser.add_argument("--paper", action="store_true", help="beside --profile paper")
     parser.add_argument("--smallest", type=int, default=400,
                         help="number of segments, less where these make n^2 vertices")
     parser.add_argument("--factors", type=int, nargs="*", default=[1, 10, 100])
@@ -85,21 +86,24 @@ def main() -> int:
     options = parser.parse_args()
     about = machine(options.build)
     pin_to_core(options.core)
-    arguments = ["--coarsen", "off", "--threads", "1"]
-    meshers = [Collarmesh(program, options.time_limit, arguments)
-               for program in (options.build / "bin" / "collarmesh", options.before) if program]
+    program, arguments = options.build / "bin" / "collarmesh", ["--coarsen", "off", "--threads", "1"]
+    meshers = {"": Collarmesh(program, options.time_limit, arguments)}
+    if options.before:
+        meshers[", before"] = Collarmesh(options.before, options.time_limit, arguments)
+    if options.paper:
+        meshers[", paper"] = Collarmesh(program, options.time_limit, [*arguments, "--profile", "paper"])
     generator = options.build / "bin" / "acute_shape"
     folder = SizeCache().folder / "polylines"
     folder.mkdir(parents=True, exist_ok=True)
     columns = ["vertices", "refine s", "exponent", "peak cells/vertex", "largest cavity", "too early"]
-    header = ["polylines"] + [c + suffix for suffix in ("", ", before")[:len(meshers)] for c in columns]
-    print(f"{about}. collarmesh {meshers[0].version()}.\n")
+    header = ["polylines"] + [column + suffix for suffix in meshers for column in columns]
+    print(f"{about}. collarmesh {meshers[''].version()}.\n")
     if "number" in options.what:
         rows = []
         for family, further, scale in families:
             counts = [max(16, round(options.smallest * scale)) * factor for factor in options.factors]
             series = {si(n): AcuteInput(generator, family, (n, *further(n))) for n in counts}
-            rows += rows_of(meshers, name_of(family, further(400)), series, folder)
+            rows += rows_of(list(meshers.values()), name_of(family, further(400)), series, folder)
         print(table([header[0], "n", *header[1:]], rows) + "\n")
     if "spread" in options.what:
         rows = []
@@ -108,9 +112,9 @@ def main() -> int:
             n = max(16, round(options.smallest * scale / 4))
             series = {f"{small:g}": AcuteInput(generator, family, (n, *further(n)), small_copy=small)
                       for small in smalls if family != "crossed_strips"}
-            rows += rows_of(meshers, name_of(family, further(400)), series, folder)
+            rows += rows_of(list(meshers.values()), name_of(family, further(400)), series, folder)
         series = {f"{small:g}": AcuteInput(generator, "shrinking_spiral", (60, small)) for small in smalls}
-        rows += rows_of(meshers, "shrinking spiral", series, folder)
+        rows += rows_of(list(meshers.values()), "shrinking spiral", series, folder)
         print(table([header[0], "smallest", *header[1:]], rows))
     return 0
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <initializer_list>
 #include <memory>
 #include <sstream>
 #include <string_view>
@@ -404,6 +405,8 @@ std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
     }
     if (repair_command->parsed()) check_repair_arguments(repair);
     if (remesh_command->parsed()) check_mesh_arguments(remesh);
+    for (RunOptions* const options : std::initializer_list<RunOptions*>{&mesh, &check, &convert})
+      *options = with_profile(*options);
     if (subcommand && (!mesh.inputs.empty() || !mesh.output.empty())) throw CLI::HorribleError("");
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) {  // --help, --version

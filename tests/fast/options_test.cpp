@@ -143,6 +143,39 @@ TEST(OptionTable, ContradictionsAreRefused) {
   EXPECT_THROW(validate({{.mesh = {.bounds = {.thin_angle = 0}}}}), OptionError);
 }
 
+TEST(Profile, OfThePaperSetsOthersAndRefusesContradictions) {
+  RunOptions options;
+  ASSERT_TRUE(row("profile").read("paper", options));
+  EXPECT_NO_THROW(validate(options));
+  const RunOptions set = with_profile(options);
+  EXPECT_NO_THROW(validate(set));
+  EXPECT_FALSE(set.coarsen);
+  EXPECT_EQ(set.improve, 0U);
+  EXPECT_EQ(set.mesh.bounds.crease_angle, 90);
+  EXPECT_EQ(set.mesh.bounds.radius_edge, 2.83);
+  EXPECT_EQ(set.mesh.bounds.thin_angle, 0);
+  EXPECT_EQ(set.mesh.exterior_radius_edge, 2.83);
+  for (const auto& [name, text] : {std::pair{"crease-angle", "45"},
+                                   {"collar-creation", "up-front"},
+                                   {"improve", "3"},
+                                   {"min-dihedral", "10"},
+                                   {"radius-edge", "2"},
+                                   {"theta", "0"}}) {
+    RunOptions other = options;
+    ASSERT_TRUE(row(name).read(text, other));
+    EXPECT_THROW(validate(other), OptionError) << name;
+    EXPECT_NO_THROW(validate([&] {
+      other.mesh.profile = Profile::standard;
+      return other;
+    }()))
+        << name;
+  }
+  RunOptions larger = options;
+  ASSERT_TRUE(row("radius-edge").read("4", larger));
+  EXPECT_NO_THROW(validate(larger));
+  EXPECT_EQ(with_profile(larger).mesh.exterior_radius_edge, 4);
+}
+
 TEST(TagValue, Read) {
   EXPECT_EQ(read_tag_value("7=0.25"), (std::pair<Tag, double>(7, 0.25)));
   EXPECT_EQ(read_tag_value("-3=1e-3"), (std::pair<Tag, double>(-3, 1e-3)));

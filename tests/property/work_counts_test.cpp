@@ -203,6 +203,28 @@ TEST(WorkCounts, AtHubsGrowWithWhatMeetsThere) {
   }
 }
 
+// The same with every hypothesis of the proofs, as the number and as the spread grow. No size is asked for.
+TEST(WorkCounts, InThePapersProfileAreBounded) {
+  MeshOptions options = testing::with_size(0);
+  options.profile = Profile::paper;
+  for (const Family& family : families)
+    for (const unsigned n : {30U, 300U}) {
+      SCOPED_TRACE(family.name + std::string(" ") + std::to_string(n));
+      expect_bounded_work(counted(family.make(n).soups, options).counts, std::log2(n));
+    }
+  for (const int exponent : {1, 3}) {
+    const double small = 0.08 * std::pow(10, -exponent);
+    SCOPED_TRACE(small);
+    for (const Family& family : families) {
+      SCOPED_TRACE(family.name);
+      expect_bounded_work(counted(polylines::with_small_copy(family.make(40), small).soups, options).counts,
+                          std::log2(40 / small));
+    }
+    const WorkCounts wedges = counted(acute::wedge_on_a_large_one(20, small).soups, options).counts;
+    expect_bounded_work(wedges, std::log2(wedges.located / small));
+  }
+}
+
 TEST(WorkCounts, AreMadeOnRequestOnly) {
   const MeshStatistics s =
       generate(build_plc(std::vector{testing::box()}), testing::with_size(0.5)).statistics;

@@ -19,6 +19,17 @@ namespace collarmesh {
 /// crease (paper, section 3.2), or before the first vertex is inserted. The guarantees are the same.
 enum class CollarCreation { in_pass, up_front };
 
+/// A setting for the refinement as a whole: meshes for use, or exactly what the paper's proofs assume.
+enum class Profile {
+  standard,
+  /// Creases are all features that meet below 90 degrees; input comes in where it is medial, else the balls
+  /// around it are split; one bound on circumradius / shortest edge holds everywhere during the run, in
+  /// collars and outside regions, too; a crease gets its balls when it is isolated; nothing is spared where
+  /// sheets face each other, nothing is refined in blocks, coarsened or improved, and no size is asked for
+  /// unless it is given.
+  paper
+};
+
 /// Whether cells in the regions keep the bound on their radius-edge ratio between features that have no point
 /// in common and are nearer to each other than a tenth of the size, as across a thin wall. Cells may be left
 /// there in meshes that will be coarsened, where angles are bounded instead of the ratio
@@ -32,7 +43,9 @@ enum class NarrowCells {
 /// The goals of `generate`. Lengths are absolute, in input units, and are target edge lengths:
 /// the median edge of a large mesh comes out about a tenth above them, as other meshers' does.
 struct MeshOptions {
-  double size = 0;                         ///< target edge length everywhere; 0: 1/20 of the diagonal
+  Profile profile = Profile::standard;  ///< sets some of the others, see `with_profile`
+  double size = 0;  ///< target edge length everywhere; 0: 1/20 of the diagonal, in the paper's profile all of
+                    ///< it
   double size_min = 0;                     ///< smallest target edge length of sizes and fields; 0: none
   std::map<Tag, double> region_size = {};  ///< target edge length by region tag
   std::map<Tag, double> patch_size = {};   ///< by patch tag
@@ -65,6 +78,9 @@ struct MeshOptions {
   unsigned threads = 0;     ///< 0: all cores; any number makes the same mesh
   bool count_work = false;  ///< fill in MeshStatistics::counts, which takes some time
 };
+
+/// Returns the options with those that their profile sets.
+MeshOptions with_profile(MeshOptions options);
 
 /// MeshOptions::size, or its default for this complex.
 double default_size(const Plc& plc, const MeshOptions& options);

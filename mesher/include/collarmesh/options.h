@@ -105,6 +105,9 @@ struct Option {
 /// All options, in the order of the help. Some have a second row for another command.
 const std::vector<Option>& option_table();
 
+/// Returns the options with those that the profile of `mesh` sets.
+RunOptions with_profile(RunOptions options);
+
 /// Throws OptionError for values out of the range of their option and for values that contradict each other.
 void validate(const RunOptions& options);
 

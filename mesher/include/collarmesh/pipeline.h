@@ -45,6 +45,9 @@ struct PipelineOptions {
   ShapeMeasures exact_measures = {};  ///< measures of that geometry, for the certificate; may be empty
 };
 
+/// Returns the options with those that the profile of `mesh` sets.
+PipelineOptions with_profile(PipelineOptions options);
+
 /// The result of a run. There is a mesh only if `result.status` is complete or guarantee_missed.
 struct PipelineResult {
   MeshResult result;                        ///< of the refinement; its mesh has gone through all stages

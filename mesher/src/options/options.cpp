@@ -108,13 +108,29 @@ void require(bool holds, const std::string& message) {
   if (!holds) throw OptionError(message);
 }
 
+/// Who gives an option that the profile sets another value is told.
+void require_as_profile_sets(const RunOptions& options) {
+  const RunOptions set = with_profile(options), defaults;
+  for (const Option& option : option_table()) {
+    const OptionValue value = option.get(options);
+    if (value == option.get(set) || value == option.get(defaults)) continue;
+    throw OptionError(fmt::format("{} {} contradicts profile paper, which sets {}; leave it out", option.name,
+                                  text_of(option, value), text_of(option, option.get(set))));
+  }
+}
+
 /// Checks the rules that concern several options.
 void require_consistent(const RunOptions& o) {
   require(o.mesh.size == 0 || o.mesh.size_min <= o.mesh.size,
           fmt::format("size-min {} exceeds size {}; make it smaller", o.mesh.size_min, o.mesh.size));
   require(o.split.any() || (o.split.interaction == Interaction::free && !o.split.cohesive),
           "interaction and cohesive are for patches that are split; add split or keep-apart");
-  require(!o.coarsen || o.mesh.bounds.thin_angle > 0,
+  const bool is_papers = o.mesh.profile == Profile::paper;
+  require(!is_papers || o.mesh.bounds.radius_edge * o.mesh.bounds.radius_edge > 8 ||
+              !o.mesh.bounds.thin_in_narrow_places_only,
+          "radius-edge must be above 2 sqrt 2 with profile paper; make it 2.83 or more");
+  require(!is_papers || o.mesh.theta > 0, "theta must be above 0 with profile paper; make it 0.3");
+  require(is_papers || !o.coarsen || o.mesh.bounds.thin_angle > 0,
           "thin-angle 0 is for meshes that are not coarsened; make it at least 0.1, or coarsen off");
 }
 
@@ -204,6 +220,7 @@ void validate(const RunOptions& options) {
         fmt::format("{} must be {}, not {}", option.name, option.fitting(), text_of(option, value)));
   }
   require_consistent(options);
+  require_as_profile_sets(options);
 }
 
 }  // namespace collarmesh

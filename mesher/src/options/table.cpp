@@ -144,6 +144,14 @@ std::vector<Option> size_options() {
 
 std::vector<Option> quality_options() {
   return {
+      {.name = "profile",
+       .words = {"standard", "paper"},
+       .place = choice_at<&RunOptions::mesh, &MeshOptions::profile>,
+       .help = "paper: exactly what the paper's proofs assume, for comparisons",
+       .details =
+           "sets `--crease-angle 90`, `--radius-edge 2.83` everywhere (or a larger one), `--coarsen off`, "
+           "`--improve 0`, `--thin-angle 0` and no size",
+       .commands = refining | Option::check},
       {.name = "radius-edge RHO",
        .place = asked_ratio,
        .unit = Unit::ratio,
@@ -293,14 +301,6 @@ std::vector<Option> partition_options() {
 
 std::vector<Option> complex_options() {
   return {
-      {.name = "feature-angle DEGREES",
-       .place = at<&RunOptions::complex, &PlcOptions::feature_angle>,
-       .unit = Unit::degrees,
-       .high = 180,
-       .help =
-           "Edges that deviate more than this from flat are kept as edges; 0: every edge that is not flat"},
-      {.name = "planar-tolerance T",
-       .place = at<&RunOptions::complex, &PlcOptions::planar_tolerance>,
       {.name = "domain",
        .words = {"enclosed", "box"},
        .place = choice_at<&RunOptions::complex, &PlcOptions::domain>,
@@ -314,6 +314,14 @@ std::vector<Option> complex_options() {
        .high = 1000,
        .help = "Distance of that box from what is in it, relative to the largest side of its bounding box",
        .commands = refining | Option::check | Option::info},
+      {.name = "feature-angle DEGREES",
+       .place = at<&RunOptions::complex, &PlcOptions::feature_angle>,
+       .unit = Unit::degrees,
+       .high = 180,
+       .help =
+           "Edges that deviate more than this from flat are kept as edges; 0: every edge that is not flat"},
+      {.name = "planar-tolerance T",
+       .place = at<&RunOptions::complex, &PlcOptions::planar_tolerance>,
        .unit = Unit::of_diagonal,
        .high = 0.01,
        .help =

@@ -110,7 +110,7 @@ class SoupSource : public ComplexSource {
 class Pipeline {
  public:
   Pipeline(const PipelineOptions& options, const Execution& execution)
-      : given_(options), outer_(execution), counter_(options.mesh.threads) {
+      : given_(with_profile(options)), outer_(execution), counter_(options.mesh.threads) {
     validate({options});
     if (options.partitions > 0) require_partitioner();
     if (options.mesh.time_limit > 0) deadline_.emplace(options.mesh.time_limit, execution);
@@ -366,6 +366,7 @@ class Pipeline {
     const std::size_t given = given_.mesh.max_vertices;
     knows_bound_ = true;
     most_vertices_ = 0;
+    if (given_.mesh.profile == Profile::paper) return;  // it has no sizes to expect vertices of
     if (ways_ == Ways::none && given > 0) return;
     const std::size_t most =
         most_vertices_expected(*plc_, options_) * (ways_ == Ways::none ? times_without_other_ways : 1);
@@ -423,7 +424,8 @@ class Pipeline {
     if (options_.coarsen) options.narrow_cells = narrow_cells_;
     if (!exact()) return options;
     options.bounds.tolerance = tolerance_of(*plc_, options.bounds, 0).scaled(distance_left);
-    options.bounds.radius_edge = std::max(1.0, ratio_left * options.bounds.radius_edge);
+    if (options.profile == Profile::standard)  // the paper proves nothing for smaller ones than its own
+      options.bounds.radius_edge = std::max(1.0, ratio_left * options.bounds.radius_edge);
     options.bounds.reserve = angle_reserve;
     return options;
   }
@@ -583,7 +585,7 @@ class Pipeline {
 
   bool out_of_time() const { return deadline_ && deadline_->passed(); }
 
-  const PipelineOptions& given_;
+  const PipelineOptions given_;
   PipelineOptions options_;          // for the complex at hand
   ComplexSource* source_ = nullptr;  // unless there is one complex only
   NarrowCells narrow_cells_ = NarrowCells::bounded_if_cheap;

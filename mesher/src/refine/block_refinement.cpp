@@ -60,7 +60,8 @@ BlockRefinement::BlockRefinement(const Domain& domain, RefinedMesh& mesh, Surfac
       queue_(queue),
       next_round_(least_vertices) {
   // Callers' functions need not bear several threads; what is kept at vertices is not kept by blocks.
-  if (sizes.asked().has_field() || sizes.any_at_vertices() || domain_.options.vertex_ratio > 0)
+  if (sizes.asked().has_field() || sizes.any_at_vertices() || domain_.options.vertex_ratio > 0 ||
+      domain_.is_papers())
     next_round_ = std::numeric_limits<std::size_t>::max();
 }
 
@@ -288,7 +289,7 @@ bool BlockRefinement::any_left(WorkQueue& queue) const {
 }
 
 bool BlockRefinement::due(const WorkQueue::Item& item) const {
-  return of_cells(item.priority) ? cells_.due(item.entry) : triangles_.due(item.entry);
+  return of_cells(item.priority) ? cells_.due(item) : triangles_.due(item.entry);
 }
 
 double BlockRefinement::squared_radius(const WorkQueue::Item& item) const {

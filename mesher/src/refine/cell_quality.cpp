@@ -46,7 +46,7 @@ CellQuality::CellQuality(const Domain& domain, const RefinedMesh& mesh, const Co
 }
 
 void CellQuality::judge(Index cell, WorkQueue& queue) const {
-  if (collar_cells_.inside(cell)) return;
+  if (collar_cells_.inside(cell)) return judge_in_collar(cell, queue);
   const Index region = surface_.region(cell);
   const auto& v = mesh_.corners(cell);
   const Shape shape = shape_of(mesh_, v);
@@ -66,6 +66,14 @@ void CellQuality::judge(Index cell, WorkQueue& queue) const {
   const double size = sizes_.asked().cell_radius(region, centre, sizes_.graded(v, std::sqrt(r2)));
   if (r2 > size * size || uneven_at_vertex(cell))
     queue.push(WorkQueue::large_cells, r2, {cell, mesh_.generation(cell)});
+}
+
+// Inside its collars the paper ignores the complex, but not quality: the mesh is well-spaced everywhere.
+void CellQuality::judge_in_collar(Index cell, WorkQueue& queue) const {
+  if (!domain_.is_papers()) return;
+  const double bound = domain_.options.bounds.radius_edge, r2 = mesh_.squared_radius(cell);
+  if (r2 > bound * bound * shape_of(mesh_, mesh_.corners(cell)).shortest_squared_edge)
+    queue.push(WorkQueue::skinny_cells, r2, {cell, mesh_.generation(cell)});
 }
 
 bool CellQuality::fills_gap(Index cell, Index region, double bound) const {

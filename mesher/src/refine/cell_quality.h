@@ -31,9 +31,12 @@ class CellQuality {
   std::optional<Candidate> candidate(Index cell) { return candidate(cell, random_); }
   /// Several threads may ask at once, each with offsets of its own, of cells of its own block.
   std::optional<Candidate> candidate(Index cell, RandomOffsets& random) const;
-  /// Is the entry of the queue that of a cell that is still there, outside the collars?
-  bool due(const WorkQueue::Entry& entry) const {
-    return mesh_.alive(entry.id, entry.stamp) && !collar_cells_.inside(entry.id);
+  /// Is the entry of the queue that of a cell that is still there, outside the collars? In the paper's
+  /// profile those inside count, too.
+  bool due(const WorkQueue::Item& item) const {
+    return mesh_.alive(item.entry.id, item.entry.stamp) &&
+           (!collar_cells_.inside(item.entry.id) ||
+            (domain_.is_papers() && item.priority == WorkQueue::skinny_cells));
   }
   /// Queue a cell again that is still there after something else was inserted in its place.
   void queue_again(const WorkQueue::Item& item, double squared_radius);
@@ -52,6 +55,7 @@ class CellQuality {
   std::size_t bytes() const { return shortest_edge_.bytes(); }
 
  private:
+  void judge_in_collar(Index cell, WorkQueue& queue) const;
   bool fills_gap(Index cell, Index region, double bound) const;
   bool is_narrow(Index cell, Index region) const;
   double target_size(Index cell, Index region) const;

@@ -96,26 +96,33 @@ void CollarCreator::create_on_isolated_curves() {
   while (open_creases_.any_touched()) {
     const Index curve = open_creases_.take_touched();
     if (curve == none) continue;
-    const OpenCreases::Chain& chain = open_creases_.chain(curve);
-    if (chain.unresolved > 0) continue;
-    std::vector<CollarBall> at_ends;
-    for (const Index end : domain_.plc.curves[curve].ends)
-      if (end != none) at_ends.push_back(collars_.balls()[collars_.ball_at_vertex(end)]);
-    if (gap_size().witness_remains({1, curve}, at_ends)) continue;
-    const auto is_isolated = [&](Index end) { return gap_size().isolated({1, curve}, end, at_ends); };
-    std::size_t& isolated = isolated_[curve];
-    for (; isolated < chain.links.size(); ++isolated) {
-      const Subsegment* s = curves_.find(chain.links[isolated]);
-      if (s != nullptr && !std::all_of(s->ends.begin(), s->ends.end(), is_isolated)) break;
-    }
-    if (isolated == chain.links.size()) create_on_curve(curve, BallReason::curve_isolated);
+    if (open_creases_.chain(curve).unresolved == 0 && is_isolated(curve))
+      create_on_curve(curve, BallReason::curve_isolated);
   }
 }
 
+// Precondition: its chain is resolved.
+bool CollarCreator::is_isolated(Index curve) {
+  const OpenCreases::Chain& chain = open_creases_.chain(curve);
+  std::vector<CollarBall> at_ends;
+  for (const Index end : domain_.plc.curves[curve].ends)
+    if (end != none) at_ends.push_back(collars_.balls()[collars_.ball_at_vertex(end)]);
+  if (gap_size().witness_remains({1, curve}, at_ends)) return false;
+  const auto isolated_at = [&](Index end) { return gap_size().isolated({1, curve}, end, at_ends); };
+  std::size_t& isolated = isolated_[curve];
+  for (; isolated < chain.links.size(); ++isolated) {
+    const Subsegment* s = curves_.find(chain.links[isolated]);
+    if (s != nullptr && !std::all_of(s->ends.begin(), s->ends.end(), isolated_at)) break;
+  }
+  return isolated == chain.links.size();
+}
+
+// The paper does not put balls where a crease is not isolated yet.
 bool CollarCreator::create_at_subsegment(Index subsegment) {
   const Index curve = curves_.curve_of(subsegment);
   if (!open_creases_.is_open(curve) || open_creases_.chain(curve).unresolved > 0) return false;
-  create_on_curve(curve, BallReason::curve_would_divide);
+  if (domain_.is_papers() && !is_isolated(curve)) return false;
+  create_on_curve(curve, domain_.is_papers() ? BallReason::curve_isolated : BallReason::curve_would_divide);
   return true;
 }
 

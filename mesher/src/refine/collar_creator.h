@@ -71,6 +71,7 @@ class CollarCreator {
  private:
   double target_size(const Feature& feature, const Point& p) const;
   void create_if_isolated(Index at);
+  bool is_isolated(Index curve);
   void create_on_curve(Index curve, BallReason reason);
   void take_up_balls(Index near, const std::array<Index, 2>& ends, BallReason reason);
   void find_inside(const CollarBall& ball, Index near);

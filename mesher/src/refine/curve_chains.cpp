@@ -88,7 +88,7 @@ void CurveChains::point_resolved(Index point) {
         const Index piece = chain_ends_[c][side];
         if (piece == none || subsegments_[piece].points[side] != point) continue;
         resolve_end(piece, side);
-        if (open_creases_.note_resolved(c)) encroach(piece);
+        if (open_creases_.note_resolved(c)) chain_resolved(c, piece);
       }
     return;
   }
@@ -98,7 +98,15 @@ void CurveChains::point_resolved(Index point) {
   const Index other = subsegments_[piece].neighbours[side];
   resolve_end(piece, side);
   if (other != none) resolve_end(other, 1 - side);
-  if (!points_[point].dormant && open_creases_.note_resolved(subsegments_[piece].piece.curve))
+  const Index curve = subsegments_[piece].piece.curve;
+  if (!points_[point].dormant && open_creases_.note_resolved(curve)) chain_resolved(curve, piece);
+}
+
+// A crease whose chain was split gets its balls, at once unless they must wait until it is isolated.
+void CurveChains::chain_resolved(Index curve, Index piece) {
+  if (domain_.is_papers())
+    open_creases_.touch(curve);
+  else
     encroach(piece);
 }
 
@@ -324,7 +332,11 @@ bool CurveChains::can_join(const Split& split) const {
 void CurveChains::split_ahead(const Split& split) {
   UnresolvedPoints::Unresolved point{split.candidate.point, split.candidate.feature};
   point.across = split.candidate.across;
-  point.dormant = open_creases_.is_open(split.candidate.feature.index);
+  const Index curve = split.candidate.feature.index;
+  if (domain_.is_papers())
+    open_creases_.note_unresolved(curve);
+  else
+    point.dormant = open_creases_.is_open(curve);
   cut(split.link.subsegment, {none, points_.add(point, split.vertex), split.parameter}, split.vertex);
 }
 

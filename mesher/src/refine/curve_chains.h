@@ -147,6 +147,7 @@ class CurveChains {
   };
 
   void add_chain(Index curve);
+  void chain_resolved(Index curve, Index piece);
   std::vector<End> first_ends(Index curve);
   End end_of(const Chained& s, unsigned side) const {
     return {s.piece.ends[side], s.points[side], s.piece.parameters[side]};

@@ -16,6 +16,8 @@ struct Domain {
   Domain(const Domain&) = delete;
   Domain& operator=(const Domain&) = delete;
 
+  /// Is it to be meshed exactly as the paper's proofs assume?
+  bool is_papers() const { return options.profile == Profile::paper; }
   /// The nearest point in the plane of a planar patch.
   Point on_plane(Index patch, const Point& p) const;
   /// Is a point strictly inside the box?

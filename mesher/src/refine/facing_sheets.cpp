@@ -36,6 +36,7 @@ double longest_edge(const Corners& p) {
 }  // namespace
 
 std::optional<Candidate> FacingSheets::candidate_across(FaceId face) {
+  if (domain_.is_papers()) return std::nullopt;
   const RestrictedTriangle& t = surface_.triangle(face);
   if (t.resolved_vertices) return std::nullopt;
   const Index patch = surface_.patch(face);
@@ -71,7 +72,7 @@ std::optional<Candidate> FacingSheets::candidate_across(FaceId face) {
 
 std::optional<double> FacingSheets::parameter_across(const Subsegment& s, const Vector& along,
                                                      Index vertex) const {
-  if (!are_apart(mesh_.feature(vertex), {1, s.curve})) return std::nullopt;
+  if (domain_.is_papers() || !are_apart(mesh_.feature(vertex), {1, s.curve})) return std::nullopt;
   const Point& p = mesh_.point(vertex);
   if (squared_distance(p, s.centre) > s.squared_radius) return std::nullopt;
   const double length = s.parameters[1] - s.parameters[0];

@@ -15,7 +15,8 @@ namespace collarmesh {
 /// narrow. So what a vertex encroaches from across a gap is split beneath that vertex. Samples in such pairs
 /// leave the balls of the other sheet's triangles and subsegments empty, whatever their size: what makes them
 /// smaller is the quality of cells in a thin part. Outside the regions nobody wants that, so there the edge
-/// between the vertices of a pair counts in no radius-edge ratio.
+/// between the vertices of a pair counts in no radius-edge ratio. The paper knows none of this: in its
+/// profile there are no pairs.
 ///
 /// State: the pairs. TriangleQuality and CurveChains ask what faces theirs, CellQuality whether a cell is to
 /// be spared; the loop notes pairs.

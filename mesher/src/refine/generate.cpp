@@ -44,7 +44,7 @@ MeshResult generate(const Plc& plc, const MeshOptions& options, const Execution&
                     KnownNeighbours& neighbours, Trace* trace) {
   require_valid(options);
   const FeaturesInside inside(plc);
-  MeshOptions of_inside = options;
+  MeshOptions of_inside = with_profile(options);
   of_inside.bounds.tolerance = inside.tolerance(tolerance_of(plc, options.bounds, options.size));
   std::optional<Refinement> refinement(std::in_place, inside.plc(), of_inside, execution);
   if (trace != nullptr) refinement->record_steps();

@@ -125,11 +125,11 @@ void Refinement::process(const WorkQueue::Item& item) {
       if (curves_.due(item.entry)) destroy_subsegment(id, true);
       break;
     case WorkQueue::unresolved_points:
-      if (points_.due(id, stamp)) insert_point(id);
+      if (points_.due(id, stamp)) resolve_point(id);
       break;
     case WorkQueue::skinny_cells:
     case WorkQueue::large_cells:
-      if (cells_.due(item.entry)) destroy_cell(item);
+      if (cells_.due(item)) destroy_cell(item);
       break;
     case WorkQueue::unresolved_triangles:
     case WorkQueue::large_triangles:
@@ -235,6 +235,24 @@ bool Refinement::join(const CurveChains::Split& split) {
   return true;
 }
 
+// The paper inserts nothing that is not medial (section 3.1): it destroys the balls around a point of the
+// input, until one warps to it or the point is medial.
+void Refinement::resolve_point(Index index) {
+  if (!domain_.is_papers() || points_.medial(index)) return insert_point(index);
+  const Point& p = points_[index].point;
+  const Index cell = mesh_.conflicting_cell_around(points_.vertex_near(index), p);
+  if (cell == none) return insert_point(index);
+  mesh_.find_conflict_zone(p, cell, zone_);
+  Index largest = none;
+  for (const Index c : zone_.cells)
+    if (domain_.in_box(mesh_.circumcentre(c)) &&
+        (largest == none || mesh_.squared_radius(c) > mesh_.squared_radius(largest)))
+      largest = c;
+  const auto candidate = largest == none ? std::nullopt : cells_.candidate(largest);
+  if (!candidate) return insert_point(index);
+  if (destroy(*candidate)) points_.queue_again(index);
+}
+
 void Refinement::insert_point(Index index) {
   const UnresolvedPoints::Unresolved p = points_[index];
   Index vertex = points_.vertex_near(index);
@@ -280,8 +298,9 @@ Index Refinement::force_insert(const Feature& feature) {
 // Does something else come in than what destroys skinny cells, while one of these waits?
 bool Refinement::too_early() {
   return working_on_ != WorkQueue::skinny_cells &&
-         queue_.any_due(WorkQueue::skinny_cells,
-                        [&](const WorkQueue::Entry& entry) { return cells_.due(entry); });
+         queue_.any_due(WorkQueue::skinny_cells, [&](const WorkQueue::Entry& entry) {
+           return cells_.due({WorkQueue::skinny_cells, entry});
+         });
 }
 
 bool Refinement::check_gradation() {

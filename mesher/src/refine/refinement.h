@@ -84,6 +84,7 @@ class Refinement {
   bool yield_to(Index subsegment, const Candidate& candidate);
   /// Paper, Procedure 2. False when nothing could be inserted.
   bool destroy(Candidate candidate);
+  void resolve_point(Index point);
   void insert_point(Index point);
   /// Paper, Procedure 3. Precondition: zone_ is the point's. Returns the new vertex.
   Index force_insert(const Feature& feature);

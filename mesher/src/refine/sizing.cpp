@@ -52,7 +52,8 @@ Sizing::Sizing(const Plc& plc, const MeshOptions& options, const Frame& frame)
 }
 
 double default_size(const Plc& plc, const MeshOptions& options) {
-  return options.size > 0 ? options.size : plc.bounds.diagonal() / default_sizes_per_diagonal;
+  if (options.size > 0) return options.size;
+  return plc.bounds.diagonal() / (options.profile == Profile::paper ? 1 : default_sizes_per_diagonal);
 }
 
 void Sizing::refuse(double asked, const Point& place) {

@@ -52,6 +52,10 @@ class UnresolvedPoints {
   /// Is a point due whose entry in the queue has this stamp? If not it is queued anew: the mesh has become
   /// finer there since, and others have larger balls.
   bool due(Index point, std::uint32_t stamp);
+  /// Something else has come in instead of a point: it waits for another turn, if it is still needed.
+  void queue_again(Index point) {
+    if (points_[point].object != none) queue(point);
+  }
   /// Is any point found from this mesh vertex?
   bool any_at(Index mesh_vertex) const { return objects_.first_at(mesh_vertex) != none; }
   /// A point becomes this vertex, which may be about to come.
