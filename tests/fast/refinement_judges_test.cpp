@@ -48,8 +48,7 @@ struct Judges : KnownMesh {
     for (WorkQueue::Item item; queue.pop(item);) {
       const bool is_cell =
           item.priority == WorkQueue::skinny_cells || item.priority == WorkQueue::large_cells;
-      if (is_cell ? cells.due(item.entry) : triangles.due(item.entry))
-        found[item.priority].insert(item.entry.id);
+      if (is_cell ? cells.due(item) : triangles.due(item.entry)) found[item.priority].insert(item.entry.id);
     }
     return found;
   }

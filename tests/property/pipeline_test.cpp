@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <set>
 #include <string>
@@ -75,6 +76,7 @@ class Boxes : public ComplexSource {
   RepairedPlc build(const RepairOptions& repair, const Execution&) override {
     built.push_back(repair);
     if (throws_after_first && built.size() > 1) throw PlcError("no complex", {});
+    const PolygonSoup soup = shape();
     RepairedPlc made{build_plc({&soup, 1}), {}, {}};
     made.report.repaired = true;
     made.report.wrapped = repair.wrap_at_once;
@@ -97,7 +99,7 @@ class Boxes : public ComplexSource {
 
   std::size_t right = 0;  // the number of the build that is right, from 1; 0: none
   bool throws_after_first = false, refuses_after_first = false;
-  PolygonSoup soup = box();
+  std::function<PolygonSoup()> shape = [] { return box(); };
   std::vector<RepairOptions> built;
   unsigned adapted = 0;
 
@@ -123,7 +125,7 @@ TEST(Pipeline, RepairsFurtherWhereAGuaranteeIsMissed) {
 // Nothing that repair changes makes angles in collars smaller.
 TEST(Pipeline, DoesNotRepairForTheSakeOfCollars) {
   Boxes wedges;
-  wedges.soup = testing::acute::wedge(37).soups[0];
+  wedges.shape = [] { return testing::acute::wedge(37).soups[0]; };
   wedges.right = 1;
   PipelineOptions options = with_size(0.3);
   options.mesh.bounds.collar_angle = 100;
