@@ -63,7 +63,8 @@ def complete(known, _size, presets):
 
 
 async def measured(path):
-    """The number of faces; `now()` since the opening of the panel when the chosen size's row is there, and when all are."""
+    """The number of faces; `now()` since the opening of the panel when the chosen size's row is there, and when all are,
+    with the processors' seconds at the end of the mesher, when they are known."""
     shape = Part.read(str(path))
     document = FreeCAD.newDocument("part")
     part = document.addObject("Part::Feature", "Part")
@@ -76,7 +77,14 @@ async def measured(path):
     FreeCADGui.getDocument(document.Name).setEdit(obj.Name)
     while first_when(complete) is None and now()[0] < begin[0] + LIMIT:
         await w.pause(200)
-    found = len(shape.Faces), first_when(chosen), first_when(complete)
+    panel = obj.ViewObject.Proxy.panel
+    while panel.predictions.is_asking() and now()[0] < begin[0] + LIMIT:
+        await w.pause(50)
+    whole = first_when(complete)
+    if whole is not None:
+        whole = numpy.array([whole[0], *now()[1:]])
+    del panel
+    found = len(shape.Faces), first_when(chosen), whole
     await w.close_panel(w.QtGui.QDialogButtonBox.Cancel)
     FreeCAD.closeDocument(document.Name)
     return found[0], *(None if each is None else each - begin for each in found[1:])

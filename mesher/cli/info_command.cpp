@@ -56,7 +56,12 @@ std::vector<Prediction> predictions(const InfoArguments& arguments, const Plc& p
   if (!arguments.size_field_file.empty())
     options.mesh.size_field = read_size_field(arguments.size_field_file, plc);
   process::stop_if_interrupted();
-  std::vector<Prediction> result = predict(plc, options, arguments.predicted_sizes);
+  const auto told = [&](Prediction prediction) {
+    prediction.seconds += read;
+    const nlohmann::ordered_json line{{"prediction", report::prediction_json(prediction)}};
+    if (arguments.progress == ProgressStyle::json) process::tell("{}\n", report::json_text(line));
+  };
+  std::vector<Prediction> result = predict(plc, options, arguments.predicted_sizes, told);
   for (Prediction& prediction : result) prediction.seconds += read;
   return result;
 }

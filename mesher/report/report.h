@@ -42,6 +42,7 @@ nlohmann::ordered_json complex_json(const Plc& plc, const PlcSummary& summary,
 nlohmann::ordered_json measures_json(const TetMesh& mesh, const MeshMeasures& measures);
 nlohmann::ordered_json check_json(const CheckReport& report);
 nlohmann::ordered_json repair_json(const RepairReport& report);
+nlohmann::ordered_json prediction_json(const Prediction& prediction);
 nlohmann::ordered_json predictions_json(const std::vector<Prediction>& predictions);
 nlohmann::ordered_json run_json(const RequestedRun& arguments, const MeshRun& run);
 /// Of `collarmesh repair`.

@@ -348,10 +348,15 @@ Json repair_run_json(const RequestedRun& arguments, const Plc& plc, const PlcSum
           {"repair", repair_json(report)}, {"complex", complex_json(plc, summary)}};
 }
 
+Json prediction_json(const Prediction& prediction) {
+  return {{"size", prediction.size},
+          {"tets", whole_json(prediction.tets)},
+          {"seconds", number_json(prediction.seconds)}};
+}
+
 Json predictions_json(const std::vector<Prediction>& predictions) {
   Json list = Json::array();
-  for (const Prediction& p : predictions)
-    list.push_back({{"size", p.size}, {"tets", whole_json(p.tets)}, {"seconds", number_json(p.seconds)}});
+  for (const Prediction& p : predictions) list.push_back(prediction_json(p));
   return list;
 }
 

@@ -7,9 +7,10 @@ import json
 import math
 import os
 import re
+import subprocess
 import unittest
 
-from program import BOX_FACES, COORDINATES, MODELS, ProgramTest, box_points, off_text, wedge_text
+from program import BOX_FACES, COORDINATES, MODELS, PROGRAM, ProgramTest, box_points, off_text, wedge_text
 
 
 class Guarantees(ProgramTest):
@@ -238,6 +239,27 @@ class Reports(ProgramTest):
         self.assertLess(curved, straight)  # curved elements need no small triangles to keep the volume
         near = self.predictions(sphere, "--predict", coarse, "--distance", coarse / 500)[0]["tets"]
         self.assertGreater(near, straight)
+
+    def test_predictions_are_told_one_by_one(self):
+        """In the order of the sizes, each before the program goes on to the next."""
+        sizes = [0.1, 0.4, 0.2, 0.05]
+        asked = ("--predict", ",".join(map(str, sizes)), "--progress", "json")
+        run = self.expect(0, "info", self.box, *asked, "--json")
+        told = [json.loads(line)["prediction"] for line in run.stderr.splitlines()]
+        self.assertEqual([each["size"] for each in told], sizes)
+        self.assertEqual(told, json.loads(run.stdout)["predictions"])
+        self.assertEqual(self.expect(0, "info", self.box, *asked[:2]).stderr, "")
+
+    def test_predictions_do_not_wait_for_the_others(self):
+        """A program that is ended after the first one has not told all."""
+        many = ",".join(str(0.01 + i / 1e5) for i in range(50))
+        with subprocess.Popen([PROGRAM, "info", self.box, "--predict", many, "--progress", "json"],
+                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as run:
+            first = json.loads(run.stderr.readline())["prediction"]
+            run.kill()
+            others = run.stderr.read().splitlines()
+        self.assertEqual(first["size"], 0.01)
+        self.assertLess(len(others), 49)
 
     def test_predictions_as_text(self):
         told = self.expect(0, "info", self.box, "--predict", "0.5,0.25").stdout

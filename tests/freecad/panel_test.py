@@ -124,15 +124,15 @@ async def predictions_take_one_process():
     prediction._answers.clear()
     with mock.patch.object(processes, "new", side_effect=lambda new=processes.new: started.append(0) or new()):
         await open_panel(obj)
-        await wait_until(lambda: number_in(table()[2][2]), "the number of elements")
-        require(all(number_in(row[2]) for row in table()[:5]) and len(started) == 1, f"{table()}, {len(started)} runs")
+        await wait_until(lambda: all(number_in(row[2]) for row in table()[:5]), "the numbers of elements")
+        require(len(started) == 1, f"{table()}, {len(started)} runs")
         await close_panel()
         other = mesh_object.make(document, part)
         await open_panel(other)
         require(all(number_in(row[2]) for row in table()[:5]), f"known already: {table()}")
         child("CharacteristicLengthMin").setText("1.5 mm")
-        await wait_until(lambda: number_in(table()[2][2]), "what is not smaller than that")
-        require([bool(row[2]) for row in table()[:5]] == 3 * [True] + 2 * [False], f"{table()}")
+        await wait_until(lambda: [bool(number_in(row[2])) or row[2] for row in table()[:5]] == 3 * [True] + 2 * [""],
+                         "what is not smaller than that")
         child("CharacteristicLengthMin").setText("")
         await run_mesher("5 mm")
         await close_panel()
@@ -142,8 +142,33 @@ async def predictions_take_one_process():
         await pause(1000)
         require(not started and not any(row[2] for row in table()), f"a mesh is looked at: {table()}, {len(started)}")
         await click_item(child("presets").topLevelItem(2))
-        await wait_until(lambda: number_in(table()[2][2]), "the number of elements for another one")
+        await wait_until(lambda: all(number_in(row[2]) for row in table()[:5]), "the numbers for another one")
         require(len(started) == 1, f"{len(started)} runs")
+    await close(document)
+
+
+async def the_chosen_size_is_predicted_first():
+    """Its row is there while the program works on the others."""
+    document, _, obj = new_part(plate())
+    prediction._answers.clear()
+    with tempfile.TemporaryDirectory() as folder:
+        others = pathlib.Path(folder, "others")
+        os.environ["COLLARMESH_PROGRAM"] = stand_in(folder, f"""
+if '--predict' in sys.argv:
+    import subprocess, time
+    run = subprocess.Popen([{PROGRAM!r}] + sys.argv[1:], stderr=subprocess.PIPE)
+    sys.stderr.buffer.write(run.stderr.readline())
+    sys.stderr.flush()
+    while not os.path.exists({str(others)!r}):
+        time.sleep(0.05)
+    sys.stderr.buffer.write(run.stderr.read())
+    sys.exit(run.wait())""")
+        await open_panel(obj)
+        await wait_until(lambda: number_in(table()[2][2]), "the chosen size's number of elements")
+        require([row[2] for row in table() if not number_in(row[2])] == 4 * ["…"] + [""], f"{table()}")
+        others.touch()
+        await wait_until(lambda: all(number_in(row[2]) for row in table()[:5]), "the other numbers of elements")
+        os.environ["COLLARMESH_PROGRAM"] = PROGRAM
     await close(document)
 
 
@@ -839,6 +864,7 @@ async def test():
     for each in (
         elements_are_told_before_meshing,
         predictions_take_one_process,
+        the_chosen_size_is_predicted_first,
         what_is_not_predicted_is_not_told,
         sizes_by_place_count,
         predictions_wait_for_the_mesher,

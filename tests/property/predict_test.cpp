@@ -102,8 +102,11 @@ TEST(Predict, ScalesWithTheUnit) {
 
 TEST(Predict, SizesInTheOrderAskedFor) {
   const Plc plc = plc_of(box());
-  const auto all = predict(plc, with_size(0.25), std::array{0.1, 0.0, 0.5});
+  std::vector<double> told;
+  const auto all = predict(plc, with_size(0.25), std::array{0.1, 0.0, 0.5},
+                           [&](const Prediction& made) { told.push_back(made.tets); });
   ASSERT_EQ(all.size(), 3U);
+  EXPECT_EQ(told, (std::vector{all[0].tets, all[1].tets, all[2].tets}));
   EXPECT_DOUBLE_EQ(all[0].size, 0.1);
   EXPECT_DOUBLE_EQ(all[1].size, 0.25);
   EXPECT_GT(all[0].tets, all[1].tets);

@@ -1,6 +1,7 @@
 """How many elements sizes will make, and how long that takes, asked of the program before meshing."""
 
 import collections
+import contextlib
 import dataclasses
 import json
 import os
@@ -33,7 +34,7 @@ def _answers_for(numbers):
 class Predictions(QtCore.QObject):
     """Asks in a process of its own, a moment after the last `ask`. Where the program does not know, nothing is told."""
 
-    made = QtCore.Signal(object)  # {asked size in mm: (number of tetrahedra, seconds)}
+    made = QtCore.Signal(object)  # all that are known: {asked size in mm: (number of tetrahedra, seconds)}
 
     def __init__(self, obj, parent=None):
         super().__init__(parent)
@@ -43,7 +44,6 @@ class Predictions(QtCore.QObject):
         self._numbers = None  # that stand for the shape; None: not looked at
         self._known = {}  # what is known of it
         self._arguments, self._size_field, self._sizes = (), "", ()  # what is asked for
-        self._asked = ()  # the sizes that the process is about
         self._process = None
         self._timer = QtCore.QTimer(self, singleShot=True)
         self._timer.timeout.connect(self._begin)
@@ -80,6 +80,10 @@ class Predictions(QtCore.QObject):
             self._folder.cleanup()
             self._folder = None
 
+    def is_asking(self):
+        """More may come without another `ask`."""
+        return self._process is not None
+
     def shape_has_changed(self):
         """Is it another one than the one that the answers are about?"""
         part = compatibility.meshed_object(self.object)
@@ -109,22 +113,25 @@ class Predictions(QtCore.QObject):
         return self._arguments, self._size_field, size
 
     def _begin(self):
-        self._asked = [size for size in self._sizes if self._key(size) not in self._known]
+        asked = [size for size in self._sizes if self._key(size) not in self._known]
         try:
-            if self._asked:
+            if asked:
                 program = find_program(preferences.program())
                 self._write_files()
         except Exception:  # of OpenCASCADE's, too; the run tells what is wrong
-            self._asked = []
-        if not self._asked:
+            asked = []
+        if not asked:
             self._tell()
             return
         sources = ["--size-field", self._size_field_path()] if self._size_field else []
         self._process = process = processes.new()
-        process.setStandardErrorFile(QtCore.QProcess.nullDevice())
+        process.setReadChannel(QtCore.QProcess.StandardError)
+        process.setStandardOutputFile(QtCore.QProcess.nullDevice())
+        process.readyReadStandardError.connect(self._read)
         process.finished.connect(self._finished)
-        sizes = ",".join(map(repr, self._asked))
-        process.start(program, ["info", self._shape, *self._arguments, *sources, "--predict", sizes, "--json"])
+        sizes = ",".join(map(repr, asked))
+        process.start(program, ["info", self._shape, *self._arguments, *sources, "--predict", sizes,
+                                "--progress", "json"])
         if process.waitForStarted():
             self._folder.program_is(process.processId())
         else:
@@ -149,19 +156,24 @@ class Predictions(QtCore.QObject):
     def _size_field_path(self):
         return os.path.join(self._folder.name, "sizes.json")
 
-    def _finished(self, exit_code, *_):
-        if exit_code == 0:
-            self._learn(bytes(self._process.readAllStandardOutput()))
+    def _read(self):
+        """The program tells of each size as soon as it knows."""
+        known = len(self._known)
+        while self._process.canReadLine():
+            self._learn(bytes(self._process.readLine()))
+        if len(self._known) > known:
+            self._tell()
+
+    def _finished(self, *_):
+        self._read()
         self._stop()
         self._tell()
 
-    def _learn(self, text):
-        """What the program says; nothing where it does not know."""
-        try:
-            found = [(each["tets"], each["seconds"]) for each in json.loads(text)["predictions"]]
-        except (ValueError, KeyError, TypeError):
-            return
-        self._known.update(zip(map(self._key, self._asked), found))
+    def _learn(self, line):
+        """What the program says; nothing where it is about something else."""
+        with contextlib.suppress(ValueError, KeyError, TypeError):
+            made = json.loads(line)["prediction"]
+            self._known[self._key(made["size"])] = made["tets"], made["seconds"]
 
     def _told(self):
         return {size: self._known[self._key(size)] for size in self._sizes if self._key(size) in self._known}

@@ -38,7 +38,7 @@ class MeshTaskPanel:
         self.marks = ViewMarks(obj)
         self._build()
         self.predictions = prediction.Predictions(obj)
-        self.predictions.made.connect(self._show_predictions)
+        self.predictions.made.connect(self._show_made)
         self.size.changed.connect(self._ask)
         self.advanced.changed.connect(self._ask)
         self.order.changed.connect(self._ask)
@@ -135,6 +135,9 @@ class MeshTaskPanel:
         settings.order = self.order.order()
         self.contacts.apply_to(settings)
         return settings
+
+    def _show_made(self, known):
+        self._show_predictions(known, "…" if self.predictions.is_asking() else "")
 
     def _show_predictions(self, known, missing=""):
         self.known = known

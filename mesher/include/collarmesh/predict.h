@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -21,9 +22,11 @@ struct Prediction {
 /// widths between them and the sizes. Sizes by region, patch, curve, curvature, gap, gradation and
 /// place count; budgets do not. Precondition: the complex comes from `build_plc`.
 /// Throws OptionError for sizes that are negative or below `size_min`, for sizes of tags that the complex
-/// does not have, and where coarsening is switched off. Cost: near linear in the complex, and for each size
-/// two counts of vertices, 0.6 s together in the median of real parts (bench/README.md).
-std::vector<Prediction> predict(const Plc& plc, const PipelineOptions& options,
-                                std::span<const double> sizes);
+/// does not have, and where coarsening is switched off. `told` hears of each as soon as it is made, in the
+/// order of the sizes. `options.mesh.threads` count; several may ask the size field at once. Cost: near
+/// linear in the complex, and for each size two counts of vertices, 0.6 s together in the median of real
+/// parts (bench/README.md).
+std::vector<Prediction> predict(const Plc& plc, const PipelineOptions& options, std::span<const double> sizes,
+                                const std::function<void(const Prediction&)>& told = {});
 
 }  // namespace collarmesh

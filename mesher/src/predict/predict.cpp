@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "collarmesh/error.h"
 #include "collarmesh/options.h"
+#include "common/parallel_for.h"
+#include "common/thread_limit.h"
 #include "predict/vertex_counts.h"
 
 namespace collarmesh {
@@ -39,25 +42,35 @@ void require_valid(const PipelineOptions& options, std::span<const double> sizes
   }
 }
 
+/// Predicts for a complex with regions. The options have the size.
+Prediction predict_one(const prediction::Shape& shape, const PipelineOptions& options, double size) {
+  const std::array models{prediction::Model(), prediction::model_of_refinement()};
+  std::array<double, 2> tets{};
+  parallel_for(models.size(),
+               [&](std::size_t i) { tets[i] = prediction::count_tets(shape, options.mesh, models[i]); });
+  return {size, std::max(1.0, tets[0]), seconds_for(tets[1], options.order)};
+}
+
 }  // namespace
 
-std::vector<Prediction> predict(const Plc& plc, const PipelineOptions& options,
-                                std::span<const double> sizes) {
+std::vector<Prediction> predict(const Plc& plc, const PipelineOptions& options, std::span<const double> sizes,
+                                const std::function<void(const Prediction&)>& told) {
   require_valid(options, sizes, plc);
   const double diagonal = plc.bounds.diagonal();
   const bool is_empty = plc.regions.size() < 2;
   const prediction::Shape shape(plc);
+  ThreadLimit limit(options.mesh.threads);
   std::vector<Prediction> predictions;
   for (const double given : sizes) {
     PipelineOptions of_size = with_size(options, given);
     MeshOptions& mesh = of_size.mesh;
-    Prediction& made = predictions.emplace_back();
-    made.size = mesh.size > 0 ? mesh.size : diagonal / sizes_per_diagonal;
-    if (is_empty) continue;
-    mesh.bounds.tolerance = tolerance_of(plc, mesh.bounds, mesh.size, static_cast<int>(options.order));
-    made.tets = std::max(1.0, prediction::count_tets(shape, mesh));
-    const double refined = prediction::count_tets(shape, mesh, prediction::model_of_refinement());
-    made.seconds = seconds_for(refined, options.order);
+    Prediction made{.size = mesh.size > 0 ? mesh.size : diagonal / sizes_per_diagonal};
+    if (!is_empty) {
+      mesh.bounds.tolerance = tolerance_of(plc, mesh.bounds, mesh.size, static_cast<int>(options.order));
+      limit.run([&] { made = predict_one(shape, of_size, made.size); });
+    }
+    predictions.push_back(made);
+    if (told) told(made);
   }
   return predictions;
 }
