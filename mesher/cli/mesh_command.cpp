@@ -201,7 +201,7 @@ void write_files(const MeshArguments& arguments, Stages& stages, report::MeshRun
   if (!arguments.reports.empty()) run.worst = report::worst_tets(run.result.mesh, run.check.measures);
   std::optional<Shown> shown;
   if (std::any_of(arguments.reports.begin(), arguments.reports.end(), report::is_html)) {
-    shown.emplace(report::shown_mesh(run.result.mesh, run.worst));
+    shown = Shown{report::shown_mesh(run.result.mesh, run.worst), {}};
     shown->trace = report::shown_trace(run.trace, shown->mesh);
   }
   scale(run.result.mesh.points, arguments.scale);

@@ -68,7 +68,8 @@ class ThicknessKept {
 
  private:
   static constexpr double share_of_wall = 0.25, share_of_gap = 0.5;  // that may be lost or gained
-  static constexpr Index most_rays = 2000;                           // of a patch
+  static constexpr double least_facing = 0.9;  // else surfaces end at each other, or bend away
+  static constexpr Index most_rays = 2000;     // of a patch
 
   Thicknesses along(Index patch, unsigned side) const {
     const Plc::Patch& of = subject_.plc.patches[patch];
@@ -84,7 +85,7 @@ class ThicknessKept {
     const Plc& plc = subject_.plc;
     const Thickness::Ray ray = thickness_.ray(triangle, side);
     const Thickness::Opposite opposite = thickness_.at(triangle, side, crossings).first;
-    if (opposite.triangle == none) return;
+    if (opposite.triangle == none || opposite.facing < least_facing) return;
     const Index patch = plc.triangles[triangle].patch, other = plc.triangles[opposite.triangle].patch,
                 region = plc.patches[patch].regions[side];
     const double found = between(ray, opposite.distance, patch, other, region, crossings);

@@ -76,11 +76,11 @@ Thickness::Opposites Thickness::at(Index triangle, unsigned side, Crossings& cro
     const bool neighbours = are_neighbours(plc_, patch, opposite_patch);
     const bool is_wedge = neighbours && creases_.contains(std::minmax(patch, opposite_patch));
     if (distance < opposites.first.distance) {
-      opposites.first = {distance, other, from_side};
+      opposites.first = {distance, other, from_side, std::fabs(towards)};
       opposites.is_wedge = is_wedge;
     }
     if (!is_wedge && std::fabs(towards) >= least_facing(neighbours) && distance < opposites.apart.distance)
-      opposites.apart = {distance, other, from_side};
+      opposites.apart = {distance, other, from_side, std::fabs(towards)};
   }
   return opposites;
 }

@@ -25,6 +25,7 @@ class Thickness {
     double distance = INFINITY;
     Index triangle = none;  ///< where the region ends; none where it does not, or at a slant
     unsigned side = 0;      ///< the side of that triangle that the region lies on
+    double facing = 0;      ///< cosine of the angle between the ray and its normal
   };
   struct Opposites {
     Opposite apart;         ///< nearest one of a patch that does not meet the triangle's patch in a crease
