@@ -100,8 +100,9 @@ class InABox(ProgramTest):
     WIRES = "4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0.5 0.4 0.2\n4 0.5 0.4 0.9\n2 1\n1 0 5\n2 1 2\n1 0 6\n2 3 4\n0\n0\n"
 
     def meshed(self, path):
-        self.expect(0, path, "-o", self.out, "--domain", "box", says=[r"region 1: volume", "every guarantee holds"], writes=True)
-        self.expect(0, "check", self.out, "--against", path, "--domain", "box")
+        self.expect(0, path, "-o", self.out, "--domain", "box",
+                    says=[r"region 1: volume", "every guarantee holds"], writes=True)
+        self.expect(0, "check", self.out, "--against", path, "--domain", "box", writes=True)
 
     def test_points(self):
         self.meshed(self.write("points.poly", "3 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 0.5 0.2\n0 0\n0\n0\n"))
@@ -109,7 +110,7 @@ class InABox(ProgramTest):
     def test_wires(self):
         path = self.write("wires.poly", self.WIRES)
         self.meshed(path)
-        self.expect(4, path, "-o", self.folder / "none.vtu", says=["enclose"])
+        self.expect(4, path, "-o", self.folder / "none.vtu", says=["enclose"], writes=True)
         info = json.loads(self.run_program("info", path, "--json", "--domain", "box", "--box-margin", "2").stdout)
         self.assertAlmostEqual(info["complex"]["regions"][0]["volume"], 5 * 4.4 * 4.9)
 
