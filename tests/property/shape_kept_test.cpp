@@ -239,7 +239,7 @@ TEST(ShapeKept, ABladeThatIsFlattenedIsAFinding) {
   };
   EXPECT_FALSE(finds(0));
   for (Point& p : made.result.mesh.points)
-    if (p.x > 1e-9) p.y *= 0.6;
+    if (p.x > 1e-9) p.y *= 0.3;
   EXPECT_TRUE(finds(0));
   EXPECT_FALSE(finds(0.1));
 }

@@ -67,7 +67,7 @@ class ThicknessKept {
   }
 
  private:
-  static constexpr double share_of_wall = 0.25, share_of_gap = 0.5;  // that may be lost or gained
+  static constexpr double allowed = 0.5;       // share that may be lost or gained
   static constexpr double least_facing = 0.9;  // else surfaces end at each other, or bend away
   static constexpr Index most_rays = 2000;     // of a patch
 
@@ -132,7 +132,6 @@ class ThicknessKept {
              Findings& findings) const {
     const Plc& plc = subject_.plc;
     const bool is_gap = plc.patches[patch].regions[side] == 0;
-    const double allowed = is_gap ? share_of_gap : share_of_wall;
     if (!(std::fabs(sums.mesh - sums.input) > allowed * sums.input)) return;
     const std::string found = fmt::format(
         "The {} between the patches with tags {} and {}, near ({:.6g}, {:.6g}, {:.6g}), is {:.0f} % {} in "

@@ -27,7 +27,7 @@ constexpr double share_of_rod = 0.05, share_of_shell = 0.15, share_of_hole = 0.1
 // less, the shares of its thickness may be larger by this factor.
 constexpr double share_of_volume = 0.015, largest_factor = 2;
 // The share of the volume below a patch in a wedge that chords may take, where they would take much of it.
-constexpr double share_of_wedge = 0.03, much_of_wedge = 0.25;
+constexpr double share_of_wedge = 0.035, much_of_wedge = 0.25;
 // The smallest tolerance there, relative to the largest one: triangles of CAD faces are hardly nearer.
 constexpr double least_share_in_wedges = 0.018;
 // The growth of the tolerance with the distance from there: collars do not bear a leap.
