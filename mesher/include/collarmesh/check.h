@@ -33,7 +33,7 @@ struct CheckReport {
   std::vector<Finding> findings;
   std::size_t findings_total = 0;     ///< with those not listed
   std::vector<std::string> notes;     ///< sentences: labels that were not the complex's, so positions decided
-  std::vector<std::string> warnings;  ///< sentences: regions whose volume changed noticeably
+  std::vector<std::string> warnings;  ///< sentences: volumes and thin places that changed noticeably
   // Measurements:
   std::size_t tets = 0, points = 0, faces = 0, edges = 0, collar_tets = 0, thin_tets = 0;
   double max_radius_edge = 0;       ///< outside collars, without thin tets
@@ -58,12 +58,12 @@ struct CheckReport {
 /// volumes, conformity, watertight regions, region volumes, curves as unions of edges, facets as
 /// unions of faces with equal area, radius-edge ratio or angles, surface distance. A region may lose or gain
 /// 5% of its volume with elements of first order, 1% with those of second order, unless the bounds ask for a
-/// distance; a warning names regions that are more than 2% off. So may closed surfaces inside or around them;
-/// walls keep their thickness, and gaps their width, in the mean of a patch.
-/// A mesh read from a file (no feature indices) is matched to the complex by tags and position; if its tags
-/// are not the complex's, or it has no boundary triangles or curve edges, by position alone.
-/// Tets count as cells of a collar only at creases of the complex.
-/// Cancellation takes effect between groups of guarantees.
+/// distance; a warning names regions that are more than 2% off. The same holds for what closed surfaces
+/// enclose (`shells_of`). Walls keep half of their thickness, and gaps of their width, in the mean of a
+/// patch. A mesh read from a file (no feature indices) is matched to the complex by tags and position; if its
+/// tags are not the complex's, or it has no boundary triangles or curve edges, by position alone. Tets count
+/// as cells of a collar only at creases of the complex. Cancellation takes effect between groups of
+/// guarantees.
 CheckReport check(const TetMesh& mesh, const Plc& plc, const CheckOptions& options = {},
                   const Execution& execution = {});
 

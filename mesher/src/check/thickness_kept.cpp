@@ -131,12 +131,12 @@ class ThicknessKept {
   void judge(Index patch, unsigned side, const Thicknesses& sums, CheckReport& report,
              Findings& findings) const {
     const Plc& plc = subject_.plc;
-    const bool is_gap = plc.patches[patch].regions[side] == 0;
     if (!(std::fabs(sums.mesh - sums.input) > allowed * sums.input)) return;
+    const bool is_gap = plc.patches[patch].regions[side] == 0;
     const std::string found = fmt::format(
-        "The {} between the patches with tags {} and {}, near ({:.6g}, {:.6g}, {:.6g}), is {:.0f} % {} in "
-        "the mesh "
-        "than in the input",
+        "The {} between the patches with tags {} and {}, near ({:.6g}, {:.6g}, {:.6g}), is {:.0f} % {} than "
+        "in "
+        "the input",
         is_gap ? "gap" : "wall", plc.patches[patch].tag, plc.patches[sums.opposite].tag, sums.where.x,
         sums.where.y, sums.where.z, 100 * std::fabs(sums.mesh / sums.input - 1),
         sums.mesh < sums.input ? "thinner" : "thicker");

@@ -70,9 +70,8 @@ class LocalTolerance {
     std::vector<double> factors(plc_.patches.size(), volumes == Volumes::any ? largest_factor : 1);
     if (volumes == Volumes::kept) factors = factors_by_volumes();
     std::vector<double> triangles(plc_.triangles.size(), largest_);
-    for (Index t = 0; t < triangles.size(); ++t) {
+    for (Index t = 0; t < triangles.size(); ++t)
       if (!patch_of(t).planar) triangles[t] = at(t, factors[plc_.triangles[t].patch]);
-    }
     return SurfaceTolerance(plc_, std::move(triangles), largest_);
   }
 
