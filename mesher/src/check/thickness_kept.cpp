@@ -134,8 +134,7 @@ class ThicknessKept {
     if (!(std::fabs(sums.mesh - sums.input) > allowed * sums.input)) return;
     const bool is_gap = plc.patches[patch].regions[side] == 0;
     const std::string found = fmt::format(
-        "The {} between the patches with tags {} and {}, near ({:.6g}, {:.6g}, {:.6g}), is {:.0f} % {} than "
-        "in "
+        "The {} between patches with tags {} and {}, near ({:.6g}, {:.6g}, {:.6g}), is {:.0f} % {} than in "
         "the input",
         is_gap ? "gap" : "wall", plc.patches[patch].tag, plc.patches[sums.opposite].tag, sums.where.x,
         sums.where.y, sums.where.z, 100 * std::fabs(sums.mesh / sums.input - 1),
