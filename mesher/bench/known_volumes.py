@@ -58,9 +58,13 @@ class Family:
     """Members by name; each is written with the volumes of its regions beside it."""
     folder: Path
     step: list[str] = field(default_factory=list)
+    given: dict[str, list[float]] = field(default_factory=dict)
 
-    def solids(self, name: str, expression: str) -> None:
+    def solids(self, name: str, expression: str, volumes: list[float] | None = None) -> None:
+        """Volumes are OpenCASCADE's unless given: it integrates waves badly."""
         self.step.append(f"{self.folder / name}.step {expression}")
+        if volumes:
+            self.given[f"{name}.step"] = volumes
 
     def shells(self, name: str, shells: list[Surface]) -> None:
         """Closed surfaces, each inside the one before it; a region is what lies between two."""
@@ -81,6 +85,8 @@ class Family:
     def write_step(self) -> None:
         subprocess.run(["/usr/bin/python3", "-c", make_step], input="\n".join(self.step), text=True, check=True,
                        stdout=subprocess.DEVNULL)
+        for file, volumes in self.given.items():
+            self.keep(file, volumes)
 
 
 def turned(profile: list[tuple[float, float]], around: int, closed: bool = False) -> Surface:
@@ -231,7 +237,8 @@ def write(folder: Path) -> None:
             f"wire_{r}", f"[box({side}).cut(cylinder({r}, {side}, {-side / 2})), cylinder({r}, {side}, {-side / 2})]")
         family.solids(f"ring_{r}", f"[box({side}).cut(ring(3, {r})), ring(3, {r})]")
     for height in (0.05, 0.3):
-        family.solids(f"gear_{height}", f"[wave(6, {height}, 20).extrude(V(0, 0, 2)).cut(Part.makeCylinder(2, 2))]")
+        family.solids(f"gear_{height}", f"[wave(6, {height}, 20).extrude(V(0, 0, 2)).cut(Part.makeCylinder(2, 2))]",
+                      [2 * math.pi * (6**2 + height**2 / 2 - 2**2)])
     for cut, around in cuts.items():
         for r in (0.005, 0.02, 0.1, 0.3, 1):
             family.shells(f"rod_{r}_{cut}", [rod(r, diagonal, around)])

@@ -2,13 +2,23 @@
 #include <gtest/gtest.h>
 #include <BRepAlgoAPI_Common.hxx>
 #include <BRepAlgoAPI_Cut.hxx>
+#include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakeWire.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakePrism.hxx>
+#include <BRepPrimAPI_MakeRevol.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRepTools.hxx>
+#include <GeomAPI_Interpolate.hxx>
+#include <TColgp_HArray1OfPnt.hxx>
+#include <TopoDS_Edge.hxx>
+#include <TopoDS_Face.hxx>
+#include <gp_Ax1.hxx>
 #include <gp_Ax2.hxx>
 #include <gp_Trsf.hxx>
 
@@ -111,6 +121,50 @@ TEST(CadMeasures, OfACapThatNoParameterLinesBound) {
   ASSERT_EQ(areas.size(), 2U);
   EXPECT_NEAR(areas[0], 21 * pi, 1e-7 * 21 * pi);
   EXPECT_NEAR(areas[1], 30 * pi, 1e-9 * 30 * pi);
+}
+
+/// A spline through points of a plane curve, on t from 0 to 1.
+template <class Curve>
+TopoDS_Edge spline_through(int count, bool closed, const Curve& curve) {
+  const Handle(TColgp_HArray1OfPnt) points = new TColgp_HArray1OfPnt(1, count);
+  for (int i = 0; i < count; ++i) points->SetValue(i + 1, curve(double(i) / (closed ? count : count - 1)));
+  GeomAPI_Interpolate interpolation(points, closed, 1e-9);
+  interpolation.Perform();
+  return BRepBuilderAPI_MakeEdge(interpolation.Curve()).Edge();
+}
+
+double exact_volume(const TopoDS_Shape& shape) {
+  brep::CadModel model(shape, "part");
+  model.tessellate({.deflection = 0.01});
+  return model.measures().volumes.at(0).value().exact;
+}
+
+TEST(CadMeasures, OfAWaveThatIsExtruded) {
+  const int teeth = 20;
+  const double radius = 6, height = 0.3, thickness = 2;
+  const TopoDS_Edge outline = spline_through(24 * teeth, true, [&](double t) {
+    const double a = 2 * pi * t, r = radius + height * std::sin(teeth * a);
+    return gp_Pnt(r * std::cos(a), r * std::sin(a), 0);
+  });
+  const TopoDS_Face face = BRepBuilderAPI_MakeFace(BRepBuilderAPI_MakeWire(outline).Wire(), true).Face();
+  const double expected = thickness * pi * (radius * radius + height * height / 2);
+  EXPECT_NEAR(exact_volume(BRepPrimAPI_MakePrism(face, gp_Vec(0, 0, thickness)).Shape()), expected,
+              1e-5 * expected);
+}
+
+TEST(CadMeasures, OfAWaveThatIsRevolved) {
+  const int waves = 12;
+  const double length = 12, radius = 3, height = 0.3;
+  const TopoDS_Edge profile = spline_through(24 * waves + 1, false, [&](double t) {
+    return gp_Pnt(radius + height * std::sin(2 * pi * waves * t), 0, length * t);
+  });
+  BRepBuilderAPI_MakeWire outline(profile);
+  const gp_Pnt corners[] = {gp_Pnt(radius, 0, length), gp_Pnt(0, 0, length), gp_Pnt(), gp_Pnt(radius, 0, 0)};
+  for (int i = 0; i < 3; ++i) outline.Add(BRepBuilderAPI_MakeEdge(corners[i], corners[i + 1]).Edge());
+  const TopoDS_Face face = BRepBuilderAPI_MakeFace(outline.Wire(), true).Face();
+  const double expected = length * pi * (radius * radius + height * height / 2);
+  EXPECT_NEAR(exact_volume(BRepPrimAPI_MakeRevol(face, gp_Ax1(gp_Pnt(), gp::DZ())).Shape()), expected,
+              1e-5 * expected);
 }
 
 TEST(CadMeasures, OfOverlappingSolids) {

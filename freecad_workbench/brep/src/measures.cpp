@@ -2,6 +2,7 @@
 
 #include <BRepAdaptor_Curve.hxx>
 #include <BRepAdaptor_Surface.hxx>
+#include <BRepBuilderAPI_NurbsConvert.hxx>
 #include <BRepGProp.hxx>
 #include <BRepGProp_Domain.hxx>
 #include <BRepGProp_Face.hxx>
@@ -100,20 +101,31 @@ class FaceIntegrals {
     return {integrated<BRepGProp_Sinert>(face), integrated<BRepGProp_Vinert>(face)};
   }
 
+  /// Return the face as a spline surface if it is a spline curve that was extruded or revolved: of these
+  /// OpenCASCADE does not know the spans, and integrals that adapt to an error miss waves.
+  static TopoDS_Face with_known_spans(const TopoDS_Face& face) {
+    const BRepAdaptor_Surface surface(face, false);
+    const bool is_swept =
+        surface.GetType() == GeomAbs_SurfaceOfExtrusion || surface.GetType() == GeomAbs_SurfaceOfRevolution;
+    if (!is_swept || surface.BasisCurve()->GetType() != GeomAbs_BSplineCurve) return face;
+    return TopoDS::Face(BRepBuilderAPI_NurbsConvert(face, true).Shape());
+  }
+
   /// Integrate over a face as it lies in space, whatever its orientation. Integrals that adapt to an error
-  /// are much more exact, and as fast but on splines of many spans, where the fixed ones are exact enough.
+  /// are much more exact than fixed ones, which have too few points for splines of more than some spans.
   template <class Integral>
   double integrated(const TopoDS_Shape& shape) const {
-    constexpr double error = 1e-3;  // as OpenCASCADE estimates it, far above the true one
-    constexpr int many_spans = 8;
-    const TopoDS_Face face = TopoDS::Face(shape.Oriented(TopAbs_FORWARD));
+    const TopoDS_Face face = with_known_spans(TopoDS::Face(shape.Oriented(TopAbs_FORWARD)));
     BRepGProp_Face surface(face);
     BRepGProp_Domain domain(face);
+    const int spans = surface.SUIntSubs() * surface.SVIntSubs();
+    constexpr int few = 8, many = 10'000;             // with many it would take long
+    const double error = spans <= few ? 1e-3 : 1e-5;  // OpenCASCADE's estimate; on waves it is too low
     Integral integral;
     integral.SetLocation(apex_);
     if (face.NbChildren() == 0)
       integral.Perform(surface, error);
-    else if (surface.SUIntSubs() * surface.SVIntSubs() > many_spans)
+    else if (spans > many)
       integral.Perform(surface, domain);
     else
       integral.Perform(surface, domain, error);
