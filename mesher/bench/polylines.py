@@ -2,7 +2,7 @@
 """Time and counts against the number of segments of loose polylines, and against their spread, by this version and
 by an older one on request: cells per vertex of the triangulation at its largest, the largest number of cells that
 one insertion destroyed (away from vertices where very many features meet), vertices that came while skinny cells
-waited. Prints Markdown tables."""
+waited, looks at location objects for each of these. Prints Markdown tables."""
 
 from __future__ import annotations
 
@@ -24,11 +24,16 @@ families: list[tuple] = [
     ("box_frames", lambda n: (1,), 1), ("graph", lambda n: (1,), 1), ("welded_mesh", lambda n: (), 1),
     ("crossed_wires", lambda n: (1,), 0.05), ("crossed_wires", lambda n: (n / 4,), 0.05),
     ("crossed_strips", lambda n: (1,), 0.02), ("outlines", lambda n: (), 1), ("star", lambda n: (1,), 0.1)]
+squared = ("crossed_wires", "crossed_strips")   # these make n^2 vertices: n grows by the root of the factor
 names = {("skew_zigzags", (45,)): "skew zigzags, creases", ("crossed_wires", (1,)): "crossed wires, near"}
 
 
 def name_of(family: str, parameters: tuple) -> str:
     return names.get((family, parameters), family.replace("_", " "))
+
+
+def number_of_segments(family: str, smallest: float, factor: float) -> int:
+    return round(max(16, smallest) * (factor ** 0.5 if family in squared else factor))
 
 
 def measure(mesher: Collarmesh, shape: AcuteInput, folder: Path) -> MeshRun | str:
@@ -43,15 +48,17 @@ def counts_of(run: MeshRun) -> list[str]:
     """An older version counts less: of all vertices, hubs included, and not how large the mesh is meanwhile."""
     counts = run.report["statistics"]["counts"]
     peak, early = counts.get("peak_cells_per_vertex"), counts.get("before_quality")
+    looks = counts.get("looks")
     return ["" if peak is None else f"{peak:.1f}",
             si(counts.get("largest_cavity_outside_hubs", counts["largest_cavity"])),
-            "" if early is None else si(early)]
+            "" if early is None else si(early),
+            "" if looks is None else f"{looks / counts['located']:.0f}"]
 
 
 def cells_of(run: MeshRun | str, before: MeshRun | str | None) -> list[str]:
     """Vertices, seconds, the slope of these over those, counts."""
     if isinstance(run, str):
-        return ["", run, "", "", "", ""]
+        return ["", run, "", "", "", "", ""]
     vertices = run.report["statistics"]["vertices_inserted"]
     growth = ""
     if isinstance(before, MeshRun):
@@ -81,6 +88,7 @@ def main() -> int:
     parser.add_argument("--smallest", type=int, default=400,
                         help="number of segments, less where these make n^2 vertices")
     parser.add_argument("--factors", type=int, nargs="*", default=[1, 10, 100])
+    parser.add_argument("--families", nargs="*", help="only these")
     parser.add_argument("--time-limit", type=float, default=600)
     parser.add_argument("--core", type=int)
     options = parser.parse_args()
@@ -95,13 +103,15 @@ def main() -> int:
     generator = options.build / "bin" / "acute_shape"
     folder = SizeCache().folder / "polylines"
     folder.mkdir(parents=True, exist_ok=True)
-    columns = ["vertices", "refine s", "exponent", "peak cells/vertex", "largest cavity", "too early"]
+    columns = ["vertices", "refine s", "exponent", "peak cells/vertex", "largest cavity", "too early", "looks"]
     header = ["polylines"] + [column + suffix for suffix in meshers for column in columns]
     print(f"{about}. collarmesh {meshers[''].version()}.\n")
     if "number" in options.what:
         rows = []
         for family, further, scale in families:
-            counts = [max(16, round(options.smallest * scale)) * factor for factor in options.factors]
+            if options.families and family not in options.families:
+                continue
+            counts = [number_of_segments(family, options.smallest * scale, factor) for factor in options.factors]
             series = {si(n): AcuteInput(generator, family, (n, *further(n))) for n in counts}
             rows += rows_of(list(meshers.values()), name_of(family, further(400)), series, folder)
         print(table([header[0], "n", *header[1:]], rows) + "\n")
@@ -111,7 +121,7 @@ def main() -> int:
         for family, further, scale in families:
             n = max(16, round(options.smallest * scale / 4))
             series = {f"{small:g}": AcuteInput(generator, family, (n, *further(n)), small_copy=small)
-                      for small in smalls if family != "crossed_strips"}
+                      for small in smalls if family != "crossed_strips" and family in (options.families or [family])}
             rows += rows_of(list(meshers.values()), name_of(family, further(400)), series, folder)
         series = {f"{small:g}": AcuteInput(generator, "shrinking_spiral", (60, small)) for small in smalls}
         rows += rows_of(list(meshers.values()), "shrinking spiral", series, folder)

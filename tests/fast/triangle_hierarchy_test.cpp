@@ -111,6 +111,24 @@ TEST(TriangleHierarchy, LargeTrianglesAreFoundWhereTheirPlanesAre) {
   }
 }
 
+// The same of the box of an oblique segment, which is a triangle with equal corners.
+TEST(TriangleHierarchy, LongSegmentsAreFoundWhereTheyAre) {
+  const std::vector<Point> points{{0, 0, 0}, {1, 1, 1}};
+  TriangleHierarchy hierarchy(points, {{0, 1, 1}});
+  const Index root = hierarchy.root();
+  TriangleHierarchy::Marks marks;
+  std::vector<Index> found;
+  for (const auto& [centre, count] : {std::pair<Point, std::size_t>{{0.5, 0.5, 0.5}, 1},
+                                      {{0.5, 0.5, 0.375}, 1},
+                                      {{0.5, 0.5, 0.375 - 0x1p-30}, 0},
+                                      {{0.8, 0.2, 0.5}, 0},
+                                      {{0.2, 0.6, 0.6}, 0},
+                                      {{1.0625, 1.0625, 1.0625}, 1}}) {
+    hierarchy.nodes_meeting(box_about(centre, 0.125 / 2), 0.125 / 2, {&root, 1}, marks, found);
+    EXPECT_EQ(found.size(), count) << centre.x << ' ' << centre.y << ' ' << centre.z;
+  }
+}
+
 TEST(TriangleHierarchy, NodesDoNotOverlap) {
   const Soup soup = random_triangles(300, 0.05);
   TriangleHierarchy hierarchy(soup.points, soup.triangles);

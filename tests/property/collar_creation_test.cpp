@@ -86,7 +86,7 @@ double epsilon_0(const MeshOptions& options) {
 }
 
 // The gap size of every ball is the one by brute force; no vertex of another feature is in a gap ball when it
-// is created, nor is the mesh much finer than the gap at a vertex ball (paper, Lemma 2).
+// is created, nor is the mesh much finer than the gap at the ball's centre (paper, Lemma 2).
 void expect_created_in_time(const acute::Shape& shape) {
   SCOPED_TRACE(shape.name);
   PlcOptions complex;
@@ -115,8 +115,9 @@ void expect_created_in_time(const acute::Shape& shape) {
       if (!contains_crease(plc, refinement.feature_of(v), ball)) {
         EXPECT_GE(d, gap * (1 - 1e-9));
       }
-      if (at_vertex && d > 0) {
-        EXPECT_GT(d, epsilon_0(options) * gap);
+      // A vertex at the centre is there up to rounding. Radii along round rims are far smaller than the gap.
+      if (d > 1e-12 * ball.radius) {
+        EXPECT_GT(d, epsilon_0(options) * (at_vertex ? gap : 3 * ball.radius));
       }
     }
   });

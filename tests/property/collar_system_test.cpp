@@ -255,15 +255,18 @@ void expect_covered_creases(const Placed& placed) {
   }
 }
 
-void expect_collar_system(const acute::Shape& shape) {
-  SCOPED_TRACE(shape.name);
-  const Placed placed(shape);
+void expect_keeps_definition(const Placed& placed) {
   expect_a_ball_at_every_crease(placed);
   expect_small_radii(placed);
   expect_disjoint_creases(placed);
   expect_no_third_ball_at_circles(placed);
   expect_deep_overlap(placed);
   expect_covered_creases(placed);
+}
+
+void expect_collar_system(const acute::Shape& shape) {
+  SCOPED_TRACE(shape.name);
+  expect_keeps_definition(Placed(shape));
 }
 
 TEST(CollarSystem, KeepsItsDefinition) {
@@ -339,6 +342,36 @@ TEST(CollarSystem, QueriesEqualBruteForceWhileBallsCome) {
     system.complete();
     expect_brute_force_queries(system, 200);
     EXPECT_EQ(system.balls().size(), Placed(shape).system.balls().size());
+  }
+}
+
+// Mesh vertices on a crease that have room for a ball are centres, and the system keeps its definition.
+TEST(CollarSystem, CentresBallsOnVerticesOfTheirCurve) {
+  for (const acute::Shape& shape : {acute::lens(40), acute::cut_torus(0.5), acute::round_cone(30)}) {
+    SCOPED_TRACE(shape.name);
+    Placed placed(shape);
+    CollarSystem system(placed.plc, placed.plc.points, placed.creases);
+    GapInHierarchy gap(placed.plc, system.features());
+    CollarPlacement placement(placed.plc, placed.plc.points, gap, Placed::options(placed.plc), system);
+    const CurvePaths paths(placed.plc, placed.plc.points);
+    for (const Index vertex : system.crease_vertices()) placement.place_at_vertex(vertex);
+    for (Index c = 0; c < placed.plc.curves.size(); ++c) {
+      if (!system.is_crease_curve(c)) continue;
+      std::vector<PlaceOnCurve> vertices;
+      for (const double share : {0.31, 0.3101, 0.72})
+        vertices.push_back({share * paths.length(c), paths.point(c, share * paths.length(c))});
+      placement.place_on_curve(c, vertices);
+      const auto is_centre = [&](const PlaceOnCurve& place) {
+        return std::any_of(system.balls().begin(), system.balls().end(),
+                           [&](const CollarBall& ball) { return ball.centre == place.point; });
+      };
+      EXPECT_TRUE(is_centre(vertices[0]));
+      EXPECT_FALSE(is_centre(vertices[1])) << "it is too near to the first one";
+      EXPECT_TRUE(is_centre(vertices[2]));
+    }
+    system.complete();
+    placed.system = std::move(system);
+    expect_keeps_definition(placed);
   }
 }
 

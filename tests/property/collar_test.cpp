@@ -180,6 +180,50 @@ TEST(Collar, FeaturesThatPassCloseToACrease) {
     }
 }
 
+Meshed tiny_pairs(double pair, std::uint32_t seed) {
+  const PolygonSoup soup = acute::pairs_in_a_box(4, pair, seed).soups[0];
+  PlcOptions complex;
+  complex.feature_angle = 0;
+  complex.weld = 0;
+  return testing::mesh_of(build_plc({&soup, 1}, complex), testing::with_size(0.5));
+}
+
+// The floor of the refinement is as low relative to tiny edges as it is to the diagonal elsewhere, and
+// vertices grow with the logarithm of the spread.
+TEST(Collar, TinyPairsAtAnySpread) {
+  std::size_t before = 0;
+  for (const double pair : {1e-5, 1e-7, 1e-8, 1e-9})
+    for (const std::uint32_t seed : {1U, 2U}) {
+      SCOPED_TRACE(pair);
+      const Meshed meshed = tiny_pairs(pair, seed);
+      EXPECT_EQ(meshed.result.status, MeshStatus::complete) << meshed.result.message;
+      EXPECT_EQ(testing::faults(meshed), "");
+      const std::size_t inserted = meshed.result.statistics.vertices_inserted;
+      EXPECT_LT(inserted, before == 0 ? 10'000 : 3 * before / 2);
+      before = inserted;
+    }
+}
+
+// Where doubles are too few for features to be told apart, the mesh misses guarantees, but no tet or triangle
+// has a corner twice.
+TEST(Collar, NoCornerIsRepeatedWhereRefinementGivesUp) {
+  const auto repeats = [](auto corners) {
+    std::sort(corners.begin(), corners.end());
+    return std::adjacent_find(corners.begin(), corners.end()) != corners.end();
+  };
+  std::size_t given_up = 0;
+  for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(seed);
+    const Meshed meshed = tiny_pairs(1e-11, seed);
+    const TetMesh& mesh = meshed.result.mesh;
+    given_up += meshed.result.status == MeshStatus::guarantee_missed ? 1 : 0;
+    EXPECT_TRUE(std::none_of(mesh.tets.begin(), mesh.tets.end(), repeats));
+    EXPECT_TRUE(std::none_of(mesh.faces.begin(), mesh.faces.end(), repeats));
+    EXPECT_TRUE(std::none_of(mesh.edges.begin(), mesh.edges.end(), repeats));
+  }
+  EXPECT_GT(given_up, 0U);
+}
+
 TEST(Collar, Combs) {
   for (const unsigned teeth : {1U, 3U, 8U})
     for (const double angle : {30.0, 10.0}) expect_right(acute::comb(teeth, angle));

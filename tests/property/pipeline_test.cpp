@@ -137,6 +137,14 @@ TEST(Pipeline, DoesNotRepairForTheSakeOfCollars) {
   EXPECT_EQ(wedges.built.size(), 1U);
 }
 
+// There is no mesh then, and no certificate of one.
+TEST(Pipeline, RefusesWhatNoCollarFitsInto) {
+  PipelineOptions options = with_size(0.5);
+  options.complex.weld = 0;
+  options.repair.mode = RepairMode::off;
+  EXPECT_THROW(run(testing::acute::pairs_in_a_box(4, 1e-12).soups[0], options), PlcError);
+}
+
 TEST(Pipeline, WrapsLast) {
   Boxes boxes;
   boxes.right = 3;

@@ -163,6 +163,20 @@ TEST(WorkCounts, OfPolylinesAreBoundedAsTheirSpreadGrows) {
   }
 }
 
+// Where cells are left in narrow gaps, as before coarsening, there are more of them at a vertex, but no more
+// as the number of segments grows. Between two zigzags there would be as many as its square.
+TEST(WorkCounts, OfPolylinesAreBoundedWhereNarrowCellsAreLeft) {
+  for (const unsigned n : {100U, 400U, 1600U})
+    for (const NarrowCells narrow : {NarrowCells::left, NarrowCells::bounded_if_cheap}) {
+      SCOPED_TRACE(n);
+      MeshOptions options = testing::with_size(10);
+      options.narrow_cells = narrow;
+      const WorkCounts counts = counted(polylines::skew_zigzags(n).soups, options).counts;
+      EXPECT_LE(counts.peak_cells_per_vertex, 25);
+      EXPECT_LE(counts.largest_cavity, 450U);
+    }
+}
+
 namespace acute = testing::acute;
 
 // The same of inputs with collars; and a gap query asks few features where few are near.

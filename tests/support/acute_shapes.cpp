@@ -291,6 +291,25 @@ Shape segments_from_a_point(unsigned count, std::uint32_t seed) {
   return {fmt::format("segments_from_a_point({}, {})", count, seed), {soup}, 8};
 }
 
+Shape pairs_in_a_box(unsigned count, double size, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  PolygonSoup soup = room({0, 0, 0}, {1, 1, 1});
+  for (unsigned i = 0; i < count; ++i) {
+    const Point from{random_in(random, 0.2, 0.8), random_in(random, 0.2, 0.8), random_in(random, 0.2, 0.8)};
+    const Vector along = random_direction(random);
+    Vector across = cross(along, random_direction(random));
+    across = across / norm(across);
+    const Vector up = cross(along, across);
+    const Point to = from + size * along;
+    for (const double turn : {0.0, radians(20)}) {
+      const Vector side = size * (std::cos(turn) * across + std::sin(turn) * up);
+      add_facet(soup, {from, to, to + side}, 7);  // triangles are planar, rounded as they are
+      add_facet(soup, {from, to + side, from + side}, 7);
+    }
+  }
+  return {fmt::format("pairs_in_a_box({}, {}, {})", count, size, seed), {soup}, 1};
+}
+
 Shape segment_near_a_crease(double angle, double distance, bool askew) {
   Shape shape = wedge(angle);
   shape.name = fmt::format("segment_near_a_crease({}, {}, {})", angle, distance, askew);

@@ -76,6 +76,10 @@ Shape segment_meeting_a_facet(double angle);
 /// A box with some segments from one point inside, at random directions.
 Shape segments_from_a_point(unsigned count, std::uint32_t seed);
 
+/// A unit box with some pairs of facets inside that meet at 20 degrees and have edges of this length. Nothing
+/// else has this size.
+Shape pairs_in_a_box(unsigned count, double size, std::uint32_t seed = 1);
+
 /// A wedge with a lone segment inside, parallel to its sharp edge at this distance or askew.
 Shape segment_near_a_crease(double angle, double distance, bool askew = false);
 

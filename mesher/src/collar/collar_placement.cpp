@@ -29,6 +29,8 @@ constexpr double sample_step = 0.5;  // in radii
 // Consecutive centres are at most this many radii apart: the circle of two balls is then seen from
 // both centres under less than 90 degrees, d^2 <= r1^2 + r2^2, shrunk as they may be.
 constexpr double step_per_radius = 1.2;
+// As are equal steps of more than 1.2 radii together.
+constexpr double least_step_per_radius = step_per_radius / 2;
 
 // Lowers values that exceed a neighbour's by more than the slope, in both directions; twice around if closed.
 void limit_slope(const std::vector<double>& parameters, double slope, bool closed,
@@ -43,6 +45,14 @@ void limit_slope(const std::vector<double>& parameters, double slope, bool close
     if (closed) values.front() = values.back() = std::min(values.front(), values.back());
     for (std::size_t i = n; i-- > 1;) pass(i, i - 1);
   }
+}
+
+// Linear between samples; `xs` are in order.
+double interpolated(const std::vector<double>& xs, const std::vector<double>& ys, double x) {
+  const auto after = static_cast<std::size_t>(std::upper_bound(xs.begin() + 1, xs.end() - 1, x) - xs.begin());
+  const double width = xs[after] - xs[after - 1];
+  const double t = width > 0 ? (x - xs[after - 1]) / width : 0;
+  return (1 - t) * ys[after - 1] + t * ys[after];
 }
 
 }  // namespace
@@ -67,7 +77,7 @@ bool CollarPlacement::place_all() {
     add_at_vertex(vertex);
   }
   for (Index c = 0; c < plc_.curves.size() && !stopped_; ++c)
-    if (system_.crease_curve_[c]) add_on_curve(c);
+    if (system_.crease_curve_[c]) add_on_curve(c, {});
   system_.complete();
   return !stopped_;
 }
@@ -78,9 +88,9 @@ void CollarPlacement::place_at_vertex(Index vertex) {
   system_.index_balls({0, vertex});
 }
 
-void CollarPlacement::place_on_curve(Index curve) {
+void CollarPlacement::place_on_curve(Index curve, std::span<const PlaceOnCurve> vertices) {
   assert(system_.is_crease_curve(curve));
-  add_on_curve(curve);
+  add_on_curve(curve, vertices);
   system_.index_balls({1, curve});
 }
 
@@ -89,7 +99,7 @@ bool CollarPlacement::stopped(std::size_t more_balls) {
 }
 
 void CollarPlacement::require_room(double radius, const Point& where) const {
-  if (radius >= options_.smallest_radius && radius > 0) return;
+  if (radius > 0 && !(options_.too_small && options_.too_small(where, radius))) return;
   const Point p = options_.outside ? options_.outside(where) : where;
   const std::string message = fmt::format(
       "Features come so near to each other at {} that nothing fits between them: {:.3g}; move them apart, or "
@@ -145,40 +155,52 @@ CollarPlacement::Profile CollarPlacement::make_profile(Index curve, double from,
   return profile;
 }
 
-double CollarPlacement::Profile::radius(double parameter) const {
-  const auto after = static_cast<std::size_t>(
-      std::upper_bound(parameters.begin() + 1, parameters.end() - 1, parameter) - parameters.begin());
-  const double width = parameters[after] - parameters[after - 1];
-  const double t = width > 0 ? (parameter - parameters[after - 1]) / width : 0;
-  return (1 - t) * radii[after - 1] + t * radii[after];
-}
+double CollarPlacement::Profile::radius(double at) const { return interpolated(parameters, radii, at); }
 
 double CollarPlacement::Profile::parameter(double step) const {
-  const auto after =
-      static_cast<std::size_t>(std::upper_bound(steps.begin() + 1, steps.end() - 1, step) - steps.begin());
-  const double width = steps[after] - steps[after - 1];
-  const double t = width > 0 ? (step - steps[after - 1]) / width : 0;
-  return (1 - t) * parameters[after - 1] + t * parameters[after];
+  return interpolated(steps, parameters, step);
 }
 
-// Returns parameters from the first to the last at equal numbers of radii.
-std::vector<double> CollarPlacement::centres(const Profile& profile) const {
+double CollarPlacement::Profile::step(double parameter) const {
+  return interpolated(parameters, steps, parameter);
+}
+
+// Returns places from the first sample to the last, with the vertices among them; between these, at equal
+// numbers of radii.
+std::vector<PlaceOnCurve> CollarPlacement::centres(Index curve, const Profile& profile,
+                                                   std::span<const PlaceOnCurve> vertices) const {
   const double total = profile.steps.back();
-  const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(total / step_per_radius)));
-  std::vector<double> found;
-  for (std::size_t i = 0; i <= count; ++i)
-    found.push_back(profile.parameter(total * static_cast<double>(i) / static_cast<double>(count)));
+  std::vector<PlaceOnCurve> found;
+  const auto add = [&](double step) {
+    const double parameter = profile.parameter(step);
+    found.push_back({parameter, paths_.point(curve, parameter)});
+  };
+  double from = 0;
+  const auto add_up_to = [&](double to) {
+    const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil((to - from) / step_per_radius)));
+    for (std::size_t i = 1; i <= count; ++i)
+      add(from + (to - from) * static_cast<double>(i) / static_cast<double>(count));
+    from = to;
+  };
+  add(0);
+  for (const PlaceOnCurve& vertex : vertices) {
+    const double step = profile.step(vertex.parameter);
+    if (std::min(step - from, total - step) < least_step_per_radius) continue;
+    add_up_to(step);
+    found.back() = vertex;
+  }
+  add_up_to(total);
   return found;
 }
 
-Index CollarPlacement::add_ball(Index curve, double parameter, double radius) {
-  radius = std::min(radius, radius_for_gap(curve, parameter));
-  system_.balls_.push_back({paths_.point(curve, parameter), radius * shrink(), 1, curve});
+Index CollarPlacement::add_ball(Index curve, const PlaceOnCurve& centre, double radius) {
+  radius = std::min(radius, radius_for_gap(curve, centre.parameter));
+  system_.balls_.push_back({centre.point, radius * shrink(), 1, curve});
   return static_cast<Index>(system_.balls_.size() - 1);
 }
 
 // Between two vertices the first centres lie on the spheres of their balls.
-void CollarPlacement::add_on_curve(Index curve) {
+void CollarPlacement::add_on_curve(Index curve, std::span<const PlaceOnCurve> vertices) {
   const bool closed = plc_.curves[curve].closed;
   const double length = paths_.length(curve);
   std::array<Index, 2> ends{none, none};
@@ -191,17 +213,17 @@ void CollarPlacement::add_on_curve(Index curve) {
   }
   const Profile profile = make_profile(curve, from, to);
   if (stopped_) return;
-  std::vector<double> parameters = centres(profile);
-  if (closed) parameters.pop_back();
+  std::vector<PlaceOnCurve> places = centres(curve, profile, vertices);
+  if (closed) places.pop_back();
   const auto first = static_cast<Index>(system_.balls_.size());
   Index previous = ends[0];
   double before = 0;
-  for (const double parameter : parameters) {
+  for (const PlaceOnCurve& place : places) {
     if (stopped()) return;
-    const Index ball = add_ball(curve, parameter, profile.radius(parameter));
-    if (previous != none) link(previous, ball, curve, before, parameter);
+    const Index ball = add_ball(curve, place, profile.radius(place.parameter));
+    if (previous != none) link(previous, ball, curve, before, place.parameter);
     previous = ball;
-    before = parameter;
+    before = place.parameter;
   }
   link(previous, closed ? first : ends[1], curve, before, length);
 }

@@ -10,7 +10,7 @@
 namespace collarmesh {
 
 /// Places the balls of a collar system, their circles' corner points with them. Throws PlcError where a ball
-/// would be smaller than CollarOptions::smallest_radius.
+/// would be CollarOptions::too_small.
 class CollarPlacement {
  public:
   /// Keeps all by reference. `system` knows its creases, `gap` the allowed size of balls there.
@@ -20,25 +20,29 @@ class CollarPlacement {
   bool place_all();
   /// Precondition: the vertex is a crease's and has no ball yet.
   void place_at_vertex(Index vertex);
-  /// Precondition: the curve is a crease, has no balls yet, and its ends have theirs.
-  void place_on_curve(Index curve);
+  /// Balls are centred on `vertices`, places of mesh vertices on the curve in their order, so that none comes
+  /// to lie just beside one; not on those that are too near to others. Precondition: the curve is a crease,
+  /// has no balls yet, and its ends have theirs.
+  void place_on_curve(Index curve, std::span<const PlaceOnCurve> vertices = {});
 
  private:
   /// The radii that balls along a curve may have: at samples, from one parameter to another.
   struct Profile {
     std::vector<double> parameters, radii;
     std::vector<double> steps;  ///< how many radii from the first sample to each: the integral of 1 / radius
-    double radius(double parameter) const;
+    double radius(double at) const;
     double parameter(double step) const;
+    double step(double parameter) const;
   };
 
   void add_at_vertex(Index vertex);
-  void add_on_curve(Index curve);
+  void add_on_curve(Index curve, std::span<const PlaceOnCurve> vertices);
   void link(Index a, Index b, Index curve, double from, double to);
   Profile make_profile(Index curve, double from, double to);
   double radius_for_gap(Index curve, double parameter);
-  std::vector<double> centres(const Profile& profile) const;
-  Index add_ball(Index curve, double parameter, double radius);
+  std::vector<PlaceOnCurve> centres(Index curve, const Profile& profile,
+                                    std::span<const PlaceOnCurve> vertices) const;
+  Index add_ball(Index curve, const PlaceOnCurve& centre, double radius);
   double shrink();
   bool stopped(std::size_t more_balls = 0);
   void require_room(double radius, const Point& where) const;

@@ -51,8 +51,8 @@ struct CollarOptions {
   /// Called from time to time with a lower bound on the final number of balls; if it returns true, the system
   /// stays incomplete. May be empty.
   std::function<bool(std::size_t balls)> stopped = {};
-  /// The smallest radius, absolute: below it features cannot be distinguished.
-  double smallest_radius = 0;
+  /// Are features within this radius of a place too near to each other to be told apart? May be empty.
+  std::function<bool(const Point&, double)> too_small = {};
   /// Converts a place to input coordinates, for messages. May be empty.
   std::function<Point(const Point&)> outside = {};
 };

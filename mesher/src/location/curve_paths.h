@@ -8,6 +8,12 @@
 
 namespace collarmesh {
 
+/// A point on a curve, and its arc length there.
+struct PlaceOnCurve {
+  double parameter;
+  Point point;
+};
+
 /// The curves of a complex by arc length. On a closed curve parameters wrap around.
 class CurvePaths {
  public:

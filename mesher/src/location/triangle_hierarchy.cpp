@@ -33,8 +33,16 @@ int passes(const Point& p, const Point& q, const Point& a, const Point& b) {
 }
 
 // Segments and points are triangles whose last two corners are the same.
+bool is_segment(const std::array<Point, 3>& t) { return t[1] == t[2]; }
+
+// Conservative. Boxes around segments askew say little: each place amid a thousand long ones may be in
+// hundreds.
+bool misses(const CentredBox& box, const std::array<Point, 3>& t) {
+  return is_segment(t) ? !SegmentAgainstBoxes(t[0], t[1]).may_meet(box) : misses_plane(box, t);
+}
+
 int crossing_direction(const Point& p, const Point& q, const std::array<Point, 3>& t) {
-  if (t[1] == t[2]) return 0;
+  if (is_segment(t)) return 0;
   const int to = side(t[0], t[1], t[2], q);
   if (to == 0 || side(t[0], t[1], t[2], p) == to) return 0;
   const int first = passes(p, q, t[0], t[1]);
@@ -115,7 +123,7 @@ void TriangleHierarchy::descend(Index index, const CentredBox& box, double exten
   if (node.extent <= extent) {
     found.push_back(index);
   } else if (node.left == none) {
-    if (!misses_plane(box, corners(node.right))) found.push_back(index);
+    if (!misses(box, corners(node.right))) found.push_back(index);
   } else {
     descend(node.left, box, extent, marks, found);
     descend(node.right, box, extent, marks, found);

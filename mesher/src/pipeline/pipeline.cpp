@@ -186,8 +186,8 @@ class Pipeline {
                                                     repair.tolerance, given_.repair.tolerance, why));
       if (made_.guarantees_hold() || end == End::exploded) break;
     }
-    if (made_.guarantees_hold()) return;
     if (!has_mesh && error) std::rethrow_exception(error);
+    if (has_mesh && made_.guarantees_hold()) return;
     if (!built_last) {
       try {
         build(current, all);  // its source is to know it again

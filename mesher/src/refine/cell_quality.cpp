@@ -11,6 +11,10 @@ namespace {
 constexpr double offset_per_radius = 0.05;
 // A cell whose volume is below this share of its longest edge cubed is flat.
 constexpr double flat_volume = 1e-11;
+// Narrow cells keep the bound on the ratio where a vertex comes with more cells than this: between lines
+// there may be as many as the product of the numbers of their vertices. In a mesh with bounded ratios it
+// comes with 60 at most.
+constexpr std::size_t most_narrow_cells = 80;
 
 struct Shape {
   double shortest_squared_edge;
@@ -45,7 +49,7 @@ CellQuality::CellQuality(const Domain& domain, const RefinedMesh& mesh, const Co
   if (domain_.options.vertex_ratio > 0) shortest_edge_.resize(mesh_.vertex_count(), INFINITY);
 }
 
-void CellQuality::judge(Index cell, WorkQueue& queue) const {
+void CellQuality::judge(Index cell, WorkQueue& queue, bool leaves_narrow_cells) const {
   if (collar_cells_.inside(cell)) return judge_in_collar(cell, queue);
   const Index region = surface_.region(cell);
   const auto& v = mesh_.corners(cell);
@@ -58,7 +62,11 @@ void CellQuality::judge(Index cell, WorkQueue& queue) const {
   const bool skinny = r2 > bound * bound * shape.shortest_squared_edge;
   // Cocircular input makes cells whose volume is noise although their radius-edge ratio is not. Those on one
   // patch are seen to when the queue is empty.
-  if ((skinny || (shape.flat && region != 0 && !mesh_.on_one_patch(v))) && !fills_gap(cell, region, bound)) {
+  const auto fills_gap = [&] {
+    return (region == 0 && facing_sheets_.is_within(cell, bound)) ||
+           (leaves_narrow_cells && is_narrow(cell, region));
+  };
+  if ((skinny || (shape.flat && region != 0 && !mesh_.on_one_patch(v))) && !fills_gap()) {
     if (domain_.in_box(centre)) queue.push(WorkQueue::skinny_cells, r2, {cell, mesh_.generation(cell)});
     return;
   }
@@ -74,11 +82,6 @@ void CellQuality::judge_in_collar(Index cell, WorkQueue& queue) const {
   const double bound = domain_.options.bounds.radius_edge, r2 = mesh_.squared_radius(cell);
   if (r2 > bound * bound * shape_of(mesh_, mesh_.corners(cell)).shortest_squared_edge)
     queue.push(WorkQueue::skinny_cells, r2, {cell, mesh_.generation(cell)});
-}
-
-bool CellQuality::fills_gap(Index cell, Index region, double bound) const {
-  if (region == 0 && facing_sheets_.is_within(cell, bound)) return true;
-  return leaves_narrow_cells_ && is_narrow(cell, region);
 }
 
 bool CellQuality::is_narrow(Index cell, Index region) const {
@@ -112,7 +115,8 @@ bool CellQuality::bound_narrow_cells() {
 
 void CellQuality::cells_made(const ConflictZone& zone, Index vertex) {
   note_edges(zone, vertex);
-  for (const Index cell : zone.created) judge(cell, queue_);
+  const bool leaves_narrow_cells = leaves_narrow_cells_ && zone.created.size() <= most_narrow_cells;
+  for (const Index cell : zone.created) judge(cell, queue_, leaves_narrow_cells);
 }
 
 // The paper's stronger quality measure (section 1.2): a circumradius against the shortest edge at a

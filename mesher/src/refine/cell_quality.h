@@ -45,7 +45,7 @@ class CellQuality {
   void cells_made(const ConflictZone& zone, Index vertex);
   /// Queue a cell that is to be destroyed. Several threads may ask at once, each with a queue of its own, as
   /// long as no size is asked of the caller or kept at vertices and there is no vertex ratio.
-  void judge(Index cell, WorkQueue& queue) const;
+  void judge(Index cell, WorkQueue& queue) const { judge(cell, queue, leaves_narrow_cells_); }
   /// At the start, and when sizes have changed everywhere.
   void judge_all();
   /// From now on narrow cells keep the bound on the ratio, too. Queues those that were left and returns
@@ -55,8 +55,8 @@ class CellQuality {
   std::size_t bytes() const { return shortest_edge_.bytes(); }
 
  private:
+  void judge(Index cell, WorkQueue& queue, bool leaves_narrow_cells) const;
   void judge_in_collar(Index cell, WorkQueue& queue) const;
-  bool fills_gap(Index cell, Index region, double bound) const;
   bool is_narrow(Index cell, Index region) const;
   double target_size(Index cell, Index region) const;
   bool uneven_at_vertex(Index cell) const;

@@ -30,7 +30,7 @@ void CollarCreator::start() {
   options.tolerance = domain_.tolerance;
   options.seed = domain_.options.seed;
   options.stopped = stopped_;
-  options.smallest_radius = domain_.floor;
+  options.too_small = [this](const Point& p, double radius) { return domain_.at_floor(p, radius * radius); };
   options.outside = [this](const Point& p) { return domain_.frame.outside(p); };
   const std::vector<Crease> creases = find_creases(domain_.plc, domain_.options.bounds.crease_angle);
   if (creases.empty()) return;
@@ -136,10 +136,11 @@ bool CollarCreator::create_remaining() {
 void CollarCreator::create_on_curve(Index curve, BallReason reason) {
   const OpenCreases::Chain chain = open_creases_.close(curve);
   isolated_.erase(curve);
+  const std::vector<PlaceOnCurve> vertices = curves_.vertices_amid(curve);
   const Index at_chain = curves_.remove_chain(curve),
               near = at_chain == none ? mesh_.last_vertex() : at_chain;
   gap_size().start_near(near);
-  placement_->place_on_curve(curve);
+  placement_->place_on_curve(curve, vertices);
   take_up_balls(near, chain.ends, reason);
 }
 

@@ -292,8 +292,9 @@ std::optional<Candidate> CollarSurface::repair(const CollarTriangle& t) const {
   const Index vertex = mesh_.nearest_vertex(best, v[0]);
   const Index start = mesh_.conflicting_cell_around(vertex, best);
   const bool mends_bend = patch != none && patch == t.bent_on;
-  const double least = std::max(domain_.floor, mends_bend ? 0 : clearance_in_radii * ball.radius);
-  if (start == none || distance(best, mesh_.point(vertex)) < least || radius < domain_.floor)
+  const double away = distance(best, mesh_.point(vertex)),
+               least = mends_bend ? 0 : clearance_in_radii * ball.radius;
+  if (start == none || away < least || domain_.at_floor(best, std::min(away * away, radius * radius)))
     return std::nullopt;
   const Feature feature{static_cast<std::uint8_t>(patch == none ? 3 : 2), patch};
   return Candidate{best, radius * radius, t.representation, feature, start};

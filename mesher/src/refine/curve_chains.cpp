@@ -1,5 +1,7 @@
 #include "refine/curve_chains.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -304,8 +306,10 @@ Index CurveChains::end_to_resolve(Index subsegment, const Candidate& candidate) 
 std::optional<CurveChains::Split> CurveChains::split_of(Index subsegment) {
   const Chained& chained = subsegments_[subsegment];
   const Subsegment& s = chained.piece;
-  if (s.squared_radius < domain_.floor * domain_.floor) {
-    outcome_.give_up(s.centre, "a curve could not be resolved with edges longer than 1e-10 of the diagonal",
+  if (domain_.at_floor(s.centre, s.squared_radius)) {
+    outcome_.give_up(s.centre,
+                     fmt::format("a curve could not be resolved with edges longer than {:.2g}",
+                                 domain_.floor_at(s.centre)),
                      Outcome::advice_at_floor);
     return std::nullopt;
   }
@@ -402,6 +406,18 @@ Index CurveChains::remove_chain(Index curve) {
   }
   chain_ends_[curve] = {none, none};
   return near;
+}
+
+std::vector<PlaceOnCurve> CurveChains::vertices_amid(Index curve) const {
+  std::vector<PlaceOnCurve> vertices;
+  const Index first = chain_ends_[curve][0];
+  if (first == none) return vertices;
+  for (Index s = first, next = none;; s = next) {
+    next = subsegments_[s].neighbours[1];
+    if (next == none || next == first) return vertices;
+    const End end = end_of(subsegments_[s], 1);
+    if (end.vertex != none) vertices.push_back({end.parameter, mesh_.point(end.vertex)});
+  }
 }
 
 void CurveChains::withdraw(Index point, Index curve) {

@@ -126,6 +126,8 @@ class CurveChains {
   /// Balls take the place of a chain: its subsegments go, and the points between them that are not resolved.
   /// Returns a mesh vertex near it, none if there was no chain.
   Index remove_chain(Index curve);
+  /// The mesh vertices between the ends of a chain, in their order.
+  std::vector<PlaceOnCurve> vertices_amid(Index curve) const;
   Index curve_of(Index subsegment) const { return subsegments_[subsegment].piece.curve; }
 
   const LocationObjects& balls() const { return balls_; }

@@ -1,12 +1,18 @@
 #include "refine/domain.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace collarmesh {
 
 namespace {
 
 constexpr double floor_per_diagonal = 1e-10;
+// Edges of the complex that are shorter than this share of the diagonal are tiny; the floor at them is as low
+// relative to them as it is to the diagonal elsewhere, but what double precision still tells apart.
+constexpr double tiny_per_diagonal = 1e-5, floor_per_tiny_edge = floor_per_diagonal / tiny_per_diagonal;
+constexpr double precise_per_diagonal = 1e-13, precise_per_coordinate = 500 * 2.2e-16;
+constexpr double reach_of_tiny_edge = 10;  // in its lengths
 // The share of the distance tolerance that refinement aims at: it looks at a few points of a face.
 constexpr double distance_reserve = 0.75;
 
@@ -47,7 +53,31 @@ Domain::Domain(const Plc& complex, const MeshOptions& mesh_options)
       diagonal(plc.bounds.diagonal()),
       tolerance(tolerance_of(plc, options.bounds, options.size).scaled(distance_reserve)),
       floor(floor_per_diagonal * diagonal),
-      box(surrounding_box(framed(plc.bounds, frame))) {}
+      box(surrounding_box(framed(plc.bounds, frame))),
+      tiny_edges_(tiny_edges()) {}
+
+std::vector<Domain::TinyEdge> Domain::tiny_edges() const {
+  std::vector<TinyEdge> found;
+  for (Index c = 0; c < plc.curves.size(); ++c)
+    for (std::size_t i = 0; i + 1 < paths.lengths(c).size(); ++i) {
+      const auto [a, b] = paths.segment_ends(c, i);
+      const double length = distance(points[a], points[b]);
+      if (length < tiny_per_diagonal * diagonal)
+        found.push_back({points[a] + 0.5 * (points[b] - points[a]), length});
+    }
+  return found;
+}
+
+// Whoever asks has reached the floor elsewhere, which is rare: all tiny edges are looked at.
+double Domain::floor_at(const Point& p) const {
+  double edge = tiny_per_diagonal * diagonal;
+  for (const auto& [middle, length] : tiny_edges_)
+    if (length < edge && distance(p, middle) < reach_of_tiny_edge * length) edge = length;
+  const Point outside = frame.outside(p);
+  const double coordinate = std::max({std::fabs(outside.x), std::fabs(outside.y), std::fabs(outside.z)});
+  const double precise = std::max(precise_per_diagonal * diagonal, precise_per_coordinate * coordinate);
+  return std::min(floor, std::max(floor_per_tiny_edge * edge, precise));
+}
 
 // Needle triangles of a facet that is planar within a tolerance only have normals of their own.
 Point Domain::on_plane(Index patch, const Point& p) const {

@@ -2,6 +2,8 @@
 // what differs from the paper and why is in doc/theory.md).
 #include "refine/refinement.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -161,7 +163,8 @@ bool Refinement::destroy(Candidate candidate) {
   for (;;) {
     if (at_floor(candidate)) {
       outcome_.give_up(candidate.point,
-                       "the refinement did not end before edges became shorter than 1e-10 of the diagonal",
+                       fmt::format("the refinement did not end before edges became shorter than {:.2g}",
+                                   domain_.floor_at(candidate.point)),
                        Outcome::advice_at_floor);
       return false;
     }

@@ -89,7 +89,7 @@ class Refinement {
   /// Paper, Procedure 3. Precondition: zone_ is the point's. Returns the new vertex.
   Index force_insert(const Feature& feature);
   bool at_floor(const Candidate& candidate) const {
-    return candidate.squared_radius < domain_.floor * domain_.floor;
+    return domain_.at_floor(candidate.point, candidate.squared_radius);
   }
   bool check_gradation();
   bool check_collars();

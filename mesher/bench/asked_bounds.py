@@ -1,0 +1,208 @@
+#!/usr/bin/env python3
+"""What becomes of bounds that are asked for in default runs: each acute family and each file of a corpus with several
+collar angles, radius-edge ratios and a vertex ratio. The certificate judges each mesh, and so does an independent
+program ($COLLARMESH_JUDGE), whose numbers are compared with those of the report. A silent difference is a mesh with
+exit code 0 in which the judge finds a bound exceeded, without a warning that names the option. Prints a Markdown table
+with a row for each option, then what was missed or differs."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import math
+import os
+import shutil
+import subprocess
+import sys
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from acute_inputs import AcuteInput
+from acute_peers import curved, members
+from acute_peers import size as acute_size
+from processes import pin_to_core
+from tables import machine, si, table
+from tuning import SizeCache
+
+slow = (("fan", 72, 0), ("pyramid", 64, 5), ("comb", 20, 4))   # more than 5 s each
+questions: list[tuple[str, ...]] = [
+    (), *(("--collar-angle", str(angle)) for angle in (100, 110, 120, 130)), ("--vertex-ratio", "4"),
+    *(("--radius-edge", str(ratio)) for ratio in (1.5, 2, 3))]
+judged_surfaces = (".off", ".obj", ".stl", ".ply", ".poly", ".smesh")
+relative_distance = 1e-3
+
+
+@dataclass
+class Case:
+    name: str
+    files: list[Path]
+    options: list[str]
+    surface: Path | None = None   # what the judge compares the mesh with
+    tolerance: list[str] = field(default_factory=list)
+
+
+@dataclass
+class Outcome:
+    code: int
+    creases: int = 0
+    collar: int = 0
+    tets: int = 0
+    warned: bool = False
+    missed: list[str] = field(default_factory=list)     # guarantees, by the certificate
+    differs: list[str] = field(default_factory=list)    # what the judge or the report says otherwise
+    within: bool = False       # no thin tet: the ratio holds everywhere outside collars, by the judge
+    largest: float = 0         # dihedral angle in collars, by the judge
+
+
+def acute_cases(generator: Path, folder: Path) -> list[Case]:
+    cases = []
+    for family, *parameters in members:
+        if (family, *parameters) in slow:
+            continue
+        shape = AcuteInput(generator, family, tuple(parameters))
+        prefix = folder / shape.name.replace(" ", "_")
+        subprocess.run([str(generator), str(prefix), *shape.name.split(), "--triangulated"], check=True)
+        told = next(path for path in (Path(f"{prefix}.off"), Path(f"{prefix}.poly")) if path.exists())
+        round_ = family in curved
+        distance = str(acute_size / 100)
+        cases.append(Case(shape.name, sorted(folder.glob(f"{prefix.name}_[0-9]*.poly")),
+                          ["--size", str(acute_size), "--feature-angle", "30" if round_ else "0",
+                           *(["--distance", distance] if round_ else [])], told,
+                          ["--distance", distance] if round_ else ["--exact"]))
+    return cases
+
+
+def corpus_cases(program: Path, corpus: Path, share: float) -> list[Case]:
+    cases = []
+    with open(corpus / "MANIFEST.tsv", newline="") as manifest:
+        rows = list(csv.reader(manifest, delimiter="\t"))[1:]
+    for name, expect in (row[:2] for row in rows):
+        path = corpus / name
+        told = subprocess.run([str(program), "info", str(path), "--json"], capture_output=True, text=True)
+        if told.returncode != 0:
+            continue
+        diagonal = json.loads(told.stdout)["complex"]["diagonal"]
+        distance = str(relative_distance * diagonal)
+        surface = path if expect.startswith("mesh:") and path.suffix.lower() in judged_surfaces else None
+        cases.append(Case(name, [path], ["--size", str(diagonal / share), "--distance", distance], surface,
+                          ["--distance", distance]))
+    return cases
+
+
+def asked(question: tuple[str, ...], option: str, default: float) -> float:
+    return float(question[1]) if question and question[0] == option else default
+
+
+def judge(judging: str, case: Case, question: tuple[str, ...], mesh: Path, report: dict) -> dict | str:
+    """What it says, or why it cannot."""
+    check = report["check"]
+    smallest_thin = min(8, report["complex"]["smallest_angle"] / 2,
+                        check["min_forced_dihedral"] if check["forced_tets"] else math.inf)
+    command = [sys.executable, judging, str(mesh), "--json", "--rho", str(asked(question, "--radius-edge", 2)),
+               "--collar-angle", str(asked(question, "--collar-angle", 150)), "--thin", str(smallest_thin)]
+    if case.surface:
+        command += ["--surface", str(case.surface), *case.tolerance]
+    told = subprocess.run(command, capture_output=True, text=True)
+    try:
+        return json.loads(told.stdout)
+    except ValueError:
+        return (told.stdout + told.stderr).strip()[-100:]
+
+
+def compare(outcome: Outcome, said: dict, report: dict, ratio: float) -> None:
+    """The judge's findings, and its numbers beside the report's."""
+    check, of = report["check"], said["quality"]
+    inside, outside = of.get("in_collars", {}), of.get("outside_collars", {})
+    outcome.within = outside.get("radius_edge_max", 0) <= ratio * (1 + 1e-9)
+    outcome.largest = inside.get("max_dihedral", 0)
+    if outcome.code == 0:
+        outcome.differs += said["failed"]
+    if inside.get("tets", 0) != check["collar_tets"]:
+        outcome.differs.append(f"{inside.get('tets', 0)} tets of collars, not {check['collar_tets']}")
+    if abs(outcome.largest - check["max_collar_dihedral"]) > 1e-6:
+        outcome.differs.append(f"largest angle in collars {outcome.largest}, not {check['max_collar_dihedral']}")
+
+
+def run(program: Path, judging: str | None, case: Case, question: tuple[str, ...], folder: Path,
+        time_limit: float) -> Outcome:
+    mesh, report_file = folder / "mesh.vtu", folder / "report.json"
+    mesh.unlink(missing_ok=True)
+    told = subprocess.run([str(program), *map(str, case.files), "-o", str(mesh), *case.options, *question, "--threads",
+                           "1", "--report", str(report_file), "--progress", "none", "--time-limit", str(time_limit)],
+                          capture_output=True, text=True)
+    outcome = Outcome(told.returncode)
+    if told.returncode not in (0, 7):
+        return outcome
+    report = json.loads(report_file.read_text())
+    outcome.creases, outcome.collar = len(report["complex"]["creases"]), report["check"]["collar_tets"]
+    outcome.tets = report["mesh"]["tets"]
+    outcome.warned = bool(question) and any(question[0] in line for line in report["warnings"])
+    outcome.missed = sorted({finding["guarantee"] for finding in report["check"]["findings"]})
+    if outcome.creases and not outcome.collar:
+        outcome.differs.append("creases, but no collar")
+    if judging:
+        said = judge(judging, case, question, mesh, report)
+        if isinstance(said, str):
+            outcome.differs.append(said)
+        else:
+            compare(outcome, said, report, asked(question, "--radius-edge", 2))
+    if question[:1] == ("--vertex-ratio",) and outcome.code == 0 and not outcome.warned:
+        outcome.differs.append("no warning")
+    return outcome
+
+
+header = ["option", "meshes", "with creases", "with collars there", "exit code 7", "no mesh", "warned", "ratio everywhere outside collars",
+          "largest angle in collars", "tets", "judge differs"]
+
+
+def row(question: tuple[str, ...], outcomes: list[Outcome]) -> list[str]:
+    meshes = [o for o in outcomes if o.code in (0, 7)]
+    return [" ".join(question) or "none", str(len(meshes)), str(sum(o.creases > 0 for o in meshes)),
+            str(sum(o.creases > 0 and o.collar > 0 for o in meshes)), str(sum(o.code == 7 for o in meshes)),
+            str(len(outcomes) - len(meshes)), str(sum(o.warned for o in meshes)), str(sum(o.within for o in meshes)),
+            f"{max((o.largest for o in meshes), default=0):.1f}", si(sum(o.tets for o in meshes)),
+            str(sum(bool(o.differs) for o in meshes))]
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    root = Path(__file__).resolve().parents[2]
+    parser.add_argument("--build", type=Path, default=root / "build" / "bench")
+    parser.add_argument("--corpus", type=Path, default=os.environ.get("COLLARMESH_CORPUS"))
+    parser.add_argument("--only", nargs="*", default=[], help="names of inputs")
+    parser.add_argument("--share", type=float, default=12, help="size of the corpus: the diagonal over this")
+    parser.add_argument("--time-limit", type=float, default=120)
+    parser.add_argument("--core", type=int)
+    options = parser.parse_args()
+    about = machine(options.build)
+    pin_to_core(options.core)
+    program, judging = options.build / "bin" / "collarmesh", os.environ.get("COLLARMESH_JUDGE")
+    folder = SizeCache().folder / "asked"
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    groups = {"acute families": acute_cases(options.build / "bin" / "acute_shape", folder)}
+    if options.corpus:
+        groups["corpus"] = corpus_cases(program, options.corpus, options.share)
+    print(f"{about}.{'' if judging else ' Without a judge.'}\n")
+    remarks: Counter[str] = Counter()
+    for title, cases in groups.items():
+        found: list[list[Outcome]] = [[] for _ in questions]
+        for case in cases:
+            if options.only and case.name not in options.only:
+                continue
+            for question, outcomes in zip(questions, found):
+                outcomes.append(run(program, judging, case, question, folder, options.time_limit))
+                last = outcomes[-1]
+                line = f"{case.name}, {' '.join(question) or 'no option'}: exit code {last.code}"
+                print(line, last, file=sys.stderr, flush=True)
+                if last.code != 0 or last.differs:
+                    remarks[f"{line}: {'; '.join([*last.missed, *last.differs])}"] += 1
+        print(f"{title}:\n\n" + table(header, [row(*pair) for pair in zip(questions, found)]) + "\n", flush=True)
+    print("\n".join(f"- {remark}" for remark in remarks))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
