@@ -3,6 +3,7 @@
 #include <string>
 
 #include "collarmesh/progress.h"
+#include "common/recorded_costs.h"
 #include "process/interrupt.h"
 #include "progress_display.h"
 #include "report/stage_times.h"
@@ -18,6 +19,7 @@ class Stages {
     process::stop_if_interrupted();
     process::note_stage({phase, 0, tets});
     times_.begin(phase);
+    recorded_costs::begin_stage(phase);
     display_.begin_stage(phase, begin, end);
   }
   /// One of those between building the complex and writing, with what is told in it.
