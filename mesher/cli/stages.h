@@ -15,6 +15,10 @@ class Stages {
  public:
   Stages(ProgressStyle style, report::StageTimes& times) : display_(style), times_(times) {}
 
+  Stages(const Stages&) = delete;
+  Stages& operator=(const Stages&) = delete;
+  ~Stages() { recorded_costs::write(); }
+
   void begin(const std::string& phase, double begin, double end, std::size_t tets = 0) {
     process::stop_if_interrupted();
     process::note_stage({phase, 0, tets});

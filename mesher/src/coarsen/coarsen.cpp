@@ -45,7 +45,7 @@ constexpr unsigned most_sweeps = 8;
 constexpr double least_share = 0.005;
 constexpr std::size_t steps_between_reports = 4096;
 // Where more vertices have changed, looking at all tets costs less than finding those at the vertices.
-constexpr std::size_t tets_per_logged_change = 64;
+constexpr std::size_t tets_per_logged_change = 24;
 // Proposals are made for so many items at once, or for this share of them: few of all, so that they hardly
 // meet, but several for each thread.
 constexpr std::size_t most_proposals = 256, items_per_proposal = 256, proposals_per_thread = 4;
@@ -357,6 +357,8 @@ class Coarsening {
       if (q < improved_below && complex()[t].alive && changed_since(t, last_sweep_))
         found.push_back({rank_of_quality(q), t, q});
     });
+    const auto by_place = [](const Poor& a, const Poor& b) { return a.tet < b.tet; };
+    if (!std::is_sorted(all.begin(), all.end(), by_place)) std::sort(all.begin(), all.end(), by_place);
     const std::vector<Poor> poor = in_order(std::move(all));
     last_sweep_ = ++changes_.now;
     bool any = false;
@@ -394,34 +396,52 @@ class Coarsening {
     return std::any_of(v.begin(), v.end(), [&](Index w) { return changes_.at_vertex[w] >= when; });
   }
 
-  // Collects what `look(tet, found)` adds to `found` for tets, in their order: all of those at which a vertex
-  // has changed at this time or later, and others where these are not few.
+  // Collects what `look(tet, found)` adds to `found` for tets: all of those at which a vertex has changed at
+  // this time or later, once each in any order, and others where these are not few.
   template <class Found, class Look>
   std::vector<Found> found_at_changed(std::uint32_t since, const Look& look) const {
-    if (const std::optional<std::vector<Index>> tets = few_changed(since))
-      return found_in_ranges<Found>(
-          tets->size(), [&](std::size_t i, std::vector<Found>& found) { look((*tets)[i], found); });
-    return found_in_ranges<Found>(complex().size(), [&](std::size_t i, std::vector<Found>& found) {
-      look(static_cast<Index>(i), found);
+    const std::optional<std::vector<Index>> vertices = few_changed(since);
+    if (!vertices)
+      return found_in_ranges<Found>(complex().size(), [&](std::size_t i, std::vector<Found>& found) {
+        look(static_cast<Index>(i), found);
+      });
+    constexpr std::size_t at_once = 128;
+    std::vector<std::vector<Found>> parts((vertices->size() + at_once - 1) / at_once);
+    parallel_for_ranges(vertices->size(), at_once, [&](std::size_t first, std::size_t last) {
+      std::vector<Index> star;
+      for (std::size_t i = first; i < last; ++i) {
+        const Index vertex = (*vertices)[i];
+        complex().star(vertex, star);
+        for (const Index t : star)
+          if (first_changed(t, since) == vertex) look(t, parts[first / at_once]);
+      }
     });
+    std::vector<Found> all;
+    for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+    return all;
   }
 
-  // The tets at vertices that have changed since, if these are few and their tets are joined by faces.
+  // The least corner that has changed since.
+  Index first_changed(Index tet, std::uint32_t since) const {
+    Index first = none;
+    for (const Index v : complex()[tet].corners)
+      if (changes_.at_vertex[v] >= since) first = std::min(first, v);
+    return first;
+  }
+
+  // The vertices that have changed since and are there, if they are few and the tets at each are joined by
+  // faces.
   std::optional<std::vector<Index>> few_changed(std::uint32_t since) const {
     if (since < log_begins_) return std::nullopt;
     const auto first = std::partition_point(log_.begin(), log_.end(),
                                             [&](const Changed& changed) { return changed.when < since; });
-    std::vector<Index> vertices, tets, star;
-    for (auto changed = first; changed != log_.end(); ++changed) vertices.push_back(changed->vertex);
+    std::vector<Index> vertices;
+    for (auto changed = first; changed != log_.end(); ++changed)
+      if (complex().in_use(changed->vertex)) vertices.push_back(changed->vertex);
     sort_uniquely(vertices);
-    for (const Index v : vertices) {
-      if (!complex().in_use(v)) continue;
-      if (complex().pinched(v)) return std::nullopt;
-      complex().star(v, star);
-      tets.insert(tets.end(), star.begin(), star.end());
-    }
-    sort_uniquely(tets);
-    return tets;
+    if (std::any_of(vertices.begin(), vertices.end(), [&](Index v) { return complex().pinched(v); }))
+      return std::nullopt;
+    return vertices;
   }
 
   static void sort_uniquely(std::vector<Index>& items) {

@@ -62,8 +62,14 @@ class Record {
   Record(const Record&) = delete;
   Record& operator=(const Record&) = delete;
 
+  // A process that started another one for the work has nothing to tell.
   ~Record() {
+    if (parts_ > 0) write();
+  }
+
+  void write() {
     begin_stage({});
+    parts_ = 0;
     std::FILE* const file = std::fopen(path_.c_str(), "w");
     if (file == nullptr) return;
     std::fputs("stage\tplace\tparts\tpieces\tserial\twork", file);
@@ -120,6 +126,7 @@ class Record {
       spans[w] = part->nests ? std::max(work / static_cast<double>(workers[w]), part->longest[w])
                              : makespan(part->pieces, workers[w]);
     if (outermost) {
+      ++parts_;
       Sum& sum = sums_[{stage_, key}];
       ++sum.parts;
       sum.pieces += part->pieces.size();
@@ -136,7 +143,8 @@ class Record {
 
   std::string path_, stage_ = "start";
   std::thread::id thread_ = std::this_thread::get_id();
-  double last_;  // when the serial part began that is under way
+  std::size_t parts_ = 0;  // since the table was written
+  double last_;            // when the serial part began that is under way
   std::vector<std::unique_ptr<Part>> under_way_;
   std::map<std::pair<std::string, std::string>, Sum> sums_;
 };
@@ -161,6 +169,10 @@ void run(std::size_t count, const std::function<void(std::size_t)>& work, const 
 
 void begin_stage(std::string_view stage) {
   if (the_only != nullptr && the_only->is_here()) the_only->begin_stage(stage);
+}
+
+void write() {
+  if (the_only != nullptr && the_only->is_here()) the_only->write();
 }
 
 }  // namespace collarmesh::recorded_costs

@@ -28,6 +28,10 @@ void run(std::size_t count, const std::function<void(std::size_t)>& work, const 
 /// What follows belongs to this stage.
 void begin_stage(std::string_view stage);
 
+/// Writes the table, which also happens at the end of the program, unless that is a process that ends at
+/// once.
+void write();
+
 }  // namespace recorded_costs
 
 }  // namespace collarmesh
