@@ -1,6 +1,7 @@
 #include "program.h"
 
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <exception>
@@ -82,9 +83,21 @@ bool is_of_threads(const std::exception& error) {
   return std::string_view(error.what()).find("pthread_create") != std::string_view::npos;
 }
 
+// Heeded by all that has its threads from TBB, also outside of the stages' arenas: OpenCASCADE, too. It is
+// never lifted: TBB would make the threads then that had been asked for.
+void limit_threads(const Arguments& arguments) {
+  const unsigned threads =
+      std::visit([](const RunOptions& options) { return options.mesh.threads; }, arguments);
+  if (threads == 0) return;
+  static const auto* const limit =
+      new tbb::global_control(tbb::global_control::max_allowed_parallelism, threads);
+  static_cast<void>(limit);
+}
+
 ExitCode execute(const Arguments& arguments) {
   report_failures_of(arguments);
   const auto command = [&] {
+    limit_threads(arguments);
     process::install_interrupt_handlers();
     return process::run_interruptible(
         [&] { return guarded([&] { return std::visit(Execute(), arguments); }); });

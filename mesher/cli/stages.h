@@ -3,6 +3,7 @@
 #include <string>
 
 #include "collarmesh/progress.h"
+#include "common/recorded_costs.h"
 #include "process/interrupt.h"
 #include "progress_display.h"
 #include "report/stage_times.h"
@@ -14,10 +15,15 @@ class Stages {
  public:
   Stages(ProgressStyle style, report::StageTimes& times) : display_(style), times_(times) {}
 
+  Stages(const Stages&) = delete;
+  Stages& operator=(const Stages&) = delete;
+  ~Stages() { recorded_costs::write(); }
+
   void begin(const std::string& phase, double begin, double end, std::size_t tets = 0) {
     process::stop_if_interrupted();
     process::note_stage({phase, 0, tets});
     times_.begin(phase);
+    recorded_costs::begin_stage(phase);
     display_.begin_stage(phase, begin, end);
   }
   /// One of those between building the complex and writing, with what is told in it.

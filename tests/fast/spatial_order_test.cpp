@@ -6,13 +6,17 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <set>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "common/box_tree.h"
 #include "common/distance_tree.h"
+#include "common/order_by_group.h"
+#include "common/parallel_spatial_order.h"
 #include "location/triangle_hierarchy.h"
 
 namespace collarmesh {
@@ -229,6 +233,32 @@ TEST(BoxTree, MissesNothingNearASegment) {
       }
     EXPECT_LT(found.size(), boxes.size());
   }
+}
+
+TEST(SpatialOrder, IsTheSameByAllThreads) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> anywhere(-1, 1);
+  std::vector<Point> points;
+  for (unsigned i = 0; i < 100000; ++i)
+    points.push_back({anywhere(random), 0.01 * anywhere(random), std::pow(anywhere(random), 9)});
+  for (unsigned i = 0; i < 50; ++i) points.push_back(points[7 * i]);
+  const auto alone = spatial_order(points), together = spatial_order_by_all_threads(points);
+  ASSERT_EQ(alone.size(), together.size());
+  for (std::size_t i = 0; i < alone.size(); ++i) {
+    EXPECT_EQ(alone[i].item, together[i].item);
+    EXPECT_EQ(alone[i].place, together[i].place);
+  }
+}
+
+TEST(OrderByGroup, IsStable) {
+  constexpr std::size_t count = 50000, groups = 3000;
+  const auto group_of = [](std::size_t i) { return i * i % groups; };
+  std::vector<Index> expected(count);
+  std::iota(expected.begin(), expected.end(), Index{0});
+  std::stable_sort(expected.begin(), expected.end(),
+                   [&](Index a, Index b) { return group_of(a) < group_of(b); });
+  EXPECT_EQ(order_by_group(groups, count, group_of), expected);
+  EXPECT_TRUE(order_by_group(groups, 0, group_of).empty());
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <climits>
 #include <cmath>
+#include <optional>
 
 #include "coarsen/coarsen_workpiece.h"
 #include "coarsen/proposals.h"
@@ -43,6 +44,8 @@ constexpr unsigned most_sweeps = 8;
 // improvement before it has ended by itself, all vertices are asked again.
 constexpr double least_share = 0.005;
 constexpr std::size_t steps_between_reports = 4096;
+// Where more vertices have changed, looking at all tets costs less than finding those at the vertices.
+constexpr std::size_t tets_per_logged_change = 24;
 // Proposals are made for so many items at once, or for this share of them: few of all, so that they hardly
 // meet, but several for each thread.
 constexpr std::size_t most_proposals = 256, items_per_proposal = 256, proposals_per_thread = 4;
@@ -176,33 +179,61 @@ class Coarsening {
   // with or without repairs; those with the shortest edge first.
   std::vector<Candidate> find_candidates(bool repair) const {
     const std::uint32_t last = repair ? std::min(last_pass_, last_repairs_) : last_pass_;
-    const auto ends =
-        found_in_ranges<ShortEdge>(complex().size(), [&](std::size_t t, std::vector<ShortEdge>& found) {
-          const auto tet = static_cast<Index>(t);
-          if (complex()[tet].alive && changed_since(tet, last)) find_short_edges(tet, found);
-        });
-    std::vector<double> shortest(mesh().points.size(), INFINITY);
-    for (const auto& [length, v] : ends) shortest[v] = std::min(shortest[v], length);
+    const auto ends = found_at_changed<ShortEdge>(last, [&](Index tet, std::vector<ShortEdge>& found) {
+      if (complex()[tet].alive && changed_since(tet, last)) find_short_edges(tet, found);
+    });
     std::vector<Candidate> candidates;
-    for (Index v = 0; v < shortest.size(); ++v) {
-      const unsigned dimension = mesh().features[v].dimension;
-      if (dimension == 0 || !(shortest[v] < (dimension == 3 ? square(asked_inside_below) : INFINITY)))
-        continue;
-      const bool repairs = repair && shortest[v] < square(repaired_below);
+    for (const auto& [shortest, v] : shortest_of_each(ends)) {
+      const bool repairs = repair && shortest < square(repaired_below);
       if (changes_.at_vertex[v] >= (repairs ? last_repairs_ : last_pass_))
-        candidates.push_back({static_cast<int>(ranks_of_lengths * shortest[v]), v, repairs});
+        candidates.push_back({static_cast<int>(ranks_of_lengths * shortest), v, repairs});
     }
     return in_order(std::move(candidates));
   }
 
+  // The shortest edge at each end, in the order of ends.
+  std::vector<ShortEdge> shortest_of_each(std::vector<ShortEdge> edges) const {
+    constexpr std::size_t points_per_edge = 16;
+    const std::size_t points = mesh().points.size();
+    std::vector<ShortEdge> found;
+    if (edges.size() < points / points_per_edge) {
+      std::sort(edges.begin(), edges.end(), [](const ShortEdge& a, const ShortEdge& b) {
+        return a.end != b.end ? a.end < b.end : a.squared_relative_length < b.squared_relative_length;
+      });
+      for (const ShortEdge& edge : edges)
+        if (found.empty() || found.back().end != edge.end) found.push_back(edge);
+      return found;
+    }
+    std::vector<double> shortest(points, INFINITY);
+    for (const auto& [length, v] : edges) shortest[v] = std::min(shortest[v], length);
+    for (Index v = 0; v < points; ++v)
+      if (shortest[v] < INFINITY) found.push_back({shortest[v], v});
+    return found;
+  }
+
+  // Those at which a vertex is asked. Most edges are found long enough without a division.
   void find_short_edges(Index tet, std::vector<ShortEdge>& ends) const {
+    constexpr double surely = 1 + 1e-9;
     const auto& v = complex()[tet].corners;
+    const auto p = complex().corners(tet);
+    const std::array<double, 4> size{sizes_[v[0]], sizes_[v[1]], sizes_[v[2]], sizes_[v[3]]};
     for (unsigned i = 0; i < 4; ++i)
-      for (unsigned j = i + 1; j < 4; ++j)
-        if (const double length = squared_relative_length(v[i], v[j]); is_short(length)) {
-          ends.push_back({length, v[i]});
-          ends.push_back({length, v[j]});
-        }
+      for (unsigned j = i + 1; j < 4; ++j) {
+        const double twice_target = size[i] + size[j];
+        if (squared_distance(p[i], p[j]) >
+            0.25 * surely * square(contracted_below) * twice_target * twice_target)
+          continue;
+        const double length = squared_relative_length(v[i], v[j]);
+        if (!is_short(length)) continue;
+        if (is_asked(v[i], length)) ends.push_back({length, v[i]});
+        if (is_asked(v[j], length)) ends.push_back({length, v[j]});
+      }
+  }
+
+  // With an edge of this squared relative length?
+  bool is_asked(Index vertex, double length) const {
+    const unsigned dimension = mesh().features[vertex].dimension;
+    return dimension != 0 && (dimension < 3 || length < square(asked_inside_below));
   }
 
   // Every vertex once. Is another pass worthwhile?
@@ -320,14 +351,14 @@ class Coarsening {
       double quality;
     };
     known_qualities_.resize(complex().size(), NAN);
-    std::vector<Poor> all =
-        found_in_ranges<Poor>(complex().size(), [&](std::size_t i, std::vector<Poor>& found) {
-          const auto t = static_cast<Index>(i);
-          double& q = known_qualities_[t];
-          if (std::isnan(q)) q = quality_if_improvable(t);
-          if (q < improved_below && complex()[t].alive && changed_since(t, last_sweep_))
-            found.push_back({rank_of_quality(q), t, q});
-        });
+    std::vector<Poor> all = found_at_changed<Poor>(last_sweep_, [&](Index t, std::vector<Poor>& found) {
+      double& q = known_qualities_[t];
+      if (std::isnan(q)) q = quality_if_improvable(t);
+      if (q < improved_below && complex()[t].alive && changed_since(t, last_sweep_))
+        found.push_back({rank_of_quality(q), t, q});
+    });
+    const auto by_place = [](const Poor& a, const Poor& b) { return a.tet < b.tet; };
+    if (!std::is_sorted(all.begin(), all.end(), by_place)) std::sort(all.begin(), all.end(), by_place);
     const std::vector<Poor> poor = in_order(std::move(all));
     last_sweep_ = ++changes_.now;
     bool any = false;
@@ -365,6 +396,59 @@ class Coarsening {
     return std::any_of(v.begin(), v.end(), [&](Index w) { return changes_.at_vertex[w] >= when; });
   }
 
+  // Collects what `look(tet, found)` adds to `found` for tets: all of those at which a vertex has changed at
+  // this time or later, once each in any order, and others where these are not few.
+  template <class Found, class Look>
+  std::vector<Found> found_at_changed(std::uint32_t since, const Look& look) const {
+    const std::optional<std::vector<Index>> vertices = few_changed(since);
+    if (!vertices)
+      return found_in_ranges<Found>(complex().size(), [&](std::size_t i, std::vector<Found>& found) {
+        look(static_cast<Index>(i), found);
+      });
+    constexpr std::size_t at_once = 128;
+    std::vector<std::vector<Found>> parts((vertices->size() + at_once - 1) / at_once);
+    parallel_for_ranges(vertices->size(), at_once, [&](std::size_t first, std::size_t last) {
+      std::vector<Index> star;
+      for (std::size_t i = first; i < last; ++i) {
+        const Index vertex = (*vertices)[i];
+        complex().star(vertex, star);
+        for (const Index t : star)
+          if (first_changed(t, since) == vertex) look(t, parts[first / at_once]);
+      }
+    });
+    std::vector<Found> all;
+    for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+    return all;
+  }
+
+  // The least corner that has changed since.
+  Index first_changed(Index tet, std::uint32_t since) const {
+    Index first = none;
+    for (const Index v : complex()[tet].corners)
+      if (changes_.at_vertex[v] >= since) first = std::min(first, v);
+    return first;
+  }
+
+  // The vertices that have changed since and are there, if they are few and the tets at each are joined by
+  // faces.
+  std::optional<std::vector<Index>> few_changed(std::uint32_t since) const {
+    if (since < log_begins_) return std::nullopt;
+    const auto first = std::partition_point(log_.begin(), log_.end(),
+                                            [&](const Changed& changed) { return changed.when < since; });
+    std::vector<Index> vertices;
+    for (auto changed = first; changed != log_.end(); ++changed)
+      if (complex().in_use(changed->vertex)) vertices.push_back(changed->vertex);
+    sort_uniquely(vertices);
+    if (std::any_of(vertices.begin(), vertices.end(), [&](Index v) { return complex().pinched(v); }))
+      return std::nullopt;
+    return vertices;
+  }
+
+  static void sort_uniquely(std::vector<Index>& items) {
+    std::sort(items.begin(), items.end());
+    items.erase(std::unique(items.begin(), items.end()), items.end());
+  }
+
   const std::vector<Index>& apply(Change change) {
     tets_ -= change.replacement.old.size();
     tets_ += change.replacement.created.size();
@@ -392,13 +476,23 @@ class Coarsening {
   // What was changed stays.
   void settle() {
     ++changes_.now;
-    for (const Index v : touched_vertices_) changes_.at_vertex[v] = changes_.now;
+    if (log_.size() > complex().size() / tets_per_logged_change) {
+      log_.clear();
+      log_begins_ = changes_.now;
+    }
+    for (const Index v : touched_vertices_) note_change(v);
     known_qualities_.resize(complex().size(), NAN);
     for (const Index t : touched_) {
       known_qualities_[t] = NAN;
       if (complex()[t].alive)
-        for (const Index v : complex()[t].corners) changes_.at_vertex[v] = changes_.now;
+        for (const Index v : complex()[t].corners) note_change(v);
     }
+  }
+
+  void note_change(Index vertex) {
+    if (changes_.at_vertex[vertex] == changes_.now) return;
+    changes_.at_vertex[vertex] = changes_.now;
+    log_.push_back({changes_.now, vertex});
   }
 
   // The cells of collars are not what they were.
@@ -420,10 +514,16 @@ class Coarsening {
   std::size_t tets_ = 0;
   std::uint32_t last_pass_ = 0, last_repairs_ = 0;  // when the last pass of any kind, and with repairs, began
   std::uint32_t last_sweep_ = 0;                    // of improvement
-  std::vector<Index> touched_;                      // tets that were made or changed
-  std::vector<Index> touched_vertices_;             // of tets that went
-  std::vector<double> trial_qualities_;             // by tet, of those a trial changed
-  std::vector<double> known_qualities_;             // by tet; infinite where good enough, NaN if not known
+  struct Changed {
+    std::uint32_t when;
+    Index vertex;
+  };
+  std::vector<Changed> log_;             // what `changes_` was told last
+  std::uint32_t log_begins_ = 1;         // since when it is complete
+  std::vector<Index> touched_;           // tets that were made or changed
+  std::vector<Index> touched_vertices_;  // of tets that went
+  std::vector<double> trial_qualities_;  // by tet, of those a trial changed
+  std::vector<double> known_qualities_;  // by tet; infinite where good enough, NaN if not known
   CoarsenReport report_;
 };
 

@@ -17,7 +17,8 @@ namespace collarmesh {
 /// Both are called by several threads at once. Cost: linear; memory for all items once, each with a number of
 /// 32 bits.
 template <class Item, class Visit, class Use>
-void for_each_group(std::size_t groups, std::size_t count, const Visit& visit, const Use& use) {
+void for_each_group(std::size_t groups, std::size_t count, const Visit& visit, const Use& use,
+                    const recorded_costs::Place& place = {__builtin_FILE(), __builtin_LINE()}) {
   // Items are dealt to ranges of groups first, so that the rest happens in a processor's cache.
   constexpr std::size_t least_chunk = 8192, most_chunks = 64, least_range = 1024, most_ranges = 1024;
   const auto parts = [](std::size_t n, std::size_t least, std::size_t most) {
@@ -34,9 +35,12 @@ void for_each_group(std::size_t groups, std::size_t count, const Visit& visit, c
     Item item;
   };
   std::vector<std::size_t> next(chunks * ranges, 0);  // where a chunk's next item of a range goes
-  parallel_for(chunks, [&](std::size_t c) {
-    visit_chunk(c, [&](std::size_t group, const Item&) { ++next[c * ranges + group / range]; });
-  });
+  parallel_for(
+      chunks,
+      [&](std::size_t c) {
+        visit_chunk(c, [&](std::size_t group, const Item&) { ++next[c * ranges + group / range]; });
+      },
+      place);
   std::vector<std::size_t> first(ranges + 1, 0);
   for (std::size_t r = 0, sum = 0; r < ranges; first[++r] = sum)
     for (std::size_t c = 0; c < chunks; ++c) {
@@ -45,23 +49,29 @@ void for_each_group(std::size_t groups, std::size_t count, const Visit& visit, c
       sum += items;
     }
   const LargeBlock<Dealt> dealt(first.back());
-  parallel_for(chunks, [&](std::size_t c) {
-    visit_chunk(c, [&](std::size_t group, const Item& item) {
-      const std::size_t r = group / range;
-      dealt[next[c * ranges + r]++] = {static_cast<std::uint32_t>(group - r * range), item};
-    });
-  });
-  parallel_for(ranges, [&](std::size_t r) {
-    const std::span<const Dealt> all(&dealt[0] + first[r], first[r + 1] - first[r]);
-    std::vector<std::size_t> end(range + 1, 0);
-    for (const Dealt& d : all) ++end[d.group + 1];
-    for (std::size_t g = 1; g <= range; ++g) end[g] += end[g - 1];
-    std::vector<Item> items(all.size());
-    for (const Dealt& d : all) items[end[d.group]++] = d.item;  // afterwards end[g] is where group g ends
-    std::size_t begin = 0;
-    for (std::size_t g = 0; g < range && begin < items.size(); begin = end[g++])
-      if (end[g] > begin) use(r * range + g, std::span(items).subspan(begin, end[g] - begin));
-  });
+  parallel_for(
+      chunks,
+      [&](std::size_t c) {
+        visit_chunk(c, [&](std::size_t group, const Item& item) {
+          const std::size_t r = group / range;
+          dealt[next[c * ranges + r]++] = {static_cast<std::uint32_t>(group - r * range), item};
+        });
+      },
+      place);
+  parallel_for(
+      ranges,
+      [&](std::size_t r) {
+        const std::span<const Dealt> all(&dealt[0] + first[r], first[r + 1] - first[r]);
+        std::vector<std::size_t> end(range + 1, 0);
+        for (const Dealt& d : all) ++end[d.group + 1];
+        for (std::size_t g = 1; g <= range; ++g) end[g] += end[g - 1];
+        std::vector<Item> items(all.size());
+        for (const Dealt& d : all) items[end[d.group]++] = d.item;  // afterwards end[g] is where group g ends
+        std::size_t begin = 0;
+        for (std::size_t g = 0; g < range && begin < items.size(); begin = end[g++])
+          if (end[g] > begin) use(r * range + g, std::span(items).subspan(begin, end[g] - begin));
+      },
+      place);
 }
 
 }  // namespace collarmesh

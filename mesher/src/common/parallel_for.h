@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "common/recorded_costs.h"
+
 #ifdef __SANITIZE_THREAD__
 #include <atomic>
 #include <thread>
@@ -16,7 +18,9 @@ namespace collarmesh {
 /// Calls `work(i)` for all i below `count`, by the threads of the caller's arena. Returns when all are
 /// done. With GCC's ThreadSanitizer `work` must not throw.
 template <class Work>
-void parallel_for(std::size_t count, const Work& work) {
+void parallel_for(std::size_t count, const Work& work,
+                  const recorded_costs::Place& place = {__builtin_FILE(), __builtin_LINE()}) {
+  if (recorded_costs::on) return recorded_costs::run(count, work, place);
 #ifdef __SANITIZE_THREAD__
   // It does not see how TBB's library, which is not built with it, orders what threads do. There are so many
   // on any machine.
@@ -36,9 +40,10 @@ void parallel_for(std::size_t count, const Work& work) {
 /// Calls `work(first, last)` for all numbers below `count`, in ranges of this length and a shorter one at the
 /// end.
 template <class Work>
-void parallel_for_ranges(std::size_t count, std::size_t length, const Work& work) {
+void parallel_for_ranges(std::size_t count, std::size_t length, const Work& work,
+                         const recorded_costs::Place& place = {__builtin_FILE(), __builtin_LINE()}) {
   parallel_for((count + length - 1) / length,
-               [&](std::size_t i) { work(i * length, std::min((i + 1) * length, count)); });
+               [&](std::size_t i) { work(i * length, std::min((i + 1) * length, count)); }, place);
 }
 
 }  // namespace collarmesh

@@ -5,6 +5,10 @@
 #include <boost/sort/spreadsort/integer_sort.hpp>
 #include <cassert>
 #include <cmath>
+#include <optional>
+
+#include "common/order_by_group.h"
+#include "common/parallel_spatial_order.h"
 
 namespace collarmesh {
 
@@ -29,18 +33,10 @@ std::uint64_t place_in(const Box& bounds, double scale, const Point& p) {
   return along(bounds.min.x, p.x) << 2 | along(bounds.min.y, p.y) << 1 | along(bounds.min.z, p.z);
 }
 
-// Along the curve through the cells of their own box; then those that share a cell, in the same way.
-void put_in_order(std::span<SpatialKey> keys, std::span<const Point> points) {
-  Box bounds;
-  for (const SpatialKey& key : keys) bounds.add(points[key.item]);
-  const Vector sides = bounds.max - bounds.min;
-  const double scale = cells_per_axis / std::max({sides.x, sides.y, sides.z});
-  if (!(scale > 0 && std::isfinite(scale))) {  // one point, or an extent that has no cells
-    std::sort(keys.begin(), keys.end(),
-              [](const SpatialKey& a, const SpatialKey& b) { return a.item < b.item; });
-    return;
-  }
-  for (SpatialKey& key : keys) key.place = place_in(bounds, scale, points[key.item]);
+void put_in_order(std::span<SpatialKey> keys, std::span<const Point> points);
+
+// Those that share a cell in the order of the curve through cells of their own box.
+void sort_by_places(std::span<SpatialKey> keys, std::span<const Point> points) {
   boost::sort::spreadsort::integer_sort(
       keys.begin(), keys.end(), [](const SpatialKey& key, unsigned shift) { return key.place >> shift; },
       [](const SpatialKey& a, const SpatialKey& b) { return a.place < b.place; });
@@ -56,6 +52,42 @@ void put_in_order(std::span<SpatialKey> keys, std::span<const Point> points) {
   }
 }
 
+// Of the cells along an axis there are so many to a unit of length. None for one point, or an extent that has
+// no cells.
+std::optional<double> scale_of(const Box& bounds) {
+  const Vector sides = bounds.max - bounds.min;
+  const double scale = cells_per_axis / std::max({sides.x, sides.y, sides.z});
+  return scale > 0 && std::isfinite(scale) ? std::optional(scale) : std::nullopt;
+}
+
+// Along the curve through the cells of their own box.
+void put_in_order(std::span<SpatialKey> keys, std::span<const Point> points) {
+  Box bounds;
+  for (const SpatialKey& key : keys) bounds.add(points[key.item]);
+  const std::optional<double> scale = scale_of(bounds);
+  if (!scale) {
+    std::sort(keys.begin(), keys.end(),
+              [](const SpatialKey& a, const SpatialKey& b) { return a.item < b.item; });
+    return;
+  }
+  for (SpatialKey& key : keys) key.place = place_in(bounds, *scale, points[key.item]);
+  sort_by_places(keys, points);
+}
+
+constexpr std::size_t points_at_once = 8192;
+
+Box box_of(std::span<const Point> points) {
+  std::vector<Box> boxes((points.size() + points_at_once - 1) / points_at_once);
+  parallel_for_ranges(points.size(), points_at_once, [&](std::size_t first, std::size_t last) {
+    Box box;
+    for (std::size_t i = first; i < last; ++i) box.add(points[i]);
+    boxes[first / points_at_once] = box;
+  });
+  Box box;
+  for (const Box& part : boxes) box.add(part);
+  return box;
+}
+
 }  // namespace
 
 std::vector<SpatialKey> spatial_order(std::span<const Point> points) {
@@ -63,6 +95,37 @@ std::vector<SpatialKey> spatial_order(std::span<const Point> points) {
   keys.reserve(points.size());
   for (Index item = 0; item < points.size(); ++item) keys.push_back({0, item});
   put_in_order(keys, points);
+  return keys;
+}
+
+// The cells of the highest bits first, then what is in each of them.
+std::vector<SpatialKey> spatial_order_by_all_threads(std::span<const Point> points) {
+  constexpr std::size_t many = 32768;
+  if (points.size() < many) return spatial_order(points);
+  constexpr unsigned bits = 63, bits_of_parts = 12;
+  constexpr std::size_t parts = std::size_t{1} << bits_of_parts;
+  const Box bounds = box_of(points);
+  const std::optional<double> scale = scale_of(bounds);
+  std::vector<std::uint64_t> places(points.size(), 0);
+  if (scale)
+    parallel_for_ranges(points.size(), points_at_once, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) places[i] = place_in(bounds, *scale, points[i]);
+    });
+  const auto part_of = [&](std::size_t i) { return places[i] >> (bits - bits_of_parts); };
+  const std::vector<Index> order = order_by_group(parts, points.size(), part_of);
+  std::vector<SpatialKey> keys(points.size());
+  parallel_for_ranges(points.size(), points_at_once, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) keys[i] = {places[order[i]], order[i]};
+  });
+  if (!scale) return keys;
+  parallel_for(parts, [&](std::size_t part) {
+    const auto before = [&](const SpatialKey& key, std::uint64_t p) {
+      return key.place >> (bits - bits_of_parts) < p;
+    };
+    const auto first = std::lower_bound(keys.begin(), keys.end(), part, before),
+               last = std::lower_bound(first, keys.end(), part + 1, before);
+    if (first != last) sort_by_places({first, last}, points);
+  });
   return keys;
 }
 

@@ -4,6 +4,8 @@
 #include <tbb/info.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <latch>
 #include <memory>
 #include <stdexcept>
@@ -12,6 +14,7 @@
 #include <vector>
 
 #include "common/parallel_for.h"
+#include "common/recorded_costs.h"
 
 namespace collarmesh {
 
@@ -43,12 +46,24 @@ bool tbb_has_its_threads(int threads) {
   return true;
 }
 
+/// COLLARMESH_CORES in the environment takes the place of the number of cores, for tests on small machines.
+int cores_to_use(int there) {
+  constexpr int most = 1024;
+  const char* const wanted = std::getenv("COLLARMESH_CORES");
+  return wanted == nullptr ? there : std::clamp(std::atoi(wanted), 1, most);
+}
+
 class Threads {
  public:
   Threads() {
-    const int cores = tbb::info::default_concurrency();
+    const int there = tbb::info::default_concurrency(), cores = cores_to_use(there);
+    if (recorded_costs::on) {
+      count_ = cores;
+      keep_to(cores);
+      return;
+    }
     count_ = count_threads(cores);
-    if (count_ < cores) keep_to(count_);
+    if (count_ < cores || cores > there) keep_to(count_);
     if (count_ == 1 || tbb_has_its_threads(count_)) return;
     count_ = 1;
     keep_to(count_);

@@ -1,6 +1,7 @@
 #include "improve/tet_complex.h"
 
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cassert>
@@ -9,7 +10,9 @@
 #include "common/groups.h"
 #include "common/index_set.h"
 #include "common/large_pages.h"
+#include "common/note_last.h"
 #include "common/parallel_for.h"
+#include "common/resize_by_all_threads.h"
 #include "common/simplices_at_vertex.h"
 
 namespace collarmesh::improvement {
@@ -55,9 +58,9 @@ void drop(const Cell& lost, std::vector<Cell>& cells, std::vector<Of>&... of_cel
 }  // namespace
 
 TetComplex::TetComplex(TetMesh& mesh, const KnownNeighbours& neighbours) : mesh_(mesh) {
-  tets_.resize(mesh.tets.size());
-  origin_.resize(mesh.tets.size());
-  const bool has_balls = !mesh.collar_balls.empty();
+  resize_by_all_threads(tets_, mesh.tets.size());
+  resize_by_all_threads(origin_, mesh.tets.size());
+  const bool has_balls = !mesh.collar_balls.empty(), alone = tbb::this_task_arena::max_concurrency() == 1;
   vertex_tet_.assign(mesh.points.size(), none);
   constexpr std::array<Index, 4> nothing{none, none, none, none};
   parallel_for_ranges(mesh.tets.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
@@ -66,10 +69,9 @@ TetComplex::TetComplex(TetMesh& mesh, const KnownNeighbours& neighbours) : mesh_
       tets_[t] = {
           mesh.tets[t], across, nothing, mesh.tet_region[t], 0, true, has_balls && mesh.tet_collar[t] != 0};
       origin_[t] = static_cast<Index>(t);
+      for (const Index v : mesh.tets[t]) note_last(vertex_tet_[v], static_cast<Index>(t), alone);
     }
   });
-  for (Index t = 0; t < mesh.tets.size(); ++t)
-    for (const Index v : mesh.tets[t]) vertex_tet_[v] = t;
   stamps_.assign(tets_.size(), 0);
   link(!neighbours.empty());
   find_pinched_vertices();
@@ -123,9 +125,12 @@ void TetComplex::link(bool some_are_known) {
 
 // Bodies touch in vertices and curves of the complex only.
 void TetComplex::find_pinched_vertices() {
+  const auto corners = found_in_ranges<Index>(tets_.size(), [&](std::size_t t, std::vector<Index>& found) {
+    for (const Index v : tets_[t].corners)
+      if (mesh_.features[v].dimension <= 1) found.push_back(v);
+  });
   std::vector<Index> count(mesh_.points.size(), 0);
-  for (const Tet& tet : tets_)
-    for (const Index v : tet.corners) ++count[v];
+  for (const Index v : corners) ++count[v];
   std::vector<Index> around;
   for (Index v = 0; v < mesh_.points.size(); ++v) {
     if (mesh_.features[v].dimension > 1 || vertex_tet_[v] == none) continue;
@@ -482,11 +487,11 @@ void TetComplex::store() {
     if (tets_[t].alive) found.push_back(static_cast<Index>(t));
   });
   TetMesh stored;
-  resize_in_large_pages(stored.tets, alive.size());
-  resize_in_large_pages(stored.tet_region, alive.size());
-  resize_in_large_pages(stored.tet_tag, alive.size());
-  resize_in_large_pages(stored.tet_collar, alive.size());
-  resize_in_large_pages(stored.tet_crease, alive.size());
+  resize_by_all_threads(stored.tets, alive.size());
+  resize_by_all_threads(stored.tet_region, alive.size());
+  resize_by_all_threads(stored.tet_tag, alive.size());
+  resize_by_all_threads(stored.tet_collar, alive.size());
+  resize_by_all_threads(stored.tet_crease, alive.size());
   parallel_for_ranges(alive.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const Index t = alive[i];

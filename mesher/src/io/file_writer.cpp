@@ -21,11 +21,23 @@ void FileWriter::commit() {
   target_.commit();
 }
 
+void FileWriter::append(std::string_view text) {
+  if (text.size() < most_buffered / 2) {
+    *this << text;
+    return;
+  }
+  flush();
+  write(text);
+}
+
 void FileWriter::flush() {
-  const std::string_view text = buffer_.text();
+  write(buffer_.text());
+  buffer_.clear();
+}
+
+void FileWriter::write(std::string_view text) {
   errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) target_.fail(errno);
-  buffer_.clear();
 }
 
 }  // namespace collarmesh::io

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <string>
+#include <string_view>
 
 #include "io/text_buffer.h"
 #include "io/unfinished_file.h"
@@ -25,6 +26,8 @@ class FileWriter {
     return *this;
   }
 
+  /// Appends text as it is, without a copy where it is long.
+  void append(std::string_view text);
   /// Flush, close and rename.
   void commit();
 
@@ -32,6 +35,7 @@ class FileWriter {
   static constexpr std::size_t most_buffered = 1 << 16;
 
   void flush();
+  void write(std::string_view text);
 
   UnfinishedFile target_;
   std::FILE* file_ = nullptr;

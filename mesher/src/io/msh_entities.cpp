@@ -1,11 +1,15 @@
 #include "io/msh_entities.h"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <functional>
 #include <limits>
 #include <unordered_map>
 #include <utility>
 
+#include "common/note_last.h"
+#include "common/parallel_for.h"
 #include "io/cell_partitions.h"
 
 namespace collarmesh::io {
@@ -77,9 +81,40 @@ Index number_of(Index feature) { return feature == none ? 0 : feature + 1; }
 
 using Tables = std::array<EntityTable, 4>;
 
+constexpr std::size_t tets_at_once = 16384;
+
+std::size_t ranges_of(std::size_t count) { return (count + tets_at_once - 1) / tets_at_once; }
+
+/// Entities are numbered in the order of the first tets that they have.
+void assign_tets(const TetMesh& mesh, EntityTable& table, std::vector<Index>& of_tet) {
+  using Key = std::pair<Index, Tag>;
+  const auto key_of = [&](std::size_t tet) { return Key(mesh.tet_region[tet], mesh.tet_tag[tet]); };
+  struct Run {
+    Key key;
+    std::size_t first;
+    Index entity = none;
+  };
+  std::vector<std::vector<Run>> runs(ranges_of(mesh.tets.size()));
+  parallel_for_ranges(mesh.tets.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
+    std::vector<Run>& found = runs[first / tets_at_once];
+    for (std::size_t i = first; i < last; ++i)
+      if (const Key key = key_of(i); found.empty() || found.back().key != key) found.push_back({key, i});
+  });
+  for (std::vector<Run>& of_range : runs)
+    for (Run& run : of_range) run.entity = table.find(run.key.first, run.key.second);
+  of_tet.resize(mesh.tets.size());
+  parallel_for_ranges(mesh.tets.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
+    const std::vector<Run>& found = runs[first / tets_at_once];
+    for (std::size_t r = 0; r < found.size(); ++r)
+      std::fill(
+          of_tet.begin() + static_cast<std::ptrdiff_t>(found[r].first),
+          of_tet.begin() + static_cast<std::ptrdiff_t>(r + 1 < found.size() ? found[r + 1].first : last),
+          found[r].entity);
+  });
+}
+
 void assign_cells(const TetMesh& mesh, Tables& tables, MshEntities& result) {
-  for (std::size_t i = 0; i < mesh.tets.size(); ++i)
-    result.of_tet.push_back(tables[3].find(mesh.tet_region[i], mesh.tet_tag[i]));
+  assign_tets(mesh, tables[3], result.of_tet);
   for (std::size_t i = 0; i < mesh.faces.size(); ++i)
     result.of_face.push_back(tables[2].find(number_of(mesh.face_patch[i]), mesh.face_tag[i]));
   for (std::size_t i = 0; i < mesh.edges.size(); ++i)
@@ -93,11 +128,25 @@ void place_corners(const Cells& cells, const std::vector<Index>& entities, std::
     for (const Index v : cells[i]) result.of_point[v] = {dimension, entities[i]};
 }
 
+/// As place_corners of all tets: a point is placed by its last tet.
+void place_corners_of_tets(const TetMesh& mesh, MshEntities& result) {
+  const bool alone = tbb::this_task_arena::max_concurrency() == 1;
+  std::vector<Index> last_tet(mesh.points.size(), none);
+  parallel_for_ranges(mesh.tets.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
+    for (std::size_t t = first; t < last; ++t)
+      for (const Index v : mesh.tets[t]) note_last(last_tet[v], static_cast<Index>(t), alone);
+  });
+  parallel_for_ranges(mesh.points.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
+    for (std::size_t v = first; v < last; ++v)
+      if (last_tet[v] != none) result.of_point[v] = {3, result.of_tet[last_tet[v]]};
+  });
+}
+
 /// By the features of the vertices where they are known, else by the cells around.
 void place_points(const TetMesh& mesh, Tables& tables, MshEntities& result) {
   if (mesh.tets.empty()) tables[3].find(1);
   result.of_point.resize(mesh.points.size());
-  place_corners(mesh.tets, result.of_tet, 3, result);
+  place_corners_of_tets(mesh, result);
   place_corners(mesh.tet_mid_nodes, result.of_tet, 3, result);
   place_corners(mesh.faces, result.of_face, 2, result);
   place_corners(mesh.face_mid_nodes, result.of_face, 2, result);
@@ -111,12 +160,29 @@ void place_points(const TetMesh& mesh, Tables& tables, MshEntities& result) {
   }
 }
 
+void find_boxes_of_tets(const TetMesh& mesh, MshEntities& result) {
+  struct Run {
+    Index entity;
+    Box box;
+  };
+  std::vector<std::vector<Run>> runs(ranges_of(mesh.tets.size()));
+  parallel_for_ranges(mesh.tets.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
+    std::vector<Run>& found = runs[first / tets_at_once];
+    for (std::size_t t = first; t < last; ++t) {
+      if (found.empty() || found.back().entity != result.of_tet[t]) found.push_back({result.of_tet[t], {}});
+      for (const Index v : mesh.tets[t]) found.back().box.add(mesh.points[v]);
+    }
+  });
+  for (const std::vector<Run>& of_range : runs)
+    for (const Run& run : of_range) result.of_dimension[3][run.entity].box.add(run.box);
+}
+
 void find_boxes(const TetMesh& mesh, MshEntities& result) {
   const auto add = [&](const auto& cells, const std::vector<Index>& entities, std::size_t dimension) {
     for (std::size_t i = 0; i < cells.size(); ++i)
       for (const Index v : cells[i]) result.of_dimension[dimension][entities[i]].box.add(mesh.points[v]);
   };
-  add(mesh.tets, result.of_tet, 3);
+  find_boxes_of_tets(mesh, result);
   add(mesh.faces, result.of_face, 2);
   add(mesh.edges, result.of_edge, 1);
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/parallel_for.h"
 #include "io/cell_nodes.h"
 #include "io/cell_partitions.h"
 #include "io/label_names.h"
@@ -113,15 +114,32 @@ void write_ghost_elements(FileWriter& out, const TetMesh& mesh, const MshParts& 
 struct Groups {
   std::vector<Index> starts, members;
 
-  Groups(std::size_t entity_count, std::span<const Index> entity_of)
-      : starts(entity_count + 1), members(entity_of.size()) {
-    for (const Index e : entity_of)
-      if (e != none) ++starts[e + 1];
-    for (std::size_t e = 0; e < entity_count; ++e) starts[e + 1] += starts[e];
-    std::vector<Index> next = starts;
-    for (std::size_t i = 0; i < entity_of.size(); ++i)
-      if (entity_of[i] != none) members[next[entity_of[i]]++] = static_cast<Index>(i);
+  /// `entity_of(i)`, for all i below `count`: none for what is in no group.
+  template <class EntityOf>
+  Groups(std::size_t entity_count, std::size_t count, const EntityOf& entity_of) : starts(entity_count + 1) {
+    // Items are counted and placed in chunks, each of which has a place of its own in each group.
+    constexpr std::size_t least_chunk = 16384, most_chunks = 64;
+    const std::size_t chunk = std::max((count + most_chunks - 1) / most_chunks, least_chunk + entity_count);
+    std::vector<std::vector<Index>> next((count + chunk - 1) / chunk);
+    parallel_for_ranges(count, chunk, [&](std::size_t first, std::size_t last) {
+      std::vector<Index> counts(entity_count, 0);
+      for (std::size_t i = first; i < last; ++i)
+        if (const Index e = entity_of(i); e != none) ++counts[e];
+      next[first / chunk] = std::move(counts);
+    });
+    Index sum = 0;
+    for (std::size_t e = 0; e < entity_count; starts[++e] = sum)
+      for (std::vector<Index>& of_chunk : next) sum += std::exchange(of_chunk[e], sum);
+    members.resize(sum);
+    parallel_for_ranges(count, chunk, [&](std::size_t first, std::size_t last) {
+      std::vector<Index>& places = next[first / chunk];
+      for (std::size_t i = first; i < last; ++i)
+        if (const Index e = entity_of(i); e != none) members[places[e]++] = static_cast<Index>(i);
+    });
   }
+  Groups(std::size_t entity_count, std::span<const Index> of)
+      : Groups(entity_count, of.size(), [&](std::size_t i) { return of[i]; }) {}
+
   std::span<const Index> of(std::size_t entity) const {
     return {members.data() + starts[entity], members.data() + starts[entity + 1]};
   }
@@ -134,12 +152,12 @@ struct Groups {
 
 std::vector<Groups> group_points(const MshEntities& entities) {
   std::vector<Groups> result;
-  std::vector<Index> entity_of(entities.of_point.size());
-  for (std::size_t dimension = 0; dimension < 4; ++dimension) {
-    for (std::size_t v = 0; v < entity_of.size(); ++v)
-      entity_of[v] = entities.of_point[v].dimension == dimension ? entities.of_point[v].entity : none;
-    result.emplace_back(entities.of_dimension[dimension].size(), entity_of);
-  }
+  for (std::size_t dimension = 0; dimension < 4; ++dimension)
+    result.emplace_back(entities.of_dimension[dimension].size(), entities.of_point.size(),
+                        [&](std::size_t v) {
+                          const MshEntities::Place& place = entities.of_point[v];
+                          return place.dimension == dimension ? place.entity : none;
+                        });
   return result;
 }
 

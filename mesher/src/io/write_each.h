@@ -3,6 +3,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "common/parallel_for.h"
@@ -11,20 +12,32 @@
 namespace collarmesh::io {
 
 /// `write(text, i)` writes item i to a TextBuffer, for all i below `count`: several threads at once, each
-/// some items that follow each other. The file has them in their order.
+/// some items that follow each other. The file has them in their order. While one thread hands over to the
+/// system what is formatted, the others format what comes next.
 template <class Write>
 void write_each(FileWriter& out, std::size_t count, const Write& write) {
   constexpr std::size_t at_once = 1024, buffers_of_a_thread = 8;
   const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
-  std::vector<TextBuffer> texts(threads > 1 ? threads * buffers_of_a_thread : 1);
-  for (std::size_t first = 0; first < count; first += at_once * texts.size()) {
-    const std::size_t items = std::min(at_once * texts.size(), count - first);
-    parallel_for_ranges(items, at_once, [&](std::size_t begin, std::size_t end) {
-      TextBuffer& text = texts[begin / at_once];
+  const std::size_t buffers = threads > 1 ? threads * buffers_of_a_thread : 1;
+  std::array<std::vector<TextBuffer>, 2> texts{std::vector<TextBuffer>(buffers),
+                                               std::vector<TextBuffer>(buffers)};
+  std::size_t formatted = 0;  // of the buffers of the round before
+  for (std::size_t first = 0, round = 0; first < count || formatted > 0; ++round) {
+    std::vector<TextBuffer>&now = texts[round % 2], &before = texts[(round + 1) % 2];
+    const std::size_t items = std::min(at_once * buffers, count - first);
+    const std::size_t pieces = (items + at_once - 1) / at_once;
+    parallel_for(pieces + 1, [&](std::size_t piece) {
+      if (piece == 0) {
+        for (std::size_t i = 0; i < formatted; ++i) out.append(before[i].text());
+        return;
+      }
+      TextBuffer& text = now[piece - 1];
       text.clear();
-      for (std::size_t i = begin; i < end; ++i) write(text, first + i);
+      const std::size_t begin = first + (piece - 1) * at_once;
+      for (std::size_t i = begin; i < std::min(begin + at_once, first + items); ++i) write(text, i);
     });
-    for (std::size_t i = 0; i * at_once < items; ++i) out << texts[i].text();
+    formatted = pieces;
+    first += items;
   }
 }
 

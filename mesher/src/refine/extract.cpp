@@ -6,8 +6,10 @@
 
 #include "common/found_in_ranges.h"
 #include "common/large_pages.h"
+#include "common/order_by_group.h"
 #include "common/parallel_for.h"
-#include "common/spatial_order.h"
+#include "common/parallel_spatial_order.h"
+#include "common/resize_by_all_threads.h"
 #include "common/thread_limit.h"
 
 namespace collarmesh {
@@ -16,19 +18,16 @@ namespace {
 
 /// The cells by their least points, those that share it as they were.
 std::vector<Index> order_by_least_point(const std::vector<Index>& least_points, std::size_t points) {
-  std::vector<Index> next(points + 1, 0), order;
-  resize_in_large_pages(order, least_points.size());
-  for (const Index p : least_points) ++next[p + 1];
-  for (std::size_t p = 0; p < points; ++p) next[p + 1] += next[p];
-  for (Index c = 0; c < least_points.size(); ++c) order[next[least_points[c]]++] = c;
-  return order;
+  return order_by_group(points, least_points.size(), [&](std::size_t i) { return least_points[i]; });
 }
 
 template <class T>
 void permute(std::vector<T>& values, const std::vector<Index>& order) {
-  std::vector<T> permuted;
-  permuted.reserve(values.size());
-  for (const Index i : order) permuted.push_back(values[i]);
+  std::vector<T> permuted(values.size());
+  constexpr std::size_t at_once = 8192;
+  parallel_for_ranges(values.size(), at_once, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) permuted[i] = values[order[i]];
+  });
   values = std::move(permuted);
 }
 
@@ -71,8 +70,9 @@ class Extraction {
       use(refined_.mesh.corners(cell));
     });
     for (const auto& tet : refined_.stitched.tets) use(tet.corners);
-    for (Index v = 0; v < used.size(); ++v)
-      if (used[v] != 0) vertices_.push_back(v);
+    vertices_ = found_in_ranges<Index>(used.size(), [&](std::size_t v, std::vector<Index>& found) {
+      if (used[v] != 0) found.push_back(static_cast<Index>(v));
+    });
   }
 
   const std::array<Index, 4>& corners(Index tet) const {
@@ -83,14 +83,14 @@ class Extraction {
   // Along a curve through space, so that what is near lies near in memory.
   void add_points() {
     std::vector<Point> places;
-    resize_in_large_pages(places, vertices_.size());
+    resize_by_all_threads(places, vertices_.size());
     parallel_for_ranges(places.size(), at_once, [&](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i)
         places[i] = refined_.domain.frame.outside(refined_.mesh.point(vertices_[i]));
     });
-    const std::vector<SpatialKey> order = spatial_order(places);
-    resize_in_large_pages(mesh_.points, places.size());
-    resize_in_large_pages(mesh_.features, places.size());
+    const std::vector<SpatialKey> order = spatial_order_by_all_threads(places);
+    resize_by_all_threads(mesh_.points, places.size());
+    resize_by_all_threads(mesh_.features, places.size());
     parallel_for_ranges(places.size(), at_once, [&](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) {
         const Index v = vertices_[order[i].item];
@@ -106,7 +106,7 @@ class Extraction {
   void add_tets() {
     const std::size_t count = cells_.size() + refined_.stitched.tets.size();
     std::vector<Index> least;
-    resize_in_large_pages(least, count);
+    resize_by_all_threads(least, count);
     parallel_for_ranges(count, at_once, [&](std::size_t first, std::size_t last) {
       for (std::size_t t = first; t < last; ++t) {
         const auto& v = corners(static_cast<Index>(t));
@@ -114,16 +114,17 @@ class Extraction {
       }
     });
     const std::vector<Index> order = order_by_least_point(least, mesh_.points.size());
-    std::vector<Index> tet_of_cell;
-    reserve_in_large_pages(tet_of_cell, refined_.mesh.cell_capacity());
-    tet_of_cell.resize(refined_.mesh.cell_capacity(), none);
-    resize_in_large_pages(mesh_.tets, count);
-    resize_in_large_pages(mesh_.tet_region, count);
-    resize_in_large_pages(mesh_.tet_tag, count);
-    resize_in_large_pages(mesh_.tet_collar, count);
-    resize_in_large_pages(mesh_.tet_crease, count);
-    resize_in_large_pages(mesh_.tet_thin, count);
-    neighbours_.resize(count);
+    const LargeBlock<Index> tet_of_cell(refined_.mesh.cell_capacity());
+    parallel_for_ranges(refined_.mesh.cell_capacity(), at_once, [&](std::size_t first, std::size_t last) {
+      std::fill(&tet_of_cell[first], &tet_of_cell[first] + (last - first), none);
+    });
+    resize_by_all_threads(mesh_.tets, count);
+    resize_by_all_threads(mesh_.tet_region, count);
+    resize_by_all_threads(mesh_.tet_tag, count);
+    resize_by_all_threads(mesh_.tet_collar, count);
+    resize_by_all_threads(mesh_.tet_crease, count);
+    resize_by_all_threads(mesh_.tet_thin, count);
+    resize_by_all_threads(neighbours_, count);
     parallel_for_ranges(count, at_once, [&](std::size_t first, std::size_t last) {
       for (std::size_t t = first; t < last; ++t)
         if (order[t] < cells_.size()) tet_of_cell[cells_[order[t]]] = static_cast<Index>(t);
@@ -143,7 +144,7 @@ class Extraction {
     });
   }
 
-  void set_cell(std::size_t tet, Index cell, const std::vector<Index>& tet_of_cell) {
+  void set_cell(std::size_t tet, Index cell, const LargeBlock<Index>& tet_of_cell) {
     set_labels(tet, refined_.surface.region(cell), 0, 0);
     for (unsigned corner = 0; corner < 4; ++corner) {
       const FaceId beyond = refined_.mesh.opposite(face_id(cell, corner));

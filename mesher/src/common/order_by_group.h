@@ -1,0 +1,69 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "collarmesh/geometry.h"
+#include "common/large_pages.h"
+#include "common/parallel_for.h"
+
+namespace collarmesh {
+
+/// Returns all numbers below `count` in the order of their groups, which are below `groups`, and in each
+/// group in their own order. `group_of(i)` is called several times, by several threads at once. Linear.
+template <class GroupOf>
+std::vector<Index> order_by_group(std::size_t groups, std::size_t count, const GroupOf& group_of,
+                                  const recorded_costs::Place& place = {__builtin_FILE(), __builtin_LINE()}) {
+  // Items are dealt to ranges of groups first, so that the rest happens in a processor's cache.
+  constexpr std::size_t least_chunk = 8192, most_chunks = 64, least_range = 1024, most_ranges = 1024;
+  const auto parts = [](std::size_t n, std::size_t least, std::size_t most) {
+    return std::max((n + most - 1) / most, least);
+  };
+  const std::size_t chunk = parts(count, least_chunk, most_chunks);
+  const std::size_t range = parts(groups, least_range, most_ranges);
+  const std::size_t chunks = (count + chunk - 1) / chunk, ranges = (groups + range - 1) / range;
+  std::vector<Index> next(chunks * ranges, 0),
+      first(ranges + 1, 0);  // where a chunk's next item of a range goes
+  parallel_for_ranges(
+      count, chunk,
+      [&](std::size_t begin, std::size_t end) {
+        Index* const counts = next.data() + begin / chunk * ranges;
+        for (std::size_t i = begin; i < end; ++i) ++counts[group_of(i) / range];
+      },
+      place);
+  Index sum = 0;
+  for (std::size_t r = 0; r < ranges; first[++r] = sum)
+    for (std::size_t c = 0; c < chunks; ++c) sum += std::exchange(next[c * ranges + r], sum);
+  struct Dealt {
+    Index group, item;
+  };
+  const LargeBlock<Dealt> dealt(count);
+  parallel_for_ranges(
+      count, chunk,
+      [&](std::size_t begin, std::size_t end) {
+        Index* const places = next.data() + begin / chunk * ranges;
+        for (std::size_t i = begin; i < end; ++i) {
+          const auto group = static_cast<Index>(group_of(i));
+          dealt[places[group / range]++] = {group, static_cast<Index>(i)};
+        }
+      },
+      place);
+  std::vector<Index> order;
+  resize_in_large_pages(order, count);
+  parallel_for(
+      ranges,
+      [&](std::size_t r) {
+        std::vector<Index> places(range + 1, 0);
+        for (Index d = first[r]; d < first[r + 1]; ++d) ++places[dealt[d].group - r * range + 1];
+        places[0] = first[r];
+        for (std::size_t g = 1; g <= range; ++g) places[g] += places[g - 1];
+        for (Index d = first[r]; d < first[r + 1]; ++d)
+          order[places[dealt[d].group - r * range]++] = dealt[d].item;
+      },
+      place);
+  return order;
+}
+
+}  // namespace collarmesh

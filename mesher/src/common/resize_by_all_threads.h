@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+
+#include "common/large_pages.h"
+#include "common/parallel_for.h"
+
+namespace collarmesh {
+
+/// Resizes a vector. If it is large, threads of the caller's arena have the system give it its pages first,
+/// which takes longer than to fill these with zeros.
+template <class Values>
+void resize_by_all_threads(Values& values, std::size_t count) {
+  using Value = typename Values::value_type;
+  constexpr std::size_t small_page = 4096;
+  if (values.capacity() < count) reserve_in_large_pages(values, count);
+  const std::size_t begin = values.size() * sizeof(Value), end = count * sizeof(Value);
+  if (end > begin + 2 * large_page)
+    parallel_for_ranges(end - begin, large_page, [&](std::size_t first, std::size_t last) {
+      auto* const bytes = reinterpret_cast<volatile char*>(values.data()) + begin;
+      for (std::size_t i = first; i < last; i += small_page) bytes[i] = 0;
+    });
+  values.resize(count);
+}
+
+}  // namespace collarmesh
