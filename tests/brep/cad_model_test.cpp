@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <BRepAlgoAPI_Fuse.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_MakeVertex.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
@@ -30,6 +31,7 @@
 #include "collarmesh/error.h"
 #include "collarmesh/plc_builder.h"
 #include "files/complex_input.h"
+#include "shapes.h"
 #include "soup_measures.h"
 #include "support/leaks_allowed.h"
 #include "support/temporary_file.h"
@@ -151,6 +153,22 @@ TEST(CadFaults, NullAndEmptyShapes) {
   expect_mentions(
       fault_of(BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(1, 0, 0)).Shape(), PlcFault::Kind::empty),
       {"part", "no solid"});
+}
+
+// Wires and points that belong to no face have no place in the mesh, and that is told.
+TEST(CadModel, TellsOfEdgesAndPointsThatBelongToNoFace) {
+  EXPECT_TRUE(CadModel(box(), "part").notes().empty());
+  const TopoDS_Shape edge = BRepBuilderAPI_MakeEdge(gp_Pnt(2, 5, 5), gp_Pnt(8, 5, 5)).Shape(),
+                     vertex = BRepBuilderAPI_MakeVertex(gp_Pnt(5, 9, 5)).Shape();
+  const TopoDS_Shape solid = box();
+  const TopoDS_Shape edge_of_face = TopExp_Explorer(solid, TopAbs_EDGE).Current();
+  EXPECT_TRUE(CadModel(compound({solid, edge_of_face}), "part").notes().empty());
+  const CadModel with_edge(compound({solid, edge}), "part"),
+      with_both(compound({solid, vertex, edge}), "part");
+  ASSERT_EQ(with_edge.notes().size(), 1U);
+  expect_mentions(with_edge.notes()[0], {"part", "Edge13 at (5, 5, 5)", "is no part of a face", ".poly"});
+  ASSERT_EQ(with_both.notes().size(), 1U);
+  expect_mentions(with_both.notes()[0], {"Edge13 at (5, 5, 5) and 1 more are no part of a face"});
 }
 
 TEST(CadTessellation, KeepsTheDeflection) {

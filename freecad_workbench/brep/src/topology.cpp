@@ -50,6 +50,25 @@ void number_subshapes(const TopoDS_Shape& shape, TopTools_DataMapOfShapeInteger&
   }
 }
 
+/// A note about edges that bound no face and vertices that end no edge, as no soup has them.
+void tell_of_free_parts(const TopoDS_Shape& shape, const std::string& file, Topology& topology) {
+  TopTools_IndexedMapOfShape held;
+  for (const TopoDS_Shape& face : subshapes(shape, TopAbs_FACE)) TopExp::MapShapes(face, held);
+  std::vector<TopoDS_Shape> free;
+  for (const TopAbs_ShapeEnum kind : {TopAbs_EDGE, TopAbs_VERTEX})
+    for (const TopoDS_Shape& part : subshapes(shape, kind)) {
+      if (held.Contains(part)) continue;
+      free.push_back(part);
+      TopExp::MapShapes(part, held);
+    }
+  if (free.empty()) return;
+  topology.notes.push_back(
+      fmt::format("{}: {} at {}{} no part of a face and left out; to get nodes on lines and points, give "
+                  "them as segments and points of a .poly file beside this one",
+                  file, topology.name(free.front()), text(place_of(free.front())),
+                  free.size() > 1 ? fmt::format(" and {} more are", free.size() - 1) : " is"));
+}
+
 /// Faces that bound no solid.
 std::vector<TopoDS_Shape> internal_faces_of(const TopoDS_Shape& shape) {
   TopTools_MapOfShape bounding;
@@ -189,6 +208,7 @@ Topology find_topology(const TopoDS_Shape& shape, const std::string& file, const
   if (!TopExp_Explorer(shape, TopAbs_FACE).More())
     fail(PlcFault::Kind::empty, fmt::format("{} holds no solid and no face; there is nothing to mesh.", file),
          place_of(shape));
+  tell_of_free_parts(shape, file, topology);
   for (const TopoDS_Shape& solid : subshapes(shape, TopAbs_SOLID))
     topology.solids.push_back({solid, topology.number(solid), {}, false});
   if (topology.solids.empty()) {
