@@ -136,7 +136,9 @@ bool CollarCreator::create_remaining() {
 void CollarCreator::create_on_curve(Index curve, BallReason reason) {
   const OpenCreases::Chain chain = open_creases_.close(curve);
   isolated_.erase(curve);
-  const std::vector<PlaceOnCurve> vertices = curves_.vertices_amid(curve);
+  // Where corners end a curve, the distances of its balls go by theirs.
+  std::vector<PlaceOnCurve> vertices;
+  if (domain_.plc.curves[curve].closed) vertices = curves_.vertices_amid(curve);
   const Index at_chain = curves_.remove_chain(curve),
               near = at_chain == none ? mesh_.last_vertex() : at_chain;
   gap_size().start_near(near);
