@@ -74,6 +74,16 @@ TEST_P(ShapeKept, EveryRegionHasItsVolume) {
 
 INSTANTIATE_TEST_SUITE_P(Order, ShapeKept, ::testing::Values(1U, 2U));
 
+// A sphere bends both ways, so its chords take twice as much as those of a cylinder.
+TEST(ShapeKept, ALargeBallLosesNoMoreThanARod) {
+  PipelineOptions options;
+  options.mesh = with_size(0.28);
+  const SoupPipelineResult made = run_pipeline(std::vector{testing::icosphere(1, 24)}, options);
+  EXPECT_EQ(made.missed(), "");
+  EXPECT_NEAR(made.check.of_mesh.volumes.at(1), made.check.of_input.volumes.at(1),
+              0.02 * made.check.of_input.volumes.at(1));
+}
+
 // A prism in place of a rod is a finding, unless the distance that allows it was asked for.
 TEST(ShapeKept, AVolumeThatIsLostIsAFinding) {
   const PolygonSoup rod = testing::cylinder(0.1, 1, 64);
