@@ -12,10 +12,12 @@ import csv
 import json
 import math
 import os
+import resource
 import shutil
 import subprocess
 import sys
-from collections import Counter
+import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -27,9 +29,6 @@ from tables import machine, si, table
 from tuning import SizeCache
 
 slow = (("fan", 72, 0), ("pyramid", 64, 5), ("comb", 20, 4))   # more than 5 s each
-questions: list[tuple[str, ...]] = [
-    (), *(("--collar-angle", str(angle)) for angle in (100, 110, 120, 130)), ("--vertex-ratio", "4"),
-    *(("--radius-edge", str(ratio)) for ratio in (1.5, 2, 3))]
 judged_surfaces = (".off", ".obj", ".stl", ".ply", ".poly", ".smesh")
 relative_distance = 1e-3
 
@@ -46,6 +45,7 @@ class Case:
 @dataclass
 class Outcome:
     code: int
+    cpu: float
     creases: int = 0
     collar: int = 0
     tets: int = 0
@@ -56,10 +56,10 @@ class Outcome:
     largest: float = 0         # dihedral angle in collars, by the judge
 
 
-def acute_cases(generator: Path, folder: Path) -> list[Case]:
+def acute_cases(generator: Path, folder: Path, with_slow: bool) -> list[Case]:
     cases = []
     for family, *parameters in members:
-        if (family, *parameters) in slow:
+        if (family, *parameters) in slow and not with_slow:
             continue
         shape = AcuteInput(generator, family, tuple(parameters))
         prefix = folder / shape.name.replace(" ", "_")
@@ -74,11 +74,11 @@ def acute_cases(generator: Path, folder: Path) -> list[Case]:
     return cases
 
 
-def corpus_cases(program: Path, corpus: Path, share: float) -> list[Case]:
+def corpus_cases(program: Path, corpus: Path, share: float, wanted: Callable[[str], bool]) -> list[Case]:
     cases = []
     with open(corpus / "MANIFEST.tsv", newline="") as manifest:
         rows = list(csv.reader(manifest, delimiter="\t"))[1:]
-    for name, expect in (row[:2] for row in rows):
+    for name, expect in (row[:2] for row in rows if wanted(row[0])):
         path = corpus / name
         told = subprocess.run([str(program), "info", str(path), "--json"], capture_output=True, text=True)
         if told.returncode != 0:
@@ -129,10 +129,12 @@ def run(program: Path, judging: str | None, case: Case, question: tuple[str, ...
         time_limit: float) -> Outcome:
     mesh, report_file = folder / "mesh.vtu", folder / "report.json"
     mesh.unlink(missing_ok=True)
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
     told = subprocess.run([str(program), *map(str, case.files), "-o", str(mesh), *case.options, *question, "--threads",
                            "1", "--report", str(report_file), "--progress", "none", "--time-limit", str(time_limit)],
                           capture_output=True, text=True)
-    outcome = Outcome(told.returncode)
+    spent = resource.getrusage(resource.RUSAGE_CHILDREN)
+    outcome = Outcome(told.returncode, spent.ru_utime + spent.ru_stime - before.ru_utime - before.ru_stime)
     if told.returncode not in (0, 7):
         return outcome
     report = json.loads(report_file.read_text())
@@ -174,6 +176,13 @@ def main() -> int:
     parser.add_argument("--only", nargs="*", default=[], help="names of inputs")
     parser.add_argument("--share", type=float, default=12, help="size of the corpus: the diagonal over this")
     parser.add_argument("--time-limit", type=float, default=120)
+    parser.add_argument("--groups", nargs="*", default=["acute families", "corpus"])
+    parser.add_argument("--without", nargs="*", default=[], help="names of inputs that are left out")
+    parser.add_argument("--angles", type=float, nargs="*", default=[100, 110, 120, 130])
+    parser.add_argument("--slow", action="store_true", help="slow acute families, too")
+    parser.add_argument("--most", type=float, default=math.inf,
+                        help="inputs that take longer without an option, CPU seconds, are left out")
+    parser.add_argument("--stop-after", type=float, default=math.inf, help="seconds; no input begins later")
     parser.add_argument("--core", type=int)
     options = parser.parse_args()
     about = machine(options.build)
@@ -182,24 +191,39 @@ def main() -> int:
     folder = SizeCache().folder / "asked"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    groups = {"acute families": acute_cases(options.build / "bin" / "acute_shape", folder)}
-    if options.corpus:
-        groups["corpus"] = corpus_cases(program, options.corpus, options.share)
+    begin = time.monotonic()
     print(f"{about}.{'' if judging else ' Without a judge.'}\n")
-    remarks: Counter[str] = Counter()
-    for title, cases in groups.items():
+    remarks: list[str] = []
+
+    def wanted(name: str) -> bool:
+        return (not options.only or name in options.only) and name not in options.without
+
+    questions: list[tuple[str, ...]] = [
+        (), *(("--collar-angle", f"{angle:g}") for angle in options.angles), ("--vertex-ratio", "4"),
+        *(("--radius-edge", str(ratio)) for ratio in (1.5, 2, 3))]
+    for title in options.groups:
+        cases = (acute_cases(options.build / "bin" / "acute_shape", folder, options.slow)
+                 if title == "acute families" else corpus_cases(program, options.corpus, options.share, wanted))
         found: list[list[Outcome]] = [[] for _ in questions]
+        left: list[str] = []
         for case in cases:
-            if options.only and case.name not in options.only:
+            if not wanted(case.name):
+                continue
+            if time.monotonic() - begin > options.stop_after:
+                left.append(case.name)
                 continue
             for question, outcomes in zip(questions, found):
-                outcomes.append(run(program, judging, case, question, folder, options.time_limit))
-                last = outcomes[-1]
-                line = f"{case.name}, {' '.join(question) or 'no option'}: exit code {last.code}"
-                print(line, last, file=sys.stderr, flush=True)
-                if last.code != 0 or last.differs:
-                    remarks[f"{line}: {'; '.join([*last.missed, *last.differs])}"] += 1
+                outcome = run(program, judging, case, question, folder, options.time_limit)
+                if not question and outcome.cpu > options.most:
+                    left.append(case.name)
+                    break
+                outcomes.append(outcome)
+                line = f"{case.name}, {' '.join(question) or 'no option'}: exit code {outcome.code}"
+                print(line, outcome, file=sys.stderr, flush=True)
+                if outcome.code != 0 or outcome.differs:
+                    remarks.append(f"{line}: {'; '.join([*outcome.missed, *outcome.differs])}")
         print(f"{title}:\n\n" + table(header, [row(*pair) for pair in zip(questions, found)]) + "\n", flush=True)
+        print(f"left out: {', '.join(left) or 'none'}\n", flush=True)
     print("\n".join(f"- {remark}" for remark in remarks))
     return 0
 

@@ -89,12 +89,16 @@ def main() -> int:
                         help="number of segments, less where these make n^2 vertices")
     parser.add_argument("--factors", type=int, nargs="*", default=[1, 10, 100])
     parser.add_argument("--families", nargs="*", help="only these")
+    parser.add_argument("--tens", type=int, nargs="*", default=[0, 2, 4],
+                        help="powers of ten by which the small copy is smaller; above 4 nothing is repaired")
     parser.add_argument("--time-limit", type=float, default=600)
     parser.add_argument("--core", type=int)
     options = parser.parse_args()
     about = machine(options.build)
     pin_to_core(options.core)
     program, arguments = options.build / "bin" / "collarmesh", ["--coarsen", "off", "--threads", "1"]
+    if max(options.tens) > 4:
+        arguments += ["--repair", "none", "--weld", "1e-12"]
     meshers = {"": Collarmesh(program, options.time_limit, arguments)}
     if options.before:
         meshers[", before"] = Collarmesh(options.before, options.time_limit, arguments)
@@ -117,13 +121,14 @@ def main() -> int:
         print(table([header[0], "n", *header[1:]], rows) + "\n")
     if "spread" in options.what:
         rows = []
-        smalls = [0.08 * 10.0 ** -k for k in (0, 2, 4)]
+        smalls = [0.08 * 10.0 ** -k for k in options.tens]
         for family, further, scale in families:
             n = max(16, round(options.smallest * scale / 4))
             series = {f"{small:g}": AcuteInput(generator, family, (n, *further(n)), small_copy=small)
                       for small in smalls if family != "crossed_strips" and family in (options.families or [family])}
             rows += rows_of(list(meshers.values()), name_of(family, further(400)), series, folder)
-        series = {f"{small:g}": AcuteInput(generator, "shrinking_spiral", (60, small)) for small in smalls}
+        series = {f"{small:g}": AcuteInput(generator, "shrinking_spiral", (60, small)) for small in smalls
+                  if "shrinking_spiral" in (options.families or ["shrinking_spiral"])}
         rows += rows_of(list(meshers.values()), "shrinking spiral", series, folder)
         print(table([header[0], "smallest", *header[1:]], rows))
     return 0

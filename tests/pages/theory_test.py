@@ -133,6 +133,16 @@ class BoundTwo(unittest.TestCase):
         self.assertGreater(looked, 300)
         self.assertGreater(tight, 0)
 
+    def test_the_ball_of_a_subsegment_is_not_small_either(self):
+        """Of radius 1 around the middle of one from -1 to 1."""
+        random, largest = numpy.random.default_rng(6), 0
+        ends = numpy.array([(-1.0, 0, 0), (1.0, 0, 0)])
+        for c in random.uniform(-1.5, 1.5, (20000, 3)):
+            if numpy.linalg.norm(c) < 1:
+                largest = max(largest, distances(ends, c).min())
+        self.assertLess(largest, math.sqrt(2))
+        self.assertGreater(largest, 1.3)
+
     def test_radii_grow_above_the_bound(self):
         kept = math.prod(1 - d for d in self.offsets)
         gain = lambda rho: rho * kept / 2
@@ -210,6 +220,17 @@ class DirectInsertion(unittest.TestCase):
             looked += 1
             self.assertLessEqual(self.balls_with(p).max(), (9 * tau ** 2 + 1) * outer)
         self.assertGreater(looked, 500)
+
+    def test_the_ball_of_a_point_holds_one_vertex_at_most(self):
+        holding, smallest = 0, math.inf
+        for p in self.random.uniform(1, 2, (3000, 3)):
+            apart = numpy.sort(distances(self.points, p))
+            inner = self.cell(int(distances(self.points, p).argmin()))[1]
+            self.assertGreaterEqual(apart[1], inner * (1 - 1e-12))
+            holding += apart[0] < inner
+            smallest = min(smallest, apart[1] / inner)
+        self.assertGreater(holding, 100)
+        self.assertLess(smallest, 1.3)  # with much more it would fail
 
     def test_balls_with_one_earlier_centre_pack_twice_as_many(self):
         """Centres in a ball of a quarter of the radius: at most two, if no ball of an event holds two earlier ones."""
