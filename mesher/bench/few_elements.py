@@ -5,7 +5,7 @@ Gmsh (HXT), both at a twentieth of the diagonal, with elements of the first and 
 Distances, relative to the diagonal, are those of a dense tessellation by OpenCASCADE (FreeCAD's Shape.tessellate within
 1e-4 of the diagonal, so that is their error): of points on the mesh's outer faces, curved ones by their six nodes, to the
 tessellation, and of the tessellation's vertices to the mesh (walls between solids count, which outer faces of a mesh do
-not have where it is conforming there). Angles are those between the planes of the corners. --out keeps
+not have where it is conforming there). Volumes are those of all solids together, beside OpenCASCADE's. Angles are those between the planes of the corners. --out keeps
 every run, and a run that it holds is not made again."""
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ import FreeCAD, Part, numpy
 shape = Part.Shape()
 shape.read(sys.argv[1])
 points, triangles = shape.tessellate(float(sys.argv[3]) * shape.BoundBox.DiagonalLength)
-numpy.savez(sys.argv[2], points=[tuple(p) for p in points], triangles=triangles, diagonal=shape.BoundBox.DiagonalLength)
+numpy.savez(sys.argv[2], volume=shape.Volume, points=[tuple(p) for p in points], triangles=triangles, diagonal=shape.BoundBox.DiagonalLength)
 """
 # Sides and corners of a tetrahedron's faces, and the node between each two corners (VTK's order).
 faces = ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))
@@ -59,6 +59,7 @@ class Row:
     largest: float = math.nan
     to_shape: float = math.nan  # largest distance over the diagonal
     to_mesh: float = math.nan
+    volume_off: float = math.nan   # relative difference, of all solids together
 
 
 @dataclass
@@ -73,6 +74,10 @@ class Triangles:
         data.SetPoints(points)
         data.SetPolys(cells)
         return data
+
+    def volume(self) -> float:
+        a, b, c = (self.points[self.corners[:, k]] for k in range(3))
+        return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6)
 
     def distance_of(self, points: np.ndarray) -> float:
         """The largest distance of points to the triangles."""
@@ -117,8 +122,15 @@ def boundary(points: np.ndarray, tets: np.ndarray, n: int = 4) -> Triangles:
     return Triangles(placed.reshape(-1, 3), (cells[None] + offsets).reshape(-1, 3))
 
 
-def reference(path: Path, folder: Path) -> tuple[Triangles, float] | None:
-    """The dense tessellation and the diagonal."""
+def volume_of(points: np.ndarray, tets: np.ndarray) -> float:
+    """Of curved elements by two cuts of their faces, the error of which goes with the square of their pieces."""
+    points = points - points.mean(0)
+    coarse, fine = (abs(boundary(points, tets, n).volume()) for n in (2, 4))
+    return (4 * fine - coarse) / 3
+
+
+def reference(path: Path, folder: Path) -> tuple[Triangles, float, float] | None:
+    """The dense tessellation, the diagonal and the volume."""
     kept = folder / (path.name + ".npz")
     if not kept.exists():
         part = kept.with_suffix(".part.npz")
@@ -133,7 +145,7 @@ def reference(path: Path, folder: Path) -> tuple[Triangles, float] | None:
     with np.load(kept) as data:
         if len(data["triangles"]) == 0:
             return None
-        return Triangles(data["points"], data["triangles"]), float(data["diagonal"])
+        return Triangles(data["points"], data["triangles"]), float(data["diagonal"]), float(data["volume"])
 
 
 def command_of(mesher: str, path: Path, out: str, order: int, program: Path) -> list[str]:
@@ -163,10 +175,11 @@ def measured(path: Path, mesher: str, order: int, folder: Path, references: Path
     row.smallest, row.largest = np.nanmin(angles), np.nanmax(angles)
     exact = reference(path, references)
     if exact:
-        shape, diagonal = exact
+        shape, diagonal, volume = exact
         surface = boundary(mesh.points, tets)
         row.to_shape = shape.distance_of(surface.points) / diagonal
         row.to_mesh = surface.distance_of(shape.points) / diagonal
+        row.volume_off = volume_of(mesh.points, tets) / volume - 1
     return row
 
 
@@ -212,11 +225,14 @@ def tables(rows: list[Row], sound: float) -> str:
                           *(percentile([getattr(row, member) for row in side], share)
                             for member, share in (("to_shape", 50), ("to_shape", 90), ("to_mesh", 50), ("to_mesh", 90))
                             for side in (ours, theirs)),
+                          *(percentile([100 * abs(row.volume_off) for row in side], share)
+                            for share in (50, 90) for side in (ours, theirs)),
                           f"{sum(nearer)} of {len(nearer)}",
                           f"{min(row.smallest for row in ours):.3g}", f"{max(row.largest for row in ours):.4g}",
                           str(sum(row.outcome == "guarantee missed" for row in ours))])
     return table(["order", "files", "number", "tets / Gmsh's, median", "90%", "CPU s / Gmsh's, median",
                   "mesh to shape, median", "Gmsh", "90%", "Gmsh", "shape to mesh, median", "Gmsh", "90%", "Gmsh",
+                  "volume off, %, median", "Gmsh", "90%", "Gmsh",
                   "no farther than Gmsh's", "smallest angle", "largest", "guarantee missed"], lines)
 
 

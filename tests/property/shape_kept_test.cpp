@@ -74,6 +74,16 @@ TEST_P(ShapeKept, EveryRegionHasItsVolume) {
 
 INSTANTIATE_TEST_SUITE_P(Order, ShapeKept, ::testing::Values(1U, 2U));
 
+// A sphere bends both ways, so its chords take twice as much as those of a cylinder.
+TEST(ShapeKept, ALargeBallLosesNoMoreThanARod) {
+  PipelineOptions options;
+  options.mesh = with_size(0.28);
+  const SoupPipelineResult made = run_pipeline(std::vector{testing::icosphere(1, 24)}, options);
+  EXPECT_EQ(made.missed(), "");
+  EXPECT_NEAR(made.check.of_mesh.volumes.at(1), made.check.of_input.volumes.at(1),
+              0.02 * made.check.of_input.volumes.at(1));
+}
+
 // A prism in place of a rod is a finding, unless the distance that allows it was asked for.
 TEST(ShapeKept, AVolumeThatIsLostIsAFinding) {
   const PolygonSoup rod = testing::cylinder(0.1, 1, 64);
@@ -242,6 +252,47 @@ TEST(ShapeKept, ABladeThatIsFlattenedIsAFinding) {
     if (p.x > 1e-9) p.y *= 0.3;
   EXPECT_TRUE(finds(0));
   EXPECT_FALSE(finds(0.1));
+}
+
+// A plane and a surface that leaves it at 3 degrees and soon bends away, 60 long: beside each other they run
+// on a hundredth of the surface alone.
+PolygonSoup wedge_at_the_end_of_a_surface() {
+  constexpr double bend = 0.3, steep = 45, degree = std::numbers::pi / 180;
+  constexpr Tag last_flat_side = 4;  // beneath, and at the other end
+  std::vector<Point> outline{{0, 0, 0}};
+  const auto go = [&](double degrees, double length) {
+    const Point from = outline.back();
+    outline.push_back(
+        {from.x + length * std::cos(degrees * degree), from.y + length * std::sin(degrees * degree), 0});
+  };
+  for (int i = 0; i < 10; ++i) go(3 + (steep - 3) * i / 9, bend / 10);
+  for (int i = 0; i < 8; ++i) go(steep + 2 * i, 60.0 / 8);
+  outline.push_back({outline.back().x, 0, 0});
+  std::reverse(outline.begin() + 1, outline.end());
+  const PolygonSoup faces = testing::extrusion(outline, 20);
+  PolygonSoup soup;
+  soup.points = faces.points;
+  for (Index p = 0; p < faces.polygon_count(); ++p)
+    soup.add_facet(faces.polygon(p), std::min(faces.facet_tag(p), last_flat_side + 1));
+  return soup;
+}
+
+// What a mesh is off there its distance tells.
+TEST(ShapeKept, AWedgeAtTheEndOfASurfaceIsNoWall) {
+  const PolygonSoup soup = wedge_at_the_end_of_a_surface();
+  PipelineOptions options;
+  options.mesh = with_size(4);
+  SoupPipelineResult made = run_pipeline({&soup, 1}, options);
+  ASSERT_EQ(made.missed(), "");
+  for (Point& p : made.result.mesh.points)
+    if (p.x < 2) p.y *= 0.08;
+  const CheckReport report = check(made.result.mesh, made.plc, CheckOptions());
+  const auto finds = [&](std::string_view guarantee) {
+    return std::ranges::any_of(report.findings,
+                               [&](const Finding& finding) { return finding.guarantee == guarantee; });
+  };
+  EXPECT_FALSE(finds("thickness_kept"));
+  EXPECT_TRUE(finds("patch_distance"));
 }
 
 }  // namespace

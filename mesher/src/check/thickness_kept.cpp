@@ -41,6 +41,8 @@ struct Faces {
 
 /// Sums over rays from a side of a patch, weighted by areas.
 struct Thicknesses {
+  double area = 0;       // where rays were sent from
+  double area_with = 0;  // of that, where something faces
   double input = 0, mesh = 0;
   Point where;            // the ray that differs most
   double farthest = 0;    // by this
@@ -69,7 +71,10 @@ class ThicknessKept {
  private:
   static constexpr double allowed = 0.5;       // share that may be lost or gained
   static constexpr double least_facing = 0.9;  // else surfaces end at each other, or bend away
-  static constexpr Index most_rays = 2000;     // of a patch
+  // Of a patch, which is a side of a wall: on less of it another patch comes near where both meet in a wedge,
+  // say, as a thread's run-out does the plane that cuts it, and what is thin runs to nothing there.
+  static constexpr double least_part = 0.01;
+  static constexpr Index most_rays = 2000;  // of a patch
 
   Thicknesses along(Index patch, unsigned side) const {
     const Plc::Patch& of = subject_.plc.patches[patch];
@@ -85,14 +90,16 @@ class ThicknessKept {
     const Plc& plc = subject_.plc;
     const Thickness::Ray ray = thickness_.ray(triangle, side);
     const Thickness::Opposite opposite = thickness_.at(triangle, side, crossings).first;
+    const Plc::Triangle& t = plc.triangles[triangle];
+    const double weight =
+        area(subject_.plc_corner(t, 0), subject_.plc_corner(t, 1), subject_.plc_corner(t, 2));
+    sums.area += weight;
     if (opposite.triangle == none || opposite.facing < least_facing) return;
+    sums.area_with += weight;
     const Index patch = plc.triangles[triangle].patch, other = plc.triangles[opposite.triangle].patch,
                 region = plc.patches[patch].regions[side];
     const double found = between(ray, opposite.distance, patch, other, region, crossings);
     if (std::isnan(found)) return;
-    const Plc::Triangle& t = plc.triangles[triangle];
-    const double weight =
-        area(subject_.plc_corner(t, 0), subject_.plc_corner(t, 1), subject_.plc_corner(t, 2));
     sums.input += weight * opposite.distance;
     sums.mesh += weight * found;
     const double off = std::fabs(found - opposite.distance);
@@ -131,6 +138,7 @@ class ThicknessKept {
   void judge(Index patch, unsigned side, const Thicknesses& sums, CheckReport& report,
              Findings& findings) const {
     const Plc& plc = subject_.plc;
+    if (sums.area_with < least_part * sums.area) return;
     if (!(std::fabs(sums.mesh - sums.input) > allowed * sums.input)) return;
     const bool is_gap = plc.patches[patch].regions[side] == 0;
     const std::string found = fmt::format(

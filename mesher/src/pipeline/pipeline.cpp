@@ -362,14 +362,15 @@ class Pipeline {
 
   /// Finds that bound. A budget that was given takes the place of the last one, and of any that is larger.
   void find_bound() {
-    constexpr std::size_t times_without_other_ways = 2;
+    // Bodies far thinner than the size take many vertices rightly; so many take ten seconds.
+    constexpr std::size_t times_without_other_ways = 2, least_without_other_ways = 300'000;
     const std::size_t given = given_.mesh.max_vertices;
     knows_bound_ = true;
     most_vertices_ = 0;
     if (given_.mesh.profile == Profile::paper) return;  // it has no sizes to expect vertices of
     if (ways_ == Ways::none && given > 0) return;
-    const std::size_t most =
-        most_vertices_expected(*plc_, options_) * (ways_ == Ways::none ? times_without_other_ways : 1);
+    std::size_t most = most_vertices_expected(*plc_, options_);
+    if (ways_ == Ways::none) most = std::max(times_without_other_ways * most, least_without_other_ways);
     if (given == 0 || given > most) most_vertices_ = most;
   }
 

@@ -80,7 +80,7 @@ void SurfaceCheck::seed_closed_patches() {
     if (!p.curves.empty() || !p.vertices.empty()) continue;
     for (const Index point :
          spread_points(domain_.patch_points[patch], domain_.points, seeds_per_closed_patch))
-      points_.add(domain_.points[point], {2, patch});
+      seed(patch, domain_.points[point]);
   }
 }
 
@@ -203,7 +203,12 @@ bool SurfaceCheck::refine_distant_triangles(const std::vector<FaceId>& faces) {
 void SurfaceCheck::seed_missed_patch(Index patch) {
   const std::size_t seeds = seeds_per_missed_patch << std::min(rounds_, 16U);
   for (const Index point : spread_points(domain_.patch_points[patch], domain_.points, seeds))
-    points_.add(domain_.points[point], {2, patch});
+    seed(patch, domain_.points[point]);
+}
+
+// What faces another sheet may have become a vertex there already, but for rounding.
+void SurfaceCheck::seed(Index patch, const Point& at) {
+  points_.add({.point = at, .feature = {2, patch}, .apart = domain_.floor_at(at)}, none);
 }
 
 void SurfaceCheck::prepare_tessellation() {

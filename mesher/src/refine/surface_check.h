@@ -62,6 +62,7 @@ class SurfaceCheck {
   bool is_near_patch(const Point& p, Index patch, Index& near) const;
   bool refine_distant_triangles(const std::vector<FaceId>& faces);
   void seed_missed_patch(Index patch);
+  void seed(Index patch, const Point& at);
   void prepare_tessellation();
   bool still_near(const TessellationPoint& p, Index patch) const;
   bool resolve_distant_points(const std::vector<FaceId>& faces);

@@ -172,7 +172,7 @@ class LocalTolerance {
   struct Loss {
     Index triangle;
     double area;     // negative where chords add to the volume
-    double sagitta;  // of chords of the target length, which are not farther off
+    double sagitta;  // of chords of the target length both ways, which are not farther off
   };
 
   double volume_of(const Loss& loss, double factor) const {
@@ -200,7 +200,7 @@ class LocalTolerance {
       for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
         const double area = area_of(t);
         if (const double by = bend(t, side); by != 0)
-          losses.push_back({t, by > 0 ? area : -area, size_ * size_ * curvature_[t].largest / 8});
+          losses.push_back({t, by > 0 ? area : -area, size_ * size_ * std::fabs(by) / 8});
       }
     }
     return losses;
