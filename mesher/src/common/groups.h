@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "common/dealing.h"
 #include "common/large_pages.h"
 #include "common/parallel_for.h"
 
@@ -19,14 +20,9 @@ namespace collarmesh {
 template <class Item, class Visit, class Use>
 void for_each_group(std::size_t groups, std::size_t count, const Visit& visit, const Use& use,
                     const recorded_costs::Place& place = {__builtin_FILE(), __builtin_LINE()}) {
-  // Items are dealt to ranges of groups first, so that the rest happens in a processor's cache.
-  constexpr std::size_t least_chunk = 8192, most_chunks = 64, least_range = 1024, most_ranges = 1024;
-  const auto parts = [](std::size_t n, std::size_t least, std::size_t most) {
-    return std::max((n + most - 1) / most, least);
-  };
-  const std::size_t chunk = parts(count, least_chunk, most_chunks);
-  const std::size_t range = parts(groups, least_range, most_ranges);
-  const std::size_t chunks = (count + chunk - 1) / chunk, ranges = (groups + range - 1) / range;
+  const Dealing dealing(groups, count);
+  const std::size_t chunk = dealing.chunk, range = dealing.range, chunks = dealing.chunks,
+                    ranges = dealing.ranges;
   const auto visit_chunk = [&](std::size_t c, const auto& give) {
     for (std::size_t i = c * chunk; i < std::min((c + 1) * chunk, count); ++i) visit(i, give);
   };

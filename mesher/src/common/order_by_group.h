@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "collarmesh/geometry.h"
+#include "common/dealing.h"
 #include "common/large_pages.h"
 #include "common/parallel_for.h"
 
@@ -16,16 +17,11 @@ namespace collarmesh {
 template <class GroupOf>
 std::vector<Index> order_by_group(std::size_t groups, std::size_t count, const GroupOf& group_of,
                                   const recorded_costs::Place& place = {__builtin_FILE(), __builtin_LINE()}) {
-  // Items are dealt to ranges of groups first, so that the rest happens in a processor's cache.
-  constexpr std::size_t least_chunk = 8192, most_chunks = 64, least_range = 1024, most_ranges = 1024;
-  const auto parts = [](std::size_t n, std::size_t least, std::size_t most) {
-    return std::max((n + most - 1) / most, least);
-  };
-  const std::size_t chunk = parts(count, least_chunk, most_chunks);
-  const std::size_t range = parts(groups, least_range, most_ranges);
-  const std::size_t chunks = (count + chunk - 1) / chunk, ranges = (groups + range - 1) / range;
-  std::vector<Index> next(chunks * ranges, 0),
-      first(ranges + 1, 0);  // where a chunk's next item of a range goes
+  const Dealing dealing(groups, count);
+  const std::size_t chunk = dealing.chunk, range = dealing.range, chunks = dealing.chunks,
+                    ranges = dealing.ranges;
+  std::vector<Index> next(chunks * ranges, 0);  // where a chunk's next item of a range goes
+  std::vector<Index> first(ranges + 1, 0);
   parallel_for_ranges(
       count, chunk,
       [&](std::size_t begin, std::size_t end) {

@@ -136,7 +136,7 @@ bool CollarCreator::create_remaining() {
 void CollarCreator::create_on_curve(Index curve, BallReason reason) {
   const OpenCreases::Chain chain = open_creases_.close(curve);
   isolated_.erase(curve);
-  // Where corners end a curve, the distances of its balls go by theirs.
+  // Only rims have been seen to need it; on other curves the surface of a repaired link did not settle.
   std::vector<PlaceOnCurve> vertices;
   if (domain_.plc.curves[curve].closed) vertices = curves_.vertices_amid(curve);
   const Index at_chain = curves_.remove_chain(curve),
