@@ -12,7 +12,8 @@ namespace {
 
 // As for thin tets.
 constexpr double least_cosine_of_sides = -0.92;
-// The narrow places of the certificate are wider by this share, as vertices move afterwards.
+// The narrow places of the certificate are wider by this share, as vertices move afterwards; where they move
+// onto exact geometry, by the reserve, too.
 constexpr double narrower = 0.98;
 constexpr std::uint8_t star = 1, book = 2;
 constexpr std::size_t tets_at_once = 4096;
@@ -26,7 +27,7 @@ std::optional<NarrowPlaces> narrow_places(const Plc& plc, const TetMesh& mesh, c
   return NarrowPlaces(
       plc, mesh.features,
       ForcedEdges(plc, mesh.features, mesh.points, mesh.faces, mesh.face_patch, least_cosine_of_sides),
-      bounds.crease_angle, narrower / bounds.radius_edge);
+      bounds.crease_angle, narrower / (bounds.radius_edge * (1 + bounds.reserve)));
 }
 
 Tag tag_of(const Plc& plc, const TetMesh::VertexFeature& feature) {

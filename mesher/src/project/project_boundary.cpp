@@ -53,6 +53,7 @@ class BoundaryProjection {
     for (int pass = 0; pass < retries && retry(pass > 0); ++pass) {
     }
     while (!(tets = keep_distances()).empty()) make_room(std::move(tets));
+    while (!(tets = keep_narrow_places()).empty()) make_room(std::move(tets));
     finish();
     if (!thin_.empty())
       ThreadLimit(options_.threads).run([&] {
@@ -186,20 +187,43 @@ class BoundaryProjection {
       PatchDistance(mesh_, plc_, tolerance_, patch, faces, points_of[patch])
           .visit([&] { return enough; },
                  [&](const PatchDistance::Sample& sample, bool) {
-                   if (sample.distance > sample.tolerance) move_farthest_back(sample.face, around);
+                   if (sample.distance > sample.tolerance) move_farthest_back(mesh_.faces[sample.face], around);
                  });
     }
     return around;
   }
 
-  void move_farthest_back(Index face, std::vector<Index>& around) {
+  /// Returns whether one of these vertices had moved.
+  template <std::size_t n>
+  bool move_farthest_back(const std::array<Index, n>& vertices, std::vector<Index>& around) {
     const auto moved = [&](Index p) { return distance(mesh_.points[p], room_.origin(p)); };
-    const auto& f = mesh_.faces[face];
-    const Index farthest =
-        *std::max_element(f.begin(), f.end(), [&](Index a, Index b) { return moved(a) < moved(b); });
-    if (moved(farthest) == 0) return;
+    const Index farthest = *std::max_element(vertices.begin(), vertices.end(),
+                                             [&](Index a, Index b) { return moved(a) < moved(b); });
+    if (moved(farthest) == 0) return false;
     if (const Index slot = slot_of_[farthest]; slot != none) set_done(slot, false);
     go_back(farthest, around);
+    return true;
+  }
+
+  // Normals turn as vertices move, and with them the places where tets may be thin. Where a thin tet has none
+  // any more, its corner that has moved most goes back; where none of them has moved, all corners of faces
+  // there do. Returns the tets around such vertices.
+  std::vector<Index> keep_narrow_places() {
+    std::vector<Index> around;
+    if (!cells_.forbid_thin_tets()) return around;
+    const improvement::CellBounds now(plc_, mesh_, options_.bounds);
+    for (Index t = 0; t < mesh_.tets.size() && !execution_.cancelled(); ++t) {
+      if (now.allow(corners(t), mesh_.tets[t]) || !cells_.allow(room_.origins_of(t), mesh_.tets[t])) continue;
+      if (move_farthest_back(mesh_.tets[t], around)) continue;
+      for (const Index p : mesh_.tets[t])
+        for (const Index other : room_.tets_at()[p]) move_farthest_back(mesh_.tets[other], around);
+    }
+    return around;
+  }
+
+  improvement::Corners corners(Index tet) const {
+    const auto& [a, b, c, d] = mesh_.tets[tet];
+    return {mesh_.points[a], mesh_.points[b], mesh_.points[c], mesh_.points[d]};
   }
 
   void go_back(Index p, std::vector<Index>& around) {

@@ -34,6 +34,8 @@ class Relaxation {
   const CellsAtVertices& tets_at() const { return tets_at_; }
   /// Returns the initial place of the vertex.
   const Point& origin(Index vertex) const { return origins_[vertex]; }
+  /// Returns the initial corners of the tet.
+  improvement::Corners origins_of(Index tet) const { return corners(tet, origins_); }
   /// Returns the initial shortest edge at the vertex.
   double shortest_edge(Index vertex) const;
   /// Returns whether the tet is positive and within its bound.
