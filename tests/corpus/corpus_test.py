@@ -24,6 +24,7 @@ from judging import JUDGE, TIME_LIMIT, Failed, run, verdict
 
 CORPUS = os.environ.get("COLLARMESH_CORPUS", "")
 RELATIVE_SIZE = 1 / 25
+COARSE_SIZE = 1 / 8
 REPAIR_LIMIT = 20  # seconds
 # A known fault of the mesher, which the certificate finds: a smooth patch that nearly touches itself once it is
 # repaired.
@@ -94,6 +95,17 @@ def place_collars_up_front(program, path, expect, mesh, options, diagonal):
     judge(path, expect, mesh, diagonal, radius_edge=2)
 
 
+def ask_for_a_ratio(program, path, expect, mesh, diagonal):
+    """Vertices that move onto exact faces leave no cell beyond a ratio that is asked for, where sizes are as large as
+    walls are thick."""
+    if not expect.startswith("CAD:"):
+        return
+    asked = ["--size", diagonal * COARSE_SIZE, "--distance", diagonal * RELATIVE_DISTANCE, "--radius-edge", 2]
+    result = run(program, path, "-o", mesh, *asked, "--time-limit", TIME_LIMIT)
+    if result.returncode != 0:
+        raise Failed(f"a ratio of 2: exit code {result.returncode}: {(result.stderr.splitlines() or [''])[0]}")
+
+
 def mesh_one(program, path, expect, folder):
     """What happened, as a line for the table. Throws Failed."""
     diagonal = diagonal_of(program, path)
@@ -113,6 +125,7 @@ def mesh_one(program, path, expect, folder):
         found = json.loads(report.read_text())
         judged = judge(path, expect, mesh, diagonal)
         place_collars_up_front(program, path, expect, mesh, [*size, *exact], diagonal)
+        ask_for_a_ratio(program, path, expect, mesh, diagonal)
         return f"{found['mesh']['tets']} tets in {found['seconds']['refine']:.2f} s{judged}{projected(found)}"
     if mesh.exists():
         raise Failed(f"a mesh was written in spite of exit code {result.returncode}")
