@@ -187,7 +187,8 @@ class BoundaryProjection {
       PatchDistance(mesh_, plc_, tolerance_, patch, faces, points_of[patch])
           .visit([&] { return enough; },
                  [&](const PatchDistance::Sample& sample, bool) {
-                   if (sample.distance > sample.tolerance) move_farthest_back(mesh_.faces[sample.face], around);
+                   if (sample.distance > sample.tolerance)
+                     move_farthest_back(mesh_.faces[sample.face], around);
                  });
     }
     return around;
