@@ -276,6 +276,18 @@ def write_flange(path):
         file.write(text)
 
 
+def write_wires_in_box(path):
+    """A CAD shape: a box with a circle inside, a needle that sticks out of its top, and a point, which belong to
+    no face; by FreeCAD."""
+    sys.path.append(FREECAD)
+    import FreeCAD
+    import Part
+
+    loop = Part.makeCircle(6, FreeCAD.Vector(10, 10, 10))
+    needle = Part.makeLine(FreeCAD.Vector(10, 10, 12), FreeCAD.Vector(10, 10, 24))
+    Part.makeCompound([Part.makeBox(20, 20, 20), loop, needle, Part.Vertex(4, 10, 14)]).exportBrep(path)
+
+
 def main():
     folder = sys.argv[1] if len(sys.argv) > 1 else os.path.join(os.path.dirname(os.path.abspath(__file__)), "models")
     os.makedirs(folder, exist_ok=True)
@@ -286,6 +298,7 @@ def main():
         with open(os.path.join(folder, name + ".poly"), "w") as out:
             out.write(text)
     write_flange(os.path.join(folder, "flange.step"))
+    write_wires_in_box(os.path.join(folder, "wires_in_box.brep"))
 
 
 if __name__ == "__main__":

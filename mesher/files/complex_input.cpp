@@ -263,14 +263,13 @@ ShapeMeasures ComplexInput::exact_measures(const Plc& plc) const {
 }
 
 ExactGeometry ComplexInput::exact_geometry(const Plc& plc) const {
-  return [this, &plc](unsigned dimension, Index feature, const Point& p) -> std::optional<Point> {
+  return [this, &plc, files = files_of_curves(plc, soups(), built_.curve_numbers)](
+             unsigned dimension, Index feature, const Point& p) -> std::optional<Point> {
     if (built_.repaired.wrapped) return std::nullopt;  // its tags are no numbers of faces
-    const Index patch = dimension == 2                        ? feature
-                        : plc.curves[feature].patches.empty() ? none
-                                                              : plc.curves[feature].patches.front();
-    if (patch == none) return std::nullopt;
+    const Index file = dimension == 2 ? plc.patches[feature].file : files[feature];
+    if (file == none) return std::nullopt;
     const Tag number = dimension == 2 ? built_.patch_numbers[feature] : built_.curve_numbers[feature];
-    return cad_.nearest(plc.patches[patch].file, dimension, number, p);
+    return cad_.nearest(file, dimension, number, p);
   };
 }
 

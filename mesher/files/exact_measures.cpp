@@ -1,11 +1,13 @@
 #include "files/exact_measures.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "collarmesh/brep/cad_model.h"
@@ -85,10 +87,12 @@ class Measures {
 
   std::vector<double> lengths() const {
     Origins origins(plc_.curves.size());
+    const std::vector<Index> files = files_of_curves(plc_, sources_.soups, sources_.curves);
     for (Index c = 0; c < plc_.curves.size(); ++c) {
       const Plc::Curve& curve = plc_.curves[c];
-      if (curve.patches.empty()) continue;
-      if (const auto cad = cad_.measures(plc_.patches[curve.patches.front()].file))
+      const Index file = files[c];
+      if (file == none) continue;
+      if (const auto cad = cad_.measures(file))
         origins.add(cad->first_soup, sources_.curves[c], cad->measures.lengths, c, length_of(curve));
     }
     return origins.corrected_sizes();
@@ -204,6 +208,28 @@ class Measures {
 };
 
 }  // namespace
+
+std::vector<Index> files_of_curves(const Plc& plc, const std::vector<PolygonSoup>& soups,
+                                   const std::vector<Tag>& numbers) {
+  std::vector<Index> files(plc.curves.size(), none);
+  std::vector<Index> loose;
+  for (Index c = 0; c < plc.curves.size(); ++c)
+    if (plc.curves[c].patches.empty())
+      loose.push_back(c);
+    else
+      files[c] = plc.patches[plc.curves[c].patches.front()].file;
+  if (loose.empty()) return files;
+  const auto key = [](Tag tag, const Point& p) { return std::pair(tag, std::array{p.x, p.y, p.z}); };
+  std::map<std::pair<Tag, std::array<double, 3>>, Index> soup_with;
+  for (Index s = 0; s < soups.size(); ++s)
+    for (const PolygonSoup::Segment& segment : soups[s].segments)
+      for (const Index p : {segment.a, segment.b}) soup_with.emplace(key(segment.tag, soups[s].points[p]), s);
+  for (const Index c : loose)
+    for (const Index p : plc.curves[c].points)
+      if (const auto found = soup_with.find(key(numbers[c], plc.points[p])); found != soup_with.end())
+        files[c] = found->second;
+  return files;
+}
 
 ShapeMeasures measures_behind(const Plc& plc, const FeatureSources& sources, const CadFiles& cad) {
   const Measures measures(plc, sources, cad);

@@ -15,6 +15,11 @@ struct FeatureSources {
   const std::vector<Tag>& curves;
 };
 
+/// For each curve the soup whose geometry it is of: that of its first patch, or for curves of no patch the
+/// one that names it; none where it was changed since.
+std::vector<Index> files_of_curves(const Plc& plc, const std::vector<PolygonSoup>& soups,
+                                   const std::vector<Tag>& numbers);
+
 /// Lengths, areas and volumes of the CAD shapes behind a complex: what features measure, corrected by what
 /// the tessellation lacks. Features that are not all of an edge or face, and regions that are no solid
 /// without those that lie in it, have none.

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepAlgoAPI_Fuse.hxx>
+#include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_MakeVertex.hxx>
 #include <BRepFilletAPI_MakeFillet.hxx>
 #include <BRepGProp.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
@@ -18,7 +20,9 @@
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
+#include <gp_Circ.hxx>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -115,6 +119,99 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"torus", [] { return BRepPrimAPI_MakeTorus(10, 3).Shape(); }, 0},
                       Case{"plate_with_hole", plate_with_hole, 14}, Case{"filleted_box", filleted_box, 48}),
     [](const auto& info) { return std::string(info.param.name); });
+
+/// Of the chords of the mesh edges with a tag.
+double length_of_edges(const TetMesh& mesh, Tag tag) {
+  double length = 0;
+  for (std::size_t e = 0; e < mesh.edges.size(); ++e)
+    if (mesh.edge_tag[e] == tag)
+      length += distance(mesh.points[mesh.edges[e][0]], mesh.points[mesh.edges[e][1]]);
+  return length;
+}
+
+bool has_node_at(const TetMesh& mesh, const Point& p, double within = 1e-12) {
+  return std::any_of(mesh.points.begin(), mesh.points.end(),
+                     [&](const Point& q) { return distance(p, q) < within; });
+}
+
+TEST(CadMeshingInside, PutsNodesOnLinesAndPoints) {
+  const CadMeshed meshed =
+      mesh_of_shape(compound({BRepPrimAPI_MakeBox(10, 20, 30).Shape(),
+                              BRepBuilderAPI_MakeEdge(gp_Pnt(2, 5, 5), gp_Pnt(8, 15, 20)).Shape(),
+                              BRepBuilderAPI_MakeVertex(gp_Pnt(5, 9, 25)).Shape()}));
+  EXPECT_EQ(faults(meshed), "");
+  const TetMesh& mesh = meshed.result.mesh;
+  EXPECT_EQ(tags(mesh.edge_tag), one_to(13));
+  EXPECT_NEAR(length_of_edges(mesh, 13), std::hypot(6, 10, 15), 1e-12);
+  EXPECT_TRUE(has_node_at(mesh, {5, 9, 25}));
+}
+
+TEST(CadMeshingInside, PutsNodesOnExactCurves) {
+  const gp_Pnt center(5, 10, 15);
+  const double radius = 4;
+  const TopoDS_Shape arc =
+      BRepBuilderAPI_MakeEdge(gp_Circ(gp_Ax2(center, gp::DZ()), radius), 0, M_PI).Shape();
+  for (const int order : {1, 2}) {
+    const CadMeshed meshed =
+        mesh_of_shape(compound({BRepPrimAPI_MakeBox(10, 20, 30).Shape(), arc}), 0.05, order);
+    EXPECT_EQ(faults(meshed), "");
+    const TetMesh& mesh = meshed.result.mesh;
+    std::size_t edges = 0;
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
+      if (mesh.edge_tag[e] != 13) continue;
+      ++edges;
+      std::vector<Index> nodes(mesh.edges[e].begin(), mesh.edges[e].end());
+      if (order == 2) nodes.push_back(mesh.edge_mid_nodes[e]);
+      for (const Index node : nodes) {
+        EXPECT_NEAR(distance(mesh.points[node], {5, 10, 15}), radius, 1e-12);
+        EXPECT_NEAR(mesh.points[node].z, 15, 1e-12);
+      }
+    }
+    EXPECT_GT(edges, 5U);
+    EXPECT_NEAR(length_of_edges(mesh, 13), M_PI * radius, 0.02 * M_PI * radius);
+  }
+}
+
+TEST(CadMeshingInside, TakesWholeCirclesInOneOfTwoSolids) {
+  const TopoDS_Shape ring =
+      BRepBuilderAPI_MakeEdge(gp_Circ(gp_Ax2(gp_Pnt(5, 5, 5), gp_Dir(0, 0, 1)), 3)).Shape();
+  const CadMeshed meshed =
+      mesh_of_shape(compound({BRepPrimAPI_MakeBox(10, 10, 10).Shape(),
+                              BRepPrimAPI_MakeBox(gp_Pnt(10, 2, 2), gp_Pnt(20, 8, 8)).Shape(), ring}));
+  EXPECT_EQ(faults(meshed), "");
+  const std::set<Tag> edges = tags(meshed.result.mesh.edge_tag);
+  EXPECT_EQ(edges.count(25), 1U);  // after those of the boxes
+  EXPECT_NEAR(length_of_edges(meshed.result.mesh, 25), 6 * M_PI, 0.05 * 6 * M_PI);
+}
+
+// A radius that goes on outside, and a chord: both end on the exact mantle.
+TEST(CadMeshingInside, EndsLinesOnCurvedFaces) {
+  const double radius = 10, height = 8;
+  const TopoDS_Shape cylinder = BRepPrimAPI_MakeCylinder(radius, 20).Shape(),
+                     spoke = BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, height), gp_Pnt(-12, -9, height)).Shape();
+  const Tag first = count(cylinder, TopAbs_EDGE) + 1;
+  const double angle = 1.2;  // at which the chord meets it: no crease
+  const double depth = radius * std::cos(angle), half = radius * std::sin(angle);
+  const TopoDS_Shape chord =
+      BRepBuilderAPI_MakeEdge(gp_Pnt(depth, -2 * radius, height), gp_Pnt(depth, 2 * radius, height)).Shape();
+  const CadMeshed meshed = mesh_of_shape(compound({cylinder, spoke, chord}));
+  EXPECT_EQ(faults(meshed), "");
+  const TetMesh& mesh = meshed.result.mesh;
+  EXPECT_NEAR(length_of_edges(mesh, first), radius, 1e-9);
+  EXPECT_NEAR(length_of_edges(mesh, first + 1), 2 * half, 1e-9);
+  for (const Point& p : {Point{-8, -6, height}, Point{depth, half, height}, Point{depth, -half, height}})
+    EXPECT_TRUE(has_node_at(mesh, p, 1e-9));
+}
+
+TEST(CadMeshingInside, LeavesOutWhatOfALineIsInAHole) {
+  const TopoDS_Shape plate = plate_with_hole();
+  const int number = count(plate, TopAbs_EDGE) + 1;
+  const CadMeshed meshed =
+      mesh_of_shape(compound({plate, BRepBuilderAPI_MakeEdge(gp_Pnt(5, 15, 2), gp_Pnt(35, 15, 2)).Shape()}));
+  EXPECT_EQ(faults(meshed), "");
+  EXPECT_NEAR(length_of_edges(meshed.result.mesh, number), 30 - 2 * 6, 1e-9);
+  for (const double x : {5, 14, 26, 35}) EXPECT_TRUE(has_node_at(meshed.result.mesh, {x, 15, 2}, 1e-9));
+}
 
 // The exact face behind a tag is the one with FreeCAD's number: FaceN's centre of mass.
 TEST(CadTags, AreFreeCadsNumbers) {

@@ -155,20 +155,133 @@ TEST(CadFaults, NullAndEmptyShapes) {
       {"part", "no solid"});
 }
 
-// Wires and points that belong to no face have no place in the mesh, and that is told.
-TEST(CadModel, TellsOfEdgesAndPointsThatBelongToNoFace) {
-  EXPECT_TRUE(CadModel(box(), "part").notes().empty());
-  const TopoDS_Shape edge = BRepBuilderAPI_MakeEdge(gp_Pnt(2, 5, 5), gp_Pnt(8, 5, 5)).Shape(),
-                     vertex = BRepBuilderAPI_MakeVertex(gp_Pnt(5, 9, 5)).Shape();
+TopoDS_Shape line(const gp_Pnt& from, const gp_Pnt& to) { return BRepBuilderAPI_MakeEdge(from, to).Shape(); }
+TopoDS_Shape point(double x, double y, double z) {
+  return BRepBuilderAPI_MakeVertex(gp_Pnt(x, y, z)).Shape();
+}
+
+// Wires and points that belong to no face, and are not inside a solid, have no place in the mesh: that is
+// told.
+TEST(CadModel, TellsOfEdgesAndPointsOutsideOfSolids) {
   const TopoDS_Shape solid = box();
+  EXPECT_TRUE(CadModel(solid, "part").notes().empty());
   const TopoDS_Shape edge_of_face = TopExp_Explorer(solid, TopAbs_EDGE).Current();
   EXPECT_TRUE(CadModel(compound({solid, edge_of_face}), "part").notes().empty());
+  const TopoDS_Shape edge = line(gp_Pnt(20, 5, 5), gp_Pnt(28, 5, 5)), vertex = point(5, 9, -5);
   const CadModel with_edge(compound({solid, edge}), "part"),
       with_both(compound({solid, vertex, edge}), "part");
   ASSERT_EQ(with_edge.notes().size(), 1U);
-  expect_mentions(with_edge.notes()[0], {"part", "Edge13 at (5, 5, 5)", "is no part of a face", ".poly"});
+  expect_mentions(with_edge.notes()[0],
+                  {"part", "Edge13 at (24, 5, 5)",
+                   "is no part of a face and left out: outside of the closed solids", ".poly"});
   ASSERT_EQ(with_both.notes().size(), 1U);
-  expect_mentions(with_both.notes()[0], {"Edge13 at (5, 5, 5) and 1 more are no part of a face"});
+  expect_mentions(with_both.notes()[0],
+                  {"Edge13 at (24, 5, 5) and 1 more are no part of a face and left out: outside"});
+}
+
+double length_of(const PolygonSoup& soup) {
+  double length = 0;
+  for (const PolygonSoup::Segment& segment : soup.segments)
+    length += distance(soup.points[segment.a], soup.points[segment.b]);
+  return length;
+}
+
+/// Is there a vertex of the soup, with a tag of its own?
+bool has_vertex_at(const PolygonSoup& soup, const Point& p) {
+  return std::any_of(soup.vertices.begin(), soup.vertices.end(),
+                     [&](Index v) { return soup.point_tags[v] != 0 && distance(soup.points[v], p) < 1e-12; });
+}
+
+TEST(CadModel, CutsEdgesInsideWhereTheyMeetOneAnother) {
+  const TopoDS_Shape first = line(gp_Pnt(2, 5, 5), gp_Pnt(8, 5, 5));
+  struct Meeting {
+    TopoDS_Shape other;
+    double length;              // of both, what they have in common counted once
+    std::size_t curves;         // that they are cut into
+    std::vector<Point> places;  // where they meet
+  };
+  const Meeting meetings[] = {{line(gp_Pnt(5, 2, 5), gp_Pnt(5, 8, 5)), 12, 4, {{5, 5, 5}}},
+                              {line(gp_Pnt(5, 5, 5), gp_Pnt(5, 5, 8)), 9, 3, {{5, 5, 5}}},
+                              {line(gp_Pnt(2, 5, 5), gp_Pnt(7, 5, 5)), 6, 2, {{2, 5, 5}, {7, 5, 5}}},
+                              {line(gp_Pnt(2, 5, 5), gp_Pnt(8, 5, 5)), 6, 1, {{2, 5, 5}, {8, 5, 5}}},
+                              {point(5, 5, 5), 6, 2, {{5, 5, 5}}}};
+  for (const Meeting& meeting : meetings) {
+    CadModel model(compound({box(), first, meeting.other}), "part");
+    EXPECT_TRUE(model.notes().empty());
+    const std::vector<PolygonSoup> soups = model.tessellate({});
+    ASSERT_EQ(soups.size(), 2U);
+    EXPECT_NEAR(length_of(soups[1]), meeting.length, 1e-12);
+    EXPECT_EQ(build_plc(soups).curves.size(), 12 + meeting.curves);
+    for (const Point& place : meeting.places) EXPECT_TRUE(has_vertex_at(soups[1], place));
+  }
+}
+
+// The face has a vertex there, which the line ends at; what is outside is left out.
+TEST(CadModel, EndsEdgesAtTheFacesThatTheyMeet) {
+  const double top = 30, inside = 10;
+  for (const double end : {top, 2 * top}) {
+    CadModel model(compound({box(), line(gp_Pnt(5, 5, top - inside), gp_Pnt(5, 5, end))}), "part");
+    ASSERT_EQ(model.notes().size(), end > top ? 1U : 0U);
+    if (end > top)
+      expect_mentions(model.notes()[0],
+                      {"part: Edge13 at (5, 5, 40) is outside of the closed solids in part"});
+    const std::vector<PolygonSoup> soups = model.tessellate({});
+    ASSERT_EQ(soups.size(), 2U);
+    for (const PolygonSoup& soup : soups) EXPECT_TRUE(has_vertex_at(soup, {5, 5, top}));
+    EXPECT_NEAR(length_of(soups[1]), inside, 1e-12);
+    EXPECT_EQ(open_sides(soups[0]), 0U);
+    EXPECT_NEAR(volume_of(soups[0]), 6000, 1e-9);
+    EXPECT_NEAR(model.measures().lengths.at(13).exact, inside, 1e-9);
+  }
+}
+
+// Faces and edges keep their numbers, also those that come after.
+TEST(CadModel, KeepsNumbersWhereEdgesMeetFaces) {
+  const TopoDS_Shape solids[] = {BRepPrimAPI_MakeBox(10, 10, 10).Shape(),
+                                 BRepPrimAPI_MakeBox(gp_Pnt(10, 0, 0), gp_Pnt(20, 10, 10)).Shape()};
+  const TopoDS_Shape wire = line(gp_Pnt(3, 3, 3), gp_Pnt(15, 6, 7)),
+                     stray = line(gp_Pnt(0, 0, -5), gp_Pnt(1, 0, -5));
+  CadModel without(compound({solids[0], solids[1]}), "part"),
+      with(compound({solids[0], solids[1], wire, stray}), "part");
+  const std::vector<PolygonSoup> before = without.tessellate({}), after = with.tessellate({});
+  ASSERT_EQ(after.size(), before.size() + 1);
+  const auto numbers = [](const std::vector<PolygonSoup>& soups) {
+    std::set<std::pair<int, Tag>> all;
+    for (std::size_t s = 0; s < 2; ++s) {
+      for (Index f = 0; f < soups[s].facet_count(); ++f) all.emplace(2, soups[s].facet_tag(f));
+      for (const PolygonSoup::Segment& segment : soups[s].segments) all.emplace(1, segment.tag);
+    }
+    return all;
+  };
+  EXPECT_EQ(numbers(after), numbers(before));
+  for (const PolygonSoup::Segment& segment : after[2].segments) EXPECT_EQ(segment.tag, 25);
+  EXPECT_NEAR(length_of(after[2]), 13, 1e-12);
+  expect_mentions(with.notes().at(0), {"Edge26 at (0.5, 0, -5) is no part of a face and left out: outside"});
+}
+
+// Edges of a wire that are given apart, too.
+TEST(CadModel, JoinsEdgesInsideAtTheirEnds) {
+  CadModel model(
+      compound({box(), line(gp_Pnt(2, 5, 5), gp_Pnt(8, 5, 5)), line(gp_Pnt(8, 5, 5), gp_Pnt(8, 9, 5)),
+                line(gp_Pnt(8, 9, 5), gp_Pnt(2, 5, 5)), point(8, 9, 5), point(5, 15, 15)}),
+      "part");
+  EXPECT_TRUE(model.notes().empty());
+  const std::vector<PolygonSoup> soups = model.tessellate({});
+  ASSERT_EQ(soups.size(), 2U);
+  EXPECT_EQ(soups[1].segments.size(), 3U);
+  EXPECT_EQ(soups[1].vertices.size(), 4U);
+  const Plc plc = build_plc(soups);
+  EXPECT_EQ(plc.curves.size(), 15U);
+  EXPECT_EQ(plc.vertices.size(), 12U);
+}
+
+TEST(CadModel, LeavesOutEdgesNearerToFacesThanTheTriangles) {
+  CadModel model(compound({box(), line(gp_Pnt(2, 5, 0.1), gp_Pnt(8, 5, 0.1))}), "part");
+  EXPECT_EQ(model.tessellate({.deflection = 0.01}).size(), 2U);
+  EXPECT_TRUE(model.notes().empty());
+  EXPECT_EQ(model.tessellate({.deflection = 0.1}).size(), 1U);
+  ASSERT_EQ(model.notes().size(), 1U);
+  expect_mentions(model.notes()[0], {"Edge13 at (5, 5, 0.1) is so near to faces", "--distance"});
 }
 
 TEST(CadTessellation, KeepsTheDeflection) {

@@ -1,6 +1,9 @@
 """Numbers and names of patches from input to output, surfaces in mesh files, and units, as users meet them."""
 
+import collections
+import itertools
 import json
+import math
 import os
 import pathlib
 import pty
@@ -295,6 +298,59 @@ class NamesOfStep(ProgramTest):
 
 
 @unittest.skipUnless(HAS_MED, "no MED")
+@unittest.skipUnless(HAS_CAD, "no OpenCASCADE")
+class WiresOfCadFiles(ProgramTest):
+    """A circle (Edge13) and a point inside a box, and a needle (Edge14) that sticks out of its top."""
+
+    MODEL = MODELS / "wires_in_box.brep"
+    LOOP, NEEDLE = 13, 14
+
+    def meshed(self, *options):
+        import meshio
+
+        run = self.run_program(self.MODEL, "-o", "a.msh", "--size", "5", *options)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertRegex(run.stderr, r"Edge14 at \(10, 10, 18\) is outside of the closed solids in part")
+        self.assertIn("every guarantee holds", run.stderr)
+        mesh = meshio.read(self.folder / "a.msh")
+        tags = mesh.cell_data["gmsh:physical"]
+        return mesh, [(line, tag) for block, of_block in zip(mesh.cells, tags) if block.type.startswith("line")
+                      for line, tag in zip(block.data.tolist(), of_block.tolist())]
+
+    def sides_of_tets(self, mesh):
+        return {frozenset(side) for block in mesh.cells if block.type.startswith("tetra")
+                for tet in block.data.tolist() for side in itertools.combinations(tet[:4], 2)}
+
+    def test_nodes_lie_on_them(self):
+        for order in ("1", "2"):
+            mesh, lines = self.meshed("--curve-size", f"{self.LOOP}=1", "--order", order)
+            sides = self.sides_of_tets(mesh)
+            ends = [0, 0]
+            for nodes, tag in lines:
+                self.assertIn(frozenset(nodes[:2]), sides)
+                for x, y, z in mesh.points[nodes].tolist():
+                    if tag == self.LOOP:
+                        self.assertAlmostEqual(math.hypot(x - 10, y - 10), 6, places=9)
+                        self.assertAlmostEqual(z, 10, places=9)
+                    elif tag == self.NEEDLE:
+                        self.assertEqual((x, y), (10, 10))
+            loop, needle = ([nodes for nodes, tag in lines if tag == each] for each in (self.LOOP, self.NEEDLE))
+            self.assertGreater(len(loop), 2 * math.pi * 6 / 2.5)  # finer than the rest
+            self.assertEqual(set(collections.Counter(node for nodes in loop for node in nodes[:2]).values()), {2})
+            heights = sorted(z for z in mesh.points[sorted({n for nodes in needle for n in nodes[:2]})][:, 2].tolist())
+            self.assertEqual((heights[0], heights[-1], len(heights)), (12, 20, len(needle) + 1))
+            self.assertIn([4, 10, 14], mesh.points.tolist())
+
+    def test_they_have_names(self):
+        mesh, lines = self.meshed("--name", "needle=curve:14")
+        self.assertEqual({tag for _, tag in lines}, set(range(1, 15)))
+        names = {name: list(number) for name, number in mesh.field_data.items()}
+        self.assertEqual((names["Edge13"], names["needle"]), ([13, 1], [14, 1]))
+        info = json.loads(self.run_program("info", "--json", self.MODEL).stdout)["complex"]["curve_list"]
+        lengths = {curve["name"]: curve["length"] for curve in info}
+        self.assertAlmostEqual(lengths["Edge14"], 8)
+
+
 class NamesInMed(ProgramTest):
     def test_families_end_at_a_character(self):
         try:

@@ -138,9 +138,8 @@ std::vector<TopoDS_Shape> contact_points(const TopoDS_Shape& fused) {
   return vertices;
 }
 
-using Fuse = std::shared_ptr<BOPAlgo_Builder>;
+}  // namespace
 
-/// Null when it fails.
 Fuse general_fuse(const std::vector<TopoDS_Shape>& shapes) {
   const auto fuse = std::make_shared<BOPAlgo_Builder>();
   fuse->SetNonDestructive(true);
@@ -150,14 +149,16 @@ Fuse general_fuse(const std::vector<TopoDS_Shape>& shapes) {
   return fuse->HasErrors() || fuse->Shape().IsNull() ? nullptr : fuse;
 }
 
+namespace {
+
 double volume_of(const TopoDS_Shape& shape) {
   GProp_GProps properties;
   BRepGProp::VolumeProperties(shape, properties);
   return properties.Mass();
 }
 
-/// What the parts of a solid lack of its volume or exceed it by, relative; infinite when one is open or none
-/// is left.
+}  // namespace
+
 double unsoundness(BOPAlgo_Builder& fuse, const TopoDS_Shape& solid) {
   if (fuse.IsDeleted(solid)) return INFINITY;
   const TopTools_ListOfShape parts = fuse.Modified(solid);
@@ -170,6 +171,8 @@ double unsoundness(BOPAlgo_Builder& fuse, const TopoDS_Shape& solid) {
   const double before = volume_of(solid);
   return before != 0 ? std::fabs(volume / before - 1) : INFINITY;
 }
+
+namespace {
 
 /// With a vertex where solids touch in a point. Null when it fails.
 Fuse fuse_with_contacts(const std::vector<TopoDS_Shape>& shapes) {
@@ -189,8 +192,7 @@ Fuse fuse_with_contacts(const std::vector<TopoDS_Shape>& shapes) {
 /// The general fuse of what may touch, without the solids of which it makes no sound parts: these are moved
 /// from `shapes` to `left_out`, the worst one first, as it may be what spoils the others. Null when it fails.
 Fuse sound_fuse(std::vector<TopoDS_Shape>& shapes, std::vector<TopoDS_Shape>& left_out) {
-  constexpr double rough = 1e-3;  // of a volume: what integrals over trimmed faces may err
-  constexpr int rounds = 3;       // after which all go
+  constexpr int rounds = 3;  // after which all go
   for (int round = 1; shapes.size() > 1; ++round) {
     const Fuse fuse = fuse_with_contacts(shapes);
     if (!fuse) return nullptr;
@@ -198,11 +200,11 @@ Fuse sound_fuse(std::vector<TopoDS_Shape>& shapes, std::vector<TopoDS_Shape>& le
     for (std::size_t i = 0; i < shapes.size(); ++i)
       if (shapes[i].ShapeType() == TopAbs_SOLID) off[i] = unsoundness(*fuse, shapes[i]);
     const double worst = *std::max_element(off.begin(), off.end());
-    if (worst <= rough) return fuse;
-    const double least = round < rounds ? worst : rough;
+    if (worst <= rough_volume) return fuse;
+    const double least = round < rounds ? worst : rough_volume;
     std::vector<TopoDS_Shape> kept;
     for (std::size_t i = 0; i < shapes.size(); ++i)
-      (off[i] > rough && off[i] >= least ? left_out : kept).push_back(shapes[i]);
+      (off[i] > rough_volume && off[i] >= least ? left_out : kept).push_back(shapes[i]);
     shapes = kept;
   }
   return nullptr;
@@ -211,7 +213,7 @@ Fuse sound_fuse(std::vector<TopoDS_Shape>& shapes, std::vector<TopoDS_Shape>& le
 /// The parts that the solids were cut into, and the solids that hold each.
 class Pieces {
  public:
-  Pieces(const std::vector<Topology::Solid>& solids, const PartsOf& parts_of) : solids_(solids) {
+  Pieces(const std::vector<Topology::Solid>& solids, const PartsOf& parts_of) {
     for (std::size_t s = 0; s < solids.size(); ++s)
       for (const TopoDS_Shape& part : parts_of(solids[s].shape)) {
         const auto piece = static_cast<std::size_t>(pieces_.Add(part) - 1);
@@ -250,7 +252,6 @@ class Pieces {
     return size_[inner] < size_[outer] && together_.at({inner, outer}) == size_[inner];
   }
 
-  const std::vector<Topology::Solid>& solids_;
   TopTools_IndexedMapOfShape pieces_;
   std::vector<std::vector<std::size_t>> holders_;
   std::vector<std::size_t> size_;  // pieces of each solid
@@ -258,7 +259,8 @@ class Pieces {
   std::map<std::array<std::size_t, 2>, std::size_t> together_;  // pieces that two solids hold
 };
 
-/// A region of several pieces: their walls, which have two of them at their sides, are none of its boundary.
+}  // namespace
+
 Topology::Solid merged(const std::vector<TopoDS_Shape>& pieces, int number) {
   Topology::Solid solid;
   solid.number = number;
@@ -275,6 +277,8 @@ Topology::Solid merged(const std::vector<TopoDS_Shape>& pieces, int number) {
       if (!walls.Contains(face)) solid.faces.push_back(face);
   return solid;
 }
+
+namespace {
 
 std::string names_of(const std::vector<std::size_t>& holders, const std::vector<Topology::Solid>& solids) {
   std::vector<std::string> names;

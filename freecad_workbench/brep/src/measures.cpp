@@ -11,6 +11,8 @@
 #include <GProp_GProps.hxx>
 #include <NCollection_IndexedDataMap.hxx>
 #include <Standard_Failure.hxx>
+#include <TopExp.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
 #include <TopTools_ShapeMapHasher.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Face.hxx>
@@ -163,8 +165,12 @@ std::map<Tag, CadMeasure> plausible(const std::map<Tag, Sum>& sums) {
 std::map<Tag, CadMeasure> lengths_of(const Topology& topology, const Tessellation& tessellation,
                                      double deflection) {
   std::map<Tag, Sum> sums;
-  for (const TopoDS_Shape& edge : subshapes(topology.all, TopAbs_EDGE))
-    if (tessellation.lengths.IsBound(edge))
+  TopTools_IndexedMapOfShape edges;
+  TopExp::MapShapes(topology.all, TopAbs_EDGE, edges);
+  for (const Topology::FreePart& part : topology.free_parts)
+    TopExp::MapShapes(part.shape, TopAbs_EDGE, edges);
+  for (int e = 1; e <= edges.Extent(); ++e)
+    if (const TopoDS_Shape& edge = edges(e); tessellation.lengths.IsBound(edge))
       sums[topology.number(edge)].add(integrate_or(unknown, [&] { return length_of(edge); }),
                                       tessellation.lengths.Find(edge), 2 * deflection);
   return plausible(sums);

@@ -4,6 +4,7 @@
 #include "face_mending.h"
 #include "flat_triangles.h"
 #include "folded_triangles.h"
+#include "free_chords.h"
 
 #include <fmt/format.h>
 #include <BRepAdaptor_Curve.hxx>
@@ -80,6 +81,8 @@ class Tessellator {
     measure();
     for (const Topology::Solid& solid : topology_.solids) result_.soups.push_back(soup_of(solid));
     if (!topology_.internal_faces.empty()) result_.soups.push_back(internal_soup());
+    if (PolygonSoup soup = cut_free_parts(topology_, file_, options, result_); !soup.points.empty())
+      result_.soups.push_back(std::move(soup));
     return std::move(result_);
   }
 

@@ -20,7 +20,8 @@ struct Samples {
 };
 
 struct Tessellation {
-  std::vector<PolygonSoup> soups;  ///< one per solid, one for the internal faces where there are any
+  /// One per solid, one for the internal faces and one for the free edges and vertices where there are any.
+  std::vector<PolygonSoup> soups;
   std::map<int, std::vector<Samples>> edges, faces;  ///< by number
   TopTools_DataMapOfShapeReal lengths, areas;  ///< of the chords of edges that are features, of the triangles
   std::vector<std::string> notes;              ///< on faces that were cut in another way, or not at all

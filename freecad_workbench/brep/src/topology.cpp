@@ -1,6 +1,7 @@
 // From a shape to its solids with numbered sub-shapes.
 #include "topology.h"
 
+#include "free_parts.h"
 #include "fuse.h"
 #include "sewing.h"
 
@@ -48,25 +49,6 @@ void number_subshapes(const TopoDS_Shape& shape, TopTools_DataMapOfShapeInteger&
     int number = 0;
     for (const TopoDS_Shape& part : subshapes(shape, kind)) numbers.Bind(part, ++number);
   }
-}
-
-/// A note about edges that bound no face and vertices that end no edge, as no soup has them.
-void tell_of_free_parts(const TopoDS_Shape& shape, const std::string& file, Topology& topology) {
-  TopTools_IndexedMapOfShape held;
-  for (const TopoDS_Shape& face : subshapes(shape, TopAbs_FACE)) TopExp::MapShapes(face, held);
-  std::vector<TopoDS_Shape> free;
-  for (const TopAbs_ShapeEnum kind : {TopAbs_EDGE, TopAbs_VERTEX})
-    for (const TopoDS_Shape& part : subshapes(shape, kind)) {
-      if (held.Contains(part)) continue;
-      free.push_back(part);
-      TopExp::MapShapes(part, held);
-    }
-  if (free.empty()) return;
-  topology.notes.push_back(
-      fmt::format("{}: {} at {}{} no part of a face and left out; to get nodes on lines and points, give "
-                  "them as segments and points of a .poly file beside this one",
-                  file, topology.name(free.front()), text(place_of(free.front())),
-                  free.size() > 1 ? fmt::format(" and {} more are", free.size() - 1) : " is"));
 }
 
 /// Faces that bound no solid.
@@ -128,9 +110,15 @@ void carry_numbers(const TopoDS_Shape& before, const TopoDS_Shape& after, const 
                    Topology& topology) {
   TopTools_DataMapOfShapeInteger numbers;
   for (const TopAbs_ShapeEnum kind : numbered_kinds) {
-    std::map<int, TopoDS_Shape> by_number;
-    for (const TopoDS_Shape& old : subshapes(before, kind)) by_number[topology.number(old)] = old;
+    std::multimap<int, TopoDS_Shape> by_number;  // parts of one have the same
+    for (const TopoDS_Shape& old : subshapes(before, kind))
+      if (topology.number(old) > 0) by_number.emplace(topology.number(old), old);
     int next = by_number.empty() ? 1 : by_number.rbegin()->first + 1;
+    for (const auto& [part, number] : topology.kept_numbers) {
+      if (part.ShapeType() != kind) continue;
+      next = std::max(next, number + 1);
+      if (!numbers.IsBound(part)) numbers.Bind(part, number);
+    }
     for (const auto& [number, old] : by_number)
       for (const TopoDS_Shape& part : parts_of(old))
         if (!numbers.IsBound(part))
@@ -194,6 +182,14 @@ Point place_of(const TopoDS_Shape& shape) {
   return {0.5 * (low.X() + high.X()), 0.5 * (low.Y() + high.Y()), 0.5 * (low.Z() + high.Z())};
 }
 
+void Topology::keep_numbers(const std::vector<TopoDS_Shape>& parts) {
+  for (const TopoDS_Shape& part : parts) {
+    kept_numbers.emplace_back(part, number(part));
+    for (TopExp_Explorer end(part, TopAbs_VERTEX); end.More(); end.Next())
+      kept_numbers.emplace_back(end.Current(), number(end.Current()));
+  }
+}
+
 std::string Topology::name(const TopoDS_Shape& shape) const {
   const int n = number(shape);
   return n > 0 ? fmt::format("{}{}", kind_name(shape.ShapeType()), n) : kind_name(shape.ShapeType());
@@ -208,7 +204,8 @@ Topology find_topology(const TopoDS_Shape& shape, const std::string& file, const
   if (!TopExp_Explorer(shape, TopAbs_FACE).More())
     fail(PlcFault::Kind::empty, fmt::format("{} holds no solid and no face; there is nothing to mesh.", file),
          place_of(shape));
-  tell_of_free_parts(shape, file, topology);
+  const std::vector<TopoDS_Shape> free_parts = parts_of_no_face(shape);
+  topology.keep_numbers(free_parts);
   for (const TopoDS_Shape& solid : subshapes(shape, TopAbs_SOLID))
     topology.solids.push_back({solid, topology.number(solid), {}, false});
   if (topology.solids.empty()) {
@@ -218,6 +215,7 @@ Topology find_topology(const TopoDS_Shape& shape, const std::string& file, const
     topology.internal_faces = internal_faces_of(topology.all);
   }
   share_faces(file, options, topology);
+  keep_free_parts_inside(free_parts, file, topology);
   return topology;
 }
 

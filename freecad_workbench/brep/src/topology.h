@@ -25,16 +25,27 @@ struct Topology {
     bool open = false;                ///< edges border one face only
   };
 
-  std::vector<Solid> solids;                        ///< parts of one solid have the same number
-  std::vector<TopoDS_Shape> internal_faces;         ///< that belong to no solid, or lie inside one
-  TopoDS_Shape all;                                 ///< what is tessellated
-  TopTools_DataMapOfShapeInteger numbers;           ///< of solids, faces, edges and vertices
-  std::vector<std::pair<Tag, Tag>> replaced_faces;  ///< number that is gone, number in its place
+  /// An edge or vertex of no face, or a piece of one.
+  struct FreePart {
+    TopoDS_Shape shape;
+    int number = 0;
+    double clearance = 0;  ///< distance to the faces that it does not end on
+  };
+
+  std::vector<Solid> solids;                               ///< parts of one solid have the same number
+  std::vector<TopoDS_Shape> internal_faces;                ///< that belong to no solid, or lie inside one
+  std::vector<FreePart> free_parts;                        ///< that lie inside a solid
+  TopoDS_Shape all;                                        ///< what is tessellated
+  TopTools_DataMapOfShapeInteger numbers;                  ///< of solids, faces, edges and vertices
+  std::vector<std::pair<TopoDS_Shape, int>> kept_numbers;  ///< of parts that no step changes
+  std::vector<std::pair<Tag, Tag>> replaced_faces;         ///< number that is gone, number in its place
   std::vector<std::string> notes;
   bool fused = true;      ///< all that touch or overlap
   std::string open_text;  ///< which solids are open, at which edges; empty: none
 
   int number(const TopoDS_Shape& shape) const { return numbers.IsBound(shape) ? numbers.Find(shape) : 0; }
+  /// Of parts that no step changes, with their vertices: no other gets them.
+  void keep_numbers(const std::vector<TopoDS_Shape>& parts);
   /// "Face7".
   std::string name(const TopoDS_Shape& shape) const;
 };

@@ -51,13 +51,15 @@ struct CadMeasures {
   std::vector<std::optional<CadMeasure>> volumes;  ///< of what each soup bounds
 };
 
-/// The solids of a shape, with the faces that belong to none. Its sub-shapes have the numbers FreeCAD
-/// gives them (the order of TopExp::MapShapes): FaceN has the tag N.
+/// The solids of a shape, with the faces that belong to none, and the edges and vertices inside that belong
+/// to no face. Its sub-shapes have the numbers FreeCAD gives them (the order of TopExp::MapShapes): FaceN has
+/// the tag N.
 ///
 /// Solids that touch are made to share the faces there; faces and edges that are cut in this keep the
 /// number of what they were part of, edges that arise get the next free ones. What solids have in common is
-/// given to one of them. A shape of faces alone is sewn and becomes a solid where it is closed; so are the
-/// faces of an open solid.
+/// given to one of them. Edges of no face are cut where they meet faces or one another, and are left out
+/// outside of the solids and on their faces; notes tell of these. A shape of faces alone is sewn and becomes
+/// a solid where it is closed; so are the faces of an open solid.
 ///
 /// What OpenCASCADE cannot do is left to whoever makes a complex of the soups, and told in `notes`: solids
 /// that it cannot fuse may intersect, solids that stay open have holes, and a face that it cannot cut into
@@ -79,7 +81,8 @@ class CadModel {
   virtual double diagonal() const;  ///< of the box around it
   virtual const CadLabels& labels() const;
 
-  /// Triangles of all faces: one soup for each solid and a last one for the faces that belong to none.
+  /// Triangles of all faces: one soup for each solid, one for the faces that belong to none, and one of
+  /// chords and points for the edges and vertices inside a solid that belong to no face.
   /// Neighbouring faces share the points of their edges. Vertices, edges and faces of the shape are
   /// features with their numbers as tags; seams and degenerate edges are none.
   /// Throws PlcError when OpenCASCADE fails, or no face can be cut into triangles.

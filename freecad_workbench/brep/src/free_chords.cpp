@@ -1,0 +1,114 @@
+// Chords and points of the edges and vertices inside solids that belong to no face.
+#include "free_chords.h"
+
+#include <fmt/format.h>
+#include <BRepAdaptor_Curve.hxx>
+#include <BRep_Tool.hxx>
+#include <GCPnts_TangentialDeflection.hxx>
+#include <Precision.hxx>
+#include <TopExp.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Edge.hxx>
+#include <TopoDS_Vertex.hxx>
+
+#include <algorithm>
+#include <numbers>
+
+namespace collarmesh::brep {
+
+namespace {
+
+Point to_point(const gp_Pnt& p) { return {p.X(), p.Y(), p.Z()}; }
+
+bool is_edge(const TopoDS_Shape& part) { return part.ShapeType() == TopAbs_EDGE; }
+
+class Cutter {
+ public:
+  Cutter(const Topology& topology, const std::string& file, const TessellationOptions& options,
+         Tessellation& result)
+      : topology_(topology), options_(options), result_(result) {
+    soup_.name = fmt::format("{}, lines and points inside", file);
+    soup_.given_features = true;
+  }
+
+  void add(const Topology::FreePart& part) {
+    if (!is_edge(part.shape)) {
+      soup_.point_tags[vertex(TopoDS::Vertex(part.shape))] = part.number;
+      return;
+    }
+    const TopoDS_Edge edge = TopoDS::Edge(part.shape.Oriented(TopAbs_FORWARD));
+    Samples samples = samples_of(edge);
+    Index before = vertex(TopExp::FirstVertex(edge));
+    double length = 0;
+    for (std::size_t i = 1; i < samples.points.size(); ++i) {
+      const bool last = i + 1 == samples.points.size();
+      const Index next = last ? vertex(TopExp::LastVertex(edge)) : point(samples.points[i], 0);
+      if (next != before) soup_.segments.push_back({before, next, part.number});
+      length += distance(soup_.points[before], soup_.points[next]);
+      before = next;
+    }
+    result_.lengths.Bind(part.shape, length);
+    result_.edges[part.number].push_back(std::move(samples));
+  }
+
+  PolygonSoup finish() { return std::move(soup_); }
+
+ private:
+  Samples samples_of(const TopoDS_Edge& edge) const {
+    const BRepAdaptor_Curve curve(edge);
+    const int least =
+        curve.GetType() == GeomAbs_Line ? 2 : 3;  // points, so that a curve is not taken for straight
+    const GCPnts_TangentialDeflection cut(curve, options_.angle * std::numbers::pi / 180, options_.deflection,
+                                          least);
+    Samples samples;
+    samples.shape = edge;
+    for (int i = 1; i <= cut.NbPoints(); ++i) {
+      samples.points.push_back(to_point(curve.Value(cut.Parameter(i))));
+      samples.parameters.push_back({cut.Parameter(i), 0});
+    }
+    return samples;
+  }
+
+  Index point(const Point& p, Tag tag) {
+    soup_.points.push_back(p);
+    soup_.point_tags.push_back(tag);
+    return static_cast<Index>(soup_.points.size() - 1);
+  }
+
+  /// Ends that meet within their tolerance are one point.
+  Index vertex(const TopoDS_Vertex& vertex) {
+    const Point p = to_point(BRep_Tool::Pnt(vertex));
+    const double tolerance = std::max(Precision::Confusion(), BRep_Tool::Tolerance(vertex));
+    for (const Index known : soup_.vertices)
+      if (distance(soup_.points[known], p) <= tolerance) return known;
+    soup_.vertices.push_back(point(p, topology_.number(vertex)));
+    return soup_.vertices.back();
+  }
+
+  const Topology& topology_;
+  const TessellationOptions& options_;
+  Tessellation& result_;
+  PolygonSoup soup_;
+};
+
+}  // namespace
+
+PolygonSoup cut_free_parts(const Topology& topology, const std::string& file,
+                           const TessellationOptions& options, Tessellation& result) {
+  Cutter cutter(topology, file, options, result);
+  std::vector<std::string> near;
+  for (const Topology::FreePart& part : topology.free_parts)
+    if (part.clearance > 2 * options.deflection)
+      cutter.add(part);
+    else
+      near.push_back(fmt::format("{}{} at {}", is_edge(part.shape) ? "Edge" : "Vertex", part.number,
+                                 text(place_of(part.shape))));
+  if (!near.empty())
+    result.notes.push_back(fmt::format(
+        "{}: {}{} so near to faces that triangles in their place may cross it, and left out; mesh "
+        "with a smaller --distance",
+        file, near.front(), near.size() > 1 ? fmt::format(" and {} more are", near.size() - 1) : " is"));
+  return cutter.finish();
+}
+
+}  // namespace collarmesh::brep

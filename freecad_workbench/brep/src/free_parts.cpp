@@ -1,0 +1,301 @@
+// Edges and vertices that belong to no face: which of them lie inside a solid.
+#include "free_parts.h"
+
+#include "free_parts_fuse.h"
+
+#include <fmt/format.h>
+#include <BRepAdaptor_Curve.hxx>
+#include <BRepBndLib.hxx>
+#include <BRepBuilderAPI_MakeVertex.hxx>
+#include <BRepClass3d_SolidClassifier.hxx>
+#include <BRepExtrema_DistShapeShape.hxx>
+#include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
+#include <Geom_Curve.hxx>
+#include <Precision.hxx>
+#include <TopExp.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
+#include <TopTools_MapOfShape.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+
+namespace collarmesh::brep {
+
+namespace {
+
+bool is_edge(const TopoDS_Shape& part) { return part.ShapeType() == TopAbs_EDGE; }
+
+double tolerance_of(const TopoDS_Shape& part) {
+  double largest = Precision::Confusion();
+  if (is_edge(part)) largest = std::max(largest, BRep_Tool::Tolerance(TopoDS::Edge(part)));
+  for (const TopoDS_Shape& vertex : subshapes(part, TopAbs_VERTEX))
+    largest = std::max(largest, BRep_Tool::Tolerance(TopoDS::Vertex(vertex)));
+  return largest;
+}
+
+/// A curve in space with two ends; an edge may lack that.
+bool has_place(const TopoDS_Shape& part) {
+  if (!is_edge(part)) return true;
+  const TopoDS_Edge& edge = TopoDS::Edge(part);
+  double first = 0, last = 0;
+  const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, first, last);
+  return !curve.IsNull() && !BRep_Tool::Degenerated(edge) && !Precision::IsInfinite(first) &&
+         !Precision::IsInfinite(last) && !TopExp::FirstVertex(edge).IsNull() &&
+         !TopExp::LastVertex(edge).IsNull();
+}
+
+Bnd_Box box_of(const TopoDS_Shape& shape) {
+  Bnd_Box box;
+  BRepBndLib::Add(shape, box);
+  return box;
+}
+
+/// Places along a part, its ends included.
+std::vector<gp_Pnt> samples_of(const TopoDS_Shape& part) {
+  if (!is_edge(part)) return {BRep_Tool::Pnt(TopoDS::Vertex(part))};
+  constexpr int pieces = 8;
+  const BRepAdaptor_Curve curve(TopoDS::Edge(part));
+  std::vector<gp_Pnt> samples;
+  for (int i = 0; i <= pieces; ++i)
+    samples.push_back(
+        curve.Value(curve.FirstParameter() + i * (curve.LastParameter() - curve.FirstParameter()) / pieces));
+  return samples;
+}
+
+/// The least distance between two shapes, 0 where OpenCASCADE finds none.
+double distance_between(const TopoDS_Shape& a, const TopoDS_Shape& b) {
+  const BRepExtrema_DistShapeShape nearest(a, b);
+  return nearest.IsDone() && nearest.NbSolution() > 0 ? nearest.Value() : 0;
+}
+
+bool runs_along(const TopoDS_Shape& edge, const TopoDS_Shape& other, double tolerance) {
+  const std::vector<gp_Pnt> samples = samples_of(edge);
+  return distance_between(BRepBuilderAPI_MakeVertex(samples[samples.size() / 2]).Shape(), other) <= tolerance;
+}
+
+/// Do two parts meet elsewhere than end at end?
+bool meet_amid(const TopoDS_Shape& a, const TopoDS_Shape& b) {
+  const double tolerance = std::max(tolerance_of(a), tolerance_of(b));
+  const BRepExtrema_DistShapeShape nearest(a, b);
+  if (!nearest.IsDone()) return true;
+  if (nearest.Value() > tolerance) return false;
+  for (int i = 1; i <= nearest.NbSolution(); ++i)
+    if (nearest.SupportTypeShape1(i) != BRepExtrema_IsVertex ||
+        nearest.SupportTypeShape2(i) != BRepExtrema_IsVertex)
+      return true;
+  return is_edge(a) && is_edge(b) && (runs_along(a, b, tolerance) || runs_along(b, a, tolerance));
+}
+
+/// Faces, and what may end on them.
+class Faces {
+ public:
+  explicit Faces(const TopoDS_Shape& all) : faces_(subshapes(all, TopAbs_FACE)) {
+    for (const TopoDS_Shape& face : faces_) TopExp::MapShapes(face, held_);
+  }
+
+  bool hold(const TopoDS_Shape& part) const { return held_.Contains(part); }
+
+  /// The distance of a part to those faces that it does not end on; infinite where there are none.
+  double distance_to(const TopoDS_Shape& part) const {
+    std::vector<TopoDS_Shape> ends = subshapes(part, TopAbs_VERTEX), others = faces_;
+    std::erase_if(ends, [&](const TopoDS_Shape& end) { return !hold(end); });
+    if (!ends.empty())
+      std::erase_if(others, [&](const TopoDS_Shape& face) {
+        TopTools_IndexedMapOfShape vertices;
+        TopExp::MapShapes(face, TopAbs_VERTEX, vertices);
+        return std::any_of(ends.begin(), ends.end(),
+                           [&](const TopoDS_Shape& end) { return vertices.Contains(end); });
+      });
+    return others.empty() ? std::numeric_limits<double>::infinity()
+                          : distance_between(part, compound_of(others));
+  }
+
+ private:
+  std::vector<TopoDS_Shape> faces_;
+  TopTools_IndexedMapOfShape held_;
+};
+
+/// The closed solids of a topology.
+class Solids {
+ public:
+  explicit Solids(const Topology& topology) {
+    for (const Topology::Solid& region : topology.solids)
+      for (const TopoDS_Shape& solid : subshapes(region.shape, TopAbs_SOLID)) {
+        if (region.open) continue;
+        boxes_.push_back(box_of(solid));
+        solids_.push_back(std::make_unique<BRepClass3d_SolidClassifier>(solid));
+      }
+  }
+
+  /// Does some of a part lie inside one of them, neither outside nor on its faces?
+  bool hold_some_of(const TopoDS_Shape& part) const {
+    const std::vector<gp_Pnt> samples = samples_of(part);
+    return std::any_of(samples.begin(), samples.end(), [&](const gp_Pnt& p) { return hold(p); });
+  }
+
+ private:
+  bool hold(const gp_Pnt& p) const {
+    for (std::size_t s = 0; s < solids_.size(); ++s) {
+      if (boxes_[s].IsOut(p)) continue;
+      solids_[s]->Perform(p, Precision::Confusion());
+      if (solids_[s]->State() == TopAbs_IN) return true;
+    }
+    return false;
+  }
+
+  std::vector<std::unique_ptr<BRepClass3d_SolidClassifier>> solids_;
+  std::vector<Bnd_Box> boxes_;
+};
+
+/// Sorts parts of no face by where they lie.
+class Sorter {
+ public:
+  Sorter(const std::string& file, Topology& topology)
+      : file_(file), topology_(topology), solids_(topology), faces_(topology.all) {}
+
+  void add(const TopoDS_Shape& part, int number) {
+    Candidate candidate{part, number, name_of(part, number)};
+    try {
+      if (!has_place(part) || !solids_.hold_some_of(part)) {
+        left_out_.push_back(part);
+        outside_.push_back(candidate.name);
+        return;
+      }
+      candidate.clearance = faces_.distance_to(part);
+      candidate.meets = candidate.clearance <= tolerance_of(part) || meets_another(part);
+    } catch (const Standard_Failure&) {
+      candidate.meets = true;
+    }
+    inside_.push_back(std::move(candidate));
+  }
+
+  void finish() {
+    const bool any_meets =
+        std::any_of(inside_.begin(), inside_.end(), [](const Candidate& part) { return part.meets; });
+    if (!any_meets || !cut()) keep_whole_ones();
+    tell();
+  }
+
+ private:
+  struct Candidate {
+    TopoDS_Shape shape;
+    int number = 0;
+    std::string name;
+    double clearance = 0;
+    bool meets = false;  // a face, or one that came before
+  };
+
+  static std::string name_of(const TopoDS_Shape& part, int number) {
+    return fmt::format("{}{} at {}", is_edge(part) ? "Edge" : "Vertex", number,
+                       has_place(part) ? text(place_of(part)) : "an unknown place");
+  }
+
+  bool meets_another(const TopoDS_Shape& part) const {
+    const Bnd_Box box = box_of(part);
+    return std::any_of(inside_.begin(), inside_.end(), [&](const Candidate& other) {
+      return !box_of(other.shape).IsOut(box) && meet_amid(part, other.shape);
+    });
+  }
+
+  /// Where they meet faces or one another; false when that fails, and nothing is changed.
+  bool cut() {
+    std::vector<TopoDS_Shape> parts;
+    parts.reserve(inside_.size());
+    for (const Candidate& part : inside_) parts.push_back(part.shape);
+    std::optional<PartsOf> pieces_of;
+    try {
+      pieces_of = fuse_free_parts(parts, left_out_, topology_);
+    } catch (const Standard_Failure&) {
+      return false;
+    }
+    if (!pieces_of) return false;
+    const Faces faces(topology_.all);
+    for (const Candidate& part : inside_) keep_pieces(part, (*pieces_of)(part.shape), faces);
+    return true;
+  }
+
+  void keep_pieces(const Candidate& part, const TopTools_ListOfShape& pieces, const Faces& faces) {
+    bool all_inside = true, all_cut = true;
+    for (const TopoDS_Shape& piece : pieces) {
+      if (faces.hold(piece)) continue;
+      try {
+        const bool inside = solids_.hold_some_of(piece);
+        const double clearance = inside ? faces.distance_to(piece) : 0;
+        const bool cut = !inside || clearance > tolerance_of(piece);
+        if (inside && cut && kept_.Add(piece))  // others may lie on it
+          topology_.free_parts.push_back({piece, part.number, clearance});
+        all_inside = all_inside && inside;
+        all_cut = all_cut && cut;
+      } catch (const Standard_Failure&) {
+        all_cut = false;
+      }
+    }
+    if (!all_inside) partly_.push_back(part.name);
+    if (!all_cut) meeting_.push_back(part.name);
+  }
+
+  void keep_whole_ones() {
+    for (const Candidate& part : inside_)
+      if (part.meets)
+        meeting_.push_back(part.name);
+      else
+        topology_.free_parts.push_back({part.shape, part.number, part.clearance});
+  }
+
+  void tell() const {
+    tell(
+        outside_, "no part of a face and left out: outside of the closed solids, or on their faces",
+        "to get nodes on lines and points, give them as segments and points of a .poly file beside this one");
+    tell(partly_, "outside of the closed solids in part, and left out there", "end edges at the faces");
+    tell(meeting_,
+         "no part of a face and left out: inside a solid, but meeting a face or the middle of another "
+         "edge where OpenCASCADE's general fuse does not cut them",
+         "end edges before faces, and cut them where others meet them");
+  }
+  void tell(const std::vector<std::string>& names, const char* what, const char* advice) const {
+    if (names.empty()) return;
+    topology_.notes.push_back(fmt::format(
+        "{}: {}{} {}; {}", file_, names.front(),
+        names.size() > 1 ? fmt::format(" and {} more are", names.size() - 1) : " is", what, advice));
+  }
+
+  const std::string& file_;
+  Topology& topology_;
+  Solids solids_;
+  Faces faces_;
+  std::vector<Candidate> inside_;
+  std::vector<TopoDS_Shape> left_out_;
+  TopTools_MapOfShape kept_;
+  std::vector<std::string> outside_, partly_, meeting_;
+};
+
+}  // namespace
+
+std::vector<TopoDS_Shape> parts_of_no_face(const TopoDS_Shape& shape) {
+  TopTools_IndexedMapOfShape held;
+  for (const TopoDS_Shape& face : subshapes(shape, TopAbs_FACE)) TopExp::MapShapes(face, held);
+  std::vector<TopoDS_Shape> parts;
+  for (const TopAbs_ShapeEnum kind : {TopAbs_EDGE, TopAbs_VERTEX})
+    for (const TopoDS_Shape& part : subshapes(shape, kind)) {
+      if (held.Contains(part)) continue;
+      parts.push_back(part);
+      TopExp::MapShapes(part, held);
+    }
+  return parts;
+}
+
+void keep_free_parts_inside(const std::vector<TopoDS_Shape>& parts, const std::string& file,
+                            Topology& topology) {
+  if (parts.empty()) return;
+  Sorter sorter(file, topology);
+  for (const TopoDS_Shape& part : parts) sorter.add(part, topology.number(part));
+  sorter.finish();
+}
+
+}  // namespace collarmesh::brep
