@@ -13,9 +13,11 @@
 #include <boost/geometry.hpp>
 #include <boost/geometry/geometries/point.hpp>
 #include <boost/geometry/index/rtree.hpp>
+#include <boost/iterator/function_output_iterator.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 namespace collarmesh::brep {
@@ -115,22 +117,30 @@ class FaceSurface {
     std::array<double, 2> uv;
     Point point;
   };
+  /// Of all triangles whose boxes come as near as the triangle in the nearest box does. (A query for boxes by
+  /// distance, one after the other, sorts those that it has met again and again.)
   std::optional<Start> start_near(const Point& p) const {
     std::optional<Start> start;
     double least = INFINITY;
-    const TreePoint place(p.x, p.y, p.z);
-    for (auto entry = tree_.qbegin(bg::index::nearest(place, static_cast<unsigned>(tree_.size())));
-         entry != tree_.qend() && bg::comparable_distance(place, entry->first) < least; ++entry) {
-      const std::array<Point, 3> at = corners(entry->second);
+    const auto look_at = [&](std::size_t triangle) {
+      const std::array<Point, 3> at = corners(triangle);
       const std::array<double, 3> weights = nearest_weights(p, at);
       const Point q = weights[0] * at[0] + weights[1] * at[1] + weights[2] * at[2];
-      if (squared_distance(p, q) >= least) continue;
+      if (squared_distance(p, q) >= least) return;
       least = squared_distance(p, q);
       start = Start{{0, 0}, q};
       for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t k = 0; k < 2; ++k)
-          start->uv[k] += weights[i] * samples_.parameters[samples_.triangles[entry->second][i]][k];
-    }
+          start->uv[k] += weights[i] * samples_.parameters[samples_.triangles[triangle][i]][k];
+    };
+    const auto look_at_entry = boost::make_function_output_iterator(
+        [&](const std::pair<TreeBox, std::size_t>& entry) { look_at(entry.second); });
+    tree_.query(bg::index::nearest(TreePoint(p.x, p.y, p.z), 1), look_at_entry);
+    const double reach = std::sqrt(least);
+    if (start && reach > 0)
+      tree_.query(bg::index::intersects(TreeBox({p.x - reach, p.y - reach, p.z - reach},
+                                                {p.x + reach, p.y + reach, p.z + reach})),
+                  look_at_entry);
     return start;
   }
 
