@@ -297,7 +297,6 @@ class NamesOfStep(ProgramTest):
         self.assertEqual(set(self.names(self.two_solids(), file.write(self.folder / "b.step"))), {"Solid1", "Solid2"})
 
 
-@unittest.skipUnless(HAS_MED, "no MED")
 @unittest.skipUnless(HAS_CAD, "no OpenCASCADE")
 class WiresOfCadFiles(ProgramTest):
     """A circle (Edge13) and a point inside a box, and a needle (Edge14) that sticks out of its top."""
@@ -325,7 +324,6 @@ class WiresOfCadFiles(ProgramTest):
         for order in ("1", "2"):
             mesh, lines = self.meshed("--curve-size", f"{self.LOOP}=1", "--order", order)
             sides = self.sides_of_tets(mesh)
-            ends = [0, 0]
             for nodes, tag in lines:
                 self.assertIn(frozenset(nodes[:2]), sides)
                 for x, y, z in mesh.points[nodes].tolist():
@@ -351,6 +349,7 @@ class WiresOfCadFiles(ProgramTest):
         self.assertAlmostEqual(lengths["Edge14"], 8)
 
 
+@unittest.skipUnless(HAS_MED, "no MED")
 class NamesInMed(ProgramTest):
     def test_families_end_at_a_character(self):
         try:

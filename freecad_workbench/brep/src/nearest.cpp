@@ -117,8 +117,8 @@ class FaceSurface {
     std::array<double, 2> uv;
     Point point;
   };
-  /// Of all triangles whose boxes come as near as the triangle in the nearest box does. (A query for boxes by
-  /// distance, one after the other, sorts those that it has met again and again.)
+  /// Looks at the triangles in the nearest boxes first, then at all whose boxes reach as near. (Boost's
+  /// iterator over boxes by distance sorts its queue again at each step.)
   std::optional<Start> start_near(const Point& p) const {
     std::optional<Start> start;
     double least = INFINITY;
@@ -135,7 +135,8 @@ class FaceSurface {
     };
     const auto look_at_entry = boost::make_function_output_iterator(
         [&](const std::pair<TreeBox, std::size_t>& entry) { look_at(entry.second); });
-    tree_.query(bg::index::nearest(TreePoint(p.x, p.y, p.z), 1), look_at_entry);
+    constexpr unsigned first = 8;  // one may be of a large triangle that is far from p
+    tree_.query(bg::index::nearest(TreePoint(p.x, p.y, p.z), first), look_at_entry);
     const double reach = std::sqrt(least);
     if (start && reach > 0)
       tree_.query(bg::index::intersects(TreeBox({p.x - reach, p.y - reach, p.z - reach},

@@ -1,5 +1,6 @@
 // Moves boundary vertices onto exact geometry, all at once; then makes room where that spoils tets, and moves
-// vertices back that have no room or take faces too far from the complex.
+// vertices back that have no room, take faces too far from the complex, or leave thin tets outside narrow
+// places.
 #include "collarmesh/project_boundary.h"
 
 #include <algorithm>
@@ -52,8 +53,7 @@ class BoundaryProjection {
     make_room(std::move(tets));
     for (int pass = 0; pass < retries && retry(pass > 0); ++pass) {
     }
-    while (!(tets = keep_distances()).empty()) make_room(std::move(tets));
-    while (!(tets = keep_narrow_places()).empty()) make_room(std::move(tets));
+    while (!(tets = keep_distances_and_narrow_places()).empty()) make_room(std::move(tets));
     finish();
     if (!thin_.empty())
       ThreadLimit(options_.threads).run([&] {
@@ -206,12 +206,17 @@ class BoundaryProjection {
     return true;
   }
 
-  // Normals turn as vertices move, and with them the places where tets may be thin. Where a thin tet has none
-  // any more, its corner that has moved most goes back; where none of them has moved, all corners of faces
-  // there do. Returns the tets around such vertices.
+  std::vector<Index> keep_distances_and_narrow_places() {
+    std::vector<Index> around = keep_distances();
+    return around.empty() ? keep_narrow_places() : around;
+  }
+
+  // Moving vertices turns the normals that decide where a place is narrow. If a thin tet is in no narrow place
+  // any more, its corner that has moved most goes back; if none has moved, the corner that has moved most of
+  // each tet around does. Returns the tets around such vertices.
   std::vector<Index> keep_narrow_places() {
     std::vector<Index> around;
-    if (!cells_.forbid_thin_tets()) return around;
+    if (!options_.bounds.thin_in_narrow_places_only) return around;
     const improvement::CellBounds now(plc_, mesh_, options_.bounds);
     for (Index t = 0; t < mesh_.tets.size() && !execution_.cancelled(); ++t) {
       if (now.allow(corners(t), mesh_.tets[t]) || !cells_.allow(room_.origins_of(t), mesh_.tets[t])) continue;
