@@ -22,8 +22,8 @@ struct Bounds {
   /// Largest distance from smooth patches and curves, absolute; 0: `default_tolerance`.
   double distance = 0;
   std::optional<SurfaceTolerance> tolerance = {};  ///< by place, in place of `distance`
-  /// Share of the bounds on angles of thin tets, from 0 and from 180 degrees, and of the width of narrow places
-  /// that is kept in reserve for stages that move vertices afterwards (`project_boundary`); 0 to 0.5.
+  /// Share of the bounds on angles of thin tets, from 0 and from 180 degrees, and of the width of narrow
+  /// places that is kept in reserve for stages that move vertices afterwards (`project_boundary`); 0 to 0.5.
   double reserve = 0;
   /// Let edges that the input forces to be short lower the smallest angle of thin tets. A mesh that was made
   /// without this is within the bounds with it.

@@ -211,9 +211,9 @@ class BoundaryProjection {
     return around.empty() ? keep_narrow_places() : around;
   }
 
-  // Moving vertices turns the normals that decide where a place is narrow. If a thin tet is in no narrow place
-  // any more, its corner that has moved most goes back; if none has moved, the corner that has moved most of
-  // each tet around does. Returns the tets around such vertices.
+  // Moving vertices turns the normals that decide where a place is narrow. If a thin tet is in no narrow
+  // place any more, its corner that has moved most goes back; if none has moved, the corner that has moved
+  // most of each tet around does. Returns the tets around such vertices.
   std::vector<Index> keep_narrow_places() {
     std::vector<Index> around;
     if (!options_.bounds.thin_in_narrow_places_only) return around;
