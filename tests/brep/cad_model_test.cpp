@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <BRepAlgoAPI_Cut.hxx>
 #include <BRepAlgoAPI_Fuse.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeVertex.hxx>
@@ -17,6 +18,8 @@
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
+#include <gp.hxx>
+#include <gp_Ax2.hxx>
 #include <gp_Lin.hxx>
 
 #include <algorithm>
@@ -30,6 +33,7 @@
 
 #include "collarmesh/error.h"
 #include "collarmesh/plc_builder.h"
+#include "files/cad_files.h"
 #include "files/complex_input.h"
 #include "shapes.h"
 #include "soup_measures.h"
@@ -277,11 +281,41 @@ TEST(CadModel, JoinsEdgesInsideAtTheirEnds) {
 
 TEST(CadModel, LeavesOutEdgesNearerToFacesThanTheTriangles) {
   CadModel model(compound({box(), line(gp_Pnt(2, 5, 0.1), gp_Pnt(8, 5, 0.1))}), "part");
-  EXPECT_EQ(model.tessellate({.deflection = 0.01}).size(), 2U);
+  EXPECT_NEAR(length_of(model.tessellate({.deflection = 0.01}).at(1)), 6, 1e-12);
   EXPECT_TRUE(model.notes().empty());
-  EXPECT_EQ(model.tessellate({.deflection = 0.1}).size(), 1U);
+  const std::vector<PolygonSoup> coarse = model.tessellate({.deflection = 0.1});
+  EXPECT_TRUE(coarse.at(1).segments.empty());
+  EXPECT_EQ(build_plc(coarse).curves.size(), 12U);
   ASSERT_EQ(model.notes().size(), 1U);
   expect_mentions(model.notes()[0], {"Edge13 at (5, 5, 0.1) is so near to faces", "--distance"});
+}
+
+// Coarse triangles of the pin cross those of the hole; the wire is there when they are finer.
+TEST(CadFiles, HaveAsManySoupsWhenCutAgain) {
+  const gp_Ax2 axis(gp_Pnt(20, 15, 0), gp::DZ()), turned(axis.Location(), gp::DZ(), gp_Dir(1, 0.2, 0));
+  const TopoDS_Shape plate = BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(40, 30, 10).Shape(),
+                                             BRepPrimAPI_MakeCylinder(axis, 6, 10).Shape())
+                                 .Shape(),
+                     pin = BRepPrimAPI_MakeCylinder(turned, 5.97, 10).Shape(),
+                     wire = line(gp_Pnt(3, 3, 9.9), gp_Pnt(3, 8, 9.9));
+  const TemporaryFolder folder;
+  const std::string path = folder.file("pin.brep");
+  BRepTools::Write(compound({plate, pin, wire}), path.c_str());
+  files::CadFiles cad;
+  std::vector<PolygonSoup> soups(1);  // of another file
+  cad.read(path, {}, {.deflection = [](double) { return 0.1; }}, soups);
+  ASSERT_EQ(soups.size(), 4U);
+  EXPECT_TRUE(soups[3].segments.empty());
+  for (const double finer : {4.0, 1.0, 4.0}) {
+    cad.tessellate(finer, soups);
+    ASSERT_EQ(soups.size(), 4U);
+    EXPECT_EQ(soups[3].segments.size(), finer > 1 ? 1U : 0U);
+  }
+  files::InputReading reading;
+  reading.distance = [](double) { return 1; };
+  files::ComplexInput input({path}, reading);
+  const Plc plc = input.build({}, {});
+  EXPECT_EQ(plc.regions.size(), 3U);
 }
 
 TEST(CadTessellation, KeepsTheDeflection) {

@@ -82,7 +82,8 @@ class CadModel {
   virtual const CadLabels& labels() const;
 
   /// Triangles of all faces: one soup for each solid, one for the faces that belong to none, and one of
-  /// chords and points for the edges and vertices inside a solid that belong to no face.
+  /// chords and points for the edges and vertices inside a solid that belong to no face. As many, whatever
+  /// the options.
   /// Neighbouring faces share the points of their edges. Vertices, edges and faces of the shape are
   /// features with their numbers as tags; seams and degenerate edges are none.
   /// Throws PlcError when OpenCASCADE fails, or no face can be cut into triangles.
