@@ -33,6 +33,7 @@
 
 #include "collarmesh/error.h"
 #include "collarmesh/plc_builder.h"
+#include "collarmesh/repair.h"
 #include "files/cad_files.h"
 #include "files/complex_input.h"
 #include "shapes.h"
@@ -277,6 +278,23 @@ TEST(CadModel, JoinsEdgesInsideAtTheirEnds) {
   const Plc plc = build_plc(soups);
   EXPECT_EQ(plc.curves.size(), 15U);
   EXPECT_EQ(plc.vertices.size(), 12U);
+}
+
+TEST(CadModel, KeepsLinesAndPointsInsideWhereFacetsAreRepaired) {
+  const Point probe{3, 3, 3};
+  std::vector<PolygonSoup> soups =
+      CadModel(compound({box(), line(gp_Pnt(2, 5, 5), gp_Pnt(8, 5, 5)), point(probe.x, probe.y, probe.z)}),
+               "part")
+          .tessellate({});
+  const TopoDS_Shape across = BRepPrimAPI_MakeBox(gp_Pnt(5, 15, 25), gp_Pnt(15, 25, 35)).Shape();
+  soups.push_back(CadModel(across, "other").tessellate({}).at(0));
+  const RepairedPlc repaired = build_repaired_plc(soups);
+  EXPECT_TRUE(repaired.report.repaired);
+  EXPECT_TRUE(std::any_of(repaired.plc.curves.begin(), repaired.plc.curves.end(),
+                          [](const Plc::Curve& curve) { return curve.tag == 13 && curve.patches.empty(); }));
+  EXPECT_TRUE(std::any_of(
+      repaired.plc.vertices.begin(), repaired.plc.vertices.end(),
+      [&](const Plc::Vertex& v) { return distance(repaired.plc.points[v.point], probe) < 1e-12; }));
 }
 
 TEST(CadModel, LeavesOutEdgesNearerToFacesThanTheTriangles) {
