@@ -240,6 +240,22 @@ TEST(CadModel, EndsEdgesAtTheFacesThatTheyMeet) {
   }
 }
 
+// However little of them is inside.
+TEST(CadModel, KeepsEdgesThroughThinPlates) {
+  const TopoDS_Shape plate = BRepPrimAPI_MakeBox(20, 20, 1).Shape();
+  CadModel model(compound({plate, line(gp_Pnt(10, 10, -100), gp_Pnt(10, 10, 100))}), "part");
+  EXPECT_NEAR(length_of(model.tessellate({}).at(1)), 1, 1e-12);
+  ASSERT_EQ(model.notes().size(), 1U);
+  expect_mentions(model.notes()[0], {"is outside of the closed solids in part"});
+  // Lines on faces make no vertices there, and those beside are outside.
+  for (const TopoDS_Shape& beside :
+       {line(gp_Pnt(-5, 5, 1), gp_Pnt(15, 5, 1)), line(gp_Pnt(21, 10, -100), gp_Pnt(21, 10, 100))}) {
+    CadModel without(compound({plate, beside}), "part");
+    EXPECT_EQ(build_plc(without.tessellate({})).vertices.size(), 8U);
+    expect_mentions(without.notes().at(0), {"left out: outside of the closed solids, or on their faces"});
+  }
+}
+
 // Faces and edges keep their numbers, also those that come after.
 TEST(CadModel, KeepsNumbersWhereEdgesMeetFaces) {
   const TopoDS_Shape solids[] = {BRepPrimAPI_MakeBox(10, 10, 10).Shape(),

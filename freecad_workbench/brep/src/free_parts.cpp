@@ -9,8 +9,10 @@
 #include <BRepBuilderAPI_MakeVertex.hxx>
 #include <BRepClass3d_SolidClassifier.hxx>
 #include <BRepExtrema_DistShapeShape.hxx>
+#include <BRepIntCurveSurface_Inter.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
+#include <GeomAdaptor_Curve.hxx>
 #include <Geom_Curve.hxx>
 #include <Precision.hxx>
 #include <TopExp.hxx>
@@ -96,7 +98,10 @@ bool meet_amid(const TopoDS_Shape& a, const TopoDS_Shape& b) {
 class Faces {
  public:
   explicit Faces(const TopoDS_Shape& all) : faces_(subshapes(all, TopAbs_FACE)) {
-    for (const TopoDS_Shape& face : faces_) TopExp::MapShapes(face, held_);
+    for (const TopoDS_Shape& face : faces_) {
+      TopExp::MapShapes(face, held_);
+      boxes_.push_back(box_of(face));
+    }
   }
 
   bool hold(const TopoDS_Shape& part) const { return held_.Contains(part); }
@@ -116,8 +121,28 @@ class Faces {
                           : distance_between(part, compound_of(others));
   }
 
+  /// Places along an edge, one between any two neighbouring points where it meets faces.
+  std::vector<gp_Pnt> places_between(const TopoDS_Edge& edge) const {
+    double first = 0, last = 0;
+    const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, first, last);
+    const GeomAdaptor_Curve part(curve, first, last);
+    const Bnd_Box box = box_of(edge);
+    std::vector<double> at{first, last};
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      if (boxes_[f].IsOut(box)) continue;
+      BRepIntCurveSurface_Inter meeting;
+      for (meeting.Init(faces_[f], part, Precision::Confusion()); meeting.More(); meeting.Next())
+        at.push_back(std::clamp(meeting.W(), first, last));
+    }
+    std::sort(at.begin(), at.end());
+    std::vector<gp_Pnt> places;
+    for (std::size_t i = 1; i < at.size(); ++i) places.push_back(curve->Value(0.5 * (at[i - 1] + at[i])));
+    return places;
+  }
+
  private:
   std::vector<TopoDS_Shape> faces_;
+  std::vector<Bnd_Box> boxes_;
   TopTools_IndexedMapOfShape held_;
 };
 
@@ -134,12 +159,16 @@ class Solids {
   }
 
   /// Does some of a part lie inside one of them, neither outside nor on its faces?
-  bool hold_some_of(const TopoDS_Shape& part) const {
-    const std::vector<gp_Pnt> samples = samples_of(part);
-    return std::any_of(samples.begin(), samples.end(), [&](const gp_Pnt& p) { return hold(p); });
+  bool hold_some_of(const TopoDS_Shape& part, const Faces& faces) const {
+    return hold_some_of(samples_of(part)) ||
+           (is_edge(part) &&
+            hold_some_of(faces.places_between(TopoDS::Edge(part))));  // a thin wall is between
   }
 
  private:
+  bool hold_some_of(const std::vector<gp_Pnt>& places) const {
+    return std::any_of(places.begin(), places.end(), [&](const gp_Pnt& p) { return hold(p); });
+  }
   bool hold(const gp_Pnt& p) const {
     for (std::size_t s = 0; s < solids_.size(); ++s) {
       if (boxes_[s].IsOut(p)) continue;
@@ -162,7 +191,7 @@ class Sorter {
   void add(const TopoDS_Shape& part, int number) {
     Candidate candidate{part, number, name_of(part, number)};
     try {
-      if (!has_place(part) || !solids_.hold_some_of(part)) {
+      if (!has_place(part) || !solids_.hold_some_of(part, faces_)) {
         left_out_.push_back(part);
         outside_.push_back(candidate.name);
         return;
@@ -225,7 +254,7 @@ class Sorter {
     for (const TopoDS_Shape& piece : pieces) {
       if (faces.hold(piece)) continue;
       try {
-        const bool inside = solids_.hold_some_of(piece);
+        const bool inside = solids_.hold_some_of(piece, faces);
         const double clearance = inside ? faces.distance_to(piece) : 0;
         const bool cut = !inside || clearance > tolerance_of(piece);
         if (inside && cut && kept_.Add(piece))  // others may lie on it
