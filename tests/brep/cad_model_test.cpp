@@ -204,15 +204,25 @@ TEST(CadModel, CutsEdgesInsideWhereTheyMeetOneAnother) {
     double length;              // of both, what they have in common counted once
     std::size_t curves;         // that they are cut into
     std::vector<Point> places;  // where they meet
+    const char* note = nullptr;
   };
   const Meeting meetings[] = {{line(gp_Pnt(5, 2, 5), gp_Pnt(5, 8, 5)), 12, 4, {{5, 5, 5}}},
                               {line(gp_Pnt(5, 5, 5), gp_Pnt(5, 5, 8)), 9, 3, {{5, 5, 5}}},
-                              {line(gp_Pnt(2, 5, 5), gp_Pnt(7, 5, 5)), 6, 2, {{2, 5, 5}, {7, 5, 5}}},
-                              {line(gp_Pnt(2, 5, 5), gp_Pnt(8, 5, 5)), 6, 1, {{2, 5, 5}, {8, 5, 5}}},
+                              {line(gp_Pnt(2, 5, 5), gp_Pnt(7, 5, 5)),
+                               6,
+                               2,
+                               {{2, 5, 5}, {7, 5, 5}},
+                               "Edge14 at (4.5, 5, 5) lies on Edge13 and has its number there"},
+                              {line(gp_Pnt(2, 5, 5), gp_Pnt(8, 5, 5)),
+                               6,
+                               1,
+                               {{2, 5, 5}, {8, 5, 5}},
+                               "Edge14 at (5, 5, 5) lies on Edge13 and has its number there"},
                               {point(5, 5, 5), 6, 2, {{5, 5, 5}}}};
   for (const Meeting& meeting : meetings) {
     CadModel model(compound({box(), first, meeting.other}), "part");
-    EXPECT_TRUE(model.notes().empty());
+    ASSERT_EQ(model.notes().size(), meeting.note == nullptr ? 0U : 1U);
+    if (meeting.note != nullptr) expect_mentions(model.notes()[0], {meeting.note});
     const std::vector<PolygonSoup> soups = model.tessellate({});
     ASSERT_EQ(soups.size(), 2U);
     EXPECT_NEAR(length_of(soups[1]), meeting.length, 1e-12);

@@ -250,23 +250,47 @@ class Sorter {
   }
 
   void keep_pieces(const Candidate& part, const TopTools_ListOfShape& pieces, const Faces& faces) {
-    bool all_inside = true, all_cut = true;
+    bool any_inside = false, all_inside = true, all_cut = !pieces.IsEmpty();
     for (const TopoDS_Shape& piece : pieces) {
-      if (faces.hold(piece)) continue;
-      try {
-        const bool inside = solids_.hold_some_of(piece, faces);
-        const double clearance = inside ? faces.distance_to(piece) : 0;
-        const bool cut = !inside || clearance > tolerance_of(piece);
-        if (inside && cut && kept_.Add(piece))  // others may lie on it
-          topology_.free_parts.push_back({piece, part.number, clearance});
-        all_inside = all_inside && inside;
-        all_cut = all_cut && cut;
-      } catch (const Standard_Failure&) {
+      bool inside = true;
+      if (faces.hold(piece))
+        note_number(part, piece);
+      else if (!keep_piece(part, piece, faces, inside))
         all_cut = false;
-      }
+      any_inside = any_inside || inside;
+      all_inside = all_inside && inside;
     }
-    if (!all_inside) partly_.push_back(part.name);
+    if (!any_inside && all_cut)
+      outside_.push_back(part.name);
+    else if (!all_inside)
+      partly_.push_back(part.name);
     if (!all_cut) meeting_.push_back(part.name);
+  }
+
+  /// If it is inside, which is found here; false if it is, but not cut at the faces.
+  bool keep_piece(const Candidate& part, const TopoDS_Shape& piece, const Faces& faces, bool& inside) {
+    try {
+      inside = solids_.hold_some_of(piece, faces);
+      if (!inside) return true;
+      const double clearance = faces.distance_to(piece);
+      if (clearance <= tolerance_of(piece)) return false;
+      if (kept_.Add(piece))
+        topology_.free_parts.push_back({piece, part.number, clearance});
+      else
+        note_number(part, piece);
+      return true;
+    } catch (const Standard_Failure&) {
+      return false;
+    }
+  }
+
+  /// A piece that several parts or faces have in common may have the number of another.
+  void note_number(const Candidate& part, const TopoDS_Shape& piece) {
+    const int number = topology_.number(piece);
+    if (number == part.number) return;
+    std::string text = fmt::format("{} lies on {}{}", part.name, is_edge(piece) ? "Edge" : "Vertex", number);
+    if (std::find(renumbered_.begin(), renumbered_.end(), text) == renumbered_.end())
+      renumbered_.push_back(std::move(text));
   }
 
   void keep_whole_ones() {
@@ -286,6 +310,11 @@ class Sorter {
          "no part of a face and left out: inside a solid, but meeting a face or the middle of another "
          "edge where OpenCASCADE's general fuse does not cut them",
          "end edges before faces, and cut them where others meet them");
+    if (!renumbered_.empty())
+      topology_.notes.push_back(
+          fmt::format("{}: {} and has its number there{}", file_, renumbered_.front(),
+                      renumbered_.size() > 1 ? fmt::format("; so it is with {} more", renumbered_.size() - 1)
+                                             : std::string()));
   }
   void tell(const std::vector<std::string>& names, const char* what, const char* advice) const {
     if (names.empty()) return;
@@ -301,7 +330,7 @@ class Sorter {
   std::vector<Candidate> inside_;
   std::vector<TopoDS_Shape> left_out_;
   TopTools_MapOfShape kept_;
-  std::vector<std::string> outside_, partly_, meeting_;
+  std::vector<std::string> outside_, partly_, meeting_, renumbered_;
 };
 
 }  // namespace
