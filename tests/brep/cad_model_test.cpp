@@ -20,6 +20,7 @@
 #include <TopoDS_Compound.hxx>
 #include <gp.hxx>
 #include <gp_Ax2.hxx>
+#include <gp_Circ.hxx>
 #include <gp_Lin.hxx>
 
 #include <algorithm>
@@ -332,6 +333,30 @@ TEST(CadModel, LeavesOutEdgesNearerToFacesThanTheTriangles) {
   EXPECT_EQ(build_plc(coarse).curves.size(), 12U);
   ASSERT_EQ(model.notes().size(), 1U);
   expect_mentions(model.notes()[0], {"Edge13 at (5, 5, 0.1) is so near to faces", "--distance"});
+}
+
+// Their chords would cross; those of straight lines are the lines.
+TEST(CadModel, LeavesOutCurvedEdgesNearToOthers) {
+  const double radius = 4, apart = 0.002, deflection = 0.01;
+  const auto circle = [](double r, double turned) {
+    const gp_Ax2 axis(gp_Pnt(5, 10, 15), gp::DZ(), gp_Dir(std::cos(turned), std::sin(turned), 0));
+    return BRepBuilderAPI_MakeEdge(gp_Circ(axis, r)).Shape();
+  };
+  CadModel circles(compound({box(), circle(radius, 0), circle(radius + apart, 0.1)}), "part");
+  const double one = length_of(circles.tessellate({.deflection = deflection}).at(1));
+  EXPECT_NEAR(one, 2 * M_PI * radius, 0.1);
+  ASSERT_EQ(circles.notes().size(), 1U);
+  expect_mentions(circles.notes()[0],
+                  {"Edge14", "is so near to other edges that chords", "cross it", "--distance"});
+  const std::vector<PolygonSoup> fine = circles.tessellate({.deflection = apart / 3});
+  EXPECT_TRUE(circles.notes().empty());
+  EXPECT_NEAR(length_of(fine.at(1)), 2 * one, 0.1);
+  EXPECT_EQ(build_plc(fine).curves.size(), 14U);
+  CadModel lines(compound({box(), line(gp_Pnt(2, 5, 5), gp_Pnt(8, 5, 5)),
+                           line(gp_Pnt(2, 5, 5 + apart), gp_Pnt(8, 5, 5 + apart))}),
+                 "part");
+  EXPECT_EQ(lines.tessellate({.deflection = deflection}).at(1).segments.size(), 2U);
+  EXPECT_TRUE(lines.notes().empty());
 }
 
 // Coarse triangles of the pin cross those of the hole; the wire is there when they are finer.

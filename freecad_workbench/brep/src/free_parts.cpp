@@ -70,12 +70,6 @@ std::vector<gp_Pnt> samples_of(const TopoDS_Shape& part) {
   return samples;
 }
 
-/// The least distance between two shapes, 0 where OpenCASCADE finds none.
-double distance_between(const TopoDS_Shape& a, const TopoDS_Shape& b) {
-  const BRepExtrema_DistShapeShape nearest(a, b);
-  return nearest.IsDone() && nearest.NbSolution() > 0 ? nearest.Value() : 0;
-}
-
 bool runs_along(const TopoDS_Shape& edge, const TopoDS_Shape& other, double tolerance) {
   const std::vector<gp_Pnt> samples = samples_of(edge);
   return distance_between(BRepBuilderAPI_MakeVertex(samples[samples.size() / 2]).Shape(), other) <= tolerance;
@@ -334,6 +328,15 @@ class Sorter {
 };
 
 }  // namespace
+
+double distance_between(const TopoDS_Shape& a, const TopoDS_Shape& b) {
+  try {
+    const BRepExtrema_DistShapeShape nearest(a, b);
+    return nearest.IsDone() && nearest.NbSolution() > 0 ? nearest.Value() : 0;
+  } catch (const Standard_Failure&) {
+    return 0;
+  }
+}
 
 std::vector<TopoDS_Shape> parts_of_no_face(const TopoDS_Shape& shape) {
   TopTools_IndexedMapOfShape held;
