@@ -58,8 +58,8 @@ struct CadMeasures {
 /// Solids that touch are made to share the faces there; faces and edges that are cut in this keep the
 /// number of what they were part of, edges that arise get the next free ones. What solids have in common is
 /// given to one of them. Edges of no face are cut where they meet faces or one another, and are left out
-/// outside of the solids and on their faces; notes tell of these. A shape of faces alone is sewn and becomes
-/// a solid where it is closed; so are the faces of an open solid.
+/// outside of the solids, on their faces, and too near to these or to one another; notes tell of these. A
+/// shape of faces alone is sewn and becomes a solid where it is closed; so are the faces of an open solid.
 ///
 /// What OpenCASCADE cannot do is left to whoever makes a complex of the soups, and told in `notes`: solids
 /// that it cannot fuse may intersect, solids that stay open have holes, and a face that it cannot cut into
