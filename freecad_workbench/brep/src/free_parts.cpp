@@ -19,7 +19,6 @@
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopTools_MapOfShape.hxx>
 #include <TopoDS.hxx>
-#include <TopoDS_Compound.hxx>
 
 #include <algorithm>
 #include <limits>
@@ -102,17 +101,14 @@ class Faces {
 
   /// The distance of a part to those faces that it does not end on; infinite where there are none.
   double distance_to(const TopoDS_Shape& part) const {
-    std::vector<TopoDS_Shape> ends = subshapes(part, TopAbs_VERTEX), others = faces_;
+    std::vector<TopoDS_Shape> ends = subshapes(part, TopAbs_VERTEX);
     std::erase_if(ends, [&](const TopoDS_Shape& end) { return !hold(end); });
-    if (!ends.empty())
-      std::erase_if(others, [&](const TopoDS_Shape& face) {
-        TopTools_IndexedMapOfShape vertices;
-        TopExp::MapShapes(face, TopAbs_VERTEX, vertices);
-        return std::any_of(ends.begin(), ends.end(),
-                           [&](const TopoDS_Shape& end) { return vertices.Contains(end); });
-      });
-    return others.empty() ? std::numeric_limits<double>::infinity()
-                          : distance_between(part, compound_of(others));
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& [to_box, f] : by_distance_of_boxes(part)) {
+      if (to_box >= least) break;
+      if (!has_one_of(ends, faces_[f])) least = std::min(least, distance_between(part, faces_[f]));
+    }
+    return least;
   }
 
   /// Places along an edge, one between any two neighbouring points where it meets faces.
@@ -135,6 +131,24 @@ class Faces {
   }
 
  private:
+  /// The faces, by the distances of their boxes.
+  std::vector<std::pair<double, std::size_t>> by_distance_of_boxes(const TopoDS_Shape& part) const {
+    const Bnd_Box box = box_of(part);
+    std::vector<std::pair<double, std::size_t>> faces;
+    for (std::size_t f = 0; f < faces_.size(); ++f)
+      if (!boxes_[f].IsVoid()) faces.emplace_back(boxes_[f].Distance(box), f);
+    std::sort(faces.begin(), faces.end());
+    return faces;
+  }
+
+  static bool has_one_of(const std::vector<TopoDS_Shape>& vertices, const TopoDS_Shape& face) {
+    if (vertices.empty()) return false;
+    TopTools_IndexedMapOfShape own;
+    TopExp::MapShapes(face, TopAbs_VERTEX, own);
+    return std::any_of(vertices.begin(), vertices.end(),
+                       [&](const TopoDS_Shape& vertex) { return own.Contains(vertex); });
+  }
+
   std::vector<TopoDS_Shape> faces_;
   std::vector<Bnd_Box> boxes_;
   TopTools_IndexedMapOfShape held_;
