@@ -324,6 +324,27 @@ TEST(CadModel, KeepsLinesAndPointsInsideWhereFacetsAreRepaired) {
       [&](const Plc::Vertex& v) { return distance(repaired.plc.points[v.point], probe) < 1e-12; }));
 }
 
+TEST(CadModel, TellsOfLinesInsideThatRepairLost) {
+  const TopoDS_Shape across = BRepPrimAPI_MakeBox(gp_Pnt(5, 15, 25), gp_Pnt(15, 25, 35)).Shape();
+  bool some_lost = false;
+  for (const double length : {1e-6, 1e-4, 1e-2}) {
+    std::vector<PolygonSoup> soups =
+        CadModel(compound({box(), line(gp_Pnt(2, 5, 5), gp_Pnt(2 + length, 5, 5))}), "part")
+            .tessellate({.deflection = 1e-3});
+    for (PolygonSoup::Segment& segment : soups.at(1).segments) segment.tag = 99;
+    soups.push_back(CadModel(across, "other").tessellate({}).at(0));
+    const Plc plc = build_repaired_plc(soups).plc;
+    const bool kept = std::any_of(plc.curves.begin(), plc.curves.end(),
+                                  [](const Plc::Curve& curve) { return curve.tag == 99; });
+    const bool told = std::any_of(plc.warnings.begin(), plc.warnings.end(), [](const Plc::Warning& warning) {
+      return warning.message.starts_with("Nothing is left of the line with tag 99 at (2, 5, 5)");
+    });
+    EXPECT_NE(kept, told) << length;
+    some_lost = some_lost || told;
+  }
+  EXPECT_TRUE(some_lost);
+}
+
 TEST(CadModel, LeavesOutEdgesNearerToFacesThanTheTriangles) {
   CadModel model(compound({box(), line(gp_Pnt(2, 5, 0.1), gp_Pnt(8, 5, 0.1))}), "part");
   EXPECT_NEAR(length_of(model.tessellate({.deflection = 0.01}).at(1)), 6, 1e-12);
