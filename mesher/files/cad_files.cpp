@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -57,6 +58,7 @@ struct CadFiles::File {
   void cut_again(const brep::TessellationOptions& options, std::vector<PolygonSoup>& soups) {
     std::vector<PolygonSoup> own;
     ThreadLimit(threads).run([&] { own = model->tessellate(options); });
+    assert(own.size() == soup_count);
     std::move(own.begin(), own.end(), soups.begin() + first_soup);
     measures.reset();
   }

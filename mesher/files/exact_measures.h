@@ -15,8 +15,8 @@ struct FeatureSources {
   const std::vector<Tag>& curves;
 };
 
-/// For each curve the soup whose geometry it is of: that of its first patch, or for curves of no patch the
-/// one that names it; none where it was changed since.
+/// For each curve, the soup it came from: that of its first patch, or for a curve of no patch the one with a
+/// segment of its number at one of its points; none if repair moved all its points.
 std::vector<Index> files_of_curves(const Plc& plc, const std::vector<PolygonSoup>& soups,
                                    const std::vector<Tag>& numbers);
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <BRepAlgoAPI_Cut.hxx>
 #include <BRepAlgoAPI_Fuse.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeVertex.hxx>
@@ -17,6 +18,9 @@
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
+#include <gp.hxx>
+#include <gp_Ax2.hxx>
+#include <gp_Circ.hxx>
 #include <gp_Lin.hxx>
 
 #include <algorithm>
@@ -30,6 +34,8 @@
 
 #include "collarmesh/error.h"
 #include "collarmesh/plc_builder.h"
+#include "collarmesh/repair.h"
+#include "files/cad_files.h"
 #include "files/complex_input.h"
 #include "shapes.h"
 #include "soup_measures.h"
@@ -199,15 +205,25 @@ TEST(CadModel, CutsEdgesInsideWhereTheyMeetOneAnother) {
     double length;              // of both, what they have in common counted once
     std::size_t curves;         // that they are cut into
     std::vector<Point> places;  // where they meet
+    const char* note = nullptr;
   };
   const Meeting meetings[] = {{line(gp_Pnt(5, 2, 5), gp_Pnt(5, 8, 5)), 12, 4, {{5, 5, 5}}},
                               {line(gp_Pnt(5, 5, 5), gp_Pnt(5, 5, 8)), 9, 3, {{5, 5, 5}}},
-                              {line(gp_Pnt(2, 5, 5), gp_Pnt(7, 5, 5)), 6, 2, {{2, 5, 5}, {7, 5, 5}}},
-                              {line(gp_Pnt(2, 5, 5), gp_Pnt(8, 5, 5)), 6, 1, {{2, 5, 5}, {8, 5, 5}}},
+                              {line(gp_Pnt(2, 5, 5), gp_Pnt(7, 5, 5)),
+                               6,
+                               2,
+                               {{2, 5, 5}, {7, 5, 5}},
+                               "Edge14 at (4.5, 5, 5) lies on Edge13 and has its number there"},
+                              {line(gp_Pnt(2, 5, 5), gp_Pnt(8, 5, 5)),
+                               6,
+                               1,
+                               {{2, 5, 5}, {8, 5, 5}},
+                               "Edge14 at (5, 5, 5) lies on Edge13 and has its number there"},
                               {point(5, 5, 5), 6, 2, {{5, 5, 5}}}};
   for (const Meeting& meeting : meetings) {
     CadModel model(compound({box(), first, meeting.other}), "part");
-    EXPECT_TRUE(model.notes().empty());
+    ASSERT_EQ(model.notes().size(), meeting.note == nullptr ? 0U : 1U);
+    if (meeting.note != nullptr) expect_mentions(model.notes()[0], {meeting.note});
     const std::vector<PolygonSoup> soups = model.tessellate({});
     ASSERT_EQ(soups.size(), 2U);
     EXPECT_NEAR(length_of(soups[1]), meeting.length, 1e-12);
@@ -232,6 +248,22 @@ TEST(CadModel, EndsEdgesAtTheFacesThatTheyMeet) {
     EXPECT_EQ(open_sides(soups[0]), 0U);
     EXPECT_NEAR(volume_of(soups[0]), 6000, 1e-9);
     EXPECT_NEAR(model.measures().lengths.at(13).exact, inside, 1e-9);
+  }
+}
+
+// However little of them is inside.
+TEST(CadModel, KeepsEdgesThroughThinPlates) {
+  const TopoDS_Shape plate = BRepPrimAPI_MakeBox(20, 20, 1).Shape();
+  CadModel model(compound({plate, line(gp_Pnt(10, 10, -100), gp_Pnt(10, 10, 100))}), "part");
+  EXPECT_NEAR(length_of(model.tessellate({}).at(1)), 1, 1e-12);
+  ASSERT_EQ(model.notes().size(), 1U);
+  expect_mentions(model.notes()[0], {"is outside of the closed solids in part"});
+  // Lines on faces make no vertices there, and those beside are outside.
+  for (const TopoDS_Shape& beside :
+       {line(gp_Pnt(-5, 5, 1), gp_Pnt(15, 5, 1)), line(gp_Pnt(21, 10, -100), gp_Pnt(21, 10, 100))}) {
+    CadModel without(compound({plate, beside}), "part");
+    EXPECT_EQ(build_plc(without.tessellate({})).vertices.size(), 8U);
+    expect_mentions(without.notes().at(0), {"left out: outside of the closed solids, or on their faces"});
   }
 }
 
@@ -275,13 +307,105 @@ TEST(CadModel, JoinsEdgesInsideAtTheirEnds) {
   EXPECT_EQ(plc.vertices.size(), 12U);
 }
 
+TEST(CadModel, KeepsLinesAndPointsInsideWhereFacetsAreRepaired) {
+  const Point probe{3, 3, 3};
+  std::vector<PolygonSoup> soups =
+      CadModel(compound({box(), line(gp_Pnt(2, 5, 5), gp_Pnt(8, 5, 5)), point(probe.x, probe.y, probe.z)}),
+               "part")
+          .tessellate({});
+  const TopoDS_Shape across = BRepPrimAPI_MakeBox(gp_Pnt(5, 15, 25), gp_Pnt(15, 25, 35)).Shape();
+  soups.push_back(CadModel(across, "other").tessellate({}).at(0));
+  const RepairedPlc repaired = build_repaired_plc(soups);
+  EXPECT_TRUE(repaired.report.repaired);
+  EXPECT_TRUE(std::any_of(repaired.plc.curves.begin(), repaired.plc.curves.end(),
+                          [](const Plc::Curve& curve) { return curve.tag == 13 && curve.patches.empty(); }));
+  EXPECT_TRUE(std::any_of(
+      repaired.plc.vertices.begin(), repaired.plc.vertices.end(),
+      [&](const Plc::Vertex& v) { return distance(repaired.plc.points[v.point], probe) < 1e-12; }));
+}
+
+TEST(CadModel, TellsOfLinesInsideThatRepairLost) {
+  const TopoDS_Shape across = BRepPrimAPI_MakeBox(gp_Pnt(5, 15, 25), gp_Pnt(15, 25, 35)).Shape();
+  bool some_lost = false;
+  for (const double length : {1e-6, 1e-4, 1e-2}) {
+    std::vector<PolygonSoup> soups =
+        CadModel(compound({box(), line(gp_Pnt(2, 5, 5), gp_Pnt(2 + length, 5, 5))}), "part")
+            .tessellate({.deflection = 1e-3});
+    for (PolygonSoup::Segment& segment : soups.at(1).segments) segment.tag = 99;
+    soups.push_back(CadModel(across, "other").tessellate({}).at(0));
+    const Plc plc = build_repaired_plc(soups).plc;
+    const bool kept = std::any_of(plc.curves.begin(), plc.curves.end(),
+                                  [](const Plc::Curve& curve) { return curve.tag == 99; });
+    const bool told = std::any_of(plc.warnings.begin(), plc.warnings.end(), [](const Plc::Warning& warning) {
+      return warning.message.starts_with("Nothing is left of the line with tag 99 at (2, 5, 5)");
+    });
+    EXPECT_NE(kept, told) << length;
+    some_lost = some_lost || told;
+  }
+  EXPECT_TRUE(some_lost);
+}
+
 TEST(CadModel, LeavesOutEdgesNearerToFacesThanTheTriangles) {
   CadModel model(compound({box(), line(gp_Pnt(2, 5, 0.1), gp_Pnt(8, 5, 0.1))}), "part");
-  EXPECT_EQ(model.tessellate({.deflection = 0.01}).size(), 2U);
+  EXPECT_NEAR(length_of(model.tessellate({.deflection = 0.01}).at(1)), 6, 1e-12);
   EXPECT_TRUE(model.notes().empty());
-  EXPECT_EQ(model.tessellate({.deflection = 0.1}).size(), 1U);
+  const std::vector<PolygonSoup> coarse = model.tessellate({.deflection = 0.1});
+  EXPECT_TRUE(coarse.at(1).segments.empty());
+  EXPECT_EQ(build_plc(coarse).curves.size(), 12U);
   ASSERT_EQ(model.notes().size(), 1U);
   expect_mentions(model.notes()[0], {"Edge13 at (5, 5, 0.1) is so near to faces", "--distance"});
+}
+
+// Their chords would cross; those of straight lines are the lines.
+TEST(CadModel, LeavesOutCurvedEdgesNearToOthers) {
+  const double radius = 4, apart = 0.002, deflection = 0.01;
+  const auto circle = [](double r, double turned) {
+    const gp_Ax2 axis(gp_Pnt(5, 10, 15), gp::DZ(), gp_Dir(std::cos(turned), std::sin(turned), 0));
+    return BRepBuilderAPI_MakeEdge(gp_Circ(axis, r)).Shape();
+  };
+  CadModel circles(compound({box(), circle(radius, 0), circle(radius + apart, 0.1)}), "part");
+  const double one = length_of(circles.tessellate({.deflection = deflection}).at(1));
+  EXPECT_NEAR(one, 2 * M_PI * radius, 0.1);
+  ASSERT_EQ(circles.notes().size(), 1U);
+  expect_mentions(circles.notes()[0],
+                  {"Edge14", "is so near to other edges that chords", "cross it", "--distance"});
+  const std::vector<PolygonSoup> fine = circles.tessellate({.deflection = apart / 3});
+  EXPECT_TRUE(circles.notes().empty());
+  EXPECT_NEAR(length_of(fine.at(1)), 2 * one, 0.1);
+  EXPECT_EQ(build_plc(fine).curves.size(), 14U);
+  CadModel lines(compound({box(), line(gp_Pnt(2, 5, 5), gp_Pnt(8, 5, 5)),
+                           line(gp_Pnt(2, 5, 5 + apart), gp_Pnt(8, 5, 5 + apart))}),
+                 "part");
+  EXPECT_EQ(lines.tessellate({.deflection = deflection}).at(1).segments.size(), 2U);
+  EXPECT_TRUE(lines.notes().empty());
+}
+
+// Coarse triangles of the pin cross those of the hole; the wire is there when they are finer.
+TEST(CadFiles, HaveAsManySoupsWhenCutAgain) {
+  const gp_Ax2 axis(gp_Pnt(20, 15, 0), gp::DZ()), turned(axis.Location(), gp::DZ(), gp_Dir(1, 0.2, 0));
+  const TopoDS_Shape plate = BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(40, 30, 10).Shape(),
+                                             BRepPrimAPI_MakeCylinder(axis, 6, 10).Shape())
+                                 .Shape(),
+                     pin = BRepPrimAPI_MakeCylinder(turned, 5.97, 10).Shape(),
+                     wire = line(gp_Pnt(3, 3, 9.9), gp_Pnt(3, 8, 9.9));
+  const TemporaryFolder folder;
+  const std::string path = folder.file("pin.brep");
+  BRepTools::Write(compound({plate, pin, wire}), path.c_str());
+  files::CadFiles cad;
+  std::vector<PolygonSoup> soups(1);  // of another file
+  cad.read(path, {}, {.deflection = [](double) { return 0.1; }}, soups);
+  ASSERT_EQ(soups.size(), 4U);
+  EXPECT_TRUE(soups[3].segments.empty());
+  for (const double finer : {4.0, 1.0, 4.0}) {
+    cad.tessellate(finer, soups);
+    ASSERT_EQ(soups.size(), 4U);
+    EXPECT_EQ(soups[3].segments.size(), finer > 1 ? 1U : 0U);
+  }
+  files::InputReading reading;
+  reading.distance = [](double) { return 1; };
+  files::ComplexInput input({path}, reading);
+  const Plc plc = input.build({}, {});
+  EXPECT_EQ(plc.regions.size(), 3U);
 }
 
 TEST(CadTessellation, KeepsTheDeflection) {

@@ -1,9 +1,13 @@
 // Chords and points of the edges and vertices inside solids that belong to no face.
 #include "free_chords.h"
 
+#include "free_parts.h"
+
 #include <fmt/format.h>
 #include <BRepAdaptor_Curve.hxx>
+#include <BRepBndLib.hxx>
 #include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
 #include <GCPnts_TangentialDeflection.hxx>
 #include <Precision.hxx>
 #include <TopExp.hxx>
@@ -91,23 +95,98 @@ class Cutter {
   PolygonSoup soup_;
 };
 
+bool is_straight(const TopoDS_Shape& edge) {
+  return BRepAdaptor_Curve(TopoDS::Edge(edge)).GetType() == GeomAbs_Line;
+}
+
+bool share_an_end(const TopoDS_Shape& a, const TopoDS_Shape& b) {
+  for (const TopoDS_Shape& of_a : subshapes(a, TopAbs_VERTEX))
+    for (const TopoDS_Shape& of_b : subshapes(b, TopAbs_VERTEX)) {
+      const TopoDS_Vertex &v = TopoDS::Vertex(of_a), &w = TopoDS::Vertex(of_b);
+      const double tolerance =
+          std::max({Precision::Confusion(), BRep_Tool::Tolerance(v), BRep_Tool::Tolerance(w)});
+      if (BRep_Tool::Pnt(v).Distance(BRep_Tool::Pnt(w)) <= tolerance) return true;
+    }
+  return false;
+}
+
+/// Edges whose chords have been made.
+class CutEdges {
+ public:
+  explicit CutEdges(double deflection) : reach_(2 * deflection) {}
+
+  /// Is one so near that its chords and those of this edge may cross? Straight edges are their chords.
+  bool are_near(const TopoDS_Shape& edge) const {
+    const bool straight = is_straight(edge);
+    const Bnd_Box box = box_of(edge);
+    return std::any_of(edges_.begin(), edges_.end(), [&](const Cut& other) {
+      return !(straight && other.straight) && other.box.Distance(box) <= reach_ &&
+             !share_an_end(edge, other.edge) && distance_between(edge, other.edge) <= reach_;
+    });
+  }
+  void add(const TopoDS_Shape& edge) { edges_.push_back({edge, box_of(edge), is_straight(edge)}); }
+
+ private:
+  struct Cut {
+    TopoDS_Shape edge;
+    Bnd_Box box;
+    bool straight;
+  };
+
+  static Bnd_Box box_of(const TopoDS_Shape& edge) {
+    Bnd_Box box;
+    BRepBndLib::Add(edge, box);
+    return box;
+  }
+
+  double reach_;
+  std::vector<Cut> edges_;
+};
+
+/// The parts that are left out, for a note.
+class LeftOut {
+ public:
+  void add(const Topology::FreePart& part) {
+    if (count_++ == 0)
+      first_ = fmt::format("{}{} at {}", is_edge(part.shape) ? "Edge" : "Vertex", part.number,
+                           text(place_of(part.shape)));
+  }
+  void tell(const std::string& file, const char* near, const char* what,
+            std::vector<std::string>& notes) const {
+    if (count_ == 0) return;
+    const bool several = count_ > 1;
+    notes.push_back(fmt::format(
+        "{}: {}{} so near to {} that {} may cross {}, and left out; mesh with a smaller --distance", file,
+        first_, several ? fmt::format(" and {} more are", count_ - 1) : " is", near, what,
+        several ? "them" : "it"));
+  }
+
+ private:
+  std::size_t count_ = 0;
+  std::string first_;
+};
+
 }  // namespace
 
 PolygonSoup cut_free_parts(const Topology& topology, const std::string& file,
                            const TessellationOptions& options, Tessellation& result) {
   Cutter cutter(topology, file, options, result);
-  std::vector<std::string> near;
-  for (const Topology::FreePart& part : topology.free_parts)
-    if (part.clearance > 2 * options.deflection)
+  CutEdges edges(options.deflection);
+  LeftOut near_faces, near_edges;
+  for (const Topology::FreePart& part : topology.free_parts) {
+    if (part.clearance <= 2 * options.deflection) {
+      near_faces.add(part);
+    } else if (!is_edge(part.shape)) {
       cutter.add(part);
-    else
-      near.push_back(fmt::format("{}{} at {}", is_edge(part.shape) ? "Edge" : "Vertex", part.number,
-                                 text(place_of(part.shape))));
-  if (!near.empty())
-    result.notes.push_back(fmt::format(
-        "{}: {}{} so near to faces that triangles in their place may cross it, and left out; mesh "
-        "with a smaller --distance",
-        file, near.front(), near.size() > 1 ? fmt::format(" and {} more are", near.size() - 1) : " is"));
+    } else if (edges.are_near(part.shape)) {
+      near_edges.add(part);
+    } else {
+      edges.add(part.shape);
+      cutter.add(part);
+    }
+  }
+  near_faces.tell(file, "faces", "triangles in their place", result.notes);
+  near_edges.tell(file, "other edges", "chords in their place", result.notes);
   return cutter.finish();
 }
 

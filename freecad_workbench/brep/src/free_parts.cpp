@@ -9,15 +9,16 @@
 #include <BRepBuilderAPI_MakeVertex.hxx>
 #include <BRepClass3d_SolidClassifier.hxx>
 #include <BRepExtrema_DistShapeShape.hxx>
+#include <BRepIntCurveSurface_Inter.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
+#include <GeomAdaptor_Curve.hxx>
 #include <Geom_Curve.hxx>
 #include <Precision.hxx>
 #include <TopExp.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopTools_MapOfShape.hxx>
 #include <TopoDS.hxx>
-#include <TopoDS_Compound.hxx>
 
 #include <algorithm>
 #include <limits>
@@ -68,12 +69,6 @@ std::vector<gp_Pnt> samples_of(const TopoDS_Shape& part) {
   return samples;
 }
 
-/// The least distance between two shapes, 0 where OpenCASCADE finds none.
-double distance_between(const TopoDS_Shape& a, const TopoDS_Shape& b) {
-  const BRepExtrema_DistShapeShape nearest(a, b);
-  return nearest.IsDone() && nearest.NbSolution() > 0 ? nearest.Value() : 0;
-}
-
 bool runs_along(const TopoDS_Shape& edge, const TopoDS_Shape& other, double tolerance) {
   const std::vector<gp_Pnt> samples = samples_of(edge);
   return distance_between(BRepBuilderAPI_MakeVertex(samples[samples.size() / 2]).Shape(), other) <= tolerance;
@@ -96,28 +91,66 @@ bool meet_amid(const TopoDS_Shape& a, const TopoDS_Shape& b) {
 class Faces {
  public:
   explicit Faces(const TopoDS_Shape& all) : faces_(subshapes(all, TopAbs_FACE)) {
-    for (const TopoDS_Shape& face : faces_) TopExp::MapShapes(face, held_);
+    for (const TopoDS_Shape& face : faces_) {
+      TopExp::MapShapes(face, held_);
+      boxes_.push_back(box_of(face));
+    }
   }
 
   bool hold(const TopoDS_Shape& part) const { return held_.Contains(part); }
 
   /// The distance of a part to those faces that it does not end on; infinite where there are none.
   double distance_to(const TopoDS_Shape& part) const {
-    std::vector<TopoDS_Shape> ends = subshapes(part, TopAbs_VERTEX), others = faces_;
+    std::vector<TopoDS_Shape> ends = subshapes(part, TopAbs_VERTEX);
     std::erase_if(ends, [&](const TopoDS_Shape& end) { return !hold(end); });
-    if (!ends.empty())
-      std::erase_if(others, [&](const TopoDS_Shape& face) {
-        TopTools_IndexedMapOfShape vertices;
-        TopExp::MapShapes(face, TopAbs_VERTEX, vertices);
-        return std::any_of(ends.begin(), ends.end(),
-                           [&](const TopoDS_Shape& end) { return vertices.Contains(end); });
-      });
-    return others.empty() ? std::numeric_limits<double>::infinity()
-                          : distance_between(part, compound_of(others));
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& [to_box, f] : by_distance_of_boxes(part)) {
+      if (to_box >= least) break;
+      if (!has_one_of(ends, faces_[f])) least = std::min(least, distance_between(part, faces_[f]));
+    }
+    return least;
+  }
+
+  /// Places along an edge, one between any two neighbouring points where it meets faces.
+  std::vector<gp_Pnt> places_between(const TopoDS_Edge& edge) const {
+    double first = 0, last = 0;
+    const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, first, last);
+    const GeomAdaptor_Curve part(curve, first, last);
+    const Bnd_Box box = box_of(edge);
+    std::vector<double> at{first, last};
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      if (boxes_[f].IsOut(box)) continue;
+      BRepIntCurveSurface_Inter meeting;
+      for (meeting.Init(faces_[f], part, Precision::Confusion()); meeting.More(); meeting.Next())
+        at.push_back(std::clamp(meeting.W(), first, last));
+    }
+    std::sort(at.begin(), at.end());
+    std::vector<gp_Pnt> places;
+    for (std::size_t i = 1; i < at.size(); ++i) places.push_back(curve->Value(0.5 * (at[i - 1] + at[i])));
+    return places;
   }
 
  private:
+  /// The faces, by the distances of their boxes.
+  std::vector<std::pair<double, std::size_t>> by_distance_of_boxes(const TopoDS_Shape& part) const {
+    const Bnd_Box box = box_of(part);
+    std::vector<std::pair<double, std::size_t>> faces;
+    for (std::size_t f = 0; f < faces_.size(); ++f)
+      if (!boxes_[f].IsVoid()) faces.emplace_back(boxes_[f].Distance(box), f);
+    std::sort(faces.begin(), faces.end());
+    return faces;
+  }
+
+  static bool has_one_of(const std::vector<TopoDS_Shape>& vertices, const TopoDS_Shape& face) {
+    if (vertices.empty()) return false;
+    TopTools_IndexedMapOfShape own;
+    TopExp::MapShapes(face, TopAbs_VERTEX, own);
+    return std::any_of(vertices.begin(), vertices.end(),
+                       [&](const TopoDS_Shape& vertex) { return own.Contains(vertex); });
+  }
+
   std::vector<TopoDS_Shape> faces_;
+  std::vector<Bnd_Box> boxes_;
   TopTools_IndexedMapOfShape held_;
 };
 
@@ -134,12 +167,16 @@ class Solids {
   }
 
   /// Does some of a part lie inside one of them, neither outside nor on its faces?
-  bool hold_some_of(const TopoDS_Shape& part) const {
-    const std::vector<gp_Pnt> samples = samples_of(part);
-    return std::any_of(samples.begin(), samples.end(), [&](const gp_Pnt& p) { return hold(p); });
+  bool hold_some_of(const TopoDS_Shape& part, const Faces& faces) const {
+    return hold_some_of(samples_of(part)) ||
+           (is_edge(part) &&
+            hold_some_of(faces.places_between(TopoDS::Edge(part))));  // a thin wall is between
   }
 
  private:
+  bool hold_some_of(const std::vector<gp_Pnt>& places) const {
+    return std::any_of(places.begin(), places.end(), [&](const gp_Pnt& p) { return hold(p); });
+  }
   bool hold(const gp_Pnt& p) const {
     for (std::size_t s = 0; s < solids_.size(); ++s) {
       if (boxes_[s].IsOut(p)) continue;
@@ -162,7 +199,7 @@ class Sorter {
   void add(const TopoDS_Shape& part, int number) {
     Candidate candidate{part, number, name_of(part, number)};
     try {
-      if (!has_place(part) || !solids_.hold_some_of(part)) {
+      if (!has_place(part) || !solids_.hold_some_of(part, faces_)) {
         left_out_.push_back(part);
         outside_.push_back(candidate.name);
         return;
@@ -221,23 +258,47 @@ class Sorter {
   }
 
   void keep_pieces(const Candidate& part, const TopTools_ListOfShape& pieces, const Faces& faces) {
-    bool all_inside = true, all_cut = true;
+    bool any_inside = false, all_inside = true, all_cut = !pieces.IsEmpty();
     for (const TopoDS_Shape& piece : pieces) {
-      if (faces.hold(piece)) continue;
-      try {
-        const bool inside = solids_.hold_some_of(piece);
-        const double clearance = inside ? faces.distance_to(piece) : 0;
-        const bool cut = !inside || clearance > tolerance_of(piece);
-        if (inside && cut && kept_.Add(piece))  // others may lie on it
-          topology_.free_parts.push_back({piece, part.number, clearance});
-        all_inside = all_inside && inside;
-        all_cut = all_cut && cut;
-      } catch (const Standard_Failure&) {
+      bool inside = true;
+      if (faces.hold(piece))
+        note_number(part, piece);
+      else if (!keep_piece(part, piece, faces, inside))
         all_cut = false;
-      }
+      any_inside = any_inside || inside;
+      all_inside = all_inside && inside;
     }
-    if (!all_inside) partly_.push_back(part.name);
+    if (!any_inside && all_cut)
+      outside_.push_back(part.name);
+    else if (!all_inside)
+      partly_.push_back(part.name);
     if (!all_cut) meeting_.push_back(part.name);
+  }
+
+  /// If it is inside, which is found here; false if it is, but not cut at the faces.
+  bool keep_piece(const Candidate& part, const TopoDS_Shape& piece, const Faces& faces, bool& inside) {
+    try {
+      inside = solids_.hold_some_of(piece, faces);
+      if (!inside) return true;
+      const double clearance = faces.distance_to(piece);
+      if (clearance <= tolerance_of(piece)) return false;
+      if (kept_.Add(piece))
+        topology_.free_parts.push_back({piece, part.number, clearance});
+      else
+        note_number(part, piece);
+      return true;
+    } catch (const Standard_Failure&) {
+      return false;
+    }
+  }
+
+  /// A piece that several parts or faces have in common may have the number of another.
+  void note_number(const Candidate& part, const TopoDS_Shape& piece) {
+    const int number = topology_.number(piece);
+    if (number == part.number) return;
+    std::string text = fmt::format("{} lies on {}{}", part.name, is_edge(piece) ? "Edge" : "Vertex", number);
+    if (std::find(renumbered_.begin(), renumbered_.end(), text) == renumbered_.end())
+      renumbered_.push_back(std::move(text));
   }
 
   void keep_whole_ones() {
@@ -257,6 +318,11 @@ class Sorter {
          "no part of a face and left out: inside a solid, but meeting a face or the middle of another "
          "edge where OpenCASCADE's general fuse does not cut them",
          "end edges before faces, and cut them where others meet them");
+    if (!renumbered_.empty())
+      topology_.notes.push_back(
+          fmt::format("{}: {} and has its number there{}", file_, renumbered_.front(),
+                      renumbered_.size() > 1 ? fmt::format("; so it is with {} more", renumbered_.size() - 1)
+                                             : std::string()));
   }
   void tell(const std::vector<std::string>& names, const char* what, const char* advice) const {
     if (names.empty()) return;
@@ -272,10 +338,19 @@ class Sorter {
   std::vector<Candidate> inside_;
   std::vector<TopoDS_Shape> left_out_;
   TopTools_MapOfShape kept_;
-  std::vector<std::string> outside_, partly_, meeting_;
+  std::vector<std::string> outside_, partly_, meeting_, renumbered_;
 };
 
 }  // namespace
+
+double distance_between(const TopoDS_Shape& a, const TopoDS_Shape& b) {
+  try {
+    const BRepExtrema_DistShapeShape nearest(a, b);
+    return nearest.IsDone() && nearest.NbSolution() > 0 ? nearest.Value() : 0;
+  } catch (const Standard_Failure&) {
+    return 0;
+  }
+}
 
 std::vector<TopoDS_Shape> parts_of_no_face(const TopoDS_Shape& shape) {
   TopTools_IndexedMapOfShape held;

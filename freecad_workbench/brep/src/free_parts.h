@@ -17,4 +17,7 @@ std::vector<TopoDS_Shape> parts_of_no_face(const TopoDS_Shape& shape);
 void keep_free_parts_inside(const std::vector<TopoDS_Shape>& parts, const std::string& file,
                             Topology& topology);
 
+/// The least distance between two shapes, 0 where OpenCASCADE finds none.
+double distance_between(const TopoDS_Shape& a, const TopoDS_Shape& b);
+
 }  // namespace collarmesh::brep

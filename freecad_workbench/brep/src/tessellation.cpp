@@ -81,8 +81,8 @@ class Tessellator {
     measure();
     for (const Topology::Solid& solid : topology_.solids) result_.soups.push_back(soup_of(solid));
     if (!topology_.internal_faces.empty()) result_.soups.push_back(internal_soup());
-    if (PolygonSoup soup = cut_free_parts(topology_, file_, options, result_); !soup.points.empty())
-      result_.soups.push_back(std::move(soup));
+    if (!topology_.free_parts.empty())  // even if none is cut: the number of soups is that of any fineness
+      result_.soups.push_back(cut_free_parts(topology_, file_, options, result_));
     return std::move(result_);
   }
 

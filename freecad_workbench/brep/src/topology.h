@@ -44,7 +44,7 @@ struct Topology {
   std::string open_text;  ///< which solids are open, at which edges; empty: none
 
   int number(const TopoDS_Shape& shape) const { return numbers.IsBound(shape) ? numbers.Find(shape) : 0; }
-  /// Of parts that no step changes, with their vertices: no other gets them.
+  /// Reserves the numbers of these parts and of their vertices.
   void keep_numbers(const std::vector<TopoDS_Shape>& parts);
   /// "Face7".
   std::string name(const TopoDS_Shape& shape) const;

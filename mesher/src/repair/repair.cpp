@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -378,14 +379,33 @@ RepairedPlc with_lost_regions(RepairedPlc complex, std::span<const PolygonSoup> 
   return complex;
 }
 
+// Lines of soups without facets that are no curves of the complex.
+std::vector<Plc::Warning> lost_lines(std::span<const PolygonSoup> soups, const Plc& plc) {
+  std::map<Tag, Point> lost;
+  for (const PolygonSoup& soup : soups)
+    for (const PolygonSoup::Segment& segment : soup.segments)
+      if (soup.facet_count() == 0 && segment.tag != 0) lost.emplace(segment.tag, soup.points[segment.a]);
+  for (const Plc::Curve& curve : plc.curves) lost.erase(curve.tag);
+  std::vector<Plc::Warning> warnings;
+  for (const auto& [tag, where] : lost)
+    warnings.push_back(
+        {fmt::format("Nothing is left of the line with tag {} at {} after the repair; a smaller "
+                     "--repair-tolerance may keep it.",
+                     tag, text(where)),
+         where});
+  return warnings;
+}
+
 // The complex of what was repaired, and how far it is from the input. Throws PlcError.
 RepairedPlc judged(const Repairer& repairer, RepairResult result, const PlcOptions& options) {
   RepairedPlc complex{build_plc(result.soups, options), std::move(result.report), std::move(result.soups)};
   number_untagged(repairer.input(), complex.plc);
   repairer.measure(complex.report);
-  if (complex.report.repaired)
+  if (complex.report.repaired) {
     std::ranges::copy(plc::lost_bodies(repairer.input(), complex.plc, repairer.tolerance()),
                       std::back_inserter(complex.plc.warnings));
+    std::ranges::copy(lost_lines(repairer.input(), complex.plc), std::back_inserter(complex.plc.warnings));
+  }
   return with_lost_regions(std::move(complex), repairer.input());
 }
 

@@ -57,13 +57,17 @@ class SoupMaker {
     return index[p];
   }
   bool has(Index soup, Index p) const { return !index_[soup].empty() && index_[soup][p] != none; }
+  /// Do segments and points of a soup go when its facets do?
+  bool needs_facets(Index soup) const {
+    return !draft_.soup_is_complex[soup] && soups_[soup].facet_count() > 0;
+  }
 
   void add_segments() {
     std::set<std::array<Index, 3>> known;
     for (const Segment& s : draft_.segments) {
       if (s.a == s.b || !known.insert({s.soup, std::min(s.a, s.b), std::max(s.a, s.b)}).second) continue;
       // One whose facets are gone goes with them.
-      if (!draft_.soup_is_complex[s.soup] && !(has(s.soup, s.a) && has(s.soup, s.b))) continue;
+      if (needs_facets(s.soup) && !(has(s.soup, s.a) && has(s.soup, s.b))) continue;
       result_[s.soup].segments.push_back({point(s.soup, s.a), point(s.soup, s.b), s.tag});
     }
     add_new_edges(known);
@@ -98,13 +102,25 @@ class SoupMaker {
   }
 
   void add_vertices() {
+    const std::vector<std::set<Tag>> tags = tags_of_single_points();
     for (const Index p : draft_.loose_points)
       for (Index s = 0; s < soups_.size(); ++s)
-        if (has(s, p) || draft_.soup_is_complex[s]) result_[s].vertices.push_back(point(s, p));
+        if (has(s, p) || draft_.soup_is_complex[s] || tags[s].count(draft_.point_tags[p]) > 0)
+          result_[s].vertices.push_back(point(s, p));
     for (PolygonSoup& soup : result_) {
       std::sort(soup.vertices.begin(), soup.vertices.end());
       soup.vertices.erase(std::unique(soup.vertices.begin(), soup.vertices.end()), soup.vertices.end());
     }
+  }
+
+  /// Of the soups without facets, in which points may be all there is.
+  std::vector<std::set<Tag>> tags_of_single_points() const {
+    std::vector<std::set<Tag>> tags(soups_.size());
+    for (Index s = 0; s < soups_.size(); ++s)
+      if (soups_[s].facet_count() == 0)
+        for (const Index v : soups_[s].vertices)
+          tags[s].insert(soups_[s].point_tags.empty() ? 0 : soups_[s].point_tags[v]);
+    return tags;
   }
 
   std::span<const PolygonSoup> soups_;

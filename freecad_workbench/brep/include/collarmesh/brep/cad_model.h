@@ -58,8 +58,8 @@ struct CadMeasures {
 /// Solids that touch are made to share the faces there; faces and edges that are cut in this keep the
 /// number of what they were part of, edges that arise get the next free ones. What solids have in common is
 /// given to one of them. Edges of no face are cut where they meet faces or one another, and are left out
-/// outside of the solids and on their faces; notes tell of these. A shape of faces alone is sewn and becomes
-/// a solid where it is closed; so are the faces of an open solid.
+/// outside of the solids, on their faces, and too near to these or to one another; notes tell of these. A
+/// shape of faces alone is sewn and becomes a solid where it is closed; so are the faces of an open solid.
 ///
 /// What OpenCASCADE cannot do is left to whoever makes a complex of the soups, and told in `notes`: solids
 /// that it cannot fuse may intersect, solids that stay open have holes, and a face that it cannot cut into
@@ -82,7 +82,8 @@ class CadModel {
   virtual const CadLabels& labels() const;
 
   /// Triangles of all faces: one soup for each solid, one for the faces that belong to none, and one of
-  /// chords and points for the edges and vertices inside a solid that belong to no face.
+  /// chords and points for the edges and vertices inside a solid that belong to no face. As many, whatever
+  /// the options.
   /// Neighbouring faces share the points of their edges. Vertices, edges and faces of the shape are
   /// features with their numbers as tags; seams and degenerate edges are none.
   /// Throws PlcError when OpenCASCADE fails, or no face can be cut into triangles.
