@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <BRepAdaptor_Curve.hxx>
+#include <BRepAdaptor_Surface.hxx>
 #include <BRepBndLib.hxx>
 #include <BRepBuilderAPI_MakeVertex.hxx>
 #include <BRepClass3d_SolidClassifier.hxx>
@@ -69,9 +70,13 @@ std::vector<gp_Pnt> samples_of(const TopoDS_Shape& part) {
   return samples;
 }
 
-bool runs_along(const TopoDS_Shape& edge, const TopoDS_Shape& other, double tolerance) {
+TopoDS_Shape middle_of(const TopoDS_Shape& edge) {
   const std::vector<gp_Pnt> samples = samples_of(edge);
-  return distance_between(BRepBuilderAPI_MakeVertex(samples[samples.size() / 2]).Shape(), other) <= tolerance;
+  return BRepBuilderAPI_MakeVertex(samples[samples.size() / 2]).Shape();
+}
+
+bool runs_along(const TopoDS_Shape& edge, const TopoDS_Shape& other, double tolerance) {
+  return distance_between(middle_of(edge), other) <= tolerance;
 }
 
 /// Do two parts meet elsewhere than end at end?
@@ -107,6 +112,17 @@ class Faces {
     for (const auto& [to_box, f] : by_distance_of_boxes(part)) {
       if (to_box >= least) break;
       if (!has_one_of(ends, faces_[f])) least = std::min(least, distance_between(part, faces_[f]));
+    }
+    return least;
+  }
+
+  /// The distance of a part to the faces that are not planar, infinite where there are none.
+  double distance_to_curved(const TopoDS_Shape& part) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& [to_box, f] : by_distance_of_boxes(part)) {
+      if (to_box >= least) break;
+      if (BRepAdaptor_Surface(TopoDS::Face(faces_[f]), false).GetType() != GeomAbs_Plane)
+        least = std::min(least, distance_between(part, faces_[f]));
     }
     return least;
   }
@@ -280,8 +296,10 @@ class Sorter {
     try {
       inside = solids_.hold_some_of(piece, faces);
       if (!inside) return true;
-      const double clearance = faces.distance_to(piece);
+      double clearance = faces.distance_to(piece);
       if (clearance <= tolerance_of(piece)) return false;
+      // One with its ends on a curved face may be as near to that one as its triangles are.
+      if (is_edge(piece)) clearance = std::min(clearance, faces.distance_to_curved(middle_of(piece)));
       if (kept_.Add(piece))
         topology_.free_parts.push_back({piece, part.number, clearance});
       else

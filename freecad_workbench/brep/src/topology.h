@@ -29,7 +29,7 @@ struct Topology {
   struct FreePart {
     TopoDS_Shape shape;
     int number = 0;
-    double clearance = 0;  ///< distance to the faces that it does not end on
+    double clearance = 0;  ///< to the faces that it does not end on; of its middle, to curved ones
   };
 
   std::vector<Solid> solids;                               ///< parts of one solid have the same number
