@@ -356,6 +356,20 @@ TEST(CadModel, LeavesOutEdgesNearerToFacesThanTheTriangles) {
   expect_mentions(model.notes()[0], {"Edge13 at (5, 5, 0.1) is so near to faces", "--distance"});
 }
 
+// The ends are on the exact face, so that coarse triangles may leave all of the chord outside. Its middle is
+// 0.3^2 / 80 below the face.
+TEST(CadModel, LeavesOutChordsOfCurvedFacesThatAreNearerThanTheTriangles) {
+  const double radius = 10, length = 0.3, half = std::asin(length / (2 * radius));
+  const auto at = [&](double angle) { return gp_Pnt(radius * std::cos(angle), radius * std::sin(angle), 8); };
+  const TopoDS_Shape chord = line(at(1 - half), at(1 + half));
+  CadModel model(compound({BRepPrimAPI_MakeCylinder(radius, 20).Shape(), chord}), "part");
+  EXPECT_TRUE(model.tessellate({.deflection = 0.01}).at(1).segments.empty());
+  ASSERT_EQ(model.notes().size(), 1U);
+  expect_mentions(model.notes()[0], {"Edge4", "is so near to faces", "--distance"});
+  EXPECT_NEAR(length_of(model.tessellate({.deflection = 1e-4}).at(1)), length, 1e-9);
+  EXPECT_TRUE(model.notes().empty());
+}
+
 // Their chords would cross; those of straight lines are the lines.
 TEST(CadModel, LeavesOutCurvedEdgesNearToOthers) {
   const double radius = 4, apart = 0.002, deflection = 0.01;

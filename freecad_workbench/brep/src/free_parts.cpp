@@ -116,13 +116,15 @@ class Faces {
     return least;
   }
 
-  /// The distance of a part to the faces that are not planar, infinite where there are none.
+  /// The distance of an edge's middle, or of a vertex, to the faces that are not planar; infinite where there
+  /// are none. An edge with both ends on a curved face may be as near to it as its triangles are.
   double distance_to_curved(const TopoDS_Shape& part) const {
+    const TopoDS_Shape middle = is_edge(part) ? middle_of(part) : part;
     double least = std::numeric_limits<double>::infinity();
-    for (const auto& [to_box, f] : by_distance_of_boxes(part)) {
+    for (const auto& [to_box, f] : by_distance_of_boxes(middle)) {
       if (to_box >= least) break;
       if (BRepAdaptor_Surface(TopoDS::Face(faces_[f]), false).GetType() != GeomAbs_Plane)
-        least = std::min(least, distance_between(part, faces_[f]));
+        least = std::min(least, distance_between(middle, faces_[f]));
     }
     return least;
   }
@@ -220,8 +222,9 @@ class Sorter {
         outside_.push_back(candidate.name);
         return;
       }
-      candidate.clearance = faces_.distance_to(part);
-      candidate.meets = candidate.clearance <= tolerance_of(part) || meets_another(part);
+      const double distance = faces_.distance_to(part);
+      candidate.meets = distance <= tolerance_of(part) || meets_another(part);
+      candidate.clearance = std::min(distance, faces_.distance_to_curved(part));
     } catch (const Standard_Failure&) {
       candidate.meets = true;
     }
@@ -296,10 +299,9 @@ class Sorter {
     try {
       inside = solids_.hold_some_of(piece, faces);
       if (!inside) return true;
-      double clearance = faces.distance_to(piece);
-      if (clearance <= tolerance_of(piece)) return false;
-      // One with its ends on a curved face may be as near to that one as its triangles are.
-      if (is_edge(piece)) clearance = std::min(clearance, faces.distance_to_curved(middle_of(piece)));
+      const double distance = faces.distance_to(piece);
+      if (distance <= tolerance_of(piece)) return false;
+      const double clearance = std::min(distance, faces.distance_to_curved(piece));
       if (kept_.Add(piece))
         topology_.free_parts.push_back({piece, part.number, clearance});
       else
