@@ -9,6 +9,7 @@
 #include "collarmesh/exact_geometry.h"
 #include "collarmesh/improve.h"
 #include "collarmesh/mesher.h"
+#include "collarmesh/periodic.h"
 #include "collarmesh/plc.h"
 #include "collarmesh/plc_builder.h"
 #include "collarmesh/polygon_soup.h"
@@ -37,8 +38,9 @@ struct PipelineOptions {
   /// kept if no seed succeeds.
   unsigned seeds = 2;
   SplitOptions split = {};  ///< internal patches that get nodes of their own on each side, after the check
-  bool trace = false;       ///< fill in PipelineResult::trace
-  unsigned partitions = 0;  ///< number of ranks to divide the tets among (see `partition`); 0: do not
+  PeriodicOptions periodic = {};  ///< patches whose meshes are images of each other
+  bool trace = false;             ///< fill in PipelineResult::trace
+  unsigned partitions = 0;        ///< number of ranks to divide the tets among (see `partition`); 0: do not
   /// The geometry that the facets approximate, such as a CAD shape. The mesh keeps tighter bounds at first,
   /// so that its vertices can move onto this geometry; may be empty.
   ExactGeometry exact = {};
@@ -56,8 +58,9 @@ struct PipelineResult {
   std::optional<ProjectReport> projection;  ///< nothing without exact geometry
   SecondOrderReport second_order;
   CheckReport check;
-  std::optional<SplitReport> split;  ///< nothing unless something was to be split
-  Trace trace;                       ///< of the run that made the mesh, or of a refinement that ended early
+  std::optional<PeriodicReport> periodic;  ///< nothing unless patches were to be periodic
+  std::optional<SplitReport> split;        ///< nothing unless something was to be split
+  Trace trace;  ///< of the run that made the mesh, or of a refinement that ended early
 
   bool guarantees_hold() const { return result.status == MeshStatus::complete && check.passed(); }
   /// Returns a sentence about the first missed guarantee; empty if all hold.

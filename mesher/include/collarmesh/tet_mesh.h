@@ -60,6 +60,25 @@ struct TetMesh {
   GroupNames group_names = GroupNames::complex;
   TagNames names;  ///< names that replace those labels
 
+  /// A rigid motion: p goes to (dot(rows[0], p), dot(rows[1], p), dot(rows[2], p)) + shift.
+  struct Motion {
+    std::array<Vector, 3> rows{Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}};
+    Vector shift{0, 0, 0};
+
+    Point operator()(const Point& p) const {
+      return Point{dot(rows[0], p), dot(rows[1], p), dot(rows[2], p)} + shift;
+    }
+  };
+  /// Two groups of patches; the nodes, edges and triangles of the first, moved, are those of the second.
+  struct PeriodicFaces {
+    std::vector<Tag> first, second;  ///< tags of patches, sorted
+    Motion motion;                   ///< takes the first to the second
+    /// A node of the first and its image, mid-edge nodes included; sorted by the first. A node on an axis of
+    /// rotation is its own image.
+    std::vector<std::array<Index, 2>> nodes;
+  };
+  std::vector<PeriodicFaces> periodic;  ///< empty: none
+
   int order() const { return tet_mid_nodes.empty() ? 1 : 2; }
 
   /// A ball of a collar: stars and books fill the union of the balls.

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "collarmesh/geometry.h"
+#include "collarmesh/plc.h"
+#include "collarmesh/tet_mesh.h"
+
+/// Periodic faces: patches of which one group is the image of another, with meshes that are images of each
+/// other, for periodic boundary conditions.
+namespace collarmesh {
+
+struct PeriodicOptions {
+  /// Each is an axis, or two groups of patches and the motion that takes the first to the second:
+  /// - "x", "y" or "z": the planar patches at the low and the high end of the shape along that axis;
+  /// - "A=B" or "A=B:translation": names or numbers of patches, several with commas between them; the
+  ///   translation takes the middle of the first group's box to that of the second's;
+  /// - "A=B:translation,DX,DY,DZ": that translation;
+  /// - "A=B:rotation,AXIS,DEGREES": about the x, y or z axis;
+  /// - "A=B:rotation,PX,PY,PZ,DX,DY,DZ,DEGREES": about the axis through a point with a direction.
+  std::vector<std::string> pairs = {};
+
+  bool any() const { return !pairs.empty(); }
+};
+
+/// What a run made of one pair.
+struct PeriodicReport {
+  struct Pair {
+    std::string text;        ///< as it was asked for
+    std::size_t nodes = 0;   ///< on the first group, mid-edge nodes included
+    std::size_t edges = 0;   ///< of curves on it
+    std::size_t faces = 0;   ///< triangles of it
+    double largest_gap = 0;  ///< absolute, between a node's image and the node that it maps to
+  };
+  std::vector<Pair> pairs;
+  std::size_t inserted_nodes = 0;  ///< to give each group the nodes of the other
+  std::size_t removed_nodes = 0;   ///< that only one group had
+  std::size_t turned_edges = 0;
+};
+
+/// Throws OptionError if a pair cannot be read, a name is unknown, or the patches are not images of each
+/// other within this distance: the message names the patch, the largest distance and where.
+void require_periodic_patches(const PeriodicOptions& options, const Plc& plc, double distance);
+
+/// Gives the second group of each pair the mesh of the first: the same nodes, edges and triangles, moved. The
+/// tets beside it are made anew. Fills in `mesh.periodic`. Patches of these groups are planar and have the
+/// region on one side only. Throws OptionError as `require_periodic_patches` does.
+PeriodicReport make_periodic(TetMesh& mesh, const Plc& plc, const PeriodicOptions& options, double distance);
+
+}  // namespace collarmesh
