@@ -118,7 +118,7 @@ void Operations::remove_edge_above(Index tet, unsigned i, unsigned j, std::optio
     if (kept.size() != 2) return;
     std::sort(kept.begin(), kept.end());
     const Index patch = mesh_.face_patch[kept[0].second];
-    if (patch == none || mesh_.face_patch[kept[1].second] != patch) return;
+    if (patch == none || mesh_.face_patch[kept[1].second] != patch || workpiece_.keeps(patch)) return;
     const std::size_t from = kept[0].first, to = kept[1].first;
     if (!ring_.closed && (from != 0 || to + 1 != m)) return;
     const Index c = ring_.link[from], d = ring_.link[to];

@@ -18,7 +18,8 @@ class Operations {
  public:
   /// Keeps both by reference.
   Operations(const Workpiece& workpiece, const ShapeRule& rule)
-      : complex_(workpiece.complex),
+      : workpiece_(workpiece),
+        complex_(workpiece.complex),
         mesh_(workpiece.complex.mesh()),
         plc_(workpiece.plc),
         surfaces_(workpiece.surfaces),
@@ -149,6 +150,10 @@ class Operations {
   bool untouchable(const TetComplex::Tet& tet) const { return tet.collar && !rule_.dissolves_collars(); }
   double quality(Index tet) const { return rule_.quality(complex_.corners(tet), complex_[tet].corners); }
 
+  /// Is this one of the mesh's faces that stay as they are?
+  bool stays(Index face) const { return workpiece_.keeps(mesh_.face_patch[face]); }
+
+  const Workpiece& workpiece_;
   const TetComplex& complex_;
   const TetMesh& mesh_;
   const Plc& plc_;

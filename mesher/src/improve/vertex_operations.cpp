@@ -37,6 +37,7 @@ bool Operations::make_cone_of_vertex(Index vertex) {
         cone_.hull.push_back(side_corners(tet.corners, corner));
         cone_.hull_tet.push_back(t);
       } else if (on_feature && tet.faces[corner] != none && !contains(cone_.faces, tet.faces[corner])) {
+        if (stays(tet.faces[corner])) return false;
         add_to_rim(tet.faces[corner], vertex);
       }
     }
@@ -69,6 +70,7 @@ bool Operations::make_cone_of_edge(Index a, Index b) {
       const Index face = tet.faces[corner];
       if (face == none || tet.corners[corner] == a || tet.corners[corner] == b) continue;
       if (contains(cone_.faces, face)) continue;
+      if (stays(face)) return false;
       add_to_rim(face, a);
       add_to_rim(face, b);
       cone_.faces.pop_back();

@@ -8,6 +8,17 @@ namespace collarmesh::improvement {
 
 double Workpiece::quality(Index tet) const { return shape_quality(complex.corners(tet)); }
 
+std::vector<bool> Workpiece::patches_to_keep(const Plc& plc, const TetMesh& mesh) {
+  std::vector<bool> kept;
+  for (const TetMesh::PeriodicFaces& faces : mesh.periodic) {
+    kept.resize(plc.patches.size(), false);
+    for (std::size_t patch = 0; patch < kept.size(); ++patch)
+      for (const auto* tags : {&faces.first, &faces.second})
+        if (std::binary_search(tags->begin(), tags->end(), plc.patches[patch].tag)) kept[patch] = true;
+  }
+  return kept;
+}
+
 const std::vector<Index>& Workpiece::apply(Change change) {
   auto& [old, created, old_faces, created_faces] = change.replacement;
   surfaces.take_samples(old_faces);

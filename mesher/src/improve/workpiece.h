@@ -41,9 +41,13 @@ class Workpiece {
         surfaces(meant, mesh, tolerance),
         curves(meant, mesh, tolerance, edges_per_hole),
         plc(meant),
-        forced(forced_edges_of(meant, mesh, lower_where_forced)) {}
+        forced(forced_edges_of(meant, mesh, lower_where_forced)),
+        kept_(patches_to_keep(meant, mesh)) {}
 
   double quality(Index tet) const;
+
+  /// Returns whether the triangles of this patch stay as they are: those of periodic faces do.
+  bool keeps(Index patch) const { return !kept_.empty() && patch != none && kept_[patch]; }
 
   /// Returns whether this collapse is still allowed. Others on the same curve use up its spare edges.
   bool curve_can_spare(const Change& change) const {
@@ -67,6 +71,9 @@ class Workpiece {
   std::shared_ptr<const ForcedEdges> forced;
 
  private:
+  static std::vector<bool> patches_to_keep(const Plc& plc, const TetMesh& mesh);
+
+  std::vector<bool> kept_;  // by patch; empty: none
   std::vector<Index> changed_;
 };
 

@@ -29,6 +29,9 @@
 #include "common/traced_mesh.h"
 #include "improve/cell_bounds.h"
 #include "improve/improve_workpiece.h"
+#include "periodic/make_periodic.h"
+#include "periodic/node_map.h"
+#include "periodic/sizes_across.h"
 #include "pipeline/explosion.h"
 #include "pipeline/lost_parts.h"
 #include "pipeline/vertex_bound.h"
@@ -397,15 +400,37 @@ class Pipeline {
     require_known_tags(options_.mesh, plc);
     require_known_patches(options_.split, plc);
     options_.mesh.bounds.tolerance = nearer_ ? *nearer_ : tolerance(plc);
+    require_periodic_patches(options_.periodic, plc, options_.mesh.bounds.tolerance->largest());
     if (!knows_bound_) find_bound();
     if (most_vertices_ > 0) options_.mesh.max_vertices = most_vertices_;
     options_.mesh.seed = seed;
     refined_with_ = options_of_refinement();
+    make_mesh();
+    // Elements beside periodic faces suit the features on both sides only if they are small enough.
+    constexpr unsigned tries = 4;
+    for (unsigned k = 1; k < tries && made_.periodic && !made_.guarantees_hold(); ++k) {
+      auto sizes = periodicity::sizes_at_findings(made_.result.mesh, made_.check);
+      if (!sizes) return;
+      limit_sizes(std::move(*sizes));
+      made_ = {};
+      make_mesh();
+    }
+  }
+
+  void make_mesh() {
     refine();
     reshape();
+    make_faces_periodic();
     project();
     raise_order();
     certify();
+  }
+
+  void limit_sizes(SizeField limit) {
+    const SizeField given = refined_with_.size_field;
+    refined_with_.size_field = [given, limit = std::move(limit)](const Point& p) {
+      return given ? std::min(given(p), limit(p)) : limit(p);
+    };
   }
 
   bool exact() const { return static_cast<bool>(options_.exact); }
@@ -471,6 +496,51 @@ class Pipeline {
     trace(options_.improve > 0 ? "improve" : "coarsen", mesh);
   }
 
+  /// The elements beside these faces are made anew, so they are coarsened and improved as others were. Then
+  /// poor ones are improved while the faces are free to change, and the other face of each pair follows.
+  void make_faces_periodic() {
+    if (!given_.periodic.any() || made_.result.status != MeshStatus::complete) return;
+    if (auto across = periodicity::sizes_across(made_.result.mesh, *plc_, options_.periodic)) {
+      limit_sizes(std::move(*across));
+      made_ = {};
+      refine();
+      reshape();
+    }
+    begin("periodic faces", 0.78, 0.79);
+    const ImproveReport improvement = made_.improvement;
+    constexpr unsigned rounds = 4;  // tried: from the third on the elements hardly change
+    for (unsigned round = 0; round < rounds; ++round) {
+      if (round > 0) improve_freely();
+      make_faces_alike(round % 2 == 0 ? periodicity::Direction::forward : periodicity::Direction::backward);
+    }
+    made_.improvement = improvement;
+  }
+
+  void make_faces_alike(periodicity::Direction direction) {
+    TetMesh& mesh = made_.result.mesh;
+    made_.periodic = periodicity::make_periodic(mesh, *plc_, options_.periodic,
+                                                refined_with_.bounds.tolerance->largest(), direction);
+    ThreadLimit(options_.mesh.threads).run([&] {
+      improvement::Workpiece workpiece(mesh, *plc_, *refined_with_.bounds.tolerance,
+                                       refined_with_.edges_per_hole, refined_with_.bounds.lower_where_forced);
+      if (coarsen(workpiece, refined_with_, inner_).cancelled) stop();
+      if (options_.improve > 0) improve_elements(workpiece);
+      workpiece.complex.store();
+      improvement::mark_cells(mesh, *plc_, refined_with_.bounds);
+    });
+  }
+
+  void improve_freely() {
+    TetMesh& mesh = made_.result.mesh;
+    mesh.periodic.clear();
+    ThreadLimit(options_.mesh.threads).run([&] {
+      improvement::Workpiece workpiece(mesh, *plc_, *refined_with_.bounds.tolerance,
+                                       refined_with_.edges_per_hole, refined_with_.bounds.lower_where_forced);
+      improve_elements(workpiece);
+      workpiece.complex.store();
+    });
+  }
+
   void coarsen_elements(improvement::Workpiece& workpiece) {
     made_.coarsening = coarsen(workpiece, refined_with_, inner_);
     if (made_.coarsening->cancelled) stop();
@@ -523,6 +593,7 @@ class Pipeline {
     begin("check", 0.86, given_.partitions > 0 ? 0.96 : 1);
     Bounds promised = bounds();
     promised.tolerance = tolerance(*plc_);
+    if (made_.periodic) periodicity::map_nodes(made_.result.mesh, *made_.periodic);
     made_.check = check(
         made_.result.mesh, *plc_,
         {.bounds = promised, .exact = options_.exact_measures, .threads = options_.mesh.threads}, inner_);

@@ -127,7 +127,9 @@ class BoundaryProjection {
       moves_.push_back(
           {p, *place, *place != *target, squared_distance(*place, mesh_.points[p]) > most * most});
     }
-    for (const TetMesh::CollarBall& ball : mesh_.collar_balls) is_centre_.insert(ball.point);
+    for (const TetMesh::CollarBall& ball : mesh_.collar_balls) stays_.insert(ball.point);
+    for (const TetMesh::PeriodicFaces& faces : mesh_.periodic)
+      for (const auto& pair : faces.nodes) stays_.insert(pair.begin(), pair.end());
   }
 
   // Makes these tets good.
@@ -142,10 +144,10 @@ class BoundaryProjection {
   double way_of(Index slot) const { return distance(room_.origin(moves_[slot].point), moves_[slot].to); }
 
   // Records whether a vertex is on its exact feature; then it may slide along it, unless it is the centre of
-  // a ball.
+  // a ball or a node of periodic faces.
   void set_done(Index slot, bool done) {
     moves_[slot].done = done;
-    room_.set_free(moves_[slot].point, done && is_centre_.count(moves_[slot].point) == 0);
+    room_.set_free(moves_[slot].point, done && stays_.count(moves_[slot].point) == 0);
   }
 
   // Where exact curves end beside their vertices, as tolerances of CAD files allow, a vertex near the end may
@@ -325,7 +327,7 @@ class BoundaryProjection {
   projection::Relaxation room_;
   std::vector<Move> moves_;
   std::vector<Index> slot_of_;           // in moves_, by point
-  std::unordered_set<Index> is_centre_;  // of a collar's ball
+  std::unordered_set<Index> stays_;  // centres of balls, nodes of periodic faces
   ProjectReport report_;
 };
 

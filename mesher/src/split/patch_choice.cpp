@@ -3,37 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <optional>
-#include <string_view>
 
 #include "collarmesh/error.h"
+#include "common/named_tags.h"
 
 namespace collarmesh::splitting {
 
 namespace {
-
-/// Reads "7", "patch_7" or "Face7".
-std::optional<Tag> number_in(std::string_view text) {
-  for (const std::string_view prefix : {"patch_", "Face"})
-    if (text.starts_with(prefix)) {
-      text.remove_prefix(prefix.size());
-      break;
-    }
-  Tag tag = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), tag);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(tag) : std::nullopt;
-}
-
-/// Returns the tags that a text names; a name comes before a number.
-std::set<Tag> tags_of(const std::string& text, const TagNames& names) {
-  std::set<Tag> tags;
-  for (const auto& [tag, name] : names.of(2))
-    if (name == text) tags.insert(tag);
-  if (tags.empty())
-    if (const std::optional<Tag> number = number_in(text)) tags.insert(*number);
-  return tags;
-}
 
 std::string internal_patches(const TagNames& names, const std::vector<Candidate>& all) {
   constexpr std::size_t longest = 100;
@@ -56,7 +32,7 @@ PatchChoice::PatchChoice(const SplitOptions& options, const TagNames& names,
                          const std::vector<Candidate>& all)
     : keep_apart_(options.keep_apart) {
   for (const std::string& text : options.patches) {
-    const std::set<Tag> tags = tags_of(text, names);
+    const std::set<Tag> tags = tags_named(text, 2, names);
     const auto named = [&](const Candidate& candidate) { return tags.contains(candidate.tag); };
     if (std::none_of(all.begin(), all.end(), named))
       throw OptionError(fmt::format("split: no patch is called '{}'; patches inside can be split, {}", text,

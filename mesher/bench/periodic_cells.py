@@ -1,0 +1,200 @@
+"""Representative cells with periodic inclusions: Voronoi grains as .poly, spheres as .brep.
+
+Run as a program it meshes cells of both kinds with and without periodic faces and prints, for each, whether the
+certificate holds, the tets and the angles, and the time, as ratios.
+"""
+import argparse
+import itertools
+import json
+import pathlib
+import resource
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+DIGITS = 12  # places of vertices are rounded to these, so that those of opposite faces are images of each other
+
+
+def grain_polygons(seeds):
+    """The polygons of the periodic Voronoi cells of seeds in the unit cube, cut by its faces.
+
+    Returns a dict from the sorted vertex numbers of a polygon to (vertex numbers in order, neighbours: the grains
+    on its sides, -1 and below: outside), and the vertices, an array of shape (n, 3).
+    """
+    shifts = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)
+    points = np.concatenate([seeds + shift for shift in shifts])
+    grain = np.tile(np.arange(len(seeds)), len(shifts))
+    vertices, number, polygons = [], {}, {}
+
+    def vertex(p):
+        key = tuple(np.round(p, DIGITS) + 0.0)
+        if key not in number:
+            number[key] = len(vertices)
+            vertices.append(key)
+        return number[key]
+
+    for i, point in enumerate(points):
+        if np.any(point < -0.7) or np.any(point > 1.7):
+            continue
+        # Half spaces n . x <= d: bisectors of the nearest points, and the cube. A bisector is the same number for
+        # both of its points.
+        near = np.argsort(np.linalg.norm(points - point, axis=1), kind="stable")[1:80]
+        planes = [(points[j] - point, 0.5 * (points[j] @ points[j] - point @ point), j) for j in near]
+        for axis in range(3):
+            n = np.eye(3)[axis]
+            planes += [(-n, 0.0, -1 - 2 * axis), (n, 1.0, -2 - 2 * axis)]
+        for n, d, other in planes:
+            polygon = polygon_of(n, d, [(m, e) for m, e, k in planes if k != other])
+            if polygon is None:
+                continue
+            corners = [vertex(p) for p in polygon]
+            corners = [c for k, c in enumerate(corners) if c != corners[k - 1]]
+            if len(corners) < 3:
+                continue
+            sides = (grain[i], other if other < 0 else grain[other])
+            polygons.setdefault(tuple(sorted(corners)), (corners, sides))
+    return polygons, np.array(vertices)
+
+
+def polygon_of(n, d, others):
+    """The part of a plane within half spaces, or None."""
+    length = np.linalg.norm(n)
+    n, d = n / length, d / length
+    u = np.cross(n, np.eye(3)[np.argmin(np.abs(n))])
+    u /= np.linalg.norm(u)
+    v = np.cross(n, u)
+    polygon = [d * n + 4 * (a * u + b * v) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    for m, e in others:
+        heights = [m @ p - e for p in polygon]
+        cut = []
+        for k, p in enumerate(polygon):
+            q, hp, hq = polygon[k - 1], heights[k], heights[k - 1]
+            if (hp > 1e-12) != (hq > 1e-12):
+                cut.append(q + (p - q) * (hq / (hq - hp)))
+            if hp <= 1e-12:
+                cut.append(p)
+        polygon = cut
+        if len(polygon) < 3:
+            return None
+    area = np.linalg.norm(sum(np.cross(p, q) for p, q in zip(polygon, polygon[1:] + polygon[:1]))) / 2
+    return polygon if area > 1e-10 else None
+
+
+def write_grains(path, grains, seed):
+    """A unit cube of so many grains, periodic in all directions, as a complex with a region for each grain."""
+    rng = np.random.default_rng(seed)
+    seeds = rng.random((grains, 3))
+    polygons, vertices = grain_polygons(seeds)
+    lines = [f"{len(vertices)} 3 0 0"] + [f"{k} {x!r} {y!r} {z!r}" for k, (x, y, z) in enumerate(vertices.tolist())]
+    lines.append(f"{len(polygons)} 1")
+    for number, (corners, sides) in enumerate(polygons.values(), 1):
+        lines += [f"1 0 {number}", f"{len(corners)} " + " ".join(map(str, corners))]
+    lines.append("0")
+    shifts = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)
+    regions = []
+    for k, point in enumerate(seeds):
+        # A grain that the cube's faces cut has a part for each of its images that reaches in.
+        for shift in shifts:
+            inside = region_point(point + shift, np.concatenate([seeds + s for s in shifts]))
+            if inside is not None:
+                regions.append((*inside, k + 1))
+    lines.append(str(len(regions)))
+    lines += [f"{k} {x!r} {y!r} {z!r} {tag}" for k, (x, y, z, tag) in enumerate(regions)]
+    pathlib.Path(path).write_text("\n".join(lines) + "\n")
+
+
+def region_point(point, points):
+    """A point in the cube whose nearest of all points is this one, well inside, or None."""
+    rng = np.random.default_rng(1)
+    samples = np.concatenate([[point], np.clip(point, 0.01, 0.99) + 0.15 * rng.standard_normal((400, 3))])
+    best, most = None, 0.0
+    for p in samples:
+        if np.any(p < 0.002) or np.any(p > 0.998):
+            continue
+        distances = np.linalg.norm(points - p, axis=1)
+        own = np.linalg.norm(point - p)
+        others = distances[distances > own + 1e-12]
+        room = min((others.min() - own) / 2 if distances.min() >= own - 1e-12 else -1, p.min(), (1 - p).min())
+        if room > most:
+            best, most = p.tolist(), room
+    return best
+
+
+def write_spheres(path, spheres, radius, seed):
+    """A unit cube with so many spheres of equal radius, which do not touch, periodic, as a CAD shape."""
+    import gmsh
+
+    rng = np.random.default_rng(seed)
+    shifts = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)
+    centres = []
+    while len(centres) < spheres:
+        p = rng.random(3)
+        # Not nearly tangent to the cube's faces, edges and corners, where slivers of material would be left.
+        walls = np.minimum(p, 1 - p)
+        edges = [np.hypot(walls[a], walls[b]) for a, b in ((0, 1), (1, 2), (2, 0))]
+        if any(abs(d - radius) < 0.15 * radius for d in (*walls, *edges, np.linalg.norm(walls))):
+            continue
+        if all(np.linalg.norm(q + s - p) > 2.2 * radius for q in centres for s in shifts):
+            centres.append(p)
+    gmsh.initialize()
+    gmsh.option.setNumber("General.Terminal", 0)
+    occ = gmsh.model.occ
+    box = occ.addBox(0, 0, 0, 1, 1, 1)
+    balls = []
+    for p in centres:
+        for shift in shifts:
+            q = p + shift
+            if np.linalg.norm(q - np.clip(q, 0, 1)) < radius:
+                balls.append((3, occ.addSphere(*q, radius)))
+    inside, _ = occ.intersect(balls, [(3, box)], removeObject=True, removeTool=False)
+    occ.fragment([(3, box)], inside)
+    occ.synchronize()
+    gmsh.write(str(path))
+    gmsh.finalize()
+
+
+def run(program, path, *options):
+    """The report of a run and its CPU seconds, and the exit code."""
+    with tempfile.TemporaryDirectory() as folder:
+        report = pathlib.Path(folder) / "report.json"
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        done = subprocess.run([program, path, "-o", f"{folder}/mesh.msh", "--report", report, "-q", *options],
+                              check=False, capture_output=True, text=True)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        data = json.loads(report.read_text()) if report.exists() else {}
+    return data, seconds, done
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("program")
+    parser.add_argument("--cells", type=int, default=10, help="of each kind")
+    parser.add_argument("--size", default="0.1")
+    parser.add_argument("--order", default="1")
+    options = parser.parse_args()
+    common = ["--size", options.size, "--order", options.order, "--threads", "1"]
+    print("| cell | tets | periodic / without | angles without | periodic | CPU periodic / without | exit |")
+    print("|---|---|---|---|---|---|---|")
+    with tempfile.TemporaryDirectory() as folder:
+        for kind, seed in itertools.product(("grains", "spheres"), range(options.cells)):
+            path = f"{folder}/{kind}_{seed}." + ("poly" if kind == "grains" else "brep")
+            if kind == "grains":
+                write_grains(path, 12, seed)
+            else:
+                write_spheres(path, 6, 0.2, seed)
+            plain, seconds, _ = run(options.program, path, *common)
+            made, more, done = run(options.program, path, *common, *(x for a in "xyz" for x in ("--periodic", a)))
+            if not plain or not made:
+                print(f"| {kind} {seed} | | | | | | {done.returncode} {done.stderr.strip()[-300:]} |", flush=True)
+                continue
+            angles = ["{min_dihedral:.1f} to {max_dihedral:.1f}".format(**data["check"]) for data in (plain, made)]
+            tets = [data["check"]["tets"] for data in (plain, made)]
+            print(f"| {kind} {seed} | {tets[1]} | {tets[1] / tets[0]:.2f} | {angles[0]} | {angles[1]} | "
+                  f"{more / seconds:.2f} | {done.returncode} |", flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstddef>
+#include <set>
+#include <string>
+
+#include "collarmesh/tag_names.h"
+
+namespace collarmesh {
+
+/// Returns the tags of features of a dimension that a text names: by their name, or else by a number: "7",
+/// and for patches "patch_7" and "Face7".
+std::set<Tag> tags_named(const std::string& text, std::size_t dimension, const TagNames& names);
+
+}  // namespace collarmesh

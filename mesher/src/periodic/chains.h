@@ -1,0 +1,41 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "periodic/cavity.h"
+#include "periodic/motions.h"
+
+namespace collarmesh::periodicity {
+
+/// The mesh vertices along a curve, in order. A closed chain does not repeat its first one; that of a loop at
+/// one vertex does.
+struct Chain {
+  std::vector<Index> nodes;
+  bool closed = false;
+
+  std::size_t edges() const { return closed ? nodes.size() : nodes.size() - 1; }
+  Index end(std::size_t edge) const { return nodes[(edge + 1) % nodes.size()]; }
+};
+
+/// Returns the chains of all curves.
+std::vector<Chain> chains_of(const TetMesh& mesh, const Plc& plc);
+
+/// What a chain's change took.
+struct ChainChange {
+  std::size_t inserted = 0, removed = 0;
+  std::vector<Point> stuck;  ///< places of nodes that could not be removed
+};
+
+/// Gives the chain of a curve nodes at these places, and no others: those between its ends, or all if it is
+/// closed. Nodes near a place are moved there, others inserted and removed. Nodes that cannot be removed
+/// stay.
+ChainChange put_nodes(CavityEditor& editor, Index curve, Chain& chain, std::span<const Point> places);
+
+/// Returns the nodes of `second` that correspond to those of `first`, when this is moved: in their order, or
+/// in the opposite one. Empty if the numbers differ.
+std::vector<Index> corresponding(const CavityEditor& editor, const Chain& first, const Chain& second,
+                                 const Motion& motion);
+
+}  // namespace collarmesh::periodicity

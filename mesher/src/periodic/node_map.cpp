@@ -1,0 +1,109 @@
+#include "periodic/node_map.h"
+
+#include <algorithm>
+#include <set>
+#include <span>
+
+#include "common/box_tree.h"
+#include "common/edge_key.h"
+
+namespace collarmesh::periodicity {
+
+namespace {
+
+constexpr double apart =
+    1e-6;  // of the diagonal: an image may be so far from its node when exact geometry moved both
+
+/// The corners of faces with these tags, sorted, and their edges with the nodes amid.
+struct Nodes {
+  std::vector<Index> corners;
+  std::vector<std::pair<std::uint64_t, Index>> mid_nodes;
+};
+
+Nodes nodes_of(const TetMesh& mesh, std::span<const Tag> tags, std::size_t& faces) {
+  Nodes nodes;
+  for (Index f = 0; f < mesh.faces.size(); ++f) {
+    if (!std::binary_search(tags.begin(), tags.end(), mesh.face_tag[f])) continue;
+    ++faces;
+    const auto& corners = mesh.faces[f];
+    nodes.corners.insert(nodes.corners.end(), corners.begin(), corners.end());
+    if (mesh.order() == 2)
+      for (unsigned i = 0; i < 3; ++i)
+        nodes.mid_nodes.emplace_back(edge_key(corners[i], corners[(i + 1) % 3]), mesh.face_mid_nodes[f][i]);
+  }
+  const auto unique = [](auto& items) {
+    std::sort(items.begin(), items.end());
+    items.erase(std::unique(items.begin(), items.end()), items.end());
+  };
+  unique(nodes.corners);
+  unique(nodes.mid_nodes);
+  return nodes;
+}
+
+/// The image of each corner, none where there is no node.
+std::vector<Index> images_of(const TetMesh& mesh, const Nodes& first, const Nodes& second,
+                             const TetMesh::Motion& motion) {
+  std::vector<Box> boxes;
+  Box all;
+  for (const Index v : second.corners) {
+    all.add(mesh.points[v]);
+    boxes.push_back({mesh.points[v], mesh.points[v]});
+  }
+  const BoxTree tree(boxes);
+  const double tolerance = apart * all.diagonal();
+  const Vector margin{tolerance, tolerance, tolerance};
+  std::vector<Index> images;
+  for (const Index v : first.corners) {
+    const Point image = motion(mesh.points[v]);
+    Index nearest = none;
+    tree.for_each_meeting({image - margin, image + margin}, [&](Index i) {
+      const Index w = second.corners[i];
+      if (nearest == none ||
+          squared_distance(mesh.points[w], image) < squared_distance(mesh.points[nearest], image))
+        nearest = w;
+    });
+    images.push_back(nearest);
+  }
+  return images;
+}
+
+void map_pair(TetMesh& mesh, TetMesh::PeriodicFaces& pair, PeriodicReport::Pair& report) {
+  std::size_t faces_of_second = 0;
+  report.faces = 0;
+  const Nodes first = nodes_of(mesh, pair.first, report.faces),
+              second = nodes_of(mesh, pair.second, faces_of_second);
+  const std::vector<Index> images = images_of(mesh, first, second, pair.motion);
+  pair.nodes.clear();
+  for (std::size_t i = 0; i < images.size(); ++i)
+    if (images[i] != none) pair.nodes.push_back({first.corners[i], images[i]});
+  const auto image_of = [&](Index v) {
+    const auto found = std::lower_bound(first.corners.begin(), first.corners.end(), v);
+    return images[static_cast<std::size_t>(found - first.corners.begin())];
+  };
+  for (const auto& [edge, node] : first.mid_nodes) {
+    const Index a = image_of(static_cast<Index>(edge >> 32U)), b = image_of(static_cast<Index>(edge));
+    if (a == none || b == none) continue;
+    const auto found = std::lower_bound(second.mid_nodes.begin(), second.mid_nodes.end(),
+                                        std::pair{edge_key(a, b), Index{0}});
+    if (found != second.mid_nodes.end() && found->first == edge_key(a, b))
+      pair.nodes.push_back({node, found->second});
+  }
+  std::sort(pair.nodes.begin(), pair.nodes.end());
+  for (const auto& [node, image] : pair.nodes) {
+    const Point place = pair.motion(mesh.points[node]);
+    report.largest_gap = std::max(report.largest_gap, distance(place, mesh.points[image]));
+    if (node != image) mesh.points[image] = place;
+  }
+  report.nodes = pair.nodes.size();
+  std::set<Index> corners(first.corners.begin(), first.corners.end());
+  report.edges = static_cast<std::size_t>(std::ranges::count_if(
+      mesh.edges, [&](const auto& edge) { return corners.contains(edge[0]) && corners.contains(edge[1]); }));
+}
+
+}  // namespace
+
+void map_nodes(TetMesh& mesh, PeriodicReport& report) {
+  for (std::size_t k = 0; k < mesh.periodic.size(); ++k) map_pair(mesh, mesh.periodic[k], report.pairs[k]);
+}
+
+}  // namespace collarmesh::periodicity

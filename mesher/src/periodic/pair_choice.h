@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "collarmesh/periodic.h"
+#include "collarmesh/plc.h"
+#include "periodic/motions.h"
+
+namespace collarmesh::periodicity {
+
+/// Two groups of patches of a complex, of which the second is to be the image of the first.
+struct PatchPair {
+  std::string text;                  ///< as it was asked for
+  std::vector<Index> first, second;  ///< sorted
+  Motion motion;                     ///< takes the first to the second
+};
+
+/// Returns the pairs that the options name. Throws OptionError for one that cannot be read, a name that no
+/// patch has, a patch that is not planar, has material on both sides or is in two groups.
+std::vector<PatchPair> choose_pairs(const PeriodicOptions& options, const Plc& plc);
+
+}  // namespace collarmesh::periodicity

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "common/edge_key.h"
+#include "periodic/cavity.h"
+
+namespace collarmesh::periodicity {
+
+/// What a patch's change took.
+struct PatchChange {
+  std::size_t inserted = 0, removed = 0, turned = 0;
+  std::size_t missing = 0;  ///< edges that could not be made
+};
+
+/// Changes the triangles of a planar patch on the boundary, and the tets behind it.
+class PatchEditor {
+ public:
+  using Edge = std::array<Index, 2>;
+
+  /// Keeps the editor by reference. Cost: linear in the mesh's faces that are given, those of the patch.
+  PatchEditor(CavityEditor& editor, const Plc& plc, Index patch, std::span<const Index> faces);
+
+  /// Gives the inside of the patch nodes at these places, and no others. Nodes near a place are moved there,
+  /// others inserted, and removed: onto a neighbour or into the region. Returns the node at each place.
+  std::vector<Index> put_nodes(std::span<const Point> places);
+  /// Turns edges until these are there; both ends are nodes of the patch.
+  void make_edges(std::span<const Edge> edges);
+
+  const PatchChange& change() const { return change_; }
+
+ private:
+  bool is_inside(Index node) const;
+  bool has(Index a, Index b) const { return faces_at_.contains(edge_key(a, b)); }
+  int side(Index a, Index b, const Point& p) const;
+  int side(Index a, Index b, Index c) const { return side(a, b, editor_.at(c)); }
+  Index opposite(Index a, Index b) const;
+  void add_face(Index face);
+  void drop_face(Index face);
+  void replace(const Cavity& cavity, Index apex);
+  Index replace_by_new(const Cavity& cavity, const Point& apex, const TetMesh::VertexFeature& feature);
+  void drop_faces(const Cavity& cavity);
+  void add_created_faces();
+  Index find_face(const Point& place);
+  Index move_one_to(const Point& place);
+  Index insert(const Point& place);
+  void remove(Index node);
+  void make_delaunay(std::vector<Edge> edges);
+  bool is_delaunay(Index a, Index b, Index c, Index d) const;
+  bool turn(Index a, Index b, double least, bool with_new_vertex);
+  bool make_edge(Index a, Index b);
+  std::vector<Edge> crossed(Index a, Index b) const;
+  std::vector<TetComplex::NewFace> triangulate(const Cavity& cavity) const;
+  std::pair<double, Point> best_below(const Cavity& cavity, const Point& start) const;
+  std::vector<Edge> edges_of_created_faces() const;
+
+  CavityEditor& editor_;
+  Index patch_;
+  Vector normal_;    // out of the region
+  Point viewpoint_;  // outside: sides are judged as seen from here
+  std::unordered_map<std::uint64_t, std::array<Index, 2>> faces_at_;  // by edge
+  std::unordered_map<Index, bool> stays_;                             // nodes inside the patch
+  Index last_ = none;                                                 // the face that was made or found last
+  PatchChange change_;
+};
+
+}  // namespace collarmesh::periodicity

@@ -1,0 +1,129 @@
+// Periodic faces against brute force: nodes, edges and triangles of one side, moved, are those of the other.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "collarmesh/error.h"
+#include "collarmesh/pipeline.h"
+#include "support/plc_shapes.h"
+
+namespace collarmesh {
+namespace {
+
+using namespace testing;
+
+PipelineResult mesh_of_soups(const std::vector<PolygonSoup>& soups, const std::vector<std::string>& pairs,
+                             double size, unsigned order = 1) {
+  PipelineOptions options;
+  options.mesh.size = size;
+  options.order = order;
+  options.periodic.pairs = pairs;
+  return run_pipeline(soups, options);
+}
+
+/// Nodes and triangles in a plane x, y or z = place, as points without that coordinate.
+struct Side {
+  std::vector<std::array<double, 2>> nodes;
+  std::vector<std::array<std::array<double, 2>, 3>> triangles;
+};
+
+Side side_of(const TetMesh& mesh, std::size_t axis, double place) {
+  const auto flat = [&](Index v) {
+    const Point& p = mesh.points[v];
+    return std::array{p[(axis + 1) % 3], p[(axis + 2) % 3]};
+  };
+  Side side;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto& corners = mesh.faces[f];
+    if (mesh.face_regions[f][1] != 0 || std::ranges::any_of(corners, [&](Index v) {
+          return std::fabs(mesh.points[v][axis] - place) > 1e-12;
+        }))
+      continue;
+    std::array<std::array<double, 2>, 3> triangle{flat(corners[0]), flat(corners[1]), flat(corners[2])};
+    std::sort(triangle.begin(), triangle.end());
+    side.triangles.push_back(triangle);
+    side.nodes.insert(side.nodes.end(), triangle.begin(), triangle.end());
+    if (mesh.order() == 2)
+      for (const Index v : mesh.face_mid_nodes[f]) side.nodes.push_back(flat(v));
+  }
+  std::sort(side.triangles.begin(), side.triangles.end());
+  std::sort(side.nodes.begin(), side.nodes.end());
+  side.nodes.erase(std::unique(side.nodes.begin(), side.nodes.end()), side.nodes.end());
+  return side;
+}
+
+/// Both ends of the unit cube along an axis. Their coordinates are the same numbers, as the shift is exact.
+void expect_alike(const TetMesh& mesh, std::size_t axis) {
+  const Side low = side_of(mesh, axis, 0), high = side_of(mesh, axis, 1);
+  EXPECT_GT(low.triangles.size(), 10U);
+  EXPECT_EQ(low.nodes, high.nodes);
+  EXPECT_EQ(low.triangles, high.triangles);
+}
+
+TEST(PeriodicFaces, OfABoxAreImagesInAllDirections) {
+  for (const double size : {0.3, 0.12}) {
+    const PipelineResult made = mesh_of_soups({box({0, 0, 0}, {1, 1, 1})}, {"x", "y", "z"}, size);
+    ASSERT_TRUE(made.guarantees_hold()) << made.missed();
+    for (std::size_t axis = 0; axis < 3; ++axis) expect_alike(made.result.mesh, axis);
+    ASSERT_EQ(made.result.mesh.periodic.size(), 3U);
+    for (const auto& faces : made.result.mesh.periodic)
+      for (const auto& [node, image] : faces.nodes)
+        EXPECT_EQ(faces.motion(made.result.mesh.points[node]), made.result.mesh.points[image]);
+  }
+}
+
+TEST(PeriodicFaces, HaveMidEdgeNodesThatAreImages) {
+  const PipelineResult made = mesh_of_soups({box({0, 0, 0}, {1, 1, 1})}, {"x", "z"}, 0.3, 2);
+  ASSERT_TRUE(made.guarantees_hold()) << made.missed();
+  expect_alike(made.result.mesh, 0);
+  expect_alike(made.result.mesh, 2);
+}
+
+// Boxes inside that the faces cut, one on all sides of a corner.
+TEST(PeriodicFaces, AreCutByInclusions) {
+  std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1})};
+  for (const double x : {0.0, 0.8}) soups.push_back(box({x, 0.3, 0.4}, {x + 0.2, 0.7, 0.75}));
+  for (const double x : {0.0, 0.9})
+    for (const double y : {0.0, 0.9})
+      for (const double z : {0.0, 0.9}) soups.push_back(box({x, y, z}, {x + 0.1, y + 0.1, z + 0.1}));
+  const PipelineResult made = mesh_of_soups(soups, {"x", "y", "z"}, 0.15);
+  ASSERT_TRUE(made.guarantees_hold()) << made.missed();
+  for (std::size_t axis = 0; axis < 3; ++axis) expect_alike(made.result.mesh, axis);
+}
+
+TEST(PeriodicFaces, CostFewElements) {
+  std::size_t with = 0, without = 0;
+  for (const double size : {0.2, 0.1, 0.07}) {
+    without += mesh_of_soups({box({0, 0, 0}, {1, 1, 1})}, {}, size).result.mesh.tets.size();
+    with += mesh_of_soups({box({0, 0, 0}, {1, 1, 1})}, {"x", "y", "z"}, size).result.mesh.tets.size();
+  }
+  EXPECT_LT(static_cast<double>(with), 1.1 * static_cast<double>(without));
+}
+
+TEST(PeriodicFaces, ThatAreNoImagesAreRefused) {
+  const auto refusal = [](const std::string& pair, const std::vector<PolygonSoup>& soups) {
+    try {
+      mesh_of_soups(soups, {pair}, 0.3);
+    } catch (const OptionError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::vector<PolygonSoup> cube{box({0, 0, 0}, {1, 1, 1})};
+  EXPECT_NE(refusal("nowhere=1", cube).find("'nowhere'"), std::string::npos);
+  EXPECT_NE(refusal("1:2", cube).find("FIRST=SECOND"), std::string::npos);
+  EXPECT_NE(refusal("1=2:translation,one,0,0", cube).find("'one' is no number"), std::string::npos);
+  const std::vector<PolygonSoup> one_sided{box({0, 0, 0}, {1, 1, 1}), box({0, 0.3, 0.3}, {0.2, 0.6, 0.6})};
+  EXPECT_NE(refusal("x", one_sided).find("images of each other"), std::string::npos)
+      << refusal("x", one_sided);
+}
+
+}  // namespace
+}  // namespace collarmesh
