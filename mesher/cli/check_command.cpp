@@ -19,6 +19,8 @@ ExitCode check_command(const CheckArguments& arguments) {
   process::limit_memory(process::memory_of_the_machine() / 2);
   TetMesh mesh = files::read_mesh(arguments.mesh_path);
   for (Point& p : mesh.points) p = p / arguments.scale;
+  for (TetMesh::PeriodicFaces& faces : mesh.periodic)
+    faces.motion.shift = faces.motion.shift / arguments.scale;
   const auto distance = [&](double diagonal) {
     return arguments.mesh.bounds.distance > 0 ? arguments.mesh.bounds.distance
                                               : default_distance(0, diagonal, mesh.order());

@@ -94,7 +94,7 @@ void convert_mesh(const MeshArguments& a, TetMesh& mesh) {
     write_soup(a, {surface_of(mesh, a.inputs.front())});
     return;
   }
-  scale(mesh.points, a.scale);
+  scale(mesh, a.scale);
   divide(a, mesh);
   process::stop_if_interrupted();
   process::StagedFile file(a.output);

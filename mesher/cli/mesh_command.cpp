@@ -204,7 +204,7 @@ void write_files(const MeshArguments& arguments, Stages& stages, report::MeshRun
     shown = Shown{report::shown_mesh(run.result.mesh, run.worst), {}};
     shown->trace = report::shown_trace(run.trace, shown->mesh);
   }
-  scale(run.result.mesh.points, arguments.scale);
+  scale(run.result.mesh, arguments.scale);
   process::StagedFile mesh(arguments.output);
   mesh.write([&](const std::string& path) {
     ThreadLimit(arguments.mesh.threads).run([&] {

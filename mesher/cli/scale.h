@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "collarmesh/geometry.h"
+#include "collarmesh/tet_mesh.h"
 
 namespace collarmesh::cli {
 
@@ -10,6 +11,13 @@ namespace collarmesh::cli {
 inline void scale(std::vector<Point>& points, double factor) {
   if (factor == 1) return;
   for (Point& p : points) p = {factor * p.x, factor * p.y, factor * p.z};
+}
+
+/// With the motions of its periodic faces.
+inline void scale(TetMesh& mesh, double factor) {
+  scale(mesh.points, factor);
+  for (TetMesh::PeriodicFaces& faces : mesh.periodic)
+    if (factor != 1) faces.motion.shift = factor * faces.motion.shift;
 }
 
 }  // namespace collarmesh::cli

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "check/periodic.h"
 #include "collarmesh/error.h"
 
 namespace collarmesh::files {
@@ -33,6 +34,7 @@ CheckReport check_as_built(const TetMesh& mesh, ComplexInput& input, const RunOp
                              .findings_per_guarantee = o.findings,
                              .threads = o.mesh.threads};
   CheckReport report = check(mesh, plc, options, execution);
+  checks::check_periodic(mesh, report);
   if (const std::string note = note_on_scale(mesh, plc, o.scale); !report.passed() && !note.empty())
     report.notes.push_back(note);
   return report;

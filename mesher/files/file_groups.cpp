@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "collarmesh/error.h"
+#include "io/abaqus_periodic.h"
 #include "io/tet_mesh_formats.h"
 
 namespace collarmesh::files {
@@ -82,6 +83,7 @@ std::vector<fs::path> files_written(const fs::path& path, const std::string& for
   if (extension == ".xdmf") return parts_of_xdmf(path);
   if (extension == ".pvtu") return written_with_pvtu(path);
   if (extension == ".polymesh") return parts_of_polymesh(path);
+  if (extension == ".inp") return {path, io::abaqus_periodic_path(path.string())};
   return {path};
 }
 

@@ -72,6 +72,13 @@ Json shown_json(const ShownMesh& shown) {
           {"worst", std::move(worst)}};
 }
 
+/// Pages show how many pairs of nodes there are, not which.
+Json without_node_pairs(Json report) {
+  if (const auto periodic = report.find("periodic"); periodic != report.end() && periodic->is_object())
+    for (Json& pair : (*periodic)["pairs"]) pair.erase("node_pairs");
+  return report;
+}
+
 }  // namespace
 
 std::string html_report(const Json& report, const ShownMesh& shown, const std::vector<ShownStep>& trace) {
@@ -83,7 +90,7 @@ std::string html_report(const Json& report, const ShownMesh& shown, const std::v
     page += text;
     rest.remove_prefix(at + mark.size());
   };
-  fill("<!--report-->", json_in_page(report));
+  fill("<!--report-->", json_in_page(without_node_pairs(report)));
   fill("<!--shown-->", json_in_page(shown_json(shown)));
   fill("<!--data-->", packed_cells(shown));
   fill("<!--trace-->", json_in_page(trace_json(trace)));

@@ -5,6 +5,7 @@
 #include "report/colour_text.h"
 #include "report/mesh_groups.h"
 #include "report/options_json.h"
+#include "report/periodic_report.h"
 #include "report/report.h"
 #include "report/split_report.h"
 
@@ -398,6 +399,7 @@ Json run_json(const RequestedRun& arguments, const MeshRun& run) {
             {"coarsening", run.coarsening ? coarsening_json(*run.coarsening) : Json(nullptr)},
             {"improvement", improvement_json(run.improvement)},
             {"second_order", arguments.order == 2 ? second_order_json(run.second_order) : Json(nullptr)},
+            {"periodic", run.periodic ? periodic_json(*run.periodic, run.result.mesh) : Json(nullptr)},
             {"split", run.split ? split_json(*run.split) : Json(nullptr)},
             {"seconds", std::move(seconds)}};
   if (run.remeshing) json["remeshing"] = remeshing_json(*run.remeshing);

@@ -7,6 +7,7 @@
 
 #include "report/conversion_report.h"
 #include "report/mesh_groups.h"
+#include "report/periodic_report.h"
 #include "report/report.h"
 #include "report/split_report.h"
 
@@ -300,6 +301,7 @@ std::string run_text(const RequestedRun& arguments, const MeshRun& run) {
                    "straightened\n",
                    run.second_order.nodes, run.second_order.curved, run.second_order.moved_inside,
                    run.second_order.straightened.size());
+  if (run.periodic) text += periodic_text(*run.periodic);
   if (run.split) text += split_text(*run.split);
   if (run.guarantees_hold()) text += "  every guarantee holds\n";
   fmt::format_to(Out(text), "  {:.2f} s ({})\n", run.times.total(), times_text(run.times));

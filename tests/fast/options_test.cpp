@@ -141,6 +141,8 @@ TEST(OptionTable, ContradictionsAreRefused) {
   EXPECT_THROW(validate({{.mesh = {.region_size = {{3, -1}}}}}), OptionError);
   EXPECT_NO_THROW(validate({{.mesh = {.bounds = {.thin_angle = 0}}, .coarsen = false}}));
   EXPECT_THROW(validate({{.mesh = {.bounds = {.thin_angle = 0}}}}), OptionError);
+  EXPECT_NO_THROW(validate({{.periodic = {{"x", "1=2:rotation,z,90"}}}}));
+  EXPECT_THROW(validate({{.split = {.keep_apart = true}, .periodic = {{"x"}}}}), OptionError);
 }
 
 TEST(Profile, OfThePaperSetsOthersAndRefusesContradictions) {

@@ -1,6 +1,8 @@
 """Meshes of arrays, fields at other points, meshes of dolfinx."""
 
 import pathlib
+import pickle
+import sys
 import tempfile
 import unittest
 
@@ -8,6 +10,9 @@ import collarmesh
 import numpy
 
 from module_test import box, volumes
+
+sys.path.append(str(pathlib.Path(__file__).parents[1] / "io"))
+import periodic_test  # noqa: E402
 
 
 def cube(order=1, size=0.4):
@@ -61,6 +66,43 @@ class OfArrays(unittest.TestCase):
             self.assertEqual(set(back.tet_tag), {7})
             self.assertEqual(len(back.faces), len(ours.faces))
         self.assertEqual(back.names[2][3], "inlet")
+
+    def test_maps_of_periodic_faces_are_kept(self):
+        self.assertEqual(cube().periodic, [])
+        for order in (1, 2):
+            mesh = periodic_test.cube(2, order)
+            mesh.face_patch = mesh.face_tag - 1  # as of a complex, whose numbers .msh has
+            mesh.feature_dimension = numpy.full(len(mesh.points), 3, dtype=numpy.uint8)
+            mesh.feature = numpy.full(len(mesh.points), -1)
+            self.same_maps(mesh, mesh.partitioned(2))
+            self.same_maps(mesh, pickle.loads(pickle.dumps(mesh)))
+            with tempfile.TemporaryDirectory() as folder:
+                path = pathlib.Path(folder) / "cell.msh"
+                mesh.write(path)
+                self.same_maps(mesh, collarmesh.read(path))
+                self.assertEqual(self.findings_on_maps(path), set())
+                mesh.write(path, scale=0.5)
+                self.same_maps(mesh, collarmesh.read(path), scale=0.5)
+                mesh.write(pathlib.Path(folder) / "cell.inp")
+                self.assertIn("*EQUATION", (pathlib.Path(folder) / "cell_periodic.inp").read_text())
+                mesh.periodic[0]["nodes"][:2, 1] = mesh.periodic[0]["nodes"][1::-1, 1]
+                mesh.write(path)
+                self.assertLess({"periodic_places"}, self.findings_on_maps(path))
+        mesh.periodic[0]["nodes"] = mesh.periodic[0]["nodes"] + len(mesh.points)
+        with self.assertRaisesRegex(collarmesh.OptionError, "has the corner"):
+            mesh.info()
+
+    @staticmethod
+    def findings_on_maps(path):
+        told = collarmesh.check(collarmesh.read(path), box((0, 0, 0), (1, 1, 1)))["findings"]
+        return {finding["guarantee"] for finding in told if finding["guarantee"].startswith("periodic")}
+
+    def same_maps(self, mesh, other, scale=1):
+        self.assertEqual(len(mesh.periodic), len(other.periodic))
+        for faces, same in zip(mesh.periodic, other.periodic):
+            for key in ("first", "second", "rotation", "nodes"):
+                numpy.testing.assert_array_equal(faces[key], same[key])
+            numpy.testing.assert_array_equal(scale * faces["shift"], same["shift"])
 
     def test_mistakes_are_told(self):
         ours = cube()

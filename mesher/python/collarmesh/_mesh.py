@@ -8,7 +8,7 @@ import numpy
 from . import _core
 from ._html import table_of
 from ._inputs import Array, ArrayLike, Path, integers, one_for_each, reals
-from ._types import MeshInfo
+from ._types import MeshInfo, PeriodicFaces
 
 _ARRAYS = {
     "points": (numpy.float64, 3),
@@ -94,6 +94,9 @@ class Mesh:
     names: names of tags by dimension, {2: {3: "inlet"}} for patch 3; 1 curves, 3 regions. Solids of STEP files have
         those of their products.
     colours: of a mesh made of a STEP file, in the same way: {2: {3: "#ff0000"}}.
+    periodic: for each pair of `periodic=` a dict: "first" and "second", tags of patches; "rotation" (3, 3) and "shift"
+        (3,), which take a point p of the first to rotation @ p + shift; "nodes" (k, 2), each node of the first with
+        its image, nodes amid edges included.
     """
 
     points: Array
@@ -118,6 +121,7 @@ class Mesh:
     feature: Array
     names: Dict[int, Dict[int, str]]
     colours: Dict[int, Dict[int, str]]
+    periodic: List[PeriodicFaces]
 
     def __init__(
         self,
@@ -187,6 +191,7 @@ class Mesh:
             setattr(self, name, array)
         self.names = state["names"]
         self.colours = state.get("colours", {})
+        self.periodic = state.get("periodic", [])
         self._cad_names = bool(state["cad_names"])
         self._check: Optional[Dict[str, Any]] = state.get("check")
         self._said = {key: state.get(key, []) for key in ("repairs", "notes", "warnings")}
@@ -194,7 +199,7 @@ class Mesh:
 
     def _arrays(self) -> Dict[str, Any]:
         arrays: Dict[str, Any] = {name: getattr(self, name) for name in _ARRAYS}
-        return {**arrays, "names": self.names, "cad_names": self._cad_names}
+        return {**arrays, "names": self.names, "periodic": self.periodic, "cad_names": self._cad_names}
 
     @property
     def order(self) -> int:
@@ -287,6 +292,7 @@ class Mesh:
         arrays = self._arrays()
         if scale != 1:
             arrays["points"] = scale * self.points
+            arrays["periodic"] = [{**faces, "shift": scale * faces["shift"]} for faces in self.periodic]
         _core.write_mesh(arrays, os.fspath(path), format, ghost_cells)
 
     def info(self) -> MeshInfo:

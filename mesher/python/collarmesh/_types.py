@@ -2,6 +2,23 @@
 
 from typing import Dict, List, Optional, TypedDict
 
+from ._inputs import Array
+
+
+class PeriodicFaces(TypedDict):
+    """Two groups of patches; the mesh of the second is that of the first, moved.
+
+    first, second: tags of patches.
+    rotation, shift: (3, 3) and (3,); the motion takes a point p of the first to rotation @ p + shift.
+    nodes: (k, 2), rows of `points`: a node of the first and its image, nodes amid edges included.
+    """
+
+    first: Array
+    second: Array
+    rotation: Array
+    shift: Array
+    nodes: Array
+
 
 class Region(TypedDict):
     region: int

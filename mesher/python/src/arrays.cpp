@@ -116,6 +116,44 @@ Names names_of(const TagNames& names) {
   return result;
 }
 
+std::vector<TetMesh::PeriodicFaces> periodic_of(const py::dict& arrays, std::size_t points) {
+  std::vector<TetMesh::PeriodicFaces> periodic;
+  if (!arrays.contains("periodic")) return periodic;
+  for (const py::handle& each : arrays["periodic"]) {
+    const auto given = py::reinterpret_borrow<py::dict>(each);
+    TetMesh::PeriodicFaces faces;
+    faces.first = numbers<Tag>(given, "first");
+    faces.second = numbers<Tag>(given, "second");
+    const auto rows = values<double>(given, "rotation"), shift = values<double>(given, "shift");
+    if (rows.size() != 9 || shift.size() != 3)
+      throw OptionError("periodic: a rotation has the shape (3, 3) and a shift the shape (3,)");
+    for (std::size_t k = 0; k < 3; ++k) {
+      faces.motion.rows[k] = {rows[3 * k], rows[3 * k + 1], rows[3 * k + 2]};
+      faces.motion.shift[k] = shift[k];
+    }
+    faces.nodes = collarmesh::python::rows<2>(given, "nodes", points);
+    periodic.push_back(std::move(faces));
+  }
+  return periodic;
+}
+
+py::list periodic_of(const std::vector<TetMesh::PeriodicFaces>& periodic) {
+  py::list result;
+  for (const TetMesh::PeriodicFaces& faces : periodic) {
+    py::dict each;
+    std::vector<double> rows;
+    for (const Vector& row : faces.motion.rows) rows.insert(rows.end(), {row.x, row.y, row.z});
+    const Vector& shift = faces.motion.shift;
+    each["first"] = owned(std::vector<std::int64_t>(faces.first.begin(), faces.first.end()), 1);
+    each["second"] = owned(std::vector<std::int64_t>(faces.second.begin(), faces.second.end()), 1);
+    each["rotation"] = owned(std::move(rows), 3);
+    each["shift"] = owned(std::vector<double>{shift.x, shift.y, shift.z}, 1);
+    each["nodes"] = index_array(faces.nodes);
+    result.append(each);
+  }
+  return result;
+}
+
 }  // namespace
 
 py::dict colours_of(const TagColours& colours) {
@@ -215,6 +253,7 @@ TetMesh tet_mesh_of(const py::dict& arrays) {
   const auto feature = numbers<Index>(arrays, "feature");
   for (std::size_t i = 0; i < dimension.size(); ++i) mesh.features.push_back({dimension[i], feature[i]});
   mesh.names = names_of(arrays);
+  mesh.periodic = periodic_of(arrays, n);
   if (arrays["cad_names"].cast<bool>()) mesh.group_names = GroupNames::cad;
   return mesh;
 }
@@ -261,6 +300,7 @@ py::dict arrays_of(TetMesh mesh) {
   arrays["feature_dimension"] = owned(std::move(dimension), 1);
   arrays["feature"] = index_array(feature);
   arrays["names"] = names_of(mesh.names);
+  arrays["periodic"] = periodic_of(mesh.periodic);
   arrays["cad_names"] = mesh.group_names == GroupNames::cad;
   return arrays;
 }

@@ -159,6 +159,8 @@ function describe(report, shown, names, show) {
   const changed = ['region_size', 'patch_size', 'curve_size'].flatMap(kind =>
     Object.entries(options[kind]).map(([tag, value]) => [`Size of ${kind.split('_')[0]} ${tag}`, number(value)]));
   const regions = complex.regions.map(r => [`Volume of ${names.region(r.region)}`, volume(mesh.region_volumes[r.region]) + kept(check, r.region)]);
+  const periodic = (report.periodic?.pairs ?? []).map(p => [`Periodic ${p.text}`,
+    `${number(p.nodes)} nodes, ${number(p.triangles)} triangles map onto their images; largest gap ${number(p.largest_gap)}`]);
   const warnings = [...report.warnings, ...complex.warnings.map(w => w.message), ...check.warnings, ...report.notes, ...check.notes];
   document.getElementById('facts').append(
     element('h2', {}, 'Asked for'),
@@ -171,7 +173,7 @@ function describe(report, shown, names, show) {
       ['Dihedral angles', `${number(mesh.min_dihedral)}° to ${number(mesh.max_dihedral)}°` + forced(check)],
       ['Circumradius / shortest edge', ratios(mesh)],
       ['Thin, in collars', `${number(check.thin_tets)}, ${number(check.collar_tets)}`],
-      ['Farthest from smooth surfaces', number(check.max_surface_distance)], ...regions,
+      ['Farthest from smooth surfaces', number(check.max_surface_distance)], ...regions, ...periodic,
       ['Seconds', Object.entries(report.seconds).map(([stage, s]) => `${stage} ${Number(s.toPrecision(2))}`).join(', ')],
       ['Written to', report.output]]),
     element('h2', {}, 'Guarantees'), guaranteeList(report, show),

@@ -1,7 +1,8 @@
 // Abaqus' and CalculiX' input format (.inp): nodes, C3D4 or C3D10, an element set for each region of the
 // complex (VOLUME_1) and for each of their tags (REGION_7), a surface for each tag of patches (PATCH_7:
 // faces of the tets behind it), a node set for each tag of patches and curves (PATCH_7_NODES,
-// CURVE_7_NODES). EALL and NALL are everything. Numbers take 20 characters at most, as both programs ask.
+// CURVE_7_NODES). Conditions for periodic faces are a file of their own beside it. EALL and NALL are
+// everything. Numbers take 20 characters at most, as both programs ask.
 #include <fmt/format.h>
 
 #include <array>
@@ -12,6 +13,7 @@
 
 #include "io/abaqus_format.h"
 #include "io/abaqus_interfaces.h"
+#include "io/abaqus_periodic.h"
 #include "io/cell_nodes.h"
 #include "io/label_names.h"
 #include "io/node_groups.h"
@@ -134,6 +136,7 @@ void write_abaqus(const std::string& path, const TetMesh& mesh, const Interfaces
   write_node_sets(out, nodes_by_tag(mesh, nodes_of_edge, mesh.edge_tag), curves);
   write_abaqus_interfaces(out, mesh, interfaces, patches);
   out.commit();
+  if (!mesh.periodic.empty()) write_abaqus_periodic(abaqus_periodic_path(path), mesh);
 }
 
 }  // namespace collarmesh::io

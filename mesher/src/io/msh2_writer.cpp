@@ -13,6 +13,7 @@
 #include "io/file_writer.h"
 #include "io/label_names.h"
 #include "io/msh_format.h"
+#include "io/msh_periodic.h"
 #include "io/tet_mesh_formats.h"
 
 namespace collarmesh::io {
@@ -60,6 +61,16 @@ std::size_t entity(Index feature) {
   return feature < limit ? std::size_t{feature} + 1 : 1;
 }
 
+/// Links of surfaces and curves; points are no entities here.
+void write_links(FileWriter& out, const TetMesh& mesh) {
+  if (mesh.periodic.empty()) return;
+  const MshEntities entities = find_entities(mesh);
+  if (!entities.numbers_are_features) return;
+  std::vector<MshLink> links = find_msh_links(mesh, entities);
+  std::erase_if(links, [](const MshLink& link) { return link.dimension == 0; });
+  write_msh_links(out, links, 2);
+}
+
 }  // namespace
 
 void write_msh2(const std::string& path, const TetMesh& mesh) {
@@ -97,6 +108,7 @@ void write_msh2(const std::string& path, const TetMesh& mesh) {
     write(gmsh_types[4 + second], mesh.tet_tag[i], mesh.tet_region[i], mesh.tet_partition, i,
           nodes_of_tet(mesh, i));
   out << "$EndElements\n";
+  write_links(out, mesh);
   out.commit();
 }
 

@@ -45,6 +45,13 @@ struct PartitionEntity {
   Index partition = none;
 };
 
+/// A surface whose mesh is that of another one, moved.
+struct SurfaceLink {
+  int entity = 0, master = 0;
+  TetMesh::Motion motion;
+  std::vector<std::array<std::uint64_t, 2>> nodes;  ///< numbers: of the master and of the entity
+};
+
 struct Contents {
   std::vector<Node> nodes;                               ///< in the order of their numbers
   bool dense = false;                                    ///< are the numbers 1, 2, ...?
@@ -54,6 +61,7 @@ struct Contents {
   std::array<std::map<Tag, Tag>, 4> tag_of_physical;                   ///< where its name says so
   std::vector<std::pair<std::uint64_t, double>> collar, crease, thin;  ///< cell number and value
   TagNames names;                                                      ///< of tags, where given
+  std::vector<SurfaceLink> links;
   bool numbers_are_features = false;
 };
 
@@ -265,6 +273,33 @@ void read_elements(Values values, Contents& contents) {
   if (found != total) values.fail(fmt::format("expected {} elements, found {}", total, found));
 }
 
+/// Links of surfaces that have a matrix.
+template <class Values>
+void read_periodic(Values values, Contents& contents) {
+  constexpr Index matrix = 16;
+  const Index count = values.count("the number of links", 5);
+  for (Index i = 0; i < count; ++i) {
+    const std::size_t dimension = read_dimension(values);
+    SurfaceLink link;
+    link.entity = values.integer("the number of an entity");
+    link.master = values.integer("the number of its master");
+    const Index numbers = values.count("the number of values of a matrix", 1);
+    for (Index k = 0; k < numbers; ++k) {
+      const double value = values.real("a value of a matrix");
+      if (k / 4 < 3 && k % 4 == 3)
+        link.motion.shift[k / 4] = value;
+      else if (k / 4 < 3)
+        link.motion.rows[k / 4][k % 4] = value;
+    }
+    const Index nodes = values.count("the number of nodes of a link", 2);
+    for (Index k = 0; k < nodes; ++k) {
+      const std::uint64_t node = values.number("a node of a link");
+      link.nodes.push_back({values.number("a node of a link"), node});
+    }
+    if (dimension == 2 && numbers == matrix) contents.links.push_back(std::move(link));
+  }
+}
+
 // Version 4.0: entities before dimensions, numbers and coordinates of nodes together.
 
 void read_nodes_40(MshText values, Contents& contents) {
@@ -472,6 +507,8 @@ void read_section(const std::string& path, const MshSection& section, const Form
     read_elements_40(MshText(path, section), contents);
   else if (section.name == "Elements")
     with_any([&](auto values) { read_elements(values, contents); });
+  else if (section.name == "Periodic" && format.version > 4)
+    with_any([&](auto values) { read_periodic(values, contents); });
   else if (section.name == "ElementData" && !format.binary)
     read_data(MshText(path, section), contents);
 }
@@ -520,6 +557,40 @@ void add_data(std::vector<std::pair<std::uint64_t, double>>& values, double leas
   }
 }
 
+void add_once(Tag tag, std::vector<Tag>& tags) {
+  const auto at = std::lower_bound(tags.begin(), tags.end(), tag);
+  if (at == tags.end() || *at != tag) tags.insert(at, tag);
+}
+
+/// Joins links of one motion. Only in files of ours each tag is that of whole faces.
+void add_periodic(const Contents& contents, TetMesh& mesh) {
+  const auto position = [&](std::uint64_t number) {
+    const auto found = std::lower_bound(contents.nodes.begin(), contents.nodes.end(), number,
+                                        [](const Node& node, std::uint64_t n) { return node.number < n; });
+    return found != contents.nodes.end() && found->number == number
+               ? static_cast<Index>(found - contents.nodes.begin())
+               : none;
+  };
+  for (const SurfaceLink& link : contents.links) {
+    const auto alike = [&](const TetMesh::PeriodicFaces& faces) {
+      return faces.motion.rows == link.motion.rows && faces.motion.shift == link.motion.shift;
+    };
+    auto faces = std::find_if(mesh.periodic.begin(), mesh.periodic.end(), alike);
+    if (faces == mesh.periodic.end())
+      faces = mesh.periodic.insert(faces, TetMesh::PeriodicFaces{{}, {}, link.motion, {}});
+    add_once(tag_of_entity(contents, 2, link.master), faces->first);
+    add_once(tag_of_entity(contents, 2, link.entity), faces->second);
+    for (const auto& [node, image] : link.nodes)
+      if (const std::array<Index, 2> pair{position(node), position(image)};
+          pair[0] != none && pair[1] != none)
+        faces->nodes.push_back(pair);
+  }
+  for (TetMesh::PeriodicFaces& faces : mesh.periodic) {
+    std::sort(faces.nodes.begin(), faces.nodes.end());
+    faces.nodes.erase(std::unique(faces.nodes.begin(), faces.nodes.end()), faces.nodes.end());
+  }
+}
+
 /// Nodes and cells come in the order of their numbers.
 TetMesh make_mesh(const std::string& path, Contents& contents) {
   TetMesh mesh;
@@ -528,7 +599,10 @@ TetMesh make_mesh(const std::string& path, Contents& contents) {
   add_cells(contents.cells[3], add_tet, mesh.tet_tag, mesh);
   add_cells(contents.cells[2], add_face, mesh.face_tag, mesh);
   add_cells(contents.cells[1], add_edge, mesh.edge_tag, mesh);
-  if (contents.numbers_are_features) add_features(contents, mesh);
+  if (contents.numbers_are_features) {
+    add_features(contents, mesh);
+    add_periodic(contents, mesh);
+  }
   add_data(contents.collar, 0, 2, contents.cells[3], mesh.tet_collar);
   constexpr double most = 0x1p52;  // that doubles hold
   add_data(contents.crease, -most, most, contents.cells[3], mesh.tet_crease);

@@ -4,6 +4,7 @@
 // "crease" is given for all of them in the order of the file, as meshio needs it.
 // In a partitioned mesh the cells and nodes of an entity are divided among its parts, an entity for each
 // partition: Gmsh loses other data when it writes such a mesh again.
+// $Periodic has a link for each point, curve and surface on the second sides of periodic faces.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,6 +22,7 @@
 #include "io/label_names.h"
 #include "io/msh_entities.h"
 #include "io/msh_format.h"
+#include "io/msh_periodic.h"
 #include "io/tet_mesh_formats.h"
 #include "io/write_each.h"
 
@@ -264,6 +266,7 @@ void write(const std::string& path, const TetMesh& mesh, bool with_ghosts) {
   if (parts) write_partition_entities(out, *parts, with_ghosts ? ghost_volumes(*parts) : std::vector<int>());
   write_nodes(out, mesh, holders);
   write_elements(out, mesh, holders, groups);
+  write_msh_links(out, find_msh_links(mesh, entities), 4);
   if (parts && with_ghosts) write_ghost_elements(out, mesh, *parts);
   write_data(out, "collar", mesh.tet_collar, groups);
   write_data(out, "crease", mesh.tet_crease, groups);

@@ -125,6 +125,9 @@ void require_consistent(const RunOptions& o) {
           fmt::format("size-min {} exceeds size {}; make it smaller", o.mesh.size_min, o.mesh.size));
   require(o.split.any() || (o.split.interaction == Interaction::free && !o.split.cohesive),
           "interaction and cohesive are for patches that are split; add split or keep-apart");
+  require(!o.split.any() || !o.periodic.any(),
+          "split and keep-apart would give nodes on periodic faces copies without images; leave one of them "
+          "and periodic out");
   const bool is_papers = o.mesh.profile == Profile::paper;
   require(!is_papers || o.mesh.bounds.radius_edge * o.mesh.bounds.radius_edge > 8 ||
               !o.mesh.bounds.thin_in_narrow_places_only,

@@ -278,6 +278,15 @@ std::vector<Option> split_options() {
        .commands = Option::mesh}};
 }
 
+std::vector<Option> periodic_options() {
+  return {{.name = "periodic PAIR",
+           .place = at<&RunOptions::periodic, &PeriodicOptions::pairs>,
+           .help = "Mesh two groups of planar patches alike: x, y or z, the low and the high end of the "
+                   "shape; or A=B, "
+                   "names or numbers, with a motion behind: A=B:translation, A=B:rotation,z,90",
+           .details = "see [Periodic cells](periodic.md#pairs)"}};
+}
+
 std::vector<Option> partition_options() {
   return {
       {.name = "partitions N",
@@ -470,6 +479,7 @@ std::vector<Option> made_table() {
   append(table, quality_options(), quality_group, meshing);
   append(table, element_options(), "Elements", sizing);
   append(table, split_options(), "Sides of their own (contact, cracks)", Option::mesh | Option::programs);
+  append(table, periodic_options(), "Periodic faces (representative cells)", Option::mesh | Option::programs);
   append(table, partition_options(), partitions_group, meshing);
   append(table, complex_options(), complex_group, everywhere);
   append(table, budget_options(), budget_group, meshing);

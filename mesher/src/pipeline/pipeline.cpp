@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "check/guarantees.h"
+#include "check/periodic.h"
 #include "check/split.h"
 #include "coarsen/coarsen_workpiece.h"
 #include "collarmesh/error.h"
@@ -597,6 +598,7 @@ class Pipeline {
     made_.check = check(
         made_.result.mesh, *plc_,
         {.bounds = promised, .exact = options_.exact_measures, .threads = options_.mesh.threads}, inner_);
+    if (!made_.result.mesh.periodic.empty()) checks::check_periodic(made_.result.mesh, made_.check);
     stop_if_asked();
   }
 
