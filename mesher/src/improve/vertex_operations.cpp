@@ -21,7 +21,7 @@ bool contains(const auto& range, Index v) { return std::find(range.begin(), rang
 // The tets and the mesh's faces at a vertex; false at a collar and where they do not hang together.
 bool Operations::find_cone_of_vertex(Index vertex) {
   cone_.clear();
-  if (complex_.pinched(vertex)) return false;
+  if (complex_.pinched(vertex) || workpiece_.is_fixed(vertex)) return false;
   complex_.star(vertex, cone_.tets);
   return make_cone_of_vertex(vertex);
 }
@@ -433,7 +433,8 @@ void Operations::contract_edge_above(Index vertex, Index onto, std::optional<dou
 bool Operations::begin_contractions(Index vertex, std::span<const Index> star) {
   vertex_ = vertex;
   cone_.clear();
-  if (mesh_.features[vertex].dimension == 0 || complex_.pinched(vertex)) return false;
+  if (mesh_.features[vertex].dimension == 0 || complex_.pinched(vertex) || workpiece_.is_fixed(vertex))
+    return false;
   cone_.tets.assign(star.begin(), star.end());
   return make_cone_of_vertex(vertex);
 }

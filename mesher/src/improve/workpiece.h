@@ -49,6 +49,15 @@ class Workpiece {
   /// Returns whether the triangles of this patch stay as they are: those of periodic faces do.
   bool keeps(Index patch) const { return !kept_.empty() && patch != none && kept_[patch]; }
 
+  /// These vertices stay where they are.
+  void fix(const std::vector<Index>& vertices) {
+    for (const Index v : vertices) {
+      if (v >= fixed_.size()) fixed_.resize(v + std::size_t{1}, false);
+      fixed_[v] = true;
+    }
+  }
+  bool is_fixed(Index vertex) const { return vertex < fixed_.size() && fixed_[vertex]; }
+
   /// Returns whether this collapse is still allowed. Others on the same curve use up its spare edges.
   bool curve_can_spare(const Change& change) const {
     return complex.mesh().features[change.vertex].dimension != 1 || curves.may_skip(change.vertex);
@@ -73,7 +82,8 @@ class Workpiece {
  private:
   static std::vector<bool> patches_to_keep(const Plc& plc, const TetMesh& mesh);
 
-  std::vector<bool> kept_;  // by patch; empty: none
+  std::vector<bool> kept_;   // by patch; empty: none
+  std::vector<bool> fixed_;  // by vertex, as far as some are
   std::vector<Index> changed_;
 };
 

@@ -12,8 +12,8 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double near = 0.3;          // of the edges at a node: places so near are worth a move
-constexpr double good_enough = 0.05;  // the quality that a move must leave
+constexpr double near = 0.3;         // of the edges at a node: places so near are worth a move
+constexpr double good_enough = 0.1;  // the quality that a move or a removal must leave
 
 /// Follows the edges of one curve.
 Chain follow(std::vector<std::array<Index, 2>> edges, Index start) {
@@ -43,6 +43,16 @@ class ChainEditor {
       : editor_(editor), curve_(curve), chain_(chain), stays_(chain.nodes.size(), false) {
     for (std::size_t i = 0; i < stays_.size(); ++i)
       stays_[i] = editor.mesh().features[chain.nodes[i]].dimension == 0;
+  }
+
+  ChainChange add(std::span<const Point> places, std::vector<Index>& nodes) {
+    std::vector<Point> to_insert;
+    for (const Point& place : places)
+      if (!move_one_to(place)) to_insert.push_back(place);
+    for (const Point& place : to_insert) insert(place);
+    for (std::size_t i = 0; i < size(); ++i)
+      if (stays_[i]) nodes.push_back(chain_.nodes[i]);
+    return std::move(change_);
   }
 
   ChainChange put(std::span<const Point> places) {
@@ -113,7 +123,7 @@ class ChainEditor {
     const Cavity cavity = editor_.around_vertex(node);
     const double to_before = editor_.worst(cavity, editor_.at(before), before),
                  to_after = editor_.worst(cavity, editor_.at(after), after);
-    if (std::max(to_before, to_after) < 0) return false;
+    if (std::max(to_before, to_after) < good_enough) return false;
     editor_.join_curve_edges(before, node, after);
     editor_.fill(cavity, to_before > to_after ? before : after);
     chain_.nodes.erase(chain_.nodes.begin() + static_cast<std::ptrdiff_t>(i));
@@ -152,12 +162,17 @@ ChainChange put_nodes(CavityEditor& editor, Index curve, Chain& chain, std::span
   return ChainEditor(editor, curve, chain).put(places);
 }
 
-std::vector<Index> corresponding(const CavityEditor& editor, const Chain& first, const Chain& second,
+ChainChange add_nodes(CavityEditor& editor, Index curve, Chain& chain, std::span<const Point> places,
+                      std::vector<Index>& nodes) {
+  return ChainEditor(editor, curve, chain).add(places, nodes);
+}
+
+std::vector<Index> corresponding(const TetMesh& mesh, const Chain& first, const Chain& second,
                                  const Motion& motion) {
   const std::size_t n = first.nodes.size();
   if (second.nodes.size() != n || n < 2) return {};
   const auto off = [&](std::size_t i, std::size_t j) {
-    return squared_distance(motion(editor.at(first.nodes[i])), editor.at(second.nodes[j % n]));
+    return squared_distance(motion(mesh.points[first.nodes[i]]), mesh.points[second.nodes[j % n]]);
   };
   std::size_t start = 0;
   if (first.closed) {

@@ -32,10 +32,13 @@ struct ChainChange {
 /// closed. Nodes near a place are moved there, others inserted and removed. Nodes that cannot be removed
 /// stay.
 ChainChange put_nodes(CavityEditor& editor, Index curve, Chain& chain, std::span<const Point> places);
+/// The same, but all other nodes stay. Adds the nodes at these places to `nodes`.
+ChainChange add_nodes(CavityEditor& editor, Index curve, Chain& chain, std::span<const Point> places,
+                      std::vector<Index>& nodes);
 
 /// Returns the nodes of `second` that correspond to those of `first`, when this is moved: in their order, or
 /// in the opposite one. Empty if the numbers differ.
-std::vector<Index> corresponding(const CavityEditor& editor, const Chain& first, const Chain& second,
+std::vector<Index> corresponding(const TetMesh& mesh, const Chain& first, const Chain& second,
                                  const Motion& motion);
 
 }  // namespace collarmesh::periodicity

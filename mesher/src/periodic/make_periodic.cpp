@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "collarmesh/periodic.h"
@@ -14,6 +15,8 @@ namespace collarmesh {
 namespace periodicity {
 namespace {
 
+constexpr double good = 0.15,
+                 fair = 0.05;   // qualities that edges which are turned are to leave, while they can
 constexpr unsigned rounds = 8;  // in which curves get nodes that others of their class could not lose
 
 struct Periodicity {
@@ -21,83 +24,123 @@ struct Periodicity {
   std::vector<FeatureImages> images;  // by pair
 };
 
-Periodicity find_periodicity(const PeriodicOptions& options, const Plc& plc, double distance,
-                             Direction direction = Direction::forward) {
+Periodicity find_periodicity(const PeriodicOptions& options, const Plc& plc, double distance) {
   Periodicity found{choose_pairs(options, plc), {}};
-  if (direction == Direction::backward)
-    for (PatchPair& pair : found.pairs) {
-      std::swap(pair.first, pair.second);
-      pair.motion = inverse(pair.motion);
-    }
   for (const PatchPair& pair : found.pairs) found.images.push_back(find_images(pair, plc, distance));
   return found;
 }
 
-/// Makes the mesh of the second group of each pair that of the first: curves, then patches.
+/// Curves of a class, with what takes the original onto each: the original itself first.
+std::vector<CurveImage> with_original(const CurveClass& of) {
+  std::vector<CurveImage> curves{{of.original, {}}};
+  curves.insert(curves.end(), of.images.begin(), of.images.end());
+  return curves;
+}
+
+std::vector<Point> moved(std::vector<Point> places, const Motion& motion) {
+  for (Point& place : places) place = motion(place);
+  return places;
+}
+
+/// A mesh with the chains of its curves and the faces of its patches.
+struct Surface {
+  Surface(const TetMesh& mesh, const Plc& plc) : chains(chains_of(mesh, plc)), faces(plc.patches.size()) {
+    find_faces(mesh);
+  }
+
+  void find_faces(const TetMesh& mesh) {
+    for (auto& of_patch : faces) of_patch.clear();
+    for (Index f = 0; f < mesh.faces.size(); ++f)
+      if (mesh.face_patch[f] != none) faces[mesh.face_patch[f]].push_back(f);
+  }
+  /// Those between the ends of a curve, or all of a closed one.
+  std::vector<Point> places_on_curve(const TetMesh& mesh, Index curve) const {
+    std::vector<Point> places;
+    for (const Index node : chains[curve].nodes)
+      if (mesh.features[node].dimension == 1) places.push_back(mesh.points[node]);
+    return places;
+  }
+  std::vector<Index> nodes_inside(const TetMesh& mesh, Index patch) const {
+    std::vector<Index> inside;
+    for (const Index face : faces[patch])
+      for (const Index v : mesh.faces[face])
+        if (mesh.features[v].dimension == 2) inside.push_back(v);
+    std::sort(inside.begin(), inside.end());
+    inside.erase(std::unique(inside.begin(), inside.end()), inside.end());
+    return inside;
+  }
+  std::vector<Point> places_inside(const TetMesh& mesh, Index patch) const {
+    std::vector<Point> places;
+    for (const Index v : nodes_inside(mesh, patch)) places.push_back(mesh.points[v]);
+    return places;
+  }
+
+  std::vector<Chain> chains;              // by curve
+  std::vector<std::vector<Index>> faces;  // by patch
+};
+
+/// Makes the meshes of both groups of each pair alike: curves, then patches.
 class Maker {
  public:
   Maker(TetMesh& mesh, const Plc& plc, Periodicity periodicity)
-      : mesh_(mesh),
-        plc_(plc),
-        periodicity_(std::move(periodicity)),
-        editor_(mesh),
-        chains_(chains_of(mesh, plc)) {}
+      : mesh_(mesh), plc_(plc), periodicity_(std::move(periodicity)), editor_(mesh), surface_(mesh, plc) {}
 
-  PeriodicReport run() {
-    for (const CurveClass& of : curve_classes(periodicity_.pairs, periodicity_.images, plc_.curves.size()))
-      make_alike(of);
-    collect_faces();
+  std::vector<Index> add_nodes(const TetMesh& source) {
+    const Surface of_source(source, plc_);
+    std::vector<Index> nodes;
+    for (const CurveClass& of : classes())
+      for (const auto& [curve, motion] : with_original(of))
+        periodicity::add_nodes(editor_, curve, surface_.chains[curve],
+                               moved(of_source.places_on_curve(source, of.original), motion), nodes);
+    surface_.find_faces(mesh_);
+    for (std::size_t k = 0; k < periodicity_.pairs.size(); ++k)
+      for (const auto& [patch, image] : periodicity_.images[k].patches)
+        for (const auto& [at, motion] :
+             {std::pair{patch, Motion()}, std::pair{image, periodicity_.pairs[k].motion}}) {
+          PatchEditor editor(editor_, plc_, at, surface_.faces[at]);
+          for (const Index v : editor.add_nodes(moved(of_source.places_inside(source, patch), motion)))
+            if (v != none) nodes.push_back(v);
+        }
+    editor_.store();
+    return nodes;
+  }
+
+  PeriodicReport make_alike() {
+    for (const CurveClass& of : classes()) make_curves_alike(of);
+    surface_.find_faces(mesh_);
     for (std::size_t k = 0; k < periodicity_.pairs.size(); ++k) make_patches_alike(k);
     editor_.store();
     return std::move(report_);
   }
 
  private:
-  // Nodes that an image cannot lose are put on the original as well.
-  void make_alike(const CurveClass& of) {
-    Chain& original = chains_[of.original];
+  std::vector<CurveClass> classes() const {
+    return curve_classes(periodicity_.pairs, periodicity_.images, plc_.curves.size());
+  }
+
+  // Nodes that one of the curves cannot lose are put on the others as well.
+  void make_curves_alike(const CurveClass& of) {
+    std::vector<Point> places = surface_.places_on_curve(mesh_, of.original);
     for (unsigned round = 0; round < rounds; ++round) {
-      std::vector<Point> stuck;
-      for (const CurveImage& image : of.images) {
-        const ChainChange change =
-            put_nodes(editor_, image.curve, chains_[image.curve], places_of(original, image.motion));
-        count(change);
-        const Motion back = inverse(image.motion);
-        for (const Point& place : change.stuck) stuck.push_back(back(place));
+      const std::size_t before = places.size();
+      for (const auto& [curve, motion] : with_original(of)) {
+        const ChainChange change = put_nodes(editor_, curve, surface_.chains[curve], moved(places, motion));
+        report_.inserted_nodes += change.inserted;
+        report_.removed_nodes += change.removed;
+        for (const Point& place : moved(change.stuck, inverse(motion))) places.push_back(place);
       }
-      if (stuck.empty()) return;
-      std::vector<Point> places = places_of(original, {});
-      places.insert(places.end(), stuck.begin(), stuck.end());
-      count(put_nodes(editor_, of.original, original, places));
+      if (places.size() == before) return;
     }
-  }
-
-  void count(const ChainChange& change) {
-    report_.inserted_nodes += change.inserted;
-    report_.removed_nodes += change.removed;
-  }
-
-  // Of the nodes between the ends, which stay where they are.
-  std::vector<Point> places_of(const Chain& chain, const Motion& motion) const {
-    std::vector<Point> places;
-    for (const Index node : chain.nodes)
-      if (mesh_.features[node].dimension == 1) places.push_back(motion(mesh_.points[node]));
-    return places;
-  }
-
-  void collect_faces() {
-    faces_.resize(plc_.patches.size());
-    for (Index f = 0; f < mesh_.faces.size(); ++f)
-      if (mesh_.face_patch[f] != none) faces_[mesh_.face_patch[f]].push_back(f);
   }
 
   void make_patches_alike(std::size_t k) {
     const PatchPair& pair = periodicity_.pairs[k];
     const FeatureImages& images = periodicity_.images[k];
-    image_of_.assign(mesh_.points.size(), none);
+    image_of_.clear();
     for (const auto& [curve, image] : images.curves) {
-      const std::vector<Index> nodes = corresponding(editor_, chains_[curve], chains_[image], pair.motion);
-      for (std::size_t i = 0; i < nodes.size(); ++i) image_of_[chains_[curve].nodes[i]] = nodes[i];
+      const Chain &first = surface_.chains[curve], &second = surface_.chains[image];
+      const std::vector<Index> nodes = corresponding(mesh_, first, second, pair.motion);
+      for (std::size_t i = 0; i < nodes.size(); ++i) image_of_[first.nodes[i]] = nodes[i];
     }
     std::vector<Index> node_of(plc_.vertices.size(), none);
     for (Index v = 0; v < mesh_.features.size(); ++v)
@@ -106,41 +149,50 @@ class Maker {
     for (const auto& [patch, image] : images.patches) make_patch_alike(patch, image, pair.motion);
   }
 
+  // An edge is turned on the side where that leaves better tets.
   void make_patch_alike(Index patch, Index image, const Motion& motion) {
-    std::vector<Index> inside;
-    for (const Index face : faces_[patch])
-      for (const Index v : mesh_.faces[face])
-        if (mesh_.features[v].dimension == 2) inside.push_back(v);
-    std::sort(inside.begin(), inside.end());
-    inside.erase(std::unique(inside.begin(), inside.end()), inside.end());
-    std::vector<Point> places;
-    for (const Index v : inside) places.push_back(motion(mesh_.points[v]));
-    PatchEditor of_image(editor_, plc_, image, faces_[image]);
-    const std::vector<Index> nodes = of_image.put_nodes(places);
+    PatchEditor first(editor_, plc_, patch, surface_.faces[patch]);
+    PatchEditor second(editor_, plc_, image, surface_.faces[image]);
+    std::vector<Index> inside = surface_.nodes_inside(mesh_, patch);
+    std::vector<Index> nodes = second.put_nodes(moved(surface_.places_inside(mesh_, patch), motion));
+    const std::vector<Point> others = second.places_of_others();
+    const std::vector<Index> on_first = first.add_nodes(moved(others, inverse(motion))),
+                             on_second = second.add_nodes(others);
+    inside.insert(inside.end(), on_first.begin(), on_first.end());
+    nodes.insert(nodes.end(), on_second.begin(), on_second.end());
+    std::map<Index, Index> original_of;
     for (std::size_t i = 0; i < inside.size(); ++i) image_of_[inside[i]] = nodes[i];
-    std::vector<PatchEditor::Edge> edges;
-    for (const Index face : faces_[patch]) {
-      const auto& corners = mesh_.faces[face];
-      for (unsigned i = 0; i < 3; ++i) {
-        const Index a = image_of_[corners[i]], b = image_of_[corners[(i + 1) % 3]];
-        if (a != none && b != none) edges.push_back({std::min(a, b), std::max(a, b)});
-      }
+    for (const auto& [node, of] : image_of_) original_of[of] = node;
+    for (const double least : {good, fair, 0.0}) {
+      second.make_edges(named(first.edges(), image_of_), least, false);
+      if (least > 0) first.make_edges(named(second.edges(), original_of), least, false);
     }
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    of_image.make_edges(edges);
-    report_.inserted_nodes += of_image.change().inserted;
-    report_.removed_nodes += of_image.change().removed;
-    report_.turned_edges += of_image.change().turned;
+    second.make_edges(named(first.edges(), image_of_), 0, true);
+    for (const PatchEditor* each : {&first, &second}) {
+      report_.inserted_nodes += each->change().inserted;
+      report_.removed_nodes += each->change().removed;
+      report_.turned_edges += each->change().turned;
+    }
+  }
+
+  // Edges by the nodes that theirs correspond to.
+  static std::vector<PatchEditor::Edge> named(const std::vector<PatchEditor::Edge>& edges,
+                                              const std::map<Index, Index>& node_of) {
+    std::vector<PatchEditor::Edge> named;
+    for (const auto& [a, b] : edges) {
+      const auto c = node_of.find(a), d = node_of.find(b);
+      if (c != node_of.end() && d != node_of.end() && c->second != none && d->second != none)
+        named.push_back({std::min(c->second, d->second), std::max(c->second, d->second)});
+    }
+    return named;
   }
 
   TetMesh& mesh_;
   const Plc& plc_;
   const Periodicity periodicity_;
   CavityEditor editor_;
-  std::vector<Chain> chains_;              // by curve
-  std::vector<std::vector<Index>> faces_;  // by patch
-  std::vector<Index> image_of_;            // by node of the pair's first group
+  Surface surface_;
+  std::map<Index, Index> image_of_;  // of the nodes of the pair's first group
   PeriodicReport report_;
 };
 
@@ -160,18 +212,19 @@ void require_periodic_patches(const PeriodicOptions& options, const Plc& plc, do
 }
 
 PeriodicReport make_periodic(TetMesh& mesh, const Plc& plc, const PeriodicOptions& options, double distance) {
-  return periodicity::make_periodic(mesh, plc, options, distance, periodicity::Direction::forward);
-}
-
-PeriodicReport periodicity::make_periodic(TetMesh& mesh, const Plc& plc, const PeriodicOptions& options,
-                                          double distance, Direction direction) {
-  PeriodicReport report = Maker(mesh, plc, find_periodicity(options, plc, distance, direction)).run();
+  using namespace periodicity;
+  PeriodicReport report = Maker(mesh, plc, find_periodicity(options, plc, distance)).make_alike();
   mesh.periodic.clear();
   for (const PatchPair& pair : choose_pairs(options, plc)) {
     mesh.periodic.push_back({tags_of(pair.first, plc), tags_of(pair.second, plc), pair.motion, {}});
     report.pairs.push_back({.text = pair.text});
   }
   return report;
+}
+
+std::vector<Index> periodicity::add_periodic_nodes(TetMesh& mesh, const TetMesh& source, const Plc& plc,
+                                                   const PeriodicOptions& options, double distance) {
+  return Maker(mesh, plc, find_periodicity(options, plc, distance)).add_nodes(source);
 }
 
 }  // namespace collarmesh

@@ -1,14 +1,14 @@
 #pragma once
 
+#include <vector>
+
 #include "collarmesh/periodic.h"
 
 namespace collarmesh::periodicity {
 
-/// Which group of a pair keeps its mesh: the first, or the second.
-enum class Direction { forward, backward };
-
-/// As the public function, in either direction.
-PeriodicReport make_periodic(TetMesh& mesh, const Plc& plc, const PeriodicOptions& options, double distance,
-                             Direction direction);
+/// Adds nodes to a mesh at the places of those that the first group of each pair has in `source`, another
+/// mesh of the same complex, and at the images of these places. Returns them.
+std::vector<Index> add_periodic_nodes(TetMesh& mesh, const TetMesh& source, const Plc& plc,
+                                      const PeriodicOptions& options, double distance);
 
 }  // namespace collarmesh::periodicity

@@ -67,18 +67,13 @@ std::vector<Index> images_of(const TetMesh& mesh, const Nodes& first, const Node
   return images;
 }
 
-void map_pair(TetMesh& mesh, TetMesh::PeriodicFaces& pair, PeriodicReport::Pair& report) {
+void finish_pair(TetMesh& mesh, TetMesh::PeriodicFaces& pair, PeriodicReport::Pair& report) {
   std::size_t faces_of_second = 0;
-  report.faces = 0;
   const Nodes first = nodes_of(mesh, pair.first, report.faces),
               second = nodes_of(mesh, pair.second, faces_of_second);
-  const std::vector<Index> images = images_of(mesh, first, second, pair.motion);
-  pair.nodes.clear();
-  for (std::size_t i = 0; i < images.size(); ++i)
-    if (images[i] != none) pair.nodes.push_back({first.corners[i], images[i]});
-  const auto image_of = [&](Index v) {
-    const auto found = std::lower_bound(first.corners.begin(), first.corners.end(), v);
-    return images[static_cast<std::size_t>(found - first.corners.begin())];
+  const auto image_of = [corners = pair.nodes](Index v) {
+    const auto found = std::lower_bound(corners.begin(), corners.end(), std::array{v, Index{0}});
+    return found != corners.end() && (*found)[0] == v ? (*found)[1] : none;
   };
   for (const auto& [edge, node] : first.mid_nodes) {
     const Index a = image_of(static_cast<Index>(edge >> 32U)), b = image_of(static_cast<Index>(edge));
@@ -95,15 +90,26 @@ void map_pair(TetMesh& mesh, TetMesh::PeriodicFaces& pair, PeriodicReport::Pair&
     if (node != image) mesh.points[image] = place;
   }
   report.nodes = pair.nodes.size();
-  std::set<Index> corners(first.corners.begin(), first.corners.end());
+  const std::set<Index> corners(first.corners.begin(), first.corners.end());
   report.edges = static_cast<std::size_t>(std::ranges::count_if(
       mesh.edges, [&](const auto& edge) { return corners.contains(edge[0]) && corners.contains(edge[1]); }));
 }
 
 }  // namespace
 
-void map_nodes(TetMesh& mesh, PeriodicReport& report) {
-  for (std::size_t k = 0; k < mesh.periodic.size(); ++k) map_pair(mesh, mesh.periodic[k], report.pairs[k]);
+void map_corners(TetMesh& mesh) {
+  for (TetMesh::PeriodicFaces& pair : mesh.periodic) {
+    std::size_t faces = 0;
+    const Nodes first = nodes_of(mesh, pair.first, faces), second = nodes_of(mesh, pair.second, faces);
+    const std::vector<Index> images = images_of(mesh, first, second, pair.motion);
+    pair.nodes.clear();
+    for (std::size_t i = 0; i < images.size(); ++i)
+      if (images[i] != none) pair.nodes.push_back({first.corners[i], images[i]});
+  }
+}
+
+void finish_map(TetMesh& mesh, PeriodicReport& report) {
+  for (std::size_t k = 0; k < mesh.periodic.size(); ++k) finish_pair(mesh, mesh.periodic[k], report.pairs[k]);
 }
 
 }  // namespace collarmesh::periodicity

@@ -7,9 +7,12 @@
 
 namespace collarmesh::periodicity {
 
-/// Puts each node of the second faces exactly at the image of the first's, if no tet loses its volume, and
-/// fills in `PeriodicFaces::nodes`, mid-edge nodes included. Completes the report. Called when the mesh is
-/// finished. Cost: n log n in the nodes of these faces.
-void map_nodes(TetMesh& mesh, PeriodicReport& report);
+/// Fills in `PeriodicFaces::nodes` by places: of corners. Precondition: the faces of each pair are images of
+/// each other.
+void map_corners(TetMesh& mesh);
+
+/// Adds mid-edge nodes to the map, and puts each node of the second faces exactly at its image, from where
+/// exact geometry may have moved it a little. Completes the report. Called when the mesh is finished.
+void finish_map(TetMesh& mesh, PeriodicReport& report);
 
 }  // namespace collarmesh::periodicity

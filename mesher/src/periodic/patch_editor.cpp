@@ -4,7 +4,6 @@
 #include <cmath>
 #include <deque>
 #include <iterator>
-#include <map>
 
 #include "collarmesh/error.h"
 #include "common/spatial_order.h"
@@ -14,9 +13,9 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double near = 0.25;         // of the edges at a node: places so near are worth a move
-constexpr double good_enough = 0.05;  // the quality that a move or a removal must leave if another way may
-constexpr double fair = 0.02;         // the quality that a turned edge must leave if it need not be turned
+constexpr double near = 0.25;        // of the edges at a node: places so near are worth a move
+constexpr double good_enough = 0.1;  // the quality that a move or a removal must leave if another way may
+constexpr double fair = 0.02;        // the quality that a turned edge must leave if it need not be turned
 
 bool contains(const auto& range, Index v) { return std::find(range.begin(), range.end(), v) != range.end(); }
 
@@ -73,6 +72,16 @@ void PatchEditor::drop_face(Index face) {
   }
 }
 
+std::vector<Index> PatchEditor::faces() const {
+  std::vector<Index> faces;
+  for (const auto& [edge, at] : faces_at_)
+    for (const Index face : at)
+      if (face != none) faces.push_back(face);
+  std::sort(faces.begin(), faces.end());
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  return faces;
+}
+
 void PatchEditor::drop_faces(const Cavity& cavity) {
   for (const Index face : cavity.faces) drop_face(face);
 }
@@ -104,12 +113,17 @@ std::vector<PatchEditor::Edge> PatchEditor::edges_of_created_faces() const {
   return edges;
 }
 
-std::vector<Index> PatchEditor::put_nodes(std::span<const Point> places) {
+std::vector<Index> PatchEditor::add_nodes(std::span<const Point> places) {
   std::vector<Index> nodes(places.size(), none);
   const std::vector<SpatialKey> order = spatial_order(places);
   for (const auto& [place, i] : order) nodes[i] = move_one_to(places[i]);
   for (const auto& [place, i] : order)
     if (nodes[i] == none) nodes[i] = insert(places[i]);
+  return nodes;
+}
+
+std::vector<Index> PatchEditor::put_nodes(std::span<const Point> places) {
+  const std::vector<Index> nodes = add_nodes(places);
   std::vector<Index> others;
   for (const auto& [node, stays] : stays_)
     if (!stays) others.push_back(node);
@@ -186,7 +200,7 @@ Index PatchEditor::insert(const Point& place) {
   return node;
 }
 
-// Onto a neighbour, or down into the region.
+// Onto a neighbour.
 void PatchEditor::remove(Index node) {
   Cavity cavity = editor_.around_vertex(node);
   Index onto = none;
@@ -194,56 +208,11 @@ void PatchEditor::remove(Index node) {
   for (const auto& [ends, like] : cavity.rim)
     if (const double q = editor_.worst(cavity, editor_.at(ends[0]), ends[0]); q > quality)
       quality = q, onto = ends[0];
-  Cavity below = cavity;
-  if (quality < good_enough) {
-    below.floor = triangulate(cavity);
-    below.rim.clear();
-    if (!below.floor.empty()) {
-      const auto [q, place] = best_below(below, editor_.at(node));
-      if (q > quality) {
-        replace_by_new(below, place, {3, none});
-        quality = q, onto = none;
-        ++change_.inserted;
-        ++change_.removed;
-        make_delaunay(edges_of_created_faces());
-        return;
-      }
-    }
-  }
-  if (onto == none) return;
+  if (quality < good_enough) return;
   replace(cavity, onto);
   ++change_.removed;
+  stays_.erase(node);
   make_delaunay(edges_of_created_faces());
-}
-
-// Of the vertices around a node of the patch: ears first whose smallest angle is largest.
-std::vector<TetComplex::NewFace> PatchEditor::triangulate(const Cavity& cavity) const {
-  std::map<Index, Index> after;
-  for (const auto& [ends, like] : cavity.rim) after[ends[0]] = ends[1];
-  std::vector<Index> polygon{cavity.rim.front().ends[0]};
-  while (polygon.size() < after.size()) polygon.push_back(after.at(polygon.back()));
-  const Index like = cavity.rim.front().like;
-  std::vector<TetComplex::NewFace> faces;
-  while (polygon.size() > 2) {
-    const std::size_t n = polygon.size();
-    std::size_t best = n;
-    double best_shape = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const Index a = polygon[(i + n - 1) % n], b = polygon[i], c = polygon[(i + 1) % n];
-      if (side(a, b, c) <= 0) continue;
-      const bool empty = std::ranges::none_of(polygon, [&](Index v) {
-        return v != a && v != b && v != c && side(a, b, v) >= 0 && side(b, c, v) >= 0 && side(c, a, v) >= 0;
-      });
-      const Point &p = editor_.at(a), &q = editor_.at(b), &r = editor_.at(c);
-      const double shape = norm(cross(q - p, r - p)) /
-                           (squared_distance(p, q) + squared_distance(q, r) + squared_distance(r, p));
-      if (empty && shape > best_shape) best = i, best_shape = shape;
-    }
-    if (best == n) return {};
-    faces.push_back({{polygon[(best + n - 1) % n], polygon[best], polygon[(best + 1) % n]}, like});
-    polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(best));
-  }
-  return faces;
 }
 
 // The place for an apex below `start` that leaves the best tets, and the quality of the worst of them.
@@ -324,14 +293,33 @@ bool PatchEditor::turn(Index a, Index b, double least, bool with_new_vertex) {
   return true;
 }
 
-void PatchEditor::make_edges(std::span<const Edge> edges) {
-  for (const auto& [a, b] : edges)
-    if (!has(a, b) && !make_edge(a, b)) ++change_.missing;
+std::size_t PatchEditor::make_edges(std::span<const Edge> edges, double least, bool must) {
+  return static_cast<std::size_t>(std::ranges::count_if(edges, [&](const Edge& edge) {
+    return !has(edge[0], edge[1]) && !make_edge(edge[0], edge[1], least, must);
+  }));
+}
+
+std::vector<PatchEditor::Edge> PatchEditor::edges() const {
+  std::vector<Edge> edges;
+  for (const auto& [key, at] : faces_at_)
+    edges.push_back({static_cast<Index>(key >> 32U), static_cast<Index>(key)});
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+std::vector<Point> PatchEditor::places_of_others() const {
+  std::vector<Index> others;
+  for (const auto& [node, stays] : stays_)
+    if (!stays) others.push_back(node);
+  std::sort(others.begin(), others.end());
+  std::vector<Point> places;
+  for (const Index node : others) places.push_back(editor_.at(node));
+  return places;
 }
 
 // Turns the edges that cross it, one after the other, those first whose faces make a convex quadrilateral
 // (Sloan 1993).
-bool PatchEditor::make_edge(Index a, Index b) {
+bool PatchEditor::make_edge(Index a, Index b, double least, bool must) {
   const std::vector<Edge> all = crossed(a, b);
   std::deque<Edge> edges(all.begin(), all.end());
   if (edges.empty()) return false;
@@ -340,7 +328,7 @@ bool PatchEditor::make_edge(Index a, Index b) {
     const auto [u, v] = edges.front();
     edges.pop_front();
     const Index c = opposite(u, v), d = opposite(v, u);
-    if (!turn(u, v, fair, false) && !turn(u, v, CavityEditor::least_quality, true)) {
+    if (!turn(u, v, least, false) && !(must && turn(u, v, CavityEditor::least_quality, true))) {
       edges.push_back({u, v});
       continue;
     }

@@ -15,7 +15,6 @@ namespace collarmesh::periodicity {
 /// What a patch's change took.
 struct PatchChange {
   std::size_t inserted = 0, removed = 0, turned = 0;
-  std::size_t missing = 0;  ///< edges that could not be made
 };
 
 /// Changes the triangles of a planar patch on the boundary, and the tets behind it.
@@ -27,10 +26,21 @@ class PatchEditor {
   PatchEditor(CavityEditor& editor, const Plc& plc, Index patch, std::span<const Index> faces);
 
   /// Gives the inside of the patch nodes at these places, and no others. Nodes near a place are moved there,
-  /// others inserted, and removed: onto a neighbour or into the region. Returns the node at each place.
+  /// others inserted, and removed if that leaves good tets. Returns the node at each place.
   std::vector<Index> put_nodes(std::span<const Point> places);
-  /// Turns edges until these are there; both ends are nodes of the patch.
-  void make_edges(std::span<const Edge> edges);
+  /// Returns the places of the other nodes, which could not be removed.
+  std::vector<Point> places_of_others() const;
+  /// The same, but all other nodes stay.
+  std::vector<Index> add_nodes(std::span<const Point> places);
+  /// Turns edges until these are there, as far as all new tets are better than `least`; both ends are nodes
+  /// of the patch. If they must be there, new vertices below the patch make room. Returns how many are
+  /// missing.
+  std::size_t make_edges(std::span<const Edge> edges, double least, bool must);
+  /// Returns the edges of the patch, the smaller node of each first.
+  std::vector<Edge> edges() const;
+
+  /// Returns the faces that the patch has now.
+  std::vector<Index> faces() const;
 
   const PatchChange& change() const { return change_; }
 
@@ -53,9 +63,8 @@ class PatchEditor {
   void make_delaunay(std::vector<Edge> edges);
   bool is_delaunay(Index a, Index b, Index c, Index d) const;
   bool turn(Index a, Index b, double least, bool with_new_vertex);
-  bool make_edge(Index a, Index b);
+  bool make_edge(Index a, Index b, double least, bool must);
   std::vector<Edge> crossed(Index a, Index b) const;
-  std::vector<TetComplex::NewFace> triangulate(const Cavity& cavity) const;
   std::pair<double, Point> best_below(const Cavity& cavity, const Point& start) const;
   std::vector<Edge> edges_of_created_faces() const;
 

@@ -14,7 +14,6 @@ namespace collarmesh::periodicity {
 namespace {
 
 constexpr double clearly = 1.5;  // edges so many times as long are clearly longer
-constexpr double smaller = 0.5;  // edges that are tried where tets miss their bounds, times those there
 constexpr double growth = 0.3;   // of sizes, per unit length, as that of size fields
 
 struct Sample {
@@ -99,21 +98,6 @@ std::optional<SizeField> sizes_across(const TetMesh& mesh, const Plc& plc, const
     const std::vector<Sample> first = samples_on(mesh, pair.first), second = samples_on(mesh, pair.second);
     compare(first, second, pair.motion, wanted);
     compare(second, first, inverse(pair.motion), wanted);
-  }
-  return field_of(std::move(wanted));
-}
-
-std::optional<SizeField> sizes_at_findings(const TetMesh& mesh, const CheckReport& report) {
-  std::vector<Sample> wanted;
-  for (const Finding& finding : report.findings) {
-    if (finding.guarantee != "thin_angles" && finding.guarantee != "collar_dihedral" &&
-        finding.guarantee != "radius_edge")
-      return std::nullopt;
-    const auto& corners = mesh.tets[finding.ids.front()];
-    double sum = 0;
-    for (unsigned i = 0; i < 4; ++i)
-      for (unsigned j = 0; j < i; ++j) sum += distance(mesh.points[corners[i]], mesh.points[corners[j]]);
-    wanted.push_back({finding.where, smaller * sum / 6});
   }
   return field_of(std::move(wanted));
 }

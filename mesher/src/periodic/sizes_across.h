@@ -2,7 +2,6 @@
 
 #include <optional>
 
-#include "collarmesh/check.h"
 #include "collarmesh/periodic.h"
 #include "collarmesh/size_field.h"
 
@@ -13,9 +12,5 @@ namespace collarmesh::periodicity {
 /// the distance; nothing if there are none. Cost: near linear in the triangles of these patches; each place
 /// asked for costs as many steps as there are such places that no other one implies.
 std::optional<SizeField> sizes_across(const TetMesh& mesh, const Plc& plc, const PeriodicOptions& options);
-
-/// Returns half of the edge lengths at the tets whose angles a report finds fault with, growing with the
-/// distance; nothing if it finds fault with something else as well.
-std::optional<SizeField> sizes_at_findings(const TetMesh& mesh, const CheckReport& report);
 
 }  // namespace collarmesh::periodicity

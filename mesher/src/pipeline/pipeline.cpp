@@ -9,9 +9,11 @@
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
+#include <limits>
 #include <mutex>
 #include <new>
 #include <optional>
+#include <set>
 #include <stop_token>
 #include <string_view>
 #include <system_error>
@@ -406,19 +408,6 @@ class Pipeline {
     if (most_vertices_ > 0) options_.mesh.max_vertices = most_vertices_;
     options_.mesh.seed = seed;
     refined_with_ = options_of_refinement();
-    make_mesh();
-    // Elements beside periodic faces suit the features on both sides only if they are small enough.
-    constexpr unsigned tries = 4;
-    for (unsigned k = 1; k < tries && made_.periodic && !made_.guarantees_hold(); ++k) {
-      auto sizes = periodicity::sizes_at_findings(made_.result.mesh, made_.check);
-      if (!sizes) return;
-      limit_sizes(std::move(*sizes));
-      made_ = {};
-      make_mesh();
-    }
-  }
-
-  void make_mesh() {
     refine();
     reshape();
     make_faces_periodic();
@@ -484,6 +473,7 @@ class Pipeline {
     else
       begin("improve", 0.7, 0.8);
     TetMesh& mesh = made_.result.mesh;
+    if (given_.periodic.any()) refined_ = mesh;
     ThreadLimit(options_.mesh.threads).run([&] {
       improvement::Workpiece workpiece(mesh, *plc_, *refined_with_.bounds.tolerance,
                                        options_.coarsen ? refined_with_.edges_per_hole : 0,
@@ -497,33 +487,53 @@ class Pipeline {
     trace(options_.improve > 0 ? "improve" : "coarsen", mesh);
   }
 
-  /// The elements beside these faces are made anew, so they are coarsened and improved as others were. Then
-  /// poor ones are improved while the faces are free to change, and the other face of each pair follows.
+  /// If the elements beside the faces of a pair suit each other, the second one gets the mesh of the first.
+  /// Else both are made as fine as the finer one, and the nodes of the first are there on both before
+  /// elements are coarsened.
   void make_faces_periodic() {
     if (!given_.periodic.any() || made_.result.status != MeshStatus::complete) return;
-    if (auto across = periodicity::sizes_across(made_.result.mesh, *plc_, options_.periodic)) {
-      limit_sizes(std::move(*across));
-      made_ = {};
-      refine();
-      reshape();
-    }
     begin("periodic faces", 0.78, 0.79);
     const ImproveReport improvement = made_.improvement;
-    constexpr unsigned rounds = 4;  // tried: from the third on the elements hardly change
-    for (unsigned round = 0; round < rounds; ++round) {
-      if (round > 0) improve_freely();
-      make_faces_alike(round % 2 == 0 ? periodicity::Direction::forward : periodicity::Direction::backward);
+    const double distance = refined_with_.bounds.tolerance->largest();
+    TetMesh best;
+    std::size_t least = SIZE_MAX;
+    const auto try_with = [&](TetMesh mesh) {
+      PeriodicReport report = make_periodic(mesh, *plc_, options_.periodic, distance);
+      coarsen_and_improve(mesh, {});
+      const std::size_t poor = misshapen(mesh);
+      if (poor >= least) return;
+      least = poor;
+      best = std::move(mesh);
+      made_.periodic = std::move(report);
+    };
+    try_with(made_.result.mesh);
+    if (least > 0) {
+      const auto periodic = made_.periodic;
+      if (auto across = periodicity::sizes_across(made_.result.mesh, *plc_, options_.periodic)) {
+        limit_sizes(std::move(*across));
+        made_ = {};
+        refine();
+        reshape();
+      }
+      made_.periodic = periodic;
+      TetMesh mesh = std::move(refined_);
+      const std::vector<Index> nodes =
+          periodicity::add_periodic_nodes(mesh, made_.result.mesh, *plc_, options_.periodic, distance);
+      coarsen_and_improve(mesh, nodes);
+      try_with(std::move(mesh));
     }
+    refined_ = {};
     made_.improvement = improvement;
+    made_.result.mesh = std::move(best);
+    periodicity::map_corners(made_.result.mesh);
   }
 
-  void make_faces_alike(periodicity::Direction direction) {
-    TetMesh& mesh = made_.result.mesh;
-    made_.periodic = periodicity::make_periodic(mesh, *plc_, options_.periodic,
-                                                refined_with_.bounds.tolerance->largest(), direction);
+  /// Fixed vertices stay where they are.
+  void coarsen_and_improve(TetMesh& mesh, const std::vector<Index>& fixed) {
     ThreadLimit(options_.mesh.threads).run([&] {
       improvement::Workpiece workpiece(mesh, *plc_, *refined_with_.bounds.tolerance,
                                        refined_with_.edges_per_hole, refined_with_.bounds.lower_where_forced);
+      workpiece.fix(fixed);
       if (coarsen(workpiece, refined_with_, inner_).cancelled) stop();
       if (options_.improve > 0) improve_elements(workpiece);
       workpiece.complex.store();
@@ -531,15 +541,19 @@ class Pipeline {
     });
   }
 
-  void improve_freely() {
-    TetMesh& mesh = made_.result.mesh;
-    mesh.periodic.clear();
-    ThreadLimit(options_.mesh.threads).run([&] {
-      improvement::Workpiece workpiece(mesh, *plc_, *refined_with_.bounds.tolerance,
-                                       refined_with_.edges_per_hole, refined_with_.bounds.lower_where_forced);
-      improve_elements(workpiece);
-      workpiece.complex.store();
-    });
+  /// Returns how often tets miss the bounds on their shapes.
+  std::size_t misshapen(const TetMesh& mesh) const {
+    Bounds promised = bounds();
+    promised.tolerance = refined_with_.bounds.tolerance;
+    const CheckReport report = check(mesh, *plc_,
+                                     {.bounds = promised,
+                                      .findings_per_guarantee = std::numeric_limits<std::size_t>::max(),
+                                      .threads = options_.mesh.threads},
+                                     inner_);
+    return static_cast<std::size_t>(std::ranges::count_if(report.findings, [](const Finding& finding) {
+      return finding.guarantee == guarantee::thin_angles || finding.guarantee == guarantee::collar_dihedral ||
+             finding.guarantee == guarantee::radius_edge;
+    }));
   }
 
   void coarsen_elements(improvement::Workpiece& workpiece) {
@@ -594,7 +608,7 @@ class Pipeline {
     begin("check", 0.86, given_.partitions > 0 ? 0.96 : 1);
     Bounds promised = bounds();
     promised.tolerance = tolerance(*plc_);
-    if (made_.periodic) periodicity::map_nodes(made_.result.mesh, *made_.periodic);
+    if (made_.periodic) periodicity::finish_map(made_.result.mesh, *made_.periodic);
     made_.check = check(
         made_.result.mesh, *plc_,
         {.bounds = promised, .exact = options_.exact_measures, .threads = options_.mesh.threads}, inner_);
@@ -671,6 +685,7 @@ class Pipeline {
   ThreadCounter counter_;
   std::optional<Deadline> deadline_;
   MeshOptions refined_with_;
+  TetMesh refined_;             // as it was before it was coarsened, for periodic faces
   KnownNeighbours neighbours_;  // of the mesh as it was refined
   const Plc* plc_ = nullptr;
   std::optional<SurfaceTolerance> tolerance_;  // of the complex at hand
