@@ -36,11 +36,10 @@ void warn_of_features_outside(const Subject& subject, CheckReport& report) {
   const Plc& plc = subject.plc;
   const auto warn = [&](std::size_t count, std::string_view kinds, std::string_view kind, Index first,
                         Tag tag, const Point& where) {
-    if (count > 0)
-      report.warnings.push_back(
-          fmt::format("{} outside of every region are in no mesh: {}, the first one {} {} (tag {}) at "
-                      "{}. Move them into a region, or remove them.",
-                      kinds, count, kind, first, tag, At{where}));
+    report.warnings.push_back(
+        fmt::format("{} outside of every region are in no mesh: {}, the first one {} {} (tag {}) at "
+                    "{}. Move them into a region, or remove them.",
+                    kinds, count, kind, first, tag, At{where}));
   };
   std::size_t count = 0;
   Index first = none;
