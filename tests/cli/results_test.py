@@ -178,6 +178,16 @@ class Reports(ProgramTest):
         self.assertEqual([w["where"] for w in warnings], [[70, 0, 0]])
         self.assertIn("warning: ", self.expect(0, "info", outside, writes=True).stdout)
 
+    def test_lines_outside_of_every_region_are_told(self):
+        """In no mesh, which nothing else says."""
+        corners = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)] + [(2, 0.5, 0.5), (3, 0.5, 0.5)]
+        sides = ["1 2 4 3", "5 6 8 7", "1 2 6 5", "3 4 8 7", "1 3 7 5", "2 4 8 6"]
+        points = "".join(f"{i} {x} {y} {z}\n" for i, (x, y, z) in enumerate(corners, 1))
+        facets = "".join(f"1 0 {i}\n4 {side}\n" for i, side in enumerate(sides, 1)) + "1 0 77\n2 9 10\n"
+        wire = self.write("wire.poly", f"10 3 0 0\n{points}7 1\n{facets}0\n0\n")
+        run = self.expect(0, wire, "-o", self.out, "--size", "0.5", writes=True)
+        self.assertRegex(run.stderr, r"warning: Curves outside .* 1, the first .* \(tag 77\) at \(2, 0.5, 0.5\)")
+
     def test_a_link_is_followed(self):
         named, link = self.folder / "named.json", self.folder / "link.json"
         named.write_text("old")

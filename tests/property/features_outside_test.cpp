@@ -109,6 +109,58 @@ TEST(FeaturesOutside, ThoseInsideStay) {
   EXPECT_TRUE(has_tag(meshed.result.mesh, sheet_tag));
 }
 
+bool tells_of(const CheckReport& report, const std::string& kind) {
+  return std::any_of(report.warnings.begin(), report.warnings.end(), [&](const std::string& warning) {
+    return warning.find(kind + " outside of every region are in no mesh: ") == 0;
+  });
+}
+
+PolygonSoup box_with_line(const Point& a, const Point& b) {
+  PolygonSoup soup = box();
+  soup.points.push_back(a);
+  soup.points.push_back(b);
+  soup.segments.push_back({8, 9, 5});
+  return soup;
+}
+
+// No mesh has them, nor do they belong to a sheet that the complex warns of.
+TEST(FeaturesOutside, LinesAreTold) {
+  const Meshed outside = mesh_of(box_with_line({2, 0.5, 0.5}, {3, 0.5, 0.5}), with_size(0.5));
+  EXPECT_EQ(faults(outside), "");
+  EXPECT_TRUE(tells_of(outside.report, "Curves"));
+  EXPECT_FALSE(tells_of(outside.report, "Vertices"));  // they are the line's ends
+  ASSERT_EQ(outside.report.warnings.size(), 1U);
+  EXPECT_NE(outside.report.warnings[0].find("(tag 5) at (2, 0.5, 0.5)"), std::string::npos)
+      << outside.report.warnings[0];
+  EXPECT_TRUE(outside.result.mesh.edge_tag.end() ==
+              std::find(outside.result.mesh.edge_tag.begin(), outside.result.mesh.edge_tag.end(), 5));
+  const Meshed inside = mesh_of(box_with_line({0.3, 0.5, 0.5}, {0.7, 0.5, 0.5}), with_size(0.5));
+  EXPECT_EQ(faults(inside), "");
+  EXPECT_FALSE(tells_of(inside.report, "Curves"));
+}
+
+TEST(FeaturesOutside, LinesInHolesAreTold) {
+  PolygonSoup soup = joined(box_with_line({0.45, 0.5, 0.5}, {0.55, 0.5, 0.5}),
+                            translated(scaled(box(), 0.4), {0.3, 0.3, 0.3}));
+  soup.hole_points.push_back({0.4, 0.4, 0.4});
+  const Meshed meshed = mesh_of(soup, with_size(0.5));
+  EXPECT_EQ(faults(meshed), "");
+  EXPECT_TRUE(tells_of(meshed.report, "Curves"));
+}
+
+TEST(FeaturesOutside, PointsAreTold) {
+  PolygonSoup soup = box();
+  for (const Point& p : {Point{1.5, 0.5, 0.5}, Point{0.5, 0.5, 0.5}}) {
+    soup.vertices.push_back(static_cast<Index>(soup.points.size()));
+    soup.points.push_back(p);
+  }
+  const Meshed meshed = mesh_of(soup, with_size(0.5));
+  EXPECT_EQ(faults(meshed), "");
+  ASSERT_TRUE(tells_of(meshed.report, "Vertices"));
+  EXPECT_NE(meshed.report.warnings[0].find("no mesh: 1, the first one"), std::string::npos)
+      << meshed.report.warnings[0];
+}
+
 // The numbers of features are those of the whole complex, whose patches outside come first here.
 TEST(FeaturesOutside, NumbersOfFeaturesAreThoseOfTheComplex) {
   PolygonSoup soup;

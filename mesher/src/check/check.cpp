@@ -83,7 +83,8 @@ void judge(Subject subject, CheckReport& report, Findings& findings, const Execu
                                       check_shape_kept(s, r, f);
                                     },
                                     check_conformity,
-                                    [](const Subject& s, CheckReport&, Findings& f) {
+                                    [](const Subject& s, CheckReport& r, Findings& f) {
+                                      warn_of_features_outside(s, r);
                                       check_watertight(s, f);
                                       check_vertices(s, f);
                                       check_listed_edges(s, f);

@@ -1,5 +1,8 @@
 // Features of the complex that lie outside all regions: the mesh does not have them.
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <string_view>
 
 #include "check/subject.h"
 
@@ -27,6 +30,31 @@ bool vertex_is_outside(const Subject& subject, Index vertex) {
   return std::all_of(v.patches.begin(), v.patches.end(),
                      [&](Index p) { return patch_is_outside(subject, p); }) &&
          std::all_of(v.curves.begin(), v.curves.end(), [&](Index c) { return curve_is_outside(subject, c); });
+}
+
+void warn_of_features_outside(const Subject& subject, CheckReport& report) {
+  const Plc& plc = subject.plc;
+  const auto warn = [&](std::size_t count, std::string_view kinds, std::string_view kind, Index first,
+                        Tag tag, const Point& where) {
+    report.warnings.push_back(
+        fmt::format("{} outside of every region are in no mesh: {}, the first one {} {} (tag {}) at "
+                    "{}. Move them into a region, or remove them.",
+                    kinds, count, kind, first, tag, At{where}));
+  };
+  std::size_t count = 0;
+  Index first = none;
+  for (Index c = 0; c < plc.curves.size(); ++c)
+    if (plc.curves[c].patches.empty() && curve_is_outside(subject, c) && count++ == 0) first = c;
+  if (count > 0)
+    warn(count, "Curves", "curve", first, plc.curves[first].tag,
+         plc.points[plc.curves[first].points.front()]);
+  count = 0;
+  for (Index v = 0; v < plc.vertices.size(); ++v)
+    if (plc.vertices[v].patches.empty() && plc.vertices[v].curves.empty() && vertex_is_outside(subject, v) &&
+        count++ == 0)
+      first = v;
+  if (count > 0)
+    warn(count, "Vertices", "vertex", first, plc.vertices[first].tag, plc.points[plc.vertices[first].point]);
 }
 
 }  // namespace collarmesh::checks

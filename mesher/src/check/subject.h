@@ -193,4 +193,8 @@ bool curve_is_outside(const Subject& subject, Index curve);
 bool vertex_is_outside(const Subject& subject, Index vertex);
 bool patch_is_outside(const Subject& subject, Index patch);
 
+/// Warns of curves and vertices that are on no patch and lie outside all regions; the complex warns of
+/// patches.
+void warn_of_features_outside(const Subject& subject, CheckReport& report);
+
 }  // namespace collarmesh::checks
