@@ -79,7 +79,8 @@ class InputSource : public ComplexSource {
       stages_.print("wrapped: no mesh of the complex keeps every guarantee within its vertices\n");
     else if (repair.tolerance != arguments_.repair.tolerance)
       stages_.print(fmt::format(
-          "repaired again, with --repair-tolerance {:.3g}: no mesh of the complex keeps every guarantee\n",
+          "repaired again, with --repair-tolerance {:.3g}: the complex before has no mesh that keeps every "
+          "guarantee within the vertices that the sizes ask for\n",
           repair.tolerance));
     RepairedPlc built{input_.build(arguments_.complex, repair), input_.repaired(), {}};
     built_with_ = repair;

@@ -56,11 +56,13 @@ ExitCode repair_command(const RepairArguments& a) {
   process::limit_memory(process::memory_of_the_machine() / 2);
   process::require_writable(a.output, files::files_written(a.output, a.output_format));
   for (const std::string& report : a.reports) process::require_writable(report);
+  process::note_stage({.stage = "read"});
   files::ComplexInput input(a.inputs, interruptible({.format = a.input_format,
                                                      .overlap = a.overlap,
                                                      .threads = a.mesh.threads,
                                                      .names = a.names,
                                                      .given_names = a.given_names}));
+  process::note_stage({.stage = "complex"});
   const Plc plc = input.build(a.complex, a.repair);
   process::stop_if_interrupted();
   const nlohmann::ordered_json told =

@@ -77,6 +77,17 @@ bool asked_to_stop() {
   return interrupted.load(std::memory_order_relaxed);
 }
 
+/// What may help in the stage that the time was spent in.
+std::string coarser_text() {
+  const std::string stage = stage_reached().stage;
+  if (stage == "start" || stage == "read")
+    return "or read less at once: the solids of a large assembly by files of their own";
+  if (stage == "complex")
+    return "or try another --repair-tolerance, as facets that intersect in many places take the time, or "
+           "--repair wrap";
+  return "or --size for a coarser mesh, or use --repair wrap, which ignores detail much finer than the size";
+}
+
 Stopped reason_to_stop() {
   if (signals.load(std::memory_order_relaxed) > 0) return Cancelled();
   const std::lock_guard lock(deadline_mutex);
@@ -84,15 +95,11 @@ Stopped reason_to_stop() {
     return {
         ExitCode::budget_hit,
         fmt::format(
-            "the system's limit of CPU time is reached ({}); nothing was written; raise it (ulimit -t), or "
-            "--size for a coarser mesh, or use --repair wrap, which ignores detail much finer than the size",
-            stage_told)};
-  return {
-      ExitCode::budget_hit,
-      fmt::format(
-          "the time limit of {} s is reached ({}); nothing was written; raise --time-limit, or --size for a "
-          "coarser mesh, or use --repair wrap, which ignores detail much finer than the size",
-          time_limit, stage_told)};
+            "the system's limit of CPU time is reached ({}); nothing was written; raise it (ulimit -t), {}",
+            stage_told, coarser_text())};
+  return {ExitCode::budget_hit,
+          fmt::format("the time limit of {} s is reached ({}); nothing was written; raise --time-limit, {}",
+                      time_limit, stage_told, coarser_text())};
 }
 
 }  // namespace

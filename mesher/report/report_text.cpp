@@ -64,11 +64,15 @@ RepairReport beyond_tolerance(const RepairReport& report) {
   rest.flakes = report.flakes;
   rest.second_sides = report.second_sides;
   rest.merged = report.merged;
+  rest.vanished = report.vanished;
+  rest.united = report.united;
   rest.filled = report.filled;
   rest.lost_tags = report.lost_tags;
   rest.wrapped = report.wrapped;
   rest.largest_distance = report.largest_distance;
   rest.largest_distance_of_input = report.largest_distance_of_input;
+  rest.farthest_of_input = report.farthest_of_input;
+  rest.tolerance = report.tolerance;
   rest.repaired = std::max(report.largest_distance, report.largest_distance_of_input) > report.tolerance;
   return rest;
 }

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "support/repair_shapes.h"
 #include "support/shapes.h"
@@ -113,7 +116,88 @@ TEST(RepairDistances, OfAFinThatVanishes) {
   EXPECT_LT(r.report.largest_distance, r.report.tolerance);
   EXPECT_NEAR(r.report.largest_distance_of_input, 0.5, 1e-6);
   const auto lines = describe(r.report);
-  EXPECT_NE(lines.back().find("within 0.5 of the repaired surface"), std::string::npos) << lines.back();
+  EXPECT_NE(lines.back().find(
+                "within 0.5 of the repaired surface; the farthest part of the input that is gone is at"),
+            std::string::npos)
+      << lines.back();
+  EXPECT_NEAR(std::fabs(distance_to(r.report.farthest_of_input, triangles_of(testing::box()))), 0.5, 0.02);
+}
+
+// --- kept_volume ---
+
+KeptVolume kept_of(const PolygonSoup& input, const PolygonSoup& repaired) {
+  return kept_volume(triangles_of(input), triangles_of(repaired));
+}
+
+TEST(KeptVolume, OfABoxInTwoHalves) {
+  const PolygonSoup box = testing::box({0, 0, 0}, {2, 1, 1});
+  const KeptVolume all = kept_of(box, box), half = kept_of(box, testing::box());
+  EXPECT_NEAR(all.input, 2, 0.02);
+  EXPECT_EQ(all.lost, 0);
+  EXPECT_NEAR(half.input, 2, 0.02);
+  EXPECT_NEAR(half.lost, 1, 0.02);
+  EXPECT_GT(half.where.x, 1);
+}
+
+TEST(KeptVolume, DoesNotDependOnTheOrientation) {
+  const PolygonSoup ball = testing::icosphere(1, 6);
+  const KeptVolume kept = kept_of(testing::inverted(ball), ball);
+  EXPECT_NEAR(kept.input, 4.1, 0.3);
+  EXPECT_EQ(kept.lost, 0);
+}
+
+// An open surface encloses no volume that could be lost.
+TEST(KeptVolume, OfHalfABoxIsNotKnown) {
+  const PolygonSoup cube = testing::box();
+  const PolygonSoup half = filtered(cube, [&](Index f) { return cube.facet_tag(f) <= 3; });
+  EXPECT_EQ(kept_of(half, testing::box({5, 5, 5}, {6, 6, 6})).input, 0);
+}
+
+// --- Regions of valid complexes that a repair takes away ---
+
+PolygonSoup layered_block(double thickness) {
+  PolygonSoup soup;
+  for (const double z : {0.0, 0.5, 0.5 + thickness, 1.0})
+    for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}})
+      soup.points.push_back({x, y, z});
+  Tag tag = 0;
+  for (Index k = 0; k < 4; ++k) soup.add_facet(std::array{4 * k, 4 * k + 1, 4 * k + 2, 4 * k + 3}, ++tag);
+  for (Index k = 0; k < 3; ++k)
+    for (Index c = 0; c < 4; ++c) {
+      const Index next = (c + 1) % 4;
+      soup.add_facet(std::array{4 * k + c, 4 * k + next, 4 * k + 4 + next, 4 * k + 4 + c}, ++tag);
+    }
+  return soup;
+}
+
+TEST(LostRegions, AThinLayerIsTold) {
+  for (const double thickness : {1e-3, 1e-6}) {
+    SCOPED_TRACE(thickness);
+    const PolygonSoup block = layered_block(thickness);
+    const RepairedPlc r = build_repaired_plc({&block, 1});
+    const bool vanishes = thickness < 1e-5;
+    // Its two sides cancel out, so what is below and above is one.
+    EXPECT_EQ(r.plc.regions.size(), vanishes ? 2U : 4U);
+    EXPECT_EQ(r.report.vanished.count, vanishes ? 1U : 0U);
+    EXPECT_EQ(r.report.united.count, vanishes ? 1U : 0U);
+    if (!vanishes) continue;
+    EXPECT_NEAR(r.report.vanished.size, thickness, 1e-3 * thickness);
+    EXPECT_NEAR(r.report.vanished.where.front().z, 0.5, 2 * thickness);
+    const auto lines = describe(r.report);
+    EXPECT_TRUE(std::ranges::any_of(lines, [](const std::string& line) {
+      return line.starts_with("1 region as thin as the tolerance") &&
+             line.find("--repair-tolerance") != std::string::npos;
+    })) << lines.front();
+  }
+}
+
+TEST(LostRegions, BoxesThatAreOneNowAreTold) {
+  const PolygonSoup boxes[] = {
+      testing::joined(testing::box(), testing::translated(testing::box(), {0, 0, 1 + 1e-6}))};
+  const RepairedPlc r = build_repaired_plc(boxes);
+  ASSERT_EQ(r.plc.regions.size(), 2U);
+  EXPECT_EQ(r.report.united.count, 1U);
+  EXPECT_EQ(r.report.vanished.count, 0U);
 }
 
 }  // namespace

@@ -66,11 +66,14 @@ TopoDS_Shape read_brep(const std::string& path) {
 TopoDS_Shape read_exchange(const std::string& path, const char* format, XSControl_Reader& reader) {
   Interface_Static::SetCVal("xstep.cascade.unit", "MM");
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
-    throw ReadError(fmt::format("{}: this is no {} file, or it ends early", path, format));
+    throw ReadError(
+        fmt::format("{}: this is no {} file, or it ends early; export the shape again", path, format));
   reader.TransferRoots();
   const TopoDS_Shape shape = reader.OneShape();
   if (shape.IsNull())
-    throw ReadError(fmt::format("{}: the {} file holds no shape that can be read", path, format));
+    throw ReadError(fmt::format(
+        "{}: the {} file holds no shape that can be read; export its solids or faces again, or as .brep",
+        path, format));
   return shape;
 }
 
@@ -109,7 +112,9 @@ TopoDS_Shape read_shape(const std::string& path, CadFormat format, CadLabels& la
   } catch (const Standard_OutOfMemory&) {
     throw std::bad_alloc();
   } catch (const Standard_Failure& failure) {
-    throw ReadError(fmt::format("{}: OpenCASCADE cannot read it ({})", path, text(failure)));
+    throw ReadError(fmt::format(
+        "{}: OpenCASCADE cannot read it ({}); export it again, or in another format: .step, .brep, .stl",
+        path, text(failure)));
   }
   throw ReadError(fmt::format("{}: not known as a CAD file; use {}", path, fmt::join(cad_formats(), " ")));
 }

@@ -67,6 +67,10 @@ struct RepairReport {
   std::size_t second_sides = 0;  ///< triangles of surfaces that had two sides everywhere, dropped
   RepairPlaces merged;           ///< triangles inside solids, removed; size: area
   RepairPlaces dropped;          ///< triangles of open sheets outside of all solids, removed
+  RepairPlaces
+      thin_chambers;      ///< between facets that nearly coincide, now part of their neighbours; size: volume
+  RepairPlaces vanished;  ///< regions of valid input, as thin as the tolerance; size: volume
+  RepairPlaces united;    ///< regions of valid input less than before, besides those; places: in others
   std::vector<FilledHole> filled;
   std::vector<Tag> lost_tags;     ///< tags of facets of which nothing is left
   std::vector<Tag> lost_groups;   ///< those of them that are more than numbers of CAD faces
@@ -77,8 +81,9 @@ struct RepairReport {
   /// The largest distance of the input's facets from the repaired ones, absolute. Facets that lie inside the
   /// repaired solids do not count.
   double largest_distance_of_input = 0;
-  bool gave_up = false;    ///< the work was more than `RepairOptions::max_work`
-  bool cancelled = false;  ///< by the execution
+  Point farthest_of_input;  ///< a point of the input at that distance
+  bool gave_up = false;     ///< the work was more than `RepairOptions::max_work`
+  bool cancelled = false;   ///< by the execution
 
   /// Returns whether any facet changed.
   bool changed() const {

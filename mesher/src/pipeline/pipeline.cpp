@@ -455,9 +455,9 @@ class Pipeline {
         generate(*plc_, options, inner_, neighbours_, options_.trace ? &made_.trace : nullptr);
     if (result.status == MeshStatus::cancelled && out_of_time()) stop();
     if (hit_bound())
-      result.message =
-          describe_explosion(*plc_, most_vertices_, result.where) +
-          "; mend what nearly meets there, wrap it (repair wrap), or let it go on (max-vertices)";
+      result.message = describe_explosion(*plc_, most_vertices_, result.where) +
+                       "; mend what nearly meets there, raise the repair tolerance (repair-tolerance), wrap "
+                       "it (repair wrap), or let it go on (max-vertices)";
     if (result.status == MeshStatus::cancelled || result.status == MeshStatus::budget_hit) throw Ended();
     refined_with_.bounds.lower_where_forced = result.has_narrow_cells;
   }

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <set>
 
 #include "common/disjoint_sets.h"
 #include "facets/faults.h"
@@ -122,6 +124,36 @@ std::vector<Plc::Warning> lost_bodies(std::span<const PolygonSoup> soups, const 
   }
   if (more > 0) warnings.push_back({fmt::format("{} more bodies are lost in the same way.", more), {}});
   return warnings;
+}
+
+LostRegions lost_regions(const Plc& before, const Plc& after, double tolerance) {
+  constexpr double most_of_a_volume = 0.02;  // may be lost or gained
+  std::multiset<double> volumes;
+  for (std::size_t r = 1; r < after.regions.size(); ++r) volumes.insert(std::fabs(after.regions[r].volume));
+  std::vector<double> areas(before.regions.size(), 0);
+  std::vector<Point> places(before.regions.size());
+  for (const Plc::Triangle& t : before.triangles) {
+    const Point &a = before.points[t.points[0]], &b = before.points[t.points[1]],
+                &c = before.points[t.points[2]];
+    for (const Index region : before.patches[t.patch].regions) {
+      areas[region] += 0.5 * norm(cross(b - a, c - a));
+      places[region] = a;
+    }
+  }
+  LostRegions lost;
+  for (std::size_t r = 1; r < before.regions.size(); ++r) {
+    const double volume = std::fabs(before.regions[r].volume);
+    const auto found = volumes.lower_bound(volume * (1 - most_of_a_volume));
+    if (found != volumes.end() && *found <= volume * (1 + most_of_a_volume)) {
+      volumes.erase(found);
+    } else if (volume <= tolerance * areas[r]) {
+      lost.thin_volume += volume;
+      lost.thin.push_back(places[r]);
+    } else {
+      lost.others.push_back(places[r]);
+    }
+  }
+  return lost;
 }
 
 }  // namespace collarmesh::plc

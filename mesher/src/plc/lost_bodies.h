@@ -13,4 +13,15 @@ namespace collarmesh::plc {
 /// none. Cost: that of sorting the points.
 std::vector<Plc::Warning> lost_bodies(std::span<const PolygonSoup> soups, const Plc& plc, double distance);
 
+/// Regions that no region of a repaired complex has the volume of (within 2%), a place on each.
+struct LostRegions {
+  std::vector<Point> thin;    ///< no thicker than the tolerance allows
+  double thin_volume = 0;     ///< of all of them
+  std::vector<Point> others;  ///< parts of larger ones now, or several
+};
+
+/// Compares `before` with `after`, a repair of it. Thin is what is no thicker than twice the `tolerance`
+/// (absolute; by twice the volume over the area). Cost: O(n log n).
+LostRegions lost_regions(const Plc& before, const Plc& after, double tolerance);
+
 }  // namespace collarmesh::plc

@@ -20,8 +20,11 @@ std::string moved_text(const RepairReport& r) {
   if (r.largest_distance == 0 && r.largest_distance_of_input == 0) return "repair moved nothing";
   return fmt::format(
       "the repaired surface is within {:.3g} of the input, and the input, except for parts inside solids, "
-      "within {:.3g} of the repaired surface",
-      r.largest_distance, r.largest_distance_of_input);
+      "within {:.3g} of the repaired surface{}",
+      r.largest_distance, r.largest_distance_of_input,
+      r.largest_distance_of_input > r.tolerance
+          ? fmt::format("; the farthest part of the input that is gone is at {}", place(r.farthest_of_input))
+          : "");
 }
 
 }  // namespace
@@ -71,6 +74,23 @@ std::vector<std::string> describe(const RepairReport& r) {
     lines.push_back(fmt::format("{} feature{} below the tolerance of {:.3g} collapsed, over at most {:.3g}{}",
                                 r.collapsed.count, plural(r.collapsed.count), r.tolerance, r.collapsed.size,
                                 first_place(r.collapsed)));
+  if (r.thin_chambers.count > 0)
+    lines.push_back(fmt::format(
+        "{} chamber{} thinner than the tolerance of {:.3g} between facets that nearly coincide added to "
+        "what surrounds {}, a volume of {:.3g}{}",
+        r.thin_chambers.count, plural(r.thin_chambers.count), r.tolerance,
+        r.thin_chambers.count == 1 ? "it" : "them", r.thin_chambers.size, first_place(r.thin_chambers)));
+  if (r.vanished.count > 0)
+    lines.push_back(fmt::format(
+        "{} region{} as thin as the tolerance of {:.3g} vanished, with a volume of {:.3g}{}; a smaller "
+        "--repair-tolerance keeps {}",
+        r.vanished.count, plural(r.vanished.count), r.tolerance, r.vanished.size, first_place(r.vanished),
+        r.vanished.count == 1 ? "it" : "them"));
+  if (r.united.count > 0)
+    lines.push_back(fmt::format(
+        "{} region{} less than before, as what parted regions is narrower than the tolerance of {:.3g}{}; a "
+        "smaller --repair-tolerance keeps them apart",
+        r.united.count, plural(r.united.count), r.tolerance, first_place(r.united)));
   if (r.kept.count > 0)
     lines.push_back(fmt::format("{} place{} left as before, as creases there would become sharper{}",
                                 r.kept.count, plural(r.kept.count), first_place(r.kept)));

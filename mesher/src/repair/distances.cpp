@@ -1,6 +1,7 @@
 #include "repair/distances.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -112,12 +113,47 @@ RepairDistances measure_distances(std::span<const CornerPoints> input, std::span
     if (winding.at(centroid) > half && tree.nearest(centroid, radius, hint).distance > radius) continue;
     for_each_sample(t, spacing, [&](const Point& p) {
       const DistanceTree::Nearest nearest = tree.nearest(p, distances.of_input, hint);
-      if (nearest.distance > distances.of_input && winding.at(p) < half)
+      if (nearest.distance > distances.of_input && winding.at(p) < half) {
         distances.of_input = nearest.distance;
+        distances.farthest_of_input = p;
+      }
       hint = nearest.triangle;
     });
   }
   return distances;
+}
+
+KeptVolume kept_volume(std::span<const CornerPoints> input, std::span<const CornerPoints> repaired) {
+  constexpr int places = 1000;
+  constexpr double nearly = 0.25, most_unclear = 0.2, half = 0.5;
+  Box box;
+  for (const CornerPoints& t : input)
+    for (const Point& p : t) box.add(p);
+  const WindingNumber before = winding_of(input, {}), after = winding_of(repaired, {});
+  KeptVolume kept;
+  int inside = 0, unclear = 0, lost = 0;
+  for (int i = 0; i < places; ++i) {
+    // M. Roberts' sequence: evenly spread, the same on every machine.
+    constexpr std::array<double, 3> steps{0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
+    Point p;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double share = half + i * steps[axis];
+      p[axis] = box.min[axis] + (share - std::floor(share)) * (box.max[axis] - box.min[axis]);
+    }
+    const double winding = std::fabs(before.at(p));
+    if (winding < half) continue;
+    ++inside;
+    if (std::fabs(winding - std::round(winding)) > nearly) ++unclear;
+    if (std::fabs(after.at(p)) > half) continue;
+    ++lost;
+    kept.where = p;
+  }
+  if (unclear > most_unclear * inside) return {};
+  const Vector size = box.max - box.min;
+  const double each = size.x * size.y * size.z / places;
+  kept.input = inside * each;
+  kept.lost = lost * each;
+  return kept;
 }
 
 }  // namespace collarmesh::repairing

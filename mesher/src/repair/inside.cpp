@@ -321,7 +321,6 @@ class BoundaryKeeper {
   // Each takes the label that it has most area in common with, from what is thick inwards.
   void give_away_thin_chambers() {
     std::map<Index, Chamber> left = thin_chambers();
-    report_.thin_chambers = left.size();
     while (!left.empty()) {
       std::vector<std::pair<Index, Index>> labelled;
       for (const auto& [shell, chamber] : left) {
@@ -335,6 +334,10 @@ class BoundaryKeeper {
       }
       if (labelled.empty()) return;  // thin ones among themselves
       for (const auto& [shell, label] : labelled) {
+        if (label_[shell] != label) {
+          report_.chamber_volume += left.at(shell).volume;
+          report_.chamber_places.push_back(left.at(shell).origin);
+        }
         label_[shell] = label;
         left.erase(shell);
       }

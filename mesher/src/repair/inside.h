@@ -42,8 +42,9 @@ struct InsideReport {
   std::size_t internal_facets = 0;  ///< open sheets inside a solid, which stay
   std::size_t dropped_sheets = 0;   ///< triangles of open sheets outside of all solids
   double dropped_area = 0;          ///< of these
-  std::size_t thin_chambers = 0;    ///< that became part of their neighbours
   std::vector<Point> places;
+  double chamber_volume = 0;          ///< of thin chambers that became part of their neighbours
+  std::vector<Point> chamber_places;  ///< one in each
 };
 
 /// Of a clean arrangement keep the triangles that bound something. Inside a soup is where the winding number

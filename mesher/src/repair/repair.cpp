@@ -70,6 +70,11 @@ double single_precision_error(std::span<const PolygonSoup> soups) {
   return half_unit * farthest;
 }
 
+/// A repair that loses most of what the surface encloses.
+struct LostVolume : PlcError {
+  explicit LostVolume(const std::string& message) : PlcError(message, {}) {}
+};
+
 class Repairer {
  public:
   Repairer(std::span<const PolygonSoup> soups, const RepairOptions& options, const PlcOptions& complex,
@@ -92,6 +97,18 @@ class Repairer {
   /// All is open sheets that do not even meet, or most of it is open sheets.
   bool encloses_nothing() const { return encloses_nothing_; }
 
+  /// Of surfaces that are closed, or nearly so; nothing is measured where no part of the input that is far
+  /// from the result is outside of it.
+  KeptVolume kept_volume(const RepairReport& report) const {
+    constexpr double far = 10;  // tolerances
+    const bool any_complex = std::ranges::any_of(draft_.soup_is_complex, [](bool b) { return b; });
+    if (any_complex || report.largest_distance_of_input < far * tolerance_) return {};
+    std::vector<CornerPoints> repaired;
+    for (Index t = 0; t < draft_.triangles.size(); ++t)
+      repaired.push_back({draft_.corner(t, 0), draft_.corner(t, 1), draft_.corner(t, 2)});
+    return repairing::kept_volume(input_triangles_, repaired);
+  }
+
   /// How far the result is from the input.
   void measure(RepairReport& report) const {
     std::set<Tag> fills;
@@ -103,6 +120,7 @@ class Repairer {
     const RepairDistances distances = measure_distances(input_triangles_, repaired, filled);
     report.largest_distance = distances.of_repaired;
     report.largest_distance_of_input = distances.of_input;
+    report.farthest_of_input = distances.farthest_of_input;
   }
 
  private:
@@ -327,6 +345,9 @@ class Repairer {
     report_.merged.count += kept.removed_triangles;
     report_.merged.size += kept.removed_area;
     report_.dropped.count += kept.dropped_sheets;
+    const double before = report_.thin_chambers.size;
+    add_places(report_.thin_chambers, kept.chamber_places.size(), 0, kept.chamber_places);
+    report_.thin_chambers.size = before + kept.chamber_volume;
     for (const Point& p : kept.places)
       if (report_.merged.where.size() < most_places) report_.merged.where.push_back(p);
     return true;
@@ -396,6 +417,22 @@ std::vector<Plc::Warning> lost_lines(std::span<const PolygonSoup> soups, const P
   return warnings;
 }
 
+// Throws LostVolume where most of the volume would be lost, else tells what is.
+void judge_volume(const KeptVolume& kept, Plc& plc) {
+  constexpr double most = 0.5, told = 0.05;
+  if (kept.lost > most * kept.input)
+    throw LostVolume(fmt::format(
+        "Its repair would lose {:.0f}% of the volume that the surface encloses, about {:.3g}, such as at {}.",
+        100 * kept.lost / kept.input, kept.input, text(kept.where)));
+  if (kept.lost > told * kept.input)
+    plc.warnings.push_back(
+        {fmt::format(
+             "The repair lost about {:.0f}% of the volume that the surface enclosed, about {:.3g}, such "
+             "as at {}; close the surface there, or try another --repair-tolerance.",
+             100 * kept.lost / kept.input, kept.input, text(kept.where)),
+         kept.where});
+}
+
 // The complex of what was repaired, and how far it is from the input. Throws PlcError.
 RepairedPlc judged(const Repairer& repairer, RepairResult result, const PlcOptions& options) {
   RepairedPlc complex{build_plc(result.soups, options), std::move(result.report), std::move(result.soups)};
@@ -405,8 +442,19 @@ RepairedPlc judged(const Repairer& repairer, RepairResult result, const PlcOptio
     std::ranges::copy(plc::lost_bodies(repairer.input(), complex.plc, repairer.tolerance()),
                       std::back_inserter(complex.plc.warnings));
     std::ranges::copy(lost_lines(repairer.input(), complex.plc), std::back_inserter(complex.plc.warnings));
+    judge_volume(repairer.kept_volume(complex.report), complex.plc);
   }
   return with_lost_regions(std::move(complex), repairer.input());
+}
+
+// Tells which regions of a valid complex its repair took away.
+void compare_regions(const Plc& before, RepairedPlc& repaired) {
+  RepairReport& report = repaired.report;
+  const plc::LostRegions lost = plc::lost_regions(before, repaired.plc, report.tolerance);
+  add_places(report.vanished, lost.thin.size(), lost.thin_volume, lost.thin);
+  const std::size_t left = before.regions.size() - lost.thin.size();
+  if (repaired.plc.regions.size() < left)
+    add_places(report.united, left - repaired.plc.regions.size(), 0, lost.others);
 }
 
 // To 1, 2 or 5 times a power of ten, which a message can name.
@@ -456,7 +504,9 @@ RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcO
   const bool changes = result.report.changed();
   if (!result.report.gave_up && changes) {
     try {
-      return judged(repairer, std::move(result), options);
+      RepairedPlc complex = judged(repairer, std::move(result), options);
+      compare_regions(plc, complex);
+      return complex;
     } catch (const PlcError&) {
       // The complex is valid without it.
     }
@@ -492,25 +542,30 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
     if (repair_options.mode == RepairMode::off || unusable) throw;
     first = error;
   }
-  for (const double factor : {1.0, 10.0}) {
-    const RepairOptions wider = for_try(repair_options, factor);
-    Repairer repairer(soups, wider, options, execution);
+  std::optional<std::string> lost_volume;
+  for (const double factor : {1.0, 10.0, 0.1}) {
+    if (factor < 1 && !lost_volume) break;  // a finer one may keep more
+    const RepairOptions other = for_try(repair_options, factor);
+    Repairer repairer(soups, other, options, execution);
     RepairResult result = repairer.run();
     if (result.report.cancelled) return {Plc(), std::move(result.report), {}};
     if (result.report.gave_up) {
-      first = given_up(*first, wider);
+      first = given_up(*first, other);
       break;
     }
     if (repairer.encloses_nothing() && options.require_solid) continue;
     try {
       return judged(repairer, std::move(result), options);
+    } catch (const LostVolume& error) {
+      lost_volume = error.what();
     } catch (const PlcError&) {
-      continue;  // a wider tolerance may help
+      continue;  // another tolerance may help
     }
   }
   // The last resort, on request.
   if (repair_options.mode == RepairMode::wrap)
     if (auto wrapped = build_wrapped_plc(soups, options, repair_options)) return *std::move(wrapped);
+  if (lost_volume) throw PlcError(fmt::format("{} {}", first->what(), *lost_volume), first->faults);
   throw PlcError(*first);
 }
 
