@@ -143,6 +143,7 @@ TEST(OptionTable, ContradictionsAreRefused) {
   EXPECT_THROW(validate({{.mesh = {.bounds = {.thin_angle = 0}}}}), OptionError);
   EXPECT_NO_THROW(validate({{.periodic = {{"x", "1=2:rotation,z,90"}}}}));
   EXPECT_THROW(validate({{.split = {.keep_apart = true}, .periodic = {{"x"}}}}), OptionError);
+  EXPECT_THROW(validate({{.coarsen = false, .periodic = {{"x"}}}}), OptionError);
 }
 
 TEST(Profile, OfThePaperSetsOthersAndRefusesContradictions) {

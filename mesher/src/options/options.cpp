@@ -128,6 +128,8 @@ void require_consistent(const RunOptions& o) {
   require(!o.split.any() || !o.periodic.any(),
           "split and keep-apart would give nodes on periodic faces copies without images; leave one of them "
           "and periodic out");
+  require(o.coarsen || !o.periodic.any(),
+          "the elements beside periodic faces are coarsened anew; leave periodic out, or coarsen");
   const bool is_papers = o.mesh.profile == Profile::paper;
   require(!is_papers || o.mesh.bounds.radius_edge * o.mesh.bounds.radius_edge > 8 ||
               !o.mesh.bounds.thin_in_narrow_places_only,

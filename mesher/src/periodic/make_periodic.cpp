@@ -15,8 +15,8 @@ namespace collarmesh {
 namespace periodicity {
 namespace {
 
-constexpr double good = 0.15,
-                 fair = 0.05;   // qualities that edges which are turned are to leave, while they can
+// Qualities that turned edges are to leave, while they can.
+constexpr double good = 0.15, fair = 0.05;
 constexpr unsigned rounds = 8;  // in which curves get nodes that others of their class could not lose
 
 struct Periodicity {

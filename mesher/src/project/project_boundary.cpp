@@ -326,7 +326,7 @@ class BoundaryProjection {
   improvement::CellBounds cells_;
   projection::Relaxation room_;
   std::vector<Move> moves_;
-  std::vector<Index> slot_of_;           // in moves_, by point
+  std::vector<Index> slot_of_;       // in moves_, by point
   std::unordered_set<Index> stays_;  // centres of balls, nodes of periodic faces
   ProjectReport report_;
 };
