@@ -45,9 +45,9 @@ struct PeriodicReport {
 /// other within this distance: the message names the patch, the largest distance and where.
 void require_periodic_patches(const PeriodicOptions& options, const Plc& plc, double distance);
 
-/// Gives the second group of each pair the nodes, edges and triangles of the first, moved. Tets beside them are
-/// made anew and may be poor. Sets `mesh.periodic`, but for nodes. Patches of these groups are planar and have
-/// a region on one side only. Throws OptionError as `require_periodic_patches` does.
+/// Gives the second group of each pair the nodes, edges and triangles of the first, moved. The tets beside
+/// them may be poor. Sets `mesh.periodic`, but for nodes. Patches of these groups are planar and have a
+/// region on one side only. Throws OptionError as `require_periodic_patches` does.
 PeriodicReport make_periodic(TetMesh& mesh, const Plc& plc, const PeriodicOptions& options, double distance);
 
 }  // namespace collarmesh
