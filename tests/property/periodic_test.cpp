@@ -86,15 +86,17 @@ TEST(PeriodicFaces, HaveMidEdgeNodesThatAreImages) {
   expect_alike(made.result.mesh, 2);
 }
 
-// Boxes inside that the faces cut, one on all sides of a corner.
-TEST(PeriodicFaces, AreCutByInclusions) {
-  std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1})};
-  for (const double x : {0.0, 0.8}) soups.push_back(box({x, 0.3, 0.4}, {x + 0.2, 0.7, 0.75}));
-  for (const double x : {0.0, 0.9})
-    for (const double y : {0.0, 0.9})
-      for (const double z : {0.0, 0.9}) soups.push_back(box({x, y, z}, {x + 0.1, y + 0.1, z + 0.1}));
-  const PipelineResult made = mesh_of_soups(soups, {"x", "y", "z"}, 0.15);
+// Regions that the faces cut, along edges and at corners too.
+TEST(PeriodicFaces, AreCutByRegions) {
+  const std::array<double, 4> cuts{0, 0.15, 0.7, 1};
+  std::vector<PolygonSoup> boxes;
+  for (unsigned i = 0; i < 3; ++i)
+    for (unsigned j = 0; j < 3; ++j)
+      for (unsigned k = 0; k < 3; ++k)
+        boxes.push_back(box({cuts[i], cuts[j], cuts[k]}, {cuts[i + 1], cuts[j + 1], cuts[k + 1]}));
+  const PipelineResult made = mesh_of_soups({joined(boxes)}, {"x", "y", "z"}, 0.15);
   ASSERT_TRUE(made.guarantees_hold()) << made.missed();
+  EXPECT_EQ(*std::ranges::max_element(made.result.mesh.tet_region), 27U);
   for (std::size_t axis = 0; axis < 3; ++axis) expect_alike(made.result.mesh, axis);
 }
 
@@ -120,9 +122,12 @@ TEST(PeriodicFaces, ThatAreNoImagesAreRefused) {
   EXPECT_NE(refusal("nowhere=1", cube).find("'nowhere'"), std::string::npos);
   EXPECT_NE(refusal("1:2", cube).find("FIRST=SECOND"), std::string::npos);
   EXPECT_NE(refusal("1=2:translation,one,0,0", cube).find("'one' is no number"), std::string::npos);
-  const std::vector<PolygonSoup> one_sided{box({0, 0, 0}, {1, 1, 1}), box({0, 0.3, 0.3}, {0.2, 0.6, 0.6})};
-  EXPECT_NE(refusal("x", one_sided).find("images of each other"), std::string::npos)
-      << refusal("x", one_sided);
+  PolygonSoup tapered = cube[0];
+  for (Point& p : tapered.points)
+    if (p.x == 1) p.y *= 0.5;
+  EXPECT_NE(refusal("x", {tapered}).find("images of each other"), std::string::npos)
+      << refusal("x", {tapered});
+  EXPECT_NE(refusal("x", {wedge(30, 1)}).find("no planar patch lies at the low end"), std::string::npos);
 }
 
 }  // namespace

@@ -198,6 +198,7 @@ class Maker {
 
 std::vector<Tag> tags_of(const std::vector<Index>& patches, const Plc& plc) {
   std::vector<Tag> tags;
+  tags.reserve(patches.size());
   for (const Index patch : patches) tags.push_back(plc.patches[patch].tag);
   std::sort(tags.begin(), tags.end());
   tags.erase(std::unique(tags.begin(), tags.end()), tags.end());

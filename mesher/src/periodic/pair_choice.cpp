@@ -136,6 +136,7 @@ class PairReader {
       return rotation({}, axis, number(words[1]));
     }
     std::vector<double> values;
+    values.reserve(words.size());
     for (const std::string& word : words) values.push_back(number(word));
     if (kind == "translation" && values.size() == 3) return translation({values[0], values[1], values[2]});
     if (kind == "rotation" && values.size() == 7) {

@@ -123,13 +123,17 @@ std::vector<Index> PatchEditor::add_nodes(std::span<const Point> places) {
 }
 
 std::vector<Index> PatchEditor::put_nodes(std::span<const Point> places) {
-  const std::vector<Index> nodes = add_nodes(places);
+  std::vector<Index> nodes = add_nodes(places);
+  for (const Index node : others()) remove(node);
+  return nodes;
+}
+
+std::vector<Index> PatchEditor::others() const {
   std::vector<Index> others;
   for (const auto& [node, stays] : stays_)
     if (!stays) others.push_back(node);
   std::sort(others.begin(), others.end());
-  for (const Index node : others) remove(node);
-  return nodes;
+  return others;
 }
 
 // Walks there from the last one; looks at all where a hole is in the way.
@@ -308,12 +312,9 @@ std::vector<PatchEditor::Edge> PatchEditor::edges() const {
 }
 
 std::vector<Point> PatchEditor::places_of_others() const {
-  std::vector<Index> others;
-  for (const auto& [node, stays] : stays_)
-    if (!stays) others.push_back(node);
-  std::sort(others.begin(), others.end());
   std::vector<Point> places;
-  for (const Index node : others) places.push_back(editor_.at(node));
+  std::ranges::transform(others(), std::back_inserter(places),
+                         [this](Index node) { return editor_.at(node); });
   return places;
 }
 

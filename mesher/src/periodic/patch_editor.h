@@ -46,6 +46,7 @@ class PatchEditor {
 
  private:
   bool is_inside(Index node) const;
+  std::vector<Index> others() const;
   bool has(Index a, Index b) const { return faces_at_.contains(edge_key(a, b)); }
   int side(Index a, Index b, const Point& p) const;
   int side(Index a, Index b, Index c) const { return side(a, b, editor_.at(c)); }

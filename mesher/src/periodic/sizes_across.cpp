@@ -41,6 +41,7 @@ std::vector<Sample> samples_on(const TetMesh& mesh, const std::vector<Index>& pa
     }
   }
   std::vector<Sample> samples;
+  samples.reserve(nodes.size());
   for (const Index v : nodes) samples.push_back({mesh.points[v], sums[v].length / sums[v].edges});
   return samples;
 }
@@ -49,6 +50,7 @@ std::vector<Sample> samples_on(const TetMesh& mesh, const std::vector<Index>& pa
 void compare(const std::vector<Sample>& from, const std::vector<Sample>& to, const Motion& motion,
              std::vector<Sample>& wanted) {
   std::vector<Box> boxes;
+  boxes.reserve(to.size());
   for (const Sample& sample : to) boxes.push_back({sample.place, sample.place});
   const BoxTree tree(boxes);
   for (const auto& [place, length] : from) {

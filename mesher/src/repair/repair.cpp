@@ -408,6 +408,7 @@ std::vector<Plc::Warning> lost_lines(std::span<const PolygonSoup> soups, const P
       if (soup.facet_count() == 0 && segment.tag != 0) lost.emplace(segment.tag, soup.points[segment.a]);
   for (const Plc::Curve& curve : plc.curves) lost.erase(curve.tag);
   std::vector<Plc::Warning> warnings;
+  warnings.reserve(lost.size());
   for (const auto& [tag, where] : lost)
     warnings.push_back(
         {fmt::format("Nothing is left of the line with tag {} at {} after the repair; a smaller "
