@@ -16,7 +16,7 @@ import sys
 import tempfile
 
 SOURCES = pathlib.Path(__file__).resolve().parents[2] / "freecad_workbench"
-SECONDS = float(os.environ.get("COLLARMESH_TEST_SECONDS", 500))
+SECONDS = float(os.environ.get("COLLARMESH_TEST_SECONDS", 900))
 
 
 def command(script, gui):
