@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <map>
 
@@ -46,20 +45,14 @@ class ChainEditor {
   }
 
   ChainChange add(std::span<const Point> places, std::vector<Index>& nodes) {
-    std::vector<Point> to_insert;
-    for (const Point& place : places)
-      if (!move_one_to(place)) to_insert.push_back(place);
-    for (const Point& place : to_insert) insert(place);
+    move_and_insert(places);
     for (std::size_t i = 0; i < size(); ++i)
       if (stays_[i]) nodes.push_back(chain_.nodes[i]);
     return std::move(change_);
   }
 
   ChainChange put(std::span<const Point> places) {
-    std::vector<Point> to_insert;
-    for (const Point& place : places)
-      if (!move_one_to(place)) to_insert.push_back(place);
-    for (const Point& place : to_insert) insert(place);
+    move_and_insert(places);
     remove_others();
     return std::move(change_);
   }
@@ -73,6 +66,13 @@ class ChainEditor {
     if (!chain_.closed && i == 0) return ahead;
     if (!chain_.closed && i + 1 == size()) return behind;
     return std::min(ahead, behind);
+  }
+
+  void move_and_insert(std::span<const Point> places) {
+    std::vector<Point> to_insert;
+    for (const Point& place : places)
+      if (!move_one_to(place)) to_insert.push_back(place);
+    for (const Point& place : to_insert) insert(place);
   }
 
   bool move_one_to(const Point& place) {
@@ -97,7 +97,7 @@ class ChainEditor {
         nearest = i, least = d;
     const Index a = chain_.nodes[nearest], b = chain_.end(nearest);
     const Cavity cavity = editor_.around_edge(a, b);
-    if (editor_.worst(cavity, place, none) < 0) return;  // the next round tries again
+    if (editor_.worst(cavity, place, none) < 0) return;  // the certificate will miss it
     const Index node = editor_.insert(cavity, place, {1, curve_});
     editor_.divide_curve_edge(a, node, b);
     const auto position = static_cast<std::ptrdiff_t>(nearest + 1);

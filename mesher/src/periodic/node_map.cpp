@@ -11,8 +11,9 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double apart =
-    1e-6;  // of the diagonal: an image may be so far from its node when exact geometry moved both
+// Of the diagonal: an image is so near its node. Vertices of CAD shapes are images of each other to 1e-7
+// only.
+constexpr double apart = 1e-6;
 
 /// The corners of faces with these tags, sorted, and their edges with the nodes amid.
 struct Nodes {

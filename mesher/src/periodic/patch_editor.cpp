@@ -5,7 +5,6 @@
 #include <deque>
 #include <iterator>
 
-#include "collarmesh/error.h"
 #include "common/spatial_order.h"
 #include "delaunay/predicates.h"
 
@@ -70,16 +69,6 @@ void PatchEditor::drop_face(Index face) {
       if (at == face) at = none;
     if (found->second[0] == none && found->second[1] == none) faces_at_.erase(found);
   }
-}
-
-std::vector<Index> PatchEditor::faces() const {
-  std::vector<Index> faces;
-  for (const auto& [edge, at] : faces_at_)
-    for (const Index face : at)
-      if (face != none) faces.push_back(face);
-  std::sort(faces.begin(), faces.end());
-  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-  return faces;
 }
 
 void PatchEditor::drop_faces(const Cavity& cavity) {

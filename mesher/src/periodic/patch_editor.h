@@ -39,9 +39,6 @@ class PatchEditor {
   /// Returns the edges of the patch, the smaller node of each first.
   std::vector<Edge> edges() const;
 
-  /// Returns the faces that the patch has now.
-  std::vector<Index> faces() const;
-
   const PatchChange& change() const { return change_; }
 
  private:

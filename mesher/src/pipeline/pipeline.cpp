@@ -13,7 +13,6 @@
 #include <mutex>
 #include <new>
 #include <optional>
-#include <set>
 #include <stop_token>
 #include <string_view>
 #include <system_error>
@@ -511,9 +510,7 @@ class Pipeline {
       const auto periodic = made_.periodic;
       if (auto across = periodicity::sizes_across(made_.result.mesh, *plc_, options_.periodic)) {
         limit_sizes(std::move(*across));
-        made_ = {};
-        refine();
-        reshape();
+        refine_again();
       }
       made_.periodic = periodic;
       TetMesh mesh = std::move(refined_);
@@ -526,6 +523,21 @@ class Pipeline {
     made_.improvement = improvement;
     made_.result.mesh = std::move(best);
     periodicity::map_corners(made_.result.mesh);
+  }
+
+  /// Refines and coarsens with other sizes; keeps the mesh if that takes too many vertices.
+  void refine_again() {
+    PipelineResult before = std::exchange(made_, {});
+    TetMesh refined_before = refined_;
+    try {
+      refine();
+      reshape();
+    } catch (const Ended&) {
+      if (!hit_bound()) throw;
+    }
+    if (made_.result.status == MeshStatus::complete) return;
+    made_ = std::move(before);
+    refined_ = std::move(refined_before);
   }
 
   /// Fixed vertices stay where they are.
