@@ -1,0 +1,94 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "constrained/local_changes.h"
+#include "constrained/tetrahedra.h"
+
+namespace collarmesh::constrained {
+
+/// A triangle that the mesh has as one of its faces at the end.
+struct Facet {
+  std::array<Index, 3> corners;
+  Index patch;
+  bool alive = true;  ///< else others, which it was divided into, stand for it
+};
+
+/// Makes edges and triangles of a complex edges and faces of a mesh: by changes of the tetrahedra in their
+/// way, one that leaves less in the way after the other, and, where there is none, by a point where something
+/// crosses them.
+///
+/// The edges come first. As no two features cross, whatever is in the way of a triangle whose edges are there
+/// is an edge that passes through its inside. Each change or point leaves less in the way, so this ends.
+class BoundaryRecovery {
+ public:
+  /// Keeps both by reference. The mesh's first points are those of the complex.
+  BoundaryRecovery(Tetrahedra& mesh, const Plc& plc);
+
+  /// Returns false if `go_on` did. Throws PlcError where rounded points leave no way, with the place.
+  bool run(const std::function<bool()>& go_on);
+
+  const std::vector<Facet>& facets() const { return facets_; }
+  /// Calls `visit` with the ends and the curve of each edge on a curve.
+  template <class Visit>
+  void for_each_curve_edge(const Visit& visit) const {
+    for (const auto& [key, edge] : edges_)
+      if (edge.curve != none) visit(static_cast<Index>(key >> 32U), static_cast<Index>(key), edge.curve);
+  }
+  /// Returns the number of points that were added.
+  std::size_t added_points() const { return added_; }
+
+ private:
+  struct RequiredEdge {
+    Index curve = none;
+    std::vector<Index> facets;
+  };
+  struct CrossedFace {
+    Tetrahedra::Face face;
+    Tetrahedra::Corners corners;  // of its tetrahedron
+    double place;                 // from 0 at the first end to 1 at the other
+  };
+  using Ends = std::array<Index, 2>;
+  /// An edge that is not there yet, and how many times in a row others are removed for it.
+  struct EdgeToDo {
+    Index a, b;
+    unsigned depth;
+  };
+
+  RequiredEdge& require(Index a, Index b);
+  void make_planar_facets_delaunay();
+  bool turn_edge(std::uint64_t key, double least_angles, std::vector<std::uint64_t>& changed);
+  void add_facet(const std::array<Index, 3>& corners, Index patch);
+  void remove_facet(Index facet);
+  void divide_required(Index a, Index b, Index x);
+  void recover_edge(const EdgeToDo& edge);
+  Index find_crossed(Index a, Index b, std::vector<CrossedFace>& crossed) const;
+  bool clear_edge(const std::vector<CrossedFace>& crossed, const Obstacles& obstacles, unsigned depth);
+  Index divide_at_crossing(Index a, Index b, std::vector<CrossedFace>& crossed);
+  bool add_room(const std::vector<CrossedFace>& crossed);
+  void recover_facet(Index facet);
+  std::vector<Ends> find_piercing(const Facet& facet, const Obstacles& obstacles) const;
+  void divide_facet(Index facet, const std::vector<Ends>& piercing);
+  bool reduce(const std::function<std::optional<int>()>& change);
+  [[noreturn]] void fail(Index at, const char* what) const;
+
+  Tetrahedra& mesh_;
+  const Plc& plc_;
+  std::unordered_set<std::uint64_t> required_;
+  LocalChanges changes_;
+  std::unordered_map<std::uint64_t, RequiredEdge> edges_;
+  std::vector<Facet> facets_;
+  std::deque<EdgeToDo> edges_to_do_;
+  std::deque<Index> facets_to_do_;
+  std::unordered_set<std::uint64_t> turned_;  // where there was no other way
+  std::size_t added_ = 0, most_added_;
+};
+
+}  // namespace collarmesh::constrained

@@ -1,0 +1,159 @@
+#include "constrained/constrained_tetrahedra.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "collarmesh/error.h"
+#include "constrained/boundary_recovery.h"
+#include "constrained/tetrahedra.h"
+
+namespace collarmesh {
+
+namespace constrained {
+namespace {
+
+constexpr std::size_t steps_between_reports = 1024;
+
+/// The mesh's regions: tetrahedra that are connected without passing through a facet are of one.
+class Labels {
+ public:
+  Labels(const Tetrahedra& mesh, const std::vector<Facet>& facets, const Plc& plc)
+      : mesh_(mesh), facets_(facets), plc_(plc), region_(mesh.size(), none) {
+    std::vector<Index> part;
+    for (Index t = 0; t < mesh.size(); ++t)
+      if (mesh.alive(t) && region_[t] == none) label_part(t, part);
+  }
+
+  Index of(Index tet) const { return region_[tet]; }
+
+ private:
+  void label_part(Index first, std::vector<Index>& part) {
+    part.assign(1, first);
+    region_[first] = 0;
+    Index region = none;
+    for (std::size_t i = 0; i < part.size(); ++i)
+      for (unsigned k = 0; k < 4; ++k) {
+        const Tetrahedra::Face face{part[i], k};
+        if (const Index facet = mesh_.facet(face); facet != none) {
+          agree(region, beside(face, facets_[facet]), facets_[facet]);
+        } else if (const Index next = mesh_.beyond(face); next == none) {
+          region = 0;
+        } else if (region_[next] == none) {
+          region_[next] = 0;
+          part.push_back(next);
+        }
+      }
+    for (const Index t : part) region_[t] = region == none ? 0 : region;
+  }
+
+  void agree(Index& region, Index beside, const Facet& facet) const {
+    if (region == none) region = beside;
+    if (region == beside) return;
+    const Point& p = mesh_.point(facet.corners[0]);
+    const std::string message =
+        fmt::format("The facets around ({:.9g}, {:.9g}, {:.9g}) do not agree about the region between them; "
+                    "repair the complex.",
+                    p.x, p.y, p.z);
+    throw PlcError(message, {{PlcFault::Kind::open_boundary, message, {}, p}});
+  }
+
+  /// Returns the region on the side of a facet where this tetrahedron is.
+  Index beside(const Tetrahedra::Face& face, const Facet& facet) const {
+    const Plc::Patch& patch = plc_.patches[facet.patch];
+    const auto& [a, b, c] = facet.corners;
+    return patch.regions[mesh_.orientation(a, b, c, mesh_.corners(face.tet)[face.corner]) < 0 ? 0 : 1];
+  }
+
+  const Tetrahedra& mesh_;
+  const std::vector<Facet>& facets_;
+  const Plc& plc_;
+  std::vector<Index> region_;
+};
+
+class Extraction {
+ public:
+  Extraction(const Tetrahedra& mesh, const BoundaryRecovery& recovery, const Plc& plc)
+      : mesh_(mesh), recovery_(recovery), plc_(plc), number_(mesh.point_count(), none) {}
+
+  TetMesh run() {
+    const Labels regions(mesh_, recovery_.facets(), plc_);
+    for (Index t = 0; t < mesh_.size(); ++t)
+      if (mesh_.alive(t) && regions.of(t) != 0) add_tet(mesh_.corners(t), regions.of(t));
+    for (const Facet& facet : recovery_.facets())
+      if (facet.alive && plc_.patches[facet.patch].regions != std::array<Index, 2>{0, 0}) add_face(facet);
+    recovery_.for_each_curve_edge([&](Index a, Index b, Index curve) { add_edge(a, b, curve); });
+    for (Index v = 0; v < plc_.vertices.size(); ++v)
+      if (const Index n = number_[plc_.vertices[v].point]; n != none) made_.features[n] = {0, v};
+    made_.names = plc_.names;
+    return std::move(made_);
+  }
+
+ private:
+  Index number(Index point) {
+    if (number_[point] == none) {
+      number_[point] = static_cast<Index>(made_.points.size());
+      made_.points.push_back(mesh_.point(point));
+      made_.features.emplace_back();
+    }
+    return number_[point];
+  }
+
+  void add_tet(const Tetrahedra::Corners& v, Index region) {
+    made_.tets.push_back({number(v[0]), number(v[1]), number(v[2]), number(v[3])});
+    made_.tet_region.push_back(region);
+    made_.tet_tag.push_back(plc_.regions[region].tag);
+    made_.tet_collar.push_back(0);
+    made_.tet_crease.push_back(0);
+    made_.tet_thin.push_back(0);
+  }
+
+  void add_face(const Facet& facet) {
+    const Plc::Patch& patch = plc_.patches[facet.patch];
+    const auto& [a, b, c] = facet.corners;
+    std::array<Index, 3> corners{number(a), number(b), number(c)};
+    std::array<Index, 2> regions = patch.regions;
+    if (regions[0] == 0) {
+      std::swap(regions[0], regions[1]);
+      std::swap(corners[1], corners[2]);
+    }
+    made_.faces.push_back(corners);
+    made_.face_regions.push_back(regions);
+    made_.face_patch.push_back(facet.patch);
+    made_.face_tag.push_back(patch.tag);
+    for (const Index v : corners) made_.features[v] = {2, facet.patch};
+  }
+
+  void add_edge(Index a, Index b, Index curve) {
+    if (number_[a] == none || number_[b] == none) return;
+    made_.edges.push_back({number_[a], number_[b]});
+    made_.edge_curve.push_back(curve);
+    made_.edge_tag.push_back(plc_.curves[curve].tag);
+    for (const Index v : {a, b}) made_.features[number_[v]] = {1, curve};
+  }
+
+  const Tetrahedra& mesh_;
+  const BoundaryRecovery& recovery_;
+  const Plc& plc_;
+  TetMesh made_;
+  std::vector<Index> number_;
+};
+
+}  // namespace
+}  // namespace constrained
+
+ConstrainedTetrahedra constrained_tetrahedra(const Plc& plc, const Execution& execution) {
+  constrained::Tetrahedra mesh(plc.points);
+  constrained::BoundaryRecovery recovery(mesh, plc);
+  std::size_t step = 0;
+  const bool ended = recovery.run([&] {
+    if (execution.cancelled()) return false;
+    return ++step % constrained::steps_between_reports != 0 || !execution.progress ||
+           execution.progress({"refine", 0, mesh.point_count(), mesh.size()});
+  });
+  if (!ended) return {};
+  return {constrained::Extraction(mesh, recovery, plc).run(), recovery.added_points()};
+}
+
+}  // namespace collarmesh

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <optional>
+#include <unordered_set>
+#include <vector>
+
+#include "constrained/tetrahedra.h"
+
+namespace collarmesh::constrained {
+
+/// Counts what stands in the way of an edge or a triangle that is to become one of the mesh.
+class Obstacles {
+ public:
+  virtual ~Obstacles() = default;
+  /// Returns 1 if this face of the mesh would be in the way, else 0.
+  virtual int face(Index a, Index b, Index c) const = 0;
+  /// Returns 1 if this edge of the mesh would be in the way, else 0.
+  virtual int edge(Index a, Index b) const = 0;
+};
+
+/// Changes of the connections of a few tetrahedra, and insertions, which keep edges that are required and
+/// faces that carry a facet.
+class LocalChanges {
+ public:
+  /// Keeps both by reference. Required edges are known by their keys.
+  LocalChanges(Tetrahedra& mesh, const std::unordered_set<std::uint64_t>& required)
+      : mesh_(mesh), required_(required) {}
+
+  /// Each of these returns how many obstacles more there are now, or nothing if the change is not possible.
+
+  /// Replaces the two tetrahedra at a face by three at the edge that joins the corners beyond it.
+  std::optional<int> remove_face(const Tetrahedra::Face& face, const Obstacles& obstacles);
+  /// Triangulates the ring of an edge anew, with the fewest obstacles. If no way leaves positive tetrahedra and
+  /// at most so many obstacles more, edges around it are removed first, `depth` times in a row.
+  std::optional<int> remove_edge(Index a, Index b, unsigned depth, const Obstacles& obstacles, int most);
+
+  /// From now on so many rings are triangulated before others are removed first; then no more.
+  void set_budget(std::size_t rings) { budget_ = rings; }
+
+  /// Inserts a point in or near some tetrahedra: those, and as many beside them as it takes, are replaced by
+  /// others with that point. Returns its number, or none if a required edge or a facet is in the way.
+  Index insert(const Point& p, std::vector<Index> cavity);
+
+ private:
+  static constexpr int any_number = 1 << 20;
+  // Larger rings are not triangulated.
+  static constexpr std::size_t largest_ring = 40, largest_cavity = 200;
+
+  std::optional<int> triangulate_ring(Index a, Index b, const Tetrahedra::Ring& ring, const Obstacles& obstacles,
+                                      int most);
+  bool may_remove(Index a, Index b, const Tetrahedra::Ring& ring) const;
+  int cost_of_diagonal(Index a, Index b, Index p, Index q, const Obstacles& obstacles) const;
+  void collect(Index a, Index b, const std::vector<Index>& link, std::size_t i, std::size_t j,
+               std::vector<Tetrahedra::Corners>& created) const;
+  bool grow(Index x, std::vector<Index>& cavity) const;
+  bool keeps_features(const std::vector<Index>& cavity, const std::vector<Tetrahedra::Corners>& created) const;
+
+  Tetrahedra& mesh_;
+  const std::unordered_set<std::uint64_t>& required_;
+  std::size_t budget_ = 0;
+  std::vector<int> least_;          // by i * n + j: the obstacles of the ring's part from i to j
+  std::vector<std::size_t> third_;  // the corner of the triangle on ij there
+};
+
+}  // namespace collarmesh::constrained

@@ -1,0 +1,193 @@
+#include "remesh/relaxation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+namespace collarmesh::remeshing {
+
+using improvement::Change;
+
+namespace {
+
+// Contractions and divisions leave at least this share of the quality of the worst tet around.
+constexpr double share_left = 0.9;
+// Shares of the target up to which edges are contracted, one after the other.
+constexpr std::array lengths{0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.7};
+// Qualities: 1 is what a thin tet has.
+constexpr double good = 1, better = 1.3, least = 1e-12;
+constexpr unsigned most_passes = 4, most_improvements = 6;
+// A pass that changes fewer than this share of the vertices or tets is the last one of its kind.
+constexpr double least_share = 0.005;
+// Vertices with more tets stay: all of these would have to be made anew.
+constexpr std::size_t most_tets = 400;
+constexpr unsigned most_tries = 12;
+constexpr std::size_t steps_between_reports = 1024;
+
+}  // namespace
+
+Relaxation::Relaxation(improvement::Workpiece& workpiece, const MeshOptions& options,
+                       const std::vector<double>& sizes, const Execution& execution)
+    : workpiece_(workpiece),
+      sizes_(sizes),
+      thin_(workpiece.plc, mesh(), options.bounds.thin_angle, options.bounds.reserve, workpiece.forced),
+      cells_(workpiece.plc, mesh(), options.bounds),
+      rule_(thin_, cells_, options.bounds.radius_edge, sizes_),
+      operations_(workpiece, rule_),
+      execution_(execution) {
+  rule_.set_mode(coarsening::CoarseningRule::Mode::force);
+  workpiece_.prepare();
+}
+
+void Relaxation::contract() {
+  for (const double length : lengths) {
+    for (unsigned pass = 0; pass < most_passes; ++pass)
+      if (!contract_shorter_than(length, share_left)) break;
+    for (unsigned pass = 0; pass < most_improvements; ++pass)
+      if (!improve_below(good, pass == 0 ? Means::edges : Means::vertices)) break;
+    for (unsigned pass = 0; pass < most_passes; ++pass)
+      if (!contract_shorter_than(length, share_left)) break;
+  }
+}
+
+void Relaxation::improve() {
+  for (unsigned pass = 0; pass < most_improvements; ++pass)
+    if (!improve_below(better, pass == 0 ? Means::edges : Means::moves)) break;
+  for (unsigned pass = 0; pass < most_passes; ++pass)
+    if (!contract_shorter_than(lengths.back(), share_left)) break;
+  for (unsigned pass = 0; pass < most_improvements; ++pass)
+    if (!improve_below(better, pass == 0 ? Means::edges : Means::vertices)) break;
+}
+
+double Relaxation::relative_length(Index a, Index b) const {
+  return distance(mesh().points[a], mesh().points[b]) / (0.5 * (sizes_[a] + sizes_[b]));
+}
+
+bool Relaxation::contract_shorter_than(double below, double share) {
+  std::vector<double> shortest(mesh().points.size(), INFINITY);
+  for (Index t = 0; t < complex().size(); ++t) {
+    if (!complex()[t].alive) continue;
+    const auto& v = complex()[t].corners;
+    for (unsigned i = 0; i < 4; ++i)
+      for (unsigned j = i + 1; j < 4; ++j) {
+        const double length = relative_length(v[i], v[j]);
+        for (const Index end : {v[i], v[j]}) shortest[end] = std::min(shortest[end], length);
+      }
+  }
+  std::vector<Near> candidates;
+  for (Index v = 0; v < shortest.size(); ++v)
+    if (shortest[v] < below && mesh().features[v].dimension > 0) candidates.push_back({shortest[v], v});
+  std::ranges::stable_sort(candidates, {}, &Near::relative_length);
+  const std::size_t before = contractions_;
+  for (const Near& candidate : candidates) {
+    if (stopped()) return false;
+    if (complex().in_use(candidate.vertex) && contract_at(candidate.vertex, below, share)) ++contractions_;
+  }
+  return static_cast<double>(contractions_ - before) > least_share * static_cast<double>(shortest.size());
+}
+
+bool Relaxation::contract_at(Index vertex, double below, double share) {
+  complex().star(vertex, star_);
+  if (star_.size() > most_tets || !operations_.begin_contractions(vertex, star_)) return false;
+  find_neighbours(vertex, below);
+  const double least_quality = std::max(least, std::min(share * operations_.worst_at_vertex(), good));
+  unsigned tries = 0;
+  for (const Near& onto : near_) {
+    if (++tries > most_tries) return false;
+    const bool fits = std::ranges::all_of(neighbours_, [&](Index v) {
+      return v == onto.vertex || relative_length(onto.vertex, v) <=
+                                     std::max(longest_, coarsening::CoarseningRule::longest_new);
+    });
+    if (!fits) continue;
+    Change change;
+    operations_.contract_onto(onto.vertex, least_quality, 0, change);
+    if (change.kind == Change::Kind::none || !workpiece_.curve_can_spare(change)) continue;
+    workpiece_.apply(std::move(change));
+    return true;
+  }
+  return false;
+}
+
+/// Finds the vertices around one, the longest edge to them, and those that are near enough.
+void Relaxation::find_neighbours(Index vertex, double below) {
+  neighbours_.clear();
+  for (const Index t : star_)
+    for (const Index v : complex()[t].corners)
+      if (v != vertex) neighbours_.push_back(v);
+  std::ranges::sort(neighbours_);
+  neighbours_.erase(std::unique(neighbours_.begin(), neighbours_.end()), neighbours_.end());
+  near_.clear();
+  longest_ = 0;
+  for (const Index v : neighbours_) {
+    const double length = relative_length(vertex, v);
+    longest_ = std::max(longest_, length);
+    if (length < below && may_share_feature(vertex, v)) near_.push_back({length, v});
+  }
+  std::ranges::stable_sort(near_, {}, &Near::relative_length);
+}
+
+bool Relaxation::may_share_feature(Index vertex, Index onto) const {
+  const auto &f = mesh().features[vertex], &g = mesh().features[onto];
+  return f.dimension == 3 || g.dimension < f.dimension || (g.dimension == f.dimension && g.feature == f.feature);
+}
+
+bool Relaxation::improve_below(double enough, Means means) {
+  struct Poor {
+    double quality;
+    Index tet;
+  };
+  std::vector<Poor> poor;
+  for (Index t = 0; t < complex().size(); ++t)
+    if (complex()[t].alive)
+      if (const double q = quality(t); q < enough) poor.push_back({q, t});
+  std::ranges::stable_sort(poor, {}, &Poor::quality);
+  const std::size_t before = others_;
+  for (const Poor& item : poor) {
+    if (stopped()) return false;
+    if (!complex()[item.tet].alive || quality(item.tet) != item.quality) continue;
+    Change change = improvement_of(item.tet, enough, means);
+    if (change.kind == Change::Kind::none) continue;
+    if (change.kind == Change::Kind::contraction && !workpiece_.curve_can_spare(change)) continue;
+    workpiece_.apply(std::move(change));
+    ++others_;
+  }
+  return static_cast<double>(others_ - before) > least_share * static_cast<double>(complex().size());
+}
+
+Change Relaxation::improvement_of(Index tet, double enough, Means means) {
+  const auto corners = complex()[tet].corners;
+  struct Edge {
+    double length;
+    unsigned i, j;
+  };
+  std::vector<Edge> edges;
+  edges.reserve(6);
+  for (unsigned i = 0; i < 4; ++i)
+    for (unsigned j = i + 1; j < 4; ++j)
+      edges.push_back({distance(mesh().points[corners[i]], mesh().points[corners[j]]), i, j});
+  std::ranges::stable_sort(edges, std::greater<>(), &Edge::length);
+  Change change;
+  const auto found = [&] { return change.kind != Change::Kind::none; };
+  for (const Edge& edge : edges) {
+    operations_.remove_edge(tet, edge.i, edge.j, change);
+    if (found() && change.quality >= enough) return change;
+  }
+  if (means == Means::edges) return change;
+  for (const Index v : corners)
+    if (!found()) operations_.move_vertex(v, change);
+  if (means == Means::moves) return change;
+  for (const Index v : corners)
+    for (const Index w : corners)
+      if (v != w && !found()) operations_.contract_edge(v, w, change);
+  return change;
+}
+
+bool Relaxation::stopped() {
+  return execution_.cancelled() ||
+         (++steps_ % steps_between_reports == 0 && execution_.progress &&
+          !execution_.progress({"remesh", 0, mesh().points.size(), complex().size()}));
+}
+
+}  // namespace collarmesh::remeshing

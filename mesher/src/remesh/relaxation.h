@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "coarsen/coarsening_rule.h"
+#include "collarmesh/mesher.h"
+#include "collarmesh/progress.h"
+#include "improve/cell_bounds.h"
+#include "improve/operations.h"
+#include "improve/workpiece.h"
+
+namespace collarmesh::remeshing {
+
+/// Brings a mesh of any shapes and lengths near to its sizes, so that coarsening and improvement, which keep
+/// bounds, can do the rest.
+///
+/// No operation makes the worst tet around worse than a share of what it was, unless all new ones are good.
+/// Short edges are contracted first, the shortest before all others, and tets made better between; then long
+/// edges are divided.
+class Relaxation {
+ public:
+  /// The workpiece and the options are kept by reference; `sizes`: targets at the vertices.
+  Relaxation(improvement::Workpiece& workpiece, const MeshOptions& options, const std::vector<double>& sizes,
+             const Execution& execution);
+
+  /// Contracts short edges and makes tets better, for lengths that grow up to the target.
+  void contract();
+  /// Makes tets better, and contracts what that permits.
+  void improve();
+
+  /// Returns how many changes were made.
+  std::size_t changes() const { return contractions_ + others_; }
+
+ private:
+  struct Near {
+    double relative_length;
+    Index vertex;
+  };
+  /// What improvement may do besides removing edges.
+  enum class Means { edges, moves, vertices };
+
+  const improvement::TetComplex& complex() const { return workpiece_.complex; }
+  const TetMesh& mesh() const { return workpiece_.complex.mesh(); }
+  double quality(Index tet) const { return rule_.quality(complex().corners(tet), complex()[tet].corners); }
+  double relative_length(Index a, Index b) const;
+  bool contract_shorter_than(double below, double share);
+  bool contract_at(Index vertex, double below, double share);
+  void find_neighbours(Index vertex, double below);
+  bool may_share_feature(Index vertex, Index onto) const;
+  bool improve_below(double enough, Means means);
+  improvement::Change improvement_of(Index tet, double enough, Means means);
+  bool stopped();
+
+  improvement::Workpiece& workpiece_;
+  std::vector<double> sizes_;  // by vertex
+  improvement::ThinShape thin_;
+  improvement::CellBounds cells_;
+  coarsening::CoarseningRule rule_;
+  improvement::Operations operations_;
+  const Execution& execution_;
+  std::vector<Index> star_, neighbours_;
+  std::vector<Near> near_;  // of the vertex asked about last, by length
+  double longest_ = 0;      // edge there, relative to the target
+  std::size_t contractions_ = 0, others_ = 0, steps_ = 0;
+};
+
+}  // namespace collarmesh::remeshing
