@@ -26,10 +26,21 @@
 /// coarsen, improve, project onto exact geometry, raise the order, check, split.
 namespace collarmesh {
 
+/// What a mesh of a complex begins with.
+enum class Start {
+  automatic,   ///< refinement; where that takes far too many vertices, the constrained tetrahedra
+  refinement,  ///< the points of features as they come in, with all guarantees
+  /// Tetrahedra whose faces and edges are the facets and segments of the complex, which are then brought to
+  /// the size. They are about as many as the facets, however near features are to each other, but some keep
+  /// angles beyond their bounds.
+  constrained
+};
+
 struct PipelineOptions {
   PlcOptions complex = {};    ///< building a complex of facets
   RepairOptions repair = {};  ///< repair of facets that are no complex
   MeshOptions mesh = {};      ///< sizes, bounds and budgets; the time limit is one for all stages
+  Start start = Start::automatic;
   bool coarsen = true;        ///< make as few tets as the sizes ask for
   unsigned improve = 2;       ///< level, 1 to 3; 0: leave the slivers
   double min_dihedral = 0;    ///< degrees; 0: that of the level
@@ -88,7 +99,7 @@ class ComplexSource {
 /// that takes far more vertices than the sizes ask for ends early, and coarser repairs are tried
 /// (`coarser_repairs`) that lose no body, region, name or tag except numbers of CAD faces; if none of their
 /// complexes does better, the first one is meshed as far as the budgets allow, or twice that many
-/// vertices where none is given. `check.notes` lists the attempts. `execution.progress` is also called at the
+/// vertices where none is given; then it is made from its constrained tetrahedra (`Start`). `check.notes` lists the attempts. `execution.progress` is also called at the
 /// beginning of each stage
 /// (`ProgressReport::begins`), and its fraction is that of all stages. Cancelled or out of time, the result
 /// has that status and no mesh. Throws PlcError for facets that are no complex and cannot be repaired,

@@ -152,6 +152,13 @@ std::vector<Option> quality_options() {
            "sets `--crease-angle 90`, `--radius-edge 2.83` everywhere (or a larger one), `--coarsen off`, "
            "`--improve 0`, `--thin-angle 0` and no size",
        .commands = refining | Option::check},
+      {.name = "start",
+       .words = {"auto", "refinement", "constrained"},
+       .place = choice_at<&RunOptions::start>,
+       .help = "What the mesh begins with; constrained: tetrahedra with the facets as they are",
+       .details = "`auto`: refinement, and `constrained` where that takes far more vertices than the sizes ask "
+                  "for; see [Parts that explode](architecture/constrained.md)",
+       .commands = refining},
       {.name = "radius-edge RHO",
        .place = asked_ratio,
        .unit = Unit::ratio,

@@ -29,6 +29,7 @@
 #include "collarmesh/usable_threads.h"
 #include "common/thread_limit.h"
 #include "common/traced_mesh.h"
+#include "constrained/constrained_tetrahedra.h"
 #include "improve/cell_bounds.h"
 #include "improve/improve_workpiece.h"
 #include "periodic/make_periodic.h"
@@ -38,6 +39,7 @@
 #include "pipeline/lost_parts.h"
 #include "pipeline/vertex_bound.h"
 #include "refine/generate_linked.h"
+#include "remesh/bring_to_size.h"
 
 namespace collarmesh {
 
@@ -115,7 +117,7 @@ class SoupSource : public ComplexSource {
 class Pipeline {
  public:
   Pipeline(const PipelineOptions& options, const Execution& execution)
-      : given_(with_profile(options)), outer_(execution), counter_(options.mesh.threads) {
+      : given_(with_profile(options)), start_(given_.start), outer_(execution), counter_(options.mesh.threads) {
     validate({options});
     if (options.partitions > 0) require_partitioner();
     if (options.mesh.time_limit > 0) deadline_.emplace(options.mesh.time_limit, execution);
@@ -141,7 +143,7 @@ class Pipeline {
   PipelineResult run(const Plc& plc) {
     until_ended([&] {
       bound_vertices(Ways::none);
-      mesh(plc, given_.mesh.seed);
+      mesh_anyhow(plc);
       try_seeds(plc);
       divide();
       split_patches();
@@ -163,6 +165,10 @@ class Pipeline {
 
   void try_repairs(SoupPipelineResult& all) {
     build(given_.repair, all);
+    if (start_ == Start::constrained) {
+      bound_vertices(Ways::none);
+      return mesh(all.plc, given_.mesh.seed);
+    }
     bound_vertices(Ways::others);
     std::exception_ptr error;
     const auto tried = attempt(all.plc, error);
@@ -191,7 +197,7 @@ class Pipeline {
                                                     repair.tolerance, given_.repair.tolerance, why));
       if (made_.guarantees_hold() || end == End::exploded) break;
     }
-    if (!has_mesh && error) std::rethrow_exception(error);
+    if (!has_mesh && error) mesh_constrained(all.plc, why, error), has_mesh = true;
     if (has_mesh && made_.guarantees_hold()) return;
     if (!built_last) {
       try {
@@ -203,9 +209,33 @@ class Pipeline {
     }
     if (!has_mesh) {
       bound_vertices(Ways::none);
-      mesh(all.plc, given_.mesh.seed);
+      mesh_anyhow(all.plc);
     }
     try_seeds(all.plc);
+  }
+
+  /// Meshes a complex; where the refinement takes far too many vertices, from its constrained tetrahedra.
+  void mesh_anyhow(const Plc& plc) {
+    try {
+      mesh(plc, given_.mesh.seed);
+    } catch (const Ended&) {
+      if (!hit_bound()) throw;
+      mesh_constrained(plc, describe_explosion(plc, most_vertices_, made_.result.where), std::current_exception());
+    }
+  }
+
+  /// Throws the error, and keeps the result, if there are no constrained tetrahedra or others were asked for.
+  void mesh_constrained(const Plc& plc, const std::string& why, const std::exception_ptr& error) {
+    if (given_.start != Start::automatic || given_.mesh.profile == Profile::paper) std::rethrow_exception(error);
+    PipelineResult before = std::exchange(made_, {});
+    start_ = Start::constrained;
+    try {
+      mesh(plc, given_.mesh.seed);
+    } catch (const PlcError&) {
+      made_ = std::move(before);
+      std::rethrow_exception(error);
+    }
+    made_.check.notes.push_back(fmt::format("begun with constrained tetrahedra, as {}", why));
   }
 
   /// Meshes a complex within the bound on vertices. Also returns the reason for a missed guarantee.
@@ -254,6 +284,7 @@ class Pipeline {
   /// Refinement that does not end at one place with the samples of one seed may well end with those of
   /// another. Where regions do not keep their volumes the surface distance shrinks, too.
   void try_seeds(const Plc& plc) {
+    if (start_ == Start::constrained) return;  // no seed changes it
     const std::uint64_t first = given_.mesh.seed;
     for (std::uint64_t seed = first + 1; seed < first + given_.seeds && !made_.guarantees_hold(); ++seed) {
       const std::string missed = made_.missed();
@@ -407,8 +438,12 @@ class Pipeline {
     if (most_vertices_ > 0) options_.mesh.max_vertices = most_vertices_;
     options_.mesh.seed = seed;
     refined_with_ = options_of_refinement();
-    refine();
+    if (start_ == Start::constrained)
+      tetrahedralize();
+    else
+      refine();
     reshape();
+    if (start_ == Start::constrained) settle();
     make_faces_periodic();
     project();
     raise_order();
@@ -459,6 +494,44 @@ class Pipeline {
                        "it (repair wrap), or let it go on (max-vertices)";
     if (result.status == MeshStatus::cancelled || result.status == MeshStatus::budget_hit) throw Ended();
     refined_with_.bounds.lower_where_forced = result.has_narrow_cells;
+  }
+
+  /// Makes the constrained tetrahedra of the complex, and brings them to the size.
+  void tetrahedralize() {
+    begin("tetrahedralize", 0.06, 0.2);
+    MeshResult& result = made_.result;
+    neighbours_ = KnownNeighbours();
+    result.mesh = constrained_tetrahedra(*plc_, inner_).mesh;
+    stop_if_asked();
+    begin("remesh", 0.2, 0.6);
+    result.has_narrow_cells = refined_with_.bounds.lower_where_forced = true;
+    if (!remeshing::bring_to_size(result.mesh, *plc_, refined_with_, inner_) && !inner_.cancelled()) {
+      result.status = MeshStatus::budget_hit;
+      result.message = fmt::format("{} vertices were reached; raise max-vertices, or the sizes for a coarser mesh",
+                                   refined_with_.max_vertices);
+      throw Ended();
+    }
+    stop_if_asked();
+  }
+
+  /// Tets beyond the bounds get better where all is done once more, as long as that makes them fewer.
+  void settle() {
+    constexpr unsigned most_rounds = 4;
+    std::size_t least = misshapen(made_.result.mesh);
+    for (unsigned round = 0; round < most_rounds && least > 0; ++round) {
+      TetMesh mesh = made_.result.mesh;
+      const auto before = made_.improvement;
+      remeshing::relax(mesh, *plc_, refined_with_, inner_);
+      stop_if_asked();
+      coarsen_and_improve(mesh, {});
+      const std::size_t poor = misshapen(mesh);
+      if (poor >= least) {
+        made_.improvement = before;
+        return;
+      }
+      least = poor;
+      made_.result.mesh = std::move(mesh);
+    }
   }
 
   /// Coarsening and improvement work on one data structure.
@@ -591,7 +664,7 @@ class Pipeline {
     if (made_.coarsening) {
       // Just above the bound a tet may be within it once its vertices have moved onto the exact geometry.
       options.thin_above = options_.mesh.bounds.radius_edge / (exact() ? ratio_left : 1);
-      options.keep_vertices = true;
+      options.keep_vertices = start_ != Start::constrained;
     }
     if (options_.min_dihedral > 0) options.min_dihedral = options_.min_dihedral;
     if (exact()) options.min_dihedral *= 1 + dihedral_reserve;
@@ -690,6 +763,7 @@ class Pipeline {
   ComplexSource* source_ = nullptr;  // unless there is one complex only
   NarrowCells narrow_cells_ = NarrowCells::bounded_if_cheap;
   Ways ways_ = Ways::none;         // that are left
+  Start start_;
   bool knows_bound_ = false;       // for them, on vertices
   std::size_t most_vertices_ = 0;  // of a refinement, in place of the given budget; 0: that
   const Execution& outer_;

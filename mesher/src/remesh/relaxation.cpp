@@ -13,7 +13,7 @@ using improvement::Change;
 namespace {
 
 // Contractions and divisions leave at least this share of the quality of the worst tet around.
-constexpr double share_left = 0.9;
+constexpr double share_left = 0.3;
 // Shares of the target up to which edges are contracted, one after the other.
 constexpr std::array lengths{0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.7};
 // Qualities: 1 is what a thin tet has.

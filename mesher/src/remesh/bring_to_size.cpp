@@ -1,0 +1,175 @@
+#include "remesh/bring_to_size.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <queue>
+#include <utility>
+#include <vector>
+
+#include "coarsen/target_sizes.h"
+#include "common/edge_key.h"
+#include "common/thread_limit.h"
+#include "improve/workpiece.h"
+#include "remesh/edge_division.h"
+#include "remesh/relaxation.h"
+
+namespace collarmesh::remeshing {
+
+namespace {
+
+using improvement::Workpiece;
+
+// Rounds of divisions and improvement, and passes of divisions in each.
+constexpr unsigned rounds = 3, divisions = 2;
+// Edges longer than this times the target are divided.
+constexpr double longest = coarsening::CoarseningRule::longest_new;
+
+// Edges beside short ones are at most so many times as long, and longer by so much of the way from there.
+constexpr double of_shortest = 1.5, growth = 1;
+
+// Only if there are about so many times the tets, and some more, at most.
+constexpr double most_times = 2, some = 2000, tets_per_cube = 8;
+
+/// The edges of a mesh, by vertex.
+class EdgeGraph {
+ public:
+  explicit EdgeGraph(const TetMesh& mesh) : joined_(mesh.points.size()) {
+    std::vector<std::uint64_t> keys;
+    keys.reserve(6 * mesh.tets.size());
+    for (const auto& tet : mesh.tets)
+      for (unsigned i = 0; i < 4; ++i)
+        for (unsigned j = i + 1; j < 4; ++j) keys.push_back(edge_key(tet[i], tet[j]));
+    std::ranges::sort(keys);
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    for (const std::uint64_t key : keys) {
+      const auto a = static_cast<Index>(key >> 32U), b = static_cast<Index>(key);
+      joined_[a].push_back(b);
+      joined_[b].push_back(a);
+    }
+  }
+
+  template <class Visit>
+  void visit(const Visit& visit) const {
+    for (Index a = 0; a < joined_.size(); ++a)
+      for (const Index b : joined_[a])
+        if (a < b) visit(a, b);
+  }
+
+  /// Makes sizes smaller where they grow by more than this share of the length of an edge.
+  void grade(const std::vector<Point>& points, double share, std::vector<double>& sizes) const {
+    using Next = std::pair<double, Index>;
+    std::priority_queue<Next, std::vector<Next>, std::greater<>> queue;
+    for (Index v = 0; v < sizes.size(); ++v) queue.emplace(sizes[v], v);
+    while (!queue.empty()) {
+      const auto [size, v] = queue.top();
+      queue.pop();
+      if (size > sizes[v]) continue;
+      for (const Index w : joined_[v]) {
+        const double most = size + share * distance(points[v], points[w]);
+        if (most >= sizes[w]) continue;
+        sizes[w] = most;
+        queue.emplace(most, w);
+      }
+    }
+  }
+
+ private:
+  std::vector<std::vector<Index>> joined_;
+};
+
+class Bringing {
+ public:
+  Bringing(TetMesh& mesh, const Plc& plc, MeshOptions options, const Execution& execution)
+      : mesh_(mesh), plc_(plc), options_(std::move(options)), execution_(execution) {
+    options_.edges_per_hole = 0;  // those that are there may be all that a hole has
+  }
+
+  bool run() {
+    relax([](Relaxation& relaxation) { relaxation.contract(); });
+    for (unsigned round = 0; round < rounds && may_go_on(); ++round) {
+      for (unsigned pass = 0; pass < divisions && may_go_on(); ++pass) divide();
+      relax([](Relaxation& relaxation) { relaxation.improve(); });
+    }
+    return may_go_on();
+  }
+
+  bool may_go_on() const {
+    return !execution_.cancelled() &&
+           (options_.max_vertices == 0 || mesh_.points.size() < options_.max_vertices);
+  }
+
+  Workpiece workpiece() {
+    return Workpiece(mesh_, plc_, *options_.bounds.tolerance, options_.edges_per_hole,
+                     options_.bounds.lower_where_forced);
+  }
+
+  template <class Stage>
+  void relax(const Stage& stage) {
+    Workpiece piece = workpiece();
+    Relaxation relaxation(piece, options_, sizes(), execution_);
+    stage(relaxation);
+    piece.complex.store();
+  }
+
+ private:
+  std::vector<double> sizes() const { return coarsening::target_sizes(mesh_, plc_, options_); }
+
+  /// Beside edges that are shorter than the targets, sizes that grow from them with the distance: edges that
+  /// contraction has left are there to stay, and tets between short and long ones have poor shapes. Along thin
+  /// parts that would take very many tets; then the targets.
+  std::vector<double> graded_sizes() const {
+    const std::vector<double> targets = sizes();
+    std::vector<double> graded = targets;
+    const EdgeGraph edges(mesh_);
+    edges.visit([&](Index a, Index b) {
+      const double most = of_shortest * distance(mesh_.points[a], mesh_.points[b]);
+      graded[a] = std::min(graded[a], most), graded[b] = std::min(graded[b], most);
+    });
+    edges.grade(mesh_.points, growth, graded);
+    return tets_of(graded) <= most_times * tets_of(targets) + some ? graded : targets;
+  }
+
+  /// Returns about how many tets these sizes, by vertex, make of the mesh.
+  double tets_of(const std::vector<double>& size) const {
+    double sum = 0;
+    for (const auto& tet : mesh_.tets) {
+      const double mean = 0.25 * (size[tet[0]] + size[tet[1]] + size[tet[2]] + size[tet[3]]);
+      double pieces = 1;  // across the tet
+      for (unsigned i = 0; i < 4; ++i)
+        for (unsigned j = i + 1; j < 4; ++j)
+          pieces = std::max(pieces, distance(mesh_.points[tet[i]], mesh_.points[tet[j]]) / mean);
+      const auto& p = mesh_.points;
+      const double volume = six_volume(p[tet[0]], p[tet[1]], p[tet[2]], p[tet[3]]) / 6;
+      sum += std::max(pieces, tets_per_cube * volume / (mean * mean * mean));
+    }
+    return sum;
+  }
+
+  void divide() {
+    Workpiece piece = workpiece();
+    EdgeDivision(piece, options_, graded_sizes()).divide_all(longest, options_.max_vertices, execution_);
+    piece.complex.store();
+  }
+
+  TetMesh& mesh_;
+  const Plc& plc_;
+  MeshOptions options_;
+  const Execution& execution_;
+};
+
+}  // namespace
+
+bool bring_to_size(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Execution& execution) {
+  bool ended = false;
+  ThreadLimit(options.threads).run([&] { ended = Bringing(mesh, plc, options, execution).run(); });
+  return ended;
+}
+
+void relax(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Execution& execution) {
+  ThreadLimit(options.threads).run([&] {
+    Bringing(mesh, plc, options, execution).relax([](Relaxation& relaxation) { relaxation.improve(); });
+  });
+}
+
+}  // namespace collarmesh::remeshing
