@@ -143,7 +143,7 @@ class Pipeline {
   PipelineResult run(const Plc& plc) {
     until_ended([&] {
       bound_vertices(Ways::none);
-      mesh_anyhow(plc);
+      mesh_refined_or_constrained(plc);
       try_seeds(plc);
       divide();
       split_patches();
@@ -197,7 +197,12 @@ class Pipeline {
                                                     repair.tolerance, given_.repair.tolerance, why));
       if (made_.guarantees_hold() || end == End::exploded) break;
     }
-    if (!has_mesh && error) mesh_constrained(all.plc, why, error), has_mesh = true;
+    if (!has_mesh && error) {
+      std::optional<PipelineResult> constrained = from_constrained(all.plc, why);
+      if (!constrained) std::rethrow_exception(error);
+      made_ = std::move(*constrained);
+      return;
+    }
     if (has_mesh && made_.guarantees_hold()) return;
     if (!built_last) {
       try {
@@ -209,33 +214,59 @@ class Pipeline {
     }
     if (!has_mesh) {
       bound_vertices(Ways::none);
-      mesh_anyhow(all.plc);
+      mesh_anyhow(all.plc, why);
     }
     try_seeds(all.plc);
   }
 
   /// Meshes a complex; where the refinement takes far too many vertices, from its constrained tetrahedra.
-  void mesh_anyhow(const Plc& plc) {
+  void mesh_refined_or_constrained(const Plc& plc) {
     try {
-      mesh(plc, given_.mesh.seed);
+      return mesh(plc, given_.mesh.seed);
     } catch (const Ended&) {
       if (!hit_bound()) throw;
-      mesh_constrained(plc, describe_explosion(plc, most_vertices_, made_.result.where), std::current_exception());
+      std::optional<PipelineResult> constrained =
+          from_constrained(plc, describe_explosion(plc, most_vertices_, made_.result.where));
+      if (!constrained) throw;
+      is_constrained_ = true;
+      made_ = std::move(*constrained);
     }
   }
 
-  /// Throws the error, and keeps the result, if there are no constrained tetrahedra or others were asked for.
-  void mesh_constrained(const Plc& plc, const std::string& why, const std::exception_ptr& error) {
-    if (given_.start != Start::automatic || given_.mesh.profile == Profile::paper) std::rethrow_exception(error);
+  /// Meshes a complex where no other way is left: from its constrained tetrahedra if that keeps every guarantee;
+  /// else refined as far as the budgets allow; else from these tetrahedra all the same.
+  void mesh_anyhow(const Plc& plc, const std::string& why) {
+    std::optional<PipelineResult> constrained = from_constrained(plc, why);
+    is_constrained_ = constrained && constrained->guarantees_hold();
+    if (!is_constrained_) {
+      try {
+        return mesh(plc, given_.mesh.seed);
+      } catch (const Ended&) {
+        if (!hit_bound() || !constrained) throw;
+        is_constrained_ = true;
+      }
+    }
+    made_ = std::move(*constrained);
+  }
+
+  /// Meshes a complex from its constrained tetrahedra; nothing where there are none, or others are asked for.
+  std::optional<PipelineResult> from_constrained(const Plc& plc, const std::string& why) {
+    if (given_.start != Start::automatic || given_.mesh.profile == Profile::paper || given_.periodic.any()) return {};
     PipelineResult before = std::exchange(made_, {});
+    std::optional<PipelineResult> found;
     start_ = Start::constrained;
     try {
       mesh(plc, given_.mesh.seed);
+      made_.check.notes.push_back(fmt::format("begun with constrained tetrahedra, as {}", why));
+      found = std::move(made_);
     } catch (const PlcError&) {
-      made_ = std::move(before);
-      std::rethrow_exception(error);
+      found.reset();
+    } catch (const Ended&) {
+      if (!hit_bound()) throw;
     }
-    made_.check.notes.push_back(fmt::format("begun with constrained tetrahedra, as {}", why));
+    start_ = Start::automatic;
+    made_ = std::move(before);
+    return found;
   }
 
   /// Meshes a complex within the bound on vertices. Also returns the reason for a missed guarantee.
@@ -284,7 +315,7 @@ class Pipeline {
   /// Refinement that does not end at one place with the samples of one seed may well end with those of
   /// another. Where regions do not keep their volumes the surface distance shrinks, too.
   void try_seeds(const Plc& plc) {
-    if (start_ == Start::constrained) return;  // no seed changes it
+    if (is_constrained_ || start_ == Start::constrained) return;  // no seed changes it
     const std::uint64_t first = given_.mesh.seed;
     for (std::uint64_t seed = first + 1; seed < first + given_.seeds && !made_.guarantees_hold(); ++seed) {
       const std::string missed = made_.missed();
@@ -763,7 +794,8 @@ class Pipeline {
   ComplexSource* source_ = nullptr;  // unless there is one complex only
   NarrowCells narrow_cells_ = NarrowCells::bounded_if_cheap;
   Ways ways_ = Ways::none;         // that are left
-  Start start_;
+  Start start_;                    // of the mesh at hand
+  bool is_constrained_ = false;    // the mesh that is kept
   bool knows_bound_ = false;       // for them, on vertices
   std::size_t most_vertices_ = 0;  // of a refinement, in place of the given budget; 0: that
   const Execution& outer_;

@@ -15,10 +15,10 @@ namespace {
 // Contractions and divisions leave at least this share of the quality of the worst tet around.
 constexpr double share_left = 0.3;
 // Shares of the target up to which edges are contracted, one after the other.
-constexpr std::array lengths{0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.7};
+constexpr std::array lengths{0.05, 0.2, 0.5, 0.7};
 // Qualities: 1 is what a thin tet has.
 constexpr double good = 1, better = 1.3, least = 1e-12;
-constexpr unsigned most_passes = 4, most_improvements = 6;
+constexpr unsigned most_passes = 4, most_improvements = 3;
 // A pass that changes fewer than this share of the vertices or tets is the last one of its kind.
 constexpr double least_share = 0.005;
 // Vertices with more tets stay: all of these would have to be made anew.
@@ -36,13 +36,16 @@ Relaxation::Relaxation(improvement::Workpiece& workpiece, const MeshOptions& opt
       cells_(workpiece.plc, mesh(), options.bounds),
       rule_(thin_, cells_, options.bounds.radius_edge, sizes_),
       operations_(workpiece, rule_),
-      execution_(execution) {
+      execution_(execution),
+      changed_(mesh().points.size(), 0),
+      kept_(mesh().points.size(), 0) {
   rule_.set_mode(coarsening::CoarseningRule::Mode::force);
   workpiece_.prepare();
 }
 
 void Relaxation::contract() {
   for (const double length : lengths) {
+    kept_.assign(mesh().points.size(), 0);
     for (unsigned pass = 0; pass < most_passes; ++pass)
       if (!contract_shorter_than(length, share_left)) break;
     for (unsigned pass = 0; pass < most_improvements; ++pass)
@@ -83,7 +86,12 @@ bool Relaxation::contract_shorter_than(double below, double share) {
   const std::size_t before = contractions_;
   for (const Near& candidate : candidates) {
     if (stopped()) return false;
-    if (complex().in_use(candidate.vertex) && contract_at(candidate.vertex, below, share)) ++contractions_;
+    const Index v = candidate.vertex;
+    if (!complex().in_use(v) || kept_[v] > changed_[v]) continue;
+    if (contract_at(v, below, share))
+      ++contractions_;
+    else
+      kept_[v] = ++now_;
   }
   return static_cast<double>(contractions_ - before) > least_share * static_cast<double>(shortest.size());
 }
@@ -104,7 +112,7 @@ bool Relaxation::contract_at(Index vertex, double below, double share) {
     Change change;
     operations_.contract_onto(onto.vertex, least_quality, 0, change);
     if (change.kind == Change::Kind::none || !workpiece_.curve_can_spare(change)) continue;
-    workpiece_.apply(std::move(change));
+    apply(std::move(change));
     return true;
   }
   return false;
@@ -140,7 +148,7 @@ bool Relaxation::improve_below(double enough, Means means) {
   };
   std::vector<Poor> poor;
   for (Index t = 0; t < complex().size(); ++t)
-    if (complex()[t].alive)
+    if (complex()[t].alive && !was_tried(t, means))
       if (const double q = quality(t); q < enough) poor.push_back({q, t});
   std::ranges::stable_sort(poor, {}, &Poor::quality);
   const std::size_t before = others_;
@@ -148,9 +156,14 @@ bool Relaxation::improve_below(double enough, Means means) {
     if (stopped()) return false;
     if (!complex()[item.tet].alive || quality(item.tet) != item.quality) continue;
     Change change = improvement_of(item.tet, enough, means);
-    if (change.kind == Change::Kind::none) continue;
+    if (change.kind == Change::Kind::none) {
+      auto& tried = not_better_[static_cast<unsigned>(means)];
+      if (tried.size() < complex().size()) tried.resize(complex().size(), 0);
+      tried[item.tet] = ++now_;
+      continue;
+    }
     if (change.kind == Change::Kind::contraction && !workpiece_.curve_can_spare(change)) continue;
-    workpiece_.apply(std::move(change));
+    apply(std::move(change));
     ++others_;
   }
   return static_cast<double>(others_ - before) > least_share * static_cast<double>(complex().size());
@@ -182,6 +195,26 @@ Change Relaxation::improvement_of(Index tet, double enough, Means means) {
     for (const Index w : corners)
       if (v != w && !found()) operations_.contract_edge(v, w, change);
   return change;
+}
+
+void Relaxation::apply(Change change) {
+  ++now_;
+  for (const Index t : workpiece_.apply(std::move(change)))
+    for (const Index v : complex()[t].corners) changed_[v] = now_;
+}
+
+bool Relaxation::has_changed_since(Index tet, std::uint32_t when) const {
+  const auto& v = complex()[tet].corners;
+  return std::ranges::any_of(v, [&](Index w) { return changed_[w] >= when; });
+}
+
+/// Was it tried in vain, by these means or more, and nothing at its corners has changed since?
+bool Relaxation::was_tried(Index tet, Means means) const {
+  for (auto kind = static_cast<unsigned>(means); kind < kinds_of_means; ++kind) {
+    const auto& tried = not_better_[kind];
+    if (tet < tried.size() && tried[tet] > 0 && !has_changed_since(tet, tried[tet])) return true;
+  }
+  return false;
 }
 
 bool Relaxation::stopped() {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -40,6 +42,7 @@ class Relaxation {
   };
   /// What improvement may do besides removing edges.
   enum class Means { edges, moves, vertices };
+  static constexpr unsigned kinds_of_means = 3;
 
   const improvement::TetComplex& complex() const { return workpiece_.complex; }
   const TetMesh& mesh() const { return workpiece_.complex.mesh(); }
@@ -51,6 +54,9 @@ class Relaxation {
   bool may_share_feature(Index vertex, Index onto) const;
   bool improve_below(double enough, Means means);
   improvement::Change improvement_of(Index tet, double enough, Means means);
+  void apply(improvement::Change change);
+  bool has_changed_since(Index tet, std::uint32_t when) const;
+  bool was_tried(Index tet, Means means) const;
   bool stopped();
 
   improvement::Workpiece& workpiece_;
@@ -64,6 +70,11 @@ class Relaxation {
   std::vector<Near> near_;  // of the vertex asked about last, by length
   double longest_ = 0;      // edge there, relative to the target
   std::size_t contractions_ = 0, others_ = 0, steps_ = 0;
+  // When tets at a vertex have changed last, and when something was tried last in vain. What has not changed
+  // since need not be tried again.
+  std::uint32_t now_ = 1;
+  std::vector<std::uint32_t> changed_, kept_;                        // by vertex
+  std::array<std::vector<std::uint32_t>, kinds_of_means> not_better_;  // by tet
 };
 
 }  // namespace collarmesh::remeshing
