@@ -41,10 +41,10 @@ struct PipelineOptions {
   RepairOptions repair = {};  ///< repair of facets that are no complex
   MeshOptions mesh = {};      ///< sizes, bounds and budgets; the time limit is one for all stages
   Start start = Start::automatic;
-  bool coarsen = true;        ///< make as few tets as the sizes ask for
-  unsigned improve = 2;       ///< level, 1 to 3; 0: leave the slivers
-  double min_dihedral = 0;    ///< degrees; 0: that of the level
-  unsigned order = 1;         ///< order of the cells, 1 or 2
+  bool coarsen = true;      ///< make as few tets as the sizes ask for
+  unsigned improve = 2;     ///< level, 1 to 3; 0: leave the slivers
+  double min_dihedral = 0;  ///< degrees; 0: that of the level
+  unsigned order = 1;       ///< order of the cells, 1 or 2
   /// Number of seeds to try, from `mesh.seed` on, until every guarantee holds; at least 1. The first mesh is
   /// kept if no seed succeeds.
   unsigned seeds = 2;
@@ -99,8 +99,8 @@ class ComplexSource {
 /// that takes far more vertices than the sizes ask for ends early, and coarser repairs are tried
 /// (`coarser_repairs`) that lose no body, region, name or tag except numbers of CAD faces; if none of their
 /// complexes does better, the first one is meshed as far as the budgets allow, or twice that many
-/// vertices where none is given; then it is made from its constrained tetrahedra (`Start`). `check.notes` lists the attempts. `execution.progress` is also called at the
-/// beginning of each stage
+/// vertices where none is given; then it is made from its constrained tetrahedra (`Start`). `check.notes`
+/// lists the attempts. `execution.progress` is also called at the beginning of each stage
 /// (`ProgressReport::begins`), and its fraction is that of all stages. Cancelled or out of time, the result
 /// has that status and no mesh. Throws PlcError for facets that are no complex and cannot be repaired,
 /// OptionError for options that contradict each other and for sizes of tags that the complex does not have.

@@ -47,7 +47,8 @@ class InTheWayOfEdge final : public Obstacles {
 /// Edges that pass through a triangle to come.
 class InTheWayOfFacet final : public Obstacles {
  public:
-  InTheWayOfFacet(const Tetrahedra& mesh, const std::array<Index, 3>& corners) : mesh_(mesh), corners_(corners) {}
+  InTheWayOfFacet(const Tetrahedra& mesh, const std::array<Index, 3>& corners)
+      : mesh_(mesh), corners_(corners) {}
 
   int face(Index, Index, Index) const override { return 0; }
   int edge(Index p, Index q) const override {
@@ -56,7 +57,8 @@ class InTheWayOfFacet final : public Obstacles {
       if (v == p || v == q) return 0;
     const int from = mesh_.orientation(a, b, c, p), to = mesh_.orientation(a, b, c, q);
     if (from * to >= 0) return 0;
-    return same_sign(mesh_.orientation(p, q, a, b), mesh_.orientation(p, q, b, c), mesh_.orientation(p, q, c, a))
+    return same_sign(mesh_.orientation(p, q, a, b), mesh_.orientation(p, q, b, c),
+                     mesh_.orientation(p, q, c, a))
                ? 1
                : 0;
   }
@@ -120,7 +122,8 @@ void BoundaryRecovery::make_planar_facets_delaunay() {
 
 /// Turns an edge between two facets in one plane if the angles across it are so large together, and adds the
 /// edges around it to those that have changed.
-bool BoundaryRecovery::turn_edge(std::uint64_t key, double least_angles, std::vector<std::uint64_t>& changed) {
+bool BoundaryRecovery::turn_edge(std::uint64_t key, double least_angles,
+                                 std::vector<std::uint64_t>& changed) {
   const auto at = edges_.find(key);
   if (at == edges_.end() || at->second.curve != none || at->second.facets.size() != 2) return false;
   const auto [f, g] = std::array{at->second.facets[0], at->second.facets[1]};
@@ -256,8 +259,9 @@ Index BoundaryRecovery::find_crossed(Index a, Index b, std::vector<CrossedFace>&
     if (obstacles.face(p, q, r) == 0) return;
     const Index beyond = mesh_.beyond(face);
     if (seen.contains(beyond)) return;
-    crossed.push_back({face, mesh_.corners(face.tet),
-                       share_to_plane(mesh_.point(a), mesh_.point(b), mesh_.point(p), mesh_.point(q), mesh_.point(r))});
+    crossed.push_back(
+        {face, mesh_.corners(face.tet),
+         share_to_plane(mesh_.point(a), mesh_.point(b), mesh_.point(p), mesh_.point(q), mesh_.point(r))});
     if (std::ranges::find(next, beyond) == next.end()) next.push_back(beyond);
   };
   for (const Index t : tets) {
@@ -275,7 +279,8 @@ Index BoundaryRecovery::find_crossed(Index a, Index b, std::vector<CrossedFace>&
   }
   for (const CrossedFace& c : crossed) {
     const auto v = side_corners(c.corners, c.face.corner);
-    const std::array<bool, 3> on_line{mesh_.orientation(a, b, v[0], v[1]) == 0, mesh_.orientation(a, b, v[1], v[2]) == 0,
+    const std::array<bool, 3> on_line{mesh_.orientation(a, b, v[0], v[1]) == 0,
+                                      mesh_.orientation(a, b, v[1], v[2]) == 0,
                                       mesh_.orientation(a, b, v[2], v[0]) == 0};
     for (unsigned i = 0; i < 3; ++i)
       if (on_line[i] && on_line[(i + 2) % 3]) return v[i];
@@ -397,7 +402,8 @@ void BoundaryRecovery::divide_facet(Index facet, const std::vector<Ends>& pierci
 void BoundaryRecovery::fail(Index at, const char* what) const {
   const Point& p = mesh_.point(at);
   const std::string message = fmt::format(
-      "{} at ({:.9g}, {:.9g}, {:.9g}) could not be made a part of a mesh: what is there is too narrow for the "
+      "{} at ({:.9g}, {:.9g}, {:.9g}) could not be made a part of a mesh: what is there is too narrow for "
+      "the "
       "numbers of a computer; raise the repair tolerance.",
       what, p.x, p.y, p.z);
   throw PlcError(message, {{PlcFault::Kind::intersection, message, {at}, p}});

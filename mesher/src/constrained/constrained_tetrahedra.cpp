@@ -52,10 +52,10 @@ class Labels {
     if (region == none) region = beside;
     if (region == beside) return;
     const Point& p = mesh_.point(facet.corners[0]);
-    const std::string message =
-        fmt::format("The facets around ({:.9g}, {:.9g}, {:.9g}) do not agree about the region between them; "
-                    "repair the complex.",
-                    p.x, p.y, p.z);
+    const std::string message = fmt::format(
+        "The facets around ({:.9g}, {:.9g}, {:.9g}) do not agree about the region between them; "
+        "repair the complex.",
+        p.x, p.y, p.z);
     throw PlcError(message, {{PlcFault::Kind::open_boundary, message, {}, p}});
   }
 

@@ -27,7 +27,8 @@ std::optional<int> LocalChanges::remove_face(const Tetrahedra::Face& face, const
 }
 
 bool LocalChanges::may_remove(Index a, Index b, const Tetrahedra::Ring& ring) const {
-  if (required_.contains(edge_key(a, b)) || ring.link.size() < 3 || ring.link.size() > largest_ring) return false;
+  if (required_.contains(edge_key(a, b)) || ring.link.size() < 3 || ring.link.size() > largest_ring)
+    return false;
   return std::ranges::all_of(ring.tets, [&](Index t) {
     const auto& v = mesh_.corners(t);
     for (unsigned k = 0; k < 4; ++k)
@@ -167,7 +168,8 @@ bool LocalChanges::keeps_features(const std::vector<Index>& cavity,
     const auto& v = mesh_.corners(t);
     for (unsigned i = 0; i < 4; ++i) {
       if (!vertices.contains(v[i])) return false;
-      if (mesh_.facet({t, i}) != none && std::ranges::find(cavity, mesh_.beyond({t, i})) != cavity.end()) return false;
+      if (mesh_.facet({t, i}) != none && std::ranges::find(cavity, mesh_.beyond({t, i})) != cavity.end())
+        return false;
       for (unsigned j = i + 1; j < 4; ++j) {
         const std::uint64_t key = edge_key(v[i], v[j]);
         if (required_.contains(key) && !edges.contains(key)) return false;

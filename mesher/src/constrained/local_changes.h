@@ -30,8 +30,8 @@ class LocalChanges {
 
   /// Replaces the two tetrahedra at a face by three at the edge that joins the corners beyond it.
   std::optional<int> remove_face(const Tetrahedra::Face& face, const Obstacles& obstacles);
-  /// Triangulates the ring of an edge anew, with the fewest obstacles. If no way leaves positive tetrahedra and
-  /// at most so many obstacles more, edges around it are removed first, `depth` times in a row.
+  /// Triangulates the ring of an edge anew, with the fewest obstacles. If no way leaves positive tetrahedra
+  /// and at most so many obstacles more, edges around it are removed first, `depth` times in a row.
   std::optional<int> remove_edge(Index a, Index b, unsigned depth, const Obstacles& obstacles, int most);
 
   /// From now on so many rings are triangulated before others are removed first; then no more.
@@ -46,14 +46,15 @@ class LocalChanges {
   // Larger rings are not triangulated.
   static constexpr std::size_t largest_ring = 40, largest_cavity = 200;
 
-  std::optional<int> triangulate_ring(Index a, Index b, const Tetrahedra::Ring& ring, const Obstacles& obstacles,
-                                      int most);
+  std::optional<int> triangulate_ring(Index a, Index b, const Tetrahedra::Ring& ring,
+                                      const Obstacles& obstacles, int most);
   bool may_remove(Index a, Index b, const Tetrahedra::Ring& ring) const;
   int cost_of_diagonal(Index a, Index b, Index p, Index q, const Obstacles& obstacles) const;
   void collect(Index a, Index b, const std::vector<Index>& link, std::size_t i, std::size_t j,
                std::vector<Tetrahedra::Corners>& created) const;
   bool grow(Index x, std::vector<Index>& cavity) const;
-  bool keeps_features(const std::vector<Index>& cavity, const std::vector<Tetrahedra::Corners>& created) const;
+  bool keeps_features(const std::vector<Index>& cavity,
+                      const std::vector<Tetrahedra::Corners>& created) const;
 
   Tetrahedra& mesh_;
   const std::unordered_set<std::uint64_t>& required_;

@@ -156,8 +156,9 @@ std::vector<Option> quality_options() {
        .words = {"auto", "refinement", "constrained"},
        .place = choice_at<&RunOptions::start>,
        .help = "What the mesh begins with; constrained: tetrahedra with the facets as they are",
-       .details = "`auto`: refinement, and `constrained` where that takes far more vertices than the sizes ask "
-                  "for; see [Parts that explode](architecture/constrained.md)",
+       .details =
+           "`auto`: refinement, and `constrained` where that takes far more vertices than the sizes ask "
+           "for; see [Parts that explode](architecture/constrained.md)",
        .commands = refining},
       {.name = "radius-edge RHO",
        .place = asked_ratio,

@@ -38,6 +38,7 @@
 #include "pipeline/explosion.h"
 #include "pipeline/lost_parts.h"
 #include "pipeline/vertex_bound.h"
+#include "predict/vertex_counts.h"
 #include "refine/generate_linked.h"
 #include "remesh/bring_to_size.h"
 
@@ -117,7 +118,10 @@ class SoupSource : public ComplexSource {
 class Pipeline {
  public:
   Pipeline(const PipelineOptions& options, const Execution& execution)
-      : given_(with_profile(options)), start_(given_.start), outer_(execution), counter_(options.mesh.threads) {
+      : given_(with_profile(options)),
+        start_(given_.start),
+        outer_(execution),
+        counter_(options.mesh.threads) {
     validate({options});
     if (options.partitions > 0) require_partitioner();
     if (options.mesh.time_limit > 0) deadline_.emplace(options.mesh.time_limit, execution);
@@ -233,8 +237,8 @@ class Pipeline {
     }
   }
 
-  /// Meshes a complex where no other way is left: from its constrained tetrahedra if that keeps every guarantee;
-  /// else refined as far as the budgets allow; else from these tetrahedra all the same.
+  /// Meshes a complex where no other way is left: from its constrained tetrahedra if that keeps every
+  /// guarantee; else refined as far as the budgets allow; else from these tetrahedra all the same.
   void mesh_anyhow(const Plc& plc, const std::string& why) {
     std::optional<PipelineResult> constrained = from_constrained(plc, why);
     is_constrained_ = constrained && constrained->guarantees_hold();
@@ -251,7 +255,8 @@ class Pipeline {
 
   /// Meshes a complex from its constrained tetrahedra; nothing where there are none, or others are asked for.
   std::optional<PipelineResult> from_constrained(const Plc& plc, const std::string& why) {
-    if (given_.start != Start::automatic || given_.mesh.profile == Profile::paper || given_.periodic.any()) return {};
+    if (given_.start != Start::automatic || given_.mesh.profile == Profile::paper || given_.periodic.any())
+      return {};
     PipelineResult before = std::exchange(made_, {});
     std::optional<PipelineResult> found;
     start_ = Start::constrained;
@@ -473,12 +478,39 @@ class Pipeline {
       tetrahedralize();
     else
       refine();
+    if (is_far_too_fine() && take_constrained()) return;
     reshape();
     if (start_ == Start::constrained) settle();
     make_faces_periodic();
     project();
     raise_order();
     certify();
+  }
+
+  /// Returns whether a refinement made many times the tets that are to be left, as thin parts make it do. To
+  /// coarsen those away takes far longer than to begin with constrained tetrahedra.
+  bool is_far_too_fine() const {
+    constexpr double times = 5, least = 200'000;
+    const auto tets = static_cast<double>(made_.result.mesh.tets.size());
+    return start_ == Start::automatic && options_.coarsen && given_.mesh.profile == Profile::standard &&
+           made_.result.status == MeshStatus::complete && tets > least &&
+           tets > times * prediction::count_tets(prediction::Shape(*plc_), options_.mesh);
+  }
+
+  /// Takes the mesh from the constrained tetrahedra if it keeps every guarantee.
+  bool take_constrained() {
+    KnownNeighbours neighbours = std::move(neighbours_);
+    const MeshOptions refined_with = refined_with_;
+    std::optional<PipelineResult> constrained =
+        from_constrained(*plc_, fmt::format("the refinement makes {} tets", made_.result.mesh.tets.size()));
+    if (constrained && constrained->guarantees_hold()) {
+      is_constrained_ = true;
+      made_ = std::move(*constrained);
+      return true;
+    }
+    neighbours_ = std::move(neighbours);
+    refined_with_ = refined_with;
+    return false;
   }
 
   void limit_sizes(SizeField limit) {
@@ -538,8 +570,9 @@ class Pipeline {
     result.has_narrow_cells = refined_with_.bounds.lower_where_forced = true;
     if (!remeshing::bring_to_size(result.mesh, *plc_, refined_with_, inner_) && !inner_.cancelled()) {
       result.status = MeshStatus::budget_hit;
-      result.message = fmt::format("{} vertices were reached; raise max-vertices, or the sizes for a coarser mesh",
-                                   refined_with_.max_vertices);
+      result.message =
+          fmt::format("{} vertices were reached; raise max-vertices, or the sizes for a coarser mesh",
+                      refined_with_.max_vertices);
       throw Ended();
     }
     stop_if_asked();

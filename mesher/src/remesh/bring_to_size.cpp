@@ -116,8 +116,8 @@ class Bringing {
   std::vector<double> sizes() const { return coarsening::target_sizes(mesh_, plc_, options_); }
 
   /// Beside edges that are shorter than the targets, sizes that grow from them with the distance: edges that
-  /// contraction has left are there to stay, and tets between short and long ones have poor shapes. Along thin
-  /// parts that would take very many tets; then the targets.
+  /// contraction has left are there to stay, and tets between short and long ones have poor shapes. Along
+  /// thin parts that would take very many tets; then the targets.
   std::vector<double> graded_sizes() const {
     const std::vector<double> targets = sizes();
     std::vector<double> graded = targets;

@@ -105,8 +105,8 @@ bool Relaxation::contract_at(Index vertex, double below, double share) {
   for (const Near& onto : near_) {
     if (++tries > most_tries) return false;
     const bool fits = std::ranges::all_of(neighbours_, [&](Index v) {
-      return v == onto.vertex || relative_length(onto.vertex, v) <=
-                                     std::max(longest_, coarsening::CoarseningRule::longest_new);
+      return v == onto.vertex ||
+             relative_length(onto.vertex, v) <= std::max(longest_, coarsening::CoarseningRule::longest_new);
     });
     if (!fits) continue;
     Change change;
@@ -138,7 +138,8 @@ void Relaxation::find_neighbours(Index vertex, double below) {
 
 bool Relaxation::may_share_feature(Index vertex, Index onto) const {
   const auto &f = mesh().features[vertex], &g = mesh().features[onto];
-  return f.dimension == 3 || g.dimension < f.dimension || (g.dimension == f.dimension && g.feature == f.feature);
+  return f.dimension == 3 || g.dimension < f.dimension ||
+         (g.dimension == f.dimension && g.feature == f.feature);
 }
 
 bool Relaxation::improve_below(double enough, Means means) {

@@ -73,7 +73,7 @@ class Relaxation {
   // When tets at a vertex have changed last, and when something was tried last in vain. What has not changed
   // since need not be tried again.
   std::uint32_t now_ = 1;
-  std::vector<std::uint32_t> changed_, kept_;                        // by vertex
+  std::vector<std::uint32_t> changed_, kept_;                          // by vertex
   std::array<std::vector<std::uint32_t>, kinds_of_means> not_better_;  // by tet
 };
 
