@@ -31,9 +31,11 @@
 #include "common/traced_mesh.h"
 #include "improve/cell_bounds.h"
 #include "improve/improve_workpiece.h"
+#include "improve/interior_nodes.h"
+#include "periodic/improve_across.h"
 #include "periodic/make_periodic.h"
 #include "periodic/node_map.h"
-#include "periodic/sizes_across.h"
+#include "periodic/tolerance_across.h"
 #include "pipeline/explosion.h"
 #include "pipeline/lost_parts.h"
 #include "pipeline/vertex_bound.h"
@@ -402,7 +404,11 @@ class Pipeline {
     require_known_tags(options_.mesh, plc);
     require_known_patches(options_.split, plc);
     options_.mesh.bounds.tolerance = nearer_ ? *nearer_ : tolerance(plc);
-    require_periodic_patches(options_.periodic, plc, options_.mesh.bounds.tolerance->largest());
+    const double distance = options_.mesh.bounds.tolerance->largest();
+    require_periodic_patches(options_.periodic, plc, distance);
+    if (options_.periodic.any())
+      options_.mesh.bounds.tolerance =
+          periodicity::tolerance_across(*options_.mesh.bounds.tolerance, plc, options_.periodic, distance);
     if (!knows_bound_) find_bound();
     if (most_vertices_ > 0) options_.mesh.max_vertices = most_vertices_;
     options_.mesh.seed = seed;
@@ -413,13 +419,6 @@ class Pipeline {
     project();
     raise_order();
     certify();
-  }
-
-  void limit_sizes(SizeField limit) {
-    const SizeField given = refined_with_.size_field;
-    refined_with_.size_field = [given, limit = std::move(limit)](const Point& p) {
-      return given ? std::min(given(p), limit(p)) : limit(p);
-    };
   }
 
   bool exact() const { return static_cast<bool>(options_.exact); }
@@ -448,6 +447,7 @@ class Pipeline {
   void refine() {
     begin("refine", 0.06, options_.coarsen ? 0.6 : 0.7);
     MeshOptions options = refined_with_;
+    options.bounds.interior_node = false;  // nodes are inserted afterwards
     if (options_.coarsen)
       options.bounds.collar_angle = std::max(options.bounds.collar_angle, reached_collar_angle);
     MeshResult& result = made_.result =
@@ -472,6 +472,7 @@ class Pipeline {
     else
       begin("improve", 0.7, 0.8);
     TetMesh& mesh = made_.result.mesh;
+    insert_interior_nodes();
     if (given_.periodic.any()) refined_ = mesh;
     ThreadLimit(options_.mesh.threads).run([&] {
       improvement::Workpiece workpiece(mesh, *plc_, *refined_with_.bounds.tolerance,
@@ -480,64 +481,100 @@ class Pipeline {
       neighbours_ = KnownNeighbours();
       if (options_.coarsen) coarsen_elements(workpiece);
       if (options_.improve > 0) improve_elements(workpiece);
+      complete_interior_nodes(workpiece);
       workpiece.complex.store();
       if (options_.coarsen) improvement::mark_cells(mesh, *plc_, refined_with_.bounds);
     });
     trace(options_.improve > 0 ? "improve" : "coarsen", mesh);
   }
 
-  /// If the elements beside the faces of a pair suit each other, the second one gets the mesh of the first.
-  /// Else both are made as fine as the finer one, and the nodes of the first are there on both before
-  /// elements are coarsened.
+  /// Those that are not needed are coarsened away again.
+  void insert_interior_nodes() {
+    if (!refined_with_.bounds.interior_node) return;
+    improvement::Workpiece workpiece(made_.result.mesh, *plc_, *refined_with_.bounds.tolerance, 0,
+                                     refined_with_.bounds.lower_where_forced, neighbours_);
+    neighbours_ = KnownNeighbours();
+    made_.interior_nodes.emplace();
+    improvement::insert_interior_nodes(workpiece, refined_with_.bounds, *made_.interior_nodes);
+    workpiece.complex.store();
+  }
+
+  void complete_interior_nodes(improvement::Workpiece& workpiece) {
+    if (refined_with_.bounds.interior_node)
+      improvement::complete_interior_nodes(workpiece, refined_with_.bounds, *made_.interior_nodes);
+  }
+
+  /// Gives the refined mesh the nodes of the coarsened one on both sides of each pair, coarsens it with
+  /// these, and makes the triangles alike. Then the tets beside them are coarsened and improved together,
+  /// while the mesh is cut open elsewhere, at one place and another; if some stay poor, all is done again
+  /// with the nodes that are left.
   void make_faces_periodic() {
     if (!given_.periodic.any() || made_.result.status != MeshStatus::complete) return;
-    begin("periodic faces", 0.78, 0.79);
+    constexpr unsigned most_tries = 2;
+    begin("periodic faces", 0.75, 0.79);
     const ImproveReport improvement = made_.improvement;
     const double distance = refined_with_.bounds.tolerance->largest();
     TetMesh best;
     std::size_t least = SIZE_MAX;
-    const auto try_with = [&](TetMesh mesh) {
-      PeriodicReport report = make_periodic(mesh, *plc_, options_.periodic, distance);
-      coarsen_and_improve(mesh, {});
-      const std::size_t poor = misshapen(mesh);
-      if (poor >= least) return;
-      least = poor;
-      best = std::move(mesh);
-      made_.periodic = std::move(report);
-    };
-    try_with(made_.result.mesh);
-    if (least > 0) {
-      const auto periodic = made_.periodic;
-      if (auto across = periodicity::sizes_across(made_.result.mesh, *plc_, options_.periodic)) {
-        limit_sizes(std::move(*across));
-        refine_again();
-      }
-      made_.periodic = periodic;
-      TetMesh mesh = std::move(refined_);
+    for (unsigned k = 0; k < most_tries && least > 0; ++k) {
+      TetMesh mesh = refined_;
       const std::vector<Index> nodes =
           periodicity::add_periodic_nodes(mesh, made_.result.mesh, *plc_, options_.periodic, distance);
       coarsen_and_improve(mesh, nodes);
-      try_with(std::move(mesh));
+      PeriodicReport report = make_periodic(mesh, *plc_, options_.periodic, distance);
+      periodicity::map_corners(mesh);
+      const std::size_t poor = reshape_across(mesh, distance);
+      made_.result.mesh = mesh;
+      if (poor >= least) continue;
+      least = poor;
+      best = std::move(mesh);
+      made_.periodic = std::move(report);
     }
     refined_ = {};
     made_.improvement = improvement;
     made_.result.mesh = std::move(best);
-    periodicity::map_corners(made_.result.mesh);
+    trace("periodic faces", made_.result.mesh);
   }
 
-  /// Refines and coarsens with other sizes; keeps the mesh if that takes too many vertices.
-  void refine_again() {
-    PipelineResult before = std::exchange(made_, {});
-    TetMesh refined_before = refined_;
-    try {
-      refine();
-      reshape();
-    } catch (const Ended&) {
-      if (!hit_bound()) throw;
+  /// Coarsens and improves a periodic mesh until all its tets keep their bounds or nothing helps. Returns how
+  /// often they miss them.
+  std::size_t reshape_across(TetMesh& mesh, double distance) {
+    using enum periodicity::Recut::Moved;
+    constexpr unsigned most_rounds = 6;  // what is cut open in one is not in the next
+    std::size_t poor = SIZE_MAX;
+    bool insert = false;
+    for (unsigned round = 0; round < most_rounds; ++round) {
+      ThreadLimit(options_.mesh.threads).run([&] {
+        periodicity::change_across(mesh, *plc_, options_.periodic, distance, *refined_with_.bounds.tolerance,
+                                   round % 2 == 0 ? beside_first : beside_second,
+                                   refined_with_.edges_per_hole,
+                                   [&](improvement::Workpiece& workpiece, const periodicity::Recut& recut) {
+                                     reshape_recut(workpiece, recut, insert);
+                                   });
+        improvement::mark_cells(mesh, *plc_, refined_with_.bounds);
+      });
+      const std::size_t now = misshapen(mesh);
+      if (now == 0 || (insert && now >= poor)) return std::min(now, poor);
+      insert = now >= poor;
+      poor = now;
     }
-    if (made_.result.status == MeshStatus::complete) return;
-    made_ = std::move(before);
-    refined_ = std::move(refined_before);
+    return poor;
+  }
+
+  /// `insert`: with new vertices beside thin tets, too, where their angles miss the bounds.
+  void reshape_recut(improvement::Workpiece& workpiece, const periodicity::Recut& recut, bool insert) {
+    MeshOptions options = refined_with_;
+    options.size_field = recut.sizes(options.size_field);
+    if (coarsen(workpiece, options, inner_).cancelled) stop();
+    if (options_.improve > 0) improve_elements(workpiece);
+    if (insert) {
+      constexpr double beyond_bound = 1.2;
+      ImproveOptions how = options_of_improvement();
+      how.keep_vertices = false;
+      how.min_dihedral = beyond_bound * how.bounds.thin_angle;
+      if (improve(workpiece, how, inner_).cancelled) stop();
+    }
+    complete_interior_nodes(workpiece);
   }
 
   /// Fixed vertices stay where they are.
@@ -584,6 +621,12 @@ class Pipeline {
 
   void improve_elements(improvement::Workpiece& workpiece) {
     if (made_.coarsening) begin("improve", 0.7, 0.8);
+    const ImproveOptions options = options_of_improvement();
+    made_.improvement = improve(workpiece, options, inner_);
+    if (made_.improvement.cancelled) stop();
+  }
+
+  ImproveOptions options_of_improvement() const {
     ImproveOptions options = improve_options(options_.improve);
     options.bounds = refined_with_.bounds;
     options.bounds.thin_angle = bounds().thin_angle;
@@ -595,8 +638,7 @@ class Pipeline {
     }
     if (options_.min_dihedral > 0) options.min_dihedral = options_.min_dihedral;
     if (exact()) options.min_dihedral *= 1 + dihedral_reserve;
-    made_.improvement = improve(workpiece, options, inner_);
-    if (made_.improvement.cancelled) stop();
+    return options;
   }
 
   void project() {
