@@ -30,9 +30,10 @@
 #include "common/thread_limit.h"
 #include "common/traced_mesh.h"
 #include "improve/cell_bounds.h"
+#include "improve/divide_curves.h"
 #include "improve/improve_workpiece.h"
 #include "improve/interior_nodes.h"
-#include "periodic/improve_across.h"
+#include "periodic/change_across.h"
 #include "periodic/make_periodic.h"
 #include "periodic/node_map.h"
 #include "periodic/tolerance_across.h"
@@ -506,29 +507,35 @@ class Pipeline {
 
   /// Gives the refined mesh the nodes of the coarsened one on both sides of each pair, coarsens it with
   /// these, and makes the triangles alike. Then the tets beside them are coarsened and improved together,
-  /// while the mesh is cut open elsewhere, at one place and another; if some stay poor, all is done again
-  /// with the nodes that are left.
+  /// while the mesh is cut open elsewhere. If some stay poor, curves are divided there, and all is done again
+  /// with these nodes.
   void make_faces_periodic() {
     if (!given_.periodic.any() || made_.result.status != MeshStatus::complete) return;
-    constexpr unsigned most_tries = 2;
+    constexpr unsigned most_tries = 4;
     begin("periodic faces", 0.75, 0.79);
     const ImproveReport improvement = made_.improvement;
     const double distance = refined_with_.bounds.tolerance->largest();
-    TetMesh best;
+    TetMesh best, source = std::move(made_.result.mesh);
     std::size_t least = SIZE_MAX;
     for (unsigned k = 0; k < most_tries && least > 0; ++k) {
       TetMesh mesh = refined_;
       const std::vector<Index> nodes =
-          periodicity::add_periodic_nodes(mesh, made_.result.mesh, *plc_, options_.periodic, distance);
+          periodicity::add_periodic_nodes(mesh, source, *plc_, options_.periodic, distance);
       coarsen_and_improve(mesh, nodes);
       PeriodicReport report = make_periodic(mesh, *plc_, options_.periodic, distance);
       periodicity::map_corners(mesh);
       const std::size_t poor = reshape_across(mesh, distance);
-      made_.result.mesh = mesh;
-      if (poor >= least) continue;
-      least = poor;
-      best = std::move(mesh);
-      made_.periodic = std::move(report);
+      source = mesh;
+      if (poor < least) {
+        least = poor;
+        best = std::move(mesh);
+        made_.periodic = std::move(report);
+      }
+      if (poor > 0)
+        change_across(source, distance, Moved::beside_first,
+                      [&](improvement::Workpiece& workpiece, const auto&) {
+                        improvement::divide_curves_at_poor_tets(workpiece, refined_with_.bounds);
+                      });
     }
     refined_ = {};
     made_.improvement = improvement;
@@ -536,45 +543,34 @@ class Pipeline {
     trace("periodic faces", made_.result.mesh);
   }
 
-  /// Coarsens and improves a periodic mesh until all its tets keep their bounds or nothing helps. Returns how
-  /// often they miss them.
-  std::size_t reshape_across(TetMesh& mesh, double distance) {
-    using enum periodicity::Recut::Moved;
-    constexpr unsigned most_rounds = 6;  // what is cut open in one is not in the next
-    std::size_t poor = SIZE_MAX;
-    bool insert = false;
-    for (unsigned round = 0; round < most_rounds; ++round) {
-      ThreadLimit(options_.mesh.threads).run([&] {
-        periodicity::change_across(mesh, *plc_, options_.periodic, distance, *refined_with_.bounds.tolerance,
-                                   round % 2 == 0 ? beside_first : beside_second,
-                                   refined_with_.edges_per_hole,
-                                   [&](improvement::Workpiece& workpiece, const periodicity::Recut& recut) {
-                                     reshape_recut(workpiece, recut, insert);
-                                   });
-        improvement::mark_cells(mesh, *plc_, refined_with_.bounds);
-      });
-      const std::size_t now = misshapen(mesh);
-      if (now == 0 || (insert && now >= poor)) return std::min(now, poor);
-      insert = now >= poor;
-      poor = now;
-    }
-    return poor;
+  using Moved = periodicity::Recut::Moved;
+
+  template <class Change>
+  void change_across(TetMesh& mesh, double distance, Moved moved, const Change& change) {
+    ThreadLimit(options_.mesh.threads).run([&] {
+      periodicity::change_across(mesh, *plc_, options_.periodic, distance, *refined_with_.bounds.tolerance,
+                                 moved, refined_with_.edges_per_hole, change);
+      improvement::mark_cells(mesh, *plc_, refined_with_.bounds);
+    });
   }
 
-  /// `insert`: with new vertices beside thin tets, too, where their angles miss the bounds.
-  void reshape_recut(improvement::Workpiece& workpiece, const periodicity::Recut& recut, bool insert) {
-    MeshOptions options = refined_with_;
-    options.size_field = recut.sizes(options.size_field);
-    if (coarsen(workpiece, options, inner_).cancelled) stop();
-    if (options_.improve > 0) improve_elements(workpiece);
-    if (insert) {
-      constexpr double beyond_bound = 1.2;
-      ImproveOptions how = options_of_improvement();
-      how.keep_vertices = false;
-      how.min_dihedral = beyond_bound * how.bounds.thin_angle;
-      if (improve(workpiece, how, inner_).cancelled) stop();
+  /// Coarsens and improves a periodic mesh while it is cut open at one place and then at another. Returns how
+  /// often its tets miss their bounds.
+  std::size_t reshape_across(TetMesh& mesh, double distance) {
+    std::size_t poor = SIZE_MAX;
+    for (const Moved moved : {Moved::beside_first, Moved::beside_second}) {
+      change_across(mesh, distance, moved,
+                    [&](improvement::Workpiece& workpiece, const periodicity::Recut& recut) {
+                      MeshOptions options = refined_with_;
+                      options.size_field = recut.sizes(options.size_field);
+                      if (coarsen(workpiece, options, inner_).cancelled) stop();
+                      if (options_.improve > 0) improve_elements(workpiece);
+                      complete_interior_nodes(workpiece);
+                    });
+      poor = misshapen(mesh);
+      if (poor == 0) break;
     }
-    complete_interior_nodes(workpiece);
+    return poor;
   }
 
   /// Fixed vertices stay where they are.

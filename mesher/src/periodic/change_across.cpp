@@ -1,4 +1,4 @@
-#include "periodic/improve_across.h"
+#include "periodic/change_across.h"
 
 #include <vector>
 
