@@ -65,8 +65,9 @@ SurfaceTolerance tolerance_across(const SurfaceTolerance& tolerance, const Plc& 
     for (const Index p : plc.triangles[t].points) box.add(plc.points[p]);
   }
   const BoxTree tree(boxes);
-  for (const auto& [place, allowed] : smaller) {
-    const double reach = (tolerance.largest() - allowed) / slope;
+  for (const Sample& sample : smaller) {
+    const Point& place = sample.place;
+    const double allowed = sample.tolerance, reach = (tolerance.largest() - allowed) / slope;
     const Vector margin{reach, reach, reach};
     tree.for_each_meeting({place - margin, place + margin}, [&](Index t) {
       double nearest = norm(centre(plc, t) - place);

@@ -586,7 +586,8 @@ class Pipeline {
     });
   }
 
-  /// Returns how often tets miss the bounds on their shapes.
+  /// Returns how often tets miss the bounds on their shapes, or sides of pairs their images, which counts far
+  /// more. Precondition: the map has the corners.
   std::size_t misshapen(const TetMesh& mesh) const {
     Bounds promised = bounds();
     promised.tolerance = refined_with_.bounds.tolerance;
@@ -595,10 +596,19 @@ class Pipeline {
                                       .findings_per_guarantee = std::numeric_limits<std::size_t>::max(),
                                       .threads = options_.mesh.threads},
                                      inner_);
-    return static_cast<std::size_t>(std::ranges::count_if(report.findings, [](const Finding& finding) {
-      return finding.guarantee == guarantee::thin_angles || finding.guarantee == guarantee::collar_dihedral ||
-             finding.guarantee == guarantee::radius_edge;
+    const auto poor = static_cast<std::size_t>(std::ranges::count_if(report.findings, [](const Finding& f) {
+      return f.guarantee == guarantee::thin_angles || f.guarantee == guarantee::collar_dihedral ||
+             f.guarantee == guarantee::radius_edge;
     }));
+    // Places are only exact when the mesh is finished.
+    constexpr std::size_t worse = 1000;  // than a tet
+    CheckReport of_pairs;
+    checks::check_periodic(mesh, of_pairs);
+    return poor +
+           worse * static_cast<std::size_t>(std::ranges::count_if(of_pairs.findings, [](const Finding& f) {
+             return f.guarantee == guarantee::periodic_nodes || f.guarantee == guarantee::periodic_edges ||
+                    f.guarantee == guarantee::periodic_faces;
+           }));
   }
 
   void coarsen_elements(improvement::Workpiece& workpiece) {
