@@ -307,6 +307,10 @@
       <translation>Ziehen Sie an den Griffen in der 3D-Ansicht. Zum Drehen schließen Sie dieses Fenster und wählen Transformieren im Kontextmenü.</translation>
     </message>
     <message>
+      <source>Each element has a node inside of its solid</source>
+      <translation>Jedes Element hat einen Knoten im Inneren seines Körpers</translation>
+    </message>
+    <message>
       <source>Each solid has its volume, no element is inverted</source>
       <translation>Jeder Körper hat sein Volumen, kein Element ist umgestülpt</translation>
     </message>
@@ -569,6 +573,10 @@
     <message>
       <source>Order of the elements</source>
       <translation>Elementordnung</translation>
+    </message>
+    <message>
+      <source>Periodic faces have the same nodes, edges and triangles</source>
+      <translation>Periodische Flächen haben dieselben Knoten, Kanten und Dreiecke</translation>
     </message>
     <message>
       <source>Points closer than this are one, relative to the diagonal; 0: 1e-9</source>

@@ -114,6 +114,13 @@ Json projection_json(const Plc& plc, const ProjectReport& r) {
           {"exceptions", std::move(exceptions)}};
 }
 
+Json interior_json(const InteriorNodesReport& r) {
+  return {{"found", r.found},
+          {"inserted_nodes", r.inserted_nodes},
+          {"removed_edges", r.removed_edges},
+          {"remaining", r.remaining}};
+}
+
 Json improvement_json(const ImproveReport& r) {
   return {{"candidates", r.candidates},
           {"remaining", r.remaining},
@@ -299,6 +306,7 @@ Json check_json(const CheckReport& r) {
           {"edges", r.edges},
           {"collar_tets", r.collar_tets},
           {"thin_tets", r.thin_tets},
+          {"surface_tets", r.surface_tets},
           {"max_radius_edge", number_json(r.max_radius_edge)},
           {"max_thin_radius_edge", number_json(r.max_thin_radius_edge)},
           {"forced_tets", r.forced_tets},
@@ -402,6 +410,7 @@ Json run_json(const RequestedRun& arguments, const MeshRun& run) {
             {"coarsening", run.coarsening ? coarsening_json(*run.coarsening) : Json(nullptr)},
             {"improvement", improvement_json(run.improvement)},
             {"second_order", arguments.order == 2 ? second_order_json(run.second_order) : Json(nullptr)},
+            {"interior_nodes", run.interior_nodes ? interior_json(*run.interior_nodes) : Json(nullptr)},
             {"periodic", run.periodic ? periodic_json(*run.periodic, run.result.mesh) : Json(nullptr)},
             {"split", run.split ? split_json(*run.split) : Json(nullptr)},
             {"seconds", std::move(seconds)}};

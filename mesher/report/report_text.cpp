@@ -305,6 +305,12 @@ std::string run_text(const RequestedRun& arguments, const MeshRun& run) {
                    "straightened\n",
                    run.second_order.nodes, run.second_order.curved, run.second_order.moved_inside,
                    run.second_order.straightened.size());
+  if (run.interior_nodes)
+    fmt::format_to(
+        Out(text),
+        "  {} tets had all corners on surfaces: {} nodes inserted, {} edges removed; {} such tets remain\n",
+        run.interior_nodes->found, run.interior_nodes->inserted_nodes, run.interior_nodes->removed_edges,
+        run.interior_nodes->remaining);
   if (run.periodic) text += periodic_text(*run.periodic);
   if (run.split) text += split_text(*run.split);
   if (run.guarantees_hold()) text += "  every guarantee holds\n";

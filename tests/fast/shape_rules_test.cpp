@@ -74,8 +74,9 @@ TEST(ShapeRules, WhatSurelyExceedsAQualityExceedsIt) {
     };
     expect(0, with_thin.surely_exceeds(wanted, p), with_thin.quality(p, corners), wanted);
     expect(1, without.surely_exceeds(wanted, p), without.quality(p, corners), wanted);
-    expect(2, coarse.surely_exceeds(above, p), coarse.quality(p, corners), above);
-    expect(3, coarse_with_reserve.surely_exceeds(above, p), coarse_with_reserve.quality(p, corners), above);
+    expect(2, coarse.surely_exceeds(above, p, corners), coarse.quality(p, corners), above);
+    expect(3, coarse_with_reserve.surely_exceeds(above, p, corners), coarse_with_reserve.quality(p, corners),
+           above);
   }
   for (const unsigned count : sure) EXPECT_GT(count, 10000U);
 }

@@ -11,6 +11,12 @@ def guarantees(report):
     if report["split"]:
         groups.append((translate("collarmesh", "Solids that are kept apart share no node, and their faces fit"),
                        ("split_nodes", "split_pairs", "split_sectors", "split_measures")))
+    if report.get("periodic"):
+        groups.append((translate("collarmesh", "Periodic faces have the same nodes, edges and triangles"),
+                       ("periodic_motion", "periodic_nodes", "periodic_places", "periodic_faces", "periodic_edges",
+                        "periodic_corners")))
+    if report.get("interior_nodes"):
+        groups.append((translate("collarmesh", "Each element has a node inside of its solid"), ("interior_node",)))
     findings = report["check"]["findings"]
     known = {name for _, names in groups for name in names}
     lines = [(text, [f["message"] for f in findings if f["guarantee"] in names]) for text, names in groups]

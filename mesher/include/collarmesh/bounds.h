@@ -28,6 +28,12 @@ struct Bounds {
   /// Let edges that the input forces to be short lower the smallest angle of thin tets. A mesh that was made
   /// without this is within the bounds with it.
   bool lower_where_forced = true;
+  /// No tet has all corners on boundaries, interfaces or patches inside regions. Where features meet, at
+  /// least two tets share the angle then, and each may have half of what is asked of one otherwise.
+  bool interior_node = false;
+
+  /// Returns the number of tets that share what creases and forced edges leave.
+  double tets_across() const { return interior_node ? 2 : 1; }
 };
 
 /// Returns the distance that these bounds allow between the smooth patches and curves of a complex and a

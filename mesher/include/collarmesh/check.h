@@ -45,6 +45,7 @@ struct CheckReport {
   double min_collar_dihedral = 180;
   double max_surface_distance = 0;  ///< two-sided, on smooth patches and curves
   double median_edge = 0;
+  std::size_t surface_tets = 0;  ///< with all corners on boundaries, interfaces or patches inside regions
   std::vector<double> region_volumes;  ///< by region index, [0] unused; of curved elements as they curve
   ShapeMeasures of_input, of_mesh;     ///< empty when labels or points are not usable
   MeshMeasures measures;               ///< with collars; of no tet when labels or points are not usable

@@ -8,6 +8,7 @@
 #include "collarmesh/coarsen.h"
 #include "collarmesh/exact_geometry.h"
 #include "collarmesh/improve.h"
+#include "collarmesh/interior_nodes.h"
 #include "collarmesh/mesher.h"
 #include "collarmesh/periodic.h"
 #include "collarmesh/plc.h"
@@ -69,8 +70,9 @@ struct PipelineResult {
   std::optional<ProjectReport> projection;  ///< nothing without exact geometry
   SecondOrderReport second_order;
   CheckReport check;
-  std::optional<PeriodicReport> periodic;  ///< nothing unless patches were to be periodic
-  std::optional<SplitReport> split;        ///< nothing unless something was to be split
+  std::optional<InteriorNodesReport> interior_nodes;  ///< nothing unless each tet was to have one
+  std::optional<PeriodicReport> periodic;             ///< nothing unless patches were to be periodic
+  std::optional<SplitReport> split;                   ///< nothing unless something was to be split
   Trace trace;  ///< of the run that made the mesh, or of a refinement that ended early
 
   bool guarantees_hold() const { return result.status == MeshStatus::complete && check.passed(); }

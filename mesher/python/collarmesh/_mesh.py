@@ -196,6 +196,7 @@ class Mesh:
         self._check: Optional[Dict[str, Any]] = state.get("check")
         self._said = {key: state.get(key, []) for key in ("repairs", "notes", "warnings")}
         self._said["status_message"] = state.get("status_message", "")
+        self._said["split"] = state.get("split")
 
     def _arrays(self) -> Dict[str, Any]:
         arrays: Dict[str, Any] = {name: getattr(self, name) for name in _ARRAYS}
@@ -221,6 +222,13 @@ class Mesh:
         """What does not hold: sentences with places."""
         told = [f"{f['guarantee']}: {f['message']}" for f in (self._check or {}).get("findings", [])]
         return ([self._said["status_message"]] if self._said["status_message"] else []) + told
+
+    @property
+    def split(self) -> Optional[Dict[str, Any]]:
+        """What `split=` and `keep_apart=` did, as in reports: "patches" with the tags of their sides ("minus", "plus"),
+        "triangles", "area" and "where"; "split_nodes", "junction_nodes", "new_nodes", "front_nodes". None without them."""
+        found: Optional[Dict[str, Any]] = self._said["split"]
+        return found
 
     @property
     def repairs(self) -> List[str]:

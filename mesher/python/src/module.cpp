@@ -26,6 +26,7 @@
 #include "options.h"
 #include "report/report.h"
 #include "report/soup_output.h"
+#include "report/split_report.h"
 #include "watched.h"
 
 namespace py = pybind11;
@@ -139,6 +140,7 @@ py::dict mesh_of(const py::list& inputs, const py::dict& options, const py::obje
   arrays["status_message"] = call->run.result.message;
   arrays["check"] = parsed(report::check_json(call->run.check));
   arrays["repairs"] = describe(call->run.repair);
+  if (call->run.split) arrays["split"] = parsed(report::split_json(*call->run.split));
   arrays["notes"] = call->input->notes();
   arrays["colours"] = colours_of(call->input->colours());
   std::vector<std::string> warnings;

@@ -61,6 +61,7 @@ void take_measures(CheckReport& report, CheckReport&& part) {
   report.max_collar_dihedral = std::max(report.max_collar_dihedral, part.max_collar_dihedral);
   report.min_collar_dihedral = std::min(report.min_collar_dihedral, part.min_collar_dihedral);
   report.max_surface_distance = std::max(report.max_surface_distance, part.max_surface_distance);
+  report.surface_tets += part.surface_tets;
   report.median_edge = std::max(report.median_edge, part.median_edge);
   report.warnings.insert(report.warnings.end(), part.warnings.begin(), part.warnings.end());
   if (part.region_volumes.empty()) return;
@@ -79,6 +80,7 @@ void judge(Subject subject, CheckReport& report, Findings& findings, const Execu
   using Group = void (*)(const Subject&, CheckReport&, Findings&);
   const std::array<Group, 8> groups{[](const Subject& s, CheckReport& r, Findings& f) {
                                       check_tets(s, r, f);
+                                      check_interior_nodes(s, r, f);
                                       check_region_volumes(s, r, f);
                                       check_shape_kept(s, r, f);
                                     },

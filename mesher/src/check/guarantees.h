@@ -18,6 +18,7 @@ inline constexpr char conforming[] = "conforming";    ///< a face has at most tw
 inline constexpr char radius_edge[] = "radius_edge";  ///< outside collars, but for thin tets
 inline constexpr char thin_angles[] = "thin_angles";  ///< of tets that exceed the radius-edge bound
 inline constexpr char collar_dihedral[] = "collar_dihedral";  ///< in collars
+inline constexpr char interior_node[] = "interior_node";  ///< a corner on no face, if each tet is to have one
 
 // The balls of the collars, where the mesh tells them
 inline constexpr char collar_centre[] = "collar_centre";  ///< the balls are where their points are

@@ -133,6 +133,10 @@ bool check_labels(const TetMesh& mesh, const Plc& plc, Findings& findings);
 /// Precondition: subject.collar is filled in.
 void check_tets(const Subject& subject, CheckReport& report, Findings& findings);
 
+/// Counts the tets all of whose corners are corners of listed faces. They are findings if each tet needs a
+/// node inside of a region.
+void check_interior_nodes(const Subject& subject, CheckReport& report, Findings& findings);
+
 /// Checks tets against each other and against the listed faces. It visits each edge once, so it also finds
 /// their median length.
 void check_conformity(const Subject& subject, CheckReport& report, Findings& findings);

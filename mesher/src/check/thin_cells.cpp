@@ -48,9 +48,9 @@ ThinCells::ThinCells(const Subject& subject)
     double& least = at_point_[subject.match.vertex_point[vertex]];
     least = std::min(least, bound);
   };
-  for (const Crease& crease : find_creases(plc, 2 * smallest_)) {
+  for (const Crease& crease : find_creases(plc, 2 * bounds.tets_across() * smallest_)) {
     at_point_.resize(subject.mesh.points.size(), smallest_);
-    const double bound = 0.5 * crease.angle;
+    const double bound = 0.5 * crease.angle / bounds.tets_across();
     lower_at_vertex(crease.vertex, bound);
     if (crease.curve == none) continue;
     of_curve[crease.curve] = std::min(of_curve[crease.curve], bound);
@@ -82,7 +82,8 @@ double ThinCells::smallest_angle(Index tet) const {
 double ThinCells::forced_angle(Index tet) const {
   const auto& [a, b, c, d] = mesh_.tets[tet];
   return ForcedEdges::smallest_angle(forced_->narrowness(
-      {mesh_.points[a], mesh_.points[b], mesh_.points[c], mesh_.points[d]}, {a, b, c, d}));
+             {mesh_.points[a], mesh_.points[b], mesh_.points[c], mesh_.points[d]}, {a, b, c, d})) /
+         subject_.options.bounds.tets_across();
 }
 
 double ThinCells::smallest_angle_at(const std::array<Index, 4>& tet) const {

@@ -95,7 +95,8 @@ class Coarsening {
       : workpiece_(workpiece),
         radius_edge_(made_with.bounds.radius_edge),
         sizes_(target_sizes(mesh(), workpiece.plc, sizes_asked_for(made_with))),
-        thin_(workpiece.plc, mesh(), made_with.bounds.thin_angle, made_with.bounds.reserve, workpiece.forced),
+        thin_(workpiece.plc, mesh(), made_with.bounds.thin_angle, made_with.bounds.reserve, workpiece.forced,
+              made_with.bounds.tets_across()),
         cells_(workpiece.plc, mesh(), made_with.bounds),
         rule_(thin_, cells_, made_with.bounds.radius_edge, sizes_),
         changes_{0, std::vector<std::uint32_t>(mesh().points.size(), 0)},
@@ -386,7 +387,8 @@ class Coarsening {
 
   // Infinity where there is nothing to improve.
   double quality_if_improvable(Index tet) const {
-    if (!complex()[tet].alive || rule_.surely_exceeds(improved_below, complex().corners(tet)))
+    if (!complex()[tet].alive ||
+        rule_.surely_exceeds(improved_below, complex().corners(tet), complex()[tet].corners))
       return INFINITY;
     return quality(tet);
   }

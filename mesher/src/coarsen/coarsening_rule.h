@@ -37,7 +37,9 @@ class CoarseningRule final : public improvement::AngleRule {
     return fits ? quality : improvement::CellBounds::forbidden * std::min(1.0, quality);
   }
   /// Is the quality above this, which is at least 1? False of some that are; much cheaper.
-  bool surely_exceeds(double quality, const Corners& p) const { return thin_.surely_exceeds(quality, p); }
+  bool surely_exceeds(double quality, const Corners& p, const std::array<Index, 4>& corners) const {
+    return !cells_.lacks_interior_node(corners) && thin_.surely_exceeds(quality, p);
+  }
   bool allows(const Corners& p, const std::array<Index, 4>& corners, double quality) const override {
     return mode_ != Mode::final || keeps_guarantee(p, corners, quality);
   }

@@ -92,7 +92,12 @@ CellBounds::CellBounds(const Plc& plc, const TetMesh& mesh, const Bounds& bounds
                                       2 * ThinShape::rounding)),
       tight_(bounds.collar_angle < ThinShape::largest_angle && creases_.any()),
       squared_ratio_(bounds.radius_edge * bounds.radius_edge),
-      narrow_(narrow_places(plc, mesh, bounds)) {}
+      narrow_(narrow_places(plc, mesh, bounds)) {
+  if (!bounds.interior_node) return;
+  mesh_ = &mesh;
+  for (const Plc::Curve& curve : plc.curves) curve_on_surface_.push_back(!curve.patches.empty());
+  for (const Plc::Vertex& vertex : plc.vertices) vertex_on_surface_.push_back(!vertex.patches.empty());
+}
 
 namespace {
 

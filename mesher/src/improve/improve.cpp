@@ -43,7 +43,7 @@ class Improvement {
   Improvement(Workpiece& workpiece, const ImproveOptions& options, const Execution& execution)
       : workpiece_(workpiece),
         thin_(workpiece.plc, complex().mesh(), options.bounds.thin_angle, options.bounds.reserve,
-              workpiece.forced),
+              workpiece.forced, options.bounds.tets_across()),
         cells_(workpiece.plc, complex().mesh(), options.bounds),
         rule_(options.bounds.radius_edge, options.bounds.thin_angle > 0 ? &thin_ : nullptr,
               options.bounds.thin_angle > 0 ? &cells_ : nullptr),

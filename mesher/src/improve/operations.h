@@ -42,6 +42,9 @@ class Operations {
   void split_edge(Index a, Index b, double least, Change& change);
   /// The same, however good the tets at the edge are now.
   void split_edge_anyhow(Index a, Index b, double least, Change& change);
+  /// Insert a vertex inside a region, in place of a tet or an edge of it and of tets around, as many as is
+  /// best, if all new ones are better than `least` and than `change`.
+  void insert_in_cavity(Index tet, double least, Change& change);
   /// Insert a vertex in the middle of an edge, inside a region, in a patch or on a curve, however many tets
   /// are there, if all new ones are better than `least`.
   void divide_edge(Index a, Index b, double least, Change& change);
@@ -118,6 +121,10 @@ class Operations {
   // Cones.
   bool find_cone_of_vertex(Index vertex);
   bool make_cone_of_vertex(Index vertex);
+  void grow_and_insert(std::vector<Index> cavity, double least, Change& change);
+  bool find_cone_of_cavity(const std::vector<Index>& cavity);
+  Point centre_of_hull() const;
+  Index beyond_worst_of_hull(const Point& apex) const;
   bool find_cone_of_edge(Index a, Index b);
   bool make_cone_of_edge(Index a, Index b);
   bool faces_are_of_one_patch() const;
@@ -149,6 +156,9 @@ class Operations {
 
   bool untouchable(const TetComplex::Tet& tet) const { return tet.collar && !rule_.dissolves_collars(); }
   double quality(Index tet) const { return rule_.quality(complex_.corners(tet), complex_[tet].corners); }
+
+  static Index inserted_in(Index patch) { return patch == none ? none : inserted_on_surface; }
+  bool is_there(Index vertex) const { return vertex < mesh_.points.size(); }
 
   /// Is this one of the mesh's faces that stay as they are?
   bool stays(Index face) const { return workpiece_.keeps(mesh_.face_patch[face]); }

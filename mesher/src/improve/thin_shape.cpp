@@ -34,21 +34,21 @@ std::shared_ptr<const ForcedEdges> forced_edges_of(const Plc& plc, const TetMesh
 }
 
 ThinShape::ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle, double reserve,
-                     std::shared_ptr<const ForcedEdges> forced)
+                     std::shared_ptr<const ForcedEdges> forced, double tets_across)
     : smallest_(smallest_angle * (1 + reserve)),
       sine_(sine_above(smallest_)),
       cosine_(
           signed_square(std::cos((180 - (180 - largest_angle) * (1 + reserve) - 2 * rounding) * radians))),
       least_blunt_(sine(cosine_)),
       inverse_squared_least_blunt_(1 / squared_sine(cosine_)),
-      share_(1 + reserve),
+      share_((1 + reserve) / tets_across),
       forced_(std::move(forced)) {
   if (empty()) return;
   std::vector<double> of_vertex(plc.vertices.size(), smallest_), of_curve(plc.curves.size(), smallest_);
   bool any = false;
-  for (const Crease& crease : find_creases(plc, 2 * smallest_angle)) {
+  for (const Crease& crease : find_creases(plc, 2 * tets_across * smallest_angle)) {
     any = true;
-    const auto lower = [&](double& bound) { bound = std::min(bound, 0.5 * crease.angle * (1 + reserve)); };
+    const auto lower = [&](double& bound) { bound = std::min(bound, 0.5 * crease.angle * share_); };
     if (crease.vertex != none) lower(of_vertex[crease.vertex]);
     if (crease.curve == none) continue;
     lower(of_curve[crease.curve]);

@@ -147,9 +147,9 @@ class ThinShape {
 
   /// `smallest_angle` in degrees; 0: no tet is thin. Vertices are those that the mesh has now. `reserve` is
   /// the share of the bounds, counted from 0 and from 180 degrees, that is kept free. `forced`: see
-  /// forced_edges_of.
+  /// forced_edges_of. `tets_across`: see Bounds.
   ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle, double reserve,
-            std::shared_ptr<const ForcedEdges> forced);
+            std::shared_ptr<const ForcedEdges> forced, double tets_across = 1);
 
   bool empty() const { return !(smallest_ > 0); }
   double squared_cosine_of_largest() const { return -cosine_; }

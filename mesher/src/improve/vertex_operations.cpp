@@ -51,6 +51,7 @@ bool Operations::find_cone_of_edge(Index a, Index b) {
   const Index at = complex_.tet_at_edge(a, b);
   if (at == none) return false;
   complex_.ring(at, a, b, ring_);
+  if (!ring_.closed && workpiece_.is_fixed(a) && workpiece_.is_fixed(b)) return false;
   return ring_.tets.size() <= largest_ring && make_cone_of_edge(a, b) && faces_are_of_one_patch();
 }
 
@@ -255,7 +256,7 @@ std::pair<Point, double> Operations::best_place(const Point& start, Index id, co
   const auto consider = [&](const Point& wish) {
     const Point p = back_on_feature(wish, start, freedom);
     const double quality = quality_around(p, id, best);
-    if (quality <= best || (id != none && !edges_allowed(id, start, p)) ||
+    if (quality <= best || (is_there(id) && !edges_allowed(id, start, p)) ||
         (ask_surfaces_ && !surfaces_allow(p, id)))
       return false;
     best = quality;
@@ -344,7 +345,8 @@ void Operations::insert_in_cone(Index a, Index b, double least, Change& change) 
   const Index patch = cone_.faces.empty() ? none : mesh_.face_patch[cone_.faces[0]];
   const Point middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
   const Freedom where = patch == none ? everywhere : on_patch(patch, middle);
-  const auto [place, quality] = best_place(back_on_feature(middle, mesh_.points[a], where), none, where, -1);
+  const auto [place, quality] =
+      best_place(back_on_feature(middle, mesh_.points[a], where), inserted_in(patch), where, -1);
   if (quality <= least) return;
   change = {};
   change.kind = Change::Kind::insertion;
@@ -361,7 +363,7 @@ void Operations::divide_edge(Index a, Index b, double least, Change& change) {
   const Index patch = cone_.faces.empty() ? none : mesh_.face_patch[cone_.faces[0]];
   const Freedom where = patch == none ? everywhere : Freedom{{}, 0, patch};
   const Point place = back_on_feature(0.5 * (mesh_.points[a] + mesh_.points[b]), mesh_.points[a], where);
-  const double quality = quality_around(place, none, least);
+  const double quality = quality_around(place, inserted_in(patch), least);
   if (quality < 0 || !surfaces_allow(place, none)) return insert_in_cone(a, b, least, change);
   change = {};
   change.kind = Change::Kind::insertion;
@@ -388,7 +390,7 @@ void Operations::divide_curve_edge(Index a, Index b, double least, Change& chang
   const auto middle = curves_.middle(curve, a, b);
   if (!middle) return;
   const Point place = curves_.place(curve, *middle);
-  const double quality = quality_around(place, none, least);
+  const double quality = quality_around(place, cone_.faces.empty() ? none : inserted_on_surface, least);
   if (quality < 0 || !surfaces_allow(place, none)) return;
   change = {};
   change.kind = Change::Kind::insertion;

@@ -261,7 +261,13 @@ std::vector<Option> element_options() {
            .help = "Order of the elements: 1 straight, with nodes at the corners; 2 with a mid-edge node on "
                    "every edge, "
                    "curved on smooth surfaces",
-           .commands = sizing}};
+           .commands = sizing},
+          {.name = "interior-node",
+           .place = in_bounds<&Bounds::interior_node>,
+           .help = "Leave no tetrahedron with all corners on boundaries, interfaces or internal patches; "
+                   "insert nodes where there are such",
+           .details = "see [Interior nodes](embedded.md#a-node-inside-of-each-tetrahedron)",
+           .commands = refining | Option::check}};
 }
 
 std::vector<Option> split_options() {

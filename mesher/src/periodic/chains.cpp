@@ -11,8 +11,9 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double near = 0.3;         // of the edges at a node: places so near are worth a move
-constexpr double good_enough = 0.1;  // the quality that a move or a removal must leave
+constexpr double near = 0.3;          // of the edges at a node: places so near are worth a move
+constexpr double good_removal = 0.3;  // the quality that a removal must leave; else both sides get the node
+constexpr double good_enough = 0.1;   // the quality that a move or a removal must leave
 
 /// Follows the edges of one curve.
 Chain follow(std::vector<std::array<Index, 2>> edges, Index start) {
@@ -123,7 +124,7 @@ class ChainEditor {
     const Cavity cavity = editor_.around_vertex(node);
     const double to_before = editor_.worst(cavity, editor_.at(before), before),
                  to_after = editor_.worst(cavity, editor_.at(after), after);
-    if (std::max(to_before, to_after) < good_enough) return false;
+    if (std::max(to_before, to_after) < good_removal) return false;
     editor_.join_curve_edges(before, node, after);
     editor_.fill(cavity, to_before > to_after ? before : after);
     chain_.nodes.erase(chain_.nodes.begin() + static_cast<std::ptrdiff_t>(i));

@@ -12,9 +12,10 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double near = 0.25;        // of the edges at a node: places so near are worth a move
-constexpr double good_enough = 0.1;  // the quality that a move or a removal must leave if another way may
-constexpr double fair = 0.02;        // the quality that a turned edge must leave if it need not be turned
+constexpr double near = 0.25;         // of the edges at a node: places so near are worth a move
+constexpr double good_removal = 0.3;  // the quality that a removal must leave; else both sides get the node
+constexpr double good_enough = 0.1;   // the quality that a move or a removal must leave if another way may
+constexpr double fair = 0.02;         // the quality that a turned edge must leave if it need not be turned
 
 bool contains(const auto& range, Index v) { return std::find(range.begin(), range.end(), v) != range.end(); }
 
@@ -201,7 +202,7 @@ void PatchEditor::remove(Index node) {
   for (const auto& [ends, like] : cavity.rim)
     if (const double q = editor_.worst(cavity, editor_.at(ends[0]), ends[0]); q > quality)
       quality = q, onto = ends[0];
-  if (quality < good_enough) return;
+  if (quality < good_removal) return;
   replace(cavity, onto);
   ++change_.removed;
   stays_.erase(node);

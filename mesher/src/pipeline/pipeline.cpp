@@ -31,10 +31,13 @@
 #include "common/traced_mesh.h"
 #include "constrained/constrained_tetrahedra.h"
 #include "improve/cell_bounds.h"
+#include "improve/divide_curves.h"
 #include "improve/improve_workpiece.h"
+#include "improve/interior_nodes.h"
+#include "periodic/change_across.h"
 #include "periodic/make_periodic.h"
 #include "periodic/node_map.h"
-#include "periodic/sizes_across.h"
+#include "periodic/tolerance_across.h"
 #include "pipeline/explosion.h"
 #include "pipeline/lost_parts.h"
 #include "pipeline/vertex_bound.h"
@@ -469,7 +472,11 @@ class Pipeline {
     require_known_tags(options_.mesh, plc);
     require_known_patches(options_.split, plc);
     options_.mesh.bounds.tolerance = nearer_ ? *nearer_ : tolerance(plc);
-    require_periodic_patches(options_.periodic, plc, options_.mesh.bounds.tolerance->largest());
+    const double distance = options_.mesh.bounds.tolerance->largest();
+    require_periodic_patches(options_.periodic, plc, distance);
+    if (options_.periodic.any())
+      options_.mesh.bounds.tolerance =
+          periodicity::tolerance_across(*options_.mesh.bounds.tolerance, plc, options_.periodic, distance);
     if (!knows_bound_) find_bound();
     if (most_vertices_ > 0) options_.mesh.max_vertices = most_vertices_;
     options_.mesh.seed = seed;
@@ -513,13 +520,6 @@ class Pipeline {
     return false;
   }
 
-  void limit_sizes(SizeField limit) {
-    const SizeField given = refined_with_.size_field;
-    refined_with_.size_field = [given, limit = std::move(limit)](const Point& p) {
-      return given ? std::min(given(p), limit(p)) : limit(p);
-    };
-  }
-
   bool exact() const { return static_cast<bool>(options_.exact); }
 
   /// Returns the bounds of the finished mesh.
@@ -546,6 +546,7 @@ class Pipeline {
   void refine() {
     begin("refine", 0.06, options_.coarsen ? 0.6 : 0.7);
     MeshOptions options = refined_with_;
+    options.bounds.interior_node = false;  // nodes are inserted afterwards
     if (options_.coarsen)
       options.bounds.collar_angle = std::max(options.bounds.collar_angle, reached_collar_angle);
     MeshResult& result = made_.result =
@@ -609,6 +610,7 @@ class Pipeline {
     else
       begin("improve", 0.7, 0.8);
     TetMesh& mesh = made_.result.mesh;
+    insert_interior_nodes();
     if (given_.periodic.any()) refined_ = mesh;
     ThreadLimit(options_.mesh.threads).run([&] {
       improvement::Workpiece workpiece(mesh, *plc_, *refined_with_.bounds.tolerance,
@@ -617,64 +619,95 @@ class Pipeline {
       neighbours_ = KnownNeighbours();
       if (options_.coarsen) coarsen_elements(workpiece);
       if (options_.improve > 0) improve_elements(workpiece);
+      complete_interior_nodes(workpiece);
       workpiece.complex.store();
       if (options_.coarsen) improvement::mark_cells(mesh, *plc_, refined_with_.bounds);
     });
     trace(options_.improve > 0 ? "improve" : "coarsen", mesh);
   }
 
-  /// If the elements beside the faces of a pair suit each other, the second one gets the mesh of the first.
-  /// Else both are made as fine as the finer one, and the nodes of the first are there on both before
-  /// elements are coarsened.
+  /// Those that are not needed are coarsened away again.
+  void insert_interior_nodes() {
+    if (!refined_with_.bounds.interior_node) return;
+    improvement::Workpiece workpiece(made_.result.mesh, *plc_, *refined_with_.bounds.tolerance, 0,
+                                     refined_with_.bounds.lower_where_forced, neighbours_);
+    neighbours_ = KnownNeighbours();
+    made_.interior_nodes.emplace();
+    improvement::insert_interior_nodes(workpiece, refined_with_.bounds, *made_.interior_nodes);
+    workpiece.complex.store();
+  }
+
+  void complete_interior_nodes(improvement::Workpiece& workpiece) {
+    if (refined_with_.bounds.interior_node)
+      improvement::complete_interior_nodes(workpiece, refined_with_.bounds, *made_.interior_nodes);
+  }
+
+  /// Gives the refined mesh the nodes of the coarsened one on both sides of each pair, coarsens it with
+  /// these, and makes the triangles alike. Then the tets beside them are coarsened and improved together,
+  /// while the mesh is cut open elsewhere. If some stay poor, curves are divided there, and all is done again
+  /// with these nodes.
   void make_faces_periodic() {
     if (!given_.periodic.any() || made_.result.status != MeshStatus::complete) return;
-    begin("periodic faces", 0.78, 0.79);
+    constexpr unsigned most_tries = 4;
+    begin("periodic faces", 0.75, 0.79);
     const ImproveReport improvement = made_.improvement;
     const double distance = refined_with_.bounds.tolerance->largest();
-    TetMesh best;
+    TetMesh best, source = std::move(made_.result.mesh);
     std::size_t least = SIZE_MAX;
-    const auto try_with = [&](TetMesh mesh) {
-      PeriodicReport report = make_periodic(mesh, *plc_, options_.periodic, distance);
-      coarsen_and_improve(mesh, {});
-      const std::size_t poor = misshapen(mesh);
-      if (poor >= least) return;
-      least = poor;
-      best = std::move(mesh);
-      made_.periodic = std::move(report);
-    };
-    try_with(made_.result.mesh);
-    if (least > 0) {
-      const auto periodic = made_.periodic;
-      if (auto across = periodicity::sizes_across(made_.result.mesh, *plc_, options_.periodic)) {
-        limit_sizes(std::move(*across));
-        refine_again();
-      }
-      made_.periodic = periodic;
-      TetMesh mesh = std::move(refined_);
+    for (unsigned k = 0; k < most_tries && least > 0; ++k) {
+      TetMesh mesh = refined_;
       const std::vector<Index> nodes =
-          periodicity::add_periodic_nodes(mesh, made_.result.mesh, *plc_, options_.periodic, distance);
+          periodicity::add_periodic_nodes(mesh, source, *plc_, options_.periodic, distance);
       coarsen_and_improve(mesh, nodes);
-      try_with(std::move(mesh));
+      PeriodicReport report = make_periodic(mesh, *plc_, options_.periodic, distance);
+      periodicity::map_corners(mesh);
+      const std::size_t poor = reshape_across(mesh, distance);
+      source = mesh;
+      if (poor < least) {
+        least = poor;
+        best = std::move(mesh);
+        made_.periodic = std::move(report);
+      }
+      if (poor > 0)
+        change_across(source, distance, Moved::beside_first,
+                      [&](improvement::Workpiece& workpiece, const auto&) {
+                        improvement::divide_curves_at_poor_tets(workpiece, refined_with_.bounds);
+                      });
     }
     refined_ = {};
     made_.improvement = improvement;
     made_.result.mesh = std::move(best);
-    periodicity::map_corners(made_.result.mesh);
+    trace("periodic faces", made_.result.mesh);
   }
 
-  /// Refines and coarsens with other sizes; keeps the mesh if that takes too many vertices.
-  void refine_again() {
-    PipelineResult before = std::exchange(made_, {});
-    TetMesh refined_before = refined_;
-    try {
-      refine();
-      reshape();
-    } catch (const Ended&) {
-      if (!hit_bound()) throw;
+  using Moved = periodicity::Recut::Moved;
+
+  template <class Change>
+  void change_across(TetMesh& mesh, double distance, Moved moved, const Change& change) {
+    ThreadLimit(options_.mesh.threads).run([&] {
+      periodicity::change_across(mesh, *plc_, options_.periodic, distance, *refined_with_.bounds.tolerance,
+                                 moved, refined_with_.edges_per_hole, change);
+      improvement::mark_cells(mesh, *plc_, refined_with_.bounds);
+    });
+  }
+
+  /// Coarsens and improves a periodic mesh while it is cut open at one place and then at another. Returns how
+  /// often its tets miss their bounds.
+  std::size_t reshape_across(TetMesh& mesh, double distance) {
+    std::size_t poor = SIZE_MAX;
+    for (const Moved moved : {Moved::beside_first, Moved::beside_second}) {
+      change_across(mesh, distance, moved,
+                    [&](improvement::Workpiece& workpiece, const periodicity::Recut& recut) {
+                      MeshOptions options = refined_with_;
+                      options.size_field = recut.sizes(options.size_field);
+                      if (coarsen(workpiece, options, inner_).cancelled) stop();
+                      if (options_.improve > 0) improve_elements(workpiece);
+                      complete_interior_nodes(workpiece);
+                    });
+      poor = misshapen(mesh);
+      if (poor == 0) break;
     }
-    if (made_.result.status == MeshStatus::complete) return;
-    made_ = std::move(before);
-    refined_ = std::move(refined_before);
+    return poor;
   }
 
   /// Fixed vertices stay where they are.
@@ -690,7 +723,8 @@ class Pipeline {
     });
   }
 
-  /// Returns how often tets miss the bounds on their shapes.
+  /// Returns how often tets miss the bounds on their shapes, or sides of pairs their images, which counts far
+  /// more. Precondition: the map has the corners.
   std::size_t misshapen(const TetMesh& mesh) const {
     Bounds promised = bounds();
     promised.tolerance = refined_with_.bounds.tolerance;
@@ -699,10 +733,19 @@ class Pipeline {
                                       .findings_per_guarantee = std::numeric_limits<std::size_t>::max(),
                                       .threads = options_.mesh.threads},
                                      inner_);
-    return static_cast<std::size_t>(std::ranges::count_if(report.findings, [](const Finding& finding) {
-      return finding.guarantee == guarantee::thin_angles || finding.guarantee == guarantee::collar_dihedral ||
-             finding.guarantee == guarantee::radius_edge;
+    const auto poor = static_cast<std::size_t>(std::ranges::count_if(report.findings, [](const Finding& f) {
+      return f.guarantee == guarantee::thin_angles || f.guarantee == guarantee::collar_dihedral ||
+             f.guarantee == guarantee::radius_edge;
     }));
+    // Places are only exact when the mesh is finished.
+    constexpr std::size_t worse = 1000;  // than a tet
+    CheckReport of_pairs;
+    checks::check_periodic(mesh, of_pairs);
+    return poor +
+           worse * static_cast<std::size_t>(std::ranges::count_if(of_pairs.findings, [](const Finding& f) {
+             return f.guarantee == guarantee::periodic_nodes || f.guarantee == guarantee::periodic_edges ||
+                    f.guarantee == guarantee::periodic_faces;
+           }));
   }
 
   void coarsen_elements(improvement::Workpiece& workpiece) {
@@ -721,6 +764,12 @@ class Pipeline {
 
   void improve_elements(improvement::Workpiece& workpiece) {
     if (made_.coarsening) begin("improve", 0.7, 0.8);
+    const ImproveOptions options = options_of_improvement();
+    made_.improvement = improve(workpiece, options, inner_);
+    if (made_.improvement.cancelled) stop();
+  }
+
+  ImproveOptions options_of_improvement() const {
     ImproveOptions options = improve_options(options_.improve);
     options.bounds = refined_with_.bounds;
     options.bounds.thin_angle = bounds().thin_angle;
@@ -732,8 +781,7 @@ class Pipeline {
     }
     if (options_.min_dihedral > 0) options.min_dihedral = options_.min_dihedral;
     if (exact()) options.min_dihedral *= 1 + dihedral_reserve;
-    made_.improvement = improve(workpiece, options, inner_);
-    if (made_.improvement.cancelled) stop();
+    return options;
   }
 
   void project() {

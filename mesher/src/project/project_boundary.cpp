@@ -34,7 +34,8 @@ class BoundaryProjection {
         execution_(execution),
         tolerance_(tolerance_of_any_size(plc, options.bounds)),
         thin_(plc, mesh, options.bounds.thin_angle, 0,
-              improvement::forced_edges_of(plc, mesh, options.bounds.lower_where_forced)),
+              improvement::forced_edges_of(plc, mesh, options.bounds.lower_where_forced),
+              options.bounds.tets_across()),
         cells_(plc, mesh, options.bounds),
         room_(mesh, limited_, bounds(plc)) {}
 

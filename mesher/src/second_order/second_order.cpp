@@ -396,7 +396,8 @@ bool replace_in_mesh(TetMesh& mesh, const Plc& plc, std::span<const UnwantedTet>
   std::size_t gone = 0;
   ThreadLimit(options.threads).run([&] {
     improvement::Workpiece workpiece(mesh, plc, tolerance, 0, options.bounds.lower_where_forced);
-    const improvement::ThinShape thin(plc, mesh, options.bounds.thin_angle, 0, workpiece.forced);
+    const improvement::ThinShape thin(plc, mesh, options.bounds.thin_angle, 0, workpiece.forced,
+                                      options.bounds.tets_across());
     const improvement::CellBounds cells(plc, mesh, options.bounds);
     gone = improvement::replace_tets(workpiece, unwanted, improvement::ThinRule(thin, cells), 1);
     workpiece.complex.store();

@@ -1,0 +1,61 @@
+#include "improve/divide_curves.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "improve/operations.h"
+
+namespace collarmesh::improvement {
+
+namespace {
+
+constexpr double much_longer = 1.5;
+constexpr double least = 1e-4;  // the quality of new tets
+
+/// Returns the longest edge of a tet on a curve, if there are much shorter ones; else nothing.
+std::optional<std::array<Index, 2>> edge_to_divide(const TetComplex& complex, Index tet) {
+  const auto& v = complex[tet].corners;
+  const auto p = complex.corners(tet);
+  double shortest = INFINITY, longest = 0;
+  std::optional<std::array<Index, 2>> edge;
+  for (unsigned i = 0; i < 4; ++i)
+    for (unsigned j = 0; j < i; ++j) {
+      const double length = distance(p[i], p[j]);
+      shortest = std::min(shortest, length);
+      if (length <= longest || !complex.on_curve(v[i], v[j])) continue;
+      longest = length;
+      edge = {v[i], v[j]};
+    }
+  return longest > much_longer * shortest ? edge : std::nullopt;
+}
+
+}  // namespace
+
+std::size_t divide_curves_at_poor_tets(Workpiece& workpiece, const Bounds& bounds) {
+  const TetComplex& complex = workpiece.complex;
+  const ThinShape thin(workpiece.plc, complex.mesh(), bounds.thin_angle, bounds.reserve, workpiece.forced,
+                       bounds.tets_across());
+  const CellBounds cells(workpiece.plc, complex.mesh(), bounds);
+  const ThinRule rule(thin, cells);
+  const RadiusEdgeBound ratio(bounds.radius_edge);
+  Operations operations(workpiece, rule);
+  std::size_t divided = 0;
+  for (Index t = 0, tets = complex.size(); t < tets; ++t) {
+    if (!complex[t].alive || ratio.holds(complex.corners(t)) ||
+        rule.quality(complex.corners(t), complex[t].corners) >= 1)
+      continue;
+    const auto edge = edge_to_divide(complex, t);
+    if (!edge || workpiece.is_fixed((*edge)[0]) || workpiece.is_fixed((*edge)[1])) continue;
+    Change change;
+    operations.divide_edge((*edge)[0], (*edge)[1], least, change);
+    if (change.kind == Change::Kind::none) continue;
+    workpiece.apply(std::move(change));
+    ++divided;
+  }
+  return divided;
+}
+
+}  // namespace collarmesh::improvement

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "collarmesh/bounds.h"
+#include "collarmesh/interior_nodes.h"
+#include "improve/workpiece.h"
+
+namespace collarmesh::improvement {
+
+/// Gives each tet a corner inside a region, in a mesh that is to be coarsened and improved: removes an edge,
+/// or inserts a vertex on an edge or into a cavity, where that leaves the best tets. They may be poor. Cells
+/// of collars become ordinary tets. Precondition: the mesh has `features`.
+void insert_interior_nodes(Workpiece& workpiece, const Bounds& bounds, InteriorNodesReport& report);
+
+/// The same for a finished mesh: all tets are within the bounds afterwards; a tet stays if that cannot be
+/// reached (see `replace_tets`).
+void complete_interior_nodes(Workpiece& workpiece, const Bounds& bounds, InteriorNodesReport& report);
+
+}  // namespace collarmesh::improvement

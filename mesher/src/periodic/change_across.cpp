@@ -1,0 +1,29 @@
+#include "periodic/change_across.h"
+
+#include <vector>
+
+#include "periodic/node_map.h"
+#include "periodic/pair_choice.h"
+
+namespace collarmesh::periodicity {
+
+void change_across(TetMesh& mesh, const Plc& plc, const PeriodicOptions& options, double distance,
+                   const SurfaceTolerance& tolerance, Recut::Moved moved, double edges_per_hole,
+                   const std::function<void(improvement::Workpiece&, const Recut&)>& change) {
+  const std::vector<PatchPair> pairs = choose_pairs(options, plc);
+  std::vector<FeatureImages> images;
+  images.reserve(pairs.size());
+  for (const PatchPair& pair : pairs) images.push_back(find_images(pair, plc, distance));
+  Recut recut(mesh, plc, tolerance, pairs, images, moved);
+  // Edges between copies would look as if the input forced them to be short.
+  improvement::Workpiece workpiece(recut.mesh(), recut.complex().plc, recut.complex().tolerance,
+                                   edges_per_hole, false);
+  workpiece.fix(recut.fixed());
+  change(workpiece, recut);
+  recut.note_vertices(workpiece.complex);
+  workpiece.complex.store();
+  mesh = recut.back();
+  map_corners(mesh);
+}
+
+}  // namespace collarmesh::periodicity

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <functional>
+
+#include "collarmesh/periodic.h"
+#include "collarmesh/surface_tolerance.h"
+#include "improve/workpiece.h"
+#include "periodic/recut.h"
+
+namespace collarmesh::periodicity {
+
+/// Changes a periodic mesh while it is cut open elsewhere (see Recut), so that the triangles of pairs change
+/// alike on both sides. The map has the corners afterwards. Preconditions: the map has the corners, and the
+/// mesh is of first order.
+void change_across(TetMesh& mesh, const Plc& plc, const PeriodicOptions& options, double distance,
+                   const SurfaceTolerance& tolerance, Recut::Moved moved, double edges_per_hole,
+                   const std::function<void(improvement::Workpiece&, const Recut&)>& change);
+
+}  // namespace collarmesh::periodicity

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "collarmesh/mesher.h"
+#include "collarmesh/plc.h"
+#include "collarmesh/tet_mesh.h"
+#include "improve/tet_complex.h"
+#include "periodic/feature_images.h"
+#include "periodic/tiled_complex.h"
+
+namespace collarmesh::periodicity {
+
+/// A periodic mesh cut open elsewhere: the tets beside one group of each pair are moved behind the other one,
+/// so that both groups become one patch inside of the mesh, with tets on both of its sides. What is changed
+/// there fits both sides. The vertices where it is cut open now stay where they are.
+class Recut {
+ public:
+  enum class Moved { beside_first, beside_second };
+
+  /// Keeps all by reference but `moved`. Preconditions: the mesh is of first order, and its map has the
+  /// corners.
+  Recut(const TetMesh& mesh, const Plc& plc, const SurfaceTolerance& tolerance,
+        const std::vector<PatchPair>& pairs, const std::vector<FeatureImages>& images, Moved moved);
+
+  /// Its patches, curves and vertices are those of the tiled complex.
+  TetMesh& mesh() { return made_; }
+  const TiledComplex& complex() const { return *complex_; }
+  /// Returns the vertices that have to stay.
+  const std::vector<Index>& fixed() const { return fixed_; }
+
+  /// Returns sizes of the mesh as sizes of the recut one.
+  SizeField sizes(const SizeField& of_mesh) const;
+
+  /// Call this before the complex is stored: vertices that it has lost lose their numbers then.
+  void note_vertices(const improvement::TetComplex& complex);
+  /// Returns the mesh that is cut at the faces of the pairs again, without a map. Precondition: it is stored.
+  TetMesh back() const;
+
+ private:
+  using Shift = std::uint32_t;  // by pair, a bit: is it moved?
+  struct Seam {
+    Motion motion;                                          // of what is moved
+    std::unordered_map<Index, Index> image_of;              // of vertices on the group beside what is moved
+    std::unordered_map<Index, Index> on_other;              // keys: their images
+    std::array<std::map<Index, Index>, 3> image, original;  // of features, by dimension
+  };
+  struct Place {
+    Index vertex;
+    Shift shift;
+    friend bool operator==(const Place&, const Place&) = default;
+  };
+  void find_seams(const std::vector<PatchPair>& pairs, const std::vector<FeatureImages>& images, Moved moved);
+  void find_shifts();
+  bool take_layer(std::size_t seam, std::vector<bool>& reached, std::vector<Shift>& shifts) const;
+  void number_copies();
+  Motion motion_of(Shift shift) const;
+  Place on_seam(Place place) const;
+  Index vertex_at(Place place);
+  void add_vertices();
+  void add_faces();
+  void add_edges();
+  void fix_cuts();
+  std::size_t count(unsigned dimension) const;
+  Index feature_back(unsigned dimension, Index feature, Shift shift) const;
+  Index vertex_back(Place place, Shift shift) const;
+
+  const TetMesh& mesh_;
+  const Plc& plc_;
+  std::vector<Seam> seams_;
+  std::vector<Shift> shifts_;       // by tet
+  std::vector<Shift> copies_;       // shift of each
+  std::vector<Motion> motions_;     // by copy
+  std::map<Shift, Index> copy_of_;  // shift
+  std::unique_ptr<const TiledComplex> complex_;
+  TetMesh made_;
+  std::vector<Place> places_;                           // by vertex of the recut mesh
+  std::vector<Point> points_;                           // of these, as they were
+  std::unordered_map<std::uint64_t, Index> vertex_at_;  // by vertex of the mesh and shift
+  std::vector<Index> fixed_;
+};
+
+}  // namespace collarmesh::periodicity
