@@ -17,7 +17,7 @@ namespace collarmesh::cli {
 ExitCode check_command(const CheckArguments& arguments) {
   process::set_time_limit(arguments.mesh.time_limit);
   process::limit_memory(process::memory_of_the_machine() / 2);
-  TetMesh mesh = files::read_mesh(arguments.mesh_path);
+  TetMesh mesh = files::read_mesh_or_triangles(arguments.mesh_path);
   for (Point& p : mesh.points) p = p / arguments.scale;
   for (TetMesh::PeriodicFaces& faces : mesh.periodic)
     faces.motion.shift = faces.motion.shift / arguments.scale;

@@ -15,6 +15,7 @@
 #include "files/cell_decomposition.h"
 #include "files/complex_input.h"
 #include "files/file_groups.h"
+#include "files/surface_files.h"
 #include "files/trace_files.h"
 #include "interruptible.h"
 #include "option_warnings.h"
@@ -209,8 +210,12 @@ void write_files(const MeshArguments& arguments, Stages& stages, report::MeshRun
   process::StagedFile mesh(arguments.output);
   mesh.write([&](const std::string& path) {
     ThreadLimit(arguments.mesh.threads).run([&] {
-      io::write_tet_mesh(path, run.result.mesh, run.split ? run.split->interfaces : Interfaces(),
-                         arguments.output_format, arguments.ghost_cells);
+      if (files::is_surface_format(arguments.output, arguments.output_format))
+        files::write_surface(path, files::surface_of(run.result.mesh, arguments.output),
+                             arguments.output_format);
+      else
+        io::write_tet_mesh(path, run.result.mesh, run.split ? run.split->interfaces : Interfaces(),
+                           arguments.output_format, arguments.ghost_cells);
     });
   });
   run.times.end();

@@ -38,6 +38,7 @@
 #include "pipeline/lost_parts.h"
 #include "pipeline/vertex_bound.h"
 #include "refine/generate_linked.h"
+#include "shells/run.h"
 
 namespace collarmesh {
 
@@ -124,6 +125,10 @@ class Pipeline {
   }
 
   SoupPipelineResult run(ComplexSource& source) {
+    if (given_.dimension == 2) {
+      to_ = 1;
+      return told_of_time(shells::run(source, given_, inner_));
+    }
     source_ = &source;
     SoupPipelineResult all;
     until_ended([&] {
@@ -139,6 +144,10 @@ class Pipeline {
   }
 
   PipelineResult run(const Plc& plc) {
+    if (given_.dimension == 2) {
+      to_ = 1;
+      return told_of_time(shells::run(plc, given_, inner_));
+    }
     until_ended([&] {
       bound_vertices(Ways::none);
       mesh(plc, given_.mesh.seed);
@@ -670,6 +679,16 @@ class Pipeline {
     fraction_ = std::max(fraction_, from_ + std::clamp(report.fraction, 0.0, 1.0) * (to_ - from_));
     report.fraction = fraction_;
     return outer_.progress(report);
+  }
+
+  /// Says whether it was the time that stopped a run.
+  template <class Result>
+  Result told_of_time(Result made) const {
+    if (made.result.status != MeshStatus::cancelled || !out_of_time()) return made;
+    made.result.status = MeshStatus::budget_hit;
+    made.result.message = fmt::format(
+        "the time limit of {} s is reached; raise it, or size for a coarser mesh", given_.mesh.time_limit);
+    return made;
   }
 
   [[noreturn]] void stop() {
