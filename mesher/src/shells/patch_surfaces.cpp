@@ -4,6 +4,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "common/distance_tree.h"
 #include "common/distances.h"
 
 namespace collarmesh::shells {
@@ -82,8 +83,38 @@ PatchSurfaces::Fit PatchSurfaces::fit(const Corners& t, Index patch) const {
 
 double PatchSurfaces::excess_between(Index patch, const Point& a, const Point& b) const {
   if (planar(patch)) return 0;
-  const Foot foot = nearest(patch, 0.5 * (a + b));
-  return foot.distance / foot.tolerance;
+  double most = 0;
+  for (const double share : {1.0 / 3, 2.0 / 3}) {
+    const Foot foot = nearest(patch, a + share * (b - a));
+    most = std::max(most, foot.distance / foot.tolerance);
+  }
+  return most;
+}
+
+std::vector<std::pair<Index, Point>> PatchSurfaces::far_points(
+    Index patch, std::span<const Corners> triangles, double share) const {
+  std::vector<std::pair<Index, Point>> found;
+  if (planar(patch) || triangles.empty()) return found;
+  const DistanceTree tree({triangles.begin(), triangles.end()});
+  const Plc::Patch& p = plc_.patches[patch];
+  std::vector<bool> taken(triangles.size(), false);
+  Index hint = none;
+  const auto look_at = [&](const Point& place, double tolerance) {
+    const auto nearest = tree.nearest(place, share * tolerance, hint);
+    hint = nearest.triangle;
+    if (nearest.distance <= share * tolerance || taken[hint]) return;
+    taken[hint] = true;
+    found.emplace_back(hint, place);
+  };
+  for (Index t = p.first_triangle; t < p.first_triangle + p.triangle_count; ++t) {
+    Point centre{};
+    for (const Index point : plc_.triangles[t].points) {
+      look_at(plc_.points[point], tolerance_.at_point(point));
+      centre = centre + plc_.points[point] / 3;
+    }
+    look_at(centre, tolerance_.at_triangle(t));
+  }
+  return found;
 }
 
 }  // namespace collarmesh::shells

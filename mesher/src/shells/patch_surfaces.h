@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "collarmesh/plc.h"
@@ -37,8 +39,12 @@ class PatchSurfaces {
     double excess = 0;     ///< distance of its centre from the patch by the tolerance there
   };
   Fit fit(const Corners& t, Index patch) const;
-  /// Returns the distance of the middle of a segment from the patch by the tolerance there.
+  /// Returns the largest distance of two points inside a segment from the patch by the tolerance there.
   double excess_between(Index patch, const Point& a, const Point& b) const;
+  /// Returns points of a smooth patch that are farther than this share of the tolerance from the triangles on it,
+  /// and the nearest triangle of each, at most one for a triangle.
+  std::vector<std::pair<Index, Point>> far_points(Index patch, std::span<const Corners> triangles,
+                                                  double share) const;
 
  private:
   const TriangleHierarchy& hierarchy(Index patch) const;

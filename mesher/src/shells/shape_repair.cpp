@@ -11,6 +11,8 @@ namespace {
 constexpr double margin = 1.5;
 // Edges that are not divided further, relative to the target edge length.
 constexpr double shortest = 0.01;
+// Vertices with more triangles, as a tessellation has them, are not moved or removed: others around them are.
+constexpr std::size_t most_triangles = 24;
 
 }  // namespace
 
@@ -55,10 +57,13 @@ void ShapeRepair::note_tried(Index triangle, double wanted) {
   tried_[triangle] = {changes, wanted};
 }
 
-std::vector<Index> ShapeRepair::poor_triangles(double wanted) const {
+std::vector<Index> ShapeRepair::poor_triangles(double wanted, std::span<const Index> known, Index first) const {
   std::vector<std::pair<double, Index>> poor_ones;
-  for (Index t = 0; t < complex_.triangles.size(); ++t)
+  const auto look_at = [&](Index t) {
     if (poor(t, wanted)) poor_ones.emplace_back(editor_.shape(t), t);
+  };
+  for (const Index t : known) look_at(t);
+  for (Index t = first; t < complex_.triangles.size(); ++t) look_at(t);
   std::sort(poor_ones.begin(), poor_ones.end());
   std::vector<Index> triangles;
   triangles.reserve(poor_ones.size());
@@ -68,7 +73,7 @@ std::vector<Index> ShapeRepair::poor_triangles(double wanted) const {
 
 bool ShapeRepair::move_best(Index vertex) {
   const unsigned dimension = complex_.vertices[vertex].feature.dimension;
-  if (dimension == 0) return false;
+  if (dimension == 0 || complex_.vertices[vertex].triangles.size() > most_triangles) return false;
   const double before = editor_.least_shape_at(vertex);
   constexpr double gain = 0.1;
   bool moved = false;
@@ -120,24 +125,31 @@ bool ShapeRepair::improve_by_moves(Index triangle) {
   return moved;
 }
 
-bool ShapeRepair::improve(Index triangle, double wanted) {
+bool ShapeRepair::improve_connections(Index triangle, double wanted, bool may_contract) {
   const std::array<Index, 3> c = complex_.triangles[triangle].corners;
   for (unsigned i = 0; i < 3; ++i)
     if (editor_.flip(c[i], c[(i + 1) % 3])) return true;
+  if (!may_contract) return false;
   const SurfaceEditor::Contraction rule{.longest = 1.5, .least_shape = wanted, .better = true};
   for (unsigned i = 0; i < 3; ++i)
     for (unsigned j = 0; j < 3; ++j)
-      if (i != j && editor_.contract(c[i], c[j], rule)) return true;
-  return improve_by_moves(triangle);
+      if (i != j && complex_.vertices[c[i]].triangles.size() <= most_triangles &&
+          editor_.contract(c[i], c[j], rule))
+        return true;
+  return false;
 }
 
 void ShapeRepair::improve(double wanted) {
   constexpr unsigned passes = 4;
+  std::vector<Index> poor_ones;
+  Index first = 0;
   for (unsigned pass = 0; pass < passes && !execution_.cancelled(); ++pass) {
     bool changed = false;
-    for (const Index t : poor_triangles(wanted)) {
+    poor_ones = poor_triangles(wanted, poor_ones, first);
+    first = static_cast<Index>(complex_.triangles.size());
+    for (const Index t : poor_ones) {
       if (!poor(t, wanted) || tried(t, wanted)) continue;
-      if (improve(t, wanted))
+      if (improve_connections(t, wanted, true) || improve_by_moves(t))
         changed = true;
       else
         note_tried(t, wanted);
@@ -218,22 +230,76 @@ bool ShapeRepair::refine(Index triangle) {
 }
 
 std::size_t ShapeRepair::run(std::size_t most_vertices) {
-  constexpr unsigned most_passes = 60;
+  constexpr unsigned most_passes = 100, contracting_passes = 3;
   const double wanted = least_angle + margin;
   constexpr double refined = 180;  // more than only improved
   const std::size_t limit = complex_.vertices.size() + most_vertices;
+  std::vector<Index> poor_ones;
+  Index first = 0;
   for (unsigned pass = 0; pass < most_passes && !execution_.cancelled(); ++pass) {
     bool changed = false;
-    for (const Index t : poor_triangles(wanted)) {
+    poor_ones = poor_triangles(wanted, poor_ones, first);
+    first = static_cast<Index>(complex_.triangles.size());
+    for (const Index t : poor_ones) {
       if (!poor(t, wanted) || tried(t, refined)) continue;
-      if (improve(t, wanted) || (complex_.vertices.size() < limit && refine(t)))
+      // Moves alone do not make a triangle good that is far from it.
+      const bool near = editor_.shape(t) > 0.5 * wanted;
+      // After some passes no vertex goes, so that those that come do so for good.
+      if (improve_connections(t, wanted, pass < contracting_passes) || (near && improve_by_moves(t)) ||
+          (complex_.vertices.size() < limit && refine(t)) || (!near && improve_by_moves(t)))
         changed = true;
       else
         note_tried(t, refined);
     }
     if (!changed) break;
   }
-  return poor_triangles(least_angle).size();
+  return poor_triangles(least_angle, {}, 0).size();
+}
+
+bool ShapeRepair::approach(std::size_t most_vertices) {
+  constexpr unsigned most_passes = 12;
+  const std::size_t before = complex_.vertices.size(), limit = before + most_vertices;
+  std::vector<std::size_t> seen(complex_.triangles.size(), 0);  // changes of the corners, and 1
+  for (unsigned pass = 0; pass < most_passes && !execution_.cancelled(); ++pass) {
+    bool changed = false;
+    seen.resize(complex_.triangles.size(), 0);
+    for (Index t = 0; t < seen.size() && complex_.vertices.size() < limit; ++t) {
+      if (!complex_.triangles[t].alive()) continue;
+      const std::array<Index, 3> c = complex_.triangles[t].corners;
+      std::size_t changes = 1;
+      for (const Index v : c) changes += complex_.vertices[v].changes;
+      if (std::exchange(seen[t], changes) == changes) continue;
+      const unsigned side = editor_.side_too_far(t);
+      if (side == 3) continue;
+      const Index a = c[side], b = c[(side + 1) % 3];
+      if (editor_.length(a, b) < 2 * shortest * editor_.size_of_edge(a, b)) continue;
+      const Index edge = complex_.edge_at(a, b),
+                  v = edge == none ? editor_.divide(a, b) : editor_.divide_curve_edge(edge);
+      if (v == none) continue;
+      editor_.flip_around(v);
+      changed = true;
+    }
+    if (!changed) changed = approach_points();
+    if (!changed) break;
+  }
+  return complex_.vertices.size() > before;
+}
+
+bool ShapeRepair::approach_points() {
+  bool changed = false;
+  for (const auto& [t, point] : editor_.far_points()) {
+    if (!complex_.triangles[t].alive()) continue;
+    const auto& c = complex_.triangles[t].corners;
+    const bool close = std::any_of(c.begin(), c.end(), [&](Index v) {
+      return distance(complex_.vertices[v].point, point) < shortest * complex_.vertices[v].size;
+    });
+    if (close) continue;
+    const Index v = editor_.insert(t, point);
+    if (v == none) continue;
+    editor_.flip_around(v);
+    changed = true;
+  }
+  return changed;
 }
 
 void ShapeRepair::coarsen() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "collarmesh/progress.h"
@@ -21,6 +22,9 @@ class ShapeRepair {
   std::size_t run(std::size_t most_vertices);
   /// Improves what is possible without new vertices.
   void improve(double wanted);
+  /// Divides triangles that are too far from their patches, with so many new vertices at most.
+  /// Returns whether any was.
+  bool approach(std::size_t most_vertices);
   /// Contracts edges where the shapes stay good.
   void coarsen();
 
@@ -31,8 +35,10 @@ class ShapeRepair {
   bool poor(Index triangle, double wanted) const;
   bool tried(Index triangle, double wanted);
   void note_tried(Index triangle, double wanted);
-  std::vector<Index> poor_triangles(double wanted) const;
-  bool improve(Index triangle, double wanted);
+  /// Among those that were poor before, and those from a number on; the worst first.
+  std::vector<Index> poor_triangles(double wanted, std::span<const Index> known, Index first) const;
+  bool approach_points();
+  bool improve_connections(Index triangle, double wanted, bool may_contract);
   bool improve_by_moves(Index triangle);
   bool move_best(Index vertex);
   bool refine(Index triangle);

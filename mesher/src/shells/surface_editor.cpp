@@ -32,6 +32,45 @@ double SurfaceEditor::least_shape_at(Index vertex) const {
   return least;
 }
 
+unsigned SurfaceEditor::side_too_far(Index triangle) const {
+  constexpr unsigned no_side = 3;
+  const auto& [c, patch] = complex_.triangles[triangle];
+  if (surfaces_.planar(patch)) return no_side;
+  unsigned worst = no_side, longest = 0;
+  double most = most_excess_, most_length = 0;
+  for (unsigned i = 0; i < 3; ++i) {
+    const Index a = c[i], b = c[(i + 1) % 3];
+    if (const double long_side = length(a, b); long_side > most_length) {
+      most_length = long_side;
+      longest = i;
+    }
+    if (complex_.edge_at(a, b) != none) continue;
+    const double excess =
+        surfaces_.excess_between(patch, complex_.vertices[a].point, complex_.vertices[b].point);
+    if (excess <= most) continue;
+    most = excess;
+    worst = i;
+  }
+  if (worst != no_side) return worst;
+  return surfaces_.fit(complex_.corners(triangle), patch).excess > most_excess_ ? longest : no_side;
+}
+
+std::vector<std::pair<Index, Point>> SurfaceEditor::far_points() const {
+  std::vector<std::vector<Index>> of_patch(plc_.patches.size());
+  for (Index t = 0; t < complex_.triangles.size(); ++t)
+    if (complex_.triangles[t].alive() && !surfaces_.planar(complex_.triangles[t].patch))
+      of_patch[complex_.triangles[t].patch].push_back(t);
+  std::vector<std::pair<Index, Point>> found;
+  for (Index patch = 0; patch < of_patch.size(); ++patch) {
+    std::vector<Corners> corners;
+    corners.reserve(of_patch[patch].size());
+    for (const Index t : of_patch[patch]) corners.push_back(complex_.corners(t));
+    for (const auto& [i, point] : surfaces_.far_points(patch, corners, most_excess_))
+      found.emplace_back(of_patch[patch][i], point);
+  }
+  return found;
+}
+
 PatchSurfaces::Fit SurfaceEditor::worst_fit(std::span<const Index> triangles) const {
   PatchSurfaces::Fit worst;
   for (const Index t : triangles) {

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "collarmesh/surface_tolerance.h"
@@ -54,6 +55,11 @@ class SurfaceEditor {
 
   double shape(Index triangle) const { return shape_of(complex_.corners(triangle)); }
   double least_shape_at(Index vertex) const;
+  /// Returns the side of a triangle, by its first corner's place, to divide where the triangle is farther from
+  /// its patch than it may be; 3 where it is not.
+  unsigned side_too_far(Index triangle) const;
+  /// Points of smooth patches that are too far from the triangles, and the triangles to divide there.
+  std::vector<std::pair<Index, Point>> far_points() const;
   double size_of_edge(Index a, Index b) const {
     return 0.5 * (complex_.vertices[a].size + complex_.vertices[b].size);
   }

@@ -229,13 +229,16 @@ void SurfaceMesher::run() {
     smooth();
   }
   const std::size_t most = 50'000 + 4 * complex_.vertices.size();
+  repair_.approach(most);
   repair_.run(most);
   repair_.coarsen();
   flip_all();
   for (unsigned round = 0; round < 2; ++round) smooth();
   flip_all();
   repair_.improve(wanted_shape);
+  constexpr unsigned last_rounds = 4;
   repair_.run(most);
+  for (unsigned round = 0; round < last_rounds && repair_.approach(most); ++round) repair_.run(most);
 }
 
 ProjectReport SurfaceMesher::project(const ExactGeometry& exact, double most_excess) {
