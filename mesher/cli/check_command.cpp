@@ -30,7 +30,7 @@ ExitCode check_command(const CheckArguments& arguments) {
   };
   files::ComplexInput input(arguments.inputs, interruptible({{},
                                                              distance,
-                                                             tolerance,
+                                                             mesh.is_surface() ? std::function<SurfaceTolerance(const Plc&)>() : tolerance,
                                                              arguments.overlap,
                                                              arguments.mesh.threads,
                                                              arguments.names,

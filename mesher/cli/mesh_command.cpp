@@ -272,8 +272,11 @@ std::unique_ptr<files::ComplexInput> read_inputs(const MeshArguments& arguments)
   const auto tolerance = [&](const Plc& plc) {
     return tolerance_of(plc, arguments.mesh.bounds, arguments.mesh.size, static_cast<int>(arguments.order));
   };
+  // Surfaces on their own need no triangles of CAD faces that keep volumes.
   return std::make_unique<files::ComplexInput>(
-      arguments.inputs, interruptible({arguments.input_format, distance, tolerance, arguments.overlap,
+      arguments.inputs, interruptible({arguments.input_format, distance,
+                                       arguments.dimension == 2 ? std::function<SurfaceTolerance(const Plc&)>() : tolerance,
+                                       arguments.overlap,
                                        arguments.mesh.threads, arguments.names, arguments.given_names}));
 }
 

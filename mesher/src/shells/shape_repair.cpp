@@ -10,7 +10,9 @@ namespace {
 // Angles that stay within the bounds when vertices move onto exact geometry.
 constexpr double margin = 1.5;
 // Edges that are not divided further, relative to the target edge length.
-constexpr double shortest = 0.01;
+constexpr double shortest = 0.015;
+// Gaps between curves that are left as they are, relative to it.
+constexpr double narrowest = 0.003;
 // Vertices with more triangles, as a tessellation has them, are not moved or removed: others around them are.
 constexpr std::size_t most_triangles = 24;
 
@@ -210,6 +212,19 @@ bool ShapeRepair::insert_towards(Index triangle, const Point& p) {
   return v != none;
 }
 
+/// Lies the triangle between curves so near to each other that no edges reach the bound that may be made?
+bool ShapeRepair::too_narrow(Index triangle) const {
+  const auto& c = complex_.triangles[triangle].corners;
+  double size = INFINITY, longest = 0;
+  for (unsigned i = 0; i < 3; ++i) {
+    if (complex_.vertices[c[i]].feature.dimension == 2) return false;
+    size = std::min(size, complex_.vertices[c[i]].size);
+    longest = std::max(longest, editor_.length(c[i], c[(i + 1) % 3]));
+  }
+  const double height = 2 * norm(area_vector(complex_.corners(triangle))) / longest;
+  return height < narrowest * size;
+}
+
 bool ShapeRepair::refine(Index triangle) {
   const auto corners = complex_.corners(triangle);
   unsigned opposite = 0;  // to the shortest side
@@ -221,6 +236,7 @@ bool ShapeRepair::refine(Index triangle) {
       opposite = i;
     }
   }
+  if (too_narrow(triangle)) return false;
   const Point middle = 0.5 * (corners[(opposite + 1) % 3] + corners[(opposite + 2) % 3]);
   Point p = circumcentre(corners);
   // So high above the shortest side its angle is 28 degrees.
@@ -230,7 +246,7 @@ bool ShapeRepair::refine(Index triangle) {
 }
 
 std::size_t ShapeRepair::run(std::size_t most_vertices) {
-  constexpr unsigned most_passes = 100, contracting_passes = 3;
+  constexpr unsigned most_passes = 50, contracting_passes = 3;
   const double wanted = least_angle + margin;
   constexpr double refined = 180;  // more than only improved
   const std::size_t limit = complex_.vertices.size() + most_vertices;

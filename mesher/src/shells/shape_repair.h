@@ -41,6 +41,7 @@ class ShapeRepair {
   bool improve_connections(Index triangle, double wanted, bool may_contract);
   bool improve_by_moves(Index triangle);
   bool move_best(Index vertex);
+  bool too_narrow(Index triangle) const;
   bool refine(Index triangle);
   bool divide_curve_beside(Index triangle, const Point& p);
   bool insert_towards(Index triangle, const Point& p);

@@ -228,17 +228,21 @@ void SurfaceMesher::run() {
     flip_all();
     smooth();
   }
-  const std::size_t most = 50'000 + 4 * complex_.vertices.size();
-  repair_.approach(most);
-  repair_.run(most);
+  // Where features of the input are very near to each other, more would be many times what the sizes ask for.
+  std::size_t used = 0;
+  for (const auto& vertex : complex_.vertices) used += vertex.triangles.empty() ? 0 : 1;
+  const std::size_t limit = complex_.vertices.size() + 8'000 + used / 2;
+  const auto rest = [&] { return limit - std::min(limit, complex_.vertices.size()); };
+  repair_.approach(rest());
+  repair_.run(rest());
   repair_.coarsen();
   flip_all();
   for (unsigned round = 0; round < 2; ++round) smooth();
   flip_all();
   repair_.improve(wanted_shape);
   constexpr unsigned last_rounds = 4;
-  repair_.run(most);
-  for (unsigned round = 0; round < last_rounds && repair_.approach(most); ++round) repair_.run(most);
+  repair_.run(rest());
+  for (unsigned round = 0; round < last_rounds && repair_.approach(rest()); ++round) repair_.run(rest());
 }
 
 ProjectReport SurfaceMesher::project(const ExactGeometry& exact, double most_excess) {
