@@ -28,13 +28,15 @@ ExitCode check_command(const CheckArguments& arguments) {
   const auto tolerance = [&](const Plc& plc) {
     return tolerance_of(plc, arguments.mesh.bounds, 0, mesh.order());
   };
-  files::ComplexInput input(arguments.inputs, interruptible({{},
-                                                             distance,
-                                                             mesh.is_surface() ? std::function<SurfaceTolerance(const Plc&)>() : tolerance,
-                                                             arguments.overlap,
-                                                             arguments.mesh.threads,
-                                                             arguments.names,
-                                                             arguments.given_names}));
+  files::ComplexInput input(
+      arguments.inputs,
+      interruptible({{},
+                     distance,
+                     mesh.is_surface() ? std::function<SurfaceTolerance(const Plc&)>() : tolerance,
+                     arguments.overlap,
+                     arguments.mesh.threads,
+                     arguments.names,
+                     arguments.given_names}));
   Execution execution;
   execution.cancel = &process::interrupt_flag();
   const CheckReport report = files::check_against(mesh, input, arguments, execution);

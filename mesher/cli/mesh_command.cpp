@@ -274,10 +274,10 @@ std::unique_ptr<files::ComplexInput> read_inputs(const MeshArguments& arguments)
   };
   // Surfaces on their own need no triangles of CAD faces that keep volumes.
   return std::make_unique<files::ComplexInput>(
-      arguments.inputs, interruptible({arguments.input_format, distance,
-                                       arguments.dimension == 2 ? std::function<SurfaceTolerance(const Plc&)>() : tolerance,
-                                       arguments.overlap,
-                                       arguments.mesh.threads, arguments.names, arguments.given_names}));
+      arguments.inputs,
+      interruptible({arguments.input_format, distance,
+                     arguments.dimension == 2 ? std::function<SurfaceTolerance(const Plc&)>() : tolerance,
+                     arguments.overlap, arguments.mesh.threads, arguments.names, arguments.given_names}));
 }
 
 MadeMesh make_mesh(const MeshArguments& arguments) {

@@ -1,4 +1,5 @@
-// Surfaces on their own: triangles within the bounds on angles, that conform, judged by formulas of this file.
+// Surfaces on their own: triangles within the bounds on angles, that conform, judged by formulas of this
+// file.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -76,7 +77,8 @@ PolygonSoup without_facets(const PolygonSoup& soup, const std::set<Tag>& tags) {
   PolygonSoup rest;
   rest.points = soup.points;
   for (Index f = 0; f < soup.facet_count(); ++f)
-    if (tags.count(soup.facet_tag(f)) == 0) rest.add_facet(soup.polygon(soup.facet_polygons(f)[0]), soup.facet_tag(f));
+    if (tags.count(soup.facet_tag(f)) == 0)
+      rest.add_facet(soup.polygon(soup.facet_polygons(f)[0]), soup.facet_tag(f));
   return rest;
 }
 
@@ -88,13 +90,16 @@ TEST(Shells, ClosedSurfacesAreClosedAndLookOutwards) {
     EXPECT_NEAR(area_of(made.result.mesh), 6, 1e-9);
     double volume = 0;
     for (const auto& [a, b, c] : made.result.mesh.faces)
-      volume += six_volume({}, made.result.mesh.points[a], made.result.mesh.points[b], made.result.mesh.points[c]) / 6;
+      volume +=
+          six_volume({}, made.result.mesh.points[a], made.result.mesh.points[b], made.result.mesh.points[c]) /
+          6;
     EXPECT_NEAR(volume, 1, 1e-9);
   }
 }
 
 TEST(Shells, SmoothSurfacesKeepTheirAreaAndLengths) {
-  for (const PolygonSoup& soup : {icosphere(1, 12), cylinder(1, 2, 60), torus(2, 0.7, 60, 30), cone(1, 2, 40, 5)}) {
+  for (const PolygonSoup& soup :
+       {icosphere(1, 12), cylinder(1, 2, 60), torus(2, 0.7, 60, 30), cone(1, 2, 40, 5)}) {
     const PipelineResult made = shells_of(soup, 0.2);
     EXPECT_TRUE(made.guarantees_hold()) << made.missed();
     const std::size_t triangles = made.result.mesh.faces.size();
@@ -150,7 +155,8 @@ TEST(Shells, TheSecondOrderFollowsCurves) {
     }
   }
   EXPECT_NEAR(made.check.of_mesh.areas[0] + made.check.of_mesh.areas[1] + made.check.of_mesh.areas[2],
-              made.check.of_input.areas[0] + made.check.of_input.areas[1] + made.check.of_input.areas[2], 0.05);
+              made.check.of_input.areas[0] + made.check.of_input.areas[1] + made.check.of_input.areas[2],
+              0.05);
 }
 
 TEST(Shells, TheCertificateFindsFaults) {

@@ -91,8 +91,9 @@ double PatchSurfaces::excess_between(Index patch, const Point& a, const Point& b
   return most;
 }
 
-std::vector<std::pair<Index, Point>> PatchSurfaces::far_points(
-    Index patch, std::span<const Corners> triangles, double share) const {
+std::vector<std::pair<Index, Point>> PatchSurfaces::far_points(Index patch,
+                                                               std::span<const Corners> triangles,
+                                                               double share) const {
   std::vector<std::pair<Index, Point>> found;
   if (planar(patch) || triangles.empty()) return found;
   const DistanceTree tree({triangles.begin(), triangles.end()});

@@ -41,8 +41,8 @@ class PatchSurfaces {
   Fit fit(const Corners& t, Index patch) const;
   /// Returns the largest distance of two points inside a segment from the patch by the tolerance there.
   double excess_between(Index patch, const Point& a, const Point& b) const;
-  /// Returns points of a smooth patch that are farther than this share of the tolerance from the triangles on it,
-  /// and the nearest triangle of each, at most one for a triangle.
+  /// Returns points of a smooth patch that are farther than this share of the tolerance from the triangles on
+  /// it, and the nearest triangle of each, at most one for a triangle.
   std::vector<std::pair<Index, Point>> far_points(Index patch, std::span<const Corners> triangles,
                                                   double share) const;
 

@@ -59,7 +59,8 @@ void ShapeRepair::note_tried(Index triangle, double wanted) {
   tried_[triangle] = {changes, wanted};
 }
 
-std::vector<Index> ShapeRepair::poor_triangles(double wanted, std::span<const Index> known, Index first) const {
+std::vector<Index> ShapeRepair::poor_triangles(double wanted, std::span<const Index> known,
+                                               Index first) const {
   std::vector<std::pair<double, Index>> poor_ones;
   const auto look_at = [&](Index t) {
     if (poor(t, wanted)) poor_ones.emplace_back(editor_.shape(t), t);

@@ -55,8 +55,8 @@ class SurfaceEditor {
 
   double shape(Index triangle) const { return shape_of(complex_.corners(triangle)); }
   double least_shape_at(Index vertex) const;
-  /// Returns the side of a triangle, by its first corner's place, to divide where the triangle is farther from
-  /// its patch than it may be; 3 where it is not.
+  /// Returns the side of a triangle, by its first corner's place, to divide where the triangle is farther
+  /// from its patch than it may be; 3 where it is not.
   unsigned side_too_far(Index triangle) const;
   /// Points of smooth patches that are too far from the triangles, and the triangles to divide there.
   std::vector<std::pair<Index, Point>> far_points() const;

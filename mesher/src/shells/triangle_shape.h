@@ -17,14 +17,13 @@ inline constexpr double least_angle = 20, wanted_shape = 28;
 
 inline Vector area_vector(const Corners& t) { return 0.5 * cross(t[1] - t[0], t[2] - t[0]); }
 
-/// Returns the angle of the vector (x, y), y >= 0, in degrees, with an error below 0.001. No call of a library: it
-/// takes most of the time.
+/// Returns the angle of the vector (x, y), y >= 0, in degrees, with an error below 0.001. No call of a
+/// library: it takes most of the time.
 inline double angle_of(double x, double y) {
   const double u = std::fabs(x), z = u > y ? y / u : u / std::max(y, 1e-300), w = z * z;
   constexpr double degrees = 180 / std::numbers::pi;
   const double angle =
-      degrees * z *
-      (0.9998660 + w * (-0.3302995 + w * (0.1801410 + w * (-0.0851330 + w * 0.0208351))));
+      degrees * z * (0.9998660 + w * (-0.3302995 + w * (0.1801410 + w * (-0.0851330 + w * 0.0208351))));
   const double steep = u > y ? angle : 90 - angle;
   return x < 0 ? 180 - steep : steep;
 }
