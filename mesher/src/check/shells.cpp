@@ -251,6 +251,7 @@ void measure(const Subject& subject, CheckReport& report) {
     for (unsigned i = 0; i < 3; ++i) sides.push_back(number_of(sorted(f[i], f[(i + 1) % 3])));
   std::sort(sides.begin(), sides.end());
   sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
+  lengths.reserve(sides.size());
   for (const std::uint64_t side : sides)
     lengths.push_back(distance(mesh.points[side >> 32U], mesh.points[side & 0xffffffffU]));
   if (!lengths.empty()) {

@@ -49,7 +49,7 @@ class EdgesAlong {
 };
 
 bool shares_both_ends(const Plc& plc, Index curve) {
-  const auto& [a, b] = plc.curves[curve].ends;
+  const Index a = plc.curves[curve].ends[0], b = plc.curves[curve].ends[1];
   return std::any_of(plc.vertices[a].curves.begin(), plc.vertices[a].curves.end(), [&](Index other) {
     const auto& ends = plc.curves[other].ends;
     return other != curve && (ends[0] == b || ends[1] == b) && (ends[0] == a || ends[1] == a);

@@ -21,7 +21,7 @@ namespace {
 
 // Shares of the tolerance: of the mesh on the complex where its vertices move onto exact geometry afterwards,
 // and of all others.
-constexpr double share_before_moves = 0.75, share = 0.95;
+constexpr double share_before_moves = 0.7, share = 0.85;
 
 struct Ended {};
 

@@ -304,7 +304,9 @@ bool ShapeRepair::approach(std::size_t most_vertices) {
 
 bool ShapeRepair::approach_points() {
   bool changed = false;
-  for (const auto& [t, point] : editor_.far_points()) {
+  for (const auto& far : editor_.far_points()) {
+    const Index t = far.first;
+    const Point& point = far.second;
     if (!complex_.triangles[t].alive()) continue;
     const auto& c = complex_.triangles[t].corners;
     const bool close = std::any_of(c.begin(), c.end(), [&](Index v) {

@@ -21,7 +21,6 @@ constexpr double long_edge = 1.35, short_edge = 0.74;
 SurfaceMesher::SurfaceMesher(const Plc& plc, const MeshOptions& options, SurfaceTolerance tolerance,
                              double most_excess, const Execution& execution)
     : plc_(plc),
-      options_(options),
       execution_(execution),
       tolerance_(std::move(tolerance)),
       paths_(plc, plc.points),

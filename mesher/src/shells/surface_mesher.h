@@ -47,7 +47,6 @@ class SurfaceMesher {
   void smooth();
 
   const Plc& plc_;
-  const MeshOptions& options_;
   const Execution& execution_;
   SurfaceTolerance tolerance_;
   CurvePaths paths_;
