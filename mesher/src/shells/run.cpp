@@ -2,9 +2,9 @@
 #include "shells/run.h"
 
 #include <algorithm>
-#include <limits>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "collarmesh/error.h"
 #include "collarmesh/shells.h"
@@ -31,6 +31,22 @@ bool is_solid(const Plc& plc) {
                      [](const Plc::Patch& patch) { return patch.regions[0] > 0 || patch.regions[1] > 0; });
 }
 
+/// Faces that nearly touch bound the distance of volumes, which would vanish there, far below what surfaces
+/// on their own need: it is at least a share of the target edge length here, unless one is asked for.
+SurfaceTolerance surface_tolerance(const Plc& plc, const PipelineOptions& options) {
+  constexpr double least_per_size = 0.005;
+  const Bounds& bounds = options.mesh.bounds;
+  const SurfaceTolerance given =
+      tolerance_of(plc, bounds, options.mesh.size, static_cast<int>(options.order));
+  if (!given.varies() || bounds.distance > 0 || bounds.tolerance) return given;
+  const double least = least_per_size * default_size(plc, options.mesh);
+  std::vector<double> triangles;
+  triangles.reserve(plc.triangles.size());
+  for (Index t = 0; t < plc.triangles.size(); ++t)
+    triangles.push_back(std::min(given.largest(), std::max(least, given.at_triangle(t))));
+  return {plc, std::move(triangles), given.largest()};
+}
+
 class Run {
  public:
   Run(const PipelineOptions& options, const Execution& execution) : given_(options), execution_(execution) {
@@ -52,7 +68,7 @@ class Run {
                      {});
     require_known_tags(options.mesh, plc);
     Bounds bounds = options.mesh.bounds;
-    bounds.tolerance = tolerance_of(plc, bounds, options.mesh.size, static_cast<int>(options.order));
+    bounds.tolerance = surface_tolerance(plc, options);
     const FlatFeatures flat(plc);
     const ExactGeometry exact = options.exact ? flat.limit(options.exact) : ExactGeometry();
     begin("refine", 0.1);
