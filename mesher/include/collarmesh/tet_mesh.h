@@ -79,7 +79,11 @@ struct TetMesh {
   };
   std::vector<PeriodicFaces> periodic;  ///< empty: none
 
-  int order() const { return tet_mid_nodes.empty() && face_mid_nodes.empty() ? 1 : 2; }
+  int order() const {
+    const bool second =
+        tets.empty() ? !tet_mid_nodes.empty() || !face_mid_nodes.empty() : !tet_mid_nodes.empty();
+    return second ? 2 : 1;
+  }
   /// Returns whether it has triangles alone.
   bool is_surface() const { return tets.empty() && !faces.empty(); }
 
