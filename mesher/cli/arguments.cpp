@@ -300,6 +300,19 @@ void check_batch(const MeshArguments& a) {
   for (const std::string& input : a.inputs) check_mesh_arguments(part_of_batch(a, input));
 }
 
+void check_output_of_surfaces(const MeshArguments& a) {
+  const bool is_surface = files::is_surface_format(a.output, a.output_format);
+  if (!is_surface && !is_among(a.output, a.output_format, io::formats_of_surfaces()))
+    throw CLI::ValidationError(
+        "--output",
+        fmt::format("'{}' {} no place for triangles alone; use {} or {}", a.output,
+                    io::is_tet_mesh_format(a.output, a.output_format) ? "has" : "is a format with",
+                    list(io::formats_of_surfaces()), list(files::surface_formats())));
+  if (is_surface && a.order == 2)
+    throw CLI::ValidationError("--order", fmt::format("{} has no elements of second order; use --order 1",
+                                                      report::format_of(a.output, a.output_format)));
+}
+
 void check_mesh_arguments(const MeshArguments& a) {
   if (a.inputs.empty()) throw CLI::RequiredError("INPUT, a file to mesh,");
   if (!a.batch.empty()) {
@@ -311,9 +324,12 @@ void check_mesh_arguments(const MeshArguments& a) {
     throw CLI::ValidationError(
         "--output",
         "- is standard output, to which convert writes: collarmesh convert IN... -o - --format vtu");
-  if (!io::is_tet_mesh_format(a.output, a.output_format))
+  if (a.dimension == 2) {
+    check_output_of_surfaces(a);
+  } else if (!io::is_tet_mesh_format(a.output, a.output_format)) {
     throw CLI::ValidationError("--output", fmt::format("'{}' {}; use {}", a.output, extension_list(a.output),
                                                        list(io::written_tet_mesh_formats())));
+  }
   if (a.order == 2 && is_among(a.output, a.output_format, io::formats_of_first_order()))
     throw CLI::ValidationError("--order", fmt::format("{} has no elements of second order; use --order 1",
                                                       report::format_of(a.output, a.output_format)));

@@ -17,7 +17,7 @@ namespace collarmesh::cli {
 ExitCode check_command(const CheckArguments& arguments) {
   process::set_time_limit(arguments.mesh.time_limit);
   process::limit_memory(process::memory_of_the_machine() / 2);
-  TetMesh mesh = files::read_mesh(arguments.mesh_path);
+  TetMesh mesh = files::read_mesh_or_triangles(arguments.mesh_path);
   for (Point& p : mesh.points) p = p / arguments.scale;
   for (TetMesh::PeriodicFaces& faces : mesh.periodic)
     faces.motion.shift = faces.motion.shift / arguments.scale;
@@ -28,13 +28,15 @@ ExitCode check_command(const CheckArguments& arguments) {
   const auto tolerance = [&](const Plc& plc) {
     return tolerance_of(plc, arguments.mesh.bounds, 0, mesh.order());
   };
-  files::ComplexInput input(arguments.inputs, interruptible({{},
-                                                             distance,
-                                                             tolerance,
-                                                             arguments.overlap,
-                                                             arguments.mesh.threads,
-                                                             arguments.names,
-                                                             arguments.given_names}));
+  files::ComplexInput input(
+      arguments.inputs,
+      interruptible({{},
+                     distance,
+                     mesh.is_surface() ? std::function<SurfaceTolerance(const Plc&)>() : tolerance,
+                     arguments.overlap,
+                     arguments.mesh.threads,
+                     arguments.names,
+                     arguments.given_names}));
   Execution execution;
   execution.cancel = &process::interrupt_flag();
   const CheckReport report = files::check_against(mesh, input, arguments, execution);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <numeric>
 #include <optional>
 
 #include "collarmesh/error.h"
@@ -56,25 +55,6 @@ void write_soup(const MeshArguments& a, const std::vector<PolygonSoup>& soups) {
   tell_unless_quiet(a, merged.told);
 }
 
-/// The boundary and interface triangles of a mesh with their tags, in the order of these: formats without
-/// tags have patches numbered as they come.
-PolygonSoup surface_of(const TetMesh& mesh, const std::string& name) {
-  PolygonSoup soup;
-  soup.name = name;
-  soup.points = mesh.points;
-  std::vector<std::size_t> order(mesh.faces.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return mesh.face_tag[a] < mesh.face_tag[b]; });
-  for (const std::size_t f : order) soup.add_facet(mesh.faces[f], mesh.face_tag[f]);
-  for (std::size_t e = 0; e < mesh.edges.size(); ++e)
-    soup.segments.push_back({mesh.edges[e][0], mesh.edges[e][1], mesh.edge_tag[e]});
-  soup.tag_names = mesh.names;
-  if (mesh.faces.empty())
-    throw ReadError(fmt::format("{}: the mesh has no boundary triangles that could become a surface", name));
-  return soup;
-}
-
 /// As asked for, or as it was.
 void divide(const MeshArguments& a, TetMesh& mesh) {
   if (a.partitions > 0) partition(mesh, a.partitions);
@@ -91,7 +71,7 @@ void convert_mesh(const MeshArguments& a, TetMesh& mesh) {
     throw OptionError(
         fmt::format("{} is a mesh, of which one at a time is converted; name it alone", a.inputs.front()));
   if (files::is_surface_format(a.output, a.output_format)) {
-    write_soup(a, {surface_of(mesh, a.inputs.front())});
+    write_soup(a, {files::surface_of(mesh, a.inputs.front())});
     return;
   }
   scale(mesh, a.scale);

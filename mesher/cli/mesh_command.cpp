@@ -15,6 +15,7 @@
 #include "files/cell_decomposition.h"
 #include "files/complex_input.h"
 #include "files/file_groups.h"
+#include "files/surface_files.h"
 #include "files/trace_files.h"
 #include "interruptible.h"
 #include "option_warnings.h"
@@ -209,8 +210,12 @@ void write_files(const MeshArguments& arguments, Stages& stages, report::MeshRun
   process::StagedFile mesh(arguments.output);
   mesh.write([&](const std::string& path) {
     ThreadLimit(arguments.mesh.threads).run([&] {
-      io::write_tet_mesh(path, run.result.mesh, run.split ? run.split->interfaces : Interfaces(),
-                         arguments.output_format, arguments.ghost_cells);
+      if (files::is_surface_format(arguments.output, arguments.output_format))
+        files::write_surface(path, files::surface_of(run.result.mesh, arguments.output),
+                             arguments.output_format);
+      else
+        io::write_tet_mesh(path, run.result.mesh, run.split ? run.split->interfaces : Interfaces(),
+                           arguments.output_format, arguments.ghost_cells);
     });
   });
   run.times.end();
@@ -267,9 +272,12 @@ std::unique_ptr<files::ComplexInput> read_inputs(const MeshArguments& arguments)
   const auto tolerance = [&](const Plc& plc) {
     return tolerance_of(plc, arguments.mesh.bounds, arguments.mesh.size, static_cast<int>(arguments.order));
   };
+  // Surfaces on their own need no triangles of CAD faces that keep volumes.
   return std::make_unique<files::ComplexInput>(
-      arguments.inputs, interruptible({arguments.input_format, distance, tolerance, arguments.overlap,
-                                       arguments.mesh.threads, arguments.names, arguments.given_names}));
+      arguments.inputs,
+      interruptible({arguments.input_format, distance,
+                     arguments.dimension == 2 ? std::function<SurfaceTolerance(const Plc&)>() : tolerance,
+                     arguments.overlap, arguments.mesh.threads, arguments.names, arguments.given_names}));
 }
 
 MadeMesh make_mesh(const MeshArguments& arguments) {

@@ -8,6 +8,7 @@
 
 #include "check/periodic.h"
 #include "collarmesh/error.h"
+#include "collarmesh/shells.h"
 
 namespace collarmesh::files {
 
@@ -26,14 +27,27 @@ std::string note_on_scale(const TetMesh& mesh, const Plc& plc, double scale) {
       ratio, scale * ratio);
 }
 
+/// The complex that `mesh_shells` makes of the input.
+Plc build_surfaces(ComplexInput& input, const RunOptions& o, const RepairOptions& repair) {
+  PlcOptions any = o.complex;
+  any.require_solid = false;
+  return build_shell_complex(
+             [&](const RepairOptions& each) {
+               return RepairedPlc{input.build(any, each), input.repaired(), {}};
+             },
+             repair)
+      .plc;
+}
+
 CheckReport check_as_built(const TetMesh& mesh, ComplexInput& input, const RunOptions& o,
                            const RepairOptions& repair, const Execution& execution) {
-  const Plc plc = input.build(o.complex, repair);
+  const Plc plc = mesh.is_surface() ? build_surfaces(input, o, repair) : input.build(o.complex, repair);
   const CheckOptions options{.bounds = o.mesh.bounds,
                              .exact = input.exact_measures(plc),
                              .findings_per_guarantee = o.findings,
                              .threads = o.mesh.threads};
-  CheckReport report = check(mesh, plc, options, execution);
+  CheckReport report =
+      mesh.is_surface() ? check_shells(mesh, plc, options, execution) : check(mesh, plc, options, execution);
   checks::check_periodic(mesh, report);
   if (const std::string note = note_on_scale(mesh, plc, o.scale); !report.passed() && !note.empty())
     report.notes.push_back(note);

@@ -65,7 +65,7 @@ std::string advice(const PlcError& error, const RepairOptions& options) {
   const bool open = has_fault(error, {Kind::open_boundary, Kind::empty});
   return fmt::format(
       " It could not be repaired: {}try {}, or --repair wrap, which puts a closed surface around everything.",
-      open ? "close the surface, " : "", wider);
+      open ? "close the surface, mesh it with triangles (--dimension 2), " : "", wider);
 }
 
 }  // namespace

@@ -84,4 +84,11 @@ std::optional<TetMesh> read_mesh_if_there(const std::string& path, const std::st
   }
 }
 
+TetMesh read_mesh_or_triangles(const std::string& path) {
+  std::optional<TetMesh> mesh = read_mesh_if_there(path);
+  if (mesh) return std::move(*mesh);
+  if (!io::is_mesh_surface_format(path)) return read_mesh(path);
+  return io::read_mesh_cells(existing_file(path));
+}
+
 }  // namespace collarmesh::files

@@ -18,6 +18,9 @@ TetMesh read_mesh(const std::string& path, const std::string& format = {});
 /// formats. Throws ReadError.
 std::optional<TetMesh> read_mesh_if_there(const std::string& path, const std::string& format = {});
 
+/// Read a tetrahedral mesh, or the triangles and lines of a file that has no tetrahedra. Throws ReadError.
+TetMesh read_mesh_or_triangles(const std::string& path);
+
 /// The entry of the folder of `path` whose name is most like it, or empty when none is near.
 std::string similar_file(const std::string& path);
 

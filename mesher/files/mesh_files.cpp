@@ -13,9 +13,10 @@ files::InputReading reading_of(const RunOptions& options, const std::string& for
   files::InputReading reading;
   reading.format = format;
   reading.distance = [&options](double diagonal) { return distance_of(options, diagonal); };
-  reading.tolerance = [&options](const Plc& plc) {
-    return tolerance_of(plc, options.mesh.bounds, options.mesh.size, static_cast<int>(options.order));
-  };
+  if (options.dimension == 3)
+    reading.tolerance = [&options](const Plc& plc) {
+      return tolerance_of(plc, options.mesh.bounds, options.mesh.size, static_cast<int>(options.order));
+    };
   reading.overlap = options.overlap;
   reading.threads = options.mesh.threads;
   reading.names = options.names;

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <numeric>
 
 #include "collarmesh/error.h"
 #include "collarmesh/io/mesh_surface_io.h"
@@ -39,6 +41,23 @@ void write_surface(const std::string& path, const PolygonSoup& soup, std::string
     return;
   }
   io::write_soup(path, soup, format);
+}
+
+PolygonSoup surface_of(const TetMesh& mesh, const std::string& name) {
+  PolygonSoup soup;
+  soup.name = name;
+  soup.points = mesh.points;
+  std::vector<std::size_t> order(mesh.faces.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return mesh.face_tag[a] < mesh.face_tag[b]; });
+  for (const std::size_t f : order) soup.add_facet(mesh.faces[f], mesh.face_tag[f]);
+  for (std::size_t e = 0; e < mesh.edges.size(); ++e)
+    soup.segments.push_back({mesh.edges[e][0], mesh.edges[e][1], mesh.edge_tag[e]});
+  soup.tag_names = mesh.names;
+  if (mesh.faces.empty())
+    throw ReadError(fmt::format("{}: the mesh has no boundary triangles that could become a surface", name));
+  return soup;
 }
 
 }  // namespace collarmesh::files

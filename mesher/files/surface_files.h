@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "collarmesh/polygon_soup.h"
+#include "collarmesh/tet_mesh.h"
 
 namespace collarmesh::files {
 
@@ -16,5 +17,9 @@ std::vector<std::string> surface_formats();
 PolygonSoup read_surface(const std::string& path, std::string_view format = {});
 /// Throws WriteError.
 void write_surface(const std::string& path, const PolygonSoup& soup, std::string_view format = {});
+
+/// The boundary and interface triangles of a mesh with their tags, in the order of these: formats without
+/// tags have patches numbered as they come. Throws ReadError if there are none.
+PolygonSoup surface_of(const TetMesh& mesh, const std::string& name);
 
 }  // namespace collarmesh::files

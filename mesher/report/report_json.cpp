@@ -285,6 +285,18 @@ Json kept_json(const std::vector<double>& input, const std::vector<double>& mesh
   return all;
 }
 
+/// Of triangles alone; null for a mesh of tets.
+Json triangles_json(const std::optional<TriangleMeasures>& m) {
+  if (!m) return nullptr;
+  return {{"triangles", m->triangles},
+          {"min_angle", m->min_angle},
+          {"max_angle", m->max_angle},
+          {"at_sharp_corners", m->at_sharp_corners},
+          {"histograms",
+           {{"min_angle", {{"bin_width", 10}, {"triangles", m->min_angles}}},
+            {"max_angle", {{"bin_width", 10}, {"triangles", m->max_angles}}}}}};
+}
+
 Json check_json(const CheckReport& r) {
   Json findings = Json::array();
   for (const Finding& finding : r.findings)
@@ -317,6 +329,7 @@ Json check_json(const CheckReport& r) {
           {"max_collar_dihedral", r.max_collar_dihedral},
           {"max_surface_distance", number_json(r.max_surface_distance)},
           {"median_edge", r.median_edge},
+          {"triangles", triangles_json(r.triangles)},
           {"region_volumes", by_number(volumes)},
           {"kept",
            {{"region_volumes", kept_json(r.of_input.volumes, r.of_mesh.volumes, 1)},

@@ -177,7 +177,29 @@ std::string forced_text(const CheckReport& r) {
       r.forced_tets, r.forced_tets == 1 ? "" : "s", r.min_forced_dihedral);
 }
 
+namespace {
+
+std::string angles_text(const TriangleMeasures& m) {
+  return fmt::format("angles from {:.2f} to {:.2f} degrees{}", m.min_angle, m.max_angle,
+                     m.at_sharp_corners > 0
+                         ? fmt::format(", {} triangle{} out of bounds at sharp corners of the input",
+                                       m.at_sharp_corners, m.at_sharp_corners == 1 ? "" : "s")
+                         : "");
+}
+
+/// Of triangles alone.
+std::string surface_text(const TetMesh& mesh, const CheckReport* judged) {
+  std::string text = fmt::format("{} triangles, {} points, {} curve edges\n", mesh.faces.size(),
+                                 mesh.points.size(), mesh.edges.size());
+  if (judged != nullptr && judged->triangles)
+    fmt::format_to(Out(text), "  {}\n", angles_text(*judged->triangles));
+  return text;
+}
+
+}  // namespace
+
 std::string mesh_text(const TetMesh& mesh, const MeshMeasures& m, const CheckReport* judged) {
+  if (mesh.is_surface()) return surface_text(mesh, judged);
   std::string text;
   fmt::format_to(Out(text), "{} tets, {} points, {} boundary and interface triangles, {} curve edges\n",
                  mesh.tets.size(), mesh.points.size(), mesh.faces.size(), mesh.edges.size());
@@ -213,8 +235,12 @@ std::string check_text(const CheckReport& r) {
   std::string text = findings_text(r, r.findings.size());
   for (const std::string& note : r.notes) fmt::format_to(Out(text), "note: {}\n", note);
   for (const std::string& warning : r.warnings) fmt::format_to(Out(text), "warning: {}\n", warning);
-  fmt::format_to(Out(text), "{} tets, {} points, {} faces, {} edges; {}\n", r.tets, r.points, r.faces,
-                 r.edges, shape_text(r.min_dihedral, r.max_dihedral, r.max_radius_edge));
+  if (r.triangles)
+    fmt::format_to(Out(text), "{} triangles, {} points, {} edges; {}\n", r.faces, r.points, r.edges,
+                   angles_text(*r.triangles));
+  else
+    fmt::format_to(Out(text), "{} tets, {} points, {} faces, {} edges; {}\n", r.tets, r.points, r.faces,
+                   r.edges, shape_text(r.min_dihedral, r.max_dihedral, r.max_radius_edge));
   if (r.thin_tets > 0)
     fmt::format_to(Out(text), "thin: {} tets, radius-edge to {:.4g}\n", r.thin_tets, r.max_thin_radius_edge);
   text += forced_text(r);

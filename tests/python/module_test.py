@@ -68,6 +68,14 @@ class Module(unittest.TestCase):
         numpy.testing.assert_allclose(mesh.points[mesh.tet_mid_nodes[:, 0]], (a + b) / 2, atol=1e-12)
         self.assertEqual(collarmesh.mesh(box((0, 0, 0), (1, 1, 1)), size=0.5).tet_mid_nodes.shape, (0, 6))
 
+    def test_triangles_alone(self):
+        mesh = collarmesh.mesh((numpy.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], float),
+                                numpy.array([(0, 1, 2), (0, 2, 3)])), size=0.2, dimension=2)
+        self.assertEqual(len(mesh.tets), 0)
+        a, b, c = (mesh.points[mesh.faces[:, i]] for i in range(3))
+        self.assertAlmostEqual(numpy.linalg.norm(numpy.cross(b - a, c - a), axis=1).sum() / 2, 1, 9)
+        self.assertGreater(len(mesh.faces), 40)
+
     def test_same_input_same_mesh(self):
         first, second = (collarmesh.mesh(box((0, 0, 0), (1, 1, 1)), size=0.2) for _ in range(2))
         numpy.testing.assert_array_equal(first.tets, second.tets)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +31,16 @@ struct Finding {
   Point where;
 };
 
+/// The triangles of a mesh without tets.
+struct TriangleMeasures {
+  static constexpr std::size_t bins = 18;
+  std::size_t triangles = 0;
+  double min_angle = 180, max_angle = 0;       ///< degrees, of the corners
+  std::array<std::size_t, bins> min_angles{};  ///< triangles by their smallest angle, 10 degrees a bin
+  std::array<std::size_t, bins> max_angles{};  ///< triangles by their largest one
+  std::size_t at_sharp_corners = 0;  ///< triangles below the bound only because the input has a sharp corner
+};
+
 struct CheckReport {
   std::vector<Finding> findings;
   std::size_t findings_total = 0;     ///< with those not listed
@@ -49,6 +61,7 @@ struct CheckReport {
   std::vector<double> region_volumes;  ///< by region index, [0] unused; of curved elements as they curve
   ShapeMeasures of_input, of_mesh;     ///< empty when labels or points are not usable
   MeshMeasures measures;               ///< with collars; of no tet when labels or points are not usable
+  std::optional<TriangleMeasures> triangles;  ///< of a mesh without tets (`check_shells`)
 
   bool cancelled = false;  ///< by the execution, so that not everything was checked
 
@@ -67,5 +80,16 @@ struct CheckReport {
 /// guarantees.
 CheckReport check(const TetMesh& mesh, const Plc& plc, const CheckOptions& options = {},
                   const Execution& execution = {});
+
+/// The bounds on the angles of a surface mesh, degrees. At a sharp corner of the input, between two curves,
+/// the smallest angle may be half of the corner's.
+inline constexpr double least_triangle_angle = 20, largest_triangle_angle = 120;
+
+/// Recomputes every guarantee of a mesh of triangles alone (`mesh_shells`): conformity (every edge has two
+/// triangles, or lies on a curve with one of each patch there), vertices, curves as chains of edges, tags,
+/// orientation, areas of planar patches, surface distance in both directions, angles, and positive Jacobians
+/// of curved triangles. A mesh without feature indices is matched by tags and position.
+CheckReport check_shells(const TetMesh& mesh, const Plc& plc, const CheckOptions& options = {},
+                         const Execution& execution = {});
 
 }  // namespace collarmesh

@@ -15,9 +15,9 @@ enum class GroupNames {
   cad       ///< Solid1, Face7, Edge3: the sub-shapes of a CAD shape
 };
 
-/// A conforming tetrahedral mesh with everything a solver's set-up needs to find its way back to
-/// the input: regions, tagged boundary and interface triangles, tagged curve edges.
-/// Every array of a group (tets, faces, edges, points) has the same length.
+/// A conforming tetrahedral mesh, or one of triangles alone (`mesh_shells`), with everything a solver's
+/// set-up needs to find its way back to the input: regions, tagged boundary and interface triangles, tagged
+/// curve edges. Every array of a group (tets, faces, edges, points) has the same length.
 struct TetMesh {
   /// The feature of the complex a mesh vertex lies on: the one of lowest dimension.
   struct VertexFeature {
@@ -79,7 +79,13 @@ struct TetMesh {
   };
   std::vector<PeriodicFaces> periodic;  ///< empty: none
 
-  int order() const { return tet_mid_nodes.empty() ? 1 : 2; }
+  int order() const {
+    const bool second =
+        tets.empty() ? !tet_mid_nodes.empty() || !face_mid_nodes.empty() : !tet_mid_nodes.empty();
+    return second ? 2 : 1;
+  }
+  /// Returns whether it has triangles alone.
+  bool is_surface() const { return tets.empty() && !faces.empty(); }
 
   /// A ball of a collar: stars and books fill the union of the balls.
   struct CollarBall {

@@ -155,10 +155,15 @@ void check_referenced(const TetMesh& mesh, Findings& findings) {
   };
   refer(mesh.tets);
   refer(mesh.tet_mid_nodes);
+  if (mesh.is_surface()) {
+    refer(mesh.faces);
+    refer(mesh.face_mid_nodes);
+  }
   for (Index i = 0; i < mesh.points.size(); ++i)
     if (referenced[i] == 0)
       findings.add(guarantee::referenced_points, mesh.points[i], {i},
-                   "Point {} at {} is a node of no tet; leave it out of the mesh.", i, At{mesh.points[i]});
+                   "Point {} at {} is a node of no {}; leave it out of the mesh.", i, At{mesh.points[i]},
+                   mesh.is_surface() ? "triangle" : "tet");
 }
 
 void check_collar_balls(const TetMesh& mesh, Findings& findings) {

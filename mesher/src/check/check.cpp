@@ -31,7 +31,9 @@ double largest_coordinate(const Box& box) {
   return largest;
 }
 
-Subject make_subject(const TetMesh& mesh, const Plc& plc, const CheckOptions& options) {
+}  // namespace
+
+Subject checks::make_subject(const TetMesh& mesh, const Plc& plc, const CheckOptions& options) {
   constexpr double epsilon = 0x1p-52;
   const Box box = bounds_of(plc);
   Subject subject{mesh,
@@ -48,6 +50,8 @@ Subject make_subject(const TetMesh& mesh, const Plc& plc, const CheckOptions& op
   subject.patch_allowance = patch_allowances(subject);
   return subject;
 }
+
+namespace {
 
 void take_measures(CheckReport& report, CheckReport&& part) {
   report.collar_tets += part.collar_tets;

@@ -58,4 +58,11 @@ inline constexpr char mid_nodes[] = "mid_nodes";  ///< one to an edge, in all ce
 inline constexpr char positive_jacobian[] = "positive_jacobian";  ///< everywhere in a tet, by bounds
 inline constexpr char mid_node_distance[] = "mid_node_distance";  ///< from the node's curve or patch
 
+// Meshes of triangles alone
+inline constexpr char triangle_angles[] =
+    "triangle_angles";  ///< of triangles, away from sharp corners of the input
+inline constexpr char patch_present[] = "patch_present";          ///< each has faces
+inline constexpr char curve_present[] = "curve_present";          ///< each has edges
+inline constexpr char shell_orientation[] = "shell_orientation";  ///< faces of solids look outwards
+
 }  // namespace collarmesh::guarantee

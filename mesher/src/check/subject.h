@@ -112,6 +112,10 @@ inline std::uint64_t number_of(const std::array<Index, 2>& ends) {
 
 inline double area(const Point& a, const Point& b, const Point& c) { return 0.5 * norm(cross(b - a, c - a)); }
 
+/// Makes the subject without what `judge` finds: matches of features, collars. Keeps the first two by
+/// reference.
+Subject make_subject(const TetMesh& mesh, const Plc& plc, const CheckOptions& options);
+
 /// Checks that arrays have equal lengths and corners are in range. If false, no other check can run.
 bool check_arrays(const TetMesh& mesh, Findings& findings);
 

@@ -2,7 +2,8 @@
 // complex (VOLUME_1) and for each of their tags (REGION_7), a surface for each tag of patches (PATCH_7:
 // faces of the tets behind it), a node set for each tag of patches and curves (PATCH_7_NODES,
 // CURVE_7_NODES). Conditions for periodic faces are a file of their own beside it. EALL and NALL are
-// everything. Numbers take 20 characters at most, as both programs ask.
+// everything. Triangles alone are S3 or S6, an element set for each tag of patches (PATCH_7). Numbers take 20
+// characters at most, as both programs ask.
 #include <fmt/format.h>
 
 #include <array>
@@ -106,6 +107,24 @@ void write_elements(FileWriter& out, const TetMesh& mesh) {
   }
 }
 
+/// Triangles as elements of shells.
+void write_shell_elements(FileWriter& out, const TetMesh& mesh, const Names& names) {
+  std::map<Tag, std::vector<Index>> faces_of_tag;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+    faces_of_tag[mesh.face_tag[f]].push_back(static_cast<Index>(f));
+  for (const auto& [tag, faces_with_tag] : faces_of_tag) {
+    const std::vector<Index>& faces = faces_with_tag;  // as above
+    out << "*ELEMENT, TYPE=" << (mesh.order() == 2 ? "S6" : "S3") << ", ELSET=" << names.at(tag) << '\n';
+    write_each(out, faces.size(), [&](TextBuffer& text, std::size_t i) {
+      text << faces[i] + 1;
+      for (const Index v : nodes_of_face(mesh, faces[i])) text << ", " << v + 1;
+      text << '\n';
+    });
+  }
+  out << "*ELSET, ELSET=EALL\n";
+  for (const auto& each : faces_of_tag) out << names.at(each.first) << ",\n";
+}
+
 /// The element and its side that lie behind each face.
 void write_surfaces(FileWriter& out, const TetMesh& mesh, const Names& names) {
   std::map<Tag, std::vector<SideOfTet>> surfaces;
@@ -127,11 +146,17 @@ void write_abaqus(const std::string& path, const TetMesh& mesh, const Interfaces
   FileWriter out(path);
   out << "*HEADING\nWritten by collarmesh.\n";
   write_nodes(out, mesh);
-  write_elements(out, mesh);
   DistinctNames known(std::string::npos);
+  if (mesh.is_surface())
+    known.add(capital_word(abaqus_everything));
+  else
+    write_elements(out, mesh);
   const Names patches = names_of(mesh, 2, mesh.face_tag, known),
               curves = names_of(mesh, 1, mesh.edge_tag, known);
-  write_surfaces(out, mesh, patches);
+  if (mesh.is_surface())
+    write_shell_elements(out, mesh, patches);
+  else
+    write_surfaces(out, mesh, patches);
   write_node_sets(out, nodes_by_tag(mesh, nodes_of_face, mesh.face_tag), patches);
   write_node_sets(out, nodes_by_tag(mesh, nodes_of_edge, mesh.edge_tag), curves);
   write_abaqus_interfaces(out, mesh, interfaces, patches);

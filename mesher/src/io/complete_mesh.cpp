@@ -110,6 +110,7 @@ void find_face_regions(TetMesh& mesh) {
       const bool behind = FaceFinder::alike(mesh.faces[face], outward);
       mesh.face_regions[face][behind ? 0 : 1] = mesh.tet_region[t];
     }
+  if (mesh.is_surface()) return;
   for (std::size_t f = 0; f < mesh.faces.size(); ++f)
     if (mesh.face_regions[f][0] == 0) {
       std::swap(mesh.face_regions[f][0], mesh.face_regions[f][1]);

@@ -70,10 +70,14 @@ std::vector<PolygonSoup::RegionPoint> points_in_regions(const TetMesh& mesh) {
 
 }  // namespace
 
-PolygonSoup read_mesh_surface(const std::string& path, std::string_view format) {
+TetMesh read_mesh_cells(const std::string& path, std::string_view format) {
   const Format* found = find_format(path, format);
   if (found == nullptr) throw ReadError(fmt::format("{}: is no file of a mesh with triangles", path));
-  const TetMesh mesh = found->read(path);
+  return found->read(path);
+}
+
+PolygonSoup read_mesh_surface(const std::string& path, std::string_view format) {
+  const TetMesh mesh = read_mesh_cells(path, format);
   if (mesh.faces.empty())
     throw ReadError(fmt::format("{}: expected triangles of a surface, found none", path));
   PolygonSoup soup;

@@ -22,17 +22,23 @@ struct TetMeshFormat {
   bool partitions = false;                   ///< has a place for them
   void (*write_with_ghost_cells)(const std::string& path, const TetMesh& mesh) = nullptr;
   bool second_order = true;
+  bool surfaces = false;  ///< has a place for meshes of triangles alone
 };
 
+constexpr TetMeshFormat of_surfaces(TetMeshFormat format) {
+  format.surfaces = true;
+  return format;
+}
+
 constexpr std::array tet_mesh_formats{
-    TetMeshFormat{".vtu", write_vtu, read_vtu, true},
+    of_surfaces(TetMeshFormat{".vtu", write_vtu, read_vtu, true}),
     TetMeshFormat{".pvtu", write_pvtu, read_pvtu, true, write_pvtu_with_ghost_cells},
-    TetMeshFormat{".vtk", write_vtk, read_vtk, true},
-    TetMeshFormat{".msh", write_msh, read_msh, true, write_msh_with_ghost_cells},
-    TetMeshFormat{".msh2", write_msh2, read_msh, true},
-    TetMeshFormat{".mesh", write_medit, read_medit},
-    TetMeshFormat{".inp", write_abaqus, read_abaqus},
-    TetMeshFormat{".unv", write_unv, read_unv},
+    of_surfaces(TetMeshFormat{".vtk", write_vtk, read_vtk, true}),
+    of_surfaces(TetMeshFormat{".msh", write_msh, read_msh, true, write_msh_with_ghost_cells}),
+    of_surfaces(TetMeshFormat{".msh2", write_msh2, read_msh, true}),
+    of_surfaces(TetMeshFormat{".mesh", write_medit, read_medit}),
+    of_surfaces(TetMeshFormat{".inp", write_abaqus, read_abaqus}),
+    of_surfaces(TetMeshFormat{".unv", write_unv, read_unv}),
     TetMeshFormat{".ele", write_tetgen, read_tetgen},
     TetMeshFormat{".bdf", write_nastran, nullptr},
     TetMeshFormat{".cdb", write_ansys, nullptr},
@@ -41,11 +47,11 @@ constexpr std::array tet_mesh_formats{
     TetMeshFormat{".su2", write_su2, nullptr, false, nullptr, false},
     TetMeshFormat{".polymesh", write_openfoam, nullptr, false, nullptr, false},
 #ifdef COLLARMESH_XDMF
-    TetMeshFormat{".xdmf", write_xdmf, read_xdmf, true},
+    of_surfaces(TetMeshFormat{".xdmf", write_xdmf, read_xdmf, true}),
     TetMeshFormat{".cgns", write_cgns, nullptr},
 #endif
 #ifdef COLLARMESH_MED
-    TetMeshFormat{".med", write_med, read_med, true},
+    of_surfaces(TetMeshFormat{".med", write_med, read_med, true}),
 #endif
 };
 
@@ -76,6 +82,9 @@ void write_tet_mesh(const std::string& path, const TetMesh& mesh, std::string_vi
                     GhostCells ghost_cells) {
   const TetMeshFormat* found = find_format(path, format);
   if (found == nullptr) throw WriteError(unknown(path, format, written_tet_mesh_formats()));
+  if (mesh.is_surface() && !found->surfaces)
+    throw WriteError(fmt::format("{}: {} has no place for a mesh of triangles alone; write {}", path,
+                                 found->extension, fmt::join(formats_of_surfaces(), " ")));
   const bool with_ghosts = ghost_cells == GhostCells::one_layer;
   if (with_ghosts && found->write_with_ghost_cells == nullptr)
     throw WriteError(
@@ -100,6 +109,10 @@ std::vector<std::string> formats_with_partitions() {
 
 std::vector<std::string> formats_of_first_order() {
   return extensions([](const TetMeshFormat& format) { return !format.second_order; });
+}
+
+std::vector<std::string> formats_of_surfaces() {
+  return extensions([](const TetMeshFormat& format) { return format.surfaces; });
 }
 
 std::vector<std::string> formats_with_ghost_cells() {

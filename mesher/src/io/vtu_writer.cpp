@@ -1,6 +1,7 @@
 // VTK's XML format for unstructured grids: appended arrays, compressed in blocks, base64. Headers
 // are UInt64. See "VTK File Formats" (VTK User's Guide) and vtkXMLDataReader. vtk_grid.h
 // describes the arrays. The cells are the tets; faces and edges are in FieldData.
+// Of a mesh of triangles alone these and the edges are the cells.
 #include <tbb/task_arena.h>
 
 #include <array>
@@ -144,7 +145,7 @@ void write_vtu(const std::string& path, const TetMesh& mesh) {
   // Counting the threads that there can be keeps TBB to them.
   if (tbb::this_task_arena::max_concurrency() > 1) static_cast<void>(usable_threads());
   VtkGrid grid = make_vtk_grid(mesh);
-  const std::vector<VtkArray> boundary = take_boundary(mesh, grid);
+  const std::vector<VtkArray> boundary = mesh.is_surface() ? names_array(mesh) : take_boundary(mesh, grid);
   write_vtu_grid(path, grid, boundary);
 }
 

@@ -71,6 +71,14 @@ constexpr Option::Place asked_ratio{Kind::number, in_bounds<&Bounds::radius_edge
                                       options.mesh.bounds.thin_in_narrow_places_only = true;
                                     }};
 
+/// The dimension of the elements. Surfaces need not bound anything.
+constexpr Option::Place asked_dimension{Kind::count, at<&RunOptions::dimension>.get,
+                                        [](const Option&, RunOptions& options, const OptionValue& value) {
+                                          options.dimension =
+                                              static_cast<unsigned>(std::get<std::uint64_t>(value));
+                                          if (options.dimension == 2) options.complex.require_solid = false;
+                                        }};
+
 constexpr unsigned writing = Option::mesh | Option::convert | Option::remesh,
                    refining = Option::mesh | Option::convert | Option::programs,
                    meshing = writing | Option::programs, judging = meshing | Option::check,
@@ -254,20 +262,30 @@ std::vector<Option> quality_options() {
 }
 
 std::vector<Option> element_options() {
-  return {{.name = "order ORDER",
-           .place = at<&RunOptions::order>,
-           .low = 1,
-           .high = 2,
-           .help = "Order of the elements: 1 straight, with nodes at the corners; 2 with a mid-edge node on "
-                   "every edge, "
-                   "curved on smooth surfaces",
-           .commands = sizing},
-          {.name = "interior-node",
-           .place = in_bounds<&Bounds::interior_node>,
-           .help = "Leave no tetrahedron with all corners on boundaries, interfaces or internal patches; "
-                   "insert nodes where there are such",
-           .details = "see [Interior nodes](embedded.md#a-node-inside-of-each-tetrahedron)",
-           .commands = refining | Option::check}};
+  return {
+      {.name = "order ORDER",
+       .place = at<&RunOptions::order>,
+       .low = 1,
+       .high = 2,
+       .help = "Order of the elements: 1 straight, with nodes at the corners; 2 with a mid-edge node on "
+               "every edge, "
+               "curved on smooth surfaces",
+       .commands = sizing},
+      {.name = "dimension D",
+       .place = asked_dimension,
+       .low = 2,
+       .high = 3,
+       .help =
+           "Dimension of the elements: 3 tetrahedra in the solids; 2 triangles on the surfaces, which need "
+           "not be closed",
+       .details = "see [Shells](shells.md)",
+       .commands = Option::mesh | Option::programs},
+      {.name = "interior-node",
+       .place = in_bounds<&Bounds::interior_node>,
+       .help = "Leave no tetrahedron with all corners on boundaries, interfaces or internal patches; "
+               "insert nodes where there are such",
+       .details = "see [Interior nodes](embedded.md#a-node-inside-of-each-tetrahedron)",
+       .commands = refining | Option::check}};
 }
 
 std::vector<Option> split_options() {

@@ -44,6 +44,7 @@
 #include "predict/vertex_counts.h"
 #include "refine/generate_linked.h"
 #include "remesh/bring_to_size.h"
+#include "shells/run.h"
 
 namespace collarmesh {
 
@@ -133,6 +134,10 @@ class Pipeline {
   }
 
   SoupPipelineResult run(ComplexSource& source) {
+    if (given_.dimension == 2) {
+      to_ = 1;
+      return told_of_time(shells::run(source, given_, inner_));
+    }
     source_ = &source;
     SoupPipelineResult all;
     until_ended([&] {
@@ -148,6 +153,10 @@ class Pipeline {
   }
 
   PipelineResult run(const Plc& plc) {
+    if (given_.dimension == 2) {
+      to_ = 1;
+      return told_of_time(shells::run(plc, given_, inner_));
+    }
     until_ended([&] {
       bound_vertices(Ways::none);
       mesh_refined_or_constrained(plc);
@@ -855,6 +864,16 @@ class Pipeline {
     fraction_ = std::max(fraction_, from_ + std::clamp(report.fraction, 0.0, 1.0) * (to_ - from_));
     report.fraction = fraction_;
     return outer_.progress(report);
+  }
+
+  /// Says whether it was the time that stopped a run.
+  template <class Result>
+  Result told_of_time(Result made) const {
+    if (made.result.status != MeshStatus::cancelled || !out_of_time()) return made;
+    made.result.status = MeshStatus::budget_hit;
+    made.result.message = fmt::format(
+        "the time limit of {} s is reached; raise it, or size for a coarser mesh", given_.mesh.time_limit);
+    return made;
   }
 
   [[noreturn]] void stop() {

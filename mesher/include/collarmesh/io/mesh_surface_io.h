@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "collarmesh/polygon_soup.h"
+#include "collarmesh/tet_mesh.h"
 
 namespace collarmesh::io {
 
@@ -12,6 +13,9 @@ namespace collarmesh::io {
 /// .mesh .vtu .vtp, by extension or as `format` says. Tetrahedra in the file are left out, but their tags
 /// name the regions; mid-edge nodes are left out, too. Throws ReadError.
 PolygonSoup read_mesh_surface(const std::string& path, std::string_view format = {});
+
+/// Reads the cells of such a file as a mesh, with or without tetrahedra. Throws ReadError.
+TetMesh read_mesh_cells(const std::string& path, std::string_view format = {});
 
 /// Returns whether `read_mesh_surface` knows this extension or format.
 bool is_mesh_surface_format(const std::string& path, std::string_view format = {});

@@ -36,6 +36,9 @@ std::vector<std::string> formats_with_ghost_cells();
 /// Those that have no elements of second order.
 std::vector<std::string> formats_of_first_order();
 
+/// Those that hold meshes of triangles alone.
+std::vector<std::string> formats_of_surfaces();
+
 /// What to do about a format that this program was built without, as a sentence that names the library; empty
 /// for all others.
 std::string missing_library(const std::string& path, std::string_view format = {});

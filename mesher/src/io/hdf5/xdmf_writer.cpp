@@ -96,14 +96,15 @@ std::vector<std::int64_t> nodes_of_all(const TetMesh& mesh, std::size_t count, N
 std::array<Cells, 3> cells_by_dimension(const TetMesh& mesh) {
   const bool second = mesh.order() == 2;
   const std::size_t tets = mesh.tets.size(), faces = mesh.faces.size(), edges = mesh.edges.size();
-  return {Cells{"mesh",
+  const bool surface = mesh.is_surface();
+  return {Cells{surface ? "tets" : "mesh",
                 second ? "Tetrahedron_10" : "Tetrahedron",
                 0,
                 tets,
                 nodes_of_all(mesh, tets, nodes_of_tet),
                 {"tag", "region", "collar", "crease", "thin", "partition", "radius_edge", "min_dihedral",
                  "max_dihedral"}},
-          Cells{"faces",
+          Cells{surface ? "mesh" : "faces",
                 second ? "Triangle_6" : "Triangle",
                 tets,
                 faces,
@@ -208,7 +209,7 @@ std::string names_information(const TetMesh& mesh) {
   return fmt::format("<Information Name=\"names\"><![CDATA[<main>{}</main>]]></Information>\n", maps);
 }
 
-/// NAME.xdmf for the tetrahedra, NAME_faces.xdmf and NAME_edges.xdmf for the others.
+/// NAME.xdmf for the tetrahedra, or for triangles alone, NAME_faces.xdmf and NAME_edges.xdmf for the others.
 std::filesystem::path path_of(const std::filesystem::path& path, const Cells& cells) {
   if (cells.first == 0 && cells.name == "mesh") return path;
   return path.parent_path() /

@@ -1,0 +1,313 @@
+// The certificate of a mesh of triangles alone: what holds for the faces of a mesh of tets holds here, too,
+// and the triangles are the elements.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "check/subject.h"
+#include "common/distance_tree.h"
+#include "common/thread_limit.h"
+
+namespace collarmesh {
+
+namespace checks {
+
+namespace {
+
+struct Angles {
+  std::array<double, 3> at;  // degrees
+  double least() const { return *std::min_element(at.begin(), at.end()); }
+  double largest() const { return *std::max_element(at.begin(), at.end()); }
+};
+
+double angle_between(const Vector& u, const Vector& v) {
+  return std::atan2(norm(cross(u, v)), dot(u, v)) * 180 / std::numbers::pi;
+}
+
+Angles angles_of(const Subject& subject, Index face) {
+  Angles angles{};
+  const auto& f = subject.mesh.faces[face];
+  for (unsigned i = 0; i < 3; ++i) {
+    const Point& p = subject.point(f[i]);
+    angles.at[i] = angle_between(subject.point(f[(i + 1) % 3]) - p, subject.point(f[(i + 2) % 3]) - p);
+  }
+  return angles;
+}
+
+/// The edges of curves, and the vertices of the complex, in the mesh.
+class GivenCorners {
+ public:
+  explicit GivenCorners(const Subject& subject) : is_vertex_(subject.mesh.points.size(), false) {
+    for (const Index p : subject.match.vertex_point)
+      if (p != none) is_vertex_[p] = true;
+    for (const auto& [a, b] : subject.mesh.edges) edges_.push_back(number_of(sorted(a, b)));
+    std::sort(edges_.begin(), edges_.end());
+  }
+
+  bool is_edge(Index a, Index b) const {
+    return std::binary_search(edges_.begin(), edges_.end(), number_of(sorted(a, b)));
+  }
+  /// Does the corner lie on a vertex of the complex, between two curves?
+  bool is_corner(const std::array<Index, 3>& face, unsigned i) const {
+    return is_vertex_[face[i]] && is_edge(face[i], face[(i + 1) % 3]) && is_edge(face[i], face[(i + 2) % 3]);
+  }
+
+ private:
+  std::vector<bool> is_vertex_;
+  std::vector<std::uint64_t> edges_;
+};
+
+void check_angles(const Subject& subject, CheckReport& report, Findings& findings) {
+  const GivenCorners given(subject);
+  TriangleMeasures measures;
+  measures.triangles = subject.mesh.faces.size();
+  const auto bin = [](double angle) {
+    constexpr double width = 180.0 / TriangleMeasures::bins;
+    return std::min(TriangleMeasures::bins - 1, static_cast<std::size_t>(angle / width));
+  };
+  for (Index f = 0; f < subject.mesh.faces.size(); ++f) {
+    const auto& face = subject.mesh.faces[f];
+    const Angles angles = angles_of(subject, f);
+    measures.min_angle = std::min(measures.min_angle, angles.least());
+    measures.max_angle = std::max(measures.max_angle, angles.largest());
+    ++measures.min_angles[bin(angles.least())];
+    ++measures.max_angles[bin(angles.largest())];
+    if (angles.least() >= least_triangle_angle && angles.largest() <= largest_triangle_angle) continue;
+    double least = least_triangle_angle;
+    for (unsigned i = 0; i < 3; ++i)
+      if (given.is_corner(face, i)) least = std::min(least, angles.at[i] / 2);
+    const double largest =
+        least < least_triangle_angle ? 180 - 3 * least : largest_triangle_angle;  // as the sum is 180
+    if (angles.least() >= least && angles.largest() <= largest) {
+      ++measures.at_sharp_corners;
+      continue;
+    }
+    const Point where = subject.centroid(face);
+    findings.add(
+        guarantee::triangle_angles, where, {f},
+        "Triangle {} at {} has angles from {:.4g} to {:.4g} degrees, allowed are {:.4g} to {:.4g}; "
+        "features of the input are close to each other there: a smaller size there helps, or remove them.",
+        f, At{where}, angles.least(), angles.largest(), least, largest);
+  }
+  report.triangles = measures;
+}
+
+void check_present(const Subject& subject, Findings& findings) {
+  const Plc& plc = subject.plc;
+  const Grouping by_patch(subject.match.face_patch, plc.patches.size()),
+      by_curve(subject.match.edge_curve, plc.curves.size());
+  for (Index p = 0; p < plc.patches.size(); ++p) {
+    if (by_patch.size(p) > 0) continue;
+    const Point& where = subject.plc_corner(plc.triangles[plc.patches[p].first_triangle], 0);
+    findings.add(
+        guarantee::patch_present, where, {p},
+        "Patch {} (tag {}) at {} has no faces; it was lost, or its faces are tagged with another patch.", p,
+        plc.patches[p].tag, At{where});
+  }
+  for (Index c = 0; c < plc.curves.size(); ++c) {
+    if (by_curve.size(c) > 0 || plc.curves[c].patches.empty()) continue;
+    const Point& where = plc.points[plc.curves[c].points.front()];
+    findings.add(
+        guarantee::curve_present, where, {c},
+        "Curve {} (tag {}) at {} has no edges; it was lost, or its edges are tagged with another curve.", c,
+        plc.curves[c].tag, At{where});
+  }
+  for (Index v = 0; v < plc.vertices.size(); ++v) {
+    if (subject.match.vertex_point[v] != none || plc.vertices[v].patches.empty()) continue;
+    const Point& where = plc.points[plc.vertices[v].point];
+    findings.add(guarantee::vertex_present, where, {v}, "Vertex {} (tag {}) at {} is no point of the mesh.",
+                 v, plc.vertices[v].tag, At{where});
+  }
+}
+
+/// Edges are sides of faces, listed once.
+void check_edges(const Subject& subject, Findings& findings) {
+  std::vector<std::uint64_t> sides;
+  for (const auto& f : subject.mesh.faces)
+    for (unsigned i = 0; i < 3; ++i) sides.push_back(number_of(sorted(f[i], f[(i + 1) % 3])));
+  std::sort(sides.begin(), sides.end());
+  std::vector<std::uint64_t> listed;
+  for (const auto& [a, b] : subject.mesh.edges) listed.push_back(number_of(sorted(a, b)));
+  std::sort(listed.begin(), listed.end());
+  for (Index e = 0; e < subject.mesh.edges.size(); ++e) {
+    const std::uint64_t number = number_of(sorted(subject.mesh.edges[e][0], subject.mesh.edges[e][1]));
+    const Point where = subject.midpoint(subject.mesh.edges[e]);
+    if (!std::binary_search(sides.begin(), sides.end(), number))
+      findings.add(guarantee::listed_edges, where, {e}, "Edge {} at {} is a side of no triangle.", e,
+                   At{where});
+    const auto [first, last] = std::equal_range(listed.begin(), listed.end(), number);
+    if (last - first > 1)
+      findings.add(guarantee::listed_edges, where, {e}, "Edge {} at {} is listed {} times.", e, At{where},
+                   last - first);
+  }
+}
+
+/// Faces of solids look outwards. `plc` knows the regions.
+void check_outward(const Subject& subject, const Plc& plc, Findings& findings) {
+  const Grouping by_patch(subject.match.face_patch, plc.patches.size());
+  for (Index p = 0; p < plc.patches.size(); ++p) {
+    const auto& [behind, front] = plc.patches[p].regions;
+    if ((behind == 0) == (front == 0)) continue;
+    double wrong = 0;
+    const Plc::Patch& patch = plc.patches[p];
+    std::vector<DistanceTree::Triangle> triangles;
+    for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t)
+      triangles.push_back({subject.plc_corner(plc.triangles[t], 0), subject.plc_corner(plc.triangles[t], 1),
+                           subject.plc_corner(plc.triangles[t], 2)});
+    const DistanceTree tree(triangles);
+    Point where{};
+    const auto normal = [](const Point& a, const Point& b, const Point& c) { return cross(b - a, c - a); };
+    for (const Index* f = by_patch.begin(p); f != by_patch.end(p); ++f) {
+      where = subject.centroid(subject.mesh.faces[*f]);
+      const auto& [a, b, c] = triangles[tree.nearest(where).triangle];
+      const auto& [i, j, k] = subject.mesh.faces[*f];
+      const double agreement =
+          dot(normal(a, b, c), normal(subject.point(i), subject.point(j), subject.point(k)));
+      wrong += agreement < 0 ? 1 : -1;
+    }
+    if ((wrong > 0) == (behind > 0) && wrong != 0)
+      findings.add(guarantee::shell_orientation, where, {p},
+                   "The faces of patch {} (tag {}) at {} look into its solid; turn them.", p, patch.tag,
+                   At{where});
+  }
+}
+
+CurvedTriangle curved_face(const TetMesh& mesh, Index face) {
+  const auto& [a, b, c] = mesh.faces[face];
+  const auto& [ab, bc, ca] = mesh.face_mid_nodes[face];
+  return {mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[ab], mesh.points[bc], mesh.points[ca]};
+}
+
+/// The normal of a curved triangle, times the Jacobian, at parameters (s, t).
+Vector jacobian_at(const CurvedTriangle& n, double s, double t) {
+  const double r = 1 - s - t;
+  const Vector ds =
+                   (1 - 4 * r) * n[0] + (4 * s - 1) * n[1] + 4 * (r - s) * n[3] + 4 * t * n[4] - 4 * t * n[5],
+               dt =
+                   (1 - 4 * r) * n[0] + (4 * t - 1) * n[2] - 4 * s * n[3] + 4 * s * n[4] + 4 * (r - t) * n[5];
+  return cross(ds, dt);
+}
+
+/// The component along the normal of the straight triangle is a polynomial of degree 2; its coefficients in
+/// Bernstein's basis bound it from below. They follow from its values at the corners and middles of sides.
+bool jacobian_is_positive(const CurvedTriangle& n) {
+  const Vector normal = cross(n[1] - n[0], n[2] - n[0]);
+  const auto value = [&](double s, double t) { return dot(jacobian_at(n, s, t), normal); };
+  const std::array<double, 3> corners{value(0, 0), value(1, 0), value(0, 1)};
+  const std::array<double, 3> middles{value(0.5, 0), value(0.5, 0.5), value(0, 0.5)};
+  for (unsigned i = 0; i < 3; ++i) {
+    const double between = 2 * middles[i] - 0.5 * (corners[i] + corners[(i + 1) % 3]);
+    if (!(corners[i] > 0) || !(between > 0)) return false;
+  }
+  return true;
+}
+
+void check_triangle_jacobians(const Subject& subject, Findings& findings) {
+  const TetMesh& mesh = subject.mesh;
+  if (mesh.order() == 1) return;
+  for (Index f = 0; f < mesh.faces.size(); ++f) {
+    if (jacobian_is_positive(curved_face(mesh, f))) continue;
+    const Point where = subject.centroid(mesh.faces[f]);
+    findings.add(guarantee::positive_jacobian, where, {f},
+                 "Triangle {} of tag {} at {} is of second order and folds: its Jacobian is not positive "
+                 "everywhere; put its mid-side nodes nearer to the middles of its edges.",
+                 f, mesh.face_tag[f], At{where});
+  }
+}
+
+void measure(const Subject& subject, CheckReport& report) {
+  const TetMesh& mesh = subject.mesh;
+  ShapeMeasures input = measures_of(subject.plc);
+  input.volumes.clear();
+  input.shells.clear();
+  const auto take_exact = [](const std::vector<double>& exact, std::vector<double>& values) {
+    for (std::size_t i = 0; i < std::min(exact.size(), values.size()); ++i)
+      if (std::isfinite(exact[i])) values[i] = exact[i];
+  };
+  take_exact(subject.options.exact.areas, input.areas);
+  take_exact(subject.options.exact.lengths, input.lengths);
+  ShapeMeasures made{
+      {}, std::vector<double>(input.areas.size(), 0), std::vector<double>(input.lengths.size(), 0), {}};
+  for (Index f = 0; f < mesh.faces.size(); ++f) {
+    const Index patch = subject.match.face_patch[f];
+    if (patch == none) continue;
+    const auto& [a, b, c] = mesh.faces[f];
+    made.areas[patch] += mesh.order() == 1 ? area(mesh.points[a], mesh.points[b], mesh.points[c])
+                                           : collarmesh::area(curved_face(mesh, f));
+  }
+  std::vector<double> lengths;
+  for (Index e = 0; e < mesh.edges.size(); ++e) {
+    const Index curve = subject.match.edge_curve[e];
+    if (curve == none) continue;
+    const auto& [a, b] = mesh.edges[e];
+    made.lengths[curve] +=
+        mesh.order() == 1
+            ? distance(mesh.points[a], mesh.points[b])
+            : length(CurvedEdge{mesh.points[a], mesh.points[b], mesh.points[mesh.edge_mid_nodes[e]]});
+  }
+  std::vector<std::uint64_t> sides;
+  for (const auto& f : mesh.faces)
+    for (unsigned i = 0; i < 3; ++i) sides.push_back(number_of(sorted(f[i], f[(i + 1) % 3])));
+  std::sort(sides.begin(), sides.end());
+  sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
+  lengths.reserve(sides.size());
+  for (const std::uint64_t side : sides)
+    lengths.push_back(distance(mesh.points[side >> 32U], mesh.points[side & 0xffffffffU]));
+  if (!lengths.empty()) {
+    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+    std::nth_element(lengths.begin(), middle, lengths.end());
+    report.median_edge = *middle;
+  }
+  report.of_input = std::move(input);
+  report.of_mesh = std::move(made);
+}
+
+/// Regions play no part in how faces lie on patches.
+void forget_regions(TetMesh& mesh, Plc& plc) {
+  for (Plc::Patch& patch : plc.patches) patch.regions = {0, 0};
+  mesh.face_regions.assign(mesh.faces.size(), {0, 0});
+}
+
+void judge_shells(const TetMesh& given, const Plc& given_plc, const CheckOptions& options,
+                  CheckReport& report, const Execution& execution) {
+  Findings findings(report, options.findings_per_guarantee);
+  if (!check_arrays(given, findings)) return;
+  TetMesh mesh = given;
+  Plc plc = given_plc;
+  forget_regions(mesh, plc);
+  // The tolerance depends on the regions.
+  CheckOptions own = options;
+  own.bounds.tolerance = tolerance_of_any_size(given_plc, options.bounds);
+  Subject subject = make_subject(mesh, plc, own);
+  if (!check_points(subject, findings) || !check_labels(mesh, plc, findings)) return;
+  subject.match = match_features(mesh, plc, subject.rounding);
+  check_present(subject, findings);
+  check_vertices(subject, findings);
+  check_edges(subject, findings);
+  check_angles(subject, report, findings);
+  if ((report.cancelled = execution.cancelled())) return;
+  check_curves(subject, report, findings);
+  check_patches(subject, report, findings);
+  if ((report.cancelled = execution.cancelled())) return;
+  check_outward(subject, given_plc, findings);
+  check_second_order(subject, report, findings);
+  check_triangle_jacobians(subject, findings);
+  measure(subject, report);
+}
+
+}  // namespace
+
+}  // namespace checks
+
+CheckReport check_shells(const TetMesh& mesh, const Plc& plc, const CheckOptions& options,
+                         const Execution& execution) {
+  CheckReport report;
+  report.points = mesh.points.size();
+  report.faces = mesh.faces.size();
+  report.edges = mesh.edges.size();
+  ThreadLimit(options.threads).run([&] { checks::judge_shells(mesh, plc, options, report, execution); });
+  return report;
+}
+
+}  // namespace collarmesh

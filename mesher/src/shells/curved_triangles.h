@@ -1,0 +1,15 @@
+#pragma once
+
+#include "collarmesh/exact_geometry.h"
+#include "collarmesh/second_order.h"
+#include "shells/surface_mesher.h"
+
+namespace collarmesh::shells {
+
+/// Gives a surface mesh of first order mid-edge nodes: on curves, on smooth patches, and in the middle of
+/// straight edges; on the exact geometry where there is some. A node whose triangles would have a Jacobian of
+/// `least_jacobian` or less of the straight triangle's moves back towards the middle of its edge.
+SecondOrderReport curve_triangles(TetMesh& mesh, const Plc& plc, SurfaceMesher& mesher,
+                                  const ExactGeometry& exact, double least_jacobian = 0.1);
+
+}  // namespace collarmesh::shells

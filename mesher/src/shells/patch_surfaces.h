@@ -1,0 +1,61 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "collarmesh/surface_tolerance.h"
+#include "location/triangle_hierarchy.h"
+#include "shells/triangle_shape.h"
+
+namespace collarmesh::shells {
+
+/// The patches of a complex as surfaces: nearest places, normals, and how far triangles may be from them.
+class PatchSurfaces {
+ public:
+  /// Keeps the complex by reference. Cost: linear.
+  PatchSurfaces(const Plc& plc, SurfaceTolerance tolerance);
+
+  struct Foot {
+    Point point;
+    Vector normal;   ///< unit, interpolated between the patch's points
+    Index triangle;  ///< of the complex
+    double distance;
+    double tolerance;  ///< there
+  };
+  /// Returns the place of a patch that is nearest to p.
+  Foot nearest(Index patch, const Point& p) const;
+  bool planar(Index patch) const { return plc_.patches[patch].planar; }
+  /// Of a planar patch.
+  const Vector& plane_normal(Index patch) const { return normals_[patch]; }
+
+  /// Returns the cosine of the angle between the triangle and the patch; -1 for a flat one.
+  double agreement(const Corners& t, Index patch) const;
+  /// How well a triangle fits a patch.
+  struct Fit {
+    double agreement = 1;  ///< as above
+    double excess = 0;     ///< distance of its centre from the patch by the tolerance there
+  };
+  Fit fit(const Corners& t, Index patch) const;
+  /// Returns the largest distance of two points inside a segment from the patch by the tolerance there.
+  double excess_between(Index patch, const Point& a, const Point& b) const;
+  /// Returns points of a smooth patch that are farther than this share of the tolerance from the triangles on
+  /// it, and the nearest triangle of each, at most one for a triangle.
+  std::vector<std::pair<Index, Point>> far_points(Index patch, std::span<const Corners> triangles,
+                                                  double share) const;
+
+ private:
+  const TriangleHierarchy& hierarchy(Index patch) const;
+  Vector normal_at(Index patch, Index triangle, const Point& p) const;
+  void find_normals(Index patch);
+
+  const Plc& plc_;
+  SurfaceTolerance tolerance_;
+  std::vector<Vector> normals_;                    // of patches, unit
+  std::vector<std::array<Vector, 3>> at_corners_;  // of triangles
+  mutable std::vector<std::unique_ptr<TriangleHierarchy>> hierarchies_;
+};
+
+}  // namespace collarmesh::shells

@@ -1,0 +1,339 @@
+#include "shells/shape_repair.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace collarmesh::shells {
+
+namespace {
+
+// Angles that stay within the bounds when vertices move onto exact geometry.
+constexpr double margin = 1.5;
+// Edges that are not divided further, relative to the target edge length.
+constexpr double shortest = 0.015;
+// Gaps between curves that are left as they are, relative to it.
+constexpr double narrowest = 0.003;
+// Vertices with more triangles, as a tessellation has them, are not moved or removed: others around them are.
+constexpr std::size_t most_triangles = 24;
+
+}  // namespace
+
+ShapeRepair::ShapeRepair(SurfaceComplex& complex, SurfaceEditor& editor, const Execution& execution)
+    : complex_(complex), editor_(editor), execution_(execution) {}
+
+double ShapeRepair::bound(Index triangle) const {
+  constexpr double degrees = 57.29577951308232;
+  const auto& c = complex_.triangles[triangle].corners;
+  double bound = least_angle;
+  for (unsigned i = 0; i < 3; ++i) {
+    const Index v = c[i], a = c[(i + 1) % 3], b = c[(i + 2) % 3];
+    if (complex_.vertices[v].feature.dimension != 0 || complex_.edge_at(v, a) == none ||
+        complex_.edge_at(v, b) == none)
+      continue;
+    const Vector u = complex_.vertices[a].point - complex_.vertices[v].point,
+                 w = complex_.vertices[b].point - complex_.vertices[v].point;
+    bound = std::min(bound, 0.5 * degrees * std::atan2(norm(cross(u, w)), dot(u, w)));
+  }
+  return bound;
+}
+
+bool ShapeRepair::poor(Index triangle, double wanted) const {
+  if (!complex_.triangles[triangle].alive()) return false;
+  const double shape = editor_.shape(triangle);
+  if (shape >= wanted) return false;
+  return shape < wanted * bound(triangle) / least_angle;
+}
+
+/// Has nothing changed around the triangle since it was tried in vain?
+bool ShapeRepair::tried(Index triangle, double wanted) {
+  if (triangle >= tried_.size()) return false;
+  std::size_t changes = 0;
+  for (const Index v : complex_.triangles[triangle].corners) changes += complex_.vertices[v].changes;
+  return tried_[triangle].changes == changes && tried_[triangle].wanted >= wanted;
+}
+
+void ShapeRepair::note_tried(Index triangle, double wanted) {
+  if (triangle >= tried_.size()) tried_.resize(complex_.triangles.size());
+  std::size_t changes = 0;
+  for (const Index v : complex_.triangles[triangle].corners) changes += complex_.vertices[v].changes;
+  tried_[triangle] = {changes, wanted};
+}
+
+std::vector<Index> ShapeRepair::poor_triangles(double wanted, std::span<const Index> known,
+                                               Index first) const {
+  std::vector<std::pair<double, Index>> poor_ones;
+  const auto look_at = [&](Index t) {
+    if (poor(t, wanted)) poor_ones.emplace_back(editor_.shape(t), t);
+  };
+  for (const Index t : known) look_at(t);
+  for (Index t = first; t < complex_.triangles.size(); ++t) look_at(t);
+  std::sort(poor_ones.begin(), poor_ones.end());
+  std::vector<Index> triangles;
+  triangles.reserve(poor_ones.size());
+  for (const auto& [shape, t] : poor_ones) triangles.push_back(t);
+  return triangles;
+}
+
+bool ShapeRepair::move_best(Index vertex) {
+  const unsigned dimension = complex_.vertices[vertex].feature.dimension;
+  if (dimension == 0 || complex_.vertices[vertex].triangles.size() > most_triangles) return false;
+  const double before = editor_.least_shape_at(vertex);
+  constexpr double gain = 0.1;
+  bool moved = false;
+  if (dimension == 1) {
+    const auto around = editor_.edges_around(vertex);
+    if (!around) return false;
+    for (const double share : {0.5, 0.25, 0.1, 0.03}) {
+      for (const double sign : {-1.0, 1.0}) {
+        const auto& edge = complex_.edges[(*around)[sign < 0 ? 0 : 1]];
+        const double at = complex_.edges[(*around)[0]].at[1] + sign * share * (edge.at[1] - edge.at[0]);
+        moved |= editor_.slide(vertex, at, editor_.least_shape_at(vertex) + gain);
+      }
+    }
+    return moved && editor_.least_shape_at(vertex) > before;
+  }
+  const std::vector<Index> around = complex_.neighbours(vertex);
+  Point centre{};
+  double reach = 0;
+  for (const Index n : around) {
+    centre = centre + complex_.vertices[n].point / static_cast<double>(around.size());
+    reach = std::max(reach, editor_.length(vertex, n));
+  }
+  moved |= editor_.move(vertex, centre, before + gain);
+  Vector normal{};
+  for (const Index t : complex_.vertices[vertex].triangles)
+    normal = normal + area_vector(complex_.corners(t));
+  const double length = norm(normal);
+  if (!(length > 0)) return moved;
+  normal = normal / length;
+  Vector u = complex_.vertices[around.front()].point - complex_.vertices[vertex].point;
+  u = u - dot(u, normal) * normal;
+  if (!(norm(u) > 0)) return moved;
+  u = u / norm(u);
+  const Vector v = cross(normal, u);
+  constexpr unsigned directions = 8;
+  for (const double share : {0.3, 0.1, 0.03})
+    for (unsigned i = 0; i < directions; ++i) {
+      const double angle = 2 * std::numbers::pi * i / directions;
+      const Point to =
+          complex_.vertices[vertex].point + share * reach * (std::cos(angle) * u + std::sin(angle) * v);
+      moved |= editor_.move(vertex, to, editor_.least_shape_at(vertex) + gain);
+    }
+  return moved;
+}
+
+bool ShapeRepair::improve_by_moves(Index triangle) {
+  bool moved = false;
+  for (const Index v : std::array(complex_.triangles[triangle].corners)) moved |= move_best(v);
+  return moved;
+}
+
+bool ShapeRepair::improve_connections(Index triangle, double wanted, bool may_contract) {
+  const std::array<Index, 3> c = complex_.triangles[triangle].corners;
+  for (unsigned i = 0; i < 3; ++i)
+    if (editor_.flip(c[i], c[(i + 1) % 3])) return true;
+  if (!may_contract) return false;
+  const SurfaceEditor::Contraction rule{.longest = 1.5, .least_shape = wanted, .better = true};
+  for (unsigned i = 0; i < 3; ++i)
+    for (unsigned j = 0; j < 3; ++j)
+      if (i != j && complex_.vertices[c[i]].triangles.size() <= most_triangles &&
+          editor_.contract(c[i], c[j], rule))
+        return true;
+  return false;
+}
+
+void ShapeRepair::improve(double wanted) {
+  constexpr unsigned passes = 4;
+  std::vector<Index> poor_ones;
+  Index first = 0;
+  for (unsigned pass = 0; pass < passes && !execution_.cancelled(); ++pass) {
+    bool changed = false;
+    poor_ones = poor_triangles(wanted, poor_ones, first);
+    first = static_cast<Index>(complex_.triangles.size());
+    for (const Index t : poor_ones) {
+      if (!poor(t, wanted) || tried(t, wanted)) continue;
+      if (improve_connections(t, wanted, true) || improve_by_moves(t))
+        changed = true;
+      else
+        note_tried(t, wanted);
+    }
+    if (!changed) return;
+  }
+}
+
+/// Divides an edge of a curve beside the triangle that a vertex at p would encroach upon.
+bool ShapeRepair::divide_curve_beside(Index triangle, const Point& p) {
+  const std::array<Index, 3> c = complex_.triangles[triangle].corners;
+  for (unsigned i = 0; i < 3; ++i) {
+    const Index edge = complex_.edge_at(c[i], c[(i + 1) % 3]);
+    if (edge == none) continue;
+    const auto [a, b] = complex_.edges[edge].ends;
+    if (dot(complex_.vertices[a].point - p, complex_.vertices[b].point - p) >= 0) continue;
+    if (editor_.length(a, b) < 2 * shortest * editor_.size_of_edge(a, b)) return true;
+    const Index v = editor_.divide_curve_edge(edge);
+    if (v == none) return true;
+    editor_.flip_around(v);
+    return true;
+  }
+  return false;
+}
+
+/// Walks from the triangle to the one at p, and inserts it there.
+bool ShapeRepair::insert_towards(Index triangle, const Point& p) {
+  constexpr unsigned most_steps = 30;
+  constexpr double inside = -1e-9;
+  Index at = triangle;
+  for (unsigned step = 0; step < most_steps; ++step) {
+    const auto corners = complex_.corners(at);
+    const auto shares = barycentric(corners, p);
+    const auto least = static_cast<unsigned>(std::min_element(shares.begin(), shares.end()) - shares.begin());
+    if (shares[least] >= inside) break;
+    const auto& c = complex_.triangles[at].corners;
+    const Index a = c[(least + 1) % 3], b = c[(least + 2) % 3];
+    if (const Index edge = complex_.edge_at(a, b); edge != none) {
+      if (editor_.length(a, b) < 2 * shortest * editor_.size_of_edge(a, b)) return false;
+      const Index v = editor_.divide_curve_edge(edge);
+      if (v != none) editor_.flip_around(v);
+      return v != none;
+    }
+    const Index next = complex_.across(at, a, b);
+    if (next == none) return false;
+    at = next;
+  }
+  for (const Index v : complex_.triangles[at].corners)
+    if (distance(complex_.vertices[v].point, p) < shortest * complex_.vertices[v].size) return false;
+  const std::size_t before = complex_.vertices.size();
+  if (divide_curve_beside(at, p)) return complex_.vertices.size() > before;
+  const std::array<Index, 3> c = complex_.triangles[at].corners;
+  for (unsigned i = 0; i < 3; ++i)
+    if (const Index next = complex_.across(at, c[i], c[(i + 1) % 3]); next != none)
+      if (divide_curve_beside(next, p)) return complex_.vertices.size() > before;
+  const Index v = editor_.insert(at, p);
+  if (v != none) editor_.flip_around(v);
+  return v != none;
+}
+
+/// Lies the triangle between curves so near to each other that no edges reach the bound that may be made?
+bool ShapeRepair::too_narrow(Index triangle) const {
+  const auto& c = complex_.triangles[triangle].corners;
+  double size = INFINITY, longest = 0;
+  for (unsigned i = 0; i < 3; ++i) {
+    if (complex_.vertices[c[i]].feature.dimension == 2) return false;
+    size = std::min(size, complex_.vertices[c[i]].size);
+    longest = std::max(longest, editor_.length(c[i], c[(i + 1) % 3]));
+  }
+  const double height = 2 * norm(area_vector(complex_.corners(triangle))) / longest;
+  return height < narrowest * size;
+}
+
+bool ShapeRepair::refine(Index triangle) {
+  const auto corners = complex_.corners(triangle);
+  unsigned opposite = 0;  // to the shortest side
+  double shortest_side = INFINITY;
+  for (unsigned i = 0; i < 3; ++i) {
+    const double side = distance(corners[(i + 1) % 3], corners[(i + 2) % 3]);
+    if (side < shortest_side) {
+      shortest_side = side;
+      opposite = i;
+    }
+  }
+  if (too_narrow(triangle)) return false;
+  const Point middle = 0.5 * (corners[(opposite + 1) % 3] + corners[(opposite + 2) % 3]);
+  Point p = circumcentre(corners);
+  // So high above the shortest side its angle is 28 degrees.
+  const double high = 2 * shortest_side, height = distance(middle, p);
+  if (height > high) p = middle + high / height * (p - middle);
+  return insert_towards(triangle, p);
+}
+
+std::size_t ShapeRepair::run(std::size_t most_vertices) {
+  constexpr unsigned most_passes = 50, contracting_passes = 3;
+  const double wanted = least_angle + margin;
+  constexpr double refined = 180;  // more than only improved
+  const std::size_t limit = complex_.vertices.size() + most_vertices;
+  std::vector<Index> poor_ones;
+  Index first = 0;
+  for (unsigned pass = 0; pass < most_passes && !execution_.cancelled(); ++pass) {
+    bool changed = false;
+    poor_ones = poor_triangles(wanted, poor_ones, first);
+    first = static_cast<Index>(complex_.triangles.size());
+    for (const Index t : poor_ones) {
+      if (!poor(t, wanted) || tried(t, refined)) continue;
+      // Moves alone do not make a triangle good that is far from it.
+      const bool near = editor_.shape(t) > 0.5 * wanted;
+      // After some passes no vertex goes, so that those that come do so for good.
+      if (improve_connections(t, wanted, pass < contracting_passes) || (near && improve_by_moves(t)) ||
+          (complex_.vertices.size() < limit && refine(t)) || (!near && improve_by_moves(t)))
+        changed = true;
+      else
+        note_tried(t, refined);
+    }
+    if (!changed) break;
+  }
+  return poor_triangles(least_angle, {}, 0).size();
+}
+
+bool ShapeRepair::approach(std::size_t most_vertices) {
+  constexpr unsigned most_passes = 12;
+  const std::size_t before = complex_.vertices.size(), limit = before + most_vertices;
+  std::vector<std::size_t> seen(complex_.triangles.size(), 0);  // changes of the corners, and 1
+  for (unsigned pass = 0; pass < most_passes && !execution_.cancelled(); ++pass) {
+    bool changed = false;
+    seen.resize(complex_.triangles.size(), 0);
+    for (Index t = 0; t < seen.size() && complex_.vertices.size() < limit; ++t) {
+      if (!complex_.triangles[t].alive()) continue;
+      const std::array<Index, 3> c = complex_.triangles[t].corners;
+      std::size_t changes = 1;
+      for (const Index v : c) changes += complex_.vertices[v].changes;
+      if (std::exchange(seen[t], changes) == changes) continue;
+      const unsigned side = editor_.side_too_far(t);
+      if (side == 3) continue;
+      const Index a = c[side], b = c[(side + 1) % 3];
+      if (editor_.length(a, b) < 2 * shortest * editor_.size_of_edge(a, b)) continue;
+      const Index edge = complex_.edge_at(a, b),
+                  v = edge == none ? editor_.divide(a, b) : editor_.divide_curve_edge(edge);
+      if (v == none) continue;
+      editor_.flip_around(v);
+      changed = true;
+    }
+    if (!changed) changed = approach_points();
+    if (!changed) break;
+  }
+  return complex_.vertices.size() > before;
+}
+
+bool ShapeRepair::approach_points() {
+  bool changed = false;
+  for (const auto& far : editor_.far_points()) {
+    const Index t = far.first;
+    const Point& point = far.second;
+    if (!complex_.triangles[t].alive()) continue;
+    const auto& c = complex_.triangles[t].corners;
+    const bool close = std::any_of(c.begin(), c.end(), [&](Index v) {
+      return distance(complex_.vertices[v].point, point) < shortest * complex_.vertices[v].size;
+    });
+    if (close) continue;
+    const Index v = editor_.insert(t, point);
+    if (v == none) continue;
+    editor_.flip_around(v);
+    changed = true;
+  }
+  return changed;
+}
+
+void ShapeRepair::coarsen() {
+  constexpr double short_edge = 0.75, longest = 1.4;
+  const SurfaceEditor::Contraction rule{.longest = longest, .least_shape = wanted_shape};
+  for (Index v = 0; v < complex_.vertices.size(); ++v) {
+    if (complex_.vertices[v].triangles.empty() || complex_.vertices[v].feature.dimension == 0) continue;
+    std::vector<std::pair<double, Index>> short_ones;
+    for (const Index n : complex_.neighbours(v))
+      if (const double share = editor_.length(v, n) / editor_.size_of_edge(v, n); share < short_edge)
+        short_ones.emplace_back(share, n);
+    std::sort(short_ones.begin(), short_ones.end());
+    for (const auto& [share, n] : short_ones)
+      if (editor_.contract(v, n, rule)) break;
+  }
+}
+
+}  // namespace collarmesh::shells

@@ -1,0 +1,82 @@
+#include "shells/surface_complex.h"
+
+#include <algorithm>
+
+namespace collarmesh::shells {
+
+namespace {
+
+void erase_one(std::vector<Index>& all, Index one) {
+  const auto found = std::find(all.begin(), all.end(), one);
+  if (found == all.end()) return;
+  *found = all.back();
+  all.pop_back();
+}
+
+}  // namespace
+
+Index SurfaceComplex::add_vertex(const Point& point, const TetMesh::VertexFeature& feature, double size) {
+  vertices.push_back({point, feature, size, {}, {}, 0});
+  return static_cast<Index>(vertices.size() - 1);
+}
+
+Index SurfaceComplex::add_triangle(const std::array<Index, 3>& corners, Index patch) {
+  const auto number = static_cast<Index>(triangles.size());
+  triangles.push_back({corners, patch});
+  for (const Index v : corners) {
+    vertices[v].triangles.push_back(number);
+    ++vertices[v].changes;
+  }
+  return number;
+}
+
+void SurfaceComplex::remove_triangle(Index triangle) {
+  for (const Index v : triangles[triangle].corners) erase_one(vertices[v].triangles, triangle);
+  triangles[triangle] = {};
+}
+
+Index SurfaceComplex::add_edge(const std::array<Index, 2>& ends, Index curve,
+                               const std::array<double, 2>& at) {
+  const auto number = static_cast<Index>(edges.size());
+  edges.push_back({ends, curve, at});
+  for (const Index v : ends) vertices[v].edges.push_back(number);
+  return number;
+}
+
+void SurfaceComplex::remove_edge(Index edge) {
+  for (const Index v : edges[edge].ends) erase_one(vertices[v].edges, edge);
+  edges[edge] = {};
+}
+
+std::vector<Index> SurfaceComplex::triangles_at(Index a, Index b) const {
+  std::vector<Index> found;
+  for (const Index t : vertices[a].triangles)
+    if (triangles[t].has(b)) found.push_back(t);
+  return found;
+}
+
+Index SurfaceComplex::edge_at(Index a, Index b) const {
+  for (const Index e : vertices[a].edges)
+    if (edges[e].other(a) == b) return e;
+  return none;
+}
+
+std::vector<Index> SurfaceComplex::neighbours(Index v) const {
+  std::vector<Index> found;
+  for (const Index t : vertices[v].triangles)
+    for (const Index c : triangles[t].corners)
+      if (c != v) found.push_back(c);
+  for (const Index e : vertices[v].edges) found.push_back(edges[e].other(v));
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+Index SurfaceComplex::across(Index triangle, Index a, Index b) const {
+  if (!vertices[a].edges.empty() && edge_at(a, b) != none) return none;
+  for (const Index t : vertices[a].triangles)
+    if (t != triangle && triangles[t].has(b)) return t;
+  return none;
+}
+
+}  // namespace collarmesh::shells

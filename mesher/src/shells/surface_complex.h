@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "collarmesh/tet_mesh.h"
+
+namespace collarmesh::shells {
+
+/// The triangles of all patches and the edges of their curves, for editing. Any number of triangles may meet
+/// in an edge on a curve.
+class SurfaceComplex {
+ public:
+  struct Triangle {
+    std::array<Index, 3> corners{none, none, none};  ///< oriented like the patch; none: removed
+    Index patch = none;
+
+    bool alive() const { return corners[0] != none; }
+    bool has(Index v) const { return corners[0] == v || corners[1] == v || corners[2] == v; }
+    /// Precondition: it has both.
+    Index third(Index a, Index b) const {
+      for (const Index c : corners)
+        if (c != a && c != b) return c;
+      return none;
+    }
+  };
+  struct Edge {
+    std::array<Index, 2> ends{none, none};  ///< none: removed
+    Index curve = none;
+    std::array<double, 2> at{};  ///< arc lengths of the ends on the curve, ascending; may exceed its length
+
+    bool alive() const { return ends[0] != none; }
+    Index other(Index v) const { return ends[0] == v ? ends[1] : ends[0]; }
+    double at_end(Index v) const { return at[ends[0] == v ? 0 : 1]; }
+  };
+  struct Vertex {
+    Point point;
+    TetMesh::VertexFeature feature;
+    double size = 0;  ///< target edge length
+    std::vector<Index> triangles, edges;
+    Index changes = 0;  ///< number of changes of its triangles so far
+  };
+
+  std::vector<Vertex> vertices;
+  std::vector<Triangle> triangles;
+  std::vector<Edge> edges;
+
+  std::array<Point, 3> corners(const std::array<Index, 3>& t) const {
+    return {vertices[t[0]].point, vertices[t[1]].point, vertices[t[2]].point};
+  }
+  std::array<Point, 3> corners(Index triangle) const { return corners(triangles[triangle].corners); }
+
+  Index add_vertex(const Point& point, const TetMesh::VertexFeature& feature, double size);
+  Index add_triangle(const std::array<Index, 3>& corners, Index patch);
+  void remove_triangle(Index triangle);
+  Index add_edge(const std::array<Index, 2>& ends, Index curve, const std::array<double, 2>& at);
+  void remove_edge(Index edge);
+
+  /// The triangles that have both vertices.
+  std::vector<Index> triangles_at(Index a, Index b) const;
+  /// The edge of a curve between the vertices, none if there is none.
+  Index edge_at(Index a, Index b) const;
+  /// The vertices that share a triangle or edge with v, sorted.
+  std::vector<Index> neighbours(Index v) const;
+  /// The triangle on the other side of the side ab of a triangle; none where a curve is, or a border.
+  Index across(Index triangle, Index a, Index b) const;
+};
+
+}  // namespace collarmesh::shells

@@ -1,0 +1,383 @@
+#include "shells/surface_editor.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "shells/curve_division.h"
+
+namespace collarmesh::shells {
+
+namespace {
+
+// Cosines of the angle between triangles and their patch: of those made, and of those at a new vertex, which
+// may be flipped afterwards.
+constexpr double least_agreement = 0.6, least_agreement_at_first = 0.2;
+
+}  // namespace
+
+SurfaceEditor::SurfaceEditor(SurfaceComplex& complex, const Plc& plc, const CurvePaths& paths,
+                             const PatchSurfaces& surfaces, const SurfaceSizes& sizes,
+                             SurfaceTolerance tolerance, double most_excess)
+    : complex_(complex),
+      plc_(plc),
+      paths_(paths),
+      surfaces_(surfaces),
+      sizes_(sizes),
+      tolerance_(std::move(tolerance)),
+      most_excess_(most_excess) {}
+
+double SurfaceEditor::least_shape_at(Index vertex) const {
+  double least = INFINITY;
+  for (const Index t : complex_.vertices[vertex].triangles) least = std::min(least, shape(t));
+  return least;
+}
+
+unsigned SurfaceEditor::side_too_far(Index triangle) const {
+  constexpr unsigned no_side = 3;
+  const auto& [c, patch] = complex_.triangles[triangle];
+  if (surfaces_.planar(patch)) return no_side;
+  unsigned worst = no_side, longest = 0;
+  double most = most_excess_, most_length = 0;
+  for (unsigned i = 0; i < 3; ++i) {
+    const Index a = c[i], b = c[(i + 1) % 3];
+    if (const double long_side = length(a, b); long_side > most_length) {
+      most_length = long_side;
+      longest = i;
+    }
+    if (complex_.edge_at(a, b) != none) continue;
+    const double excess =
+        surfaces_.excess_between(patch, complex_.vertices[a].point, complex_.vertices[b].point);
+    if (excess <= most) continue;
+    most = excess;
+    worst = i;
+  }
+  if (worst != no_side) return worst;
+  return surfaces_.fit(complex_.corners(triangle), patch).excess > most_excess_ ? longest : no_side;
+}
+
+std::vector<std::pair<Index, Point>> SurfaceEditor::far_points() const {
+  std::vector<std::vector<Index>> of_patch(plc_.patches.size());
+  for (Index t = 0; t < complex_.triangles.size(); ++t)
+    if (complex_.triangles[t].alive() && !surfaces_.planar(complex_.triangles[t].patch))
+      of_patch[complex_.triangles[t].patch].push_back(t);
+  std::vector<std::pair<Index, Point>> found;
+  for (Index patch = 0; patch < of_patch.size(); ++patch) {
+    std::vector<Corners> corners;
+    corners.reserve(of_patch[patch].size());
+    for (const Index t : of_patch[patch]) corners.push_back(complex_.corners(t));
+    for (const auto& [i, point] : surfaces_.far_points(patch, corners, most_excess_))
+      found.emplace_back(of_patch[patch][i], point);
+  }
+  return found;
+}
+
+PatchSurfaces::Fit SurfaceEditor::worst_fit(std::span<const Index> triangles) const {
+  PatchSurfaces::Fit worst;
+  for (const Index t : triangles) {
+    const PatchSurfaces::Fit fit = surfaces_.fit(complex_.corners(t), complex_.triangles[t].patch);
+    worst = {std::min(worst.agreement, fit.agreement), std::max(worst.excess, fit.excess)};
+  }
+  return worst;
+}
+
+/// Looks at the centres of the triangles and, unless it is none, at their sides from a centre.
+bool SurfaceEditor::fit(std::span<const Created> created, std::span<const Index> removed,
+                        Index centre) const {
+  std::optional<PatchSurfaces::Fit> before;
+  const auto old = [&] { return before ? *before : *(before = worst_fit(removed)); };
+  for (const Created& t : created) {
+    const PatchSurfaces::Fit fit = surfaces_.fit(complex_.corners(t.corners), t.patch);
+    if (!(fit.agreement > 0)) return false;
+    if (fit.agreement < least_agreement && fit.agreement < old().agreement) return false;
+    if (fit.excess > most_excess_ && fit.excess > old().excess) return false;
+    if (centre == none || surfaces_.planar(t.patch)) continue;
+    for (unsigned i = 0; i < 3; ++i) {
+      if (t.corners[i] != centre) continue;
+      const double excess = surfaces_.excess_between(t.patch, complex_.vertices[centre].point,
+                                                     complex_.vertices[t.corners[(i + 1) % 3]].point);
+      if (excess > most_excess_ && excess > old().excess) return false;
+    }
+  }
+  return true;
+}
+
+bool SurfaceEditor::flip(Index a, Index b) {
+  if (complex_.edge_at(a, b) != none) return false;
+  const std::vector<Index> two = complex_.triangles_at(a, b);
+  if (two.size() != 2) return false;
+  const auto& s = complex_.triangles[two[0]];
+  const auto& t = complex_.triangles[two[1]];
+  if (s.patch != t.patch) return false;
+  // Oriented as in the first triangle.
+  const auto place =
+      static_cast<unsigned>(std::find(s.corners.begin(), s.corners.end(), a) - s.corners.begin());
+  if (s.corners[(place + 1) % 3] != b) std::swap(a, b);
+  const Index c = s.third(a, b), d = t.third(a, b), patch = s.patch;
+  if (c == d) return false;
+  const std::array<Created, 2> created{{{{a, d, c}, patch}, {{d, b, c}, patch}}};
+  const double before = std::min(shape(two[0]), shape(two[1]));
+  constexpr double least_gain = 1e-6;
+  for (const Created& n : created)
+    if (!(shape_of(complex_.corners(n.corners)) > before + least_gain)) return false;
+  if (complex_.edge_at(c, d) != none || !complex_.triangles_at(c, d).empty()) return false;
+  if (!fit(created, two, c)) return false;
+  for (const Index old : two) complex_.remove_triangle(old);
+  for (const Created& n : created) complex_.add_triangle(n.corners, n.patch);
+  return true;
+}
+
+/// Keeps the topology: what is common to the ends' neighbourhoods is that of the edge.
+bool SurfaceEditor::can_contract(Index from, Index to, std::span<const Index> between) const {
+  const std::vector<Index> around = complex_.neighbours(from), around_to = complex_.neighbours(to);
+  std::vector<Index> common, thirds;
+  std::set_intersection(around.begin(), around.end(), around_to.begin(), around_to.end(),
+                        std::back_inserter(common));
+  for (const Index t : between) thirds.push_back(complex_.triangles[t].third(from, to));
+  std::sort(thirds.begin(), thirds.end());
+  thirds.erase(std::unique(thirds.begin(), thirds.end()), thirds.end());
+  if (common != thirds) return false;
+  for (const Index t : complex_.vertices[from].triangles) {
+    const auto& corners = complex_.triangles[t];
+    if (corners.has(to)) continue;
+    for (const Index other : complex_.vertices[to].triangles) {
+      const bool same = std::all_of(corners.corners.begin(), corners.corners.end(),
+                                    [&](Index c) { return c == from || complex_.triangles[other].has(c); });
+      if (same) return false;
+    }
+  }
+  return true;
+}
+
+std::optional<std::array<Index, 2>> SurfaceEditor::edges_around(Index vertex) const {
+  const auto& edges = complex_.vertices[vertex].edges;
+  if (edges.size() != 2 || complex_.vertices[vertex].feature.dimension != 1) return std::nullopt;
+  const bool in_order = complex_.edges[edges[0]].ends[1] == vertex;
+  return in_order ? std::array{edges[0], edges[1]} : std::array{edges[1], edges[0]};
+}
+
+bool SurfaceEditor::curve_permits(Index from, Index to, const Contraction& rule) const {
+  const auto around = edges_around(from);
+  const Index edge = complex_.edge_at(from, to);
+  if (!around || edge == none) return false;
+  const auto& before = complex_.edges[(*around)[0]];
+  const auto& behind = complex_.edges[(*around)[1]];
+  const Index other = edge == (*around)[0] ? behind.ends[1] : before.ends[0];
+  if (other == to || complex_.edge_at(to, other) != none) return false;
+  const double end = before.at[1] + (behind.at[1] - behind.at[0]);
+  return length(to, other) <= rule.longest * size_of_edge(to, other) &&
+         sag_between(plc_, paths_, tolerance_, before.curve, before.at[0], end) <= most_excess_;
+}
+
+void SurfaceEditor::merge_edges(Index from, Index to) {
+  const auto [first, second] = *edges_around(from);
+  const auto before = complex_.edges[first], behind = complex_.edges[second];
+  complex_.remove_edge(first);
+  complex_.remove_edge(second);
+  complex_.add_edge({before.ends[0], behind.ends[1]}, before.curve,
+                    {before.at[0], before.at[1] + (behind.at[1] - behind.at[0])});
+  static_cast<void>(to);
+}
+
+bool SurfaceEditor::contract(Index from, Index to, const Contraction& rule) {
+  const unsigned dimension = complex_.vertices[from].feature.dimension;
+  if (dimension == 0) return false;
+  const std::vector<Index> between = complex_.triangles_at(from, to);
+  const std::vector<Index> all = complex_.vertices[from].triangles;
+  std::vector<Created> created;
+  double before = INFINITY, after = INFINITY;
+  for (const Index t : all) {
+    before = std::min(before, shape(t));
+    if (complex_.triangles[t].has(to)) continue;
+    Created n{complex_.triangles[t].corners, complex_.triangles[t].patch};
+    std::replace(n.corners.begin(), n.corners.end(), from, to);
+    after = std::min(after, shape_of(complex_.corners(n.corners)));
+    created.push_back(n);
+  }
+  if (created.empty() || after < std::min(before, rule.least_shape) || (rule.better && after <= before))
+    return false;
+  double longest = 0, longest_before = 0;  // of edges, relative to the sizes
+  for (const Index n : complex_.neighbours(from)) {
+    if (n == to) continue;
+    longest = std::max(longest, length(n, to) / size_of_edge(n, to));
+    longest_before = std::max(longest_before, length(n, from) / size_of_edge(n, from));
+  }
+  if (longest > std::max(rule.longest, longest_before)) return false;
+  if (dimension == 1 && !curve_permits(from, to, rule)) return false;
+  if (!can_contract(from, to, between) || !fit(created, all, to)) return false;
+  for (const Index t : all) complex_.remove_triangle(t);
+  if (dimension == 1) merge_edges(from, to);
+  for (const Created& n : created) complex_.add_triangle(n.corners, n.patch);
+  return true;
+}
+
+double SurfaceEditor::size_near(const Point& p, std::span<const Index> around, double asked) const {
+  double size = asked;
+  for (const Index n : around)
+    size = std::min(size,
+                    complex_.vertices[n].size + sizes_.gradation() * distance(p, complex_.vertices[n].point));
+  return size;
+}
+
+Index SurfaceEditor::new_vertex(const Point& p, Index patch, std::span<const Index> around) {
+  Point place = p;
+  Index triangle = plc_.patches[patch].first_triangle;
+  if (!surfaces_.planar(patch)) {
+    const PatchSurfaces::Foot foot = surfaces_.nearest(patch, p);
+    place = foot.point;
+    triangle = foot.triangle;
+  }
+  return complex_.add_vertex(place, {2, patch},
+                             size_near(place, around, sizes_.on_patch(patch, triangle, place)));
+}
+
+Index SurfaceEditor::divide_at(Index a, Index b, std::span<const Index> triangles, const Point& p) {
+  const Index patch = complex_.triangles[triangles[0]].patch;
+  std::vector<Index> around{a, b};
+  for (const Index t : triangles) around.push_back(complex_.triangles[t].third(a, b));
+  const Index v = new_vertex(p, patch, around);
+  std::vector<Created> created;
+  for (const Index t : triangles)
+    for (const Index end : {a, b}) {
+      Created n{complex_.triangles[t].corners, patch};
+      std::replace(n.corners.begin(), n.corners.end(), end, v);
+      const double agreement = surfaces_.agreement(complex_.corners(n.corners), patch);
+      if (agreement < least_agreement_at_first &&
+          agreement <= surfaces_.agreement(complex_.corners(t), patch)) {
+        complex_.vertices.pop_back();
+        return none;
+      }
+      created.push_back(n);
+    }
+  for (const Index t : triangles) complex_.remove_triangle(t);
+  for (const Created& n : created) complex_.add_triangle(n.corners, n.patch);
+  return v;
+}
+
+Index SurfaceEditor::divide(Index a, Index b) {
+  if (complex_.edge_at(a, b) != none) return none;
+  const std::vector<Index> two = complex_.triangles_at(a, b);
+  if (two.empty()) return none;
+  return divide_at(a, b, two, 0.5 * (complex_.vertices[a].point + complex_.vertices[b].point));
+}
+
+Index SurfaceEditor::divide_curve_edge(Index edge, double at) {
+  const SurfaceComplex::Edge old = complex_.edges[edge];
+  const auto [a, b] = old.ends;
+  const std::vector<Index> triangles = complex_.triangles_at(a, b);
+  const Point p = paths_.point(old.curve, at);
+  const double asked = sizes_.on_curve(old.curve, at), size = size_near(p, old.ends, asked);
+  const Index v = complex_.add_vertex(p, {1, old.curve}, size);
+  std::vector<Created> created;
+  for (const Index t : triangles)
+    for (const Index end : {a, b}) {
+      Created n{complex_.triangles[t].corners, complex_.triangles[t].patch};
+      std::replace(n.corners.begin(), n.corners.end(), end, v);
+      const double agreement = surfaces_.agreement(complex_.corners(n.corners), n.patch);
+      if (!(agreement > least_agreement_at_first) &&
+          agreement <= surfaces_.agreement(complex_.corners(t), n.patch)) {
+        complex_.vertices.pop_back();
+        return none;
+      }
+      created.push_back(n);
+    }
+  for (const Index t : triangles) complex_.remove_triangle(t);
+  complex_.remove_edge(edge);
+  complex_.add_edge({a, v}, old.curve, {old.at[0], at});
+  complex_.add_edge({v, b}, old.curve, {at, old.at[1]});
+  for (const Created& n : created) complex_.add_triangle(n.corners, n.patch);
+  return v;
+}
+
+Index SurfaceEditor::insert(Index triangle, const Point& p) {
+  constexpr double on_side = 0.1;
+  const SurfaceComplex::Triangle old = complex_.triangles[triangle];
+  const auto shares = barycentric(complex_.corners(triangle), p);
+  const auto least = static_cast<unsigned>(std::min_element(shares.begin(), shares.end()) - shares.begin());
+  if (shares[least] < on_side) {
+    const Index a = old.corners[(least + 1) % 3], b = old.corners[(least + 2) % 3];
+    if (const Index edge = complex_.edge_at(a, b); edge != none) return divide_curve_edge(edge);
+    return divide_at(a, b, complex_.triangles_at(a, b), p);
+  }
+  const Index v = new_vertex(p, old.patch, old.corners);
+  std::array<Created, 3> created;
+  for (unsigned i = 0; i < 3; ++i) {
+    created[i] = {old.corners, old.patch};
+    created[i].corners[i] = v;
+    if (surfaces_.agreement(complex_.corners(created[i].corners), old.patch) < least_agreement_at_first) {
+      complex_.vertices.pop_back();
+      return none;
+    }
+  }
+  complex_.remove_triangle(triangle);
+  for (const Created& n : created) complex_.add_triangle(n.corners, n.patch);
+  return v;
+}
+
+void SurfaceEditor::flip_around(Index vertex) {
+  constexpr unsigned most = 200;
+  std::vector<std::array<Index, 2>> sides;
+  const auto add = [&](Index v) {
+    for (const Index t : complex_.vertices[v].triangles) {
+      const auto& c = complex_.triangles[t].corners;
+      for (unsigned i = 0; i < 3; ++i)
+        if (c[i] == v) sides.push_back({c[(i + 1) % 3], c[(i + 2) % 3]});
+    }
+  };
+  add(vertex);
+  for (unsigned i = 0; i < most && !sides.empty(); ++i) {
+    const auto [a, b] = sides.back();
+    sides.pop_back();
+    if (flip(a, b)) add(vertex);
+  }
+}
+
+bool SurfaceEditor::put_if(Index vertex, const Point& p, double least, std::span<const Index> triangles) {
+  std::vector<Created> same;
+  for (const Index t : triangles)
+    same.push_back({complex_.triangles[t].corners, complex_.triangles[t].patch});
+  const Point before = complex_.vertices[vertex].point;
+  complex_.vertices[vertex].point = p;
+  bool good = least_shape_at(vertex) >= least;
+  if (good && !fit(same, {}, vertex)) {
+    const auto worst = [&] { return worst_fit(triangles); };
+    const PatchSurfaces::Fit after = worst();
+    complex_.vertices[vertex].point = before;
+    const PatchSurfaces::Fit old = worst();
+    complex_.vertices[vertex].point = p;
+    good = after.agreement > 0 && after.agreement >= std::min(old.agreement, least_agreement) &&
+           after.excess <= std::max(old.excess, most_excess_);
+  }
+  if (!good) complex_.vertices[vertex].point = before;
+  if (good)
+    for (const Index t : triangles)
+      for (const Index c : complex_.triangles[t].corners) ++complex_.vertices[c].changes;
+  return good;
+}
+
+bool SurfaceEditor::put(Index vertex, const Point& p, double least) {
+  return put_if(vertex, p, least, complex_.vertices[vertex].triangles);
+}
+
+bool SurfaceEditor::move(Index vertex, const Point& p, double least) {
+  const Index patch = complex_.vertices[vertex].feature.feature;
+  return put(vertex, surfaces_.planar(patch) ? p : surfaces_.nearest(patch, p).point, least);
+}
+
+bool SurfaceEditor::slide(Index vertex, double at, double least) {
+  const auto around = edges_around(vertex);
+  if (!around) return false;
+  auto& before = complex_.edges[(*around)[0]];
+  auto& behind = complex_.edges[(*around)[1]];
+  const double shift = behind.at[0] - before.at[1];  // by the length of a closed curve
+  const Index curve = before.curve;
+  if (!(at > before.at[0]) || !(at < behind.at[1] - shift)) return false;
+  if (sag_between(plc_, paths_, tolerance_, curve, before.at[0], at) > most_excess_ ||
+      sag_between(plc_, paths_, tolerance_, curve, at + shift, behind.at[1]) > most_excess_)
+    return false;
+  if (!put(vertex, paths_.point(curve, at), least)) return false;
+  before.at[1] = at;
+  behind.at[0] = at + shift;
+  return true;
+}
+
+}  // namespace collarmesh::shells

@@ -1,0 +1,213 @@
+// Surfaces on their own: triangles within the bounds on angles, that conform, judged by formulas of this
+// file.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "collarmesh/error.h"
+#include "collarmesh/plc_builder.h"
+#include "collarmesh/shells.h"
+#include "support/shapes.h"
+
+namespace collarmesh {
+namespace {
+
+using namespace testing;
+
+PipelineResult shells_of(const PolygonSoup& soup, double size, unsigned order = 1) {
+  PlcOptions any;
+  any.require_solid = false;
+  PipelineOptions options;
+  options.mesh.size = size;
+  options.order = order;
+  const std::vector<PolygonSoup> soups{soup};
+  return mesh_shells(build_plc(soups, any), options);
+}
+
+std::pair<double, double> angles_of(const TetMesh& mesh) {
+  double least = 180, most = 0;
+  for (const auto& f : mesh.faces)
+    for (unsigned i = 0; i < 3; ++i) {
+      const Vector u = mesh.points[f[(i + 1) % 3]] - mesh.points[f[i]],
+                   v = mesh.points[f[(i + 2) % 3]] - mesh.points[f[i]];
+      const double angle = std::acos(dot(u, v) / norm(u) / norm(v)) * 180 / std::numbers::pi;
+      least = std::min(least, angle);
+      most = std::max(most, angle);
+    }
+  return {least, most};
+}
+
+double area_of(const TetMesh& mesh) {
+  double area = 0;
+  for (const auto& [a, b, c] : mesh.faces)
+    area += 0.5 * norm(cross(mesh.points[b] - mesh.points[a], mesh.points[c] - mesh.points[a]));
+  return area;
+}
+
+/// Numbers of sides of triangles by how many have them; a side that runs twice the same way counts as 0.
+std::map<int, std::size_t> sides_of(const TetMesh& mesh) {
+  std::map<std::pair<Index, Index>, std::pair<int, int>> sides;
+  for (const auto& f : mesh.faces)
+    for (unsigned i = 0; i < 3; ++i) {
+      const Index a = f[i], b = f[(i + 1) % 3];
+      auto& [up, down] = sides[std::minmax(a, b)];
+      ++(a < b ? up : down);
+    }
+  std::map<int, std::size_t> counts;
+  for (const auto& [side, both] : sides)
+    ++counts[both.first > 1 || both.second > 1 ? 0 : both.first + both.second];
+  return counts;
+}
+
+void expect_good(const PipelineResult& made) {
+  EXPECT_TRUE(made.guarantees_hold()) << made.missed();
+  const auto [least, most] = angles_of(made.result.mesh);
+  EXPECT_GE(least, 20);
+  EXPECT_LE(most, 120);
+  EXPECT_TRUE(made.result.mesh.tets.empty());
+}
+
+PolygonSoup without_facets(const PolygonSoup& soup, const std::set<Tag>& tags) {
+  PolygonSoup rest;
+  rest.points = soup.points;
+  for (Index f = 0; f < soup.facet_count(); ++f)
+    if (tags.count(soup.facet_tag(f)) == 0)
+      rest.add_facet(soup.polygon(soup.facet_polygons(f)[0]), soup.facet_tag(f));
+  return rest;
+}
+
+TEST(Shells, ClosedSurfacesAreClosedAndLookOutwards) {
+  for (const double size : {0.5, 0.2, 0.07}) {
+    const PipelineResult made = shells_of(box({0, 0, 0}, {1, 1, 1}, 3), size);
+    expect_good(made);
+    EXPECT_EQ(sides_of(made.result.mesh).size(), 1U);
+    EXPECT_NEAR(area_of(made.result.mesh), 6, 1e-9);
+    double volume = 0;
+    for (const auto& [a, b, c] : made.result.mesh.faces)
+      volume +=
+          six_volume({}, made.result.mesh.points[a], made.result.mesh.points[b], made.result.mesh.points[c]) /
+          6;
+    EXPECT_NEAR(volume, 1, 1e-9);
+  }
+}
+
+TEST(Shells, SmoothSurfacesKeepTheirAreaAndLengths) {
+  for (const PolygonSoup& soup :
+       {icosphere(1, 12), cylinder(1, 2, 60), torus(2, 0.7, 60, 30), cone(1, 2, 40, 5)}) {
+    const PipelineResult made = shells_of(soup, 0.2);
+    EXPECT_TRUE(made.guarantees_hold()) << made.missed();
+    const std::size_t triangles = made.result.mesh.faces.size();
+    EXPECT_LT(static_cast<double>(triangles) * 0.433 * 0.2 * 0.2, 1.6 * area_of(made.result.mesh));
+    EXPECT_GT(made.check.median_edge, 0.15);
+    EXPECT_LT(made.check.median_edge, 0.25);
+    EXPECT_EQ(sides_of(made.result.mesh).count(0), 0U);
+  }
+}
+
+TEST(Shells, OpenSurfacesAndJunctions) {
+  const PipelineResult open = shells_of(without_facets(box(), {6}), 0.2);
+  expect_good(open);
+  EXPECT_NEAR(area_of(open.result.mesh), 5, 1e-9);
+  EXPECT_EQ(sides_of(open.result.mesh).count(0), 0U);
+  EXPECT_GT(sides_of(open.result.mesh).at(1), 16U);
+  const PipelineResult junction = shells_of(two_boxes(), 0.25);
+  expect_good(junction);
+  EXPECT_NEAR(area_of(junction.result.mesh), 11, 1e-9);
+}
+
+TEST(Shells, SizesOfPatchesHold) {
+  PlcOptions any;
+  any.require_solid = false;
+  const std::vector<PolygonSoup> soups{box()};
+  const Plc plc = build_plc(soups, any);
+  PipelineOptions options;
+  options.mesh.size = 0.3;
+  options.mesh.patch_size = {{6, 0.05}};
+  const PipelineResult made = mesh_shells(plc, options);
+  expect_good(made);
+  std::size_t fine = 0;
+  for (const Tag tag : made.result.mesh.face_tag) fine += tag == 6 ? 1 : 0;
+  EXPECT_GT(fine, 600U);
+  EXPECT_GT(fine, made.result.mesh.faces.size() / 4);
+  options.mesh.patch_size = {{99, 0.05}};
+  EXPECT_THROW(mesh_shells(plc, options), OptionError);
+}
+
+TEST(Shells, TheSecondOrderFollowsCurves) {
+  const PipelineResult made = shells_of(cylinder(1, 2, 400), 0.5, 2);
+  EXPECT_TRUE(made.guarantees_hold()) << made.missed();
+  const TetMesh& mesh = made.result.mesh;
+  ASSERT_EQ(mesh.order(), 2);
+  ASSERT_EQ(mesh.face_mid_nodes.size(), mesh.faces.size());
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    if (std::fabs(mesh.points[mesh.faces[f][0]].z - mesh.points[mesh.faces[f][1]].z) < 1e-9) continue;
+    for (const Index v : mesh.faces[f]) {
+      const double radius = std::hypot(mesh.points[v].x, mesh.points[v].y);
+      if (radius > 0.9) {
+        EXPECT_NEAR(radius, 1, 1e-3);
+      }
+    }
+  }
+  EXPECT_NEAR(made.check.of_mesh.areas[0] + made.check.of_mesh.areas[1] + made.check.of_mesh.areas[2],
+              made.check.of_input.areas[0] + made.check.of_input.areas[1] + made.check.of_input.areas[2],
+              0.05);
+}
+
+TEST(Shells, TheCertificateFindsFaults) {
+  PlcOptions any;
+  any.require_solid = false;
+  const std::vector<PolygonSoup> soups{box()};
+  const Plc plc = build_plc(soups, any);
+  PipelineOptions options;
+  options.mesh.size = 0.3;
+  const PipelineResult made = mesh_shells(plc, options);
+  ASSERT_TRUE(made.guarantees_hold());
+  const auto found = [&](const TetMesh& mesh, const char* guarantee) {
+    const CheckReport report = check_shells(mesh, plc);
+    return std::any_of(report.findings.begin(), report.findings.end(),
+                       [&](const Finding& finding) { return finding.guarantee == guarantee; });
+  };
+  TetMesh hole = made.result.mesh;
+  for (auto* const list : {&hole.face_patch}) list->pop_back();
+  hole.faces.pop_back(), hole.face_tag.pop_back(), hole.face_regions.pop_back();
+  EXPECT_TRUE(found(hole, "patch_border") || found(hole, "patch_area"));
+  TetMesh turned = made.result.mesh;
+  std::swap(turned.faces[0][0], turned.faces[0][1]);
+  EXPECT_TRUE(found(turned, "patch_orientation"));
+  TetMesh inside_out = made.result.mesh;
+  for (auto& face : inside_out.faces) std::swap(face[0], face[1]);
+  EXPECT_TRUE(found(inside_out, "shell_orientation"));
+  TetMesh moved = made.result.mesh;
+  for (std::size_t v = 0; v < moved.points.size(); ++v)
+    if (moved.features[v].dimension == 2) {
+      moved.points[v] = moved.points[v] + Vector{0.01, 0.01, 0.01};
+      break;
+    }
+  EXPECT_TRUE(found(moved, "patch_plane"));
+  TetMesh tags = made.result.mesh;
+  tags.face_tag[0] += 1;
+  EXPECT_TRUE(found(tags, "patch_tag"));
+  TetMesh edges = made.result.mesh;
+  edges.edges.pop_back(), edges.edge_tag.pop_back(), edges.edge_curve.pop_back();
+  EXPECT_TRUE(found(edges, "curve_cover") || found(edges, "curve_present"));
+}
+
+TEST(Shells, SharpCornersAreTold) {
+  PolygonSoup triangle;
+  triangle.points = {{0, 0, 0}, {1, 0, 0}, {1, 0.1, 0}};
+  triangle.add_facet(std::vector<Index>{0, 1, 2}, 1);
+  const PipelineResult made = shells_of(triangle, 0.1);
+  EXPECT_TRUE(made.guarantees_hold()) << made.missed();
+  ASSERT_TRUE(made.check.triangles);
+  EXPECT_GT(made.check.triangles->at_sharp_corners, 0U);
+  EXPECT_LT(made.check.triangles->at_sharp_corners, 6U);
+}
+
+}  // namespace
+}  // namespace collarmesh
